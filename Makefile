@@ -1,0 +1,420 @@
+# Makefile - builds libfibrad.a (kernel) and fibrad (host); `make help` lists the targets. SPDX-License-Identifier: MIT
+
+.DEFAULT_GOAL := all
+.DELETE_ON_ERROR:
+.SUFFIXES:
+
+# ---- yours to set on the command line -------------------------------------------------------------------------------
+CC         = cc
+AR         = ar
+CFLAGS     = -O2 -g
+LDFLAGS    =
+PKG_CONFIG = pkg-config
+PREFIX     = /usr/local
+DESTDIR    =
+BUILD      = build
+# compiler of the program that writes the tables, when CC makes code for another machine
+HOSTCC     = $(CC)
+# extra warnings policy: make WERROR=-Werror
+WERROR     =
+# -DFIBRAD_TABLE_AZIMUTHS=256 and the like, kernel/sample/tables.h
+TABLES     =
+# position independent, so that the archive also goes into shared objects; empty for machines without an operating system
+PIC        = -fPIC -fno-semantic-interposition
+# instruction sets of the laned sources: scalar, then any of sse2 avx2 avx512
+ISAS      := scalar $(if $(filter x86_64% i%86%,$(shell $(CC) -dumpmachine)),sse2 avx2 avx512)
+
+# ---- what the sources need ------------------------------------------------------------------------------------------
+WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wshadow -Wvla $(WERROR)
+COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
+# tables of addresses would be data in position independent code
+KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) \
+    $(foreach isa,$(filter-out scalar,$(ISAS)),$(WITH_$(isa)))
+HOST_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(GSL_CFLAGS)
+TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES)
+
+WITH_sse2   = -DFIBRAD_WITH_SSE2
+WITH_avx2   = -DFIBRAD_WITH_AVX2
+WITH_avx512 = -DFIBRAD_WITH_AVX512
+
+# no -mfma: products and sums round one by one in every instruction set
+FLAGS_scalar =
+FLAGS_sse2   = -msse2
+FLAGS_avx2   = -mavx2 -mpopcnt
+FLAGS_avx512 = -mavx512f -mavx512dq -mavx512bw -mavx512vl -mpopcnt
+
+# asked for when used, since `make deps` may just have installed them
+GSL_CFLAGS   = $(shell $(PKG_CONFIG) --cflags gsl)
+GSL_LIBS     = $(shell $(PKG_CONFIG) --libs gsl)
+CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
+CHECK_LIBS   = $(shell $(PKG_CONFIG) --libs check)
+
+# ---- sources --------------------------------------------------------------------------------------------------------
+# `make check` tells of files that are missing here
+KERNEL = \
+    kernel/base/cpu.c \
+    kernel/base/status.c \
+    kernel/sample/direction.c \
+    kernel/pair/exact.c \
+    kernel/pair/surface.c \
+    kernel/bed/areas.c \
+    kernel/bed/beam.c \
+    kernel/bed/cast.c \
+    kernel/bed/near.c \
+    kernel/bed/rows.c \
+    kernel/bed/scene.c \
+    kernel/bed/surface_row.c \
+    kernel/bed/work.c \
+    kernel/furnace/bundles.c \
+    kernel/furnace/furnace.c \
+    kernel/furnace/lines.c \
+    kernel/furnace/tally.c
+
+# compiled once per instruction set
+LANED = \
+    kernel/pair/surface_lanes.c \
+    kernel/bed/areas_lanes.c \
+    kernel/bed/beam_lanes.c \
+    kernel/bed/cast_lanes.c \
+    kernel/bed/near_lanes.c \
+    kernel/bed/points_lanes.c
+
+# besides main.c and generate_tables.c
+HOST = \
+    host/bed.c \
+    host/bed_make.c \
+    host/command_bed.c \
+    host/command_furnace.c \
+    host/command_pair.c \
+    host/command_reproduce.c \
+    host/exact_gsl.c \
+    host/furnace_cases.c \
+    host/furnace_plot.c \
+    host/furnace_run.c \
+    host/furnace_shoot.c \
+    host/gnuplot.c \
+    host/interrupt.c \
+    host/message.c \
+    host/method.c \
+    host/options.c \
+    host/plot.c \
+    host/plot_data.c \
+    host/progress.c \
+    host/read.c \
+    host/read_columns.c \
+    host/read_csv.c \
+    host/read_dump.c \
+    host/read_furnace.c \
+    host/read_lines.c \
+    host/read_yade.c \
+    host/reference.c \
+    host/reproduce_beds.c \
+    host/reproduce_pairs.c \
+    host/reproduce_pebbles.c \
+    host/reproduce_rays.c \
+    host/reproduce_rows.c \
+    host/run_omp.c \
+    host/targets.c \
+    host/tolerance.c \
+    host/write.c \
+    host/write_csv.c \
+    host/write_furnace.c \
+    host/write_mtx.c \
+    host/write_npz.c \
+    host/write_vtp.c
+
+TESTS = \
+    tests/test_accuracy.c \
+    tests/test_areas.c \
+    tests/test_base.c \
+    tests/test_bed_make.c \
+    tests/test_beam.c \
+    tests/test_cast.c \
+    tests/test_cli.c \
+    tests/test_direction.c \
+    tests/test_estimate.c \
+    tests/test_furnace.c \
+    tests/test_read_furnace.c \
+    tests/test_pair_exact.c \
+    tests/test_read.c \
+    tests/test_reference.c \
+    tests/test_reproduce.c \
+    tests/test_rows.c \
+    tests/test_scene.c \
+    tests/test_status.c \
+    tests/test_stress.c \
+    tests/test_surface.c \
+    tests/test_surface_row.c \
+    tests/test_tables.c \
+    tests/test_write.c
+
+SCRIPTS = \
+    tests/check_bits.sh \
+    tests/check_examples.sh \
+    tests/check_faults.sh \
+    tests/check_header.sh \
+    tests/check_npz.sh \
+    tests/check_symbols.sh \
+    tests/check_tables.sh \
+    tests/freestanding/check_freestanding.sh \
+    tests/package/check_package.sh
+
+BENCHES = \
+    bench/bench_beam.c \
+    bench/bench_cast.c \
+    bench/bench_error.c \
+    bench/bench_estimate.c \
+    bench/bench_furnace.c \
+    bench/bench_pair.c \
+    bench/bench_scale.c \
+    bench/bench_surface.c
+
+# built and run where Embree 3 is found (Debian: libembree-dev)
+PEERS = bench/bench_embree.c
+
+# these know the argument `quick`
+QUICK = bench/bench_beam.c bench/bench_pair.c bench/bench_scale.c $(PEERS)
+
+# ---- objects --------------------------------------------------------------------------------------------------------
+PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)
+LANED_OBJECTS  = $(foreach isa,$(ISAS),$(LANED:%.c=$(BUILD)/%_$(isa).o))
+KERNEL_OBJECTS = $(BUILD)/tables.o $(PLAIN_OBJECTS) $(LANED_OBJECTS)
+HOST_OBJECTS   = $(HOST:%.c=$(BUILD)/%.o)
+TEST_PROGRAMS  = $(TESTS:%.c=$(BUILD)/%)
+BENCH_PROGRAMS = $(BENCHES:%.c=$(BUILD)/%)
+PEER_PROGRAMS  = $(PEERS:%.c=$(BUILD)/%)
+
+.PHONY: all lib demo reproduce test run-programs programs check symbols lists format bench bench-quick bench-peers deps deps-ci install install-lib clean help need-gsl need-check
+
+## all: build/fibrad and build/libfibrad.a (the default)
+all: $(BUILD)/fibrad $(BUILD)/libfibrad.a
+
+## lib: build/libfibrad.a alone; needs nothing but a C compiler
+lib: $(BUILD)/libfibrad.a
+
+$(BUILD)/libfibrad.a: $(KERNEL_OBJECTS)
+	rm -f $@
+	$(AR) rcs $@ $^
+
+$(PLAIN_OBJECTS): $(BUILD)/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(KERNEL_FLAGS) -c $< -o $@
+
+$(BUILD)/tables.o: $(BUILD)/tables.c
+	$(CC) $(CFLAGS) $(KERNEL_FLAGS) -c $< -o $@
+
+$(BUILD)/tables.c: $(BUILD)/generate_tables
+	$< > $@
+
+$(BUILD)/generate_tables: host/generate_tables.c
+	@mkdir -p $(@D)
+	$(HOSTCC) -O2 $(COMMON) $< -lm -o $@
+
+# $(1): instruction set. In the source, FIBRAD_LANES_HEADER is the header of its lane type and FIBRAD_ISA_SUFFIX ends
+# the names of its external functions.
+define laned_rule
+$(LANED:%.c=$(BUILD)/%_$(1).o): $(BUILD)/%_$(1).o: %.c
+	@mkdir -p $$(@D)
+	$$(CC) $$(CFLAGS) $$(KERNEL_FLAGS) $$(FLAGS_$(1)) \
+	    -DFIBRAD_LANES_HEADER='"base/lanes/vec_$(1).h"' -DFIBRAD_ISA_SUFFIX=_$(1) -c $$< -o $$@
+endef
+$(foreach isa,$(ISAS),$(eval $(call laned_rule,$(isa))))
+
+$(BUILD)/fibrad: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libfibrad.a
+	$(CC) $(LDFLAGS) -fopenmp $^ $(GSL_LIBS) -lm -o $@
+
+# all of the host but main, for tests and benches to link
+$(BUILD)/libhost.a: $(HOST_OBJECTS)
+	rm -f $@
+	$(AR) rcs $@ $^
+
+$(BUILD)/host/main.o $(HOST_OBJECTS): $(BUILD)/%.o: %.c | need-gsl
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(HOST_FLAGS) -c $< -o $@
+
+$(TEST_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/libfibrad.a | need-gsl need-check
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(TEST_FLAGS) $(LDFLAGS) $< $(BUILD)/libhost.a $(BUILD)/libfibrad.a $(CHECK_LIBS) $(GSL_LIBS) -lm -o $@
+
+$(BENCH_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/libfibrad.a | need-gsl
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(HOST_FLAGS) $(LDFLAGS) $< $(BUILD)/libhost.a $(BUILD)/libfibrad.a $(GSL_LIBS) -lm -o $@
+
+$(PEER_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/libfibrad.a | need-gsl
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) -O3 $(HOST_FLAGS) $(LDFLAGS) $< $(BUILD)/libhost.a $(BUILD)/libfibrad.a -lembree3 $(GSL_LIBS) -lm -o $@
+
+need-gsl:
+	@$(PKG_CONFIG) --exists gsl || { echo "The program fibrad needs GSL: run 'make deps' (Debian: pkg-config, libgsl-dev)." \
+	    "'make lib' builds libfibrad.a without it." >&2; exit 1; }
+
+need-check:
+	@$(PKG_CONFIG) --exists check || { echo "The tests need libcheck: run 'make deps' (Debian: check)." >&2; exit 1; }
+
+# other flags, other objects (for flags on the command line: another BUILD)
+$(KERNEL_OBJECTS) $(HOST_OBJECTS) $(BUILD)/host/main.o $(TEST_PROGRAMS) $(BENCH_PROGRAMS) $(PEER_PROGRAMS): Makefile
+
+-include $(KERNEL_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d) $(PEER_PROGRAMS:=.d) $(BUILD)/host/main.d
+
+# ---- what one does with them ----------------------------------------------------------------------------------------
+DEMO_BED = tests/data/mono2000.dump
+
+## demo: install what is missing, build, compute the view factors of a settled bed of 2,000 spheres, plot them
+demo: deps
+	@echo "Building $(BUILD)/fibrad"
+	@$(MAKE) -s --no-print-directory $(BUILD)/fibrad
+	@mkdir -p $(BUILD)/demo
+	$(BUILD)/fibrad bed $(DEMO_BED) --plot $(BUILD)/demo/bed.png -o $(BUILD)/demo/F.mtx
+	@echo
+	@echo "The matrix of view factors: $(BUILD)/demo/F.mtx"
+	@echo "The picture of the bed:     $(BUILD)/demo/bed.png"
+
+## test: install what is missing, build and run all tests
+test: deps
+	@echo "Building the tests"
+	@$(MAKE) -s --no-print-directory programs all
+	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" tests/run.sh $(TEST_PROGRAMS) $(SCRIPTS)
+
+## run-programs: build and run the test programs without the scripts
+run-programs: programs
+	@BUILD=$(BUILD) tests/run.sh $(TEST_PROGRAMS)
+
+## programs: build the test programs
+programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
+
+## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
+check: symbols lists format
+
+LISTED = $(KERNEL) $(LANED) $(HOST) host/main.c host/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS)
+FOUND  = $(wildcard kernel/*/*.c host/*.c tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
+
+lists:
+	@test -z "$(filter-out $(LISTED),$(FOUND))" || \
+	    { echo "not in the lists of the Makefile: $(filter-out $(LISTED),$(FOUND))" >&2; exit 1; }
+
+## symbols: libfibrad.a defines only fibrad_*, asks for nothing but memory copying, holds no variables
+symbols: $(BUILD)/libfibrad.a
+	BUILD=$(BUILD) tests/check_symbols.sh
+
+FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.[ch] host/*/*.c tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
+
+## format: every source is formatted by .clang-format (to repair: clang-format -i FILE)
+format:
+	clang-format --dry-run --Werror $(FORMATTED)
+
+BENCH_ENV = BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" BENCH_FLAGS="$(CFLAGS) -ffp-contract=off"
+
+## bench: build and run all benches; CSV into build/bench, plots into docs/figures
+bench: $(BENCH_PROGRAMS) bench-peers
+	@set -e; for b in $(BENCH_PROGRAMS) $(PEER_PROGRAMS); do \
+	    test -x $$b || continue; echo "$$b > $$b.csv"; $(BENCH_ENV) $$b > $$b.csv; done
+	gnuplot -e "in='$(BUILD)/bench/bench_beam.csv'; peer='$(BUILD)/bench/bench_embree.csv'; \
+	    out='docs/figures/beam_error.svg'" bench/plot_beam.gp
+	gnuplot -e "in='$(BUILD)/bench/bench_scale.csv'; out='docs/figures/scale.svg'" bench/plot_scale.gp
+
+## bench-quick: build all benches and run the smallest case of some: do they still work?
+bench-quick: $(BENCH_PROGRAMS) bench-peers
+	@set -e; mkdir -p $(BUILD)/bench/quick; for b in $(QUICK:bench/%.c=%); do \
+	    test -x $(BUILD)/bench/$$b || continue; echo "$$b quick"; \
+	    $(BENCH_ENV) $(BUILD)/bench/$$b quick > $(BUILD)/bench/quick/$$b.csv; done
+	gnuplot -e "in='$(BUILD)/bench/quick/bench_beam.csv'; peer='$(BUILD)/bench/quick/bench_embree.csv'; \
+	    out='$(BUILD)/bench/quick/beam_error.svg'" bench/plot_beam.gp
+	gnuplot -e "in='$(BUILD)/bench/quick/bench_scale.csv'; out='$(BUILD)/bench/quick/scale.svg'" bench/plot_scale.gp
+
+# asks the compiler, so any place it looks in will do
+bench-peers:
+	@if echo '#include <embree3/rtcore.h>' | $(CC) -E -xc - >/dev/null 2>&1; then \
+	    $(MAKE) -s --no-print-directory $(PEER_PROGRAMS); \
+	else echo "No Embree 3 (Debian: libembree-dev): its benches are skipped"; fi
+
+## stress: try to break the numerics in every way we could think of; one line per attack (some minutes)
+stress: $(BUILD)/tests/test_stress $(BUILD)/tests/test_areas
+	STRESS=1 CK_DEFAULT_TIMEOUT=3600 $(BUILD)/tests/test_stress
+	$(BUILD)/tests/test_areas
+
+## bits: the pinned bits of all compilers, levels, instruction sets and processors there are (some minutes)
+bits: $(BUILD)/fibrad
+	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_bits.sh all
+
+## golden: pin the bits anew, after a deliberate change of results
+golden: $(BUILD)/fibrad
+	BUILD=$(BUILD) MAKE="$(MAKE)" HOSTCC="$(HOSTCC)" tests/check_bits.sh pin
+
+## mutate: break the kernel line by line and see that the tests notice (some minutes)
+mutate:
+	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/mutate.sh
+
+# Inputs found on the way are kept in build/fuzz; of a crash, the input that caused it.
+FUZZ_SECONDS = 60
+FUZZ_CC      = clang
+FUZZ         = $(BUILD)/fuzz
+SANITIZE     = address,undefined -fno-sanitize-recover=undefined
+
+## fuzz: hostile input for the readers and the kernel, FUZZ_SECONDS=60 in all
+fuzz:
+	@$(MAKE) -s --no-print-directory BUILD=$(FUZZ) CC=$(FUZZ_CC) CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE)" \
+	    $(FUZZ)/libfibrad.a $(FUZZ)/libhost.a
+	@set -e; for target in read kernel; do \
+	    $(FUZZ_CC) -O1 -g -fsanitize=fuzzer,$(SANITIZE) $(HOST_FLAGS) tests/fuzz/fuzz_$$target.c \
+	        $(FUZZ)/libhost.a $(FUZZ)/libfibrad.a $(GSL_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
+	    mkdir -p $(FUZZ)/found_$$target; \
+	    $(FUZZ)/fuzz_$$target -max_total_time=$$(($(FUZZ_SECONDS) / 2)) -timeout=20 -malloc_limit_mb=64 -close_fd_mask=2 \
+	        -print_final_stats=1 -artifact_prefix=$(FUZZ)/$$target- $(FUZZ)/found_$$target tests/fuzz/corpus_$$target; \
+	done
+
+## threads: the program under the thread sanitizer, with clang's OpenMP, which tells it about its barriers
+threads:
+	@$(MAKE) -s --no-print-directory BUILD=$(BUILD)/threads CC=clang CFLAGS="-O1 -g -fsanitize=thread" \
+	    LDFLAGS=-fsanitize=thread $(BUILD)/threads/fibrad
+	for t in 2 7; do \
+	    TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" OMP_TOOL_LIBRARIES=libarcher.so \
+	    $(BUILD)/threads/fibrad bed $(DEMO_BED) --directions 21 --threads $$t -o $(BUILD)/threads/F.mtx || exit 1; \
+	done
+
+LINT_FLAGS   = -Ikernel -Ihost -D_POSIX_C_SOURCE=200809L
+LINT_SCALAR  = -DFIBRAD_LANES_HEADER='"base/lanes/vec_scalar.h"' -DFIBRAD_ISA_SUFFIX=_scalar
+
+## lint: cppcheck and clang-tidy, with the exceptions that .cppcheck and .clang-tidy give reasons for
+lint:
+	cppcheck --quiet --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
+	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
+	clang-tidy --quiet $(KERNEL) $(LANED) -- -std=c11 $(LINT_FLAGS) $(LINT_SCALAR)
+	clang-tidy --quiet --checks=-clang-analyzer-core.* $(HOST) host/main.c host/generate_tables.c -- \
+	    -std=c11 -fopenmp $(LINT_FLAGS)
+
+## reproduce: the numbers of the papers beside ours, and their plots into docs/figures
+reproduce: $(BUILD)/fibrad
+	$(BUILD)/fibrad reproduce -o docs/figures
+
+## deps: install the Debian packages that build, demo and tests need; does nothing when nothing is missing
+deps:
+	@.ci/deps pkg-config libgsl-dev check gnuplot-nox
+
+## deps-ci: install what .ci/run needs besides
+deps-ci:
+	@.ci/deps g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
+	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
+	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm
+
+## install: fibrad, libfibrad.a, fibrad.h and fibrad.pc, to DESTDIR and PREFIX
+install: install-lib $(BUILD)/fibrad
+	install -d $(DESTDIR)$(PREFIX)/bin
+	install $(BUILD)/fibrad $(DESTDIR)$(PREFIX)/bin
+
+## install-lib: the same without the program
+install-lib: $(BUILD)/libfibrad.a
+	install -d $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(PREFIX)/lib/pkgconfig
+	install -m 644 kernel/fibrad.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 $(BUILD)/libfibrad.a $(DESTDIR)$(PREFIX)/lib
+	version=$$(sed -n 's/^#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel/fibrad.h); \
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$version|" kernel/fibrad.pc.in \
+	    > $(DESTDIR)$(PREFIX)/lib/pkgconfig/fibrad.pc
+
+## clean: remove all that was built
+clean:
+	rm -rf $(BUILD)
+
+## help: this list
+help:
+	@sed -n 's/^## \([^:]*\): /  \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16
+	@echo "  Settable: CC AR CFLAGS LDFLAGS PREFIX DESTDIR BUILD ISAS TABLES PIC WERROR"

@@ -1,0 +1,35 @@
+/* bench.h - what all benches print first, and clocks. SPDX-License-Identifier: MIT */
+#ifndef BENCH_H
+#define BENCH_H
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "fibrad.h"
+
+/* Processor time of this thread, which others on the machine disturb least [s]. */
+static inline double bench_thread_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* One line `# key: value` each. `make bench` hands commit and flags over in the environment. */
+static inline void bench_preamble(const char *what, int threads) {
+    const char *commit = getenv("BENCH_COMMIT"), *flags = getenv("BENCH_FLAGS");
+    char cpu[200] = "unknown\n", line[200];
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    while (file && fgets(line, sizeof line, file))
+        if (strncmp(line, "model name", 10) == 0 && strchr(line, ':')) {
+            snprintf(cpu, sizeof cpu, "%.190s", strchr(line, ':') + 2);
+            break;
+        }
+    if (file) fclose(file);
+    printf("# %s\n# commit: %s, fibrad %s\n# CPU: %s", what, commit ? commit : "unknown", fibrad_version(), cpu);
+    printf("# compiler: %s\n# flags: %s\n# threads: %d\n# ISA: %s\n", __VERSION__, flags ? flags : "unknown", threads,
+           fibrad_isa_name((int)fibrad_isa_best()));
+}
+
+#endif

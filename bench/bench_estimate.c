@@ -1,0 +1,147 @@
+/* bench_estimate.c - is the error that a row claims above its true one? SPDX-License-Identifier: MIT
+ *
+ * CSV on standard output: true Euclidean errors and estimates of rows at equal distances in several beds, raw and
+ * averaged with their partners, from 50 to 6400 directions. `honest`: per cent of true errors below the estimate;
+ * `low`, `median`, `high`: estimate over true error, 5 %, 50 % and 95 % of rows below. Truth: exact areas with 40000
+ * directions. Beds: those of tests/data, random beds, a lattice, scenes of 3 to 8 spheres, and files named as
+ * arguments. Run it from the project's root. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "bed_make.h"
+#include "fibrad.h"
+#include "message.h"
+#include "read.h"
+#include "run_omp.h"
+
+enum { ROWS = 64, SCENES = 32, SAMPLES = 512 };
+
+static const uint32_t directions[] = {50, 100, 200, 400, 800, 1600, 6400};
+enum { STEPS = sizeof directions / sizeof *directions, ALL_ROWS = 5 }; /* averaged up to 800 only, for the time */
+
+/* Errors and estimates of rows of one kind. */
+struct samples {
+    uint32_t count;
+    double error[SAMPLES], ratio[SAMPLES];
+};
+
+static struct samples kinds[STEPS][2]; /* raw, averaged */
+
+static void note(struct samples *samples, const struct result *result, const struct result *truth, uint32_t i) {
+    if (samples->count == SAMPLES) return;
+    const double error = rows_distance(&result->rows, &truth->rows, i);
+    samples->error[samples->count] = error;
+    samples->ratio[samples->count++] = error > 0 ? result->error[i] / error : 1;
+}
+
+static int compare(const struct bed *bed, const struct result *truth, uint32_t step, bool raw) {
+    fibrad_beam_rule rule = {.directions = directions[step]};
+    struct result result;
+    const struct run_options options = {
+        .file = "bed", .method = method_beam(&rule), .threads = 1, .raw = raw, .wanted = raw ? truth->wanted : NULL};
+    const int status = run_rows(bed, &options, &result);
+    for (uint32_t i = 0; !status && i < bed->n; ++i)
+        if (truth->wanted[i]) note(&kinds[step][!raw], &result, truth, i);
+    result_free(&result);
+    return status;
+}
+
+/* Adds the rows of a bed to all kinds. */
+static int add(const struct bed *bed) {
+    fibrad_beam_rule rule = {.directions = 40000};
+    struct result truth = {0};
+    bool *wanted = calloc(bed->n, sizeof *wanted);
+    if (!wanted) return message_memory();
+    const uint32_t rows = bed->n < ROWS ? bed->n : ROWS;
+    for (uint32_t k = 0; k < rows; ++k) wanted[(uint64_t)bed->n * (2 * k + 1) / (2 * rows)] = true;
+    const struct run_options options = {
+        .file = "bed", .method = method_beam(&rule), .threads = 1, .raw = true, .wanted = wanted};
+    int status = run_rows(bed, &options, &truth);
+    for (uint32_t step = 0; !status && step < STEPS; ++step) {
+        status = compare(bed, &truth, step, true);
+        if (!status && step < ALL_ROWS) status = compare(bed, &truth, step, false);
+    }
+    result_free(&truth);
+    free(wanted);
+    return status;
+}
+
+static int ascending(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void print(const char *name) {
+    for (uint32_t step = 0; step < STEPS; ++step)
+        for (int averaged = 0; averaged < 2; ++averaged) {
+            struct samples *s = &kinds[step][averaged];
+            uint32_t below = 0;
+            if (s->count == 0) continue;
+            qsort(s->error, s->count, sizeof *s->error, ascending);
+            qsort(s->ratio, s->count, sizeof *s->ratio, ascending);
+            while (below < s->count && s->ratio[below] < 1) ++below;
+            printf("%s,%u,%d,%u,%.2g,%.1f,%.2f,%.2f,%.2f\n", name, directions[step], averaged, s->count,
+                   s->error[s->count / 2], 100.0 * (s->count - below) / s->count, s->ratio[s->count / 20],
+                   s->ratio[s->count / 2], s->ratio[s->count * 19 / 20]);
+            s->count = 0;
+        }
+    fflush(stdout);
+}
+
+static int finish(int status, struct bed *bed, const char *name) {
+    if (!status) status = add(bed);
+    if (!status && name) print(name);
+    bed_free(bed);
+    return status;
+}
+
+static int of_file(const char *path) {
+    struct bed bed = {0};
+    const int status = read_bed(path, &(struct read_options){.frame = -1}, &bed);
+    return finish(status, &bed, path);
+}
+
+static int of_packing(const char *name, uint32_t n, double low, double fraction) {
+    struct bed bed;
+    bed_init(&bed, false, 0);
+    const int status = bed_make_packing(&bed, n, low, 1, fraction, 5);
+    return finish(status, &bed, name);
+}
+
+static int of_lattice(void) {
+    struct bed bed;
+    int status = 0;
+    bed_init(&bed, false, 0);
+    for (int k = 0; !status && k < 1000; ++k)
+        status =
+            bed_add(&bed, &(struct bed_sphere){.x = 2 * (k % 10), .y = 2 * (k / 10 % 10), .z = 2 * (k / 100), .r = 1});
+    return finish(status, &bed, "simple cubic 10 x 10 x 10");
+}
+
+/* Few spheres in an open space. */
+static int of_scenes(void) {
+    int status = 0;
+    for (uint32_t scene = 0; !status && scene < SCENES; ++scene) {
+        struct bed bed;
+        bed_init(&bed, false, 0);
+        status = bed_make_packing(&bed, 3 + scene % 6, 0.5, 1, 0.2, scene);
+        for (int axis = 0; axis < 3; ++axis) bed.period[axis] = 0;
+        status = finish(status, &bed, scene + 1 < SCENES ? NULL : "3 to 8 spheres");
+    }
+    return status;
+}
+
+int main(int argc, char **argv) {
+    printf("# fibrad %s; truth n = 40000\n", fibrad_version());
+    printf("bed,directions,averaged,rows,median_error,honest,low,median,high\n");
+    int status = of_file("tests/data/mono2000.dump");
+    if (!status) status = of_file("tests/data/poly2000.dump");
+    if (!status) status = of_file("tests/data/monoper2000.dump");
+    if (!status) status = of_packing("solid fraction 0.01", 1000, 0.8, 0.01);
+    if (!status) status = of_packing("sizes 1:4", 2000, 0.25, 0.5);
+    if (!status) status = of_lattice();
+    if (!status) status = of_scenes();
+    for (int k = 1; !status && k < argc; ++k) status = of_file(argv[k]);
+    return status;
+}

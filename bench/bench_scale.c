@@ -1,0 +1,80 @@
+/* bench_scale.c - seconds and bytes per sphere against the number of spheres and threads. SPDX-License-Identifier: MIT
+ *
+ *     bench_scale [quick | SPHERES...]      default 1000 10000 100000
+ *
+ * CSV on standard output. Periodic random beds, radii 0.8-1.2, solid fraction 0.55; above 10,000 spheres copies of one
+ * of 10,000 side by side. One and two threads; from half a million on two only. All rows, exact areas, averaged.
+ * `seconds` by the clock on the wall; `processor_us` is processor time of all threads per window (sphere and
+ * direction), which others on the machine disturb less. `bytes`: the most memory the process ever had, so numbers of
+ * spheres must rise. */
+#include <errno.h>
+#include <sys/resource.h>
+
+#include "bed_make.h"
+#include "bench.h"
+#include "message.h"
+#include "run_omp.h"
+
+enum { DIRECTIONS = 55, TILE = 10000, MILLION = 1000000 };
+
+static double peak_bytes(void) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * (double)usage.ru_maxrss;
+}
+
+/* The bed of n spheres, or of the next number of whole copies. */
+static int make_bed(struct bed *bed, uint32_t n) {
+    bed_init(bed, false, 0);
+    if (n <= TILE) return bed_make_packing(bed, n, 0.8, 1.2, 0.55, 1);
+    struct bed tile;
+    bed_init(&tile, false, 0);
+    uint32_t copies[3] = {1, 1, 1};
+    for (int axis = 0; (uint64_t)copies[0] * copies[1] * copies[2] * TILE < n; axis = (axis + 1) % 3) copies[axis]++;
+    int status = bed_make_packing(&tile, TILE, 0.8, 1.2, 0.55, 1);
+    if (!status) status = bed_make_copies(bed, &tile, copies);
+    bed_free(&tile);
+    return status;
+}
+
+static int bench(uint32_t n, int threads) {
+    struct bed bed;
+    struct result result = {0};
+    int status = make_bed(&bed, n);
+    const fibrad_beam_rule rule = {.directions = DIRECTIONS};
+    const struct run_options options = {.file = "random bed", .method = method_beam(&rule), .threads = threads};
+    const clock_t begun = clock();
+    if (!status) status = run_rows(&bed, &options, &result);
+    const double processor = (double)(clock() - begun) / CLOCKS_PER_SEC;
+    if (!status) {
+        printf("%u,%d,%llu,%.3f,%.2f,%.3f,%.0f,%.1e\n", bed.n, threads, (unsigned long long)result.rows.start[bed.n],
+               result.seconds, 1e6 * result.seconds / bed.n, 1e6 * processor / bed.n / DIRECTIONS, peak_bytes() / bed.n,
+               result.closure_max);
+        fflush(stdout);
+        if (!(result.closure_max < 1e-12 && result.reciprocity_max < 1e-14))
+            status = message(STATUS_INPUT, "bench_scale: the rows are wrong");
+    }
+    result_free(&result);
+    bed_free(&bed);
+    return status;
+}
+
+int main(int argc, char **argv) {
+    static char *all[] = {"1000", "10000", "100000"}, *quick[] = {"200"};
+    const bool is_quick = argc == 2 && strcmp(argv[1], "quick") == 0;
+    char **list = is_quick ? quick : argc > 1 ? argv + 1 : all;
+    const int count = is_quick ? 1 : argc > 1 ? argc - 1 : 3;
+    bench_preamble("bench_scale: periodic random beds, 55 directions, exact areas, averaged", 2);
+    puts("spheres,threads,entries,seconds,us_per_sphere,processor_us_per_window,peak_bytes_per_sphere,closure");
+    int status = STATUS_OK;
+    for (int k = 0; k < count && !status; ++k) {
+        char *end;
+        errno = 0;
+        const unsigned long long n = strtoull(list[k], &end, 10);
+        if (errno || *end || n < 1 || n > FIBRAD_SPHERES_MAX / 2)
+            return message(STATUS_USAGE, "usage: bench_scale [quick | SPHERES...]");
+        for (int threads = n > MILLION / 2 ? 2 : 1; threads <= 2 && !status; ++threads)
+            status = bench((uint32_t)n, threads);
+    }
+    return status;
+}

@@ -1,0 +1,11 @@
+/* commands.h - the commands of the program. SPDX-License-Identifier: MIT */
+#ifndef COMMANDS_H
+#define COMMANDS_H
+
+/* Each takes the arguments behind its name and returns the exit status, all that is to be said having been said. */
+int command_pair(int argc, char **argv);
+int command_bed(int argc, char **argv);
+int command_reproduce(int argc, char **argv);
+int command_furnace(int argc, char **argv);
+
+#endif

@@ -1,0 +1,49 @@
+/* gnuplot.c - runs gnuplot with its picture going to an open file. SPDX-License-Identifier: MIT */
+#include "gnuplot.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "interrupt.h"
+#include "message.h"
+
+extern char **environ;
+
+static int spawn(struct gnuplot *gnuplot, int script, int script_end, int picture) {
+    char *arguments[] = {"gnuplot", NULL};
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, script, STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, picture, STDOUT_FILENO);
+    posix_spawn_file_actions_addclose(&actions, script);
+    posix_spawn_file_actions_addclose(&actions, script_end);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    const int error = posix_spawnp(&gnuplot->process, arguments[0], &actions, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    return error;
+}
+
+int gnuplot_start(struct gnuplot *gnuplot, FILE *picture) {
+    int ends[2];
+    if (pipe(ends) != 0) return message(STATUS_FILE, "gnuplot: %s", strerror(errno));
+    const int error = spawn(gnuplot, ends[0], ends[1], fileno(picture));
+    close(ends[0]);
+    gnuplot->script = error ? NULL : fdopen(ends[1], "w");
+    if (gnuplot->script) return STATUS_OK;
+    close(ends[1]);
+    if (error == ENOENT) return message(STATUS_FILE, "--plot needs the program gnuplot (Debian: gnuplot-nox)");
+    return message(STATUS_FILE, "gnuplot: %s", strerror(error ? error : errno));
+}
+
+int gnuplot_end(struct gnuplot *gnuplot) {
+    int end = 0;
+    const int closed = fclose(gnuplot->script);
+    while (waitpid(gnuplot->process, &end, 0) < 0 && errno == EINTR) {}
+    if (interrupt_status()) return interrupt_status();
+    if (closed != 0 || !WIFEXITED(end) || WEXITSTATUS(end) != 0) return message(STATUS_FILE, "gnuplot failed");
+    return STATUS_OK;
+}

@@ -1,0 +1,51 @@
+/* main.c - the program `fibrad`: chooses the command. SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "commands.h"
+#include "fibrad.h"
+#include "message.h"
+
+static const struct {
+    const char *name, *purpose;
+    int (*run)(int argc, char **argv);
+} commands[] = {
+    {"bed", "view factors of all spheres of a file", command_bed},
+    {"furnace", "temperatures in a box with a medium that absorbs, emits and scatters", command_furnace},
+    {"pair", "view factor between two spheres, with or without others in between", command_pair},
+    {"reproduce", "the numbers of the papers beside ours", command_reproduce},
+};
+
+static int help(void) {
+    printf("fibrad %s - view factors for thermal radiation between spheres\n\nCommands:\n", fibrad_version());
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
+        printf("  %-9s %s\n", commands[k].name, commands[k].purpose);
+    puts("\nfibrad COMMAND --help   options of a command, with defaults and examples\n"
+         "fibrad --version        version and instruction set in use\n\n"
+         "Exit status: 0; 2 bad usage; 3 bad input; 4 trouble with a file; 5 out of memory; 128 + signal.");
+    return STATUS_OK;
+}
+
+static int version(void) {
+    printf("fibrad %s (%s)\n", fibrad_version(), fibrad_isa_name((int)fibrad_isa_best()));
+    return STATUS_OK;
+}
+
+static int choose(int argc, char **argv) {
+    const char *name = argc > 1 ? argv[1] : "";
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return help();
+    if (strcmp(name, "--version") == 0) return version();
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
+        if (strcmp(name, commands[k].name) == 0) return commands[k].run(argc - 2, argv + 2);
+    if (*name == 0) return message(STATUS_USAGE, "which command? see fibrad --help");
+    return message(STATUS_USAGE, "unknown %s %.40s; see fibrad --help", *name == '-' ? "option" : "command", name);
+}
+
+int main(int argc, char **argv) {
+    int status = choose(argc, argv);
+    if (status > STATUS_SIGNAL) message(status, "interrupted");
+    if ((ferror(stdout) || fclose(stdout) != 0) && !status)
+        status = message(STATUS_FILE, "standard output: %s", strerror(errno));
+    return status;
+}

@@ -1,0 +1,27 @@
+/* message.h - exit statuses and the one line that tells what went wrong. SPDX-License-Identifier: MIT */
+#ifndef MESSAGE_H
+#define MESSAGE_H
+
+#include <stdint.h>
+
+/* Host functions that can fail return 0 or one of these, having told why on standard error. */
+enum exit_status {
+    STATUS_OK = 0,
+    STATUS_USAGE = 2,
+    STATUS_INPUT = 3,
+    STATUS_FILE = 4,
+    STATUS_MEMORY = 5,
+    STATUS_SIGNAL = 128 /* plus the signal's number */
+};
+
+/* `fibrad: what is wrong`; returns status. Control characters, which may come from a file, are printed as '?'. */
+int message(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* `fibrad: FILE:LINE: what is wrong`, without LINE if that is 0; returns status. */
+int message_at(int status, const char *file, uint64_t line, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* `fibrad: out of memory`; returns STATUS_MEMORY. */
+int message_memory(void);
+
+#endif

@@ -1,0 +1,87 @@
+/* options.h - command-line options from tables, strict numbers, help. SPDX-License-Identifier: MIT */
+#ifndef OPTIONS_H
+#define OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fibrad.h"
+
+/* An option of a command. A table of them ends with a name of NULL. */
+struct option {
+    int key;              /* above 0; a letter: `-o` is the short form */
+    const char *name;     /* without the dashes */
+    const char *argument; /* how the help calls its argument; NULL: it takes none */
+    const char *help;     /* NULL: not shown */
+};
+
+/* Keys that commands share; their own ones are above. */
+enum {
+    KEY_HELP = 'h',
+    KEY_LATER = 256, /* the option of a method that is not built in yet */
+    KEY_DIRECTIONS,
+    KEY_AREAS,
+    KEY_POINTS,
+    KEY_METHOD,
+    KEY_NF,
+    KEY_NO_CORRECTION,
+    KEY_RAYS,
+    KEY_SEED,
+    KEY_OWN
+};
+
+/* What options_next returns apart from keys. */
+enum { OPTIONS_POSITIONAL = 0, OPTIONS_END = -1, OPTIONS_BAD = -2 };
+
+/* A walk along the arguments; zeroed but for the first four. */
+struct options {
+    const char *command;
+    const struct option *table;
+    int argc; /* the arguments behind the command's name */
+    char **argv;
+    int at;
+    bool plain;        /* `--` was met: no more options */
+    const char *value; /* out: the option's argument, or the positional argument */
+    const char *name;  /* out: the option's name */
+};
+
+/* The next argument: a key of the table, OPTIONS_POSITIONAL, OPTIONS_END, or OPTIONS_BAD after a message. What begins
+ * like a negative number is positional. */
+int options_next(struct options *options);
+
+/* Prints the table, one option and its help a line. */
+void options_print(const struct option *table);
+
+/* A finite number in [low, high]; a whole number in [low, high]: the entire text, or STATUS_USAGE after a message that
+ * calls it `what`. */
+int options_number(const char *what, const char *text, double low, double high, double *value);
+int options_whole(const char *what, const char *text, uint64_t low, uint64_t high, uint64_t *value);
+
+/* Up to `capacity` numbers parted by commas; *count tells how many, which may be all that is wrong. */
+int options_numbers(const char *what, const char *text, int capacity, double *values, int *count);
+
+/* Methods by name, in the order of the enum. */
+enum method { METHOD_EXACT, METHOD_BEAM, METHOD_SURFACE, METHOD_CAST, METHOD_MC };
+
+/* Status 0 or STATUS_USAGE. */
+int options_method(const char *text, enum method *method);
+
+/* The options of a beam rule, as far as they were given. */
+struct beam_options {
+    uint32_t directions, points;
+    const char *areas;
+};
+
+/* Takes KEY_DIRECTIONS, KEY_AREAS or KEY_POINTS. Status 0 or STATUS_USAGE. */
+int options_beam(int key, const char *text, struct beam_options *beam);
+
+/* The rule they add up to. Status 0, or STATUS_USAGE if they contradict each other. */
+int options_beam_rule(const struct beam_options *beam, fibrad_beam_rule *rule);
+
+/* Takes KEY_NF or KEY_NO_CORRECTION. Status 0 or STATUS_USAGE. */
+int options_surface(int key, const char *text, fibrad_surface_rule *rule);
+
+/* Takes KEY_RAYS or KEY_SEED. Status 0 or STATUS_USAGE. */
+int options_cast(int key, const char *text, fibrad_cast_rule *rule);
+
+#endif

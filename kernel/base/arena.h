@@ -1,0 +1,46 @@
+/* arena.h - lays objects out in the caller's memory. SPDX-License-Identifier: MIT
+ *
+ * One layout function per object takes its arrays from an arena. With base NULL the arena only counts, which is the
+ * object's _size; with the caller's block it hands out addresses, which is its _init: the two cannot drift apart. */
+#ifndef FIBRAD_BASE_ARENA_H
+#define FIBRAD_BASE_ARENA_H
+
+#include "fibrad.h"
+
+/* Every array begins on this boundary and is padded to a multiple of it, so that it holds whole lanes. */
+#define FIBRAD_ALIGNMENT 64
+
+typedef struct fibrad_arena {
+    unsigned char *base; /* on a boundary of FIBRAD_ALIGNMENT; NULL: count only */
+    size_t used, size;   /* bytes; used is SIZE_MAX once a sum has overflowed */
+} fibrad_arena;
+
+/* Room for `count` items of `bytes` each. NULL when counting or when the block is too small; `used` goes on either way.
+ */
+static inline void *fibrad_arena_take(fibrad_arena *arena, size_t count, size_t bytes) {
+    size_t start = arena->used;
+    if (start > SIZE_MAX - FIBRAD_ALIGNMENT || (bytes != 0 && count > (SIZE_MAX - FIBRAD_ALIGNMENT - start) / bytes)) {
+        arena->used = SIZE_MAX;
+        return NULL;
+    }
+    size_t padded = (count * bytes + FIBRAD_ALIGNMENT - 1) / FIBRAD_ALIGNMENT * FIBRAD_ALIGNMENT;
+    arena->used = start + padded;
+    return arena->base != NULL && arena->used <= arena->size ? arena->base + start : NULL;
+}
+
+/* What _size returns after counting: the bytes, or 0 if no size_t can hold them. */
+static inline size_t fibrad_arena_total(const fibrad_arena *arena) { return arena->used == SIZE_MAX ? 0 : arena->used; }
+
+/* Checks the caller's block before an _init lays out `needed` bytes in it.
+ * Errors: FIBRAD_E_ARGUMENT (NULL, or needed 0: a configuration that is not valid), _ALIGNMENT, _SIZE. */
+static inline int fibrad_arena_open(fibrad_arena *arena, void *memory, size_t size, size_t needed) {
+    if (memory == NULL || needed == 0) return FIBRAD_E_ARGUMENT;
+    if ((uintptr_t)memory % FIBRAD_ALIGNMENT != 0) return FIBRAD_E_ALIGNMENT;
+    if (size < needed) return FIBRAD_E_SIZE;
+    arena->base = memory;
+    arena->used = 0;
+    arena->size = size;
+    return FIBRAD_OK;
+}
+
+#endif

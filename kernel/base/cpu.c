@@ -1,0 +1,91 @@
+/* cpu.c - which instruction sets this build and this machine offer. SPDX-License-Identifier: MIT
+ *
+ * CPUID tells what the processor can do, XGETBV which registers the operating system saves; both must agree. Asked
+ * directly: __builtin_cpu_supports would bring in a constructor and a global of libgcc. */
+#include "base/cpu.h"
+
+#include <stdbool.h>
+
+#if defined(__x86_64__) || defined(__i386__)
+#include <cpuid.h>
+
+enum {
+    LEAF1_EDX_SSE2 = 1 << 26,
+    LEAF1_ECX_POPCNT = 1 << 23,
+    LEAF1_ECX_OSXSAVE = 1 << 27,
+    LEAF1_ECX_AVX = 1 << 28,
+    LEAF7_EBX_AVX2 = 1 << 5,
+    LEAF7_EBX_AVX512F = 1 << 16,
+    LEAF7_EBX_AVX512DQ = 1 << 17,
+    LEAF7_EBX_AVX512BW = 1 << 30,
+    XCR0_YMM = 0x06, /* SSE and AVX state */
+    XCR0_ZMM = 0xe6  /* these and the three parts of AVX-512 state */
+};
+#define LEAF7_EBX_AVX512VL 0x80000000u
+
+static bool all(unsigned set, unsigned bits) { return (set & bits) == bits; }
+
+static fibrad_isa widest(void) {
+    unsigned eax, ebx, ecx, edx, ebx7, ecx7, edx7, xcr0, xcr0_high;
+    if (!__get_cpuid(1, &eax, &ebx, &ecx, &edx) || !all(edx, LEAF1_EDX_SSE2)) return FIBRAD_ISA_SCALAR;
+    if (!all(ecx, LEAF1_ECX_POPCNT | LEAF1_ECX_OSXSAVE | LEAF1_ECX_AVX)) return FIBRAD_ISA_SSE2;
+    __asm__ volatile("xgetbv" : "=a"(xcr0), "=d"(xcr0_high) : "c"(0));
+    if (!all(xcr0, XCR0_YMM) || !__get_cpuid_count(7, 0, &eax, &ebx7, &ecx7, &edx7) || !all(ebx7, LEAF7_EBX_AVX2))
+        return FIBRAD_ISA_SSE2;
+    if (!all(xcr0, XCR0_ZMM) ||
+        !all(ebx7, LEAF7_EBX_AVX512F | LEAF7_EBX_AVX512DQ | LEAF7_EBX_AVX512BW | LEAF7_EBX_AVX512VL))
+        return FIBRAD_ISA_AVX2;
+    return FIBRAD_ISA_AVX512;
+}
+#else
+static fibrad_isa widest(void) { return FIBRAD_ISA_SCALAR; }
+#endif
+
+static bool built(int isa) {
+    switch (isa) {
+    case FIBRAD_ISA_SCALAR:
+        return true;
+#ifdef FIBRAD_WITH_SSE2
+    case FIBRAD_ISA_SSE2:
+        return true;
+#endif
+#ifdef FIBRAD_WITH_AVX2
+    case FIBRAD_ISA_AVX2:
+        return true;
+#endif
+#ifdef FIBRAD_WITH_AVX512
+    case FIBRAD_ISA_AVX512:
+        return true;
+#endif
+    default:
+        return false;
+    }
+}
+
+fibrad_isa fibrad_isa_best(void) {
+    int isa = (int)widest();
+    while (!built(isa)) isa--;
+    return (fibrad_isa)isa;
+}
+
+int fibrad_isa_choose(int wish) {
+    if (wish == FIBRAD_ISA_BEST) return (int)fibrad_isa_best();
+    return built(wish) && wish <= (int)widest() ? wish : -1;
+}
+
+const char *fibrad_isa_name(int isa) {
+    switch (isa) {
+    case FIBRAD_ISA_BEST:
+        return "best";
+    case FIBRAD_ISA_SCALAR:
+        return "scalar";
+    case FIBRAD_ISA_SSE2:
+        return "sse2";
+    case FIBRAD_ISA_AVX2:
+        return "avx2";
+    case FIBRAD_ISA_AVX512:
+        return "avx512";
+    default:
+        return "?";
+    }
+}

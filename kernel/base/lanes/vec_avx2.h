@@ -1,0 +1,75 @@
+/* vec_avx2.h - four doubles, eight floats. What the operations are: vec_scalar.h. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_VEC_AVX2_H
+#define FIBRAD_VEC_AVX2_H
+
+#include <stdint.h>
+#include <immintrin.h>
+
+#define VD_LANES 4
+#define VF_LANES 8
+
+typedef __m256d vd;
+typedef __m256d vm;
+typedef __m256 vf;
+
+static inline vd vd_set1(double a) { return _mm256_set1_pd(a); }
+static inline vd vd_load(const double *p) { return _mm256_load_pd(p); }
+static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
+    __m128i i = _mm256_cvttpd_epi32(k);
+    (void)size;
+    return _mm256_set_pd(table[_mm_extract_epi32(i, 3)], table[_mm_extract_epi32(i, 2)], table[_mm_extract_epi32(i, 1)],
+                         table[_mm_extract_epi32(i, 0)]);
+}
+static inline void vd_compress(double *p, uint32_t bits, vd a) {
+    static const uint32_t half[16][8] = {/* which halves of doubles move to the front */
+                                         {0},
+                                         {0, 1},
+                                         {2, 3},
+                                         {0, 1, 2, 3},
+                                         {4, 5},
+                                         {0, 1, 4, 5},
+                                         {2, 3, 4, 5},
+                                         {0, 1, 2, 3, 4, 5},
+                                         {6, 7},
+                                         {0, 1, 6, 7},
+                                         {2, 3, 6, 7},
+                                         {0, 1, 2, 3, 6, 7},
+                                         {4, 5, 6, 7},
+                                         {0, 1, 4, 5, 6, 7},
+                                         {2, 3, 4, 5, 6, 7},
+                                         {0, 1, 2, 3, 4, 5, 6, 7}};
+    __m256i order = _mm256_loadu_si256((const __m256i *)(const void *)half[bits & 15]);
+    _mm256_storeu_ps((float *)(void *)p, _mm256_permutevar8x32_ps(_mm256_castpd_ps(a), order));
+}
+static inline vd vd_loadu(const double *p) { return _mm256_loadu_pd(p); }
+static inline void vd_store(double *p, vd a) { _mm256_store_pd(p, a); }
+static inline void vd_store_float(float *p, vd a) { _mm_store_ps(p, _mm256_cvtpd_ps(a)); }
+static inline vd vd_add(vd a, vd b) { return _mm256_add_pd(a, b); }
+static inline vd vd_sub(vd a, vd b) { return _mm256_sub_pd(a, b); }
+static inline vd vd_mul(vd a, vd b) { return _mm256_mul_pd(a, b); }
+static inline vd vd_div(vd a, vd b) { return _mm256_div_pd(a, b); }
+static inline vd vd_sqrt(vd a) { return _mm256_sqrt_pd(a); }
+static inline vd vd_min(vd a, vd b) { return _mm256_min_pd(a, b); }
+static inline vd vd_max(vd a, vd b) { return _mm256_max_pd(a, b); }
+static inline vd vd_abs(vd a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
+static inline vm vd_lt(vd a, vd b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+static inline vm vd_le(vd a, vd b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
+static inline vd vd_select(vm m, vd a, vd b) { return _mm256_blendv_pd(b, a, m); }
+static inline vm vm_and(vm a, vm b) { return _mm256_and_pd(a, b); }
+static inline vm vm_or(vm a, vm b) { return _mm256_or_pd(a, b); }
+static inline vm vm_not(vm a) { return _mm256_xor_pd(a, _mm256_castsi256_pd(_mm256_set1_epi32(-1))); }
+static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_pd(a); }
+
+static inline vf vf_set1(float a) { return _mm256_set1_ps(a); }
+static inline vf vf_load(const float *p) { return _mm256_load_ps(p); }
+static inline vf vf_add(vf a, vf b) { return _mm256_add_ps(a, b); }
+static inline vf vf_sub(vf a, vf b) { return _mm256_sub_ps(a, b); }
+static inline vf vf_mul(vf a, vf b) { return _mm256_mul_ps(a, b); }
+static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
+static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
+    uint32_t count = 0;
+    for (; bits != 0; bits &= bits - 1) p[count++] = first + (uint32_t)__builtin_ctz(bits);
+    return count;
+}
+
+#endif

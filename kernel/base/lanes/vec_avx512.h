@@ -1,0 +1,59 @@
+/* vec_avx512.h - eight doubles, sixteen floats. What the operations are: vec_scalar.h. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_VEC_AVX512_H
+#define FIBRAD_VEC_AVX512_H
+
+#include <stdint.h>
+#include <immintrin.h>
+
+#define VD_LANES 8
+#define VF_LANES 16
+
+typedef __m512d vd;
+typedef __mmask8 vm;
+typedef __m512 vf;
+
+static inline vd vd_set1(double a) { return _mm512_set1_pd(a); }
+static inline vd vd_load(const double *p) { return _mm512_load_pd(p); }
+/* Tables of up to two vectors stay in registers: a gather would wait until stores to them have left the core. */
+static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
+    __m512i index = _mm512_cvttpd_epi64(k);
+    if (size > 16) return _mm512_i64gather_pd(index, table, 8);
+    if (size > 8) return _mm512_permutex2var_pd(vd_load(table), index, vd_load(table + 8));
+    return _mm512_permutexvar_pd(index, vd_load(table));
+}
+static inline void vd_compress(double *p, uint32_t bits, vd a) {
+    _mm512_storeu_pd(p, _mm512_maskz_compress_pd((__mmask8)bits, a));
+}
+static inline vd vd_loadu(const double *p) { return _mm512_loadu_pd(p); }
+static inline void vd_store(double *p, vd a) { _mm512_store_pd(p, a); }
+static inline void vd_store_float(float *p, vd a) { _mm256_store_ps(p, _mm512_cvtpd_ps(a)); }
+static inline vd vd_add(vd a, vd b) { return _mm512_add_pd(a, b); }
+static inline vd vd_sub(vd a, vd b) { return _mm512_sub_pd(a, b); }
+static inline vd vd_mul(vd a, vd b) { return _mm512_mul_pd(a, b); }
+static inline vd vd_div(vd a, vd b) { return _mm512_div_pd(a, b); }
+static inline vd vd_sqrt(vd a) { return _mm512_sqrt_pd(a); }
+static inline vd vd_min(vd a, vd b) { return _mm512_min_pd(a, b); }
+static inline vd vd_max(vd a, vd b) { return _mm512_max_pd(a, b); }
+static inline vd vd_abs(vd a) { return _mm512_abs_pd(a); }
+static inline vm vd_lt(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
+static inline vm vd_le(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
+static inline vd vd_select(vm m, vd a, vd b) { return _mm512_mask_blend_pd(m, b, a); }
+static inline vm vm_and(vm a, vm b) { return (vm)(a & b); }
+static inline vm vm_or(vm a, vm b) { return (vm)(a | b); }
+static inline vm vm_not(vm a) { return (vm)~a; }
+static inline uint32_t vm_bits(vm a) { return a; }
+
+static inline vf vf_set1(float a) { return _mm512_set1_ps(a); }
+static inline vf vf_load(const float *p) { return _mm512_load_ps(p); }
+static inline vf vf_add(vf a, vf b) { return _mm512_add_ps(a, b); }
+static inline vf vf_sub(vf a, vf b) { return _mm512_sub_ps(a, b); }
+static inline vf vf_mul(vf a, vf b) { return _mm512_mul_ps(a, b); }
+static inline uint32_t vf_lt_bits(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
+    __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    __m512i place = _mm512_add_epi32(_mm512_set1_epi32((int)first), lane);
+    _mm512_storeu_si512(p, _mm512_maskz_compress_epi32((__mmask16)bits, place));
+    return (uint32_t)__builtin_popcount(bits);
+}
+
+#endif

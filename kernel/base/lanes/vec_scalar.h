@@ -1,0 +1,66 @@
+/* clang-format off */
+/* vec_scalar.h - lanes of one: the portable version that all others must equal bit for bit. SPDX-License-Identifier: MIT
+ *
+ * The operations every vec_*.h offers, none of which mixes lanes, so that a result does not depend on their number:
+ *   vd   VD_LANES doubles    vd_set1 vd_load vd_store vd_add vd_sub vd_mul vd_div vd_sqrt vd_min vd_max vd_abs
+ *                            vd_loadu (of any address), vd_store_float (rounded)
+ *                            vd_lt vd_le (masks) vd_select(mask, if set, if clear)
+ *                            vd_lookup(table, size, k): table[k] for lanes of whole numbers k < size (less than
+ *                            the table's length where nobody looks); the table is a whole number of vectors long
+ *                            vd_compress(p, bits, a): the lanes named by bits side by side at p, which has room for all
+ *   vm   a mask of vd lanes  vm_and vm_or vm_not vm_bits (bit l = lane l)
+ *   vf   VF_LANES floats     vf_set1 vf_load vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
+ *                            vf_compress_places(p, bits, first): first + l for the lanes l named by bits, side by side
+ *                            at p, which has room for all; returns how many
+ * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them. */
+/* clang-format on */
+#ifndef FIBRAD_VEC_SCALAR_H
+#define FIBRAD_VEC_SCALAR_H
+
+#include <stdint.h>
+#include "base/port.h"
+
+#define VD_LANES 1
+#define VF_LANES 1
+
+typedef double vd;
+typedef int vm;
+typedef float vf;
+
+static inline vd vd_set1(double a) { return a; }
+static inline vd vd_load(const double *p) { return *p; }
+static inline vd vd_lookup(const double *table, uint32_t size, vd k) { return (void)size, table[(uint32_t)k]; }
+static inline void vd_compress(double *p, uint32_t bits, vd a) {
+    if (bits & 1) *p = a;
+}
+static inline vd vd_loadu(const double *p) { return *p; }
+static inline void vd_store(double *p, vd a) { *p = a; }
+static inline void vd_store_float(float *p, vd a) { *p = (float)a; }
+static inline vd vd_add(vd a, vd b) { return a + b; }
+static inline vd vd_sub(vd a, vd b) { return a - b; }
+static inline vd vd_mul(vd a, vd b) { return a * b; }
+static inline vd vd_div(vd a, vd b) { return a / b; }
+static inline vd vd_sqrt(vd a) { return fibrad_sqrt(a); }
+static inline vd vd_min(vd a, vd b) { return a < b ? a : b; }
+static inline vd vd_max(vd a, vd b) { return a > b ? a : b; }
+static inline vd vd_abs(vd a) { return __builtin_fabs(a); }
+static inline vm vd_lt(vd a, vd b) { return a < b; }
+static inline vm vd_le(vd a, vd b) { return a <= b; }
+static inline vd vd_select(vm m, vd a, vd b) { return m ? a : b; }
+static inline vm vm_and(vm a, vm b) { return a & b; }
+static inline vm vm_or(vm a, vm b) { return a | b; }
+static inline vm vm_not(vm a) { return !a; }
+static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
+
+static inline vf vf_set1(float a) { return a; }
+static inline vf vf_load(const float *p) { return *p; }
+static inline vf vf_add(vf a, vf b) { return a + b; }
+static inline vf vf_sub(vf a, vf b) { return a - b; }
+static inline vf vf_mul(vf a, vf b) { return a * b; }
+static inline uint32_t vf_lt_bits(vf a, vf b) { return a < b; }
+static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
+    *p = first;
+    return bits;
+}
+
+#endif

@@ -1,0 +1,56 @@
+/* vec_sse2.h - two doubles, four floats. What the operations are: vec_scalar.h. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_VEC_SSE2_H
+#define FIBRAD_VEC_SSE2_H
+
+#include <stdint.h>
+#include <immintrin.h>
+
+#define VD_LANES 2
+#define VF_LANES 4
+
+typedef __m128d vd;
+typedef __m128d vm;
+typedef __m128 vf;
+
+static inline vd vd_set1(double a) { return _mm_set1_pd(a); }
+static inline vd vd_load(const double *p) { return _mm_load_pd(p); }
+static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
+    (void)size;
+    return _mm_set_pd(table[(uint32_t)_mm_cvtsd_f64(_mm_unpackhi_pd(k, k))], table[(uint32_t)_mm_cvtsd_f64(k)]);
+}
+static inline void vd_compress(double *p, uint32_t bits, vd a) {
+    if (bits & 1) _mm_store_sd(p++, a);
+    if (bits & 2) _mm_storeh_pd(p, a);
+}
+static inline vd vd_loadu(const double *p) { return _mm_loadu_pd(p); }
+static inline void vd_store(double *p, vd a) { _mm_store_pd(p, a); }
+static inline void vd_store_float(float *p, vd a) { _mm_storel_pi((__m64 *)(void *)p, _mm_cvtpd_ps(a)); }
+static inline vd vd_add(vd a, vd b) { return _mm_add_pd(a, b); }
+static inline vd vd_sub(vd a, vd b) { return _mm_sub_pd(a, b); }
+static inline vd vd_mul(vd a, vd b) { return _mm_mul_pd(a, b); }
+static inline vd vd_div(vd a, vd b) { return _mm_div_pd(a, b); }
+static inline vd vd_sqrt(vd a) { return _mm_sqrt_pd(a); }
+static inline vd vd_min(vd a, vd b) { return _mm_min_pd(a, b); }
+static inline vd vd_max(vd a, vd b) { return _mm_max_pd(a, b); }
+static inline vd vd_abs(vd a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a); }
+static inline vm vd_lt(vd a, vd b) { return _mm_cmplt_pd(a, b); }
+static inline vm vd_le(vd a, vd b) { return _mm_cmple_pd(a, b); }
+static inline vd vd_select(vm m, vd a, vd b) { return _mm_or_pd(_mm_and_pd(m, a), _mm_andnot_pd(m, b)); }
+static inline vm vm_and(vm a, vm b) { return _mm_and_pd(a, b); }
+static inline vm vm_or(vm a, vm b) { return _mm_or_pd(a, b); }
+static inline vm vm_not(vm a) { return _mm_xor_pd(a, _mm_castsi128_pd(_mm_set1_epi32(-1))); }
+static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm_movemask_pd(a); }
+
+static inline vf vf_set1(float a) { return _mm_set1_ps(a); }
+static inline vf vf_load(const float *p) { return _mm_load_ps(p); }
+static inline vf vf_add(vf a, vf b) { return _mm_add_ps(a, b); }
+static inline vf vf_sub(vf a, vf b) { return _mm_sub_ps(a, b); }
+static inline vf vf_mul(vf a, vf b) { return _mm_mul_ps(a, b); }
+static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)); }
+static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
+    uint32_t count = 0;
+    for (; bits != 0; bits &= bits - 1) p[count++] = first + (uint32_t)__builtin_ctz(bits);
+    return count;
+}
+
+#endif

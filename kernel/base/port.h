@@ -1,0 +1,57 @@
+/* port.h - all that the kernel takes from the C library and the compiler. SPDX-License-Identifier: MIT
+ *
+ * A target with its own ideas names a header of its own: -DFIBRAD_PORT_HEADER='"my_port.h"'; it then defines
+ * fibrad_sqrt, fibrad_sqrtf, fibrad_copy and fibrad_zero as below. The square roots must round correctly (IEEE 754). */
+#ifndef FIBRAD_BASE_PORT_H
+#define FIBRAD_BASE_PORT_H
+
+#include <float.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#if FLT_EVAL_METHOD != 0
+#error "fibrad needs arithmetic in the precision of its types (on 32-bit x86: -msse2 -mfpmath=sse)"
+#endif
+
+#ifdef FIBRAD_PORT_HEADER
+#include FIBRAD_PORT_HEADER
+#else
+
+/* With -fno-math-errno these are single instructions where the machine has them, else calls of sqrt and sqrtf. */
+static inline double fibrad_sqrt(double x) { return __builtin_sqrt(x); }
+static inline float fibrad_sqrtf(float x) { return __builtin_sqrtf(x); }
+
+/* Copies bytes between blocks that do not overlap. */
+static inline void fibrad_copy(void *to, const void *from, size_t bytes) { __builtin_memcpy(to, from, bytes); }
+
+static inline void fibrad_zero(void *to, size_t bytes) { __builtin_memset(to, 0, bytes); }
+
+#endif
+
+/* From here on never a call: plain C, and a builtin that clears the sign bit. */
+
+static inline double fibrad_abs(double x) { return __builtin_fabs(x); }
+static inline double fibrad_min(double a, double b) { return a < b ? a : b; }
+static inline double fibrad_max(double a, double b) { return a > b ? a : b; }
+
+/* False for NaN and the infinities. */
+static inline bool fibrad_finite(double x) { return x - x == 0; }
+
+/* How many bits are set. gcc makes this one instruction where there is one; the builtin would be a call of
+ * libgcc where there is none. */
+static inline uint32_t fibrad_count_bits(uint64_t x) {
+    x -= x >> 1 & 0x5555555555555555;
+    x = (x & 0x3333333333333333) + (x >> 2 & 0x3333333333333333);
+    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0f;
+    return (uint32_t)(x * 0x0101010101010101 >> 56);
+}
+
+/* The largest whole number not above x; from 2^52 on every number is whole. NaN gives NaN. */
+static inline double fibrad_floor(double x) {
+    if (!(fibrad_abs(x) < 0x1p52)) return x;
+    double whole = (double)(int64_t)x;
+    return whole > x ? whole - 1 : whole;
+}
+
+#endif

@@ -1,0 +1,44 @@
+/* areas.c - lays out the memory for visible areas. SPDX-License-Identifier: MIT */
+#include "bed/areas.h"
+
+#define LANES 8 /* the most that a vector has; whole vectors are written at the end of a list */
+
+/* K circles bound a plane region by at most 6 K arcs, each of which may be cut twice; that is for the worst
+ * arrangement, windows of beds have about one arc per disc. */
+#define ARCS_PER_DISC 4u
+
+static double *doubles(fibrad_arena *arena, size_t count) { return fibrad_arena_take(arena, count, sizeof(double)); }
+
+static fibrad_arcs arcs_of(fibrad_arena *arena, size_t count) {
+    fibrad_arcs arcs;
+    arcs.a = doubles(arena, count), arcs.b = doubles(arena, count);
+    arcs.px = doubles(arena, count), arcs.py = doubles(arena, count);
+    arcs.qx = doubles(arena, count), arcs.qy = doubles(arena, count);
+    arcs.circle = doubles(arena, count);
+    arcs.count = 0;
+    return arcs;
+}
+
+void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t discs) {
+    size_t circles = (size_t)discs + 2 < 2 * LANES ? 2 * LANES : (size_t)discs + 2; /* lookups load two vectors */
+    areas->discs = discs;
+    areas->arcs = ARCS_PER_DISC * discs + 4 * LANES;
+    size_t arcs = (size_t)areas->arcs + LANES;
+    areas->x = doubles(arena, circles), areas->y = doubles(arena, circles);
+    areas->r = doubles(arena, circles), areas->inverse = doubles(arena, circles);
+    areas->sense = doubles(arena, circles);
+    areas->ox = doubles(arena, circles), areas->oy = doubles(arena, circles), areas->area = doubles(arena, circles);
+    areas->whose = fibrad_arena_take(arena, circles, sizeof(uint32_t));
+    areas->from = doubles(arena, circles), areas->to = doubles(arena, circles);
+    areas->sx = doubles(arena, circles), areas->sy = doubles(arena, circles);
+    areas->ex = doubles(arena, circles), areas->ey = doubles(arena, circles);
+    areas->hidden.from = doubles(arena, circles + LANES), areas->hidden.to = doubles(arena, circles + LANES);
+    areas->hidden.circle = doubles(arena, circles + LANES);
+    areas->open = arcs_of(arena, arcs);
+    areas->left = arcs_of(arena, arcs);
+    areas->seconds = areas->arcs / 4;
+    areas->second[0] = arcs_of(arena, areas->seconds + LANES);
+    areas->second[1] = arcs_of(arena, areas->seconds + LANES);
+    areas->taken = arcs_of(arena, FIBRAD_PIECES + 2 * LANES);
+    areas->taker = doubles(arena, FIBRAD_PIECES + 2 * LANES);
+}

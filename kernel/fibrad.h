@@ -1,0 +1,471 @@
+/* fibrad.h - view factors for thermal radiation between spheres. No heap, no I/O, no threads, no mutable globals.
+ *
+ * Index
+ *   status   fibrad_status_text, fibrad_version
+ *   lanes    fibrad_isa_best, fibrad_isa_name
+ *   sample   fibrad_direction
+ *   pair     fibrad_pair_exact
+ *   scene    fibrad_scene_size, FIBRAD_SCENE_BYTES, fibrad_scene_init, fibrad_scene_describe
+ *   work     fibrad_work_size, FIBRAD_WORK_BYTES, fibrad_work_init, fibrad_work_needed
+ *   beam     fibrad_beam_row, fibrad_directions_for
+ *   surface  fibrad_surface_pair, FIBRAD_SURFACE_SCRATCH, fibrad_surface_row
+ *   cast     fibrad_cast_row
+ *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_drop, fibrad_rows_reciprocity
+ *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
+ *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
+ *            fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit, fibrad_furnace_trace,
+ *            fibrad_furnace_estimate, fibrad_furnace_equilibrium
+ *
+ * Units    One length unit L, the caller's choice; angles in radians; view factors are dimensionless.
+ * Memory   The caller owns every buffer, aligned as stated, and keeps it alive while it is used; there is no free.
+ *          An `_init` function lays its object out in the block it is given and returns a pointer into it; the twin
+ *          `_size` function tells the bytes that takes. Blocks for scenes and work begin on a 64-byte boundary.
+ * Threads  Const objects may be shared between threads. A fibrad_work belongs to one thread at a time.
+ * Errors   Functions that can fail return an int: FIBRAD_OK or a negative fibrad_status. Unless FIBRAD_OK is returned,
+ *          outputs are untouched, except where a function says otherwise. Null pointers are FIBRAD_E_ARGUMENT.
+ * Bits     Results depend on the arguments alone: not on thread, instruction set, compiler or optimisation level.
+ *
+ * SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_H
+#define FIBRAD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define FIBRAD_VERSION "0.1.0"
+
+/* ---- status ---------------------------------------------------------------------------------------------------- */
+
+/* The numbers never change their meaning. */
+typedef enum fibrad_status {
+    FIBRAD_OK = 0,
+    FIBRAD_E_ARGUMENT = -1,  /* a null pointer, a value out of its range, NaN or infinity */
+    FIBRAD_E_SIZE = -2,      /* the memory block is smaller than the `_size` function asks for */
+    FIBRAD_E_ALIGNMENT = -3, /* the memory block does not begin on a 64-byte boundary */
+    FIBRAD_E_CAPACITY = -4,  /* an output array or the work memory is too small; the call says what would suffice */
+    FIBRAD_E_TABLE = -5,     /* that number of samples is not built in */
+    FIBRAD_E_GEOMETRY = -6   /* equal centres, or the centre of one sphere inside another */
+} fibrad_status;
+
+/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. */
+const char *fibrad_status_text(int status);
+
+/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". */
+const char *fibrad_version(void);
+
+/* ---- lanes ----------------------------------------------------------------------------------------------------- */
+
+/* Instruction sets the kernel is compiled for. All return the same bits. */
+typedef enum fibrad_isa {
+    FIBRAD_ISA_BEST = 0, /* the widest the machine offers; zeroed configurations mean this */
+    FIBRAD_ISA_SCALAR = 1,
+    FIBRAD_ISA_SSE2 = 2,
+    FIBRAD_ISA_AVX2 = 3,
+    FIBRAD_ISA_AVX512 = 4
+} fibrad_isa;
+
+/* The widest instruction set that both this build and this machine offer. Cost: two CPUID instructions. */
+fibrad_isa fibrad_isa_best(void);
+
+/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. */
+const char *fibrad_isa_name(int isa);
+
+/* ---- sample ---------------------------------------------------------------------------------------------------- */
+
+/* Bounds of the number of directions of a beam rule. Any number between them will do: sizes are no property of the
+ * method, and one table of azimuths serves them all. */
+#define FIBRAD_DIRECTIONS_MIN 8
+#define FIBRAD_DIRECTIONS_MAX 65536
+
+/* Direction k of the spherical Fibonacci set of n directions, a unit vector: z = 1 - (2k+1)/n, azimuth k golden angles.
+ * k [0, n), n [FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX].
+ * Errors: FIBRAD_E_ARGUMENT. Cost: one square root; no trigonometry.
+ * Source: R. Swinbank, R. J. Purser, Q. J. R. Meteorol. Soc. 132 (2006) 1769, with half-integer offset in z. */
+int fibrad_direction(uint32_t k, uint32_t n, double direction[3]);
+
+/* ---- pair ------------------------------------------------------------------------------------------------------ */
+
+/* View factor F12 from sphere 1 (radius r1) to sphere 2 (radius r2), nothing in between, at surface distance gap.
+ * r1, r2 [L] > 0; gap [L] from -2 min(r1, r2), exclusive, to any finite number; negative: the spheres overlap, and the
+ * formula is continued smoothly as docs/methods.md says. All of r1, r2, gap may be scaled alike from 1e-150 to 1e150.
+ * Guarantee: relative error at most 1e-14 for r1/r2 in [1e-4, 1e4]; r1^2 F12 and r2^2 F21 agree to the
+ * last bits; F is continuous and falls with gap.
+ * Errors: FIBRAD_E_ARGUMENT. Cost: about 0.06 microseconds, 0.2 for overlaps; no libm call but sqrt.
+ * Source: directional form of the exchange area, docs/methods.md section 2. */
+int fibrad_pair_exact(double r1, double r2, double gap, double *f12);
+
+/* ---- scene ----------------------------------------------------------------------------------------------------- */
+
+/* Views of four arrays of length n: centres and radii [L]. r from 1e-150 to 1e150, coordinates up to 1e150 and 3e13
+ * times the smallest radius (beyond, too few digits are left). */
+typedef struct fibrad_spheres {
+    const double *x, *y, *z, *r;
+    uint32_t n;
+} fibrad_spheres;
+
+/* The largest number of spheres of a scene. */
+#define FIBRAD_SPHERES_MAX 100000000u
+
+/* What a scene is made for. Zeroed but for `spheres`: open on all sides, the best instruction set. */
+typedef struct fibrad_scene_config {
+    uint32_t spheres; /* how many spheres the scene holds: [1, FIBRAD_SPHERES_MAX] */
+    int isa;          /* a fibrad_isa; one that the machine lacks is FIBRAD_E_ARGUMENT */
+    double period[3]; /* per axis the length of the periodic box [L]; 0: the axis is open */
+} fibrad_scene_config;
+
+/* A scene: spheres copied in the order of the cells of a grid. Immutable once made; share it between threads. */
+typedef struct fibrad_scene fibrad_scene;
+
+/* Where fibrad_scene_init found a fault: indices of the spheres concerned (equal when only one is). */
+typedef struct fibrad_fault {
+    uint32_t first, second;
+} fibrad_fault;
+
+/* Bytes that fibrad_scene_init needs for this configuration; 0 if the configuration is not valid. */
+size_t fibrad_scene_size(const fibrad_scene_config *config);
+
+/* An upper bound of fibrad_scene_size for up to n spheres, as a constant expression, for static memory. */
+#define FIBRAD_SCENE_BYTES(n) (8192 + (size_t)(n)*64)
+
+/* Makes a scene in `memory` (`size` bytes on a 64-byte boundary) from config->spheres == spheres->n spheres, which are
+ * copied: the arrays may go afterwards. On periodic axes centres may lie anywhere and are taken into the box.
+ * Spheres may overlap (settled beds do), but no centre may lie inside another sphere.
+ * Errors: _ARGUMENT (then `fault`, unless NULL, names the sphere, or n if it is none of them), _SIZE, _ALIGNMENT,
+ * _GEOMETRY (fault names the pair). Cost: O(n), about 0.5 microseconds per sphere; more where spheres crowd in clusters
+ * far apart. */
+int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fibrad_scene_config *config,
+                      const fibrad_spheres *spheres, fibrad_fault *fault);
+
+/* What a scene turned out to be. */
+typedef struct fibrad_scene_facts {
+    uint32_t spheres;
+    int isa;                       /* the instruction set in use */
+    uint32_t cells;                /* cells of the grid, all levels */
+    double radius_min, radius_max; /* [L] */
+    double overlap_max;            /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
+    uint32_t overlap_pair[2];      /* the spheres of the largest overlap */
+} fibrad_scene_facts;
+
+/* Fills in the facts of a scene. Cost: a copy. */
+void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
+
+/* ---- work ------------------------------------------------------------------------------------------------------ */
+
+/* Scratch memory for rows, one per thread. Zero means the default. */
+typedef struct fibrad_work_config {
+    uint32_t near;    /* near spheres kept per row for all its directions (farther ones are looked up per direction
+                         and need no room): default 1024. A matter of speed alone */
+    uint32_t discs;   /* spheres met in one window, hidden ones included: default 256 */
+    uint32_t entries; /* different spheres seen by one row: default 1024 */
+} fibrad_work_config;
+
+typedef struct fibrad_work fibrad_work;
+
+/* Bytes that fibrad_work_init needs; 0 if the configuration is not valid (NULL: all defaults). */
+size_t fibrad_work_size(const fibrad_work_config *config);
+
+/* An upper bound of fibrad_work_size as a constant expression, for static memory (no zeros here). */
+#define FIBRAD_WORK_BYTES(near, discs, entries)                                                                        \
+    (20480 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
+
+/* Makes work memory in `memory` (`size` bytes on a 64-byte boundary). It serves any scene, one row at a time.
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+int fibrad_work_init(fibrad_work **work, void *memory, size_t size, const fibrad_work_config *config);
+
+/* After FIBRAD_E_CAPACITY from a row: a configuration under which that row gets farther (its `discs` as far as they
+ * were met, its `entries` never more than the row can have). Repeat until the row succeeds; entries = number of spheres
+ * always suffices. */
+void fibrad_work_needed(const fibrad_work *work, fibrad_work_config *config);
+
+/* ---- beam ------------------------------------------------------------------------------------------------------ */
+
+/* One row of the matrix of view factors, in the caller's arrays. */
+typedef struct fibrad_row {
+    uint32_t *col;       /* [capacity] out: the spheres seen, ascending */
+    double *f;           /* [capacity] out: F from sphere i to sphere col[.], all > 0 */
+    uint32_t capacity;   /* in */
+    uint32_t length;     /* out: entries; after FIBRAD_E_CAPACITY of these arrays: the entries there would be */
+    double escaped;      /* out: the fraction that meets no sphere, measured as uncovered area or points */
+    double error;        /* out: estimated Euclidean error of the row, from parts of its directions; twice the true one
+                            on the median, seldom less than it */
+    uint32_t directions; /* out, beam method only: how many were taken */
+} fibrad_row;
+
+/* How a beam row is integrated. Zeroed: 233 directions, exact areas, no cutoff, no tolerance. */
+typedef struct fibrad_beam_rule {
+    uint32_t directions; /* [FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX] */
+    uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
+    double cutoff;       /* spheres whose centres are farther than this (1 + 1e-12) neither receive nor block [L];
+                            0: none. A beam ends after 100 periods along any periodic axis */
+    double error;        /* 0: none. Else the row is repeated with more directions, from `directions` on [100], until
+                            row->error is not above this, or FIBRAD_DIRECTIONS_MAX are taken. Rows of different
+                            directions are each closed, but averaging them does not keep their sums below 1 */
+} fibrad_beam_rule;
+
+/* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + escaped = 1, to
+ * rounding with exact areas, as exact counts with points. With exact areas the error falls as directions^-1.5.
+ * i [0, spheres); rule NULL: all defaults. Periodic images of one sphere share an entry, and i may see images of
+ * itself. Errors: _ARGUMENT, _TABLE (points), _CAPACITY: either row->capacity (row->length then tells) or the work
+ * memory (row->length is then 0, and fibrad_work_needed tells). Cost: some microseconds per direction with ten discs in
+ * the window; it grows with the square of their number, which is large for a sphere among much smaller ones. Source:
+ * docs/methods.md sections 3 and 4. */
+int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
+                    fibrad_row *row);
+
+/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0.
+ */
+uint32_t fibrad_directions_for(uint32_t directions, double error, double wanted);
+
+/* ---- surface --------------------------------------------------------------------------------------------------- */
+
+/* The method of Bao, Gao and Tan: a Fibonacci lattice of nodes on either sphere, about the line of centres and
+ * clustered at its poles; the sum of cos cos/(pi e^2) over all pairs of nodes, those of sphere 2 once more turned by
+ * pi; each ray tested against the obstacles. */
+
+/* What a rule may switch off. All but the first are for proofs: they cost time and change no result. */
+typedef enum fibrad_surface_flags {
+    FIBRAD_SURFACE_NO_CORRECTION = 1, /* the plain sum, without the factor exact/unblocked */
+    FIBRAD_SURFACE_NO_HORIZON = 2,    /* visit nodes that cannot see the other sphere */
+    FIBRAD_SURFACE_NO_REGION = 4,     /* test rays against obstacles that they cannot meet */
+    FIBRAD_SURFACE_NO_EXACT = 8,      /* sum even if nothing is in between */
+    FIBRAD_SURFACE_NO_HIDDEN = 16     /* test every ray even if one obstacle hides the whole sphere */
+} fibrad_surface_flags;
+
+/* How a surface factor is integrated. Zeroed: 55 nodes, corrected, no cutoff, the best instruction set. */
+typedef struct fibrad_surface_rule {
+    uint32_t nodes; /* N_F, a Fibonacci number from 8 to 987; 0: 55 */
+    uint32_t flags; /* sum of fibrad_surface_flags */
+    double cutoff;  /* rows: spheres whose centres are farther than this (1 + 1e-12) neither receive nor block [L]; 0:
+                       none, which is only possible without periodic axes */
+    int isa;        /* pairs: a fibrad_isa (rows use that of the scene). FIBRAD_ISA_BEST asks the machine at every call,
+                       which under a hypervisor takes longer than the pair; others are used unasked, so take what
+                       fibrad_isa_best has returned once */
+} fibrad_surface_rule;
+
+/* What else a pair turned out to be. The sums are 0 if they were not needed. */
+typedef struct fibrad_surface_facts {
+    double unblocked, blocked; /* F12 as summed, without and with the obstacles, not corrected */
+    double error;              /* half the difference between the two turns of sphere 2 */
+    uint64_t rays, tests;      /* pairs of nodes summed and ray-sphere tests, in whole vectors of the instruction set */
+} fibrad_surface_facts;
+
+/* Doubles of scratch memory for n obstacles. */
+#define FIBRAD_SURFACE_SCRATCH(n) (12 * (((size_t)(n) + 7) / 8 * 8))
+
+/* View factor F12 from sphere 1 (radius r1, centre at the origin) to sphere 2 (radius r2, centre (0, 0, r1 + r2 + gap))
+ * with obstacles in between. r1, r2 [L] > 0, gap [L] as in fibrad_pair_exact; overlapping spheres are summed as if they
+ * touched. The lattices begin at azimuth 0, the x axis, so the result depends a little on the azimuth of an obstacle.
+ * A point inside an obstacle sees nothing. Without obstacles in the way the result is fibrad_pair_exact, unless
+ * corrections are off. scratch [FIBRAD_SURFACE_SCRATCH(obstacles->n)] on a 64-byte boundary; obstacles (with scratch),
+ * rule (all defaults) and facts may be NULL.
+ * Errors: _ARGUMENT, _ALIGNMENT, _TABLE (nodes). Cost: about nodes^2/2 divisions and, for each obstacle in the way, as
+ * many ray-sphere tests.
+ * Source: Y. Bao, Y. Gao, J. Tan (2022), docs/methods.md section 7. */
+int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *obstacles,
+                        const fibrad_surface_rule *rule, double *scratch, double *f12, fibrad_surface_facts *facts);
+
+/* Row i of the view factors of a scene by the surface method, pair by pair; blockers are the near spheres within the
+ * cutoff, all of which the work memory must hold (fibrad_work_config.near). i [0, spheres). Sphere 1 of a pair is the
+ * one of lower index; its frame has the z axis w towards sphere 2 and the x axis along a x w, a being the coordinate
+ * axis that w has least of (the first where equal). So rows are reciprocal but for blockers within the
+ * cutoff of one of two spheres. row->escaped is 1 - sum of f, as this method does not measure it; row->error is
+ * the root of the sum of the pairs' squares. rule: NULL is all defaults; its isa is not used.
+ * Errors: _ARGUMENT (no cutoff in a periodic scene included), _TABLE (nodes), _CAPACITY as fibrad_beam_row.
+ * Cost: about 5 microseconds per partly hidden sphere within the cutoff at 55 nodes. */
+int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_surface_rule *rule,
+                       fibrad_row *row);
+
+/* ---- cast ------------------------------------------------------------------------------------------------------ */
+
+/* How a row is sampled by rays. Zeroed: 20000 quasi-random rays, seed 0, no cutoff. */
+typedef struct fibrad_cast_rule {
+    uint32_t rays; /* 0: 20000 */
+    int random;    /* 0: quasi-random numbers (`cast`); 1: pseudo-random numbers (`mc`) */
+    uint64_t seed; /* what the random numbers, or the shift of the quasi-random set, come from, together with i */
+    double cutoff; /* as in fibrad_beam_rule */
+} fibrad_cast_rule;
+
+/* What else the rays of a row tell, in the caller's arrays; entry k belongs to sphere col[k] of the row. */
+typedef struct fibrad_cast_means {
+    double *length; /* [row->capacity] out: mean length of the rays [L] */
+    double *angle;  /* [row->capacity] out: mean angle between the rays and the line of centres [rad] */
+} fibrad_cast_means;
+
+/* Row i of the view factors of a scene, by rays: origins even over the sphere, directions by the cosine law in the
+ * local frame, each followed to the first sphere by the distance to its surface. Factors are numbers of rays over all
+ * rays, row->escaped is that of those that meet nothing, and row->error is estimated from every other ray.
+ * A ray that starts inside another sphere meets it at once, at length 0, if its centre lies ahead. means: may be NULL.
+ * The error falls as rays^-0.6, with random = 1 as rays^-0.5. i [0, spheres).
+ * Errors: _ARGUMENT, _CAPACITY as fibrad_beam_row. Cost: about 0.1 microseconds per ray.
+ * Source: docs/methods.md section 8; pebble-bed quasi-Monte Carlo with origins and directions as there. */
+int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_cast_rule *rule,
+                    fibrad_row *row, const fibrad_cast_means *means);
+
+/* ---- rows ------------------------------------------------------------------------------------------------------ */
+
+/* A sparse matrix of view factors, compressed rows, in the caller's arrays. */
+typedef struct fibrad_rows {
+    uint32_t n;        /* rows and columns */
+    uint64_t capacity; /* length of col and f */
+    uint64_t *start;   /* [n + 1]: row i is [start[i], start[i+1]) */
+    uint32_t *col;     /* [capacity] ascending within each row, all < n */
+    double *f;         /* [capacity] F from i to col */
+} fibrad_rows;
+
+/* Reciprocal view factors: out_ij = (A_i F_ij + A_j F_ji)/(2 A_i), with A = 4 pi r^2 and absent entries taken as 0, so
+ * that A_i out_ij = A_j out_ji to rounding. `raw` and `out` share no array; out->n and out->capacity are set by the
+ * caller (2 start[n] of raw is always enough, and fastest). All of out->col and out->f may be written. r [n] > 0.
+ * Errors: _ARGUMENT (columns not ascending or out of range included), _CAPACITY (out->start[n] is then what is needed).
+ * Cost: O(n + entries). */
+int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *out);
+
+/* Brings row sums above 1 down to 1 and leaves reciprocity as it is: F_ij times min(s_i, s_j), s = min(1, 1/sum).
+ * Rows averaged from exact areas need it only to the last bit. scratch [n].
+ * Errors: _ARGUMENT. Cost: O(entries). */
+int fibrad_rows_limit(fibrad_rows *rows, double *scratch);
+
+/* Drops entries below `threshold` (both of a reciprocal pair when both are below) and gives what they carried back to
+ * the entries that stay, symmetrically: S_ij u_i u_j with u found so that the row sums are as before; what no such u
+ * can place (a sphere that loses all it saw) goes into F_ii. Closure and reciprocity hold to 1e-14 afterwards.
+ * `rows` must be reciprocal; they shrink in place, but a row that gets an F_ii of its own needs room for it.
+ * scratch [3 n]. Errors: _ARGUMENT; _CAPACITY: no room for all F_ii (start[n] + n always suffices), what could not be
+ * placed is then missing. Cost: O(entries) times 60. */
+int fibrad_rows_drop(fibrad_rows *rows, const double *r, double threshold, double *scratch);
+
+/* The largest |A_i F_ij - A_j F_ji| / max(A_i, A_j) over all entries, absent partners taken as 0.
+ * Errors: _ARGUMENT. Cost: O(entries log(row length)). */
+int fibrad_rows_reciprocity(const fibrad_rows *rows, const double *r, double *largest);
+
+/* ---- furnace --------------------------------------------------------------------------------------------------- */
+
+/* Radiation in a box full of a grey medium which absorbs, emits and scatters isotropically, between grey diffuse walls
+ * of known temperatures. The medium takes the temperatures at which every cell gives off `source`. Metres, watts and
+ * kelvins here; E = sigma T^4 [W/m2]. docs/furnace.md tells the methods. */
+
+#define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
+
+#define FIBRAD_FURNACE_CELLS_MAX 100000000u
+
+typedef struct fibrad_furnace_config {
+    double size[3];             /* m, > 0 */
+    uint32_t cells[3];          /* along x, y, z; the product is at most FIBRAD_FURNACE_CELLS_MAX */
+    double absorption;          /* 1/m, > 0: where nothing is absorbed there is no temperature */
+    double scattering;          /* 1/m, >= 0 */
+    double source;              /* W/m3 given off by the medium, of either sign */
+    double wall_temperature[6]; /* K, > 0; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
+    double wall_emissivity[6];  /* [0, 1] */
+    uint64_t seed;              /* of the bundles of rays */
+} fibrad_furnace_config;
+
+/* The state of one box: temperatures, fluxes, coefficients, and which bundles are to be traced next. */
+typedef struct fibrad_furnace fibrad_furnace;
+
+/* Bytes that fibrad_furnace_init needs; 0 if the configuration is not valid. */
+size_t fibrad_furnace_size(const fibrad_furnace_config *config);
+
+/* Makes a furnace in `memory` (`size` bytes on a 64-byte boundary): E is the mean of the walls, Theta 2/3 everywhere.
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(cells). */
+int fibrad_furnace_init(fibrad_furnace **furnace, void *memory, size_t size, const fibrad_furnace_config *config);
+
+/* The arrays of a furnace, x fastest. `cell` arrays have cells[0] cells[1] cells[2] elements; `face` arrays of axis a
+ * one layer more along a; hemisphere 0 goes up the axis, 1 down. The caller may write e, flux and theta. */
+typedef struct fibrad_furnace_arrays {
+    double *e;                /* cell: sigma T^4 [W/m2] */
+    double *divergence;       /* cell: net radiation given off [W/m3]; equals the source once solved */
+    double *six_flux;         /* cell: sum of the mean fluxes of its faces, both hemispheres of all axes [W/m2] */
+    double *flux[3][2];       /* face: q+ and q- of the axis [W/m2], as solved or measured last */
+    double *theta[3][2];      /* face: Theta+ and Theta-, as set or measured last */
+    double *transverse[3][2]; /* cell: C+ and C-, over the mean flux of the cell's two faces [1/m] */
+    double *wall[6];          /* net flux from the wall [W/m2], a layer of cells each */
+    double *power;            /* [6] what each wall gives, net [W] */
+} fibrad_furnace_arrays;
+
+void fibrad_furnace_fields(fibrad_furnace *furnace, fibrad_furnace_arrays *arrays);
+
+/* Temperature [K] of E [W/m2]; 0 unless E is positive. */
+double fibrad_furnace_temperature(double e);
+
+/* Makes Theta the same constant everywhere, (0, 1], without transverse term: 1 for the heat-flux method (HFM), 2/3 for
+ * isotropic radiation. Errors: _ARGUMENT. */
+int fibrad_furnace_theta(fibrad_furnace *furnace, double theta);
+
+/* What the scattered part of the heat-flux equations is made of. */
+typedef enum fibrad_furnace_scatter {
+    FIBRAD_SCATTER_SIX_FLUX = 0, /* a sixth of the sum of the six fluxes */
+    FIBRAD_SCATTER_EXACT = 1     /* E - source/(4 absorption), a quarter of the true incident radiation */
+} fibrad_furnace_scatter;
+
+typedef struct fibrad_furnace_report {
+    uint32_t sweeps;
+    double change; /* largest change of E in the last sweep [W/m2] */
+} fibrad_furnace_report;
+
+/* Solves the heat-flux equations for E and the fluxes, with Theta and the transverse term as they stand: sweeps along
+ * all lines of cells, each solved exactly between its two walls, until no cell changes by more than `tolerance`
+ * [W/m2] or sweeps_max is reached (which the report shows; it is no error).
+ * Errors: _ARGUMENT. Cost: about 60 ns per cell and sweep; tens of sweeps where the medium is thin, more with the
+ * square of the optical thickness. Source: Zhao, Li, Wu, Li, Cang, J. Univ. Sci. Technol. Beijing 27 (2005) 423,
+ * equations 5 to 8. */
+int fibrad_furnace_solve(fibrad_furnace *furnace, fibrad_furnace_scatter scatter, double tolerance, uint32_t sweeps_max,
+                         fibrad_furnace_report *report);
+
+/* Sets divergence, six_flux, wall and power from the fluxes, which the caller has written: for other solvers.
+ * Errors: _ARGUMENT. Cost: O(cells). */
+int fibrad_furnace_balance(fibrad_furnace *furnace);
+
+/* Counts of bundles, in whole numbers: any split of the work adds up to the same bits. */
+typedef struct fibrad_furnace_tally fibrad_furnace_tally;
+
+/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. */
+size_t fibrad_furnace_tally_size(const fibrad_furnace *furnace);
+
+/* Makes an empty tally in `memory` (`size` bytes on a 64-byte boundary), for one thread at a time.
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t size, const fibrad_furnace *furnace);
+
+/* Adds `from` to `to`, tallies of the same furnace. Cost: O(cells). */
+void fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from);
+
+/* What bundles of rays do. */
+typedef enum fibrad_furnace_physics {
+    FIBRAD_FURNACE_ATTENUATED = 0, /* lose energy to the medium, whose emission follows E: for Theta */
+    FIBRAD_FURNACE_EQUILIBRIUM = 1 /* what is absorbed is given off again, so that E follows: direct Monte Carlo */
+} fibrad_furnace_physics;
+
+/* Plans the bundles to be traced next. Transport is linear, and tallies add up: after the first plan, which takes about
+ * `bundles` bundles for all that walls and medium emit above the mean of the walls, each further plan carries only what
+ * the change of E since then adds, at the same energy per bundle. `restart` makes a first plan again, for new tallies.
+ * `planned` gets the number of bundles: every source is given a whole number of them, at least one.
+ * bundles [1, 2^32]. Errors: _ARGUMENT. Cost: O(cells). */
+int fibrad_furnace_emit(fibrad_furnace *furnace, fibrad_furnace_physics physics, uint64_t bundles, int restart,
+                        uint64_t *planned);
+
+/* Traces bundles [first, first + count) of the plan into a tally. The furnace is only read: threads may share it.
+ * Errors: _ARGUMENT. Cost: about 0.6 (equilibrium) to 1.1 microseconds per bundle in a box of 20 x 20 x 40 cells. */
+int fibrad_furnace_trace(const fibrad_furnace *furnace, fibrad_furnace_tally *tally, uint64_t first, uint64_t count);
+
+/* Which ratio of the moments F_n = sum(w cos^n) over the bundles that cross a face is taken for Theta. */
+typedef enum fibrad_furnace_estimator {
+    FIBRAD_THETA_DEFINITION = 0, /* F1/F0: the ratio of equations 1 and 2; 2/3 for isotropic radiation */
+    FIBRAD_THETA_PAPER = 1       /* F2/F1: equation 9 read with bundles of energy; 3/4 for isotropic radiation */
+} fibrad_furnace_estimator;
+
+/* Sets flux and Theta from the sum of all tallies since the last restart (FIBRAD_FURNACE_ATTENUATED); with `transverse`
+ * not 0 (FIBRAD_THETA_DEFINITION only) also the term of equations 5 and 6 that the paper drops, from the balance of
+ * each cell. Mirror images and exchanged axes under which the box stays as it is are averaged over. Where bundles are
+ * so few that a moment is not positive, Theta stays as it was. Errors: _ARGUMENT. Cost: O(cells). */
+int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally *tally,
+                            fibrad_furnace_estimator estimator, int transverse, fibrad_furnace_scatter scatter);
+
+/* Sets E, wall fluxes and powers from the sum of all tallies since the last restart (FIBRAD_FURNACE_EQUILIBRIUM).
+ * Errors: _ARGUMENT. Cost: O(cells). */
+int fibrad_furnace_equilibrium(fibrad_furnace *furnace, const fibrad_furnace_tally *tally);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

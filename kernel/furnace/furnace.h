@@ -1,0 +1,82 @@
+/* furnace.h - what the files of the furnace share. SPDX-License-Identifier: MIT
+ *
+ * Cells are numbered x fastest; so are the faces of axis a, of which there is one layer more along a, and the patches
+ * of each wall. Walls and their patches come in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z. */
+#ifndef FIBRAD_FURNACE_FURNACE_H
+#define FIBRAD_FURNACE_FURNACE_H
+
+#include "base/port.h"
+#include "fibrad.h"
+
+/* A mapping of the box onto itself: axis a becomes axis[a], turned round if flip[a]. */
+typedef struct fibrad_symmetry {
+    uint8_t axis[3], flip[3];
+} fibrad_symmetry;
+
+struct fibrad_furnace {
+    fibrad_furnace_config config;
+    fibrad_furnace_arrays at;
+    double step[3];                           /* edges of a cell [m] */
+    double wall_power[6];                     /* net [W] */
+    double wall_e[6];                         /* sigma T^4 of the walls [W/m2] */
+    size_t cells, faces[3], patches[3];       /* patches: of one wall across the axis */
+    size_t cell_stride[3], face_stride[3][3]; /* face_stride[a][b]: of the faces of a, along b */
+    size_t wall_source[6];                    /* first source of each wall */
+    size_t sources;                           /* cells, then patches */
+    uint32_t symmetries;
+    fibrad_symmetry symmetry[48];
+
+    /* solver, per cell: q_out = gain q_in + feed J; response: change of E per unit of missing heat */
+    double *gain[3][2], *feed[3][2], *response;
+
+    /* plan of bundles */
+    double reference;    /* E that is everywhere and carried by no bundle [W/m2] */
+    double bundle_power; /* W; 0 until the first plan */
+    fibrad_furnace_physics physics;
+    uint64_t origin, planned; /* bundles before this plan, and in it */
+    double *traced;           /* cell: E carried by all plans up to this one [W/m2] */
+    double *power;            /* source: what this plan carries [W] */
+    uint64_t *first;          /* [sources + 1]: first bundle of each source */
+};
+
+/* Weights are whole multiples of bundle_power / FIBRAD_TALLY_UNIT: 2^32 crossings of one face fit into 63 bits. */
+#define FIBRAD_TALLY_UNIT 0x1p30
+
+/* F0, F1 and F2 of a face lie together, since a bundle adds to all of them: one cache line instead of three. */
+typedef struct fibrad_moments {
+    int64_t f[3];
+} fibrad_moments;
+
+struct fibrad_furnace_tally {
+    fibrad_moments *moment[3][2]; /* faces of axis, hemisphere */
+    int64_t *path;                /* cell: weight times length in diagonals of a cell */
+    int64_t *absorbed;            /* patch */
+    int64_t *counts;              /* all of them in one piece, for sums */
+    size_t length;                /* of counts */
+};
+
+static inline double fibrad_cell_volume(const fibrad_furnace *f) { return f->step[0] * f->step[1] * f->step[2]; }
+
+/* Area of a face across axis a. */
+static inline double fibrad_face_area(const fibrad_furnace *f, int a) {
+    return f->step[(a + 1) % 3] * f->step[(a + 2) % 3];
+}
+
+static inline double fibrad_cell_diagonal(const fibrad_furnace *f) {
+    return fibrad_sqrt(f->step[0] * f->step[0] + f->step[1] * f->step[1] + f->step[2] * f->step[2]);
+}
+
+/* Emission and scattering into a hemisphere, over pi [W/m3]. */
+static inline double fibrad_line_source(const fibrad_furnace *f, double e, double six_flux,
+                                        fibrad_furnace_scatter scatter) {
+    double ka = f->config.absorption, ks = f->config.scattering;
+    return ka * e + ks * (scatter == FIBRAD_SCATTER_EXACT ? e - f->config.source / (4 * ka) : six_flux / 6);
+}
+
+/* The weight of the flux that enters a cell in the rule for its extinction: half of the optical thickness, as the
+ * trapezoidal rule says, but never so much that the flux that leaves could be negative. */
+static inline double fibrad_line_entry(double thickness, double theta_in) {
+    return fibrad_min(thickness / 2, theta_in);
+}
+
+#endif

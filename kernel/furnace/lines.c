@@ -1,0 +1,127 @@
+/* lines.c - the heat-flux equations, solved along lines of cells. SPDX-License-Identifier: MIT
+ *
+ * Across a cell of thickness d the equation of one hemisphere, d(Theta q)/dx + C = J - beta q with C = chi q, is taken
+ * by the trapezoidal rule, so that q_out is affine in q_in. So then is the flux at one end of a line in the flux at the
+ * other, and with the two walls, where q leaving = eps E + (1 - eps) q arriving, there are two equations for the two
+ * fluxes that start. E of all cells is then corrected at once by the heat that each gives off too little or too much,
+ * over the change of that heat with its own E, fluxes entering it being held. */
+#include "furnace/furnace.h"
+
+/* Coefficients of one solve; they do not change from sweep to sweep. */
+static void prepare(fibrad_furnace *f, fibrad_furnace_scatter scatter) {
+    const fibrad_furnace_config *c = &f->config;
+    double beta = c->absorption + c->scattering;
+    double own = scatter == FIBRAD_SCATTER_EXACT ? beta : c->absorption; /* dJ/dE */
+    for (size_t k = 0; k < f->cells; k++) f->response[k] = 0;
+    for (int a = 0; a < 3; a++) {
+        size_t stride = f->face_stride[a][a], block = stride * c->cells[a];
+        double d = f->step[a];
+        for (int g = 0; g < 2; g++) {
+            const double *theta = f->at.theta[a][g];
+            for (size_t k = 0; k < f->cells; k++) {
+                size_t low = k + k / block * stride;
+                double in = theta[g ? low + stride : low], out = theta[g ? low : low + stride];
+                double entry = fibrad_line_entry(beta * d, in), side = f->at.transverse[a][g][k] * d / 2;
+                double sum = fibrad_max(out + beta * d - entry + side, 0.01); /* less only by noise */
+                f->gain[a][g][k] = (in - entry - side) / sum;
+                f->feed[a][g][k] = d / sum;
+                f->response[k] += own / sum;
+            }
+        }
+    }
+    for (size_t k = 0; k < f->cells; k++) f->response[k] = 1 / f->response[k];
+}
+
+/* Fluxes of the line along axis a that begins at `cell` and `face`, from the sources J of the cells. */
+static void solve_line(fibrad_furnace *f, int a, size_t cell, size_t face, const double *source) {
+    size_t n = f->config.cells[a], stride = f->cell_stride[a];
+    const double *gain_up = f->gain[a][0] + cell, *feed_up = f->feed[a][0] + cell;
+    const double *gain_down = f->gain[a][1] + cell, *feed_down = f->feed[a][1] + cell;
+    double *up = f->at.flux[a][0] + face, *down = f->at.flux[a][1] + face;
+    source += cell;
+
+    double up_gain = 1, up_rest = 0, down_gain = 1, down_rest = 0;
+    for (size_t i = 0, k = 0; i < n; i++, k += stride) {
+        up_rest = gain_up[k] * up_rest + feed_up[k] * source[k];
+        up_gain *= gain_up[k];
+        down_rest += down_gain * feed_down[k] * source[k]; /* the last cell first: sum of feeds times gains below */
+        down_gain *= gain_down[k];
+    }
+    double eps0 = f->config.wall_emissivity[2 * a], eps1 = f->config.wall_emissivity[2 * a + 1];
+    double own0 = eps0 * f->wall_e[2 * a], own1 = eps1 * f->wall_e[2 * a + 1];
+    double start = (own0 + (1 - eps0) * (down_gain * (own1 + (1 - eps1) * up_rest) + down_rest)) /
+                   (1 - (1 - eps0) * (1 - eps1) * up_gain * down_gain);
+
+    up[0] = start;
+    for (size_t i = 0, k = 0; i < n; i++, k += stride) up[k + stride] = gain_up[k] * up[k] + feed_up[k] * source[k];
+    down[n * stride] = own1 + (1 - eps1) * up[n * stride];
+    for (size_t i = n, k = n * stride; i > 0; i--, k -= stride)
+        down[k - stride] = gain_down[k - stride] * down[k] + feed_down[k - stride] * source[k - stride];
+}
+
+static void set_sums(fibrad_furnace *f) {
+    fibrad_zero(f->at.six_flux, f->cells * sizeof(double));
+    fibrad_zero(f->at.divergence, f->cells * sizeof(double));
+    for (int a = 0; a < 3; a++) {
+        size_t stride = f->face_stride[a][a], block = stride * f->config.cells[a];
+        const double *up = f->at.flux[a][0], *down = f->at.flux[a][1];
+        double per_length = 1 / f->step[a];
+        for (size_t k = 0; k < f->cells; k++) {
+            size_t low = k + k / block * stride, high = low + stride;
+            f->at.six_flux[k] += (up[low] + up[high] + down[low] + down[high]) / 2;
+            f->at.divergence[k] += ((up[high] - down[high]) - (up[low] - down[low])) * per_length;
+        }
+    }
+}
+
+static void set_walls(fibrad_furnace *f) {
+    for (int w = 0; w < 6; w++) {
+        int a = w / 2;
+        const double *out = f->at.flux[a][w % 2], *in = f->at.flux[a][1 - w % 2];
+        size_t stride = f->face_stride[a][a], last = w % 2 ? stride * f->config.cells[a] : 0;
+        double sum = 0;
+        for (size_t p = 0; p < f->patches[a]; p++) {
+            size_t face = p % stride + p / stride * stride * (f->config.cells[a] + 1) + last;
+            f->at.wall[w][p] = out[face] - in[face];
+            sum += f->at.wall[w][p];
+        }
+        f->at.power[w] = sum * fibrad_face_area(f, a);
+    }
+}
+
+int fibrad_furnace_balance(fibrad_furnace *furnace) {
+    if (furnace == NULL) return FIBRAD_E_ARGUMENT;
+    set_sums(furnace);
+    set_walls(furnace);
+    return FIBRAD_OK;
+}
+
+int fibrad_furnace_solve(fibrad_furnace *furnace, fibrad_furnace_scatter scatter, double tolerance, uint32_t sweeps_max,
+                         fibrad_furnace_report *report) {
+    fibrad_furnace *f = furnace;
+    if (f == NULL || report == NULL || !(tolerance > 0)) return FIBRAD_E_ARGUMENT;
+    if (scatter != FIBRAD_SCATTER_SIX_FLUX && scatter != FIBRAD_SCATTER_EXACT) return FIBRAD_E_ARGUMENT;
+    prepare(f, scatter);
+    *report = (fibrad_furnace_report){0, DBL_MAX};
+    double *source = f->at.divergence; /* J lives there during the first half of each sweep */
+    while (report->sweeps < sweeps_max && !(report->change <= tolerance)) {
+        for (size_t k = 0; k < f->cells; k++) source[k] = fibrad_line_source(f, f->at.e[k], f->at.six_flux[k], scatter);
+        for (int a = 0; a < 3; a++) {
+            size_t stride = f->cell_stride[a], n = f->config.cells[a];
+            for (size_t line = 0; line < f->patches[a]; line++) {
+                size_t low = line % stride, high = line / stride;
+                solve_line(f, a, low + high * stride * n, low + high * stride * (n + 1), source);
+            }
+        }
+        set_sums(f);
+        report->change = 0;
+        for (size_t k = 0; k < f->cells; k++) {
+            double change = (f->config.source - f->at.divergence[k]) * f->response[k];
+            f->at.e[k] += change;
+            report->change = fibrad_max(report->change, fibrad_abs(change));
+        }
+        report->sweeps++;
+    }
+    set_walls(f);
+    return FIBRAD_OK;
+}

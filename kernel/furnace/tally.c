@@ -1,0 +1,153 @@
+/* tally.c - counts of bundles, and what follows from them. SPDX-License-Identifier: MIT */
+#include "furnace/furnace.h"
+
+#include "base/arena.h"
+
+/* The one layout of fibrad_furnace_tally_size and _init. */
+static fibrad_furnace_tally *lay_out(fibrad_arena *arena, const fibrad_furnace *f) {
+    fibrad_furnace_tally *tally = fibrad_arena_take(arena, 1, sizeof *tally);
+    fibrad_furnace_tally count = {0}, *t = tally != NULL ? tally : &count;
+    size_t head = arena->used;
+    for (int a = 0; a < 3; a++) {
+        for (int g = 0; g < 2; g++) t->moment[a][g] = fibrad_arena_take(arena, f->faces[a], sizeof *t->moment[a][g]);
+    }
+    t->path = fibrad_arena_take(arena, f->cells, sizeof *t->path);
+    t->absorbed = fibrad_arena_take(arena, f->sources - f->cells, sizeof *t->absorbed);
+    t->counts = (int64_t *)(void *)t->moment[0][0];
+    t->length = (arena->used - head) / sizeof *t->counts;
+    return tally;
+}
+
+size_t fibrad_furnace_tally_size(const fibrad_furnace *furnace) {
+    if (furnace == NULL) return 0;
+    fibrad_arena arena = {0};
+    lay_out(&arena, furnace);
+    return fibrad_arena_total(&arena);
+}
+
+int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t size, const fibrad_furnace *furnace) {
+    if (tally == NULL) return FIBRAD_E_ARGUMENT;
+    fibrad_arena arena = {0};
+    int status = fibrad_arena_open(&arena, memory, size, fibrad_furnace_tally_size(furnace));
+    if (status != FIBRAD_OK) return status;
+    *tally = lay_out(&arena, furnace);
+    fibrad_zero((*tally)->counts, (*tally)->length * sizeof *(*tally)->counts);
+    return FIBRAD_OK;
+}
+
+void fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from) {
+    for (size_t k = 0; k < to->length; k++) to->counts[k] += from->counts[k];
+}
+
+/* Where a symmetry takes place i of n along axis a: places are cells, or faces, of which there is one more. */
+static size_t image(const fibrad_symmetry *s, int a, size_t i, size_t n) { return s->flip[a] ? n - 1 - i : i; }
+
+/* Mean of moment m over the images of face i[] of axis a, hemisphere g, as power per area [W/m2]. */
+static double mean_moment(const fibrad_furnace *f, const fibrad_furnace_tally *t, int a, int g, int m,
+                          const size_t i[3]) {
+    int64_t sum = 0;
+    for (uint32_t k = 0; k < f->symmetries; k++) {
+        const fibrad_symmetry *s = &f->symmetry[k];
+        const size_t *stride = f->face_stride[s->axis[a]];
+        size_t face = 0;
+        for (int b = 0; b < 3; b++)
+            face += image(s, b, i[b], f->config.cells[b] + (a == b ? 1 : 0)) * stride[s->axis[b]];
+        sum += t->moment[s->axis[a]][g ^ s->flip[a]][face].f[m];
+    }
+    return (double)sum / f->symmetries * (f->bundle_power / FIBRAD_TALLY_UNIT) / fibrad_face_area(f, a);
+}
+
+/* Theta and flux of all faces of axis a, hemisphere g. The reference E is isotropic: it adds its own moments. */
+static void set_theta(fibrad_furnace *f, const fibrad_furnace_tally *t, int a, int g,
+                      fibrad_furnace_estimator estimator) {
+    static const double isotropic[3] = {1, 2.0 / 3, 0.5};
+    size_t n[3], i[3], face = 0;
+    for (int b = 0; b < 3; b++) n[b] = f->config.cells[b] + (a == b ? 1 : 0);
+    for (i[2] = 0; i[2] < n[2]; i[2]++) {
+        for (i[1] = 0; i[1] < n[1]; i[1]++) {
+            for (i[0] = 0; i[0] < n[0]; i[0]++, face++) {
+                double moment[3];
+                for (int m = 0; m < 3; m++) moment[m] = mean_moment(f, t, a, g, m, i) + isotropic[m] * f->reference;
+                f->at.flux[a][g][face] = moment[0];
+                double above = moment[estimator == FIBRAD_THETA_PAPER ? 2 : 1];
+                double below = moment[estimator == FIBRAD_THETA_PAPER ? 1 : 0];
+                if (above > 0 && below > 0) f->at.theta[a][g][face] = fibrad_min(above / below, 1);
+            }
+        }
+    }
+}
+
+/* The transverse term of axis a, hemisphere g: what the equation of the hemisphere leaves over in each cell when the
+ * fluxes are those of the bundles and E is what they carried. With it the heat-flux equations return just these fluxes.
+ */
+static void set_transverse(fibrad_furnace *f, int a, int g, fibrad_furnace_scatter scatter) {
+    size_t stride = f->face_stride[a][a], block = stride * f->config.cells[a];
+    const double *theta = f->at.theta[a][g], *flux = f->at.flux[a][g];
+    double d = f->step[a], thickness = (f->config.absorption + f->config.scattering) * d;
+    for (size_t k = 0; k < f->cells; k++) {
+        size_t low = k + k / block * stride, in = g ? low + stride : low, out = g ? low : low + stride;
+        double entry = fibrad_line_entry(thickness, theta[in]);
+        double rest = fibrad_line_source(f, f->traced[k], f->at.six_flux[k], scatter) * d - entry * flux[in] -
+                      (thickness - entry) * flux[out] - (theta[out] * flux[out] - theta[in] * flux[in]);
+        double sum = flux[in] + flux[out];
+        f->at.transverse[a][g][k] = sum > 0 ? 2 * rest / (sum * d) : 0;
+    }
+}
+
+int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally *tally,
+                            fibrad_furnace_estimator estimator, int transverse, fibrad_furnace_scatter scatter) {
+    fibrad_furnace *f = furnace;
+    if (f == NULL || tally == NULL) return FIBRAD_E_ARGUMENT;
+    if (estimator != FIBRAD_THETA_DEFINITION && (estimator != FIBRAD_THETA_PAPER || transverse))
+        return FIBRAD_E_ARGUMENT;
+    if (scatter != FIBRAD_SCATTER_SIX_FLUX && scatter != FIBRAD_SCATTER_EXACT) return FIBRAD_E_ARGUMENT;
+    for (int a = 0; a < 3; a++) {
+        for (int g = 0; g < 2; g++) set_theta(f, tally, a, g, estimator);
+    }
+    fibrad_furnace_balance(f);
+    for (int a = 0; a < 3; a++) {
+        for (int g = 0; g < 2; g++) {
+            if (transverse)
+                set_transverse(f, a, g, scatter);
+            else
+                fibrad_zero(f->at.transverse[a][g], f->cells * sizeof(double));
+        }
+    }
+    return FIBRAD_OK;
+}
+
+int fibrad_furnace_equilibrium(fibrad_furnace *furnace, const fibrad_furnace_tally *tally) {
+    fibrad_furnace *f = furnace;
+    if (f == NULL || tally == NULL || f->physics != FIBRAD_FURNACE_EQUILIBRIUM) return FIBRAD_E_ARGUMENT;
+    const uint32_t *n = f->config.cells;
+    double unit = f->bundle_power / FIBRAD_TALLY_UNIT;
+    double own = f->config.source / (4 * f->config.absorption);
+    double per_path = unit * fibrad_cell_diagonal(f) / (4 * fibrad_cell_volume(f)) / f->symmetries;
+    size_t cell = 0, i[3];
+    for (i[2] = 0; i[2] < n[2]; i[2]++) {
+        for (i[1] = 0; i[1] < n[1]; i[1]++) {
+            for (i[0] = 0; i[0] < n[0]; i[0]++, cell++) {
+                int64_t sum = 0;
+                for (uint32_t k = 0; k < f->symmetries; k++) {
+                    const fibrad_symmetry *s = &f->symmetry[k];
+                    size_t to = 0;
+                    for (int b = 0; b < 3; b++) to += image(s, b, i[b], n[b]) * f->cell_stride[s->axis[b]];
+                    sum += tally->path[to];
+                }
+                f->at.e[cell] = f->reference + own + (double)sum * per_path;
+                f->at.divergence[cell] = f->config.source;
+            }
+        }
+    }
+    for (int w = 0; w < 6; w++) {
+        const int64_t *absorbed = tally->absorbed + (f->wall_source[w] - f->cells);
+        double area = fibrad_face_area(f, w / 2), emitted = f->power[f->wall_source[w]];
+        f->at.power[w] = 0;
+        for (size_t p = 0; p < f->patches[w / 2]; p++) {
+            double net = emitted - (double)absorbed[p] * unit;
+            f->at.wall[w][p] = net / area;
+            f->at.power[w] += net;
+        }
+    }
+    return FIBRAD_OK;
+}

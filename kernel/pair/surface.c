@@ -1,0 +1,122 @@
+/* surface.c - view factors by tensor-product Fibonacci integration. SPDX-License-Identifier: MIT */
+#include "pair/surface.h"
+#include "base/arena.h"
+
+#define ALL_FLAGS                                                                                                      \
+    (FIBRAD_SURFACE_NO_CORRECTION | FIBRAD_SURFACE_NO_HORIZON | FIBRAD_SURFACE_NO_REGION | FIBRAD_SURFACE_NO_EXACT |   \
+     FIBRAD_SURFACE_NO_HIDDEN)
+
+fibrad_surface_lanes fibrad_surface_lanes_of(int isa) {
+    switch (isa) {
+#ifdef FIBRAD_WITH_AVX512
+    case FIBRAD_ISA_AVX512:
+        return (fibrad_surface_lanes){fibrad_surface_filter_avx512, fibrad_surface_sum_avx512};
+#endif
+#ifdef FIBRAD_WITH_AVX2
+    case FIBRAD_ISA_AVX2:
+        return (fibrad_surface_lanes){fibrad_surface_filter_avx2, fibrad_surface_sum_avx2};
+#endif
+#ifdef FIBRAD_WITH_SSE2
+    case FIBRAD_ISA_SSE2:
+        return (fibrad_surface_lanes){fibrad_surface_filter_sse2, fibrad_surface_sum_sse2};
+#endif
+    case FIBRAD_ISA_SCALAR:
+        return (fibrad_surface_lanes){fibrad_surface_filter_scalar, fibrad_surface_sum_scalar};
+    default:
+        return (fibrad_surface_lanes){NULL, NULL};
+    }
+}
+
+int fibrad_surface_nodes_of(const fibrad_surface_rule *rule, fibrad_surface_nodes *nodes) {
+    if ((rule->flags & ~(uint32_t)ALL_FLAGS) != 0) return FIBRAD_E_ARGUMENT;
+    return fibrad_surface_nodes_get(rule->nodes == 0 ? 55 : rule->nodes, nodes);
+}
+
+int fibrad_surface_factor(fibrad_surface_task *task, fibrad_surface_lanes lanes, double r1, double r2, double gap,
+                          const fibrad_surface_frame *frame, const fibrad_obstacles *all, uint32_t self, double *f12,
+                          fibrad_surface_facts *facts) {
+    double exact;
+    const int status = fibrad_pair_exact(r1, r2, gap, &exact);
+    if (status != FIBRAD_OK) return status;
+    const bool corrected = (task->flags & FIBRAD_SURFACE_NO_CORRECTION) == 0;
+    task->r2 = r2 / r1;
+    task->d = 1 + task->r2 + fibrad_max(0, gap) / r1;
+    *facts = (fibrad_surface_facts){0};
+    const bool hidden = lanes.filter(task, frame, all, self);
+    if (hidden && (task->flags & FIBRAD_SURFACE_NO_HIDDEN) == 0) {
+        *f12 = 0;
+        return FIBRAD_OK;
+    }
+    if (corrected && task->obstacles.n == 0 && (task->flags & FIBRAD_SURFACE_NO_EXACT) == 0) {
+        *f12 = exact;
+        return FIBRAD_OK;
+    }
+    fibrad_surface_sums sums;
+    lanes.sum(task, &sums);
+    const double n = task->nodes.n, unit = 2 * task->r2 / (n * n);
+    const double open = sums.open[0] + sums.open[1], seen = sums.seen[0] + sums.seen[1];
+    facts->unblocked = unit * open;
+    facts->blocked = unit * seen;
+    facts->rays = sums.rays;
+    facts->tests = sums.tests;
+    if (!corrected) {
+        *f12 = facts->blocked;
+        facts->error = unit * fibrad_abs(sums.seen[0] - sums.seen[1]);
+    } else if (sums.open[0] > 0 && sums.open[1] > 0) {
+        *f12 = seen == open ? exact : exact * (seen / open);
+        facts->error = 0.5 * exact * fibrad_abs(sums.seen[0] / sums.open[0] - sums.seen[1] / sums.open[1]);
+    } else { /* no nodes that face each other: radii too different for so few */
+        *f12 = exact;
+        facts->error = exact;
+    }
+    return FIBRAD_OK;
+}
+
+/* Three lists of n obstacles in `scratch`: those of the caller, those of the pair, those of a node. */
+static fibrad_obstacles list_of(double *scratch, uint32_t n, uint32_t which) {
+    const size_t padded = ((size_t)n + 7) / 8 * 8;
+    double *x = n == 0 ? NULL : scratch + 4 * padded * which;
+    if (n == 0) return (fibrad_obstacles){0};
+    return (fibrad_obstacles){x, x + padded, x + 2 * padded, x + 3 * padded, n};
+}
+
+int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *obstacles,
+                        const fibrad_surface_rule *given, double *scratch, double *f12, fibrad_surface_facts *facts) {
+    const fibrad_surface_rule rule = given == NULL ? (fibrad_surface_rule){0} : *given;
+    const uint32_t n = obstacles == NULL ? 0 : obstacles->n;
+    if (f12 == NULL || n > FIBRAD_SPHERES_MAX) return FIBRAD_E_ARGUMENT;
+    if (n > 0 && (scratch == NULL || obstacles->x == NULL || obstacles->y == NULL || obstacles->z == NULL ||
+                  obstacles->r == NULL))
+        return FIBRAD_E_ARGUMENT;
+    if (n > 0 && (uintptr_t)scratch % FIBRAD_ALIGNMENT != 0) return FIBRAD_E_ALIGNMENT;
+    for (uint32_t k = 0; k < n; k++)
+        if (!fibrad_finite(obstacles->x[k]) || !fibrad_finite(obstacles->y[k]) || !fibrad_finite(obstacles->z[k]) ||
+            !fibrad_finite(obstacles->r[k]) || !(obstacles->r[k] > 0))
+            return FIBRAD_E_ARGUMENT;
+    const fibrad_surface_lanes lanes =
+        fibrad_surface_lanes_of(rule.isa == FIBRAD_ISA_BEST ? (int)fibrad_isa_best() : rule.isa);
+    if (lanes.sum == NULL) return FIBRAD_E_ARGUMENT;
+    fibrad_surface_task task = {.flags = rule.flags};
+    const int status = fibrad_surface_nodes_of(&rule, &task.nodes);
+    if (status != FIBRAD_OK) return status;
+
+    const fibrad_obstacles all = list_of(scratch, n, 0);
+    task.obstacles = list_of(scratch, n, 1);
+    task.of_node = list_of(scratch, n, 2);
+    if (n > 0) fibrad_zero(scratch, FIBRAD_SURFACE_SCRATCH(n) * sizeof *scratch);
+    for (uint32_t k = 0; k < n; k++) {
+        all.x[k] = obstacles->x[k];
+        all.y[k] = obstacles->y[k];
+        all.z[k] = obstacles->z[k];
+        all.r[k] = obstacles->r[k];
+    }
+    const double scale = 1 / r1;
+    const fibrad_surface_frame frame = {{0}, {scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, scale};
+    fibrad_surface_facts found;
+    double factor;
+    const int failure = fibrad_surface_factor(&task, lanes, r1, r2, gap, &frame, &all, UINT32_MAX, &factor, &found);
+    if (failure != FIBRAD_OK) return failure;
+    *f12 = factor;
+    if (facts != NULL) *facts = found;
+    return FIBRAD_OK;
+}

@@ -1,0 +1,50 @@
+/* surface_lanes.h - the two loops of the surface method that run in lanes. SPDX-License-Identifier: MIT
+ *
+ * Pair frame: sphere 1 is the unit sphere at the origin (all lengths are in its radii), sphere 2 has radius r2 and
+ * centre (0, 0, d), d >= 1 + r2. */
+#ifndef FIBRAD_PAIR_SURFACE_LANES_H
+#define FIBRAD_PAIR_SURFACE_LANES_H
+
+#include "base/port.h"
+#include "fibrad.h"
+#include "sample/tables.h"
+
+/* Spheres in arrays on 64-byte boundaries, which can be read up to a multiple of 8. */
+typedef struct fibrad_obstacles {
+    double *x, *y, *z, *r;
+    uint32_t n;
+} fibrad_obstacles;
+
+/* The way into the pair frame: the centre of sphere 1, the rows of the rotation times 1/r1, and 1/r1. */
+typedef struct fibrad_surface_frame {
+    double origin[3], x[3], y[3], z[3], scale;
+} fibrad_surface_frame;
+
+/* One pair of spheres to be integrated. */
+typedef struct fibrad_surface_task {
+    fibrad_surface_nodes nodes;
+    double r2, d;
+    uint32_t flags;             /* fibrad_surface_flags */
+    fibrad_obstacles obstacles; /* in the pair frame, from the filter */
+    fibrad_obstacles of_node;   /* room for as many */
+} fibrad_surface_task;
+
+/* The sum of tau' tau' cos cos/e^2 over the pairs of nodes, first with sphere 2 as it is, then turned by pi. */
+typedef struct fibrad_surface_sums {
+    double open[2], seen[2]; /* without and with the obstacles */
+    uint64_t rays, tests;    /* rays between nodes that face each other; ray-sphere tests */
+} fibrad_surface_sums;
+
+/* Fills task->obstacles with what of `all` (except number `self`, which is one of the two spheres) reaches into
+ * the space between the two spheres; true if one of them hides all of sphere 2. */
+typedef bool fibrad_surface_filter(fibrad_surface_task *task, const fibrad_surface_frame *frame,
+                                   const fibrad_obstacles *all, uint32_t self);
+
+typedef void fibrad_surface_sum(const fibrad_surface_task *task, fibrad_surface_sums *sums);
+
+extern fibrad_surface_filter fibrad_surface_filter_scalar, fibrad_surface_filter_sse2, fibrad_surface_filter_avx2,
+    fibrad_surface_filter_avx512;
+extern fibrad_surface_sum fibrad_surface_sum_scalar, fibrad_surface_sum_sse2, fibrad_surface_sum_avx2,
+    fibrad_surface_sum_avx512;
+
+#endif

@@ -1,0 +1,55 @@
+/* direction.c - directions of the spherical Fibonacci set. SPDX-License-Identifier: MIT */
+#include "sample/direction.h"
+
+typedef struct sum {
+    double value, rest;
+} sum;
+
+/* a + b = value + rest exactly (Knuth). */
+static sum two_sum(double a, double b) {
+    sum s = {a + b, 0};
+    double part = s.value - a;
+    s.rest = (a - (s.value - part)) + (b - part);
+    return s;
+}
+
+/* Splits x into halves of 26 bits whose products are exact (Veltkamp). */
+static sum halves(double x) {
+    double scaled = 0x8000001p0 * x;
+    double high = scaled - (scaled - x);
+    return (sum){high, x - high};
+}
+
+/* a b = value + rest exactly (Dekker). */
+static sum two_product(double a, double b) {
+    sum p = {a * b, 0}, x = halves(a), y = halves(b);
+    p.rest = ((x.value * y.value - p.value) + x.value * y.rest + x.rest * y.value) + x.rest * y.rest;
+    return p;
+}
+
+/* a b + c d for numbers of two parts, rounded once but for about one case in 2^40. */
+static double product_sum(sum a, sum b, sum c, sum d) {
+    sum ab = two_product(a.value, b.value), cd = two_product(c.value, d.value);
+    sum total = two_sum(ab.value, cd.value);
+    double rest = (a.value * b.rest + a.rest * b.value) + (c.value * d.rest + c.rest * d.value);
+    return total.value + (total.rest + (ab.rest + cd.rest + rest));
+}
+
+void fibrad_azimuth_sum(uint32_t k, double *cos, double *sin) {
+    const fibrad_long_angle *far = &fibrad_table_far[k / FIBRAD_TABLE_STRIDE];
+    const fibrad_long_angle *near = &fibrad_table_near[k % FIBRAD_TABLE_STRIDE];
+    sum far_cos = {far->cos, far->cos_rest}, far_sin = {far->sin, far->sin_rest};
+    sum near_cos = {near->cos, near->cos_rest}, near_sin = {near->sin, near->sin_rest};
+    sum minus_sin = {-near->sin, -near->sin_rest};
+    *cos = product_sum(far_cos, near_cos, far_sin, minus_sin);
+    *sin = product_sum(far_sin, near_cos, far_cos, near_sin);
+}
+
+int fibrad_direction(uint32_t k, uint32_t n, double direction[3]) {
+    if (direction == NULL || n < FIBRAD_DIRECTIONS_MIN || n > FIBRAD_DIRECTIONS_MAX || k >= n) return FIBRAD_E_ARGUMENT;
+    fibrad_polar p = fibrad_direction_polar(k, n);
+    direction[0] = p.ring * p.cos;
+    direction[1] = p.ring * p.sin;
+    direction[2] = p.z;
+    return FIBRAD_OK;
+}

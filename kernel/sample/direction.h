@@ -1,0 +1,40 @@
+/* direction.h - directions of the spherical Fibonacci set, for the kernel's loops. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_SAMPLE_DIRECTION_H
+#define FIBRAD_SAMPLE_DIRECTION_H
+
+#include "sample/tables.h"
+
+/* Cosine and sine of k golden angles by angle addition, k < FIBRAD_DIRECTIONS_MAX; the very bits of the table.
+ * Cost: about 60 operations. */
+void fibrad_azimuth_sum(uint32_t k, double *cos, double *sin);
+
+/* Cosine and sine of k golden angles, k < FIBRAD_DIRECTIONS_MAX, each the true value rounded once. */
+static inline void fibrad_azimuth(uint32_t k, double *cos, double *sin) {
+#if FIBRAD_TABLE_AZIMUTHS > 0
+    if (k < FIBRAD_TABLE_AZIMUTHS) {
+        *cos = fibrad_table_azimuth[k][0];
+        *sin = fibrad_table_azimuth[k][1];
+        return;
+    }
+#endif
+    fibrad_azimuth_sum(k, cos, sin);
+}
+
+/* A direction in cylindrical coordinates: (ring cos, ring sin, z). Then (-sin, cos, 0) and
+ * (-z cos, -z sin, ring) complete a right-handed frame. */
+typedef struct fibrad_polar {
+    double z, ring, cos, sin;
+} fibrad_polar;
+
+/* Direction k of n as fibrad_direction has it, arguments unchecked. z is rounded once; ring,
+ * sqrt(1 - z^2), free of cancellation: (2k + 1)(2n - 2k - 1) and n^2 are exact. */
+static inline fibrad_polar fibrad_direction_polar(uint32_t k, uint32_t n) {
+    uint64_t down = 2 * (uint64_t)k + 1, up = 2 * (uint64_t)n - down;
+    fibrad_polar p;
+    p.z = ((double)n - (double)down) / (double)n;
+    p.ring = fibrad_sqrt((double)(down * up) / ((double)n * (double)n));
+    fibrad_azimuth(k, &p.cos, &p.sin);
+    return p;
+}
+
+#endif

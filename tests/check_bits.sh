@@ -1,0 +1,81 @@
+#!/bin/sh
+# check_bits.sh [all|pin|VARIANT...] - the kernel's results have their pinned bits for every instruction set, compiler,
+# optimisation level, processor and number of threads. SPDX-License-Identifier: MIT
+#
+# The bits of tests/golden/bits.txt are those of tests/bits/bits.c; matrix.sha256 is that of a whole bed's file. After a
+# deliberate change of the results: make golden, which is check_bits.sh pin. A variant is COMPILER:LEVEL; without
+# arguments only that of CC at -O2, as all of them take minutes.
+set -u
+: "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${HOSTCC:=cc}"
+faults=0
+
+# variant NAME COMPILER LEVEL RUN FLAGS: builds the kernel and the hashing program, and compares what it prints
+variant() {
+    name=$1 compiler=$2 level=$3 run=$4 flags=$5
+    if ! command -v "$compiler" >/dev/null || { test -n "$run" && ! command -v "$run" >/dev/null; }; then
+        echo "SKIP bits of $name: no $compiler${run:+ or no $run} on this machine"
+        return
+    fi
+    folder=$BUILD/bits/$name
+    # shellcheck disable=SC2086  # flags is a list
+    if ! { $MAKE -s BUILD="$folder" CC="$compiler" HOSTCC="$HOSTCC" CFLAGS="$level" lib &&
+        "$compiler" -std=c11 "$level" -ffp-contract=off -Ikernel $flags tests/bits/bits.c "$folder/libfibrad.a" -lm \
+            -o "$folder/bits"; } >"$BUILD/bits/log" 2>&1; then
+        echo "$name: does not build:"
+        tail -n 5 "$BUILD/bits/log"
+        faults=1
+        return
+    fi
+    test -z "$run" && isas="scalar sse2 avx2 avx512" || isas=scalar
+    for isa in $isas; do
+        # shellcheck disable=SC2086  # run may be empty
+        $run "$folder/bits" $isa >"$folder/bits.txt"
+        status=$?
+        if test $status = 77; then
+            echo "SKIP bits of $name, $isa: not on this machine"
+        elif test $status != 0; then
+            echo "$name, $isa: exit status $status"
+            faults=1
+        elif ! cmp -s tests/golden/bits.txt "$folder/bits.txt"; then
+            echo "$name, $isa: other bits (pinned <, found >):"
+            diff tests/golden/bits.txt "$folder/bits.txt" | head -n 5
+            faults=1
+        else
+            echo "$name, $isa: the pinned bits"
+        fi
+    done
+}
+
+matrix() { # THREADS
+    "$BUILD/fibrad" bed tests/data/poly2000.dump --directions 55 --threads "$1" -o "$BUILD/bits/F.mtx" \
+        >"$BUILD/bits/log" 2>&1 && sha256sum <"$BUILD/bits/F.mtx" | cut -d ' ' -f 1
+}
+
+mkdir -p "$BUILD/bits"
+if test "${1:-}" = pin; then # with the simplest build
+    $MAKE -s BUILD="$BUILD/bits/pin" CC="$HOSTCC" CFLAGS=-O0 ISAS=scalar lib &&
+        $HOSTCC -std=c11 -Ikernel tests/bits/bits.c "$BUILD/bits/pin/libfibrad.a" -o "$BUILD/bits/pin/bits" &&
+        "$BUILD/bits/pin/bits" scalar >tests/golden/bits.txt && matrix 1 >tests/golden/matrix.sha256
+    exit
+fi
+
+test $# -gt 0 || set -- "$CC:-O2"
+test "$1" != all || set -- gcc:-O0 gcc:-O2 gcc:-O3 clang:-O0 clang:-O2 clang:-O3 aarch64:-O2 arm:-O2
+for build; do
+    level=${build#*:}
+    case $build in
+    aarch64:*) variant "aarch64$level" aarch64-linux-gnu-gcc "$level" qemu-aarch64 -static ;;
+    arm:*) variant "arm$level" arm-linux-gnueabihf-gcc "$level" qemu-arm -static ;;
+    *) variant "${build%:*}$level" "${build%:*}" "$level" "" "" ;;
+    esac
+done
+for threads in 1 2 7; do
+    found=$(matrix $threads)
+    if test "$found" = "$(cat tests/golden/matrix.sha256)"; then
+        echo "$threads threads: the pinned matrix"
+    else
+        echo "$threads threads: another matrix, SHA-256 ${found:-none}"
+        faults=1
+    fi
+done
+exit $faults

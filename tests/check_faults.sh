@@ -1,0 +1,111 @@
+#!/bin/sh
+# check_faults.sh - the program when the machine fails it: disc full, folder gone, signals, no memory, killed. Each is
+# really done. Never a partial file under the name asked for; one message; the exit status of the manual.
+# SPDX-License-Identifier: MIT
+set -u
+: "${BUILD:=build}"
+fibrad=$(pwd)/$BUILD/fibrad
+bed=$(pwd)/tests/data/mono2000.dump
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
+faults=0
+
+# verdict WHAT STATUS-FOUND STATUS-WANTED MESSAGE: also no result may be there, nor anything left of it
+verdict() {
+    test "$2" = "$3" || complain "$1: exit status $2 instead of $3"
+    grep -q "^fibrad: .*$4" "$work/err" || complain "$1: no message with '$4': $(cat "$work/err")"
+    left=$(find "$work" -name 'F.*')
+    test -z "$left" || complain "$1: left behind: $left"
+    rm -f "$work"/F.*
+}
+
+complain() {
+    echo "$1"
+    faults=1
+}
+
+# until_open PATTERN: waits for the program to have opened its output
+until_open() { while test -z "$(find "$work" -name "$1" 2>/dev/null)"; do sleep 0.05; done; }
+
+# Signals in the midst of far more work than there is time for
+for pair in INT:130 TERM:143 HUP:129; do
+    "$fibrad" bed "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>"$work/err" &
+    until_open 'F.csv*'
+    kill -s "${pair%:*}" $!
+    wait $!
+    verdict "SIG${pair%:*}" $? "${pair#*:}" interrupted
+done
+
+# Killed outright: nothing under the name asked for; a temporary file may stay, the next run does not mind it
+"$fibrad" bed "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>&1 &
+until_open 'F.csv*'
+kill -s KILL $!
+wait $! 2>/dev/null
+test -e "$work/F.csv" && complain "SIGKILL: a partial file"
+"$fibrad" bed "$bed" --directions 8 -o "$work/F.csv" >/dev/null 2>"$work/err" || complain "after SIGKILL: $(cat "$work/err")"
+test -s "$work/F.csv" || complain "after SIGKILL: no file"
+
+# An older result stays as it is when the new one fails
+cp "$work/F.csv" "$work/old"
+(ulimit -f 64 && exec "$fibrad" bed "$bed" --directions 34 -o "$work/F.csv") >/dev/null 2>"$work/err"
+status=$?
+cmp -s "$work/old" "$work/F.csv" || complain "a failed run changed the older result"
+rm -f "$work"/F.*
+verdict "limit of file sizes" $status 4 "F.csv: cannot be written: File too large"
+
+# A reader of standard output that leaves: summary and help are short, so the pipe is closed before they come
+status=$({
+    (
+        sleep 0.2
+        "$fibrad" bed "$bed" --directions 8 2>"$work/err"
+        echo $? >&3
+    ) | true
+} 3>&1)
+verdict "SIGPIPE" "$status" 4 "standard output: Broken pipe"
+
+# A disc that is full, if one may be mounted
+mkdir "$work/disc"
+if mount -t tmpfs -o size=100k tmpfs "$work/disc" 2>/dev/null; then
+    for ending in csv mtx vtp; do
+        "$fibrad" bed "$bed" --directions 34 -o "$work/disc/F.$ending" >/dev/null 2>"$work/err"
+        verdict "disc full, .$ending" $? 4 "No space left on device"
+    done
+    "$fibrad" bed "$bed" --directions 8 --plot "$work/disc/F.svg" >/dev/null 2>"$work/err"
+    verdict "disc full, picture" $? 4 "gnuplot failed"
+    umount "$work/disc"
+else
+    echo "SKIP disc full: no right to mount one"
+fi
+
+# The folder of the output is gone when the file is to get its name
+mkdir "$work/gone"
+"$fibrad" bed "$bed" --directions 2000 -o "$work/gone/F.csv" >/dev/null 2>"$work/err" &
+until_open 'F.csv*'
+rm -rf "$work/gone"
+wait $!
+verdict "folder gone" $? 4 "F.csv: No such file"
+
+# Not enough memory, from too little to start with to nearly enough: a clean failure or a complete result
+"$fibrad" bed "$bed" --directions 21 --threads 1 -o "$work/F.csv" >/dev/null 2>&1
+mv "$work/F.csv" "$work/whole"
+refused=0
+for limit in 8000 9000 10000 10500 11000 11500 12000 12500 13000 13500 14000 15000 16000 20000; do
+    # shellcheck disable=SC3045  # dash and bash have it
+    (ulimit -v $limit && exec "$fibrad" bed "$bed" --directions 21 --threads 1 -o "$work/F.csv") >/dev/null 2>"$work/err"
+    status=$?
+    if test $status = 0; then
+        cmp -s "$work/whole" "$work/F.csv" || complain "memory limit $limit KiB: another result"
+        rm -f "$work/F.csv"
+    elif test $status = 127; then # the loader itself found no room
+        rm -f "$work"/F.*
+    else
+        refused=$((refused + 1))
+        verdict "memory limit $limit KiB" $status 5 "out of memory"
+    fi
+done
+test $refused -gt 0 || complain "no memory limit made the program run out of memory"
+echo "$refused of 14 memory limits made the program run out of memory"
+
+# Input that cannot be read
+"$fibrad" bed /proc/self/mem -o "$work/F.csv" >/dev/null 2>"$work/err"
+verdict "unreadable input" $? 4 "/proc/self/mem"
+exit $faults

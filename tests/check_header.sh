@@ -1,0 +1,17 @@
+#!/bin/sh
+# check_header.sh - fibrad.h stands alone in C99, C11, C++11 and C++17. SPDX-License-Identifier: MIT
+set -u
+status=0
+check() { # COMPILER LANGUAGE STANDARD
+    if command -v "$1" >/dev/null; then
+        printf '#include "fibrad.h"\nint main(void) { return fibrad_status_text(FIBRAD_OK) == 0; }\n' |
+            "$1" -x "$2" -std="$3" -pedantic-errors -Wall -Wextra -Werror -Ikernel -fsyntax-only - || status=1
+    else
+        echo "SKIP header in $3: no $1 on this machine"
+    fi
+}
+check "${CC:=cc}" c c99
+check "$CC" c c11
+check "${CXX:=c++}" c++ c++11
+check "$CXX" c++ c++17
+exit $status

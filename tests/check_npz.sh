@@ -1,0 +1,56 @@
+#!/bin/sh
+# check_npz.sh - a matrix as .npz: the same to the reader in host/examples, to Python's zipfile and to SciPy.
+# SPDX-License-Identifier: MIT
+set -eu
+: "${BUILD:=build}" "${CC:=cc}"
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+
+"$CC" -std=c11 -pedantic -Wall -Wextra -Werror host/examples/read_npz.c -o "$work/read_npz"
+printf 'x,y,z,r\n0,0,0,1\n9e9,0,0,1\n' >"$work/apart.csv"
+for bed in tests/data/mono2000.dump "$work/apart.csv"; do # the second has no entries
+    for ending in npz csv; do
+        "$BUILD/fibrad" bed "$bed" --directions 8 --cutoff 3 --threads 2 -o "$work/F.$ending" >"$work/summary" 2>&1
+    done
+    "$work/read_npz" "$work/F.npz" >"$work/read.csv"
+    cmp "$work/F.csv" "$work/read.csv"
+
+    if ! command -v python3 >/dev/null; then
+        echo "SKIP: no python3 to check the archive"
+        continue
+    fi
+    python3 - "$work/F.npz" <<'END'
+import struct, sys, zipfile
+archive = zipfile.ZipFile(sys.argv[1])
+assert archive.testzip() is None  # checksums
+arrays = {}
+for name in archive.namelist():
+    member = archive.read(name)
+    assert member[:8] == b'\x93NUMPY\1\0', name
+    length, = struct.unpack('<H', member[8:10])
+    assert (10 + length) % 64 == 0 and member[9 + length:10 + length] == b'\n', name
+    arrays[name] = eval(member[10:10 + length]), member[10 + length:]
+start = struct.unpack('<%dq' % arrays['indptr.npy'][0]['shape'], arrays['indptr.npy'][1])
+assert start[0] == 0 and arrays['data.npy'][0]['shape'] == arrays['indices.npy'][0]['shape'] == (start[-1],)
+assert struct.unpack('<2q', arrays['shape.npy'][1]) == (len(start) - 1, len(start) - 1)
+assert arrays['format.npy'] == ({'descr': '|S3', 'fortran_order': False, 'shape': ()}, b'csr')
+END
+    # Debian's own python3 may have SciPy where another in the path has not
+    scipy=
+    for python in python3 /usr/bin/python3; do
+        if "$python" -c 'import scipy.sparse' 2>/dev/null; then scipy=$python; fi
+    done
+    if test -z "$scipy"; then
+        echo "SKIP: no SciPy (Debian: python3-scipy)"
+        continue
+    fi
+    "$scipy" - "$work/F.npz" "$work/F.csv" <<'END'
+import csv, sys, scipy.sparse
+matrix = scipy.sparse.load_npz(sys.argv[1])
+assert matrix.format == 'csr' and matrix.has_sorted_indices
+entries = list(csv.DictReader(open(sys.argv[2])))
+matrix = matrix.tocoo()
+assert matrix.nnz == len(entries)
+for i, j, f, entry in zip(matrix.row, matrix.col, matrix.data, entries):
+    assert (i, j, f) == (int(entry['i']), int(entry['j']), float(entry['F']))
+END
+done

@@ -1,0 +1,38 @@
+#!/bin/sh
+# check_symbols.sh - libfibrad.a defines only fibrad_*, asks for nothing but copying and clearing of memory, and has no
+# variables and no constructors. SPDX-License-Identifier: MIT
+set -u
+library=${BUILD:=build}/libfibrad.a
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
+faults=0
+
+fault() { # MESSAGE LIST
+    test -z "$2" && return
+    echo "$library: $1:"
+    echo "$2" | sed 's/^/    /'
+    faults=1
+}
+
+nm -g --defined-only "$library" >"$work/nm" && nm -g --undefined-only "$library" >"$work/nmu" &&
+    size "$library" >"$work/size" || exit 1
+awk 'NF == 3 {print $3}' "$work/nm" | sort -u >"$work/defined"
+awk '$1 == "U" {print $2}' "$work/nmu" | sort -u >"$work/undefined"
+
+test -s "$work/defined" || fault "defines" nothing
+fault "symbols that do not begin with fibrad_" "$(grep -v '^fibrad_' "$work/defined")"
+
+# Compilers emit calls of these four even in freestanding code; the port header names the first two. Where there is no
+# instruction for square roots, kernel/base/port.h calls sqrt and sqrtf: name them in FIBRAD_PORT_SYMBOLS.
+allowed="memcpy memset memmove memcmp _GLOBAL_OFFSET_TABLE_ ${FIBRAD_PORT_SYMBOLS:-}"
+echo "$allowed" | tr -s ' ' '\n' | sort -u | sort -u - "$work/defined" >"$work/known"
+fault "symbols that the port header does not name" "$(comm -23 "$work/undefined" "$work/known")"
+
+fault "variables (data, bss)" "$(awk 'NR > 1 && $2 + $3 > 0 {print $6 ": " $2 + $3 " bytes"}' "$work/size")"
+
+# Every function of the public header is there.
+declared=$(sed -n 's/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1/p' kernel/fibrad.h | sort -u)
+fault "functions of fibrad.h that are missing" "$(echo "$declared" | comm -23 - "$work/defined")"
+
+test $faults -eq 0 && echo "$library: $(wc -l <"$work/defined") symbols, all fibrad_*; needs" \
+    "$(comm -23 "$work/undefined" "$work/defined" | tr '\n' ' ')"
+exit $faults

@@ -1,0 +1,35 @@
+#!/bin/sh
+# stack.sh OBJDUMP FOLDER - bytes of stack that the deepest chain of calls takes. SPDX-License-Identifier: MIT
+#
+# Frames come from the compiler (-fstack-usage), calls from the disassembly; the one call through a pointer,
+# fibrad_beam_row to a version of itself, is added by name. Fails on recursion and on frames without a bound.
+set -u
+find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $6}' >"$2/frames"
+{
+    cat "$2/frames"
+    "$1" -dr "$2/libfibrad.a" | awk '
+        /^[0-9a-f]+ <[^.].*>:$/ {gsub(/[<>:]/, "", $2); from = $2; sub(/\.(part|constprop|isra)\..*/, "", from)}
+        /R_ARM_(THM_)?(CALL|JUMP24)|R_RISCV_(CALL|JAL)/ {
+            to = $NF; sub(/[-+].*/, "", to); sub(/^\.text\./, "", to); sub(/\.(part|constprop|isra)\..*/, "", to)
+            if (to != from && to !~ /^\./) print "call", from, to}'
+    echo "call fibrad_beam_row fibrad_beam_row_scalar"
+} | awk '
+    $1 == "frame" {
+        name = $2; sub(/\.(part|constprop|isra)\..*/, "", name)
+        if ($3 > frame[name]) frame[name] = $3
+        if ($4 !~ /static/ && $4 !~ /bounded/) {print name " has a frame without a bound"; failed = 1}
+    }
+    $1 == "call" && !(($2, $3) in known) {known[$2, $3]; calls[$2] = calls[$2] " " $3}
+    function depth(name,   list, n, k, most, d) {
+        if (state[name] == 1) {print "recursion through " name; failed = 1; return 0}
+        if (state[name] == 2) return total[name]
+        state[name] = 1; most = 0; n = split(calls[name], list, " ")
+        for (k = 1; k <= n; k++) {d = depth(list[k]); if (d > most) most = d}
+        state[name] = 2
+        return total[name] = frame[name] + most
+    }
+    END {
+        for (name in frame) {d = depth(name); if (d > worst) {worst = d; at = name}}
+        if (!failed) print worst " in " at
+        exit failed
+    }'

@@ -1,0 +1,50 @@
+/* row.c - a user of the installed library in C99: a pair, and a row in static memory. SPDX-License-Identifier: MIT */
+#include <fibrad.h>
+
+#include <math.h>
+#include <stdio.h>
+
+enum { N = 7 };
+
+/* A sphere and six that touch it: nothing lies between it and them. */
+static const double x[N] = {0, 2, -2, 0, 0, 0, 0}, y[N] = {0, 0, 0, 2, -2, 0, 0}, z[N] = {0, 0, 0, 0, 0, 2, -2},
+                    r[N] = {1, 1, 1, 1, 1, 1, 1};
+
+static unsigned char scene_block[FIBRAD_SCENE_BYTES(N) + 64], work_block[FIBRAD_WORK_BYTES(64, 64, N) + 64];
+
+/* C99 cannot ask for an alignment. */
+static void *aligned(unsigned char *block) { return block + (64 - (uintptr_t)block % 64) % 64; }
+
+static int report(const char *call, int status) {
+    if (status != FIBRAD_OK) fprintf(stderr, "%s: %s\n", call, fibrad_status_text(status));
+    return status;
+}
+
+int main(void) {
+    fibrad_spheres spheres = {x, y, z, r, N};
+    fibrad_scene_config scene_config = {N, FIBRAD_ISA_BEST, {0, 0, 0}};
+    fibrad_work_config work_config = {64, 64, N};
+    fibrad_beam_rule rule = {233, 0, 0};
+    fibrad_scene *scene;
+    fibrad_work *work;
+    uint32_t col[N], k;
+    double f[N], pair, sum = 0;
+    fibrad_row row = {col, f, N, 0, 0, 0};
+
+    if (report("pair", fibrad_pair_exact(1, 1, 0, &pair)) ||
+        report("scene",
+               fibrad_scene_init(&scene, aligned(scene_block), FIBRAD_SCENE_BYTES(N), &scene_config, &spheres, NULL)) ||
+        report("work", fibrad_work_init(&work, aligned(work_block), FIBRAD_WORK_BYTES(64, 64, N), &work_config)) ||
+        report("row", fibrad_beam_row(scene, work, 0, &rule, &row)))
+        return 1;
+
+    printf("fibrad %s\n", fibrad_version());
+    for (k = 0; k < row.length; k++) {
+        printf("F 0 %u %.17g\n", (unsigned)col[k], f[k]);
+        if (fabs(f[k] - pair) > 1e-3) return 1;
+        sum += f[k];
+    }
+    printf("escaped %.17g\n", row.escaped);
+    if (row.length != 6 || fabs(sum + row.escaped - 1) > 1e-12) return 1;
+    return fabs(pair - 0.0755868184216124) > 1e-15;
+}

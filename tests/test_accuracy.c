@@ -1,0 +1,110 @@
+/* test_accuracy.c - beam rows against the adaptive reference. SPDX-License-Identifier: MIT */
+#include <stdio.h>
+
+#include "reference.h"
+#include "scenes.h"
+
+/* Euclidean error of row i by the beam method with exact areas. */
+static double error_of(const struct bed *bed, uint32_t i, uint32_t directions, double tolerance) {
+    double *f = calloc(bed->n, sizeof *f), escaped;
+    fibrad_spheres spheres = {bed->x, bed->y, bed->z, bed->r, bed->n};
+    struct reference_report report;
+    struct reference_rule rule = {tolerance, 2000000};
+    ck_assert_int_eq(reference_row(&spheres, i, &rule, f, &escaped, &report), REFERENCE_OK);
+
+    fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
+    fibrad_work *work = work_of(NULL);
+    fibrad_row row = row_of(bed->n);
+    ck_assert_int_eq(fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = directions}, &row), FIBRAD_OK);
+    double square = 0;
+    for (uint32_t j = 0; j < bed->n; j++) square += pow(row_factor(&row, j) - f[j], 2);
+    ck_assert_double_eq_tol(row.escaped, escaped, 3e-5);
+    row_free(&row);
+    free(scene);
+    free(work);
+    free(f);
+    return sqrt(square);
+}
+
+START_TEST(lattices) {
+    for (int kind = 0; kind < 3; kind++) {
+        struct bed bed = lattice("pif"[kind], 8);
+        double error = error_of(&bed, 0, 4181, 2e-6);
+        printf("lattice %c, %u spheres: %.2g\n", "pif"[kind], bed.n, error);
+        ck_assert_double_lt(error, 3e-5);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
+START_TEST(small_scenes) {
+    double worst = 0;
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        struct bed bed = packing(3 + (uint32_t)(seed % 6), .3, 1.2, .3, seed, false);
+        double error = error_of(&bed, 0, 4181, 1e-6);
+        worst = fmax(worst, error);
+        bed_free(&bed);
+    }
+    printf("3 to 8 spheres: %.2g\n", worst);
+    ck_assert_double_lt(worst, 3e-5);
+}
+END_TEST
+
+/* A pair with an obstacle that touches both, one that touches their common tangent cone from outside, one that touches
+ * it from inside, and one in the middle. */
+START_TEST(tangent_obstacles) {
+    double h = sqrt(3);
+    struct bed beds[] = {bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2, 1}, {h, 0, 1, 1}}),
+                         bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 1}, {1.5, 0, 2, .5}}),
+                         bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 1}, {.5, 0, 2, .5}}),
+                         bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 1}, {0, 0, 2, 1}}),
+                         bed_of(4, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, .5}, {.7, 0, 2, .7}, {-.3, 0, 2, .3}})};
+    for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
+        double error = error_of(&beds[b], 0, 4181, 1e-6);
+        printf("tangent obstacles %zu: %.2g\n", b, error);
+        ck_assert_double_lt(error, 3e-5);
+        bed_free(&beds[b]);
+    }
+}
+END_TEST
+
+/* The error falls as n^-1.5: eight-fold from n to 4 n, on the mean over rows. Truth: the same with many directions. */
+START_TEST(error_falls_as_it_should) {
+    struct bed bed = packing(300, .8, 1.2, .55, 5, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 2048});
+    double mean[3] = {0};
+    for (uint32_t i = 0; i < 10; i++) {
+        fibrad_row truth = row_of(bed.n), row = row_of(bed.n);
+        ck_assert_int_eq(fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = 30000}, &truth), FIBRAD_OK);
+        for (int k = 0; k < 3; k++) {
+            fibrad_beam_rule rule = {.directions = 100u << 2 * k};
+            ck_assert_int_eq(fibrad_beam_row(scene, work, i, &rule, &row), FIBRAD_OK);
+            mean[k] += row_distance(&row, &truth) / 10;
+        }
+        row_free(&truth);
+        row_free(&row);
+    }
+    printf("n = 100, 400, 1600: %.2g %.2g %.2g\n", mean[0], mean[1], mean[2]);
+    ck_assert_double_gt(mean[0] / mean[2], 35);
+    ck_assert_double_lt(mean[2], 1.2e-4);
+    free(scene);
+    free(work);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("accuracy");
+    TCase *tcase = tcase_create("accuracy");
+    tcase_add_test(tcase, lattices);
+    tcase_add_test(tcase, small_scenes);
+    tcase_add_test(tcase, tangent_obstacles);
+    tcase_add_test(tcase, error_falls_as_it_should);
+    suite_add_tcase(suite, tcase);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed != 0;
+}

@@ -1,0 +1,342 @@
+/* test_beam.c - beam rows against exact pairs, symmetries of the problem, and themselves under every setting that must
+ * not matter. SPDX-License-Identifier: MIT */
+#include <stdio.h>
+
+#include "scenes.h"
+
+static fibrad_row beam(const struct bed *bed, uint32_t i, fibrad_beam_rule rule, int isa) {
+    fibrad_scene *scene = scene_of(bed, isa);
+    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 512, .entries = bed->n});
+    fibrad_row row = row_of(bed->n);
+    ck_assert_int_eq(fibrad_beam_row(scene, work, i, &rule, &row), FIBRAD_OK);
+    free(scene);
+    free(work);
+    return row;
+}
+
+START_TEST(two_spheres_match_the_exact_pair) {
+    static const double cases[][3] = {{1, 1, 0},   {1, 1, .5}, {1, .3, 0}, {.3, 1, .1},
+                                      {1, 3, .01}, {1, 10, 0}, {1, 1, 4}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        const double *p = cases[c];
+        struct bed bed = bed_of(
+            2, (const double[][4]){{0, 0, 0, p[0]}, {.3 * (p[0] + p[1] + p[2]), 0, .4 * (p[0] + p[1] + p[2]), p[1]}});
+        bed.y[1] = sqrt(.75) * (p[0] + p[1] + p[2]);
+        double exact;
+        ck_assert_int_eq(fibrad_pair_exact(p[0], p[1], p[2], &exact), FIBRAD_OK);
+        fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 4181}, FIBRAD_ISA_BEST);
+        ck_assert_uint_eq(row.length, 1);
+        ck_assert_double_eq_tol(row.f[0], exact, 3e-5);
+        row_free(&row);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
+/* A sphere wholly behind another of the same size in line: hidden but for nothing at all, if touching or not. */
+START_TEST(hidden_sphere_is_not_seen) {
+    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 4, 3}, {0, 0, 9, 1}});
+    fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 1000}, FIBRAD_ISA_BEST);
+    ck_assert_uint_eq(row.length, 1);
+    ck_assert_uint_eq(row.col[0], 1);
+    row_free(&row);
+    row = beam(&bed, 2, (fibrad_beam_rule){.directions = 1000}, FIBRAD_ISA_BEST);
+    ck_assert_uint_eq(row.length, 1);
+    row_free(&row);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(raw_rows_close) {
+    struct bed beds[] = {packing(300, .8, 1.2, .55, 7, false), packing(300, .5, 2, .5, 8, true), lattice('p', 6),
+                         lattice('i', 6), lattice('f', 6)};
+    for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
+        for (uint32_t points = 0; points <= 256; points = points == 0 ? 64 : 2 * points) {
+            for (uint32_t i = 0; i < beds[b].n; i += 17) {
+                fibrad_beam_rule rule = {.directions = 144, .points = points};
+                fibrad_row row = beam(&beds[b], i, rule, FIBRAD_ISA_BEST);
+                for (uint32_t k = 0; k < row.length; k++) {
+                    ck_assert_double_gt(row.f[k], 0);
+                    ck_assert(k == 0 || row.col[k] > row.col[k - 1]);
+                }
+                if (points == 0) {
+                    ck_assert_double_eq_tol(row_sum(&row) + row.escaped, 1, 1e-12);
+                } else { /* every factor is a number of points */
+                    double total = 144.0 * points, count = row.escaped * total;
+                    for (uint32_t k = 0; k < row.length; k++) count += row.f[k] * total;
+                    ck_assert_double_eq_tol(count, total, 1e-7);
+                    ck_assert_double_eq_tol(row.f[0] * total, round(row.f[0] * total), 1e-9);
+                }
+                row_free(&row);
+            }
+        }
+        bed_free(&beds[b]);
+    }
+}
+END_TEST
+
+START_TEST(points_agree_with_areas) {
+    struct bed bed = packing(300, .8, 1.2, .55, 7, true);
+    double square = 0;
+    for (uint32_t i = 0; i < 20; i++) {
+        fibrad_row exact = beam(&bed, i, (fibrad_beam_rule){.directions = 2000}, FIBRAD_ISA_BEST);
+        fibrad_row points = beam(&bed, i, (fibrad_beam_rule){.directions = 2000, .points = 256}, FIBRAD_ISA_BEST);
+        square += pow(row_distance(&exact, &points), 2);
+        row_free(&exact);
+        row_free(&points);
+    }
+    ck_assert_double_lt(sqrt(square / 20), 5e-4);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(same_bits_in_every_instruction_set) {
+    struct bed bed = packing(300, .5, 1.5, .55, 3, true);
+    for (uint32_t points = 0; points <= 128; points += 128)
+        for (uint32_t i = 0; i < bed.n; i += 23) {
+            fibrad_beam_rule rule = {.directions = 100, .points = points};
+            fibrad_row scalar = beam(&bed, i, rule, FIBRAD_ISA_SCALAR);
+            for (int isa = FIBRAD_ISA_SSE2; isa <= (int)fibrad_isa_best(); isa++) {
+                fibrad_row row = beam(&bed, i, rule, isa);
+                ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isa));
+                row_free(&row);
+            }
+            row_free(&scalar);
+        }
+    for (int isa = FIBRAD_ISA_AVX512; isa > (int)fibrad_isa_best(); isa--) printf("SKIP %s\n", fibrad_isa_name(isa));
+    bed_free(&bed);
+}
+END_TEST
+
+/* Whether spheres are kept near or looked up along each direction. */
+START_TEST(near_capacity_is_a_matter_of_speed) {
+    struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false), lattice('p', 9)};
+    for (size_t b = 0; b < 3; b++) {
+        fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
+        fibrad_row rows[2] = {row_of(beds[b].n), row_of(beds[b].n)};
+        for (uint32_t i = 0; i < beds[b].n; i += 31) {
+            for (int which = 0; which < 2; which++) {
+                fibrad_work *work =
+                    work_of(&(fibrad_work_config){.near = which == 0 ? 1 : 8192, .discs = 512, .entries = beds[b].n});
+                ck_assert_int_eq(fibrad_beam_row(scene, work, i, NULL, &rows[which]), FIBRAD_OK);
+                free(work);
+            }
+            ck_assert(same_bits(&rows[0], &rows[1]));
+        }
+        row_free(&rows[0]);
+        row_free(&rows[1]);
+        free(scene);
+        bed_free(&beds[b]);
+    }
+}
+END_TEST
+
+START_TEST(scaling_by_powers_of_two_changes_no_bit) {
+    struct bed bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
+    fibrad_row row = beam(&bed, 11, (fibrad_beam_rule){.directions = 233, .cutoff = 9}, FIBRAD_ISA_BEST);
+    for (int k = -400; k <= 400; k += 100) {
+        for (uint32_t i = 0; i < bed.n; i++) {
+            scaled.x[i] = ldexp(bed.x[i], k), scaled.y[i] = ldexp(bed.y[i], k), scaled.z[i] = ldexp(bed.z[i], k);
+            scaled.r[i] = ldexp(bed.r[i], k);
+        }
+        for (int axis = 0; axis < 3; axis++) scaled.period[axis] = ldexp(bed.period[axis], k);
+        fibrad_row other =
+            beam(&scaled, 11, (fibrad_beam_rule){.directions = 233, .cutoff = ldexp(9, k)}, FIBRAD_ISA_BEST);
+        ck_assert(same_bits(&row, &other));
+        row_free(&other);
+    }
+    row_free(&row);
+    bed_free(&bed);
+    bed_free(&scaled);
+}
+END_TEST
+
+/* Rounding of the coordinates is all that a translation or a permutation changes. A rotation changes how the directions
+ * lie: two estimates of the same row, each within the rule's error. */
+START_TEST(moved_beds_have_the_same_rows) {
+    struct bed bed = packing(200, .8, 1.2, .5, 5, false), moved = packing(200, .8, 1.2, .5, 5, false);
+    fibrad_beam_rule rule = {.directions = 2000};
+    uint32_t last = bed.n - 1;
+    for (uint32_t i = 0; i <= last; i++)
+        moved.x[i] = bed.x[i] + 1000, moved.y[i] = bed.y[i] - 300, moved.z[i] = bed.z[i] + .7;
+    fibrad_row row = beam(&bed, 42, rule, FIBRAD_ISA_BEST), other = beam(&moved, 42, rule, FIBRAD_ISA_BEST);
+    ck_assert_double_lt(row_distance(&row, &other), 1e-11);
+    row_free(&other);
+
+    for (uint32_t i = 0; i <= last; i++) {
+        uint32_t to = last - i;
+        moved.x[to] = bed.x[i], moved.y[to] = bed.y[i], moved.z[to] = bed.z[i], moved.r[to] = bed.r[i];
+    }
+    other = beam(&moved, last - 42, rule, FIBRAD_ISA_BEST);
+    ck_assert_uint_eq(row.length, other.length);
+    for (uint32_t k = 0; k < row.length; k++)
+        ck_assert_double_eq_tol(row.f[k], row_factor(&other, last - row.col[k]), 1e-14);
+    row_free(&other);
+
+    double c = cos(.6), s = sin(.6);
+    for (uint32_t i = 0; i <= last; i++) {
+        double x = c * bed.x[i] - s * bed.y[i], y = s * bed.x[i] + c * bed.y[i];
+        moved.x[i] = x, moved.y[i] = c * y - s * bed.z[i], moved.z[i] = s * y + c * bed.z[i], moved.r[i] = bed.r[i];
+    }
+    other = beam(&moved, 42, rule, FIBRAD_ISA_BEST);
+    ck_assert_double_lt(row_distance(&row, &other), 3e-4);
+    row_free(&other);
+    row_free(&row);
+    bed_free(&bed);
+    bed_free(&moved);
+}
+END_TEST
+
+/* A periodic box is the box and its copies all around; images of one sphere share its entry. */
+START_TEST(periodic_images_are_copies) {
+    struct bed bed = packing(60, .8, 1.2, .5, 9, true), copies = packing(60, .8, 1.2, .5, 9, false);
+    double side = bed.period[0];
+    uint32_t n = bed.n;
+    for (int a = -3; a <= 3; a++)
+        for (int b = -3; b <= 3; b++)
+            for (int c = -3; c <= 3; c++)
+                for (uint32_t i = 0; i < n && (a != 0 || b != 0 || c != 0); i++)
+                    add_sphere(&copies, bed.x[i] + a * side, bed.y[i] + b * side, bed.z[i] + c * side, bed.r[i]);
+    fibrad_beam_rule rule = {.directions = 233, .cutoff = 2.5 * side};
+    for (uint32_t i = 0; i < n; i += 13) {
+        fibrad_row one = beam(&bed, i, rule, FIBRAD_ISA_BEST), all = beam(&copies, i, rule, FIBRAD_ISA_BEST);
+        double *sum = calloc(n, sizeof *sum);
+        for (uint32_t k = 0; k < all.length; k++) sum[all.col[k] % n] += all.f[k];
+        for (uint32_t j = 0; j < n; j++) ck_assert_double_eq_tol(row_factor(&one, j), sum[j], 1e-12);
+        ck_assert_double_eq_tol(one.escaped, all.escaped, 1e-12);
+        free(sum);
+        row_free(&one);
+        row_free(&all);
+    }
+    bed_free(&bed);
+    bed_free(&copies);
+}
+END_TEST
+
+/* A lone sphere in a small periodic box sees only itself. */
+START_TEST(sphere_sees_its_own_images) {
+    struct bed bed = bed_of(1, (const double[][4]){{.5, .5, .5, 1}});
+    for (int axis = 0; axis < 3; axis++) bed.period[axis] = 2;
+    fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 500}, FIBRAD_ISA_BEST);
+    ck_assert_uint_eq(row.length, 1);
+    ck_assert_double_eq_tol(row.f[0] + row.escaped, 1, 1e-12);
+    ck_assert_double_gt(row.f[0], .99);
+    row_free(&row);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(cutoff_takes_out_what_lies_beyond) {
+    struct bed bed = lattice('f', 8), within = lattice('f', 4);
+    fibrad_row cut = beam(&bed, 0, (fibrad_beam_rule){.cutoff = 4}, FIBRAD_ISA_BEST);
+    fibrad_row row = beam(&within, 0, (fibrad_beam_rule){0}, FIBRAD_ISA_BEST);
+    ck_assert_uint_eq(cut.length, row.length);
+    ck_assert_double_eq_tol(cut.escaped, row.escaped, 1e-14);
+    ck_assert_double_eq_tol(row_sum(&cut), row_sum(&row), 1e-14);
+    row_free(&cut);
+    row_free(&row);
+    bed_free(&bed);
+    bed_free(&within);
+}
+END_TEST
+
+/* Contacts that overlap a little differ little from contacts that do not. */
+START_TEST(overlap_changes_rows_continuously) {
+    double last = -1;
+    for (int step = -20; step <= 20; step++) {
+        double gap = step * 1e-4;
+        struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2 + gap, 1}, {0, 1.8, 1 + gap, 1}});
+        fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 987}, FIBRAD_ISA_BEST);
+        double f = row_factor(&row, 1);
+        if (last >= 0) ck_assert_double_eq_tol(f, last, 3e-4);
+        last = f;
+        row_free(&row);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
+START_TEST(crowded_rows_say_what_they_need) {
+    struct bed bed = packing(300, .2, 2, .45, 6, false);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    uint32_t largest = 0;
+    for (uint32_t i = 0; i < bed.n; i++)
+        if (bed.r[i] > bed.r[largest]) largest = i;
+    fibrad_row plenty = beam(&bed, largest, (fibrad_beam_rule){0}, FIBRAD_ISA_BEST);
+
+    fibrad_work_config config = {.near = 1, .discs = 1, .entries = 1};
+    fibrad_row row = row_of(bed.n);
+    row.capacity = 0;
+    row.escaped = row.error = -5;
+    int status = FIBRAD_E_CAPACITY;
+    for (int attempt = 0; attempt < 200 && status == FIBRAD_E_CAPACITY; attempt++) {
+        fibrad_work *work = work_of(&config);
+        status = fibrad_beam_row(scene, work, largest, NULL, &row);
+        if (status == FIBRAD_E_CAPACITY && row.length > 0) {
+            ck_assert_uint_eq(row.length, plenty.length);
+            ck_assert_double_eq(row.escaped, -5);
+            ck_assert_double_eq(row.error, -5);
+            row.capacity = row.length;
+        } else if (status == FIBRAD_E_CAPACITY) {
+            fibrad_work_config before = config;
+            fibrad_work_needed(work, &config);
+            ck_assert(config.discs > before.discs || config.entries > before.entries);
+        }
+        free(work);
+    }
+    ck_assert_int_eq(status, FIBRAD_OK);
+    ck_assert(same_bits(&row, &plenty));
+    ck_assert_uint_le(config.entries, bed.n);
+    row_free(&row);
+    row_free(&plenty);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(bad_arguments_are_refused) {
+    struct bed bed = lattice('p', 3);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_work *work = work_of(NULL);
+    fibrad_row row = row_of(bed.n);
+    row.length = 77;
+    ck_assert_int_eq(fibrad_beam_row(NULL, work, 0, NULL, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_row(scene, NULL, 0, NULL, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_row(scene, work, 0, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_row(scene, work, bed.n, NULL, &row), FIBRAD_E_ARGUMENT);
+    static const fibrad_beam_rule bad[] = {{.directions = 7}, {.directions = 65537}, {.cutoff = -1}, {.cutoff = NAN}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
+        ck_assert_int_eq(fibrad_beam_row(scene, work, 0, &bad[k], &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_row(scene, work, 0, &(fibrad_beam_rule){.points = 100}, &row), FIBRAD_E_TABLE);
+    ck_assert_uint_eq(row.length, 77);
+    row_free(&row);
+    free(scene);
+    free(work);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("beam");
+    TCase *tcase = tcase_create("beam");
+    tcase_add_test(tcase, two_spheres_match_the_exact_pair);
+    tcase_add_test(tcase, hidden_sphere_is_not_seen);
+    tcase_add_test(tcase, raw_rows_close);
+    tcase_add_test(tcase, points_agree_with_areas);
+    tcase_add_test(tcase, same_bits_in_every_instruction_set);
+    tcase_add_test(tcase, near_capacity_is_a_matter_of_speed);
+    tcase_add_test(tcase, scaling_by_powers_of_two_changes_no_bit);
+    tcase_add_test(tcase, moved_beds_have_the_same_rows);
+    tcase_add_test(tcase, periodic_images_are_copies);
+    tcase_add_test(tcase, sphere_sees_its_own_images);
+    tcase_add_test(tcase, cutoff_takes_out_what_lies_beyond);
+    tcase_add_test(tcase, overlap_changes_rows_continuously);
+    tcase_add_test(tcase, crowded_rows_say_what_they_need);
+    tcase_add_test(tcase, bad_arguments_are_refused);
+    suite_add_tcase(suite, tcase);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed != 0;
+}

@@ -1,0 +1,110 @@
+/* test_bed_make.c - beds made to measure are what they claim to be. SPDX-License-Identifier: MIT */
+#include <check.h>
+#include <math.h>
+#include <string.h>
+#include "bed_make.h"
+
+#define PI 3.14159265358979323846
+
+/* The least distance between surfaces, nearest images if the bed is periodic. */
+static double least_gap(const struct bed *bed) {
+    const double *const axis[3] = {bed->x, bed->y, bed->z};
+    double least = INFINITY;
+    for (uint32_t i = 0; i < bed->n; i++)
+        for (uint32_t j = 0; j < i; j++) {
+            double square = 0;
+            for (int a = 0; a < 3; a++) {
+                double e = axis[a][i] - axis[a][j];
+                if (bed->period[a] > 0) e -= bed->period[a] * round(e / bed->period[a]);
+                square += e * e;
+            }
+            least = fmin(least, sqrt(square) - bed->r[i] - bed->r[j]);
+        }
+    return least;
+}
+
+START_TEST(packing) {
+    static const uint32_t sizes[] = {1, 10, 100, 700};
+    for (int k = 0; k < 4; k++) {
+        struct bed bed, again;
+        bed_init(&bed, false, 0);
+        bed_init(&again, false, 0);
+        ck_assert_int_eq(bed_make_packing(&bed, sizes[k], .8, 1.2, .55, 7), 0);
+        ck_assert_uint_eq(bed.n, sizes[k]);
+        ck_assert_double_ge(least_gap(&bed), 0);
+        double solid = 0;
+        for (uint32_t i = 0; i < bed.n; i++) {
+            solid += 4 * PI / 3 * pow(bed.r[i], 3);
+            ck_assert(bed.r[i] >= .8 && bed.r[i] <= 1.2);
+            ck_assert(bed.x[i] >= 0 && bed.x[i] <= bed.period[0]);
+        }
+        ck_assert_double_eq_tol(solid / pow(bed.period[0], 3), .55, 1e-12);
+        ck_assert_int_eq(bed_make_packing(&again, sizes[k], .8, 1.2, .55, 7), 0);
+        ck_assert(memcmp(bed.x, again.x, bed.n * sizeof *bed.x) == 0);
+        bed_free(&bed);
+        bed_free(&again);
+    }
+}
+END_TEST
+
+START_TEST(copies) {
+    struct bed tile, bed;
+    bed_init(&tile, false, 0);
+    bed_init(&bed, false, 0);
+    ck_assert_int_eq(bed_make_packing(&tile, 60, .8, 1.2, .55, 7), 0);
+    ck_assert_int_eq(bed_make_copies(&bed, &tile, (const uint32_t[]){3, 1, 2}), 0);
+    ck_assert_uint_eq(bed.n, 360);
+    ck_assert_double_ge(least_gap(&bed), -1e-14);
+    ck_assert_double_eq(bed.period[0], 3 * tile.period[0]);
+    ck_assert_double_eq(bed.period[1], tile.period[1]);
+    ck_assert_double_eq(bed.period[2], 2 * tile.period[2]);
+    for (uint32_t k = 0; k < bed.n; k++) ck_assert_double_eq(bed.r[k], tile.r[k / 6]);
+    bed_free(&tile);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(fcc) {
+    struct bed bed;
+    bed_init(&bed, false, 0);
+    ck_assert_int_eq(bed_make_fcc(&bed, 1, 4, 0), 0);
+    ck_assert_uint_eq(bed.n, 1 + 12 + 6 + 24 + 12); /* shells at 2, 2.83, 3.46, 4 */
+    ck_assert_double_eq_tol(least_gap(&bed), 0, 1e-14);
+    bed_clear(&bed);
+    ck_assert_int_eq(bed_make_fcc(&bed, .55, 10, 3), 0);
+    ck_assert_double_eq(bed.r[0], 1);
+    double mean = 0;
+    for (uint32_t i = 1; i < bed.n; i++) mean += bed.r[i] / (bed.n - 1);
+    ck_assert_double_eq_tol(mean, .775, .02);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(random_numbers) {
+    double mean = 0, product = 0;
+    enum { COUNT = 100000 };
+    for (int k = 0; k < COUNT; k++) {
+        const double u = bed_make_random(5, (uint64_t)k);
+        ck_assert(u >= 0 && u < 1);
+        mean += u / COUNT;
+        product += (u - .5) * (bed_make_random(6, (uint64_t)k) - .5) / COUNT;
+    }
+    ck_assert_double_eq_tol(mean, .5, .005);
+    ck_assert_double_eq_tol(product, 0, .002);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("bed_make");
+    TCase *cases = tcase_create("bed_make");
+    suite_add_tcase(suite, cases);
+    tcase_add_test(cases, packing);
+    tcase_add_test(cases, copies);
+    tcase_add_test(cases, fcc);
+    tcase_add_test(cases, random_numbers);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed;
+}

@@ -1,0 +1,357 @@
+/* test_cast.c - rows by rays against exact pairs, the published table, every ray followed by hand, beams, and
+ * themselves under every setting that must not matter. SPDX-License-Identifier: MIT */
+#include <stdio.h>
+
+#include "base/random.h"
+#include "scenes.h"
+
+#define PI 3.14159265358979323846
+
+static fibrad_row cast(const struct bed *bed, uint32_t i, fibrad_cast_rule rule, int isa) {
+    fibrad_scene *scene = scene_of(bed, isa);
+    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 1024, .entries = bed->n});
+    fibrad_row row = row_of(bed->n);
+    ck_assert_int_eq(fibrad_cast_row(scene, work, i, &rule, &row, NULL), FIBRAD_OK);
+    free(scene);
+    free(work);
+    return row;
+}
+
+/* Two spheres in direction number k of 24 spread over the sphere. */
+static struct bed pair(double r1, double r2, double distance, uint32_t k) {
+    double w[3];
+    ck_assert_int_eq(fibrad_direction(k, 24, w), FIBRAD_OK);
+    return bed_of(2, (const double[][4]){{0, 0, 0, r1}, {distance * w[0], distance * w[1], distance * w[2], r2}});
+}
+
+START_TEST(two_spheres_match_the_exact_pair) {
+    static const double cases[][3] = {{1, 1, 0},   {1, .3, 0},  {.3, 1, .1}, {1, 3, .01}, {1, 10, 0},
+                                      {10, 1, .1}, {1, 1, -.2}, {1, 3, -.1}, {3, 1, -.3}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
+        for (int random = 0; random <= 1; random++) {
+            const double *p = cases[c];
+            double exact, error = 0, estimate = 0;
+            ck_assert_int_eq(fibrad_pair_exact(p[0], p[1], p[2], &exact), FIBRAD_OK);
+            for (uint32_t k = 0; k < 24; k++) {
+                struct bed bed = pair(p[0], p[1], p[0] + p[1] + p[2], k);
+                fibrad_row row = cast(&bed, 0, (fibrad_cast_rule){20000, random, k, 0}, FIBRAD_ISA_BEST);
+                ck_assert_uint_eq(row.length, 1);
+                ck_assert_double_eq_tol(row.f[0] + row.escaped, 1, 1e-15);
+                error += pow(row.f[0] - exact, 2) / 24;
+                estimate += pow(row.error, 2) / 24;
+                row_free(&row);
+                bed_free(&bed);
+            }
+            ck_assert_msg(error < 2.25 * estimate, "%g %g %g random %d: error %g, estimate %g", p[0], p[1], p[2],
+                          random, sqrt(error), sqrt(estimate));
+            ck_assert_double_lt(sqrt(error), random ? .5 / sqrt(20000) * 1.3 : .0012);
+        }
+}
+END_TEST
+
+/* Unit spheres H apart: error at 200,000 rays, mean length and angle of the rays, as docs/reproduction.md has them. */
+START_TEST(pebble_table) {
+    static const struct {
+        double h, error, length, angle;
+    } table[] = {{2, .003, .3590, 30.84},
+                 {3, .006, 1.4923, 18.24},
+                 {4, .009, 2.5399, 13.34},
+                 {5, .012, 3.5663, 10.56},
+                 {6, .015, 4.5835, 8.75}};
+    for (size_t t = 0; t < 5; t++) {
+        double exact, error = 0, length = 0, angle = 0;
+        ck_assert_int_eq(fibrad_pair_exact(1, 1, table[t].h - 2, &exact), FIBRAD_OK);
+        for (uint32_t k = 0; k < 24; k++) {
+            struct bed bed = pair(1, 1, table[t].h, k);
+            fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+            fibrad_work *work = work_of(NULL);
+            fibrad_row row = row_of(2);
+            double lengths[2], angles[2];
+            const fibrad_cast_rule rule = {.rays = 200000, .seed = k};
+            const fibrad_cast_means means = {lengths, angles};
+            ck_assert_int_eq(fibrad_cast_row(scene, work, 0, &rule, &row, &means), FIBRAD_OK);
+            error += pow(row.f[0] / exact - 1, 2) / 24;
+            length += lengths[0] / 24;
+            angle += angles[0] * 180 / PI / 24;
+            free(scene);
+            free(work);
+            row_free(&row);
+            bed_free(&bed);
+        }
+        ck_assert_msg(sqrt(error) < table[t].error, "H = %g: %.2f %%", table[t].h, 100 * sqrt(error));
+        ck_assert_double_eq_tol(length, table[t].length, .004);
+        ck_assert_double_eq_tol(angle, table[t].angle, .03);
+    }
+}
+END_TEST
+
+/* Ray number k from the unit sphere: origin and direction. */
+static void ray(uint32_t i, uint32_t k, const fibrad_cast_rule *rule, double o[3], double w[3]) {
+    const fibrad_random stream = {fibrad_mix(fibrad_random_ahead((fibrad_random){rule->seed}, i))};
+    double at[4], g = 1.2;
+    for (int n = 0; n < 60; n++) g = pow(1 + g, .2); /* g^5 = g + 1 */
+    for (int d = 0; d < 4; d++) {
+        uint64_t move = fibrad_random_ahead(stream, rule->random ? 4 * (uint64_t)k + (uint64_t)d : (uint64_t)d);
+        at[d] = ldexp((double)(move >> 11), -53) + (rule->random ? 0 : fmod(k * pow(g, -d - 1), 1));
+    }
+    double z = 1 - 2 * fmod(at[0], 1), ring = sqrt(1 - z * z), azimuth = 2 * PI * at[1], about = 2 * PI * at[3];
+    double sine = sqrt(fmod(at[2], 1)), cosine = sqrt(1 - fmod(at[2], 1));
+    /* a turn counts from its middle */
+    double c = -cos(azimuth), s = -sin(azimuth), p = -sine * cos(about), q = -sine * sin(about);
+    o[0] = ring * c, o[1] = ring * s, o[2] = z;
+    w[0] = -p * s - q * z * c + cosine * o[0];
+    w[1] = p * c - q * z * s + cosine * o[1];
+    w[2] = q * ring + cosine * o[2];
+}
+
+/* The sphere that a ray from sphere i meets first by the distance along it, of all the spheres; n if none. */
+static uint32_t first_met(const struct bed *bed, uint32_t i, const double o[3], const double w[3]) {
+    uint32_t first = bed->n;
+    double nearest = INFINITY, least = INFINITY;
+    for (uint32_t j = 0; j < bed->n; j++) {
+        if (j == i) continue;
+        double c[3] = {bed->x[j] - bed->x[i], bed->y[j] - bed->y[i], bed->z[j] - bed->z[i]};
+        double depth = 0, along = 0, square = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            double e = c[axis] - bed->r[i] * o[axis];
+            depth += c[axis] * w[axis];
+            along += e * w[axis];
+            square += e * e;
+        }
+        double chord = along * along - square + bed->r[j] * bed->r[j];
+        if (!(depth > 0 && chord > 0)) continue;
+        double distance = fmax(0, along - sqrt(chord));
+        if (distance < nearest || (distance == nearest && depth < least)) first = j, nearest = distance, least = depth;
+    }
+    return first;
+}
+
+static void check_every_ray(const struct bed *bed, int random) {
+    const fibrad_cast_rule rule = {.rays = 4000, .random = random, .seed = 5};
+    uint32_t *count = calloc(bed->n + 1, sizeof *count);
+    for (uint32_t i = 0; i < bed->n; i += 37) {
+        memset(count, 0, (bed->n + 1) * sizeof *count);
+        for (uint32_t k = 0; k < rule.rays; k++) {
+            double o[3], w[3];
+            ray(i, k, &rule, o, w);
+            count[first_met(bed, i, o, w)]++;
+        }
+        fibrad_row row = cast(bed, i, rule, FIBRAD_ISA_BEST);
+        for (uint32_t j = 0; j < bed->n; j++)
+            ck_assert_msg(fabs(row_factor(&row, j) * rule.rays - count[j]) < .5,
+                          "row %u: %u rays meet sphere %u, not %g", i, count[j], j, row_factor(&row, j) * rule.rays);
+        ck_assert_double_eq_tol(row.escaped * rule.rays, count[bed->n], .5);
+        row_free(&row);
+    }
+    free(count);
+}
+
+/* Radii from 1 to 10; then the same spheres swollen until they overlap. */
+START_TEST(rays_meet_the_first_sphere) {
+    struct bed bed = packing(400, .2, 2, .5, 11, false);
+    check_every_ray(&bed, 0);
+    check_every_ray(&bed, 1);
+    for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.05;
+    check_every_ray(&bed, 0);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(rays_agree_with_beams) {
+    struct bed beds[] = {packing(300, .8, 1.2, .55, 7, true), packing(300, .3, 2, .5, 8, true)};
+    for (size_t b = 0; b < 2; b++) {
+        fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
+        fibrad_work *work = work_of(&(fibrad_work_config){.discs = 1024});
+        fibrad_row ours = row_of(beds[b].n), beams = row_of(beds[b].n);
+        for (int random = 0; random <= 1; random++) {
+            double error = 0, estimate = 0, bias = 0;
+            for (uint32_t i = 0; i < 30; i++) {
+                const fibrad_cast_rule rule = {.rays = 20000, .random = random, .seed = 3};
+                const fibrad_beam_rule fine = {.directions = 4000};
+                ck_assert_int_eq(fibrad_cast_row(scene, work, i, &rule, &ours, NULL), FIBRAD_OK);
+                ck_assert_int_eq(fibrad_beam_row(scene, work, i, &fine, &beams), FIBRAD_OK);
+                error += pow(row_distance(&ours, &beams), 2) / 30;
+                estimate += pow(ours.error, 2) / 30;
+                bias += (ours.f[0] - row_factor(&beams, ours.col[0])) / 30;
+            }
+            ck_assert_double_lt(error, 1.5 * estimate);
+            ck_assert_double_gt(error, .2 * estimate);
+            ck_assert_double_lt(sqrt(error), random ? .009 : .005);
+            ck_assert_double_lt(fabs(bias), 2e-4);
+        }
+        row_free(&ours);
+        row_free(&beams);
+        free(scene);
+        free(work);
+        bed_free(&beds[b]);
+    }
+}
+END_TEST
+
+START_TEST(seeds) {
+    struct bed bed = packing(200, .8, 1.2, .5, 5, true);
+    for (int random = 0; random <= 1; random++) {
+        fibrad_row a = cast(&bed, 3, (fibrad_cast_rule){1000, random, 7, 0}, FIBRAD_ISA_BEST);
+        fibrad_row same = cast(&bed, 3, (fibrad_cast_rule){1000, random, 7, 0}, FIBRAD_ISA_BEST);
+        fibrad_row other = cast(&bed, 3, (fibrad_cast_rule){1000, random, 8, 0}, FIBRAD_ISA_BEST);
+        ck_assert(same_bits(&a, &same));
+        ck_assert(!same_bits(&a, &other));
+        row_free(&a);
+        row_free(&same);
+        row_free(&other);
+    }
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(same_bits_in_every_instruction_set) {
+    struct bed bed = packing(300, .5, 1.5, .55, 3, true);
+    for (int random = 0; random <= 1; random++)
+        for (uint32_t i = 0; i < bed.n; i += 23) {
+            const fibrad_cast_rule rule = {1001, random, i, 0};
+            double length[2][300], angle[2][300];
+            for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)fibrad_isa_best(); isa++) {
+                fibrad_scene *scene = scene_of(&bed, isa);
+                fibrad_work *work = work_of(NULL);
+                fibrad_row scalar = cast(&bed, i, rule, FIBRAD_ISA_SCALAR), row = row_of(bed.n);
+                const int which = isa > FIBRAD_ISA_SCALAR;
+                const fibrad_cast_means means = {length[which], angle[which]};
+                ck_assert_int_eq(fibrad_cast_row(scene, work, i, &rule, &row, &means), FIBRAD_OK);
+                ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isa));
+                ck_assert_mem_eq(length[0], length[which], row.length * sizeof(double));
+                ck_assert_mem_eq(angle[0], angle[which], row.length * sizeof(double));
+                row_free(&scalar);
+                row_free(&row);
+                free(scene);
+                free(work);
+            }
+        }
+    for (int isa = FIBRAD_ISA_AVX512; isa > (int)fibrad_isa_best(); isa--) printf("SKIP %s\n", fibrad_isa_name(isa));
+    bed_free(&bed);
+}
+END_TEST
+
+/* Whether spheres are kept near or looked up along each ray; overlapping ones included. */
+START_TEST(near_capacity_is_a_matter_of_speed) {
+    struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false),
+                         packing(400, .2, 2, .5, 11, false), lattice('p', 9)};
+    for (uint32_t i = 0; i < beds[2].n; i++) beds[2].r[i] *= 1.05;
+    for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
+        fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
+        fibrad_row rows[2] = {row_of(beds[b].n), row_of(beds[b].n)};
+        for (uint32_t i = 0; i < beds[b].n; i += 31) {
+            for (int which = 0; which < 2; which++) {
+                fibrad_work *work =
+                    work_of(&(fibrad_work_config){.near = which == 0 ? 1 : 8192, .discs = 1024, .entries = beds[b].n});
+                const fibrad_cast_rule rule = {.rays = 2000};
+                ck_assert_int_eq(fibrad_cast_row(scene, work, i, &rule, &rows[which], NULL), FIBRAD_OK);
+                free(work);
+            }
+            ck_assert(same_bits(&rows[0], &rows[1]));
+        }
+        row_free(&rows[0]);
+        row_free(&rows[1]);
+        free(scene);
+        bed_free(&beds[b]);
+    }
+}
+END_TEST
+
+START_TEST(scaling_by_powers_of_two_changes_no_bit) {
+    struct bed bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
+    fibrad_row row = cast(&bed, 11, (fibrad_cast_rule){2000, 0, 0, 9}, FIBRAD_ISA_BEST);
+    for (int k = -400; k <= 400; k += 100) {
+        for (uint32_t i = 0; i < bed.n; i++) {
+            scaled.x[i] = ldexp(bed.x[i], k), scaled.y[i] = ldexp(bed.y[i], k), scaled.z[i] = ldexp(bed.z[i], k);
+            scaled.r[i] = ldexp(bed.r[i], k);
+        }
+        for (int axis = 0; axis < 3; axis++) scaled.period[axis] = ldexp(bed.period[axis], k);
+        fibrad_row other = cast(&scaled, 11, (fibrad_cast_rule){2000, 0, 0, ldexp(9, k)}, FIBRAD_ISA_BEST);
+        ck_assert(same_bits(&row, &other));
+        row_free(&other);
+    }
+    row_free(&row);
+    bed_free(&bed);
+    bed_free(&scaled);
+}
+END_TEST
+
+/* Spheres beyond the cutoff neither receive nor block. */
+START_TEST(cutoff) {
+    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}, {0, 0, 40, 30}});
+    fibrad_row all = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000}, FIBRAD_ISA_BEST);
+    fibrad_row near = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000, .cutoff = 3}, FIBRAD_ISA_BEST);
+    fibrad_row none = cast(&bed, 0, (fibrad_cast_rule){.rays = 5000, .cutoff = 2.9}, FIBRAD_ISA_BEST);
+    ck_assert_uint_eq(all.length, 2);
+    ck_assert_uint_eq(near.length, 1);
+    ck_assert_double_eq(near.f[0], all.f[0]);
+    ck_assert_uint_eq(none.length, 0);
+    ck_assert_double_eq(none.escaped, 1);
+    row_free(&all);
+    row_free(&near);
+    row_free(&none);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(refusals_and_capacities) {
+    struct bed bed = packing(200, .8, 1.2, .5, 5, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_work *work = work_of(NULL);
+    fibrad_row row = row_of(200), small = {.capacity = 0};
+    const fibrad_cast_rule bad[] = {{.random = 2}, {.random = -1}, {.cutoff = -1}, {.cutoff = NAN}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
+        ck_assert_int_eq(fibrad_cast_row(scene, work, 0, &bad[k], &row, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_cast_row(NULL, work, 0, NULL, &row, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_cast_row(scene, NULL, 0, NULL, &row, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_cast_row(scene, work, 200, NULL, &row, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_cast_row(scene, work, 0, NULL, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_cast_row(scene, work, 0, NULL, &row, &(fibrad_cast_means){NULL, NULL}), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_cast_row(scene, work, 0, NULL, &row, NULL), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_cast_row(scene, work, 0, NULL, &small, NULL), FIBRAD_E_CAPACITY);
+    ck_assert_uint_eq(small.length, row.length);
+    free(work);
+
+    /* too little work memory: what it asks for makes it succeed, with the same bits */
+    fibrad_work_config config = {.near = 1, .discs = 1, .entries = 1};
+    fibrad_row again = row_of(200);
+    for (int attempt = 0;; attempt++) {
+        work = work_of(&config);
+        const int status = fibrad_cast_row(scene, work, 0, NULL, &again, NULL);
+        if (status == FIBRAD_OK) break;
+        ck_assert_int_eq(status, FIBRAD_E_CAPACITY);
+        ck_assert_uint_eq(again.length, 0);
+        ck_assert_int_lt(attempt, 30);
+        fibrad_work_needed(work, &config);
+        free(work);
+    }
+    ck_assert(same_bits(&row, &again));
+    row_free(&row);
+    row_free(&again);
+    free(work);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("cast");
+    TCase *tests = tcase_create("cast");
+    suite_add_tcase(suite, tests);
+    tcase_set_timeout(tests, 300);
+    tcase_add_test(tests, two_spheres_match_the_exact_pair);
+    tcase_add_test(tests, pebble_table);
+    tcase_add_test(tests, rays_meet_the_first_sphere);
+    tcase_add_test(tests, rays_agree_with_beams);
+    tcase_add_test(tests, seeds);
+    tcase_add_test(tests, same_bits_in_every_instruction_set);
+    tcase_add_test(tests, near_capacity_is_a_matter_of_speed);
+    tcase_add_test(tests, scaling_by_powers_of_two_changes_no_bit);
+    tcase_add_test(tests, cutoff);
+    tcase_add_test(tests, refusals_and_capacities);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    const int failures = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failures;
+}

@@ -1,0 +1,627 @@
+/* test_cli.c - the program as its users meet it: exit statuses, messages, files. SPDX-License-Identifier: MIT
+ *
+ * Runs $BUILD/fibrad (default: build/fibrad) from the project's root. */
+#include <check.h>
+#include <dirent.h>
+#include <fcntl.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#define MONO     "tests/data/mono2000.dump"
+#define POLY     "tests/data/poly2000.dump"
+#define PERIODIC "tests/data/monoper2000.dump"
+
+static const char *build; /* folder of the program */
+static char folder[200];  /* for the files of a test */
+static char stdout_path[220], stderr_path[220];
+static char said[8192], printed[65536];
+
+static void make_folder(void) {
+    build = getenv("BUILD") ? getenv("BUILD") : "build";
+    snprintf(folder, sizeof folder, "%.100s/tests/cli_XXXXXX", build);
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(stdout_path, sizeof stdout_path, "%s/stdout", folder);
+    snprintf(stderr_path, sizeof stderr_path, "%s/stderr", folder);
+}
+
+/* The place of a file in the test's folder; four may be in use at once. */
+static const char *in_folder(const char *name) {
+    static char paths[4][300];
+    static int next;
+    next = (next + 1) % 4;
+    snprintf(paths[next], sizeof paths[next], "%s/%s", folder, name);
+    return paths[next];
+}
+
+/* Removes all files of the folder but those called stdout and stderr, or those too; returns how many were removed. */
+static int remove_files(int outputs_too) {
+    int count = 0;
+    DIR *list = opendir(folder);
+    ck_assert_ptr_nonnull(list);
+    for (struct dirent *entry; (entry = readdir(list));) {
+        const int output = strncmp(entry->d_name, "std", 3) == 0;
+        if (entry->d_name[0] == '.' || (output && !outputs_too)) continue;
+        char path[500];
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        ck_assert_int_eq(unlink(path), 0);
+        ++count;
+    }
+    closedir(list);
+    return count;
+}
+
+static void remove_folder(void) {
+    remove_files(1);
+    ck_assert_int_eq(rmdir(folder), 0);
+}
+
+static const char *write_file(const char *name, const char *text) {
+    const char *path = in_folder(name);
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_int_ge(fputs(text, file), 0);
+    ck_assert_int_eq(fclose(file), 0);
+    return path;
+}
+
+/* A whole file as a string on the heap. */
+static char *read_file(const char *path) {
+    struct stat there;
+    FILE *file = fopen(path, "r");
+    ck_assert_msg(file && stat(path, &there) == 0, "%s is not there", path);
+    char *text = calloc(1, (size_t)there.st_size + 1);
+    ck_assert_ptr_nonnull(text);
+    ck_assert_uint_eq(fread(text, 1, (size_t)there.st_size, file), (size_t)there.st_size);
+    fclose(file);
+    return text;
+}
+
+static void open_as(int number, const char *path, int flags) {
+    const int file = open(path, flags, 0666);
+    if (file < 0 || dup2(file, number) < 0) _exit(99);
+}
+
+static const char *input = "/dev/null", *output; /* of the program; output NULL: kept in `printed` */
+
+static pid_t start(const char *const *arguments) {
+    char program[300];
+    const char *argv[40] = {program};
+    snprintf(program, sizeof program, "%s/fibrad", build);
+    for (int k = 0; k < 38 && arguments[k]; ++k) argv[k + 1] = arguments[k];
+    const char *out = output ? output : stdout_path;
+    const pid_t process = fork();
+    if (process != 0) return process;
+    open_as(0, input, O_RDONLY);
+    open_as(1, out, O_WRONLY | O_CREAT | O_TRUNC);
+    open_as(2, stderr_path, O_WRONLY | O_CREAT | O_TRUNC);
+    execv(program, (char *const *)argv);
+    _exit(98);
+}
+
+static void keep(const char *path, char *text, size_t size) {
+    FILE *file = fopen(path, "r");
+    text[0] = 0;
+    if (!file) return;
+    text[fread(text, 1, size - 1, file)] = 0;
+    fclose(file);
+}
+
+/* The exit status, or 256 + the signal that killed the program. */
+static int finish(pid_t process) {
+    int end;
+    ck_assert_int_eq(waitpid(process, &end, 0), process);
+    keep(stdout_path, printed, sizeof printed);
+    keep(stderr_path, said, sizeof said);
+    return WIFEXITED(end) ? WEXITSTATUS(end) : 256 + WTERMSIG(end);
+}
+
+#define LIST(...) ((const char *const[]){__VA_ARGS__, NULL})
+#define RUN(...)  finish(start(LIST(__VA_ARGS__)))
+#define SUCCEED(...)                                                                                                   \
+    do {                                                                                                               \
+        const int status_ = RUN(__VA_ARGS__);                                                                          \
+        ck_assert_msg(status_ == 0, "exit status %d: %s", status_, said);                                              \
+    } while (0)
+
+/* The value of the last line `key value` with that key. */
+static double value_of(const char *key) {
+    double value = NAN;
+    int found = 0;
+    for (const char *line = printed; line && *line; line = strchr(line, '\n'), line += line != NULL)
+        if (strncmp(line, key, strlen(key)) == 0 && line[strlen(key)] == ' ') {
+            value = strtod(line + strlen(key), NULL);
+            found = 1;
+        }
+    ck_assert_msg(found, "no line '%s' in: %s", key, printed);
+    return value;
+}
+
+/* One line on standard error, beginning with `fibrad: ` and then the place, holding the reason. */
+static void expect_message(const char *place, const char *reason) {
+    char begin[400];
+    snprintf(begin, sizeof begin, "fibrad: %s", place);
+    ck_assert_msg(strncmp(said, begin, strlen(begin)) == 0, "'%s' does not begin with '%s'", said, begin);
+    ck_assert_msg(strstr(said, reason) != NULL, "'%s' does not give as reason '%s'", said, reason);
+    ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
+}
+
+/* ---- usage ------------------------------------------------------------------------------------------------------ */
+
+START_TEST(help_and_version) {
+    SUCCEED("--help");
+    ck_assert(strstr(printed, "bed") && strstr(printed, "pair"));
+    SUCCEED("--version");
+    ck_assert_int_eq(strncmp(printed, "fibrad ", 7), 0);
+    SUCCEED("bed", "--help");
+    static const char *const options[] = {"--method",  "--directions", "--areas",    "--points", "--cutoff",
+                                          "--targets", "--threads",    "--periodic", "--frame",  "--ids",
+                                          "--raw",     "--plot",       "-o",         "[233]",    "Example"};
+    for (size_t k = 0; k < sizeof options / sizeof *options; ++k) ck_assert(strstr(printed, options[k]) != NULL);
+    ck_assert(strstr(printed, "--nf") && strstr(printed, "--rays"));
+    SUCCEED("pair", "1", "--help");
+    ck_assert(strstr(printed, "--obstacle") && strstr(printed, "--check") && strstr(printed, "--rays"));
+    ck_assert_str_eq(said, "");
+}
+END_TEST
+
+static const struct {
+    const char *arguments[9], *reason;
+} misuse[] = {
+    {{NULL}, "which command"},
+    {{"bad"}, "unknown command bad; see fibrad --help"},
+    {{"--bad"}, "unknown option --bad; see fibrad --help"},
+    {{"bed"}, "which FILE"},
+    {{"bed", "a.csv", "b.csv"}, "one FILE only, not also 'b.csv'"},
+    {{"bed", MONO, "--bad=3"}, "unknown option --bad; see fibrad bed --help"},
+    {{"bed", MONO, "-x"}, "unknown option -x; see fibrad bed --help"},
+    {{"pair", "1", "1", "0", "--raw"}, "unknown option --raw; see fibrad pair --help"},
+    {{"bed", MONO, "-o"}, "--output needs an argument"},
+    {{"bed", MONO, "--raw=yes"}, "--raw takes no argument"},
+    {{"bed", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz and .vtp"},
+    {{"bed", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
+    {{"bed", MONO, "-o", "out.mtx", "--ids"}, "--ids is for -o OUT.csv only"},
+    {{"bed", MONO, "--method", "surface", "--nf", "56"}, "--nf: 56 is not built in; 8, 13, 21"},
+    {{"bed", MONO, "--nf", "55"}, "are for --method surface"},
+    {{"bed", MONO, "--method", "magic"}, "'magic' is no method"},
+    {{"bed", MONO, "--method", "exact"}, "--method exact is for pairs only"},
+    {{"bed", MONO, "--rays", "100"}, "--rays and --seed are for --method cast and mc"},
+    {{"bed", MONO, "--method=cast", "--rays", "0"}, "--rays: '0' is not a whole number from 1 to 4294967295"},
+    {{"bed", MONO, "--method=mc", "--seed", "-1"}, "--seed: '-1'"},
+    {{"bed", MONO, "--method=cast", "--directions", "100"}, "are for --method beam"},
+    {{"bed", MONO, "--directions", "7"}, "'7' is not a whole number from 8 to 65536"},
+    {{"bed", MONO, "--error", "0"}, "--error: 0 is not within 1e-07 and 1"},
+    {{"bed", MONO, "--error", "1e-8"}, "--error: 1e-8 is not within 1e-07 and 1"},
+    {{"bed", MONO, "--error", "small"}, "--error: 'small' is not a number"},
+    {{"bed", MONO, "--error", "nan"}, "--error: 'nan' is not a number"},
+    {{"bed", MONO, "--error", ".01", "--directions", "100"}, "leave out --directions"},
+    {{"bed", MONO, "--error", ".01", "--method", "mc"}, "--error is for --method beam"},
+    {{"bed", MONO, "--directions", "65537"}, "--directions: '65537'"},
+    {{"bed", MONO, "--directions", "1e3"}, "--directions: '1e3'"},
+    {{"bed", MONO, "--directions", "-8"}, "--directions: '-8'"},
+    {{"bed", MONO, "--directions", ""}, "--directions: ''"},
+    {{"bed", MONO, "--points", "100"}, "64, 128 and 256 are"},
+    {{"bed", MONO, "--areas", "some"}, "'some' is neither exact nor points"},
+    {{"bed", MONO, "--areas", "exact", "--points", "64"}, "--points contradicts --areas exact"},
+    {{"bed", MONO, "--cutoff", "far"}, "--cutoff: 'far' is not a number"},
+    {{"bed", MONO, "--cutoff", "0"}, "--cutoff: 0 is not within"},
+    {{"bed", MONO, "--cutoff", "nan"}, "--cutoff: 'nan' is not a number"},
+    {{"bed", MONO, "--threads", "0"}, "--threads: '0'"},
+    {{"bed", MONO, "--frame", "-1"}, "--frame: '-1'"},
+    {{"bed", MONO, "--periodic", "1,2"}, "three lengths LX,LY,LZ"},
+    {{"bed", MONO, "--periodic", "1,2,-3"}, "three lengths LX,LY,LZ"},
+    {{"bed", MONO, "--periodic", "1,2,3,4"}, "more than 3 numbers"},
+    {{"bed", MONO, "--periodic", "1,,3"}, "does not begin with a number"},
+    {{"bed", MONO, "--targets", ""}, "is no list such as 3,7,10-19"},
+    {{"bed", MONO, "--targets", "1,,2"}, "is no list such as"},
+    {{"bed", MONO, "--targets", "5-3"}, "is no list such as"},
+    {{"bed", MONO, "--targets", "3-"}, "is no list such as"},
+    {{"bed", MONO, "--targets", "99999999999999999999"}, "is no list such as"},
+    {{"bed", MONO, "--targets", "0-2000"}, "there is no sphere 2000; the last is 1999"},
+    {{"bed", MONO, "--targets", "5000000000"}, "there is no sphere 5000000000"},
+    {{"pair", "1", "1"}, "R1, R2 and GAP are needed"},
+    {{"pair", "1", "1", "0", "0"}, "three lengths only, not also '0'"},
+    {{"pair", "1", "-1", "0"}, "R2: -1 is not within"},
+    {{"pair", "1", "1", "x"}, "GAP: 'x' is not a number"},
+    {{"pair", "1", "1", "-2"}, "one sphere lies inside the other"},
+    {{"pair", "1", "1", "0", "--no-correction"}, "are for --method surface"},
+    {{"pair", "1", "1", "0", "--obstacle", "1,2,3"}, "is not X,Y,Z,R"},
+    {{"pair", "1", "1", "0", "--obstacle", "1,2,3,0"}, "is not X,Y,Z,R"},
+    {{"pair", "1", "1", "0", "--directions", "100"}, "are for --method beam"},
+    {{"pair", "1", "1", "0", "--seed", "3"}, "--rays and --seed are for --method cast and mc"},
+    {{"pair", "1", "1", "0", "--method", "beam", "--check"}, "--check is for the exact factor"},
+    {{"pair", "1", "1", "1", "--method", "beam", "--obstacle", "0,0,0.5,1"}, "sphere 1 and obstacle 1"},
+    {{"pair", "1", "1", "1", "--obstacle", "0,0,3,1"}, "sphere 2 and obstacle 1"},
+};
+
+START_TEST(bad_usage) {
+    ck_assert_int_eq(finish(start(misuse[_i].arguments)), 2);
+    expect_message("", misuse[_i].reason);
+    ck_assert_str_eq(printed, "");
+}
+END_TEST
+
+/* ---- pairs ------------------------------------------------------------------------------------------------------ */
+
+static double pair(const char *r1, const char *r2, const char *gap) {
+    SUCCEED("pair", r1, r2, gap, "--method=exact");
+    return value_of("F12");
+}
+
+START_TEST(exact_pair) {
+    const double pi = 3.14159265358979323846;
+    ck_assert_double_eq_tol(pair("1", "1", "0"), 0.5 - 4 / (3 * pi), 1e-15);
+    ck_assert_double_eq_tol(pair("1", "1", "1"), 0.0295903122505504314, 1e-16);
+    ck_assert_double_eq_tol(pair("1", "1", "30"), 2.442599800579042e-4, 1e-18);
+    ck_assert_double_eq_tol(pair("1", "0.3", ".05"), 0.09 * pair("0.3", "1", ".05"), 1e-16);
+    ck_assert_double_gt(pair("1", "1", "-.01"), pair("1", "1", "0"));
+}
+END_TEST
+
+START_TEST(exact_pair_checked) {
+    SUCCEED("pair", "1", "0.3", "0.05", "--check");
+    const double f12 = value_of("F12");
+    ck_assert_double_eq(value_of("kernel"), f12);
+    ck_assert_double_eq_tol(value_of("gsl_polar") / f12, 1, 1e-12);
+    ck_assert_double_eq_tol(value_of("gsl_lens") / f12, 1, 1e-12);
+    ck_assert_ptr_nonnull(strstr(printed, "difference"));
+    char last[60];
+    snprintf(last, sizeof last, "\nF12 %.17g\n", f12);
+    ck_assert_str_eq(printed + strlen(printed) - strlen(last), last);
+    SUCCEED("pair", "1", "0.3", "-0.05", "--check");
+    ck_assert_double_eq_tol(value_of("gsl_lens") / value_of("F12"), 1, 1e-12);
+}
+END_TEST
+
+START_TEST(beam_pair) {
+    SUCCEED("pair", "1", "1", "0", "--method", "beam", "--directions", "10000");
+    ck_assert_double_eq_tol(value_of("F12"), 0.0755868184216124, 1e-6);
+    SUCCEED("pair", "1", "1", "0", "--method", "beam", "--directions", "10000", "--points", "256");
+    ck_assert_double_eq_tol(value_of("F12"), 0.0755868184216124, 1e-3);
+}
+END_TEST
+
+START_TEST(cast_pair) {
+    SUCCEED("pair", "1", "1", "0", "--method", "cast", "--rays", "200000");
+    ck_assert_double_eq_tol(value_of("F12"), 0.0755868184216124, 5e-4);
+    ck_assert_double_eq_tol(value_of("mean_ray_length"), 0.359, 0.005);
+    ck_assert_double_eq_tol(value_of("mean_angle") * 57.29578, 30.84, 0.2);
+    ck_assert_double_eq(value_of("rays"), 200000);
+    SUCCEED("pair", "1", "1", "0", "--method", "mc", "--rays", "200000", "--seed", "3");
+    const double one = value_of("F12");
+    ck_assert_double_eq_tol(one, 0.0755868184216124, 2.5e-3);
+    SUCCEED("pair", "1", "1", "0", "--method", "mc", "--rays", "200000", "--seed", "4");
+    ck_assert_double_ne(value_of("F12"), one);
+    SUCCEED("pair", "1", "1", "2000", "--method", "cast", "--rays", "10");
+    ck_assert_double_eq(value_of("F12"), 0);
+}
+END_TEST
+
+START_TEST(blocked_pair) {
+    SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4");
+    const double exact = value_of("F12");
+    ck_assert_double_lt(exact, 0.9 * pair("1", "1", "2"));
+    SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4", "--method", "beam", "--directions", "20000");
+    ck_assert_double_eq_tol(value_of("F12"), exact, 1e-6);
+    SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4", "--method", "cast", "--rays", "200000");
+    ck_assert_double_eq_tol(value_of("F12"), exact, 4e-4);
+    SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4", "--method", "surface", "--nf", "610");
+    ck_assert_double_eq_tol(value_of("F12") / exact, 1, 1e-3);
+    SUCCEED("pair", "1", "1", "0", "--method", "surface", "--no-correction");
+    ck_assert_double_eq_tol(value_of("F12") / 0.0755868184216124, 1 - .0475649, 1e-6); /* docs/reproduction.md */
+    SUCCEED("pair", "1", "1", "2", "--obstacle", "50,0,2,0.4");
+    const double beside = value_of("F12");
+    ck_assert_double_eq_tol(beside, pair("1", "1", "2"), 1e-9);
+}
+END_TEST
+
+/* ---- beds ------------------------------------------------------------------------------------------------------- */
+
+START_TEST(surface_method) {
+    SUCCEED("bed", POLY, "--method", "surface", "--cutoff", "3");
+    ck_assert_double_eq(value_of("nf"), 55);
+    const double sum = value_of("row_sum_max"), error = value_of("error_estimate");
+    SUCCEED("bed", POLY, "--cutoff", "3");
+    ck_assert_double_eq_tol(value_of("row_sum_max"), sum, 3 * error);
+}
+END_TEST
+
+START_TEST(tolerance) {
+    SUCCEED("bed", POLY, "--error", "0.01");
+    ck_assert_double_le(value_of("error_estimate"), .01);
+    ck_assert_double_gt(value_of("error_estimate"), .002);
+    ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
+    const double all = value_of("directions");
+    SUCCEED("bed", POLY, "--error", "0.001", "--targets", "3,7,1000-1009");
+    ck_assert_double_le(value_of("error_estimate"), .001);
+    ck_assert_double_gt(value_of("directions"), all);
+    SUCCEED("bed", POLY, "--error", "1e-7", "--targets", "3", "--cutoff", "1.1", "--points", "64");
+    ck_assert_double_eq(value_of("directions"), 65536);
+    ck_assert_double_gt(value_of("error_estimate"), 1e-7);
+    ck_assert(strstr(said, "65536 directions were not enough for --error 1e-07") != NULL);
+}
+END_TEST
+
+START_TEST(summary) {
+    SUCCEED("bed", POLY, "--directions", "34");
+    static const char *const keys[] = {"spheres",     "nonzeros",        "directions",     "threads",
+                                       "seconds",     "row_sum_min",     "row_sum_max",    "escaped_mean",
+                                       "closure_max", "reciprocity_max", "error_estimate", "fallbacks"};
+    const char *at = printed;
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k) {
+        ck_assert_msg((at = strstr(at, keys[k])) != NULL, "%s is missing or out of order", keys[k]);
+        value_of(keys[k]);
+    }
+    ck_assert_double_eq(value_of("spheres"), 2000);
+    ck_assert_double_eq(value_of("directions"), 34);
+    ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
+    ck_assert_double_lt(value_of("closure_max"), 1e-12);
+    ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
+    expect_message(POLY ": ", "largest overlap");
+}
+END_TEST
+
+START_TEST(same_bytes_for_any_threads) {
+    static const char *const threads[] = {"1", "2", "7"};
+    char *first = NULL;
+    for (int k = 0; k < 3; ++k) {
+        const char *out = in_folder("F.csv");
+        SUCCEED("bed", POLY, "--directions", "34", "--threads", threads[k], "-o", out);
+        ck_assert_double_eq(value_of("threads"), k == 0 ? 1 : k == 1 ? 2 : 7);
+        char *text = read_file(out);
+        if (!first)
+            first = text;
+        else {
+            ck_assert_str_eq(text, first);
+            free(text);
+        }
+    }
+    free(first);
+}
+END_TEST
+
+/* The rows of a target list are those of --raw, and the matrix market file holds the same as the CSV file. */
+/* The same rays whoever follows them; other seeds, other rays. */
+START_TEST(rays) {
+    static const char *const methods[] = {"cast", "mc"};
+    for (int m = 0; m < 2; ++m) {
+        char *text[3];
+        for (int k = 0; k < 3; ++k) {
+            const char *out = in_folder("F.csv");
+            SUCCEED("bed", POLY, "--method", methods[m], "--rays", "500", "--threads", k == 1 ? "3" : "1", "--seed",
+                    k == 2 ? "1" : "0", "-o", out);
+            ck_assert_double_eq(value_of("rays"), 500);
+            ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
+            ck_assert_double_lt(value_of("closure_max"), 1e-12);
+            ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
+            text[k] = read_file(out);
+        }
+        ck_assert_str_eq(text[0], text[1]);
+        ck_assert_str_ne(text[0], text[2]);
+        for (int k = 0; k < 3; ++k) free(text[k]);
+    }
+}
+END_TEST
+
+START_TEST(targets_and_formats) {
+    const char *all = in_folder("all.csv"), *some = in_folder("some.csv"), *matrix = in_folder("all.mtx");
+    SUCCEED("bed", PERIODIC, "--directions", "21", "--raw", "-o", all);
+    ck_assert_double_lt(value_of("closure_max"), 1e-12);
+    SUCCEED("bed", PERIODIC, "--directions", "21", "--raw", "-o", matrix);
+    SUCCEED("bed", PERIODIC, "--directions", "21", "--targets", "1999,0,7-9,8", "-o", some);
+    ck_assert(isnan(value_of("reciprocity_max")));
+    char *all_text = read_file(all), *some_text = read_file(some), *matrix_text = read_file(matrix);
+    char *row = strchr(some_text, '\n') + 1, *entry = matrix_text;
+    for (int k = 0; k < 3; ++k) entry = strchr(entry, '\n') + 1;
+    for (char *line = strchr(all_text, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
+        char *at = line;
+        const long i = strtol(at, &at, 10), j = strtol(at + 1, &at, 10);
+        const double f = strtod(at + 1, &at);
+        ck_assert_int_eq(strtol(entry, &entry, 10), i + 1);
+        ck_assert_int_eq(strtol(entry, &entry, 10), j + 1);
+        ck_assert_double_eq(strtod(entry, &entry), f);
+        if (i != 0 && i != 1999 && (i < 7 || i > 9)) continue;
+        ck_assert_int_eq(strncmp(line, row, (size_t)(at - line) + 1), 0);
+        row += at - line + 1;
+    }
+    ck_assert_int_eq(*row, 0);
+    ck_assert_str_eq(entry, "\n");
+    free(all_text);
+    free(some_text);
+    free(matrix_text);
+}
+END_TEST
+
+#define FRAME(number, marks, rows)                                                                                     \
+    "ITEM: TIMESTEP\n" number "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS " marks                                    \
+    "\n0 8\n0 8\n0 8\nITEM: ATOMS radius x y z id\n" rows
+
+/* Two spheres seen through periodic faces, in the open, from a CSV file and from standard input. */
+START_TEST(frames_periods_and_ids) {
+    const char *dump = write_file("two.dump", FRAME("0", "ff ff ff", "1 1 4 4 70\n1 7 4 4 -5\n")
+                                                  FRAME("1", "pp ff ff", "1 1 4 4 70\n1 7 4 4 -5\n"));
+    SUCCEED("bed", dump, "--frame", "0");
+    ck_assert_double_eq_tol(value_of("row_sum_min"), 0.00704, 1e-3);
+    ck_assert_double_eq(value_of("nonzeros"), 2);
+    SUCCEED("bed", dump);
+    const double across = value_of("row_sum_min");
+    ck_assert_double_eq_tol(across, 0.0755868 + 0.0070444, 1e-3); /* across the face, and within the box */
+    SUCCEED("bed", dump, "--frame", "0", "--periodic", "8,0,0");
+    ck_assert_double_eq(value_of("row_sum_min"), across);
+    SUCCEED("bed", dump, "--periodic", "none", "--targets", "0", "--ids", "-o", in_folder("ids.csv"));
+    ck_assert_double_lt(value_of("row_sum_min"), 0.01);
+    char *text = read_file(in_folder("ids.csv"));
+    ck_assert_int_eq(strncmp(text, "i,j,F\n70,-5,", 12), 0);
+    free(text);
+    input = dump;
+    SUCCEED("bed", "-");
+    ck_assert_double_eq(value_of("row_sum_min"), across);
+    input = "/dev/null";
+}
+END_TEST
+
+START_TEST(points_and_cutoff) {
+    SUCCEED("bed", POLY, "--directions", "34", "--points", "64");
+    ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
+    ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
+    const double entries = value_of("nonzeros");
+    SUCCEED("bed", POLY, "--directions", "34", "--areas", "points", "--cutoff", "1.5");
+    ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
+    ck_assert_double_lt(value_of("nonzeros"), entries / 2);
+}
+END_TEST
+
+START_TEST(paraview_and_picture) {
+    const char *points = in_folder("bed.vtp"), *svg = in_folder("bed.svg"), *png = in_folder("bed.png");
+    SUCCEED("bed", MONO, "--directions", "21", "-o", points, "--plot", svg);
+    char *text = read_file(points);
+    ck_assert_ptr_nonnull(strstr(text, "NumberOfPoints=\"2000\""));
+    ck_assert_ptr_nonnull(strstr(text, "</VTKFile>"));
+    free(text);
+    text = read_file(svg);
+    ck_assert_ptr_nonnull(strstr(text, "<svg"));
+    ck_assert_ptr_nonnull(strstr(text, "</svg>"));
+    free(text);
+    SUCCEED("bed", MONO, "--directions", "21", "--targets", "0-99", "--plot", png);
+    text = read_file(png);
+    ck_assert_int_eq(strncmp(text, "\x89PNG", 4), 0);
+    free(text);
+    ck_assert_int_eq(remove_files(0), 3);
+}
+END_TEST
+
+START_TEST(picture_without_gnuplot) {
+    ck_assert_int_eq(setenv("PATH", folder, 1), 0);
+    ck_assert_int_eq(
+        RUN("bed", write_file("a.csv", "x,y,z,r\n0,0,0,1\n"), "--plot", in_folder("a.png"), "-o", in_folder("F.csv")),
+        4);
+    expect_message("", "gnuplot");
+    ck_assert_int_eq(remove_files(0), 1); /* a.csv alone */
+}
+END_TEST
+
+START_TEST(progress_when_asked) {
+    SUCCEED("bed", MONO, "--directions", "21", "--progress");
+    ck_assert_ptr_nonnull(strstr(said, "2000 of 2000 rows"));
+    SUCCEED("bed", MONO, "--directions", "21");
+    ck_assert_ptr_null(strstr(said, "2000 of 2000 rows"));
+}
+END_TEST
+
+/* ---- trouble ---------------------------------------------------------------------------------------------------- */
+
+static const struct {
+    const char *text, *place, *reason;
+} bad_beds[] = {
+    {"", ": ", "no spheres"},
+    {"x,y,z,r\n0,0,0,1\n3,nan,0,1\n", ":3: ", "y is not finite"},
+    {"x,y,z,r\n0,0,foo,1\n", ":2: ", "z is not a number: 'foo'"},
+    {"x,y,r\n0,0,1\n", ":1: ", "no column z"},
+    {"x,y,z,r\n0,0,0,-1\n", ":2: ", "the radius is -1"},
+    {"x,y,z,r\n0,0,0,1\n5,0,0,1\n\n0,0,0,1\n", ":5: ", "sphere 2 has the same centre as sphere 0 of line 2"},
+    {"x,y,z,r\n0,0,0,1\n5,0,0,1\n4.5,0,0,2\n", ":4: ", "the centre of one lies inside the other"},
+    {"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n9\nITEM: ATOMS x y z radius\n0 0 0 1\n", ":6: ", "9 were declared"},
+    {FRAME("0", "xy xz yz ff ff ff", "1 1 4 4 70\n1 7 4 4 -5\n"), ":5: ", "triclinic"},
+    {FRAME("0", "ff pp ff", "1 4 0 4 70\n1 4 8 4 -5\n"), ":11: ", "line 10"}, /* the same place in the box */
+};
+
+START_TEST(bad_input) {
+    char place[300];
+    const char *bed = write_file("bad.bed", bad_beds[_i].text);
+    ck_assert_int_eq(RUN("bed", bed, "-o", in_folder("out.csv"), "--plot", in_folder("out.svg")), 3);
+    snprintf(place, sizeof place, "%s%s", bed, bad_beds[_i].place);
+    expect_message(place, bad_beds[_i].reason);
+    ck_assert_str_eq(printed, "");
+    ck_assert_int_eq(remove_files(0), 1); /* bad.bed alone */
+}
+END_TEST
+
+START_TEST(file_trouble) {
+    const char *bed = write_file("a.csv", "x,y,z,r\n0,0,0,1\n3,0,0,1\n");
+    ck_assert_int_eq(RUN("bed", "no/such.dump"), 4);
+    expect_message("no/such.dump: ", "No such file");
+    ck_assert_int_eq(RUN("bed", folder), 4);
+    expect_message(folder, "directory");
+    ck_assert_int_eq(RUN("bed", bed, "-o", "no/such/F.csv"), 4);
+    expect_message("no/such/F.csv: ", "No such file");
+    output = "/dev/full";
+    ck_assert_int_eq(RUN("bed", bed), 4);
+    output = NULL;
+    expect_message("standard output", "No space left");
+    ck_assert_int_eq(remove_files(0), 1);
+}
+END_TEST
+
+/* A disc that fills up, as far as a limit on the size of files can play it. */
+START_TEST(full_disc) {
+    const struct rlimit limit = {100000, 100000};
+    ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "21", "-o", in_folder("F.csv")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.csv: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
+}
+END_TEST
+
+/* Far more work than a test has time for, stopped when the output's temporary file has appeared. */
+START_TEST(interrupted) {
+    static const int signals[] = {SIGINT, SIGTERM};
+    const char *out = in_folder("F.csv");
+    const pid_t process = start(LIST("bed", MONO, "--directions", "65536", "-o", out));
+    for (int found = 0; !found;) {
+        DIR *list = opendir(folder);
+        for (struct dirent *entry; (entry = readdir(list));) found |= strncmp(entry->d_name, "F.csv", 5) == 0;
+        closedir(list);
+        nanosleep(&(struct timespec){0, 10000000}, NULL);
+    }
+    ck_assert_int_eq(kill(process, signals[_i]), 0);
+    ck_assert_int_eq(finish(process), 128 + signals[_i]);
+    expect_message("", "interrupted");
+    ck_assert_int_eq(remove_files(0), 0);
+}
+END_TEST
+
+int main(void) {
+    TCase *usage = tcase_create("usage"), *pairs = tcase_create("pairs"), *beds = tcase_create("beds"),
+          *trouble = tcase_create("trouble");
+    TCase *const cases[] = {usage, pairs, beds, trouble};
+    Suite *suite = suite_create("cli");
+    for (int k = 0; k < 4; ++k) {
+        tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
+        tcase_set_timeout(cases[k], 120);
+        suite_add_tcase(suite, cases[k]);
+    }
+    tcase_add_test(usage, help_and_version);
+    tcase_add_loop_test(usage, bad_usage, 0, (int)(sizeof misuse / sizeof *misuse));
+    tcase_add_test(pairs, exact_pair);
+    tcase_add_test(pairs, exact_pair_checked);
+    tcase_add_test(pairs, beam_pair);
+    tcase_add_test(pairs, cast_pair);
+    tcase_add_test(pairs, blocked_pair);
+    tcase_add_test(beds, surface_method);
+    tcase_add_test(beds, summary);
+    tcase_add_test(beds, tolerance);
+    tcase_add_test(beds, same_bytes_for_any_threads);
+    tcase_add_test(beds, rays);
+    tcase_add_test(beds, targets_and_formats);
+    tcase_add_test(beds, frames_periods_and_ids);
+    tcase_add_test(beds, points_and_cutoff);
+    tcase_add_test(beds, paraview_and_picture);
+    tcase_add_test(beds, picture_without_gnuplot);
+    tcase_add_test(beds, progress_when_asked);
+    tcase_add_loop_test(trouble, bad_input, 0, (int)(sizeof bad_beds / sizeof *bad_beds));
+    tcase_add_test(trouble, file_trouble);
+    tcase_add_test(trouble, full_disc);
+    tcase_add_loop_test(trouble, interrupted, 0, 2);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed != 0;
+}

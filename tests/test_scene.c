@@ -1,0 +1,266 @@
+/* test_scene.c - scenes: sizes, faults, and that the grid finds what brute force finds. SPDX-License-Identifier: MIT */
+#include <stdio.h>
+
+#include "bed/scene.h"
+#include "scenes.h"
+
+START_TEST(sizes_hold) {
+    static _Alignas(64) unsigned char memory[FIBRAD_SCENE_BYTES(500)], work_memory[FIBRAD_WORK_BYTES(64, 32, 64)];
+    for (uint32_t n = 1; n <= 500; n += n < 40 ? 1 : 53) {
+        fibrad_scene_config config = {.spheres = n};
+        size_t size = fibrad_scene_size(&config);
+        ck_assert_uint_gt(size, 0);
+        ck_assert_uint_le(size, FIBRAD_SCENE_BYTES(n));
+        struct bed bed = packing(n, .5, 1, .4, n, false);
+        fibrad_spheres spheres = {bed.x, bed.y, bed.z, bed.r, n};
+        fibrad_scene *scene = NULL;
+        memset(memory, 0xa5, sizeof memory);
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory, size - 1, &config, &spheres, NULL), FIBRAD_E_SIZE);
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory + 8, size, &config, &spheres, NULL), FIBRAD_E_ALIGNMENT);
+        ck_assert_ptr_null(scene);
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory, size, &config, &spheres, NULL), FIBRAD_OK);
+        for (size_t k = size; k < sizeof memory; k++) ck_assert_uint_eq(memory[k], 0xa5);
+        bed_free(&bed);
+    }
+    for (uint32_t near = 1; near <= 64; near += 9)
+        for (uint32_t discs = 1; discs <= 32; discs += 7)
+            for (uint32_t entries = 1; entries <= 64; entries += 9)
+                ck_assert_uint_le(fibrad_work_size(&(fibrad_work_config){near, discs, entries}),
+                                  FIBRAD_WORK_BYTES(near, discs, entries));
+    fibrad_work *work = NULL;
+    fibrad_work_config config = {64, 32, 64};
+    ck_assert_int_eq(fibrad_work_init(&work, work_memory, sizeof work_memory, &config), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_work_init(&work, work_memory, 100, &config), FIBRAD_E_SIZE);
+    ck_assert_int_eq(fibrad_work_init(&work, work_memory + 1, sizeof work_memory - 1, &config), FIBRAD_E_ALIGNMENT);
+    ck_assert_int_eq(fibrad_work_init(NULL, work_memory, sizeof work_memory, &config), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(fibrad_work_size(&(fibrad_work_config){.near = UINT32_MAX}), 0);
+}
+END_TEST
+
+START_TEST(bad_configurations_are_refused) {
+    ck_assert_uint_eq(fibrad_scene_size(NULL), 0);
+    static const fibrad_scene_config bad[] = {{.spheres = 0},
+                                              {.spheres = FIBRAD_SPHERES_MAX + 1},
+                                              {.spheres = 1, .isa = 99},
+                                              {.spheres = 1, .isa = -1},
+                                              {.spheres = 1, .period = {0, -1, 0}},
+                                              {.spheres = 1, .period = {0, 0, NAN}},
+                                              {.spheres = 1, .period = {INFINITY, 0, 0}}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) ck_assert_uint_eq(fibrad_scene_size(&bad[k]), 0);
+}
+END_TEST
+
+static int fault_of(const struct bed *bed, fibrad_fault *fault) {
+    fibrad_scene_config config = {.spheres = bed->n};
+    memcpy(config.period, bed->period, sizeof config.period);
+    size_t size = fibrad_scene_size(&config);
+    fibrad_spheres spheres = {bed->x, bed->y, bed->z, bed->r, bed->n};
+    fibrad_scene *scene = NULL;
+    void *block = block_of(size);
+    int status = fibrad_scene_init(&scene, block, size, &config, &spheres, fault);
+    ck_assert(status == FIBRAD_OK || scene == NULL);
+    free(block);
+    return status;
+}
+
+START_TEST(faults_name_their_spheres) {
+    fibrad_fault fault;
+    static const double broken[] = {NAN, INFINITY, -INFINITY};
+    for (int b = 0; b < 3; b++)
+        for (int field = 0; field < 4; field++) {
+            struct bed bed = lattice('p', 4);
+            double *fields[] = {bed.x, bed.y, bed.z, bed.r};
+            fields[field][5] = broken[b];
+            ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_ARGUMENT);
+            ck_assert_uint_eq(fault.first, 5);
+            bed_free(&bed);
+        }
+    struct bed bed = lattice('p', 4);
+    bed.r[7] = 0;
+    ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(fault.first, 7);
+    bed.r[7] = -1;
+    ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_ARGUMENT);
+    bed.r[7] = 1;
+    bed.x[3] = bed.x[9], bed.y[3] = bed.y[9], bed.z[3] = bed.z[9]; /* equal centres */
+    ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_GEOMETRY);
+    ck_assert_uint_eq(fault.first, 3);
+    ck_assert_uint_eq(fault.second, 9);
+    bed.x[3] += .5, bed.r[3] = .1; /* one inside another */
+    ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_GEOMETRY);
+    bed_free(&bed);
+
+    /* lengths that leave no room for squares, coordinates that leave no digits */
+    static const double far[][4] = {{8e307, 0, 0, 1e307}, {1e151, 0, 0, 1e150}, {0, 0, 0, 1e-151}, {1e14, 0, 0, 1}};
+    for (int k = 0; k < 4; k++) {
+        bed = bed_of(1, &far[k]);
+        ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_ARGUMENT);
+        ck_assert_uint_eq(fault.first, 0);
+        bed_free(&bed);
+    }
+    bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {9.5, 0, 0, 1}}); /* inside each other across the box */
+    ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_OK);
+    bed.period[0] = 10;
+    ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_GEOMETRY);
+    bed.period[0] = .5; /* a sphere wider than its box */
+    ck_assert_int_eq(fault_of(&bed, &fault), FIBRAD_E_GEOMETRY);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Coordinates outside the periodic box, among them some whose quotient by the period rounds up to a whole number. */
+START_TEST(any_image_of_a_centre_will_do) {
+    struct bed bed = bed_of(2, (const double[][4]){{2.1, 0, 0, .5}, {14.559999999999999, 3, 0, .5}});
+    for (int axis = 0; axis < 3; axis++) {
+        struct bed turned = bed_of(2, (const double[][4]){{0, 0, 0, .5}, {3, 3, 3, .5}});
+        double *c[] = {turned.x, turned.y, turned.z};
+        for (int i = 0; i < 2; i++) c[axis][i] = bed.x[i], c[(axis + 1) % 3][i] = bed.y[i];
+        turned.period[axis] = 6.2299999999999995;
+        free(scene_of(&turned, FIBRAD_ISA_SCALAR));
+        bed_free(&turned);
+    }
+    bed_free(&bed);
+    for (uint64_t k = 0; k < 20000; k++) {
+        double period = 1 + floor(900 * bed_make_random(3, 3 * k)) / 100;
+        double x[2] = {floor(1000 * bed_make_random(3, 3 * k + 1)) / 100, 0}, y[2] = {0, .5}, r[2] = {.1, .1};
+        x[1] = x[0] + period * (1 + floor(5 * bed_make_random(3, 3 * k + 2)));
+        fibrad_scene_config config = {.spheres = 2, .period = {period, 0, 0}};
+        fibrad_spheres spheres = {x, y, y, r, 2};
+        static _Alignas(64) unsigned char memory[FIBRAD_SCENE_BYTES(2)];
+        fibrad_scene *scene;
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, &config, &spheres, NULL), FIBRAD_OK);
+    }
+}
+END_TEST
+
+/* A particle that a simulation has lost must not make one cell of all the others. */
+START_TEST(strays_do_not_spread_the_cells) {
+    struct bed bed = packing(4000, .5, .6, .5, 30, false);
+    bed.x[17] = 1e6, bed.y[99] = -1e9, bed.z[3000] = 1e12;
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_SCALAR);
+    uint32_t most = 0;
+    for (uint32_t c = 0; c < scene->facts.cells; c++)
+        if (scene->start[c + 1] - scene->start[c] > most) most = scene->start[c + 1] - scene->start[c];
+    ck_assert_uint_le(most, 16);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(overlap_is_reported) {
+    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 5, 2}, {0, .98, 2.2, .5}});
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_scene_facts facts;
+    fibrad_scene_describe(scene, &facts);
+    ck_assert_double_eq(facts.overlap_max, 0);
+    ck_assert_double_eq(facts.radius_min, .5);
+    ck_assert_double_eq(facts.radius_max, 2);
+    ck_assert_uint_eq(facts.spheres, 3);
+    free(scene);
+    bed.z[2] = 2.6;
+    bed.y[2] = 0;
+    scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_scene_describe(scene, &facts);
+    ck_assert_double_eq_tol(facts.overlap_max, .1 / .5, 1e-15);
+    ck_assert_uint_eq(facts.overlap_pair[0] + facts.overlap_pair[1], 3);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Random boxes: every sphere whose centre, or image's centre, lies within must come up, and none twice. */
+START_TEST(walks_find_what_is_there) {
+    struct bed beds[] = {packing(500, .1, 1.6, .4, 21, false), packing(500, .5, .6, .5, 22, true), lattice('p', 5)};
+    beds[1].period[1] = 0;
+    uint64_t count = 0;
+    for (size_t b = 0; b < 3; b++) {
+        fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_SCALAR);
+        const double *c[3] = {scene->x, scene->y, scene->z};
+        double side = scene->high[0] - scene->low[0];
+        for (int round = 0; round < 200; round++) {
+            double low[3], high[3];
+            for (int axis = 0; axis < 3; axis++) {
+                low[axis] = scene->low[axis] + side * (3 * bed_make_random(1, count++) - 1.5);
+                high[axis] = low[axis] + side * bed_make_random(1, count++);
+            }
+            for (uint32_t i = 0; i < beds[b].n; i++) {
+                long expected = 1, seen = 0;
+                for (int axis = 0; axis < 3; axis++) {
+                    double x = c[axis][i], period = scene->period[axis];
+                    if (period > 0)
+                        expected *= (long)(floor((high[axis] - x) / period) - ceil((low[axis] - x) / period)) + 1;
+                    else
+                        expected *= x >= low[axis] && x <= high[axis];
+                }
+                if (i % 50 != 0 || expected == 0) continue;
+                for (uint32_t l = 0; l < scene->levels; l++) {
+                    fibrad_walk walk;
+                    fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+                    while (fibrad_walk_next(&walk))
+                        for (uint32_t j = walk.begin; j < walk.end; j++) {
+                            bool in = j == i;
+                            for (int axis = 0; axis < 3; axis++) {
+                                double x = c[axis][j] + walk.shift[axis];
+                                in = in && x >= low[axis] && x <= high[axis];
+                            }
+                            seen += in;
+                        }
+                }
+                ck_assert_int_eq(seen, expected);
+            }
+        }
+        free(scene);
+        bed_free(&beds[b]);
+    }
+}
+END_TEST
+
+/* Building is linear: cells never outnumber spheres by more than a few, and no cell is crowded. */
+START_TEST(cells_follow_the_spheres) {
+    static const double spans[][3] = {{1, 1, 1}, {1000, 1, 1}, {1, 1e6, 1e6}, {1e-3, 1, 1e3}};
+    for (size_t s = 0; s < sizeof spans / sizeof *spans; s++) {
+        struct bed bed;
+        bed_init(&bed, false, 0);
+        for (uint64_t i = 0; i < 4000; i++)
+            add_sphere(&bed, spans[s][0] * bed_make_random(5, 3 * i), spans[s][1] * bed_make_random(5, 3 * i + 1),
+                       spans[s][2] * bed_make_random(5, 3 * i + 2), 1e-7);
+        fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_SCALAR);
+        ck_assert_uint_le(scene->facts.cells, 4000 + 8);
+        uint32_t most = 0;
+        for (uint32_t c = 0; c < scene->facts.cells; c++)
+            if (scene->start[c + 1] - scene->start[c] > most) most = scene->start[c + 1] - scene->start[c];
+        ck_assert_uint_le(most, 16);
+        free(scene);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
+/* Found by fuzzing: rounding left both coordinates out of the box between them, and the choice of cells had no end. */
+START_TEST(one_stray_beside_equal_coordinates) {
+    struct bed bed = bed_of(1, (const double[][4]){{20, 0, 0, 1}});
+    for (int i = 0; i < 30; i++) add_sphere(&bed, 1.3, 2.5 * i, 0, 1);
+    free(scene_of(&bed, FIBRAD_ISA_BEST));
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("scene");
+    TCase *tcase = tcase_create("scene");
+    tcase_add_test(tcase, sizes_hold);
+    tcase_add_test(tcase, bad_configurations_are_refused);
+    tcase_add_test(tcase, faults_name_their_spheres);
+    tcase_add_test(tcase, any_image_of_a_centre_will_do);
+    tcase_add_test(tcase, strays_do_not_spread_the_cells);
+    tcase_add_test(tcase, overlap_is_reported);
+    tcase_add_test(tcase, walks_find_what_is_there);
+    tcase_add_test(tcase, cells_follow_the_spheres);
+    tcase_add_test(tcase, one_stray_beside_equal_coordinates);
+    suite_add_tcase(suite, tcase);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed != 0;
+}

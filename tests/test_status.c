@@ -1,0 +1,68 @@
+/* test_status.c - status codes, their texts, the version and the names of instruction sets.
+ * SPDX-License-Identifier: MIT */
+#include "fibrad.h"
+
+#include <check.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+START_TEST(numbers_never_change) {
+    ck_assert_int_eq(FIBRAD_OK, 0);
+    ck_assert_int_eq(FIBRAD_E_ARGUMENT, -1);
+    ck_assert_int_eq(FIBRAD_E_SIZE, -2);
+    ck_assert_int_eq(FIBRAD_E_ALIGNMENT, -3);
+    ck_assert_int_eq(FIBRAD_E_CAPACITY, -4);
+    ck_assert_int_eq(FIBRAD_E_TABLE, -5);
+    ck_assert_int_eq(FIBRAD_E_GEOMETRY, -6);
+}
+END_TEST
+
+START_TEST(each_status_has_its_own_text) {
+    for (int a = FIBRAD_E_GEOMETRY; a <= FIBRAD_OK; a++) {
+        const char *text = fibrad_status_text(a);
+        ck_assert_uint_gt(strlen(text), 0);
+        ck_assert_int_ne(text[strlen(text) - 1], '.');
+        ck_assert_str_ne(text, fibrad_status_text(1));
+        for (int b = FIBRAD_E_GEOMETRY; b < a; b++) ck_assert_str_ne(text, fibrad_status_text(b));
+    }
+}
+END_TEST
+
+START_TEST(other_numbers_have_a_text) {
+    static const int others[] = {1, 1000, -7, -1000, -2147483647 - 1, 2147483647};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) ck_assert_ptr_nonnull(fibrad_status_text(others[i]));
+}
+END_TEST
+
+START_TEST(version_is_the_headers) {
+    int major, minor, patch, read = -1;
+    ck_assert_str_eq(fibrad_version(), FIBRAD_VERSION);
+    ck_assert_int_eq(sscanf(fibrad_version(), "%d.%d.%d%n", &major, &minor, &patch, &read), 3);
+    ck_assert_int_eq(read, (int)strlen(fibrad_version()));
+}
+END_TEST
+
+START_TEST(instruction_sets_have_names) {
+    static const char *const names[] = {"best", "scalar", "sse2", "avx2", "avx512"};
+    for (int isa = FIBRAD_ISA_BEST; isa <= FIBRAD_ISA_AVX512; isa++) ck_assert_str_eq(fibrad_isa_name(isa), names[isa]);
+    ck_assert_str_eq(fibrad_isa_name(-1), "?");
+    ck_assert_str_eq(fibrad_isa_name(5), "?");
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("status");
+    TCase *tests = tcase_create("status");
+    tcase_add_test(tests, numbers_never_change);
+    tcase_add_test(tests, each_status_has_its_own_text);
+    tcase_add_test(tests, other_numbers_have_a_text);
+    tcase_add_test(tests, version_is_the_headers);
+    tcase_add_test(tests, instruction_sets_have_names);
+    suite_add_tcase(suite, tests);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    int failures = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,448 @@
+/* test_stress.c - attempts to break the numerics: scale, distance from the origin, contact, radius ratio, degenerate
+ * windows, lattices along the beams, obstacles, random scenes by the million. SPDX-License-Identifier: MIT
+ *
+ * `make test` runs a part of each attack, `make stress` (STRESS=1 in the environment) all of it. One line per attack
+ * tells the worst that was seen and what is tolerated. */
+#include <stdio.h>
+
+#define FIBRAD_ISA_SUFFIX _scalar
+#include "bed/areas_lanes.h"
+#include "reference.h"
+#include "scenes.h"
+
+static bool all(void) { return getenv("STRESS") != NULL; }
+
+static uint64_t rounds(uint64_t some, uint64_t many) { return all() ? many : some; }
+
+static void report(const char *attack, double worst, double bound) {
+    printf("%-66s %8.2g  (bound %.2g)\n", attack, worst, bound);
+    fflush(stdout);
+    ck_assert_msg(worst <= bound, "%s: %g exceeds %g", attack, worst, bound); /* false for NaN */
+}
+
+/* The larger one; NaN stays. */
+static double worse(double a, double b) { return b <= a ? a : b; }
+
+static double random_in(uint64_t seed, double low, double high) {
+    static uint64_t count[16];
+    return low + (high - low) * bed_make_random(seed, count[seed % 16]++);
+}
+
+static double exact(double r1, double r2, double gap) {
+    double f = -1;
+    ck_assert_int_eq(fibrad_pair_exact(r1, r2, gap, &f), FIBRAD_OK);
+    return f;
+}
+
+static fibrad_row beam(const struct bed *bed, uint32_t i, uint32_t directions) {
+    fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
+    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 512, .entries = bed->n});
+    fibrad_row row = row_of(bed->n);
+    ck_assert_int_eq(fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = directions}, &row), FIBRAD_OK);
+    free(scene);
+    free(work);
+    return row;
+}
+
+static double closure(const fibrad_row *row) { return fabs(row_sum(row) + row->escaped - 1); }
+
+static void move(struct bed *to, const struct bed *from, double factor, const double shift[3]) {
+    for (uint32_t i = 0; i < from->n; i++) {
+        to->x[i] = factor * from->x[i] + shift[0], to->y[i] = factor * from->y[i] + shift[1];
+        to->z[i] = factor * from->z[i] + shift[2], to->r[i] = factor * from->r[i];
+    }
+}
+
+/* ---- scale and place -------------------------------------------------------------------------------------------- */
+
+START_TEST(pairs_at_every_scale) {
+    double two = 0, ten = 0;
+    for (uint64_t k = 0; k < rounds(200, 20000); k++) {
+        double r1 = pow(10, random_in(1, -3, 0)), r2 = pow(10, random_in(1, -3, 0));
+        double gap = k % 2 ? pow(10, random_in(1, -16, 3)) : -fmin(r1, r2) * pow(10, random_in(1, -16, .3));
+        double f = exact(r1, r2, gap);
+        for (int e = -400; e <= 400; e += all() ? 1 : 40) two += exact(ldexp(r1, e), ldexp(r2, e), ldexp(gap, e)) != f;
+        for (int e = -100; e <= 100; e += 10) {
+            double s = pow(10, e);
+            ten = worse(ten, fabs(exact(r1 * s, r2 * s, gap * s) / f - 1));
+        }
+    }
+    report("pairs times 2^k, k = -400 ... 400: results with other bits", two, 0);
+    report("pairs times 10^k, k = -100 ... 100: relative", ten, 1e-13);
+}
+END_TEST
+
+START_TEST(rows_at_every_scale) {
+    static const double nowhere[3] = {0, 0, 0};
+    struct bed bed = packing(100, .5, 1.5, .5, 3, false), scaled = packing(100, .5, 1.5, .5, 3, false);
+    fibrad_row row = beam(&bed, 42, 55);
+    double two = 0, ten = 0;
+    for (int k = -400; k <= 400; k += all() ? 1 : 25) {
+        move(&scaled, &bed, ldexp(1, k), nowhere);
+        fibrad_row other = beam(&scaled, 42, 55);
+        two += !same_bits(&row, &other);
+        row_free(&other);
+        if (abs(k) > 100) continue;
+        move(&scaled, &bed, pow(10, k), nowhere);
+        other = beam(&scaled, 42, 55);
+        ten = worse(ten, row_distance(&row, &other));
+        row_free(&other);
+    }
+    report("rows times 2^k, k = -400 ... 400: results with other bits", two, 0);
+    report("rows times 10^k, k = -100 ... 100", ten, 1e-13);
+    row_free(&row);
+    bed_free(&bed);
+    bed_free(&scaled);
+}
+END_TEST
+
+/* Moved coordinates are rounded; the row of the rounded bed, moved back without a further rounding, tells how much of
+ * the loss is the kernel's own. */
+START_TEST(rows_far_from_the_origin) {
+    for (int e = 3; e <= 9; e += 2) {
+        double offset = pow(10, e), own = 0, loss = 0, away[3] = {offset, -.7 * offset, .3 * offset};
+        double back[3] = {-away[0], -away[1], -away[2]};
+        for (uint64_t seed = 0; seed < rounds(2, 20); seed++) {
+            struct bed bed = packing(100, .5, 1.5, .5, 30 + seed, false), far = packing(100, .5, 1.5, .5, 1, false);
+            struct bed rounded = packing(100, .5, 1.5, .5, 1, false);
+            move(&far, &bed, 1, away);
+            move(&rounded, &far, 1, back);
+            memcpy(rounded.r, bed.r, bed.n * sizeof *bed.r), memcpy(far.r, bed.r, bed.n * sizeof *bed.r);
+            fibrad_row here = beam(&bed, 7, 100), there = beam(&far, 7, 100), same = beam(&rounded, 7, 100);
+            own = worse(own, row_distance(&there, &same));
+            loss = worse(loss, row_distance(&there, &here));
+            row_free(&here), row_free(&there), row_free(&same);
+            bed_free(&bed), bed_free(&far), bed_free(&rounded);
+        }
+        char attack[100];
+        snprintf(attack, sizeof attack, "rows 1e%d radii from the origin: beyond rounding of coordinates", e);
+        report(attack, own, 1e-14);
+        snprintf(attack, sizeof attack, "rows 1e%d radii from the origin: in all", e);
+        report(attack, loss, 4 * 0x1p-52 * offset);
+    }
+}
+END_TEST
+
+/* ---- contact ---------------------------------------------------------------------------------------------------- */
+
+/* Gaps from an overlap of half the smaller radius to 1e12 radii, in steps that are fine near contact: F falls, and two
+ * neighbours differ by no more than the slope there allows. */
+START_TEST(pairs_across_contact) {
+    static const double ratios[] = {1, .5, .1, 1e-3, 1e-6, 2, 10, 1e3, 1e6};
+    double rise = 0, jump = 0;
+    for (size_t q = 0; q < sizeof ratios / sizeof *ratios; q++) {
+        double r1 = 1, r2 = ratios[q], smaller = fmin(r1, r2), contact = exact(r1, r2, 0);
+        uint64_t steps = rounds(2000, 200000);
+        double last = exact(r1, r2, -.5 * smaller), last_gap = -.5 * smaller;
+        for (uint64_t k = 1; k <= 2 * steps; k++) {
+            double part = ((double)k - (double)steps) / (double)steps; /* (-1, 1] */
+            double gap = part < 0 ? -smaller * .5 * pow(10, 16 * (-part - 1)) : smaller * pow(10, 28 * part - 16);
+            if (part == 0) gap = 0;
+            double f = exact(r1, r2, gap);
+            rise = worse(rise, (f - last) / f);
+            /* |dF/dgap| <= r2^2/(r1^2 smaller) is generous by a factor of two at least */
+            double allowed = fmin(1, r2 * r2 / (r1 * r1)) * fabs(gap - last_gap) / smaller;
+            if (fabs(gap) < 1e-3 * smaller) jump = worse(jump, (last - f - allowed) / contact);
+            last = f, last_gap = gap;
+        }
+        static const double tiny[] = {1e-300, -1e-300, 1e-16, -1e-16};
+        for (int k = 0; k < 4; k++) jump = worse(jump, fabs(exact(r1, r2, tiny[k] * smaller) / contact - 1) - 1e-15);
+    }
+    report("pairs, overlap .5 to gap 1e12, ratios 1e-6 ... 1e6: F rises by", rise, 1e-15);
+    report("pairs across contact: F jumps by", fmax(0, jump), 2e-15);
+}
+END_TEST
+
+/* The same for beams: in every direction the disc moves out as the gap grows. */
+START_TEST(beams_across_contact) {
+    double rise = 0, jump = 0;
+    for (uint64_t seed = 0; seed < rounds(2, 20); seed++) {
+        double r2 = pow(10, random_in(2, -.7, .7)), t = random_in(2, 0, 1), p = random_in(2, 0, 6.28);
+        double w[3] = {sqrt(1 - t * t) * cos(p), sqrt(1 - t * t) * sin(p), t}, last = 0, last_gap = 0;
+        for (int k = -1000; k <= 1000; k++) {
+            double gap = (k < 0 ? -1 : 1) * fmin(1, r2) * .5 * pow(abs(k) / 1000.0, 5), d = 1 + r2 + gap;
+            struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {d * w[0], d * w[1], d * w[2], r2}});
+            fibrad_row row = beam(&bed, 0, 144);
+            double f = row_factor(&row, 1);
+            if (k > -1000) {
+                rise = worse(rise, f - last);
+                jump = worse(jump, last - f - 2 * fmin(1, r2) * (gap - last_gap));
+            }
+            last = f, last_gap = gap;
+            row_free(&row);
+            bed_free(&bed);
+        }
+    }
+    report("beams across contact, overlap .5 to gap .5: F rises by", fmax(0, rise), 1e-15);
+    report("beams across contact: F jumps by", fmax(0, jump), 1e-15);
+}
+END_TEST
+
+START_TEST(radius_ratios) {
+    double reciprocity = 0, from_small = 0, from_large = 0, open = 0;
+    for (int e = -60; e <= 60; e += all() ? 1 : 10) {
+        double r2 = pow(10, e / 10.0);
+        for (int g = -12; g <= 12; g += 3) {
+            double gap = pow(10, g), there = exact(1, r2, gap), back = r2 * r2 * exact(r2, 1, gap);
+            reciprocity = worse(reciprocity, fabs(there / back - 1));
+        }
+        double gap = .1 * fmin(1, r2), d = 1 + r2 + gap;
+        struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {.48 * d, .6 * d, .64 * d, r2}});
+        double truth = exact(1, r2, gap);
+        fibrad_row row = beam(&bed, 0, 2000);
+        if (r2 >= 1)
+            from_small = worse(from_small, fabs(row_factor(&row, 1) - truth));
+        else
+            from_large = worse(from_large, fabs(row_factor(&row, 1) - truth));
+        open = worse(open, closure(&row));
+        row_free(&row);
+        bed_free(&bed);
+    }
+    report("radius ratios 1e-6 ... 1e6, pairs: r1^2 F12 / r2^2 F21 - 1", reciprocity, 1e-14);
+    report("radius ratios 1 ... 1e6, beams from the smaller sphere: F", from_small, 3e-3);
+    report("radius ratios 1 ... 1e6, beams from the larger sphere: F", from_large, 1e-4);
+    report("radius ratios 1e-6 ... 1e6: sum + escaped - 1", open, 1e-12);
+}
+END_TEST
+
+/* ---- windows ---------------------------------------------------------------------------------------------------- */
+
+#define DISCS 24
+
+/* Discs drawn from few places and radii, so that they are equal, concentric, tangent within and without, as large as
+ * the window, and meet by threes and more in one point; one in two is then moved by an ulp or a little more. */
+START_TEST(degenerate_windows) {
+    double worst = 0, open = 0;
+    fibrad_arena arena = {0};
+    fibrad_areas areas;
+    fibrad_areas_layout(&areas, &arena, DISCS);
+    size_t size = arena.used;
+    void *block = block_of(size);
+    memset(block, 0, size);
+    arena = (fibrad_arena){block, 0, size};
+    fibrad_areas_layout(&areas, &arena, DISCS);
+    const double h = sqrt(3) / 2;
+    const double places[] = {0, .5, 1, 1.5, 2, h, h / 2, .25, .75, sqrt(.5), sqrt(2)},
+                 radii[] = {1, .5, 2, h, .25, 1.5, .75, sqrt(.5)};
+    for (uint64_t round = 0; round < rounds(30000, 300000); round++) {
+        double u[DISCS], v[DISCS], r[DISCS], mine[DISCS] = {0}, expected[DISCS], rest_expected;
+        uint32_t n = 2 + (uint32_t)random_in(3, 0, round % 10 == 0 ? DISCS - 2 : 7);
+        uint32_t kinds = 2 + (uint32_t)random_in(3, 0, 7); /* few kinds: many coincidences */
+        for (uint32_t k = 0; k < n; k++) {
+            u[k] = places[(int)random_in(3, 0, kinds + 2)] * (random_in(3, 0, 1) < .5 ? -1 : 1);
+            v[k] = places[(int)random_in(3, 0, kinds + 2)] * (random_in(3, 0, 1) < .5 ? -1 : 1);
+            r[k] = radii[(int)random_in(3, 0, kinds)];
+            double nudge = random_in(3, 0, 1);
+            if (nudge < .2) u[k] = nextafter(u[k], nudge < .1 ? 9 : -9);
+            if (nudge > .1 && nudge < .3) v[k] = nextafter(v[k], nudge < .2 ? 9 : -9);
+            if (nudge > .25 && nudge < .4) r[k] = nextafter(r[k], nudge < .3 ? 9 : -9);
+            if (nudge > .9) u[k] += pow(10, random_in(3, -16, -5));
+        }
+        fibrad_areas_begin_scalar(&areas);
+        bool more = true;
+        for (uint32_t k = 0; k < n && more; k++) more = fibrad_areas_disc_scalar(&areas, k, u[k], v[k], r[k]);
+        double rest = fibrad_areas_end_scalar(&areas), total = rest;
+        ck_assert(!areas.overflow);
+        for (uint32_t c = 1; c < areas.circles; c++) mine[areas.whose[c]] = areas.area[c];
+        ck_assert_int_eq(reference_window(n, u, v, r, expected, &rest_expected), REFERENCE_OK);
+        for (uint32_t k = 0; k < n; k++) {
+            worst = worse(worst, fabs(mine[k] - expected[k]));
+            total += mine[k];
+        }
+        worst = worse(worst, fabs(rest - rest_expected));
+        open = worse(open, fabs(total - acos(-1)));
+    }
+    free(block);
+    /* three circles tangent in one point within rounding meet at points that are the root of that apart, 1.5e-8 */
+    report("degenerate windows and 1 ulp beside them: visible area", worst, 1.5e-8);
+    report("degenerate windows: sum of areas + rest - pi", open, 1.5e-8);
+}
+END_TEST
+
+/* Lattices turned so that an axis of theirs lies along one of the beams, or a little off it: the row agrees with that
+ * of the lattice with every sphere moved by 1e-9, as no single beam may matter that much. */
+START_TEST(lattices_along_the_beams) {
+    static const double axes[][3] = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+    double worst = 0, open = 0;
+    for (int kind = 0; kind < 3; kind++)
+        for (int a = 0; a < 3; a++)
+            for (uint64_t k = 0; k < rounds(3, 34); k++) {
+                double w[3], axis[3], length = sqrt(axes[a][0] + axes[a][1] + axes[a][2]), cosine = 0, m[3][3];
+                ck_assert_int_eq(fibrad_direction((uint32_t)k, 34, w), FIBRAD_OK);
+                for (int c = 0; c < 3; c++) axis[c] = axes[a][c] / length, cosine += axis[c] * w[c];
+                /* R = I + [v] + [v]^2/(1 + cosine), v = axis x w, turns the axis into w */
+                double v[3] = {axis[1] * w[2] - axis[2] * w[1], axis[2] * w[0] - axis[0] * w[2],
+                               axis[0] * w[1] - axis[1] * w[0]};
+                double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], s = 1 / (1 + cosine);
+                const double cross[3][3] = {{0, -v[2], v[1]}, {v[2], 0, -v[0]}, {-v[1], v[0], 0}};
+                for (int p = 0; p < 3; p++)
+                    for (int q = 0; q < 3; q++)
+                        m[p][q] = (p == q) + cross[p][q] + s * (v[p] * v[q] - (p == q) * square);
+                struct bed bed = lattice("pif"[kind], 7), moved = lattice("pif"[kind], 7);
+                for (uint32_t i = 0; i < bed.n; i++) {
+                    double c[3] = {bed.x[i], bed.y[i], bed.z[i]};
+                    double *to[3] = {&bed.x[i], &bed.y[i], &bed.z[i]},
+                           *other[3] = {&moved.x[i], &moved.y[i], &moved.z[i]};
+                    for (int p = 0; p < 3; p++) {
+                        *to[p] = m[p][0] * c[0] + m[p][1] * c[1] + m[p][2] * c[2];
+                        *other[p] = *to[p] + 1e-9 * random_in(4, -1, 1);
+                    }
+                }
+                fibrad_row row = beam(&bed, 0, 34), other = beam(&moved, 0, 34);
+                worst = worse(worst, row_distance(&row, &other));
+                open = worse(open, closure(&row));
+                row_free(&row), row_free(&other);
+                bed_free(&bed), bed_free(&moved);
+            }
+    report("SC, BCC, FCC along the beams, against 1e-9 beside them", worst, 1e-7);
+    report("SC, BCC, FCC along the beams: sum + escaped - 1", open, 1e-9); /* as for degenerate windows */
+}
+END_TEST
+
+/* ---- obstacles -------------------------------------------------------------------------------------------------- */
+
+/* An obstacle moves across a pair: F is never negative nor above the free F, and changes by no more than the area its
+ * edge sweeps, 2 r/pi per step and unit area. */
+START_TEST(obstacle_across_a_pair) {
+    double negative = 0, above = 0, jump = 0, left = 0;
+    for (uint64_t seed = 0; seed < rounds(3, 30); seed++) {
+        double r2 = random_in(5, .3, 2), gap = random_in(5, 1.2, 3), r = random_in(5, .05, .5),
+               y = random_in(5, -.7, .7);
+        struct bed pair = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 1 + r2 + gap, r2}});
+        fibrad_row row = beam(&pair, 0, 233);
+        double without = row_factor(&row, 1), last = without, step = all() ? 1e-3 : 1e-2;
+        row_free(&row);
+        bed_free(&pair);
+        for (double x = -6; x <= 6; x += step) {
+            struct bed bed =
+                bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 1 + r2 + gap, r2}, {x, y, 1 + gap / 2, r}});
+            row = beam(&bed, 0, 233);
+            double f = row_factor(&row, 1);
+            negative = worse(negative, -f);
+            above = worse(above, f - without);
+            jump = worse(jump, fabs(f - last) - 2 * r * step);
+            last = f;
+            row_free(&row);
+            bed_free(&bed);
+        }
+        left = worse(left, fabs(last - without));
+    }
+    report("obstacle across a pair: F below 0 by", fmax(0, negative), 0);
+    report("obstacle across a pair: F above the free F by", fmax(0, above), 1e-14);
+    report("obstacle across a pair: F jumps by", fmax(0, jump), 1e-14);
+    report("obstacle gone: F differs from the free F by", left, 1e-14);
+}
+END_TEST
+
+/* A dilute periodic box is opaque at last: of what leaves a sphere only a few beams find a channel without end. */
+START_TEST(sight_through_many_periods) {
+    struct bed bed = bed_of(1, (const double[][4]){{.1, .2, .3, .2}});
+    for (int axis = 0; axis < 3; axis++) bed.period[axis] = 1;
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 4096, .entries = 1});
+    fibrad_row row = row_of(1);
+    ck_assert_int_eq(fibrad_beam_row(scene, work, 0, &(fibrad_beam_rule){.directions = 144}, &row), FIBRAD_OK);
+    report("dilute periodic box: escaped", row.escaped, .05);
+    report("dilute periodic box: sum + escaped - 1", closure(&row), 1e-12);
+    row_free(&row);
+    free(scene);
+    free(work);
+    bed_free(&bed);
+}
+END_TEST
+
+/* ---- random scenes ---------------------------------------------------------------------------------------------- */
+
+struct seen {
+    double nonsense, closure, sum, averaged; /* factors that are no positive number; worst of the rest */
+    uint64_t scenes, refused;
+};
+
+static double uniform(void) { return random_in(6, 0, 1); }
+
+/* Two to nine spheres: apart, touching, overlapping, in line, of all sizes, in boxes with some periodic axes. */
+static void random_scene(struct seen *seen, void *scene_memory, size_t scene_size, fibrad_work *work) {
+    double x[9], y[9], z[9], r[9], col_f[81], average_f[162], side = 1 + 5 * uniform();
+    uint32_t n = 2 + (uint32_t)(8 * uniform()), col[81], average_col[162];
+    uint64_t start[10] = {0}, average_start[10];
+    double spread = pow(10, 1.5 * uniform() * uniform());
+    bool grid = uniform() < .2;
+    for (uint32_t i = 0; i < n; i++) {
+        x[i] = side * uniform(), y[i] = side * uniform(), z[i] = side * uniform();
+        if (grid) x[i] = floor(x[i]), y[i] = floor(y[i]), z[i] = floor(z[i]);
+        r[i] = grid ? .5 : .5 * pow(spread, uniform() - .5);
+    }
+    if (uniform() < .2) r[0] = pow(10, 6 * uniform() - 3);
+    fibrad_scene_config config = {.spheres = n};
+    for (int axis = 0; axis < 3; axis++)
+        if (uniform() < .15) config.period[axis] = side;
+    fibrad_scene *scene;
+    int status = fibrad_scene_init(&scene, scene_memory, scene_size, &config, &(fibrad_spheres){x, y, z, r, n}, NULL);
+    seen->scenes += status == FIBRAD_OK, seen->refused += status != FIBRAD_OK;
+    if (status != FIBRAD_OK) {
+        ck_assert_int_eq(status, FIBRAD_E_GEOMETRY);
+        return;
+    }
+    fibrad_beam_rule rule = {.directions = 8 + (uint32_t)(13 * uniform())};
+    for (uint32_t i = 0; i < n; i++) {
+        fibrad_row row = {.col = col + start[i], .f = col_f + start[i], .capacity = 9};
+        status = fibrad_beam_row(scene, work, i, &rule, &row);
+        if (status == FIBRAD_E_CAPACITY) { /* through a periodic box: more discs than there is room for here */
+            seen->scenes--, seen->refused++;
+            return;
+        }
+        ck_assert_int_eq(status, FIBRAD_OK);
+        start[i + 1] = start[i] + row.length;
+        for (uint32_t k = 0; k < row.length; k++) seen->nonsense += !(row.f[k] > 0 && row.f[k] <= 1 + 1e-12);
+        seen->nonsense += !(row.escaped >= -1e-15 && row.error >= 0);
+        seen->closure = worse(seen->closure, closure(&row));
+        seen->sum = worse(seen->sum, row_sum(&row) - 1);
+    }
+    fibrad_rows raw = {.n = n, .capacity = 81, .start = start, .col = col, .f = col_f};
+    fibrad_rows average = {.n = n, .capacity = 162, .start = average_start, .col = average_col, .f = average_f};
+    ck_assert_int_eq(fibrad_rows_average(&raw, r, &average), FIBRAD_OK);
+    for (uint32_t i = 0; i < n; i++) {
+        double sum = 0;
+        for (uint64_t k = average_start[i]; k < average_start[i + 1]; k++) sum += average_f[k];
+        seen->averaged = worse(seen->averaged, sum - 1);
+    }
+}
+
+START_TEST(random_scenes) {
+    struct seen seen = {0};
+    size_t size = FIBRAD_SCENE_BYTES(9);
+    void *memory = block_of(size);
+    fibrad_work *work = work_of(&(fibrad_work_config){.near = 256, .discs = 1024, .entries = 9});
+    for (uint64_t wanted = rounds(10000, 1000000); seen.scenes < wanted;) random_scene(&seen, memory, size, work);
+    free(memory);
+    free(work);
+    printf("%llu random scenes (and %llu refused)\n", (unsigned long long)seen.scenes,
+           (unsigned long long)seen.refused);
+    report("random scenes: factors that are negative, NaN or above 1", seen.nonsense, 0);
+    report("random scenes: sum + escaped - 1", seen.closure, 1e-12);
+    report("random scenes: raw row sums above 1 by", seen.sum, 1e-12);
+    report("random scenes: averaged row sums above 1 by", seen.averaged, 1e-12);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("stress");
+    TCase *tcase = tcase_create("stress");
+    tcase_add_test(tcase, pairs_at_every_scale);
+    tcase_add_test(tcase, rows_at_every_scale);
+    tcase_add_test(tcase, rows_far_from_the_origin);
+    tcase_add_test(tcase, pairs_across_contact);
+    tcase_add_test(tcase, beams_across_contact);
+    tcase_add_test(tcase, radius_ratios);
+    tcase_add_test(tcase, degenerate_windows);
+    tcase_add_test(tcase, lattices_along_the_beams);
+    tcase_add_test(tcase, obstacle_across_a_pair);
+    tcase_add_test(tcase, sight_through_many_periods);
+    tcase_add_test(tcase, random_scenes);
+    suite_add_tcase(suite, tcase);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed != 0;
+}
