@@ -66,6 +66,8 @@ KERNEL = \
     kernel/bed/surface_row.c \
     kernel/bed/walls.c \
     kernel/bed/work.c \
+    kernel/heat/heat.c \
+    kernel/heat/solve.c \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
     kernel/furnace/lines.c \
@@ -78,7 +80,8 @@ LANED = \
     kernel/bed/beam_lanes.c \
     kernel/bed/cast_lanes.c \
     kernel/bed/near_lanes.c \
-    kernel/bed/points_lanes.c
+    kernel/bed/points_lanes.c \
+    kernel/heat/beams_lanes.c
 
 # besides main.c and generate_tables.c
 HOST = \

@@ -358,6 +358,83 @@ int fibrad_rows_drop(fibrad_rows *rows, const double *r, double threshold, doubl
  * Errors: _ARGUMENT. Cost: O(entries log(row length)). */
 int fibrad_rows_reciprocity(const fibrad_rows *rows, const double *r, double *largest);
 
+/* ---- heat ------------------------------------------------------------------------------------------------------ */
+
+/* Net radiative power of grey diffuse spheres and walls of given temperatures. Each surface is cut into patches; beams
+ * of points connect the patch they leave with the patch they meet, and serve both ways, so that exchange is symmetric:
+ * at equal temperatures nothing flows, and the powers of all spheres, walls and surroundings add up to zero. The
+ * radiosities J = eps E + (1 - eps) H follow by conjugate gradients, first on coarse patches, four times as large,
+ * then on all; the powers of both are extrapolated to patches without size. docs/heat.md. */
+
+typedef struct fibrad_heat_config {
+    uint32_t directions; /* of the beams: [FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX], even with walls; 0: 144 */
+    uint32_t points;     /* per direction: 64, 128 or 256; 0: 64 */
+    uint32_t patches;    /* of a sphere: 24, 96 or 384; 0: 96 */
+    uint32_t parts;      /* into which a sweep is divided, for as many threads: [1, 1024]; 0: 8 */
+} fibrad_heat_config;
+
+/* Beams, patches and radiosities of a scene. */
+typedef struct fibrad_heat fibrad_heat;
+
+/* Bytes that fibrad_heat_init needs for a scene; 0 if the configuration is not valid. About spheres times (4 directions
+ * points + 8 patches (8 + parts)). */
+size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene);
+
+/* Makes a heat problem in `memory` (`size` bytes on a 64-byte boundary); the scene must stay as long. Errors:
+ * _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(directions points). */
+int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
+                     const fibrad_scene *scene);
+
+/* Follows the beams of sphere i [0, spheres). To be called for every sphere before the first solution, in any order and
+ * by several threads at once, each with a work memory of its own. Errors: _ARGUMENT, _CAPACITY as fibrad_beam_row.
+ * Cost: about 1 microsecond per direction of 64 points. */
+int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t i);
+
+/* What radiates. */
+typedef struct fibrad_heat_sources {
+    const double *temperature;               /* [spheres] of the caller's spheres, absolute, >= 0 */
+    const double *emissivity;                /* [spheres] [0, 1] */
+    double wall_temperature[FIBRAD_WALLS];   /* of the walls that are there */
+    double wall_emissivity[FIBRAD_WALLS];    /* [0, 1] */
+    double surroundings;                     /* temperature of what beams meet that escape; black */
+    double sigma;                            /* emission is sigma T^4: FIBRAD_STEFAN_BOLTZMANN in SI units */
+    double tolerance;                        /* residual at which to stop, relative to the differences of emission: 0: 1e-4 */
+    uint32_t sweeps_max;                     /* 0: 1000 */
+    int uniform;                             /* 1: one radiosity per sphere and wall, no extrapolation; wrong but for
+                                                emissivities near 1, docs/heat.md */
+} fibrad_heat_sources;
+
+/* Begins a solution; a previous one of this heat problem is where it starts. Errors: _ARGUMENT. Cost: O(spheres
+ * patches). */
+int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
+
+/* One part [0, parts) of a sweep over all beams. Every part once, in any order or by several threads at once, then
+ * fibrad_heat_step:
+ *
+ *     do
+ *         for (uint32_t part = 0; part < parts; part++) fibrad_heat_sweep(heat, part);
+ *     while (fibrad_heat_step(heat));
+ *
+ * Cost: about 2 ns per beam. */
+void fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
+
+/* Ends a sweep. 1: another one is needed; 0: solved, or sweeps_max reached. Cost: O(spheres patches parts). */
+int fibrad_heat_step(fibrad_heat *heat);
+
+/* The powers, positive where heat is gained. */
+typedef struct fibrad_heat_result {
+    double *power;                   /* [spheres] out, of the caller's spheres */
+    double wall_power[FIBRAD_WALLS]; /* out */
+    double surroundings_power;       /* out */
+    double error;                    /* out: estimated error of a power, root mean square over the spheres, from the two
+                                        sizes of patches */
+    double residual;                 /* out: that of the radiosities, as in `tolerance` */
+    uint32_t sweeps;                 /* out */
+} fibrad_heat_result;
+
+/* Reads the solution; result->power is the caller's. Errors: _ARGUMENT (unsolved included). */
+int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
+
 /* ---- furnace --------------------------------------------------------------------------------------------------- */
 
 /* Radiation in a box full of a grey medium which absorbs, emits and scatters isotropically, between grey diffuse walls

@@ -9,8 +9,7 @@
 #include "bed/areas_lanes.h"
 #include "bed/beam_lanes.h"
 #include "bed/near_lanes.h"
-#include "bed/points_lanes.h"
-#include "sample/direction.h"
+#include "bed/window_lanes.h"
 
 #define PI 3.14159265358979323846
 
@@ -90,7 +89,10 @@ static uint32_t settle(fibrad_work *work, fibrad_points *points, uint32_t window
             *open = LANED(fibrad_areas_disc)(&work->areas, k, d->u, d->v, d->r);
         } else {
             uint32_t hits = LANED(fibrad_points_disc)(points, d->u, d->v, d->r);
-            if (hits > 0) fibrad_entries_add(&work->entries, d->sphere, window, hits);
+            if (hits > 0) {
+                fibrad_entries_add(&work->entries, d->sphere, window, hits);
+                points->taker[points->takers++] = k;
+            }
             *open = points->open > 0;
         }
     }
@@ -102,6 +104,7 @@ static double look(fibrad_work *work, const double frame[9], fibrad_points *poin
     work->discs = 0;
     if (points->count == 0) LANED(fibrad_areas_begin)(&work->areas);
     points->open = points->count;
+    points->takers = 0;
     for (uint32_t word = 0; word < points->count / 64; word++) points->seen[word] = UINT64_MAX;
 
     bool open = true;
@@ -130,16 +133,8 @@ static double look(fibrad_work *work, const double frame[9], fibrad_points *poin
     return rest;
 }
 
-/* Turns the axes of window k by an angle of its own, so that its points do not lie as those of its neighbours. By five
- * golden angles a window the error is least of what was tried: half of that without, at 2000 directions of 256 points.
- */
-static void turn(double frame[9], uint32_t k) {
-    double cos, sin;
-    fibrad_azimuth(5 * k % FIBRAD_DIRECTIONS_MAX, &cos, &sin);
-    for (int axis = 0; axis < 3; axis++) {
-        double u = frame[axis], v = frame[3 + axis];
-        frame[axis] = cos * u + sin * v, frame[3 + axis] = cos * v - sin * u;
-    }
+double LANED(fibrad_beam_window)(fibrad_work *work, const double frame[9], fibrad_points *points, uint32_t k) {
+    return look(work, frame, points, k);
 }
 
 /* Notes what discs the row lacked, if it did. */
@@ -161,9 +156,8 @@ int LANED(fibrad_beam_row)(const fibrad_scene *scene, fibrad_work *work, uint32_
     fibrad_work_begin(work, scene, scene->place[i], cutoff);
     double open[2] = {0, 0};
     for (uint32_t k = 0; k < directions; k++) {
-        fibrad_polar d = fibrad_direction_polar(k, directions);
-        double frame[9] = {-d.sin, d.cos, 0, -d.z * d.cos, -d.z * d.sin, d.ring, d.ring * d.cos, d.ring * d.sin, d.z};
-        if (points > 0) turn(frame, k);
+        double frame[9];
+        fibrad_beam_frame(k, directions, points, frame);
         work->entries.end = k == 0 || k == directions - 1;
         open[k % 2] += look(work, frame, &window, k);
         if (lacking(work)) return row->length = 0, FIBRAD_E_CAPACITY;

@@ -10,6 +10,8 @@ typedef struct fibrad_points {
     fibrad_disc_points set;
     uint32_t count, open;
     uint64_t seen[4]; /* bit p: point p is open */
+    uint32_t takers;
+    uint32_t taker[256]; /* the discs that have taken points, nearest first */
 } fibrad_points;
 
 /* Takes the open points inside a disc: the ray-sphere test of a parallel beam, without a square root. Returns how many

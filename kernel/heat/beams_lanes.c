@@ -1,0 +1,126 @@
+/* beams_lanes.c - where the beams of a sphere go, and which patches they connect. Compiled once per instruction set.
+ * SPDX-License-Identifier: MIT */
+#include FIBRAD_LANES_HEADER
+#include "bed/beam_lanes.h"
+#include "bed/window_lanes.h"
+#include "heat/beams_lanes.h"
+#include "heat/patch.h"
+
+#define POINTS 256 /* of a window, the most */
+
+/* The points of a window: which disc hides each, and where on the sphere it is met. */
+struct window {
+    _Alignas(64) double u[POINTS], v[POINTS], w[POINTS]; /* normals in the frame of the window */
+    _Alignas(64) double face[POINTS], x[POINTS], y[POINTS];
+    uint32_t disc[POINTS]; /* FIBRAD_NONE: no sphere is met */
+};
+
+/* Patch numbers, 0 to 6 side^2 - 1, of the normals of all points. */
+static void number(struct window *p, uint32_t points, const double frame[9], uint32_t side, uint16_t *patch) {
+    const vd zero = vd_set1(0), one = vd_set1(1), half = vd_set1(.5 * side);
+    double axes[9];
+    fibrad_patch_turn(frame, axes);
+    for (uint32_t k = 0; k < points; k += VD_LANES) {
+        vd u = vd_load(p->u + k), v = vd_load(p->v + k), w = vd_load(p->w + k), n[3], size[3];
+        for (int axis = 0; axis < 3; axis++) {
+            n[axis] = vd_add(vd_add(vd_mul(u, vd_set1(axes[axis])), vd_mul(v, vd_set1(axes[3 + axis]))),
+                             vd_mul(w, vd_set1(axes[6 + axis])));
+            size[axis] = vd_abs(n[axis]);
+        }
+        vm second = vd_lt(size[0], size[1]);
+        vd largest = vd_max(size[0], size[1]), high = vd_select(second, n[1], n[0]);
+        vm third = vd_lt(largest, size[2]);
+        largest = vd_max(largest, size[2]), high = vd_select(third, n[2], high);
+        vd face = vd_select(third, vd_set1(4), vd_select(second, vd_set1(2), zero));
+        vd a = vd_div(vd_select(third, n[0], vd_select(second, n[2], n[1])), largest);
+        vd b = vd_div(vd_select(third, n[1], vd_select(second, n[0], n[2])), largest);
+        /* t (5 - t^2)/4 is nearly proportional to the angle, atan t */
+        a = vd_mul(a, vd_sub(vd_set1(1.25), vd_mul(vd_set1(.25), vd_mul(a, a))));
+        b = vd_mul(b, vd_sub(vd_set1(1.25), vd_mul(vd_set1(.25), vd_mul(b, b))));
+        vd_store(p->face + k, vd_add(face, vd_select(vd_lt(high, zero), one, zero)));
+        vd_store(p->x + k, vd_mul(vd_max(vd_add(a, one), zero), half));
+        vd_store(p->y + k, vd_mul(vd_max(vd_add(b, one), zero), half));
+    }
+    for (uint32_t k = 0; k < points; k++)
+        patch[k] = (uint16_t)fibrad_patch_number((uint32_t)p->face[k], (uint32_t)p->x[k], (uint32_t)p->y[k], side);
+}
+
+/* Which disc hides each point: the first that covers it. */
+static void find_discs(const fibrad_work *work, const fibrad_points *points, struct window *p) {
+    for (uint32_t word = 0; word < points->count / 64; word++) {
+        uint64_t left = ~points->seen[word];
+        for (uint32_t t = 0; left != 0; t++) {
+            const fibrad_disc *disc = &work->disc[points->taker[t]];
+            vf u = vf_set1((float)disc->u), v = vf_set1((float)disc->v), square = vf_set1((float)(disc->r * disc->r));
+            uint64_t hidden = 0;
+            for (uint32_t lane = 0; lane < 64; lane += VF_LANES) {
+                vf dx = vf_sub(vf_load(points->set.x + 64 * word + lane), u);
+                vf dy = vf_sub(vf_load(points->set.y + 64 * word + lane), v);
+                hidden |= (uint64_t)vf_lt_bits(vf_add(vf_mul(dx, dx), vf_mul(dy, dy)), square) << lane;
+            }
+            for (uint64_t take = hidden & left; take != 0; take &= take - 1)
+                p->disc[64 * word + (uint32_t)__builtin_ctzll(take)] = points->taker[t];
+            left &= ~hidden;
+        }
+        for (uint64_t open = points->seen[word]; open != 0; open &= open - 1)
+            p->disc[64 * word + (uint32_t)__builtin_ctzll(open)] = FIBRAD_NONE;
+    }
+}
+
+/* Normals where the points meet their discs. */
+static void find_normals(const fibrad_work *work, const fibrad_points *points, struct window *p) {
+    for (uint32_t k = 0; k < points->count; k++) {
+        fibrad_disc none = {.r = 1}, d = p->disc[k] == FIBRAD_NONE ? none : work->disc[p->disc[k]];
+        double inverse = 1 / d.r;
+        p->u[k] = (points->set.x[k] - d.u) * inverse, p->v[k] = (points->set.y[k] - d.v) * inverse;
+    }
+    for (uint32_t k = 0; k < points->count; k += VD_LANES) {
+        vd u = vd_load(p->u + k), v = vd_load(p->v + k);
+        vd square = vd_max(vd_set1(0), vd_sub(vd_set1(1), vd_add(vd_mul(u, u), vd_mul(v, v))));
+        vd_store(p->w + k, vd_sub(vd_set1(0), vd_sqrt(square)));
+    }
+}
+
+void LANED(fibrad_heat_leave)(fibrad_heat *heat) {
+    fibrad_disc_points set;
+    struct window window;
+    uint32_t points = heat->config.points;
+    fibrad_disc_points_get(points, &set);
+    for (uint32_t p = 0; p < points; p++) {
+        double x = set.x[p], y = set.y[p];
+        window.u[p] = x, window.v[p] = y, window.w[p] = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
+    }
+    for (uint32_t k = 0; k < heat->config.directions; k++) {
+        double frame[9];
+        fibrad_beam_frame(k, heat->config.directions, points, frame);
+        number(&window, points, frame, heat->side, heat->leave + (size_t)k * points);
+    }
+}
+
+int LANED(fibrad_heat_beams)(fibrad_heat *heat, fibrad_work *work, uint32_t place) {
+    fibrad_points points = {.count = heat->config.points};
+    struct window window;
+    uint16_t patch[POINTS];
+    fibrad_disc_points_get(points.count, &points.set);
+    work->areas.overflow = false;
+    fibrad_work_begin(work, heat->scene, place, 0);
+    for (uint32_t k = 0; k < heat->config.directions; k++) {
+        double frame[9];
+        fibrad_beam_frame(k, heat->config.directions, points.count, frame);
+        LANED(fibrad_beam_window)(work, frame, &points, 0);
+        if (work->discs > work->config.discs) {
+            work->needed.discs = work->discs;
+            return FIBRAD_E_CAPACITY;
+        }
+        find_discs(work, &points, &window);
+        find_normals(work, &points, &window);
+        number(&window, points.count, frame, heat->side, patch);
+        uint32_t *hit = heat->hit + (size_t)place * heat->beams + (size_t)k * points.count;
+        for (uint32_t p = 0; p < points.count; p++) {
+            hit[p] = heat->patches - 1;
+            if (window.disc[p] != FIBRAD_NONE)
+                hit[p] = work->disc[window.disc[p]].sphere * heat->config.patches + patch[p];
+        }
+    }
+    return FIBRAD_OK;
+}
