@@ -64,6 +64,7 @@ KERNEL = \
     kernel/bed/rows.c \
     kernel/bed/scene.c \
     kernel/bed/surface_row.c \
+    kernel/bed/trace.c \
     kernel/bed/work.c \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
@@ -77,7 +78,8 @@ LANED = \
     kernel/bed/beam_lanes.c \
     kernel/bed/cast_lanes.c \
     kernel/bed/near_lanes.c \
-    kernel/bed/points_lanes.c
+    kernel/bed/points_lanes.c \
+    kernel/bed/trace_lanes.c
 
 # besides main.c and generate_tables.c
 HOST = \
@@ -146,6 +148,7 @@ TESTS = \
     tests/test_surface.c \
     tests/test_surface_row.c \
     tests/test_tables.c \
+    tests/test_trace.c \
     tests/test_write.c
 
 SCRIPTS = \
