@@ -65,6 +65,7 @@ KERNEL = \
     kernel/bed/scene.c \
     kernel/bed/surface_row.c \
     kernel/bed/trace.c \
+    kernel/bed/walls.c \
     kernel/bed/work.c \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
@@ -118,6 +119,7 @@ HOST = \
     host/run_omp.c \
     host/targets.c \
     host/tolerance.c \
+    host/walls.c \
     host/write.c \
     host/write_csv.c \
     host/write_furnace.c \

@@ -111,11 +111,24 @@ typedef struct fibrad_spheres {
 /* The largest number of spheres of a scene. */
 #define FIBRAD_SPHERES_MAX 100000000u
 
-/* What a scene is made for. Zeroed but for `spheres`: open on all sides, the best instruction set. */
+/* Walls by number: 0 to 5 are planes across the axes, x low, x high, y low, y high, z low, z high; 6 is a cylinder
+ * along z. Their inner sides bound a convex container, so that no wall hides one sphere from another. */
+#define FIBRAD_WALLS 7
+
+/* The walls of a scene. Zeroed: none. */
+typedef struct fibrad_walls {
+    uint32_t planes;    /* sum of 1 << k for the planes k there are, none on a periodic axis */
+    double at[6];       /* [L] where plane k stands on its axis, low < high; not read if it is not there */
+    double cylinder[3]; /* x and y of its axis, and its radius [L]; radius 0: none. With a cylinder x and y are open
+                           axes without planes */
+} fibrad_walls;
+
+/* What a scene is made for. Zeroed but for `spheres`: open on all sides, no walls, the best instruction set. */
 typedef struct fibrad_scene_config {
     uint32_t spheres; /* how many spheres the scene holds: [1, FIBRAD_SPHERES_MAX] */
     int isa;          /* a fibrad_isa; one that the machine lacks is FIBRAD_E_ARGUMENT */
     double period[3]; /* per axis the length of the periodic box [L]; 0: the axis is open */
+    fibrad_walls walls;
 } fibrad_scene_config;
 
 /* A scene: spheres copied in the order of the cells of a grid. Immutable once made; share it between threads. */
@@ -134,7 +147,8 @@ size_t fibrad_scene_size(const fibrad_scene_config *config);
 
 /* Makes a scene in `memory` (`size` bytes on a 64-byte boundary) from config->spheres == spheres->n spheres, which are
  * copied: the arrays may go afterwards. On periodic axes centres may lie anywhere and are taken into the box.
- * Spheres may overlap (settled beds do), but no centre may lie inside another sphere.
+ * Spheres may overlap each other and the walls (settled beds do), but no centre may lie inside another sphere or beyond
+ * a wall. What leaves a sphere outwards beyond a wall meets that wall at once.
  * Errors: _ARGUMENT (then `fault`, unless NULL, names the sphere, or n if it is none of them), _SIZE, _ALIGNMENT,
  * _GEOMETRY (fault names the pair). Cost: O(n), about 0.5 microseconds per sphere; more where spheres crowd in clusters
  * far apart. */
@@ -144,11 +158,13 @@ int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fib
 /* What a scene turned out to be. */
 typedef struct fibrad_scene_facts {
     uint32_t spheres;
-    int isa;                       /* the instruction set in use */
-    uint32_t cells;                /* cells of the grid, all levels */
-    double radius_min, radius_max; /* [L] */
-    double overlap_max;            /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
-    uint32_t overlap_pair[2];      /* the spheres of the largest overlap */
+    int isa;                        /* the instruction set in use */
+    uint32_t cells;                 /* cells of the grid, all levels */
+    double radius_min, radius_max;  /* [L] */
+    double overlap_max;             /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
+    uint32_t overlap_pair[2];       /* the spheres of the largest overlap */
+    double wall_area[FIBRAD_WALLS]; /* [L^2] the part of each wall inside all others, per period of periodic axes;
+                                       infinity: unbounded; 0: there is no such wall */
 } fibrad_scene_facts;
 
 /* Fills in the facts of a scene. Cost: a copy. */
@@ -190,10 +206,12 @@ typedef struct fibrad_row {
     double *f;           /* [capacity] out: F from sphere i to sphere col[.], all > 0 */
     uint32_t capacity;   /* in */
     uint32_t length;     /* out: entries; after FIBRAD_E_CAPACITY of these arrays: the entries there would be */
-    double escaped;      /* out: the fraction that meets no sphere, measured as uncovered area or points */
+    double escaped;      /* out: the fraction that meets no sphere and no wall, as uncovered area or points */
     double error;        /* out: estimated Euclidean error of the row, from parts of its directions; twice the true one
                             on the median, seldom less than it */
     uint32_t directions; /* out, beam method only: how many were taken */
+    double wall[FIBRAD_WALLS]; /* out: the fraction that meets each wall, 0 for walls that are not there; `error` does
+                                  not count them. The surface method leaves 0 */
 } fibrad_row;
 
 /* How a beam row is integrated. Zeroed: 233 directions, exact areas, no cutoff, no tolerance. */

@@ -10,7 +10,6 @@
 #include "bed/scene.h"
 #include "pair/surface_lanes.h"
 
-#define FIBRAD_NONE   UINT32_MAX
 #define FIBRAD_SHELLS 8
 /* The first shell looks FIRST mean spacings far, the spacing being the cube root of the volume per sphere, each next
  * GROWTH times as far. In a packed bed it has 130 spheres, and three shells fit into the default memory. Of the pairs
