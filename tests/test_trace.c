@@ -92,6 +92,7 @@ static void follow(const struct bed *bed, const struct versions *version, uint32
             version->trace(tracer, scene->place[s], n, w, &hit);
             double o[3] = {bed->x[s] + n[0] * bed->r[s], bed->y[s] + n[1] * bed->r[s], bed->z[s] + n[2] * bed->r[s]};
             truth = try_all(bed, s, o, w, images);
+            if (truth.sphere == FIBRAD_NONE && bed->period[0] > 0 && hit.distance > images * bed->period[0]) break;
             uint32_t got = hit.sphere == FIBRAD_NONE ? FIBRAD_NONE : scene->order[hit.sphere];
             ck_assert_msg(got == truth.sphere, "path %u bounce %d from %u: %u, not %u at %g", k, bounce, s, got,
                           truth.sphere, truth.distance);
