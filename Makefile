@@ -64,14 +64,15 @@ KERNEL = \
     kernel/bed/rows.c \
     kernel/bed/scene.c \
     kernel/bed/surface_row.c \
+    kernel/bed/trace.c \
     kernel/bed/walls.c \
     kernel/bed/work.c \
-    kernel/heat/heat.c \
-    kernel/heat/solve.c \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
     kernel/furnace/lines.c \
-    kernel/furnace/tally.c
+    kernel/furnace/tally.c \
+    kernel/heat/heat.c \
+    kernel/heat/solve.c
 
 # compiled once per instruction set
 LANED = \
@@ -81,6 +82,7 @@ LANED = \
     kernel/bed/cast_lanes.c \
     kernel/bed/near_lanes.c \
     kernel/bed/points_lanes.c \
+    kernel/bed/trace_lanes.c \
     kernel/heat/beams_lanes.c
 
 # besides main.c and generate_tables.c
@@ -151,6 +153,7 @@ TESTS = \
     tests/test_surface.c \
     tests/test_surface_row.c \
     tests/test_tables.c \
+    tests/test_trace.c \
     tests/test_write.c
 
 SCRIPTS = \

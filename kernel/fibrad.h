@@ -10,6 +10,7 @@
  *   beam     fibrad_beam_row, fibrad_directions_for
  *   surface  fibrad_surface_pair, FIBRAD_SURFACE_SCRATCH, fibrad_surface_row
  *   cast     fibrad_cast_row
+ *   tracer   fibrad_tracer_size, fibrad_tracer_init
  *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_drop, fibrad_rows_reciprocity
  *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
  *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
@@ -322,6 +323,25 @@ typedef struct fibrad_cast_means {
  * Source: docs/methods.md section 8; pebble-bed quasi-Monte Carlo with origins and directions as there. */
 int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_cast_rule *rule,
                     fibrad_row *row, const fibrad_cast_means *means);
+
+/* ---- tracer ---------------------------------------------------------------------------------------------------- */
+
+/* Memory for rays that go on from sphere to sphere, one per thread: lists of the spheres near each, made when a ray
+ * first leaves it. Zero means the default. */
+typedef struct fibrad_tracer_config {
+    uint32_t lists; /* how many spheres' lists are kept, up to 2^20, taken up to a power of two; 3 KB each: default
+                       2048. A matter of speed alone */
+} fibrad_tracer_config;
+
+typedef struct fibrad_tracer fibrad_tracer;
+
+/* Bytes that fibrad_tracer_init needs; 0 if the configuration is not valid (NULL: all defaults). */
+size_t fibrad_tracer_size(const fibrad_tracer_config *config);
+
+/* Makes a tracer for one scene in `memory` (`size` bytes on a 64-byte boundary). A scene made anew, even in the same
+ * place, needs a tracer made anew. Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+int fibrad_tracer_init(fibrad_tracer **tracer, void *memory, size_t size, const fibrad_tracer_config *config,
+                       const fibrad_scene *scene);
 
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
 

@@ -1,0 +1,293 @@
+/* test_trace.c - rays from sphere to sphere against all spheres tried one by one, and in every instruction set.
+ * SPDX-License-Identifier: MIT */
+#include <stdio.h>
+
+#include "base/elementary.h"
+#include "base/random.h"
+#include "bed/trace.h"
+#include "bed/work.h"
+#include "scenes.h"
+
+struct versions {
+    int isa;
+    fibrad_trace_function *trace;
+    fibrad_trace_point_function *trace_point;
+};
+
+static const struct versions versions[] = {
+    {FIBRAD_ISA_SCALAR, fibrad_trace_scalar, fibrad_trace_point_scalar},
+#ifdef __x86_64__
+    {FIBRAD_ISA_SSE2, fibrad_trace_sse2, fibrad_trace_point_sse2},
+    {FIBRAD_ISA_AVX2, fibrad_trace_avx2, fibrad_trace_point_avx2},
+    {FIBRAD_ISA_AVX512, fibrad_trace_avx512, fibrad_trace_point_avx512},
+#endif
+};
+
+static fibrad_tracer *tracer_of(const fibrad_scene *scene, uint32_t lists) {
+    fibrad_tracer_config config = {.lists = lists};
+    size_t size = fibrad_tracer_size(&config);
+    fibrad_tracer *tracer = NULL;
+    ck_assert_int_eq(fibrad_tracer_init(&tracer, block_of(size), size, &config, scene), FIBRAD_OK);
+    return tracer;
+}
+
+static void even(fibrad_random *random, double v[3]) {
+    double z = 1 - 2 * fibrad_random_next(random), ring = sqrt(1 - z * z), sine, cosine;
+    fibrad_sincos_turn(fibrad_random_next(random), &sine, &cosine);
+    v[0] = ring * cosine, v[1] = ring * sine, v[2] = z;
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* The first sphere by trying all of them, `images` periods each way; from: the sphere left, or FIBRAD_NONE. The ray is
+ * told in lengths and coordinates of the scene. */
+static fibrad_hit try_all(const struct bed *bed, uint32_t from, const double o[3], const double w[3], int images) {
+    fibrad_hit hit = {.sphere = FIBRAD_NONE, .distance = INFINITY};
+    double least = INFINITY;
+    int reach[3];
+    for (int axis = 0; axis < 3; axis++) reach[axis] = bed->period[axis] > 0 ? images : 0;
+    for (uint32_t j = 0; j < bed->n; j++)
+        for (int a = -reach[0]; a <= reach[0]; a++)
+            for (int b = -reach[1]; b <= reach[1]; b++)
+                for (int c = -reach[2]; c <= reach[2]; c++) {
+                    if (j == from && a == 0 && b == 0 && c == 0) continue;
+                    double place[3] = {bed->x[j] + a * bed->period[0], bed->y[j] + b * bed->period[1],
+                                       bed->z[j] + c * bed->period[2]};
+                    double e[3] = {place[0] - o[0], place[1] - o[1], place[2] - o[2]}, along = dot(e, w);
+                    double square = bed->r[j] * bed->r[j] - (dot(e, e) - along * along);
+                    if (square <= 0) continue;
+                    double root = sqrt(square), depth = 1, distance = fmax(0, along - root);
+                    if (from != FIBRAD_NONE) {
+                        double own[3] = {bed->x[from], bed->y[from], bed->z[from]};
+                        depth = dot(place, w) - dot(own, w);
+                        if (depth <= 0) continue;
+                    } else if (along + root <= 0) {
+                        continue;
+                    }
+                    if (distance > hit.distance || (distance == hit.distance && depth >= least)) continue;
+                    least = depth;
+                    hit.sphere = j, hit.distance = distance;
+                    for (int axis = 0; axis < 3; axis++)
+                        hit.normal[axis] = (o[axis] + (along - root) * w[axis] - place[axis]) / bed->r[j];
+                }
+    return hit;
+}
+
+/* Paths of `bounces` reflections from some spheres of the bed, each ray against try_all. */
+static void follow(const struct bed *bed, const struct versions *version, uint32_t lists, int images, uint32_t paths,
+                   int bounces) {
+    fibrad_scene *scene = scene_of(bed, version->isa);
+    fibrad_tracer *tracer = tracer_of(scene, lists);
+    uint32_t met = 0;
+    for (uint32_t k = 0; k < paths; k++) {
+        fibrad_random random = fibrad_random_start(7, k);
+        uint32_t s = k % bed->n;
+        double n[3], w[3];
+        even(&random, n);
+        for (int bounce = 0; bounce < bounces && s != FIBRAD_NONE; bounce++) {
+            even(&random, w);
+            if (dot(w, n) < 0)
+                for (int axis = 0; axis < 3; axis++) w[axis] = -w[axis];
+            fibrad_hit hit, truth;
+            version->trace(tracer, scene->place[s], n, w, &hit);
+            double o[3] = {bed->x[s] + n[0] * bed->r[s], bed->y[s] + n[1] * bed->r[s], bed->z[s] + n[2] * bed->r[s]};
+            truth = try_all(bed, s, o, w, images);
+            if (truth.sphere == FIBRAD_NONE && bed->period[0] > 0 && hit.distance > images * bed->period[0]) break;
+            uint32_t got = hit.sphere == FIBRAD_NONE ? FIBRAD_NONE : scene->order[hit.sphere];
+            ck_assert_msg(got == truth.sphere, "path %u bounce %d from %u: %u, not %u at %g", k, bounce, s, got,
+                          truth.sphere, truth.distance);
+            s = got;
+            if (s == FIBRAD_NONE) break;
+            met++;
+            ck_assert_double_eq_tol(hit.distance, truth.distance, 1e-9 * (1 + truth.distance));
+            ck_assert_double_eq_tol(dot(hit.normal, hit.normal), 1, 1e-11);
+            double error = 0;
+            for (int axis = 0; axis < 3; axis++) error = fmax(error, fabs(hit.normal[axis] - truth.normal[axis]));
+            ck_assert_double_lt(error, 1e-5);
+            memcpy(n, hit.normal, sizeof n);
+        }
+    }
+    ck_assert_uint_gt(met, paths / 4);
+    free(scene);
+    free(tracer);
+}
+
+START_TEST(random_beds) {
+    const struct versions *version = &versions[_i];
+    if (version->isa > (int)fibrad_isa_best()) return;
+    for (int kind = 0; kind < 4; kind++) {
+        struct bed bed = packing(150, kind == 3 ? .1 : kind == 0 ? 1 : .5, 1, kind == 2 ? .02 : .5, 3, kind != 1);
+        follow(&bed, version, kind == 0 ? 8 : 256, kind == 2 ? 4 : 2, 300, 4);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
+/* Spheres that overlap by up to a third of a radius. */
+START_TEST(overlaps) {
+    struct bed bed = packing(100, .7, 1, .45, 5, true);
+    for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.15;
+    follow(&bed, &versions[0], 64, 2, 500, 4);
+    bed_free(&bed);
+}
+END_TEST
+
+/* One large sphere with thousands of small ones about it: more than a list holds. */
+START_TEST(large_among_small) {
+    struct bed bed;
+    bed_init(&bed, false, 0);
+    add_sphere(&bed, 0, 0, 0, 1);
+    for (uint32_t k = 0; k < 1500; k++) {
+        double w[3], d = 1.03 + .07 * (k % 4);
+        ck_assert_int_eq(fibrad_direction(k, 1500, w), FIBRAD_OK);
+        add_sphere(&bed, d * w[0], d * w[1], d * w[2], .02);
+    }
+    follow(&bed, &versions[0], 2048, 0, 1500, 3);
+    bed_free(&bed);
+}
+END_TEST
+
+/* One sphere a period: most of what it sees are images of itself. Rays along the channels of a lattice meet nothing. */
+START_TEST(one_sphere_and_its_images) {
+    struct bed bed = bed_of(1, (const double[][4]){{.3, .4, .5, 1}});
+    bed.period[0] = 2, bed.period[1] = 2.5, bed.period[2] = 3;
+    follow(&bed, &versions[0], 1, 12, 200, 5);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_hit hit;
+    fibrad_trace_point_scalar(scene, (const double[3]){1.3, 1.65, 0}, (const double[3]){0, 0, 1}, &hit);
+    ck_assert_uint_eq(hit.sphere, FIBRAD_NONE);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A stray sphere far off is seen, and sees the others. */
+START_TEST(stray) {
+    struct bed bed = packing(200, .5, 1, .3, 9, false);
+    add_sphere(&bed, 4e6, 10, 10, 1e5);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_tracer *tracer = tracer_of(scene, 0);
+    fibrad_hit hit;
+    const double right[3] = {1, 0, 0}, left[3] = {-1, 0, 0};
+    double most = 0;
+    uint32_t outer = 0;
+    for (uint32_t i = 0; i < 200; i++)
+        if (bed.x[i] + bed.r[i] > most) most = bed.x[i] + bed.r[i], outer = i;
+    fibrad_trace_scalar(tracer, scene->place[outer], right, right, &hit);
+    ck_assert_uint_eq(scene->order[hit.sphere], 200);
+    ck_assert_double_eq_tol(hit.distance, 3.9e6, 100);
+    uint32_t seen = 0;
+    for (uint32_t k = 0; k < 20; k++) {
+        double point[3] = {4e6, bed.y[k], bed.z[k]};
+        fibrad_trace_point_scalar(scene, point, left, &hit);
+        ck_assert_uint_eq(scene->order[hit.sphere], 200); /* it starts inside */
+        point[0] = 3e6;
+        fibrad_trace_point_scalar(scene, point, left, &hit);
+        seen += hit.sphere != FIBRAD_NONE;
+    }
+    ck_assert_uint_eq(seen, 20);
+    free(scene);
+    free(tracer);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(from_points) {
+    for (int periodic = 0; periodic <= 1; periodic++) {
+        struct bed bed = packing(150, .3, 1, .4, 11, periodic);
+        fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+        for (uint32_t k = 0; k < 500; k++) {
+            fibrad_random random = fibrad_random_start(1, k);
+            double w[3], o[3];
+            even(&random, w);
+            for (int axis = 0; axis < 3; axis++) o[axis] = (fibrad_random_next(&random) * 1.6 - .3) * bed.high[axis];
+            fibrad_hit hit, truth = try_all(&bed, FIBRAD_NONE, o, w, 3);
+            fibrad_trace_point_scalar(scene, o, w, &hit);
+            ck_assert_int_eq(hit.sphere == FIBRAD_NONE, truth.sphere == FIBRAD_NONE);
+            if (hit.sphere == FIBRAD_NONE) continue;
+            ck_assert_uint_eq(scene->order[hit.sphere], truth.sphere);
+            ck_assert_double_eq_tol(hit.distance, truth.distance, 1e-10);
+        }
+        free(scene);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
+/* All instruction sets, and any number of lists, give the same bits. */
+START_TEST(same_bits_everywhere) {
+    struct bed bed = packing(400, .2, 1, .55, 2, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_tracer *tracers[2] = {tracer_of(scene, 4), tracer_of(scene, 1024)};
+    for (uint32_t k = 0; k < 20000; k++) {
+        fibrad_random random = fibrad_random_start(3, k);
+        double n[3], w[3];
+        even(&random, n);
+        even(&random, w);
+        if (dot(n, w) < 0) continue;
+        fibrad_hit hit = {0}, other = {0}, third = {0};
+        fibrad_trace_scalar(tracers[0], k % bed.n, n, w, &hit);
+        fibrad_trace_point_scalar(scene, n, w, &other);
+        for (size_t v = 0; v < sizeof versions / sizeof *versions; v++) {
+            if (versions[v].isa > (int)fibrad_isa_best()) continue;
+            fibrad_hit again = {0};
+            versions[v].trace(tracers[1], k % bed.n, n, w, &again);
+            ck_assert_mem_eq(&hit, &again, sizeof hit);
+            versions[v].trace_point(scene, n, w, &third);
+            ck_assert_mem_eq(&other, &third, sizeof other);
+        }
+    }
+    for (int t = 0; t < 2; t++) free(tracers[t]);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(memory) {
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_tracer_config config = {.lists = 5}, most = {.lists = UINT32_MAX};
+    size_t size = fibrad_tracer_size(&config);
+    ck_assert_uint_gt(size, 0);
+    ck_assert_uint_eq(fibrad_tracer_size(&(fibrad_tracer_config){.lists = 8}), size);
+    ck_assert_uint_eq(fibrad_tracer_size(&most), 0);
+    unsigned char *block = block_of(size + 64);
+    memset(block + size, 0x5a, 64);
+    fibrad_tracer *tracer = NULL;
+    ck_assert_int_eq(fibrad_tracer_init(NULL, block, size, &config, scene), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_tracer_init(&tracer, NULL, size, &config, scene), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_tracer_init(&tracer, block, size, &config, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_tracer_init(&tracer, block, size, &most, scene), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_tracer_init(&tracer, block, size - 1, &config, scene), FIBRAD_E_SIZE);
+    ck_assert_int_eq(fibrad_tracer_init(&tracer, block + 8, size, &config, scene), FIBRAD_E_ALIGNMENT);
+    ck_assert_ptr_null(tracer);
+    ck_assert_int_eq(fibrad_tracer_init(&tracer, block, size, &config, scene), FIBRAD_OK);
+    fibrad_hit hit;
+    fibrad_trace_scalar(tracer, 0, (const double[3]){1, 0, 0}, (const double[3]){1, 0, 0}, &hit);
+    ck_assert_uint_eq(hit.sphere, FIBRAD_NONE);
+    for (size_t k = size; k < size + 64; k++) ck_assert_uint_eq(block[k], 0x5a);
+    free(block);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("trace");
+    TCase *cases = tcase_create("trace");
+    tcase_add_loop_test(cases, random_beds, 0, sizeof versions / sizeof *versions);
+    tcase_add_test(cases, overlaps);
+    tcase_add_test(cases, large_among_small);
+    tcase_add_test(cases, one_sphere_and_its_images);
+    tcase_add_test(cases, stray);
+    tcase_add_test(cases, from_points);
+    tcase_add_test(cases, same_bits_everywhere);
+    tcase_add_test(cases, memory);
+    tcase_set_timeout(cases, 60);
+    suite_add_tcase(suite, cases);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed > 0;
+}
