@@ -72,7 +72,8 @@ KERNEL = \
     kernel/furnace/lines.c \
     kernel/furnace/tally.c \
     kernel/heat/heat.c \
-    kernel/heat/solve.c
+    kernel/heat/solve.c \
+    kernel/heat/walls_cut.c
 
 # compiled once per instruction set
 LANED = \

@@ -405,10 +405,13 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
 int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene);
 
-/* Follows the beams of sphere i [0, spheres). To be called for every sphere before the first solution, in any order and
- * by several threads at once, each with a work memory of its own. Errors: _ARGUMENT, _CAPACITY as fibrad_beam_row.
+/* How many tasks the beams are divided into: one per sphere, and some for the walls. */
+uint32_t fibrad_heat_tasks(const fibrad_heat *heat);
+
+/* Follows the beams of a task [0, tasks). To be called for every task before the first solution, in any order and by
+ * several threads at once, each with a work memory of its own. Errors: _ARGUMENT, _CAPACITY as fibrad_beam_row.
  * Cost: about 1 microsecond per direction of 64 points. */
-int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t i);
+int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
 
 /* What radiates. */
 typedef struct fibrad_heat_sources {

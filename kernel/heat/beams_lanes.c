@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "bed/beam_lanes.h"
+#include "bed/trace.h"
 #include "bed/window_lanes.h"
 #include "heat/beams_lanes.h"
 #include "heat/patch.h"
@@ -32,8 +33,8 @@ static void number(struct window *p, uint32_t points, const double frame[9], uin
         vm third = vd_lt(largest, size[2]);
         largest = vd_max(largest, size[2]), high = vd_select(third, n[2], high);
         vd face = vd_select(third, vd_set1(4), vd_select(second, vd_set1(2), zero));
-        vd a = vd_div(vd_select(third, n[0], vd_select(second, n[2], n[1])), largest);
-        vd b = vd_div(vd_select(third, n[1], vd_select(second, n[0], n[2])), largest);
+        vd a = vd_div(vd_select(third, n[0], vd_select(second, n[0], n[1])), largest);
+        vd b = vd_div(vd_select(third, n[1], n[2]), largest);
         /* t (5 - t^2)/4 is nearly proportional to the angle, atan t */
         a = vd_mul(a, vd_sub(vd_set1(1.25), vd_mul(vd_set1(.25), vd_mul(a, a))));
         b = vd_mul(b, vd_sub(vd_set1(1.25), vd_mul(vd_set1(.25), vd_mul(b, b))));
@@ -81,23 +82,18 @@ static void find_normals(const fibrad_work *work, const fibrad_points *points, s
     }
 }
 
-void LANED(fibrad_heat_leave)(fibrad_heat *heat) {
-    fibrad_disc_points set;
-    struct window window;
-    uint32_t points = heat->config.points;
-    fibrad_disc_points_get(points, &set);
-    for (uint32_t p = 0; p < points; p++) {
-        double x = set.x[p], y = set.y[p];
-        window.u[p] = x, window.v[p] = y, window.w[p] = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
-    }
-    for (uint32_t k = 0; k < heat->config.directions; k++) {
-        double frame[9];
-        fibrad_beam_frame(k, heat->config.directions, points, frame);
-        number(&window, points, frame, heat->side, heat->leave + (size_t)k * points);
-    }
+/* Where the ray of an open point goes, which starts on the sphere. */
+static uint32_t escape(const fibrad_heat *heat, const fibrad_work *work, const double frame[9], double x, double y) {
+    const double up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
+    double origin[3];
+    if (!heat->scene->container.walls) return fibrad_heat_open(heat);
+    for (int axis = 0; axis < 3; axis++)
+        origin[axis] =
+            work->centre[axis] + work->unit * (x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis]);
+    return fibrad_heat_leaves(heat, origin, frame + 6);
 }
 
-int LANED(fibrad_heat_beams)(fibrad_heat *heat, fibrad_work *work, uint32_t place) {
+static int follow_beams(fibrad_heat *heat, fibrad_work *work, uint32_t place) {
     fibrad_points points = {.count = heat->config.points};
     struct window window;
     uint16_t patch[POINTS];
@@ -117,10 +113,40 @@ int LANED(fibrad_heat_beams)(fibrad_heat *heat, fibrad_work *work, uint32_t plac
         number(&window, points.count, frame, heat->side, patch);
         uint32_t *hit = heat->hit + (size_t)place * heat->beams + (size_t)k * points.count;
         for (uint32_t p = 0; p < points.count; p++) {
-            hit[p] = heat->patches - 1;
-            if (window.disc[p] != FIBRAD_NONE)
+            if (window.disc[p] == FIBRAD_NONE)
+                hit[p] = escape(heat, work, frame, points.set.x[p], points.set.y[p]);
+            else
                 hit[p] = work->disc[window.disc[p]].sphere * heat->config.patches + patch[p];
         }
     }
+    return FIBRAD_OK;
+}
+
+static void follow_rays(fibrad_heat *heat, uint32_t task) {
+    for (uint32_t wall = 0; wall < FIBRAD_WALLS; wall++) {
+        const fibrad_heat_wall *part = &heat->wall[wall];
+        uint32_t from = task * FIBRAD_HEAT_TASK, to = from + FIBRAD_HEAT_TASK;
+        if (from < part->first_ray) from = part->first_ray;
+        if (to > part->first_ray + part->rays) to = part->first_ray + part->rays;
+        for (uint32_t k = from; k < to; k++) {
+            fibrad_heat_ray *ray = &heat->ray[k];
+            double origin[3], w[3];
+            fibrad_hit hit;
+            ray->from = FIBRAD_NONE;
+            if (!fibrad_heat_wall_ray(heat, wall, k - part->first_ray, origin, w)) continue;
+            LANED(fibrad_trace_point)(heat->scene, origin, w, &hit);
+            ray->from = fibrad_heat_wall_patch(heat, wall, origin);
+            if (hit.sphere == FIBRAD_NONE)
+                ray->to = fibrad_heat_leaves(heat, origin, w);
+            else
+                ray->to = hit.sphere * heat->config.patches + fibrad_patch_of(hit.normal, heat->side);
+        }
+    }
+}
+
+int LANED(fibrad_heat_follow)(fibrad_heat *heat, fibrad_work *work, uint32_t task) {
+    const fibrad_scene *scene = heat->scene;
+    if (task < scene->facts.spheres) return follow_beams(heat, work, scene->place[task]);
+    follow_rays(heat, task - scene->facts.spheres);
     return FIBRAD_OK;
 }

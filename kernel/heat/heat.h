@@ -1,23 +1,41 @@
-/* heat.h - what the files of the heat room share. SPDX-License-Identifier: MIT
+/* heat.h - what the files of the heat problem share. SPDX-License-Identifier: MIT
  *
- * Surfaces are cut into patches, numbered through: P of each sphere in the order of the scene's places, then those of
- * the walls, then the surroundings as one. Patches of one sphere follow each other so that four at a time make up a
- * patch of the next coarser level. */
+ * Bodies are the spheres in the order of the scene's places, then the walls by number, then what lies beyond the
+ * patches of unbounded walls, then the surroundings. Each body has patches [first[b], first[b + 1]): none if it is not
+ * there, four at a time making up a patch of the coarser level, and one alone beyond the walls. */
 #ifndef FIBRAD_HEAT_HEAT_H
 #define FIBRAD_HEAT_HEAT_H
 
 #include "bed/scene.h"
 
-/* What a sweep reads of a patch: side by side, since hits come to patches in no order. */
+#define FIBRAD_HEAT_PATCHES_MAX 384 /* of a sphere */
+#define FIBRAD_HEAT_TASK        1024u /* rays of a wall that are followed at a time */
+
+/* What a sweep reads of a patch: side by side, since beams come to patches in no order. */
 typedef struct fibrad_heat_source {
     double value;
-    double density; /* beams per area that its surface sends out */
+    double density; /* beams that its surface sends out, per area */
 } fibrad_heat_source;
 
+/* The part of a wall that is cut into patches, a rectangle: of a plane across axis a along the axes a + 1 and a + 2
+ * (modulo 3), of the cylinder around [turns, or fourths of the square that goes around] and along z. */
+typedef struct fibrad_heat_wall {
+    double low[2], size[2]; /* [L] */
+    double density;         /* rays per area */
+    uint32_t squares[2];
+    uint32_t first_ray, rays;
+    bool unbounded;
+} fibrad_heat_wall;
+
+/* A ray from one patch of a wall to another patch. */
+typedef struct fibrad_heat_ray {
+    uint32_t from, to; /* from: FIBRAD_NONE if it starts outside the container */
+} fibrad_heat_ray;
+
 typedef enum fibrad_heat_phase {
-    FIBRAD_HEAT_EMPTY, /* beams are being traced */
+    FIBRAD_HEAT_IDLE,  /* nothing is being solved */
     FIBRAD_HEAT_AREA,  /* the sweep in hand sums the areas of patches */
-    FIBRAD_HEAT_FIRST, /* that of the radiosity to begin with */
+    FIBRAD_HEAT_FIRST, /* that of the radiosities to begin with */
     FIBRAD_HEAT_STEPS, /* that of a search direction */
     FIBRAD_HEAT_DONE
 } fibrad_heat_phase;
@@ -26,27 +44,57 @@ struct fibrad_heat {
     fibrad_heat_config config;
     const fibrad_scene *scene;
     uint32_t beams;   /* of one sphere: directions times points */
-    uint32_t patches; /* all of them */
     uint32_t side;    /* patches of a sphere along an edge of its cube */
-    uint16_t *leave;  /* [beams] which patch of a sphere each beam leaves: the same for all spheres */
-    uint32_t *hit;    /* [spheres][beams] the patch it meets */
+    uint32_t bodies;  /* spheres, FIBRAD_WALLS twice, 1 */
+    uint32_t patches; /* all of them */
+    uint32_t rays;    /* of all walls */
+    fibrad_heat_wall wall[FIBRAD_WALLS];
+    uint32_t *first;      /* [bodies + 1] */
+    uint16_t *leave;      /* [beams] which patch of its sphere each beam leaves: the same for all spheres */
+    uint32_t *hit;        /* [spheres][beams] the patch it meets */
+    fibrad_heat_ray *ray; /* [rays] */
 
-    fibrad_heat_source *source; /* [patches] of the sweep in hand */
-    double *gathered;           /* [parts][patches] what the beams of each part bring */
-    double *area;               /* [patches] as the beams have it [L2] */
-    double *radiosity;          /* [patches] J */
-    double *received;           /* [patches] what comes in at these J, H times area */
-    double *direction;          /* [patches] of the search */
-    double *emissivity, *emission; /* [patches] eps, and E = sigma T^4 */
-    double *coarse;             /* [spheres] net power at the coarser level */
+    fibrad_heat_source *source;                       /* [patches] of the sweep in hand */
+    double *gathered;                                 /* [parts][patches] what the beams of each part bring */
+    double *area;                                     /* [patches] as the beams have it [L2] */
+    double *radiosity, *received;                     /* [patches] J, and the power K J that comes in */
+    double *detail;                                   /* [patches] J less that of the coarser level */
+    double *direction;                                /* [patches] of the search */
+    double *emissivity, *emission;                    /* [bodies] eps and E */
+    double *coarse, *power;                           /* [bodies] net power at the coarser level, and extrapolated */
+    double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS];
 
     fibrad_heat_phase phase;
-    uint32_t group; /* patches that share one J: 1, 4, or all of a sphere */
-    double slope;   /* residual times preconditioned residual */
-    double scale;   /* what `slope` is compared with */
+    uint32_t group;  /* patches that share one J, the most: 1, 4, or PATCHES_MAX and more for whole bodies */
+    double slope;    /* residual times preconditioned residual */
+    double scale;    /* what the slope is compared with */
+    double smallest; /* a slope that is nothing but rounding */
     double tolerance;
     uint32_t sweeps, limit;
-    bool solved; /* radiosity and emission are those of an earlier solution */
 };
+
+/* The body beyond the patches of wall k, and the surroundings. */
+static inline uint32_t fibrad_heat_wall_body(const fibrad_heat *heat, uint32_t wall) {
+    return heat->scene->facts.spheres + wall;
+}
+static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall) {
+    return heat->scene->facts.spheres + FIBRAD_WALLS + wall;
+}
+static inline uint32_t fibrad_heat_open(const fibrad_heat *heat) { return heat->patches - 1; }
+
+/* Makes the next sweep one of the radiosities. */
+void fibrad_heat_send(fibrad_heat *heat);
+
+/* Chooses the patches and rays of all walls: heat->wall and heat->rays. Needs heat->config and heat->scene. */
+void fibrad_heat_cut_walls(fibrad_heat *heat);
+
+/* The patch of a wall at a place on it [L]. */
+uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]);
+
+/* The patch that a ray meets which meets no sphere: of a wall, or the surroundings. */
+uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]);
+
+/* Origin [L] and direction of ray k of a wall. False: it starts outside the container. */
+bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, double origin[3], double w[3]);
 
 #endif

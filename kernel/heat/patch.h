@@ -24,4 +24,20 @@ static inline uint32_t fibrad_patch_number(uint32_t face, uint32_t x, uint32_t y
     return face * side * side + ((x >> 1) * (side >> 1) + (y >> 1)) * 4 + (x & 1) * 2 + (y & 1);
 }
 
+/* The patch of a normal. */
+static inline uint32_t fibrad_patch_of(const double normal[3], uint32_t side) {
+    static const double frame[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double axes[9], n[3], at[2];
+    fibrad_patch_turn(frame, axes);
+    for (int row = 0; row < 3; row++)
+        n[row] = normal[0] * axes[row] + normal[1] * axes[3 + row] + normal[2] * axes[6 + row];
+    uint32_t axis = fibrad_abs(n[0]) < fibrad_abs(n[1]) ? 1 : 0;
+    if (fibrad_abs(n[axis]) < fibrad_abs(n[2])) axis = 2;
+    for (uint32_t k = 0; k < 2; k++) {
+        const double t = n[k < axis ? k : k + 1] / fibrad_abs(n[axis]);
+        at[k] = fibrad_max(0, t * (1.25 - .25 * (t * t)) + 1) * (.5 * side);
+    }
+    return fibrad_patch_number(2 * axis + (n[axis] < 0), (uint32_t)at[0], (uint32_t)at[1], side);
+}
+
 #endif

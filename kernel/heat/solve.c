@@ -4,43 +4,57 @@
  *
  *     (A/rho - K) J = A eps/rho E,
  *
- * a symmetric positive definite system. Preconditioned by rho/A the residual is eps E + rho H - J, H = K J/A: what a
- * plain sweep would change. Patches with rho = 0 have J = E and take no part. On the coarser level J is the same on
- * the patches of a group; that is no more than a preconditioner that takes the mean over each group, since all vectors
- * then stay within such J. So the finer level goes on from where the coarser one ends. */
+ * a symmetric positive definite system. Times rho/A, its residual is eps E + rho H - J with H = K J/A: what a plain
+ * sweep would change. Patches with rho = 0 have J = E and take no part. On the coarser level J is the same on the
+ * patches of a group. For that the residuals of a group are replaced by their mean, and all vectors stay within such J;
+ * the finer level goes on from there. */
 #include "heat/heat.h"
 
-static uint32_t part_begin(const fibrad_heat *heat, uint32_t part) {
-    return (uint32_t)((uint64_t)heat->scene->facts.spheres * part / heat->config.parts);
+/* Each beam stands for the area 1/(n + m) if surfaces of its two kinds send out n and m beams per area: then the beams
+ * either way together, and each way alone, estimate what the two exchange. */
+static double weight(const fibrad_heat_source *a, const fibrad_heat_source *b) { return 1 / (a->density + b->density); }
+
+/* Adds what the beams of one sphere bring to its own patches, and to those they meet. */
+static void sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to) {
+    const uint32_t *hit = heat->hit + (size_t)place * heat->beams, patches = heat->config.patches;
+    const fibrad_heat_source *source = heat->source, *mine = source + (size_t)place * patches;
+    double own[FIBRAD_HEAT_PATCHES_MAX] = {0};
+    for (uint32_t k = 0; k < heat->beams; k++) {
+        const uint32_t a = heat->leave[k], b = hit[k];
+        const double area = weight(mine, &source[b]);
+        own[a] += area * source[b].value;
+        to[b] += area * mine[a].value;
+    }
+    for (uint32_t a = 0; a < patches; a++) to[(size_t)place * patches + a] += own[a];
 }
 
-/* What the beams of one sphere exchange: to its own patches `own`, to those they meet `other`. */
-static void exchange(const fibrad_heat *heat, uint32_t place, double *own, double *other) {
-    const uint32_t *hit = heat->hit + (size_t)place * heat->beams;
-    const fibrad_heat_source *source = heat->source, *mine = source + (size_t)place * heat->config.patches;
-    const uint16_t *leave = heat->leave;
-    const double density = mine->density;
-    for (uint32_t k = 0; k < heat->beams; k++) {
-        const uint32_t a = leave[k], b = hit[k];
-        const double weight = 1 / (density + source[b].density);
-        own[a] += weight * source[b].value;
-        other[b] += weight * mine[a].value;
+static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, double *to) {
+    const fibrad_heat_source *source = heat->source;
+    for (uint32_t k = begin; k < end; k++) {
+        const uint32_t a = heat->ray[k].from, b = heat->ray[k].to;
+        if (a == FIBRAD_NONE) continue;
+        const double area = weight(&source[a], &source[b]);
+        to[a] += area * source[b].value;
+        to[b] += area * source[a].value;
     }
+}
+
+/* Where a part begins of n things. */
+static uint32_t share(const fibrad_heat *heat, uint32_t n, uint32_t part) {
+    return (uint32_t)((uint64_t)n * part / heat->config.parts);
 }
 
 void fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
-    double *to = heat->gathered + (size_t)part * heat->patches, own[384];
-    const uint32_t patches = heat->config.patches;
+    const uint32_t spheres = heat->scene->facts.spheres;
+    double *to = heat->gathered + (size_t)part * heat->patches;
     fibrad_zero(to, heat->patches * sizeof *to);
-    for (uint32_t place = part_begin(heat, part); place < part_begin(heat, part + 1); place++) {
-        fibrad_zero(own, patches * sizeof *own);
-        exchange(heat, place, own, to);
-        for (uint32_t a = 0; a < patches; a++) to[(size_t)place * patches + a] += own[a];
-    }
+    for (uint32_t place = share(heat, spheres, part); place < share(heat, spheres, part + 1); place++)
+        sweep_sphere(heat, place, to);
+    sweep_rays(heat, share(heat, heat->rays, part), share(heat, heat->rays, part + 1), to);
 }
 
 /* Adds up what the parts have gathered, in the first part's place. */
-static double *gather(fibrad_heat *heat) {
+static const double *gather(fibrad_heat *heat) {
     double *sum = heat->gathered;
     for (uint32_t part = 1; part < heat->config.parts; part++) {
         const double *from = heat->gathered + (size_t)part * heat->patches;
@@ -49,150 +63,151 @@ static double *gather(fibrad_heat *heat) {
     return sum;
 }
 
-/* The next search direction: preconditioned residual and `keep` times the last direction. Returns the residual times
- * the preconditioned one. */
-static double residual(const fibrad_heat *heat, uint32_t a, uint32_t group) {
-    double sum = 0, area = 0;
-    for (uint32_t b = a; b < a + group; b++) {
-        const double eps = heat->emissivity[b];
-        if (heat->area[b] == 0) continue;
-        sum += heat->area[b] * (eps * heat->emission[b] - heat->radiosity[b]) + (1 - eps) * heat->received[b];
-        area += heat->area[b];
-    }
-    return area > 0 ? sum / area : 0;
-}
-
-static double slope_of(fibrad_heat *heat) {
+/* What a plain sweep would change: of all patches, into source[].value. Returns the residual times that. */
+static double find_residual(fibrad_heat *heat) {
     double slope = 0;
-    for (uint32_t a = 0; a < heat->patches; a++) {
-        const uint32_t group = a + 1 < heat->patches ? heat->group : 1;
-        const double z = residual(heat, a, group);
-        for (uint32_t b = a; b < a + group; b++) {
-            heat->source[b].value = z;
-            if (heat->emissivity[b] < 1) slope += heat->area[b] * z * z / (1 - heat->emissivity[b]);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double eps = heat->emissivity[b];
+        const uint32_t end = heat->first[b + 1];
+        for (uint32_t a = heat->first[b], next; a < end; a = next) {
+            double sum = 0, area = 0;
+            next = end - a > heat->group ? a + heat->group : end;
+            for (uint32_t k = a; k < next; k++) {
+                sum += heat->area[k] * (eps * heat->emission[b] - heat->radiosity[k]) + (1 - eps) * heat->received[k];
+                area += heat->area[k];
+            }
+            const double change = eps < 1 && area > 0 ? sum / area : 0;
+            for (uint32_t k = a; k < next; k++) heat->source[k].value = change;
+            if (eps < 1) slope += area * change * change / (1 - eps);
         }
-        a += group - 1;
     }
     return slope;
 }
 
-static void net_power(const fibrad_heat *heat, double *power) {
-    const uint32_t patches = heat->config.patches;
-    for (uint32_t i = 0; i < heat->scene->facts.spheres; i++) {
-        power[i] = 0;
-        for (uint32_t a = i * patches; a < (i + 1) * patches; a++)
-            power[i] += heat->received[a] - heat->area[a] * heat->radiosity[a];
+/* Net powers, which add up to zero whatever the radiosities are, since each beam gives to one end what it takes from
+ * the other. */
+static void find_powers(const fibrad_heat *heat, double *power) {
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        power[b] = 0;
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+            power[b] += heat->received[a] - heat->area[a] * heat->radiosity[a];
     }
 }
 
-static void set_scale(fibrad_heat *heat) {
-    double sum = 0, mean = 0, square = 0;
-    for (uint32_t a = 0; a < heat->patches; a++) {
-        sum += heat->area[a] * heat->emissivity[a];
-        mean += heat->area[a] * heat->emissivity[a] * heat->emission[a];
-    }
-    mean = sum > 0 ? mean / sum : 0;
-    for (uint32_t a = 0; a < heat->patches; a++) {
-        const double difference = heat->emission[a] - mean;
-        square += heat->area[a] * heat->emissivity[a] * difference * difference;
-    }
-    heat->scale = square;
+/* Emissivity times area of a body. */
+static double emitting(const fibrad_heat *heat, uint32_t body) {
+    double area = 0;
+    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++) area += heat->area[a];
+    return heat->emissivity[body] * area;
 }
 
-/* Begins or goes on with the search. Returns whether there is a direction left to search in. */
-static int search(fibrad_heat *heat, bool restart) {
-    for (;;) {
-        const double slope = slope_of(heat);
-        const bool done = slope <= heat->tolerance * heat->tolerance * heat->scale || heat->sweeps >= heat->limit;
-        if (!done) {
-            const double keep = restart ? 0 : slope / heat->slope;
-            for (uint32_t a = 0; a < heat->patches; a++) {
-                const double z = heat->emissivity[a] < 1 ? heat->source[a].value : 0;
-                heat->direction[a] = z + (restart ? 0 : keep * heat->direction[a]);
-                heat->source[a].value = heat->direction[a];
-            }
-            heat->slope = slope;
-            heat->phase = FIBRAD_HEAT_STEPS;
-            return 1;
-        }
-        if (heat->group != 4 || heat->sweeps >= heat->limit) break;
-        net_power(heat, heat->coarse);
-        heat->group = 1;
-        restart = true;
+/* What residuals are compared with: how much emission differs from its mean, and, for rounding, emission itself. */
+static void find_scale(fibrad_heat *heat) {
+    double weights = 0, sum = 0, largest = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double area = emitting(heat, b), emission = heat->emission[b];
+        weights += area, sum += area * emission, largest += area * emission * emission;
     }
+    heat->scale = 0;
+    heat->smallest = 1e-28 * largest;
+    for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) {
+        const double difference = heat->emission[b] - sum / weights;
+        heat->scale += emitting(heat, b) * difference * difference;
+    }
+}
+
+/* Takes the finer powers and, by a third of their difference from the coarser ones, those of patches without size: the
+ * error falls with the area of patches. */
+static void finish(fibrad_heat *heat) {
+    find_powers(heat, heat->power);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        if (heat->group > 1) heat->coarse[b] = heat->power[b];
+        heat->power[b] += (heat->power[b] - heat->coarse[b]) / 3;
+    }
+    if (heat->group == 1)
+        for (uint32_t a = 0; a < heat->patches; a++) heat->detail[a] += heat->radiosity[a];
     heat->phase = FIBRAD_HEAT_DONE;
-    return 0;
 }
 
-static int first(fibrad_heat *heat) {
+/* Whether the radiosities of the level in hand are good enough. */
+static bool settled(const fibrad_heat *heat) {
+    return heat->slope <= fibrad_max(heat->tolerance * heat->tolerance * heat->scale, heat->smallest) ||
+           heat->sweeps >= heat->limit;
+}
+
+/* The direction to search next: the residual, and `keep` of the last direction. */
+static void turn(fibrad_heat *heat, double keep) {
+    for (uint32_t a = 0; a < heat->patches; a++) {
+        heat->direction[a] = heat->source[a].value + (keep != 0 ? keep * heat->direction[a] : 0);
+        heat->source[a].value = heat->direction[a];
+    }
+}
+
+void fibrad_heat_send(fibrad_heat *heat) {
     for (uint32_t a = 0; a < heat->patches; a++) heat->source[a].value = heat->radiosity[a];
     heat->phase = FIBRAD_HEAT_FIRST;
+}
+
+/* From the coarser level to the finer one, with the detail that an earlier solution had. Until this one has its own,
+ * `detail` holds what is to be taken from it. */
+static void refine(fibrad_heat *heat) {
+    find_powers(heat, heat->coarse);
+    heat->group = 1;
+    for (uint32_t a = 0; a < heat->patches; a++) {
+        const double coarse = heat->radiosity[a];
+        heat->radiosity[a] += heat->detail[a];
+        heat->detail[a] = -coarse;
+    }
+    fibrad_heat_send(heat);
+}
+
+/* Goes on with the search, or with the finer level, if there is something left to do. */
+static int search(fibrad_heat *heat, bool restart) {
+    const double last = heat->slope;
+    heat->slope = find_residual(heat);
+    if (settled(heat)) {
+        if (heat->group != 4) return finish(heat), 0;
+        return refine(heat), 1;
+    }
+    turn(heat, restart ? 0 : heat->slope / last);
+    heat->phase = FIBRAD_HEAT_STEPS;
     return 1;
+}
+
+/* Goes along the direction whose product with K is `product`, as far as the error falls. */
+static void advance(fibrad_heat *heat, const double *product) {
+    double curvature = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        if (heat->emissivity[b] == 1) continue;
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+            const double p = heat->direction[a];
+            curvature += p * (heat->area[a] * p / (1 - heat->emissivity[b]) - product[a]);
+        }
+    }
+    if (!(curvature > 0)) return;
+    const double length = heat->slope / curvature;
+    for (uint32_t a = 0; a < heat->patches; a++) {
+        heat->radiosity[a] += length * heat->direction[a];
+        heat->received[a] += length * product[a];
+    }
 }
 
 int fibrad_heat_step(fibrad_heat *heat) {
     const double *sum = gather(heat);
     heat->sweeps++;
-    if (heat->phase == FIBRAD_HEAT_AREA) {
+    switch (heat->phase) {
+    case FIBRAD_HEAT_AREA:
         fibrad_copy(heat->area, sum, heat->patches * sizeof *sum);
-        return first(heat);
-    }
-    if (heat->phase == FIBRAD_HEAT_FIRST) {
+        fibrad_heat_send(heat);
+        return 1;
+    case FIBRAD_HEAT_FIRST:
         fibrad_copy(heat->received, sum, heat->patches * sizeof *sum);
-        set_scale(heat);
+        find_scale(heat);
         return search(heat, true);
+    case FIBRAD_HEAT_STEPS:
+        advance(heat, sum);
+        return search(heat, false);
+    default:
+        return 0;
     }
-    double curvature = 0;
-    for (uint32_t a = 0; a < heat->patches; a++) {
-        const double p = heat->direction[a];
-        if (heat->emissivity[a] < 1) curvature += p * (heat->area[a] * p / (1 - heat->emissivity[a]) - sum[a]);
-    }
-    const double length = heat->slope / curvature;
-    for (uint32_t a = 0; a < heat->patches; a++) {
-        heat->radiosity[a] += length * heat->direction[a];
-        heat->received[a] += length * sum[a];
-    }
-    return search(heat, false);
-}
-
-int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *s) {
-    const uint32_t patches = heat->config.patches;
-    const fibrad_scene *scene = heat->scene;
-    for (uint32_t a = 0; a < heat->patches; a++) {
-        const bool open = a + 1 == heat->patches;
-        const uint32_t i = open ? 0 : scene->order[a / patches];
-        const double t = open ? s->surroundings : s->temperature[i];
-        const double emission = s->sigma * (t * t) * (t * t);
-        heat->radiosity[a] = heat->solved ? heat->radiosity[a] + (emission - heat->emission[a]) : emission;
-        heat->emission[a] = emission;
-        heat->emissivity[a] = open ? 1 : s->emissivity[i];
-        if (heat->emissivity[a] == 1) heat->radiosity[a] = emission;
-    }
-    heat->group = s->uniform ? patches : 4;
-    heat->tolerance = s->tolerance > 0 ? s->tolerance : 1e-4;
-    heat->limit = s->sweeps_max > 0 ? s->sweeps_max : 1000;
-    heat->sweeps = 0;
-    if (heat->solved) return first(heat), FIBRAD_OK;
-    for (uint32_t a = 0; a < heat->patches; a++) heat->source[a].value = 1;
-    heat->phase = FIBRAD_HEAT_AREA;
-    return FIBRAD_OK;
-}
-
-int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
-    const uint32_t patches = heat->config.patches, n = heat->scene->facts.spheres;
-    double square = 0;
-    for (uint32_t place = 0; place < n; place++) {
-        double q = 0;
-        for (uint32_t a = place * patches; a < (place + 1) * patches; a++)
-            q += heat->received[a] - heat->area[a] * heat->radiosity[a];
-        const double change = heat->group == 1 ? (q - heat->coarse[place]) / 3 : 0;
-        result->power[heat->scene->order[place]] = q + change;
-        square += change * change;
-    }
-    result->error = fibrad_sqrt(square / n);
-    const uint32_t open = heat->patches - 1;
-    result->surroundings_power = heat->received[open] - heat->area[open] * heat->radiosity[open];
-    result->sweeps = heat->sweeps;
-    result->residual = heat->scale > 0 ? fibrad_sqrt(heat->slope / heat->scale) : 0;
-    return FIBRAD_OK;
 }
