@@ -88,8 +88,7 @@ static uint32_t escape(const fibrad_heat *heat, const fibrad_work *work, const d
     double origin[3];
     if (!heat->scene->container.walls) return fibrad_heat_open(heat);
     for (int axis = 0; axis < 3; axis++)
-        origin[axis] =
-            work->centre[axis] + work->unit * (x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis]);
+        origin[axis] = work->centre[axis] + work->unit * (x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis]);
     return fibrad_heat_leaves(heat, origin, frame + 6);
 }
 

@@ -59,7 +59,7 @@ static fibrad_heat *layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->ray = fibrad_arena_take(arena, heat->rays, sizeof *heat->ray);
     heat->source = fibrad_arena_take(arena, heat->patches, sizeof *heat->source);
     heat->gathered = fibrad_arena_take(arena, (size_t)heat->patches * heat->config.parts, sizeof(double));
-    double **const of_patches[] = {&heat->area, &heat->radiosity, &heat->detail, &heat->received, &heat->direction};
+    double **const of_patches[] = {&heat->area, &heat->radiosity, &heat->detail, &heat->net, &heat->direction};
     for (size_t k = 0; k < sizeof of_patches / sizeof *of_patches; k++)
         *of_patches[k] = fibrad_arena_take(arena, heat->patches, sizeof(double));
     double **const of_bodies[] = {&heat->emissivity, &heat->emission, &heat->coarse, &heat->power};
@@ -109,8 +109,7 @@ static void find_origins(fibrad_heat *heat) {
         fibrad_beam_frame(k, heat->config.directions, points, frame);
         for (uint32_t p = 0; p < points; p++) {
             const double x = set.x[p], y = set.y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
-            for (int axis = 0; axis < 3; axis++)
-                n[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
+            for (int axis = 0; axis < 3; axis++) n[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
             heat->leave[k * points + p] = (uint16_t)fibrad_patch_of(n, heat->side);
         }
     }
@@ -172,13 +171,17 @@ static bool sources_valid(const fibrad_heat *heat, const fibrad_heat_sources *s)
            s->tolerance < 1;
 }
 
-static double emission_of(const fibrad_heat_sources *s, double t) { return s->sigma * (t * t) * (t * t); }
+/* sigma (T^4 - T0^4), T0 being that of the surroundings: all emission and radiosity is counted from theirs. */
+static double emission_of(const fibrad_heat_sources *s, double t) {
+    const double t0 = s->surroundings;
+    return s->sigma * (t * t + t0 * t0) * (t + t0) * (t - t0);
+}
 
 /* Emissivity and emission of a body. What lies beyond the patches of a wall receives no more than the surroundings
  * send, its area being infinite; so it is like a black body of that radiosity. */
 static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const uint32_t spheres = heat->scene->facts.spheres;
-    double eps = 1, emission = emission_of(s, s->surroundings);
+    double eps = 1, emission = 0;
     if (b < spheres) {
         const uint32_t i = heat->scene->order[b];
         eps = s->emissivity[i], emission = emission_of(s, s->temperature[i]);
@@ -188,7 +191,7 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b
         if (b < spheres + FIBRAD_WALLS)
             eps = wall_eps, emission = wall_emission;
         else
-            emission = wall_eps * wall_emission + (1 - wall_eps) * emission;
+            emission = wall_eps * wall_emission;
     }
     /* an earlier solution goes up or down with the emission; the coarser level begins with what it had of it */
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
@@ -237,7 +240,8 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
         result->wall_power[k] = heat->power[fibrad_heat_wall_body(heat, k)];
         if (a == heat->first[beyond + 1]) continue;
         /* beyond its patches the wall takes eps of what comes and reflects the rest to the surroundings */
-        const double absorbed = heat->wall_emissivity[k] * (heat->received[a] - heat->area[a] * heat->wall_emission[k]);
+        const double less = heat->radiosity[a] - heat->wall_emission[k];
+        const double absorbed = heat->wall_emissivity[k] * (heat->net[a] + heat->area[a] * less);
         result->wall_power[k] += absorbed;
         result->surroundings_power += heat->power[beyond] - absorbed;
     }

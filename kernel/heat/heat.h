@@ -8,7 +8,7 @@
 
 #include "bed/scene.h"
 
-#define FIBRAD_HEAT_PATCHES_MAX 384 /* of a sphere */
+#define FIBRAD_HEAT_PATCHES_MAX 384   /* of a sphere */
 #define FIBRAD_HEAT_TASK        1024u /* rays of a wall that are followed at a time */
 
 /* What a sweep reads of a patch: side by side, since beams come to patches in no order. */
@@ -54,14 +54,14 @@ struct fibrad_heat {
     uint32_t *hit;        /* [spheres][beams] the patch it meets */
     fibrad_heat_ray *ray; /* [rays] */
 
-    fibrad_heat_source *source;                       /* [patches] of the sweep in hand */
-    double *gathered;                                 /* [parts][patches] what the beams of each part bring */
-    double *area;                                     /* [patches] as the beams have it [L2] */
-    double *radiosity, *received;                     /* [patches] J, and the power K J that comes in */
-    double *detail;                                   /* [patches] J less that of the coarser level */
-    double *direction;                                /* [patches] of the search */
-    double *emissivity, *emission;                    /* [bodies] eps and E */
-    double *coarse, *power;                           /* [bodies] net power at the coarser level, and extrapolated */
+    fibrad_heat_source *source;    /* [patches] of the sweep in hand */
+    double *gathered;              /* [parts][patches] what the beams of each part bring */
+    double *area;                  /* [patches] as the beams have it [L2] */
+    double *radiosity, *net;       /* [patches] J, and the net flow N J */
+    double *detail;                /* [patches] J less that of the coarser level */
+    double *direction;             /* [patches] of the search */
+    double *emissivity, *emission; /* [bodies] eps and E */
+    double *coarse, *power;        /* [bodies] net power at the coarser level, and extrapolated */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS];
 
     fibrad_heat_phase phase;

@@ -4,38 +4,50 @@
  *
  *     (A/rho - K) J = A eps/rho E,
  *
- * a symmetric positive definite system. Times rho/A, its residual is eps E + rho H - J with H = K J/A: what a plain
- * sweep would change. Patches with rho = 0 have J = E and take no part. On the coarser level J is the same on the
- * patches of a group. For that the residuals of a group are replaced by their mean, and all vectors stay within such J;
- * the finer level goes on from there. */
+ * a symmetric positive definite system. A sweep forms the net flows N J = K J - A J beam by beam, each beam giving to
+ * one end what it takes from the other: they add up to zero whatever J is, and are zero where all J are equal. Times
+ * rho/A the residual is eps (E - J) + rho N J/A: what a plain sweep would change. Patches with rho = 0 have J = E and
+ * take no part. On the coarser level J is the same on the patches of a group. For that the residuals of a group are
+ * replaced by their mean, and all vectors stay within such J; the finer level goes on from there. */
 #include "heat/heat.h"
 
 /* Each beam stands for the area 1/(n + m) if surfaces of its two kinds send out n and m beams per area: then the beams
  * either way together, and each way alone, estimate what the two exchange. */
 static double weight(const fibrad_heat_source *a, const fibrad_heat_source *b) { return 1 / (a->density + b->density); }
 
-/* Adds what the beams of one sphere bring to its own patches, and to those they meet. */
-static void sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to) {
+/* Adds what the beams of one sphere bring to its own patches, and to those they meet; or, in the first sweep of all,
+ * the areas they stand for. Returns what comes to the surroundings, summed window by window: one sum of all beams would
+ * lose digits. */
+static double sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to) {
     const uint32_t *hit = heat->hit + (size_t)place * heat->beams, patches = heat->config.patches;
     const fibrad_heat_source *source = heat->source, *mine = source + (size_t)place * patches;
-    double own[FIBRAD_HEAT_PATCHES_MAX] = {0};
-    for (uint32_t k = 0; k < heat->beams; k++) {
-        const uint32_t a = heat->leave[k], b = hit[k];
-        const double area = weight(mine, &source[b]);
-        own[a] += area * source[b].value;
-        to[b] += area * mine[a].value;
+    const bool areas = heat->phase == FIBRAD_HEAT_AREA;
+    double own[FIBRAD_HEAT_PATCHES_MAX] = {0}, away = 0, *open = &to[heat->patches - 1];
+    for (uint32_t begin = 0; begin < heat->beams; begin += heat->config.points) {
+        for (uint32_t k = begin; k < begin + heat->config.points; k++) {
+            const uint32_t a = heat->leave[k], b = hit[k];
+            const double area = weight(mine, &source[b]);
+            const double flow = areas ? area : area * (source[b].value - mine[a].value);
+            own[a] += flow;
+            to[b] += areas ? flow : -flow;
+        }
+        away += *open;
+        *open = 0;
     }
     for (uint32_t a = 0; a < patches; a++) to[(size_t)place * patches + a] += own[a];
+    return away;
 }
 
 static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, double *to) {
     const fibrad_heat_source *source = heat->source;
+    const bool areas = heat->phase == FIBRAD_HEAT_AREA;
     for (uint32_t k = begin; k < end; k++) {
         const uint32_t a = heat->ray[k].from, b = heat->ray[k].to;
         if (a == FIBRAD_NONE) continue;
         const double area = weight(&source[a], &source[b]);
-        to[a] += area * source[b].value;
-        to[b] += area * source[a].value;
+        const double flow = areas ? area : area * (source[b].value - source[a].value);
+        to[a] += flow;
+        to[b] += areas ? flow : -flow;
     }
 }
 
@@ -48,8 +60,10 @@ void fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
     const uint32_t spheres = heat->scene->facts.spheres;
     double *to = heat->gathered + (size_t)part * heat->patches;
     fibrad_zero(to, heat->patches * sizeof *to);
+    double away = 0;
     for (uint32_t place = share(heat, spheres, part); place < share(heat, spheres, part + 1); place++)
-        sweep_sphere(heat, place, to);
+        away += sweep_sphere(heat, place, to);
+    to[heat->patches - 1] = away;
     sweep_rays(heat, share(heat, heat->rays, part), share(heat, heat->rays, part + 1), to);
 }
 
@@ -73,7 +87,7 @@ static double find_residual(fibrad_heat *heat) {
             double sum = 0, area = 0;
             next = end - a > heat->group ? a + heat->group : end;
             for (uint32_t k = a; k < next; k++) {
-                sum += heat->area[k] * (eps * heat->emission[b] - heat->radiosity[k]) + (1 - eps) * heat->received[k];
+                sum += heat->area[k] * eps * (heat->emission[b] - heat->radiosity[k]) + (1 - eps) * heat->net[k];
                 area += heat->area[k];
             }
             const double change = eps < 1 && area > 0 ? sum / area : 0;
@@ -84,13 +98,11 @@ static double find_residual(fibrad_heat *heat) {
     return slope;
 }
 
-/* Net powers, which add up to zero whatever the radiosities are, since each beam gives to one end what it takes from
- * the other. */
+/* Net powers of the bodies. */
 static void find_powers(const fibrad_heat *heat, double *power) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
         power[b] = 0;
-        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-            power[b] += heat->received[a] - heat->area[a] * heat->radiosity[a];
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) power[b] += heat->net[a];
     }
 }
 
@@ -174,21 +186,22 @@ static int search(fibrad_heat *heat, bool restart) {
     return 1;
 }
 
-/* Goes along the direction whose product with K is `product`, as far as the error falls. */
+/* Goes along the direction whose product with N is `product`, as far as the error falls. */
 static void advance(fibrad_heat *heat, const double *product) {
     double curvature = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (heat->emissivity[b] == 1) continue;
+        const double share = heat->emissivity[b] / (1 - heat->emissivity[b]);
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
             const double p = heat->direction[a];
-            curvature += p * (heat->area[a] * p / (1 - heat->emissivity[b]) - product[a]);
+            curvature += p * (heat->area[a] * p * share - product[a]);
         }
     }
     if (!(curvature > 0)) return;
     const double length = heat->slope / curvature;
     for (uint32_t a = 0; a < heat->patches; a++) {
         heat->radiosity[a] += length * heat->direction[a];
-        heat->received[a] += length * product[a];
+        heat->net[a] += length * product[a];
     }
 }
 
@@ -201,7 +214,7 @@ int fibrad_heat_step(fibrad_heat *heat) {
         fibrad_heat_send(heat);
         return 1;
     case FIBRAD_HEAT_FIRST:
-        fibrad_copy(heat->received, sum, heat->patches * sizeof *sum);
+        fibrad_copy(heat->net, sum, heat->patches * sizeof *sum);
         find_scale(heat);
         return search(heat, true);
     case FIBRAD_HEAT_STEPS:

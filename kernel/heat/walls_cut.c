@@ -20,8 +20,10 @@ static bool stretch(const fibrad_scene *scene, uint32_t axis, double *low, doubl
     for (int a = 0; a < 3; a++)
         wide = fibrad_max(wide, scene->box_high[a] - scene->box_low[a] + 2 * scene->facts.radius_max);
     double from = c->low[axis], to = c->high[axis];
-    if (scene->period[axis] > 0) from = scene->low[axis], to = scene->low[axis] + scene->period[axis];
-    else if (c->radius < __builtin_inf() && axis < 2) from = c->axis[axis] - c->radius, to = c->axis[axis] + c->radius;
+    if (scene->period[axis] > 0)
+        from = scene->low[axis], to = scene->low[axis] + scene->period[axis];
+    else if (c->radius < __builtin_inf() && axis < 2)
+        from = c->axis[axis] - c->radius, to = c->axis[axis] + c->radius;
     *low = fibrad_finite(from) ? from : scene->box_low[axis] - wide;
     *size = (fibrad_finite(to) ? to : scene->box_high[axis] + wide) - *low;
     return !fibrad_finite(from) || !fibrad_finite(to);
@@ -47,8 +49,8 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
         if (!(scene->facts.wall_area[k] > 0)) continue;
         wall->size[0] = 1;
         for (uint32_t side = k == FIBRAD_CYLINDER; side < 2; side++)
-            wall->unbounded |= stretch(scene, k == FIBRAD_CYLINDER ? 2 : (k / 2 + 1 + side) % 3, &wall->low[side],
-                                       &wall->size[side]);
+            wall->unbounded |=
+                stretch(scene, k == FIBRAD_CYLINDER ? 2 : (k / 2 + 1 + side) % 3, &wall->low[side], &wall->size[side]);
         area += area_of(heat, k);
     }
     if (area == 0) return;
@@ -96,7 +98,8 @@ uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const do
 
 uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]) {
     double distance, at[3];
-    const uint32_t wall = heat->scene->container.walls ? fibrad_walls_exit(heat->scene, origin, w, &distance) : FIBRAD_NONE;
+    const uint32_t wall =
+        heat->scene->container.walls ? fibrad_walls_exit(heat->scene, origin, w, &distance) : FIBRAD_NONE;
     if (wall == FIBRAD_NONE) return fibrad_heat_open(heat);
     for (int axis = 0; axis < 3; axis++) at[axis] = origin[axis] + distance * w[axis];
     return fibrad_heat_wall_patch(heat, wall, at);
