@@ -82,14 +82,28 @@ static void find_normals(const fibrad_work *work, const fibrad_points *points, s
     }
 }
 
-/* Where the ray of an open point goes, which starts on the sphere. */
-static uint32_t escape(const fibrad_heat *heat, const fibrad_work *work, const double frame[9], double x, double y) {
-    const double up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
-    double origin[3];
+/* A window stands for all directions nearer to its own than to others. To tell far walls apart, the beam of each open
+ * point goes in a direction of its own, from a disc about that of the window; which one, another point of the set says.
+ * As for the rows of beams, bed/walls_lanes.c. */
+#define SPREAD  3.0 /* radius of the disc, times sqrt n */
+#define PAIRING 45u
+#define SHIFT   21u
+
+/* The patch that the beam of open point p of window k meets. */
+static uint32_t escape(const fibrad_heat *heat, const fibrad_work *work, const double frame[9],
+                       const fibrad_disc_points *set, uint32_t k, uint32_t p) {
     if (!heat->scene->container.walls) return fibrad_heat_open(heat);
-    for (int axis = 0; axis < 3; axis++)
-        origin[axis] = work->centre[axis] + work->unit * (x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis]);
-    return fibrad_heat_leaves(heat, origin, frame + 6);
+    const uint32_t other = (PAIRING * p + SHIFT * k) & (heat->config.points - 1);
+    const double x = set->x[p], y = set->y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
+    const double spread = SPREAD / fibrad_sqrt(heat->config.directions);
+    const double du = spread * set->x[other], dv = spread * set->y[other];
+    double origin[3], w[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const double e = frame[axis], f = frame[3 + axis], g = frame[6 + axis];
+        origin[axis] = work->centre[axis] + work->unit * (x * e + y * f + up * g);
+        w[axis] = g + (du * e + dv * f);
+    }
+    return fibrad_heat_leaves(heat, origin, w);
 }
 
 static int follow_beams(fibrad_heat *heat, fibrad_work *work, uint32_t place) {
@@ -113,7 +127,7 @@ static int follow_beams(fibrad_heat *heat, fibrad_work *work, uint32_t place) {
         uint32_t *hit = heat->hit + (size_t)place * heat->beams + (size_t)k * points.count;
         for (uint32_t p = 0; p < points.count; p++) {
             if (window.disc[p] == FIBRAD_NONE)
-                hit[p] = escape(heat, work, frame, points.set.x[p], points.set.y[p]);
+                hit[p] = escape(heat, work, frame, &points.set, k, p);
             else
                 hit[p] = work->disc[window.disc[p]].sphere * heat->config.patches + patch[p];
         }
@@ -131,14 +145,13 @@ static void follow_rays(fibrad_heat *heat, uint32_t task) {
             fibrad_heat_ray *ray = &heat->ray[k];
             double origin[3], w[3];
             fibrad_hit hit;
-            ray->from = FIBRAD_NONE;
+            *ray = (fibrad_heat_ray){0, 0, 0};
             if (!fibrad_heat_wall_ray(heat, wall, k - part->first_ray, origin, w)) continue;
             LANED(fibrad_trace_point)(heat->scene, origin, w, &hit);
+            if (hit.sphere != FIBRAD_NONE) continue;
             ray->from = fibrad_heat_wall_patch(heat, wall, origin);
-            if (hit.sphere == FIBRAD_NONE)
-                ray->to = fibrad_heat_leaves(heat, origin, w);
-            else
-                ray->to = hit.sphere * heat->config.patches + fibrad_patch_of(hit.normal, heat->side);
+            ray->to = fibrad_heat_leaves(heat, origin, w);
+            ray->area = 1 / (part->density + fibrad_heat_wall_density(heat, ray->to));
         }
     }
 }

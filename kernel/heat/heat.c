@@ -90,7 +90,7 @@ static void number_patches(fibrad_heat *heat) {
         if (b < scene->facts.spheres)
             count = heat->config.patches, density = heat->beams / (4 * PI * scene->r[b] * scene->r[b]);
         else if (wall < FIBRAD_WALLS)
-            count = heat->wall[wall].squares[0] * heat->wall[wall].squares[1], density = heat->wall[wall].density;
+            count = heat->wall[wall].squares[0] * heat->wall[wall].squares[1];
         else if (wall < 2 * FIBRAD_WALLS)
             count = heat->wall[wall - FIBRAD_WALLS].unbounded;
         heat->first[b] = a;

@@ -14,7 +14,7 @@
 /* What a sweep reads of a patch: side by side, since beams come to patches in no order. */
 typedef struct fibrad_heat_source {
     double value;
-    double density; /* beams that its surface sends out, per area */
+    double density; /* beams that a sphere's surface sends out, per area; 0: not a sphere */
 } fibrad_heat_source;
 
 /* The part of a wall that is cut into patches, a rectangle: of a plane across axis a along the axes a + 1 and a + 2
@@ -27,9 +27,11 @@ typedef struct fibrad_heat_wall {
     bool unbounded;
 } fibrad_heat_wall;
 
-/* A ray from one patch of a wall to another patch. */
+/* A ray from one patch of a wall to one of another wall or the surroundings, and the area it stands for [L2]; 0 if it
+ * meets a sphere, or starts outside the container. */
 typedef struct fibrad_heat_ray {
-    uint32_t from, to; /* from: FIBRAD_NONE if it starts outside the container */
+    uint32_t from, to;
+    double area;
 } fibrad_heat_ray;
 
 typedef enum fibrad_heat_phase {
@@ -90,6 +92,9 @@ void fibrad_heat_cut_walls(fibrad_heat *heat);
 
 /* The patch of a wall at a place on it [L]. */
 uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]);
+
+/* Rays per area that leave the wall of a patch; 0 if it belongs to none. */
+double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch);
 
 /* The patch that a ray meets which meets no sphere: of a wall, or the surroundings. */
 uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]);

@@ -11,8 +11,8 @@
  * replaced by their mean, and all vectors stay within such J; the finer level goes on from there. */
 #include "heat/heat.h"
 
-/* Each beam stands for the area 1/(n + m) if surfaces of its two kinds send out n and m beams per area: then the beams
- * either way together, and each way alone, estimate what the two exchange. */
+/* A beam stands for the area 1/(n + m) if its two surfaces send out n and m beams per area: so the beams either way
+ * together tell what the two exchange, those of the denser one counting as much more as there are more of them. */
 static double weight(const fibrad_heat_source *a, const fibrad_heat_source *b) { return 1 / (a->density + b->density); }
 
 /* Adds what the beams of one sphere bring to its own patches, and to those they meet; or, in the first sweep of all,
@@ -39,15 +39,12 @@ static double sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to) 
 }
 
 static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, double *to) {
-    const fibrad_heat_source *source = heat->source;
     const bool areas = heat->phase == FIBRAD_HEAT_AREA;
     for (uint32_t k = begin; k < end; k++) {
-        const uint32_t a = heat->ray[k].from, b = heat->ray[k].to;
-        if (a == FIBRAD_NONE) continue;
-        const double area = weight(&source[a], &source[b]);
-        const double flow = areas ? area : area * (source[b].value - source[a].value);
-        to[a] += flow;
-        to[b] += areas ? flow : -flow;
+        const fibrad_heat_ray ray = heat->ray[k];
+        const double flow = areas ? ray.area : ray.area * (heat->source[ray.to].value - heat->source[ray.from].value);
+        to[ray.from] += flow;
+        to[ray.to] += areas ? flow : -flow;
     }
 }
 

@@ -6,11 +6,12 @@
 
 #define PI 3.14159265358979323846
 /* Patches of walls are about as large as those of the spheres, unless that makes more of them than FEW and a fourth of
- * those of the spheres. What spheres and walls exchange is known from the beams of the spheres; rays of walls serve
- * mostly what walls exchange with each other, for which a few of each patch do, and RAYS_MIN in all. */
-#define FEW           1536.0
-#define RAYS_PER_AREA 8.0 /* rays of a patch */
-#define RAYS_MIN      131072.0
+ * those of the spheres. What spheres and walls exchange is known from the beams of the spheres, which are spread far
+ * more evenly than rays; rays of walls tell what walls exchange with each other. Where there is a bed between them that
+ * is little, so that a few of each patch do, but RAYS_MIN in all. */
+#define FEW            1536.0
+#define RAYS_PER_PATCH 8.0
+#define RAYS_MIN       262144.0
 
 /* What of a wall is cut, along one axis: all of it, or where it goes on for ever, the bed and as much on either side.
  */
@@ -57,7 +58,7 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
     for (uint32_t i = 0; i < scene->facts.spheres; i++) surface += 4 * PI * scene->r[i] * scene->r[i];
     const double of_spheres = (double)scene->facts.spheres * heat->config.patches, most = FEW + of_spheres / 4;
     const double square = fibrad_sqrt(fibrad_max(surface / of_spheres, area / most));
-    const double density = fibrad_max(RAYS_PER_AREA / (square * square), RAYS_MIN / area);
+    const double density = fibrad_max(RAYS_PER_PATCH / (square * square), RAYS_MIN / area);
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         fibrad_heat_wall *wall = &heat->wall[k];
         if (!(scene->facts.wall_area[k] > 0)) continue;
@@ -94,6 +95,14 @@ uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const do
     }
     return heat->first[fibrad_heat_wall_body(heat, wall)] +
            ((cell[0] >> 1) * (w->squares[1] >> 1) + (cell[1] >> 1)) * 4 + (cell[0] & 1) * 2 + (cell[1] & 1);
+}
+
+double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch) {
+    for (uint32_t wall = 0; wall < FIBRAD_WALLS; wall++) {
+        const uint32_t *first = heat->first + fibrad_heat_wall_body(heat, wall);
+        if (patch >= first[0] && patch < first[1]) return heat->wall[wall].density;
+    }
+    return 0;
 }
 
 uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]) {
