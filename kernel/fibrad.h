@@ -394,7 +394,7 @@ int fibrad_rows_reciprocity(const fibrad_rows *rows, const double *r, double *la
  * then on all; the powers of both are extrapolated to patches without size. docs/heat.md. */
 
 typedef struct fibrad_heat_config {
-    uint32_t directions; /* of the beams: [FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX], even with walls; 0: 144 */
+    uint32_t directions; /* of the beams: [FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX], 0: 168 */
     uint32_t points;     /* per direction: 64, 128 or 256; 0: 64 */
     uint32_t patches;    /* of a sphere: 24, 96 or 384; 0: 96 */
     uint32_t parts;      /* into which a sweep is divided, for as many threads: [1, 1024]; 0: 8 */
@@ -428,7 +428,7 @@ typedef struct fibrad_heat_sources {
     double wall_emissivity[FIBRAD_WALLS];    /* [0, 1] */
     double surroundings;                     /* temperature of what beams meet that escape; black */
     double sigma;                            /* emission is sigma T^4: FIBRAD_STEFAN_BOLTZMANN in SI units */
-    double tolerance;                        /* residual at which to stop, relative to the differences of emission: 0: 1e-4 */
+    double tolerance;                        /* residual at which to stop, relative to the differences of emission: 0: 1e-3 */
     uint32_t sweeps_max;                     /* 0: 1000 */
     int uniform;                             /* 1: one radiosity per sphere and wall, no extrapolation; wrong but for
                                                 emissivities near 1, docs/heat.md */
@@ -448,7 +448,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
  * Cost: about 2 ns per beam. */
 void fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
 
-/* Ends a sweep. 1: another one is needed; 0: solved, or sweeps_max reached. Cost: O(spheres patches parts). */
+/* Ends a sweep. 1: another one is needed; 0: solved, or about sweeps_max made. Cost: O(spheres patches parts). */
 int fibrad_heat_step(fibrad_heat *heat);
 
 /* The powers, positive where heat is gained. */
@@ -456,8 +456,9 @@ typedef struct fibrad_heat_result {
     double *power;                   /* [spheres] out, of the caller's spheres */
     double wall_power[FIBRAD_WALLS]; /* out */
     double surroundings_power;       /* out */
-    double error;                    /* out: estimated error of a power, root mean square over the spheres, from the two
-                                        sizes of patches */
+    double error_patches;            /* out: estimated error of the powers, root mean square over the spheres, that comes
+                                        from the size of patches, ... */
+    double error_beams;              /* out: ... and from the number of beams: take the root of the sum of squares */
     double residual;                 /* out: that of the radiosities, as in `tolerance` */
     uint32_t sweeps;                 /* out */
 } fibrad_heat_result;

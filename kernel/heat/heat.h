@@ -39,6 +39,7 @@ typedef enum fibrad_heat_phase {
     FIBRAD_HEAT_AREA,  /* the sweep in hand sums the areas of patches */
     FIBRAD_HEAT_FIRST, /* that of the radiosities to begin with */
     FIBRAD_HEAT_STEPS, /* that of a search direction */
+    FIBRAD_HEAT_CHECK, /* that of the solution, for its error: even and odd directions apart */
     FIBRAD_HEAT_DONE
 } fibrad_heat_phase;
 
@@ -64,6 +65,7 @@ struct fibrad_heat {
     double *direction;             /* [patches] of the search */
     double *emissivity, *emission; /* [bodies] eps and E */
     double *coarse, *power;        /* [bodies] net power at the coarser level, and extrapolated */
+    double *doubt;                 /* [spheres] of the power, from the directions */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS];
 
     fibrad_heat_phase phase;
@@ -84,8 +86,8 @@ static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall
 }
 static inline uint32_t fibrad_heat_open(const fibrad_heat *heat) { return heat->patches - 1; }
 
-/* Makes the next sweep one of the radiosities. */
-void fibrad_heat_send(fibrad_heat *heat);
+/* Makes the next sweep the first one of a solution. */
+void fibrad_heat_start(fibrad_heat *heat);
 
 /* Chooses the patches and rays of all walls: heat->wall and heat->rays. Needs heat->config and heat->scene. */
 void fibrad_heat_cut_walls(fibrad_heat *heat);
