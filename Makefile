@@ -70,7 +70,9 @@ KERNEL = \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
     kernel/furnace/lines.c \
-    kernel/furnace/tally.c
+    kernel/furnace/tally.c \
+    kernel/heat/exchange.c \
+    kernel/heat/paths.c
 
 # compiled once per instruction set
 LANED = \
@@ -80,7 +82,8 @@ LANED = \
     kernel/bed/cast_lanes.c \
     kernel/bed/near_lanes.c \
     kernel/bed/points_lanes.c \
-    kernel/bed/trace_lanes.c
+    kernel/bed/trace_lanes.c \
+    kernel/heat/paths_lanes.c
 
 # besides main.c and generate_tables.c
 HOST = \
@@ -169,6 +172,7 @@ BENCHES = \
     bench/bench_cast.c \
     bench/bench_error.c \
     bench/bench_estimate.c \
+    bench/bench_exchange.c \
     bench/bench_furnace.c \
     bench/bench_pair.c \
     bench/bench_scale.c \
