@@ -1,11 +1,10 @@
 /* bench_exchange.c - exchange factors of grey spheres: error against time. SPDX-License-Identifier: MIT
  *
  * CSV on standard output. Random periodic bed of 2,000 equal spheres, solid fraction 0.586; root mean square of the
- * Euclidean error of ROWS rows, not averaged with their partners, the truth being 6,400 beams and 2,000,000 paths; error
- * as estimated; seconds of one thread for a row; rays traced for a row, without beams. Methods:
- *   analog    random paths, each absorbed as a whole where a random number says so
- *   expected  quasi-random paths that leave at each surface what it absorbs
- *   beam      fibrad_exchange_row: the first leg by beams, the others by such paths */
+ * Euclidean error of ROWS rows, not averaged with their partners, the truth being 6,400 beams and 2,000,000 paths;
+ * error as estimated; seconds of one thread for a row; rays traced for a row, without beams. Methods: analog    random
+ * paths, each absorbed as a whole where a random number says so expected  quasi-random paths that leave at each surface
+ * what it absorbs beam      fibrad_exchange_row: the first leg by beams, the others by such paths */
 #include <math.h>
 
 #include "base/elementary.h"
@@ -52,7 +51,8 @@ static int open_bench(struct bench *bench, const struct bed *bed) {
 static uint32_t target(const struct bench *bench, uint32_t k) { return k * (bench->n / ROWS); }
 
 /* What a method makes of row i: into bench->sum, its estimated error and its rays. */
-typedef void method(struct bench *bench, uint32_t i, uint32_t paths, uint32_t directions, double *error, uint64_t *rays);
+typedef void method(struct bench *bench, uint32_t i, uint32_t paths, uint32_t directions, double *error,
+                    uint64_t *rays);
 
 static void point(fibrad_random *random, double at[3]) {
     const double z = 1 - 2 * fibrad_random_next(random), ring = sqrt(1 - z * z);

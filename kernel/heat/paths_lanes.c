@@ -9,12 +9,12 @@
 #define BATCH 8
 /* A path ends after so many legs, which is for surfaces that absorb nothing at all. */
 #define LEGS 100000u
-#ifndef LEAST
-#define LEAST 0.1
-#endif
-#ifndef QMC
-#define QMC 4
-#endif
+/* A path of less weight goes on with this weight, in as many cases out of all as keep the mean. Of 0.05, 0.1, 0.2 and
+ * 0.4 this gave the least error in a given number of rays, at emissivities of 0.3 and 0.8. */
+#define LEAST 0.2
+/* Coordinates that are quasi-random: those of the start and of the first two directions. Two more than four save a
+ * tenth to a fifth of the rays. */
+#define QUASI 6
 
 /* A path underway. */
 struct path {
@@ -30,30 +30,19 @@ struct path {
 };
 
 /* The next BATCH points of the unit sphere: the first is where the path starts, each further one belongs to a
- * direction. QMC coordinates, the first, are those of the additive recurrence with the steps g^-1, g^-2 ..., g^5 = g +
- * 1, as for the rays of bed/cast_lanes.c, in units of 2^-64; all others are random. */
+ * direction. The first QUASI coordinates are those of the additive recurrence with the steps g^-1 ... g^-6, g^7 = g +
+ * 1, in units of 2^-64, as for the rays of bed/cast_lanes.c; all others are random. */
 static void make_points(const fibrad_paths *paths, struct path *path) {
-#if QMC == 4
-    static const uint64_t step[] = {UINT64_C(0xdb4f0b9175ae2165), UINT64_C(0xbbe0563303a4615f),
-                                    UINT64_C(0xa0f2ec75a1fe1576), UINT64_C(0x89e182857d9ed689)};
-#elif QMC == 6
-    static const uint64_t step[] = {UINT64_C(0xe60e2b722b53aeeb), UINT64_C(0xcebd76d9edb6a8ef),
-                                    UINT64_C(0xb9c9aa3a51d00b65), UINT64_C(0xa6f5777f6f88983f),
-                                    UINT64_C(0x9609c71eb7d03f7a), UINT64_C(0x86d516e50b04ab1b)};
-#elif QMC == 8
-    static const uint64_t step[] = {UINT64_C(0xebedeed9d803c815), UINT64_C(0xd96eb1a810caaf5e),
-                                    UINT64_C(0xc862b36daf790dd5), UINT64_C(0xb8acd90c142fe10b),
-                                    UINT64_C(0xaa324f90ded86b69), UINT64_C(0x9cda5e693fea10ae),
-                                    UINT64_C(0x908e3d2c82567a73), UINT64_C(0x8538ecb5bd456ea2)};
-#else
-    static const uint64_t step[] = {0};
-#endif
+    static const uint64_t step[QUASI] = {UINT64_C(0xe60e2b722b53aeeb), UINT64_C(0xcebd76d9edb6a8ef),
+                                         UINT64_C(0xb9c9aa3a51d00b65), UINT64_C(0xa6f5777f6f88983f),
+                                         UINT64_C(0x9609c71eb7d03f7a), UINT64_C(0x86d516e50b04ab1b)};
     _Alignas(64) double at[2][BATCH];
     for (uint32_t b = 0; b < BATCH; b++)
         for (uint32_t d = 0; d < 2; d++) {
             uint32_t coordinate = 2 * (path->used + b) + d;
-            uint64_t x = coordinate < QMC ? fibrad_random_ahead(paths->stream, coordinate) + path->k * step[coordinate]
-                                          : fibrad_random_ahead(path->own, coordinate);
+            uint64_t x = coordinate < QUASI
+                             ? fibrad_random_ahead(paths->stream, coordinate) + path->k * step[coordinate]
+                             : fibrad_random_ahead(path->own, coordinate);
             at[d][b] = fibrad_fraction(x);
         }
     const vd one = vd_set1(1);
