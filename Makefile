@@ -83,6 +83,7 @@ LANED = \
     kernel/bed/near_lanes.c \
     kernel/bed/points_lanes.c \
     kernel/bed/trace_lanes.c \
+    kernel/bed/walls_lanes.c \
     kernel/heat/paths_lanes.c
 
 # besides main.c and generate_tables.c

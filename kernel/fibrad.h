@@ -12,7 +12,7 @@
  *   cast     fibrad_cast_row
  *   tracer   fibrad_tracer_size, fibrad_tracer_init
  *   exchange fibrad_exchange_row, fibrad_exchange_spread
- *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_drop, fibrad_rows_reciprocity
+ *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_close, fibrad_rows_drop, fibrad_rows_reciprocity
  *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
  *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
  *            fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit, fibrad_furnace_trace,
@@ -405,6 +405,13 @@ int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *ou
  * Rows averaged from exact areas need it only to the last bit. scratch [n].
  * Errors: _ARGUMENT. Cost: O(entries). */
 int fibrad_rows_limit(fibrad_rows *rows, double *scratch);
+
+/* Closes rows that were averaged or limited: wall[i] and escaped[i], from the raw row i, are multiplied such that
+ * sum of f + sum of wall + escaped = 1. What a row lacks of 1 is as good a measure of what meets no sphere, from the
+ * opposite directions, as the raw row's. A row whose raw one met neither wall nor sky takes the shares of all spheres
+ * together; if none has any, what is lacking counts as escaped. wall, escaped [n], r [n] > 0.
+ * Errors: _ARGUMENT. Cost: O(entries). */
+int fibrad_rows_close(const fibrad_rows *rows, const double *r, double (*wall)[FIBRAD_WALLS], double *escaped);
 
 /* Drops entries below `threshold` (both of a reciprocal pair when both are below) and gives what they carried back to
  * the entries that stay, symmetrically: S_ij u_i u_j with u found so that the row sums are as before; what no such u

@@ -68,13 +68,14 @@ struct fibrad_work {
     fibrad_obstacles blockers[2]; /* room for the two lists of the surface method, [near.capacity] */
     /* the row in hand */
     const fibrad_scene *scene;
-    uint32_t place;       /* of sphere i in the scene */
-    double unit, inverse; /* its radius [L], and 1/radius */
-    double centre[3];     /* [L] */
-    double reach;         /* the cutoff; infinity if there is none */
-    double step;          /* how far the first shell looks */
-    double farthest;      /* no sphere is farther from i; infinity with periodic axes */
-    double clear;         /* no window has its horizon nearer than this */
+    uint32_t place;                /* of sphere i in the scene */
+    double unit, inverse;          /* its radius [L], and 1/radius */
+    double centre[3];              /* [L] */
+    double reach;                  /* the cutoff; infinity if there is none */
+    double step;                   /* how far the first shell looks */
+    double farthest;               /* no sphere is farther from i; infinity with periodic axes */
+    double clear;                  /* no window has its horizon nearer than this */
+    double wall[FIBRAD_WALLS + 1]; /* what meets each wall, and what meets none: areas, points or rays */
 };
 
 /* Prepares for row `place` of the scene: no near spheres, no entries. */
