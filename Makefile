@@ -91,9 +91,12 @@ HOST = \
     host/bed.c \
     host/bed_make.c \
     host/command_bed.c \
+    host/command_conductivity.c \
+    host/command_exchange.c \
     host/command_furnace.c \
     host/command_pair.c \
     host/command_reproduce.c \
+    host/emissivity.c \
     host/exact_gsl.c \
     host/furnace_cases.c \
     host/furnace_plot.c \
@@ -120,6 +123,7 @@ HOST = \
     host/reproduce_pebbles.c \
     host/reproduce_rays.c \
     host/reproduce_rows.c \
+    host/run_exchange.c \
     host/run_omp.c \
     host/targets.c \
     host/tolerance.c \

@@ -12,7 +12,8 @@
  *   cast     fibrad_cast_row
  *   tracer   fibrad_tracer_size, fibrad_tracer_init
  *   exchange fibrad_exchange_row, fibrad_exchange_spread
- *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_close, fibrad_rows_drop, fibrad_rows_reciprocity
+ *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_close, fibrad_rows_balance,
+ *            fibrad_rows_drop, fibrad_rows_reciprocity
  *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
  *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
  *            fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit, fibrad_furnace_trace,
@@ -385,7 +386,8 @@ int fibrad_exchange_spread(fibrad_tracer *tracer, uint32_t i, const fibrad_excha
 
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
 
-/* A sparse matrix of view factors, compressed rows, in the caller's arrays. */
+/* A sparse matrix of view factors, compressed rows, in the caller's arrays. The functions of this section serve
+ * exchange factors too, if for r they are given r sqrt(emissivity): then A is A emissivity. */
 typedef struct fibrad_rows {
     uint32_t n;        /* rows and columns */
     uint64_t capacity; /* length of col and f */
@@ -412,6 +414,12 @@ int fibrad_rows_limit(fibrad_rows *rows, double *scratch);
  * together; if none has any, what is lacking counts as escaped. wall, escaped [n], r [n] > 0.
  * Errors: _ARGUMENT. Cost: O(entries). */
 int fibrad_rows_close(const fibrad_rows *rows, const double *r, double (*wall)[FIBRAD_WALLS], double *escaped);
+
+/* Brings the row sums of reciprocal rows to `target` and leaves reciprocity as it is: F_ij u_i u_j with u found so; to
+ * 1e-14 where such u exist, as they do if rows have an F_ii or loops of three and are not far off. Else some rows end
+ * below their targets, none above. For rows whose errors leave their sums off, as those of exchange factors do.
+ * target [n] >= 0, scratch [2 n]. Errors: _ARGUMENT. Cost: O(entries) times some 40. */
+int fibrad_rows_balance(fibrad_rows *rows, const double *target, double *scratch);
 
 /* Drops entries below `threshold` (both of a reciprocal pair when both are below) and gives what they carried back to
  * the entries that stay, symmetrically: S_ij u_i u_j with u found so that the row sums are as before; what no such u

@@ -126,11 +126,14 @@ int fibrad_exchange_spread(fibrad_tracer *tracer, uint32_t i, const fibrad_excha
     paths.first = true;
     fibrad_paths_version(tracer->scene->facts.isa)(&paths, 0, count);
     for (int axis = 0; axis < 3; axis++) {
-        double part[4] = {paths.square[0][axis], paths.square[1][axis], paths.square[2][axis], paths.square[3][axis]};
-        double sum = part[0] + part[2] + (part[1] + part[3]), square = 0;
-        for (int k = 0; k < 4; k++) square += (part[k] - sum / 4) * (part[k] - sum / 4);
+        double sum = 0, square = 0;
+        for (int part = 0; part < FIBRAD_SPREAD_PARTS; part++) sum += paths.square[part][axis];
+        for (int part = 0; part < FIBRAD_SPREAD_PARTS; part++) {
+            double difference = paths.square[part][axis] - sum / FIBRAD_SPREAD_PARTS;
+            square += difference * difference;
+        }
         spread->square[axis] = sum / count;
-        spread->error[axis] = fibrad_sqrt(square * 4 / 3) / count;
+        spread->error[axis] = fibrad_sqrt(square * FIBRAD_SPREAD_PARTS / (FIBRAD_SPREAD_PARTS - 1)) / count;
     }
     spread->absorbed = paths.absorbed / count;
     spread->rays = paths.rays;

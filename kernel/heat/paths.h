@@ -9,6 +9,8 @@
 #include "bed/trace.h"
 #include "bed/work.h"
 
+#define FIBRAD_SPREAD_PARTS 16
+
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
     uint32_t place;                /* of the sphere they leave */
@@ -19,9 +21,9 @@ typedef struct fibrad_paths {
     fibrad_entries *entries;       /* out: what each sphere absorbs, path k in part k mod 4; NULL: not asked for */
     double wall[FIBRAD_WALLS];     /* out: what each wall absorbs */
     double escaped, absorbed;      /* out: what leaves, and what all spheres absorb */
-    double square[4][3]; /* out: sum over what spheres absorb times the squares of their centre's distance along
-                            each axis [L^2] from that of the sphere left, path k in part k mod 4 */
-    uint64_t rays;       /* out: traced in all */
+    double square[FIBRAD_SPREAD_PARTS][3]; /* out: sum over what spheres absorb times the squares of their centre's
+                            distance along each axis [L^2] from that of the sphere left, path k in part k mod that */
+    uint64_t rays;                         /* out: traced in all */
 } fibrad_paths;
 
 /* Adds paths [begin, end). */

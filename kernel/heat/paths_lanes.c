@@ -130,7 +130,7 @@ static void absorb(fibrad_paths *paths, struct path *path, uint32_t wall, bool c
     }
     paths->absorbed += absorbed;
     for (int axis = 0; axis < 3; axis++)
-        paths->square[path->k % 4][axis] += absorbed * (path->centre[axis] * path->centre[axis]);
+        paths->square[path->k % FIBRAD_SPREAD_PARTS][axis] += absorbed * (path->centre[axis] * path->centre[axis]);
     if (paths->entries != NULL) fibrad_entries_add(paths->entries, path->place, (uint32_t)(path->k % 4), absorbed);
 }
 
