@@ -71,7 +71,9 @@ KERNEL = \
     kernel/furnace/furnace.c \
     kernel/furnace/lines.c \
     kernel/furnace/tally.c \
+    kernel/heat/exchange.c \
     kernel/heat/heat.c \
+    kernel/heat/paths.c \
     kernel/heat/solve.c \
     kernel/heat/walls_cut.c
 
@@ -85,16 +87,20 @@ LANED = \
     kernel/bed/points_lanes.c \
     kernel/bed/trace_lanes.c \
     kernel/bed/walls_lanes.c \
-    kernel/heat/beams_lanes.c
+    kernel/heat/beams_lanes.c \
+    kernel/heat/paths_lanes.c
 
 # besides main.c and generate_tables.c
 HOST = \
     host/bed.c \
     host/bed_make.c \
     host/command_bed.c \
+    host/command_conductivity.c \
+    host/command_exchange.c \
     host/command_furnace.c \
     host/command_pair.c \
     host/command_reproduce.c \
+    host/emissivity.c \
     host/exact_gsl.c \
     host/furnace_cases.c \
     host/furnace_plot.c \
@@ -121,6 +127,7 @@ HOST = \
     host/reproduce_pebbles.c \
     host/reproduce_rays.c \
     host/reproduce_rows.c \
+    host/run_exchange.c \
     host/run_omp.c \
     host/targets.c \
     host/tolerance.c \
@@ -174,6 +181,7 @@ BENCHES = \
     bench/bench_cast.c \
     bench/bench_error.c \
     bench/bench_estimate.c \
+    bench/bench_exchange.c \
     bench/bench_furnace.c \
     bench/bench_pair.c \
     bench/bench_scale.c \

@@ -98,15 +98,6 @@ static int help(void) {
     return STATUS_OK;
 }
 
-static int parse_periodic(const char *text, double period[3]) {
-    int count = 3;
-    const int status = strcmp(text, "none") == 0 ? STATUS_OK : options_numbers("--periodic", text, 3, period, &count);
-    if (status) return status;
-    if (count != 3 || period[0] < 0 || period[1] < 0 || period[2] < 0)
-        return message(STATUS_USAGE, "--periodic: '%.60s' is neither none nor three lengths LX,LY,LZ", text);
-    return STATUS_OK;
-}
-
 static int take_option(struct request *request, const struct options *options, int key) {
     const char *value = options->value;
     uint64_t whole = 0;
@@ -153,7 +144,7 @@ static int take_option(struct request *request, const struct options *options, i
         break;
     case KEY_PERIODIC:
         request->periodic = value;
-        return parse_periodic(value, request->period);
+        return options_periodic(value, request->period);
     case KEY_FRAME:
         status = options_whole("--frame", value, 0, INT64_MAX, &whole);
         request->read.frame = (int64_t)whole;
@@ -272,7 +263,7 @@ static void print_summary(const struct request *request, const struct bed *bed, 
 
 static int write_results(const struct request *request, const struct bed *bed, const struct result *result,
                          const struct output *out, const struct output *plot) {
-    const struct contents contents = {bed, result, request->read.ids, &request->order};
+    const struct contents contents = {bed, result, request->read.ids, &request->order, NULL};
     int status = request->out ? request->write(out->file, &contents) : STATUS_OK;
     if (!status && request->plot) status = plot_bed(plot, request->file, &contents);
     return status;

@@ -5,6 +5,8 @@
 /* Each takes the arguments behind its name and returns the exit status, all that is to be said having been said. */
 int command_pair(int argc, char **argv);
 int command_bed(int argc, char **argv);
+int command_conductivity(int argc, char **argv);
+int command_exchange(int argc, char **argv);
 int command_reproduce(int argc, char **argv);
 int command_furnace(int argc, char **argv);
 

@@ -12,6 +12,8 @@ static const struct {
     int (*run)(int argc, char **argv);
 } commands[] = {
     {"bed", "view factors of all spheres of a file", command_bed},
+    {"conductivity", "effective radiative conductivity of a bed of grey spheres", command_conductivity},
+    {"exchange", "exchange factors of grey spheres", command_exchange},
     {"furnace", "temperatures in a box with a medium that absorbs, emits and scatters", command_furnace},
     {"pair", "view factor between two spheres, with or without others in between", command_pair},
     {"reproduce", "the numbers of the papers beside ours", command_reproduce},
@@ -20,7 +22,7 @@ static const struct {
 static int help(void) {
     printf("fibrad %s - view factors for thermal radiation between spheres\n\nCommands:\n", fibrad_version());
     for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
-        printf("  %-9s %s\n", commands[k].name, commands[k].purpose);
+        printf("  %-12s %s\n", commands[k].name, commands[k].purpose);
     puts("\nfibrad COMMAND --help   options of a command, with defaults and examples\n"
          "fibrad --version        version and instruction set in use\n\n"
          "Exit status: 0; 2 bad usage; 3 bad input; 4 trouble with a file; 5 out of memory; 128 + signal.");

@@ -174,3 +174,12 @@ int options_surface(int key, const char *text, fibrad_surface_rule *rule) {
     return message(STATUS_USAGE, "--nf: %.40s is not built in; 8, 13, 21, 34, 55, 89, 144, 233, 377, 610 and 987 are",
                    text);
 }
+
+int options_periodic(const char *text, double period[3]) {
+    int count = 3;
+    const int status = strcmp(text, "none") == 0 ? STATUS_OK : options_numbers("--periodic", text, 3, period, &count);
+    if (status) return status;
+    if (count != 3 || period[0] < 0 || period[1] < 0 || period[2] < 0)
+        return message(STATUS_USAGE, "--periodic: '%.60s' is neither none nor three lengths LX,LY,LZ", text);
+    return STATUS_OK;
+}

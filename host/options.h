@@ -60,6 +60,9 @@ int options_whole(const char *what, const char *text, uint64_t low, uint64_t hig
 /* Up to `capacity` numbers parted by commas; *count tells how many, which may be all that is wrong. */
 int options_numbers(const char *what, const char *text, int capacity, double *values, int *count);
 
+/* The argument of --periodic: three lengths, 0 for an open axis, or none. Status 0 or STATUS_USAGE. */
+int options_periodic(const char *text, double period[3]);
+
 /* Methods by name, in the order of the enum. */
 enum method { METHOD_EXACT, METHOD_BEAM, METHOD_SURFACE, METHOD_CAST, METHOD_MC };
 

@@ -30,8 +30,10 @@ int output_close(struct output *output, int status);
 struct contents {
     const struct bed *bed;
     const struct result *result;
-    bool ids;                       /* the file's ids instead of positions */
-    const struct wall_order *walls; /* NULL, or none in it: neither walls nor surroundings are written */
+    bool ids;                         /* the file's ids instead of positions */
+    const struct wall_order *walls;   /* NULL: neither walls nor surroundings are written; none in it: no walls, and
+                                         surroundings only with exchange factors */
+    const fibrad_exchange_rule *grey; /* NULL: view factors; else exchange factors by this rule */
 };
 
 /* Writes to the file; a failing file is noticed by the caller. Status 0 or that of a signal. */

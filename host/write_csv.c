@@ -1,4 +1,5 @@
-/* write_csv.c - view factors as comma-separated values i,j,F. SPDX-License-Identifier: MIT */
+/* write_csv.c - view factors as comma-separated values i,j,F, or exchange factors i,j,D. SPDX-License-Identifier: MIT
+ */
 #include <gsl/gsl_math.h>
 #include <inttypes.h>
 
@@ -26,18 +27,20 @@ static int write_walls(FILE *file, const struct contents *what) {
         const uint32_t wall = what->walls->wall[k];
         const double area = what->result->facts.wall_area[wall];
         if (interrupt_status()) return interrupt_status();
-        if (!(area < INFINITY)) continue;
+        const double weight = area * (what->grey ? what->grey->wall_emissivity[wall] : 1);
+        if (!(weight > 0 && weight < INFINITY)) continue;
         for (uint32_t j = 0; j < bed->n; ++j)
             write_line(file, -2 - (int64_t)k, name_of(what, j),
-                       4 * M_PI * bed->r[j] * bed->r[j] * what->result->wall[j][wall] / area);
+                       4 * M_PI * bed->r[j] * bed->r[j] * (what->grey ? what->grey->emissivity[j] : 1) *
+                           what->result->wall[j][wall] / weight);
     }
     return STATUS_OK;
 }
 
 int write_csv(FILE *file, const struct contents *what) {
     const fibrad_rows *rows = &what->result->rows;
-    const bool walls = what->walls && what->walls->count > 0;
-    fputs("i,j,F\n", file);
+    const bool walls = what->walls && (what->walls->count > 0 || what->grey);
+    fputs(what->grey ? "i,j,D\n" : "i,j,F\n", file);
     for (uint32_t i = 0; i < rows->n; ++i) {
         if (interrupt_status()) return interrupt_status();
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; ++k)

@@ -11,7 +11,11 @@
  *   surface  fibrad_surface_pair, FIBRAD_SURFACE_SCRATCH, fibrad_surface_row
  *   cast     fibrad_cast_row
  *   tracer   fibrad_tracer_size, fibrad_tracer_init
- *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_close, fibrad_rows_drop, fibrad_rows_reciprocity
+ *   exchange fibrad_exchange_row, fibrad_exchange_spread
+ *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_close, fibrad_rows_balance,
+ *            fibrad_rows_drop, fibrad_rows_reciprocity
+ *   heat     fibrad_heat_size, fibrad_heat_init, fibrad_heat_tasks, fibrad_heat_trace, fibrad_heat_begin,
+ *            fibrad_heat_sweep, fibrad_heat_step, fibrad_heat_read, fibrad_radiosity
  *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
  *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
  *            fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit, fibrad_furnace_trace,
@@ -343,9 +347,49 @@ size_t fibrad_tracer_size(const fibrad_tracer_config *config);
 int fibrad_tracer_init(fibrad_tracer **tracer, void *memory, size_t size, const fibrad_tracer_config *config,
                        const fibrad_scene *scene);
 
+/* ---- exchange -------------------------------------------------------------------------------------------------- */
+
+/* How the exchange of grey diffuse spheres and walls is followed. Zeroed but for `emissivity`: see each. */
+typedef struct fibrad_exchange_rule {
+    const double *emissivity;             /* [spheres] of each sphere, (0, 1] */
+    double wall_emissivity[FIBRAD_WALLS]; /* of each wall there is, [0, 1]; 0 reflects all */
+    uint32_t directions; /* of the beam row that the first leg is taken from, as in fibrad_beam_rule; 0: 50 */
+    uint32_t paths;      /* followed for the reflections; 0: 400 */
+    uint64_t seed;       /* what their numbers come from, together with i */
+    double error;        /* 0: none. Else more directions and paths, from those above on, until row->error is not above
+                            this, or there are FIBRAD_DIRECTIONS_MAX of the former or FIBRAD_PATHS_MAX of the latter */
+} fibrad_exchange_rule;
+
+#define FIBRAD_PATHS_MAX (1u << 28)
+
+/* Row i of the exchange factors of a scene: D_ij is the fraction of what sphere i emits that sphere j absorbs, directly
+ * or after any number of diffuse reflections. Into row: D in f, what walls absorb in wall, what leaves in escaped;
+ * their sum is 1 to rounding. The first leg is that of fibrad_beam_row; reflections are followed from point to point
+ * along `paths` paths, which are the same whatever else is computed. row->error is the estimated Euclidean error of f;
+ * it falls as directions^-1.5 and paths^-0.5 do. rays, unless NULL: how many were traced. The tracer is of the scene
+ * concerned. i [0, spheres). Errors: _ARGUMENT (of emissivities, only that of sphere i is looked at), _CAPACITY as
+ * fibrad_beam_row. Cost: the beam row, and 0.1 to 0.2 microseconds a ray; a path has some 2 rays at emissivity 0.8, 14
+ * at 0.2. Source: docs/heat.md. */
+int fibrad_exchange_row(fibrad_tracer *tracer, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
+                        fibrad_row *row, uint64_t *rays);
+
+/* How far what a sphere emits is carried. */
+typedef struct fibrad_spread {
+    double square[3]; /* mean square of the distance along each axis between the centres of the spheres that emit and
+                         absorb, periods counted; what walls absorb and what escapes counts as 0 [L^2] */
+    double error[3];  /* standard errors, estimated [L^2] */
+    double absorbed;  /* fraction that spheres absorb */
+    uint64_t rays;
+} fibrad_spread;
+
+/* The spread of what sphere i emits, along rule->paths paths (0: 400); directions and error are not used.
+ * i [0, spheres). Errors: _ARGUMENT. Cost: as the paths of fibrad_exchange_row. */
+int fibrad_exchange_spread(fibrad_tracer *tracer, uint32_t i, const fibrad_exchange_rule *rule, fibrad_spread *spread);
+
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
 
-/* A sparse matrix of view factors, compressed rows, in the caller's arrays. */
+/* A sparse matrix of view factors, compressed rows, in the caller's arrays. The functions of this section serve
+ * exchange factors too, if for r they are given r sqrt(emissivity): then A is A emissivity. */
 typedef struct fibrad_rows {
     uint32_t n;        /* rows and columns */
     uint64_t capacity; /* length of col and f */
@@ -372,6 +416,12 @@ int fibrad_rows_limit(fibrad_rows *rows, double *scratch);
  * together; if none has any, what is lacking counts as escaped. wall, escaped [n], r [n] > 0.
  * Errors: _ARGUMENT. Cost: O(entries). */
 int fibrad_rows_close(const fibrad_rows *rows, const double *r, double (*wall)[FIBRAD_WALLS], double *escaped);
+
+/* Brings the row sums of reciprocal rows to `target` and leaves reciprocity as it is: F_ij u_i u_j with u found so; to
+ * 1e-14 where such u exist, as they do if rows have an F_ii or loops of three and are not far off. Else some rows end
+ * below their targets, none above. For rows whose errors leave their sums off, as those of exchange factors do.
+ * target [n] >= 0, scratch [2 n]. Errors: _ARGUMENT. Cost: O(entries) times some 40. */
+int fibrad_rows_balance(fibrad_rows *rows, const double *target, double *scratch);
 
 /* Drops entries below `threshold` (both of a reciprocal pair when both are below) and gives what they carried back to
  * the entries that stay, symmetrically: S_ij u_i u_j with u found so that the row sums are as before; what no such u

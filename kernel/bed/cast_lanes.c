@@ -5,13 +5,13 @@
  * spheres of work.h, shell by shell: a sieve in floats, then the distances in doubles of the few that pass. */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/laned.h"
+#include "base/lanes/turn.h"
 #include "base/random.h"
 #include "bed/cast_lanes.h"
 #include "bed/near_lanes.h"
 #include "bed/walls.h"
 
-#define BATCH  64
-#define TWO_PI 6.28318530717958647693
+#define BATCH 64
 
 /* Places in the 4-cube, then rays: the direction w, two unit vectors u and v across it such that the origin is
  * cosine w - sine v, and the angle to the normal. */
@@ -40,31 +40,14 @@ static void fill(struct rays *rays, const fibrad_cast_rule *rule, fibrad_random 
     }
 }
 
-/* sin(2 pi t) for t in [-1/4, 1/4], by its series to the 19th power: to 1e-15. */
-static vd quarter(vd t) {
-    static const double ratio[] = {1. / (18 * 19), 1. / (16 * 17), 1. / (14 * 15), 1. / (12 * 13), 1. / (10 * 11),
-                                   1. / (8 * 9),   1. / (6 * 7),   1. / (4 * 5),   1. / (2 * 3)};
-    vd x = vd_mul(vd_set1(TWO_PI), t), square = vd_mul(x, x), sum = vd_set1(1);
-    for (int k = 0; k < 9; k++) sum = vd_sub(vd_set1(1), vd_mul(vd_mul(square, vd_set1(ratio[k])), sum));
-    return vd_mul(x, sum);
-}
-
-/* A turn of t in [0, 1): its cosine and sine up to the same half turn for all t. */
-static void turn(vd t, vd *cosine, vd *sine) {
-    vd y = vd_sub(t, vd_set1(.5)), size = vd_abs(y);
-    *cosine = quarter(vd_sub(vd_set1(.25), size));
-    vd folded = quarter(vd_min(size, vd_sub(vd_set1(.5), size)));
-    *sine = vd_select(vd_lt(y, vd_set1(0)), vd_sub(vd_set1(0), folded), folded);
-}
-
 /* Origin n: z even over [-1, 1], azimuth even. Direction: squared sine of the angle to n even over [0, 1], which is the
  * cosine law, and the other angle even about n, in the frame of the parallel a, the meridian b and n. */
 static void aim(struct rays *rays) {
     const vd one = vd_set1(1);
     for (uint32_t b = 0; b < BATCH; b += VD_LANES) {
         vd height = vd_load(rays->at[0] + b), square = vd_load(rays->at[2] + b), cos, sin, across, along;
-        turn(vd_load(rays->at[1] + b), &cos, &sin);
-        turn(vd_load(rays->at[3] + b), &across, &along);
+        vd_turn(vd_load(rays->at[1] + b), &cos, &sin);
+        vd_turn(vd_load(rays->at[3] + b), &across, &along);
         vd z = vd_sub(one, vd_add(height, height));
         vd ring = vd_sqrt(vd_mul(vd_mul(vd_set1(4), height), vd_sub(one, height)));
         vd sine = vd_sqrt(square), cosine = vd_sqrt(vd_sub(one, square)), zero = vd_set1(0);

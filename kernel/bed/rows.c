@@ -193,17 +193,45 @@ static void take_out(fibrad_rows *rows, const double *r, double threshold) {
 }
 
 /* Factors u with u_i sum_j F_ij u_j = target_i, by u_i <- sqrt(u_i target_i/sum_j F_ij u_j), which stays near 1 and
- * more than halves the error each time where such factors exist. */
-static void find_scaling(const fibrad_rows *rows, const double *target, double *u, double *next) {
+ * more than halves the error each time where such factors exist. Ends when all sums are right to `tolerance`. */
+static void find_scaling(const fibrad_rows *rows, const double *target, double tolerance, double *u, double *next) {
     for (uint32_t i = 0; i < rows->n; i++) u[i] = 1;
     for (int step = 0; step < 60; step++) {
+        double worst = 0;
         for (uint32_t i = 0; i < rows->n; i++) {
             double sum = 0;
             for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum += rows->f[k] * u[rows->col[k]];
+            worst = fibrad_max(worst, fibrad_abs(target[i] - u[i] * sum));
             next[i] = sum > 0 ? fibrad_sqrt(u[i] * target[i] / sum) : 1;
         }
+        if (worst <= tolerance) return;
         fibrad_copy(u, next, rows->n * sizeof *u);
     }
+}
+
+static void scale(fibrad_rows *rows, const double *u) {
+    for (uint32_t i = 0; i < rows->n; i++)
+        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= u[i] * u[rows->col[k]];
+}
+
+/* Brings rows above their targets down to them and leaves reciprocity as it is. */
+static void bring_down(fibrad_rows *rows, const double *target, double *u) {
+    for (uint32_t i = 0; i < rows->n; i++) {
+        double sum = sum_of(rows, i);
+        u[i] = sum > target[i] ? target[i] / sum : 1;
+    }
+    for (uint32_t i = 0; i < rows->n; i++)
+        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= fibrad_min(u[i], u[rows->col[k]]);
+}
+
+int fibrad_rows_balance(fibrad_rows *rows, const double *target, double *scratch) {
+    if (check(rows) != FIBRAD_OK || target == NULL || scratch == NULL) return FIBRAD_E_ARGUMENT;
+    for (uint32_t i = 0; i < rows->n; i++)
+        if (!(target[i] >= 0 && fibrad_finite(target[i]))) return FIBRAD_E_ARGUMENT;
+    find_scaling(rows, target, 1e-14, scratch, scratch + rows->n);
+    scale(rows, scratch);
+    bring_down(rows, target, scratch);
+    return FIBRAD_OK;
 }
 
 /* Puts into F_ii what a row lacks of its target, by more than rounding; rows move up to make room. */
@@ -241,15 +269,8 @@ int fibrad_rows_drop(fibrad_rows *rows, const double *r, double threshold, doubl
     double *target = scratch, *u = scratch + n, *next = u + n;
     for (uint32_t i = 0; i < n; i++) target[i] = sum_of(rows, i);
     take_out(rows, r, threshold);
-    find_scaling(rows, target, u, next);
-    for (uint32_t i = 0; i < n; i++)
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= u[i] * u[rows->col[k]];
-    /* where no scaling exists, rows are above or below their targets: bring the former down, fill up the latter */
-    for (uint32_t i = 0; i < n; i++) {
-        double sum = sum_of(rows, i);
-        u[i] = sum > target[i] ? target[i] / sum : 1;
-    }
-    for (uint32_t i = 0; i < n; i++)
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= fibrad_min(u[i], u[rows->col[k]]);
+    find_scaling(rows, target, 0, u, next);
+    scale(rows, u);
+    bring_down(rows, target, u); /* where no scaling exists, rows are above or below their targets */
     return fill_up(rows, target);
 }
