@@ -98,6 +98,7 @@ HOST = \
     host/command_conductivity.c \
     host/command_exchange.c \
     host/command_furnace.c \
+    host/command_heat.c \
     host/command_pair.c \
     host/command_reproduce.c \
     host/emissivity.c \
@@ -128,13 +129,16 @@ HOST = \
     host/reproduce_rays.c \
     host/reproduce_rows.c \
     host/run_exchange.c \
+    host/run_heat.c \
     host/run_omp.c \
     host/targets.c \
     host/tolerance.c \
+    host/vtp.c \
     host/walls.c \
     host/write.c \
     host/write_csv.c \
     host/write_furnace.c \
+    host/write_heat.c \
     host/write_mtx.c \
     host/write_npz.c \
     host/write_vtp.c

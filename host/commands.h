@@ -9,5 +9,6 @@ int command_conductivity(int argc, char **argv);
 int command_exchange(int argc, char **argv);
 int command_reproduce(int argc, char **argv);
 int command_furnace(int argc, char **argv);
+int command_heat(int argc, char **argv);
 
 #endif

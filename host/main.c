@@ -15,6 +15,7 @@ static const struct {
     {"conductivity", "effective radiative conductivity of a bed of grey spheres", command_conductivity},
     {"exchange", "exchange factors of grey spheres", command_exchange},
     {"furnace", "temperatures in a box with a medium that absorbs, emits and scatters", command_furnace},
+    {"heat", "net radiative powers of grey spheres and walls", command_heat},
     {"pair", "view factor between two spheres, with or without others in between", command_pair},
     {"reproduce", "the numbers of the papers beside ours", command_reproduce},
 };

@@ -43,10 +43,8 @@ struct run {
 void *run_block(size_t size) { return aligned_alloc(64, (size + 63) / 64 * 64); }
 
 /* Turns a kernel's fault into a message that names the sphere's line. */
-static int refuse(const struct run *run, int status, const fibrad_fault *fault) {
-    const struct bed *bed = run->bed;
+static int refuse(const struct bed *bed, const char *file, int status, const fibrad_fault *fault) {
     const uint32_t first = fault->first, second = fault->second;
-    const char *file = run->options->file;
     if (status == FIBRAD_E_GEOMETRY && first >= bed->n)
         return message_at(STATUS_INPUT, file, 0, "the periodic box is smaller than a sphere's radius");
     if (first >= bed->n || second >= bed->n)
@@ -66,20 +64,17 @@ static int refuse(const struct run *run, int status, const fibrad_fault *fault) 
                       later, other, (unsigned long long)bed->line[other]);
 }
 
-static int make_scene(struct run *run, void **block) {
-    const struct bed *bed = run->bed;
+int run_scene(const struct bed *bed, const fibrad_walls *walls, const char *file, fibrad_scene **scene, void **block) {
     const fibrad_scene_config config = {
-        .spheres = bed->n, .period = {bed->period[0], bed->period[1], bed->period[2]}, .walls = run->options->walls};
+        .spheres = bed->n, .period = {bed->period[0], bed->period[1], bed->period[2]}, .walls = *walls};
     const fibrad_spheres spheres = {bed->x, bed->y, bed->z, bed->r, bed->n};
     fibrad_fault fault = {bed->n, bed->n};
     const size_t size = fibrad_scene_size(&config);
-    if (size == 0) return refuse(run, FIBRAD_E_ARGUMENT, &fault);
+    if (size == 0) return refuse(bed, file, FIBRAD_E_ARGUMENT, &fault);
     *block = run_block(size);
     if (!*block) return message_memory();
-    const int status = fibrad_scene_init(&run->scene, *block, size, &config, &spheres, &fault);
-    if (status) return refuse(run, status, &fault);
-    fibrad_scene_describe(run->scene, &run->result->facts);
-    return STATUS_OK;
+    const int status = fibrad_scene_init(scene, *block, size, &config, &spheres, &fault);
+    return status ? refuse(bed, file, status, &fault) : STATUS_OK;
 }
 
 static bool make_work(struct store *store, const fibrad_work_config *config) {
@@ -297,8 +292,9 @@ static int compute(struct run *run, void **block) {
         result->wanted[i] = !run->options->wanted || run->options->wanted[i];
         rows += result->wanted[i];
     }
-    int status = make_scene(run, block);
+    int status = run_scene(run->bed, &run->options->walls, run->options->file, &run->scene, block);
     if (status) return status;
+    fibrad_scene_describe(run->scene, &result->facts);
     compute_rows(run, rows);
     if (run->status) return run->status;
     status = assemble(run);

@@ -47,6 +47,10 @@ void result_free(struct result *result);
 /* Euclidean distance of row i in two matrices. */
 double rows_distance(const fibrad_rows *a, const fibrad_rows *b, uint32_t i);
 
+/* Makes the scene of a bed in *block, which is to be freed, also after an error. Status 0; STATUS_INPUT if the kernel
+ * refuses the bed, naming the line; STATUS_MEMORY. */
+int run_scene(const struct bed *bed, const fibrad_walls *walls, const char *file, fibrad_scene **scene, void **block);
+
 /* A block on a 64-byte boundary, as the kernel wants it; free() it. NULL: out of memory. */
 void *run_block(size_t size);
 
