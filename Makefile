@@ -74,6 +74,7 @@ KERNEL = \
     kernel/heat/exchange.c \
     kernel/heat/heat.c \
     kernel/heat/paths.c \
+    kernel/heat/radiosity.c \
     kernel/heat/solve.c \
     kernel/heat/walls_cut.c
 
@@ -154,6 +155,7 @@ TESTS = \
     tests/test_direction.c \
     tests/test_estimate.c \
     tests/test_furnace.c \
+    tests/test_heat.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
     tests/test_read.c \

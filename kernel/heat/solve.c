@@ -11,18 +11,26 @@
  * replaced by their mean, and all vectors stay within such J; the finer level goes on from there. */
 #include "heat/heat.h"
 
+#define BEYOND (FIBRAD_WALLS + 1)
+
 /* A beam stands for the area 1/(n + m) if its two surfaces send out n and m beams per area: so the beams either way
  * together tell what the two exchange, those of the denser one counting as much more as there are more of them. */
 static double weight(const fibrad_heat_source *a, const fibrad_heat_source *b) { return 1 / (a->density + b->density); }
 
+/* Many beams meet the few patches that lie beyond the walls and their patches; one sum of all would lose digits. So
+ * what has come to them lately is moved to a longer sum. */
+static void set_aside(const fibrad_heat *heat, double *to, double sum[BEYOND]) {
+    const uint32_t first = heat->first[fibrad_heat_beyond(heat, 0)];
+    for (uint32_t b = first; b < heat->patches; b++) sum[b - first] += to[b], to[b] = 0;
+}
+
 /* Adds what the beams of one sphere bring to its own patches, and to those they meet; or, in the first sweep of all,
- * the areas they stand for. Returns what comes to the surroundings, summed window by window: one sum of all beams would
- * lose digits. */
-static double sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to) {
+ * the areas they stand for. */
+static void sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to, double away[BEYOND]) {
     const uint32_t *hit = heat->hit + (size_t)place * heat->beams, patches = heat->config.patches;
     const fibrad_heat_source *source = heat->source, *mine = source + (size_t)place * patches;
     const bool areas = heat->phase == FIBRAD_HEAT_AREA;
-    double own[FIBRAD_HEAT_PATCHES_MAX] = {0}, away = 0, *open = &to[heat->patches - 1];
+    double own[FIBRAD_HEAT_PATCHES_MAX] = {0}, sum[BEYOND] = {0};
     for (uint32_t begin = 0; begin < heat->beams; begin += heat->config.points) {
         for (uint32_t k = begin; k < begin + heat->config.points; k++) {
             const uint32_t a = heat->leave[k], b = hit[k];
@@ -31,20 +39,20 @@ static double sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to) 
             own[a] += flow;
             to[b] += areas ? flow : -flow;
         }
-        away += *open;
-        *open = 0;
+        set_aside(heat, to, sum);
     }
     for (uint32_t a = 0; a < patches; a++) to[(size_t)place * patches + a] += own[a];
-    return away;
+    for (int b = 0; b < BEYOND; b++) away[b] += sum[b];
 }
 
-static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, double *to) {
+static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, double *to, double away[BEYOND]) {
     const bool areas = heat->phase == FIBRAD_HEAT_AREA;
     for (uint32_t k = begin; k < end; k++) {
         const fibrad_heat_ray ray = heat->ray[k];
         const double flow = areas ? ray.area : ray.area * (heat->source[ray.to].value - heat->source[ray.from].value);
         to[ray.from] += flow;
         to[ray.to] += areas ? flow : -flow;
+        if (k % 64 == 63) set_aside(heat, to, away);
     }
 }
 
@@ -72,15 +80,17 @@ static double sweep_halves(const fibrad_heat *heat, uint32_t place) {
 void fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
     const uint32_t spheres = heat->scene->facts.spheres;
     const uint32_t begin = share(heat, spheres, part), end = share(heat, spheres, part + 1);
-    double *to = heat->gathered + (size_t)part * heat->patches, away = 0;
+    double *to = heat->gathered + (size_t)part * heat->patches, away[BEYOND] = {0};
     if (heat->phase == FIBRAD_HEAT_CHECK) {
         for (uint32_t place = begin; place < end; place++) heat->doubt[place] = sweep_halves(heat, place);
         return;
     }
     fibrad_zero(to, heat->patches * sizeof *to);
-    for (uint32_t place = begin; place < end; place++) away += sweep_sphere(heat, place, to);
-    to[heat->patches - 1] = away;
-    sweep_rays(heat, share(heat, heat->rays, part), share(heat, heat->rays, part + 1), to);
+    for (uint32_t place = begin; place < end; place++) sweep_sphere(heat, place, to, away);
+    sweep_rays(heat, share(heat, heat->rays, part), share(heat, heat->rays, part + 1), to, away);
+    set_aside(heat, to, away);
+    const uint32_t few = heat->first[fibrad_heat_beyond(heat, 0)];
+    fibrad_copy(to + few, away, (heat->patches - few) * sizeof *to);
 }
 
 /* Adds up what the parts have gathered, in the first part's place. */

@@ -1,0 +1,678 @@
+/* test_heat.c - net powers against closed forms, paths followed one by one, published conductivities, and themselves
+ * under every setting that must not matter. SPDX-License-Identifier: MIT */
+#include <stdio.h>
+
+#include "base/elementary.h"
+#include "base/random.h"
+#include "scenes.h"
+
+#define PI 3.14159265358979323846
+
+/* A bed, what is about it, and what came out. */
+struct problem {
+    struct bed bed;
+    fibrad_walls walls;
+    fibrad_heat_config config;
+    fibrad_heat_sources sources;
+    double *temperature, *emissivity;
+    fibrad_scene *scene;
+    fibrad_heat *heat;
+    fibrad_heat_result result;
+    bool backwards; /* tasks and parts from the last to the first */
+    int isa;
+};
+
+static struct problem problem_of(struct bed bed, double temperature, double emissivity) {
+    struct problem p = {.bed = bed, .sources.sigma = 1};
+    p.temperature = malloc(bed.n * sizeof(double));
+    p.emissivity = malloc(bed.n * sizeof(double));
+    p.result.power = malloc(bed.n * sizeof(double));
+    for (uint32_t i = 0; i < bed.n; i++) p.temperature[i] = temperature, p.emissivity[i] = emissivity;
+    p.sources.temperature = p.temperature;
+    p.sources.emissivity = p.emissivity;
+    for (int k = 0; k < FIBRAD_WALLS; k++) p.sources.wall_emissivity[k] = 1;
+    return p;
+}
+
+static void free_heat(struct problem *p) {
+    free(p->scene);
+    free(p->heat);
+}
+
+static void free_problem(struct problem *p) {
+    free_heat(p);
+    free(p->temperature);
+    free(p->emissivity);
+    free(p->result.power);
+    bed_free(&p->bed);
+}
+
+static uint32_t mirrored(const struct problem *p, uint32_t k, uint32_t n) { return p->backwards ? n - 1 - k : k; }
+
+static void trace(struct problem *p) {
+    fibrad_scene_config config = {.spheres = p->bed.n, .isa = p->isa, .walls = p->walls};
+    memcpy(config.period, p->bed.period, sizeof config.period);
+    fibrad_spheres spheres = {p->bed.x, p->bed.y, p->bed.z, p->bed.r, p->bed.n};
+    size_t size = fibrad_scene_size(&config);
+    void *block = block_of(size);
+    ck_assert_int_eq(fibrad_scene_init(&p->scene, block, size, &config, &spheres, NULL), FIBRAD_OK);
+    size = fibrad_heat_size(&p->config, p->scene);
+    ck_assert_uint_gt(size, 0);
+    block = block_of(size);
+    ck_assert_int_eq(fibrad_heat_init(&p->heat, block, size, &p->config, p->scene), FIBRAD_OK);
+    ck_assert_ptr_eq(p->heat, block);
+    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 1024, .entries = p->bed.n});
+    uint32_t tasks = fibrad_heat_tasks(p->heat);
+    for (uint32_t k = 0; k < tasks; k++)
+        ck_assert_int_eq(fibrad_heat_trace(p->heat, work, mirrored(p, k, tasks)), FIBRAD_OK);
+    free(work);
+}
+
+static void solve(struct problem *p) {
+    const uint32_t parts = p->config.parts ? p->config.parts : 8;
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    do
+        for (uint32_t k = 0; k < parts; k++) fibrad_heat_sweep(p->heat, mirrored(p, k, parts));
+    while (fibrad_heat_step(p->heat));
+    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+}
+
+static void trace_and_solve(struct problem *p) {
+    trace(p);
+    solve(p);
+}
+
+static double emission(double t) { return t * t * t * t; }
+
+static double sphere_area(const struct bed *bed, uint32_t i) { return 4 * PI * bed->r[i] * bed->r[i]; }
+
+/* All walls of a box, the planes at -half and half. */
+static fibrad_walls box_of(double half) {
+    return (fibrad_walls){.planes = 63, .at = {-half, half, -half, half, -half, half}};
+}
+
+/* The box that holds an open bed. */
+static fibrad_walls box_about(const struct bed *bed) {
+    fibrad_walls walls = {.planes = 63};
+    const double *const coordinate[3] = {bed->x, bed->y, bed->z};
+    for (int axis = 0; axis < 3; axis++) {
+        walls.at[2 * axis] = INFINITY, walls.at[2 * axis + 1] = -INFINITY;
+        for (uint32_t i = 0; i < bed->n; i++) {
+            walls.at[2 * axis] = fmin(walls.at[2 * axis], coordinate[axis][i] - bed->r[i]);
+            walls.at[2 * axis + 1] = fmax(walls.at[2 * axis + 1], coordinate[axis][i] + bed->r[i]);
+        }
+    }
+    return walls;
+}
+
+static double sum_of_powers(const struct problem *p, double *largest) {
+    double sum = p->result.surroundings_power;
+    *largest = fabs(sum);
+    for (int k = 0; k < FIBRAD_WALLS; k++) {
+        sum += p->result.wall_power[k];
+        *largest = fmax(*largest, fabs(p->result.wall_power[k]));
+    }
+    for (uint32_t i = 0; i < p->bed.n; i++) {
+        sum += p->result.power[i];
+        *largest = fmax(*largest, fabs(p->result.power[i]));
+    }
+    return sum;
+}
+
+static void assert_near(double value, double truth, double tolerance) {
+    ck_assert_msg(fabs(value - truth) <= tolerance * fabs(truth), "%.9g instead of %.9g, off by %.3g", value, truth,
+                  value / truth - 1);
+}
+
+/* ---- closed forms ---- */
+
+static void assert_still(struct problem *p) {
+    for (uint32_t i = 0; i < p->bed.n; i++) {
+        const double black = sphere_area(&p->bed, i) * emission(p->temperature[i]);
+        ck_assert_double_le(fabs(p->result.power[i]), 1e-10 * fmax(p->emissivity[i], .1) * black);
+    }
+    for (int k = 0; k < FIBRAD_WALLS; k++)
+        ck_assert_double_le(fabs(p->result.wall_power[k]), 1e-10 * emission(p->temperature[0]));
+}
+
+START_TEST(nothing_flows_in_a_closed_box_at_one_temperature) {
+    struct problem p = problem_of(packing(60, .6, 1.2, .5, 3, false), 3, .5);
+    p.walls = box_about(&p.bed);
+    for (uint32_t i = 0; i < p.bed.n; i++) p.emissivity[i] = (double)(i % 11) / 10;
+    for (int k = 0; k < FIBRAD_WALLS; k++) p.sources.wall_temperature[k] = 3, p.sources.wall_emissivity[k] = .2 * k;
+    p.config.directions = 40;
+    trace_and_solve(&p);
+    assert_still(&p);
+
+    /* also from a solution in which much flowed */
+    p.temperature[7] = 5, p.sources.wall_temperature[3] = 1;
+    solve(&p);
+    ck_assert_double_gt(fabs(p.result.power[7]), 1);
+    p.temperature[7] = 3, p.sources.wall_temperature[3] = 3;
+    solve(&p);
+    assert_still(&p);
+    free_problem(&p);
+}
+END_TEST
+
+START_TEST(nothing_flows_in_a_periodic_bed_at_one_temperature) {
+    struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 2, .3);
+    p.config.directions = 40;
+    trace_and_solve(&p);
+    assert_still(&p);
+    free_problem(&p);
+}
+END_TEST
+
+START_TEST(a_grey_sphere_in_black_surroundings) {
+    for (int walls = 0; walls < 2; walls++) {
+        struct problem p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
+        if (walls) p.walls = box_of(20);
+        for (int k = 0; k < FIBRAD_WALLS; k++) p.sources.wall_temperature[k] = 1;
+        p.sources.surroundings = walls ? 0 : 1;
+        trace_and_solve(&p);
+        assert_near(p.result.power[0], .3 * 4 * PI * (1 - 16), 1e-3);
+        free_problem(&p);
+    }
+}
+END_TEST
+
+/* As between a sphere and a concentric one of the area of the box, whose walls are lit evenly enough. */
+START_TEST(a_grey_sphere_in_a_large_grey_box) {
+    struct problem p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
+    p.walls = box_of(20);
+    for (int k = 0; k < FIBRAD_WALLS; k++) p.sources.wall_temperature[k] = 1, p.sources.wall_emissivity[k] = .05;
+    trace_and_solve(&p);
+    assert_near(p.result.power[0], 4 * PI * (1 - 16) / (1 / .3 + 4 * PI / 9600 * (1 / .05 - 1)), 1e-3);
+    free_problem(&p);
+}
+END_TEST
+
+START_TEST(two_parallel_grey_walls) {
+    struct problem p = problem_of(bed_of(1, (const double[][4]){{.2, .3, .5, 1e-4}}), 1, .5);
+    p.walls = (fibrad_walls){.planes = 48, .at = {0, 0, 0, 0, 0, 1}};
+    p.bed.period[0] = p.bed.period[1] = 2;
+    p.sources.wall_temperature[4] = 3, p.sources.wall_emissivity[4] = .3;
+    p.sources.wall_temperature[5] = 2, p.sources.wall_emissivity[5] = .6;
+    trace_and_solve(&p);
+    assert_near(p.result.wall_power[5], 4 * (81 - 16) / (1 / .3 + 1 / .6 - 1), 1e-3);
+    ck_assert_double_eq(p.result.surroundings_power, 0);
+    free_problem(&p);
+}
+END_TEST
+
+START_TEST(a_black_sphere_touches_a_black_plane) {
+    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, 1);
+    for (uint32_t wall = 0; wall < 6; wall++) {
+        p.walls = (fibrad_walls){.planes = 1u << wall};
+        p.walls.at[wall] = wall % 2 ? 1 : -1;
+        trace_and_solve(&p);
+        assert_near(p.result.wall_power[wall], 16 * 2 * PI, 1e-3);
+        assert_near(p.result.surroundings_power, 16 * 2 * PI, 1e-3);
+        free_heat(&p);
+    }
+    p.scene = NULL, p.heat = NULL;
+    free_problem(&p);
+}
+END_TEST
+
+/* A plane without end reflects what comes from the surroundings, and from the sphere. With two equal spheres in each
+ * other's mirror, and nothing from beyond, a perfect mirror is not what a diffuse wall is; but a sphere between two
+ * white walls without end at its own temperature must neither gain nor lose, whatever the walls' temperature. */
+START_TEST(white_walls_take_nothing) {
+    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .4);
+    p.walls = (fibrad_walls){.planes = 48, .at = {0, 0, 0, 0, -1.5, 1.5}};
+    p.sources.wall_emissivity[4] = p.sources.wall_emissivity[5] = 0;
+    p.sources.wall_temperature[4] = 7, p.sources.surroundings = 2;
+    trace_and_solve(&p);
+    ck_assert_double_le(fabs(p.result.power[0]), 1e-10);
+    p.sources.surroundings = 0;
+    solve(&p);
+    ck_assert_double_le(fabs(p.result.wall_power[4]), 2e-3 * fabs(p.result.power[0])); /* the residual */
+    assert_near(p.result.surroundings_power, -p.result.power[0], 4e-3);
+    ck_assert_double_lt(-p.result.power[0], .4 * 16 * 4 * PI);     /* less than alone, */
+    ck_assert_double_gt(-p.result.power[0], .4 * 16 * 4 * PI / 2); /* yet half as much at least */
+    free_problem(&p);
+}
+END_TEST
+
+START_TEST(view_factors_between_the_walls_of_a_cube) {
+    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
+    p.walls = box_of(.5);
+    p.sources.wall_temperature[4] = 1;
+    trace_and_solve(&p);
+    assert_near(p.result.wall_power[5], 0.1998249, 5e-3);
+    for (int k = 0; k < 4; k++) assert_near(p.result.wall_power[k], 0.2000438, 5e-3);
+    free_problem(&p);
+}
+END_TEST
+
+START_TEST(view_factors_between_the_walls_of_a_cylinder) {
+    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
+    p.walls = (fibrad_walls){.planes = 48, .at = {0, 0, 0, 0, -1, 1}, .cylinder = {0, 0, 1}};
+    p.sources.wall_temperature[4] = 1;
+    trace_and_solve(&p);
+    const double x = 2 + 4, lids = .5 * (x - sqrt(x * x - 4)); /* coaxial discs of radius 1, distance 2 */
+    assert_near(p.result.wall_power[5], PI * lids, 5e-3);
+    assert_near(p.result.wall_power[6], PI * (1 - lids), 5e-3);
+    free_problem(&p);
+}
+END_TEST
+
+START_TEST(two_black_spheres_in_contact) {
+    struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1.2, 1.6, 0, 1}}), 1, 1);
+    p.temperature[1] = 0;
+    trace_and_solve(&p);
+    assert_near(p.result.power[1], 4 * PI * 0.0755868184216124, 1e-2);
+    free_problem(&p);
+}
+END_TEST
+
+/* ---- paths ---- */
+
+static void diffuse(const double n[3], double u, double v, double w[3]) {
+    double a[3] = {0, 0, 0}, b[3], sine, cosine;
+    const int least = fabs(n[0]) < .6 ? 0 : 1;
+    a[least] = 1;
+    const double along = n[least];
+    for (int k = 0; k < 3; k++) a[k] -= along * n[k];
+    const double size = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    for (int k = 0; k < 3; k++) a[k] /= size;
+    for (int k = 0; k < 3; k++) b[k] = n[(k + 1) % 3] * a[(k + 2) % 3] - n[(k + 2) % 3] * a[(k + 1) % 3];
+    fibrad_sincos_turn(v, &sine, &cosine);
+    for (int k = 0; k < 3; k++) w[k] = sqrt(u) * (cosine * a[k] + sine * b[k]) + sqrt(1 - u) * n[k];
+}
+
+/* The first thing a ray meets from `o` on along w, by trying all: sphere k, or n + wall. The new place and normal. */
+static uint32_t first_met(const struct problem *p, uint32_t from, double o[3], const double w[3], double normal[3]) {
+    const struct bed *bed = &p->bed;
+    uint32_t met = UINT32_MAX;
+    double nearest = INFINITY;
+    for (uint32_t j = 0; j < bed->n; j++) {
+        const double c[3] = {bed->x[j] - o[0], bed->y[j] - o[1], bed->z[j] - o[2]};
+        const double depth = c[0] * w[0] + c[1] * w[1] + c[2] * w[2];
+        const double root = bed->r[j] * bed->r[j] - (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) + depth * depth;
+        if (j == from || depth <= 0 || root <= 0 || depth - sqrt(root) >= nearest) continue;
+        nearest = depth - sqrt(root), met = j;
+    }
+    if (met == UINT32_MAX)
+        for (uint32_t k = 0; k < 6; k++) {
+            const double t = (p->walls.at[k] - o[k / 2]) / w[k / 2];
+            if ((w[k / 2] > 0) == (k % 2 == 1) && t < nearest) nearest = t, met = bed->n + k;
+        }
+    for (int a = 0; a < 3; a++) o[a] += nearest * w[a], normal[a] = 0;
+    if (met >= bed->n) {
+        normal[(met - bed->n) / 2] = (met - bed->n) % 2 ? -1 : 1;
+    } else {
+        normal[0] = (o[0] - bed->x[met]) / bed->r[met], normal[1] = (o[1] - bed->y[met]) / bed->r[met];
+        normal[2] = (o[2] - bed->z[met]) / bed->r[met];
+    }
+    return met;
+}
+
+/* Net power of sphere i: what it absorbs of the emission that paths backwards from it come from. */
+static double power_by_paths(const struct problem *p, uint32_t i, uint32_t paths) {
+    double sum = 0;
+    for (uint32_t k = 0; k < paths; k++) {
+        fibrad_random random = fibrad_random_start(i, k);
+        double n[3], o[3], w[3], up[3] = {0, 0, 1}, sine, cosine;
+        const double z = 2 * fibrad_random_next(&random) - 1;
+        fibrad_sincos_turn(fibrad_random_next(&random), &sine, &cosine);
+        n[0] = sqrt(1 - z * z) * cosine, n[1] = sqrt(1 - z * z) * sine, n[2] = z;
+        o[0] = p->bed.x[i] + p->bed.r[i] * n[0], o[1] = p->bed.y[i] + p->bed.r[i] * n[1];
+        o[2] = p->bed.z[i] + p->bed.r[i] * n[2];
+        (void)up;
+        for (uint32_t at = i;;) {
+            const double u = fibrad_random_next(&random), v = fibrad_random_next(&random);
+            diffuse(n, u, v, w);
+            at = first_met(p, at, o, w, n);
+            const uint32_t wall = at - p->bed.n;
+            const double eps = at < p->bed.n ? p->emissivity[at] : p->sources.wall_emissivity[wall];
+            if (fibrad_random_next(&random) >= eps) continue;
+            sum += emission(at < p->bed.n ? p->temperature[at] : p->sources.wall_temperature[wall]);
+            break;
+        }
+    }
+    return p->emissivity[i] * sphere_area(&p->bed, i) * (sum / paths - emission(p->temperature[i]));
+}
+
+START_TEST(powers_are_those_of_paths) {
+    static const struct {
+        double low, high, spheres, walls, bar;
+    } cases[] = {{1, 1, .3, .5, .015}, {.5, 1.5, .3, .4, .015}, {1, 1, .8, .9, .01}};
+    struct problem p = problem_of(packing(24, cases[_i].low, cases[_i].high, .55, 11, false), 1, cases[_i].spheres);
+    p.walls = box_about(&p.bed);
+    for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + .5 * bed_make_random(4, i);
+    for (int k = 0; k < FIBRAD_WALLS; k++)
+        p.sources.wall_temperature[k] = .8 + .2 * k, p.sources.wall_emissivity[k] = cases[_i].walls;
+    trace_and_solve(&p);
+    double difference = 0, size = 0;
+    for (uint32_t i = 0; i < p.bed.n; i++) {
+        const double truth = power_by_paths(&p, i, 40000);
+        difference += (p.result.power[i] - truth) * (p.result.power[i] - truth), size += truth * truth;
+    }
+    ck_assert_msg(sqrt(difference / size) < cases[_i].bar, "off by %g", sqrt(difference / size));
+    free_problem(&p);
+}
+END_TEST
+
+/* ---- conduction ---- */
+
+/* k_rad/(4 sigma T^3 d) of a periodic bed along z, from the powers at emissions 2 + cos kz, k such that `waves` waves
+ * fit into the box. */
+static double conduction(struct problem *p, int waves) {
+    const struct bed *bed = &p->bed;
+    const double k = 2 * PI * waves / bed->period[2], volume = bed->period[0] * bed->period[1] * bed->period[2];
+    for (uint32_t i = 0; i < bed->n; i++) p->temperature[i] = sqrt(sqrt(2 + cos(k * bed->z[i])));
+    solve(p);
+    double sum = 0;
+    for (uint32_t i = 0; i < bed->n; i++) sum -= p->result.power[i] * cos(k * bed->z[i]);
+    return sum * 2 / (volume * 2 * bed->r[0] * k * k);
+}
+
+/* In an even gradient: what waves have less of it than that is a resistance that rises with the square of k. */
+static double even_conduction(struct problem *p, double eps) {
+    for (uint32_t i = 0; i < p->bed.n; i++) p->emissivity[i] = eps;
+    return 3 / (4 / conduction(p, 1) - 1 / conduction(p, 2));
+}
+
+START_TEST(conduction_of_a_simple_cubic_lattice) {
+    static const double known[][2] = {{.2, .354}, {.4, .527}, {.6, .715}, {.8, .929}, {1, 1.187}};
+    struct bed bed;
+    bed_init(&bed, false, 0);
+    for (int z = 0; z < 24; z++)
+        for (int place = 0; place < 9; place++) add_sphere(&bed, 2 * (place % 3), 2 * (place / 3), 2 * z, 1);
+    bed.period[0] = bed.period[1] = 6, bed.period[2] = 48;
+    struct problem p = problem_of(bed, 1, 1);
+    trace(&p);
+    for (size_t k = 0; k < 5; k++) assert_near(even_conduction(&p, known[k][0]), known[k][1], .02);
+    free_problem(&p);
+}
+END_TEST
+
+/* A small random bed conducts a few per cent more or less than a large one, but alike at all emissivities. */
+START_TEST(conduction_of_a_random_bed) {
+    static const double known[][2] = {{.2, .276}, {.4, .433}, {.6, .610}, {.8, .815}};
+    struct bed one = packing(120, 1, 1, .586, 2, true), bed;
+    bed_init(&bed, false, 0);
+    ck_assert_int_eq(bed_make_copies(&bed, &one, (uint32_t[]){1, 1, 3}), 0);
+    bed_free(&one);
+    struct problem p = problem_of(bed, 1, 1);
+    trace(&p);
+    const double black = even_conduction(&p, 1);
+    assert_near(black, 1.061, .05);
+    for (size_t k = 0; k < 4; k++) assert_near(even_conduction(&p, known[k][0]) / black, known[k][1] / 1.061, .02);
+    /* one radiosity per sphere conducts as if all were black */
+    p.sources.uniform = 1;
+    assert_near(even_conduction(&p, .2), black, .03);
+    free_problem(&p);
+}
+END_TEST
+
+/* ---- books ---- */
+
+START_TEST(powers_add_up_to_zero) {
+    struct problem p = problem_of(packing(150, .4, 1.6, .5, 9, false), 1, .5);
+    for (uint32_t i = 0; i < p.bed.n; i++)
+        p.temperature[i] = 300 + 700 * bed_make_random(1, i), p.emissivity[i] = bed_make_random(2, i);
+    p.walls = box_about(&p.bed);
+    p.walls.planes = (uint32_t)_i; /* some of the walls, some of them without end */
+    p.config.directions = 30;
+    for (int k = 0; k < FIBRAD_WALLS; k++)
+        p.sources.wall_temperature[k] = 400 + 100 * k, p.sources.wall_emissivity[k] = .15 * k;
+    p.sources.surroundings = 350;
+    p.sources.sigma = FIBRAD_STEFAN_BOLTZMANN;
+    trace(&p);
+    for (int uniform = 0; uniform < 2; uniform++) {
+        double largest;
+        p.sources.uniform = uniform;
+        solve(&p);
+        ck_assert_double_le(fabs(sum_of_powers(&p, &largest)), 1e-12 * largest);
+    }
+    free_problem(&p);
+}
+END_TEST
+
+/* ---- what must not matter ---- */
+
+static void assert_same_bits(const struct problem *p, const struct problem *q) {
+    ck_assert_int_eq(memcmp(p->result.power, q->result.power, p->bed.n * sizeof(double)), 0);
+    ck_assert_int_eq(memcmp(p->result.wall_power, q->result.wall_power, sizeof p->result.wall_power), 0);
+    ck_assert_int_eq(memcmp(&p->result.surroundings_power, &q->result.surroundings_power, sizeof(double)), 0);
+    ck_assert_int_eq(memcmp(&p->result.error_beams, &q->result.error_beams, sizeof(double)), 0);
+}
+
+static struct problem small_problem(int isa, bool backwards) {
+    struct problem p = problem_of(packing(80, .5, 1, .5, 21, false), 1, .4);
+    for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
+    p.isa = isa, p.backwards = backwards;
+    p.walls = box_about(&p.bed);
+    p.walls.planes = 31;
+    for (int k = 0; k < FIBRAD_WALLS; k++) p.sources.wall_temperature[k] = 1, p.sources.wall_emissivity[k] = .7;
+    p.config = (fibrad_heat_config){.directions = 24, .points = 128, .parts = 5};
+    trace_and_solve(&p);
+    return p;
+}
+
+START_TEST(the_order_of_the_work_changes_no_bit) {
+    struct problem p = small_problem(FIBRAD_ISA_BEST, false), q = small_problem(FIBRAD_ISA_BEST, true);
+    assert_same_bits(&p, &q);
+    free_problem(&p);
+    free_problem(&q);
+}
+END_TEST
+
+START_TEST(instruction_sets_change_no_bit) {
+    if (_i > (int)fibrad_isa_best()) return;
+    struct problem p = small_problem(FIBRAD_ISA_SCALAR, false), q = small_problem(_i, false);
+    assert_same_bits(&p, &q);
+    free_problem(&p);
+    free_problem(&q);
+}
+END_TEST
+
+START_TEST(an_earlier_solution_saves_sweeps_and_changes_little) {
+    struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .3);
+    p.config.directions = 40, p.sources.tolerance = 1e-6;
+    for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
+    trace_and_solve(&p);
+    for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] *= 1 + 1e-4 * bed_make_random(6, i);
+    solve(&p);
+    const uint32_t warm = p.result.sweeps;
+    double *power = malloc(p.bed.n * sizeof *power), largest = 0;
+    memcpy(power, p.result.power, p.bed.n * sizeof *power);
+    free_heat(&p);
+    trace_and_solve(&p);
+    ck_assert_uint_lt(warm, p.result.sweeps * 3 / 4);
+    for (uint32_t i = 0; i < p.bed.n; i++) largest = fmax(largest, fabs(p.result.power[i]));
+    for (uint32_t i = 0; i < p.bed.n; i++) ck_assert_double_eq_tol(power[i], p.result.power[i], 1e-5 * largest);
+    free(power);
+    free_problem(&p);
+}
+END_TEST
+
+START_TEST(the_error_is_as_estimated) {
+    double truth[100], *power = NULL;
+    for (int k = 0; k < 3; k++) {
+        static const fibrad_heat_config configs[] = {
+            {.directions = 600, .patches = 384}, {.directions = 72, .patches = 96}, {.directions = 144, .patches = 24}};
+        struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .4);
+        for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
+        p.config = configs[k];
+        trace_and_solve(&p);
+        power = p.result.power;
+        double square = 0;
+        for (uint32_t i = 0; i < p.bed.n; i++) square += (power[i] - truth[i]) * (power[i] - truth[i]) / p.bed.n;
+        if (k == 0) memcpy(truth, power, sizeof truth);
+        if (k > 0) {
+            const double estimate = hypot(p.result.error_patches, p.result.error_beams);
+            ck_assert_msg(sqrt(square) < 3 * estimate && sqrt(square) > estimate / 5, "%g, estimated %g", sqrt(square),
+                          estimate);
+        }
+        free_problem(&p);
+    }
+}
+END_TEST
+
+/* ---- one radiosity per sphere ---- */
+
+/* Reciprocal rows of view factors of a bed, exact areas. */
+static fibrad_rows rows_of(const struct bed *bed, uint32_t directions) {
+    fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
+    fibrad_work *work = work_of(NULL);
+    fibrad_rows raw = {.n = bed->n, .capacity = (uint64_t)bed->n * bed->n}, rows = raw;
+    for (int k = 0; k < 2; k++) {
+        fibrad_rows *to = k == 0 ? &raw : &rows;
+        to->start = calloc(bed->n + 1, sizeof *to->start);
+        to->col = calloc(to->capacity, sizeof *to->col);
+        to->f = calloc(to->capacity, sizeof *to->f);
+    }
+    for (uint32_t i = 0; i < bed->n; i++) {
+        fibrad_row row = {.col = raw.col + raw.start[i], .f = raw.f + raw.start[i], .capacity = bed->n};
+        ck_assert_int_eq(fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = directions}, &row),
+                         FIBRAD_OK);
+        raw.start[i + 1] = raw.start[i] + row.length;
+    }
+    ck_assert_int_eq(fibrad_rows_average(&raw, bed->r, &rows), FIBRAD_OK);
+    free(raw.start), free(raw.col), free(raw.f);
+    free(scene), free(work);
+    return rows;
+}
+
+START_TEST(one_radiosity_per_sphere) {
+    struct problem p = problem_of(packing(80, .6, 1, .5, 8, false), 1, 1);
+    const fibrad_rows rows = rows_of(&p.bed, 400);
+    double *scratch = malloc(3 * p.bed.n * sizeof *scratch), *power = malloc(p.bed.n * sizeof *power);
+    fibrad_heat_result result = {.power = power};
+    for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
+    p.sources.surroundings = .5, p.sources.uniform = 1, p.config.directions = 400;
+    trace(&p);
+    for (int grey = 0; grey < 2; grey++) {
+        double sum, size = 0, difference = 0;
+        for (uint32_t i = 0; i < p.bed.n; i++) p.emissivity[i] = grey ? .1 + .9 * bed_make_random(5, i) : 1;
+        ck_assert_int_eq(fibrad_radiosity(&rows, p.bed.r, &p.sources, scratch, &result), FIBRAD_OK);
+        solve(&p);
+        sum = result.surroundings_power;
+        for (uint32_t i = 0; i < p.bed.n; i++) {
+            sum += power[i], size += power[i] * power[i];
+            difference += (power[i] - p.result.power[i]) * (power[i] - p.result.power[i]);
+            if (grey) continue;
+            double net = emission(.5) - emission(p.temperature[i]); /* exact for black spheres */
+            for (uint64_t k = rows.start[i]; k < rows.start[i + 1]; k++)
+                net += rows.f[k] * (emission(p.temperature[rows.col[k]]) - emission(.5));
+            assert_near(power[i], net * sphere_area(&p.bed, i), 1e-10);
+        }
+        ck_assert_double_le(fabs(sum), 1e-12 * sqrt(size));
+        ck_assert_double_le(sqrt(difference / size), 5e-3); /* other quadrature, the same equations */
+    }
+    p.sources.surroundings = -1;
+    ck_assert_int_eq(fibrad_radiosity(&rows, p.bed.r, &p.sources, scratch, &result), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_radiosity(&rows, p.bed.r, &p.sources, NULL, &result), FIBRAD_E_ARGUMENT);
+    free(rows.start), free(rows.col), free(rows.f), free(scratch), free(power);
+    free_problem(&p);
+}
+END_TEST
+
+/* ---- arguments ---- */
+
+START_TEST(arguments_are_checked) {
+    struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}}), 1, .5);
+    p.config = (fibrad_heat_config){.directions = 8};
+    trace(&p);
+    static const fibrad_heat_config bad[] = {
+        {.directions = 7}, {.directions = 65537}, {.points = 65}, {.patches = 25}, {.parts = 1025}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) ck_assert_uint_eq(fibrad_heat_size(&bad[k], p.scene), 0);
+    ck_assert_uint_eq(fibrad_heat_size(&p.config, NULL), 0);
+
+    const size_t size = fibrad_heat_size(&p.config, p.scene);
+    unsigned char *block = block_of(size + 128);
+    fibrad_heat *heat = NULL;
+    memset(block, 0x5a, size + 128);
+    ck_assert_int_eq(fibrad_heat_init(&heat, block, size - 1, &p.config, p.scene), FIBRAD_E_SIZE);
+    ck_assert_int_eq(fibrad_heat_init(&heat, block + 8, size, &p.config, p.scene), FIBRAD_E_ALIGNMENT);
+    ck_assert_int_eq(fibrad_heat_init(NULL, block, size, &p.config, p.scene), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_heat_init(&heat, block, size, &p.config, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_heat_init(&heat, block, size, &p.config, p.scene), FIBRAD_OK);
+    fibrad_work *small = work_of(&(fibrad_work_config){.discs = 1, .near = 16}), *work = work_of(NULL);
+    ck_assert_int_eq(fibrad_heat_trace(heat, work, 2), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_heat_trace(heat, NULL, 0), FIBRAD_E_ARGUMENT);
+    for (uint32_t i = 0; i < 2; i++) ck_assert_int_eq(fibrad_heat_trace(heat, work, i), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_heat_read(heat, &p.result), FIBRAD_E_ARGUMENT); /* unsolved */
+    p.heat = (free(p.heat), heat);
+    solve(&p);
+    for (size_t k = size; k < size + 128; k++) ck_assert_int_eq(block[k], 0x5a);
+
+    const struct problem fine = p;
+    p.temperature[1] = -1;
+    ck_assert_int_eq(fibrad_heat_begin(heat, &p.sources), FIBRAD_E_ARGUMENT);
+    p.temperature[1] = NAN;
+    ck_assert_int_eq(fibrad_heat_begin(heat, &p.sources), FIBRAD_E_ARGUMENT);
+    p.temperature[1] = 1, p.emissivity[0] = 1.5;
+    ck_assert_int_eq(fibrad_heat_begin(heat, &p.sources), FIBRAD_E_ARGUMENT);
+    p.emissivity[0] = .5, p.sources.sigma = 0;
+    ck_assert_int_eq(fibrad_heat_begin(heat, &p.sources), FIBRAD_E_ARGUMENT);
+    p.sources = fine.sources, p.sources.tolerance = 1;
+    ck_assert_int_eq(fibrad_heat_begin(heat, &p.sources), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_heat_begin(heat, NULL), FIBRAD_E_ARGUMENT);
+    free(small), free(work);
+    free_problem(&p);
+}
+END_TEST
+
+/* One disc of room in a bed: the call says so, and what it asks for is enough. */
+START_TEST(work_memory_may_be_too_small) {
+    struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, 1);
+    p.config.directions = 8;
+    trace(&p);
+    fibrad_work_config config = {.discs = 1};
+    fibrad_work *work = work_of(&config);
+    int status = fibrad_heat_trace(p.heat, work, 0);
+    ck_assert_int_eq(status, FIBRAD_E_CAPACITY);
+    for (int tries = 0; tries < 20 && status == FIBRAD_E_CAPACITY; tries++) {
+        fibrad_work_needed(work, &config);
+        free(work);
+        work = work_of(&config);
+        status = fibrad_heat_trace(p.heat, work, 0);
+    }
+    ck_assert_int_eq(status, FIBRAD_OK);
+    free(work);
+    free_problem(&p);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("heat");
+    TCase *closed = tcase_create("closed forms"), *paths = tcase_create("paths"), *bits = tcase_create("bits");
+    TCase *conducting = tcase_create("conduction"), *arguments = tcase_create("arguments");
+    tcase_add_test(closed, nothing_flows_in_a_closed_box_at_one_temperature);
+    tcase_add_test(closed, nothing_flows_in_a_periodic_bed_at_one_temperature);
+    tcase_add_test(closed, a_grey_sphere_in_black_surroundings);
+    tcase_add_test(closed, a_grey_sphere_in_a_large_grey_box);
+    tcase_add_test(closed, two_parallel_grey_walls);
+    tcase_add_test(closed, a_black_sphere_touches_a_black_plane);
+    tcase_add_test(closed, white_walls_take_nothing);
+    tcase_add_test(closed, view_factors_between_the_walls_of_a_cube);
+    tcase_add_test(closed, view_factors_between_the_walls_of_a_cylinder);
+    tcase_add_test(closed, two_black_spheres_in_contact);
+    tcase_add_loop_test(paths, powers_are_those_of_paths, 0, 3);
+    tcase_add_test(conducting, conduction_of_a_simple_cubic_lattice);
+    tcase_add_test(conducting, conduction_of_a_random_bed);
+    tcase_add_loop_test(bits, powers_add_up_to_zero, 0, 64);
+    tcase_add_test(bits, the_order_of_the_work_changes_no_bit);
+    tcase_add_loop_test(bits, instruction_sets_change_no_bit, FIBRAD_ISA_SSE2, FIBRAD_ISA_AVX512 + 1);
+    tcase_add_test(bits, an_earlier_solution_saves_sweeps_and_changes_little);
+    tcase_add_test(bits, the_error_is_as_estimated);
+    tcase_add_test(closed, one_radiosity_per_sphere);
+    tcase_add_test(arguments, arguments_are_checked);
+    tcase_add_test(arguments, work_memory_may_be_too_small);
+    TCase *cases[] = {closed, paths, conducting, bits, arguments};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        tcase_set_timeout(cases[k], 120);
+        suite_add_tcase(suite, cases[k]);
+    }
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed == 0 ? 0 : 1;
+}
