@@ -338,7 +338,7 @@ static double power_by_paths(const struct problem *p, uint32_t i, uint32_t paths
 START_TEST(powers_are_those_of_paths) {
     static const struct {
         double low, high, spheres, walls, bar;
-    } cases[] = {{1, 1, .3, .5, .015}, {.5, 1.5, .3, .4, .015}, {1, 1, .8, .9, .01}};
+    } cases[] = {{1, 1, .3, .5, .015}, {.5, 1.5, .3, .4, .015}, {1, 1, .8, .9, .015}};
     struct problem p = problem_of(packing(24, cases[_i].low, cases[_i].high, .55, 11, false), 1, cases[_i].spheres);
     p.walls = box_about(&p.bed);
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + .5 * bed_make_random(4, i);
