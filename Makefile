@@ -145,6 +145,7 @@ TESTS = \
     tests/test_cli.c \
     tests/test_direction.c \
     tests/test_estimate.c \
+    tests/test_exchange.c \
     tests/test_furnace.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
