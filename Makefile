@@ -119,6 +119,7 @@ HOST = \
     host/read_yade.c \
     host/reference.c \
     host/reproduce_beds.c \
+    host/reproduce_exchange.c \
     host/reproduce_pairs.c \
     host/reproduce_pebbles.c \
     host/reproduce_rays.c \
