@@ -196,6 +196,14 @@ static const struct {
     {{"bed", MONO, "--method=cast", "--rays", "0"}, "--rays: '0' is not a whole number from 1 to 4294967295"},
     {{"bed", MONO, "--method=mc", "--seed", "-1"}, "--seed: '-1'"},
     {{"bed", MONO, "--method=cast", "--directions", "100"}, "are for --method beam"},
+    {{"exchange", MONO}, "which --emissivity"},
+    {{"exchange", MONO, "--emissivity", "0"}, "'0' is neither a number above 0"},
+    {{"exchange", MONO, "--emissivity", "1.5"}, "--emissivity: 1.5 is not within 0 and 1"},
+    {{"exchange", MONO, "--emissivity=.5", "--error=.1", "--rays=9"}, "leave out --rays"},
+    {{"exchange", MONO, "--emissivity=.5", "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
+    {{"exchange", MONO, "--emissivity=.5", "-o", "D.vtp"}, "unknown ending; there are .csv, .mtx and .npz"},
+    {{"conductivity", MONO}, "which --emissivity"},
+    {{"conductivity", "--emissivity", ".5"}, "which FILE"},
     {{"bed", MONO, "--directions", "7"}, "'7' is not a whole number from 8 to 65536"},
     {{"bed", MONO, "--error", "0"}, "--error: 0 is not within 1e-07 and 1"},
     {{"bed", MONO, "--error", "1e-8"}, "--error: 1e-8 is not within 1e-07 and 1"},
@@ -467,6 +475,76 @@ START_TEST(frames_periods_and_ids) {
 }
 END_TEST
 
+/* Rows of the .csv close with surroundings (-1) and walls (-2, -3, ...) and are reciprocal with areas times
+ * emissivity; the bytes do not depend on the number of threads. */
+START_TEST(exchange_factors) {
+    enum { N = 12 };
+    static double d[N][N];
+    double sum[N] = {0}, weight[N];
+    char bed[2000] = "x,y,z,e,r\n";
+    for (int i = 0; i < N; ++i) {
+        const double r = .5 + .04 * i, e = .3 + .05 * i;
+        snprintf(bed + strlen(bed), 100, "%d,%d,%d,%.17g,%.17g\n", 2 * (i % 3), 2 * (i / 3 % 2), 2 * (i / 6), e, r);
+        weight[i] = r * r * e;
+    }
+    const char *file = write_file("bed.csv", bed), *out = in_folder("D.csv"), *other = in_folder("E.csv");
+    SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
+            "0.5,0", "--threads", "1", "-o", out);
+    ck_assert_double_lt(value_of("closure_max"), 1e-12);
+    ck_assert_double_lt(value_of("reciprocity_max"), 1e-12);
+    ck_assert_double_lt(value_of("error_estimate"), .1);
+    SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
+            "0.5,0", "--threads", "3", "-o", other);
+    char *text = read_file(out), *again = read_file(other);
+    ck_assert_str_eq(text, again);
+    ck_assert_int_eq(strncmp(text, "i,j,D\n", 6), 0);
+    for (char *line = strchr(text, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
+        int i, j;
+        double factor;
+        ck_assert_int_eq(sscanf(line, "%d,%d,%lg", &i, &j, &factor), 3);
+        ck_assert(j != -3 && i >= -3 && j >= -2); /* the upper wall takes nothing, but -3 reflects */
+        if (i < 0) continue;
+        sum[i] += factor;
+        if (j >= 0) d[i][j] = factor;
+    }
+    for (int i = 0; i < N; ++i) {
+        ck_assert_double_eq_tol(sum[i], 1, 1e-12);
+        for (int j = 0; j < N; ++j) ck_assert_double_eq_tol(weight[i] * d[i][j], weight[j] * d[j][i], 1e-14);
+    }
+    free(text);
+    free(again);
+    SUCCEED("exchange", file, "--emissivity", "0.6", "--error", "0.02", "--drop", "0.001", "--threads", "2");
+    ck_assert_double_lt(value_of("error_estimate"), .04);
+    ck_assert_double_lt(value_of("closure_max"), 1e-12);
+    ck_assert_int_eq(RUN("exchange", file, "--emissivity", "x"), 3);
+    expect_message(file, "the emissivity x is 0; it must be above 0, up to 1");
+    ck_assert_int_eq(RUN("exchange", file, "--emissivity", "missing"), 3);
+    ck_assert_int_eq(RUN("exchange", file, "--emissivity", "e", "--wall-emissivity", "0.5"), 2);
+    remove_files(0);
+}
+END_TEST
+
+/* One sphere a cell: the simple cubic lattice, black; any number of threads. */
+START_TEST(conductivity) {
+    const char *cell = write_file("cell.csv", "x,y,z,r,eps\n0,0,0,1,1\n");
+    SUCCEED("conductivity", cell, "--periodic", "2,2,2", "--emissivity", "eps", "--rays", "40000", "--threads", "1");
+    const double first = value_of("F_E_z");
+    ck_assert_double_eq_tol(first, 1.2005, .03);
+    ck_assert_double_eq_tol(value_of("F_E_x"), 1.2005, .03);
+    ck_assert_double_lt(value_of("F_E_y_error"), .03);
+    ck_assert_double_gt(value_of("F_E_y_error"), .001);
+    SUCCEED("conductivity", cell, "--periodic", "2,2,2", "--emissivity", "1", "--rays", "40000", "--threads", "4");
+    ck_assert_double_eq(value_of("F_E_z"), first);
+    SUCCEED("conductivity", PERIODIC, "--emissivity", "0.8", "--error", "0.02");
+    ck_assert_double_eq_tol(value_of("F_E_x"), .80, .04);
+    ck_assert_double_lt(value_of("F_E_x_error") / value_of("F_E_x"), .025);
+    ck_assert_double_lt(value_of("emitters"), 1000);
+    ck_assert_int_eq(RUN("conductivity", cell, "--periodic", "2,2,0", "--emissivity", "1"), 3);
+    expect_message(cell, "too thin along z, an open axis");
+    remove_files(0);
+}
+END_TEST
+
 START_TEST(points_and_cutoff) {
     SUCCEED("bed", POLY, "--directions", "34", "--points", "64");
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
@@ -611,6 +689,8 @@ int main(void) {
     tcase_add_test(beds, rays);
     tcase_add_test(beds, targets_and_formats);
     tcase_add_test(beds, frames_periods_and_ids);
+    tcase_add_test(beds, exchange_factors);
+    tcase_add_test(beds, conductivity);
     tcase_add_test(beds, points_and_cutoff);
     tcase_add_test(beds, paraview_and_picture);
     tcase_add_test(beds, picture_without_gnuplot);

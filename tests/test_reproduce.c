@@ -57,6 +57,13 @@ START_TEST(pebbles_by_rays) {
 }
 END_TEST
 
+START_TEST(conductivity) {
+    int lines;
+    ck_assert_double_le(largest("conductivity", "check", &lines), 1.2); /* per cent; other random beds */
+    ck_assert_int_eq(lines, 16);
+}
+END_TEST
+
 START_TEST(usage) {
     char *unknown[] = {"--only", "fig99"}, *file[] = {"fig3"}, *nowhere[] = {"-o", "/nonexistent/folder"};
     ck_assert_int_eq(command_reproduce(2, unknown), 2);
@@ -76,6 +83,7 @@ int main(void) {
     tcase_add_test(cases, third_sphere);
     tcase_add_test(cases, pebbles);
     tcase_add_test(cases, pebbles_by_rays);
+    tcase_add_test(cases, conductivity);
     tcase_add_test(cases, usage);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
