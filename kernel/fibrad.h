@@ -351,7 +351,8 @@ int fibrad_tracer_init(fibrad_tracer **tracer, void *memory, size_t size, const 
 typedef struct fibrad_exchange_rule {
     const double *emissivity;             /* [spheres] of each sphere, (0, 1] */
     double wall_emissivity[FIBRAD_WALLS]; /* of each wall there is, [0, 1]; 0 reflects all */
-    uint32_t directions; /* of the beam row that the first leg is taken from, as in fibrad_beam_rule; 0: 50 */
+    uint32_t directions; /* of the beam row that the first leg is taken from, by 256 points up to 144 of them, by exact
+                            areas above; 0: 50 */
     uint32_t paths;      /* followed for the reflections; 0: 400 */
     uint64_t seed;       /* what their numbers come from, together with i */
     double error;        /* 0: none. Else more directions and paths, from those above on, until row->error is not above
