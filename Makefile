@@ -149,6 +149,7 @@ TESTS = \
     tests/test_surface.c \
     tests/test_surface_row.c \
     tests/test_tables.c \
+    tests/test_walls.c \
     tests/test_write.c
 
 SCRIPTS = \
