@@ -427,6 +427,9 @@ START_TEST(walls) {
     }
     ck_assert_double_eq_tol(value_of("wall_zmin"), mean, 1e-13);
     free(first);
+    SUCCEED("bed", PERIODIC, "--directions", "50", "--wall", "auto"); /* deep beds see all of a wall that has no end */
+    ck_assert_double_eq_tol(value_of("wall_zmin") * SPHERES * acos(-1), 12 * 12, .02);
+    ck_assert_double_eq_tol(value_of("wall_zmax") * SPHERES * acos(-1), 12 * 12, .02);
     SUCCEED("bed", MONO, "--directions", "13", "--wall", "cylinder:6,6,9,zmin", "--targets", "0-9");
     ck_assert_double_gt(value_of("wall_cylinder"), 0);
     ck_assert_int_eq(RUN("bed", MONO, "--wall", "zmin=2"), 3);

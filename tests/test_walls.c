@@ -464,7 +464,7 @@ END_TEST
 
 START_TEST(option_places_walls) {
     struct bed bed = bed_of(2, (const double[][4]){{1, 2, 3, 1}, {4, 6, 8, 2}});
-    struct wall_options options = {0}, box = {0}, automatic = {0}, clash = {0}, beyond = {0};
+    struct wall_options options = {0}, box = {0}, automatic = {0}, clash = {0}, beyond = {0}, mixed = {0};
     fibrad_walls walls;
     struct wall_order order;
     ck_assert_int_eq(walls_option("zmax,cylinder:2.5,4,30,zmin=-4", &options), 0);
@@ -487,6 +487,10 @@ START_TEST(option_places_walls) {
     for (int axis = 0; axis < 3; axis++) bed.low[axis] = file[2 * axis], bed.high[axis] = file[2 * axis + 1];
     ck_assert_int_eq(walls_of(&automatic, &bed, "bed", &walls, &order), 0);
     for (int k = 0; k < 6; k++) ck_assert(walls.at[k] == file[k]);
+    ck_assert_int_eq(walls_option("box,ymax=9.5,auto", &mixed), 0);
+    ck_assert_int_eq(walls_of(&mixed, &bed, "bed", &walls, &order), 0);
+    ck_assert(walls.planes == 63 && walls.at[3] == 9.5 && walls.at[2] == -2);
+    ck_assert(order.count == 6 && order.wall[0] == 3 && order.wall[1] == 0 && order.wall[3] == 2 && order.wall[4] == 4);
     bed.period[0] = 8;
     ck_assert_int_eq(walls_of(&automatic, &bed, "bed", &walls, &order), 0);
     ck_assert(walls.planes == 60 && order.count == 4 && order.wall[0] == 2);
