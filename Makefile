@@ -394,7 +394,7 @@ deps:
 deps-ci:
 	@.ci/deps g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
 	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
-	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm
+	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-scipy
 
 ## install: fibrad, libfibrad.a, fibrad.h and fibrad.pc, to DESTDIR and PREFIX
 install: install-lib $(BUILD)/fibrad
