@@ -2,14 +2,11 @@
  * along one direction for what lies beyond. SPDX-License-Identifier: MIT */
 #include "bed/work.h"
 
-/* A window sees no farther than this many periods along any periodic axis. */
-#define PERIODS 100.0
-
 /* How far along an axis, forwards or backwards, there may be spheres that come before a window. */
 static double room(const fibrad_work *work, int axis, double sense) {
     const fibrad_scene *scene = work->scene;
     double far = sense > 0 ? scene->high[axis] - work->centre[axis] : work->centre[axis] - scene->low[axis];
-    if (scene->period[axis] > 0) far = PERIODS * scene->period[axis];
+    if (scene->period[axis] > 0) far = FIBRAD_PERIODS * scene->period[axis];
     return (far + (work->unit + scene->facts.radius_max)) * work->inverse;
 }
 
