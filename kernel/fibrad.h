@@ -90,8 +90,8 @@ int fibrad_direction(uint32_t k, uint32_t n, double direction[3]);
 /* ---- pair ------------------------------------------------------------------------------------------------------ */
 
 /* View factor F12 from sphere 1 (radius r1) to sphere 2 (radius r2), nothing in between, at surface distance gap.
- * r1, r2 [L] > 0; gap [L] from -2 min(r1, r2), exclusive, to any finite number; negative: the spheres overlap, and the
- * formula is continued smoothly as docs/methods.md says. All of r1, r2, gap may be scaled alike from 1e-150 to 1e150.
+ * r1, r2 [L] from 1e-150 to 1e150; gap [L] from -2 min(r1, r2), exclusive, to any finite number; negative: the spheres
+ * overlap, and the formula is continued smoothly as docs/methods.md says.
  * Guarantee: relative error at most 1e-14 for r1/r2 in [1e-4, 1e4]; r1^2 F12 and r2^2 F21 agree to the
  * last bits; F is continuous and falls with gap.
  * Errors: FIBRAD_E_ARGUMENT. Cost: about 0.06 microseconds, 0.2 for overlaps; no libm call but sqrt.
