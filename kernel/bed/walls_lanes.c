@@ -7,6 +7,7 @@
  * once. Where spheres hide part of a window, its neighbours are hidden in part too, and the disc is taken smaller, or
  * walls would be seen that are not. How much is open is not touched by this. docs/methods.md section 9. */
 #include FIBRAD_LANES_HEADER
+#include "bed/walls.h"
 #include "bed/walls_lanes.h"
 #include "sample/direction.h"
 
@@ -95,7 +96,37 @@ static vd exits(const struct view *view, const vd origin[3], const vd w[3]) {
     vm away = vd_lt(zero, along), level = vd_le(across, zero);
     vd t = vd_div(vd_select(away, inside, vd_sub(root, along)), vd_select(away, vd_add(along, root), across));
     vm nearer = vd_lt(vd_select(level, vd_set1(__builtin_inf()), t), least);
-    return vd_select(nearer, vd_set1(6), wall);
+    return vd_select(nearer, vd_set1(FIBRAD_CYLINDER), wall);
+}
+
+/* Follows the open points of window k, in directions from a disc of radius `spread`, and counts what they meet. */
+static void follow(const fibrad_points *points, const struct view *view, const double frame[9], double spread,
+                   uint32_t k, uint32_t count[FIBRAD_WALLS + 1]) {
+    for (uint32_t word = 0; word < points->count / 64; word++) {
+        if (points->seen[word] == 0) continue;
+        _Alignas(64) float a[64], b[64];
+        for (uint32_t lane = 0; lane < 64; lane++) {
+            const uint32_t q = (PAIRING * (64 * word + lane) + SHIFT * k) & (points->count - 1);
+            a[lane] = points->set.x[q], b[lane] = points->set.y[q];
+        }
+        uint64_t packed = 0; /* eight counts of at most 64 */
+        for (uint32_t lane = 0; lane < 64; lane += VD_LANES) {
+            uint32_t p = 64 * word + lane, bits = (uint32_t)(points->seen[word] >> lane) & ((1u << VD_LANES) - 1);
+            if (bits == 0) continue;
+            vd u = vd_load_float(points->set.x + p), v = vd_load_float(points->set.y + p), origin[3], w[3];
+            vd du = vd_mul(vd_load_float(a + lane), vd_set1(spread));
+            vd dv = vd_mul(vd_load_float(b + lane), vd_set1(spread));
+            for (int axis = 0; axis < 3; axis++) {
+                vd along_u = vd_set1(frame[axis]), along_v = vd_set1(frame[3 + axis]);
+                origin[axis] = vd_add(vd_mul(u, along_u), vd_mul(v, along_v));
+                w[axis] = vd_add(vd_set1(frame[6 + axis]), vd_add(vd_mul(du, along_u), vd_mul(dv, along_v)));
+            }
+            _Alignas(64) double wall[VD_LANES];
+            vd_store(wall, exits(view, origin, w));
+            for (; bits != 0; bits &= bits - 1) packed += UINT64_C(1) << 8 * (int)wall[__builtin_ctz(bits)];
+        }
+        for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) count[wall] += (uint32_t)(packed >> 8 * wall & 255);
+    }
 }
 
 void LANED(fibrad_walls_share)(fibrad_work *work, const double frame[9], const fibrad_points *points, uint32_t k,
@@ -119,34 +150,8 @@ void LANED(fibrad_walls_share)(fibrad_work *work, const double frame[9], const f
         turn(turned, cos, sin);
         own = open_points(work, cos, sin);
     }
-
     const struct view view = view_of(work);
-    const double spread = SPREAD * step;
     uint32_t count[FIBRAD_WALLS + 1] = {0};
-    for (uint32_t word = 0; word < own.count / 64; word++) {
-        if (own.seen[word] == 0) continue;
-        _Alignas(64) float a[64], b[64];
-        for (uint32_t lane = 0; lane < 64; lane++) {
-            const uint32_t q = (PAIRING * (64 * word + lane) + SHIFT * k) & (own.count - 1);
-            a[lane] = own.set.x[q], b[lane] = own.set.y[q];
-        }
-        uint64_t packed = 0; /* eight counts of at most 64 */
-        for (uint32_t lane = 0; lane < 64; lane += VD_LANES) {
-            uint32_t p = 64 * word + lane, bits = (uint32_t)(own.seen[word] >> lane) & ((1u << VD_LANES) - 1);
-            if (bits == 0) continue;
-            vd u = vd_load_float(own.set.x + p), v = vd_load_float(own.set.y + p), origin[3], w[3];
-            vd du = vd_mul(vd_load_float(a + lane), vd_set1(spread));
-            vd dv = vd_mul(vd_load_float(b + lane), vd_set1(spread));
-            for (int axis = 0; axis < 3; axis++) {
-                vd along_u = vd_set1(turned[axis]), along_v = vd_set1(turned[3 + axis]);
-                origin[axis] = vd_add(vd_mul(u, along_u), vd_mul(v, along_v));
-                w[axis] = vd_add(vd_set1(turned[6 + axis]), vd_add(vd_mul(du, along_u), vd_mul(dv, along_v)));
-            }
-            _Alignas(64) double wall[VD_LANES];
-            vd_store(wall, exits(&view, origin, w));
-            for (; bits != 0; bits &= bits - 1) packed += UINT64_C(1) << 8 * (int)wall[__builtin_ctz(bits)];
-        }
-        for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) count[wall] += (uint32_t)(packed >> 8 * wall & 255);
-    }
+    follow(&own, &view, turned, SPREAD * step, k, count);
     for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) work->wall[wall] += rest * count[wall] / own.open;
 }
