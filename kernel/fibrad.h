@@ -352,13 +352,13 @@ int fibrad_rows_reciprocity(const fibrad_rows *rows, const double *r, double *la
 #define FIBRAD_FURNACE_CELLS_MAX 100000000u
 
 typedef struct fibrad_furnace_config {
-    double size[3];             /* m, > 0 */
+    double size[3];             /* m, from 1e-9 to 1e9 */
     uint32_t cells[3];          /* along x, y, z; the product is at most FIBRAD_FURNACE_CELLS_MAX */
-    double absorption;          /* 1/m, > 0: where nothing is absorbed there is no temperature */
-    double scattering;          /* 1/m, >= 0 */
-    double source;              /* W/m3 given off by the medium, of either sign */
-    double wall_temperature[6]; /* K, > 0; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
-    double wall_emissivity[6];  /* [0, 1] */
+    double absorption;          /* 1/m; times an edge of a cell from 1e-9 to 1e9: unabsorbed there is no temperature */
+    double scattering;          /* 1/m; times an edge of a cell from 0 to 1e9 */
+    double source;              /* W/m3 given off by the medium, of either sign, up to 1e30 */
+    double wall_temperature[6]; /* K, 1e-3 to 1e9; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
+    double wall_emissivity[6];  /* [0, 1], not all 0 */
     uint64_t seed;              /* of the bundles of rays */
 } fibrad_furnace_config;
 
@@ -428,7 +428,7 @@ size_t fibrad_furnace_tally_size(const fibrad_furnace *furnace);
  * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
 int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t size, const fibrad_furnace *furnace);
 
-/* Adds `from` to `to`, tallies of the same furnace. Cost: O(cells). */
+/* Adds `from` to `to`, tallies of the same furnace (of others, and with null pointers, nothing). Cost: O(cells). */
 void fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from);
 
 /* What bundles of rays do. */
@@ -441,12 +441,15 @@ typedef enum fibrad_furnace_physics {
  * `bundles` bundles for all that walls and medium emit above the mean of the walls, each further plan carries only what
  * the change of E since then adds, at the same energy per bundle. `restart` makes a first plan again, for new tallies.
  * `planned` gets the number of bundles: every source is given a whole number of them, at least one.
- * bundles [1, 2^32]. Errors: _ARGUMENT. Cost: O(cells). */
+ * bundles [1, 2^32]. Errors: _ARGUMENT, also if E is not finite or its change asks for more than 2^33 bundles; there is
+ * no plan then, and the next is a first one. Cost: O(cells). */
 int fibrad_furnace_emit(fibrad_furnace *furnace, fibrad_furnace_physics physics, uint64_t bundles, int restart,
                         uint64_t *planned);
 
 /* Traces bundles [first, first + count) of the plan into a tally. The furnace is only read: threads may share it.
- * Errors: _ARGUMENT. Cost: about 0.6 (equilibrium) to 1.1 microseconds per bundle in a box of 20 x 20 x 40 cells. */
+ * Errors: _ARGUMENT, also for the tally of a furnace of other cells. Cost: about 0.6 (equilibrium) to 1.1 microseconds
+ * per bundle in a box of 20 x 20 x 40 cells; it goes with the number of events until absorption, which in a thick
+ * medium is the square of the optical thickness, and between walls that hardly absorb 1/emissivity. */
 int fibrad_furnace_trace(const fibrad_furnace *furnace, fibrad_furnace_tally *tally, uint64_t first, uint64_t count);
 
 /* Which ratio of the moments F_n = sum(w cos^n) over the bundles that cross a face is taken for Theta. */

@@ -109,6 +109,42 @@ START_TEST(bad_configurations) {
 }
 END_TEST
 
+/* Numbers that a caller may have written, and tallies of another furnace: refused, not traced. */
+START_TEST(bad_states) {
+    const fibrad_furnace_config small = coarse_case(1, 2), large = coarse_case(1, 3);
+    fibrad_furnace *furnace, *other;
+    void *block = run_block(fibrad_furnace_size(&small)), *other_block = run_block(fibrad_furnace_size(&large));
+    ck_assert_int_eq(fibrad_furnace_init(&furnace, block, fibrad_furnace_size(&small), &small), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_init(&other, other_block, fibrad_furnace_size(&large), &large), FIBRAD_OK);
+    fibrad_furnace_tally *tally;
+    void *tally_block = run_block(fibrad_furnace_tally_size(other));
+    ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, fibrad_furnace_tally_size(other), other), 0);
+
+    uint64_t planned = 42;
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 1000, 1, &planned), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, 0, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_DEFINITION, 0, FIBRAD_SCATTER_EXACT),
+                     FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_EQUILIBRIUM, 1000, 1, &planned), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_equilibrium(furnace, tally), FIBRAD_E_ARGUMENT);
+
+    fibrad_furnace_arrays at;
+    fibrad_furnace_fields(furnace, NULL);
+    fibrad_furnace_fields(furnace, &at);
+    const double wrong[] = {NAN, INFINITY, -INFINITY, 1e300, 1e25}, before = at.e[3];
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 1000, 1, &planned), FIBRAD_OK);
+        at.e[3] = wrong[k];
+        const uint64_t plan = planned;
+        ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 1000, 0, &planned), FIBRAD_E_ARGUMENT);
+        ck_assert_uint_eq(planned, plan);
+        ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, 0, 1), FIBRAD_E_ARGUMENT); /* no plan */
+        at.e[3] = before;
+    }
+    free(tally_block), free(block), free(other_block);
+}
+END_TEST
+
 START_TEST(memory) {
     fibrad_furnace_config config = coarse_case(1, 2);
     size_t size = fibrad_furnace_size(&config);
@@ -550,6 +586,7 @@ int main(void) {
     TCase *kernel = tcase_create("kernel"), *methods = tcase_create("methods");
     tcase_add_test(kernel, elementary_functions);
     tcase_add_test(kernel, bad_configurations);
+    tcase_add_test(kernel, bad_states);
     tcase_add_test(kernel, memory);
     tcase_add_test(kernel, uniform_temperature);
     tcase_add_test(kernel, parts_add_up);
