@@ -566,6 +566,12 @@ START_TEST(full_disc) {
     ck_assert_int_eq(RUN("bed", MONO, "--directions", "21", "-o", in_folder("F.csv")), 4);
     ck_assert_ptr_nonnull(strstr(said, "F.csv: cannot be written: File too large"));
     ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.svg")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.svg: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.png")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.png: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
 }
 END_TEST
 
