@@ -51,10 +51,11 @@ typedef enum fibrad_status {
     FIBRAD_E_GEOMETRY = -6   /* equal centres, or the centre of one sphere inside another */
 } fibrad_status;
 
-/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. */
+/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. No errors.
+ * Cost: a table. */
 const char *fibrad_status_text(int status);
 
-/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". */
+/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". No errors, no cost. */
 const char *fibrad_version(void);
 
 /* ---- lanes ----------------------------------------------------------------------------------------------------- */
@@ -68,10 +69,11 @@ typedef enum fibrad_isa {
     FIBRAD_ISA_AVX512 = 4
 } fibrad_isa;
 
-/* The widest instruction set that both this build and this machine offer. Cost: two CPUID instructions. */
+/* The widest instruction set that both this build and this machine offer. No errors. Cost: two CPUID instructions,
+ * microseconds under a hypervisor. */
 fibrad_isa fibrad_isa_best(void);
 
-/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. */
+/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. No errors, no cost. */
 const char *fibrad_isa_name(int isa);
 
 /* ---- sample ---------------------------------------------------------------------------------------------------- */
@@ -125,7 +127,8 @@ typedef struct fibrad_fault {
     uint32_t first, second;
 } fibrad_fault;
 
-/* Bytes that fibrad_scene_init needs for this configuration; 0 if the configuration is not valid. */
+/* Bytes that fibrad_scene_init needs for this configuration: they depend on the number of spheres alone. Errors: 0 if
+ * the configuration is NULL or not valid. Cost: tens of nanoseconds, and that of fibrad_isa_best. */
 size_t fibrad_scene_size(const fibrad_scene_config *config);
 
 /* An upper bound of fibrad_scene_size for up to n spheres, as a constant expression, for static memory. */
@@ -136,7 +139,7 @@ size_t fibrad_scene_size(const fibrad_scene_config *config);
  * Spheres may overlap (settled beds do), but no centre may lie inside another sphere.
  * Errors: _ARGUMENT (then `fault`, unless NULL, names the sphere, or n if it is none of them), _SIZE, _ALIGNMENT,
  * _GEOMETRY (fault names the pair). Cost: O(n), about 0.5 microseconds per sphere; more where spheres crowd in clusters
- * far apart. */
+ * far apart, at worst O(n^2). Source: docs/methods.md section 6. */
 int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 
@@ -150,7 +153,7 @@ typedef struct fibrad_scene_facts {
     uint32_t overlap_pair[2];      /* the spheres of the largest overlap */
 } fibrad_scene_facts;
 
-/* Fills in the facts of a scene. Cost: a copy. */
+/* Fills in the facts of a scene; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
 /* ---- work ------------------------------------------------------------------------------------------------------ */
@@ -165,7 +168,8 @@ typedef struct fibrad_work_config {
 
 typedef struct fibrad_work fibrad_work;
 
-/* Bytes that fibrad_work_init needs; 0 if the configuration is not valid (NULL: all defaults). */
+/* Bytes that fibrad_work_init needs (NULL: all defaults). Errors: 0 if a number is above 2^28. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_work_size(const fibrad_work_config *config);
 
 /* An upper bound of fibrad_work_size as a constant expression, for static memory (no zeros here). */
@@ -173,12 +177,12 @@ size_t fibrad_work_size(const fibrad_work_config *config);
     (20480 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
 
 /* Makes work memory in `memory` (`size` bytes on a 64-byte boundary). It serves any scene, one row at a time.
- * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(entries). */
 int fibrad_work_init(fibrad_work **work, void *memory, size_t size, const fibrad_work_config *config);
 
 /* After FIBRAD_E_CAPACITY from a row: a configuration under which that row gets farther (its `discs` as far as they
  * were met, its `entries` never more than the row can have). Repeat until the row succeeds; entries = number of spheres
- * always suffices. */
+ * always suffices. Null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_work_needed(const fibrad_work *work, fibrad_work_config *config);
 
 /* ---- beam ------------------------------------------------------------------------------------------------------ */
@@ -216,8 +220,9 @@ typedef struct fibrad_beam_rule {
 int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row);
 
-/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0.
- */
+/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0
+ * (both dimensionless): by the law directions^-1.5, a fifth more at least, FIBRAD_DIRECTIONS_MAX at most. No errors.
+ * Cost: under a microsecond. Source: docs/methods.md section 3. */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double wanted);
 
 /* ---- surface --------------------------------------------------------------------------------------------------- */
@@ -308,7 +313,8 @@ int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
 
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
 
-/* A sparse matrix of view factors, compressed rows, in the caller's arrays. */
+/* A sparse matrix of view factors, compressed rows, in the caller's arrays. Source of what follows: docs/methods.md
+ * section 5. */
 typedef struct fibrad_rows {
     uint32_t n;        /* rows and columns */
     uint64_t capacity; /* length of col and f */
@@ -365,7 +371,8 @@ typedef struct fibrad_furnace_config {
 /* The state of one box: temperatures, fluxes, coefficients, and which bundles are to be traced next. */
 typedef struct fibrad_furnace fibrad_furnace;
 
-/* Bytes that fibrad_furnace_init needs; 0 if the configuration is not valid. */
+/* Bytes that fibrad_furnace_init needs. Errors: 0 if the configuration is NULL or not valid. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_furnace_size(const fibrad_furnace_config *config);
 
 /* Makes a furnace in `memory` (`size` bytes on a 64-byte boundary): E is the mean of the walls, Theta 2/3 everywhere.
@@ -385,13 +392,14 @@ typedef struct fibrad_furnace_arrays {
     double *power;            /* [6] what each wall gives, net [W] */
 } fibrad_furnace_arrays;
 
+/* Tells where the arrays are, which stay there; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_furnace_fields(fibrad_furnace *furnace, fibrad_furnace_arrays *arrays);
 
-/* Temperature [K] of E [W/m2]; 0 unless E is positive. */
+/* Temperature [K] of E [W/m2]; 0 unless E is positive. No errors. Cost: two square roots. */
 double fibrad_furnace_temperature(double e);
 
 /* Makes Theta the same constant everywhere, (0, 1], without transverse term: 1 for the heat-flux method (HFM), 2/3 for
- * isotropic radiation. Errors: _ARGUMENT. */
+ * isotropic radiation. Errors: _ARGUMENT. Cost: O(cells). Source: docs/furnace.md. */
 int fibrad_furnace_theta(fibrad_furnace *furnace, double theta);
 
 /* What the scattered part of the heat-flux equations is made of. */
@@ -421,11 +429,12 @@ int fibrad_furnace_balance(fibrad_furnace *furnace);
 /* Counts of bundles, in whole numbers: any split of the work adds up to the same bits. */
 typedef struct fibrad_furnace_tally fibrad_furnace_tally;
 
-/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. */
+/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. Errors: 0 for NULL. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_furnace_tally_size(const fibrad_furnace *furnace);
 
 /* Makes an empty tally in `memory` (`size` bytes on a 64-byte boundary), for one thread at a time.
- * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(cells). */
 int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t size, const fibrad_furnace *furnace);
 
 /* Adds `from` to `to`, tallies of the same furnace (of others, and with null pointers, nothing). Cost: O(cells). */
@@ -466,7 +475,8 @@ int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally 
                             fibrad_furnace_estimator estimator, int transverse, fibrad_furnace_scatter scatter);
 
 /* Sets E, wall fluxes and powers from the sum of all tallies since the last restart (FIBRAD_FURNACE_EQUILIBRIUM).
- * Errors: _ARGUMENT. Cost: O(cells). */
+ * Errors: _ARGUMENT, also after a plan of the other physics and for the tally of a furnace of other cells. Cost:
+ * O(cells times symmetries). */
 int fibrad_furnace_equilibrium(fibrad_furnace *furnace, const fibrad_furnace_tally *tally);
 
 #ifdef __cplusplus
