@@ -1,7 +1,6 @@
 /* test_furnace.c - the furnace: identities, published numbers, Monte Carlo. SPDX-License-Identifier: MIT
  *
  * Numbers without another source come from an independent program for the same equations. */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +10,7 @@
 #include "furnace_cases.h"
 #include "furnace_run.h"
 #include "run_omp.h"
+#include "suite.h"
 
 #define SIGMA FIBRAD_STEFAN_BOLTZMANN
 
@@ -583,7 +583,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("furnace");
-    TCase *kernel = tcase_create("kernel"), *methods = tcase_create("methods");
+    TCase *kernel = suite_case(suite, "kernel"), *methods = suite_case(suite, "methods");
     tcase_add_test(kernel, elementary_functions);
     tcase_add_test(kernel, bad_configurations);
     tcase_add_test(kernel, bad_states);
@@ -605,11 +605,5 @@ int main(void) {
     tcase_add_test(methods, solvers_agree);
     tcase_add_test(methods, threads_change_nothing);
     tcase_add_test(methods, axes_are_alike);
-    suite_add_tcase(suite, kernel);
-    suite_add_tcase(suite, methods);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

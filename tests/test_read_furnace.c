@@ -1,6 +1,5 @@
 /* test_read_furnace.c - box files: every key, every fault with its line; what is written. SPDX-License-Identifier: MIT
  */
-#include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +8,7 @@
 #include "furnace_cases.h"
 #include "message.h"
 #include "read_furnace.h"
+#include "suite.h"
 #include "write_furnace.h"
 
 static char path[200];
@@ -163,15 +163,10 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("read_furnace");
-    TCase *files = tcase_create("files");
+    TCase *files = suite_case(suite, "files");
     tcase_add_checked_fixture(files, make_file, remove_file);
     tcase_add_test(files, good_files);
     tcase_add_test(files, bad_files);
     tcase_add_test(files, written_fields);
-    suite_add_tcase(suite, files);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

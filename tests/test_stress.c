@@ -9,6 +9,7 @@
 #include "bed/areas_lanes.h"
 #include "reference.h"
 #include "scenes.h"
+#include "suite.h"
 
 static bool all(void) { return getenv("STRESS") != NULL; }
 
@@ -468,7 +469,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("stress");
-    TCase *tcase = tcase_create("stress");
+    TCase *tcase = suite_case(suite, "stress");
     tcase_add_test(tcase, pairs_at_every_scale);
     tcase_add_test(tcase, rows_at_every_scale);
     tcase_add_test(tcase, rows_far_from_the_origin);
@@ -480,10 +481,5 @@ int main(void) {
     tcase_add_test(tcase, obstacle_across_a_pair);
     tcase_add_test(tcase, sight_through_many_periods);
     tcase_add_test(tcase, random_scenes);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }
