@@ -422,7 +422,7 @@ reproduce: $(BUILD)/fibrad
 
 ## deps: install the Debian packages that build, demo and tests need; does nothing when nothing is missing
 deps:
-	@.ci/deps pkg-config libgsl-dev check gnuplot-nox
+	@.ci/deps libc6-dev pkg-config libgsl-dev check gnuplot-nox
 
 ## deps-ci: install what .ci/run needs besides
 deps-ci:

@@ -54,10 +54,11 @@ typedef enum fibrad_status {
     FIBRAD_E_GEOMETRY = -6   /* equal centres, or the centre of one sphere inside another */
 } fibrad_status;
 
-/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. */
+/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. No errors.
+ * Cost: a table. */
 const char *fibrad_status_text(int status);
 
-/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". */
+/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". No errors, no cost. */
 const char *fibrad_version(void);
 
 /* ---- lanes ----------------------------------------------------------------------------------------------------- */
@@ -71,10 +72,11 @@ typedef enum fibrad_isa {
     FIBRAD_ISA_AVX512 = 4
 } fibrad_isa;
 
-/* The widest instruction set that both this build and this machine offer. Cost: two CPUID instructions. */
+/* The widest instruction set that both this build and this machine offer. No errors. Cost: two CPUID instructions,
+ * microseconds under a hypervisor. */
 fibrad_isa fibrad_isa_best(void);
 
-/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. */
+/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. No errors, no cost. */
 const char *fibrad_isa_name(int isa);
 
 /* ---- sample ---------------------------------------------------------------------------------------------------- */
@@ -141,7 +143,8 @@ typedef struct fibrad_fault {
     uint32_t first, second;
 } fibrad_fault;
 
-/* Bytes that fibrad_scene_init needs for this configuration; 0 if the configuration is not valid. */
+/* Bytes that fibrad_scene_init needs for this configuration: they depend on the number of spheres alone. Errors: 0 if
+ * the configuration is NULL or not valid. Cost: tens of nanoseconds, and that of fibrad_isa_best. */
 size_t fibrad_scene_size(const fibrad_scene_config *config);
 
 /* An upper bound of fibrad_scene_size for up to n spheres, as a constant expression, for static memory. */
@@ -153,7 +156,7 @@ size_t fibrad_scene_size(const fibrad_scene_config *config);
  * a wall. What leaves a sphere outwards beyond a wall meets that wall at once.
  * Errors: _ARGUMENT (then `fault`, unless NULL, names the sphere, or n if it is none of them), _SIZE, _ALIGNMENT,
  * _GEOMETRY (fault names the pair). Cost: O(n), about 0.5 microseconds per sphere; more where spheres crowd in clusters
- * far apart. */
+ * far apart, at worst O(n^2). Source: docs/methods.md section 6. */
 int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 
@@ -169,7 +172,7 @@ typedef struct fibrad_scene_facts {
                                        infinity: unbounded; 0: there is no such wall */
 } fibrad_scene_facts;
 
-/* Fills in the facts of a scene. Cost: a copy. */
+/* Fills in the facts of a scene; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
 /* ---- work ------------------------------------------------------------------------------------------------------ */
@@ -184,7 +187,8 @@ typedef struct fibrad_work_config {
 
 typedef struct fibrad_work fibrad_work;
 
-/* Bytes that fibrad_work_init needs; 0 if the configuration is not valid (NULL: all defaults). */
+/* Bytes that fibrad_work_init needs (NULL: all defaults). Errors: 0 if a number is above 2^28. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_work_size(const fibrad_work_config *config);
 
 /* An upper bound of fibrad_work_size as a constant expression, for static memory (no zeros here). */
@@ -192,12 +196,12 @@ size_t fibrad_work_size(const fibrad_work_config *config);
     (20480 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
 
 /* Makes work memory in `memory` (`size` bytes on a 64-byte boundary). It serves any scene, one row at a time.
- * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(entries). */
 int fibrad_work_init(fibrad_work **work, void *memory, size_t size, const fibrad_work_config *config);
 
 /* After FIBRAD_E_CAPACITY from a row: a configuration under which that row gets farther (its `discs` as far as they
  * were met, its `entries` never more than the row can have). Repeat until the row succeeds; entries = number of spheres
- * always suffices. */
+ * always suffices. Null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_work_needed(const fibrad_work *work, fibrad_work_config *config);
 
 /* ---- beam ------------------------------------------------------------------------------------------------------ */
@@ -238,8 +242,9 @@ typedef struct fibrad_beam_rule {
 int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row);
 
-/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0.
- */
+/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0
+ * (both dimensionless): by the law directions^-1.5, a fifth more at least, FIBRAD_DIRECTIONS_MAX at most. No errors.
+ * Cost: under a microsecond. Source: docs/methods.md section 3. */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double wanted);
 
 /* ---- surface --------------------------------------------------------------------------------------------------- */
@@ -390,7 +395,8 @@ int fibrad_exchange_spread(fibrad_tracer *tracer, uint32_t i, const fibrad_excha
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
 
 /* A sparse matrix of view factors, compressed rows, in the caller's arrays. The functions of this section serve
- * exchange factors too, if for r they are given r sqrt(emissivity): then A is A emissivity. */
+ * exchange factors too, if for r they are given r sqrt(emissivity): then A is A emissivity. Source: docs/methods.md
+ * section 5. */
 typedef struct fibrad_rows {
     uint32_t n;        /* rows and columns */
     uint64_t capacity; /* length of col and f */
@@ -447,20 +453,21 @@ int fibrad_rows_reciprocity(const fibrad_rows *rows, const double *r, double *la
 #define FIBRAD_FURNACE_CELLS_MAX 100000000u
 
 typedef struct fibrad_furnace_config {
-    double size[3];             /* m, > 0 */
+    double size[3];             /* m, from 1e-9 to 1e9 */
     uint32_t cells[3];          /* along x, y, z; the product is at most FIBRAD_FURNACE_CELLS_MAX */
-    double absorption;          /* 1/m, > 0: where nothing is absorbed there is no temperature */
-    double scattering;          /* 1/m, >= 0 */
-    double source;              /* W/m3 given off by the medium, of either sign */
-    double wall_temperature[6]; /* K, > 0; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
-    double wall_emissivity[6];  /* [0, 1] */
+    double absorption;          /* 1/m; times an edge of a cell from 1e-9 to 1e9: unabsorbed there is no temperature */
+    double scattering;          /* 1/m; times an edge of a cell from 0 to 1e9 */
+    double source;              /* W/m3 given off by the medium, of either sign, up to 1e30 */
+    double wall_temperature[6]; /* K, 1e-3 to 1e9; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
+    double wall_emissivity[6];  /* [0, 1], not all 0 */
     uint64_t seed;              /* of the bundles of rays */
 } fibrad_furnace_config;
 
 /* The state of one box: temperatures, fluxes, coefficients, and which bundles are to be traced next. */
 typedef struct fibrad_furnace fibrad_furnace;
 
-/* Bytes that fibrad_furnace_init needs; 0 if the configuration is not valid. */
+/* Bytes that fibrad_furnace_init needs. Errors: 0 if the configuration is NULL or not valid. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_furnace_size(const fibrad_furnace_config *config);
 
 /* Makes a furnace in `memory` (`size` bytes on a 64-byte boundary): E is the mean of the walls, Theta 2/3 everywhere.
@@ -480,13 +487,14 @@ typedef struct fibrad_furnace_arrays {
     double *power;            /* [6] what each wall gives, net [W] */
 } fibrad_furnace_arrays;
 
+/* Tells where the arrays are, which stay there; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_furnace_fields(fibrad_furnace *furnace, fibrad_furnace_arrays *arrays);
 
-/* Temperature [K] of E [W/m2]; 0 unless E is positive. */
+/* Temperature [K] of E [W/m2]; 0 unless E is positive. No errors. Cost: two square roots. */
 double fibrad_furnace_temperature(double e);
 
 /* Makes Theta the same constant everywhere, (0, 1], without transverse term: 1 for the heat-flux method (HFM), 2/3 for
- * isotropic radiation. Errors: _ARGUMENT. */
+ * isotropic radiation. Errors: _ARGUMENT. Cost: O(cells). Source: docs/furnace.md. */
 int fibrad_furnace_theta(fibrad_furnace *furnace, double theta);
 
 /* What the scattered part of the heat-flux equations is made of. */
@@ -516,14 +524,15 @@ int fibrad_furnace_balance(fibrad_furnace *furnace);
 /* Counts of bundles, in whole numbers: any split of the work adds up to the same bits. */
 typedef struct fibrad_furnace_tally fibrad_furnace_tally;
 
-/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. */
+/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. Errors: 0 for NULL. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_furnace_tally_size(const fibrad_furnace *furnace);
 
 /* Makes an empty tally in `memory` (`size` bytes on a 64-byte boundary), for one thread at a time.
- * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(cells). */
 int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t size, const fibrad_furnace *furnace);
 
-/* Adds `from` to `to`, tallies of the same furnace. Cost: O(cells). */
+/* Adds `from` to `to`, tallies of the same furnace (of others, and with null pointers, nothing). Cost: O(cells). */
 void fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from);
 
 /* What bundles of rays do. */
@@ -536,12 +545,15 @@ typedef enum fibrad_furnace_physics {
  * `bundles` bundles for all that walls and medium emit above the mean of the walls, each further plan carries only what
  * the change of E since then adds, at the same energy per bundle. `restart` makes a first plan again, for new tallies.
  * `planned` gets the number of bundles: every source is given a whole number of them, at least one.
- * bundles [1, 2^32]. Errors: _ARGUMENT. Cost: O(cells). */
+ * bundles [1, 2^32]. Errors: _ARGUMENT, also if E is not finite or its change asks for more than 2^33 bundles; there is
+ * no plan then, and the next is a first one. Cost: O(cells). */
 int fibrad_furnace_emit(fibrad_furnace *furnace, fibrad_furnace_physics physics, uint64_t bundles, int restart,
                         uint64_t *planned);
 
 /* Traces bundles [first, first + count) of the plan into a tally. The furnace is only read: threads may share it.
- * Errors: _ARGUMENT. Cost: about 0.6 (equilibrium) to 1.1 microseconds per bundle in a box of 20 x 20 x 40 cells. */
+ * Errors: _ARGUMENT, also for the tally of a furnace of other cells. Cost: about 0.6 (equilibrium) to 1.1 microseconds
+ * per bundle in a box of 20 x 20 x 40 cells; it goes with the number of events until absorption, which in a thick
+ * medium is the square of the optical thickness, and between walls that hardly absorb 1/emissivity. */
 int fibrad_furnace_trace(const fibrad_furnace *furnace, fibrad_furnace_tally *tally, uint64_t first, uint64_t count);
 
 /* Which ratio of the moments F_n = sum(w cos^n) over the bundles that cross a face is taken for Theta. */
@@ -558,7 +570,8 @@ int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally 
                             fibrad_furnace_estimator estimator, int transverse, fibrad_furnace_scatter scatter);
 
 /* Sets E, wall fluxes and powers from the sum of all tallies since the last restart (FIBRAD_FURNACE_EQUILIBRIUM).
- * Errors: _ARGUMENT. Cost: O(cells). */
+ * Errors: _ARGUMENT, also after a plan of the other physics and for the tally of a furnace of other cells. Cost:
+ * O(cells times symmetries). */
 int fibrad_furnace_equilibrium(fibrad_furnace *furnace, const fibrad_furnace_tally *tally);
 
 #ifdef __cplusplus

@@ -1,7 +1,6 @@
 /* test_cli.c - the program as its users meet it: exit statuses, messages, files. SPDX-License-Identifier: MIT
  *
  * Runs $BUILD/fibrad (default: build/fibrad) from the project's root. */
-#include <check.h>
 #include <dirent.h>
 #include <fcntl.h>
 #include <math.h>
@@ -14,6 +13,8 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "suite.h"
 
 #define MONO     "tests/data/mono2000.dump"
 #define POLY     "tests/data/poly2000.dump"
@@ -694,6 +695,12 @@ START_TEST(full_disc) {
     ck_assert_int_eq(RUN("bed", MONO, "--directions", "21", "-o", in_folder("F.csv")), 4);
     ck_assert_ptr_nonnull(strstr(said, "F.csv: cannot be written: File too large"));
     ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.svg")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.svg: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.png")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.png: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
 }
 END_TEST
 
@@ -716,15 +723,11 @@ START_TEST(interrupted) {
 END_TEST
 
 int main(void) {
-    TCase *usage = tcase_create("usage"), *pairs = tcase_create("pairs"), *beds = tcase_create("beds"),
-          *trouble = tcase_create("trouble");
-    TCase *const cases[] = {usage, pairs, beds, trouble};
     Suite *suite = suite_create("cli");
-    for (int k = 0; k < 4; ++k) {
-        tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
-        tcase_set_timeout(cases[k], 120);
-        suite_add_tcase(suite, cases[k]);
-    }
+    TCase *usage = suite_case(suite, "usage"), *pairs = suite_case(suite, "pairs"), *beds = suite_case(suite, "beds"),
+          *trouble = suite_case(suite, "trouble");
+    TCase *const cases[] = {usage, pairs, beds, trouble};
+    for (int k = 0; k < 4; ++k) tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
     tcase_add_test(usage, help_and_version);
     tcase_add_loop_test(usage, bad_usage, 0, (int)(sizeof misuse / sizeof *misuse));
     tcase_add_test(pairs, exact_pair);
@@ -750,9 +753,5 @@ int main(void) {
     tcase_add_test(trouble, file_trouble);
     tcase_add_test(trouble, full_disc);
     tcase_add_loop_test(trouble, interrupted, 0, 2);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

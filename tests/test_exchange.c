@@ -5,6 +5,7 @@
 #include "base/elementary.h"
 #include "heat/paths.h"
 #include "scenes.h"
+#include "suite.h"
 
 #define PI 3.14159265358979323846
 
@@ -406,7 +407,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("exchange");
-    TCase *cases = tcase_create("exchange");
+    TCase *cases = suite_case(suite, "exchange");
     tcase_add_test(cases, black_is_the_beam_row);
     tcase_add_test(cases, one_and_two_spheres);
     tcase_add_test(cases, sphere_in_a_grey_box);
@@ -417,11 +418,5 @@ int main(void) {
     tcase_add_test(cases, spread_of_a_chain);
     tcase_add_test(cases, rows_keep_the_books);
     tcase_add_test(cases, bad_arguments);
-    tcase_set_timeout(cases, 60);
-    suite_add_tcase(suite, cases);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return suite_run(suite);
 }

@@ -1,5 +1,4 @@
 /* test_write.c - writers, read back; files that are complete or not there. SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <dirent.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,6 +8,7 @@
 #include <unistd.h>
 
 #include "message.h"
+#include "suite.h"
 #include "write.h"
 
 /* Three spheres; row 1 was not computed. */
@@ -274,7 +274,8 @@ START_TEST(unwritable) {
 END_TEST
 
 int main(void) {
-    TCase *formats = tcase_create("formats"), *files = tcase_create("files");
+    Suite *suite = suite_create("write");
+    TCase *formats = suite_case(suite, "formats"), *files = suite_case(suite, "files");
     tcase_add_test(formats, csv);
     tcase_add_test(formats, csv_of_walls);
     tcase_add_test(formats, matrix_market);
@@ -284,12 +285,5 @@ int main(void) {
     tcase_add_checked_fixture(files, make_folder, remove_folder);
     tcase_add_test(files, complete_or_not_at_all);
     tcase_add_test(files, unwritable);
-    Suite *suite = suite_create("write");
-    suite_add_tcase(suite, formats);
-    suite_add_tcase(suite, files);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }
