@@ -85,7 +85,9 @@ static bool sweep(struct bed *bed, double edge, struct cells *cells) {
     return overlap;
 }
 
-int bed_make_packing(struct bed *bed, uint32_t n, double low, double high, double fraction, uint64_t seed) {
+/* Pushes for up to `sweeps` sweeps; *apart tells whether no spheres overlap any more. */
+static int pack(struct bed *bed, uint32_t n, double low, double high, double fraction, uint64_t seed, uint32_t sweeps,
+                bool *apart) {
     double volume = 0, largest = 0;
     for (uint32_t i = 0; i < n; ++i) {
         const double r = low + (high - low) * bed_make_random(seed, 4 * (uint64_t)i);
@@ -104,14 +106,27 @@ int bed_make_packing(struct bed *bed, uint32_t n, double low, double high, doubl
     cells.first = malloc((size_t)cells.side * cells.side * cells.side * sizeof *cells.first);
     cells.next = malloc(n * sizeof *cells.next);
     int status = cells.first && cells.next ? STATUS_OK : message_memory();
-    for (uint32_t round = 0; !status && sweep(bed, edge, &cells); ++round) {
+    *apart = false;
+    for (uint32_t round = 0; round < sweeps && !status && !*apart; ++round) {
+        *apart = !sweep(bed, edge, &cells);
         status = interrupt_status();
-        if (round == SWEEPS) status = message(STATUS_INPUT, "cannot pack %u spheres to %g of solid", n, fraction);
     }
     free(cells.first);
     free(cells.next);
     for (int axis = 0; axis < 3; ++axis) bed->period[axis] = bed->high[axis] = edge;
     return status;
+}
+
+int bed_make_packing(struct bed *bed, uint32_t n, double low, double high, double fraction, uint64_t seed) {
+    bool apart;
+    const int status = pack(bed, n, low, high, fraction, seed, SWEEPS, &apart);
+    if (status || apart) return status;
+    return message(STATUS_INPUT, "cannot pack %u spheres to %g of solid", n, fraction);
+}
+
+int bed_make_jammed(struct bed *bed, uint32_t n, double fraction, uint32_t sweeps, uint64_t seed) {
+    bool apart;
+    return pack(bed, n, 1, 1, fraction, seed, sweeps, &apart);
 }
 
 int bed_make_copies(struct bed *to, const struct bed *from, const uint32_t copies[3]) {

@@ -80,11 +80,11 @@ static int help(void) {
          "View factors between all spheres of FILE: .csv with a header x,y,z,r, a LAMMPS or LIGGGHTS text dump,\n"
          "YADE text (#format x_y_z_r), or - for standard input. Positions count from 0 in the order of the file.\n");
     options_print(table);
-    puts("\nWalls reflect nothing here: F to a wall is what arrives there directly. In .csv they are j = -2, -3 ... in "
-         "the\n"
-         "order given and the surroundings j = -1, so that rows add up to 1; from walls of finite area to spheres, i = "
-         "-2,\n"
-         "-3 ...; in .vtp there is an array for each. .mtx and .npz hold spheres only.\n\n"
+    puts("\n" WALLS_MORE
+         "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... in the order given and the\n"
+         "surroundings j = -1, so that rows add up to 1; i = -2, -3 ... from walls of finite area to spheres; in .vtp "
+         "an\n"
+         "array for each wall. .mtx and .npz hold spheres only.\n\n"
          "Standard output ends with a summary, one `key value` a line; `wall_NAME`: mean F from a sphere, area.\n\n"
          "Examples:\n"
          "  fibrad bed packing.dump -o F.mtx --plot bed.png\n"

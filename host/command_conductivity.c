@@ -20,8 +20,9 @@
 
 #define PI 3.14159265358979323846
 
-/* On open axes only spheres emit whose centres are so many mean diameters inside all. */
-#define MARGIN 5.0
+/* On open axes only spheres emit whose centres are so many mean diameters inside all, and so many there have to be. */
+#define MARGIN   4.0
+#define EMITTERS 40u
 
 /* What --error asks for is first estimated with so many paths in all; and the most there may be per sphere. */
 #define PILOT   50000.0
@@ -55,7 +56,7 @@ struct request {
 
 /* The part of the bed that emits, and what comes of it. */
 struct conductivity {
-    double volume, diameter; /* [L^3] of that part; [L] mean of all spheres */
+    double volume, diameter; /* [L^3] that belongs to them; [L] mean of all spheres */
     uint32_t emitters;
     double factor[3], error[3]; /* F_E per axis and its standard error */
     double escaped;             /* fraction of the emission that no sphere absorbs */
@@ -145,17 +146,19 @@ static int parse(struct request *request, int argc, char **argv) {
     return STATUS_OK;
 }
 
-/* Marks the spheres that emit, and measures the volume they stand in. */
-static int choose_emitters(const struct bed *bed, const char *file, struct conductivity *result, bool *emits) {
+/* The part of the bed that emits, a box; infinite along periodic axes. */
+struct core {
+    double low[3], high[3], volume;
+};
+
+static int find_core(const struct bed *bed, const char *file, double diameter, struct core *core) {
     const double *at[3] = {bed->x, bed->y, bed->z};
-    result->volume = 1;
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        result->diameter += 2 * bed->r[i] / bed->n;
-        emits[i] = true;
-    }
+    core->volume = 1;
     for (int axis = 0; axis < 3; ++axis) {
+        core->low[axis] = -INFINITY;
+        core->high[axis] = INFINITY;
         if (bed->period[axis] > 0) {
-            result->volume *= bed->period[axis];
+            core->volume *= bed->period[axis];
             continue;
         }
         double low = INFINITY, high = -INFINITY;
@@ -163,17 +166,59 @@ static int choose_emitters(const struct bed *bed, const char *file, struct condu
             low = fmin(low, at[axis][i]);
             high = fmax(high, at[axis][i]);
         }
-        low += MARGIN * result->diameter;
-        high -= MARGIN * result->diameter;
-        if (!(high - low >= result->diameter))
-            return message_at(STATUS_INPUT, file, 0,
-                              "too thin along %c, an open axis: more than %g mean diameters are needed; see --periodic",
-                              'x' + axis, 2 * MARGIN + 1);
-        result->volume *= high - low;
-        for (uint32_t i = 0; i < bed->n; ++i) emits[i] = emits[i] && at[axis][i] >= low && at[axis][i] < high;
+        core->low[axis] = low + MARGIN * diameter;
+        core->high[axis] = high - MARGIN * diameter;
+        if (!(core->high[axis] > core->low[axis]))
+            return message_at(STATUS_INPUT, file, 0, "too thin along %c, an open axis: %g mean diameters at the least",
+                              'x' + axis, 2 * MARGIN);
+        core->volume *= core->high[axis] - core->low[axis];
     }
-    for (uint32_t i = 0; i < bed->n; ++i) result->emitters += emits[i];
-    return result->emitters ? STATUS_OK : message_at(STATUS_INPUT, file, 0, "no sphere is far enough inside the bed");
+    return STATUS_OK;
+}
+
+static bool inside(const struct core *core, const double at[3]) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(at[axis] >= core->low[axis] && at[axis] < core->high[axis])) return false;
+    return true;
+}
+
+/* The fraction of a sphere that lies inside, by points: counting centres alone would be as rough as a small core is
+ * small. */
+static double part_inside(const struct bed *bed, uint32_t i, const struct core *core) {
+    enum { POINTS = 256 };
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < POINTS; ++k) {
+        double w[3];
+        fibrad_direction(k, POINTS, w);
+        const double depth =
+            bed->r[i] * cbrt(fmod((k + .5) * .7548776662466927, 1)); /* even in the cube of the radius */
+        const double at[3] = {bed->x[i] + depth * w[0], bed->y[i] + depth * w[1], bed->z[i] + depth * w[2]};
+        count += inside(core, at);
+    }
+    return count / (double)POINTS;
+}
+
+/* Marks the spheres that emit, and measures the volume that belongs to them: that of the spheres themselves over the
+ * solid fraction of the core. */
+static int choose_emitters(const struct bed *bed, const char *file, struct conductivity *result, bool *emits) {
+    struct core core;
+    double solid = 0, emitting = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
+    const int status = find_core(bed, file, result->diameter, &core);
+    if (status) return status;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double volume = 4 * PI / 3 * pow(bed->r[i], 3);
+        emits[i] = inside(&core, (const double[]){bed->x[i], bed->y[i], bed->z[i]});
+        emitting += emits[i] * volume;
+        solid += part_inside(bed, i, &core) * volume;
+        result->emitters += emits[i];
+    }
+    result->volume = core.volume * emitting / solid;
+    const bool open = bed->period[0] == 0 || bed->period[1] == 0 || bed->period[2] == 0;
+    if (open && result->emitters < EMITTERS)
+        return message_at(STATUS_INPUT, file, 0, "only %u spheres are %g mean diameters inside the bed, %u are needed",
+                          result->emitters, MARGIN, EMITTERS);
+    return STATUS_OK;
 }
 
 /* Adds up what the emitters have told. Summed in order, whatever the threads did. */

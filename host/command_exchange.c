@@ -35,7 +35,8 @@ static const struct option table[] = {
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [400]"},
     {KEY_DIRECTIONS, "directions", "N", "beam directions for the first leg of all paths, 8 to 65536 [50]"},
     {KEY_ERROR, "error", "E",
-     "as many of both as bring the estimated Euclidean error of every row to E or less, 1e-5 to 1 [none]"},
+     "as many of both as bring the estimated Euclidean error of a row to E (of the worst to 1.3 E or so), 1e-5 to 1 "
+     "[none]"},
     {KEY_WALL, "wall", WALLS_ARGUMENT, WALLS_HELP},
     {KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST", EMISSIVITY_WALL_HELP},
     {KEY_RAW, "raw", NULL, "do not average D_ij and D_ji [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
@@ -201,6 +202,9 @@ static void print_summary(const struct request *request, const struct bed *bed, 
     }
     printf("closure_max %.17g\n", result->closure_max);
     printf("reciprocity_max %.17g\n", result->reciprocity_max);
+    double square = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) square += result->error[i] * result->error[i] / bed->n;
+    printf("error_rms %.17g\n", sqrt(square));
     printf("error_estimate %.17g\n", result->error_estimate);
 }
 
@@ -209,9 +213,6 @@ static int compute_and_write(struct request *request, const struct bed *bed, str
     uint64_t rays = 0;
     int status = request->out ? output_open(&out, request->out) : STATUS_OK;
     if (!status) status = run_exchange(bed, &request->run, &request->rule, request->drop, result, &rays);
-    if (!status && request->rule.error > 0 && result->error_estimate > request->rule.error)
-        fprintf(stderr, "fibrad: %s: the estimated error of the worst row is %.3g\n", request->run.file,
-                result->error_estimate);
     const struct contents contents = {bed, result, request->read.ids, &request->order, &request->rule};
     if (!status && request->out) status = request->write(out.file, &contents);
     status = output_close(&out, status);

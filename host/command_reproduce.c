@@ -33,6 +33,8 @@ static const struct {
     {"pebble-pair", "two pebbles: factor, ray length, angle, received radiation", reproduce_pebble_pair},
     {"pebble-rays", "the same by rays: error, rays for 1 %", reproduce_pebble_rays},
     {"pebble-bed", "random bed of pebbles: factor within 2 and 3 diameters", reproduce_pebble_bed},
+    {"conductivity", "grey spheres: exchange factor F_E of a random bed and of lattices", reproduce_conductivity},
+    {"exchange", "grey spheres: exchange factor against centre distance", reproduce_exchange},
 };
 enum { EXPERIMENTS = sizeof experiments / sizeof *experiments };
 
@@ -92,7 +94,7 @@ static int draw(const struct reproduce *reproduce, const char *name, const char 
     struct output output = {0};
     struct gnuplot gnuplot;
     int status = output_open(&output, path);
-    if (!status) status = gnuplot_start(&gnuplot, output.file);
+    if (!status) status = gnuplot_start(&gnuplot, &output);
     if (!status) {
         const char *body = strchr(reproduce->text, '\n');
         fprintf(gnuplot.script,

@@ -40,7 +40,7 @@ int reproduce_figure(struct reproduce *reproduce, const char *name, const char *
 typedef int experiment(struct reproduce *reproduce);
 
 experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig10, reproduce_table1,
-    reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed;
+    reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed, reproduce_conductivity, reproduce_exchange;
 
 /* ---- rows of a bed, one thread ---- */
 

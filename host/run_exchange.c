@@ -75,8 +75,10 @@ static int spread_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, 
     return status;
 }
 
-/* The largest error there may be in a row to be averaged: the errors of partners are independent of each other. */
-#define BEFORE_AVERAGING 1.35
+/* The error there may be in a row to be averaged, over that of the mean, which is smaller by the square root of 2, the
+ * errors of partners being independent; SPARE of it is kept for rows that come out worse than most. */
+#define BEFORE_AVERAGING 1.1
+#define SPARE            1.2
 
 /* Memory of an average: the matrix, with room for the diagonal, and numbers per row. */
 struct mean {
@@ -119,7 +121,7 @@ static int average(const struct bed *bed, const double *emissivity, double drop,
     if (!status) status = fibrad_rows_balance(rows, mean->target, mean->scratch);
     if (!status) status = fibrad_rows_close(rows, mean->radius, result->wall, result->escaped);
     for (uint32_t i = 0; i < bed->n && !status; ++i)
-        result->error[i] = fmax(1.2 * rows_distance(rows, &result->rows, i), 0.5 * result->error[i]);
+        result->error[i] = fmax(SPARE * rows_distance(rows, &result->rows, i), 0.5 * result->error[i]);
     if (!status && drop > 0) status = fibrad_rows_drop(rows, mean->radius, drop, mean->scratch);
     if (status) return message(STATUS_INPUT, "averaging the rows: %s", fibrad_status_text(status));
     const fibrad_rows raw = result->rows;

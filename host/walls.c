@@ -17,9 +17,14 @@ static bool is(const char *word, size_t length, const char *name) {
     return strlen(name) == length && strncmp(word, name, length) == 0;
 }
 
-static int add(struct wall_options *options, uint32_t wall, bool placed, double at) {
+static bool named(const struct wall_options *options, uint32_t wall) {
     for (uint32_t k = 0; k < options->count; ++k)
-        if (options->wall[k] == wall) return message(STATUS_USAGE, "--wall: %s is named twice", names[wall]);
+        if (options->wall[k] == wall) return true;
+    return false;
+}
+
+static int add(struct wall_options *options, uint32_t wall, bool placed, double at) {
+    if (named(options, wall)) return message(STATUS_USAGE, "--wall: %s is named twice", names[wall]);
     options->wall[options->count] = wall;
     options->placed[options->count] = placed;
     options->at[options->count++] = at;
@@ -78,15 +83,14 @@ int walls_option(const char *text, struct wall_options *options) {
     }
 }
 
-/* The words auto and box, as the planes they stand for. */
+/* The words auto and box, as the planes they stand for but for those named besides. */
 static int spell_out(struct wall_options *options, const struct bed *bed, const char *file) {
     if (options->automatic && !(bed->low[0] < bed->high[0]))
         return message_at(STATUS_USAGE, file, 0, "--wall auto needs a box in the file; --wall box takes the spheres'");
     for (uint32_t wall = 0; wall < PLANES; ++wall) {
         const bool periodic = bed->period[wall / 2] > 0;
-        if (!options->box && (!options->automatic || periodic)) continue;
-        const int status = add(options, wall, false, 0);
-        if (status) return status;
+        if (named(options, wall) || (!options->box && (!options->automatic || periodic))) continue;
+        add(options, wall, false, 0);
     }
     return STATUS_OK;
 }

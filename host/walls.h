@@ -18,17 +18,21 @@ struct wall_options {
     bool automatic, box;         /* the words auto and box: which axes are open is known with the bed alone */
 };
 
-/* The walls by number, in the order given: wall[k] is j = -2 - k in a matrix. */
+/* The walls by number, in the order given, those of auto and box last: wall[k] is j = -2 - k in a matrix. */
 struct wall_order {
     uint32_t count, wall[FIBRAD_WALLS];
 };
 
-/* What --help says of its argument. */
+/* What --help says of it, in the table and below. */
 #define WALLS_ARGUMENT "LIST"
 #define WALLS_HELP                                                                                                     \
-    "walls, parted by commas: auto (the file's box on axes that are not periodic), box (all six sides), xmin, xmax, "  \
-    "ymin, ymax, zmin, zmax, each with =VALUE if it stands elsewhere than the file's box, or else the spheres, end; "  \
-    "cylinder:X,Y,R along z [none]"
+    "walls: auto (box of the file, open axes), box (all six sides), xmin, xmax ... zmax, cylinder:X,Y,R (axis along "  \
+    "z) "                                                                                                              \
+    "[none]"
+#define WALLS_MORE                                                                                                     \
+    "Walls: a LIST parted by commas. A side is xmin=VALUE, or without =VALUE the end of the file's box, or else of "   \
+    "the\n"                                                                                                            \
+    "spheres. Sides named besides auto or box come first, and stand where they say.\n"
 
 /* "xmin" ... "zmax", "cylinder". */
 const char *wall_name(uint32_t wall);

@@ -56,10 +56,11 @@ typedef enum fibrad_status {
     FIBRAD_E_GEOMETRY = -6   /* equal centres, or the centre of one sphere inside another */
 } fibrad_status;
 
-/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. */
+/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. No errors.
+ * Cost: a table. */
 const char *fibrad_status_text(int status);
 
-/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". */
+/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". No errors, no cost. */
 const char *fibrad_version(void);
 
 /* ---- lanes ----------------------------------------------------------------------------------------------------- */
@@ -73,10 +74,11 @@ typedef enum fibrad_isa {
     FIBRAD_ISA_AVX512 = 4
 } fibrad_isa;
 
-/* The widest instruction set that both this build and this machine offer. Cost: two CPUID instructions. */
+/* The widest instruction set that both this build and this machine offer. No errors. Cost: two CPUID instructions,
+ * microseconds under a hypervisor. */
 fibrad_isa fibrad_isa_best(void);
 
-/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. */
+/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. No errors, no cost. */
 const char *fibrad_isa_name(int isa);
 
 /* ---- sample ---------------------------------------------------------------------------------------------------- */
@@ -95,8 +97,8 @@ int fibrad_direction(uint32_t k, uint32_t n, double direction[3]);
 /* ---- pair ------------------------------------------------------------------------------------------------------ */
 
 /* View factor F12 from sphere 1 (radius r1) to sphere 2 (radius r2), nothing in between, at surface distance gap.
- * r1, r2 [L] > 0; gap [L] from -2 min(r1, r2), exclusive, to any finite number; negative: the spheres overlap, and the
- * formula is continued smoothly as docs/methods.md says. All of r1, r2, gap may be scaled alike from 1e-150 to 1e150.
+ * r1, r2 [L] from 1e-150 to 1e150; gap [L] from -2 min(r1, r2), exclusive, to any finite number; negative: the spheres
+ * overlap, and the formula is continued smoothly as docs/methods.md says.
  * Guarantee: relative error at most 1e-14 for r1/r2 in [1e-4, 1e4]; r1^2 F12 and r2^2 F21 agree to the
  * last bits; F is continuous and falls with gap.
  * Errors: FIBRAD_E_ARGUMENT. Cost: about 0.06 microseconds, 0.2 for overlaps; no libm call but sqrt.
@@ -143,7 +145,8 @@ typedef struct fibrad_fault {
     uint32_t first, second;
 } fibrad_fault;
 
-/* Bytes that fibrad_scene_init needs for this configuration; 0 if the configuration is not valid. */
+/* Bytes that fibrad_scene_init needs for this configuration: they depend on the number of spheres alone. Errors: 0 if
+ * the configuration is NULL or not valid. Cost: tens of nanoseconds, and that of fibrad_isa_best. */
 size_t fibrad_scene_size(const fibrad_scene_config *config);
 
 /* An upper bound of fibrad_scene_size for up to n spheres, as a constant expression, for static memory. */
@@ -155,7 +158,7 @@ size_t fibrad_scene_size(const fibrad_scene_config *config);
  * a wall. What leaves a sphere outwards beyond a wall meets that wall at once.
  * Errors: _ARGUMENT (then `fault`, unless NULL, names the sphere, or n if it is none of them), _SIZE, _ALIGNMENT,
  * _GEOMETRY (fault names the pair). Cost: O(n), about 0.5 microseconds per sphere; more where spheres crowd in clusters
- * far apart. */
+ * far apart, at worst O(n^2). Source: docs/methods.md section 6. */
 int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 
@@ -171,7 +174,7 @@ typedef struct fibrad_scene_facts {
                                        infinity: unbounded; 0: there is no such wall */
 } fibrad_scene_facts;
 
-/* Fills in the facts of a scene. Cost: a copy. */
+/* Fills in the facts of a scene; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
 /* ---- work ------------------------------------------------------------------------------------------------------ */
@@ -186,7 +189,8 @@ typedef struct fibrad_work_config {
 
 typedef struct fibrad_work fibrad_work;
 
-/* Bytes that fibrad_work_init needs; 0 if the configuration is not valid (NULL: all defaults). */
+/* Bytes that fibrad_work_init needs (NULL: all defaults). Errors: 0 if a number is above 2^28. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_work_size(const fibrad_work_config *config);
 
 /* An upper bound of fibrad_work_size as a constant expression, for static memory (no zeros here). */
@@ -194,12 +198,12 @@ size_t fibrad_work_size(const fibrad_work_config *config);
     (20480 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
 
 /* Makes work memory in `memory` (`size` bytes on a 64-byte boundary). It serves any scene, one row at a time.
- * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(entries). */
 int fibrad_work_init(fibrad_work **work, void *memory, size_t size, const fibrad_work_config *config);
 
 /* After FIBRAD_E_CAPACITY from a row: a configuration under which that row gets farther (its `discs` as far as they
  * were met, its `entries` never more than the row can have). Repeat until the row succeeds; entries = number of spheres
- * always suffices. */
+ * always suffices. Null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_work_needed(const fibrad_work *work, fibrad_work_config *config);
 
 /* ---- beam ------------------------------------------------------------------------------------------------------ */
@@ -229,8 +233,9 @@ typedef struct fibrad_beam_rule {
                             directions are each closed, but averaging them does not keep their sums below 1 */
 } fibrad_beam_rule;
 
-/* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + escaped = 1, to
- * rounding with exact areas, as exact counts with points. With exact areas the error falls as directions^-1.5.
+/* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + sum of wall +
+ * escaped = 1, to rounding with exact areas, as exact counts with points. With exact areas the error falls as
+ * directions^-1.5, that of the sharing between walls about as directions^-1 (5e-4 each at 233).
  * i [0, spheres); rule NULL: all defaults. Periodic images of one sphere share an entry, and i may see images of
  * itself. Errors: _ARGUMENT, _TABLE (points), _CAPACITY: either row->capacity (row->length then tells) or the work
  * memory (row->length is then 0, and fibrad_work_needed tells). Cost: some microseconds per direction with ten discs in
@@ -239,8 +244,9 @@ typedef struct fibrad_beam_rule {
 int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row);
 
-/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0.
- */
+/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0
+ * (both dimensionless): by the law directions^-1.5, a fifth more at least, FIBRAD_DIRECTIONS_MAX at most. No errors.
+ * Cost: under a microsecond. Source: docs/methods.md section 3. */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double wanted);
 
 /* ---- surface --------------------------------------------------------------------------------------------------- */
@@ -263,7 +269,7 @@ typedef struct fibrad_surface_rule {
     uint32_t nodes; /* N_F, a Fibonacci number from 8 to 987; 0: 55 */
     uint32_t flags; /* sum of fibrad_surface_flags */
     double cutoff;  /* rows: spheres whose centres are farther than this (1 + 1e-12) neither receive nor block [L]; 0:
-                       none, which is only possible without periodic axes */
+                       none, which is only possible without periodic axes; at most 100 periods of any of those */
     int isa;        /* pairs: a fibrad_isa (rows use that of the scene). FIBRAD_ISA_BEST asks the machine at every call,
                        which under a hypervisor takes longer than the pair; others are used unasked, so take what
                        fibrad_isa_best has returned once */
@@ -297,8 +303,9 @@ int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *
  * axis that w has least of (the first where equal). So rows are reciprocal but for blockers within the
  * cutoff of one of two spheres. row->escaped is 1 - sum of f, as this method does not measure it; row->error is
  * the root of the sum of the pairs' squares. rule: NULL is all defaults; its isa is not used.
- * Errors: _ARGUMENT (no cutoff in a periodic scene included), _TABLE (nodes), _CAPACITY as fibrad_beam_row.
- * Cost: about 5 microseconds per partly hidden sphere within the cutoff at 55 nodes. */
+ * Errors: _ARGUMENT (included: no cutoff in a periodic scene, more than 2^28 spheres or images in the cube about the
+ * cutoff), _TABLE (nodes), _CAPACITY as fibrad_beam_row. Cost: about 5 microseconds per partly hidden sphere within the
+ * cutoff at 55 nodes, and 3 nanoseconds per pair of spheres within it. */
 int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_surface_rule *rule,
                        fibrad_row *row);
 
@@ -353,7 +360,8 @@ int fibrad_tracer_init(fibrad_tracer **tracer, void *memory, size_t size, const 
 typedef struct fibrad_exchange_rule {
     const double *emissivity;             /* [spheres] of each sphere, (0, 1] */
     double wall_emissivity[FIBRAD_WALLS]; /* of each wall there is, [0, 1]; 0 reflects all */
-    uint32_t directions; /* of the beam row that the first leg is taken from, as in fibrad_beam_rule; 0: 50 */
+    uint32_t directions; /* of the beam row that the first leg is taken from, by 256 points up to 144 of them, by exact
+                            areas above; 0: 50 */
     uint32_t paths;      /* followed for the reflections; 0: 400 */
     uint64_t seed;       /* what their numbers come from, together with i */
     double error;        /* 0: none. Else more directions and paths, from those above on, until row->error is not above
@@ -389,7 +397,8 @@ int fibrad_exchange_spread(fibrad_tracer *tracer, uint32_t i, const fibrad_excha
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
 
 /* A sparse matrix of view factors, compressed rows, in the caller's arrays. The functions of this section serve
- * exchange factors too, if for r they are given r sqrt(emissivity): then A is A emissivity. */
+ * exchange factors too, if for r they are given r sqrt(emissivity): then A is A emissivity. Source: docs/methods.md
+ * section 5. */
 typedef struct fibrad_rows {
     uint32_t n;        /* rows and columns */
     uint64_t capacity; /* length of col and f */
@@ -536,20 +545,21 @@ int fibrad_radiosity(const fibrad_rows *rows, const double *r, const fibrad_heat
 #define FIBRAD_FURNACE_CELLS_MAX 100000000u
 
 typedef struct fibrad_furnace_config {
-    double size[3];             /* m, > 0 */
+    double size[3];             /* m, from 1e-9 to 1e9 */
     uint32_t cells[3];          /* along x, y, z; the product is at most FIBRAD_FURNACE_CELLS_MAX */
-    double absorption;          /* 1/m, > 0: where nothing is absorbed there is no temperature */
-    double scattering;          /* 1/m, >= 0 */
-    double source;              /* W/m3 given off by the medium, of either sign */
-    double wall_temperature[6]; /* K, > 0; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
-    double wall_emissivity[6];  /* [0, 1] */
+    double absorption;          /* 1/m; times an edge of a cell from 1e-9 to 1e9: unabsorbed there is no temperature */
+    double scattering;          /* 1/m; times an edge of a cell from 0 to 1e9 */
+    double source;              /* W/m3 given off by the medium, of either sign, up to 1e30 */
+    double wall_temperature[6]; /* K, 1e-3 to 1e9; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
+    double wall_emissivity[6];  /* [0, 1], not all 0 */
     uint64_t seed;              /* of the bundles of rays */
 } fibrad_furnace_config;
 
 /* The state of one box: temperatures, fluxes, coefficients, and which bundles are to be traced next. */
 typedef struct fibrad_furnace fibrad_furnace;
 
-/* Bytes that fibrad_furnace_init needs; 0 if the configuration is not valid. */
+/* Bytes that fibrad_furnace_init needs. Errors: 0 if the configuration is NULL or not valid. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_furnace_size(const fibrad_furnace_config *config);
 
 /* Makes a furnace in `memory` (`size` bytes on a 64-byte boundary): E is the mean of the walls, Theta 2/3 everywhere.
@@ -569,13 +579,14 @@ typedef struct fibrad_furnace_arrays {
     double *power;            /* [6] what each wall gives, net [W] */
 } fibrad_furnace_arrays;
 
+/* Tells where the arrays are, which stay there; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_furnace_fields(fibrad_furnace *furnace, fibrad_furnace_arrays *arrays);
 
-/* Temperature [K] of E [W/m2]; 0 unless E is positive. */
+/* Temperature [K] of E [W/m2]; 0 unless E is positive. No errors. Cost: two square roots. */
 double fibrad_furnace_temperature(double e);
 
 /* Makes Theta the same constant everywhere, (0, 1], without transverse term: 1 for the heat-flux method (HFM), 2/3 for
- * isotropic radiation. Errors: _ARGUMENT. */
+ * isotropic radiation. Errors: _ARGUMENT. Cost: O(cells). Source: docs/furnace.md. */
 int fibrad_furnace_theta(fibrad_furnace *furnace, double theta);
 
 /* What the scattered part of the heat-flux equations is made of. */
@@ -605,14 +616,15 @@ int fibrad_furnace_balance(fibrad_furnace *furnace);
 /* Counts of bundles, in whole numbers: any split of the work adds up to the same bits. */
 typedef struct fibrad_furnace_tally fibrad_furnace_tally;
 
-/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. */
+/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. Errors: 0 for NULL. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_furnace_tally_size(const fibrad_furnace *furnace);
 
 /* Makes an empty tally in `memory` (`size` bytes on a 64-byte boundary), for one thread at a time.
- * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(cells). */
 int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t size, const fibrad_furnace *furnace);
 
-/* Adds `from` to `to`, tallies of the same furnace. Cost: O(cells). */
+/* Adds `from` to `to`, tallies of the same furnace (of others, and with null pointers, nothing). Cost: O(cells). */
 void fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from);
 
 /* What bundles of rays do. */
@@ -625,12 +637,15 @@ typedef enum fibrad_furnace_physics {
  * `bundles` bundles for all that walls and medium emit above the mean of the walls, each further plan carries only what
  * the change of E since then adds, at the same energy per bundle. `restart` makes a first plan again, for new tallies.
  * `planned` gets the number of bundles: every source is given a whole number of them, at least one.
- * bundles [1, 2^32]. Errors: _ARGUMENT. Cost: O(cells). */
+ * bundles [1, 2^32]. Errors: _ARGUMENT, also if E is not finite or its change asks for more than 2^33 bundles; there is
+ * no plan then, and the next is a first one. Cost: O(cells). */
 int fibrad_furnace_emit(fibrad_furnace *furnace, fibrad_furnace_physics physics, uint64_t bundles, int restart,
                         uint64_t *planned);
 
 /* Traces bundles [first, first + count) of the plan into a tally. The furnace is only read: threads may share it.
- * Errors: _ARGUMENT. Cost: about 0.6 (equilibrium) to 1.1 microseconds per bundle in a box of 20 x 20 x 40 cells. */
+ * Errors: _ARGUMENT, also for the tally of a furnace of other cells. Cost: about 0.6 (equilibrium) to 1.1 microseconds
+ * per bundle in a box of 20 x 20 x 40 cells; it goes with the number of events until absorption, which in a thick
+ * medium is the square of the optical thickness, and between walls that hardly absorb 1/emissivity. */
 int fibrad_furnace_trace(const fibrad_furnace *furnace, fibrad_furnace_tally *tally, uint64_t first, uint64_t count);
 
 /* Which ratio of the moments F_n = sum(w cos^n) over the bundles that cross a face is taken for Theta. */
@@ -647,7 +662,8 @@ int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally 
                             fibrad_furnace_estimator estimator, int transverse, fibrad_furnace_scatter scatter);
 
 /* Sets E, wall fluxes and powers from the sum of all tallies since the last restart (FIBRAD_FURNACE_EQUILIBRIUM).
- * Errors: _ARGUMENT. Cost: O(cells). */
+ * Errors: _ARGUMENT, also after a plan of the other physics and for the tally of a furnace of other cells. Cost:
+ * O(cells times symmetries). */
 int fibrad_furnace_equilibrium(fibrad_furnace *furnace, const fibrad_furnace_tally *tally);
 
 #ifdef __cplusplus

@@ -1,7 +1,6 @@
 /* test_cli.c - the program as its users meet it: exit statuses, messages, files. SPDX-License-Identifier: MIT
  *
  * Runs $BUILD/fibrad (default: build/fibrad) from the project's root. */
-#include <check.h>
 #include <dirent.h>
 #include <fcntl.h>
 #include <math.h>
@@ -14,6 +13,8 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "suite.h"
 
 #define MONO     "tests/data/mono2000.dump"
 #define POLY     "tests/data/poly2000.dump"
@@ -184,6 +185,10 @@ static const struct {
     {{"bed", MONO, "-x"}, "unknown option -x; see fibrad bed --help"},
     {{"pair", "1", "1", "0", "--raw"}, "unknown option --raw; see fibrad pair --help"},
     {{"bed", MONO, "-o"}, "--output needs an argument"},
+    {{"bed", MONO, "--wall", "zmin,top"}, "--wall: 'top' is neither auto, box, xmin ... zmax nor cylinder:X,Y,R"},
+    {{"bed", MONO, "--wall", "zmin,zmin=3"}, "--wall: zmin is named twice"},
+    {{"bed", MONO, "--wall", "auto", "--method", "surface"}, "--wall is for the methods beam, cast and mc"},
+    {{"bed", PERIODIC, "--wall", "box"}, "stands across a periodic axis"},
     {{"bed", MONO, "--raw=yes"}, "--raw takes no argument"},
     {{"bed", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz and .vtp"},
     {{"bed", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
@@ -196,6 +201,14 @@ static const struct {
     {{"bed", MONO, "--method=cast", "--rays", "0"}, "--rays: '0' is not a whole number from 1 to 4294967295"},
     {{"bed", MONO, "--method=mc", "--seed", "-1"}, "--seed: '-1'"},
     {{"bed", MONO, "--method=cast", "--directions", "100"}, "are for --method beam"},
+    {{"exchange", MONO}, "which --emissivity"},
+    {{"exchange", MONO, "--emissivity", "0"}, "'0' is neither a number above 0"},
+    {{"exchange", MONO, "--emissivity", "1.5"}, "--emissivity: 1.5 is not within 0 and 1"},
+    {{"exchange", MONO, "--emissivity=.5", "--error=.1", "--rays=9"}, "leave out --rays"},
+    {{"exchange", MONO, "--emissivity=.5", "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
+    {{"exchange", MONO, "--emissivity=.5", "-o", "D.vtp"}, "unknown ending; there are .csv, .mtx and .npz"},
+    {{"conductivity", MONO}, "which --emissivity"},
+    {{"conductivity", "--emissivity", ".5"}, "which FILE"},
     {{"bed", MONO, "--directions", "7"}, "'7' is not a whole number from 8 to 65536"},
     {{"bed", MONO, "--error", "0"}, "--error: 0 is not within 1e-07 and 1"},
     {{"bed", MONO, "--error", "1e-8"}, "--error: 1e-8 is not within 1e-07 and 1"},
@@ -387,6 +400,52 @@ START_TEST(same_bytes_for_any_threads) {
 }
 END_TEST
 
+/* In a box rows add up to 1 with the walls, nothing escapes, and the walls' own rows are reciprocal. */
+START_TEST(walls) {
+    enum { SPHERES = 2000, WALLS = 6 };
+    static double sum[SPHERES], to[SPHERES][WALLS];
+    char *first = NULL;
+    for (int k = 0; k < 2; ++k) {
+        const char *out = in_folder("F.csv");
+        SUCCEED("bed", MONO, "--directions", "50", "--wall", "auto", "--threads", k == 0 ? "1" : "3", "-o", out);
+        char *text = read_file(out);
+        if (k == 1) ck_assert_str_eq(text, first);
+        free(first);
+        first = text;
+    }
+    ck_assert(value_of("escaped_mean") == 0);
+    ck_assert_double_lt(value_of("closure_max"), 1e-13);
+    int back = 0;
+    for (char *line = strchr(first, '\n') + 1; *line; ++line) {
+        const long i = strtol(line, &line, 10), j = strtol(line + 1, &line, 10);
+        const double f = strtod(line + 1, &line);
+        ck_assert(i < SPHERES && j < SPHERES && i >= -1 - WALLS && j >= -1 - WALLS && f > 0);
+        if (i >= 0) sum[i] += f;
+        if (i >= 0 && j < -1) to[i][-2 - j] = f;
+        if (i < -1) {
+            const double area = i >= -5 ? 12 * 50 : 12 * 12;
+            ck_assert_double_eq_tol(f * area, acos(-1) * to[j][-2 - i], 1e-13);
+            ++back;
+        }
+    }
+    ck_assert_int_gt(back, 1000);
+    double mean = 0;
+    for (int i = 0; i < SPHERES; ++i) {
+        ck_assert_double_eq_tol(sum[i], 1, 1e-13);
+        mean += to[i][4] / SPHERES;
+    }
+    ck_assert_double_eq_tol(value_of("wall_zmin"), mean, 1e-13);
+    free(first);
+    SUCCEED("bed", PERIODIC, "--directions", "50", "--wall", "auto"); /* deep beds see all of a wall that has no end */
+    ck_assert_double_eq_tol(value_of("wall_zmin") * SPHERES * acos(-1), 12 * 12, .02);
+    ck_assert_double_eq_tol(value_of("wall_zmax") * SPHERES * acos(-1), 12 * 12, .02);
+    SUCCEED("bed", MONO, "--directions", "13", "--wall", "cylinder:6,6,9,zmin", "--targets", "0-9");
+    ck_assert_double_gt(value_of("wall_cylinder"), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--wall", "zmin=2"), 3);
+    expect_message(MONO ":", "lies beyond the wall zmin");
+}
+END_TEST
+
 /* The rows of a target list are those of --raw, and the matrix market file holds the same as the CSV file. */
 /* The same rays whoever follows them; other seeds, other rays. */
 START_TEST(rays) {
@@ -464,6 +523,76 @@ START_TEST(frames_periods_and_ids) {
     SUCCEED("bed", "-");
     ck_assert_double_eq(value_of("row_sum_min"), across);
     input = "/dev/null";
+}
+END_TEST
+
+/* Rows of the .csv close with surroundings (-1) and walls (-2, -3, ...) and are reciprocal with areas times
+ * emissivity; the bytes do not depend on the number of threads. */
+START_TEST(exchange_factors) {
+    enum { N = 12 };
+    static double d[N][N];
+    double sum[N] = {0}, weight[N];
+    char bed[2000] = "x,y,z,e,r\n";
+    for (int i = 0; i < N; ++i) {
+        const double r = .5 + .04 * i, e = .3 + .05 * i;
+        snprintf(bed + strlen(bed), 100, "%d,%d,%d,%.17g,%.17g\n", 2 * (i % 3), 2 * (i / 3 % 2), 2 * (i / 6), e, r);
+        weight[i] = r * r * e;
+    }
+    const char *file = write_file("bed.csv", bed), *out = in_folder("D.csv"), *other = in_folder("E.csv");
+    SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
+            "0.5,0", "--threads", "1", "-o", out);
+    ck_assert_double_lt(value_of("closure_max"), 1e-12);
+    ck_assert_double_lt(value_of("reciprocity_max"), 1e-12);
+    ck_assert_double_lt(value_of("error_estimate"), .1);
+    SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
+            "0.5,0", "--threads", "3", "-o", other);
+    char *text = read_file(out), *again = read_file(other);
+    ck_assert_str_eq(text, again);
+    ck_assert_int_eq(strncmp(text, "i,j,D\n", 6), 0);
+    for (char *line = strchr(text, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
+        int i, j;
+        double factor;
+        ck_assert_int_eq(sscanf(line, "%d,%d,%lg", &i, &j, &factor), 3);
+        ck_assert(j != -3 && i >= -3 && j >= -2); /* the upper wall takes nothing, but -3 reflects */
+        if (i < 0) continue;
+        sum[i] += factor;
+        if (j >= 0) d[i][j] = factor;
+    }
+    for (int i = 0; i < N; ++i) {
+        ck_assert_double_eq_tol(sum[i], 1, 1e-12);
+        for (int j = 0; j < N; ++j) ck_assert_double_eq_tol(weight[i] * d[i][j], weight[j] * d[j][i], 1e-14);
+    }
+    free(text);
+    free(again);
+    SUCCEED("exchange", file, "--emissivity", "0.6", "--error", "0.02", "--drop", "0.001", "--threads", "2");
+    ck_assert_double_lt(value_of("error_estimate"), .04);
+    ck_assert_double_lt(value_of("closure_max"), 1e-12);
+    ck_assert_int_eq(RUN("exchange", file, "--emissivity", "x"), 3);
+    expect_message(file, "the emissivity x is 0; it must be above 0, up to 1");
+    ck_assert_int_eq(RUN("exchange", file, "--emissivity", "missing"), 3);
+    ck_assert_int_eq(RUN("exchange", file, "--emissivity", "e", "--wall-emissivity", "0.5"), 2);
+    remove_files(0);
+}
+END_TEST
+
+/* One sphere a cell: the simple cubic lattice, black; any number of threads. */
+START_TEST(conductivity) {
+    const char *cell = write_file("cell.csv", "x,y,z,r,eps\n0,0,0,1,1\n");
+    SUCCEED("conductivity", cell, "--periodic", "2,2,2", "--emissivity", "eps", "--rays", "40000", "--threads", "1");
+    const double first = value_of("F_E_z");
+    ck_assert_double_eq_tol(first, 1.2005, .03);
+    ck_assert_double_eq_tol(value_of("F_E_x"), 1.2005, .03);
+    ck_assert_double_lt(value_of("F_E_y_error"), .03);
+    ck_assert_double_gt(value_of("F_E_y_error"), .001);
+    SUCCEED("conductivity", cell, "--periodic", "2,2,2", "--emissivity", "1", "--rays", "40000", "--threads", "4");
+    ck_assert_double_eq(value_of("F_E_z"), first);
+    SUCCEED("conductivity", PERIODIC, "--emissivity", "0.8", "--error", "0.02");
+    ck_assert_double_eq_tol(value_of("F_E_x"), .80, .04);
+    ck_assert_double_lt(value_of("F_E_x_error") / value_of("F_E_x"), .025);
+    ck_assert_double_lt(value_of("emitters"), 1000);
+    ck_assert_int_eq(RUN("conductivity", cell, "--periodic", "2,2,0", "--emissivity", "1"), 3);
+    expect_message(cell, "too thin along z, an open axis");
+    remove_files(0);
 }
 END_TEST
 
@@ -566,6 +695,12 @@ START_TEST(full_disc) {
     ck_assert_int_eq(RUN("bed", MONO, "--directions", "21", "-o", in_folder("F.csv")), 4);
     ck_assert_ptr_nonnull(strstr(said, "F.csv: cannot be written: File too large"));
     ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.svg")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.svg: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.png")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.png: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
 }
 END_TEST
 
@@ -588,15 +723,11 @@ START_TEST(interrupted) {
 END_TEST
 
 int main(void) {
-    TCase *usage = tcase_create("usage"), *pairs = tcase_create("pairs"), *beds = tcase_create("beds"),
-          *trouble = tcase_create("trouble");
-    TCase *const cases[] = {usage, pairs, beds, trouble};
     Suite *suite = suite_create("cli");
-    for (int k = 0; k < 4; ++k) {
-        tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
-        tcase_set_timeout(cases[k], 120);
-        suite_add_tcase(suite, cases[k]);
-    }
+    TCase *usage = suite_case(suite, "usage"), *pairs = suite_case(suite, "pairs"), *beds = suite_case(suite, "beds"),
+          *trouble = suite_case(suite, "trouble");
+    TCase *const cases[] = {usage, pairs, beds, trouble};
+    for (int k = 0; k < 4; ++k) tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
     tcase_add_test(usage, help_and_version);
     tcase_add_loop_test(usage, bad_usage, 0, (int)(sizeof misuse / sizeof *misuse));
     tcase_add_test(pairs, exact_pair);
@@ -608,9 +739,12 @@ int main(void) {
     tcase_add_test(beds, summary);
     tcase_add_test(beds, tolerance);
     tcase_add_test(beds, same_bytes_for_any_threads);
+    tcase_add_test(beds, walls);
     tcase_add_test(beds, rays);
     tcase_add_test(beds, targets_and_formats);
     tcase_add_test(beds, frames_periods_and_ids);
+    tcase_add_test(beds, exchange_factors);
+    tcase_add_test(beds, conductivity);
     tcase_add_test(beds, points_and_cutoff);
     tcase_add_test(beds, paraview_and_picture);
     tcase_add_test(beds, picture_without_gnuplot);
@@ -619,9 +753,5 @@ int main(void) {
     tcase_add_test(trouble, file_trouble);
     tcase_add_test(trouble, full_disc);
     tcase_add_loop_test(trouble, interrupted, 0, 2);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

@@ -7,6 +7,7 @@
 #include "bed/trace.h"
 #include "bed/work.h"
 #include "scenes.h"
+#include "suite.h"
 
 struct versions {
     int isa;
@@ -274,7 +275,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("trace");
-    TCase *cases = tcase_create("trace");
+    TCase *cases = suite_case(suite, "trace");
     tcase_add_loop_test(cases, random_beds, 0, sizeof versions / sizeof *versions);
     tcase_add_test(cases, overlaps);
     tcase_add_test(cases, large_among_small);
@@ -283,11 +284,5 @@ int main(void) {
     tcase_add_test(cases, from_points);
     tcase_add_test(cases, same_bits_everywhere);
     tcase_add_test(cases, memory);
-    tcase_set_timeout(cases, 60);
-    suite_add_tcase(suite, cases);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return suite_run(suite);
 }

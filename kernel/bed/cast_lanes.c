@@ -11,7 +11,7 @@
 #include "bed/near_lanes.h"
 #include "bed/walls.h"
 
-#define BATCH 64
+#define BATCH (8 * VD_LANES) /* rays: 64 in AVX-512; fewer take less stack where there are no lanes */
 
 /* Places in the 4-cube, then rays: the direction w, two unit vectors u and v across it such that the origin is
  * cosine w - sine v, and the angle to the normal. */

@@ -92,6 +92,8 @@ static int measure(fibrad_scene *scene, const fibrad_spheres *s, fibrad_fault *f
         if (!fibrad_walls_hold(&scene->container, (double[3]){s->x[i], s->y[i], s->z[i]}))
             return fail(FIBRAD_E_ARGUMENT, fault, i, i);
     }
+    if (fibrad_walls_reach(&scene->container) > COORDINATE_MAX * scene->facts.radius_min)
+        return fail(FIBRAD_E_ARGUMENT, fault, s->n, s->n);
     for (int axis = 0; axis < 3; axis++) {
         scene->box_low[axis] = scene->low[axis], scene->box_high[axis] = scene->high[axis];
         if (scene->period[axis] > 0)

@@ -53,6 +53,15 @@ bool fibrad_walls_hold(const fibrad_container *c, const double at[3]) {
     return x * x + y * y <= 1;
 }
 
+double fibrad_walls_reach(const fibrad_container *c) {
+    const double at[] = {c->low[0],  c->low[1],  c->low[2],  c->high[0], c->high[1],
+                         c->high[2], c->axis[0], c->axis[1], c->radius};
+    double largest = 0;
+    for (size_t k = 0; k < sizeof at / sizeof *at; k++)
+        if (fibrad_finite(at[k])) largest = fibrad_max(largest, fibrad_abs(at[k]));
+    return largest;
+}
+
 uint32_t fibrad_walls_exit(const fibrad_scene *scene, const double origin[3], const double w[3], double *distance) {
     const fibrad_container *c = &scene->container;
     double least = INFINITE;

@@ -15,6 +15,9 @@ void fibrad_walls_build(fibrad_scene *scene, const fibrad_walls *walls);
 /* Whether a place [L] lies within the walls, or on one. */
 bool fibrad_walls_hold(const fibrad_container *container, const double at[3]);
 
+/* The largest coordinate of a wall [L], the cylinder's radius included. */
+double fibrad_walls_reach(const fibrad_container *container);
+
 /* The wall through which the ray from `origin` [L] along w (of any length but 0) leaves the container;
  * FIBRAD_NONE: through none. *distance >= 0 in lengths of w; infinity if none. Which wall it is depends on the
  * line alone, not on where on it the origin lies, but for origins beyond a cylinder that the line misses: an origin

@@ -1,30 +1,35 @@
 /* walls_lanes.c - which walls the open part of a window meets. Compiled once per instruction set.
  * SPDX-License-Identifier: MIT
  *
- * A window has one direction, but stands for all directions nearer to its own than to others. Far walls are told apart
- * by direction alone, so with one direction their factors would jump, and err as n^-0.75. Therefore each open point of
- * the window is followed in a direction of its own, from a disc about that of the window; a like disc about each
- * direction covers the sphere about once. How much is open is not touched by this. */
+ * A window has one direction, but stands for all that are nearer to its own than to others. Far walls are told apart by
+ * direction alone: with one direction their factors would jump, and err as n^-0.75. Therefore each open point of the
+ * window is followed in a direction of its own, from a disc about that of the window; such discs cover the sphere about
+ * once. Where spheres hide part of a window, its neighbours are hidden in part too, and the disc is taken smaller, or
+ * walls would be seen that are not. How much is open is not touched by this. docs/methods.md section 9. */
 #include FIBRAD_LANES_HEADER
+#include "bed/walls.h"
 #include "bed/walls_lanes.h"
 #include "sample/direction.h"
 
-#define POINTS     128u
-#define POINTS_MAX 256u /* of a rule */
+#define PI 3.14159265358979323846
 
-/* Radius of the disc of directions, times sqrt n: as wide as its share of the sphere would be 2. */
-#define SPREAD  2.25
-#define PAIRING 45u
+#define POINTS  128u
+#define PAIRING 45u /* the direction of point p is number PAIRING p + SHIFT k of the same set, for window k */
 #define SHIFT   21u
 
-/* Walls across one axis only, seen by a window that stands for a band of directions: what share of it rises along the
- * axis. The weights over the band, (1 - x^2) 3/4, were the best of those tried: F to a plane errs by 4e-4 at n = 233,
- * and not at all for planes across z, as opposite directions share alike. */
-#define BAND 2.5
-static double rising(double slope, uint32_t n) {
-    double x = slope * fibrad_sqrt(n) * (1 / BAND);
-    x = fibrad_max(-1, fibrad_min(x, 1));
-    return 0.5 + 0.25 * x * (3 - x * x);
+/* Radius of the disc of directions, times sqrt n, if the window is open; for discs as large as the share of a direction
+ * in the sphere it would be 2. */
+#define SPREAD 2.25
+
+/* Half width of the band, likewise. F to a plane across x or y then errs by 4e-4 at n = 233. */
+#define BAND 4.0
+
+/* Walls across one axis only, seen by a window that stands for a band of directions of some half width: what share of
+ * it rises along the axis, the weights over the band being (1 - x^2)^2. */
+static double rising(double slope, double width) {
+    if (!(fibrad_abs(slope) < width)) return slope > 0 ? 1 : slope < 0 ? 0 : 0.5;
+    double x = slope / width, square = x * x;
+    return 0.5 + 15.0 / 16 * x * (1 - square * (2.0 / 3 - square / 5));
 }
 
 /* The only axis with walls, or 3. */
@@ -91,16 +96,48 @@ static vd exits(const struct view *view, const vd origin[3], const vd w[3]) {
     vm away = vd_lt(zero, along), level = vd_le(across, zero);
     vd t = vd_div(vd_select(away, inside, vd_sub(root, along)), vd_select(away, vd_add(along, root), across));
     vm nearer = vd_lt(vd_select(level, vd_set1(__builtin_inf()), t), least);
-    return vd_select(nearer, vd_set1(6), wall);
+    return vd_select(nearer, vd_set1(FIBRAD_CYLINDER), wall);
+}
+
+/* Follows the open points of window k, in directions from a disc of radius `spread`, and counts what they meet. */
+static void follow(const fibrad_points *points, const struct view *view, const double frame[9], double spread,
+                   uint32_t k, uint32_t count[FIBRAD_WALLS + 1]) {
+    for (uint32_t word = 0; word < points->count / 64; word++) {
+        if (points->seen[word] == 0) continue;
+        _Alignas(64) float a[64], b[64];
+        for (uint32_t lane = 0; lane < 64; lane++) {
+            const uint32_t q = (PAIRING * (64 * word + lane) + SHIFT * k) & (points->count - 1);
+            a[lane] = points->set.x[q], b[lane] = points->set.y[q];
+        }
+        uint64_t packed = 0; /* eight counts of at most 64 */
+        for (uint32_t lane = 0; lane < 64; lane += VD_LANES) {
+            uint32_t p = 64 * word + lane, bits = (uint32_t)(points->seen[word] >> lane) & ((1u << VD_LANES) - 1);
+            if (bits == 0) continue;
+            vd u = vd_load_float(points->set.x + p), v = vd_load_float(points->set.y + p), origin[3], w[3];
+            vd du = vd_mul(vd_load_float(a + lane), vd_set1(spread));
+            vd dv = vd_mul(vd_load_float(b + lane), vd_set1(spread));
+            for (int axis = 0; axis < 3; axis++) {
+                vd along_u = vd_set1(frame[axis]), along_v = vd_set1(frame[3 + axis]);
+                origin[axis] = vd_add(vd_mul(u, along_u), vd_mul(v, along_v));
+                w[axis] = vd_add(vd_set1(frame[6 + axis]), vd_add(vd_mul(du, along_u), vd_mul(dv, along_v)));
+            }
+            _Alignas(64) double wall[VD_LANES];
+            vd_store(wall, exits(view, origin, w));
+            for (; bits != 0; bits &= bits - 1) packed += UINT64_C(1) << 8 * (int)wall[__builtin_ctz(bits)];
+        }
+        for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) count[wall] += (uint32_t)(packed >> 8 * wall & 255);
+    }
 }
 
 void LANED(fibrad_walls_share)(fibrad_work *work, const double frame[9], const fibrad_points *points, uint32_t k,
                                uint32_t n, double rest) {
     if (rest == 0) return;
     const fibrad_container *container = &work->scene->container;
+    const double open = rest / (points->count > 0 ? points->count : PI), step = open / fibrad_sqrt(n);
     const int only = only_axis(container);
     if (only < 3) {
-        const double up = rest * rising(frame[6 + only], n), down = rest - up;
+        /* across z no band is needed: directions pair off, but for the one that lies level */
+        const double up = rest * rising(frame[6 + only], only == 2 ? 0 : BAND * step), down = rest - up;
         work->wall[container->high[only] < __builtin_inf() ? 2 * only + 1 : FIBRAD_WALLS] += up;
         work->wall[container->low[only] > -__builtin_inf() ? 2 * only : FIBRAD_WALLS] += down;
         return;
@@ -113,34 +150,8 @@ void LANED(fibrad_walls_share)(fibrad_work *work, const double frame[9], const f
         turn(turned, cos, sin);
         own = open_points(work, cos, sin);
     }
-
     const struct view view = view_of(work);
-    const double spread = SPREAD / fibrad_sqrt(n);
     uint32_t count[FIBRAD_WALLS + 1] = {0};
-    for (uint32_t word = 0; word < own.count / 64; word++) {
-        if (own.seen[word] == 0) continue;
-        _Alignas(64) float a[64], b[64];
-        for (uint32_t lane = 0; lane < 64; lane++) {
-            const uint32_t q = (PAIRING * (64 * word + lane) + SHIFT * k) & (own.count - 1);
-            a[lane] = own.set.x[q], b[lane] = own.set.y[q];
-        }
-        uint64_t packed = 0; /* eight counts of at most 64 */
-        for (uint32_t lane = 0; lane < 64; lane += VD_LANES) {
-            uint32_t p = 64 * word + lane, bits = (uint32_t)(own.seen[word] >> lane) & ((1u << VD_LANES) - 1);
-            if (bits == 0) continue;
-            vd u = vd_load_float(own.set.x + p), v = vd_load_float(own.set.y + p), origin[3], w[3];
-            vd du = vd_mul(vd_load_float(a + lane), vd_set1(spread)),
-               dv = vd_mul(vd_load_float(b + lane), vd_set1(spread));
-            for (int axis = 0; axis < 3; axis++) {
-                vd along_u = vd_set1(turned[axis]), along_v = vd_set1(turned[3 + axis]);
-                origin[axis] = vd_add(vd_mul(u, along_u), vd_mul(v, along_v));
-                w[axis] = vd_add(vd_set1(turned[6 + axis]), vd_add(vd_mul(du, along_u), vd_mul(dv, along_v)));
-            }
-            _Alignas(64) double wall[VD_LANES];
-            vd_store(wall, exits(&view, origin, w));
-            for (; bits != 0; bits &= bits - 1) packed += UINT64_C(1) << 8 * (int)wall[__builtin_ctz(bits)];
-        }
-        for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) count[wall] += (uint32_t)(packed >> 8 * wall & 255);
-    }
+    follow(&own, &view, turned, SPREAD * step, k, count);
     for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) work->wall[wall] += rest * count[wall] / own.open;
 }
