@@ -192,6 +192,7 @@ BENCHES = \
     bench/bench_estimate.c \
     bench/bench_exchange.c \
     bench/bench_furnace.c \
+    bench/bench_heat.c \
     bench/bench_pair.c \
     bench/bench_scale.c \
     bench/bench_surface.c
@@ -200,7 +201,7 @@ BENCHES = \
 PEERS = bench/bench_embree.c
 
 # these know the argument `quick`
-QUICK = bench/bench_beam.c bench/bench_pair.c bench/bench_scale.c $(PEERS)
+QUICK = bench/bench_beam.c bench/bench_heat.c bench/bench_pair.c bench/bench_scale.c $(PEERS)
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)

@@ -5,6 +5,7 @@
 #include "base/elementary.h"
 #include "base/random.h"
 #include "scenes.h"
+#include "suite.h"
 
 #define PI 3.14159265358979323846
 
@@ -660,8 +661,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("heat");
-    TCase *closed = tcase_create("closed forms"), *paths = tcase_create("paths"), *bits = tcase_create("bits");
-    TCase *conducting = tcase_create("conduction"), *arguments = tcase_create("arguments");
+    TCase *closed = suite_case(suite, "closed forms"), *paths = suite_case(suite, "paths");
     tcase_add_test(closed, nothing_flows_in_a_closed_box_at_one_temperature);
     tcase_add_test(closed, nothing_flows_in_a_periodic_bed_at_one_temperature);
     tcase_add_test(closed, a_grey_sphere_in_black_surroundings);
@@ -672,25 +672,19 @@ int main(void) {
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cube);
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cylinder);
     tcase_add_test(closed, two_black_spheres_in_contact);
+    tcase_add_test(closed, one_radiosity_per_sphere);
     tcase_add_loop_test(paths, powers_are_those_of_paths, 0, 3);
+    TCase *conducting = suite_case(suite, "conduction");
     tcase_add_loop_test(conducting, conduction_of_lattices, 0, 3);
     tcase_add_test(conducting, conduction_of_a_random_bed);
+    TCase *bits = suite_case(suite, "bits");
     tcase_add_loop_test(bits, powers_add_up_to_zero, 0, 64);
     tcase_add_test(bits, the_order_of_the_work_changes_no_bit);
     tcase_add_loop_test(bits, instruction_sets_change_no_bit, FIBRAD_ISA_SSE2, FIBRAD_ISA_AVX512 + 1);
     tcase_add_test(bits, an_earlier_solution_saves_sweeps_and_changes_little);
     tcase_add_test(bits, the_error_is_as_estimated);
-    tcase_add_test(closed, one_radiosity_per_sphere);
+    TCase *arguments = suite_case(suite, "arguments");
     tcase_add_test(arguments, arguments_are_checked);
     tcase_add_test(arguments, work_memory_may_be_too_small);
-    TCase *cases[] = {closed, paths, conducting, bits, arguments};
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        tcase_set_timeout(cases[k], 120);
-        suite_add_tcase(suite, cases[k]);
-    }
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed == 0 ? 0 : 1;
+    return suite_run(suite);
 }
