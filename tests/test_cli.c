@@ -207,6 +207,15 @@ static const struct {
     {{"exchange", MONO, "--emissivity=.5", "--error=.1", "--rays=9"}, "leave out --rays"},
     {{"exchange", MONO, "--emissivity=.5", "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
     {{"exchange", MONO, "--emissivity=.5", "-o", "D.vtp"}, "unknown ending; there are .csv, .mtx and .npz"},
+    {{"heat", "--emissivity=.5"}, "which FILE"},
+    {{"heat", MONO, "--temperature", "v_T"}, "which --emissivity"},
+    {{"heat", MONO, "--emissivity", ".5"}, "which --temperature"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature", "-3"}, "--temperature: -3 is not within"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--patches=100"}, "--patches: 100 is not built in"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--model=fine"}, "'fine' is neither patches nor spheres"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--error=.1", "--points=64"}, "leave out --directions"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall-temperature=3,4"}, "2 for 0 walls"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "-o", "q.mtx"}, "unknown ending; there are .csv and .vtp"},
     {{"conductivity", MONO}, "which --emissivity"},
     {{"conductivity", "--emissivity", ".5"}, "which FILE"},
     {{"bed", MONO, "--directions", "7"}, "'7' is not a whole number from 8 to 65536"},
@@ -526,6 +535,70 @@ START_TEST(frames_periods_and_ids) {
 }
 END_TEST
 
+/* The lines i,T,q of a file: how many, their sum and the largest q, and one of them. */
+static int read_powers(const char *path, double *sum, double *largest, long wanted, double *temperature,
+                       double *power) {
+    char *text = read_file(path), *line = strchr(text, '\n');
+    int count = 0;
+    ck_assert_int_eq(strncmp(text, "i,T,q\n", 6), 0);
+    for (*sum = *largest = 0; line && line[1]; line = strchr(line + 1, '\n'), count++) {
+        long i;
+        double t, q;
+        ck_assert_int_eq(sscanf(line + 1, "%ld,%lf,%lf", &i, &t, &q), 3);
+        *sum += q;
+        *largest = fmax(*largest, fabs(q));
+        if (i == wanted) *temperature = t, *power = q;
+    }
+    free(text);
+    return count;
+}
+
+START_TEST(powers) {
+    const char *file = write_file("hot.csv", "x,y,z,r,eps,T\n0,0,0,1,.5,600\n2,0,0,1,.8,300\n0,2.5,0,.7,1,450\n");
+    const char *out = in_folder("q.csv");
+    double sum, largest, t = 0, q = 0;
+    SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--ambient", "300", "-o", out);
+    ck_assert_int_eq(read_powers(out, &sum, &largest, 0, &t, &q), 4);
+    ck_assert_double_eq(t, 600);
+    ck_assert_double_lt(q, 0);
+    ck_assert_double_le(fabs(sum), 1e-12 * largest);
+    ck_assert_double_le(fabs(value_of("balance")), 1e-12);
+    ck_assert_double_eq(value_of("spheres"), 3);
+
+    /* walls are -2, -3 in the order given; the bytes are the same for any threads */
+    SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--wall", "zmax=3,zmin=-1,cylinder:0,0,5",
+            "--wall-temperature", "700,400", "--wall-emissivity", ".5,1", "--threads", "1", "-o", out);
+    char *one = read_file(out);
+    ck_assert_int_eq(read_powers(out, &sum, &largest, -2, &t, &q), 7);
+    ck_assert_double_eq(t, 700);
+    ck_assert_double_eq(q, value_of("wall_zmax"));
+    ck_assert_double_le(fabs(sum), 1e-12 * largest);
+    ck_assert_double_eq(value_of("surroundings"), 0);
+    SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--wall", "zmax=3,zmin=-1,cylinder:0,0,5",
+            "--wall-temperature", "700,400", "--wall-emissivity", ".5,1", "--threads", "3", "-o", out);
+    char *three = read_file(out);
+    ck_assert_str_eq(one, three);
+    free(one), free(three);
+
+    /* all at one temperature */
+    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box", "--wall-temperature", "500",
+            "--wall-emissivity", ".2", "-o", out);
+    read_powers(out, &sum, &largest, 0, &t, &q);
+    ck_assert_double_le(largest, 1e-10 * 5.67e-8 * 500. * 500. * 500. * 500.);
+
+    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--error", "0.01", "-o", in_folder("q.vtp"));
+    ck_assert_double_le(value_of("error_estimate"), .01);
+    char *vtp = read_file(in_folder("q.vtp"));
+    ck_assert(strstr(vtp, "Name=\"power\"") && strstr(vtp, "Name=\"temperature\"") && strstr(vtp, "</VTKFile>"));
+    free(vtp);
+    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--model", "spheres");
+    ck_assert_int_eq(RUN("heat", file, "--emissivity", "eps", "--temperature", "missing"), 3);
+    const char *cold = write_file("cold.csv", "x,y,z,r,T\n0,0,0,1,-1\n");
+    ck_assert_int_eq(RUN("heat", cold, "--emissivity", "1", "--temperature", "T"), 3);
+    expect_message(cold, "the temperature is -1 K");
+}
+END_TEST
+
 /* Rows of the .csv close with surroundings (-1) and walls (-2, -3, ...) and are reciprocal with areas times
  * emissivity; the bytes do not depend on the number of threads. */
 START_TEST(exchange_factors) {
@@ -744,6 +817,7 @@ int main(void) {
     tcase_add_test(beds, targets_and_formats);
     tcase_add_test(beds, frames_periods_and_ids);
     tcase_add_test(beds, exchange_factors);
+    tcase_add_test(beds, powers);
     tcase_add_test(beds, conductivity);
     tcase_add_test(beds, points_and_cutoff);
     tcase_add_test(beds, paraview_and_picture);
