@@ -15,8 +15,9 @@
 #define TOLERANCE  1e-3
 #define SWEEPS_MAX 1000u
 /* Errors over what they are told from, as measured: docs/heat.md. */
-#define PATCH_ERROR .15
+#define PATCH_ERROR .2
 #define BEAM_ERROR  .2
+#define FEW_ERROR   .25
 
 static fibrad_heat_config completed(const fibrad_heat_config *config) {
     fibrad_heat_config c = {0};
@@ -227,11 +228,11 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     if (heat == NULL || result == NULL || result->power == NULL || heat->phase != FIBRAD_HEAT_DONE)
         return FIBRAD_E_ARGUMENT;
     const uint32_t spheres = heat->scene->facts.spheres, open = heat->bodies - 1;
-    double patches = 0, beams = 0;
+    double patches = 0, beams = 0, square = 0, reflected = 0;
     for (uint32_t b = 0; b < spheres; b++) {
         const double change = heat->power[b] - heat->coarse[b];
         result->power[heat->scene->order[b]] = heat->power[b];
-        patches += change * change;
+        patches += change * change, square += heat->power[b] * heat->power[b], reflected += 1 - heat->emissivity[b];
         beams += heat->doubt[b] * heat->doubt[b];
     }
     result->surroundings_power = heat->power[open];
@@ -245,8 +246,11 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
         result->wall_power[k] += absorbed;
         result->surroundings_power += heat->power[beyond] - absorbed;
     }
+    /* patches that few beams leave send too much back along each; not so if there is one radiosity per body */
+    const double each = heat->group == 1 ? 2.0 * heat->beams / heat->config.patches : __builtin_inf();
+    const double few = FEW_ERROR / each * fibrad_sqrt(reflected / spheres);
     result->error_patches = PATCH_ERROR * fibrad_sqrt(patches / spheres);
-    result->error_beams = BEAM_ERROR * fibrad_sqrt(beams / spheres);
+    result->error_beams = fibrad_sqrt((BEAM_ERROR * BEAM_ERROR * beams + few * few * square) / spheres);
     result->sweeps = heat->sweeps;
     result->residual = heat->scale > 0 ? fibrad_sqrt(heat->slope / heat->scale) : 0;
     return FIBRAD_OK;
