@@ -110,10 +110,17 @@ static void make(fibrad_tracer *tracer, fibrad_nearby *list, uint32_t place) {
     /* so few periods that they fit into their bytes */
     for (int axis = 0; axis < 3; axis++)
         if (scene->period[axis] > 0) reach = fibrad_min(reach, 60 * scene->period[axis] / scene->r[place]);
-    uint32_t count = 0;
-    while (!gather(tracer, place, 1 + reach, &count)) reach /= 2;
-
     double limit = 1 + reach;
+    uint32_t count = 0;
+    while (!gather(tracer, place, limit, &count)) {
+        if (limit > 1.001) {
+            limit = 1 + (limit - 1) / 2;
+        } else { /* hundreds of small ones touch this sphere: the grid alone */
+            count = 0, limit = 0;
+            break;
+        }
+    }
+
     for (uint32_t k = 0; k < count; k++) {
         double step = tracer->candidate[k].clearance / limit * 65535;
         tracer->key[0][k] = (uint64_t)fibrad_max(0, step) << 32 | k;
