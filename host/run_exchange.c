@@ -108,21 +108,20 @@ static void free_mean(struct mean *mean) {
 /* Puts reciprocal, closed rows in the place of the raw ones. */
 static int average(const struct bed *bed, const double *emissivity, double drop, struct mean *mean,
                    struct result *result) {
-    fibrad_rows *rows = &mean->rows;
+    fibrad_rows rows = mean->rows;
     for (uint32_t i = 0; i < bed->n; ++i) {
         mean->radius[i] = bed->r[i] * sqrt(emissivity[i]);
         mean->target[i] = result->row_sum[i];
     }
-    int status = fibrad_rows_average(&result->rows, mean->radius, rows);
-    if (!status) status = fibrad_rows_balance(rows, mean->target, mean->scratch);
-    if (!status) status = fibrad_rows_close(rows, mean->radius, result->wall, result->escaped);
+    int status = fibrad_rows_average(&result->rows, mean->radius, &rows);
+    if (!status) status = fibrad_rows_balance(&rows, mean->target, mean->scratch);
+    if (!status) status = fibrad_rows_close(&rows, mean->radius, result->wall, result->escaped);
     for (uint32_t i = 0; i < bed->n && !status; ++i)
-        result->error[i] = fmax(SPARE * rows_distance(rows, &result->rows, i), 0.5 * result->error[i]);
-    if (!status && drop > 0) status = fibrad_rows_drop(rows, mean->radius, drop, mean->scratch);
+        result->error[i] = fmax(SPARE * rows_distance(&rows, &result->rows, i), 0.5 * result->error[i]);
+    if (!status && drop > 0) status = fibrad_rows_drop(&rows, mean->radius, drop, mean->scratch);
     if (status) return message(STATUS_INPUT, "averaging the rows: %s", fibrad_status_text(status));
-    const fibrad_rows raw = result->rows;
-    result->rows = mean->rows;
-    mean->rows = raw; /* to be freed */
+    mean->rows = result->rows; /* to be freed */
+    result->rows = rows;
     result->row_sum_min = INFINITY;
     result->row_sum_max = -INFINITY;
     result->closure_max = result->error_estimate = 0;
