@@ -9,23 +9,25 @@
 #include "message.h"
 #include "progress.h"
 
-/* A tracer per thread, made for the scene when the thread's first row comes. */
+/* What a thread has: its tracer is made when its first row comes, for only then is there a scene. */
+struct tracing_thread {
+    void *block;
+    fibrad_tracer *tracer; /* NULL: not made yet */
+    uint64_t rays;
+};
+
 struct tracing {
     const fibrad_exchange_rule *rule;
     fibrad_tracer_config config;
-    size_t size;
+    size_t size; /* of a block */
     int threads;
-    void **block;           /* [threads] */
-    fibrad_tracer **tracer; /* [threads] NULL: not made yet */
-    uint64_t *rays;         /* [threads] */
-    fibrad_spread *spread;  /* [n], when that is asked for */
+    struct tracing_thread *thread; /* [threads] */
+    fibrad_spread *spread;         /* [n], when that is asked for */
 };
 
 static void close_tracing(struct tracing *tracing) {
-    for (int t = 0; tracing->block && t < tracing->threads; ++t) free(tracing->block[t]);
-    free(tracing->block);
-    free(tracing->tracer);
-    free(tracing->rays);
+    for (int t = 0; tracing->thread && t < tracing->threads; ++t) free(tracing->thread[t].block);
+    free(tracing->thread);
 }
 
 static int open_tracing(struct tracing *tracing, const struct bed *bed, const struct run_options *options,
@@ -33,45 +35,41 @@ static int open_tracing(struct tracing *tracing, const struct bed *bed, const st
     *tracing = (struct tracing){.rule = rule, .config.lists = bed->n < 4096 ? bed->n : 4096};
     tracing->size = fibrad_tracer_size(&tracing->config);
     tracing->threads = options->threads ? options->threads : omp_get_max_threads();
-    const size_t threads = (size_t)tracing->threads;
-    tracing->block = calloc(threads, sizeof *tracing->block);
-    tracing->tracer = calloc(threads, sizeof *tracing->tracer);
-    tracing->rays = calloc(threads, sizeof *tracing->rays);
-    if (!tracing->block || !tracing->tracer || !tracing->rays) return message_memory();
-    for (size_t t = 0; t < threads; ++t)
-        if (!(tracing->block[t] = run_block(tracing->size))) return message_memory();
+    tracing->thread = calloc((size_t)tracing->threads, sizeof *tracing->thread);
+    if (!tracing->thread) return message_memory();
+    for (int t = 0; t < tracing->threads; ++t) {
+        tracing->thread[t].block = run_block(tracing->size);
+        if (!tracing->thread[t].block) return message_memory();
+    }
     return STATUS_OK;
 }
 
-/* The tracer of this thread; a status of the kernel. */
-static int own_tracer(struct tracing *tracing, const fibrad_scene *scene, fibrad_tracer **tracer) {
-    const int t = omp_get_thread_num();
-    int status = FIBRAD_OK;
-    if (!tracing->tracer[t])
-        status = fibrad_tracer_init(&tracing->tracer[t], tracing->block[t], tracing->size, &tracing->config, scene);
-    *tracer = tracing->tracer[t];
-    return status;
+/* What this thread has, with a tracer; a status of the kernel. */
+static int own_thread(struct tracing *tracing, const fibrad_scene *scene, struct tracing_thread **own) {
+    *own = &tracing->thread[omp_get_thread_num()];
+    if ((*own)->tracer) return FIBRAD_OK;
+    return fibrad_tracer_init(&(*own)->tracer, (*own)->block, tracing->size, &tracing->config, scene);
 }
 
 static int exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const void *rule, fibrad_row *row) {
     struct tracing *tracing = *(struct tracing *const *)rule;
-    fibrad_tracer *tracer;
+    struct tracing_thread *own;
     uint64_t rays = 0;
-    int status = own_tracer(tracing, scene, &tracer);
-    if (!status) status = fibrad_exchange_row(tracer, work, i, tracing->rule, row, &rays);
-    tracing->rays[omp_get_thread_num()] += rays;
+    int status = own_thread(tracing, scene, &own);
+    if (!status) status = fibrad_exchange_row(own->tracer, work, i, tracing->rule, row, &rays);
+    own->rays += rays;
     return status;
 }
 
 static int spread_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const void *rule, fibrad_row *row) {
     struct tracing *tracing = *(struct tracing *const *)rule;
-    fibrad_tracer *tracer;
-    int status = own_tracer(tracing, scene, &tracer);
+    struct tracing_thread *own;
+    int status = own_thread(tracing, scene, &own);
     (void)work;
     row->length = row->directions = 0;
     row->escaped = row->error = 0;
     memset(row->wall, 0, sizeof row->wall);
-    if (!status) status = fibrad_exchange_spread(tracer, i, tracing->rule, &tracing->spread[i]);
+    if (!status) status = fibrad_exchange_spread(own->tracer, i, tracing->rule, &tracing->spread[i]);
     return status;
 }
 
@@ -86,7 +84,7 @@ struct mean {
     double *radius, *target, *scratch; /* [n] [n] [3 n] */
 };
 
-static int make_mean(struct mean *mean, const fibrad_rows *raw) {
+static bool make_mean(struct mean *mean, const fibrad_rows *raw) {
     const size_t n = raw->n;
     mean->rows = (fibrad_rows){.n = raw->n, .capacity = 2 * raw->start[n] + n};
     mean->rows.start = malloc((n + 1) * sizeof *mean->rows.start);
@@ -95,9 +93,7 @@ static int make_mean(struct mean *mean, const fibrad_rows *raw) {
     mean->radius = malloc(n * sizeof *mean->radius);
     mean->target = malloc(n * sizeof *mean->target);
     mean->scratch = malloc(3 * n * sizeof *mean->scratch);
-    const bool good =
-        mean->rows.start && mean->rows.col && mean->rows.f && mean->radius && mean->target && mean->scratch;
-    return good ? STATUS_OK : message_memory();
+    return mean->rows.start && mean->rows.col && mean->rows.f && mean->radius && mean->target && mean->scratch;
 }
 
 static void free_mean(struct mean *mean) {
@@ -112,21 +108,20 @@ static void free_mean(struct mean *mean) {
 /* Puts reciprocal, closed rows in the place of the raw ones. */
 static int average(const struct bed *bed, const double *emissivity, double drop, struct mean *mean,
                    struct result *result) {
-    fibrad_rows *rows = &mean->rows;
+    fibrad_rows rows = mean->rows;
     for (uint32_t i = 0; i < bed->n; ++i) {
         mean->radius[i] = bed->r[i] * sqrt(emissivity[i]);
         mean->target[i] = result->row_sum[i];
     }
-    int status = fibrad_rows_average(&result->rows, mean->radius, rows);
-    if (!status) status = fibrad_rows_balance(rows, mean->target, mean->scratch);
-    if (!status) status = fibrad_rows_close(rows, mean->radius, result->wall, result->escaped);
+    int status = fibrad_rows_average(&result->rows, mean->radius, &rows);
+    if (!status) status = fibrad_rows_balance(&rows, mean->target, mean->scratch);
+    if (!status) status = fibrad_rows_close(&rows, mean->radius, result->wall, result->escaped);
     for (uint32_t i = 0; i < bed->n && !status; ++i)
-        result->error[i] = fmax(SPARE * rows_distance(rows, &result->rows, i), 0.5 * result->error[i]);
-    if (!status && drop > 0) status = fibrad_rows_drop(rows, mean->radius, drop, mean->scratch);
+        result->error[i] = fmax(SPARE * rows_distance(&rows, &result->rows, i), 0.5 * result->error[i]);
+    if (!status && drop > 0) status = fibrad_rows_drop(&rows, mean->radius, drop, mean->scratch);
     if (status) return message(STATUS_INPUT, "averaging the rows: %s", fibrad_status_text(status));
-    const fibrad_rows raw = result->rows;
-    result->rows = mean->rows;
-    mean->rows = raw; /* to be freed */
+    mean->rows = result->rows; /* to be freed */
+    result->rows = rows;
     result->row_sum_min = INFINITY;
     result->row_sum_max = -INFINITY;
     result->closure_max = result->error_estimate = 0;
@@ -157,14 +152,14 @@ int run_exchange(const struct bed *bed, const struct run_options *options, const
     if (!status) status = run_rows(bed, &raw, result);
     const double begun = progress_clock();
     if (!status && !options->raw) {
-        status = make_mean(&mean, &result->rows);
-        if (!status) status = average(bed, rule->emissivity, drop, &mean, result);
+        status =
+            make_mean(&mean, &result->rows) ? average(bed, rule->emissivity, drop, &mean, result) : message_memory();
         if (!status) fibrad_rows_reciprocity(&result->rows, mean.radius, &result->reciprocity_max);
         free_mean(&mean);
     }
     result->seconds += progress_clock() - begun;
     *rays = 0;
-    for (int t = 0; tracing.rays && t < tracing.threads; ++t) *rays += tracing.rays[t];
+    for (int t = 0; tracing.thread && t < tracing.threads; ++t) *rays += tracing.thread[t].rays;
     close_tracing(&tracing);
     return status;
 }

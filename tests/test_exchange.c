@@ -94,6 +94,22 @@ START_TEST(one_and_two_spheres) {
 }
 END_TEST
 
+/* Two so far apart that hardly a path meets the other: rows end, closed, and say how much is not known. */
+START_TEST(hardly_seen) {
+    const double e[2] = {.3, .6};
+    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1e4, 0, 0, 1}});
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    for (int tolerance = 0; tolerance <= 1; tolerance++) {
+        fibrad_row row = exchange_in(scene, 2, 0, &(fibrad_exchange_rule){.emissivity = e, .error = tolerance * 1e-3});
+        ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
+        ck_assert_double_le(row.error, 1e-3);
+        row_free(&row);
+    }
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
 /* A sphere in a much larger closed box of grey walls: it is met again by what they reflect. Walls and sphere then
  * nearly form an enclosure of two: of what the sphere emits it gets back, by the balance of two grey surfaces with F_12
  * = 1 and F_21 = A_1/A_2,  D_11 = (1 - e_2) F_21 e_1/(1 - (1 - e_2)(1 - F_21) - (1 - e_2) F_21 (1 - e_1)). */
@@ -410,6 +426,7 @@ int main(void) {
     TCase *cases = suite_case(suite, "exchange");
     tcase_add_test(cases, black_is_the_beam_row);
     tcase_add_test(cases, one_and_two_spheres);
+    tcase_add_test(cases, hardly_seen);
     tcase_add_test(cases, sphere_in_a_grey_box);
     tcase_add_loop_test(cases, against_plain_paths, 0, 2);
     tcase_add_test(cases, error_and_its_estimate);

@@ -148,6 +148,21 @@ START_TEST(large_among_small) {
 }
 END_TEST
 
+/* More small spheres that overlap a large one than there is room for: no list at all. */
+START_TEST(studded_sphere) {
+    struct bed bed;
+    bed_init(&bed, false, 0);
+    add_sphere(&bed, 0, 0, 0, 1);
+    for (uint32_t k = 0; k < 700; k++) {
+        double w[3];
+        ck_assert_int_eq(fibrad_direction(k, 700, w), FIBRAD_OK);
+        add_sphere(&bed, 1.01 * w[0], 1.01 * w[1], 1.01 * w[2], .03);
+    }
+    follow(&bed, &versions[0], 2048, 0, 1400, 3);
+    bed_free(&bed);
+}
+END_TEST
+
 /* One sphere a period: most of what it sees are images of itself. Rays along the channels of a lattice meet nothing. */
 START_TEST(one_sphere_and_its_images) {
     struct bed bed = bed_of(1, (const double[][4]){{.3, .4, .5, 1}});
@@ -279,6 +294,7 @@ int main(void) {
     tcase_add_loop_test(cases, random_beds, 0, sizeof versions / sizeof *versions);
     tcase_add_test(cases, overlaps);
     tcase_add_test(cases, large_among_small);
+    tcase_add_test(cases, studded_sphere);
     tcase_add_test(cases, one_sphere_and_its_images);
     tcase_add_test(cases, stray);
     tcase_add_test(cases, from_points);

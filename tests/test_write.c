@@ -37,7 +37,7 @@ static const struct wall_order *order; /* NULL: no walls */
 static void write_text(write_function *write, bool ids) {
     FILE *file = tmpfile();
     ck_assert_ptr_nonnull(file);
-    ck_assert_int_eq(write(file, &(struct contents){&bed, &result, ids, order}), 0);
+    ck_assert_int_eq(write(file, &(struct contents){&bed, &result, ids, order, NULL}), 0);
     rewind(file);
     text[fread(text, 1, sizeof text - 1, file)] = 0;
     fclose(file);

@@ -16,15 +16,14 @@ typedef struct fibrad_candidate {
     int8_t periods[3];
 } fibrad_candidate;
 
-static fibrad_tracer *layout(fibrad_arena *arena, uint32_t lists) {
-    fibrad_tracer *tracer = fibrad_arena_take(arena, 1, sizeof *tracer);
-    uint32_t *owner = fibrad_arena_take(arena, lists, sizeof *owner);
-    fibrad_nearby *nearby = fibrad_arena_take(arena, lists, sizeof *nearby);
-    uint64_t *key = fibrad_arena_take(arena, CANDIDATES, sizeof *key);
-    uint64_t *other = fibrad_arena_take(arena, CANDIDATES, sizeof *other);
-    fibrad_candidate *candidate = fibrad_arena_take(arena, CANDIDATES, sizeof *candidate);
-    if (arena->base != NULL) *tracer = (fibrad_tracer){NULL, lists, owner, nearby, {key, other}, candidate};
-    return tracer;
+static fibrad_tracer *layout(fibrad_arena *arena, uint32_t lists, fibrad_tracer *tracer) {
+    fibrad_tracer *place = fibrad_arena_take(arena, 1, sizeof *place);
+    tracer->lists = lists;
+    tracer->owner = fibrad_arena_take(arena, lists, sizeof *tracer->owner);
+    tracer->nearby = fibrad_arena_take(arena, lists, sizeof *tracer->nearby);
+    for (int k = 0; k < 2; k++) tracer->key[k] = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->key[k]);
+    tracer->candidate = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->candidate);
+    return place;
 }
 
 /* The number of lists of a configuration, a power of two; 0 if it is not valid. */
@@ -39,7 +38,8 @@ size_t fibrad_tracer_size(const fibrad_tracer_config *config) {
     uint32_t lists = lists_of(config);
     if (lists == 0) return 0;
     fibrad_arena arena = {0};
-    layout(&arena, lists);
+    fibrad_tracer fields = {0};
+    layout(&arena, lists, &fields);
     return fibrad_arena_total(&arena);
 }
 
@@ -49,9 +49,10 @@ int fibrad_tracer_init(fibrad_tracer **out, void *memory, size_t size, const fib
     fibrad_arena arena;
     int status = fibrad_arena_open(&arena, memory, size, fibrad_tracer_size(config));
     if (status != FIBRAD_OK) return status;
-    fibrad_tracer *tracer = layout(&arena, lists_of(config));
-    tracer->scene = scene;
-    for (uint32_t k = 0; k < tracer->lists; k++) tracer->owner[k] = FIBRAD_NONE;
+    fibrad_tracer fields = {.scene = scene};
+    fibrad_tracer *tracer = layout(&arena, lists_of(config), &fields);
+    for (uint32_t k = 0; k < fields.lists; k++) fields.owner[k] = FIBRAD_NONE;
+    *tracer = fields;
     *out = tracer;
     return FIBRAD_OK;
 }
@@ -110,10 +111,17 @@ static void make(fibrad_tracer *tracer, fibrad_nearby *list, uint32_t place) {
     /* so few periods that they fit into their bytes */
     for (int axis = 0; axis < 3; axis++)
         if (scene->period[axis] > 0) reach = fibrad_min(reach, 60 * scene->period[axis] / scene->r[place]);
-    uint32_t count = 0;
-    while (!gather(tracer, place, 1 + reach, &count)) reach /= 2;
-
     double limit = 1 + reach;
+    uint32_t count = 0;
+    while (!gather(tracer, place, limit, &count)) {
+        if (limit > 1.001) {
+            limit = 1 + (limit - 1) / 2;
+        } else { /* hundreds of small ones touch this sphere: the grid alone */
+            count = 0, limit = 0;
+            break;
+        }
+    }
+
     for (uint32_t k = 0; k < count; k++) {
         double step = tracer->candidate[k].clearance / limit * 65535;
         tracer->key[0][k] = (uint64_t)fibrad_max(0, step) << 32 | k;

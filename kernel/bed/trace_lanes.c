@@ -120,7 +120,7 @@ static void meet_stretch(const struct ray *ray, double from, double to, struct f
 /* Goes on through the grid from length `from`, spacing by spacing; outside the box of the grid, where only stray
  * spheres can be, in strides that grow. */
 static void march(const struct ray *ray, double from, struct first *first) {
-    double step = ray->scene->spacing * ray->inverse, enter = 0, leave, begin = 0, end;
+    double step = ray->scene->spacing * ray->inverse, enter = fibrad_min(from, 0), leave, begin = enter, end;
     cross(ray, true, &enter, &leave);
     cross(ray, false, &begin, &end);
     from = fibrad_max(from, begin);
@@ -167,7 +167,9 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
     for (uint32_t group = 0; group < list->groups && !(first.distance < list->clear[group]); group++)
         meet_group(&ray, list, group, sieve, &first);
     double known = list->clear[list->groups];
-    if (!(first.distance < known)) march(&ray, fibrad_max(0, known), &first);
+    /* spheres that overlap this one count even behind the start, if their centres are ahead */
+    double from = known >= 0 ? known : -(n[0] * w[0] + n[1] * w[1] + n[2] * w[2]);
+    if (!(first.distance < known)) march(&ray, from, &first);
     tell(&ray, &first, hit);
 }
 

@@ -74,20 +74,20 @@ static double halves(const fibrad_entries *entries) {
     return fibrad_sqrt(square);
 }
 
-/* Follows paths until their error is not above `wanted` (0: as many as the rule says). */
+/* Follows paths until their error is not above `wanted` (0: as many as the rule says). Where reflecting surfaces are so
+ * small that no path meets one, up to 64 times as many. */
 static void follow(fibrad_paths *paths, const fibrad_exchange_rule *rule, double carried, double wanted) {
     fibrad_paths_function *version = fibrad_paths_version(paths->tracer->scene->facts.isa);
-    uint64_t done = 0, next = rule->paths > 0 ? rule->paths : PATHS;
+    uint64_t done = 0, first = rule->paths > 0 ? rule->paths : PATHS, next = first;
     while (done < next) {
         version(paths, done, next);
         done = next;
-        double sum = total(paths);
-        if (sum == 0) { /* the reflecting surfaces are so small that no path has met one yet */
-            next = 4 * done <= FIBRAD_PATHS_MAX ? 4 * done : done;
+        double sum = total(paths), ratio = 0;
+        if (sum == 0) {
+            if (carried > wanted && done < 64 * first) next = 4 * done;
             continue;
         }
-        if (wanted == 0) return;
-        double ratio = halves(paths->entries) / sum * carried / wanted;
+        if (wanted > 0) ratio = halves(paths->entries) / sum * carried / wanted;
         if (ratio > 1)
             next = (uint64_t)fibrad_min(FIBRAD_PATHS_MAX, (double)done * fibrad_min(8, 1.1 * ratio * ratio) + 1);
     }
@@ -116,12 +116,12 @@ int fibrad_exchange_row(fibrad_tracer *tracer, fibrad_work *work, uint32_t i, co
     fibrad_paths paths = begin(tracer, i, rule);
     paths.entries = &work->entries;
     fibrad_work_begin(work, scene, paths.place, 0);
-    if (carried > 0) {
+    if (carried > 0) { /* what no path has found counts as escaped, and as an error */
         double left = rule->error * rule->error - beam_error * beam_error, least = 0.5 * rule->error;
         follow(&paths, rule, carried, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
         double sum = total(&paths);
         scale = sum > 0 ? carried / sum : 0;
-        if (sum == 0) paths.escaped = carried, scale = 1;
+        if (sum == 0) paths.escaped = carried, scale = 1, beam_error += carried;
     }
     join(work, rule, row, scale);
     if (work->entries.missed > 0) {

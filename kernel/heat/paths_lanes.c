@@ -18,15 +18,15 @@
 
 /* A path underway. */
 struct path {
+    _Alignas(64) double even[3][BATCH]; /* points of the unit sphere */
     uint64_t k;
     fibrad_random own; /* numbers of this path alone */
     double weight;
     double centre[3]; /* [L] of the sphere, from that of the sphere left first; at a wall: of the scene's origin */
     double n[3];
-    uint32_t place;                     /* of the sphere; FIBRAD_NONE: it is at a wall */
-    double point[3];                    /* [L] then: where */
-    _Alignas(64) double even[3][BATCH]; /* points of the unit sphere */
-    uint32_t used;                      /* how many of all its points are used up */
+    uint32_t place;  /* of the sphere; FIBRAD_NONE: it is at a wall */
+    double point[3]; /* [L] then: where */
+    uint32_t used;   /* how many of all its points are used up */
 };
 
 /* The next BATCH points of the unit sphere: the first is where the path starts, each further one belongs to a
