@@ -60,6 +60,7 @@ KERNEL = \
     kernel/bed/areas.c \
     kernel/bed/beam.c \
     kernel/bed/cast.c \
+    kernel/bed/moved.c \
     kernel/bed/near.c \
     kernel/bed/rows.c \
     kernel/bed/scene.c \
@@ -96,6 +97,7 @@ HOST = \
     host/interrupt.c \
     host/message.c \
     host/method.c \
+    host/moving_omp.c \
     host/options.c \
     host/plot.c \
     host/plot_data.c \
@@ -165,6 +167,7 @@ BENCHES = \
     bench/bench_error.c \
     bench/bench_estimate.c \
     bench/bench_furnace.c \
+    bench/bench_moved.c \
     bench/bench_pair.c \
     bench/bench_scale.c \
     bench/bench_surface.c
@@ -173,7 +176,7 @@ BENCHES = \
 PEERS = bench/bench_embree.c
 
 # these know the argument `quick`
-QUICK = bench/bench_beam.c bench/bench_pair.c bench/bench_scale.c $(PEERS)
+QUICK = bench/bench_beam.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c $(PEERS)
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)

@@ -10,6 +10,7 @@
  *   beam     fibrad_beam_row, fibrad_directions_for
  *   surface  fibrad_surface_pair, FIBRAD_SURFACE_SCRATCH, fibrad_surface_row
  *   cast     fibrad_cast_row
+ *   moved    fibrad_moved_error, fibrad_moved_seen, fibrad_moved_same
  *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_drop, fibrad_rows_reciprocity
  *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
  *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
@@ -193,6 +194,8 @@ typedef struct fibrad_row {
     double error;        /* out: estimated Euclidean error of the row, from parts of its directions; twice the true one
                             on the median, seldom less than it */
     uint32_t directions; /* out, beam method only: how many were taken */
+    double reach;        /* out, beam method only: how deep the windows have looked before they were covered [L];
+                            infinity if one stayed open and there is no cutoff. See fibrad_moved_same */
 } fibrad_row;
 
 /* How a beam row is integrated. Zeroed: 233 directions, exact areas, no cutoff, no tolerance. */
@@ -304,6 +307,34 @@ typedef struct fibrad_cast_means {
  * Source: docs/methods.md section 8; pebble-bed quasi-Monte Carlo with origins and directions as there. */
 int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_cast_rule *rule,
                     fibrad_row *row, const fibrad_cast_means *means);
+
+/* ---- moved ----------------------------------------------------------------------------------------------------- */
+
+/* Rows of a bed that moves little can be kept for a while: docs/embedding.md has the loop. The two scenes hold the same
+ * spheres, in the caller's order, in boxes of the same periods, at two times. */
+
+/* How far row i, which was right for `before`, is off for `now`: estimated Euclidean error, 1.5 times the root of the
+ * sum over the spheres j seen of (F delta/w)^2. delta [L]: change of the vector from i to j; F = r_j^2/(4 d^2), d the
+ * lesser of their distances then and now; w the lesser of r_j and max(d - r_j, r_i). Estimates of successive steps add
+ * up to one of all. Only row->col and ->length are read. No account is taken of spheres that come into sight:
+ * fibrad_moved_seen. @BOUND@
+ * Errors: _ARGUMENT. Cost: about 10 ns per entry. Source: docs/methods.md section 9. */
+int fibrad_moved_error(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const fibrad_row *row,
+                       double *error);
+
+/* What the new row of sphere i tells about the rows of others, since j sees i just as i sees j: to the errors of all
+ * spheres j adds, as root of the sum of squares, the change of A_i F_ij/A_j from the row before to the one now. error
+ * [spheres]. Rows of other spheres are changed only in this way: for the same bits, call it in the same order.
+ * Errors: _ARGUMENT. Cost: about 10 ns per entry. */
+int fibrad_moved_seen(const fibrad_scene *now, uint32_t i, const fibrad_row *before, const fibrad_row *row,
+                      double *error);
+
+/* Which rows have not changed by a single bit: same[i] = 1 if no sphere that the windows of sphere i have met moved,
+ * nor any into where they looked, reach[i] being the row->reach of the row in `before`; else 0. A row that sees out of
+ * the bed changes with any sphere. reach, same [spheres]; scratch [2 spheres].
+ * Errors: _ARGUMENT. Cost: some microseconds per sphere. */
+int fibrad_moved_same(const fibrad_scene *before, const fibrad_scene *now, const double *reach, unsigned char *scratch,
+                      unsigned char *same);
 
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
 

@@ -37,7 +37,7 @@ static void sieve(fibrad_work *work, const double frame[9], uint32_t shell) {
 static bool before(const fibrad_work *work, uint32_t k, uint32_t other) {
     const fibrad_disc *a = &work->disc[k], *b = &work->disc[other];
     if (work->depth[k] != work->depth[other]) return work->depth[k] < work->depth[other];
-    if (a->sphere != b->sphere) return a->sphere < b->sphere;
+    if (a->sphere != b->sphere) return work->scene->order[a->sphere] < work->scene->order[b->sphere];
     return a->u != b->u ? a->u < b->u : a->v < b->v;
 }
 
@@ -122,6 +122,8 @@ static double look(fibrad_work *work, const double frame[9], fibrad_points *poin
         sort(work, settled);
         settled = settle(work, points, k, settled, known < horizon ? known : __builtin_inf(), &open);
     }
+    double depth = open ? __builtin_inf() : settled > 0 ? work->disc[work->order[settled - 1]].depth : 0;
+    work->deepest = fibrad_max(work->deepest, depth);
     if (points->count > 0) return points->open;
     double rest = LANED(fibrad_areas_end)(&work->areas);
     for (uint32_t c = 1; c < work->areas.circles; c++)
@@ -179,5 +181,6 @@ int LANED(fibrad_beam_row)(const fibrad_scene *scene, fibrad_work *work, uint32_
     row->escaped = (open[0] + open[1]) * scale;
     row->error *= fibrad_entries_gain(&work->entries);
     row->directions = directions;
+    row->reach = fibrad_min(work->deepest, work->reach) * work->unit;
     return FIBRAD_OK;
 }

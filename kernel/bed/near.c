@@ -36,6 +36,7 @@ void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t pl
     work->clear = work->farthest;
     for (int axis = 0; axis < 3; axis++)
         for (int sense = -1; sense <= 1; sense += 2) work->clear = fibrad_min(work->clear, room(work, axis, sense));
+    work->deepest = 0;
     work->near.shells = 0;
     work->near.full = false;
 }

@@ -76,6 +76,7 @@ struct fibrad_work {
     double step;          /* how far the first shell looks */
     double farthest;      /* no sphere is farther from i; infinity with periodic axes */
     double clear;         /* no window has its horizon nearer than this */
+    double deepest;       /* of the discs that the row has settled; infinity once a window has stayed open */
 };
 
 /* Prepares for row `place` of the scene: no near spheres, no entries. */
@@ -93,11 +94,12 @@ void fibrad_near_march(fibrad_work *work, const double frame[9], const fibrad_tu
 /* No sphere comes before the window of direction w deeper than this. */
 double fibrad_near_horizon(const fibrad_work *work, const double w[3]);
 
-/* Whether a sphere comes before the window. At equal depth the lower place is in front, as among discs: of spheres that
+/* Whether a sphere comes before the window. At equal depth the lower index is in front, as among discs: of spheres that
  * overlap each other only one is seen by what lies behind, so that no sphere receives more than its own disc. */
 static inline bool fibrad_work_ahead(const fibrad_work *work, double depth, double u, double v, uint32_t sphere) {
     if (depth != 0) return depth > 0;
-    if (sphere != work->place) return sphere > work->place;
+    const uint32_t *order = work->scene->order;
+    if (sphere != work->place) return order[sphere] > order[work->place];
     return u != 0 ? u > 0 : v > 0;
 }
 
