@@ -11,6 +11,7 @@
 #include "run_omp.h"
 
 enum { KEPT, DUE, DONE };
+enum { ROW = 1024 }; /* entries for which room is made at first */
 
 static int make_scene(fibrad_scene **scene, void *block, size_t size, const fibrad_scene_config *config,
                       const struct bed *bed) {
@@ -42,10 +43,10 @@ static bool make_room(fibrad_row *row, uint32_t capacity) {
 
 static int add_row(struct moving *moving, fibrad_work **work, uint32_t i) {
     fibrad_row *row = &moving->fresh[i];
-    if (!make_room(row, moving->row[i].length + 32)) return STATUS_MEMORY;
+    if (!make_room(row, moving->row[i].length ? moving->row[i].length + 64 : ROW)) return STATUS_MEMORY;
     for (;;) {
         const int status = fibrad_beam_row(moving->scene, *work, i, &moving->rule, row);
-        if (status == FIBRAD_OK) return STATUS_OK;
+        if (status == FIBRAD_OK) break;
         if (status != FIBRAD_E_CAPACITY) return message(STATUS_INPUT, "row %u: %s", i, fibrad_status_text(status));
         if (row->length) {
             if (!make_room(row, row->length)) return STATUS_MEMORY;
@@ -55,6 +56,12 @@ static int add_row(struct moving *moving, fibrad_work **work, uint32_t i) {
         fibrad_work_needed(*work, &config);
         if (!make_work(work, &config)) return STATUS_MEMORY;
     }
+    row->capacity = row->length;
+    uint32_t *col = realloc(row->col, (row->length + 1) * sizeof *col);
+    if (col) row->col = col;
+    double *f = realloc(row->f, (row->length + 1) * sizeof *f);
+    if (f) row->f = f;
+    return STATUS_OK;
 }
 
 /* Computes the rows that are due, hands on what they tell of others, and notes which of these are due now. */

@@ -15,40 +15,43 @@ static bool alike(const fibrad_scene *a, const fibrad_scene *b) {
     return true;
 }
 
-/* The shortest of the vectors that differ from c by whole periods. */
-static void shorten(const fibrad_scene *scene, double c[3]) {
-    for (int axis = 0; axis < 3; axis++) {
-        double period = scene->period[axis];
-        if (period > 0) c[axis] -= period * fibrad_floor(c[axis] / period + 0.5);
-    }
-}
-
-/* The way from sphere i to the nearest image of j, as the caller numbers them. */
-static void way(const fibrad_scene *scene, uint32_t i, uint32_t j, double c[3]) {
-    uint32_t a = scene->place[i], b = scene->place[j];
-    c[0] = scene->x[b] - scene->x[a], c[1] = scene->y[b] - scene->y[a], c[2] = scene->z[b] - scene->z[a];
-    shorten(scene, c);
-}
-
 static double square(const double c[3]) { return c[0] * c[0] + c[1] * c[1] + c[2] * c[2]; }
 
+/* 1/period of each axis; 0 if it is open. */
+static void inverse_periods(const fibrad_scene *scene, double inverse[3]) {
+    for (int axis = 0; axis < 3; axis++) inverse[axis] = scene->period[axis] > 0 ? 1 / scene->period[axis] : 0;
+}
+
+/* c less the whole periods that leave it shortest. */
+static void shorten(const fibrad_scene *scene, const double inverse[3], double c[3]) {
+    for (int axis = 0; axis < 3; axis++) c[axis] -= scene->period[axis] * fibrad_floor(c[axis] * inverse[axis] + 0.5);
+}
+
+/* The way between two places of a scene, to the nearest image. */
+static void way(const fibrad_scene *scene, const double inverse[3], uint32_t from, uint32_t to, double c[3]) {
+    c[0] = scene->x[to] - scene->x[from], c[1] = scene->y[to] - scene->y[from], c[2] = scene->z[to] - scene->z[from];
+    shorten(scene, inverse, c);
+}
 int fibrad_moved_error(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const fibrad_row *row,
                        double *error) {
     if (!alike(before, now) || row == NULL || error == NULL || i >= now->facts.spheres) return FIBRAD_E_ARGUMENT;
     if (row->length > 0 && row->col == NULL) return FIBRAD_E_ARGUMENT;
     for (uint32_t k = 0; k < row->length; k++)
         if (row->col[k] >= now->facts.spheres) return FIBRAD_E_ARGUMENT;
-    double r_i = now->r[now->place[i]], sum = 0;
+    uint32_t then_i = before->place[i], now_i = now->place[i];
+    double r_i = now->r[now_i], sum = 0, inverse[3];
+    inverse_periods(now, inverse);
     for (uint32_t k = 0; k < row->length; k++) {
-        double from[3], to[3], r = now->r[now->place[row->col[k]]];
-        way(before, i, row->col[k], from);
-        way(now, i, row->col[k], to);
+        uint32_t then_j = before->place[row->col[k]], now_j = now->place[row->col[k]];
+        double from[3], to[3], r = now->r[now_j];
+        way(before, inverse, then_i, then_j, from);
+        way(now, inverse, now_i, now_j, to);
         double nearest = fibrad_min(square(from), square(to));
-        if (nearest == 0) continue; /* an image of i moves with it */
-        double width = fibrad_min(r, fibrad_max(fibrad_sqrt(nearest) - r, r_i)), factor = r * r / (4 * nearest);
+        if (nearest == 0) continue; /* images of i move as it does */
         for (int axis = 0; axis < 3; axis++) to[axis] -= from[axis];
-        shorten(now, to);
-        sum += factor / width * (factor / width) * square(to);
+        shorten(now, inverse, to);
+        double width = fibrad_min(r, fibrad_max(fibrad_sqrt(nearest) - r, r_i)), rate = r * r / (4 * nearest * width);
+        sum += rate * rate * square(to);
     }
     *error = FACTOR * fibrad_sqrt(sum);
     return FIBRAD_OK;
