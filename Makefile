@@ -136,6 +136,7 @@ TESTS = \
     tests/test_direction.c \
     tests/test_estimate.c \
     tests/test_furnace.c \
+    tests/test_moved.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
     tests/test_read.c \

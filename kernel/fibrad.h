@@ -313,7 +313,7 @@ int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
 /* Rows of a bed that moves little can be kept for a while: docs/embedding.md has the loop. The two scenes hold the same
  * spheres, in the caller's order, in boxes of the same periods, at two times. */
 
-/* How far row i, which was right for `before`, is off for `now`: estimated Euclidean error, 1.5 times the root of the
+/* How far row i, which was right for `before`, is off for `now`: estimated Euclidean error, twice the root of the
  * sum over the spheres j seen of (F delta/w)^2. delta [L]: change of the vector from i to j; F = r_j^2/(4 d^2), d the
  * lesser of their distances then and now; w the lesser of r_j and max(d - r_j, r_i). Estimates of successive steps add
  * up to one of all. Only row->col and ->length are read. No account is taken of spheres that come into sight:
@@ -322,9 +322,9 @@ int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
 int fibrad_moved_error(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const fibrad_row *row,
                        double *error);
 
-/* What the new row of sphere i tells about the rows of others, since j sees i just as i sees j: to the errors of all
- * spheres j adds, as root of the sum of squares, the change of A_i F_ij/A_j from the row before to the one now. error
- * [spheres]. Rows of other spheres are changed only in this way: for the same bits, call it in the same order.
+/* What the new row of sphere i tells about the rows of others: j sees i just as i sees j. Where F_ij has more than
+ * doubled from the row before to the one now, as when i has come into sight, adds twice the change of A_i F_ij/A_j to
+ * error[j], as root of the sum of squares. error [spheres]; order matters to its last bits.
  * Errors: _ARGUMENT. Cost: about 10 ns per entry. */
 int fibrad_moved_seen(const fibrad_scene *now, uint32_t i, const fibrad_row *before, const fibrad_row *row,
                       double *error);

@@ -3,7 +3,7 @@
 
 /* Seen from sphere i, the edge of sphere j sweeps over FACTOR F delta/width of the row when j moves by delta. The
  * factor bounds what was measured, docs/methods.md section 9. */
-#define FACTOR 1.5
+#define FACTOR 2.0
 
 /* Rounding of distances, relative. */
 #define MARGIN 1e-12
@@ -71,9 +71,9 @@ int fibrad_moved_seen(const fibrad_scene *now, uint32_t i, const fibrad_row *bef
     for (uint32_t p = 0, q = 0; p < before->length || q < row->length;) {
         uint32_t own = p < before->length ? before->col[p] : UINT32_MAX;
         uint32_t other = q < row->length ? row->col[q] : UINT32_MAX, j = own < other ? own : other;
-        double change = (other == j ? row->f[q++] : 0) - (own == j ? before->f[p++] : 0);
-        double ratio = r_i / now->r[now->place[j]];
-        change *= ratio * ratio;
+        double was = own == j ? before->f[p++] : 0, is = other == j ? row->f[q++] : 0;
+        if (is <= 2 * was) continue; /* row j had it, and knows */
+        double ratio = r_i / now->r[now->place[j]], change = FACTOR * (is - was) * ratio * ratio;
         error[j] = fibrad_sqrt(error[j] * error[j] + change * change);
     }
     return FIBRAD_OK;
