@@ -43,6 +43,9 @@ typedef struct fibrad_disc {
 
 #define FIBRAD_WORK_MAX (1u << 28)
 
+/* A row sees no farther than this many periods along any periodic axis. */
+#define FIBRAD_PERIODS 100.0
+
 /* What has been seen of each sphere so far, in the order of first sight; the sum over each fourth direction or ray
  * apart, for the estimate of the error. */
 typedef struct fibrad_entries {
