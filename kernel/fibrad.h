@@ -11,11 +11,11 @@
  *   surface  fibrad_surface_pair, FIBRAD_SURFACE_SCRATCH, fibrad_surface_row
  *   cast     fibrad_cast_row
  *   moved    fibrad_moved_error, fibrad_moved_seen, fibrad_moved_same
- *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_drop, fibrad_rows_reciprocity
- *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
- *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
- *            fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit, fibrad_furnace_trace,
- *            fibrad_furnace_estimate, fibrad_furnace_equilibrium
+ *   rows     fibrad_rows_average, fibrad_rows_average_weighted, fibrad_rows_limit, fibrad_rows_drop,
+ * fibrad_rows_reciprocity furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields,
+ * fibrad_furnace_temperature, fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance,
+ * fibrad_furnace_tally_size, fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit,
+ * fibrad_furnace_trace, fibrad_furnace_estimate, fibrad_furnace_equilibrium
  *
  * Units    One length unit L, the caller's choice; angles in radians; view factors are dimensionless.
  * Memory   The caller owns every buffer, aligned as stated, and keeps it alive while it is used; there is no free.
@@ -354,6 +354,11 @@ typedef struct fibrad_rows {
  * Errors: _ARGUMENT (columns not ascending or out of range included), _CAPACITY (out->start[n] is then what is needed).
  * Cost: O(n + entries). */
 int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *out);
+
+/* The same where some rows are more accurate than others: S_ij = (w_i A_i F_ij + w_j A_j F_ji)/(w_i + w_j) instead of
+ * the plain mean. weight [n], 1e-100 to 1e100: best is 1/variance, for beam rows directions^3; NULL: all the same. Sums
+ * of rows may then exceed 1 by their errors: fibrad_rows_limit. */
+int fibrad_rows_average_weighted(const fibrad_rows *raw, const double *r, const double *weight, fibrad_rows *out);
 
 /* Brings row sums above 1 down to 1 and leaves reciprocity as it is: F_ij times min(s_i, s_j), s = min(1, 1/sum).
  * Rows averaged from exact areas need it only to the last bit. scratch [n].

@@ -68,11 +68,13 @@ static void transpose_to_end(const fibrad_rows *raw, fibrad_rows *out) {
  * which a search for each entry's partner is not. The transpose waits at the end of out's arrays; the result grows from
  * their beginning and never reaches it, since what is still to come has at least as many entries as what is left of
  * the transpose. */
-int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *out) {
+int fibrad_rows_average_weighted(const fibrad_rows *raw, const double *r, const double *weight, fibrad_rows *out) {
     if (out == NULL || check(raw) != FIBRAD_OK || check_radii(r, raw->n) != FIBRAD_OK || out->n != raw->n ||
         out->start == NULL || out->start == raw->start)
         return FIBRAD_E_ARGUMENT;
     uint32_t n = raw->n;
+    for (uint32_t i = 0; i < n && weight != NULL; i++)
+        if (!(weight[i] >= 1e-100 && weight[i] <= 1e100)) return FIBRAD_E_ARGUMENT;
     uint64_t entries = raw->start[n];
     if (out->capacity > 0 && (out->col == NULL || out->f == NULL || out->col == raw->col || out->f == raw->f))
         return FIBRAD_E_ARGUMENT;
@@ -96,12 +98,18 @@ int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *ou
             /* areas relative to the larger one; the sum is the same from both sides */
             double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
             a_i *= a_i, a_j *= a_j;
+            double share = weight == NULL ? 0.5 : weight[i] / (weight[i] + weight[j]);
+            double other_share = weight == NULL ? 0.5 : weight[j] / (weight[i] + weight[j]);
             out->col[to] = j;
-            out->f[to++] = 0.5 * (a_i * f + a_j * back) / a_i;
+            out->f[to++] = (share * (a_i * f) + other_share * (a_j * back)) / a_i;
         }
     }
     out->start[n] = to;
     return FIBRAD_OK;
+}
+
+int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *out) {
+    return fibrad_rows_average_weighted(raw, r, NULL, out);
 }
 
 static double sum_of(const fibrad_rows *rows, uint32_t i) {
