@@ -172,13 +172,14 @@ BENCHES = \
     bench/bench_pair.c \
     bench/bench_scale.c \
     bench/bench_sizes.c \
+    bench/bench_skips.c \
     bench/bench_surface.c
 
 # built and run where Embree 3 is found (Debian: libembree-dev)
 PEERS = bench/bench_embree.c
 
 # these know the argument `quick`
-QUICK = bench/bench_beam.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c $(PEERS)
+QUICK = bench/bench_beam.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c $(PEERS)
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)
@@ -190,7 +191,7 @@ BENCH_PROGRAMS = $(BENCHES:%.c=$(BUILD)/%)
 PEER_PROGRAMS  = $(PEERS:%.c=$(BUILD)/%)
 
 .PHONY: all lib demo reproduce test run-programs programs check symbols lists format bench bench-quick bench-peers \
-    stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
+    skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
 
 ## all: build/fibrad and build/libfibrad.a (the default)
 all: $(BUILD)/fibrad $(BUILD)/libfibrad.a
@@ -332,6 +333,10 @@ bench-peers:
 	@if echo '#include <embree3/rtcore.h>' | $(CC) -E -xc - >/dev/null 2>&1; then \
 	    $(MAKE) -s --no-print-directory $(PEER_PROGRAMS); \
 	else echo "No Embree 3 (Debian: libembree-dev): its benches are skipped"; fi
+
+## skips: what the skips save that no argument turns off, each turned off in a copy of the kernel (some minutes)
+skips:
+	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" bench/skips.sh
 
 ## stress: try to break the numerics in every way we could think of; one line per attack (some minutes)
 stress: $(BUILD)/tests/test_stress $(BUILD)/tests/test_areas
