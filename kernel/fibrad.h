@@ -318,7 +318,7 @@ int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
  * sum over the spheres j seen of (F delta/w)^2. delta [L]: change of the vector from i to j; F = r_j^2/(4 d^2), d the
  * lesser of their distances then and now; w the lesser of r_j and max(d - r_j, r_i). Estimates of successive steps add
  * up to one of all. Only row->col and ->length are read. No account is taken of spheres that come into sight:
- * fibrad_moved_seen. @BOUND@
+ * fibrad_moved_seen.
  * Errors: _ARGUMENT. Cost: about 10 ns per entry. Source: docs/methods.md section 9. */
 int fibrad_moved_error(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const fibrad_row *row,
                        double *error);
