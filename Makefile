@@ -65,6 +65,7 @@ KERNEL = \
     kernel/bed/rows.c \
     kernel/bed/scene.c \
     kernel/bed/surface_row.c \
+    kernel/bed/walls.c \
     kernel/bed/work.c \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
@@ -78,7 +79,8 @@ LANED = \
     kernel/bed/beam_lanes.c \
     kernel/bed/cast_lanes.c \
     kernel/bed/near_lanes.c \
-    kernel/bed/points_lanes.c
+    kernel/bed/points_lanes.c \
+    kernel/bed/walls_lanes.c
 
 # besides main.c and generate_tables.c
 HOST = \
@@ -118,6 +120,7 @@ HOST = \
     host/run_omp.c \
     host/targets.c \
     host/tolerance.c \
+    host/walls.c \
     host/write.c \
     host/write_csv.c \
     host/write_furnace.c \
@@ -149,6 +152,7 @@ TESTS = \
     tests/test_surface.c \
     tests/test_surface_row.c \
     tests/test_tables.c \
+    tests/test_walls.c \
     tests/test_write.c
 
 SCRIPTS = \
@@ -415,7 +419,7 @@ reproduce: $(BUILD)/fibrad
 
 ## deps: install the Debian packages that build, demo and tests need; does nothing when nothing is missing
 deps:
-	@.ci/deps pkg-config libgsl-dev check gnuplot-nox
+	@.ci/deps libc6-dev pkg-config libgsl-dev check gnuplot-nox
 
 ## deps-ci: install what .ci/run needs besides
 deps-ci:

@@ -11,11 +11,12 @@
  *   surface  fibrad_surface_pair, FIBRAD_SURFACE_SCRATCH, fibrad_surface_row
  *   cast     fibrad_cast_row
  *   moved    fibrad_moved_error, fibrad_moved_seen, fibrad_moved_same
- *   rows     fibrad_rows_average, fibrad_rows_average_weighted, fibrad_rows_limit, fibrad_rows_drop,
- * fibrad_rows_reciprocity furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields,
- * fibrad_furnace_temperature, fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance,
- * fibrad_furnace_tally_size, fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit,
- * fibrad_furnace_trace, fibrad_furnace_estimate, fibrad_furnace_equilibrium
+ *   rows     fibrad_rows_average, fibrad_rows_average_weighted, fibrad_rows_limit, fibrad_rows_close, fibrad_rows_drop,
+ *            fibrad_rows_reciprocity
+ *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
+ *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
+ *            fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit, fibrad_furnace_trace,
+ *            fibrad_furnace_estimate, fibrad_furnace_equilibrium
  *
  * Units    One length unit L, the caller's choice; angles in radians; view factors are dimensionless.
  * Memory   The caller owns every buffer, aligned as stated, and keeps it alive while it is used; there is no free.
@@ -52,10 +53,11 @@ typedef enum fibrad_status {
     FIBRAD_E_GEOMETRY = -6   /* equal centres, or the centre of one sphere inside another */
 } fibrad_status;
 
-/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. */
+/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. No errors.
+ * Cost: a table. */
 const char *fibrad_status_text(int status);
 
-/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". */
+/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". No errors, no cost. */
 const char *fibrad_version(void);
 
 /* ---- lanes ----------------------------------------------------------------------------------------------------- */
@@ -69,10 +71,11 @@ typedef enum fibrad_isa {
     FIBRAD_ISA_AVX512 = 4
 } fibrad_isa;
 
-/* The widest instruction set that both this build and this machine offer. Cost: two CPUID instructions. */
+/* The widest instruction set that both this build and this machine offer. No errors. Cost: two CPUID instructions,
+ * microseconds under a hypervisor. */
 fibrad_isa fibrad_isa_best(void);
 
-/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. */
+/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. No errors, no cost. */
 const char *fibrad_isa_name(int isa);
 
 /* ---- sample ---------------------------------------------------------------------------------------------------- */
@@ -111,11 +114,24 @@ typedef struct fibrad_spheres {
 /* The largest number of spheres of a scene. */
 #define FIBRAD_SPHERES_MAX 100000000u
 
-/* What a scene is made for. Zeroed but for `spheres`: open on all sides, the best instruction set. */
+/* Walls by number: 0 to 5 are planes across the axes, x low, x high, y low, y high, z low, z high; 6 is a cylinder
+ * along z. Their inner sides bound a convex container, so that no wall hides one sphere from another. */
+#define FIBRAD_WALLS 7
+
+/* The walls of a scene. Zeroed: none. */
+typedef struct fibrad_walls {
+    uint32_t planes;    /* sum of 1 << k for the planes k there are, none on a periodic axis */
+    double at[6];       /* [L] where plane k stands on its axis, low < high; not read if it is not there */
+    double cylinder[3]; /* x and y of its axis, and its radius [L]; radius 0: none. With a cylinder x and y are open
+                           axes without planes */
+} fibrad_walls;
+
+/* What a scene is made for. Zeroed but for `spheres`: open on all sides, no walls, the best instruction set. */
 typedef struct fibrad_scene_config {
     uint32_t spheres; /* how many spheres the scene holds: [1, FIBRAD_SPHERES_MAX] */
     int isa;          /* a fibrad_isa; one that the machine lacks is FIBRAD_E_ARGUMENT */
     double period[3]; /* per axis the length of the periodic box [L]; 0: the axis is open */
+    fibrad_walls walls;
 } fibrad_scene_config;
 
 /* A scene: spheres copied in the order of the cells of a grid. Immutable once made; share it between threads. */
@@ -126,7 +142,8 @@ typedef struct fibrad_fault {
     uint32_t first, second;
 } fibrad_fault;
 
-/* Bytes that fibrad_scene_init needs for this configuration; 0 if the configuration is not valid. */
+/* Bytes that fibrad_scene_init needs for this configuration: they depend on the number of spheres alone. Errors: 0 if
+ * the configuration is NULL or not valid. Cost: tens of nanoseconds, and that of fibrad_isa_best. */
 size_t fibrad_scene_size(const fibrad_scene_config *config);
 
 /* An upper bound of fibrad_scene_size for up to n spheres, as a constant expression, for static memory. */
@@ -134,24 +151,27 @@ size_t fibrad_scene_size(const fibrad_scene_config *config);
 
 /* Makes a scene in `memory` (`size` bytes on a 64-byte boundary) from config->spheres == spheres->n spheres, which are
  * copied: the arrays may go afterwards. On periodic axes centres may lie anywhere and are taken into the box.
- * Spheres may overlap (settled beds do), but no centre may lie inside another sphere.
+ * Spheres may overlap each other and the walls (settled beds do), but no centre may lie inside another sphere or beyond
+ * a wall. What leaves a sphere outwards beyond a wall meets that wall at once.
  * Errors: _ARGUMENT (then `fault`, unless NULL, names the sphere, or n if it is none of them), _SIZE, _ALIGNMENT,
  * _GEOMETRY (fault names the pair). Cost: O(n), about 0.5 microseconds per sphere; more where spheres crowd in clusters
- * far apart. */
+ * far apart, at worst O(n^2). Source: docs/methods.md section 6. */
 int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 
 /* What a scene turned out to be. */
 typedef struct fibrad_scene_facts {
     uint32_t spheres;
-    int isa;                       /* the instruction set in use */
-    uint32_t cells;                /* cells of the grid, all levels */
-    double radius_min, radius_max; /* [L] */
-    double overlap_max;            /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
-    uint32_t overlap_pair[2];      /* the spheres of the largest overlap */
+    int isa;                        /* the instruction set in use */
+    uint32_t cells;                 /* cells of the grid, all levels */
+    double radius_min, radius_max;  /* [L] */
+    double overlap_max;             /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
+    uint32_t overlap_pair[2];       /* the spheres of the largest overlap */
+    double wall_area[FIBRAD_WALLS]; /* [L^2] the part of each wall inside all others, per period of periodic axes;
+                                       infinity: unbounded; 0: there is no such wall */
 } fibrad_scene_facts;
 
-/* Fills in the facts of a scene. Cost: a copy. */
+/* Fills in the facts of a scene; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
 /* ---- work ------------------------------------------------------------------------------------------------------ */
@@ -166,7 +186,8 @@ typedef struct fibrad_work_config {
 
 typedef struct fibrad_work fibrad_work;
 
-/* Bytes that fibrad_work_init needs; 0 if the configuration is not valid (NULL: all defaults). */
+/* Bytes that fibrad_work_init needs (NULL: all defaults). Errors: 0 if a number is above 2^28. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_work_size(const fibrad_work_config *config);
 
 /* An upper bound of fibrad_work_size as a constant expression, for static memory (no zeros here). */
@@ -174,12 +195,12 @@ size_t fibrad_work_size(const fibrad_work_config *config);
     (20480 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
 
 /* Makes work memory in `memory` (`size` bytes on a 64-byte boundary). It serves any scene, one row at a time.
- * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(entries). */
 int fibrad_work_init(fibrad_work **work, void *memory, size_t size, const fibrad_work_config *config);
 
 /* After FIBRAD_E_CAPACITY from a row: a configuration under which that row gets farther (its `discs` as far as they
  * were met, its `entries` never more than the row can have). Repeat until the row succeeds; entries = number of spheres
- * always suffices. */
+ * always suffices. Null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_work_needed(const fibrad_work *work, fibrad_work_config *config);
 
 /* ---- beam ------------------------------------------------------------------------------------------------------ */
@@ -190,12 +211,14 @@ typedef struct fibrad_row {
     double *f;           /* [capacity] out: F from sphere i to sphere col[.], all > 0 */
     uint32_t capacity;   /* in */
     uint32_t length;     /* out: entries; after FIBRAD_E_CAPACITY of these arrays: the entries there would be */
-    double escaped;      /* out: the fraction that meets no sphere, measured as uncovered area or points */
+    double escaped;      /* out: the fraction that meets no sphere and no wall, as uncovered area or points */
     double error;        /* out: estimated Euclidean error of the row, from parts of its directions; twice the true one
                             on the median, seldom less than it */
     uint32_t directions; /* out, beam method only: how many were taken */
     double reach;        /* out, beam method only: how deep the windows have looked before they were covered [L];
                             infinity if one stayed open and there is no cutoff. See fibrad_moved_same */
+    double wall[FIBRAD_WALLS]; /* out: the fraction that meets each wall, 0 for walls that are not there; `error` does
+                                  not count them. The surface method leaves 0 */
 } fibrad_row;
 
 /* How a beam row is integrated. Zeroed: 233 directions, exact areas, no cutoff, no tolerance. */
@@ -209,8 +232,9 @@ typedef struct fibrad_beam_rule {
                             directions are each closed, but averaging them does not keep their sums below 1 */
 } fibrad_beam_rule;
 
-/* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + escaped = 1, to
- * rounding with exact areas, as exact counts with points. With exact areas the error falls as directions^-1.5.
+/* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + sum of wall +
+ * escaped = 1, to rounding with exact areas, as exact counts with points. With exact areas the error falls as
+ * directions^-1.5, that of the sharing between walls about as directions^-1 (5e-4 each at 233).
  * i [0, spheres); rule NULL: all defaults. Periodic images of one sphere share an entry, and i may see images of
  * itself. Errors: _ARGUMENT, _TABLE (points), _CAPACITY: either row->capacity (row->length then tells) or the work
  * memory (row->length is then 0, and fibrad_work_needed tells). Cost: some microseconds per direction with ten discs in
@@ -219,8 +243,9 @@ typedef struct fibrad_beam_rule {
 int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row);
 
-/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0.
- */
+/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0
+ * (both dimensionless): by the law directions^-1.5, a fifth more at least, FIBRAD_DIRECTIONS_MAX at most. No errors.
+ * Cost: under a microsecond. Source: docs/methods.md section 3. */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double wanted);
 
 /* ---- surface --------------------------------------------------------------------------------------------------- */
@@ -317,9 +342,9 @@ int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
 /* How far row i, which was right for `before`, is off for `now`: estimated Euclidean error, twice the root of the
  * sum over the spheres j seen of (F delta/w)^2. delta [L]: change of the vector from i to j; F = r_j^2/(4 d^2), d the
  * lesser of their distances then and now; w the lesser of r_j and max(d - r_j, r_i). Estimates of successive steps add
- * up to one of all. Only row->col and ->length are read. No account is taken of spheres that come into sight:
- * fibrad_moved_seen.
- * Errors: _ARGUMENT. Cost: about 10 ns per entry. Source: docs/methods.md section 9. */
+ * up to one of all. Only row->col and ->length are read. No account is taken of walls, nor of spheres that come into
+ * sight: fibrad_moved_seen.
+ * Errors: _ARGUMENT. Cost: about 10 ns per entry. Source: docs/methods.md section 10. */
 int fibrad_moved_error(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const fibrad_row *row,
                        double *error);
 
@@ -332,14 +357,15 @@ int fibrad_moved_seen(const fibrad_scene *now, uint32_t i, const fibrad_row *bef
 
 /* Which rows have not changed by a single bit: same[i] = 1 if no sphere that the windows of sphere i have met moved,
  * nor any into where they looked, reach[i] being the row->reach of the row in `before`; else 0. A row that sees out of
- * the bed changes with any sphere. reach, same [spheres]; scratch [2 spheres].
+ * the bed, or a wall, changes with any sphere, and all rows with the walls. reach, same [spheres]; scratch [2 spheres].
  * Errors: _ARGUMENT. Cost: some microseconds per sphere. */
 int fibrad_moved_same(const fibrad_scene *before, const fibrad_scene *now, const double *reach, unsigned char *scratch,
                       unsigned char *same);
 
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
 
-/* A sparse matrix of view factors, compressed rows, in the caller's arrays. */
+/* A sparse matrix of view factors, compressed rows, in the caller's arrays. Source of what follows: docs/methods.md
+ * section 5. */
 typedef struct fibrad_rows {
     uint32_t n;        /* rows and columns */
     uint64_t capacity; /* length of col and f */
@@ -365,6 +391,13 @@ int fibrad_rows_average_weighted(const fibrad_rows *raw, const double *r, const 
  * Errors: _ARGUMENT. Cost: O(entries). */
 int fibrad_rows_limit(fibrad_rows *rows, double *scratch);
 
+/* Closes rows that were averaged or limited: wall[i] and escaped[i], from the raw row i, are multiplied such that
+ * sum of f + sum of wall + escaped = 1. What a row lacks of 1 is as good a measure of what meets no sphere, from the
+ * opposite directions, as the raw row's. A row whose raw one met neither wall nor sky takes the shares of all spheres
+ * together; if none has any, what is lacking counts as escaped. wall, escaped [n], r [n] > 0.
+ * Errors: _ARGUMENT. Cost: O(entries). */
+int fibrad_rows_close(const fibrad_rows *rows, const double *r, double (*wall)[FIBRAD_WALLS], double *escaped);
+
 /* Drops entries below `threshold` (both of a reciprocal pair when both are below) and gives what they carried back to
  * the entries that stay, symmetrically: S_ij u_i u_j with u found so that the row sums are as before; what no such u
  * can place (a sphere that loses all it saw) goes into F_ii. Closure and reciprocity hold to 1e-14 afterwards.
@@ -388,20 +421,21 @@ int fibrad_rows_reciprocity(const fibrad_rows *rows, const double *r, double *la
 #define FIBRAD_FURNACE_CELLS_MAX 100000000u
 
 typedef struct fibrad_furnace_config {
-    double size[3];             /* m, > 0 */
+    double size[3];             /* m, from 1e-9 to 1e9 */
     uint32_t cells[3];          /* along x, y, z; the product is at most FIBRAD_FURNACE_CELLS_MAX */
-    double absorption;          /* 1/m, > 0: where nothing is absorbed there is no temperature */
-    double scattering;          /* 1/m, >= 0 */
-    double source;              /* W/m3 given off by the medium, of either sign */
-    double wall_temperature[6]; /* K, > 0; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
-    double wall_emissivity[6];  /* [0, 1] */
+    double absorption;          /* 1/m; times an edge of a cell from 1e-9 to 1e9: unabsorbed there is no temperature */
+    double scattering;          /* 1/m; times an edge of a cell from 0 to 1e9 */
+    double source;              /* W/m3 given off by the medium, of either sign, up to 1e30 */
+    double wall_temperature[6]; /* K, 1e-3 to 1e9; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
+    double wall_emissivity[6];  /* [0, 1], not all 0 */
     uint64_t seed;              /* of the bundles of rays */
 } fibrad_furnace_config;
 
 /* The state of one box: temperatures, fluxes, coefficients, and which bundles are to be traced next. */
 typedef struct fibrad_furnace fibrad_furnace;
 
-/* Bytes that fibrad_furnace_init needs; 0 if the configuration is not valid. */
+/* Bytes that fibrad_furnace_init needs. Errors: 0 if the configuration is NULL or not valid. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_furnace_size(const fibrad_furnace_config *config);
 
 /* Makes a furnace in `memory` (`size` bytes on a 64-byte boundary): E is the mean of the walls, Theta 2/3 everywhere.
@@ -421,13 +455,14 @@ typedef struct fibrad_furnace_arrays {
     double *power;            /* [6] what each wall gives, net [W] */
 } fibrad_furnace_arrays;
 
+/* Tells where the arrays are, which stay there; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_furnace_fields(fibrad_furnace *furnace, fibrad_furnace_arrays *arrays);
 
-/* Temperature [K] of E [W/m2]; 0 unless E is positive. */
+/* Temperature [K] of E [W/m2]; 0 unless E is positive. No errors. Cost: two square roots. */
 double fibrad_furnace_temperature(double e);
 
 /* Makes Theta the same constant everywhere, (0, 1], without transverse term: 1 for the heat-flux method (HFM), 2/3 for
- * isotropic radiation. Errors: _ARGUMENT. */
+ * isotropic radiation. Errors: _ARGUMENT. Cost: O(cells). Source: docs/furnace.md. */
 int fibrad_furnace_theta(fibrad_furnace *furnace, double theta);
 
 /* What the scattered part of the heat-flux equations is made of. */
@@ -457,14 +492,15 @@ int fibrad_furnace_balance(fibrad_furnace *furnace);
 /* Counts of bundles, in whole numbers: any split of the work adds up to the same bits. */
 typedef struct fibrad_furnace_tally fibrad_furnace_tally;
 
-/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. */
+/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. Errors: 0 for NULL. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_furnace_tally_size(const fibrad_furnace *furnace);
 
 /* Makes an empty tally in `memory` (`size` bytes on a 64-byte boundary), for one thread at a time.
- * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(cells). */
 int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t size, const fibrad_furnace *furnace);
 
-/* Adds `from` to `to`, tallies of the same furnace. Cost: O(cells). */
+/* Adds `from` to `to`, tallies of the same furnace (of others, and with null pointers, nothing). Cost: O(cells). */
 void fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from);
 
 /* What bundles of rays do. */
@@ -477,12 +513,15 @@ typedef enum fibrad_furnace_physics {
  * `bundles` bundles for all that walls and medium emit above the mean of the walls, each further plan carries only what
  * the change of E since then adds, at the same energy per bundle. `restart` makes a first plan again, for new tallies.
  * `planned` gets the number of bundles: every source is given a whole number of them, at least one.
- * bundles [1, 2^32]. Errors: _ARGUMENT. Cost: O(cells). */
+ * bundles [1, 2^32]. Errors: _ARGUMENT, also if E is not finite or its change asks for more than 2^33 bundles; there is
+ * no plan then, and the next is a first one. Cost: O(cells). */
 int fibrad_furnace_emit(fibrad_furnace *furnace, fibrad_furnace_physics physics, uint64_t bundles, int restart,
                         uint64_t *planned);
 
 /* Traces bundles [first, first + count) of the plan into a tally. The furnace is only read: threads may share it.
- * Errors: _ARGUMENT. Cost: about 0.6 (equilibrium) to 1.1 microseconds per bundle in a box of 20 x 20 x 40 cells. */
+ * Errors: _ARGUMENT, also for the tally of a furnace of other cells. Cost: about 0.6 (equilibrium) to 1.1 microseconds
+ * per bundle in a box of 20 x 20 x 40 cells; it goes with the number of events until absorption, which in a thick
+ * medium is the square of the optical thickness, and between walls that hardly absorb 1/emissivity. */
 int fibrad_furnace_trace(const fibrad_furnace *furnace, fibrad_furnace_tally *tally, uint64_t first, uint64_t count);
 
 /* Which ratio of the moments F_n = sum(w cos^n) over the bundles that cross a face is taken for Theta. */
@@ -499,7 +538,8 @@ int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally 
                             fibrad_furnace_estimator estimator, int transverse, fibrad_furnace_scatter scatter);
 
 /* Sets E, wall fluxes and powers from the sum of all tallies since the last restart (FIBRAD_FURNACE_EQUILIBRIUM).
- * Errors: _ARGUMENT. Cost: O(cells). */
+ * Errors: _ARGUMENT, also after a plan of the other physics and for the tally of a furnace of other cells. Cost:
+ * O(cells times symmetries). */
 int fibrad_furnace_equilibrium(fibrad_furnace *furnace, const fibrad_furnace_tally *tally);
 
 #ifdef __cplusplus

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "scenes.h"
+#include "suite.h"
 
 static fibrad_row beam(const struct bed *bed, uint32_t i, fibrad_beam_rule rule, int isa) {
     fibrad_scene *scene = scene_of(bed, isa);
@@ -378,7 +379,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("beam");
-    TCase *tcase = tcase_create("beam");
+    TCase *tcase = suite_case(suite, "beam");
     tcase_add_test(tcase, two_spheres_match_the_exact_pair);
     tcase_add_test(tcase, hidden_sphere_is_not_seen);
     tcase_add_test(tcase, raw_rows_close);
@@ -395,10 +396,5 @@ int main(void) {
     tcase_add_test(tcase, strays_are_seen_however_far);
     tcase_add_test(tcase, strays_are_met_on_the_way);
     tcase_add_test(tcase, bad_arguments_are_refused);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

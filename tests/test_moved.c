@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: MIT */
 #include "moving_omp.h"
 #include "scenes.h"
+#include "suite.h"
 
 static struct bed copy_of(const struct bed *bed) {
     struct bed to;
@@ -351,6 +352,31 @@ START_TEST(threads_and_exact_steps_change_no_bit) {
 }
 END_TEST
 
+/* Moving a wall changes rows that see it; nothing is the same then. */
+START_TEST(walls_that_move_change_rows) {
+    struct bed bed = packing(100, .8, 1.2, .4, 1, false);
+    fibrad_scene_config config = {.spheres = bed.n, .walls = {.planes = 63, .at = {-3, 30, -3, 30, -3, 30}}};
+    const fibrad_spheres views = {bed.x, bed.y, bed.z, bed.r, bed.n};
+    const size_t size = fibrad_scene_size(&config);
+    fibrad_scene *scene[3];
+    void *block[3];
+    for (int k = 0; k < 3; k++) {
+        if (k == 2) config.walls.at[5] = 31;
+        block[k] = block_of(size);
+        ck_assert_int_eq(fibrad_scene_init(&scene[k], block[k], size, &config, &views, NULL), FIBRAD_OK);
+    }
+    double reach[100];
+    unsigned char same[100], scratch[200];
+    for (uint32_t i = 0; i < bed.n; i++) reach[i] = INFINITY;
+    ck_assert_int_eq(fibrad_moved_same(scene[0], scene[1], reach, scratch, same), FIBRAD_OK);
+    for (uint32_t i = 0; i < bed.n; i++) ck_assert_uint_eq(same[i], 1);
+    ck_assert_int_eq(fibrad_moved_same(scene[0], scene[2], reach, scratch, same), FIBRAD_OK);
+    for (uint32_t i = 0; i < bed.n; i++) ck_assert_uint_eq(same[i], 0);
+    for (int k = 0; k < 3; k++) free(block[k]);
+    bed_free(&bed);
+}
+END_TEST
+
 START_TEST(bad_arguments_are_refused) {
     struct bed bed = packing(50, .8, 1.2, .4, 1, true), less = packing(49, .8, 1.2, .4, 1, true), open = copy_of(&bed);
     open.period[1] = 0;
@@ -394,8 +420,8 @@ START_TEST(bad_arguments_are_refused) {
 END_TEST
 
 int main(void) {
-    TCase *tests = tcase_create("moved");
-    tcase_set_timeout(tests, 60);
+    Suite *suite = suite_create("moved");
+    TCase *tests = suite_case(suite, "moved");
     tcase_add_test(tests, estimate_bounds_the_change_of_a_pair);
     tcase_add_test(tests, estimates_hold_in_beds);
     tcase_add_test(tests, moving_as_a_whole_is_no_error);
@@ -404,12 +430,7 @@ int main(void) {
     tcase_add_test(tests, the_loop_keeps_its_error);
     tcase_add_test(tests, what_comes_into_sight_is_found);
     tcase_add_test(tests, threads_and_exact_steps_change_no_bit);
+    tcase_add_test(tests, walls_that_move_change_rows);
     tcase_add_test(tests, bad_arguments_are_refused);
-    Suite *suite = suite_create("moved");
-    suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

@@ -1,5 +1,4 @@
 /* test_pair_exact.c - the view factor of an unobstructed pair. SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,6 +6,7 @@
 
 #include "exact_gsl.h"
 #include "fibrad.h"
+#include "suite.h"
 
 static double exact(double r1, double r2, double gap) {
     double f12 = -1;
@@ -180,7 +180,8 @@ START_TEST(arguments) {
 END_TEST
 
 int main(void) {
-    TCase *all = tcase_create("pair exact");
+    Suite *suite = suite_create("pair_exact");
+    TCase *all = suite_case(suite, "pair exact");
     tcase_add_test(all, true_values);
     tcase_add_test(all, closed_values);
     tcase_add_test(all, far_field);
@@ -191,11 +192,5 @@ int main(void) {
     tcase_add_test(all, falls_with_the_gap);
     tcase_add_test(all, extremes);
     tcase_add_test(all, arguments);
-    Suite *suite = suite_create("pair_exact");
-    suite_add_tcase(suite, all);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

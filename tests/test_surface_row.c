@@ -1,12 +1,12 @@
 /* test_surface_row.c - rows by the surface method against ray-by-ray sums and against beams.
  * SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "bed_make.h"
 #include "fibrad.h"
+#include "suite.h"
 #include "surface_plain.h"
 
 #define CUTOFF 6.0
@@ -248,9 +248,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("surface row");
-    TCase *cases = tcase_create("surface row");
-    tcase_set_timeout(cases, 120);
-    suite_add_tcase(suite, cases);
+    TCase *cases = suite_case(suite, "surface row");
     tcase_add_test(cases, equals_plain_sums);
     tcase_add_test(cases, skips_and_instruction_sets_change_no_bit);
     tcase_add_test(cases, agrees_with_beams);
@@ -258,9 +256,5 @@ int main(void) {
     tcase_add_test(cases, tells_what_it_needs);
     tcase_add_test(cases, bounds_the_search_for_images);
     tcase_add_test(cases, refuses_what_is_wrong);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

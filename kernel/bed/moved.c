@@ -2,7 +2,7 @@
 #include "bed/scene.h"
 
 /* Seen from sphere i, the edge of sphere j sweeps over FACTOR F delta/width of the row when j moves by delta. The
- * factor bounds what was measured, docs/methods.md section 9. */
+ * factor bounds what was measured, docs/methods.md section 10. */
 #define FACTOR 2.0
 
 /* Rounding of distances, relative. */
@@ -79,6 +79,12 @@ int fibrad_moved_seen(const fibrad_scene *now, uint32_t i, const fibrad_row *bef
     return FIBRAD_OK;
 }
 
+static bool same_walls(const fibrad_container *a, const fibrad_container *b) {
+    for (int axis = 0; axis < 3; axis++)
+        if (a->low[axis] != b->low[axis] || a->high[axis] != b->high[axis]) return false;
+    return a->axis[0] == b->axis[0] && a->axis[1] == b->axis[1] && a->radius == b->radius;
+}
+
 /* Marks the spheres of `scene`, in the order of its cells, that are not where they are in the other, to the bit.
  * Returns whether there are any. */
 static bool mark(const fibrad_scene *scene, const fibrad_scene *other, unsigned char *moved) {
@@ -121,11 +127,11 @@ int fibrad_moved_same(const fibrad_scene *before, const fibrad_scene *now, const
         if (!(reach[i] >= 0)) return FIBRAD_E_ARGUMENT;
     unsigned char *then_moved = scratch, *now_moved = scratch + n;
     mark(before, now, then_moved);
-    bool any = mark(now, before, now_moved);
+    bool any = mark(now, before, now_moved), walls = same_walls(&before->container, &now->container);
     for (uint32_t i = 0; i < n; i++) {
         uint32_t then_place = before->place[i], now_place = now->place[i];
-        if (!any)
-            same[i] = 1;
+        if (!any || !walls)
+            same[i] = walls;
         else if (now_moved[now_place] || !fibrad_finite(reach[i]))
             same[i] = 0;
         else
