@@ -5,7 +5,7 @@
 # bits, which notice anything). Ends with status 1 if a break goes unnoticed, or the line is no longer there.
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}"
-tests="base scene direction pair_exact rows beam cast surface surface_row areas furnace stress"
+tests="base scene direction pair_exact rows beam moved cast surface surface_row areas furnace stress"
 tree=$BUILD/mutate
 programs=$(for test in $tests; do echo "build/tests/test_$test"; done)
 export CK_DEFAULT_TIMEOUT=60

@@ -221,6 +221,38 @@ START_TEST(same_rows_have_the_same_bits) {
 }
 END_TEST
 
+/* The disc that covers a window last lies as deep as the row reaches, and its centre is farther away. */
+START_TEST(what_covers_the_deepest_window_is_within_reach) {
+    struct bed bed = packing(500, .8, 1.2, .55, 4, true);
+    fibrad_scene *before = scene_of(&bed, FIBRAD_ISA_BEST);
+    double reach[500] = {0};
+    unsigned char same[500], scratch[1000];
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < bed.n; i += 50) {
+        fibrad_row row = row_in(before, i, &(fibrad_beam_rule){.directions = 8}, bed.n);
+        for (uint32_t k = 0; k < row.length; k++) {
+            const uint32_t j = row.col[k];
+            const double edge = bed.period[0], x = remainder(bed.x[j] - bed.x[i], edge);
+            const double y = remainder(bed.y[j] - bed.y[i], edge), z = remainder(bed.z[j] - bed.z[i], edge);
+            if (j == i || x * x + y * y + z * z <= row.reach * row.reach) continue;
+            struct bed moved = copy_of(&bed);
+            moved.y[j] += 1e-6;
+            fibrad_scene *now = scene_of(&moved, FIBRAD_ISA_BEST);
+            reach[i] = row.reach;
+            ck_assert_int_eq(fibrad_moved_same(before, now, reach, scratch, same), FIBRAD_OK);
+            ck_assert_uint_eq(same[i], 0);
+            found++;
+            free(now);
+            bed_free(&moved);
+        }
+        row_free(&row);
+    }
+    ck_assert_uint_gt(found, 3);
+    free(before);
+    bed_free(&bed);
+}
+END_TEST
+
 /* The largest error of the rows kept, against rows computed anew. */
 static double worst_row(const struct moving *moving, const struct bed *bed) {
     struct moving anew;
@@ -427,6 +459,7 @@ int main(void) {
     tcase_add_test(tests, moving_as_a_whole_is_no_error);
     tcase_add_test(tests, nothing_beyond_the_reach_matters);
     tcase_add_test(tests, same_rows_have_the_same_bits);
+    tcase_add_test(tests, what_covers_the_deepest_window_is_within_reach);
     tcase_add_test(tests, the_loop_keeps_its_error);
     tcase_add_test(tests, what_comes_into_sight_is_found);
     tcase_add_test(tests, threads_and_exact_steps_change_no_bit);
