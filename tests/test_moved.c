@@ -228,7 +228,7 @@ START_TEST(what_covers_the_deepest_window_is_within_reach) {
     double reach[500] = {0};
     unsigned char same[500], scratch[1000];
     uint32_t found = 0;
-    for (uint32_t i = 0; i < bed.n; i += 50) {
+    for (uint32_t i = 0; i < bed.n; i += 20) {
         fibrad_row row = row_in(before, i, &(fibrad_beam_rule){.directions = 8}, bed.n);
         for (uint32_t k = 0; k < row.length; k++) {
             const uint32_t j = row.col[k];
