@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 #include <immintrin.h>
+#include "base/lanes/places.h"
 
 #define VD_LANES 2
 #define VF_LANES 4
@@ -22,8 +23,15 @@ static inline void vd_compress(double *p, uint32_t bits, vd a) {
     if (bits & 1) _mm_store_sd(p++, a);
     if (bits & 2) _mm_storeh_pd(p, a);
 }
+static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
+    p[0] = first + (bits == 2);
+    p[1] = first + 1;
+    return (bits & 1) + (bits >> 1);
+}
+static inline vd vd_gather(const double *table, const uint32_t *k) { return _mm_set_pd(table[k[1]], table[k[0]]); }
 static inline vd vd_loadu(const double *p) { return _mm_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm_store_pd(p, a); }
+static inline void vd_storeu(double *p, vd a) { _mm_storeu_pd(p, a); }
 static inline void vd_store_float(float *p, vd a) { _mm_storel_pi((__m64 *)(void *)p, _mm_cvtpd_ps(a)); }
 static inline vd vd_add(vd a, vd b) { return _mm_add_pd(a, b); }
 static inline vd vd_sub(vd a, vd b) { return _mm_sub_pd(a, b); }
@@ -48,9 +56,7 @@ static inline vf vf_sub(vf a, vf b) { return _mm_sub_ps(a, b); }
 static inline vf vf_mul(vf a, vf b) { return _mm_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)); }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    uint32_t count = 0;
-    for (; bits != 0; bits &= bits - 1) p[count++] = first + (uint32_t)__builtin_ctz(bits);
-    return count;
+    return fibrad_compress_places(p, bits, first);
 }
 
 #endif
