@@ -21,12 +21,14 @@ void LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *disc, 
             uint32_t k = discs.order[d];
             vf u = vf_set1(discs.fu[k]), v = vf_set1(discs.fv[k]), square = vf_set1(discs.square[k]);
             uint64_t hidden = 0;
+#pragma GCC unroll 64
             for (uint32_t lane = 0; lane < 64; lane += VF_LANES) {
                 vf dx = vf_sub(vf_load(x + lane), u), dy = vf_sub(vf_load(y + lane), v);
-                hidden |= (uint64_t)vf_lt_bits(vf_add(vf_mul(dx, dx), vf_mul(dy, dy)), square) << lane;
+                hidden += (uint64_t)vf_lt_bits(vf_add(vf_mul(dx, dx), vf_mul(dy, dy)), square) << lane;
             }
-            discs.hits[d] += fibrad_count_bits(seen & hidden);
-            seen &= ~hidden;
+            hidden &= seen;
+            discs.hits[d] += fibrad_count_bits(hidden);
+            seen -= hidden;
         }
         points->seen[word] = seen;
         points->open += fibrad_count_bits(seen);
