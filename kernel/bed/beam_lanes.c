@@ -17,14 +17,14 @@
 /* Appends the discs of one shell that come before the window. That the places are listed before they are used spares
  * one mispredicted branch for most vectors. */
 static void sieve(fibrad_work *work, const double frame[9], uint32_t shell) {
-    const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
+    const fibrad_near *near = &work->near;
+    const float *x = near->fx, *y = near->fy, *z = near->fz, *e = near->fe;
     uint32_t *place = work->disc.near + work->disc.count, room = work->disc.capacity - work->disc.count;
     vf wx = vf_set1((float)frame[6]), wy = vf_set1((float)frame[7]), wz = vf_set1((float)frame[8]);
-    uint32_t found = 0, end = near.end[shell];
-    for (uint32_t j = shell == 0 ? 0 : near.end[shell - 1]; j < end; j += VF_LANES) {
-        vf depth = vf_add(vf_add(vf_mul(wx, vf_load(near.fx + j)), vf_mul(wy, vf_load(near.fy + j))),
-                          vf_mul(wz, vf_load(near.fz + j)));
-        uint32_t bits = vf_lt_bits(vf_load(near.fe + j), depth);
+    uint32_t found = 0, end = near->end[shell];
+    for (uint32_t j = shell == 0 ? 0 : near->end[shell - 1]; j < end; j += VF_LANES) {
+        vf depth = vf_add(vf_add(vf_mul(wx, vf_load(x + j)), vf_mul(wy, vf_load(y + j))), vf_mul(wz, vf_load(z + j)));
+        uint32_t bits = vf_lt_bits(vf_load(e + j), depth);
         found += vf_compress_places(place + (found < room ? found : room), bits, j);
     }
     LANED(fibrad_near_discs)(work, frame, found);
@@ -53,27 +53,27 @@ static void sort_by_insertion(fibrad_work *work) {
 }
 
 /* Lists all but the settled discs in order. Up to RANKED discs are sorted by counting, in lanes, how many lie before
- * each, which no branch depends on; insertion mispredicted 38 branches a window. Equal depths would share a rank. */
+ * each, which no branch depends on; insertion mispredicted 38 branches a window. Depths that floats do not tell apart
+ * share a rank, and the ranks add up to less than they should. */
 #define RANKED 64
 static void sort(fibrad_work *work, uint32_t settled) {
-    _Alignas(64) double rank[RANKED];
+    _Alignas(64) float key[RANKED], rank[RANKED];
     const double *depth = work->disc.depth;
-    uint32_t count = work->disc.count, *order = work->disc.order;
+    uint32_t count = work->disc.count, *order = work->disc.order, sum = settled * (settled - 1) / 2;
     if (settled == count) return;
     if (count <= RANKED) {
-        uint64_t taken = (UINT64_C(1) << settled) - 1;
-        for (uint32_t k = 0; k < count; k += VD_LANES) {
-            vd at = vd_load(depth + k), sum = vd_set1(0);
-            for (uint32_t j = 0; j < count; j++)
-                sum = vd_add(sum, vd_select(vd_lt(vd_set1(depth[j]), at), vd_set1(1), vd_set1(0)));
-            vd_store(rank + k, sum);
+        for (uint32_t k = 0; k < count; k += VD_LANES) vd_store_float(key + k, vd_load(depth + k));
+        for (uint32_t k = 0; k < count; k += VF_LANES) {
+            vf at = vf_load(key + k), before_it = vf_set1(0);
+            for (uint32_t j = 0; j < count; j++) before_it = vf_add(before_it, vf_lt_one(vf_set1(key[j]), at));
+            vf_store(rank + k, before_it);
         }
         for (uint32_t k = 0; k < count; k++) {
-            uint32_t to = (uint32_t)rank[k];
+            uint32_t to = (uint32_t)(int32_t)rank[k];
             order[to] = k;
-            taken |= UINT64_C(1) << to;
+            sum += to;
         }
-        if (taken == UINT64_MAX >> (64 - count)) return;
+        if (sum == count * (count - 1) / 2) return;
     }
     sort_by_insertion(work);
 }
@@ -92,7 +92,7 @@ static uint32_t settle(fibrad_work *work, fibrad_points *points, uint32_t window
     if (points->count > 0) {
         LANED(fibrad_points_take)(points, &work->disc, from, to);
         for (uint32_t d = from; d < to; d++)
-            if (disc.hits[d] > 0) fibrad_work_see(work, disc.order[d], window, disc.hits[d]);
+            if (disc.hits[d] > 0) fibrad_work_see(work, disc.order[d], window, (int32_t)disc.hits[d]);
         *open = points->open > 0;
     }
     for (uint32_t d = from; d < to; d++) disc.depth[disc.order[d]] = -1;

@@ -11,7 +11,8 @@
  *                            vd_compress(p, bits, a): the lanes named by bits side by side at p, which has room for all
  *                            vd_compress_places(p, bits, first): first + l for them; returns how many
  *   vm   a mask of vd lanes  vm_and vm_or vm_not vm_bits (bit l = lane l)
- *   vf   VF_LANES floats     vf_set1 vf_load vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
+ *   vf   VF_LANES floats     vf_set1 vf_load vf_store vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
+ *                            vf_lt_one: 1 where a < b, else 0
  *                            vf_compress_places(p, bits, first): as that of vd
  * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them. */
 /* clang-format on */
@@ -61,10 +62,12 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
 
 static inline vf vf_set1(float a) { return a; }
 static inline vf vf_load(const float *p) { return *p; }
+static inline void vf_store(float *p, vf a) { *p = a; }
 static inline vf vf_add(vf a, vf b) { return a + b; }
 static inline vf vf_sub(vf a, vf b) { return a - b; }
 static inline vf vf_mul(vf a, vf b) { return a * b; }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return a < b; }
+static inline vf vf_lt_one(vf a, vf b) { return a < b ? 1.0f : 0.0f; }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     return vd_compress_places(p, bits, first);
 }
