@@ -83,19 +83,26 @@ static uint32_t settle(fibrad_work *work, fibrad_points *points, uint32_t window
                        bool *open) {
     const fibrad_discs disc = work->disc;
     uint32_t to = from;
-    for (; to < disc.count && disc.depth[disc.order[to]] <= depth; to++) {
-        uint32_t k = disc.order[to];
-        if (points->count > 0) continue;
-        *open = LANED(fibrad_areas_disc)(&work->areas, k, disc.u[k], disc.v[k], disc.r[k]);
-        if (!*open) return to;
-    }
-    if (points->count > 0) {
-        LANED(fibrad_points_take)(points, &work->disc, from, to);
-        for (uint32_t d = from; d < to; d++)
-            if (disc.hits[d] > 0) fibrad_work_see(work, disc.order[d], window, (int32_t)disc.hits[d]);
+    if (points->count == 0) {
+        for (; *open && to < disc.count && disc.depth[disc.order[to]] <= depth; to++) {
+            uint32_t k = disc.order[to];
+            *open = LANED(fibrad_areas_disc)(&work->areas, k, disc.u[k], disc.v[k], disc.r[k]);
+        }
+    } else {
+        to = LANED(fibrad_points_take)(points, &work->disc, from, depth);
         *open = points->open > 0;
+        uint32_t takers = 0;
+        for (uint32_t d = from; d < to; d++) {
+            disc.taker[takers] = d;
+            takers += disc.hits[d] > 0;
+        }
+        for (uint32_t t = 0; t < takers; t++) {
+            uint32_t d = disc.taker[t];
+            fibrad_work_see(work, disc.order[d], window, (int32_t)disc.hits[d]);
+        }
     }
-    for (uint32_t d = from; d < to; d++) disc.depth[disc.order[d]] = -1;
+    if (*open)
+        for (uint32_t d = from; d < to; d++) disc.depth[disc.order[d]] = -1;
     return to;
 }
 

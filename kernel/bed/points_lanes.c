@@ -4,15 +4,18 @@
 #include "bed/points_lanes.h"
 
 /* Word by word of 64 points, which stay in registers and are done with once all of them are hidden. */
-void LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *disc, uint32_t from, uint32_t to) {
+uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *disc, uint32_t from, double depth) {
+    uint32_t to = 0;
     const fibrad_discs discs = *disc; /* a copy: what is stored cannot change its pointers */
     for (uint32_t k = 0; k < discs.count; k += VD_LANES) {
         vd r = vd_load(discs.r + k);
+        uint32_t lanes = discs.count - k < VD_LANES ? discs.count - k : VD_LANES;
+        to += fibrad_count_bits(vm_bits(vd_le(vd_load(discs.depth + k), vd_set1(depth))) & ((1u << lanes) - 1));
         vd_store_float(discs.fu + k, vd_load(discs.u + k));
         vd_store_float(discs.fv + k, vd_load(discs.v + k));
         vd_store_float(discs.square + k, vd_mul(r, r));
     }
-    for (uint32_t d = from; d < to; d++) discs.hits[d] = 0;
+    fibrad_zero(discs.hits + from, (to - from) * sizeof *discs.hits);
     points->open = 0;
     for (uint32_t word = 0; word < points->count / 64; word++) {
         const float *x = points->set.x + 64 * word, *y = points->set.y + 64 * word;
@@ -33,4 +36,5 @@ void LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *disc, 
         points->seen[word] = seen;
         points->open += fibrad_count_bits(seen);
     }
+    return to;
 }

@@ -13,8 +13,9 @@ typedef struct fibrad_points {
     uint64_t seen[4]; /* bit p: point p is open */
 } fibrad_points;
 
-/* Lets the discs order[from] ... order[to - 1], from front to back, take the open points inside them: the ray-sphere
- * test of a parallel beam, without a square root. hits tells how many each takes. */
-void LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *disc, uint32_t from, uint32_t to);
+/* Lets the discs from order[from] on down to `depth`, from front to back, take the open points inside them: the
+ * ray-sphere test of a parallel beam, without a square root. hits tells how many each takes. Returns where in the order
+ * the deeper ones begin. */
+uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *disc, uint32_t from, double depth);
 
 #endif

@@ -45,6 +45,7 @@ typedef struct fibrad_discs {
     uint32_t *near;            /* [same] place in the near list */
     uint32_t *order;           /* [capacity] which is the first, the second ... from front to back */
     uint32_t *hits;            /* [capacity] points that the first, the second ... takes */
+    uint32_t *taker;           /* [capacity] which of them take any */
     uint32_t capacity;
     uint32_t count; /* may go on beyond the capacity */
 } fibrad_discs;
