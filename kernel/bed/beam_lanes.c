@@ -54,26 +54,33 @@ static void sort_by_insertion(fibrad_work *work) {
 
 /* Lists all but the settled discs in order. Up to RANKED discs are sorted by counting, in lanes, how many lie before
  * each, which no branch depends on; insertion mispredicted 38 branches a window. Depths that floats do not tell apart
- * share a rank, and the ranks add up to less than they should. */
+ * share a rank, and the ranks add up to less than they should. What makes the list whole eights, so that the number of
+ * rounds can be predicted, is deeper than all. */
 #define RANKED 64
 static void sort(fibrad_work *work, uint32_t settled) {
-    _Alignas(64) float key[RANKED], rank[RANKED];
+    _Alignas(64) float key[RANKED + FIBRAD_LANES_MAX], rank[RANKED + FIBRAD_LANES_MAX];
     const double *depth = work->disc.depth;
-    uint32_t count = work->disc.count, *order = work->disc.order, sum = settled * (settled - 1) / 2;
+    uint32_t count = work->disc.count, eights = (count + 7) / 8 * 8, *order = work->disc.order;
     if (settled == count) return;
     if (count <= RANKED) {
         for (uint32_t k = 0; k < count; k += VD_LANES) vd_store_float(key + k, vd_load(depth + k));
-        for (uint32_t k = 0; k < count; k += VF_LANES) {
+        for (uint32_t k = 0; k < 8; k++) key[count + k] = __builtin_inff();
+        for (uint32_t k = 0; k < eights; k += VF_LANES) {
             vf at = vf_load(key + k), before_it = vf_set1(0);
-            for (uint32_t j = 0; j < count; j++) before_it = vf_add(before_it, vf_lt_one(vf_set1(key[j]), at));
+            for (uint32_t j = 0; j < eights; j += 8)
+#pragma GCC unroll 8
+                for (uint32_t l = 0; l < 8; l++) before_it = vf_add(before_it, vf_lt_one(vf_set1(key[j + l]), at));
             vf_store(rank + k, before_it);
         }
-        for (uint32_t k = 0; k < count; k++) {
-            uint32_t to = (uint32_t)(int32_t)rank[k];
-            order[to] = k;
-            sum += to;
-        }
-        if (sum == count * (count - 1) / 2) return;
+        uint32_t sum = 0;
+        for (uint32_t k = 0; k < eights; k += 8)
+#pragma GCC unroll 8
+            for (uint32_t l = 0; l < 8; l++) {
+                uint32_t to = (uint32_t)(int32_t)rank[k + l];
+                order[to] = k + l;
+                sum += to;
+            }
+        if (sum == (count * (count - 1) - settled * (settled - 1)) / 2 + (eights - count) * count) return;
     }
     sort_by_insertion(work);
 }
@@ -92,10 +99,11 @@ static uint32_t settle(fibrad_work *work, fibrad_points *points, uint32_t window
         to = LANED(fibrad_points_take)(points, &work->disc, from, depth);
         *open = points->open > 0;
         uint32_t takers = 0;
-        for (uint32_t d = from; d < to; d++) {
-            disc.taker[takers] = d;
-            takers += disc.hits[d] > 0;
-        }
+        for (uint32_t d = from; d < to; d += 4)
+            for (uint32_t l = 0; l < 4; l++) { /* beyond the end there are no hits */
+                disc.taker[takers] = d + l;
+                takers += disc.hits[d + l] > 0;
+            }
         for (uint32_t t = 0; t < takers; t++) {
             uint32_t d = disc.taker[t];
             fibrad_work_see(work, disc.order[d], window, (int32_t)disc.hits[d]);

@@ -15,7 +15,7 @@ uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *di
         vd_store_float(discs.fv + k, vd_load(discs.v + k));
         vd_store_float(discs.square + k, vd_mul(r, r));
     }
-    fibrad_zero(discs.hits + from, (to - from) * sizeof *discs.hits);
+    for (uint32_t d = from; d < to; d += 16) fibrad_zero(discs.hits + d, 16 * sizeof *discs.hits);
     points->open = 0;
     for (uint32_t word = 0; word < points->count / 64; word++) {
         const float *x = points->set.x + 64 * word, *y = points->set.y + 64 * word;

@@ -46,9 +46,9 @@ static fibrad_work *layout(fibrad_arena *arena, const fibrad_work_config *config
     disc->fv = fibrad_arena_take(arena, discs, sizeof(float));
     disc->square = fibrad_arena_take(arena, discs, sizeof(float));
     disc->near = fibrad_arena_take(arena, discs, sizeof(uint32_t));
-    disc->order = fibrad_arena_take(arena, config->discs, sizeof(uint32_t));
-    disc->hits = fibrad_arena_take(arena, config->discs, sizeof(uint32_t));
-    disc->taker = fibrad_arena_take(arena, config->discs, sizeof(uint32_t));
+    disc->order = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    disc->hits = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    disc->taker = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     fibrad_areas_layout(&work->areas, arena, config->discs);
 
     fibrad_entries *entries = &work->entries;

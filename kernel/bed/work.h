@@ -43,9 +43,9 @@ typedef struct fibrad_discs {
     double *depth, *u, *v, *r; /* [capacity + FIBRAD_LANES_MAX]; the depth is -1 once a disc is settled */
     float *fu, *fv, *square;   /* [same] place and r^2 for points */
     uint32_t *near;            /* [same] place in the near list */
-    uint32_t *order;           /* [capacity] which is the first, the second ... from front to back */
-    uint32_t *hits;            /* [capacity] points that the first, the second ... takes */
-    uint32_t *taker;           /* [capacity] which of them take any */
+    uint32_t *order;           /* [same] which is the first, the second ... from front to back */
+    uint32_t *hits;            /* [same] points that the first, the second ... takes */
+    uint32_t *taker;           /* [same] which of them take any */
     uint32_t capacity;
     uint32_t count; /* may go on beyond the capacity */
 } fibrad_discs;
@@ -137,9 +137,12 @@ static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, u
         entries->missed++;
         return;
     }
-    double *part = entries->part[entry], other = entries->end ? area / 4 : 0; /* so even - odd holds half of it */
-    part[k % 4] += area - other;
-    part[k % 4 ^ 1] += other;
+    double *part = entries->part[entry];
+    if (entries->end) { /* so even - odd holds half of it */
+        part[k % 4 ^ 1] += area / 4;
+        area -= area / 4;
+    }
+    part[k % 4] += area;
 }
 
 /* Adds what window k sees of a disc. */
