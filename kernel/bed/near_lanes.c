@@ -96,6 +96,10 @@ static void leave_out(fibrad_work *work, uint32_t from) {
     work->disc.count = to;
 }
 
+static inline vd along(const double a[3], vd x, vd y, vd z) {
+    return vd_add(vd_add(vd_mul(vd_set1(a[0]), x), vd_mul(vd_set1(a[1]), y)), vd_mul(vd_set1(a[2]), z));
+}
+
 void LANED(fibrad_near_discs)(fibrad_work *work, const double frame[9], uint32_t found) {
     const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
     const fibrad_discs disc = work->disc;
@@ -108,18 +112,15 @@ void LANED(fibrad_near_discs)(fibrad_work *work, const double frame[9], uint32_t
     uint32_t outside = 0;                                       /* of the window, or not surely ahead */
     for (uint32_t k = from; k < end; k += VD_LANES) {
         const uint32_t *place = disc.near + k;
-        vd x = vd_gather(near.x, place), y = vd_gather(near.y, place), z = vd_gather(near.z, place), across[3];
-        for (int axis = 0; axis < 3; axis++) {
-            const double *a = frame + 3 * axis;
-            across[axis] = vd_add(vd_add(vd_mul(vd_set1(a[0]), x), vd_mul(vd_set1(a[1]), y)), vd_mul(vd_set1(a[2]), z));
-        }
-        vd u = across[0], v = across[1], r = vd_gather(near.r, place), wide = vd_add(vd_set1(1), r);
+        vd x = vd_gather(near.x, place), y = vd_gather(near.y, place), z = vd_gather(near.z, place);
+        vd u = along(frame, x, y, z), v = along(frame + 3, x, y, z), depth = along(frame + 6, x, y, z);
+        vd r = vd_gather(near.r, place), wide = vd_add(vd_set1(1), r);
         vm overlaps = vd_lt(vd_add(vd_mul(u, u), vd_mul(v, v)), vd_mul(wide, wide));
-        vm ahead = vd_lt(vd_set1(0), across[2]);
+        vm ahead = vd_lt(vd_set1(0), depth);
         vd_storeu(disc.u + k, u);
         vd_storeu(disc.v + k, v);
         vd_storeu(disc.r + k, r);
-        vd_storeu(disc.depth + k, across[2]);
+        vd_storeu(disc.depth + k, depth);
         uint32_t lanes = end - k < VD_LANES ? end - k : VD_LANES;
         outside |= ~vm_bits(vm_and(overlaps, ahead)) & ((1u << lanes) - 1);
     }
