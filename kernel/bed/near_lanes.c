@@ -60,7 +60,7 @@ void LANED(fibrad_near_extend)(fibrad_work *work) {
     fibrad_near *near = &work->near;
     uint32_t shell = near->shells, begin = shell > 0 ? near->end[shell - 1] : 0, count = begin;
     double from = shell > 0 ? near->limit[shell - 1] : 0;
-    double to = shell > 0 ? FIBRAD_GROWTH * from : work->step;
+    double to = shell > 0 ? work->growth * from : work->step;
     near->full = shell == FIBRAD_SHELLS;
     for (uint32_t l = 0; l < scene->levels && !near->full; l++) {
         double wide = 1 + scene->level[l].radius_max * work->inverse;

@@ -72,7 +72,7 @@ int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
     int status = fibrad_surface_nodes_of(&rule, &task.nodes);
     if (status != FIBRAD_OK) return status;
 
-    fibrad_work_begin(work, scene, scene->place[i], rule.cutoff);
+    fibrad_work_begin(work, scene, scene->place[i], rule.cutoff, (fibrad_stride){0});
     const uint64_t count = list_near(work);
     if (count > work->near.capacity) {
         work->needed.near = (uint32_t)fibrad_min((double)count, FIBRAD_WORK_MAX);

@@ -12,12 +12,6 @@
 
 #define FIBRAD_NONE   UINT32_MAX
 #define FIBRAD_SHELLS 8
-/* The first shell looks FIRST mean spacings far, the spacing being the cube root of the volume per sphere, each next
- * GROWTH times as far. In a packed bed it has 130 spheres, and three shells fit into the default memory. Of the pairs
- * tried, from (2.3, 1.5) to (4.2, 1.25), this was the fastest: by 10 % over (2.3, 1.5). */
-#define FIBRAD_FIRST  3.0
-#define FIBRAD_GROWTH 1.4
-
 /* Near spheres in shells by emergence: the least depth at which a sphere can come before a window, in any direction,
  * e = sqrt(d^2 - (1 + r)^2), d being its centre distance. It does come before the window of direction w just if
  * w.c > e. All spheres with e <= limit[s] are in shells 0 ... s, so that what a window meets down to that depth is
@@ -79,13 +73,20 @@ struct fibrad_work {
     double unit, inverse; /* its radius [L], and 1/radius */
     double centre[3];     /* [L] */
     double reach;         /* the cutoff; infinity if there is none */
-    double step;          /* how far the first shell looks */
+    double step, growth;  /* how far the first shell looks, and how much farther each next one */
     double farthest;      /* no sphere is farther from i; infinity with periodic axes */
     double clear;         /* no window has its horizon nearer than this */
 };
 
+/* How far the shells look: the first one `first` mean spacings, the spacing being the cube root of the volume per
+ * sphere, each next one `growth` times as far. A matter of speed alone. */
+typedef struct fibrad_stride {
+    double first, growth;
+} fibrad_stride;
+
 /* Prepares for row `place` of the scene: no near spheres, no entries. */
-void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t place, double cutoff);
+void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t place, double cutoff,
+                       fibrad_stride stride);
 
 /* The part of a beam that is asked for: all of it (0, 0, 1), or the ray at place (u, v) of its window (u, v, 0). */
 typedef struct fibrad_tube {
