@@ -3,6 +3,28 @@
 #include FIBRAD_LANES_HEADER
 #include "bed/points_lanes.h"
 
+/* Which of the 64 points from (x, y) on lie within a disc. The sum goes into a register for numbers, where an `or`
+ * would go into those for masks and back. */
+static inline uint64_t within(const float *x, const float *y, float at_x, float at_y, float square) {
+    vf u = vf_set1(at_x), v = vf_set1(at_y), reach = vf_set1(square);
+    uint64_t bits = 0;
+#pragma GCC unroll 64
+    for (uint32_t lane = 0; lane < 64; lane += VF_LANES) {
+        vf dx = vf_sub(vf_load(x + lane), u), dy = vf_sub(vf_load(y + lane), v);
+        bits += (uint64_t)vf_lt_bits(vf_add(vf_mul(dx, dx), vf_mul(dy, dy)), reach) << lane;
+    }
+    return bits;
+}
+
+void LANED(fibrad_points_disc)(fibrad_points *points, double x, double y, double r) {
+    points->open = 0;
+    for (uint32_t word = 0; word < points->count / 64; word++) {
+        const float *at_x = points->set.x + 64 * word, *at_y = points->set.y + 64 * word;
+        points->seen[word] &= ~within(at_x, at_y, (float)x, (float)y, (float)(r * r));
+        points->open += fibrad_count_bits(points->seen[word]);
+    }
+}
+
 /* Word by word of 64 points, which stay in registers and are done with once all of them are hidden. */
 uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *disc, uint32_t from, double depth) {
     uint32_t to = 0;
@@ -22,14 +44,7 @@ uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *di
         uint64_t seen = points->seen[word];
         for (uint32_t d = from; d < to && seen != 0; d++) {
             uint32_t k = discs.order[d];
-            vf u = vf_set1(discs.fu[k]), v = vf_set1(discs.fv[k]), square = vf_set1(discs.square[k]);
-            uint64_t hidden = 0;
-#pragma GCC unroll 64
-            for (uint32_t lane = 0; lane < 64; lane += VF_LANES) {
-                vf dx = vf_sub(vf_load(x + lane), u), dy = vf_sub(vf_load(y + lane), v);
-                hidden += (uint64_t)vf_lt_bits(vf_add(vf_mul(dx, dx), vf_mul(dy, dy)), square) << lane;
-            }
-            hidden &= seen;
+            uint64_t hidden = seen & within(x, y, discs.fu[k], discs.fv[k], discs.square[k]);
             discs.hits[d] += fibrad_count_bits(hidden);
             seen -= hidden;
         }

@@ -13,6 +13,9 @@ typedef struct fibrad_points {
     uint64_t seen[4]; /* bit p: point p is open */
 } fibrad_points;
 
+/* Takes away the open points inside a disc. */
+void LANED(fibrad_points_disc)(fibrad_points *points, double x, double y, double r);
+
 /* Lets the discs from order[from] on down to `depth`, from front to back, take the open points inside them: the
  * ray-sphere test of a parallel beam, without a square root. hits tells how many each takes. Returns where in the order
  * the deeper ones begin. */

@@ -10,7 +10,6 @@
 #include "bed/scene.h"
 #include "pair/surface_lanes.h"
 
-#define FIBRAD_NONE   UINT32_MAX
 #define FIBRAD_SHELLS 8
 /* Near spheres in shells by emergence: the least depth at which a sphere can come before a window, in any direction,
  * e = sqrt(d^2 - (1 + r)^2), d being its centre distance. It does come before the window of direction w just if
@@ -46,6 +45,9 @@ typedef struct fibrad_discs {
 
 #define FIBRAD_WORK_MAX (1u << 28)
 
+/* A row sees no farther than this many periods along any periodic axis. */
+#define FIBRAD_PERIODS 100.0
+
 /* What has been seen of each sphere so far, in the order of first sight; the sum over each fourth direction or ray
  * apart, for the estimate of the error. */
 typedef struct fibrad_entries {
@@ -69,13 +71,14 @@ struct fibrad_work {
     fibrad_obstacles blockers[2]; /* room for the two lists of the surface method, [near.capacity] */
     /* the row in hand */
     const fibrad_scene *scene;
-    uint32_t place;       /* of sphere i in the scene */
-    double unit, inverse; /* its radius [L], and 1/radius */
-    double centre[3];     /* [L] */
-    double reach;         /* the cutoff; infinity if there is none */
-    double step, growth;  /* how far the first shell looks, and how much farther each next one */
-    double farthest;      /* no sphere is farther from i; infinity with periodic axes */
-    double clear;         /* no window has its horizon nearer than this */
+    uint32_t place;                /* of sphere i in the scene */
+    double unit, inverse;          /* its radius [L], and 1/radius */
+    double centre[3];              /* [L] */
+    double reach;                  /* the cutoff; infinity if there is none */
+    double step, growth;           /* how far the first shell looks, and how much farther each next one */
+    double farthest;               /* no sphere is farther from i; infinity with periodic axes */
+    double clear;                  /* no window has its horizon nearer than this */
+    double wall[FIBRAD_WALLS + 1]; /* what meets each wall, and what meets none: areas, points or rays */
 };
 
 /* How far the shells look: the first one `first` mean spacings, the spacing being the cube root of the volume per
