@@ -64,6 +64,7 @@ KERNEL = \
     kernel/bed/rows.c \
     kernel/bed/scene.c \
     kernel/bed/surface_row.c \
+    kernel/bed/walls.c \
     kernel/bed/work.c \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
@@ -77,7 +78,8 @@ LANED = \
     kernel/bed/beam_lanes.c \
     kernel/bed/cast_lanes.c \
     kernel/bed/near_lanes.c \
-    kernel/bed/points_lanes.c
+    kernel/bed/points_lanes.c \
+    kernel/bed/walls_lanes.c
 
 # besides main.c and generate_tables.c
 HOST = \
@@ -116,6 +118,7 @@ HOST = \
     host/run_omp.c \
     host/targets.c \
     host/tolerance.c \
+    host/walls.c \
     host/write.c \
     host/write_csv.c \
     host/write_furnace.c \
@@ -146,6 +149,7 @@ TESTS = \
     tests/test_surface.c \
     tests/test_surface_row.c \
     tests/test_tables.c \
+    tests/test_walls.c \
     tests/test_write.c
 
 SCRIPTS = \
@@ -411,7 +415,7 @@ deps:
 deps-ci:
 	@.ci/deps g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
 	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
-	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm
+	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-scipy
 
 ## install: fibrad, libfibrad.a, fibrad.h and fibrad.pc, to DESTDIR and PREFIX
 install: install-lib $(BUILD)/fibrad

@@ -10,7 +10,7 @@
  *   beam     fibrad_beam_row, fibrad_directions_for
  *   surface  fibrad_surface_pair, FIBRAD_SURFACE_SCRATCH, fibrad_surface_row
  *   cast     fibrad_cast_row
- *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_drop, fibrad_rows_reciprocity
+ *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_close, fibrad_rows_drop, fibrad_rows_reciprocity
  *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
  *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
  *            fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit, fibrad_furnace_trace,
@@ -112,11 +112,24 @@ typedef struct fibrad_spheres {
 /* The largest number of spheres of a scene. */
 #define FIBRAD_SPHERES_MAX 100000000u
 
-/* What a scene is made for. Zeroed but for `spheres`: open on all sides, the best instruction set. */
+/* Walls by number: 0 to 5 are planes across the axes, x low, x high, y low, y high, z low, z high; 6 is a cylinder
+ * along z. Their inner sides bound a convex container, so that no wall hides one sphere from another. */
+#define FIBRAD_WALLS 7
+
+/* The walls of a scene. Zeroed: none. */
+typedef struct fibrad_walls {
+    uint32_t planes;    /* sum of 1 << k for the planes k there are, none on a periodic axis */
+    double at[6];       /* [L] where plane k stands on its axis, low < high; not read if it is not there */
+    double cylinder[3]; /* x and y of its axis, and its radius [L]; radius 0: none. With a cylinder x and y are open
+                           axes without planes */
+} fibrad_walls;
+
+/* What a scene is made for. Zeroed but for `spheres`: open on all sides, no walls, the best instruction set. */
 typedef struct fibrad_scene_config {
     uint32_t spheres; /* how many spheres the scene holds: [1, FIBRAD_SPHERES_MAX] */
     int isa;          /* a fibrad_isa; one that the machine lacks is FIBRAD_E_ARGUMENT */
     double period[3]; /* per axis the length of the periodic box [L]; 0: the axis is open */
+    fibrad_walls walls;
 } fibrad_scene_config;
 
 /* A scene: spheres copied in the order of the cells of a grid. Immutable once made; share it between threads. */
@@ -136,7 +149,8 @@ size_t fibrad_scene_size(const fibrad_scene_config *config);
 
 /* Makes a scene in `memory` (`size` bytes on a 64-byte boundary) from config->spheres == spheres->n spheres, which are
  * copied: the arrays may go afterwards. On periodic axes centres may lie anywhere and are taken into the box.
- * Spheres may overlap (settled beds do), but no centre may lie inside another sphere.
+ * Spheres may overlap each other and the walls (settled beds do), but no centre may lie inside another sphere or beyond
+ * a wall. What leaves a sphere outwards beyond a wall meets that wall at once.
  * Errors: _ARGUMENT (then `fault`, unless NULL, names the sphere, or n if it is none of them), _SIZE, _ALIGNMENT,
  * _GEOMETRY (fault names the pair). Cost: O(n), about 0.5 microseconds per sphere; more where spheres crowd in clusters
  * far apart, at worst O(n^2). Source: docs/methods.md section 6. */
@@ -146,11 +160,13 @@ int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fib
 /* What a scene turned out to be. */
 typedef struct fibrad_scene_facts {
     uint32_t spheres;
-    int isa;                       /* the instruction set in use */
-    uint32_t cells;                /* cells of the grid, all levels */
-    double radius_min, radius_max; /* [L] */
-    double overlap_max;            /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
-    uint32_t overlap_pair[2];      /* the spheres of the largest overlap */
+    int isa;                        /* the instruction set in use */
+    uint32_t cells;                 /* cells of the grid, all levels */
+    double radius_min, radius_max;  /* [L] */
+    double overlap_max;             /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
+    uint32_t overlap_pair[2];       /* the spheres of the largest overlap */
+    double wall_area[FIBRAD_WALLS]; /* [L^2] the part of each wall inside all others, per period of periodic axes;
+                                       infinity: unbounded; 0: there is no such wall */
 } fibrad_scene_facts;
 
 /* Fills in the facts of a scene; null pointers: nothing. No errors. Cost: a copy. */
@@ -193,10 +209,12 @@ typedef struct fibrad_row {
     double *f;           /* [capacity] out: F from sphere i to sphere col[.], all > 0 */
     uint32_t capacity;   /* in */
     uint32_t length;     /* out: entries; after FIBRAD_E_CAPACITY of these arrays: the entries there would be */
-    double escaped;      /* out: the fraction that meets no sphere, measured as uncovered area or points */
+    double escaped;      /* out: the fraction that meets no sphere and no wall, as uncovered area or points */
     double error;        /* out: estimated Euclidean error of the row, from parts of its directions; twice the true one
                             on the median, seldom less than it */
     uint32_t directions; /* out, beam method only: how many were taken */
+    double wall[FIBRAD_WALLS]; /* out: the fraction that meets each wall, 0 for walls that are not there; `error` does
+                                  not count them. The surface method leaves 0 */
 } fibrad_row;
 
 /* How a beam row is integrated. Zeroed: 233 directions, exact areas, no cutoff, no tolerance. */
@@ -210,8 +228,9 @@ typedef struct fibrad_beam_rule {
                             directions are each closed, but averaging them does not keep their sums below 1 */
 } fibrad_beam_rule;
 
-/* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + escaped = 1, to
- * rounding with exact areas, as exact counts with points. With exact areas the error falls as directions^-1.5.
+/* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + sum of wall +
+ * escaped = 1, to rounding with exact areas, as exact counts with points. With exact areas the error falls as
+ * directions^-1.5, that of the sharing between walls about as directions^-1 (5e-4 each at 233).
  * i [0, spheres); rule NULL: all defaults. Periodic images of one sphere share an entry, and i may see images of
  * itself. Errors: _ARGUMENT, _TABLE (points), _CAPACITY: either row->capacity (row->length then tells) or the work
  * memory (row->length is then 0, and fibrad_work_needed tells). Cost: some microseconds per direction with ten discs in
@@ -334,6 +353,13 @@ int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *ou
  * Rows averaged from exact areas need it only to the last bit. scratch [n].
  * Errors: _ARGUMENT. Cost: O(entries). */
 int fibrad_rows_limit(fibrad_rows *rows, double *scratch);
+
+/* Closes rows that were averaged or limited: wall[i] and escaped[i], from the raw row i, are multiplied such that
+ * sum of f + sum of wall + escaped = 1. What a row lacks of 1 is as good a measure of what meets no sphere, from the
+ * opposite directions, as the raw row's. A row whose raw one met neither wall nor sky takes the shares of all spheres
+ * together; if none has any, what is lacking counts as escaped. wall, escaped [n], r [n] > 0.
+ * Errors: _ARGUMENT. Cost: O(entries). */
+int fibrad_rows_close(const fibrad_rows *rows, const double *r, double (*wall)[FIBRAD_WALLS], double *escaped);
 
 /* Drops entries below `threshold` (both of a reciprocal pair when both are below) and gives what they carried back to
  * the entries that stay, symmetrically: S_ij u_i u_j with u found so that the row sums are as before; what no such u

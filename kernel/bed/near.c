@@ -14,6 +14,7 @@ void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t pl
     for (uint32_t k = 0; k < work->entries.length; k++) work->entries.at[work->entries.slot[k]] = FIBRAD_NONE;
     work->entries.length = work->entries.missed = 0;
     work->entries.end = false;
+    fibrad_zero(work->wall, sizeof work->wall);
     work->needed = work->config;
     work->scene = scene;
     work->place = place;

@@ -122,6 +122,7 @@ int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
     status = fibrad_entries_row(work, 1, row);
     if (status != FIBRAD_OK) return status;
     row->escaped = 1 - sum;
+    for (int wall = 0; wall < FIBRAD_WALLS; wall++) row->wall[wall] = 0;
     row->error = fibrad_sqrt(square);
     return FIBRAD_OK;
 }

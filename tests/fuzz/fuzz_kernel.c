@@ -89,6 +89,10 @@ static void check_row(const fibrad_row *row, const fibrad_scene *scene, uint32_t
         REQUIRE(row->f[k] > 0 && row->f[k] <= 1 + 1e-9);
         sum += row->f[k];
     }
+    for (int wall = 0; wall < FIBRAD_WALLS; wall++) {
+        REQUIRE(row->wall[wall] >= 0 && (row->wall[wall] == 0 || facts.wall_area[wall] > 0));
+        sum += row->wall[wall];
+    }
     REQUIRE(row->escaped >= -1e-9 && row->error >= 0);
     if (plain || points > 0) REQUIRE(fabs(sum - 1) < 1e-9);
 }
@@ -152,7 +156,15 @@ static void try_row(const fibrad_scene *scene, uint32_t n) {
     free(block);
 }
 
-static void try_scene(void) {
+static fibrad_walls any_walls(void) {
+    fibrad_walls walls = {.planes = byte() % 68};
+    for (int k = 0; k < 6; k++) walls.at[k] = 8 * length();
+    if (byte() % 4 == 0) walls.planes &= 112;
+    for (int k = 0; k < 3 && (walls.planes & 15) == 0; k++) walls.cylinder[k] = length();
+    return walls;
+}
+
+static void try_scene(bool walled) {
     uint32_t n = number(), stated = byte() < 250 ? n : number();
     n = n % 24;
     if (stated >= 250)
@@ -166,6 +178,7 @@ static void try_scene(void) {
         config.period[axis] = byte() < 160 ? 0 : fabs(length());
         if (config.period[axis] > 0) shortest = fmin(shortest, config.period[axis]);
     }
+    if (walled) config.walls = any_walls();
     size_t size = fibrad_scene_size(&config);
     REQUIRE(size == 0 || stated > 0);
     REQUIRE(size <= FIBRAD_SCENE_BYTES(stated));
@@ -231,6 +244,9 @@ static void try_rows(void) {
     }
     if (out.start != rows.start) {
         (void)fibrad_rows_limit(&rows, scratch);
+        double walls[8][FIBRAD_WALLS] = {{0}}, escaped[8] = {0};
+        walls[0][0] = any_factor();
+        (void)fibrad_rows_close(&rows, r, walls, escaped);
         status = fibrad_rows_drop(&rows, r, any_factor(), scratch);
         if (status == FIBRAD_OK) REQUIRE(rows.start[n] <= rows.capacity);
     }
@@ -344,7 +360,8 @@ static void try_pair(void) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     at = data, end = data + size;
-    switch (byte() % 8) {
+    const uint8_t kind = byte() % 8;
+    switch (kind) {
     case 0:
         try_pair();
         break;
@@ -355,7 +372,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         try_furnace();
         break;
     default:
-        try_scene();
+        try_scene(kind == 7);
     }
     (void)fibrad_status_text((int)number());
     (void)fibrad_isa_name((int)number());
