@@ -285,14 +285,13 @@ typedef struct fibrad_surface_facts {
 #define FIBRAD_SURFACE_SCRATCH(n) (12 * (((size_t)(n) + 7) / 8 * 8))
 
 /* View factor F12 from sphere 1 (radius r1, centre at the origin) to sphere 2 (radius r2, centre (0, 0, r1 + r2 + gap))
- * with obstacles in between. r1, r2 [L] > 0, gap [L] as in fibrad_pair_exact; overlapping spheres are summed as if they
- * touched. The lattices begin at azimuth 0, the x axis, so the result depends a little on the azimuth of an obstacle.
- * A point inside an obstacle sees nothing. Without obstacles in the way the result is fibrad_pair_exact, unless
- * corrections are off. scratch [FIBRAD_SURFACE_SCRATCH(obstacles->n)] on a 64-byte boundary; obstacles (with scratch),
- * rule (all defaults) and facts may be NULL.
- * Errors: _ARGUMENT, _ALIGNMENT, _TABLE (nodes). Cost: about nodes^2/2 divisions and, for each obstacle in the way, as
- * many ray-sphere tests.
- * Source: Y. Bao, Y. Gao, J. Tan (2022), docs/methods.md section 7. */
+ * with obstacles in between. r1, r2, gap [L] as in fibrad_pair_exact, but these and the obstacles' coordinates and
+ * radii at most 1e70 r1; overlapping spheres are summed as if they touched. The lattices begin at azimuth 0, the x
+ * axis, so the result depends a little on the azimuth of an obstacle. A point inside an obstacle sees nothing. Without
+ * obstacles in the way the result is fibrad_pair_exact, unless corrections are off. scratch
+ * [FIBRAD_SURFACE_SCRATCH(obstacles->n)] on a 64-byte boundary; obstacles (with scratch), rule (all defaults) and facts
+ * may be NULL. Errors: _ARGUMENT, _ALIGNMENT, _TABLE (nodes). Cost: about nodes^2/2 divisions and, for each obstacle in
+ * the way, as many ray-sphere tests. Source: Y. Bao, Y. Gao, J. Tan (2022), docs/methods.md section 7. */
 int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *obstacles,
                         const fibrad_surface_rule *rule, double *scratch, double *f12, fibrad_surface_facts *facts);
 
