@@ -222,6 +222,22 @@ START_TEST(dropping_where_no_scaling_exists) {
 }
 END_TEST
 
+/* Pairs of which one factor is missing, on either side of the diagonal: it counts in full. */
+START_TEST(lone_factors_are_not_reciprocal) {
+    double r[] = {1, 2, 1}, f[] = {.5, .2, .05, .125}, largest = -1;
+    uint64_t above[] = {0, 2, 3, 3}, below[] = {0, 1, 2, 3};
+    fibrad_rows lone_above = {3, 4, above, (uint32_t[]){1, 2, 0}, (double[]){.2, .3, .05}};
+    fibrad_rows lone_below = {3, 4, below, (uint32_t[]){1, 0, 1}, (double[]){.2, .05, .4}};
+    fibrad_rows diagonal = {3, 4, (uint64_t[]){0, 2, 4, 4}, (uint32_t[]){0, 1, 0, 1}, f};
+    ck_assert_int_eq(fibrad_rows_reciprocity(&lone_above, r, &largest), FIBRAD_OK);
+    ck_assert_double_eq_tol(largest, .3, 1e-16); /* F_02 */
+    ck_assert_int_eq(fibrad_rows_reciprocity(&lone_below, r, &largest), FIBRAD_OK);
+    ck_assert_double_eq_tol(largest, .1, 1e-16); /* F_21, a quarter of it by area */
+    ck_assert_int_eq(fibrad_rows_reciprocity(&diagonal, r, &largest), FIBRAD_OK);
+    ck_assert_double_eq(largest, 0);
+}
+END_TEST
+
 START_TEST(bad_rows_are_refused) {
     double r[] = {1, 1}, bad_r[] = {1, 0}, scratch[6], largest;
     uint32_t col[] = {1, 0}, descending[] = {1, 1}, outside[] = {2, 0};
@@ -257,6 +273,7 @@ int main(void) {
     tcase_add_test(tcase, dropping_keeps_the_books);
     tcase_add_test(tcase, dropping_at_the_threshold);
     tcase_add_test(tcase, dropping_where_no_scaling_exists);
+    tcase_add_test(tcase, lone_factors_are_not_reciprocal);
     tcase_add_test(tcase, bad_rows_are_refused);
     return suite_run(suite);
 }

@@ -151,14 +151,30 @@ int fibrad_rows_close(const fibrad_rows *rows, const double *r, double (*wall)[F
     return FIBRAD_OK;
 }
 
+/* By how much A_i F_ij and A_j F_ji differ, over the larger area; the same from both sides. */
+static double difference(const double *r, uint32_t i, uint32_t j, double f, double back) {
+    double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
+    return fibrad_abs(a_i * a_i * f - a_j * a_j * back);
+}
+
 int fibrad_rows_reciprocity(const fibrad_rows *rows, const double *r, double *largest) {
     if (check(rows) != FIBRAD_OK || check_radii(r, rows->n) != FIBRAD_OK || largest == NULL) return FIBRAD_E_ARGUMENT;
     double worst = 0;
+    uint64_t below = 0, partners = 0; /* entries below the diagonal, and of those above it the partners */
     for (uint32_t i = 0; i < rows->n; i++)
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) {
             uint32_t j = rows->col[k];
-            double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
-            worst = fibrad_max(worst, fibrad_abs(a_i * a_i * rows->f[k] - a_j * a_j * factor(rows, j, i)));
+            below += j < i;
+            if (j <= i) continue;
+            uint64_t partner = find(rows, j, i);
+            partners += partner != UINT64_MAX;
+            double back = partner == UINT64_MAX ? 0 : rows->f[partner];
+            worst = fibrad_max(worst, difference(r, i, j, rows->f[k], back));
+        }
+    for (uint32_t i = 0; i < rows->n && partners < below; i++) /* some below the diagonal stand alone */
+        for (uint64_t k = rows->start[i]; k < rows->start[i + 1] && rows->col[k] < i; k++) {
+            uint32_t j = rows->col[k];
+            worst = fibrad_max(worst, difference(r, i, j, rows->f[k], factor(rows, j, i)));
         }
     *largest = worst;
     return FIBRAD_OK;
