@@ -7,8 +7,8 @@
 #include "bed/work.h"
 
 /* Window k of the row begun in `work`: leaves in points->seen those that no sphere hides, and in points->taker the
- * discs that have taken the others. Returns how many stay open. work->discs > work->config.discs: there was no room for
- * all. */
+ * discs that have taken the others. Returns how many stay open. work->disc.count > work->disc.capacity: there was no
+ * room for all. */
 double LANED(fibrad_beam_window)(fibrad_work *work, const double frame[9], fibrad_points *points, uint32_t k);
 
 #endif

@@ -7,7 +7,8 @@
 #include "heat/beams_lanes.h"
 #include "heat/patch.h"
 
-#define POINTS 256 /* of a window, the most */
+#define POINTS 256                         /* of a window, the most */
+#define SHELLS ((fibrad_stride){3.9, 1.5}) /* as for rows of beams */
 
 /* The points of a window: which disc hides each, and where on the sphere it is met. */
 struct window {
@@ -51,8 +52,10 @@ static void find_discs(const fibrad_work *work, const fibrad_points *points, str
     for (uint32_t word = 0; word < points->count / 64; word++) {
         uint64_t left = ~points->seen[word];
         for (uint32_t t = 0; left != 0; t++) {
-            const fibrad_disc *disc = &work->disc[points->taker[t]];
-            vf u = vf_set1((float)disc->u), v = vf_set1((float)disc->v), square = vf_set1((float)(disc->r * disc->r));
+            const uint32_t k = points->taker[t];
+            const double r = work->disc.r[k];
+            vf u = vf_set1((float)work->disc.u[k]), v = vf_set1((float)work->disc.v[k]),
+               square = vf_set1((float)(r * r));
             uint64_t hidden = 0;
             for (uint32_t lane = 0; lane < 64; lane += VF_LANES) {
                 vf dx = vf_sub(vf_load(points->set.x + 64 * word + lane), u);
@@ -71,9 +74,12 @@ static void find_discs(const fibrad_work *work, const fibrad_points *points, str
 /* Normals where the points meet their discs. */
 static void find_normals(const fibrad_work *work, const fibrad_points *points, struct window *p) {
     for (uint32_t k = 0; k < points->count; k++) {
-        fibrad_disc none = {.r = 1}, d = p->disc[k] == FIBRAD_NONE ? none : work->disc[p->disc[k]];
-        double inverse = 1 / d.r;
-        p->u[k] = (points->set.x[k] - d.u) * inverse, p->v[k] = (points->set.y[k] - d.v) * inverse;
+        const uint32_t d = p->disc[k];
+        p->u[k] = p->v[k] = 0;
+        if (d == FIBRAD_NONE) continue;
+        const double inverse = 1 / work->disc.r[d];
+        p->u[k] = (points->set.x[k] - work->disc.u[d]) * inverse;
+        p->v[k] = (points->set.y[k] - work->disc.v[d]) * inverse;
     }
     for (uint32_t k = 0; k < points->count; k += VD_LANES) {
         vd u = vd_load(p->u + k), v = vd_load(p->v + k);
@@ -114,13 +120,13 @@ static int follow_beams(fibrad_heat *heat, fibrad_work *work, uint32_t place) {
     uint16_t patch[POINTS];
     fibrad_disc_points_get(points.count, &points.set);
     work->areas.overflow = false;
-    fibrad_work_begin(work, heat->scene, place, 0);
+    fibrad_work_begin(work, heat->scene, place, 0, SHELLS);
     for (uint32_t k = 0; k < heat->config.directions; k++) {
         double frame[9];
         fibrad_beam_frame(k, heat->config.directions, points.count, frame);
         LANED(fibrad_beam_window)(work, frame, &points, 0);
-        if (work->discs > work->config.discs) {
-            work->needed.discs = work->discs;
+        if (work->disc.count > work->disc.capacity) {
+            work->needed.discs = work->disc.count;
             return FIBRAD_E_CAPACITY;
         }
         find_discs(work, &points, &window);
@@ -131,7 +137,7 @@ static int follow_beams(fibrad_heat *heat, fibrad_work *work, uint32_t place) {
             if (window.disc[p] == FIBRAD_NONE)
                 hit[p] = escape(heat, work, frame, &points.set, k, p);
             else
-                hit[p] = work->disc[window.disc[p]].sphere * heat->config.patches + patch[p];
+                hit[p] = fibrad_work_sphere(work, window.disc[p]) * heat->config.patches + patch[p];
         }
     }
     return FIBRAD_OK;

@@ -115,7 +115,7 @@ int fibrad_exchange_row(fibrad_tracer *tracer, fibrad_work *work, uint32_t i, co
     double carried = reflected(rule, row), scale = 0;
     fibrad_paths paths = begin(tracer, i, rule);
     paths.entries = &work->entries;
-    fibrad_work_begin(work, scene, paths.place, 0);
+    fibrad_work_begin(work, scene, paths.place, 0, (fibrad_stride){3.9, 1.5});
     if (carried > 0) { /* what no path has found counts as escaped, and as an error */
         double left = rule->error * rule->error - beam_error * beam_error, least = 0.5 * rule->error;
         follow(&paths, rule, carried, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
