@@ -7,10 +7,10 @@
 #include "heat/beams_lanes.h"
 #include "heat/patch.h"
 
-#define POINTS 256                         /* of a window, the most */
+#define POINTS 64                          /* of a window at a time */
 #define SHELLS ((fibrad_stride){3.9, 1.5}) /* as for rows of beams */
 
-/* The points of a window: which disc hides each, and where on the sphere it is met. */
+/* Some points of a window: which disc hides each, and where on the sphere it is met. */
 struct window {
     _Alignas(64) double u[POINTS], v[POINTS], w[POINTS]; /* normals in the frame of the window */
     _Alignas(64) double face[POINTS], x[POINTS], y[POINTS];
@@ -18,11 +18,11 @@ struct window {
 };
 
 /* Patch numbers, 0 to 6 side^2 - 1, of the normals of all points. */
-static void number(struct window *p, uint32_t points, const double frame[9], uint32_t side, uint16_t *patch) {
+static void number(struct window *p, const double frame[9], uint32_t side, uint16_t *patch) {
     const vd zero = vd_set1(0), one = vd_set1(1), half = vd_set1(.5 * side);
     double axes[9];
     fibrad_patch_turn(frame, axes);
-    for (uint32_t k = 0; k < points; k += VD_LANES) {
+    for (uint32_t k = 0; k < POINTS; k += VD_LANES) {
         vd u = vd_load(p->u + k), v = vd_load(p->v + k), w = vd_load(p->w + k), n[3], size[3];
         for (int axis = 0; axis < 3; axis++) {
             n[axis] = vd_add(vd_add(vd_mul(u, vd_set1(axes[axis])), vd_mul(v, vd_set1(axes[3 + axis]))),
@@ -43,45 +43,39 @@ static void number(struct window *p, uint32_t points, const double frame[9], uin
         vd_store(p->x + k, vd_mul(vd_max(vd_add(a, one), zero), half));
         vd_store(p->y + k, vd_mul(vd_max(vd_add(b, one), zero), half));
     }
-    for (uint32_t k = 0; k < points; k++)
+    for (uint32_t k = 0; k < POINTS; k++)
         patch[k] = (uint16_t)fibrad_patch_number((uint32_t)p->face[k], (uint32_t)p->x[k], (uint32_t)p->y[k], side);
 }
 
-/* Which disc hides each point: the first that covers it. */
-static void find_discs(const fibrad_work *work, const fibrad_points *points, struct window *p) {
-    for (uint32_t word = 0; word < points->count / 64; word++) {
-        uint64_t left = ~points->seen[word];
-        for (uint32_t t = 0; left != 0; t++) {
-            const uint32_t k = points->taker[t];
-            const double r = work->disc.r[k];
-            vf u = vf_set1((float)work->disc.u[k]), v = vf_set1((float)work->disc.v[k]),
-               square = vf_set1((float)(r * r));
-            uint64_t hidden = 0;
-            for (uint32_t lane = 0; lane < 64; lane += VF_LANES) {
-                vf dx = vf_sub(vf_load(points->set.x + 64 * word + lane), u);
-                vf dy = vf_sub(vf_load(points->set.y + 64 * word + lane), v);
-                hidden |= (uint64_t)vf_lt_bits(vf_add(vf_mul(dx, dx), vf_mul(dy, dy)), square) << lane;
-            }
-            for (uint64_t take = hidden & left; take != 0; take &= take - 1)
-                p->disc[64 * word + (uint32_t)__builtin_ctzll(take)] = points->taker[t];
-            left &= ~hidden;
+/* Which disc hides each point of a word: the first that covers it. */
+static void find_discs(const fibrad_work *work, const fibrad_points *points, uint32_t word, struct window *p) {
+    uint64_t left = ~points->seen[word];
+    for (uint32_t t = 0; left != 0; t++) {
+        const uint32_t k = points->taker[t];
+        const double r = work->disc.r[k];
+        vf u = vf_set1((float)work->disc.u[k]), v = vf_set1((float)work->disc.v[k]), square = vf_set1((float)(r * r));
+        uint64_t hidden = 0;
+        for (uint32_t lane = 0; lane < POINTS; lane += VF_LANES) {
+            vf dx = vf_sub(vf_load(points->set.x + POINTS * word + lane), u);
+            vf dy = vf_sub(vf_load(points->set.y + POINTS * word + lane), v);
+            hidden |= (uint64_t)vf_lt_bits(vf_add(vf_mul(dx, dx), vf_mul(dy, dy)), square) << lane;
         }
-        for (uint64_t open = points->seen[word]; open != 0; open &= open - 1)
-            p->disc[64 * word + (uint32_t)__builtin_ctzll(open)] = FIBRAD_NONE;
+        for (uint64_t take = hidden & left; take != 0; take &= take - 1) p->disc[__builtin_ctzll(take)] = k;
+        left &= ~hidden;
     }
+    for (uint64_t open = points->seen[word]; open != 0; open &= open - 1) p->disc[__builtin_ctzll(open)] = FIBRAD_NONE;
 }
 
-/* Normals where the points meet their discs. */
-static void find_normals(const fibrad_work *work, const fibrad_points *points, struct window *p) {
-    for (uint32_t k = 0; k < points->count; k++) {
+/* Normals where the points x, y meet their discs. */
+static void find_normals(const fibrad_work *work, const float *x, const float *y, struct window *p) {
+    for (uint32_t k = 0; k < POINTS; k++) {
         const uint32_t d = p->disc[k];
         p->u[k] = p->v[k] = 0;
         if (d == FIBRAD_NONE) continue;
         const double inverse = 1 / work->disc.r[d];
-        p->u[k] = (points->set.x[k] - work->disc.u[d]) * inverse;
-        p->v[k] = (points->set.y[k] - work->disc.v[d]) * inverse;
+        p->u[k] = (x[k] - work->disc.u[d]) * inverse, p->v[k] = (y[k] - work->disc.v[d]) * inverse;
     }
-    for (uint32_t k = 0; k < points->count; k += VD_LANES) {
+    for (uint32_t k = 0; k < POINTS; k += VD_LANES) {
         vd u = vd_load(p->u + k), v = vd_load(p->v + k);
         vd square = vd_max(vd_set1(0), vd_sub(vd_set1(1), vd_add(vd_mul(u, u), vd_mul(v, v))));
         vd_store(p->w + k, vd_sub(vd_set1(0), vd_sqrt(square)));
@@ -129,15 +123,17 @@ static int follow_beams(fibrad_heat *heat, fibrad_work *work, uint32_t place) {
             work->needed.discs = work->disc.count;
             return FIBRAD_E_CAPACITY;
         }
-        find_discs(work, &points, &window);
-        find_normals(work, &points, &window);
-        number(&window, points.count, frame, heat->side, patch);
         uint32_t *hit = heat->hit + (size_t)place * heat->beams + (size_t)k * points.count;
-        for (uint32_t p = 0; p < points.count; p++) {
-            if (window.disc[p] == FIBRAD_NONE)
-                hit[p] = escape(heat, work, frame, &points.set, k, p);
-            else
-                hit[p] = fibrad_work_sphere(work, window.disc[p]) * heat->config.patches + patch[p];
+        for (uint32_t word = 0; word < points.count / POINTS; word++, hit += POINTS) {
+            find_discs(work, &points, word, &window);
+            find_normals(work, points.set.x + POINTS * word, points.set.y + POINTS * word, &window);
+            number(&window, frame, heat->side, patch);
+            for (uint32_t p = 0; p < POINTS; p++) {
+                if (window.disc[p] == FIBRAD_NONE)
+                    hit[p] = escape(heat, work, frame, &points.set, k, POINTS * word + p);
+                else
+                    hit[p] = fibrad_work_sphere(work, window.disc[p]) * heat->config.patches + patch[p];
+            }
         }
     }
     return FIBRAD_OK;
