@@ -148,7 +148,7 @@ int run_exchange(const struct bed *bed, const struct run_options *options, const
     if (!options->raw) finer.error *= BEFORE_AVERAGING;
     int status = open_tracing(&tracing, bed, options, &finer);
     raw.raw = true;
-    raw.method = (struct row_method){"exchange", exchange_row, &handle, false};
+    raw.method = (struct row_method){"exchange", exchange_row, &handle, false, NULL};
     if (!status) status = run_rows(bed, &raw, result);
     const double begun = progress_clock();
     if (!status && !options->raw) {
@@ -172,7 +172,7 @@ int run_spread(const struct bed *bed, const struct run_options *options, const f
     int status = open_tracing(&tracing, bed, options, rule);
     tracing.spread = spread;
     raw.raw = true;
-    raw.method = (struct row_method){"paths", spread_row, &handle, false};
+    raw.method = (struct row_method){"paths", spread_row, &handle, false, NULL};
     if (!status) status = run_rows(bed, &raw, result);
     close_tracing(&tracing);
     return status;

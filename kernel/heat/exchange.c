@@ -99,7 +99,7 @@ static void join(fibrad_work *work, const fibrad_exchange_rule *rule, const fibr
         for (int part = 0; part < 4; part++) entries->part[k][part] *= scale;
     for (uint32_t k = 0; k < row->length; k++)
         for (uint32_t part = 0; part < 4; part++)
-            fibrad_entries_add(entries, work->scene->place[row->col[k]], part,
+            fibrad_entries_add(entries, fibrad_entries_of(entries, work->scene->place[row->col[k]]), part,
                                0.25 * row->f[k] * rule->emissivity[row->col[k]]);
 }
 
