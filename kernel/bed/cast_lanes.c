@@ -11,7 +11,7 @@
 #include "bed/near_lanes.h"
 #include "bed/walls.h"
 
-#define BATCH  (8 * VD_LANES) /* rays: 64 in AVX-512; fewer take less stack where there are no lanes */
+#define BATCH  (8 * VD_LANES)              /* rays: 64 in AVX-512; fewer take less stack where there are no lanes */
 #define SHELLS ((fibrad_stride){3.0, 1.4}) /* smaller than those of windows: a ray ends sooner */
 
 /* Places in the 4-cube, then rays: the direction w, two unit vectors u and v across it such that the origin is
