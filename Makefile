@@ -73,10 +73,12 @@ KERNEL = \
 # compiled once per instruction set
 LANED = \
     kernel/pair/surface_lanes.c \
+    kernel/bed/accounts_lanes.c \
     kernel/bed/areas_lanes.c \
     kernel/bed/beam_lanes.c \
     kernel/bed/cast_lanes.c \
     kernel/bed/near_lanes.c \
+    kernel/bed/pieces_lanes.c \
     kernel/bed/points_lanes.c
 
 # besides main.c and generate_tables.c

@@ -41,8 +41,14 @@ static inline void vd_compress(double *p, uint32_t bits, vd a) {
     __m256i order = _mm256_loadu_si256((const __m256i *)(const void *)half[bits & 15]);
     _mm256_storeu_ps((float *)(void *)p, _mm256_permutevar8x32_ps(_mm256_castpd_ps(a), order));
 }
+static inline vd vd_replace(vd a, uint32_t lane, double x) {
+    static const uint64_t ones[8] = {0, 0, 0, UINT64_MAX};
+    __m256d there = _mm256_loadu_pd((const double *)(const void *)(ones + 3 - lane));
+    return _mm256_blendv_pd(a, _mm256_set1_pd(x), there);
+}
 static inline vd vd_loadu(const double *p) { return _mm256_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm256_store_pd(p, a); }
+static inline void vd_storeu(double *p, vd a) { _mm256_storeu_pd(p, a); }
 static inline void vd_store_float(float *p, vd a) { _mm_store_ps(p, _mm256_cvtpd_ps(a)); }
 static inline vd vd_add(vd a, vd b) { return _mm256_add_pd(a, b); }
 static inline vd vd_sub(vd a, vd b) { return _mm256_sub_pd(a, b); }

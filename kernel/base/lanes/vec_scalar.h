@@ -3,11 +3,12 @@
  *
  * The operations every vec_*.h offers, none of which mixes lanes, so that a result does not depend on their number:
  *   vd   VD_LANES doubles    vd_set1 vd_load vd_store vd_add vd_sub vd_mul vd_div vd_sqrt vd_min vd_max vd_abs
- *                            vd_loadu (of any address), vd_store_float (rounded)
+ *                            vd_loadu vd_storeu (any address), vd_store_float (rounded)
  *                            vd_lt vd_le (masks) vd_select(mask, if set, if clear)
  *                            vd_lookup(table, size, k): table[k] for lanes of whole numbers k < size (less than
  *                            the table's length where nobody looks); the table is a whole number of vectors long
  *                            vd_compress(p, bits, a): the lanes named by bits side by side at p, which has room for all
+ *                            vd_replace(a, lane, x): a with x in one lane
  *   vm   a mask of vd lanes  vm_and vm_or vm_not vm_bits (bit l = lane l)
  *   vf   VF_LANES floats     vf_set1 vf_load vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
  *                            vf_compress_places(p, bits, first): first + l for the lanes l named by bits, side by side
@@ -31,10 +32,12 @@ static inline vd vd_set1(double a) { return a; }
 static inline vd vd_load(const double *p) { return *p; }
 static inline vd vd_lookup(const double *table, uint32_t size, vd k) { return (void)size, table[(uint32_t)k]; }
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
-    if (bits & 1) *p = a;
+    (void)bits, *p = a; /* there is room, and no branch */
 }
+static inline vd vd_replace(vd a, uint32_t lane, double x) { return (void)a, (void)lane, x; }
 static inline vd vd_loadu(const double *p) { return *p; }
 static inline void vd_store(double *p, vd a) { *p = a; }
+static inline void vd_storeu(double *p, vd a) { *p = a; }
 static inline void vd_store_float(float *p, vd a) { *p = (float)a; }
 static inline vd vd_add(vd a, vd b) { return a + b; }
 static inline vd vd_sub(vd a, vd b) { return a - b; }

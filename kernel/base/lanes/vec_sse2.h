@@ -19,11 +19,19 @@ static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
     return _mm_set_pd(table[(uint32_t)_mm_cvtsd_f64(_mm_unpackhi_pd(k, k))], table[(uint32_t)_mm_cvtsd_f64(k)]);
 }
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
-    if (bits & 1) _mm_store_sd(p++, a);
-    if (bits & 2) _mm_storeh_pd(p, a);
+    static const uint64_t second[4] = {0, 0, UINT64_MAX, 0}; /* where the second lane moves to the front */
+    __m128d high = _mm_castsi128_pd(_mm_loadl_epi64((const __m128i *)(const void *)(second + bits)));
+    __m128d front = _mm_or_pd(_mm_and_pd(high, _mm_unpackhi_pd(a, a)), _mm_andnot_pd(high, a));
+    _mm_storeu_pd(p, front);
+}
+static inline vd vd_replace(vd a, uint32_t lane, double x) {
+    static const uint64_t ones[4] = {0, UINT64_MAX, 0, 0};
+    __m128d there = _mm_loadu_pd((const double *)(const void *)(ones + 1 - lane));
+    return _mm_or_pd(_mm_and_pd(there, _mm_set1_pd(x)), _mm_andnot_pd(there, a));
 }
 static inline vd vd_loadu(const double *p) { return _mm_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm_store_pd(p, a); }
+static inline void vd_storeu(double *p, vd a) { _mm_storeu_pd(p, a); }
 static inline void vd_store_float(float *p, vd a) { _mm_storel_pi((__m64 *)(void *)p, _mm_cvtpd_ps(a)); }
 static inline vd vd_add(vd a, vd b) { return _mm_add_pd(a, b); }
 static inline vd vd_sub(vd a, vd b) { return _mm_sub_pd(a, b); }
