@@ -223,7 +223,6 @@ static inline uint32_t rising(const arcs_in_lanes *s) { return vm_bits(vd_lt(s->
 /* Gives the lanes named by bits to circle k. The window's arcs are walked as they are, those of discs backwards. */
 static inline void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes *s, uint32_t k) {
     uint32_t size = areas->circles + 1; /* the new one, or the rest */
-    bool small = areas->r[k] < 1;
     vm window = vd_lt(s->circle, vd_set1(1));
     fibrad_piece_lanes piece = {.px = vd_select(window, s->px, s->qx),
                                 .py = vd_select(window, s->py, s->qy),
@@ -233,7 +232,7 @@ static inline void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes 
                                 .cy = vd_lookup(areas->y, size, s->circle),
                                 .r = vd_lookup(areas->r, size, s->circle),
                                 .circle = s->circle};
-    fibrad_pieces_give(areas, bits, &piece, k, small ? areas->x[k] : 0, small ? areas->y[k] : 0);
+    fibrad_pieces_give(areas, bits, &piece, k);
 }
 
 /* Gives a whole list to circle k. */
@@ -310,7 +309,7 @@ static bool take(fibrad_areas *areas, uint32_t k) {
 
 void LANED(fibrad_accounts_begin)(fibrad_areas *areas) {
     areas->circles = 0;
-    areas->accounts.open.count = areas->pieces.count = 0;
+    areas->accounts.open.count = areas->pieces->count = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     areas->accounts.inverse[0] = 1;
     areas->circles = 1;

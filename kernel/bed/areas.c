@@ -9,21 +9,6 @@
 
 static double *doubles(fibrad_arena *arena, size_t count) { return fibrad_arena_take(arena, count, sizeof(double)); }
 
-static void pieces_layout(fibrad_pieces *p, fibrad_arena *arena) {
-    size_t count = FIBRAD_PIECES + 2 * LANES;
-    double **const arrays[] = {&p->px, &p->py,     &p->qx,    &p->qy, &p->cx, &p->cy,
-                               &p->r,  &p->circle, &p->taker, &p->ox, &p->oy};
-    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = doubles(arena, count);
-    p->count = 0;
-}
-
-static void boundary_layout(fibrad_boundary *b, fibrad_arena *arena) {
-    double **const arrays[] = {&b->px,     &b->py,      &b->qx,      &b->qy,      &b->cx,      &b->cy,    &b->r,
-                               &b->circle, &b->enter_x, &b->enter_y, &b->leave_x, &b->leave_y, &b->end_x, &b->end_y};
-    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) *arrays[k] = doubles(arena, FIBRAD_BOUNDARY);
-    b->alive = 0;
-}
-
 static fibrad_arcs arcs_of(fibrad_arena *arena, size_t count) {
     fibrad_arcs arcs;
     arcs.a = doubles(arena, count), arcs.b = doubles(arena, count);
@@ -56,7 +41,7 @@ void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t disc
     areas->x = doubles(arena, circles), areas->y = doubles(arena, circles), areas->r = doubles(arena, circles);
     areas->area = doubles(arena, circles);
     areas->whose = fibrad_arena_take(arena, circles, sizeof(uint32_t));
-    pieces_layout(&areas->pieces, arena);
-    boundary_layout(&areas->boundary, arena);
+    areas->pieces = fibrad_arena_take(arena, 1, sizeof *areas->pieces);
+    areas->boundary = fibrad_arena_take(arena, 1, sizeof *areas->boundary);
     accounts_layout(&areas->accounts, arena, discs, circles);
 }

@@ -13,11 +13,12 @@
 #define FIBRAD_PIECES 64 /* pieces integrated at a time, about */
 
 /* Pieces of the open region's boundary that discs have taken: arcs from p to q about c, walked with the open region on
- * the left, that is counter-clockwise on the window's circle and clockwise on a disc's. */
+ * the left, that is counter-clockwise on the window's circle and clockwise on a disc's. Room for two vectors more. */
 typedef struct fibrad_pieces {
-    double *px, *py, *qx, *qy, *cx, *cy, *r;
-    double *circle, *taker; /* numbers of the circle and of the disc that took the piece */
-    double *ox, *oy;        /* about where the area of the taker is computed */
+    _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_PIECES + 16], py[FIBRAD_PIECES + 16];
+    double qx[FIBRAD_PIECES + 16], qy[FIBRAD_PIECES + 16];
+    double cx[FIBRAD_PIECES + 16], cy[FIBRAD_PIECES + 16], r[FIBRAD_PIECES + 16];
+    double circle[FIBRAD_PIECES + 16], taker[FIBRAD_PIECES + 16]; /* numbers of the circle and of the disc that took it */
     uint32_t count;
 } fibrad_pieces;
 
@@ -25,9 +26,12 @@ typedef struct fibrad_pieces {
 
 /* The boundary of the open region while clipping: arcs as above, each in a slot of its own, in no particular order. */
 typedef struct fibrad_boundary {
-    double *px, *py, *qx, *qy, *cx, *cy, *r, *circle;      /* [FIBRAD_BOUNDARY] */
-    double *enter_x, *enter_y, *leave_x, *leave_y;         /* ... where the arcs enter and leave the new disc */
-    double *end_x, *end_y;                                 /* ... where they ended before it came */
+    _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_BOUNDARY], py[FIBRAD_BOUNDARY];
+    double qx[FIBRAD_BOUNDARY], qy[FIBRAD_BOUNDARY];
+    double cx[FIBRAD_BOUNDARY], cy[FIBRAD_BOUNDARY], r[FIBRAD_BOUNDARY], circle[FIBRAD_BOUNDARY];
+    double enter_x[FIBRAD_BOUNDARY+16], enter_y[FIBRAD_BOUNDARY]; /* where the arcs enter and leave the new disc */
+    double leave_x[FIBRAD_BOUNDARY], leave_y[FIBRAD_BOUNDARY];
+    double end_x[FIBRAD_BOUNDARY], end_y[FIBRAD_BOUNDARY]; /* where they ended before it came */
     uint64_t alive;                                        /* bit k: slot k holds an arc */
 } fibrad_boundary;
 
@@ -62,8 +66,8 @@ typedef struct fibrad_areas {
     double *x, *y, *r;  /* [discs + 2] circle 0 is the window */
     double *area;       /* [discs + 2] what is seen of each; of the window: -pi */
     uint32_t *whose;    /* [discs + 2] the caller's number of each */
-    fibrad_pieces pieces;
-    fibrad_boundary boundary;
+    fibrad_pieces *pieces;
+    fibrad_boundary *boundary;
     fibrad_accounts accounts;
     bool doubtful;      /* the window in hand is done by accounts */
     bool overflow;      /* too many arcs for the memory: start again with more discs */

@@ -48,10 +48,21 @@ static inline bool add(fibrad_boundary *b, double px, double py, double qx, doub
     return true;
 }
 
+/* Moves arcs to lower slots if they fit into eight slots fewer. */
+static inline void close_up(fibrad_boundary *b) {
+    uint32_t last = (63 - (uint32_t)__builtin_clzll(b->alive)) / 8 * 8;
+    if (fibrad_count_bits(b->alive) > last) return;
+    for (uint64_t bits = b->alive >> last << last; bits != 0; bits &= bits - 1) {
+        uint32_t k = (uint32_t)__builtin_ctzll(bits);
+        b->alive &= ~(UINT64_C(1) << k);
+        add(b, b->px[k], b->py[k], b->qx[k], b->qy[k], b->cx[k], b->cy[k], b->r[k], b->circle[k]);
+    }
+}
+
 /* Adds the arc of disc k clockwise from p to q. In four parts if it is longer than half its circle, in two if it is
  * nearly as long. False: no slots, or p and q too close to tell a short arc from a whole circle. */
 static bool join(fibrad_areas *areas, uint32_t k, double px, double py, double qx, double qy) {
-    fibrad_boundary *b = &areas->boundary;
+    fibrad_boundary *b = areas->boundary;
     double x = areas->x[k], y = areas->y[k], r = areas->r[k];
     double ax = px - x, ay = py - y, bx = qx - x, by = qy - y, turn = ay * bx - ax * by, level = ax * bx + ay * by;
     double near = MARGIN * r;
@@ -83,7 +94,7 @@ static double clockwise(double ax, double ay, double bx, double by) {
 /* Joins several points where the boundary enters disc k with those where it leaves it: each with the next one
  * clockwise. False if they do not alternate, or are too close to tell. */
 static bool join_several(fibrad_areas *areas, uint32_t k, uint64_t enters, uint64_t leaves) {
-    const fibrad_boundary *b = &areas->boundary;
+    const fibrad_boundary *b = areas->boundary;
     double x = areas->x[k], y = areas->y[k], margin = MARGIN + MARGIN / areas->r[k];
     uint64_t used = 0;
     for (uint64_t from = enters; from != 0; from &= from - 1) {
@@ -121,8 +132,7 @@ static bool is_open(const fibrad_areas *areas, uint32_t k, double x, double y, b
 /* Lets disc k, whose circle has been added, take its part of the open region. False: in doubt. */
 static bool clip(fibrad_areas *areas, uint32_t k) {
     double x = areas->x[k], y = areas->y[k], r = areas->r[k];
-    fibrad_boundary *b = &areas->boundary;
-    double ox = r < 1 ? x : 0, oy = r < 1 ? y : 0;
+    fibrad_boundary *b = areas->boundary;
     uint64_t enters = 0, leaves = 0, twice = 0, gone = 0, touched = 0, doubt = 0;
     uint64_t alive = b->alive;
     uint32_t slots = 64 - (uint32_t)__builtin_clzll(alive);
@@ -183,7 +193,7 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
                                     .cy = cy,
                                     .r = c_r,
                                     .circle = circle};
-        fibrad_pieces_give(areas, touching, &piece, k, ox, oy);
+        fibrad_pieces_give(areas, touching, &piece, k);
         uint32_t p_bits = vm_bits(p_in) & lanes, q_bits = vm_bits(q_in) & lanes, m_bits = vm_bits(middle) & lanes;
         touched |= (uint64_t)touching << o;
         enters |= (uint64_t)((q_bits & ~p_bits) | m_bits) << o;
@@ -219,7 +229,7 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
                 .qx = vd_set1(b->end_x[a]),   .qy = vd_set1(b->end_y[a]),
                 .cx = vd_set1(b->cx[a]),      .cy = vd_set1(b->cy[a]),
                 .r = vd_set1(b->r[a]),        .circle = vd_set1(b->circle[a])};
-            fibrad_pieces_give(areas, 1, &piece, k, ox, oy);
+            fibrad_pieces_give(areas, 1, &piece, k);
         } else if (!add(b, b->leave_x[a], b->leave_y[a], b->end_x[a], b->end_y[a], b->cx[a], b->cy[a], b->r[a],
                         b->circle[a]))
             return false;
@@ -251,7 +261,7 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
                                                                0x1.e921dd42f09bap-1};
     static _Alignas(FIBRAD_ALIGNMENT) const double end_y[8] = {0x1.5bf2a3a493975p-1, -0x1.f34110526968fp-1,
                                                                0x1.2e9cd95baba34p-2};
-    fibrad_boundary *b = &areas->boundary;
+    fibrad_boundary *b = areas->boundary;
     vd zero = vd_set1(0);
     for (uint32_t o = 0; o < 3; o += VD_LANES) {
         vd_store(b->px + o, vd_load(start_x + o));
@@ -264,7 +274,7 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
         vd_store(b->circle + o, zero);
     }
     b->alive = 7;
-    areas->pieces.count = 0;
+    areas->pieces->count = 0;
     areas->doubtful = false;
     areas->circles = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
@@ -273,22 +283,24 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
 
 bool LANED(fibrad_areas_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
     if (areas->doubtful) return LANED(fibrad_accounts_disc)(areas, whose, x, y, r);
-    if (areas->boundary.alive == 0) return false;
+    if (areas->boundary->alive == 0) return false;
     uint32_t k = areas->circles;
     fibrad_areas_add_circle(areas, whose, x, y, r);
     if (r > LARGEST || !clip(areas, k)) return redo(areas, k + 1);
-    return areas->boundary.alive != 0;
+    if (areas->boundary->alive == 0) return false;
+    close_up(areas->boundary);
+    return true;
 }
 
 /* What is still open, as the area of the last circle; false if the areas cannot be right. */
 static bool complete(fibrad_areas *areas) {
-    fibrad_boundary *b = &areas->boundary;
+    fibrad_boundary *b = areas->boundary;
     uint32_t rest = areas->circles;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     for (uint32_t o = 0; b->alive >> o != 0; o += VD_LANES) {
         fibrad_piece_lanes piece = {vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
                                     vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
-        fibrad_pieces_give(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest, 0, 0);
+        fibrad_pieces_give(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest);
         if (o + VD_LANES >= 64) break;
     }
     LANED(fibrad_pieces_integrate)(areas);

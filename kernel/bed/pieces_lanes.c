@@ -23,34 +23,23 @@ static inline vd segment(vd square, vd across, vd r) {
     return vd_mul(vd_mul(vd_mul(square, square), inverse), vd_mul(g, vd_set1(0.125)));
 }
 
-/* (p - o) x (q - o)/2, the triangle that joins the chord to o. */
-static inline vd triangle(vd px, vd py, vd qx, vd qy, vd ox, vd oy) {
-    vd ax = vd_sub(px, ox), ay = vd_sub(py, oy), bx = vd_sub(qx, ox), by = vd_sub(qy, oy);
-    return vd_mul(vd_set1(0.5), vd_sub(vd_mul(ax, by), vd_mul(ay, bx)));
-}
-
-/* Areas are computed about a point of their own, the disc's centre if it is smaller than the window, else the window's,
- * so that small ones get small rounding errors. */
 void LANED(fibrad_pieces_integrate)(fibrad_areas *areas) {
-    fibrad_pieces p = areas->pieces;
-    vd zero = vd_set1(0), one = vd_set1(1);
-    for (uint32_t k = 0; k < p.count; k += VD_LANES) {
-        vd px = vd_load(p.px + k), py = vd_load(p.py + k), qx = vd_load(p.qx + k), qy = vd_load(p.qy + k);
-        vd cx = vd_load(p.cx + k), cy = vd_load(p.cy + k), r = vd_load(p.r + k);
-        vd sense = vd_select(vd_lt(vd_load(p.circle + k), one), one, vd_set1(-1));
+    fibrad_pieces *p = areas->pieces;
+    vd one = vd_set1(1), half = vd_set1(0.5);
+    for (uint32_t k = 0; k < p->count; k += VD_LANES) {
+        vd px = vd_load(p->px + k), py = vd_load(p->py + k), qx = vd_load(p->qx + k), qy = vd_load(p->qy + k);
+        vd cx = vd_load(p->cx + k), cy = vd_load(p->cy + k), r = vd_load(p->r + k);
+        vd sense = vd_select(vd_lt(vd_load(p->circle + k), one), one, vd_set1(-1));
         vd dx = vd_sub(qx, px), dy = vd_sub(qy, py);
         vd across = vd_sub(vd_mul(dx, vd_sub(cy, py)), vd_mul(dy, vd_sub(cx, px)));
         vd square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
-        vd area = vd_mul(sense, segment(square, vd_mul(sense, across), r));
-        vm small = vd_lt(r, one);
-        vd about_own = triangle(px, py, qx, qy, vd_select(small, cx, zero), vd_select(small, cy, zero));
-        vd about_taker = triangle(px, py, qx, qy, vd_load(p.ox + k), vd_load(p.oy + k));
-        vd_store(p.px + k, vd_add(area, about_own)); /* where they are of no use any more */
-        vd_store(p.py + k, vd_add(area, about_taker));
+        vd arc = vd_mul(sense, segment(square, vd_mul(sense, across), r));
+        vd chord = vd_mul(half, vd_sub(vd_mul(px, qy), vd_mul(py, qx)));
+        vd_store(p->r + k, vd_add(arc, chord)); /* where they are of no use any more */
     }
-    for (uint32_t k = 0; k < p.count; k++) {
-        areas->area[(uint32_t)p.circle[k]] -= p.px[k];
-        areas->area[(uint32_t)p.taker[k]] += p.py[k];
+    for (uint32_t k = 0; k < p->count; k++) {
+        areas->area[(uint32_t)p->circle[k]] -= p->r[k];
+        areas->area[(uint32_t)p->taker[k]] += p->r[k];
     }
-    areas->pieces.count = 0;
+    p->count = 0;
 }

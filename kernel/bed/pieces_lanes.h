@@ -20,10 +20,9 @@ typedef struct fibrad_piece_lanes {
     vd px, py, qx, qy, cx, cy, r, circle;
 } fibrad_piece_lanes;
 
-/* Gives the lanes named by bits to circle k, whose area is computed about (ox, oy). */
-static inline void fibrad_pieces_give(fibrad_areas *areas, uint32_t bits, const fibrad_piece_lanes *s, uint32_t k,
-                                      double ox, double oy) {
-    fibrad_pieces *pieces = &areas->pieces;
+/* Gives the lanes named by bits to circle k. */
+static inline void fibrad_pieces_give(fibrad_areas *areas, uint32_t bits, const fibrad_piece_lanes *s, uint32_t k) {
+    fibrad_pieces *pieces = areas->pieces;
     uint32_t n = pieces->count;
     vd_compress(pieces->px + n, bits, s->px);
     vd_compress(pieces->py + n, bits, s->py);
@@ -34,8 +33,6 @@ static inline void fibrad_pieces_give(fibrad_areas *areas, uint32_t bits, const 
     vd_compress(pieces->r + n, bits, s->r);
     vd_compress(pieces->circle + n, bits, s->circle);
     vd_storeu(pieces->taker + n, vd_set1(k));
-    vd_storeu(pieces->ox + n, vd_set1(ox));
-    vd_storeu(pieces->oy + n, vd_set1(oy));
     pieces->count = n + fibrad_count_bits(bits);
     if (pieces->count >= FIBRAD_PIECES) LANED(fibrad_pieces_integrate)(areas);
 }
