@@ -220,18 +220,12 @@ static inline arcs_in_lanes select(vm m, const arcs_in_lanes *s, const arcs_in_l
 
 static inline uint32_t rising(const arcs_in_lanes *s) { return vm_bits(vd_lt(s->a, s->b)); }
 
-/* Gives the lanes named by bits to circle k. The window's arcs are walked as they are, those of discs backwards. */
+/* Gives the lanes named by bits to circle k. */
 static inline void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes *s, uint32_t k) {
     uint32_t size = areas->circles + 1; /* the new one, or the rest */
-    vm window = vd_lt(s->circle, vd_set1(1));
-    fibrad_piece_lanes piece = {.px = vd_select(window, s->px, s->qx),
-                                .py = vd_select(window, s->py, s->qy),
-                                .qx = vd_select(window, s->qx, s->px),
-                                .qy = vd_select(window, s->qy, s->py),
-                                .cx = vd_lookup(areas->x, size, s->circle),
-                                .cy = vd_lookup(areas->y, size, s->circle),
-                                .r = vd_lookup(areas->r, size, s->circle),
-                                .circle = s->circle};
+    vd x = vd_lookup(areas->x, size, s->circle), y = vd_lookup(areas->y, size, s->circle);
+    fibrad_piece_lanes piece = {vd_sub(s->px, x), vd_sub(s->py, y), vd_sub(s->qx, x), vd_sub(s->qy, y),
+                                x, y, vd_lookup(areas->r, size, s->circle), s->circle};
     fibrad_pieces_give(areas, bits, &piece, k);
 }
 

@@ -12,8 +12,8 @@
 
 #define FIBRAD_PIECES 64 /* pieces integrated at a time, about */
 
-/* Pieces of the open region's boundary that discs have taken: arcs from p to q about c, walked with the open region on
- * the left, that is counter-clockwise on the window's circle and clockwise on a disc's. Room for two vectors more. */
+/* Pieces of the open region's boundary that discs have taken: arcs counter-clockwise from c + p to c + q about c, at
+ * most half a circle. Room for two vectors more. */
 typedef struct fibrad_pieces {
     _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_PIECES + 16], py[FIBRAD_PIECES + 16];
     double qx[FIBRAD_PIECES + 16], qy[FIBRAD_PIECES + 16];
@@ -29,10 +29,10 @@ typedef struct fibrad_boundary {
     _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_BOUNDARY], py[FIBRAD_BOUNDARY];
     double qx[FIBRAD_BOUNDARY], qy[FIBRAD_BOUNDARY];
     double cx[FIBRAD_BOUNDARY], cy[FIBRAD_BOUNDARY], r[FIBRAD_BOUNDARY], circle[FIBRAD_BOUNDARY];
-    double enter_x[FIBRAD_BOUNDARY+16], enter_y[FIBRAD_BOUNDARY]; /* where the arcs enter and leave the new disc */
-    double leave_x[FIBRAD_BOUNDARY], leave_y[FIBRAD_BOUNDARY];
-    double end_x[FIBRAD_BOUNDARY], end_y[FIBRAD_BOUNDARY]; /* where they ended before it came */
-    uint64_t alive;                                        /* bit k: slot k holds an arc */
+    double sx[FIBRAD_BOUNDARY], sy[FIBRAD_BOUNDARY]; /* where each enters the new disc, relative to its centre, ... */
+    double ex[FIBRAD_BOUNDARY], ey[FIBRAD_BOUNDARY]; /* ... where it leaves it, ... */
+    double old_qx[FIBRAD_BOUNDARY], old_qy[FIBRAD_BOUNDARY]; /* ... and where it ended before */
+    uint64_t alive, window; /* bit k: slot k holds an arc; it is one of the window's */
 } fibrad_boundary;
 
 /* Arcs of the accounts, each counter-clockwise from p to q on a circle (its number) and at most half of it; a and b
@@ -69,6 +69,7 @@ typedef struct fibrad_areas {
     fibrad_pieces *pieces;
     fibrad_boundary *boundary;
     fibrad_accounts accounts;
+    double widest;      /* the largest radius so far */
     bool doubtful;      /* the window in hand is done by accounts */
     bool overflow;      /* too many arcs for the memory: start again with more discs */
     uint32_t fallbacks; /* doubtful windows since the caller set this to 0 */

@@ -2,26 +2,30 @@
  * set. SPDX-License-Identifier: MIT
  *
  * The open region - what no disc covers so far - is known by its boundary: arcs of the window's circle and of the
- * circles of discs, walked with the region on the left. A new disc cuts them, in lanes over the arcs: the parts inside
- * it leave the boundary, and are pieces of the boundary of what is seen of it. Where the walk enters the disc, the new
- * boundary goes on along the disc's circle, clockwise, to the next point where the walk leaves it.
+ * circles of discs. A new disc cuts them, in lanes over the arcs: the parts inside it leave the boundary, and are
+ * pieces of the boundary of what is seen of it. Walk along the boundary, the open region on the left: where the walk
+ * enters the disc, the boundary now goes on along the disc's circle, clockwise, to the next point where it leaves.
  *
  * An arc is cut once if one of its ends is inside the disc. If both are outside it may be cut twice, about the
  * direction in which the disc lies; if both are inside, about the opposite one. So divisions and roots say where an arc
- * is cut, but never whether. Ends shared by two arcs have the same bits, and get the same answer.
+ * is cut, but never whether.
  *
- * This breaks where rounding decides. All decisions therefore have a margin, a million times the rounding; a window in
- * which one of them is too close is done again by accounts. */
+ * This breaks where rounding decides. All decisions therefore have a margin, far above rounding; a window in which one
+ * of them is too close is done again by accounts. */
 #include FIBRAD_LANES_HEADER
 #include "bed/accounts_lanes.h"
 #include "bed/areas_lanes.h"
 #include "bed/pieces_lanes.h"
 
-#define PI     3.14159265358979323846
-#define MARGIN 1e-10
-/* Discs of larger radius round too much for the margin. */
-#define LARGEST 1000.0
+#define PI      3.14159265358979323846
 #define CLOSURE 1e-12
+
+/* Decisions closer than this are in doubt: distances of points and circles, relative to the radii for tangent ones.
+ * ROUNDING: the same for what rounds with the square of a large radius. */
+#define MARGIN   1e-10
+#define ROUNDING 1e-14
+/* Discs of larger radius round too much. */
+#define LARGEST 1000.0
 
 /* The cosine of the angle of the longest arc, about 154 degrees: arcs have to be shorter than half a circle. */
 #define LONGEST (-0.9)
@@ -37,14 +41,18 @@ static inline void put(double *array, uint32_t slot, double value) {
     vd_store(vector, vd_replace(vd_load(vector), slot % VD_LANES, value));
 }
 
+typedef struct arc {
+    double px, py, qx, qy, cx, cy, r, circle;
+} arc;
+
 /* Puts an arc into a free slot. False if there is none. */
-static inline bool add(fibrad_boundary *b, double px, double py, double qx, double qy, double x, double y, double r,
-                       double circle) {
+static inline bool add(fibrad_boundary *b, const arc *a) {
     if (~b->alive == 0) return false;
     uint32_t slot = (uint32_t)__builtin_ctzll(~b->alive);
-    put(b->px, slot, px), put(b->py, slot, py), put(b->qx, slot, qx), put(b->qy, slot, qy);
-    put(b->cx, slot, x), put(b->cy, slot, y), put(b->r, slot, r), put(b->circle, slot, circle);
+    put(b->px, slot, a->px), put(b->py, slot, a->py), put(b->qx, slot, a->qx), put(b->qy, slot, a->qy);
+    put(b->cx, slot, a->cx), put(b->cy, slot, a->cy), put(b->r, slot, a->r), put(b->circle, slot, a->circle);
     b->alive |= UINT64_C(1) << slot;
+    b->window = (b->window & ~(UINT64_C(1) << slot)) | (uint64_t)(a->circle < 1) << slot;
     return true;
 }
 
@@ -55,62 +63,74 @@ static inline void close_up(fibrad_boundary *b) {
     for (uint64_t bits = b->alive >> last << last; bits != 0; bits &= bits - 1) {
         uint32_t k = (uint32_t)__builtin_ctzll(bits);
         b->alive &= ~(UINT64_C(1) << k);
-        add(b, b->px[k], b->py[k], b->qx[k], b->qy[k], b->cx[k], b->cy[k], b->r[k], b->circle[k]);
+        add(b, &(arc){b->px[k], b->py[k], b->qx[k], b->qy[k], b->cx[k], b->cy[k], b->r[k], b->circle[k]});
     }
 }
 
-/* Adds the arc of disc k clockwise from p to q. In four parts if it is longer than half its circle, in two if it is
- * nearly as long. False: no slots, or p and q too close to tell a short arc from a whole circle. */
-static bool join(fibrad_areas *areas, uint32_t k, double px, double py, double qx, double qy) {
-    fibrad_boundary *b = areas->boundary;
-    double x = areas->x[k], y = areas->y[k], r = areas->r[k];
-    double ax = px - x, ay = py - y, bx = qx - x, by = qy - y, turn = ay * bx - ax * by, level = ax * bx + ay * by;
-    double near = MARGIN * r;
-    if (turn > near && level > LONGEST * r * r) return add(b, px, py, qx, qy, x, y, r, k);
+/* Adds an arc of any length. In four parts if it is longer than half its circle, in two if it is nearly as long. False:
+ * no slots, or p and q too close to tell a short arc from a whole circle. */
+static bool add_long(fibrad_boundary *b, const arc *a) {
+    double turn = a->px * a->qy - a->py * a->qx, level = a->px * a->qx + a->py * a->qy, near = MARGIN * a->r;
+    if (turn > near && level > LONGEST * a->r * a->r) return add(b, a);
     if (level > 0 && turn >= -near && turn <= near) return false;
 
-    double point[5][2] = {{px, py}, {0, 0}, {0, 0}, {0, 0}, {qx, qy}};
-    bool half = turn > 0;
-    for (int step = 4; step >= (half ? 4 : 2); step /= 2)
+    double point[5][2] = {{a->px, a->py}, {0, 0}, {0, 0}, {0, 0}, {a->qx, a->qy}};
+    int part = turn > 0 ? 2 : 1;
+    for (int step = 4; step > part; step /= 2)
         for (int from = 0; from < 4; from += step) {
             const double *p = point[from], *q = point[from + step];
-            double ux = p[1] - q[1], uy = q[0] - p[0], scale = r / fibrad_sqrt(ux * ux + uy * uy);
-            point[from + step / 2][0] = x + ux * scale, point[from + step / 2][1] = y + uy * scale;
+            double ux = q[1] - p[1], uy = p[0] - q[0], scale = a->r / fibrad_sqrt(ux * ux + uy * uy);
+            point[from + step / 2][0] = ux * scale, point[from + step / 2][1] = uy * scale;
         }
     bool done = true;
-    for (int from = 0, step = half ? 2 : 1; from < 4; from += step) {
-        const double *p = point[from], *q = point[from + step];
-        done = done && add(b, p[0], p[1], q[0], q[1], x, y, r, k);
+    for (int from = 0; from < 4 && done; from += part) {
+        const double *p = point[from], *q = point[from + part];
+        done = add(b, &(arc){p[0], p[1], q[0], q[1], a->cx, a->cy, a->r, a->circle});
     }
     return done;
 }
 
-/* How far it is clockwise from (ax, ay) to (bx, by), in quarters that rise with the angle. */
-static double clockwise(double ax, double ay, double bx, double by) {
-    double turn = ay * bx - ax * by, level = ax * bx + ay * by, sum = fibrad_abs(turn) + fibrad_abs(level);
-    return turn >= 0 ? 1 - level / sum : 3 + level / sum;
+/* The arc of disc k counter-clockwise from where slot p leaves it to where slot q enters it. */
+static inline arc along(const fibrad_areas *areas, uint32_t k, uint32_t p, uint32_t q) {
+    const fibrad_boundary *b = areas->boundary;
+    bool p_window = b->window >> p & 1, q_window = b->window >> q & 1;
+    return (arc){p_window ? b->ex[p] : b->sx[p],
+                 p_window ? b->ey[p] : b->sy[p],
+                 q_window ? b->sx[q] : b->ex[q],
+                 q_window ? b->sy[q] : b->ey[q],
+                 areas->x[k],
+                 areas->y[k],
+                 areas->r[k],
+                 k};
 }
 
-/* Joins several points where the boundary enters disc k with those where it leaves it: each with the next one
- * clockwise. False if they do not alternate, or are too close to tell. */
-static bool join_several(fibrad_areas *areas, uint32_t k, uint64_t enters, uint64_t leaves) {
-    const fibrad_boundary *b = areas->boundary;
-    double x = areas->x[k], y = areas->y[k], margin = MARGIN + MARGIN / areas->r[k];
+/* Joins several points where the boundary leaves disc k with those where it enters it: each with the next one
+ * counter-clockwise. False if they do not alternate, or are too close to tell. */
+static bool join_several(fibrad_areas *areas, uint32_t k, uint64_t leaves, uint64_t enters) {
+    double margin = MARGIN + MARGIN / areas->r[k];
     uint64_t used = 0;
-    for (uint64_t from = enters; from != 0; from &= from - 1) {
+    arc found[FIBRAD_BOUNDARY];
+    uint32_t count = 0;
+    for (uint64_t from = leaves; from != 0; from &= from - 1) {
         uint32_t p = (uint32_t)__builtin_ctzll(from), nearest = 0;
-        double px = b->enter_x[p], py = b->enter_y[p], least = 4;
-        for (uint64_t to = leaves; to != 0; to &= to - 1) {
+        double least = 4;
+        for (uint64_t to = enters; to != 0; to &= to - 1) {
             uint32_t q = (uint32_t)__builtin_ctzll(to);
-            double ahead = clockwise(px - x, py - y, b->leave_x[q] - x, b->leave_y[q] - y);
+            arc a = along(areas, k, p, q);
+            double turn = a.px * a.qy - a.py * a.qx, level = a.px * a.qx + a.py * a.qy;
+            double sum = fibrad_abs(turn) + fibrad_abs(level);
+            double ahead = turn >= 0 ? 1 - level / sum : 3 + level / sum; /* rises with the angle, 0 to 4 */
             if (!(ahead > margin && ahead < 4 - margin)) return false;
             if (ahead < least) least = ahead, nearest = q;
         }
         uint64_t bit = UINT64_C(1) << nearest;
-        if ((used & bit) != 0 || !join(areas, k, px, py, b->leave_x[nearest], b->leave_y[nearest])) return false;
+        if ((used & bit) != 0) return false;
         used |= bit;
+        found[count++] = along(areas, k, p, nearest);
     }
-    return used == leaves;
+    bool done = used == enters;
+    for (uint32_t n = 0; n < count && done; n++) done = add_long(areas->boundary, &found[n]);
+    return done;
 }
 
 /* Whether a point within the window is open: in no disc but the new one, k. *doubtful if that is too close to tell. */
@@ -131,113 +151,102 @@ static bool is_open(const fibrad_areas *areas, uint32_t k, double x, double y, b
 
 /* Lets disc k, whose circle has been added, take its part of the open region. False: in doubt. */
 static bool clip(fibrad_areas *areas, uint32_t k) {
-    double x = areas->x[k], y = areas->y[k], r = areas->r[k];
     fibrad_boundary *b = areas->boundary;
-    uint64_t enters = 0, leaves = 0, twice = 0, gone = 0, touched = 0, doubt = 0;
-    uint64_t alive = b->alive;
-    uint32_t slots = 64 - (uint32_t)__builtin_clzll(alive);
-    vd u = vd_set1(x), v = vd_set1(y), radius = vd_set1(r), square_r = vd_set1(r * r), zero = vd_set1(0);
-    vd near = vd_set1(MARGIN * r * (1 + r)), half = vd_set1(0.5);
+    const double x = areas->x[k], y = areas->y[k], r = areas->r[k];
+    const uint64_t alive = b->alive;
+    const uint32_t slots = 64 - (uint32_t)__builtin_clzll(alive);
+    uint64_t p_inside = 0, q_inside = 0, twice = 0, doubt = 0;
+    areas->widest = fibrad_max(areas->widest, r);
+    const vd u = vd_set1(x), v = vd_set1(y), radius = vd_set1(r), square_r = vd_set1(r * r);
+    const vd near = vd_set1(MARGIN / 2 * r * (1 + r) + ROUNDING * areas->widest * (areas->widest + r));
+    const vd least = vd_set1(10 * MARGIN * (1 + r * r)), zero = vd_set1(0), half = vd_set1(0.5);
     for (uint32_t o = 0; o < slots; o += VD_LANES) {
         vd px = vd_load(b->px + o), py = vd_load(b->py + o), qx = vd_load(b->qx + o), qy = vd_load(b->qy + o);
-        vd cx = vd_load(b->cx + o), cy = vd_load(b->cy + o), c_r = vd_load(b->r + o), circle = vd_load(b->circle + o);
-        /* ends inside the disc */
-        vd pu = vd_sub(px, u), pv = vd_sub(py, v), qu = vd_sub(qx, u), qv = vd_sub(qy, v);
-        vd p_power = vd_sub(vd_add(vd_mul(pu, pu), vd_mul(pv, pv)), square_r);
-        vd q_power = vd_sub(vd_add(vd_mul(qu, qu), vd_mul(qv, qv)), square_r);
-        vm p_in = vd_lt(p_power, zero), q_in = vd_lt(q_power, zero);
-        /* (tx, ty): the direction of the disc from the arc's centre, turned a quarter ahead */
-        vd dx = vd_sub(u, cx), dy = vd_sub(v, cy);
-        vm window = vd_lt(circle, half);
-        vd tx = vd_select(window, vd_sub(zero, dy), dy), ty = vd_select(window, dx, vd_sub(zero, dx));
-        vd p_ahead = vd_add(vd_mul(vd_sub(px, cx), tx), vd_mul(vd_sub(py, cy), ty));
-        vd q_ahead = vd_add(vd_mul(vd_sub(qx, cx), tx), vd_mul(vd_sub(qy, cy), ty));
-        /* the circles meet if this is positive */
-        vd square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy)), sum = vd_add(c_r, radius), difference = vd_sub(c_r, radius);
-        vd outer = vd_sub(vd_mul(sum, sum), square), inner = vd_sub(square, vd_mul(difference, difference));
-        vd product = vd_mul(outer, inner);
-        vm meet = vd_lt(zero, product);
-        vm towards = vm_and(vd_lt(p_ahead, zero), vd_lt(zero, q_ahead));
-        vm away = vm_and(vd_lt(q_ahead, zero), vd_lt(zero, p_ahead));
-        vm both_in = vm_and(p_in, q_in), any_in = vm_or(p_in, q_in);
-        vm middle = vm_and(meet, vm_or(vm_and(both_in, away), vm_and(vm_not(any_in), towards)));
-
-        vm close = vm_or(vd_le(vd_abs(p_power), near), vd_le(vd_min(vd_abs(outer), vd_abs(inner)),
-                                                             vd_mul(vd_set1(MARGIN), sum)));
+        vd cx = vd_load(b->cx + o), cy = vd_load(b->cy + o), c_r = vd_load(b->r + o);
+        /* an end p is inside if p.d > middle; both circles meet if the distance middle/d is less than the radius */
+        vd dx = vd_sub(u, cx), dy = vd_sub(v, cy), square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
+        vd square_c = vd_mul(c_r, c_r), middle = vd_mul(half, vd_add(square, vd_sub(square_c, square_r)));
+        vd p_along = vd_add(vd_mul(px, dx), vd_mul(py, dy)), q_along = vd_add(vd_mul(qx, dx), vd_mul(qy, dy));
+        vd p_across = vd_sub(vd_mul(px, dy), vd_mul(py, dx)), q_across = vd_sub(vd_mul(qx, dy), vd_mul(qy, dx));
+        vd meeting = vd_sub(vd_mul(square_c, square), vd_mul(middle, middle));
+        vm p_in = vd_lt(middle, p_along), q_in = vd_lt(middle, q_along), meet = vd_lt(zero, meeting);
+        vm p_before = vd_lt(zero, p_across), q_after = vd_lt(q_across, zero);
+        vm towards = vm_and(p_before, q_after), away = vm_not(vm_or(p_before, q_after));
+        vm any_in = vm_or(p_in, q_in), both_in = vm_and(p_in, q_in);
+        vm cut_twice = vm_and(meet, vm_or(vm_and(both_in, away), vm_and(vm_not(any_in), towards)));
+        vm close = vm_or(vd_le(vd_abs(vd_sub(p_along, middle)), near),
+                         vd_le(vd_abs(meeting), vd_mul(vd_set1(MARGIN), vd_mul(vd_add(square_c, least), square))));
         uint32_t lanes = (uint32_t)(alive >> o) & lanes_below(VD_LANES);
-        uint32_t touching = vm_bits(vm_or(any_in, middle)) & lanes;
+        uint32_t touching = vm_bits(vm_or(any_in, cut_twice)) & lanes;
         doubt |= vm_bits(close) & lanes;
         if (touching == 0) continue;
 
-        vd scale = vd_div(half, square);
-        vd f = vd_mul(vd_add(square, vd_mul(sum, difference)), scale);
-        vd h = vd_mul(vd_sqrt(vd_max(product, zero)), scale);
-        vd fx = vd_add(cx, vd_mul(f, dx)), fy = vd_add(cy, vd_mul(f, dy)), hx = vd_mul(h, tx), hy = vd_mul(h, ty);
-        vd ix = vd_sub(fx, hx), iy = vd_sub(fy, hy), lx = vd_add(fx, hx), ly = vd_add(fy, hy);
-        vd_store(b->enter_x + o, ix);
-        vd_store(b->enter_y + o, iy);
-        vd_store(b->leave_x + o, lx);
-        vd_store(b->leave_y + o, ly);
-        vd_store(b->end_x + o, qx);
-        vd_store(b->end_y + o, qy);
-        vm ends_early = vm_or(q_in, middle), goes_on = vm_and(q_in, vm_not(middle));
-        vd_store(b->px + o, vd_select(p_in, lx, px));
-        vd_store(b->py + o, vd_select(p_in, ly, py));
-        vd_store(b->qx + o, vd_select(ends_early, ix, qx));
-        vd_store(b->qy + o, vd_select(ends_early, iy, qy));
-        fibrad_piece_lanes piece = {.px = vd_select(p_in, px, ix),
-                                    .py = vd_select(p_in, py, iy),
-                                    .qx = vd_select(goes_on, qx, lx),
-                                    .qy = vd_select(goes_on, qy, ly),
+        /* the points s, where the circle enters the disc counter-clockwise, and e, where it leaves */
+        vd sum = vd_add(c_r, radius), difference = vd_sub(c_r, radius);
+        vd outer = vd_sub(vd_mul(sum, sum), square), inner = vd_sub(square, vd_mul(difference, difference));
+        vd scale = vd_div(half, square), f = vd_mul(vd_add(middle, middle), scale);
+        vd h = vd_mul(vd_sqrt(vd_max(vd_mul(outer, inner), zero)), scale);
+        vd fx = vd_mul(f, dx), fy = vd_mul(f, dy), hx = vd_mul(h, dx), hy = vd_mul(h, dy);
+        vd sx = vd_add(fx, hy), sy = vd_sub(fy, hx), ex = vd_sub(fx, hy), ey = vd_add(fy, hx);
+        vd_store(b->sx + o, vd_sub(sx, dx));
+        vd_store(b->sy + o, vd_sub(sy, dy));
+        vd_store(b->ex + o, vd_sub(ex, dx));
+        vd_store(b->ey + o, vd_sub(ey, dy));
+        vd_store(b->old_qx + o, qx);
+        vd_store(b->old_qy + o, qy);
+        vm ends_early = vm_or(q_in, cut_twice), goes_on = vm_and(q_in, vm_not(cut_twice));
+        vd_store(b->px + o, vd_select(p_in, ex, px));
+        vd_store(b->py + o, vd_select(p_in, ey, py));
+        vd_store(b->qx + o, vd_select(ends_early, sx, qx));
+        vd_store(b->qy + o, vd_select(ends_early, sy, qy));
+        fibrad_piece_lanes piece = {.px = vd_select(p_in, px, sx),
+                                    .py = vd_select(p_in, py, sy),
+                                    .qx = vd_select(goes_on, qx, ex),
+                                    .qy = vd_select(goes_on, qy, ey),
                                     .cx = cx,
                                     .cy = cy,
                                     .r = c_r,
-                                    .circle = circle};
+                                    .circle = vd_load(b->circle + o)};
         fibrad_pieces_give(areas, touching, &piece, k);
-        uint32_t p_bits = vm_bits(p_in) & lanes, q_bits = vm_bits(q_in) & lanes, m_bits = vm_bits(middle) & lanes;
-        touched |= (uint64_t)touching << o;
-        enters |= (uint64_t)((q_bits & ~p_bits) | m_bits) << o;
-        leaves |= (uint64_t)((p_bits & ~q_bits) | m_bits) << o;
-        twice |= (uint64_t)m_bits << o;
-        gone |= (uint64_t)(p_bits & q_bits & ~m_bits) << o;
+        p_inside |= (uint64_t)(vm_bits(p_in) & lanes) << o;
+        q_inside |= (uint64_t)(vm_bits(q_in) & lanes) << o;
+        twice |= (uint64_t)(vm_bits(cut_twice) & lanes) << o;
     }
     if (doubt != 0) return false;
-    if (enters == 0) {
-        b->alive = alive & ~gone;
-        /* the disc's circle is all hidden or all open */
+    const uint64_t starts = (q_inside & ~p_inside) | twice, ends = (p_inside & ~q_inside) | twice;
+    b->alive = alive & ~(p_inside & q_inside & ~twice);
+    if ((starts | ends) == 0) { /* the disc's circle is all hidden or all open */
         bool island = false, doubtful = false;
         if (r < 1 && x * x + y * y < (1 - r) * (1 - r)) island = is_open(areas, k, x + r, y, &doubtful);
-        if (leaves != 0 || doubtful) return false;
         if (island) {
             double far = 0x1.bb67ae8584caap-1 * r; /* sqrt(3/4) */
-            double px = x + r, qx = x - r / 2, low = y - far, high = y + far;
-            if (!add(b, px, y, qx, low, x, y, r, k) || !add(b, qx, low, qx, high, x, y, r, k) ||
-                !add(b, qx, high, px, y, x, y, r, k))
-                return false;
+            doubtful = !add(b, &(arc){r, 0, -r / 2, far, x, y, r, k}) ||
+                       !add(b, &(arc){-r / 2, far, -r / 2, -far, x, y, r, k}) ||
+                       !add(b, &(arc){-r / 2, -far, r, 0, x, y, r, k});
         }
-        if (touched != 0 || island) areas->circles++;
-        return true;
+        areas->circles += island || b->alive != alive;
+        return !doubtful;
     }
 
     areas->circles++;
-    b->alive = alive & ~gone;
     for (uint64_t bits = twice; bits != 0; bits &= bits - 1) { /* what is beyond the cut in the middle */
         uint32_t a = (uint32_t)__builtin_ctzll(bits);
-        if (b->px[a] == b->leave_x[a] && b->py[a] == b->leave_y[a]) { /* it goes */
-            fibrad_piece_lanes piece = {
-                .px = vd_set1(b->enter_x[a]), .py = vd_set1(b->enter_y[a]),
-                .qx = vd_set1(b->end_x[a]),   .qy = vd_set1(b->end_y[a]),
-                .cx = vd_set1(b->cx[a]),      .cy = vd_set1(b->cy[a]),
-                .r = vd_set1(b->r[a]),        .circle = vd_set1(b->circle[a])};
+        double dx = x - b->cx[a], dy = y - b->cy[a];
+        if (p_inside >> a & 1) {
+            fibrad_piece_lanes piece = {vd_set1(b->sx[a] + dx), vd_set1(b->sy[a] + dy), vd_set1(b->old_qx[a]),
+                                        vd_set1(b->old_qy[a]),  vd_set1(b->cx[a]),      vd_set1(b->cy[a]),
+                                        vd_set1(b->r[a]),       vd_set1(b->circle[a])};
             fibrad_pieces_give(areas, 1, &piece, k);
-        } else if (!add(b, b->leave_x[a], b->leave_y[a], b->end_x[a], b->end_y[a], b->cx[a], b->cy[a], b->r[a],
-                        b->circle[a]))
+        } else if (!add(b, &(arc){b->ex[a] + dx, b->ey[a] + dy, b->old_qx[a], b->old_qy[a], b->cx[a], b->cy[a], b->r[a],
+                                  b->circle[a]}))
             return false;
     }
-    if ((enters & (enters - 1)) != 0 || (leaves & (leaves - 1)) != 0 || leaves == 0)
-        return join_several(areas, k, enters, leaves);
-    uint32_t from = (uint32_t)__builtin_ctzll(enters), to = (uint32_t)__builtin_ctzll(leaves);
-    return join(areas, k, b->enter_x[from], b->enter_y[from], b->leave_x[to], b->leave_y[to]);
+    const uint64_t leaves = (starts & ~b->window) | (ends & b->window);
+    const uint64_t enters = (starts & b->window) | (ends & ~b->window);
+    if ((leaves & (leaves - 1)) != 0 || leaves == 0 || (enters & (enters - 1)) != 0 || enters == 0)
+        return join_several(areas, k, leaves, enters);
+    arc a = along(areas, k, (uint32_t)__builtin_ctzll(leaves), (uint32_t)__builtin_ctzll(enters));
+    return add_long(b, &a);
 }
 
 /* Does the window again, up to its first `circles` circles, by accounts. */
@@ -273,7 +282,8 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
         vd_store(b->r + o, vd_set1(1));
         vd_store(b->circle + o, zero);
     }
-    b->alive = 7;
+    b->alive = b->window = 7;
+    areas->widest = 1;
     areas->pieces->count = 0;
     areas->doubtful = false;
     areas->circles = 0;

@@ -28,14 +28,13 @@ void LANED(fibrad_pieces_integrate)(fibrad_areas *areas) {
     vd one = vd_set1(1), half = vd_set1(0.5);
     for (uint32_t k = 0; k < p->count; k += VD_LANES) {
         vd px = vd_load(p->px + k), py = vd_load(p->py + k), qx = vd_load(p->qx + k), qy = vd_load(p->qy + k);
-        vd cx = vd_load(p->cx + k), cy = vd_load(p->cy + k), r = vd_load(p->r + k);
-        vd sense = vd_select(vd_lt(vd_load(p->circle + k), one), one, vd_set1(-1));
-        vd dx = vd_sub(qx, px), dy = vd_sub(qy, py);
-        vd across = vd_sub(vd_mul(dx, vd_sub(cy, py)), vd_mul(dy, vd_sub(cx, px)));
-        vd square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
-        vd arc = vd_mul(sense, segment(square, vd_mul(sense, across), r));
-        vd chord = vd_mul(half, vd_sub(vd_mul(px, qy), vd_mul(py, qx)));
-        vd_store(p->r + k, vd_add(arc, chord)); /* where they are of no use any more */
+        vd dx = vd_sub(qx, px), dy = vd_sub(qy, py), across = vd_sub(vd_mul(px, qy), vd_mul(py, qx));
+        vd arc = segment(vd_add(vd_mul(dx, dx), vd_mul(dy, dy)), across, vd_load(p->r + k));
+        vd shift = vd_sub(vd_mul(vd_load(p->cx + k), dy), vd_mul(vd_load(p->cy + k), dx));
+        vd area = vd_add(arc, vd_mul(half, vd_add(across, shift)));
+        /* the open region is on the left of the window's arcs, on the right of discs' */
+        area = vd_select(vd_lt(vd_load(p->circle + k), one), area, vd_sub(vd_set1(0), area));
+        vd_store(p->r + k, area); /* where it is of no use any more */
     }
     for (uint32_t k = 0; k < p->count; k++) {
         areas->area[(uint32_t)p->circle[k]] -= p->r[k];
