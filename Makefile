@@ -78,7 +78,6 @@ LANED = \
     kernel/bed/beam_lanes.c \
     kernel/bed/cast_lanes.c \
     kernel/bed/near_lanes.c \
-    kernel/bed/pieces_lanes.c \
     kernel/bed/points_lanes.c
 
 # besides main.c and generate_tables.c

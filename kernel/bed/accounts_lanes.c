@@ -20,7 +20,7 @@
  * is longer than half a circle and none passes the jump. */
 #include FIBRAD_LANES_HEADER
 #include "bed/accounts_lanes.h"
-#include "bed/pieces_lanes.h"
+#include "bed/arc_lanes.h"
 
 #define DIAGONAL 0.70710678118654752
 #define BEGIN    (-DIAGONAL)
@@ -224,9 +224,9 @@ static inline uint32_t rising(const arcs_in_lanes *s) { return vm_bits(vd_lt(s->
 static inline void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes *s, uint32_t k) {
     uint32_t size = areas->circles + 1; /* the new one, or the rest */
     vd x = vd_lookup(areas->x, size, s->circle), y = vd_lookup(areas->y, size, s->circle);
-    fibrad_piece_lanes piece = {vd_sub(s->px, x), vd_sub(s->py, y), vd_sub(s->qx, x), vd_sub(s->qy, y),
+    fibrad_arc_lanes piece = {vd_sub(s->px, x), vd_sub(s->py, y), vd_sub(s->qx, x), vd_sub(s->qy, y),
                                 x, y, vd_lookup(areas->r, size, s->circle), s->circle};
-    fibrad_pieces_give(areas, bits, &piece, k);
+    fibrad_arcs_give(areas, bits, &piece, k);
 }
 
 /* Gives a whole list to circle k. */
@@ -336,6 +336,6 @@ double LANED(fibrad_accounts_end)(fibrad_areas *areas) {
     uint32_t rest = areas->circles;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     give_all(areas, &areas->accounts.open, rest);
-    LANED(fibrad_pieces_integrate)(areas);
+    fibrad_areas_sum(areas);
     return areas->area[rest];
 }

@@ -10,28 +10,26 @@
 #include "base/arena.h"
 #include "base/port.h"
 
-#define FIBRAD_PIECES 64 /* pieces integrated at a time, about */
+#define FIBRAD_PIECES 64 /* pieces summed at a time, about */
 
-/* Pieces of the open region's boundary that discs have taken: arcs counter-clockwise from c + p to c + q about c, at
- * most half a circle. Room for two vectors more. */
+/* Pieces of the open region's boundary that discs have taken: the area each contributes by Green's theorem, to the disc
+ * that took it, and less of it to the disc of its circle. Room for a vector more. */
 typedef struct fibrad_pieces {
-    _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_PIECES + 16], py[FIBRAD_PIECES + 16];
-    double qx[FIBRAD_PIECES + 16], qy[FIBRAD_PIECES + 16];
-    double cx[FIBRAD_PIECES + 16], cy[FIBRAD_PIECES + 16], r[FIBRAD_PIECES + 16];
-    double circle[FIBRAD_PIECES + 16], taker[FIBRAD_PIECES + 16]; /* numbers of the circle and of the disc that took it */
+    _Alignas(FIBRAD_ALIGNMENT) double area[FIBRAD_PIECES + 8];
+    double circle[FIBRAD_PIECES + 8], taker[FIBRAD_PIECES + 8]; /* numbers */
     uint32_t count;
 } fibrad_pieces;
 
 #define FIBRAD_BOUNDARY 64 /* arcs that bound the open region, at most, while clipping */
 
-/* The boundary of the open region while clipping: arcs as above, each in a slot of its own, in no particular order. */
+/* The boundary of the open region while clipping: arcs counter-clockwise from c + p to c + q about c, shorter than half
+ * a circle, each in a slot of its own, in no particular order. */
 typedef struct fibrad_boundary {
     _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_BOUNDARY], py[FIBRAD_BOUNDARY];
     double qx[FIBRAD_BOUNDARY], qy[FIBRAD_BOUNDARY];
     double cx[FIBRAD_BOUNDARY], cy[FIBRAD_BOUNDARY], r[FIBRAD_BOUNDARY], circle[FIBRAD_BOUNDARY];
-    double sx[FIBRAD_BOUNDARY], sy[FIBRAD_BOUNDARY]; /* where each enters the new disc, relative to its centre, ... */
-    double ex[FIBRAD_BOUNDARY], ey[FIBRAD_BOUNDARY]; /* ... where it leaves it, ... */
-    double old_qx[FIBRAD_BOUNDARY], old_qy[FIBRAD_BOUNDARY]; /* ... and where it ended before */
+    double cut[2][2][FIBRAD_BOUNDARY]; /* x, y of where each enters and leaves the new disc, relative to its centre, */
+    double old_qx[FIBRAD_BOUNDARY], old_qy[FIBRAD_BOUNDARY]; /* and where it ended before */
     uint64_t alive, window; /* bit k: slot k holds an arc; it is one of the window's */
 } fibrad_boundary;
 
@@ -76,5 +74,15 @@ typedef struct fibrad_areas {
 } fibrad_areas;
 
 void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t discs);
+
+/* Appends a circle. */
+static inline void fibrad_areas_add_circle(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+    uint32_t k = areas->circles;
+    areas->x[k] = x, areas->y[k] = y, areas->r[k] = r, areas->area[k] = 0;
+    areas->whose[k] = whose;
+}
+
+/* Adds the areas of the pieces so far to those of their discs. */
+void fibrad_areas_sum(fibrad_areas *areas);
 
 #endif

@@ -14,8 +14,8 @@
  * of them is too close is done again by accounts. */
 #include FIBRAD_LANES_HEADER
 #include "bed/accounts_lanes.h"
+#include "bed/arc_lanes.h"
 #include "bed/areas_lanes.h"
-#include "bed/pieces_lanes.h"
 
 #define PI      3.14159265358979323846
 #define CLOSURE 1e-12
@@ -67,15 +67,10 @@ static inline void close_up(fibrad_boundary *b) {
     }
 }
 
-/* Adds an arc of any length. In four parts if it is longer than half its circle, in two if it is nearly as long. False:
- * no slots, or p and q too close to tell a short arc from a whole circle. */
-static bool add_long(fibrad_boundary *b, const arc *a) {
-    double turn = a->px * a->qy - a->py * a->qx, level = a->px * a->qx + a->py * a->qy, near = MARGIN * a->r;
-    if (turn > near && level > LONGEST * a->r * a->r) return add(b, a);
-    if (level > 0 && turn >= -near && turn <= near) return false;
-
+/* Adds an arc in four parts if it is longer than half its circle, else in two. */
+static bool add_parts(fibrad_boundary *b, const arc *a, bool half) {
     double point[5][2] = {{a->px, a->py}, {0, 0}, {0, 0}, {0, 0}, {a->qx, a->qy}};
-    int part = turn > 0 ? 2 : 1;
+    int part = half ? 2 : 1;
     for (int step = 4; step > part; step /= 2)
         for (int from = 0; from < 4; from += step) {
             const double *p = point[from], *q = point[from + step];
@@ -90,18 +85,20 @@ static bool add_long(fibrad_boundary *b, const arc *a) {
     return done;
 }
 
+/* Adds an arc of any length. False: no slots, or p and q too close to tell a short arc from a whole circle. */
+static inline bool add_any(fibrad_boundary *b, const arc *a) {
+    double turn = a->px * a->qy - a->py * a->qx, level = a->px * a->qx + a->py * a->qy, near = MARGIN * a->r;
+    if (turn > near && level > LONGEST * a->r * a->r) return add(b, a);
+    if (level > 0 && turn >= -near && turn <= near) return false;
+    return add_parts(b, a, turn > 0);
+}
+
 /* The arc of disc k counter-clockwise from where slot p leaves it to where slot q enters it. */
 static inline arc along(const fibrad_areas *areas, uint32_t k, uint32_t p, uint32_t q) {
     const fibrad_boundary *b = areas->boundary;
-    bool p_window = b->window >> p & 1, q_window = b->window >> q & 1;
-    return (arc){p_window ? b->ex[p] : b->sx[p],
-                 p_window ? b->ey[p] : b->sy[p],
-                 q_window ? b->sx[q] : b->ex[q],
-                 q_window ? b->sy[q] : b->ey[q],
-                 areas->x[k],
-                 areas->y[k],
-                 areas->r[k],
-                 k};
+    uint32_t at_p = b->window >> p & 1, at_q = ~b->window >> q & 1; /* cut[1] where it leaves counter-clockwise */
+    return (arc){b->cut[at_p][0][p], b->cut[at_p][1][p], b->cut[at_q][0][q], b->cut[at_q][1][q],
+                 areas->x[k],        areas->y[k],        areas->r[k],        k};
 }
 
 /* Joins several points where the boundary leaves disc k with those where it enters it: each with the next one
@@ -129,7 +126,7 @@ static bool join_several(fibrad_areas *areas, uint32_t k, uint64_t leaves, uint6
         found[count++] = along(areas, k, p, nearest);
     }
     bool done = used == enters;
-    for (uint32_t n = 0; n < count && done; n++) done = add_long(areas->boundary, &found[n]);
+    for (uint32_t n = 0; n < count && done; n++) done = add_any(areas->boundary, &found[n]);
     return done;
 }
 
@@ -188,10 +185,10 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
         vd h = vd_mul(vd_sqrt(vd_max(vd_mul(outer, inner), zero)), scale);
         vd fx = vd_mul(f, dx), fy = vd_mul(f, dy), hx = vd_mul(h, dx), hy = vd_mul(h, dy);
         vd sx = vd_add(fx, hy), sy = vd_sub(fy, hx), ex = vd_sub(fx, hy), ey = vd_add(fy, hx);
-        vd_store(b->sx + o, vd_sub(sx, dx));
-        vd_store(b->sy + o, vd_sub(sy, dy));
-        vd_store(b->ex + o, vd_sub(ex, dx));
-        vd_store(b->ey + o, vd_sub(ey, dy));
+        vd_store(b->cut[0][0] + o, vd_sub(sx, dx));
+        vd_store(b->cut[0][1] + o, vd_sub(sy, dy));
+        vd_store(b->cut[1][0] + o, vd_sub(ex, dx));
+        vd_store(b->cut[1][1] + o, vd_sub(ey, dy));
         vd_store(b->old_qx + o, qx);
         vd_store(b->old_qy + o, qy);
         vm ends_early = vm_or(q_in, cut_twice), goes_on = vm_and(q_in, vm_not(cut_twice));
@@ -199,7 +196,7 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
         vd_store(b->py + o, vd_select(p_in, ey, py));
         vd_store(b->qx + o, vd_select(ends_early, sx, qx));
         vd_store(b->qy + o, vd_select(ends_early, sy, qy));
-        fibrad_piece_lanes piece = {.px = vd_select(p_in, px, sx),
+        fibrad_arc_lanes piece = {.px = vd_select(p_in, px, sx),
                                     .py = vd_select(p_in, py, sy),
                                     .qx = vd_select(goes_on, qx, ex),
                                     .qy = vd_select(goes_on, qy, ey),
@@ -207,7 +204,7 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
                                     .cy = cy,
                                     .r = c_r,
                                     .circle = vd_load(b->circle + o)};
-        fibrad_pieces_give(areas, touching, &piece, k);
+        fibrad_arcs_give(areas, touching, &piece, k);
         p_inside |= (uint64_t)(vm_bits(p_in) & lanes) << o;
         q_inside |= (uint64_t)(vm_bits(q_in) & lanes) << o;
         twice |= (uint64_t)(vm_bits(cut_twice) & lanes) << o;
@@ -233,11 +230,11 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
         uint32_t a = (uint32_t)__builtin_ctzll(bits);
         double dx = x - b->cx[a], dy = y - b->cy[a];
         if (p_inside >> a & 1) {
-            fibrad_piece_lanes piece = {vd_set1(b->sx[a] + dx), vd_set1(b->sy[a] + dy), vd_set1(b->old_qx[a]),
+            fibrad_arc_lanes piece = {vd_set1(b->cut[0][0][a] + dx), vd_set1(b->cut[0][1][a] + dy), vd_set1(b->old_qx[a]),
                                         vd_set1(b->old_qy[a]),  vd_set1(b->cx[a]),      vd_set1(b->cy[a]),
                                         vd_set1(b->r[a]),       vd_set1(b->circle[a])};
-            fibrad_pieces_give(areas, 1, &piece, k);
-        } else if (!add(b, &(arc){b->ex[a] + dx, b->ey[a] + dy, b->old_qx[a], b->old_qy[a], b->cx[a], b->cy[a], b->r[a],
+            fibrad_arcs_give(areas, 1, &piece, k);
+        } else if (!add(b, &(arc){b->cut[1][0][a] + dx, b->cut[1][1][a] + dy, b->old_qx[a], b->old_qy[a], b->cx[a], b->cy[a], b->r[a],
                                   b->circle[a]}))
             return false;
     }
@@ -246,7 +243,7 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
     if ((leaves & (leaves - 1)) != 0 || leaves == 0 || (enters & (enters - 1)) != 0 || enters == 0)
         return join_several(areas, k, leaves, enters);
     arc a = along(areas, k, (uint32_t)__builtin_ctzll(leaves), (uint32_t)__builtin_ctzll(enters));
-    return add_long(b, &a);
+    return add_any(b, &a);
 }
 
 /* Does the window again, up to its first `circles` circles, by accounts. */
@@ -308,12 +305,12 @@ static bool complete(fibrad_areas *areas) {
     uint32_t rest = areas->circles;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     for (uint32_t o = 0; b->alive >> o != 0; o += VD_LANES) {
-        fibrad_piece_lanes piece = {vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
+        fibrad_arc_lanes piece = {vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
                                     vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
-        fibrad_pieces_give(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest);
+        fibrad_arcs_give(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest);
         if (o + VD_LANES >= 64) break;
     }
-    LANED(fibrad_pieces_integrate)(areas);
+    fibrad_areas_sum(areas);
     double least = 0;
     for (uint32_t k = 1; k <= rest; k++) least = fibrad_min(least, areas->area[k]);
     return least > -CLOSURE && fibrad_abs(areas->area[0] + PI) < CLOSURE;
