@@ -74,6 +74,7 @@ KERNEL = \
 LANED = \
     kernel/pair/surface_lanes.c \
     kernel/bed/accounts_lanes.c \
+    kernel/bed/arc_lanes.c \
     kernel/bed/areas_lanes.c \
     kernel/bed/beam_lanes.c \
     kernel/bed/cast_lanes.c \

@@ -336,6 +336,6 @@ double LANED(fibrad_accounts_end)(fibrad_areas *areas) {
     uint32_t rest = areas->circles;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     give_all(areas, &areas->accounts.open, rest);
-    fibrad_areas_sum(areas);
+    LANED(fibrad_areas_integrate)(areas);
     return areas->area[rest];
 }

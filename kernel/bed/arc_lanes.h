@@ -2,6 +2,7 @@
 #ifndef FIBRAD_BED_ARC_LANES_H
 #define FIBRAD_BED_ARC_LANES_H
 
+#include "base/lanes/laned.h"
 #include "bed/areas.h"
 
 /* Arcs counter-clockwise from c + p to c + q about c, at most half a circle, on the circles of these numbers. */
@@ -35,18 +36,24 @@ static inline vd fibrad_arc_area(const fibrad_arc_lanes *a) {
     return vd_add(vd_mul(square, half_angle), vd_mul(vd_set1(0.5), shift));
 }
 
+/* What the pieces so far contribute to the areas of their discs. */
+void LANED(fibrad_areas_integrate)(fibrad_areas *areas);
+
 /* Disc k takes the arcs of the lanes named by bits from the boundary. */
-static inline void fibrad_arcs_give(fibrad_areas *areas, uint32_t bits, const fibrad_arc_lanes *a, uint32_t k) {
+static inline __attribute__((always_inline)) void fibrad_arcs_give(fibrad_areas *areas, uint32_t bits, const fibrad_arc_lanes *a, uint32_t k) {
     fibrad_pieces *pieces = areas->pieces;
     uint32_t n = pieces->count;
-    vd area = fibrad_arc_area(a);
-    /* the open region is on the left of the window's arcs, on the right of discs' */
-    area = vd_select(vd_lt(a->circle, vd_set1(1)), area, vd_sub(vd_set1(0), area));
-    vd_compress(pieces->area + n, bits, area);
+    vd_compress(pieces->px + n, bits, a->px);
+    vd_compress(pieces->py + n, bits, a->py);
+    vd_compress(pieces->qx + n, bits, a->qx);
+    vd_compress(pieces->qy + n, bits, a->qy);
+    vd_compress(pieces->cx + n, bits, a->cx);
+    vd_compress(pieces->cy + n, bits, a->cy);
+    vd_compress(pieces->r + n, bits, a->r);
     vd_compress(pieces->circle + n, bits, a->circle);
     vd_storeu(pieces->taker + n, vd_set1(k));
     pieces->count = n + fibrad_count_bits(bits);
-    if (pieces->count >= FIBRAD_PIECES) fibrad_areas_sum(areas);
+    if (pieces->count >= FIBRAD_PIECES) LANED(fibrad_areas_integrate)(areas);
 }
 
 #endif

@@ -45,13 +45,3 @@ void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t disc
     areas->boundary = fibrad_arena_take(arena, 1, sizeof *areas->boundary);
     accounts_layout(&areas->accounts, arena, discs, circles);
 }
-
-void fibrad_areas_sum(fibrad_areas *areas) {
-    const fibrad_pieces *pieces = areas->pieces;
-    double *area = areas->area;
-    for (uint32_t n = 0; n < pieces->count; n++) {
-        area[(uint32_t)pieces->circle[n]] -= pieces->area[n];
-        area[(uint32_t)pieces->taker[n]] += pieces->area[n];
-    }
-    areas->pieces->count = 0;
-}

@@ -15,7 +15,9 @@
 /* Pieces of the open region's boundary that discs have taken: the area each contributes by Green's theorem, to the disc
  * that took it, and less of it to the disc of its circle. Room for a vector more. */
 typedef struct fibrad_pieces {
-    _Alignas(FIBRAD_ALIGNMENT) double area[FIBRAD_PIECES + 8];
+    _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_PIECES + 8], py[FIBRAD_PIECES + 8];
+    double qx[FIBRAD_PIECES + 8], qy[FIBRAD_PIECES + 8];
+    double cx[FIBRAD_PIECES + 8], cy[FIBRAD_PIECES + 8], r[FIBRAD_PIECES + 8];
     double circle[FIBRAD_PIECES + 8], taker[FIBRAD_PIECES + 8]; /* numbers */
     uint32_t count;
 } fibrad_pieces;
@@ -81,8 +83,5 @@ static inline void fibrad_areas_add_circle(fibrad_areas *areas, uint32_t whose, 
     areas->x[k] = x, areas->y[k] = y, areas->r[k] = r, areas->area[k] = 0;
     areas->whose[k] = whose;
 }
-
-/* Adds the areas of the pieces so far to those of their discs. */
-void fibrad_areas_sum(fibrad_areas *areas);
 
 #endif

@@ -310,7 +310,7 @@ static bool complete(fibrad_areas *areas) {
         fibrad_arcs_give(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest);
         if (o + VD_LANES >= 64) break;
     }
-    fibrad_areas_sum(areas);
+    LANED(fibrad_areas_integrate)(areas);
     double least = 0;
     for (uint32_t k = 1; k <= rest; k++) least = fibrad_min(least, areas->area[k]);
     return least > -CLOSURE && fibrad_abs(areas->area[0] + PI) < CLOSURE;
