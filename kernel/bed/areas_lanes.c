@@ -41,18 +41,16 @@ static inline void put(double *array, uint32_t slot, double value) {
     vd_store(vector, vd_replace(vd_load(vector), slot % VD_LANES, value));
 }
 
-typedef struct arc {
-    double px, py, qx, qy, cx, cy, r, circle;
-} arc;
-
 /* Puts an arc into a free slot. False if there is none. */
-static inline bool add(fibrad_boundary *b, const arc *a) {
+static inline bool add(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy, double r,
+                       double circle) {
     if (~b->alive == 0) return false;
     uint32_t slot = (uint32_t)__builtin_ctzll(~b->alive);
-    put(b->px, slot, a->px), put(b->py, slot, a->py), put(b->qx, slot, a->qx), put(b->qy, slot, a->qy);
-    put(b->cx, slot, a->cx), put(b->cy, slot, a->cy), put(b->r, slot, a->r), put(b->circle, slot, a->circle);
-    b->alive |= UINT64_C(1) << slot;
-    b->window = (b->window & ~(UINT64_C(1) << slot)) | (uint64_t)(a->circle < 1) << slot;
+    put(b->px, slot, px), put(b->py, slot, py), put(b->qx, slot, qx), put(b->qy, slot, qy);
+    put(b->cx, slot, cx), put(b->cy, slot, cy), put(b->r, slot, r), put(b->circle, slot, circle);
+    uint64_t bit = UINT64_C(1) << slot;
+    b->alive |= bit;
+    b->window = circle < 1 ? b->window | bit : b->window & ~bit;
     return true;
 }
 
@@ -63,71 +61,75 @@ static inline void close_up(fibrad_boundary *b) {
     for (uint64_t bits = b->alive >> last << last; bits != 0; bits &= bits - 1) {
         uint32_t k = (uint32_t)__builtin_ctzll(bits);
         b->alive &= ~(UINT64_C(1) << k);
-        add(b, &(arc){b->px[k], b->py[k], b->qx[k], b->qy[k], b->cx[k], b->cy[k], b->r[k], b->circle[k]});
+        add(b, b->px[k], b->py[k], b->qx[k], b->qy[k], b->cx[k], b->cy[k], b->r[k], b->circle[k]);
     }
 }
 
 /* Adds an arc in four parts if it is longer than half its circle, else in two. */
-static bool add_parts(fibrad_boundary *b, const arc *a, bool half) {
-    double point[5][2] = {{a->px, a->py}, {0, 0}, {0, 0}, {0, 0}, {a->qx, a->qy}};
+static bool add_parts(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy, double r,
+                      double circle, bool half) {
+    double point[5][2] = {{px, py}, {0, 0}, {0, 0}, {0, 0}, {qx, qy}};
     int part = half ? 2 : 1;
     for (int step = 4; step > part; step /= 2)
         for (int from = 0; from < 4; from += step) {
             const double *p = point[from], *q = point[from + step];
-            double ux = q[1] - p[1], uy = p[0] - q[0], scale = a->r / fibrad_sqrt(ux * ux + uy * uy);
+            double ux = q[1] - p[1], uy = p[0] - q[0], scale = r / fibrad_sqrt(ux * ux + uy * uy);
             point[from + step / 2][0] = ux * scale, point[from + step / 2][1] = uy * scale;
         }
     bool done = true;
     for (int from = 0; from < 4 && done; from += part) {
         const double *p = point[from], *q = point[from + part];
-        done = add(b, &(arc){p[0], p[1], q[0], q[1], a->cx, a->cy, a->r, a->circle});
+        done = add(b, p[0], p[1], q[0], q[1], cx, cy, r, circle);
     }
     return done;
 }
 
-/* Adds an arc of any length. False: no slots, or p and q too close to tell a short arc from a whole circle. */
-static inline bool add_any(fibrad_boundary *b, const arc *a) {
-    double turn = a->px * a->qy - a->py * a->qx, level = a->px * a->qx + a->py * a->qy, near = MARGIN * a->r;
-    if (turn > near && level > LONGEST * a->r * a->r) return add(b, a);
-    if (level > 0 && turn >= -near && turn <= near) return false;
-    return add_parts(b, a, turn > 0);
+/* Which of the slots `enters` has the next point counter-clockwise from (px, py) on the circle of disc k, which is as
+ * far from its centre; NONE if one is too close to tell. */
+#define NONE 64
+static uint32_t next(const fibrad_boundary *b, uint64_t enters, uint64_t window, double px, double py, double r) {
+    double least = 4, margin = MARGIN + MARGIN / r;
+    uint32_t nearest = NONE;
+    for (uint64_t bits = enters; bits != 0; bits &= bits - 1) {
+        uint32_t k = (uint32_t)__builtin_ctzll(bits), at = ~window >> k & 1;
+        double qx = b->cut[at][0][k], qy = b->cut[at][1][k], turn = px * qy - py * qx, level = px * qx + py * qy;
+        double sum = fibrad_abs(turn) + fibrad_abs(level);
+        double ahead = turn >= 0 ? 1 - level / sum : 3 + level / sum; /* rises with the angle, 0 to 4 */
+        if (!(ahead > margin && ahead < 4 - margin)) return NONE;
+        if (ahead < least) least = ahead, nearest = k;
+    }
+    return nearest;
 }
 
-/* The arc of disc k counter-clockwise from where slot p leaves it to where slot q enters it. */
-static inline arc along(const fibrad_areas *areas, uint32_t k, uint32_t p, uint32_t q) {
-    const fibrad_boundary *b = areas->boundary;
-    uint32_t at_p = b->window >> p & 1, at_q = ~b->window >> q & 1; /* cut[1] where it leaves counter-clockwise */
-    return (arc){b->cut[at_p][0][p], b->cut[at_p][1][p], b->cut[at_q][0][q], b->cut[at_q][1][q],
-                 areas->x[k],        areas->y[k],        areas->r[k],        k};
-}
-
-/* Joins several points where the boundary leaves disc k with those where it enters it: each with the next one
- * counter-clockwise. False if they do not alternate, or are too close to tell. */
-static bool join_several(fibrad_areas *areas, uint32_t k, uint64_t leaves, uint64_t enters) {
-    double margin = MARGIN + MARGIN / areas->r[k];
-    uint64_t used = 0;
-    arc found[FIBRAD_BOUNDARY];
-    uint32_t count = 0;
-    for (uint64_t from = leaves; from != 0; from &= from - 1) {
-        uint32_t p = (uint32_t)__builtin_ctzll(from), nearest = 0;
-        double least = 4;
-        for (uint64_t to = enters; to != 0; to &= to - 1) {
-            uint32_t q = (uint32_t)__builtin_ctzll(to);
-            arc a = along(areas, k, p, q);
-            double turn = a.px * a.qy - a.py * a.qx, level = a.px * a.qx + a.py * a.qy;
-            double sum = fibrad_abs(turn) + fibrad_abs(level);
-            double ahead = turn >= 0 ? 1 - level / sum : 3 + level / sum; /* rises with the angle, 0 to 4 */
-            if (!(ahead > margin && ahead < 4 - margin)) return false;
-            if (ahead < least) least = ahead, nearest = q;
+/* Adds the arcs of disc k to the boundary: counter-clockwise from each point where the boundary leaves the disc to the
+ * next one where it enters it. False if these do not alternate, are too close to tell, or there are no slots. */
+static inline bool join(const fibrad_areas *areas, uint32_t k, uint64_t leaves, uint64_t enters) {
+    fibrad_boundary *b = areas->boundary;
+    const double x = areas->x[k], y = areas->y[k], r = areas->r[k], near = MARGIN * r;
+    const uint64_t window = b->window;
+    uint64_t left = enters;
+    if (leaves == 0 || enters == 0) return false;
+    for (uint64_t bits = leaves; bits != 0; bits &= bits - 1) {
+        uint32_t p = (uint32_t)__builtin_ctzll(bits), at_p = window >> p & 1; /* counter-clockwise, it leaves at cut[1] */
+        double px = b->cut[at_p][0][p], py = b->cut[at_p][1][p];
+        uint32_t q = (uint32_t)__builtin_ctzll(enters), at_q = ~window >> q & 1;
+        if ((enters & (enters - 1)) != 0) {
+            q = next(b, enters, window, px, py, r);
+            if (q == NONE) return false;
+            at_q = ~window >> q & 1;
         }
-        uint64_t bit = UINT64_C(1) << nearest;
-        if ((used & bit) != 0) return false;
-        used |= bit;
-        found[count++] = along(areas, k, p, nearest);
+        if ((left >> q & 1) == 0) return false;
+        left &= ~(UINT64_C(1) << q);
+        double qx = b->cut[at_q][0][q], qy = b->cut[at_q][1][q];
+        double turn = px * qy - py * qx, level = px * qx + py * qy;
+        bool done;
+        if (turn > near && level > LONGEST * r * r)
+            done = add(b, px, py, qx, qy, x, y, r, k);
+        else
+            done = (level < 0 || turn < -near || turn > near) && add_parts(b, px, py, qx, qy, x, y, r, k, turn > 0);
+        if (!done) return false;
     }
-    bool done = used == enters;
-    for (uint32_t n = 0; n < count && done; n++) done = add_any(areas->boundary, &found[n]);
-    return done;
+    return left == 0;
 }
 
 /* Whether a point within the window is open: in no disc but the new one, k. *doubtful if that is too close to tell. */
@@ -153,10 +155,10 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
     const uint64_t alive = b->alive;
     const uint32_t slots = 64 - (uint32_t)__builtin_clzll(alive);
     uint64_t p_inside = 0, q_inside = 0, twice = 0, doubt = 0;
-    areas->widest = fibrad_max(areas->widest, r);
+    if (r > areas->widest) areas->widest = r;
     const vd u = vd_set1(x), v = vd_set1(y), radius = vd_set1(r), square_r = vd_set1(r * r);
-    const vd near = vd_set1(MARGIN / 2 * r * (1 + r) + ROUNDING * areas->widest * (areas->widest + r));
-    const vd least = vd_set1(10 * MARGIN * (1 + r * r)), zero = vd_set1(0), half = vd_set1(0.5);
+    const double widest = areas->widest * areas->widest;
+    const vd near = vd_set1(MARGIN * r + ROUNDING * widest), tangent = vd_set1(MARGIN * widest), zero = vd_set1(0), half = vd_set1(0.5);
     for (uint32_t o = 0; o < slots; o += VD_LANES) {
         vd px = vd_load(b->px + o), py = vd_load(b->py + o), qx = vd_load(b->qx + o), qy = vd_load(b->qy + o);
         vd cx = vd_load(b->cx + o), cy = vd_load(b->cy + o), c_r = vd_load(b->r + o);
@@ -172,7 +174,7 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
         vm any_in = vm_or(p_in, q_in), both_in = vm_and(p_in, q_in);
         vm cut_twice = vm_and(meet, vm_or(vm_and(both_in, away), vm_and(vm_not(any_in), towards)));
         vm close = vm_or(vd_le(vd_abs(vd_sub(p_along, middle)), near),
-                         vd_le(vd_abs(meeting), vd_mul(vd_set1(MARGIN), vd_mul(vd_add(square_c, least), square))));
+                         vd_le(vd_abs(meeting), vd_mul(tangent, square)));
         uint32_t lanes = (uint32_t)(alive >> o) & lanes_below(VD_LANES);
         uint32_t touching = vm_bits(vm_or(any_in, cut_twice)) & lanes;
         doubt |= vm_bits(close) & lanes;
@@ -216,10 +218,7 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
         bool island = false, doubtful = false;
         if (r < 1 && x * x + y * y < (1 - r) * (1 - r)) island = is_open(areas, k, x + r, y, &doubtful);
         if (island) {
-            double far = 0x1.bb67ae8584caap-1 * r; /* sqrt(3/4) */
-            doubtful = !add(b, &(arc){r, 0, -r / 2, far, x, y, r, k}) ||
-                       !add(b, &(arc){-r / 2, far, -r / 2, -far, x, y, r, k}) ||
-                       !add(b, &(arc){-r / 2, -far, r, 0, x, y, r, k});
+            doubtful |= !add_parts(b, r, 0, -r, 0, x, y, r, k, true) || !add_parts(b, -r, 0, r, 0, x, y, r, k, true);
         }
         areas->circles += island || b->alive != alive;
         return !doubtful;
@@ -234,16 +233,12 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
                                         vd_set1(b->old_qy[a]),  vd_set1(b->cx[a]),      vd_set1(b->cy[a]),
                                         vd_set1(b->r[a]),       vd_set1(b->circle[a])};
             fibrad_arcs_give(areas, 1, &piece, k);
-        } else if (!add(b, &(arc){b->cut[1][0][a] + dx, b->cut[1][1][a] + dy, b->old_qx[a], b->old_qy[a], b->cx[a], b->cy[a], b->r[a],
-                                  b->circle[a]}))
+        } else if (!add(b, b->cut[1][0][a] + dx, b->cut[1][1][a] + dy, b->old_qx[a], b->old_qy[a], b->cx[a], b->cy[a],
+                        b->r[a], b->circle[a])) {
             return false;
+        }
     }
-    const uint64_t leaves = (starts & ~b->window) | (ends & b->window);
-    const uint64_t enters = (starts & b->window) | (ends & ~b->window);
-    if ((leaves & (leaves - 1)) != 0 || leaves == 0 || (enters & (enters - 1)) != 0 || enters == 0)
-        return join_several(areas, k, leaves, enters);
-    arc a = along(areas, k, (uint32_t)__builtin_ctzll(leaves), (uint32_t)__builtin_ctzll(enters));
-    return add_any(b, &a);
+    return join(areas, k, (starts & ~b->window) | (ends & b->window), (starts & b->window) | (ends & ~b->window));
 }
 
 /* Does the window again, up to its first `circles` circles, by accounts. */
