@@ -10,7 +10,7 @@
 #include "base/arena.h"
 #include "base/port.h"
 
-#define FIBRAD_PIECES 64 /* pieces summed at a time, about */
+#define FIBRAD_PIECES 48 /* pieces summed at a time, about */
 
 /* Pieces of the open region's boundary that discs have taken: the area each contributes by Green's theorem, to the disc
  * that took it, and less of it to the disc of its circle. Room for a vector more. */
@@ -22,7 +22,7 @@ typedef struct fibrad_pieces {
     uint32_t count;
 } fibrad_pieces;
 
-#define FIBRAD_BOUNDARY 64 /* arcs that bound the open region, at most, while clipping */
+#define FIBRAD_BOUNDARY 48 /* arcs that bound the open region, at most, while clipping */
 
 /* The boundary of the open region while clipping: arcs counter-clockwise from c + p to c + q about c, shorter than half
  * a circle, each in a slot of its own, in no particular order. */

@@ -44,8 +44,8 @@ static inline void put(double *array, uint32_t slot, double value) {
 /* Puts an arc into a free slot. False if there is none. */
 static inline bool add(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy, double r,
                        double circle) {
-    if (~b->alive == 0) return false;
     uint32_t slot = (uint32_t)__builtin_ctzll(~b->alive);
+    if (slot == FIBRAD_BOUNDARY) return false;
     put(b->px, slot, px), put(b->py, slot, py), put(b->qx, slot, qx), put(b->qy, slot, qy);
     put(b->cx, slot, cx), put(b->cy, slot, cy), put(b->r, slot, r), put(b->circle, slot, circle);
     uint64_t bit = UINT64_C(1) << slot;
@@ -86,7 +86,7 @@ static bool add_parts(fibrad_boundary *b, double px, double py, double qx, doubl
 
 /* Which of the slots `enters` has the next point counter-clockwise from (px, py) on the circle of disc k, which is as
  * far from its centre; NONE if one is too close to tell. */
-#define NONE 64
+#define NONE FIBRAD_BOUNDARY
 static uint32_t next(const fibrad_boundary *b, uint64_t enters, uint64_t window, double px, double py, double r) {
     double least = 4, margin = MARGIN + MARGIN / r;
     uint32_t nearest = NONE;
@@ -277,7 +277,7 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
     b->alive = b->window = 7;
     areas->widest = 1;
     areas->pieces->count = 0;
-    areas->doubtful = false;
+    areas->doubtful = areas->overflow = false;
     areas->circles = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     areas->circles = 1;
@@ -303,7 +303,6 @@ static bool complete(fibrad_areas *areas) {
         fibrad_arc_lanes piece = {vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
                                     vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
         fibrad_arcs_give(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest);
-        if (o + VD_LANES >= 64) break;
     }
     LANED(fibrad_areas_integrate)(areas);
     double least = 0;
