@@ -250,7 +250,7 @@ static void print_summary(const struct request *request, const struct bed *bed, 
     printf("closure_max %.17g\n", result->closure_max);
     printf("reciprocity_max %.17g\n", result->reciprocity_max);
     printf("error_estimate %.17g\n", result->error_estimate);
-    puts("fallbacks 0");
+    printf("fallbacks %" PRIu64 "\n", result->fallbacks);
 }
 
 static int write_results(const struct request *request, const struct bed *bed, const struct result *result,

@@ -28,6 +28,7 @@ struct result {
     fibrad_scene_facts facts;
     int threads;
     uint32_t directions; /* beam: the most that a row took */
+    uint64_t fallbacks;  /* beam: windows that the robust method had to do */
     double seconds;      /* computing, without reading and writing */
     double row_sum_min, row_sum_max, escaped_mean;
     double closure_max;     /* largest |row sum + escaped - 1| of the raw rows */

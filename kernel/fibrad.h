@@ -193,6 +193,7 @@ typedef struct fibrad_row {
     double error;        /* out: estimated Euclidean error of the row, from parts of its directions; twice the true one
                             on the median, seldom less than it */
     uint32_t directions; /* out, beam method only: how many were taken */
+    uint32_t fallbacks;  /* out, beam method only: windows whose exact areas the fast method left to the robust one */
 } fibrad_row;
 
 /* How a beam row is integrated. Zeroed: 233 directions, exact areas, no cutoff, no tolerance. */

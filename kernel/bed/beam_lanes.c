@@ -158,6 +158,7 @@ int LANED(fibrad_beam_row)(const fibrad_scene *scene, fibrad_work *work, uint32_
         if (built_in != FIBRAD_OK) return built_in;
     }
     work->areas.overflow = false;
+    work->areas.fallbacks = 0;
     fibrad_work_begin(work, scene, scene->place[i], cutoff);
     double open[2] = {0, 0};
     for (uint32_t k = 0; k < directions; k++) {
@@ -179,5 +180,6 @@ int LANED(fibrad_beam_row)(const fibrad_scene *scene, fibrad_work *work, uint32_
     row->escaped = (open[0] + open[1]) * scale;
     row->error *= fibrad_entries_gain(&work->entries);
     row->directions = directions;
+    row->fallbacks = work->areas.fallbacks;
     return FIBRAD_OK;
 }
