@@ -1,5 +1,5 @@
-/* accounts_lanes.c - exact visible areas of discs in a window by accounts of circles. Compiled once per instruction set.
- * SPDX-License-Identifier: MIT
+/* accounts_lanes.c - exact visible areas of discs in a window by accounts of circles. Compiled once per instruction
+ * set. SPDX-License-Identifier: MIT
  *
  * The open region - what no disc covers so far - is known by its boundary: arcs of the window's circle and of the
  * circles of discs. A new disc k, seen against circle m (in lanes over all m), covers of that circle nothing, all, or
@@ -172,7 +172,8 @@ static bool see(fibrad_areas *areas, double x, double y, double r) {
             uint32_t m = (uint32_t)h->circle[begin], n = (uint32_t)h->circle[end];
             double b = h->from[end], px = m == 0 ? areas->accounts.ex[m] : areas->accounts.sx[m],
                    py = m == 0 ? areas->accounts.ey[m] : areas->accounts.sy[m];
-            double qx = n == 0 ? areas->accounts.sx[n] : areas->accounts.ex[n], qy = n == 0 ? areas->accounts.sy[n] : areas->accounts.ey[n];
+            double qx = n == 0 ? areas->accounts.sx[n] : areas->accounts.ex[n],
+                   qy = n == 0 ? areas->accounts.sy[n] : areas->accounts.ey[n];
             if (open->count + 4 > areas->accounts.arcs) {
                 areas->overflow = true;
                 return false;
@@ -224,8 +225,14 @@ static inline uint32_t rising(const arcs_in_lanes *s) { return vm_bits(vd_lt(s->
 static inline void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes *s, uint32_t k) {
     uint32_t size = areas->circles + 1; /* the new one, or the rest */
     vd x = vd_lookup(areas->x, size, s->circle), y = vd_lookup(areas->y, size, s->circle);
-    fibrad_arc_lanes piece = {vd_sub(s->px, x), vd_sub(s->py, y), vd_sub(s->qx, x), vd_sub(s->qy, y),
-                                x, y, vd_lookup(areas->r, size, s->circle), s->circle};
+    fibrad_arc_lanes piece = {vd_sub(s->px, x),
+                              vd_sub(s->py, y),
+                              vd_sub(s->qx, x),
+                              vd_sub(s->qy, y),
+                              x,
+                              y,
+                              vd_lookup(areas->r, size, s->circle),
+                              s->circle};
     fibrad_arcs_give(areas, bits, &piece, k);
 }
 

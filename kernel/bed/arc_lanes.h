@@ -24,7 +24,8 @@ static inline vd fibrad_arc_area(const fibrad_arc_lanes *a) {
     vm acute = vd_lt(sine, cosine), straight = vd_lt(cosine, minus_sine);
     vd opposite = vd_select(acute, sine, vd_select(straight, minus_sine, vd_sub(zero, cosine)));
     vd adjacent = vd_select(acute, cosine, vd_select(straight, vd_sub(zero, cosine), sine));
-    vd quarters = vd_select(acute, zero, vd_select(straight, vd_set1(0x1.921fb54442d18p+0), vd_set1(0x1.921fb54442d18p-1)));
+    vd quarters =
+        vd_select(acute, zero, vd_select(straight, vd_set1(0x1.921fb54442d18p+0), vd_set1(0x1.921fb54442d18p-1)));
     vd t = vd_div(opposite, vd_add(square, adjacent)), x = vd_mul(t, t), xx = vd_mul(x, x);
     vd even = vd_set1(ATAN[10]), odd = vd_set1(ATAN[9]);
 #define STEP(k) even = vd_add(vd_mul(even, xx), vd_set1(ATAN[k])), odd = vd_add(vd_mul(odd, xx), vd_set1(ATAN[k - 1]))
@@ -40,7 +41,8 @@ static inline vd fibrad_arc_area(const fibrad_arc_lanes *a) {
 void LANED(fibrad_areas_integrate)(fibrad_areas *areas);
 
 /* Disc k takes the arcs of the lanes named by bits from the boundary. */
-static inline __attribute__((always_inline)) void fibrad_arcs_give(fibrad_areas *areas, uint32_t bits, const fibrad_arc_lanes *a, uint32_t k) {
+static inline __attribute__((always_inline)) void fibrad_arcs_give(fibrad_areas *areas, uint32_t bits,
+                                                                   const fibrad_arc_lanes *a, uint32_t k) {
     fibrad_pieces *pieces = areas->pieces;
     uint32_t n = pieces->count;
     vd_compress(pieces->px + n, bits, a->px);

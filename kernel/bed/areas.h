@@ -32,7 +32,7 @@ typedef struct fibrad_boundary {
     double cx[FIBRAD_BOUNDARY], cy[FIBRAD_BOUNDARY], r[FIBRAD_BOUNDARY], circle[FIBRAD_BOUNDARY];
     double cut[2][2][FIBRAD_BOUNDARY]; /* x, y of where each enters and leaves the new disc, relative to its centre, */
     double old_qx[FIBRAD_BOUNDARY], old_qy[FIBRAD_BOUNDARY]; /* and where it ended before */
-    uint64_t alive, window; /* bit k: slot k holds an arc; it is one of the window's */
+    uint64_t alive, window;                                  /* bit k: slot k holds an arc; it is one of the window's */
 } fibrad_boundary;
 
 /* Arcs of the accounts, each counter-clockwise from p to q on a circle (its number) and at most half of it; a and b
@@ -50,22 +50,22 @@ typedef struct fibrad_intervals {
 } fibrad_intervals;
 
 typedef struct fibrad_accounts {
-    uint32_t arcs;              /* capacities: arcs that bound the open region, ... */
-    uint32_t seconds;           /* ... second parts at a time */
-    double *inverse;            /* [discs + 2] 1/r of each circle */
-    double *from, *to;          /* [discs + 2] what the new disc covers of each circle, ... */
-    double *sx, *sy, *ex, *ey;  /* ... and the points where that begins and ends */
-    fibrad_intervals hidden;    /* [discs + 1] */
-    fibrad_arcs open, left;     /* [arcs] the boundary of the open region; what is left when a disc has taken its */
-    fibrad_arcs second[2];      /* [seconds] second parts, that stay or go, of arcs cut in three: for a moment */
+    uint32_t arcs;             /* capacities: arcs that bound the open region, ... */
+    uint32_t seconds;          /* ... second parts at a time */
+    double *inverse;           /* [discs + 2] 1/r of each circle */
+    double *from, *to;         /* [discs + 2] what the new disc covers of each circle, ... */
+    double *sx, *sy, *ex, *ey; /* ... and the points where that begins and ends */
+    fibrad_intervals hidden;   /* [discs + 1] */
+    fibrad_arcs open, left;    /* [arcs] the boundary of the open region; what is left when a disc has taken its */
+    fibrad_arcs second[2];     /* [seconds] second parts, that stay or go, of arcs cut in three: for a moment */
 } fibrad_accounts;
 
 typedef struct fibrad_areas {
-    uint32_t discs;     /* capacity: discs that a window may meet */
-    uint32_t circles;   /* the window, and the discs whose circles may bound the open region */
-    double *x, *y, *r;  /* [discs + 2] circle 0 is the window */
-    double *area;       /* [discs + 2] what is seen of each; of the window: -pi */
-    uint32_t *whose;    /* [discs + 2] the caller's number of each */
+    uint32_t discs;    /* capacity: discs that a window may meet */
+    uint32_t circles;  /* the window, and the discs whose circles may bound the open region */
+    double *x, *y, *r; /* [discs + 2] circle 0 is the window */
+    double *area;      /* [discs + 2] what is seen of each; of the window: -pi */
+    uint32_t *whose;   /* [discs + 2] the caller's number of each */
     fibrad_pieces *pieces;
     fibrad_boundary *boundary;
     fibrad_accounts accounts;

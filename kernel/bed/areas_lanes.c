@@ -17,8 +17,9 @@
 #include "bed/arc_lanes.h"
 #include "bed/areas_lanes.h"
 
-#define PI      3.14159265358979323846
-#define CLOSURE 1e-12
+#define PI       3.14159265358979323846
+#define SQRT_3_4 0.86602540378443865
+#define CLOSURE  1e-12
 
 /* Decisions closer than this are in doubt: distances of points and circles, relative to the radii for tangent ones.
  * ROUNDING: the same for what rounds with the square of a large radius. */
@@ -110,7 +111,8 @@ static inline bool join(const fibrad_areas *areas, uint32_t k, uint64_t leaves, 
     uint64_t left = enters;
     if (leaves == 0 || enters == 0) return false;
     for (uint64_t bits = leaves; bits != 0; bits &= bits - 1) {
-        uint32_t p = (uint32_t)__builtin_ctzll(bits), at_p = window >> p & 1; /* counter-clockwise, it leaves at cut[1] */
+        uint32_t p = (uint32_t)__builtin_ctzll(bits),
+                 at_p = window >> p & 1; /* counter-clockwise, it leaves at cut[1] */
         double px = b->cut[at_p][0][p], py = b->cut[at_p][1][p];
         uint32_t q = (uint32_t)__builtin_ctzll(enters), at_q = ~window >> q & 1;
         if ((enters & (enters - 1)) != 0) {
@@ -156,32 +158,32 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
     const uint32_t slots = 64 - (uint32_t)__builtin_clzll(alive);
     uint64_t p_inside = 0, q_inside = 0, twice = 0, doubt = 0;
     if (r > areas->widest) areas->widest = r;
-    const vd u = vd_set1(x), v = vd_set1(y), radius = vd_set1(r), square_r = vd_set1(r * r);
+    const vd u = vd_set1(x), v = vd_set1(y), radius = vd_set1(r);
     const double widest = areas->widest * areas->widest;
-    const vd near = vd_set1(MARGIN * r + ROUNDING * widest), tangent = vd_set1(MARGIN * widest), zero = vd_set1(0), half = vd_set1(0.5);
+    const vd near = vd_set1(MARGIN * r + ROUNDING * widest), tangent = vd_set1(MARGIN * widest), zero = vd_set1(0),
+             half = vd_set1(0.5);
     for (uint32_t o = 0; o < slots; o += VD_LANES) {
         vd px = vd_load(b->px + o), py = vd_load(b->py + o), qx = vd_load(b->qx + o), qy = vd_load(b->qy + o);
         vd cx = vd_load(b->cx + o), cy = vd_load(b->cy + o), c_r = vd_load(b->r + o);
         /* an end p is inside if p.d > middle; both circles meet if the distance middle/d is less than the radius */
         vd dx = vd_sub(u, cx), dy = vd_sub(v, cy), square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
-        vd square_c = vd_mul(c_r, c_r), middle = vd_mul(half, vd_add(square, vd_sub(square_c, square_r)));
+        vd sum = vd_add(c_r, radius), difference = vd_sub(c_r, radius);
+        vd middle = vd_mul(half, vd_add(square, vd_mul(sum, difference)));
         vd p_along = vd_add(vd_mul(px, dx), vd_mul(py, dy)), q_along = vd_add(vd_mul(qx, dx), vd_mul(qy, dy));
         vd p_across = vd_sub(vd_mul(px, dy), vd_mul(py, dx)), q_across = vd_sub(vd_mul(qx, dy), vd_mul(qy, dx));
-        vd meeting = vd_sub(vd_mul(square_c, square), vd_mul(middle, middle));
+        vd meeting = vd_sub(vd_mul(vd_mul(c_r, c_r), square), vd_mul(middle, middle));
         vm p_in = vd_lt(middle, p_along), q_in = vd_lt(middle, q_along), meet = vd_lt(zero, meeting);
         vm p_before = vd_lt(zero, p_across), q_after = vd_lt(q_across, zero);
         vm towards = vm_and(p_before, q_after), away = vm_not(vm_or(p_before, q_after));
         vm any_in = vm_or(p_in, q_in), both_in = vm_and(p_in, q_in);
         vm cut_twice = vm_and(meet, vm_or(vm_and(both_in, away), vm_and(vm_not(any_in), towards)));
-        vm close = vm_or(vd_le(vd_abs(vd_sub(p_along, middle)), near),
-                         vd_le(vd_abs(meeting), vd_mul(tangent, square)));
+        vm close = vm_or(vd_le(vd_abs(vd_sub(p_along, middle)), near), vd_le(vd_abs(meeting), vd_mul(tangent, square)));
         uint32_t lanes = (uint32_t)(alive >> o) & lanes_below(VD_LANES);
         uint32_t touching = vm_bits(vm_or(any_in, cut_twice)) & lanes;
         doubt |= vm_bits(close) & lanes;
         if (touching == 0) continue;
 
         /* the points s, where the circle enters the disc counter-clockwise, and e, where it leaves */
-        vd sum = vd_add(c_r, radius), difference = vd_sub(c_r, radius);
         vd outer = vd_sub(vd_mul(sum, sum), square), inner = vd_sub(square, vd_mul(difference, difference));
         vd scale = vd_div(half, square), f = vd_mul(vd_add(middle, middle), scale);
         vd h = vd_mul(vd_sqrt(vd_max(vd_mul(outer, inner), zero)), scale);
@@ -199,13 +201,13 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
         vd_store(b->qx + o, vd_select(ends_early, sx, qx));
         vd_store(b->qy + o, vd_select(ends_early, sy, qy));
         fibrad_arc_lanes piece = {.px = vd_select(p_in, px, sx),
-                                    .py = vd_select(p_in, py, sy),
-                                    .qx = vd_select(goes_on, qx, ex),
-                                    .qy = vd_select(goes_on, qy, ey),
-                                    .cx = cx,
-                                    .cy = cy,
-                                    .r = c_r,
-                                    .circle = vd_load(b->circle + o)};
+                                  .py = vd_select(p_in, py, sy),
+                                  .qx = vd_select(goes_on, qx, ex),
+                                  .qy = vd_select(goes_on, qy, ey),
+                                  .cx = cx,
+                                  .cy = cy,
+                                  .r = c_r,
+                                  .circle = vd_load(b->circle + o)};
         fibrad_arcs_give(areas, touching, &piece, k);
         p_inside |= (uint64_t)(vm_bits(p_in) & lanes) << o;
         q_inside |= (uint64_t)(vm_bits(q_in) & lanes) << o;
@@ -217,8 +219,10 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
     if ((starts | ends) == 0) { /* the disc's circle is all hidden or all open */
         bool island = false, doubtful = false;
         if (r < 1 && x * x + y * y < (1 - r) * (1 - r)) island = is_open(areas, k, x + r, y, &doubtful);
-        if (island) {
-            doubtful |= !add_parts(b, r, 0, -r, 0, x, y, r, k, true) || !add_parts(b, -r, 0, r, 0, x, y, r, k, true);
+        for (int n = 0; n < 3 && island; n++) {
+            static const double corner[4][2] = {{1, 0}, {-0.5, SQRT_3_4}, {-0.5, -SQRT_3_4}, {1, 0}};
+            const double *p = corner[n], *q = corner[n + 1];
+            doubtful |= !add(b, r * p[0], r * p[1], r * q[0], r * q[1], x, y, r, k);
         }
         areas->circles += island || b->alive != alive;
         return !doubtful;
@@ -229,9 +233,14 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
         uint32_t a = (uint32_t)__builtin_ctzll(bits);
         double dx = x - b->cx[a], dy = y - b->cy[a];
         if (p_inside >> a & 1) {
-            fibrad_arc_lanes piece = {vd_set1(b->cut[0][0][a] + dx), vd_set1(b->cut[0][1][a] + dy), vd_set1(b->old_qx[a]),
-                                        vd_set1(b->old_qy[a]),  vd_set1(b->cx[a]),      vd_set1(b->cy[a]),
-                                        vd_set1(b->r[a]),       vd_set1(b->circle[a])};
+            fibrad_arc_lanes piece = {vd_set1(b->cut[0][0][a] + dx),
+                                      vd_set1(b->cut[0][1][a] + dy),
+                                      vd_set1(b->old_qx[a]),
+                                      vd_set1(b->old_qy[a]),
+                                      vd_set1(b->cx[a]),
+                                      vd_set1(b->cy[a]),
+                                      vd_set1(b->r[a]),
+                                      vd_set1(b->circle[a])};
             fibrad_arcs_give(areas, 1, &piece, k);
         } else if (!add(b, b->cut[1][0][a] + dx, b->cut[1][1][a] + dy, b->old_qx[a], b->old_qy[a], b->cx[a], b->cy[a],
                         b->r[a], b->circle[a])) {
@@ -254,14 +263,14 @@ static bool redo(fibrad_areas *areas, uint32_t circles) {
 
 void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
     /* three arcs, that begin where no symmetry of a bed does */
-    static _Alignas(FIBRAD_ALIGNMENT) const double start_x[8] = {0x1.e921dd42f09bap-1, -0x1.7799ed83d9d3ap-1,
-                                                                 -0x1.c61fbefc5b202p-3};
-    static _Alignas(FIBRAD_ALIGNMENT) const double start_y[8] = {0x1.2e9cd95baba34p-2, 0x1.5bf2a3a493975p-1,
-                                                                 -0x1.f34110526968fp-1};
-    static _Alignas(FIBRAD_ALIGNMENT) const double end_x[8] = {-0x1.7799ed83d9d3ap-1, -0x1.c61fbefc5b202p-3,
-                                                               0x1.e921dd42f09bap-1};
-    static _Alignas(FIBRAD_ALIGNMENT) const double end_y[8] = {0x1.5bf2a3a493975p-1, -0x1.f34110526968fp-1,
-                                                               0x1.2e9cd95baba34p-2};
+    static _Alignas(FIBRAD_ALIGNMENT)
+        const double start_x[8] = {0x1.e921dd42f09bap-1, -0x1.7799ed83d9d3ap-1, -0x1.c61fbefc5b202p-3};
+    static _Alignas(FIBRAD_ALIGNMENT)
+        const double start_y[8] = {0x1.2e9cd95baba34p-2, 0x1.5bf2a3a493975p-1, -0x1.f34110526968fp-1};
+    static _Alignas(FIBRAD_ALIGNMENT)
+        const double end_x[8] = {-0x1.7799ed83d9d3ap-1, -0x1.c61fbefc5b202p-3, 0x1.e921dd42f09bap-1};
+    static _Alignas(FIBRAD_ALIGNMENT)
+        const double end_y[8] = {0x1.5bf2a3a493975p-1, -0x1.f34110526968fp-1, 0x1.2e9cd95baba34p-2};
     fibrad_boundary *b = areas->boundary;
     vd zero = vd_set1(0);
     for (uint32_t o = 0; o < 3; o += VD_LANES) {
@@ -301,7 +310,7 @@ static bool complete(fibrad_areas *areas) {
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     for (uint32_t o = 0; b->alive >> o != 0; o += VD_LANES) {
         fibrad_arc_lanes piece = {vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
-                                    vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
+                                  vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
         fibrad_arcs_give(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest);
     }
     LANED(fibrad_areas_integrate)(areas);
