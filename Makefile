@@ -64,6 +64,7 @@ KERNEL = \
     kernel/bed/rows.c \
     kernel/bed/scene.c \
     kernel/bed/surface_row.c \
+    kernel/bed/walls.c \
     kernel/bed/work.c \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
@@ -79,7 +80,8 @@ LANED = \
     kernel/bed/beam_lanes.c \
     kernel/bed/cast_lanes.c \
     kernel/bed/near_lanes.c \
-    kernel/bed/points_lanes.c
+    kernel/bed/points_lanes.c \
+    kernel/bed/walls_lanes.c
 
 # besides main.c and generate_tables.c
 HOST = \
@@ -118,6 +120,7 @@ HOST = \
     host/run_omp.c \
     host/targets.c \
     host/tolerance.c \
+    host/walls.c \
     host/write.c \
     host/write_csv.c \
     host/write_furnace.c \
@@ -148,6 +151,7 @@ TESTS = \
     tests/test_surface.c \
     tests/test_surface_row.c \
     tests/test_tables.c \
+    tests/test_walls.c \
     tests/test_write.c
 
 SCRIPTS = \
@@ -186,7 +190,8 @@ TEST_PROGRAMS  = $(TESTS:%.c=$(BUILD)/%)
 BENCH_PROGRAMS = $(BENCHES:%.c=$(BUILD)/%)
 PEER_PROGRAMS  = $(PEERS:%.c=$(BUILD)/%)
 
-.PHONY: all lib demo reproduce test run-programs programs check symbols lists format bench bench-quick bench-peers deps deps-ci install install-lib clean help need-gsl need-check
+.PHONY: all lib demo reproduce test run-programs programs check symbols lists format bench bench-quick bench-peers \
+    stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
 
 ## all: build/fibrad and build/libfibrad.a (the default)
 all: $(BUILD)/fibrad $(BUILD)/libfibrad.a
@@ -346,22 +351,38 @@ golden: $(BUILD)/fibrad
 mutate:
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/mutate.sh
 
-# Inputs found on the way are kept in build/fuzz; of a crash, the input that caused it.
+# Inputs found on the way are kept in build/fuzz; of a crash, the input that caused it. The time limit of one input is
+# for what would never end: machines are slow and sanitizers slower.
 FUZZ_SECONDS = 60
 FUZZ_CC      = clang
 FUZZ         = $(BUILD)/fuzz
+FUZZ_FLAGS   = -timeout=300 -rss_limit_mb=4096 -malloc_limit_mb=64 -close_fd_mask=2 -print_final_stats=1
 SANITIZE     = address,undefined -fno-sanitize-recover=undefined
 
-## fuzz: hostile input for the readers and the kernel, FUZZ_SECONDS=60 in all
-fuzz:
+fuzz-programs: need-gsl
 	@$(MAKE) -s --no-print-directory BUILD=$(FUZZ) CC=$(FUZZ_CC) CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE)" \
 	    $(FUZZ)/libfibrad.a $(FUZZ)/libhost.a
 	@set -e; for target in read kernel; do \
 	    $(FUZZ_CC) -O1 -g -fsanitize=fuzzer,$(SANITIZE) $(HOST_FLAGS) tests/fuzz/fuzz_$$target.c \
 	        $(FUZZ)/libhost.a $(FUZZ)/libfibrad.a $(GSL_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
+	done
+
+## fuzz: hostile input for the readers and the kernel, FUZZ_SECONDS=60 in all
+fuzz: fuzz-programs
+	@set -e; for target in read kernel; do \
 	    mkdir -p $(FUZZ)/found_$$target; \
-	    $(FUZZ)/fuzz_$$target -max_total_time=$$(($(FUZZ_SECONDS) / 2)) -timeout=20 -malloc_limit_mb=64 -close_fd_mask=2 \
-	        -print_final_stats=1 -artifact_prefix=$(FUZZ)/$$target- $(FUZZ)/found_$$target tests/fuzz/corpus_$$target; \
+	    $(FUZZ)/fuzz_$$target $(FUZZ_FLAGS) -max_total_time=$$(($(FUZZ_SECONDS) / 2)) \
+	        -artifact_prefix=$(FUZZ)/$$target- $(FUZZ)/found_$$target tests/fuzz/corpus_$$target; \
+	done
+
+## fuzz-fixed: the same with a fixed number of inputs, the same ones every time (a minute)
+FUZZ_RUNS = read:150000 kernel:40000
+# what comparisons show would bring addresses in, which differ from run to run: -use_cmp=0
+fuzz-fixed: fuzz-programs
+	@set -e; for run in $(FUZZ_RUNS); do \
+	    target=$${run%:*}; rm -rf $(FUZZ)/fixed_$$target; mkdir -p $(FUZZ)/fixed_$$target; \
+	    $(FUZZ)/fuzz_$$target $(FUZZ_FLAGS) -seed=1 -use_cmp=0 -runs=$${run#*:} \
+	        -artifact_prefix=$(FUZZ)/$$target- $(FUZZ)/fixed_$$target tests/fuzz/corpus_$$target; \
 	done
 
 ## threads: the program under the thread sanitizer, with clang's OpenMP, which tells it about its barriers
@@ -390,13 +411,13 @@ reproduce: $(BUILD)/fibrad
 
 ## deps: install the Debian packages that build, demo and tests need; does nothing when nothing is missing
 deps:
-	@.ci/deps pkg-config libgsl-dev check gnuplot-nox
+	@.ci/deps libc6-dev pkg-config libgsl-dev check gnuplot-nox
 
 ## deps-ci: install what .ci/run needs besides
 deps-ci:
 	@.ci/deps g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
 	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
-	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm
+	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-scipy
 
 ## install: fibrad, libfibrad.a, fibrad.h and fibrad.pc, to DESTDIR and PREFIX
 install: install-lib $(BUILD)/fibrad

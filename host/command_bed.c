@@ -27,7 +27,8 @@ enum {
     KEY_RAW,
     KEY_PLOT,
     KEY_PROGRESS,
-    KEY_ERROR
+    KEY_ERROR,
+    KEY_WALL
 };
 
 static const struct option table[] = {
@@ -46,6 +47,7 @@ static const struct option table[] = {
     {KEY_TARGETS, "targets", "LIST", "rows wanted, such as 3,7,10-19, or all; a list implies --raw [all]"},
     {KEY_RAW, "raw", NULL, "do not average F_ij and F_ji [averaged: A_i F_ij = A_j F_ji]"},
     {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},
+    {KEY_WALL, "wall", WALLS_ARGUMENT, WALLS_HELP},
     {KEY_FRAME, "frame", "K", "frame of a dump, from 0 [the last]"},
     {KEY_THREADS, "threads", "T", "threads, 1 to 1024 [all cores]"},
     {'o', "output", "OUT", "the matrix: .csv, .mtx, .npz (SciPy); the spheres: .vtp [summary only]"},
@@ -66,6 +68,8 @@ struct request {
     fibrad_cast_rule cast;
     double cutoff, error; /* 0: none */
     bool beam_given, surface_given, cast_given;
+    struct wall_options walls;
+    struct wall_order order;
     struct read_options read;
     struct run_options run;
     bool help;
@@ -76,11 +80,18 @@ static int help(void) {
          "View factors between all spheres of FILE: .csv with a header x,y,z,r, a LAMMPS or LIGGGHTS text dump,\n"
          "YADE text (#format x_y_z_r), or - for standard input. Positions count from 0 in the order of the file.\n");
     options_print(table);
-    puts("\nStandard output ends with a summary, one `key value` a line.\n\n"
+    puts("\n" WALLS_MORE
+         "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... in the order given and the\n"
+         "surroundings j = -1, so that rows add up to 1; i = -2, -3 ... from walls of finite area to spheres; in .vtp "
+         "an\n"
+         "array for each wall. .mtx and .npz hold spheres only.\n\n"
+         "Standard output ends with a summary, one `key value` a line; `wall_NAME`: mean F from a sphere, area.\n\n"
          "Examples:\n"
          "  fibrad bed packing.dump -o F.mtx --plot bed.png\n"
          "  fibrad bed packing.dump --error 0.001 -o F.mtx\n"
          "  fibrad bed spheres.csv --directions 987 --periodic 12,12,0 -o F.csv\n"
+         "  fibrad bed packing.dump --wall auto -o F.csv\n"
+         "  fibrad bed spheres.csv --wall cylinder:0,0,25,zmin=0 -o F.csv\n"
          "  fibrad bed packing.dump --method cast --rays 200000 -o F.csv\n"
          "  fibrad bed packing.dump --frame 3 --targets 0,7,100-199 -o rows.csv\n"
          "  zcat packing.dump.gz | fibrad bed - --points 128 -o bed.vtp");
@@ -130,6 +141,8 @@ static int take_option(struct request *request, const struct options *options, i
         return options_number("--cutoff", value, 1e-150, 1e150, &request->cutoff);
     case KEY_ERROR:
         return options_number("--error", value, 1e-7, 1, &request->error);
+    case KEY_WALL:
+        return walls_option(value, &request->walls);
     case KEY_TARGETS:
         request->targets = strcmp(value, "all") == 0 ? NULL : value;
         if (request->targets) status = targets_mark(value, 0, NULL);
@@ -250,12 +263,16 @@ static void print_summary(const struct request *request, const struct bed *bed, 
     printf("closure_max %.17g\n", result->closure_max);
     printf("reciprocity_max %.17g\n", result->reciprocity_max);
     printf("error_estimate %.17g\n", result->error_estimate);
+    for (uint32_t k = 0; k < request->order.count; ++k) {
+        const uint32_t wall = request->order.wall[k];
+        printf("wall_%s %.17g %.17g\n", wall_name(wall), result->wall_mean[wall], result->facts.wall_area[wall]);
+    }
     printf("fallbacks %" PRIu64 "\n", result->fallbacks);
 }
 
 static int write_results(const struct request *request, const struct bed *bed, const struct result *result,
                          const struct output *out, const struct output *plot) {
-    const struct contents contents = {bed, result, request->read.ids};
+    const struct contents contents = {bed, result, request->read.ids, &request->order};
     int status = request->out ? request->write(out->file, &contents) : STATUS_OK;
     if (!status && request->plot) status = plot_bed(plot, request->file, &contents);
     return status;
@@ -286,6 +303,10 @@ static int run(struct request *request, struct bed *bed, struct result *result) 
     if (request->method == METHOD_SURFACE && request->cutoff == 0 &&
         (bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0))
         return message(STATUS_USAGE, "--method surface needs a --cutoff in a periodic box");
+    status = walls_of(&request->walls, bed, request->run.file, &request->run.walls, &request->order);
+    if (status) return status;
+    if (request->method == METHOD_SURFACE && request->order.count > 0)
+        return message(STATUS_USAGE, "--wall is for the methods beam, cast and mc");
     bool *marks = NULL;
     if (request->targets) {
         marks = calloc(bed->n, sizeof *marks);

@@ -92,7 +92,7 @@ static int draw(const struct reproduce *reproduce, const char *name, const char 
     struct output output = {0};
     struct gnuplot gnuplot;
     int status = output_open(&output, path);
-    if (!status) status = gnuplot_start(&gnuplot, output.file);
+    if (!status) status = gnuplot_start(&gnuplot, &output);
     if (!status) {
         const char *body = strchr(reproduce->text, '\n');
         fprintf(gnuplot.script,

@@ -109,7 +109,7 @@ int furnace_plot(const struct output *output, const char *name, const struct fur
     size_t count = measured ? 4 : 1, length = strlen(output->path);
     bool png = length > 4 && strcmp(output->path + length - 4, ".png") == 0;
     struct gnuplot gnuplot;
-    int status = gnuplot_start(&gnuplot, output->file);
+    int status = gnuplot_start(&gnuplot, output);
     if (status) return status;
     FILE *script = gnuplot.script;
     fprintf(script,

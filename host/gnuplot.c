@@ -1,4 +1,4 @@
-/* gnuplot.c - runs gnuplot with its picture going to an open file. SPDX-License-Identifier: MIT */
+/* gnuplot.c - runs gnuplot with its picture going to an output. SPDX-License-Identifier: MIT */
 #include "gnuplot.h"
 
 #include <errno.h>
@@ -27,11 +27,12 @@ static int spawn(struct gnuplot *gnuplot, int script, int script_end, int pictur
     return error;
 }
 
-int gnuplot_start(struct gnuplot *gnuplot, FILE *picture) {
+int gnuplot_start(struct gnuplot *gnuplot, const struct output *picture) {
     int ends[2];
     if (pipe(ends) != 0) return message(STATUS_FILE, "gnuplot: %s", strerror(errno));
-    const int error = spawn(gnuplot, ends[0], ends[1], fileno(picture));
+    const int error = spawn(gnuplot, ends[0], ends[1], fileno(picture->file));
     close(ends[0]);
+    gnuplot->picture = picture;
     gnuplot->script = error ? NULL : fdopen(ends[1], "w");
     if (gnuplot->script) return STATUS_OK;
     close(ends[1]);
@@ -39,11 +40,29 @@ int gnuplot_start(struct gnuplot *gnuplot, FILE *picture) {
     return message(STATUS_FILE, "gnuplot: %s", strerror(error ? error : errno));
 }
 
+/* gnuplot does not tell when the disc is full: has the picture got its end? */
+static bool whole(int picture) {
+    char tail[32];
+    const off_t size = lseek(picture, 0, SEEK_END);
+    if (size < (off_t)sizeof tail || pread(picture, tail, sizeof tail, size - (off_t)sizeof tail) != sizeof tail)
+        return false;
+    for (size_t k = 0; k + 6 <= sizeof tail; ++k)
+        if (memcmp(tail + k, "</svg>", 6) == 0 || memcmp(tail + k, "IEND", 4) == 0) return true;
+    return false;
+}
+
+/* Why: where gnuplot could not write, neither can we. */
+static int failed(const struct output *picture) {
+    static const char more[8192];
+    if (write(fileno(picture->file), more, sizeof more) == sizeof more) return message(STATUS_FILE, "gnuplot failed");
+    return message_at(STATUS_FILE, picture->path, 0, "cannot be written: %s", strerror(errno));
+}
+
 int gnuplot_end(struct gnuplot *gnuplot) {
     int end = 0;
     const int closed = fclose(gnuplot->script);
     while (waitpid(gnuplot->process, &end, 0) < 0 && errno == EINTR) {}
     if (interrupt_status()) return interrupt_status();
-    if (closed != 0 || !WIFEXITED(end) || WEXITSTATUS(end) != 0) return message(STATUS_FILE, "gnuplot failed");
-    return STATUS_OK;
+    const bool content = closed == 0 && WIFEXITED(end) && WEXITSTATUS(end) == 0;
+    return content && whole(fileno(gnuplot->picture->file)) ? STATUS_OK : failed(gnuplot->picture);
 }

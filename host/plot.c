@@ -151,7 +151,7 @@ int plot_bed(const struct output *output, const char *name, const struct content
     struct gnuplot gnuplot;
     struct plot_data *data = malloc(sizeof *data);
     int status = data ? plot_data_collect(data, what) : message_memory();
-    if (!status) status = gnuplot_start(&gnuplot, output->file);
+    if (!status) status = gnuplot_start(&gnuplot, output);
     if (!status) {
         print_style(gnuplot.script, output, name, what);
         print_slice(gnuplot.script, what);

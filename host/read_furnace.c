@@ -133,8 +133,11 @@ static int check_complete(const struct reading *r) {
         if (!r->line_of_wall[w]) return message_at(STATUS_INPUT, r->lines.name, 0, "wall %s is missing", walls[w]);
         emissivity += r->config->wall_emissivity[w];
     }
-    if (emissivity > 0) return STATUS_OK;
-    return message_at(STATUS_INPUT, r->lines.name, 0, "all walls have emissivity 0: nothing fixes the temperature");
+    if (emissivity == 0)
+        return message_at(STATUS_INPUT, r->lines.name, 0, "all walls have emissivity 0: nothing fixes the temperature");
+    if (fibrad_furnace_size(r->config) > 0) return STATUS_OK;
+    return message_at(STATUS_INPUT, r->lines.name, 0,
+                      "sizes, coefficients times the edge of a cell, source or temperatures are out of all range");
 }
 
 int read_furnace(const char *path, fibrad_furnace_config *config) {

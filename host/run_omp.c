@@ -69,7 +69,8 @@ static int refuse(const struct run *run, int status, const fibrad_fault *fault) 
 
 static int make_scene(struct run *run, void **block) {
     const struct bed *bed = run->bed;
-    const fibrad_scene_config config = {.spheres = bed->n, .period = {bed->period[0], bed->period[1], bed->period[2]}};
+    const fibrad_scene_config config = {
+        .spheres = bed->n, .period = {bed->period[0], bed->period[1], bed->period[2]}, .walls = run->options->walls};
     const fibrad_spheres spheres = {bed->x, bed->y, bed->z, bed->r, bed->n};
     fibrad_fault fault = {bed->n, bed->n};
     const size_t size = fibrad_scene_size(&config);
@@ -120,6 +121,7 @@ static int add_row(struct run *run, struct store *store, uint32_t i) {
     }
     run->places[i] = (struct place){store->used, row.length, omp_get_thread_num()};
     run->result->escaped[i] = row.escaped;
+    memcpy(run->result->wall[i], row.wall, sizeof row.wall);
     run->result->error[i] = row.error;
     store->directions = row.directions > store->directions ? row.directions : store->directions;
     store->fallbacks += row.fallbacks;
@@ -235,6 +237,7 @@ static int average(struct run *run) {
     int kernel = FIBRAD_OK;
     if (!status) kernel = fibrad_rows_average(raw, run->bed->r, &mean);
     if (!status && !kernel) kernel = fibrad_rows_limit(&mean, scratch);
+    if (!status && !kernel) kernel = fibrad_rows_close(&mean, run->bed->r, run->result->wall, run->result->escaped);
     if (kernel) status = message(STATUS_INPUT, "averaging the rows: %s", fibrad_status_text(kernel));
     free(scratch);
     if (!status && !run->options->method.mirrored) estimate(run, &mean);
@@ -253,7 +256,9 @@ static void check_closure(struct run *run) {
     struct result *result = run->result;
     for (uint32_t i = 0; i < run->bed->n; ++i) {
         if (!result->wanted[i]) continue;
-        result->closure_max = fmax(result->closure_max, fabs(row_sum(&result->rows, i) + result->escaped[i] - 1));
+        double sum = row_sum(&result->rows, i) + result->escaped[i];
+        for (int wall = 0; wall < FIBRAD_WALLS; ++wall) sum += result->wall[i][wall];
+        result->closure_max = fmax(result->closure_max, fabs(sum - 1));
     }
 }
 
@@ -265,7 +270,7 @@ static void summarise(struct run *run, uint64_t rows) {
     for (uint32_t i = 0; i < run->bed->n; ++i) {
         const double sum = result->row_sum[i] = row_sum(&result->rows, i);
         if (!result->wanted[i]) continue;
-        if (!run->options->raw) result->escaped[i] = fmax(0, 1 - sum);
+        for (int wall = 0; wall < FIBRAD_WALLS; ++wall) result->wall_mean[wall] += result->wall[i][wall] / (double)rows;
         result->row_sum_min = fmin(result->row_sum_min, sum);
         result->row_sum_max = fmax(result->row_sum_max, sum);
         result->error_estimate = fmax(result->error_estimate, result->error[i]);
@@ -287,7 +292,9 @@ static int compute(struct run *run, void **block) {
     result->wanted = calloc(n, sizeof *result->wanted);
     result->row_sum = calloc(n, sizeof *result->row_sum);
     result->escaped = calloc(n, sizeof *result->escaped);
-    if (!run->stores || !run->places || !result->error || !result->wanted || !result->row_sum || !result->escaped)
+    result->wall = calloc(n, sizeof *result->wall);
+    if (!run->stores || !run->places || !result->error || !result->wanted || !result->row_sum || !result->escaped ||
+        !result->wall)
         return message_memory();
     for (uint32_t i = 0; i < n; ++i) {
         result->wanted[i] = !run->options->wanted || run->options->wanted[i];
@@ -324,5 +331,6 @@ void result_free(struct result *result) {
     free(result->row_sum);
     free(result->error);
     free(result->escaped);
+    free(result->wall);
     *result = (struct result){0};
 }

@@ -14,6 +14,7 @@ struct run_options {
     struct row_method method;
     int threads;        /* 0: as OpenMP has it, which is all cores */
     bool raw;           /* leave the rows as the method gave them */
+    fibrad_walls walls; /* zeroed: none */
     const bool *wanted; /* [n] which rows; NULL: all. Some rows only: raw has to be set */
     bool progress;      /* show the bar even if standard error is no terminal */
 };
@@ -24,14 +25,16 @@ struct result {
     bool *wanted;    /* [n] */
     double *row_sum; /* [n] */
     double *error;   /* [n] estimated Euclidean error of each row */
-    double *escaped; /* [n] raw rows: as measured; averaged rows: what the row sum leaves of 1 */
+    double *escaped; /* [n] raw rows: as measured; averaged rows: what the row sum and the walls leave of 1 */
+    double (*wall)[FIBRAD_WALLS]; /* [n] factors to the walls */
     fibrad_scene_facts facts;
     int threads;
     uint32_t directions; /* beam: the most that a row took */
     uint64_t fallbacks;  /* beam: windows that the robust method had to do */
     double seconds;      /* computing, without reading and writing */
     double row_sum_min, row_sum_max, escaped_mean;
-    double closure_max;     /* largest |row sum + escaped - 1| of the raw rows */
+    double wall_mean[FIBRAD_WALLS];
+    double closure_max;     /* largest |row sum + walls + escaped - 1| of the raw rows */
     double reciprocity_max; /* NaN if rows are missing */
     double error_estimate;  /* the largest of the rows' */
 };

@@ -28,7 +28,7 @@ int output_open(struct output *output, const char *path) {
     int number = -1;
     for (int k = 0; number < 0 && k < 100; ++k) { /* O_EXCL: never someone else's file */
         snprintf(output->temporary, room, "%s.%ld-%d.tmp", path, (long)getpid(), k);
-        number = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        number = open(output->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (number < 0 && errno != EEXIST) break;
     }
     output->file = number < 0 ? NULL : fdopen(number, "wb");

@@ -7,6 +7,7 @@
 
 #include "bed.h"
 #include "run_omp.h"
+#include "walls.h"
 
 /* A file that gets its name only when it is complete. */
 struct output {
@@ -29,7 +30,8 @@ int output_close(struct output *output, int status);
 struct contents {
     const struct bed *bed;
     const struct result *result;
-    bool ids; /* the file's ids instead of positions */
+    bool ids;                       /* the file's ids instead of positions */
+    const struct wall_order *walls; /* NULL, or none in it: neither walls nor surroundings are written */
 };
 
 /* Writes to the file; a failing file is noticed by the caller. Status 0 or that of a signal. */

@@ -69,6 +69,18 @@ static void write_points(FILE *file, const struct bed *bed) {
     end(&to);
 }
 
+/* One array per wall, wall_zmin and the like. */
+static void write_walls(FILE *file, const struct contents *what) {
+    for (uint32_t k = 0; what->walls && k < what->walls->count; ++k) {
+        const uint32_t wall = what->walls->wall[k], n = what->bed->n;
+        char name[32];
+        snprintf(name, sizeof name, "wall_%s", wall_name(wall));
+        struct base64 to = begin(file, "Float64", name, 1, n);
+        for (uint32_t i = 0; i < n; ++i) put_double(&to, what->result->wanted[i] ? what->result->wall[i][wall] : NAN);
+        end(&to);
+    }
+}
+
 static void write_neighbours(FILE *file, const fibrad_rows *rows) {
     struct base64 to = begin(file, "Int64", "neighbours", 1, rows->n);
     for (uint32_t i = 0; i < rows->n; ++i) {
@@ -92,6 +104,7 @@ int write_vtp(FILE *file, const struct contents *what) {
     write_doubles(file, "radius", bed->r, bed->n, NULL);
     write_doubles(file, "row_sum", result->row_sum, bed->n, result->wanted);
     write_doubles(file, "escaped", result->escaped, bed->n, result->wanted);
+    write_walls(file, what);
     write_neighbours(file, &result->rows);
     fputs("</PointData>\n<Points>\n", file);
     write_points(file, bed);

@@ -10,7 +10,7 @@
  *   beam     fibrad_beam_row, fibrad_directions_for
  *   surface  fibrad_surface_pair, FIBRAD_SURFACE_SCRATCH, fibrad_surface_row
  *   cast     fibrad_cast_row
- *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_drop, fibrad_rows_reciprocity
+ *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_close, fibrad_rows_drop, fibrad_rows_reciprocity
  *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
  *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
  *            fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit, fibrad_furnace_trace,
@@ -51,10 +51,11 @@ typedef enum fibrad_status {
     FIBRAD_E_GEOMETRY = -6   /* equal centres, or the centre of one sphere inside another */
 } fibrad_status;
 
-/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. */
+/* One English sentence without a full stop for a status; never NULL, also for numbers that are no status. No errors.
+ * Cost: a table. */
 const char *fibrad_status_text(int status);
 
-/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". */
+/* The version of the library linked in, FIBRAD_VERSION of its header: "major.minor.patch". No errors, no cost. */
 const char *fibrad_version(void);
 
 /* ---- lanes ----------------------------------------------------------------------------------------------------- */
@@ -68,10 +69,11 @@ typedef enum fibrad_isa {
     FIBRAD_ISA_AVX512 = 4
 } fibrad_isa;
 
-/* The widest instruction set that both this build and this machine offer. Cost: two CPUID instructions. */
+/* The widest instruction set that both this build and this machine offer. No errors. Cost: two CPUID instructions,
+ * microseconds under a hypervisor. */
 fibrad_isa fibrad_isa_best(void);
 
-/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. */
+/* "scalar", "sse2", "avx2", "avx512"; "best" for FIBRAD_ISA_BEST; "?" for other numbers. No errors, no cost. */
 const char *fibrad_isa_name(int isa);
 
 /* ---- sample ---------------------------------------------------------------------------------------------------- */
@@ -90,8 +92,8 @@ int fibrad_direction(uint32_t k, uint32_t n, double direction[3]);
 /* ---- pair ------------------------------------------------------------------------------------------------------ */
 
 /* View factor F12 from sphere 1 (radius r1) to sphere 2 (radius r2), nothing in between, at surface distance gap.
- * r1, r2 [L] > 0; gap [L] from -2 min(r1, r2), exclusive, to any finite number; negative: the spheres overlap, and the
- * formula is continued smoothly as docs/methods.md says. All of r1, r2, gap may be scaled alike from 1e-150 to 1e150.
+ * r1, r2 [L] from 1e-150 to 1e150; gap [L] from -2 min(r1, r2), exclusive, to any finite number; negative: the spheres
+ * overlap, and the formula is continued smoothly as docs/methods.md says.
  * Guarantee: relative error at most 1e-14 for r1/r2 in [1e-4, 1e4]; r1^2 F12 and r2^2 F21 agree to the
  * last bits; F is continuous and falls with gap.
  * Errors: FIBRAD_E_ARGUMENT. Cost: about 0.06 microseconds, 0.2 for overlaps; no libm call but sqrt.
@@ -110,11 +112,24 @@ typedef struct fibrad_spheres {
 /* The largest number of spheres of a scene. */
 #define FIBRAD_SPHERES_MAX 100000000u
 
-/* What a scene is made for. Zeroed but for `spheres`: open on all sides, the best instruction set. */
+/* Walls by number: 0 to 5 are planes across the axes, x low, x high, y low, y high, z low, z high; 6 is a cylinder
+ * along z. Their inner sides bound a convex container, so that no wall hides one sphere from another. */
+#define FIBRAD_WALLS 7
+
+/* The walls of a scene. Zeroed: none. */
+typedef struct fibrad_walls {
+    uint32_t planes;    /* sum of 1 << k for the planes k there are, none on a periodic axis */
+    double at[6];       /* [L] where plane k stands on its axis, low < high; not read if it is not there */
+    double cylinder[3]; /* x and y of its axis, and its radius [L]; radius 0: none. With a cylinder x and y are open
+                           axes without planes */
+} fibrad_walls;
+
+/* What a scene is made for. Zeroed but for `spheres`: open on all sides, no walls, the best instruction set. */
 typedef struct fibrad_scene_config {
     uint32_t spheres; /* how many spheres the scene holds: [1, FIBRAD_SPHERES_MAX] */
     int isa;          /* a fibrad_isa; one that the machine lacks is FIBRAD_E_ARGUMENT */
     double period[3]; /* per axis the length of the periodic box [L]; 0: the axis is open */
+    fibrad_walls walls;
 } fibrad_scene_config;
 
 /* A scene: spheres copied in the order of the cells of a grid. Immutable once made; share it between threads. */
@@ -125,7 +140,8 @@ typedef struct fibrad_fault {
     uint32_t first, second;
 } fibrad_fault;
 
-/* Bytes that fibrad_scene_init needs for this configuration; 0 if the configuration is not valid. */
+/* Bytes that fibrad_scene_init needs for this configuration: they depend on the number of spheres alone. Errors: 0 if
+ * the configuration is NULL or not valid. Cost: tens of nanoseconds, and that of fibrad_isa_best. */
 size_t fibrad_scene_size(const fibrad_scene_config *config);
 
 /* An upper bound of fibrad_scene_size for up to n spheres, as a constant expression, for static memory. */
@@ -133,24 +149,27 @@ size_t fibrad_scene_size(const fibrad_scene_config *config);
 
 /* Makes a scene in `memory` (`size` bytes on a 64-byte boundary) from config->spheres == spheres->n spheres, which are
  * copied: the arrays may go afterwards. On periodic axes centres may lie anywhere and are taken into the box.
- * Spheres may overlap (settled beds do), but no centre may lie inside another sphere.
+ * Spheres may overlap each other and the walls (settled beds do), but no centre may lie inside another sphere or beyond
+ * a wall. What leaves a sphere outwards beyond a wall meets that wall at once.
  * Errors: _ARGUMENT (then `fault`, unless NULL, names the sphere, or n if it is none of them), _SIZE, _ALIGNMENT,
  * _GEOMETRY (fault names the pair). Cost: O(n), about 0.5 microseconds per sphere; more where spheres crowd in clusters
- * far apart. */
+ * far apart, at worst O(n^2). Source: docs/methods.md section 6. */
 int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 
 /* What a scene turned out to be. */
 typedef struct fibrad_scene_facts {
     uint32_t spheres;
-    int isa;                       /* the instruction set in use */
-    uint32_t cells;                /* cells of the grid, all levels */
-    double radius_min, radius_max; /* [L] */
-    double overlap_max;            /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
-    uint32_t overlap_pair[2];      /* the spheres of the largest overlap */
+    int isa;                        /* the instruction set in use */
+    uint32_t cells;                 /* cells of the grid, all levels */
+    double radius_min, radius_max;  /* [L] */
+    double overlap_max;             /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
+    uint32_t overlap_pair[2];       /* the spheres of the largest overlap */
+    double wall_area[FIBRAD_WALLS]; /* [L^2] the part of each wall inside all others, per period of periodic axes;
+                                       infinity: unbounded; 0: there is no such wall */
 } fibrad_scene_facts;
 
-/* Fills in the facts of a scene. Cost: a copy. */
+/* Fills in the facts of a scene; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
 /* ---- work ------------------------------------------------------------------------------------------------------ */
@@ -165,7 +184,8 @@ typedef struct fibrad_work_config {
 
 typedef struct fibrad_work fibrad_work;
 
-/* Bytes that fibrad_work_init needs; 0 if the configuration is not valid (NULL: all defaults). */
+/* Bytes that fibrad_work_init needs (NULL: all defaults). Errors: 0 if a number is above 2^28. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_work_size(const fibrad_work_config *config);
 
 /* An upper bound of fibrad_work_size as a constant expression, for static memory (no zeros here). */
@@ -173,12 +193,12 @@ size_t fibrad_work_size(const fibrad_work_config *config);
     (22528 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
 
 /* Makes work memory in `memory` (`size` bytes on a 64-byte boundary). It serves any scene, one row at a time.
- * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(entries). */
 int fibrad_work_init(fibrad_work **work, void *memory, size_t size, const fibrad_work_config *config);
 
 /* After FIBRAD_E_CAPACITY from a row: a configuration under which that row gets farther (its `discs` as far as they
  * were met, its `entries` never more than the row can have). Repeat until the row succeeds; entries = number of spheres
- * always suffices. */
+ * always suffices. Null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_work_needed(const fibrad_work *work, fibrad_work_config *config);
 
 /* ---- beam ------------------------------------------------------------------------------------------------------ */
@@ -189,11 +209,13 @@ typedef struct fibrad_row {
     double *f;           /* [capacity] out: F from sphere i to sphere col[.], all > 0 */
     uint32_t capacity;   /* in */
     uint32_t length;     /* out: entries; after FIBRAD_E_CAPACITY of these arrays: the entries there would be */
-    double escaped;      /* out: the fraction that meets no sphere, measured as uncovered area or points */
+    double escaped;      /* out: the fraction that meets no sphere and no wall, as uncovered area or points */
     double error;        /* out: estimated Euclidean error of the row, from parts of its directions; twice the true one
                             on the median, seldom less than it */
     uint32_t directions; /* out, beam method only: how many were taken */
     uint32_t fallbacks;  /* out, beam method only: windows whose exact areas the fast method left to the robust one */
+    double wall[FIBRAD_WALLS]; /* out: the fraction that meets each wall, 0 for walls that are not there; `error` does
+                                  not count them. The surface method leaves 0 */
 } fibrad_row;
 
 /* How a beam row is integrated. Zeroed: 233 directions, exact areas, no cutoff, no tolerance. */
@@ -207,8 +229,9 @@ typedef struct fibrad_beam_rule {
                             directions are each closed, but averaging them does not keep their sums below 1 */
 } fibrad_beam_rule;
 
-/* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + escaped = 1, to
- * rounding with exact areas, as exact counts with points. With exact areas the error falls as directions^-1.5.
+/* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + sum of wall +
+ * escaped = 1, to rounding with exact areas, as exact counts with points. With exact areas the error falls as
+ * directions^-1.5, that of the sharing between walls about as directions^-1 (5e-4 each at 233).
  * i [0, spheres); rule NULL: all defaults. Periodic images of one sphere share an entry, and i may see images of
  * itself. Errors: _ARGUMENT, _TABLE (points), _CAPACITY: either row->capacity (row->length then tells) or the work
  * memory (row->length is then 0, and fibrad_work_needed tells). Cost: some microseconds per direction with ten discs in
@@ -217,8 +240,9 @@ typedef struct fibrad_beam_rule {
 int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row);
 
-/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0.
- */
+/* The directions with which to try next, after `directions` have given a row of estimated error `error` > wanted > 0
+ * (both dimensionless): by the law directions^-1.5, a fifth more at least, FIBRAD_DIRECTIONS_MAX at most. No errors.
+ * Cost: under a microsecond. Source: docs/methods.md section 3. */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double wanted);
 
 /* ---- surface --------------------------------------------------------------------------------------------------- */
@@ -241,7 +265,7 @@ typedef struct fibrad_surface_rule {
     uint32_t nodes; /* N_F, a Fibonacci number from 8 to 987; 0: 55 */
     uint32_t flags; /* sum of fibrad_surface_flags */
     double cutoff;  /* rows: spheres whose centres are farther than this (1 + 1e-12) neither receive nor block [L]; 0:
-                       none, which is only possible without periodic axes */
+                       none, which is only possible without periodic axes; at most 100 periods of any of those */
     int isa;        /* pairs: a fibrad_isa (rows use that of the scene). FIBRAD_ISA_BEST asks the machine at every call,
                        which under a hypervisor takes longer than the pair; others are used unasked, so take what
                        fibrad_isa_best has returned once */
@@ -275,8 +299,9 @@ int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *
  * axis that w has least of (the first where equal). So rows are reciprocal but for blockers within the
  * cutoff of one of two spheres. row->escaped is 1 - sum of f, as this method does not measure it; row->error is
  * the root of the sum of the pairs' squares. rule: NULL is all defaults; its isa is not used.
- * Errors: _ARGUMENT (no cutoff in a periodic scene included), _TABLE (nodes), _CAPACITY as fibrad_beam_row.
- * Cost: about 5 microseconds per partly hidden sphere within the cutoff at 55 nodes. */
+ * Errors: _ARGUMENT (included: no cutoff in a periodic scene, more than 2^28 spheres or images in the cube about the
+ * cutoff), _TABLE (nodes), _CAPACITY as fibrad_beam_row. Cost: about 5 microseconds per partly hidden sphere within the
+ * cutoff at 55 nodes, and 3 nanoseconds per pair of spheres within it. */
 int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_surface_rule *rule,
                        fibrad_row *row);
 
@@ -308,7 +333,8 @@ int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
 
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
 
-/* A sparse matrix of view factors, compressed rows, in the caller's arrays. */
+/* A sparse matrix of view factors, compressed rows, in the caller's arrays. Source of what follows: docs/methods.md
+ * section 5. */
 typedef struct fibrad_rows {
     uint32_t n;        /* rows and columns */
     uint64_t capacity; /* length of col and f */
@@ -328,6 +354,13 @@ int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *ou
  * Rows averaged from exact areas need it only to the last bit. scratch [n].
  * Errors: _ARGUMENT. Cost: O(entries). */
 int fibrad_rows_limit(fibrad_rows *rows, double *scratch);
+
+/* Closes rows that were averaged or limited: wall[i] and escaped[i], from the raw row i, are multiplied such that
+ * sum of f + sum of wall + escaped = 1. What a row lacks of 1 is as good a measure of what meets no sphere, from the
+ * opposite directions, as the raw row's. A row whose raw one met neither wall nor sky takes the shares of all spheres
+ * together; if none has any, what is lacking counts as escaped. wall, escaped [n], r [n] > 0.
+ * Errors: _ARGUMENT. Cost: O(entries). */
+int fibrad_rows_close(const fibrad_rows *rows, const double *r, double (*wall)[FIBRAD_WALLS], double *escaped);
 
 /* Drops entries below `threshold` (both of a reciprocal pair when both are below) and gives what they carried back to
  * the entries that stay, symmetrically: S_ij u_i u_j with u found so that the row sums are as before; what no such u
@@ -352,20 +385,21 @@ int fibrad_rows_reciprocity(const fibrad_rows *rows, const double *r, double *la
 #define FIBRAD_FURNACE_CELLS_MAX 100000000u
 
 typedef struct fibrad_furnace_config {
-    double size[3];             /* m, > 0 */
+    double size[3];             /* m, from 1e-9 to 1e9 */
     uint32_t cells[3];          /* along x, y, z; the product is at most FIBRAD_FURNACE_CELLS_MAX */
-    double absorption;          /* 1/m, > 0: where nothing is absorbed there is no temperature */
-    double scattering;          /* 1/m, >= 0 */
-    double source;              /* W/m3 given off by the medium, of either sign */
-    double wall_temperature[6]; /* K, > 0; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
-    double wall_emissivity[6];  /* [0, 1] */
+    double absorption;          /* 1/m; times an edge of a cell from 1e-9 to 1e9: unabsorbed there is no temperature */
+    double scattering;          /* 1/m; times an edge of a cell from 0 to 1e9 */
+    double source;              /* W/m3 given off by the medium, of either sign, up to 1e30 */
+    double wall_temperature[6]; /* K, 1e-3 to 1e9; walls in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z */
+    double wall_emissivity[6];  /* [0, 1], not all 0 */
     uint64_t seed;              /* of the bundles of rays */
 } fibrad_furnace_config;
 
 /* The state of one box: temperatures, fluxes, coefficients, and which bundles are to be traced next. */
 typedef struct fibrad_furnace fibrad_furnace;
 
-/* Bytes that fibrad_furnace_init needs; 0 if the configuration is not valid. */
+/* Bytes that fibrad_furnace_init needs. Errors: 0 if the configuration is NULL or not valid. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_furnace_size(const fibrad_furnace_config *config);
 
 /* Makes a furnace in `memory` (`size` bytes on a 64-byte boundary): E is the mean of the walls, Theta 2/3 everywhere.
@@ -385,13 +419,14 @@ typedef struct fibrad_furnace_arrays {
     double *power;            /* [6] what each wall gives, net [W] */
 } fibrad_furnace_arrays;
 
+/* Tells where the arrays are, which stay there; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_furnace_fields(fibrad_furnace *furnace, fibrad_furnace_arrays *arrays);
 
-/* Temperature [K] of E [W/m2]; 0 unless E is positive. */
+/* Temperature [K] of E [W/m2]; 0 unless E is positive. No errors. Cost: two square roots. */
 double fibrad_furnace_temperature(double e);
 
 /* Makes Theta the same constant everywhere, (0, 1], without transverse term: 1 for the heat-flux method (HFM), 2/3 for
- * isotropic radiation. Errors: _ARGUMENT. */
+ * isotropic radiation. Errors: _ARGUMENT. Cost: O(cells). Source: docs/furnace.md. */
 int fibrad_furnace_theta(fibrad_furnace *furnace, double theta);
 
 /* What the scattered part of the heat-flux equations is made of. */
@@ -421,14 +456,15 @@ int fibrad_furnace_balance(fibrad_furnace *furnace);
 /* Counts of bundles, in whole numbers: any split of the work adds up to the same bits. */
 typedef struct fibrad_furnace_tally fibrad_furnace_tally;
 
-/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. */
+/* Bytes that fibrad_furnace_tally_init needs for a tally of this furnace. Errors: 0 for NULL. Cost: tens of
+ * nanoseconds. */
 size_t fibrad_furnace_tally_size(const fibrad_furnace *furnace);
 
 /* Makes an empty tally in `memory` (`size` bytes on a 64-byte boundary), for one thread at a time.
- * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. */
+ * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(cells). */
 int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t size, const fibrad_furnace *furnace);
 
-/* Adds `from` to `to`, tallies of the same furnace. Cost: O(cells). */
+/* Adds `from` to `to`, tallies of the same furnace (of others, and with null pointers, nothing). Cost: O(cells). */
 void fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from);
 
 /* What bundles of rays do. */
@@ -441,12 +477,15 @@ typedef enum fibrad_furnace_physics {
  * `bundles` bundles for all that walls and medium emit above the mean of the walls, each further plan carries only what
  * the change of E since then adds, at the same energy per bundle. `restart` makes a first plan again, for new tallies.
  * `planned` gets the number of bundles: every source is given a whole number of them, at least one.
- * bundles [1, 2^32]. Errors: _ARGUMENT. Cost: O(cells). */
+ * bundles [1, 2^32]. Errors: _ARGUMENT, also if E is not finite or its change asks for more than 2^33 bundles; there is
+ * no plan then, and the next is a first one. Cost: O(cells). */
 int fibrad_furnace_emit(fibrad_furnace *furnace, fibrad_furnace_physics physics, uint64_t bundles, int restart,
                         uint64_t *planned);
 
 /* Traces bundles [first, first + count) of the plan into a tally. The furnace is only read: threads may share it.
- * Errors: _ARGUMENT. Cost: about 0.6 (equilibrium) to 1.1 microseconds per bundle in a box of 20 x 20 x 40 cells. */
+ * Errors: _ARGUMENT, also for the tally of a furnace of other cells. Cost: about 0.6 (equilibrium) to 1.1 microseconds
+ * per bundle in a box of 20 x 20 x 40 cells; it goes with the number of events until absorption, which in a thick
+ * medium is the square of the optical thickness, and between walls that hardly absorb 1/emissivity. */
 int fibrad_furnace_trace(const fibrad_furnace *furnace, fibrad_furnace_tally *tally, uint64_t first, uint64_t count);
 
 /* Which ratio of the moments F_n = sum(w cos^n) over the bundles that cross a face is taken for Theta. */
@@ -463,7 +502,8 @@ int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally 
                             fibrad_furnace_estimator estimator, int transverse, fibrad_furnace_scatter scatter);
 
 /* Sets E, wall fluxes and powers from the sum of all tallies since the last restart (FIBRAD_FURNACE_EQUILIBRIUM).
- * Errors: _ARGUMENT. Cost: O(cells). */
+ * Errors: _ARGUMENT, also after a plan of the other physics and for the tally of a furnace of other cells. Cost:
+ * O(cells times symmetries). */
 int fibrad_furnace_equilibrium(fibrad_furnace *furnace, const fibrad_furnace_tally *tally);
 
 #ifdef __cplusplus

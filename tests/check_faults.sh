@@ -52,15 +52,14 @@ cmp -s "$work/old" "$work/F.csv" || complain "a failed run changed the older res
 rm -f "$work"/F.*
 verdict "limit of file sizes" $status 4 "F.csv: cannot be written: File too large"
 
-# A reader of standard output that leaves: summary and help are short, so the pipe is closed before they come
-status=$({
-    (
-        sleep 0.2
-        "$fibrad" bed "$bed" --directions 8 2>"$work/err"
-        echo $? >&3
-    ) | true
-} 3>&1)
-verdict "SIGPIPE" "$status" 4 "standard output: Broken pipe"
+# A reader of standard output that has left: a pipe whose other end was open and is closed
+mkfifo "$work/pipe"
+exec 3<>"$work/pipe"
+exec 4>"$work/pipe"
+exec 3<&-
+"$fibrad" bed "$bed" --directions 8 >&4 2>"$work/err"
+verdict "SIGPIPE" $? 4 "standard output: Broken pipe"
+exec 4>&-
 
 # A disc that is full, if one may be mounted
 mkdir "$work/disc"
@@ -69,8 +68,10 @@ if mount -t tmpfs -o size=100k tmpfs "$work/disc" 2>/dev/null; then
         "$fibrad" bed "$bed" --directions 34 -o "$work/disc/F.$ending" >/dev/null 2>"$work/err"
         verdict "disc full, .$ending" $? 4 "No space left on device"
     done
-    "$fibrad" bed "$bed" --directions 8 --plot "$work/disc/F.svg" >/dev/null 2>"$work/err"
-    verdict "disc full, picture" $? 4 "gnuplot failed"
+    for ending in svg png; do
+        "$fibrad" bed "$bed" --directions 8 --plot "$work/disc/F.$ending" >/dev/null 2>"$work/err"
+        verdict "disc full, .$ending" $? 4 "F.$ending: cannot be written: No space left on device"
+    done
     umount "$work/disc"
 else
     echo "SKIP disc full: no right to mount one"
@@ -78,9 +79,11 @@ fi
 
 # The folder of the output is gone when the file is to get its name
 mkdir "$work/gone"
-"$fibrad" bed "$bed" --directions 2000 -o "$work/gone/F.csv" >/dev/null 2>"$work/err" &
+"$fibrad" bed "$bed" --directions 4000 --threads 1 -o "$work/gone/F.csv" >/dev/null 2>"$work/err" &
 until_open 'F.csv*'
+kill -s STOP $! # for as long as it takes
 rm -rf "$work/gone"
+kill -s CONT $!
 wait $!
 verdict "folder gone" $? 4 "F.csv: No such file"
 

@@ -3,6 +3,7 @@
 
 #include "reference.h"
 #include "scenes.h"
+#include "suite.h"
 
 /* Euclidean error of row i by the beam method with exact areas. */
 static double error_of(const struct bed *bed, uint32_t i, uint32_t directions, double tolerance) {
@@ -96,15 +97,10 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("accuracy");
-    TCase *tcase = tcase_create("accuracy");
+    TCase *tcase = suite_case(suite, "accuracy");
     tcase_add_test(tcase, lattices);
     tcase_add_test(tcase, small_scenes);
     tcase_add_test(tcase, tangent_obstacles);
     tcase_add_test(tcase, error_falls_as_it_should);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

@@ -7,6 +7,7 @@
 #include "bed/areas_lanes.h"
 #include "reference.h"
 #include "scenes.h"
+#include "suite.h"
 
 #define MOST 400
 
@@ -286,7 +287,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("areas");
-    TCase *tcase = tcase_create("areas");
+    TCase *tcase = suite_case(suite, "areas");
     tcase_add_test(tcase, random_windows);
     tcase_add_test(tcase, hundreds_of_discs);
     tcase_add_test(tcase, large_and_small_discs);
@@ -294,10 +295,5 @@ int main(void) {
     tcase_add_test(tcase, lattices_along_their_axes);
     tcase_add_test(tcase, clipping_against_accounts);
     tcase_add_test(tcase, doubts);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

@@ -2,8 +2,8 @@
 #include "base/arena.h"
 #include "base/cpu.h"
 #include "base/port.h"
+#include "suite.h"
 
-#include <check.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -176,17 +176,12 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("base");
-    TCase *tests = tcase_create("base");
+    TCase *tests = suite_case(suite, "base");
     tcase_add_test(tests, arena_counts_what_it_hands_out);
     tcase_add_test(tests, arena_refuses_what_it_cannot_hold);
     tcase_add_test(tests, arena_sums_that_overflow_count_as_no_size);
     tcase_add_test(tests, floor_agrees_with_the_c_library);
     tcase_add_test(tests, port_does_what_it_says);
     tcase_add_test(tests, best_instruction_set_is_what_the_machine_offers);
-    suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failures = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return suite_run(suite);
 }

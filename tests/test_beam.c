@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "scenes.h"
+#include "suite.h"
 
 static fibrad_row beam(const struct bed *bed, uint32_t i, fibrad_beam_rule rule, int isa) {
     fibrad_scene *scene = scene_of(bed, isa);
@@ -294,6 +295,66 @@ START_TEST(crowded_rows_say_what_they_need) {
 }
 END_TEST
 
+/* A sphere far beyond the others, as large as to be seen: only its direction and its angle matter. A small one there is
+ * nothing. */
+START_TEST(strays_are_seen_however_far) {
+    struct bed bed = packing(60, .8, 1.2, .5, 3, false);
+    fibrad_beam_rule rule = {.directions = 50};
+    fibrad_row alone = beam(&bed, 7, rule, 0);
+    add_sphere(&bed, 0, 0, 0, 1);
+    const uint32_t stray = bed.n - 1;
+    for (int k = 0; k < 27; k++) {
+        double way[3] = {k % 3 - 1, k / 3 % 3 - 1 + .1, k / 9 - 1 + .01}, first = -1;
+        for (double far = 1e4; far < 1e13; far *= 1e4) {
+            bed.x[stray] = far * way[0], bed.y[stray] = far * way[1], bed.z[stray] = far * way[2];
+            bed.r[stray] = far * .05;
+            fibrad_row seen = beam(&bed, 7, rule, 0);
+            if (first < 0) first = row_factor(&seen, stray);
+            ck_assert_double_eq_tol(row_factor(&seen, stray), first, 2e-3);
+            ck_assert_double_eq_tol(row_sum(&seen) + seen.escaped, 1, 1e-12);
+            row_free(&seen);
+
+            bed.r[stray] = 1;
+            if (far < 1e8) continue;
+            seen = beam(&bed, 7, rule, 0);
+            ck_assert(same_bits(&seen, &alone));
+            row_free(&seen);
+        }
+    }
+    row_free(&alone);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Where one marches outside the grid, with and without periods across. */
+START_TEST(strays_are_met_on_the_way) {
+    const fibrad_beam_rule rule = {.directions = 2000};
+    for (int periods = 0; periods < 3; periods++) {
+        struct bed bed = packing(60, .8, 1.2, .5, 3, true);
+        const double side = bed.period[0];
+        for (int axis = periods; axis < 3; axis++) bed.period[axis] = 0;
+        for (int k = 0; k < 4; k++)
+            add_sphere(&bed, periods > 0 ? 0 : side * (3 * k - 4), periods > 1 ? side / 2 : side * (5 - 4 * k),
+                       side * (k % 2 ? 3 + k : -2 - 2 * k), 1);
+        fibrad_scene *scene = scene_of(&bed, 0);
+        fibrad_work *less = work_of(&(fibrad_work_config){.near = 1, .discs = 4096, .entries = bed.n});
+        fibrad_work *more = work_of(&(fibrad_work_config){.near = 100000, .discs = 4096, .entries = bed.n});
+        uint32_t strays_seen = 0;
+        for (uint32_t i = 50; i < bed.n; i++) {
+            fibrad_row a = row_of(bed.n), b = row_of(bed.n);
+            ck_assert_int_eq(fibrad_beam_row(scene, less, i, &rule, &a), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_beam_row(scene, more, i, &rule, &b), FIBRAD_OK);
+            ck_assert(same_bits(&a, &b));
+            strays_seen += a.length > 0 && a.col[a.length - 1] >= 60;
+            row_free(&a), row_free(&b);
+        }
+        ck_assert_uint_gt(strays_seen, 3);
+        free(scene), free(less), free(more);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
 START_TEST(bad_arguments_are_refused) {
     struct bed bed = lattice('p', 3);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -318,7 +379,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("beam");
-    TCase *tcase = tcase_create("beam");
+    TCase *tcase = suite_case(suite, "beam");
     tcase_add_test(tcase, two_spheres_match_the_exact_pair);
     tcase_add_test(tcase, hidden_sphere_is_not_seen);
     tcase_add_test(tcase, raw_rows_close);
@@ -332,11 +393,8 @@ int main(void) {
     tcase_add_test(tcase, cutoff_takes_out_what_lies_beyond);
     tcase_add_test(tcase, overlap_changes_rows_continuously);
     tcase_add_test(tcase, crowded_rows_say_what_they_need);
+    tcase_add_test(tcase, strays_are_seen_however_far);
+    tcase_add_test(tcase, strays_are_met_on_the_way);
     tcase_add_test(tcase, bad_arguments_are_refused);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

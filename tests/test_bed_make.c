@@ -1,8 +1,8 @@
 /* test_bed_make.c - beds made to measure are what they claim to be. SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <math.h>
 #include <string.h>
 #include "bed_make.h"
+#include "suite.h"
 
 #define PI 3.14159265358979323846
 
@@ -96,15 +96,10 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("bed_make");
-    TCase *cases = tcase_create("bed_make");
-    suite_add_tcase(suite, cases);
+    TCase *cases = suite_case(suite, "bed_make");
     tcase_add_test(cases, packing);
     tcase_add_test(cases, copies);
     tcase_add_test(cases, fcc);
     tcase_add_test(cases, random_numbers);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "scenes.h"
+#include "suite.h"
 
 #define PI 3.14159265358979323846
 
@@ -336,9 +337,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("cast");
-    TCase *tests = tcase_create("cast");
-    suite_add_tcase(suite, tests);
-    tcase_set_timeout(tests, 300);
+    TCase *tests = suite_case(suite, "cast");
     tcase_add_test(tests, two_spheres_match_the_exact_pair);
     tcase_add_test(tests, pebble_table);
     tcase_add_test(tests, rays_meet_the_first_sphere);
@@ -349,9 +348,5 @@ int main(void) {
     tcase_add_test(tests, scaling_by_powers_of_two_changes_no_bit);
     tcase_add_test(tests, cutoff);
     tcase_add_test(tests, refusals_and_capacities);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failures = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failures;
+    return suite_run(suite);
 }

@@ -1,7 +1,6 @@
 /* test_cli.c - the program as its users meet it: exit statuses, messages, files. SPDX-License-Identifier: MIT
  *
  * Runs $BUILD/fibrad (default: build/fibrad) from the project's root. */
-#include <check.h>
 #include <dirent.h>
 #include <fcntl.h>
 #include <math.h>
@@ -14,6 +13,8 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "suite.h"
 
 #define MONO     "tests/data/mono2000.dump"
 #define POLY     "tests/data/poly2000.dump"
@@ -184,6 +185,10 @@ static const struct {
     {{"bed", MONO, "-x"}, "unknown option -x; see fibrad bed --help"},
     {{"pair", "1", "1", "0", "--raw"}, "unknown option --raw; see fibrad pair --help"},
     {{"bed", MONO, "-o"}, "--output needs an argument"},
+    {{"bed", MONO, "--wall", "zmin,top"}, "--wall: 'top' is neither auto, box, xmin ... zmax nor cylinder:X,Y,R"},
+    {{"bed", MONO, "--wall", "zmin,zmin=3"}, "--wall: zmin is named twice"},
+    {{"bed", MONO, "--wall", "auto", "--method", "surface"}, "--wall is for the methods beam, cast and mc"},
+    {{"bed", PERIODIC, "--wall", "box"}, "stands across a periodic axis"},
     {{"bed", MONO, "--raw=yes"}, "--raw takes no argument"},
     {{"bed", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz and .vtp"},
     {{"bed", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
@@ -387,6 +392,52 @@ START_TEST(same_bytes_for_any_threads) {
 }
 END_TEST
 
+/* In a box rows add up to 1 with the walls, nothing escapes, and the walls' own rows are reciprocal. */
+START_TEST(walls) {
+    enum { SPHERES = 2000, WALLS = 6 };
+    static double sum[SPHERES], to[SPHERES][WALLS];
+    char *first = NULL;
+    for (int k = 0; k < 2; ++k) {
+        const char *out = in_folder("F.csv");
+        SUCCEED("bed", MONO, "--directions", "50", "--wall", "auto", "--threads", k == 0 ? "1" : "3", "-o", out);
+        char *text = read_file(out);
+        if (k == 1) ck_assert_str_eq(text, first);
+        free(first);
+        first = text;
+    }
+    ck_assert(value_of("escaped_mean") == 0);
+    ck_assert_double_lt(value_of("closure_max"), 1e-13);
+    int back = 0;
+    for (char *line = strchr(first, '\n') + 1; *line; ++line) {
+        const long i = strtol(line, &line, 10), j = strtol(line + 1, &line, 10);
+        const double f = strtod(line + 1, &line);
+        ck_assert(i < SPHERES && j < SPHERES && i >= -1 - WALLS && j >= -1 - WALLS && f > 0);
+        if (i >= 0) sum[i] += f;
+        if (i >= 0 && j < -1) to[i][-2 - j] = f;
+        if (i < -1) {
+            const double area = i >= -5 ? 12 * 50 : 12 * 12;
+            ck_assert_double_eq_tol(f * area, acos(-1) * to[j][-2 - i], 1e-13);
+            ++back;
+        }
+    }
+    ck_assert_int_gt(back, 1000);
+    double mean = 0;
+    for (int i = 0; i < SPHERES; ++i) {
+        ck_assert_double_eq_tol(sum[i], 1, 1e-13);
+        mean += to[i][4] / SPHERES;
+    }
+    ck_assert_double_eq_tol(value_of("wall_zmin"), mean, 1e-13);
+    free(first);
+    SUCCEED("bed", PERIODIC, "--directions", "50", "--wall", "auto"); /* deep beds see all of a wall that has no end */
+    ck_assert_double_eq_tol(value_of("wall_zmin") * SPHERES * acos(-1), 12 * 12, .02);
+    ck_assert_double_eq_tol(value_of("wall_zmax") * SPHERES * acos(-1), 12 * 12, .02);
+    SUCCEED("bed", MONO, "--directions", "13", "--wall", "cylinder:6,6,9,zmin", "--targets", "0-9");
+    ck_assert_double_gt(value_of("wall_cylinder"), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--wall", "zmin=2"), 3);
+    expect_message(MONO ":", "lies beyond the wall zmin");
+}
+END_TEST
+
 /* The rows of a target list are those of --raw, and the matrix market file holds the same as the CSV file. */
 /* The same rays whoever follows them; other seeds, other rays. */
 START_TEST(rays) {
@@ -566,6 +617,12 @@ START_TEST(full_disc) {
     ck_assert_int_eq(RUN("bed", MONO, "--directions", "21", "-o", in_folder("F.csv")), 4);
     ck_assert_ptr_nonnull(strstr(said, "F.csv: cannot be written: File too large"));
     ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.svg")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.svg: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.png")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.png: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
 }
 END_TEST
 
@@ -588,15 +645,11 @@ START_TEST(interrupted) {
 END_TEST
 
 int main(void) {
-    TCase *usage = tcase_create("usage"), *pairs = tcase_create("pairs"), *beds = tcase_create("beds"),
-          *trouble = tcase_create("trouble");
-    TCase *const cases[] = {usage, pairs, beds, trouble};
     Suite *suite = suite_create("cli");
-    for (int k = 0; k < 4; ++k) {
-        tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
-        tcase_set_timeout(cases[k], 120);
-        suite_add_tcase(suite, cases[k]);
-    }
+    TCase *usage = suite_case(suite, "usage"), *pairs = suite_case(suite, "pairs"), *beds = suite_case(suite, "beds"),
+          *trouble = suite_case(suite, "trouble");
+    TCase *const cases[] = {usage, pairs, beds, trouble};
+    for (int k = 0; k < 4; ++k) tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
     tcase_add_test(usage, help_and_version);
     tcase_add_loop_test(usage, bad_usage, 0, (int)(sizeof misuse / sizeof *misuse));
     tcase_add_test(pairs, exact_pair);
@@ -608,6 +661,7 @@ int main(void) {
     tcase_add_test(beds, summary);
     tcase_add_test(beds, tolerance);
     tcase_add_test(beds, same_bytes_for_any_threads);
+    tcase_add_test(beds, walls);
     tcase_add_test(beds, rays);
     tcase_add_test(beds, targets_and_formats);
     tcase_add_test(beds, frames_periods_and_ids);
@@ -619,9 +673,5 @@ int main(void) {
     tcase_add_test(trouble, file_trouble);
     tcase_add_test(trouble, full_disc);
     tcase_add_loop_test(trouble, interrupted, 0, 2);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

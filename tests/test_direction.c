@@ -2,8 +2,8 @@
 #include "fibrad.h"
 #include "sample/direction.h"
 #include "golden_angle.h"
+#include "suite.h"
 
-#include <check.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -112,7 +112,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("direction");
-    TCase *tests = tcase_create("direction");
+    TCase *tests = suite_case(suite, "direction");
     tcase_add_loop_test(tests, directions_agree_with_the_c_library, 0, SIZE_COUNT);
     tcase_add_test(tests, azimuths_are_rounded_once);
     tcase_add_test(tests, sums_have_the_bits_of_the_table);
@@ -120,10 +120,5 @@ int main(void) {
     tcase_add_loop_test(tests, nearest_neighbours_keep_their_distance, 0, SIZE_COUNT);
     tcase_add_test(tests, polar_form_is_the_direction);
     tcase_add_test(tests, bad_arguments_are_refused);
-    suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failures = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return suite_run(suite);
 }

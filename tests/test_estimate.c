@@ -1,11 +1,11 @@
 /* test_estimate.c - rows are as accurate as they claim, and as they are asked to be. SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "run_omp.h"
 #include "scenes.h"
+#include "suite.h"
 #include "tolerance.h"
 
 enum { ROWS = 16 };
@@ -147,16 +147,10 @@ END_TEST
 int main(void) {
     const int count = sizeof beds / sizeof *beds;
     Suite *suite = suite_create("estimate");
-    TCase *tcase = tcase_create("estimate");
-    tcase_set_timeout(tcase, 60);
+    TCase *tcase = suite_case(suite, "estimate");
     tcase_add_loop_test(tcase, estimates_are_honest, 0, count);
     tcase_add_loop_test(tcase, tolerance_is_met, 0, count);
     tcase_add_test(tcase, rows_by_themselves);
     tcase_add_test(tcase, out_of_reach);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

@@ -1,7 +1,6 @@
 /* test_furnace.c - the furnace: identities, published numbers, Monte Carlo. SPDX-License-Identifier: MIT
  *
  * Numbers without another source come from an independent program for the same equations. */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +10,7 @@
 #include "furnace_cases.h"
 #include "furnace_run.h"
 #include "run_omp.h"
+#include "suite.h"
 
 #define SIGMA FIBRAD_STEFAN_BOLTZMANN
 
@@ -106,6 +106,42 @@ START_TEST(bad_configurations) {
         }
         ck_assert_msg(fibrad_furnace_size(&bad) == 0, "configuration %d", k);
     }
+}
+END_TEST
+
+/* Numbers that a caller may have written, and tallies of another furnace: refused, not traced. */
+START_TEST(bad_states) {
+    const fibrad_furnace_config small = coarse_case(1, 2), large = coarse_case(1, 3);
+    fibrad_furnace *furnace, *other;
+    void *block = run_block(fibrad_furnace_size(&small)), *other_block = run_block(fibrad_furnace_size(&large));
+    ck_assert_int_eq(fibrad_furnace_init(&furnace, block, fibrad_furnace_size(&small), &small), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_init(&other, other_block, fibrad_furnace_size(&large), &large), FIBRAD_OK);
+    fibrad_furnace_tally *tally;
+    void *tally_block = run_block(fibrad_furnace_tally_size(other));
+    ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, fibrad_furnace_tally_size(other), other), 0);
+
+    uint64_t planned = 42;
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 1000, 1, &planned), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, 0, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_DEFINITION, 0, FIBRAD_SCATTER_EXACT),
+                     FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_EQUILIBRIUM, 1000, 1, &planned), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_equilibrium(furnace, tally), FIBRAD_E_ARGUMENT);
+
+    fibrad_furnace_arrays at;
+    fibrad_furnace_fields(furnace, NULL);
+    fibrad_furnace_fields(furnace, &at);
+    const double wrong[] = {NAN, INFINITY, -INFINITY, 1e300, 1e25}, before = at.e[3];
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 1000, 1, &planned), FIBRAD_OK);
+        at.e[3] = wrong[k];
+        const uint64_t plan = planned;
+        ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 1000, 0, &planned), FIBRAD_E_ARGUMENT);
+        ck_assert_uint_eq(planned, plan);
+        ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, 0, 1), FIBRAD_E_ARGUMENT); /* no plan */
+        at.e[3] = before;
+    }
+    free(tally_block), free(block), free(other_block);
 }
 END_TEST
 
@@ -547,9 +583,10 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("furnace");
-    TCase *kernel = tcase_create("kernel"), *methods = tcase_create("methods");
+    TCase *kernel = suite_case(suite, "kernel"), *methods = suite_case(suite, "methods");
     tcase_add_test(kernel, elementary_functions);
     tcase_add_test(kernel, bad_configurations);
+    tcase_add_test(kernel, bad_states);
     tcase_add_test(kernel, memory);
     tcase_add_test(kernel, uniform_temperature);
     tcase_add_test(kernel, parts_add_up);
@@ -568,11 +605,5 @@ int main(void) {
     tcase_add_test(methods, solvers_agree);
     tcase_add_test(methods, threads_change_nothing);
     tcase_add_test(methods, axes_are_alike);
-    suite_add_tcase(suite, kernel);
-    suite_add_tcase(suite, methods);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

@@ -1,5 +1,4 @@
 /* test_read.c - readers: every format, every fault with its line. SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,6 +6,7 @@
 
 #include "message.h"
 #include "read.h"
+#include "suite.h"
 
 static char path[200];
 static char said[4096]; /* on standard error by the last `try` */
@@ -297,7 +297,8 @@ START_TEST(unreadable) {
 END_TEST
 
 int main(void) {
-    TCase *formats = tcase_create("formats"), *bad = tcase_create("faults");
+    Suite *suite = suite_create("read");
+    TCase *formats = suite_case(suite, "formats"), *bad = suite_case(suite, "faults");
     tcase_add_checked_fixture(formats, make_file, remove_file);
     tcase_add_checked_fixture(bad, make_file, remove_file);
     tcase_add_test(formats, csv_in_any_order);
@@ -312,12 +313,5 @@ int main(void) {
     tcase_add_loop_test(bad, faults, 0, (int)(sizeof refused / sizeof *refused));
     tcase_add_test(bad, binary_data);
     tcase_add_test(bad, unreadable);
-    Suite *suite = suite_create("read");
-    suite_add_tcase(suite, formats);
-    suite_add_tcase(suite, bad);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

@@ -1,6 +1,5 @@
 /* test_read_furnace.c - box files: every key, every fault with its line; what is written. SPDX-License-Identifier: MIT
  */
-#include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +8,7 @@
 #include "furnace_cases.h"
 #include "message.h"
 #include "read_furnace.h"
+#include "suite.h"
 #include "write_furnace.h"
 
 static char path[200];
@@ -103,6 +103,7 @@ START_TEST(bad_files) {
         {"size 1 1 1\ncells 1 1 1\n" WALLS, ": ", "absorption is missing"},
         {"size 1 1 1\ncells 1 1 1\nabsorption 1\nwall sides 900 1\nwall z0 900 1\n", ": ", "wall z1 is missing"},
         {"size 1 1 1\ncells 1 1 1\nabsorption 1\nwall sides 9 0\nwall z0 9 0\nwall z1 9 0\n", ": ", "emissivity 0"},
+        {"size 1 1 1\ncells 1 1 1\nabsorption 1e-12\n" WALLS, ": ", "out of all range"},
     };
     for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
         char begin[300];
@@ -162,15 +163,10 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("read_furnace");
-    TCase *files = tcase_create("files");
+    TCase *files = suite_case(suite, "files");
     tcase_add_checked_fixture(files, make_file, remove_file);
     tcase_add_test(files, good_files);
     tcase_add_test(files, bad_files);
     tcase_add_test(files, written_fields);
-    suite_add_tcase(suite, files);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

@@ -1,10 +1,10 @@
 /* test_reference.c - the host's adaptive reference for blocked scenes. SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <math.h>
 #include <stdint.h>
 
 #include "fibrad.h"
 #include "reference.h"
+#include "suite.h"
 
 enum { MAX = 300 };
 static double x[MAX], y[MAX], z[MAX], r[MAX], f[MAX], escaped;
@@ -197,7 +197,8 @@ START_TEST(arguments) {
 END_TEST
 
 int main(void) {
-    TCase *all = tcase_create("reference");
+    Suite *suite = suite_create("reference");
+    TCase *all = suite_case(suite, "reference");
     tcase_add_checked_fixture(all, start, NULL);
     tcase_add_test(all, unobstructed);
     tcase_add_test(all, rows_close_and_agree_with_pairs);
@@ -207,11 +208,5 @@ int main(void) {
     tcase_add_test(all, random_rays);
     tcase_add_test(all, face_centred_cubic);
     tcase_add_test(all, arguments);
-    Suite *suite = suite_create("reference");
-    suite_add_tcase(suite, all);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

@@ -1,10 +1,10 @@
 /* test_reproduce.c - the experiments come out as published. SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "commands.h"
+#include "suite.h"
 
 static char directory[200];
 
@@ -69,17 +69,11 @@ int main(void) {
     const char *build = getenv("BUILD");
     snprintf(directory, sizeof directory, "%.100s/tests/reproduce", build ? build : "build");
     Suite *suite = suite_create("reproduce");
-    TCase *cases = tcase_create("reproduce");
-    tcase_set_timeout(cases, 300);
-    suite_add_tcase(suite, cases);
+    TCase *cases = suite_case(suite, "reproduce");
     tcase_add_test(cases, figure_3);
     tcase_add_test(cases, third_sphere);
     tcase_add_test(cases, pebbles);
     tcase_add_test(cases, pebbles_by_rays);
     tcase_add_test(cases, usage);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

@@ -1,5 +1,6 @@
 /* test_rows.c - matrices of view factors: averaging, limiting, dropping. SPDX-License-Identifier: MIT */
 #include "scenes.h"
+#include "suite.h"
 
 static fibrad_rows rows_of(uint32_t n, uint64_t capacity) {
     return (fibrad_rows){.n = n,
@@ -248,7 +249,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("rows");
-    TCase *tcase = tcase_create("rows");
+    TCase *tcase = suite_case(suite, "rows");
     tcase_add_test(tcase, averaging_makes_rows_reciprocal);
     tcase_add_test(tcase, averaging_by_hand);
     tcase_add_test(tcase, averaging_entry_by_entry);
@@ -257,10 +258,5 @@ int main(void) {
     tcase_add_test(tcase, dropping_at_the_threshold);
     tcase_add_test(tcase, dropping_where_no_scaling_exists);
     tcase_add_test(tcase, bad_rows_are_refused);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

@@ -3,6 +3,7 @@
 
 #include "bed/scene.h"
 #include "scenes.h"
+#include "suite.h"
 
 START_TEST(sizes_hold) {
     static _Alignas(64) unsigned char memory[FIBRAD_SCENE_BYTES(500)], work_memory[FIBRAD_WORK_BYTES(64, 32, 64)];
@@ -247,7 +248,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("scene");
-    TCase *tcase = tcase_create("scene");
+    TCase *tcase = suite_case(suite, "scene");
     tcase_add_test(tcase, sizes_hold);
     tcase_add_test(tcase, bad_configurations_are_refused);
     tcase_add_test(tcase, faults_name_their_spheres);
@@ -257,10 +258,5 @@ int main(void) {
     tcase_add_test(tcase, walks_find_what_is_there);
     tcase_add_test(tcase, cells_follow_the_spheres);
     tcase_add_test(tcase, one_stray_beside_equal_coordinates);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

@@ -1,8 +1,8 @@
 /* test_status.c - status codes, their texts, the version and the names of instruction sets.
  * SPDX-License-Identifier: MIT */
 #include "fibrad.h"
+#include "suite.h"
 
-#include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,16 +53,11 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("status");
-    TCase *tests = tcase_create("status");
+    TCase *tests = suite_case(suite, "status");
     tcase_add_test(tests, numbers_never_change);
     tcase_add_test(tests, each_status_has_its_own_text);
     tcase_add_test(tests, other_numbers_have_a_text);
     tcase_add_test(tests, version_is_the_headers);
     tcase_add_test(tests, instruction_sets_have_names);
-    suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failures = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return suite_run(suite);
 }

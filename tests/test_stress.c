@@ -9,6 +9,7 @@
 #include "bed/areas_lanes.h"
 #include "reference.h"
 #include "scenes.h"
+#include "suite.h"
 
 static bool all(void) { return getenv("STRESS") != NULL; }
 
@@ -39,6 +40,16 @@ static fibrad_row beam(const struct bed *bed, uint32_t i, uint32_t directions) {
     fibrad_work *work = work_of(&(fibrad_work_config){.discs = 512, .entries = bed->n});
     fibrad_row row = row_of(bed->n);
     ck_assert_int_eq(fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = directions}, &row), FIBRAD_OK);
+    free(scene);
+    free(work);
+    return row;
+}
+
+static fibrad_row rays(const struct bed *bed, uint32_t i, uint32_t number) {
+    fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
+    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 512, .entries = bed->n});
+    fibrad_row row = row_of(bed->n);
+    ck_assert_int_eq(fibrad_cast_row(scene, work, i, &(fibrad_cast_rule){.rays = number}, &row, NULL), FIBRAD_OK);
     free(scene);
     free(work);
     return row;
@@ -75,12 +86,15 @@ END_TEST
 START_TEST(rows_at_every_scale) {
     static const double nowhere[3] = {0, 0, 0};
     struct bed bed = packing(100, .5, 1.5, .5, 3, false), scaled = packing(100, .5, 1.5, .5, 3, false);
-    fibrad_row row = beam(&bed, 42, 55);
-    double two = 0, ten = 0;
+    fibrad_row row = beam(&bed, 42, 55), cast = rays(&bed, 42, 500);
+    double two = 0, two_cast = 0, ten = 0;
     for (int k = -400; k <= 400; k += all() ? 1 : 25) {
         move(&scaled, &bed, ldexp(1, k), nowhere);
         fibrad_row other = beam(&scaled, 42, 55);
         two += !same_bits(&row, &other);
+        row_free(&other);
+        other = rays(&scaled, 42, 500);
+        two_cast += !same_bits(&cast, &other);
         row_free(&other);
         if (abs(k) > 100) continue;
         move(&scaled, &bed, pow(10, k), nowhere);
@@ -89,8 +103,9 @@ START_TEST(rows_at_every_scale) {
         row_free(&other);
     }
     report("rows times 2^k, k = -400 ... 400: results with other bits", two, 0);
+    report("rows by rays times 2^k: results with other bits", two_cast, 0);
     report("rows times 10^k, k = -100 ... 100", ten, 1e-13);
-    row_free(&row);
+    row_free(&row), row_free(&cast);
     bed_free(&bed);
     bed_free(&scaled);
 }
@@ -355,13 +370,38 @@ END_TEST
 
 struct seen {
     double nonsense, closure, sum, averaged; /* factors that are no positive number; worst of the rest */
+    double other_bits;                       /* rows that depend on how many spheres are kept near */
     uint64_t scenes, refused;
 };
 
 static double uniform(void) { return random_in(6, 0, 1); }
 
+/* A row by beams and one by rays, once from lists of near spheres and once without. */
+static void try_near(struct seen *seen, const fibrad_scene *scene, uint32_t i, uint32_t n, fibrad_work *work,
+                     fibrad_work *bare) {
+    fibrad_beam_rule rule = {.directions = 13, .points = uniform() < .5 ? 64 : 0};
+    fibrad_cast_rule rays = {.rays = 100, .seed = seen->scenes, .random = uniform() < .5};
+    uint32_t col[2][9];
+    double f[2][9], length[2][9], angle[2][9];
+    fibrad_row a = {.col = col[0], .f = f[0], .capacity = n}, b = {.col = col[1], .f = f[1], .capacity = n};
+    if (fibrad_beam_row(scene, work, i, &rule, &a) == FIBRAD_OK) {
+        ck_assert_int_eq(fibrad_beam_row(scene, bare, i, &rule, &b), FIBRAD_OK);
+        seen->other_bits += !same_bits(&a, &b);
+    }
+    if (fibrad_cast_row(scene, work, i, &rays, &a, &(fibrad_cast_means){length[0], angle[0]}) != FIBRAD_OK) return;
+    ck_assert_int_eq(fibrad_cast_row(scene, bare, i, &rays, &b, &(fibrad_cast_means){length[1], angle[1]}), FIBRAD_OK);
+    seen->other_bits += !same_bits(&a, &b);
+    seen->closure = worse(seen->closure, closure(&a));
+    for (uint32_t k = 0; k < a.length; k++) {
+        seen->nonsense +=
+            !(a.f[k] > 0 && a.f[k] <= 1 && length[0][k] >= 0 && angle[0][k] >= 0 && angle[0][k] <= 1.5708);
+        seen->other_bits += length[0][k] != length[1][k] || angle[0][k] != angle[1][k];
+    }
+}
+
 /* Two to nine spheres: apart, touching, overlapping, in line, of all sizes, in boxes with some periodic axes. */
-static void random_scene(struct seen *seen, void *scene_memory, size_t scene_size, fibrad_work *work) {
+static void random_scene(struct seen *seen, void *scene_memory, size_t scene_size, fibrad_work *work,
+                         fibrad_work *bare) {
     double x[9], y[9], z[9], r[9], col_f[81], average_f[162], side = 1 + 5 * uniform();
     uint32_t n = 2 + (uint32_t)(8 * uniform()), col[81], average_col[162];
     uint64_t start[10] = {0}, average_start[10];
@@ -383,6 +423,7 @@ static void random_scene(struct seen *seen, void *scene_memory, size_t scene_siz
         ck_assert_int_eq(status, FIBRAD_E_GEOMETRY);
         return;
     }
+    try_near(seen, scene, (uint32_t)(n * uniform()), n, work, bare);
     fibrad_beam_rule rule = {.directions = 8 + (uint32_t)(13 * uniform())};
     for (uint32_t i = 0; i < n; i++) {
         fibrad_row row = {.col = col + start[i], .f = col_f + start[i], .capacity = 9};
@@ -413,12 +454,13 @@ START_TEST(random_scenes) {
     size_t size = FIBRAD_SCENE_BYTES(9);
     void *memory = block_of(size);
     fibrad_work *work = work_of(&(fibrad_work_config){.near = 256, .discs = 1024, .entries = 9});
-    for (uint64_t wanted = rounds(10000, 1000000); seen.scenes < wanted;) random_scene(&seen, memory, size, work);
-    free(memory);
-    free(work);
+    fibrad_work *bare = work_of(&(fibrad_work_config){.near = 1, .discs = 1024, .entries = 9});
+    for (uint64_t wanted = rounds(10000, 1000000); seen.scenes < wanted;) random_scene(&seen, memory, size, work, bare);
+    free(memory), free(work), free(bare);
     printf("%llu random scenes (and %llu refused)\n", (unsigned long long)seen.scenes,
            (unsigned long long)seen.refused);
     report("random scenes: factors that are negative, NaN or above 1", seen.nonsense, 0);
+    report("random scenes: rows that differ with the length of near lists", seen.other_bits, 0);
     report("random scenes: sum + escaped - 1", seen.closure, 1e-12);
     report("random scenes: raw row sums above 1 by", seen.sum, 1e-12);
     report("random scenes: averaged row sums above 1 by", seen.averaged, 1e-12);
@@ -427,7 +469,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("stress");
-    TCase *tcase = tcase_create("stress");
+    TCase *tcase = suite_case(suite, "stress");
     tcase_add_test(tcase, pairs_at_every_scale);
     tcase_add_test(tcase, rows_at_every_scale);
     tcase_add_test(tcase, rows_far_from_the_origin);
@@ -439,10 +481,5 @@ int main(void) {
     tcase_add_test(tcase, obstacle_across_a_pair);
     tcase_add_test(tcase, sight_through_many_periods);
     tcase_add_test(tcase, random_scenes);
-    suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

@@ -1,10 +1,10 @@
 /* test_surface.c - the surface method against a plain sum, with each skip on and off. SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include "fibrad.h"
+#include "suite.h"
 #include "surface_plain.h"
 
 #define MOST 16 /* obstacles */
@@ -206,9 +206,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("surface");
-    TCase *cases = tcase_create("surface");
-    tcase_set_timeout(cases, 120);
-    suite_add_tcase(suite, cases);
+    TCase *cases = suite_case(suite, "surface");
     tcase_add_test(cases, published_errors);
     tcase_add_test(cases, equals_plain_sum);
     tcase_add_test(cases, skips_change_nothing);
@@ -216,9 +214,5 @@ int main(void) {
     tcase_add_test(cases, third_sphere_touching_both);
     tcase_add_test(cases, scales_with_the_unit);
     tcase_add_test(cases, refuses_what_is_wrong);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

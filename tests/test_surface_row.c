@@ -1,12 +1,12 @@
 /* test_surface_row.c - rows by the surface method against ray-by-ray sums and against beams.
  * SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "bed_make.h"
 #include "fibrad.h"
+#include "suite.h"
 #include "surface_plain.h"
 
 #define CUTOFF 6.0
@@ -202,6 +202,33 @@ START_TEST(tells_what_it_needs) {
 }
 END_TEST
 
+/* Three periods each way: 7^3 images in the cube. A hundred and more are refused, as is what would need more memory
+ * than can be had. */
+START_TEST(bounds_the_search_for_images) {
+    make(60, true);
+    const double period = bed.period[0];
+    fibrad_row row = {.col = col, .f = f, .capacity = MOST};
+    const struct {
+        double periods;
+        int status;
+    } cases[] = {{3, FIBRAD_E_CAPACITY}, {100, FIBRAD_E_ARGUMENT}, {101, FIBRAD_E_ARGUMENT}, {1e9, FIBRAD_E_ARGUMENT}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+        ck_assert_int_eq(
+            fibrad_surface_row(scene, work, 0, &(fibrad_surface_rule){.cutoff = cases[k].periods * period}, &row),
+            cases[k].status);
+
+    /* one sphere and its images are few enough, at 100 periods still */
+    bed.n = 1;
+    make_scene(FIBRAD_ISA_BEST, true);
+    const fibrad_surface_rule most = {.cutoff = 100 * period}, more = {.cutoff = 100.001 * period};
+    ck_assert_int_eq(fibrad_surface_row(scene, work, 0, &most, &row), FIBRAD_E_CAPACITY);
+    fibrad_work_config needed;
+    fibrad_work_needed(work, &needed);
+    ck_assert_double_eq_tol(needed.near, 4. / 3 * 3.14159265358979 * 1e6, 3e4);
+    ck_assert_int_eq(fibrad_surface_row(scene, work, 0, &more, &row), FIBRAD_E_ARGUMENT);
+}
+END_TEST
+
 START_TEST(refuses_what_is_wrong) {
     make(20, true);
     fibrad_row row = {.col = col, .f = f, .capacity = MOST};
@@ -221,18 +248,13 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("surface row");
-    TCase *cases = tcase_create("surface row");
-    tcase_set_timeout(cases, 120);
-    suite_add_tcase(suite, cases);
+    TCase *cases = suite_case(suite, "surface row");
     tcase_add_test(cases, equals_plain_sums);
     tcase_add_test(cases, skips_and_instruction_sets_change_no_bit);
     tcase_add_test(cases, agrees_with_beams);
     tcase_add_test(cases, reciprocal_without_cutoff);
     tcase_add_test(cases, tells_what_it_needs);
+    tcase_add_test(cases, bounds_the_search_for_images);
     tcase_add_test(cases, refuses_what_is_wrong);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed;
+    return suite_run(suite);
 }

@@ -1,8 +1,8 @@
 /* test_tables.c - the tables of Fibonacci samples against the C library in long double. SPDX-License-Identifier: MIT */
 #include "sample/tables.h"
 #include "golden_angle.h"
+#include "suite.h"
 
-#include <check.h>
 #include <stdlib.h>
 
 static const long double PI = 3.141592653589793238462643383279502884L;
@@ -157,7 +157,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("tables");
-    TCase *tests = tcase_create("tables");
+    TCase *tests = suite_case(suite, "tables");
     tcase_add_test(tests, fibonacci_numbers_are_right);
     tcase_add_test(tests, azimuths_are_multiples_of_the_golden_angle);
     tcase_add_test(tests, long_angles_have_twice_the_precision);
@@ -166,10 +166,5 @@ int main(void) {
     tcase_add_test(tests, surface_nodes_follow_the_mapped_lattice);
     tcase_add_test(tests, surface_weights_integrate_over_the_sphere);
     tcase_add_test(tests, other_surface_rules_are_not_built_in);
-    suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failures = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return suite_run(suite);
 }

@@ -1,5 +1,4 @@
 /* test_write.c - writers, read back; files that are complete or not there. SPDX-License-Identifier: MIT */
-#include <check.h>
 #include <dirent.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,6 +8,7 @@
 #include <unistd.h>
 
 #include "message.h"
+#include "suite.h"
 #include "write.h"
 
 /* Three spheres; row 1 was not computed. */
@@ -21,15 +21,23 @@ static uint32_t col[] = {1, 2, 0, 2};
 static double f[] = {0.1, 1.0 / 3, 5e-324, 0.75586818421612400e-1};
 static bool wanted[] = {true, false, true};
 static double row_sum[] = {0.1 + 1.0 / 3, 0, 0.0755868184216124}, escaped[] = {0.5, 0, 0.25};
-static const struct result result = {
-    .rows = {3, 4, start, col, f}, .wanted = wanted, .row_sum = row_sum, .escaped = escaped};
+static double wall[3][FIBRAD_WALLS] = {{[4] = 0.25, [6] = 0.0625}, {[4] = 0.125}, {0}};
+static const struct result result = {.rows = {3, 4, start, col, f},
+                                     .wanted = wanted,
+                                     .row_sum = row_sum,
+                                     .escaped = escaped,
+                                     .wall = wall,
+                                     .facts.wall_area = {[4] = INFINITY, [6] = 100}};
+static const struct wall_order walls = {2, {6, 4}};
 
 static char text[20000]; /* what a writer wrote */
+
+static const struct wall_order *order; /* NULL: no walls */
 
 static void write_text(write_function *write, bool ids) {
     FILE *file = tmpfile();
     ck_assert_ptr_nonnull(file);
-    ck_assert_int_eq(write(file, &(struct contents){&bed, &result, ids}), 0);
+    ck_assert_int_eq(write(file, &(struct contents){&bed, &result, ids, order}), 0);
     rewind(file);
     text[fread(text, 1, sizeof text - 1, file)] = 0;
     fclose(file);
@@ -51,6 +59,33 @@ START_TEST(csv) {
             }
         ck_assert_int_eq(*line, 0);
     }
+}
+END_TEST
+
+/* After each sphere's row the surroundings, -1, and the walls from -2 on; then the rows of walls of finite area. */
+START_TEST(csv_of_walls) {
+    order = &walls;
+    write_text(write_csv, true);
+    order = NULL;
+    double back = 4 * acos(-1) * r[0] * r[0] * 0.0625 / 100, found[4] = {0};
+    const char *const lines[4] = {"%lld,-1,", "%lld,-2,", "%lld,-3,", "-2,%lld,"};
+    for (int k = 0; k < 4; ++k) {
+        char begin[40] = "\n";
+        snprintf(begin + 1, sizeof begin - 1, lines[k], (long long)id[0]);
+        const char *at = strstr(text, begin);
+        ck_assert_msg(at != NULL, "no line %s", begin + 1);
+        found[k] = strtod(at + strlen(begin), NULL);
+    }
+    ck_assert(found[0] == 0.5 && found[1] == 0.0625 && found[2] == 0.25);
+    ck_assert_double_eq_tol(found[3], back, 1e-15 * back);
+    ck_assert_ptr_null(strstr(text, "\n-3,"));
+    write_text(write_vtp, false);
+    ck_assert_ptr_null(strstr(text, "wall_"));
+    order = &walls;
+    write_text(write_vtp, false);
+    order = NULL;
+    ck_assert_ptr_nonnull(strstr(text, "Name=\"wall_cylinder\""));
+    ck_assert_ptr_nonnull(strstr(text, "Name=\"wall_zmin\""));
 }
 END_TEST
 
@@ -239,8 +274,10 @@ START_TEST(unwritable) {
 END_TEST
 
 int main(void) {
-    TCase *formats = tcase_create("formats"), *files = tcase_create("files");
+    Suite *suite = suite_create("write");
+    TCase *formats = suite_case(suite, "formats"), *files = suite_case(suite, "files");
     tcase_add_test(formats, csv);
+    tcase_add_test(formats, csv_of_walls);
     tcase_add_test(formats, matrix_market);
     tcase_add_test(formats, paraview);
     tcase_add_test(formats, numpy);
@@ -248,12 +285,5 @@ int main(void) {
     tcase_add_checked_fixture(files, make_folder, remove_folder);
     tcase_add_test(files, complete_or_not_at_all);
     tcase_add_test(files, unwritable);
-    Suite *suite = suite_create("write");
-    suite_add_tcase(suite, formats);
-    suite_add_tcase(suite, files);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

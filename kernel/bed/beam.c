@@ -8,7 +8,7 @@
 /* In steps of an eighth, each of which takes a sixth off the error, to a little less than is wanted; a fifth more in
  * any case, for rows whose error falls more slowly. */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double wanted) {
-    double n = directions;
+    double n = directions < FIBRAD_DIRECTIONS_MIN ? FIBRAD_DIRECTIONS_MIN : directions;
     for (; n < FIBRAD_DIRECTIONS_MAX && (error > 0.9 * wanted || n < 1.2 * directions); n *= 1.125) error *= 0.838;
     return n < FIBRAD_DIRECTIONS_MAX ? (uint32_t)n : FIBRAD_DIRECTIONS_MAX;
 }

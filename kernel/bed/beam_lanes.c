@@ -10,6 +10,7 @@
 #include "bed/beam_lanes.h"
 #include "bed/near_lanes.h"
 #include "bed/points_lanes.h"
+#include "bed/walls_lanes.h"
 #include "sample/direction.h"
 
 #define PI 3.14159265358979323846
@@ -166,8 +167,12 @@ int LANED(fibrad_beam_row)(const fibrad_scene *scene, fibrad_work *work, uint32_
         double frame[9] = {-d.sin, d.cos, 0, -d.z * d.cos, -d.z * d.sin, d.ring, d.ring * d.cos, d.ring * d.sin, d.z};
         if (points > 0) turn(frame, k);
         work->entries.end = k == 0 || k == directions - 1;
-        open[k % 2] += look(work, frame, &window, k);
+        double rest = look(work, frame, &window, k);
         if (lacking(work)) return row->length = 0, FIBRAD_E_CAPACITY;
+        if (scene->container.walls)
+            LANED(fibrad_walls_share)(work, frame, &window, k, directions, rest);
+        else
+            open[k % 2] += rest;
     }
     if (work->entries.missed > 0) {
         uint64_t enough = (uint64_t)work->entries.capacity + work->entries.missed;
@@ -177,7 +182,8 @@ int LANED(fibrad_beam_row)(const fibrad_scene *scene, fibrad_work *work, uint32_
     double scale = points > 0 ? 1.0 / ((double)directions * points) : 1 / (directions * PI);
     int status = fibrad_entries_row(work, scale, row);
     if (status != FIBRAD_OK) return status;
-    row->escaped = (open[0] + open[1]) * scale;
+    row->escaped = (open[0] + open[1] + work->wall[FIBRAD_WALLS]) * scale;
+    for (int wall = 0; wall < FIBRAD_WALLS; wall++) row->wall[wall] = fibrad_max(0, work->wall[wall]) * scale;
     row->error *= fibrad_entries_gain(&work->entries);
     row->directions = directions;
     row->fallbacks = work->areas.fallbacks;

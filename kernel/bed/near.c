@@ -2,14 +2,11 @@
  * along one direction for what lies beyond. SPDX-License-Identifier: MIT */
 #include "bed/work.h"
 
-/* A window sees no farther than this many periods along any periodic axis. */
-#define PERIODS 100.0
-
 /* How far along an axis, forwards or backwards, there may be spheres that come before a window. */
 static double room(const fibrad_work *work, int axis, double sense) {
     const fibrad_scene *scene = work->scene;
     double far = sense > 0 ? scene->high[axis] - work->centre[axis] : work->centre[axis] - scene->low[axis];
-    if (scene->period[axis] > 0) far = PERIODS * scene->period[axis];
+    if (scene->period[axis] > 0) far = FIBRAD_PERIODS * scene->period[axis];
     return (far + (work->unit + scene->facts.radius_max)) * work->inverse;
 }
 
@@ -17,6 +14,7 @@ void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t pl
     for (uint32_t k = 0; k < work->entries.length; k++) work->entries.at[work->entries.slot[k]] = FIBRAD_NONE;
     work->entries.length = work->entries.missed = 0;
     work->entries.end = false;
+    fibrad_zero(work->wall, sizeof work->wall);
     work->needed = work->config;
     work->scene = scene;
     work->place = place;
@@ -48,9 +46,20 @@ double fibrad_near_horizon(const fibrad_work *work, const double w[3]) {
     return horizon;
 }
 
+/* How far it is from `edge`, a place along an axis, to where the grid begins, or, beyond the grid, for ever: only stray
+ * spheres are there. 0 within the grid and on a periodic axis. */
+static double outside(const fibrad_work *work, int along, double sense, double edge) {
+    const fibrad_scene *scene = work->scene;
+    if (scene->period[along] > 0) return 0;
+    const double low = (scene->box_low[along] - work->centre[along]) * sense * work->inverse;
+    const double high = (scene->box_high[along] - work->centre[along]) * sense * work->inverse;
+    if (edge >= fibrad_max(low, high)) return __builtin_inf();
+    return fibrad_max(0, fibrad_min(low, high) - edge);
+}
+
 /* Spheres of one level, emerging in (from, to], lie in a stretch of the tube of radius 1 + r about the beam, or of
  * radius r about a ray of it. It is cut into layers of cells across the axis the beam is most nearly along, so that the
- * boxes walked hug the tube. */
+ * boxes walked hug the tube. Outside the grid layers grow, up to where the tube passes one period of another axis. */
 static void march_level(fibrad_work *work, const fibrad_level *level, const double frame[9], const fibrad_tube *tube,
                         double from, double to) {
     const fibrad_scene *scene = work->scene;
@@ -64,6 +73,11 @@ static void march_level(fibrad_work *work, const fibrad_level *level, const doub
     double first = fibrad_max(from, 0) * fibrad_abs(w[along]) - side, last = deepest * fibrad_abs(w[along]) + side;
     double sense = w[along] < 0 ? -1 : 1;
     first += sense * middle[along], last += sense * middle[along];
+    double stride = last - first;
+    for (int axis = 0; axis < 3; axis++)
+        if (axis != along && scene->period[axis] > 0 && w[axis] != 0)
+            stride = fibrad_min(stride, scene->period[axis] * work->inverse * fibrad_abs(w[along] / w[axis]));
+    stride = fibrad_max(stride, level->cell[along] * work->inverse);
     if (scene->period[along] == 0) { /* nothing beyond the box */
         double start = sense > 0 ? scene->low[along] - work->centre[along] : work->centre[along] - scene->high[along];
         double stop = sense > 0 ? scene->high[along] - work->centre[along] : work->centre[along] - scene->low[along];
@@ -71,8 +85,11 @@ static void march_level(fibrad_work *work, const fibrad_level *level, const doub
     }
     /* layers [edge, edge + thick) along that axis, in radii from the centre; they need not match the cells, but then a
      * sphere could be met twice: its own place along the axis decides which layer it belongs to */
-    double thick = level->cell[along] * work->inverse;
+    const double cell = level->cell[along] * work->inverse;
+    double thick = cell;
     for (double edge = first; edge <= last; edge += thick) {
+        double clear = outside(work, along, sense, edge);
+        thick = clear > cell ? fibrad_min(fibrad_min(2 * thick, stride), clear) : cell;
         double height = edge - sense * middle[along];
         double near_depth = (height - side) / fibrad_abs(w[along]);
         double far_depth = (height + thick + side) / fibrad_abs(w[along]);

@@ -122,6 +122,35 @@ int fibrad_rows_limit(fibrad_rows *rows, double *scratch) {
     return FIBRAD_OK;
 }
 
+/* Shares `rest` out as `part` has it, walls and what escapes. */
+static void share_out(double rest, const double part[FIBRAD_WALLS + 1], double wall[FIBRAD_WALLS], double *escaped) {
+    double sum = 0;
+    for (int k = 0; k <= FIBRAD_WALLS; k++) sum += part[k];
+    for (int k = 0; k < FIBRAD_WALLS; k++) wall[k] = sum > 0 ? rest * (part[k] / sum) : 0;
+    *escaped = sum > 0 ? rest * (part[FIBRAD_WALLS] / sum) : rest;
+}
+
+int fibrad_rows_close(const fibrad_rows *rows, const double *r, double (*wall)[FIBRAD_WALLS], double *escaped) {
+    if (check(rows) != FIBRAD_OK || check_radii(r, rows->n) != FIBRAD_OK || wall == NULL || escaped == NULL)
+        return FIBRAD_E_ARGUMENT;
+    double all[FIBRAD_WALLS + 1] = {0}, largest = 0;
+    for (uint32_t i = 0; i < rows->n; i++) largest = fibrad_max(largest, r[i]);
+    for (uint32_t i = 0; i < rows->n; i++) {
+        double area = r[i] / largest * (r[i] / largest);
+        for (int k = 0; k < FIBRAD_WALLS; k++) all[k] += area * wall[i][k];
+        all[FIBRAD_WALLS] += area * escaped[i];
+    }
+    for (uint32_t i = 0; i < rows->n; i++) {
+        double own[FIBRAD_WALLS + 1], sum = 0;
+        for (int k = 0; k <= FIBRAD_WALLS; k++) {
+            own[k] = k < FIBRAD_WALLS ? wall[i][k] : escaped[i];
+            sum += own[k];
+        }
+        share_out(fibrad_max(0, 1 - sum_of(rows, i)), sum > 0 ? own : all, wall[i], &escaped[i]);
+    }
+    return FIBRAD_OK;
+}
+
 int fibrad_rows_reciprocity(const fibrad_rows *rows, const double *r, double *largest) {
     if (check(rows) != FIBRAD_OK || check_radii(r, rows->n) != FIBRAD_OK || largest == NULL) return FIBRAD_E_ARGUMENT;
     double worst = 0;

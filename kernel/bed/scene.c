@@ -3,6 +3,7 @@
 #include "bed/scene.h"
 #include "base/arena.h"
 #include "base/cpu.h"
+#include "bed/walls.h"
 
 /* Cells on average hold this many spheres of their level. */
 #define SPHERES_PER_CELL 2.0
@@ -27,6 +28,7 @@ static bool valid(const fibrad_scene_config *config) {
     if (config == NULL || config->spheres == 0 || config->spheres > FIBRAD_SPHERES_MAX) return false;
     for (int axis = 0; axis < 3; axis++)
         if (!(config->period[axis] >= 0 && fibrad_finite(config->period[axis]))) return false;
+    if (!fibrad_walls_valid(config)) return false;
     return fibrad_isa_choose(config->isa) >= 0;
 }
 
@@ -83,10 +85,15 @@ static int measure(fibrad_scene *scene, const fibrad_spheres *s, fibrad_fault *f
         scene->facts.radius_min = fibrad_min(scene->facts.radius_min, s->r[i]);
         scene->facts.radius_max = fibrad_max(scene->facts.radius_max, s->r[i]);
     }
-    for (uint32_t i = 0; i < s->n; i++)
+    for (uint32_t i = 0; i < s->n; i++) {
         for (int axis = 0; axis < 3; axis++)
             if (fibrad_abs(coordinate[axis][i]) > COORDINATE_MAX * scene->facts.radius_min)
                 return fail(FIBRAD_E_ARGUMENT, fault, i, i);
+        if (!fibrad_walls_hold(&scene->container, (double[3]){s->x[i], s->y[i], s->z[i]}))
+            return fail(FIBRAD_E_ARGUMENT, fault, i, i);
+    }
+    if (fibrad_walls_reach(&scene->container) > COORDINATE_MAX * scene->facts.radius_min)
+        return fail(FIBRAD_E_ARGUMENT, fault, s->n, s->n);
     for (int axis = 0; axis < 3; axis++) {
         scene->box_low[axis] = scene->low[axis], scene->box_high[axis] = scene->high[axis];
         if (scene->period[axis] > 0)
@@ -267,6 +274,7 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
     scene->facts.spheres = spheres->n;
     scene->facts.isa = fibrad_isa_choose(config->isa);
     fibrad_copy(scene->period, config->period, sizeof scene->period);
+    fibrad_walls_build(scene, &config->walls);
     status = measure(scene, spheres, fault);
     if (status != FIBRAD_OK) return status;
     for (int axis = 0; axis < 3; axis++)

@@ -6,6 +6,8 @@
 #include "base/port.h"
 #include "fibrad.h"
 
+#define FIBRAD_NONE UINT32_MAX
+
 /* Spheres whose radii differ by less than a factor two share a level, a grid of its own with cells to their measure:
  * a small sphere among large ones does not search cells as wide as the large ones need. */
 #define FIBRAD_LEVELS 32
@@ -18,11 +20,19 @@ typedef struct fibrad_level {
     uint32_t first_sphere; /* where its spheres begin */
 } fibrad_level;
 
+/* The convex region within the walls. */
+typedef struct fibrad_container {
+    bool walls;             /* whether there are any */
+    double low[3], high[3]; /* of the planes [L]; infinite where there is none */
+    double axis[2], radius; /* of the cylinder [L]; radius infinite: none */
+} fibrad_container;
+
 struct fibrad_scene {
     fibrad_scene_facts facts;
     double period[3], low[3], high[3]; /* box of the centres; on a periodic axis high = low + period */
     double box_low[3], box_high[3];    /* box of the grid: the same without stray spheres */
-    double spacing;                    /* cube root of the volume per sphere [L] */
+    fibrad_container container;
+    double spacing; /* cube root of the volume per sphere [L] */
     uint32_t levels;
     fibrad_level level[FIBRAD_LEVELS]; /* by ascending radius; empty ones left out */
     double *x, *y, *z, *r;             /* [n] in cell order */

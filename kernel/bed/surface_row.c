@@ -2,13 +2,21 @@
 #include "pair/surface.h"
 #include "bed/work.h"
 
+/* Whether the cutoff reaches farther than FIBRAD_PERIODS periods along some axis. */
+static bool too_far(const fibrad_scene *scene, double cutoff) {
+    for (int axis = 0; axis < 3; axis++)
+        if (scene->period[axis] > 0 && !(cutoff <= FIBRAD_PERIODS * scene->period[axis])) return true;
+    return false;
+}
+
 /* Lists all spheres within the cutoff of sphere i (images included, itself not), at their places in the scene [L], in
- * work->near, and counts them beyond its capacity. */
+ * work->near, and counts them beyond its capacity. Gives up, with a count above FIBRAD_WORK_MAX, if there are more than
+ * that in the cube about the cutoff. */
 static uint64_t list_near(fibrad_work *work) {
     const fibrad_scene *scene = work->scene;
     fibrad_near *near = &work->near;
     const double reach = work->farthest * work->unit * (1 + 1e-9);
-    uint64_t count = 0;
+    uint64_t count = 0, visited = 0;
     for (uint32_t l = 0; l < scene->levels; l++) {
         double low[3], high[3];
         for (int axis = 0; axis < 3; axis++)
@@ -16,6 +24,8 @@ static uint64_t list_near(fibrad_work *work) {
         fibrad_walk walk;
         fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
         while (fibrad_walk_next(&walk)) {
+            visited += walk.end - walk.begin;
+            if (visited > FIBRAD_WORK_MAX) return visited;
             bool image = walk.shift[0] != 0 || walk.shift[1] != 0 || walk.shift[2] != 0;
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 double x = scene->x[j] + walk.shift[0], dx = (x - work->centre[0]) * work->inverse;
@@ -67,15 +77,16 @@ int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
     const fibrad_surface_rule rule = given == NULL ? (fibrad_surface_rule){0} : *given;
     if (!(rule.cutoff >= 0 && fibrad_finite(rule.cutoff))) return FIBRAD_E_ARGUMENT;
     const bool periodic = scene->period[0] > 0 || scene->period[1] > 0 || scene->period[2] > 0;
-    if (periodic && rule.cutoff == 0) return FIBRAD_E_ARGUMENT;
+    if ((periodic && rule.cutoff == 0) || too_far(scene, rule.cutoff)) return FIBRAD_E_ARGUMENT;
     fibrad_surface_task task = {.flags = rule.flags, .obstacles = work->blockers[0], .of_node = work->blockers[1]};
     int status = fibrad_surface_nodes_of(&rule, &task.nodes);
     if (status != FIBRAD_OK) return status;
 
     fibrad_work_begin(work, scene, scene->place[i], rule.cutoff);
     const uint64_t count = list_near(work);
+    if (count > FIBRAD_WORK_MAX) return FIBRAD_E_ARGUMENT;
     if (count > work->near.capacity) {
-        work->needed.near = (uint32_t)fibrad_min((double)count, FIBRAD_WORK_MAX);
+        work->needed.near = (uint32_t)count;
         return row->length = 0, FIBRAD_E_CAPACITY;
     }
     const fibrad_near *near = &work->near;
@@ -111,6 +122,7 @@ int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
     status = fibrad_entries_row(work, 1, row);
     if (status != FIBRAD_OK) return status;
     row->escaped = 1 - sum;
+    for (int wall = 0; wall < FIBRAD_WALLS; wall++) row->wall[wall] = 0;
     row->error = fibrad_sqrt(square);
     return FIBRAD_OK;
 }

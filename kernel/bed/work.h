@@ -10,7 +10,6 @@
 #include "bed/scene.h"
 #include "pair/surface_lanes.h"
 
-#define FIBRAD_NONE   UINT32_MAX
 #define FIBRAD_SHELLS 8
 /* The first shell looks FIRST mean spacings far, the spacing being the cube root of the volume per sphere, each next
  * GROWTH times as far. In a packed bed it has 130 spheres, and three shells fit into the default memory. Of the pairs
@@ -43,6 +42,9 @@ typedef struct fibrad_disc {
 
 #define FIBRAD_WORK_MAX (1u << 28)
 
+/* A row sees no farther than this many periods along any periodic axis. */
+#define FIBRAD_PERIODS 100.0
+
 /* What has been seen of each sphere so far, in the order of first sight; the sum over each fourth direction or ray
  * apart, for the estimate of the error. */
 typedef struct fibrad_entries {
@@ -69,13 +71,14 @@ struct fibrad_work {
     fibrad_obstacles blockers[2]; /* room for the two lists of the surface method, [near.capacity] */
     /* the row in hand */
     const fibrad_scene *scene;
-    uint32_t place;       /* of sphere i in the scene */
-    double unit, inverse; /* its radius [L], and 1/radius */
-    double centre[3];     /* [L] */
-    double reach;         /* the cutoff; infinity if there is none */
-    double step;          /* how far the first shell looks */
-    double farthest;      /* no sphere is farther from i; infinity with periodic axes */
-    double clear;         /* no window has its horizon nearer than this */
+    uint32_t place;                /* of sphere i in the scene */
+    double unit, inverse;          /* its radius [L], and 1/radius */
+    double centre[3];              /* [L] */
+    double reach;                  /* the cutoff; infinity if there is none */
+    double step;                   /* how far the first shell looks */
+    double farthest;               /* no sphere is farther from i; infinity with periodic axes */
+    double clear;                  /* no window has its horizon nearer than this */
+    double wall[FIBRAD_WALLS + 1]; /* what meets each wall, and what meets none: areas, points or rays */
 };
 
 /* Prepares for row `place` of the scene: no near spheres, no entries. */

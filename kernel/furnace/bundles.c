@@ -17,7 +17,8 @@
 #include "base/elementary.h"
 #include "base/random.h"
 
-#define FAR 1e300 /* m: a plane that is never met */
+#define PLANNED_MAX 0x1p33
+#define FAR         1e300 /* m: a plane that is never met */
 
 int fibrad_furnace_emit(fibrad_furnace *furnace, fibrad_furnace_physics physics, uint64_t bundles, int restart,
                         uint64_t *planned) {
@@ -44,7 +45,12 @@ int fibrad_furnace_emit(fibrad_furnace *furnace, fibrad_furnace_physics physics,
         for (size_t p = 0; p < f->patches[w / 2]; p++) f->power[f->wall_source[w] + p] = power;
         total += fibrad_abs(power) * (double)f->patches[w / 2];
     }
-    if (anew) f->bundle_power = total > 0 ? total / (double)bundles : 1;
+    if (anew) f->bundle_power = total > 0 ? fibrad_max(total / (double)bundles, DBL_MIN) : 1;
+    f->planned = 0;
+    if (!fibrad_finite(total) || total > f->bundle_power * PLANNED_MAX) {
+        f->bundle_power = 0;
+        return FIBRAD_E_ARGUMENT;
+    }
 
     uint64_t sum = 0;
     for (size_t s = 0; s < f->sources; s++) {
@@ -297,7 +303,8 @@ static size_t source_of(const fibrad_furnace *f, uint64_t k) {
 
 int fibrad_furnace_trace(const fibrad_furnace *furnace, fibrad_furnace_tally *tally, uint64_t first, uint64_t count) {
     const fibrad_furnace *f = furnace;
-    if (f == NULL || tally == NULL || first > f->planned || count > f->planned - first) return FIBRAD_E_ARGUMENT;
+    if (f == NULL || tally == NULL || !fibrad_tally_fits(f, tally)) return FIBRAD_E_ARGUMENT;
+    if (first > f->planned || count > f->planned - first) return FIBRAD_E_ARGUMENT;
     size_t s = count > 0 ? source_of(f, first) : 0;
     for (uint64_t k = first; k < first + count; k++) {
         while (f->first[s + 1] <= k) s++;

@@ -48,12 +48,17 @@ typedef struct fibrad_moments {
 } fibrad_moments;
 
 struct fibrad_furnace_tally {
+    uint32_t cells[3];            /* of the furnace it is for */
     fibrad_moments *moment[3][2]; /* faces of axis, hemisphere */
     int64_t *path;                /* cell: weight times length in diagonals of a cell */
     int64_t *absorbed;            /* patch */
     int64_t *counts;              /* all of them in one piece, for sums */
     size_t length;                /* of counts */
 };
+
+static inline bool fibrad_tally_fits(const fibrad_furnace *f, const fibrad_furnace_tally *t) {
+    return t->cells[0] == f->config.cells[0] && t->cells[1] == f->config.cells[1] && t->cells[2] == f->config.cells[2];
+}
 
 static inline double fibrad_cell_volume(const fibrad_furnace *f) { return f->step[0] * f->step[1] * f->step[2]; }
 

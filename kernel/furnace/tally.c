@@ -7,6 +7,7 @@
 static fibrad_furnace_tally *lay_out(fibrad_arena *arena, const fibrad_furnace *f) {
     fibrad_furnace_tally *tally = fibrad_arena_take(arena, 1, sizeof *tally);
     fibrad_furnace_tally count = {0}, *t = tally != NULL ? tally : &count;
+    fibrad_copy(t->cells, f->config.cells, sizeof t->cells);
     size_t head = arena->used;
     for (int a = 0; a < 3; a++) {
         for (int g = 0; g < 2; g++) t->moment[a][g] = fibrad_arena_take(arena, f->faces[a], sizeof *t->moment[a][g]);
@@ -36,6 +37,7 @@ int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t
 }
 
 void fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from) {
+    if (to == NULL || from == NULL || to->length != from->length) return;
     for (size_t k = 0; k < to->length; k++) to->counts[k] += from->counts[k];
 }
 
@@ -97,7 +99,7 @@ static void set_transverse(fibrad_furnace *f, int a, int g, fibrad_furnace_scatt
 int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally *tally,
                             fibrad_furnace_estimator estimator, int transverse, fibrad_furnace_scatter scatter) {
     fibrad_furnace *f = furnace;
-    if (f == NULL || tally == NULL) return FIBRAD_E_ARGUMENT;
+    if (f == NULL || tally == NULL || !fibrad_tally_fits(f, tally)) return FIBRAD_E_ARGUMENT;
     if (estimator != FIBRAD_THETA_DEFINITION && (estimator != FIBRAD_THETA_PAPER || transverse))
         return FIBRAD_E_ARGUMENT;
     if (scatter != FIBRAD_SCATTER_SIX_FLUX && scatter != FIBRAD_SCATTER_EXACT) return FIBRAD_E_ARGUMENT;
@@ -118,7 +120,8 @@ int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally 
 
 int fibrad_furnace_equilibrium(fibrad_furnace *furnace, const fibrad_furnace_tally *tally) {
     fibrad_furnace *f = furnace;
-    if (f == NULL || tally == NULL || f->physics != FIBRAD_FURNACE_EQUILIBRIUM) return FIBRAD_E_ARGUMENT;
+    if (f == NULL || tally == NULL || !fibrad_tally_fits(f, tally) || f->physics != FIBRAD_FURNACE_EQUILIBRIUM)
+        return FIBRAD_E_ARGUMENT;
     const uint32_t *n = f->config.cells;
     double unit = f->bundle_power / FIBRAD_TALLY_UNIT;
     double own = f->config.source / (4 * f->config.absorption);

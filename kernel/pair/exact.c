@@ -84,12 +84,16 @@ static double exchange_overlapping(double R, double r, double gap) {
     double lens = R / r * (R / r * segment(fibrad_sqrt(g / a * (b / c)))) + segment(fibrad_sqrt(g / b * (a / c)));
     double even = R / d * (R / d) * segment(fibrad_sqrt(a / g * (b / c)));
     double chord = d / r * w2;
-    double odd = pi / 16 * chord * chord * w * mean_overlapping(g / a * (c / b), w2);
+    double e = g / a * fibrad_min(c / b, 1e300); /* where c / b is more, the chord is nothing */
+    double odd = pi / 16 * chord * chord * w * mean_overlapping(e, w2);
     return (lens + (even - odd)) / (2 * pi);
 }
 
+/* Lengths must leave room for sums and ratios. */
+static bool valid_radius(double r) { return r >= 1e-150 && r <= 1e150; }
+
 int fibrad_pair_exact(double r1, double r2, double gap, double *f12) {
-    bool valid = f12 && r1 > 0 && r2 > 0 && fibrad_finite(r1) && fibrad_finite(r2) && fibrad_finite(gap);
+    bool valid = f12 && valid_radius(r1) && valid_radius(r2) && fibrad_finite(gap);
     if (!valid || gap <= -2 * fibrad_min(r1, r2)) return FIBRAD_E_ARGUMENT;
     double R = fibrad_max(r1, r2), r = fibrad_min(r1, r2);
     if (gap < 0) {

@@ -105,18 +105,21 @@ static int hash_directions(void) {
     return 0;
 }
 
+static int set_up(const struct scene *s, int isa, fibrad_scene **scene, fibrad_work **work) {
+    double period = s->periodic ? s->spacing * s->side : 0;
+    fibrad_scene_config config = {.spheres = s->n, .period = {period, period, period}, .isa = isa};
+    return fibrad_scene_init(scene, scene_memory, sizeof scene_memory, &config, &(fibrad_spheres){x, y, z, r, s->n},
+                             NULL) != FIBRAD_OK ||
+           fibrad_work_init(work, work_memory, sizeof work_memory,
+                            &(fibrad_work_config){.near = 2048, .discs = DISCS, .entries = SPHERES}) != FIBRAD_OK;
+}
+
 /* All rows of a scene, and what is made of them. */
 static int hash_beam(const struct scene *s, int isa, uint32_t points) {
     static const char *const names[] = {"areas", "points64", "points128", "", "points256"};
-    double period = s->periodic ? s->spacing * s->side : 0;
-    fibrad_scene_config config = {.spheres = s->n, .period = {period, period, period}, .isa = isa};
     fibrad_scene *scene;
     fibrad_work *work;
-    if (fibrad_scene_init(&scene, scene_memory, sizeof scene_memory, &config, &(fibrad_spheres){x, y, z, r, s->n},
-                          NULL) != FIBRAD_OK ||
-        fibrad_work_init(&work, work_memory, sizeof work_memory,
-                         &(fibrad_work_config){.near = 2048, .discs = DISCS, .entries = SPHERES}) != FIBRAD_OK)
-        return 1;
+    if (set_up(s, isa, &scene, &work)) return 1;
     fibrad_rows raw = {.n = s->n, .capacity = ENTRIES, .start = raw_start, .col = raw_col, .f = raw_f};
     fibrad_beam_rule rule = {.directions = 55, .points = points, .cutoff = s->cutoff};
     hash_begin();
@@ -144,15 +147,9 @@ static int hash_beam(const struct scene *s, int isa, uint32_t points) {
 
 /* Raw rows by the surface method, of every seventh sphere. */
 static int hash_surface(const struct scene *s, int isa) {
-    double period = s->periodic ? s->spacing * s->side : 0;
-    fibrad_scene_config config = {.spheres = s->n, .period = {period, period, period}, .isa = isa};
     fibrad_scene *scene;
     fibrad_work *work;
-    if (fibrad_scene_init(&scene, scene_memory, sizeof scene_memory, &config, &(fibrad_spheres){x, y, z, r, s->n},
-                          NULL) != FIBRAD_OK ||
-        fibrad_work_init(&work, work_memory, sizeof work_memory,
-                         &(fibrad_work_config){.near = 2048, .discs = DISCS, .entries = SPHERES}) != FIBRAD_OK)
-        return 1;
+    if (set_up(s, isa, &scene, &work)) return 1;
     fibrad_surface_rule rule = {.nodes = 13, .cutoff = 5};
     hash_begin();
     for (uint32_t i = 0; i < s->n; i += 7) {
@@ -162,6 +159,25 @@ static int hash_surface(const struct scene *s, int isa) {
         hash_number(row.escaped), hash_number(row.error);
     }
     tell(s->name, "surface");
+    return 0;
+}
+
+/* Raw rows by rays, of every seventh sphere, and their mean lengths and angles. */
+static int hash_cast(const struct scene *s, int isa, int random) {
+    static double length[SPHERES], angle[SPHERES];
+    fibrad_scene *scene;
+    fibrad_work *work;
+    if (set_up(s, isa, &scene, &work)) return 1;
+    fibrad_cast_rule rule = {.rays = 1000, .random = random, .seed = 5, .cutoff = s->cutoff};
+    hash_begin();
+    for (uint32_t i = 0; i < s->n; i += 7) {
+        fibrad_row row = {.col = col, .f = f, .capacity = SPHERES};
+        if (fibrad_cast_row(scene, work, i, &rule, &row, &(fibrad_cast_means){length, angle}) != FIBRAD_OK) return 1;
+        for (uint32_t k = 0; k < row.length; k++)
+            hash_word(col[k]), hash_number(f[k]), hash_number(length[k]), hash_number(angle[k]);
+        hash_number(row.escaped), hash_number(row.error);
+    }
+    tell(s->name, random ? "mc" : "cast");
     return 0;
 }
 
@@ -207,6 +223,8 @@ int main(int argc, char **argv) {
         for (uint32_t points = 0; points <= 256; points = points == 0 ? 64 : 2 * points)
             failed |= hash_beam(&scenes[k], isa, points);
         failed |= hash_surface(&scenes[k], isa);
+        failed |= hash_cast(&scenes[k], isa, 0);
+        failed |= hash_cast(&scenes[k], isa, 1);
     }
     failed |= hash_furnace();
     return failed;

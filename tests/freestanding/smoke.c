@@ -1,4 +1,4 @@
-/* smoke.c - a pair and a row of 100 spheres from static memory, without a C library. SPDX-License-Identifier: MIT
+/* smoke.c - a pair and two rows of 100 spheres from static memory, without a C library. SPDX-License-Identifier: MIT
  *
  * The port gives smoke_write; the output is the same on every target. */
 #include "smoke.h"
@@ -7,7 +7,7 @@
 
 #define SPHERES 100
 #define NEAR    16
-#define DISCS   9
+#define DISCS   10
 #define SEEN    SPHERES
 
 static _Alignas(64) unsigned char scene_memory[FIBRAD_SCENE_BYTES(SPHERES)];
@@ -37,6 +37,14 @@ static double random_in(double low, double high) {
     return low + (high - low) * ((double)(state >> 11) / 9007199254740992.0);
 }
 
+static void write_row(const fibrad_row *row) {
+    for (uint32_t k = 0; k < row->length; k++) {
+        write_hex("col ", row->col[k]);
+        write_hex("f ", bits(row->f[k]));
+    }
+    write_hex("escaped ", bits(row->escaped));
+}
+
 int smoke(void) {
     double f12;
     if (fibrad_pair_exact(1, .5, .25, &f12) != FIBRAD_OK) return 1;
@@ -55,10 +63,8 @@ int smoke(void) {
     if (fibrad_work_init(&work, work_memory, sizeof work_memory, &small) != FIBRAD_OK) return 3;
     fibrad_row row = {.col = col, .f = f, .capacity = SEEN};
     if (fibrad_beam_row(scene, work, 62, &(fibrad_beam_rule){.directions = 100}, &row) != FIBRAD_OK) return 4;
-    for (uint32_t k = 0; k < row.length; k++) {
-        write_hex("col ", row.col[k]);
-        write_hex("f ", bits(row.f[k]));
-    }
-    write_hex("escaped ", bits(row.escaped));
+    write_row(&row);
+    if (fibrad_cast_row(scene, work, 62, &(fibrad_cast_rule){.rays = 500}, &row, NULL) != FIBRAD_OK) return 5;
+    write_row(&row);
     return 0;
 }

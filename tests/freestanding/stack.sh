@@ -1,8 +1,8 @@
 #!/bin/sh
 # stack.sh OBJDUMP FOLDER - bytes of stack that the deepest chain of calls takes. SPDX-License-Identifier: MIT
 #
-# Frames come from the compiler (-fstack-usage), calls from the disassembly; the one call through a pointer,
-# fibrad_beam_row to a version of itself, is added by name. Fails on recursion and on frames without a bound.
+# Frames come from the compiler (-fstack-usage), calls from the disassembly; the only calls through pointers, of
+# fibrad_surface_factor, are added by name. Fails on recursion, on frames without a bound and on other such calls.
 set -u
 find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $6}' >"$2/frames"
 {
@@ -11,14 +11,16 @@ find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $
         /^[0-9a-f]+ <[^.].*>:$/ {gsub(/[<>:]/, "", $2); from = $2; sub(/\.(part|constprop|isra)\..*/, "", from)}
         /R_ARM_(THM_)?(CALL|JUMP24)|R_RISCV_(CALL|JAL)/ {
             to = $NF; sub(/[-+].*/, "", to); sub(/^\.text\./, "", to); sub(/\.(part|constprop|isra)\..*/, "", to)
-            if (to != from && to !~ /^\./) print "call", from, to}'
-    echo "call fibrad_beam_row fibrad_beam_row_scalar"
+            if (to != from && to !~ /^\./) print "call", from, to}
+        /\tblx\tr/ && from != "fibrad_surface_factor" {print "pointer", from}'
+    for version in filter sum; do echo "call fibrad_surface_factor fibrad_surface_${version}_scalar"; done
 } | awk '
     $1 == "frame" {
         name = $2; sub(/\.(part|constprop|isra)\..*/, "", name)
         if ($3 > frame[name]) frame[name] = $3
         if ($4 !~ /static/ && $4 !~ /bounded/) {print name " has a frame without a bound"; failed = 1}
     }
+    $1 == "pointer" {print $2 " calls through a pointer"; failed = 1}
     $1 == "call" && !(($2, $3) in known) {known[$2, $3]; calls[$2] = calls[$2] " " $3}
     function depth(name,   list, n, k, most, d) {
         if (state[name] == 1) {print "recursion through " name; failed = 1; return 0}

@@ -63,7 +63,9 @@ static double *copies(uint32_t n, double (*next)(void)) {
 /* ---- scenes and rows -------------------------------------------------------------------------------------------- */
 
 static bool plain; /* all lengths lie within what a bed can be */
-static bool tame;  /* they are far from that, but a row takes less than seconds: no 1e9 radii across a periodic box */
+static bool tame;  /* they are far from that, but a row takes far less than a second: no 1e9 radii across a box */
+
+static double shortest; /* period */
 
 static double length(void) {
     double c = coordinate();
@@ -87,6 +89,10 @@ static void check_row(const fibrad_row *row, const fibrad_scene *scene, uint32_t
         REQUIRE(row->f[k] > 0 && row->f[k] <= 1 + 1e-9);
         sum += row->f[k];
     }
+    for (int wall = 0; wall < FIBRAD_WALLS; wall++) {
+        REQUIRE(row->wall[wall] >= 0 && (row->wall[wall] == 0 || facts.wall_area[wall] > 0));
+        sum += row->wall[wall];
+    }
     REQUIRE(row->escaped >= -1e-9 && row->error >= 0);
     if (plain || points > 0) REQUIRE(fabs(sum - 1) < 1e-9);
 }
@@ -94,9 +100,24 @@ static void check_row(const fibrad_row *row, const fibrad_scene *scene, uint32_t
 static void try_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row) {
     static const uint32_t nodes[] = {0, 8, 13, 21, 34, 9};
     fibrad_surface_rule rule = {.nodes = nodes[byte() % 6], .flags = byte() & 31, .cutoff = coordinate()};
+    if (rule.cutoff > 8 * shortest && rule.cutoff < 101 * shortest) return; /* up to 2^28 images: too slow */
     if (fibrad_surface_row(scene, work, i, &rule, row) != FIBRAD_OK) return;
     REQUIRE(row->length <= row->capacity);
     for (uint32_t k = 0; k < row->length; k++) REQUIRE(row->f[k] >= 0 && (k == 0 || row->col[k] > row->col[k - 1]));
+}
+
+static void try_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row, bool random) {
+    fibrad_cast_rule rule = {.rays = 1 + number() % 300, .random = random, .seed = number(), .cutoff = coordinate()};
+    if (byte() < 128) rule.cutoff = 0;
+    fibrad_cast_means means = {.length = malloc(row->capacity * sizeof(double) + 1),
+                               .angle = malloc(row->capacity * sizeof(double) + 1)};
+    REQUIRE(means.length != NULL && means.angle != NULL);
+    if (fibrad_cast_row(scene, work, i, &rule, row, &means) == FIBRAD_OK) {
+        check_row(row, scene, rule.rays);
+        for (uint32_t k = 0; k < row->length; k++)
+            REQUIRE(means.length[k] >= 0 && means.angle[k] >= 0 && means.angle[k] < 1.6);
+    }
+    free(means.length), free(means.angle);
 }
 
 static void try_row(const fibrad_scene *scene, uint32_t n) {
@@ -114,12 +135,13 @@ static void try_row(const fibrad_scene *scene, uint32_t n) {
                           .f = malloc(capacity * sizeof(double) + 1),
                           .capacity = capacity};
         REQUIRE(row.col != NULL && row.f != NULL);
-        fibrad_beam_rule rule = {8 + number() % 64, 0, 0};
+        fibrad_beam_rule rule = {.directions = 8 + number() % 64};
         uint8_t which = byte();
         if (which < 100) rule.points = 64u << which % 3;
         if (which == 101) rule.points = number();
         if (which == 102) rule.directions = number() % 8;
         if (which > 200) rule.cutoff = coordinate();
+        if (which == 104 || which == 105) try_cast_row(scene, work, number() % (n + 1), &row, which == 105);
         if (which == 103) try_surface_row(scene, work, number() % (n + 1), &row);
         status = fibrad_beam_row(scene, work, number() % (n + 1), &rule, &row);
         if (status == FIBRAD_OK) check_row(&row, scene, rule.points);
@@ -134,7 +156,15 @@ static void try_row(const fibrad_scene *scene, uint32_t n) {
     free(block);
 }
 
-static void try_scene(void) {
+static fibrad_walls any_walls(void) {
+    fibrad_walls walls = {.planes = byte() % 68};
+    for (int k = 0; k < 6; k++) walls.at[k] = 8 * length();
+    if (byte() % 4 == 0) walls.planes &= 112;
+    for (int k = 0; k < 3 && (walls.planes & 15) == 0; k++) walls.cylinder[k] = length();
+    return walls;
+}
+
+static void try_scene(bool walled) {
     uint32_t n = number(), stated = byte() < 250 ? n : number();
     n = n % 24;
     if (stated >= 250)
@@ -143,7 +173,12 @@ static void try_scene(void) {
         stated %= 24;
     fibrad_scene_config config = {.spheres = stated, .isa = byte() % 6};
     plain = tame = true;
-    for (int axis = 0; axis < 3; axis++) config.period[axis] = byte() < 160 ? 0 : fabs(length());
+    shortest = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        config.period[axis] = byte() < 160 ? 0 : fabs(length());
+        if (config.period[axis] > 0) shortest = fmin(shortest, config.period[axis]);
+    }
+    if (walled) config.walls = any_walls();
     size_t size = fibrad_scene_size(&config);
     REQUIRE(size == 0 || stated > 0);
     REQUIRE(size <= FIBRAD_SCENE_BYTES(stated));
@@ -209,10 +244,97 @@ static void try_rows(void) {
     }
     if (out.start != rows.start) {
         (void)fibrad_rows_limit(&rows, scratch);
+        double walls[8][FIBRAD_WALLS] = {{0}}, escaped[8] = {0};
+        walls[0][0] = any_factor();
+        (void)fibrad_rows_close(&rows, r, walls, escaped);
         status = fibrad_rows_drop(&rows, r, any_factor(), scratch);
         if (status == FIBRAD_OK) REQUIRE(rows.start[n] <= rows.capacity);
     }
     free(start), free(start_out), free(col), free(f), free(r), free(scratch), free(col_out), free(f_out);
+}
+
+/* ---- furnace ---------------------------------------------------------------------------------------------------- */
+
+/* From 1e-12 to 1e12, mostly near 1; now and then what is none. */
+static double positive(void) {
+    uint8_t b = byte();
+    return b < 200 ? exp2((b - 100) / 25.0) : b < 245 ? pow(10, b - 222.) : coordinate();
+}
+
+static void write_some(double *array, size_t n) {
+    for (int k = byte() % 3; k > 0; k--) array[number() % n] = byte() < 128 ? positive() : coordinate();
+}
+
+static void try_furnace(void) {
+    fibrad_furnace_config config = {.seed = byte()};
+    double thickness = 0, reflected = 1;
+    for (int a = 0; a < 3; a++) config.size[a] = positive(), config.cells[a] = number() % 4;
+    if (byte() == 1) config.cells[byte() % 3] = number();
+    config.absorption = positive(), config.scattering = byte() < 128 ? 0 : positive(), config.source = coordinate();
+    for (int w = 0; w < 6; w++) {
+        config.wall_temperature[w] = 300 * positive();
+        config.wall_emissivity[w] = byte() < 250 ? byte() / 255. : coordinate();
+        reflected = fmin(reflected, 1 - config.wall_emissivity[w]);
+    }
+    for (int a = 0; a < 3; a++) thickness += (config.absorption + config.scattering) * config.size[a];
+    /* bundles go on for long where little is lost */
+    bool quick = thickness < 30 && thickness > .1 && config.scattering < 20 * config.absorption;
+
+    size_t size = fibrad_furnace_size(&config);
+    if (size == 0 || size > 1 << 20) return;
+    uint8_t fault = byte();
+    fibrad_furnace *furnace = NULL;
+    void *block, *tally_block, *memory = memory_of(size - (fault == 1), fault == 2 ? 8 : 0, &block);
+    int status = fibrad_furnace_init(&furnace, memory, size - (fault == 1), &config);
+    REQUIRE(status == (fault == 1 ? FIBRAD_E_SIZE : fault == 2 ? FIBRAD_E_ALIGNMENT : FIBRAD_OK));
+    if (status != FIBRAD_OK) {
+        free(block);
+        return;
+    }
+    size_t tally_size = fibrad_furnace_tally_size(furnace);
+    fibrad_furnace_tally *tally;
+    memory = memory_of(tally_size, 0, &tally_block);
+    REQUIRE(fibrad_furnace_tally_init(&tally, memory, tally_size, furnace) == FIBRAD_OK);
+    fibrad_furnace_arrays arrays;
+    fibrad_furnace_fields(furnace, &arrays);
+    const size_t cells = (size_t)config.cells[0] * config.cells[1] * config.cells[2];
+    for (size_t k = 0; k < cells; k++) REQUIRE(isfinite(arrays.e[k]) && isfinite(arrays.divergence[k]));
+
+    for (int step = byte() % 8; step > 0; step--) {
+        fibrad_furnace_scatter scatter = byte() % 2 ? FIBRAD_SCATTER_EXACT : FIBRAD_SCATTER_SIX_FLUX;
+        fibrad_furnace_physics physics = byte() % 2 ? FIBRAD_FURNACE_EQUILIBRIUM : FIBRAD_FURNACE_ATTENUATED;
+        fibrad_furnace_report report;
+        uint64_t planned = 0;
+        switch (byte() % 8) {
+        case 0:
+            (void)fibrad_furnace_theta(furnace, positive());
+            break;
+        case 1:
+            (void)fibrad_furnace_solve(furnace, scatter, positive(), number() % 50, &report);
+            break;
+        case 2:
+            write_some(arrays.e, cells);
+            write_some(arrays.theta[byte() % 3][byte() % 2], cells);
+            write_some(arrays.flux[byte() % 3][byte() % 2], cells);
+            (void)fibrad_furnace_balance(furnace);
+            break;
+        case 3:
+            (void)fibrad_furnace_estimate(furnace, tally, byte() % 2 ? FIBRAD_THETA_PAPER : FIBRAD_THETA_DEFINITION,
+                                          byte() % 2, scatter);
+            break;
+        case 4:
+            (void)fibrad_furnace_equilibrium(furnace, tally);
+            break;
+        default:
+            status = fibrad_furnace_emit(furnace, physics, 1 + number() % 500, byte() % 2, &planned);
+            if (physics == FIBRAD_FURNACE_EQUILIBRIUM && reflected > .9) break;
+            if (status == FIBRAD_OK && quick)
+                (void)fibrad_furnace_trace(furnace, tally, planned / 2, planned < 2000 ? planned - planned / 2 : 1000);
+        }
+    }
+    (void)fibrad_furnace_temperature(arrays.e[0]);
+    fibrad_furnace_tally_add(tally, tally);
+    free(block), free(tally_block);
 }
 
 static void try_pair(void) {
@@ -231,22 +353,26 @@ static void try_pair(void) {
     if (status == FIBRAD_OK) REQUIRE(f12 >= 0 && f12 < 1.5);
     free(block), free(x), free(y), free(z), free(r);
     double w[3] = {0, 0, 0};
+    (void)fibrad_directions_for(number(), coordinate(), coordinate());
     uint32_t k = number(), n = number();
     if (fibrad_direction(k, n, w) == FIBRAD_OK) REQUIRE(fabs(w[0] * w[0] + w[1] * w[1] + w[2] * w[2] - 1) < 1e-15);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     at = data, end = data + size;
-    switch (byte() % 8) {
+    const uint8_t kind = byte() % 8;
+    switch (kind) {
     case 0:
         try_pair();
         break;
     case 1:
-    case 2:
         try_rows();
         break;
+    case 2:
+        try_furnace();
+        break;
     default:
-        try_scene();
+        try_scene(kind == 7);
     }
     (void)fibrad_status_text((int)number());
     (void)fibrad_isa_name((int)number());

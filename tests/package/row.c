@@ -22,14 +22,14 @@ static int report(const char *call, int status) {
 
 int main(void) {
     fibrad_spheres spheres = {x, y, z, r, N};
-    fibrad_scene_config scene_config = {N, FIBRAD_ISA_BEST, {0, 0, 0}};
-    fibrad_work_config work_config = {64, 64, N};
-    fibrad_beam_rule rule = {233, 0, 0};
+    fibrad_scene_config scene_config = {.spheres = N};
+    fibrad_work_config work_config = {.near = 64, .discs = 64, .entries = N};
+    fibrad_beam_rule rule = {.directions = 233};
     fibrad_scene *scene;
     fibrad_work *work;
     uint32_t col[N], k;
     double f[N], pair, sum = 0;
-    fibrad_row row = {col, f, N, 0, 0, 0};
+    fibrad_row row = {.col = col, .f = f, .capacity = N};
 
     if (report("pair", fibrad_pair_exact(1, 1, 0, &pair)) ||
         report("scene",

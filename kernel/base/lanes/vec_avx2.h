@@ -49,6 +49,7 @@ static inline vd vd_replace(vd a, uint32_t lane, double x) {
 static inline vd vd_loadu(const double *p) { return _mm256_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm256_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm256_storeu_pd(p, a); }
+static inline vd vd_load_float(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
 static inline void vd_store_float(float *p, vd a) { _mm_store_ps(p, _mm256_cvtpd_ps(a)); }
 static inline vd vd_add(vd a, vd b) { return _mm256_add_pd(a, b); }
 static inline vd vd_sub(vd a, vd b) { return _mm256_sub_pd(a, b); }

@@ -30,6 +30,7 @@ static inline vd vd_replace(vd a, uint32_t lane, double x) {
 static inline vd vd_loadu(const double *p) { return _mm512_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm512_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm512_storeu_pd(p, a); }
+static inline vd vd_load_float(const float *p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
 static inline void vd_store_float(float *p, vd a) { _mm256_store_ps(p, _mm512_cvtpd_ps(a)); }
 static inline vd vd_add(vd a, vd b) { return _mm512_add_pd(a, b); }
 static inline vd vd_sub(vd a, vd b) { return _mm512_sub_pd(a, b); }

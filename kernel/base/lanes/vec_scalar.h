@@ -3,7 +3,7 @@
  *
  * The operations every vec_*.h offers, none of which mixes lanes, so that a result does not depend on their number:
  *   vd   VD_LANES doubles    vd_set1 vd_load vd_store vd_add vd_sub vd_mul vd_div vd_sqrt vd_min vd_max vd_abs
- *                            vd_loadu vd_storeu (any address), vd_store_float (rounded)
+ *                            vd_loadu vd_storeu (any address), vd_load_float vd_store_float (rounded)
  *                            vd_lt vd_le (masks) vd_select(mask, if set, if clear)
  *                            vd_lookup(table, size, k): table[k] for lanes of whole numbers k < size (less than
  *                            the table's length where nobody looks); the table is a whole number of vectors long
@@ -38,6 +38,7 @@ static inline vd vd_replace(vd a, uint32_t lane, double x) { return (void)a, (vo
 static inline vd vd_loadu(const double *p) { return *p; }
 static inline void vd_store(double *p, vd a) { *p = a; }
 static inline void vd_storeu(double *p, vd a) { *p = a; }
+static inline vd vd_load_float(const float *p) { return *p; }
 static inline void vd_store_float(float *p, vd a) { *p = (float)a; }
 static inline vd vd_add(vd a, vd b) { return a + b; }
 static inline vd vd_sub(vd a, vd b) { return a - b; }

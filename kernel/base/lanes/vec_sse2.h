@@ -32,6 +32,9 @@ static inline vd vd_replace(vd a, uint32_t lane, double x) {
 static inline vd vd_loadu(const double *p) { return _mm_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm_storeu_pd(p, a); }
+static inline vd vd_load_float(const float *p) {
+    return _mm_cvtps_pd(_mm_castpd_ps(_mm_load_sd((const double *)(const void *)p)));
+}
 static inline void vd_store_float(float *p, vd a) { _mm_storel_pi((__m64 *)(void *)p, _mm_cvtpd_ps(a)); }
 static inline vd vd_add(vd a, vd b) { return _mm_add_pd(a, b); }
 static inline vd vd_sub(vd a, vd b) { return _mm_sub_pd(a, b); }
