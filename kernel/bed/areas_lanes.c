@@ -104,9 +104,9 @@ static uint32_t next(const fibrad_boundary *b, uint64_t enters, uint64_t window,
 
 /* Adds the arcs of disc k to the boundary: counter-clockwise from each point where the boundary leaves the disc to the
  * next one where it enters it. False if these do not alternate, are too close to tell, or there are no slots. */
-static inline bool join(const fibrad_areas *areas, uint32_t k, uint64_t leaves, uint64_t enters) {
-    fibrad_boundary *b = areas->boundary;
-    const double x = areas->x[k], y = areas->y[k], r = areas->r[k], near = MARGIN * r;
+static inline bool join(fibrad_boundary *b, uint32_t k, double x, double y, double r, uint64_t leaves,
+                        uint64_t enters) {
+    const double near = MARGIN * r;
     const uint64_t window = b->window;
     uint64_t left = enters;
     if (leaves == 0 || enters == 0) return false;
@@ -151,9 +151,8 @@ static bool is_open(const fibrad_areas *areas, uint32_t k, double x, double y, b
 }
 
 /* Lets disc k, whose circle has been added, take its part of the open region. False: in doubt. */
-static bool clip(fibrad_areas *areas, uint32_t k) {
+static bool clip(fibrad_areas *areas, uint32_t k, double x, double y, double r) {
     fibrad_boundary *b = areas->boundary;
-    const double x = areas->x[k], y = areas->y[k], r = areas->r[k];
     const uint64_t alive = b->alive;
     const uint32_t slots = 64 - (uint32_t)__builtin_clzll(alive);
     uint64_t p_inside = 0, q_inside = 0, twice = 0, doubt = 0;
@@ -247,7 +246,7 @@ static bool clip(fibrad_areas *areas, uint32_t k) {
             return false;
         }
     }
-    return join(areas, k, (starts & ~b->window) | (ends & b->window), (starts & b->window) | (ends & ~b->window));
+    return join(b, k, x, y, r, (starts & ~b->window) | (ends & b->window), (starts & b->window) | (ends & ~b->window));
 }
 
 /* Does the window again, up to its first `circles` circles, by accounts. */
@@ -297,7 +296,7 @@ bool LANED(fibrad_areas_disc)(fibrad_areas *areas, uint32_t whose, double x, dou
     if (areas->boundary->alive == 0) return false;
     uint32_t k = areas->circles;
     fibrad_areas_add_circle(areas, whose, x, y, r);
-    if (r > LARGEST || !clip(areas, k)) return redo(areas, k + 1);
+    if (r > LARGEST || !clip(areas, k, x, y, r)) return redo(areas, k + 1);
     if (areas->boundary->alive == 0) return false;
     close_up(areas->boundary);
     return true;
@@ -314,9 +313,9 @@ static bool complete(fibrad_areas *areas) {
         fibrad_arcs_give(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest);
     }
     LANED(fibrad_areas_integrate)(areas);
-    double least = 0;
-    for (uint32_t k = 1; k <= rest; k++) least = fibrad_min(least, areas->area[k]);
-    return least > -CLOSURE && fibrad_abs(areas->area[0] + PI) < CLOSURE;
+    bool right = fibrad_abs(areas->area[0] + PI) < CLOSURE;
+    for (uint32_t k = 1; k <= rest; k++) right = right & (areas->area[k] > -CLOSURE);
+    return right;
 }
 
 double LANED(fibrad_areas_end)(fibrad_areas *areas) {

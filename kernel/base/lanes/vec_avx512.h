@@ -24,8 +24,11 @@ static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
     _mm512_storeu_pd(p, _mm512_maskz_compress_pd((__mmask8)bits, a));
 }
+/* Without the empty statement a load, this and a store become a masked store, which the next load waits for long. */
 static inline vd vd_replace(vd a, uint32_t lane, double x) {
-    return _mm512_mask_mov_pd(a, (__mmask8)(1u << lane), _mm512_set1_pd(x));
+    a = _mm512_mask_mov_pd(a, (__mmask8)(1u << lane), _mm512_set1_pd(x));
+    __asm__("" : "+v"(a));
+    return a;
 }
 static inline vd vd_loadu(const double *p) { return _mm512_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm512_store_pd(p, a); }
