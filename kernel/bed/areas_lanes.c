@@ -102,34 +102,28 @@ static uint32_t next(const fibrad_boundary *b, uint64_t enters, uint64_t window,
     return nearest;
 }
 
-/* Adds the arcs of disc k to the boundary: counter-clockwise from each point where the boundary leaves the disc to the
- * next one where it enters it. False if these do not alternate, are too close to tell, or there are no slots. */
-static inline bool join(fibrad_boundary *b, uint32_t k, double x, double y, double r, uint64_t leaves,
-                        uint64_t enters) {
-    const double near = MARGIN * r;
+/* Adds to the boundary the arc of disc k from where slot p leaves the disc counter-clockwise to where slot q enters it.
+ * False if these are too close to tell a short arc from a whole circle, or there are no slots. */
+static inline bool join(fibrad_boundary *b, uint64_t window, uint32_t p, uint32_t q, double x, double y, double r,
+                        double k) {
+    uint32_t at_p = window >> p & 1, at_q = ~window >> q & 1; /* cut[1]: where the arc itself leaves the disc */
+    double px = b->cut[at_p][0][p], py = b->cut[at_p][1][p], qx = b->cut[at_q][0][q], qy = b->cut[at_q][1][q];
+    double turn = px * qy - py * qx, level = px * qx + py * qy, near = MARGIN * r;
+    if (turn > near && level > LONGEST * r * r) return add(b, px, py, qx, qy, x, y, r, k);
+    if (level > 0 && turn >= -near && turn <= near) return false;
+    return add_parts(b, px, py, qx, qy, x, y, r, k, turn > 0);
+}
+
+/* Joins several points where the boundary leaves the disc each with the next one where it enters it. False if they do
+ * not alternate. */
+static bool join_several(fibrad_boundary *b, uint64_t leaves, uint64_t enters, double x, double y, double r, double k) {
     const uint64_t window = b->window;
     uint64_t left = enters;
-    if (leaves == 0 || enters == 0) return false;
     for (uint64_t bits = leaves; bits != 0; bits &= bits - 1) {
-        uint32_t p = (uint32_t)__builtin_ctzll(bits),
-                 at_p = window >> p & 1; /* counter-clockwise, it leaves at cut[1] */
-        double px = b->cut[at_p][0][p], py = b->cut[at_p][1][p];
-        uint32_t q = (uint32_t)__builtin_ctzll(enters), at_q = ~window >> q & 1;
-        if ((enters & (enters - 1)) != 0) {
-            q = next(b, enters, window, px, py, r);
-            if (q == NONE) return false;
-            at_q = ~window >> q & 1;
-        }
-        if ((left >> q & 1) == 0) return false;
+        uint32_t p = (uint32_t)__builtin_ctzll(bits), at = window >> p & 1;
+        uint32_t q = next(b, enters, window, b->cut[at][0][p], b->cut[at][1][p], r);
+        if (q == NONE || (left >> q & 1) == 0 || !join(b, window, p, q, x, y, r, k)) return false;
         left &= ~(UINT64_C(1) << q);
-        double qx = b->cut[at_q][0][q], qy = b->cut[at_q][1][q];
-        double turn = px * qy - py * qx, level = px * qx + py * qy;
-        bool done;
-        if (turn > near && level > LONGEST * r * r)
-            done = add(b, px, py, qx, qy, x, y, r, k);
-        else
-            done = (level < 0 || turn < -near || turn > near) && add_parts(b, px, py, qx, qy, x, y, r, k, turn > 0);
-        if (!done) return false;
     }
     return left == 0;
 }
@@ -246,7 +240,11 @@ static bool clip(fibrad_areas *areas, uint32_t k, double x, double y, double r) 
             return false;
         }
     }
-    return join(b, k, x, y, r, (starts & ~b->window) | (ends & b->window), (starts & b->window) | (ends & ~b->window));
+    const uint64_t leaves = (starts & ~b->window) | (ends & b->window);
+    const uint64_t enters = (starts & b->window) | (ends & ~b->window);
+    bool one = leaves != 0 && (leaves & (leaves - 1)) == 0 && enters != 0 && (enters & (enters - 1)) == 0;
+    if (!one) return join_several(b, leaves, enters, x, y, r, k);
+    return join(b, b->window, (uint32_t)__builtin_ctzll(leaves), (uint32_t)__builtin_ctzll(enters), x, y, r, k);
 }
 
 /* Does the window again, up to its first `circles` circles, by accounts. */
