@@ -21,10 +21,14 @@ static void put(struct window *w, double u, double v, double r) {
     w->u[w->n] = u, w->v[w->n] = v, w->r[w->n++] = r;
 }
 
+typedef void begin_function(fibrad_areas *areas);
+typedef bool disc_function(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
+typedef double end_function(fibrad_areas *areas);
+
 struct method {
-    void (*begin)(fibrad_areas *areas);
-    bool (*disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
-    double (*end)(fibrad_areas *areas);
+    begin_function *begin;
+    disc_function *disc;
+    end_function *end;
 };
 
 static const struct method both = {fibrad_areas_begin_scalar, fibrad_areas_disc_scalar, fibrad_areas_end_scalar};
@@ -253,6 +257,60 @@ START_TEST(clipping_against_accounts) {
 }
 END_TEST
 
+#define WIDER(isa)                                                                                                     \
+    begin_function fibrad_areas_begin_##isa;                                                                           \
+    disc_function fibrad_areas_disc_##isa;                                                                             \
+    end_function fibrad_areas_end_##isa;                                                                               \
+    static const struct method isa = {fibrad_areas_begin_##isa, fibrad_areas_disc_##isa, fibrad_areas_end_##isa};
+#ifdef FIBRAD_WITH_SSE2
+WIDER(sse2)
+#endif
+#ifdef FIBRAD_WITH_AVX2
+WIDER(avx2)
+#endif
+#ifdef FIBRAD_WITH_AVX512
+WIDER(avx512)
+#endif
+
+/* In all instruction sets the same windows are in doubt, and the areas have the same bits. */
+START_TEST(bits_of_windows) {
+    const struct method *const methods[] = {
+        [FIBRAD_ISA_SCALAR] = &both,
+#ifdef FIBRAD_WITH_SSE2
+        [FIBRAD_ISA_SSE2] = &sse2,
+#endif
+#ifdef FIBRAD_WITH_AVX2
+        [FIBRAD_ISA_AVX2] = &avx2,
+#endif
+#ifdef FIBRAD_WITH_AVX512
+        [FIBRAD_ISA_AVX512] = &avx512,
+#endif
+    };
+    fibrad_areas areas = areas_make();
+    double first[MOST + 1], other[MOST + 1];
+    for (int round = 0; round < 3000; round++) {
+        struct window w = {0};
+        uint32_t n = 1 + (uint32_t)random_in(0, round % 10 == 0 ? 100 : 16);
+        double grid = round % 3 == 0 ? 4 : 1e6, scale = pow(10, random_in(-1, 1));
+        for (uint32_t k = 0; k < n; k++) {
+            double r = ceil(grid * random_in(.1, 1)) / grid * scale, d = (1 + r) * sqrt(random_in(0, 1));
+            double t = random_in(0, 6.2831853);
+            put(&w, round % 3 == 0 ? floor(4 * d * cos(t)) / 4 : d * cos(t), d * sin(t), r);
+        }
+        areas.fallbacks = 0;
+        measure(&both, &areas, &w, first);
+        uint32_t doubts = areas.fallbacks;
+        for (int isa = FIBRAD_ISA_SSE2; isa <= (int)fibrad_isa_best(); isa++) {
+            areas.fallbacks = 0;
+            measure(methods[isa], &areas, &w, other);
+            ck_assert_uint_eq(areas.fallbacks, doubts);
+            ck_assert_mem_eq(first, other, (n + 1) * sizeof *first);
+        }
+    }
+    areas_free(&areas);
+}
+END_TEST
+
 /* What clipping must not decide is done by accounts, and counted; ordinary windows are not. */
 START_TEST(doubts) {
     const struct window doubtful[] = {
@@ -294,6 +352,7 @@ int main(void) {
     tcase_add_test(tcase, degenerate_windows);
     tcase_add_test(tcase, lattices_along_their_axes);
     tcase_add_test(tcase, clipping_against_accounts);
+    tcase_add_test(tcase, bits_of_windows);
     tcase_add_test(tcase, doubts);
     return suite_run(suite);
 }
