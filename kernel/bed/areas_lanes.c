@@ -28,9 +28,6 @@
 /* Discs of larger radius round too much. */
 #define LARGEST 1000.0
 
-/* The cosine of the angle of the longest arc, about 154 degrees: arcs have to be shorter than half a circle. */
-#define LONGEST (-0.9)
-
 /* The lanes below n. */
 static inline uint32_t lanes_below(uint32_t n) {
     uint32_t lanes = n < VD_LANES ? n : VD_LANES;
@@ -66,22 +63,19 @@ static inline void close_up(fibrad_boundary *b) {
     }
 }
 
-/* Adds an arc in four parts if it is longer than half its circle, else in two. */
+/* Adds an arc of half a circle or more in four parts. */
 static bool add_parts(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy, double r,
-                      double circle, bool half) {
+                      double circle) {
     double point[5][2] = {{px, py}, {0, 0}, {0, 0}, {0, 0}, {qx, qy}};
-    int part = half ? 2 : 1;
-    for (int step = 4; step > part; step /= 2)
+    for (int step = 4; step > 1; step /= 2)
         for (int from = 0; from < 4; from += step) {
             const double *p = point[from], *q = point[from + step];
             double ux = q[1] - p[1], uy = p[0] - q[0], scale = r / fibrad_sqrt(ux * ux + uy * uy);
             point[from + step / 2][0] = ux * scale, point[from + step / 2][1] = uy * scale;
         }
     bool done = true;
-    for (int from = 0; from < 4 && done; from += part) {
-        const double *p = point[from], *q = point[from + part];
-        done = add(b, p[0], p[1], q[0], q[1], cx, cy, r, circle);
-    }
+    for (int n = 0; n < 4 && done; n++)
+        done = add(b, point[n][0], point[n][1], point[n + 1][0], point[n + 1][1], cx, cy, r, circle);
     return done;
 }
 
@@ -109,9 +103,9 @@ static inline bool join(fibrad_boundary *b, uint64_t window, uint32_t p, uint32_
     uint32_t at_p = window >> p & 1, at_q = ~window >> q & 1; /* cut[1]: where the arc itself leaves the disc */
     double px = b->cut[at_p][0][p], py = b->cut[at_p][1][p], qx = b->cut[at_q][0][q], qy = b->cut[at_q][1][q];
     double turn = px * qy - py * qx, level = px * qx + py * qy, near = MARGIN * r;
-    if (turn > near && level > LONGEST * r * r) return add(b, px, py, qx, qy, x, y, r, k);
-    if (level > 0 && turn >= -near && turn <= near) return false;
-    return add_parts(b, px, py, qx, qy, x, y, r, k, turn > 0);
+    if (turn > near) return add(b, px, py, qx, qy, x, y, r, k);
+    if (level > 0 && turn >= -near) return false;
+    return add_parts(b, px, py, qx, qy, x, y, r, k);
 }
 
 /* Joins several points where the boundary leaves the disc each with the next one where it enters it. False if they do
@@ -128,19 +122,15 @@ static bool join_several(fibrad_boundary *b, uint64_t leaves, uint64_t enters, d
     return left == 0;
 }
 
-/* Whether a point within the window is open: in no disc but the new one, k. *doubtful if that is too close to tell. */
-static bool is_open(const fibrad_areas *areas, uint32_t k, double x, double y, bool *doubtful) {
-    uint32_t inside = 0, close = 0;
+/* Whether a point within the window is open: in none of the discs before k. */
+static bool is_open(const fibrad_areas *areas, uint32_t k, double x, double y) {
+    uint32_t inside = 0;
     for (uint32_t m = 0; m < k; m += VD_LANES) {
         vd r = vd_load(areas->r + m), dx = vd_sub(vd_set1(x), vd_load(areas->x + m));
         vd dy = vd_sub(vd_set1(y), vd_load(areas->y + m));
-        vd power = vd_sub(vd_add(vd_mul(dx, dx), vd_mul(dy, dy)), vd_mul(r, r));
-        vd near = vd_mul(vd_set1(MARGIN), vd_mul(r, vd_add(vd_set1(1), r)));
-        uint32_t discs = lanes_below(k - m) & (m == 0 ? ~1u : ~0u);
-        inside |= vm_bits(vd_lt(power, vd_sub(vd_set1(0), near))) & discs;
-        close |= vm_bits(vd_le(power, near)) & discs;
+        vm in = vd_lt(vd_add(vd_mul(dx, dx), vd_mul(dy, dy)), vd_mul(r, r));
+        inside |= vm_bits(in) & lanes_below(k - m) & (m == 0 ? ~1u : ~0u);
     }
-    if (inside == 0 && close != 0) *doubtful = true;
     return inside == 0;
 }
 
@@ -210,15 +200,15 @@ static bool clip(fibrad_areas *areas, uint32_t k, double x, double y, double r) 
     const uint64_t starts = (q_inside & ~p_inside) | twice, ends = (p_inside & ~q_inside) | twice;
     b->alive = alive & ~(p_inside & q_inside & ~twice);
     if ((starts | ends) == 0) { /* the disc's circle is all hidden or all open */
-        bool island = false, doubtful = false;
-        if (r < 1 && x * x + y * y < (1 - r) * (1 - r)) island = is_open(areas, k, x + r, y, &doubtful);
+        bool island = r < 1 && x * x + y * y < (1 - r) * (1 - r) && is_open(areas, k, x + r, y);
+        bool done = true;
         for (int n = 0; n < 3 && island; n++) {
             static const double corner[4][2] = {{1, 0}, {-0.5, SQRT_3_4}, {-0.5, -SQRT_3_4}, {1, 0}};
             const double *p = corner[n], *q = corner[n + 1];
-            doubtful |= !add(b, r * p[0], r * p[1], r * q[0], r * q[1], x, y, r, k);
+            done = done && add(b, r * p[0], r * p[1], r * q[0], r * q[1], x, y, r, k);
         }
         areas->circles += island || b->alive != alive;
-        return !doubtful;
+        return done;
     }
 
     areas->circles++;
