@@ -60,6 +60,7 @@ KERNEL = \
     kernel/bed/areas.c \
     kernel/bed/beam.c \
     kernel/bed/cast.c \
+    kernel/bed/moved.c \
     kernel/bed/near.c \
     kernel/bed/rows.c \
     kernel/bed/scene.c \
@@ -100,6 +101,7 @@ HOST = \
     host/interrupt.c \
     host/message.c \
     host/method.c \
+    host/moving_omp.c \
     host/options.c \
     host/plot.c \
     host/plot_data.c \
@@ -139,6 +141,7 @@ TESTS = \
     tests/test_direction.c \
     tests/test_estimate.c \
     tests/test_furnace.c \
+    tests/test_moved.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
     tests/test_read.c \
@@ -172,15 +175,18 @@ BENCHES = \
     bench/bench_error.c \
     bench/bench_estimate.c \
     bench/bench_furnace.c \
+    bench/bench_moved.c \
     bench/bench_pair.c \
     bench/bench_scale.c \
+    bench/bench_sizes.c \
+    bench/bench_skips.c \
     bench/bench_surface.c
 
 # built and run where Embree 3 is found (Debian: libembree-dev)
 PEERS = bench/bench_embree.c
 
 # these know the argument `quick`
-QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_pair.c bench/bench_scale.c $(PEERS)
+QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c $(PEERS)
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)
@@ -192,7 +198,7 @@ BENCH_PROGRAMS = $(BENCHES:%.c=$(BUILD)/%)
 PEER_PROGRAMS  = $(PEERS:%.c=$(BUILD)/%)
 
 .PHONY: all lib demo reproduce test run-programs programs check symbols lists format bench bench-quick bench-peers \
-    stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
+    skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
 
 ## all: build/fibrad and build/libfibrad.a (the default)
 all: $(BUILD)/fibrad $(BUILD)/libfibrad.a
@@ -334,6 +340,10 @@ bench-peers:
 	@if echo '#include <embree3/rtcore.h>' | $(CC) -E -xc - >/dev/null 2>&1; then \
 	    $(MAKE) -s --no-print-directory $(PEER_PROGRAMS); \
 	else echo "No Embree 3 (Debian: libembree-dev): its benches are skipped"; fi
+
+## skips: what the skips save that no argument turns off, each turned off in a copy of the kernel (some minutes)
+skips:
+	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" bench/skips.sh
 
 ## stress: try to break the numerics in every way we could think of; one line per attack (some minutes)
 stress: $(BUILD)/tests/test_stress $(BUILD)/tests/test_areas

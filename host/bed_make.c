@@ -45,8 +45,9 @@ static void fill_cells(struct cells *cells, const struct bed *bed, double edge) 
     }
 }
 
-/* Pushes two spheres apart along their line of centres, each by half of what is missing; true if they did overlap. */
-static bool push(struct bed *bed, double edge, uint32_t i, uint32_t j) {
+/* Pushes two spheres apart along their line of centres, sphere i by its share of what is missing; true if they did
+ * overlap. */
+static bool push(struct bed *bed, double edge, uint32_t i, uint32_t j, double share) {
     double *const axis[3] = {bed->x, bed->y, bed->z};
     double e[3], square = 0;
     for (int a = 0; a < 3; ++a) {
@@ -56,20 +57,24 @@ static bool push(struct bed *bed, double edge, uint32_t i, uint32_t j) {
     }
     const double sum = bed->r[i] + bed->r[j], distance = sqrt(square);
     if (distance >= sum) return false;
-    const double half = distance > 0 ? 0.5 * (sum * (1 + SPARE) / distance - 1) : 0;
+    const double missing = distance > 0 ? sum * (1 + SPARE) / distance - 1 : 0;
     for (int a = 0; a < 3; ++a) {
-        axis[a][i] -= half * e[a];
-        axis[a][j] += half * e[a];
+        axis[a][i] -= share * missing * e[a];
+        axis[a][j] += (1 - share) * missing * e[a];
     }
     return true;
 }
 
-static bool sweep(struct bed *bed, double edge, struct cells *cells) {
-    bool overlap = false;
+static void wrap_and_fill(struct cells *cells, struct bed *bed, double edge) {
     double *const axis[3] = {bed->x, bed->y, bed->z};
     for (int a = 0; a < 3; ++a)
         for (uint32_t i = 0; i < bed->n; ++i) axis[a][i] -= edge * floor(axis[a][i] / edge);
     fill_cells(cells, bed, edge);
+}
+
+static bool sweep(struct bed *bed, double edge, struct cells *cells) {
+    bool overlap = false;
+    wrap_and_fill(cells, bed, edge);
     const uint32_t side = cells->side;
     for (uint32_t c = 0; c < side * side * side; ++c)
         for (int32_t dz = -1; dz <= 1; ++dz)
@@ -80,7 +85,7 @@ static bool sweep(struct bed *bed, double edge, struct cells *cells) {
                     const uint32_t z = (c / side / side + side + (uint32_t)dz) % side;
                     for (int32_t i = cells->first[c]; i >= 0; i = cells->next[i])
                         for (int32_t j = cells->first[(z * side + y) * side + x]; j >= 0; j = cells->next[j])
-                            if (j > i) overlap |= push(bed, edge, (uint32_t)i, (uint32_t)j);
+                            if (j > i) overlap |= push(bed, edge, (uint32_t)i, (uint32_t)j, 0.5);
                 }
     return overlap;
 }
@@ -107,6 +112,59 @@ int bed_make_packing(struct bed *bed, uint32_t n, double low, double high, doubl
     for (uint32_t round = 0; !status && sweep(bed, edge, &cells); ++round) {
         status = interrupt_status();
         if (round == SWEEPS) status = message(STATUS_INPUT, "cannot pack %u spheres to %g of solid", n, fraction);
+    }
+    free(cells.first);
+    free(cells.next);
+    for (int axis = 0; axis < 3; ++axis) bed->period[axis] = bed->high[axis] = edge;
+    return status;
+}
+
+/* The same for spheres of very different sizes: cells are as wide as the smallest sphere, and of each pair the larger
+ * one looks for the other. The smaller one gives way. */
+static bool sweep_by_size(struct bed *bed, double edge, struct cells *cells) {
+    bool overlap = false;
+    wrap_and_fill(cells, bed, edge);
+    const int64_t side = cells->side;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double *const centre[3] = {bed->x, bed->y, bed->z};
+        int64_t low[3], high[3];
+        for (int a = 0; a < 3; ++a) {
+            low[a] = (int64_t)floor((centre[a][i] - 2 * bed->r[i]) / edge * (double)side);
+            high[a] = (int64_t)floor((centre[a][i] + 2 * bed->r[i]) / edge * (double)side);
+            if (high[a] - low[a] >= side) high[a] = low[a] + side - 1;
+        }
+        for (int64_t z = low[2]; z <= high[2]; ++z)
+            for (int64_t y = low[1]; y <= high[1]; ++y)
+                for (int64_t x = low[0]; x <= high[0]; ++x) {
+                    const int64_t cell = ((z + side) % side * side + (y + side) % side) * side + (x + side) % side;
+                    for (int32_t j = cells->first[cell]; j >= 0; j = cells->next[j]) {
+                        const double r = bed->r[j], size = pow(bed->r[i] / r, 3);
+                        if (r < bed->r[i] || (!(r > bed->r[i]) && (uint32_t)j > i))
+                            overlap |= push(bed, edge, i, (uint32_t)j, 1 / (1 + size));
+                    }
+                }
+    }
+    return overlap;
+}
+
+int bed_make_two_sizes(struct bed *bed, uint32_t large, double ratio, double fraction, uint64_t seed) {
+    const uint32_t small = (uint32_t)(large * ratio * ratio * ratio + 0.5), n = large + small;
+    const double edge = cbrt(4 * PI / 3 * (small + large * ratio * ratio * ratio) / fraction);
+    for (uint32_t i = 0; i < n; ++i) {
+        const int status = bed_add(bed, &(struct bed_sphere){.x = edge * bed_make_random(seed, 3 * (uint64_t)i),
+                                                             .y = edge * bed_make_random(seed, 3 * (uint64_t)i + 1),
+                                                             .z = edge * bed_make_random(seed, 3 * (uint64_t)i + 2),
+                                                             .r = i < large ? ratio : 1});
+        if (status) return status;
+    }
+    struct cells cells = {.side = (uint32_t)fmax(1, floor(edge / 2))};
+    cells.first = malloc((size_t)cells.side * cells.side * cells.side * sizeof *cells.first);
+    cells.next = malloc(n * sizeof *cells.next);
+    int status = cells.first && cells.next ? STATUS_OK : message_memory();
+    for (uint32_t round = 0; !status && sweep_by_size(bed, edge, &cells); ++round) {
+        status = interrupt_status();
+        if (round == SWEEPS)
+            status = message(STATUS_INPUT, "cannot pack spheres of two sizes to %g of solid", fraction);
     }
     free(cells.first);
     free(cells.next);

@@ -12,6 +12,10 @@ double bed_make_random(uint64_t seed, uint64_t count);
  * Status 0; STATUS_INPUT if the spheres cannot be pushed apart; STATUS_MEMORY; that of a signal. */
 int bed_make_packing(struct bed *bed, uint32_t n, double low, double high, double fraction, uint64_t seed);
 
+/* The same with spheres of two sizes, `large` ones of radius `ratio`, which come first, and as much volume of radius 1.
+ */
+int bed_make_two_sizes(struct bed *bed, uint32_t large, double ratio, double fraction, uint64_t seed);
+
 /* Fills an empty bed with copies[axis] copies of a periodic bed side by side along each axis: large beds at once, since
  * pushing apart takes more than linear time. The copies of one sphere follow each other, so that neighbours in space
  * are as far apart in memory as in a bed made at random. Status 0 or STATUS_MEMORY. */

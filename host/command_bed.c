@@ -28,7 +28,8 @@ enum {
     KEY_PLOT,
     KEY_PROGRESS,
     KEY_ERROR,
-    KEY_WALL
+    KEY_WALL,
+    KEY_SAME
 };
 
 static const struct option table[] = {
@@ -45,6 +46,8 @@ static const struct option table[] = {
     {KEY_SEED, "seed", "S", "cast, mc: another number, other rays [0]"},
     {KEY_CUTOFF, "cutoff", "D", "spheres with centres farther apart than D do not see each other [none]"},
     {KEY_TARGETS, "targets", "LIST", "rows wanted, such as 3,7,10-19, or all; a list implies --raw [all]"},
+    {KEY_SAME, "same-directions", NULL,
+     "as many directions also for spheres over 3 mean radii, whose S_ij come mainly from the other side [a fourth]"},
     {KEY_RAW, "raw", NULL, "do not average F_ij and F_ji [averaged: A_i F_ij = A_j F_ji]"},
     {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},
     {KEY_WALL, "wall", WALLS_ARGUMENT, WALLS_HELP},
@@ -63,11 +66,11 @@ struct request {
     double period[3];
     enum method method;
     struct beam_options beam;
-    fibrad_beam_rule beam_rule;
+    fibrad_beam_rule beam_rule, large_rule;
     fibrad_surface_rule surface;
     fibrad_cast_rule cast;
     double cutoff, error; /* 0: none */
-    bool beam_given, surface_given, cast_given;
+    bool beam_given, surface_given, cast_given, same_directions;
     struct wall_options walls;
     struct wall_order order;
     struct read_options read;
@@ -164,6 +167,9 @@ static int take_option(struct request *request, const struct options *options, i
     case KEY_RAW:
         request->run.raw = true;
         break;
+    case KEY_SAME:
+        request->same_directions = true;
+        break;
     case KEY_PROGRESS:
         request->run.progress = true;
         break;
@@ -182,6 +188,7 @@ static int take_option(struct request *request, const struct options *options, i
 
 /* The row function and its rule; options of other methods are refused. */
 static int choose_method(struct request *request) {
+    int status;
     if (request->beam_given && request->method != METHOD_BEAM)
         return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
     if (request->error > 0 && request->method != METHOD_BEAM)
@@ -204,7 +211,12 @@ static int choose_method(struct request *request) {
         return STATUS_OK;
     default:
         request->run.method = method_beam(&request->beam_rule);
-        return options_beam_rule(&request->beam, &request->beam_rule);
+        status = options_beam_rule(&request->beam, &request->beam_rule);
+        request->large_rule = request->beam_rule;
+        request->large_rule.directions /= 4;
+        if (!request->same_directions && request->large_rule.directions >= FIBRAD_DIRECTIONS_MIN)
+            request->run.method.large_rule = &request->large_rule;
+        return status;
     }
 }
 

@@ -16,13 +16,13 @@ static int cast(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const 
 }
 
 struct row_method method_beam(const fibrad_beam_rule *rule) {
-    return (struct row_method){"beam", beam, rule, false};
+    return (struct row_method){"beam", beam, rule, false, NULL};
 }
 
 struct row_method method_surface(const fibrad_surface_rule *rule) {
-    return (struct row_method){"surface", surface, rule, true};
+    return (struct row_method){"surface", surface, rule, true, NULL};
 }
 
 struct row_method method_cast(const fibrad_cast_rule *rule) {
-    return (struct row_method){rule->random ? "mc" : "cast", cast, rule, false};
+    return (struct row_method){rule->random ? "mc" : "cast", cast, rule, false, NULL};
 }

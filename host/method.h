@@ -14,7 +14,8 @@ struct row_method {
     const char *name;
     row_function *row;
     const void *rule;
-    bool mirrored; /* rows i and j hold one and the same S_ij, so that averaging makes it no better */
+    bool mirrored;          /* rows i and j hold one and the same S_ij, so that averaging makes it no better */
+    const void *large_rule; /* for spheres much larger than the mean, if rows are averaged; NULL: the same */
 };
 
 struct row_method method_beam(const fibrad_beam_rule *rule);

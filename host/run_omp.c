@@ -31,6 +31,9 @@ struct place {
     int thread;
 };
 
+/* Spheres this much larger than the mean radius are computed by the method's rule for large ones. */
+#define LARGE 3.0
+
 struct run {
     const struct bed *bed;
     const struct run_options *options;
@@ -38,6 +41,8 @@ struct run {
     fibrad_scene *scene;
     struct store *stores; /* [threads] */
     struct place *places; /* [n] */
+    double *weight;       /* [n] of each row in the mean of both; NULL: the same for all */
+    double large;         /* spheres above this radius count as large */
     int status;           /* the first trouble of any thread */
 };
 
@@ -111,7 +116,8 @@ static int add_row(struct run *run, struct store *store, uint32_t i) {
         row.f = store->f + store->used;
         row.capacity = room < UINT32_MAX ? (uint32_t)room : UINT32_MAX;
         const struct row_method *method = &run->options->method;
-        const int status = method->row(run->scene, store->work, i, method->rule, &row);
+        const void *rule = run->bed->r[i] > run->large ? method->large_rule : method->rule;
+        const int status = method->row(run->scene, store->work, i, rule, &row);
         if (status == FIBRAD_OK) break;
         if (status != FIBRAD_E_CAPACITY) return message(STATUS_INPUT, "row %u: %s", i, fibrad_status_text(status));
         if (row.length) continue;
@@ -123,10 +129,25 @@ static int add_row(struct run *run, struct store *store, uint32_t i) {
     run->result->escaped[i] = row.escaped;
     memcpy(run->result->wall[i], row.wall, sizeof row.wall);
     run->result->error[i] = row.error;
+    if (run->weight) run->weight[i] = pow(row.directions, 3);
     store->directions = row.directions > store->directions ? row.directions : store->directions;
     store->fallbacks += row.fallbacks;
     store->used += row.length;
     return STATUS_OK;
+}
+
+/* The error of a beam row falls as directions^-1.5, so weights are directions^3. A window of a large sphere among small
+ * ones meets hundreds of discs, all of which are seen back: with fewer directions for its row it is they who count. */
+static int choose_large(struct run *run) {
+    const struct bed *bed = run->bed;
+    double sum = 0;
+    run->large = INFINITY;
+    if (!run->options->method.large_rule || run->options->raw) return STATUS_OK;
+    for (uint32_t i = 0; i < bed->n; ++i) sum += bed->r[i];
+    if (!(run->result->facts.radius_max > LARGE * sum / bed->n)) return STATUS_OK;
+    run->large = LARGE * sum / bed->n;
+    run->weight = calloc(bed->n, sizeof *run->weight);
+    return run->weight ? STATUS_OK : message_memory();
 }
 
 static void compute_rows(struct run *run, uint64_t rows) {
@@ -218,12 +239,24 @@ double rows_distance(const fibrad_rows *a, const fibrad_rows *b, uint32_t i) {
     return sqrt(square);
 }
 
-/* The two estimates of S_ij differ by about twice the error of their mean. The factor takes in the worst rows of
- * hundred, and the raw estimate the rows whose two errors are equal by symmetry: docs/accuracy.md. */
+/* The two estimates of S_ij differ by about twice the error of their mean; where they have weights, the own one is off
+ * the mean by sqrt(w_j/w_i) times the error of that. The factor takes in the worst rows of hundred, and the raw
+ * estimate the rows whose two errors are equal by symmetry: docs/accuracy.md. */
 static void estimate(struct run *run, const fibrad_rows *mean) {
-    double *error = run->result->error;
-    for (uint32_t i = 0; i < mean->n; ++i)
-        error[i] = fmax(1.6 * rows_distance(mean, &run->result->rows, i), 0.5 * error[i]);
+    const fibrad_rows *raw = &run->result->rows;
+    for (uint32_t i = 0; i < mean->n; ++i) {
+        double square = 0, weight = run->weight ? run->weight[i] : 1, most = weight;
+        uint64_t p = raw->start[i]; /* the columns of a raw row are among those of the mean */
+        for (uint64_t k = mean->start[i]; k < mean->start[i + 1]; ++k) {
+            const uint32_t j = mean->col[k];
+            const bool own = p < raw->start[i + 1] && raw->col[p] == j;
+            const double difference = mean->f[k] - (own ? raw->f[p++] : 0);
+            const double other = run->weight ? run->weight[j] : 1;
+            square += difference * difference * weight / other;
+            most = fmax(most, other);
+        }
+        run->result->error[i] = fmax(1.6 * sqrt(square), 0.5 * sqrt(weight / most) * run->result->error[i]);
+    }
 }
 
 /* Replaces the rows by reciprocal ones with row sums of at most 1. */
@@ -235,7 +268,7 @@ static int average(struct run *run) {
     mean.f = malloc((mean.capacity + 1) * sizeof *mean.f);
     int status = scratch && mean.start && mean.col && mean.f ? STATUS_OK : message_memory();
     int kernel = FIBRAD_OK;
-    if (!status) kernel = fibrad_rows_average(raw, run->bed->r, &mean);
+    if (!status) kernel = fibrad_rows_average_weighted(raw, run->bed->r, run->weight, &mean);
     if (!status && !kernel) kernel = fibrad_rows_limit(&mean, scratch);
     if (!status && !kernel) kernel = fibrad_rows_close(&mean, run->bed->r, run->result->wall, run->result->escaped);
     if (kernel) status = message(STATUS_INPUT, "averaging the rows: %s", fibrad_status_text(kernel));
@@ -301,6 +334,7 @@ static int compute(struct run *run, void **block) {
         rows += result->wanted[i];
     }
     int status = make_scene(run, block);
+    if (!status) status = choose_large(run);
     if (status) return status;
     compute_rows(run, rows);
     if (run->status) return run->status;
@@ -321,6 +355,7 @@ int run_rows(const struct bed *bed, const struct run_options *options, struct re
     const int status = compute(&run, &block);
     free_stores(&run);
     free(run.places);
+    free(run.weight);
     free(block);
     return status;
 }

@@ -10,7 +10,9 @@
  *   beam     fibrad_beam_row, fibrad_directions_for
  *   surface  fibrad_surface_pair, FIBRAD_SURFACE_SCRATCH, fibrad_surface_row
  *   cast     fibrad_cast_row
- *   rows     fibrad_rows_average, fibrad_rows_limit, fibrad_rows_close, fibrad_rows_drop, fibrad_rows_reciprocity
+ *   moved    fibrad_moved_error, fibrad_moved_seen, fibrad_moved_same
+ *   rows     fibrad_rows_average, fibrad_rows_average_weighted, fibrad_rows_limit, fibrad_rows_close, fibrad_rows_drop,
+ *            fibrad_rows_reciprocity
  *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
  *            fibrad_furnace_theta, fibrad_furnace_solve, fibrad_furnace_balance, fibrad_furnace_tally_size,
  *            fibrad_furnace_tally_init, fibrad_furnace_tally_add, fibrad_furnace_emit, fibrad_furnace_trace,
@@ -190,7 +192,7 @@ size_t fibrad_work_size(const fibrad_work_config *config);
 
 /* An upper bound of fibrad_work_size as a constant expression, for static memory (no zeros here). */
 #define FIBRAD_WORK_BYTES(near, discs, entries)                                                                        \
-    (22528 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
+    (24576 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
 
 /* Makes work memory in `memory` (`size` bytes on a 64-byte boundary). It serves any scene, one row at a time.
  * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(entries). */
@@ -214,6 +216,8 @@ typedef struct fibrad_row {
                             on the median, seldom less than it */
     uint32_t directions; /* out, beam method only: how many were taken */
     uint32_t fallbacks;  /* out, beam method only: windows whose exact areas the fast method left to the robust one */
+    double reach;        /* out, beam method only: how deep the windows have looked before they were covered [L];
+                            infinity if one stayed open and there is no cutoff. See fibrad_moved_same */
     double wall[FIBRAD_WALLS]; /* out: the fraction that meets each wall, 0 for walls that are not there; `error` does
                                   not count them. The surface method leaves 0 */
 } fibrad_row;
@@ -282,14 +286,13 @@ typedef struct fibrad_surface_facts {
 #define FIBRAD_SURFACE_SCRATCH(n) (12 * (((size_t)(n) + 7) / 8 * 8))
 
 /* View factor F12 from sphere 1 (radius r1, centre at the origin) to sphere 2 (radius r2, centre (0, 0, r1 + r2 + gap))
- * with obstacles in between. r1, r2 [L] > 0, gap [L] as in fibrad_pair_exact; overlapping spheres are summed as if they
- * touched. The lattices begin at azimuth 0, the x axis, so the result depends a little on the azimuth of an obstacle.
- * A point inside an obstacle sees nothing. Without obstacles in the way the result is fibrad_pair_exact, unless
- * corrections are off. scratch [FIBRAD_SURFACE_SCRATCH(obstacles->n)] on a 64-byte boundary; obstacles (with scratch),
- * rule (all defaults) and facts may be NULL.
- * Errors: _ARGUMENT, _ALIGNMENT, _TABLE (nodes). Cost: about nodes^2/2 divisions and, for each obstacle in the way, as
- * many ray-sphere tests.
- * Source: Y. Bao, Y. Gao, J. Tan (2022), docs/methods.md section 7. */
+ * with obstacles in between. r1, r2, gap [L] as in fibrad_pair_exact, but these and the obstacles' coordinates and
+ * radii at most 1e70 r1; overlapping spheres are summed as if they touched. The lattices begin at azimuth 0, the x
+ * axis, so the result depends a little on the azimuth of an obstacle. A point inside an obstacle sees nothing. Without
+ * obstacles in the way the result is fibrad_pair_exact, unless corrections are off. scratch
+ * [FIBRAD_SURFACE_SCRATCH(obstacles->n)] on a 64-byte boundary; obstacles (with scratch), rule (all defaults) and facts
+ * may be NULL. Errors: _ARGUMENT, _ALIGNMENT, _TABLE (nodes). Cost: about nodes^2/2 divisions and, for each obstacle in
+ * the way, as many ray-sphere tests. Source: Y. Bao, Y. Gao, J. Tan (2022), docs/methods.md section 7. */
 int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *obstacles,
                         const fibrad_surface_rule *rule, double *scratch, double *f12, fibrad_surface_facts *facts);
 
@@ -331,6 +334,34 @@ typedef struct fibrad_cast_means {
 int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_cast_rule *rule,
                     fibrad_row *row, const fibrad_cast_means *means);
 
+/* ---- moved ----------------------------------------------------------------------------------------------------- */
+
+/* Rows of a bed that moves little can be kept for a while: docs/embedding.md has the loop. The two scenes hold the same
+ * spheres, in the caller's order, in boxes of the same periods, at two times. */
+
+/* How far row i, which was right for `before`, is off for `now`: estimated Euclidean error, twice the root of the
+ * sum over the spheres j seen of (F delta/w)^2. delta [L]: change of the vector from i to j; F = r_j^2/(4 d^2), d the
+ * lesser of their distances then and now; w the lesser of r_j and max(d - r_j, r_i). Estimates of successive steps add
+ * up to one of all. Only row->col and ->length are read. No account is taken of walls, nor of spheres that come into
+ * sight: fibrad_moved_seen.
+ * Errors: _ARGUMENT. Cost: about 10 ns per entry. Source: docs/methods.md section 10. */
+int fibrad_moved_error(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const fibrad_row *row,
+                       double *error);
+
+/* What the new row of sphere i tells about the rows of others: j sees i just as i sees j. Where F_ij has more than
+ * doubled from the row before to the one now, as when i has come into sight, adds twice the change of A_i F_ij/A_j to
+ * error[j], as root of the sum of squares. error [spheres]; order matters to its last bits.
+ * Errors: _ARGUMENT. Cost: about 10 ns per entry. */
+int fibrad_moved_seen(const fibrad_scene *now, uint32_t i, const fibrad_row *before, const fibrad_row *row,
+                      double *error);
+
+/* Which rows have not changed by a single bit: same[i] = 1 if no sphere that the windows of sphere i have met moved,
+ * nor any into where they looked, reach[i] being the row->reach of the row in `before`; else 0. A row that sees out of
+ * the bed, or a wall, changes with any sphere, and all rows with the walls. reach, same [spheres]; scratch [2 spheres].
+ * Errors: _ARGUMENT. Cost: some microseconds per sphere. */
+int fibrad_moved_same(const fibrad_scene *before, const fibrad_scene *now, const double *reach, unsigned char *scratch,
+                      unsigned char *same);
+
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
 
 /* A sparse matrix of view factors, compressed rows, in the caller's arrays. Source of what follows: docs/methods.md
@@ -349,6 +380,11 @@ typedef struct fibrad_rows {
  * Errors: _ARGUMENT (columns not ascending or out of range included), _CAPACITY (out->start[n] is then what is needed).
  * Cost: O(n + entries). */
 int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *out);
+
+/* The same where some rows are more accurate than others: S_ij = (w_i A_i F_ij + w_j A_j F_ji)/(w_i + w_j) instead of
+ * the plain mean. weight [n], 1e-100 to 1e100: best is 1/variance, for beam rows directions^3; NULL: all the same. Sums
+ * of rows may then exceed 1 by their errors: fibrad_rows_limit. */
+int fibrad_rows_average_weighted(const fibrad_rows *raw, const double *r, const double *weight, fibrad_rows *out);
 
 /* Brings row sums above 1 down to 1 and leaves reciprocity as it is: F_ij times min(s_i, s_j), s = min(1, 1/sum).
  * Rows averaged from exact areas need it only to the last bit. scratch [n].

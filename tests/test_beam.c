@@ -158,6 +158,32 @@ START_TEST(near_capacity_is_a_matter_of_speed) {
 }
 END_TEST
 
+/* The same for a sphere so large that the first shell ends within a radius of it. */
+START_TEST(near_capacity_of_a_large_sphere) {
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 5}});
+    for (int k = 0; k < 19 * 19 * 19; k++) {
+        double x = .8 * (k % 19 - 9), y = .8 * (k / 19 % 19 - 9) + .1, z = .8 * (k / 361 - 9) + .2;
+        double d = sqrt(x * x + y * y + z * z);
+        if (d > 5.3 && d < 8) add_sphere(&bed, x, y, z, .3);
+    }
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_row rows[2] = {row_of(bed.n), row_of(bed.n)};
+    for (int which = 0; which < 2; which++) {
+        fibrad_work *work =
+            work_of(&(fibrad_work_config){.near = which == 0 ? 1 : 16384, .discs = 2048, .entries = bed.n});
+        ck_assert_int_eq(fibrad_beam_row(scene, work, 0, &(fibrad_beam_rule){.directions = 8}, &rows[which]),
+                         FIBRAD_OK);
+        free(work);
+    }
+    ck_assert(same_bits(&rows[0], &rows[1]));
+    ck_assert_double_gt(row_sum(&rows[0]), .8);
+    row_free(&rows[0]);
+    row_free(&rows[1]);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
 START_TEST(scaling_by_powers_of_two_changes_no_bit) {
     struct bed bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
     fibrad_row row = beam(&bed, 11, (fibrad_beam_rule){.directions = 233, .cutoff = 9}, FIBRAD_ISA_BEST);
@@ -413,6 +439,7 @@ int main(void) {
     tcase_add_test(tcase, points_agree_with_areas);
     tcase_add_test(tcase, same_bits_in_every_instruction_set);
     tcase_add_test(tcase, near_capacity_is_a_matter_of_speed);
+    tcase_add_test(tcase, near_capacity_of_a_large_sphere);
     tcase_add_test(tcase, scaling_by_powers_of_two_changes_no_bit);
     tcase_add_test(tcase, moved_beds_have_the_same_rows);
     tcase_add_test(tcase, periodic_images_are_copies);

@@ -158,6 +158,30 @@ START_TEST(rays_meet_the_first_sphere) {
 }
 END_TEST
 
+/* Of two spheres that overlap by almost a radius, a ray may meet first the one that is deeper, and perhaps not looked
+ * up yet. How far shells reach hangs on the scene as a whole, here on a speck behind; what is met must not. */
+START_TEST(deeper_spheres_are_met_first) {
+    for (double depth = 12; depth < 60; depth += .31) {
+        double f[2][2];
+        for (int k = 0; k < 2; k++) {
+            struct bed bed = bed_of(
+                4, (const double[][4]){
+                       {0, 0, 0, 1}, {0, 0, depth, 10}, {9.9, 0, depth + 1.5, 10}, {0, 0, k == 0 ? -20 : -2000, 1e-6}});
+            fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+            fibrad_work *work = work_of(NULL);
+            fibrad_row row = row_of(4);
+            ck_assert_int_eq(fibrad_cast_row(scene, work, 0, &(fibrad_cast_rule){.rays = 3000}, &row, NULL), FIBRAD_OK);
+            for (uint32_t j = 0; j < 2; j++) f[k][j] = row_factor(&row, j + 1);
+            row_free(&row);
+            free(scene), free(work);
+            bed_free(&bed);
+        }
+        ck_assert_double_eq(f[0][0], f[1][0]);
+        ck_assert_double_eq(f[0][1], f[1][1]);
+    }
+}
+END_TEST
+
 START_TEST(rays_agree_with_beams) {
     struct bed beds[] = {packing(300, .8, 1.2, .55, 7, true), packing(300, .3, 2, .5, 8, true)};
     for (size_t b = 0; b < 2; b++) {
@@ -341,6 +365,7 @@ int main(void) {
     tcase_add_test(tests, two_spheres_match_the_exact_pair);
     tcase_add_test(tests, pebble_table);
     tcase_add_test(tests, rays_meet_the_first_sphere);
+    tcase_add_test(tests, deeper_spheres_are_met_first);
     tcase_add_test(tests, rays_agree_with_beams);
     tcase_add_test(tests, seeds);
     tcase_add_test(tests, same_bits_in_every_instruction_set);

@@ -144,6 +144,57 @@ START_TEST(out_of_reach) {
 }
 END_TEST
 
+/* Large spheres among small ones with a fourth of the directions: rows stay reciprocal, their sums at most 1; the worst
+ * row is no worse than it was, the large ones still have less error than the small ones, and estimates hold. */
+START_TEST(fewer_directions_for_large_spheres) {
+    enum { LARGE = 5 };
+    struct bed bed;
+    bed_init(&bed, false, 0);
+    ck_assert_int_eq(bed_make_two_sizes(&bed, LARGE, 4, .5, 1), 0);
+    struct result truth = rows(&bed, 1200, false, NULL), with[2];
+    const fibrad_beam_rule rule = {.directions = 100}, large_rule = {.directions = 25};
+    double worst[2][2] = {{0}};
+    for (int fewer = 0; fewer < 2; fewer++) {
+        struct run_options options = {.file = "bed", .method = method_beam(&rule), .threads = 1};
+        if (fewer) options.method.large_rule = &large_rule;
+        ck_assert_int_eq(run_rows(&bed, &options, &with[fewer]), 0);
+        uint32_t below = 0;
+        for (uint32_t i = 0; i < bed.n; i++) {
+            const double e = rows_distance(&with[fewer].rows, &truth.rows, i);
+            worst[fewer][i >= LARGE] = fmax(worst[fewer][i >= LARGE], e);
+            below += e < with[fewer].error[i];
+        }
+        ck_assert_uint_gt(below, bed.n * 95 / 100);
+        ck_assert_double_lt(with[fewer].reciprocity_max, 1e-14);
+        ck_assert_double_lt(with[fewer].row_sum_max, 1 + 1e-12);
+    }
+    ck_assert(with[0].rows.f[0] != with[1].rows.f[0]); /* the option does something */
+    ck_assert_double_lt(worst[1][1], 1.1 * worst[0][1]);
+    ck_assert_double_lt(worst[1][0], .5 * worst[1][1]);
+    result_free(&truth);
+    result_free(&with[0]);
+    result_free(&with[1]);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Nothing changes where no sphere is large. */
+START_TEST(large_rule_is_for_large_spheres) {
+    struct bed bed = random_bed();
+    const fibrad_beam_rule rule = {.directions = 50}, large_rule = {.directions = 12};
+    struct run_options options = {.file = "bed", .method = method_beam(&rule), .threads = 1};
+    options.method.large_rule = &large_rule;
+    struct result plain = rows(&bed, 50, false, NULL), with;
+    ck_assert_int_eq(run_rows(&bed, &options, &with), 0);
+    ck_assert_uint_eq(with.rows.start[bed.n], plain.rows.start[bed.n]);
+    ck_assert_mem_eq(with.rows.f, plain.rows.f, plain.rows.start[bed.n] * sizeof *plain.rows.f);
+    ck_assert_mem_eq(with.error, plain.error, bed.n * sizeof *plain.error);
+    result_free(&plain);
+    result_free(&with);
+    bed_free(&bed);
+}
+END_TEST
+
 int main(void) {
     const int count = sizeof beds / sizeof *beds;
     Suite *suite = suite_create("estimate");
@@ -152,5 +203,7 @@ int main(void) {
     tcase_add_loop_test(tcase, tolerance_is_met, 0, count);
     tcase_add_test(tcase, rows_by_themselves);
     tcase_add_test(tcase, out_of_reach);
+    tcase_add_test(tcase, fewer_directions_for_large_spheres);
+    tcase_add_test(tcase, large_rule_is_for_large_spheres);
     return suite_run(suite);
 }

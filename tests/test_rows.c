@@ -136,6 +136,29 @@ START_TEST(averaging_entry_by_entry) {
 END_TEST
 
 /* Points err by their number, and a cutoff opens rows that others close. */
+/* S_01 = (3 A_0 F_01 + A_1 F_10)/4 with A = 4 pi (1, 4); where only one side has an entry, its share of it. */
+START_TEST(averaging_with_weights) {
+    fibrad_rows raw = {.n = 3,
+                       .capacity = 3,
+                       .start = (uint64_t[]){0, 2, 3, 3},
+                       .col = (uint32_t[]){1, 2, 0},
+                       .f = (double[]){.4, .2, .2}};
+    const double r[] = {1, 2, 1}, weight[] = {3, 1, 1}, same[] = {7, 7, 7};
+    fibrad_rows out = rows_of(3, 6), plain = averaged(&raw, r);
+    ck_assert_int_eq(fibrad_rows_average_weighted(&raw, r, weight, &out), FIBRAD_OK);
+    ck_assert_uint_eq(out.start[3], 4);
+    const double expected[] = {(3 * .4 + 4 * .2) / 4, 3 * .2 / 4, (3 * .4 / 4 + .2) / 4, 3 * .2 / 4};
+    for (int k = 0; k < 4; k++) ck_assert_double_eq_tol(out.f[k], expected[k], 1e-15);
+    ck_assert_int_eq(fibrad_rows_average_weighted(&raw, r, same, &out), FIBRAD_OK);
+    ck_assert_mem_eq(out.f, plain.f, 4 * sizeof *out.f);
+    const double bad[][3] = {{1, 0, 1}, {1, -1, 1}, {NAN, 1, 1}, {1, 1, INFINITY}};
+    for (int k = 0; k < 4; k++)
+        ck_assert_int_eq(fibrad_rows_average_weighted(&raw, r, bad[k], &out), FIBRAD_E_ARGUMENT);
+    rows_free(&out);
+    rows_free(&plain);
+}
+END_TEST
+
 START_TEST(limiting_keeps_reciprocity) {
     struct bed bed = packing(400, .8, 1.2, .58, 7, true);
     double *escaped = calloc(bed.n, sizeof *escaped), *scratch = calloc(bed.n, sizeof *scratch), largest;
@@ -222,6 +245,22 @@ START_TEST(dropping_where_no_scaling_exists) {
 }
 END_TEST
 
+/* Pairs of which one factor is missing, on either side of the diagonal: it counts in full. */
+START_TEST(lone_factors_are_not_reciprocal) {
+    double r[] = {1, 2, 1}, f[] = {.5, .2, .05, .125}, largest = -1;
+    uint64_t above[] = {0, 2, 3, 3}, below[] = {0, 1, 2, 3};
+    fibrad_rows lone_above = {3, 4, above, (uint32_t[]){1, 2, 0}, (double[]){.2, .3, .05}};
+    fibrad_rows lone_below = {3, 4, below, (uint32_t[]){1, 0, 1}, (double[]){.2, .05, .4}};
+    fibrad_rows diagonal = {3, 4, (uint64_t[]){0, 2, 4, 4}, (uint32_t[]){0, 1, 0, 1}, f};
+    ck_assert_int_eq(fibrad_rows_reciprocity(&lone_above, r, &largest), FIBRAD_OK);
+    ck_assert_double_eq_tol(largest, .3, 1e-16); /* F_02 */
+    ck_assert_int_eq(fibrad_rows_reciprocity(&lone_below, r, &largest), FIBRAD_OK);
+    ck_assert_double_eq_tol(largest, .1, 1e-16); /* F_21, a quarter of it by area */
+    ck_assert_int_eq(fibrad_rows_reciprocity(&diagonal, r, &largest), FIBRAD_OK);
+    ck_assert_double_eq(largest, 0);
+}
+END_TEST
+
 START_TEST(bad_rows_are_refused) {
     double r[] = {1, 1}, bad_r[] = {1, 0}, scratch[6], largest;
     uint32_t col[] = {1, 0}, descending[] = {1, 1}, outside[] = {2, 0};
@@ -253,10 +292,12 @@ int main(void) {
     tcase_add_test(tcase, averaging_makes_rows_reciprocal);
     tcase_add_test(tcase, averaging_by_hand);
     tcase_add_test(tcase, averaging_entry_by_entry);
+    tcase_add_test(tcase, averaging_with_weights);
     tcase_add_test(tcase, limiting_keeps_reciprocity);
     tcase_add_test(tcase, dropping_keeps_the_books);
     tcase_add_test(tcase, dropping_at_the_threshold);
     tcase_add_test(tcase, dropping_where_no_scaling_exists);
+    tcase_add_test(tcase, lone_factors_are_not_reciprocal);
     tcase_add_test(tcase, bad_rows_are_refused);
     return suite_run(suite);
 }

@@ -195,6 +195,8 @@ START_TEST(refuses_what_is_wrong) {
     ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, NULL, &flags, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, NULL, &isa, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_surface_pair(0, 1, 0, NULL, &good, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_surface_pair(1, 1, 1e71, NULL, &good, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_surface_pair(1, 1e71, 0, NULL, &good, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_surface_pair(1, NAN, 0, NULL, &good, NULL, &f12, NULL), FIBRAD_E_ARGUMENT);
     r = 0;
     ck_assert_int_eq(fibrad_surface_pair(1, 1, 0, &o, &good, scratch, &f12, NULL), FIBRAD_E_ARGUMENT);

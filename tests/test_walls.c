@@ -4,6 +4,7 @@
 
 #include "bed/walls.h"
 #include "scenes.h"
+#include "suite.h"
 #include "walls.h"
 
 #define PI 3.14159265358979323846
@@ -507,9 +508,7 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("walls");
-    TCase *tests = tcase_create("walls");
-    suite_add_tcase(suite, tests);
-    tcase_set_timeout(tests, 300);
+    TCase *tests = suite_case(suite, "walls");
     tcase_add_test(tests, bad_walls_are_refused);
     tcase_add_test(tests, areas_of_walls);
     tcase_add_test(tests, a_ray_leaves_through_the_first_wall);
@@ -523,9 +522,5 @@ int main(void) {
     tcase_add_test(tests, closing_rows);
     tcase_add_loop_test(tests, misspelt_option, 0, (int)(sizeof misspelt / sizeof *misspelt));
     tcase_add_test(tests, option_places_walls);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_run(suite);
 }

@@ -44,8 +44,10 @@ int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
     }
     int status = version(scene, work, i, r.directions, r.points, r.cutoff, row);
     while (status == FIBRAD_OK && r.error > 0 && row->error > r.error && r.directions < FIBRAD_DIRECTIONS_MAX) {
+        double reach = row->reach; /* what the first rows have met decides about the last */
         r.directions = fibrad_directions_for(r.directions, row->error, r.error);
         status = version(scene, work, i, r.directions, r.points, r.cutoff, row);
+        if (status == FIBRAD_OK) row->reach = fibrad_max(row->reach, reach);
     }
     return status;
 }

@@ -12,6 +12,7 @@
 
 #define BATCH  (8 * VD_LANES) /* rays: 64 in AVX-512; fewer take less stack where there are no lanes */
 #define TWO_PI 6.28318530717958647693
+#define SHELLS ((fibrad_stride){3.0, 1.4}) /* smaller than those of windows: a ray ends sooner */
 
 /* Places in the 4-cube, then rays: the direction w, two unit vectors u and v across it such that the origin is
  * cosine w - sine v, and the angle to the normal. */
@@ -89,14 +90,16 @@ struct ray {
 
 /* The first sphere so far. */
 struct hit {
-    double distance; /* infinity: none */
-    fibrad_disc disc;
+    double distance;       /* infinity: none */
+    double depth, u, v, r; /* its disc */
+    uint32_t sphere;
 };
 
 /* Appends the discs of one shell that lie before the window and may be met by the ray from o along w: with
  * q = c^2 + 1 - r^2, those with (w.c - w.o)^2 > q - 2 o.c. */
 static void sieve(fibrad_work *work, const struct ray *ray, uint32_t shell) {
     const fibrad_near *near = &work->near;
+    uint32_t *place = work->disc.near, room = work->disc.capacity, found = 0;
     const double *v = ray->frame + 3, *w = ray->frame + 6;
     vf wx = vf_set1((float)w[0]), wy = vf_set1((float)w[1]), wz = vf_set1((float)w[2]);
     vf ox = vf_set1((float)(2 * (ray->cosine * w[0] - ray->sine * v[0])));
@@ -109,29 +112,26 @@ static void sieve(fibrad_work *work, const struct ray *ray, uint32_t shell) {
         vf twice = vf_add(vf_add(vf_mul(ox, x), vf_mul(oy, y)), vf_mul(oz, z));
         vf from = vf_sub(depth, start), rest = vf_sub(vf_load(near->fq + j), twice);
         uint32_t bits = vf_lt_bits(vf_load(near->fe + j), depth) & vf_lt_bits(rest, vf_mul(from, from));
-        for (; bits != 0; bits &= bits - 1) {
-            uint32_t k = j + (uint32_t)__builtin_ctz(bits);
-            fibrad_work_add_disc(work, ray->frame, near->x[k], near->y[k], near->z[k], near->r[k],
-                                 (uint32_t)near->sphere[k]);
-        }
+        found += vf_compress_places(place + (found < room ? found : room), bits, j);
     }
+    LANED(fibrad_near_discs)(work, ray->frame, found);
 }
 
 /* Of equal distances, as inside two spheres at once, the lesser depth counts. */
-static bool before(double distance, const fibrad_disc *disc, const struct hit *first) {
-    if (distance != first->distance) return distance < first->distance;
-    if (disc->depth != first->disc.depth) return disc->depth < first->disc.depth;
-    return disc->sphere < first->disc.sphere;
+static bool before(const struct hit *a, const struct hit *b) {
+    if (a->distance != b->distance) return a->distance < b->distance;
+    return a->depth != b->depth ? a->depth < b->depth : a->sphere < b->sphere;
 }
 
 /* Compares the discs at hand with the first sphere so far. */
 static void meet(const fibrad_work *work, const struct ray *ray, struct hit *first) {
-    for (uint32_t k = 0; k < work->discs; k++) {
-        const fibrad_disc *disc = &work->disc[k];
-        double v = disc->v + ray->sine, square = disc->r * disc->r - (disc->u * disc->u + v * v);
+    const fibrad_discs *disc = &work->disc;
+    for (uint32_t k = 0; k < disc->count; k++) {
+        struct hit hit = {0, disc->depth[k], disc->u[k], disc->v[k], disc->r[k], fibrad_work_sphere(work, k)};
+        double v = hit.v + ray->sine, square = hit.r * hit.r - (hit.u * hit.u + v * v);
         if (!(square > 0)) continue;
-        double distance = fibrad_max(0, disc->depth - ray->cosine - fibrad_sqrt(square));
-        if (before(distance, disc, first)) *first = (struct hit){distance, *disc};
+        hit.distance = fibrad_max(0, hit.depth - ray->cosine - fibrad_sqrt(square));
+        if (before(&hit, first)) *first = hit;
     }
 }
 
@@ -144,19 +144,19 @@ static bool follow(fibrad_work *work, const struct ray *ray, struct hit *first) 
     double lead = fibrad_sqrt(2 * facts->overlap_max + 1e-12), largest = facts->radius_max * work->inverse;
     double known = -1, horizon = 0;
     for (uint32_t shell = 0; shell == 0 || known < horizon; shell++) {
-        work->discs = 0;
+        work->disc.count = 0;
         if (shell == work->near.shells && !work->near.full) LANED(fibrad_near_extend)(work);
         if (shell < work->near.shells) {
             sieve(work, ray, shell);
             known = work->near.limit[shell];
         } else {
-            double to = known < 0 ? work->step : FIBRAD_GROWTH * known;
+            double to = known < 0 ? work->step : work->growth * known;
             fibrad_near_march(work, ray->frame, &(fibrad_tube){0, -ray->sine, 0}, known, to);
             known = to;
         }
-        if (work->discs > work->config.discs) return false;
+        if (work->disc.count > work->disc.capacity) return false;
         meet(work, ray, first);
-        if (first->distance < __builtin_inf() && first->disc.depth + (first->disc.r + largest) * lead <= known) break;
+        if (first->distance < __builtin_inf() && first->depth + (first->r + largest) * lead <= known) break;
         if (shell == 0) horizon = fibrad_near_horizon(work, ray->frame + 6);
     }
     return true;
@@ -184,23 +184,21 @@ static void leave(fibrad_work *work, const struct ray *ray) {
 
 /* Counts a hit. */
 static void note(fibrad_work *work, const struct hit *first, uint32_t k, bool means) {
-    const fibrad_disc *disc = &first->disc;
-    fibrad_entries_add(&work->entries, disc->sphere, k, 1);
-    if (!means) return;
-    uint32_t slot = fibrad_entries_find(&work->entries, disc->sphere);
-    if (slot == FIBRAD_NONE) return;
-    work->entries.lengths[slot] += first->distance * work->unit;
-    work->entries.angles[slot] += angle(fibrad_sqrt(disc->u * disc->u + disc->v * disc->v), disc->depth);
+    uint32_t entry = fibrad_entries_of(&work->entries, first->sphere);
+    fibrad_entries_add(&work->entries, entry, k, 1);
+    if (!means || entry == FIBRAD_NONE) return;
+    work->entries.lengths[entry] += first->distance * work->unit;
+    work->entries.angles[entry] += angle(fibrad_sqrt(first->u * first->u + first->v * first->v), first->depth);
 }
 
 static void write_means(const fibrad_work *work, const fibrad_row *row, const fibrad_cast_means *means) {
     const fibrad_entries *entries = &work->entries;
     for (uint32_t k = 0; k < row->length; k++) {
-        uint32_t slot = fibrad_entries_find(entries, work->scene->place[row->col[k]]);
-        const double *part = entries->part[slot];
+        uint32_t entry = fibrad_entries_find(entries, work->scene->place[row->col[k]]);
+        const double *part = entries->part[entry];
         double count = part[0] + part[1] + part[2] + part[3];
-        means->length[k] = entries->lengths[slot] / count;
-        means->angle[k] = entries->angles[slot] / count;
+        means->length[k] = entries->lengths[entry] / count;
+        means->angle[k] = entries->angles[entry] / count;
     }
 }
 
@@ -208,7 +206,7 @@ int LANED(fibrad_cast_row)(const fibrad_scene *scene, fibrad_work *work, uint32_
                            fibrad_row *row, const fibrad_cast_means *means) {
     struct rays rays;
     fibrad_random stream = {fibrad_mix(fibrad_random_ahead((fibrad_random){rule->seed}, i))};
-    fibrad_work_begin(work, scene, scene->place[i], rule->cutoff);
+    fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, SHELLS);
     for (uint32_t k = 0; k < rule->rays; k++) {
         uint32_t b = k % BATCH;
         if (b == 0) {
@@ -223,7 +221,7 @@ int LANED(fibrad_cast_row)(const fibrad_scene *scene, fibrad_work *work, uint32_
         }
         struct hit first = {.distance = __builtin_inf()};
         if (!follow(work, &ray, &first)) {
-            work->needed.discs = work->discs;
+            work->needed.discs = work->disc.count;
             return row->length = 0, FIBRAD_E_CAPACITY;
         }
         if (first.distance < __builtin_inf())

@@ -10,7 +10,8 @@ static double room(const fibrad_work *work, int axis, double sense) {
     return (far + (work->unit + scene->facts.radius_max)) * work->inverse;
 }
 
-void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t place, double cutoff) {
+void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t place, double cutoff,
+                       fibrad_stride stride) {
     for (uint32_t k = 0; k < work->entries.length; k++) work->entries.at[work->entries.slot[k]] = FIBRAD_NONE;
     work->entries.length = work->entries.missed = 0;
     work->entries.end = false;
@@ -22,7 +23,8 @@ void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t pl
     work->inverse = 1 / work->unit;
     work->centre[0] = scene->x[place], work->centre[1] = scene->y[place], work->centre[2] = scene->z[place];
     work->reach = cutoff > 0 ? cutoff * (1 + 1e-12) * work->inverse : __builtin_inf();
-    work->step = FIBRAD_FIRST * scene->spacing * work->inverse;
+    work->step = stride.first * scene->spacing * work->inverse;
+    work->growth = stride.growth;
 
     double farthest[3];
     for (int axis = 0; axis < 3; axis++)
@@ -34,6 +36,7 @@ void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t pl
     work->clear = work->farthest;
     for (int axis = 0; axis < 3; axis++)
         for (int sense = -1; sense <= 1; sense += 2) work->clear = fibrad_min(work->clear, room(work, axis, sense));
+    work->deepest = 0;
     work->near.shells = 0;
     work->near.full = false;
 }

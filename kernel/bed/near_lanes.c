@@ -27,7 +27,6 @@ static void floats(fibrad_near *near, uint32_t from, uint32_t to) {
 
 /* Appends those of spheres [begin, end) whose squared emergence lies in (from, to]. False: no room. */
 static bool collect(fibrad_work *work, const fibrad_walk *walk, double from, double to, uint32_t *count) {
-    static const double lane[] = {0, 1, 2, 3, 4, 5, 6, 7};
     const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
     const fibrad_scene scene = *work->scene;
     uint32_t n = *count;
@@ -50,8 +49,7 @@ static bool collect(fibrad_work *work, const fibrad_walk *walk, double from, dou
         vd_compress(near.y + n, bits, y);
         vd_compress(near.z + n, bits, z);
         vd_compress(near.r + n, bits, r);
-        vd_compress(near.sphere + n, bits, vd_add(vd_set1(j), vd_loadu(lane)));
-        n += fibrad_count_bits(bits);
+        n += vd_compress_places(near.sphere + n, bits, j);
     }
     *count = n;
     return true;
@@ -62,7 +60,7 @@ void LANED(fibrad_near_extend)(fibrad_work *work) {
     fibrad_near *near = &work->near;
     uint32_t shell = near->shells, begin = shell > 0 ? near->end[shell - 1] : 0, count = begin;
     double from = shell > 0 ? near->limit[shell - 1] : 0;
-    double to = shell > 0 ? FIBRAD_GROWTH * from : work->step;
+    double to = shell > 0 ? work->growth * from : work->step;
     near->full = shell == FIBRAD_SHELLS;
     for (uint32_t l = 0; l < scene->levels && !near->full; l++) {
         double wide = 1 + scene->level[l].radius_max * work->inverse;
@@ -75,10 +73,57 @@ void LANED(fibrad_near_extend)(fibrad_work *work) {
             near->full = !collect(work, &walk, shell > 0 ? from * from : -__builtin_inf(), to * to, &count);
     }
     if (near->full) return;
-    for (; count % 16 != 0; count++) /* the capacity is a multiple of 16 */
-        near->x[count] = near->y[count] = near->z[count] = near->r[count] = near->sphere[count] = 0;
+    for (; count % 16 != 0; count++) { /* the capacity is a multiple of 16 */
+        near->x[count] = near->y[count] = near->z[count] = near->r[count] = 0;
+        near->sphere[count] = 0;
+    }
     floats(near, begin, count);
+    for (uint32_t k = begin; k < count; k++) near->entry[k] = FIBRAD_NONE;
     near->end[shell] = count;
     near->limit[shell] = to;
     near->shells++;
+}
+
+/* Leaves out the discs from number `from` on that do not overlap the window or do not lie ahead. */
+static void leave_out(fibrad_work *work, uint32_t from) {
+    const fibrad_discs disc = work->disc;
+    uint32_t to = from;
+    for (uint32_t k = from; k < disc.count; k++) {
+        double depth = disc.depth[k], u = disc.u[k], v = disc.v[k], wide = 1 + disc.r[k];
+        disc.depth[to] = depth, disc.u[to] = u, disc.v[to] = v, disc.r[to] = disc.r[k], disc.near[to] = disc.near[k];
+        to += u * u + v * v < wide * wide && fibrad_work_ahead(work, depth, u, v, fibrad_work_sphere(work, k));
+    }
+    work->disc.count = to;
+}
+
+static inline vd along(const double a[3], vd x, vd y, vd z) {
+    return vd_add(vd_add(vd_mul(vd_set1(a[0]), x), vd_mul(vd_set1(a[1]), y)), vd_mul(vd_set1(a[2]), z));
+}
+
+void LANED(fibrad_near_discs)(fibrad_work *work, const double frame[9], uint32_t found) {
+    const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
+    const fibrad_discs disc = work->disc;
+    uint32_t from = disc.count, end = from + found;
+    if (end > disc.capacity) {
+        work->disc.count = end;
+        return;
+    }
+    fibrad_zero(disc.near + end, VD_LANES * sizeof *disc.near); /* looked up, too, in the last vector */
+    uint32_t outside = 0;                                       /* of the window, or not surely ahead */
+    for (uint32_t k = from; k < end; k += VD_LANES) {
+        const uint32_t *place = disc.near + k;
+        vd x = vd_gather(near.x, place), y = vd_gather(near.y, place), z = vd_gather(near.z, place);
+        vd u = along(frame, x, y, z), v = along(frame + 3, x, y, z), depth = along(frame + 6, x, y, z);
+        vd r = vd_gather(near.r, place), wide = vd_add(vd_set1(1), r);
+        vm overlaps = vd_lt(vd_add(vd_mul(u, u), vd_mul(v, v)), vd_mul(wide, wide));
+        vm ahead = vd_lt(vd_set1(0), depth);
+        vd_storeu(disc.u + k, u);
+        vd_storeu(disc.v + k, v);
+        vd_storeu(disc.r + k, r);
+        vd_storeu(disc.depth + k, depth);
+        uint32_t lanes = end - k < VD_LANES ? end - k : VD_LANES;
+        outside |= ~vm_bits(vm_and(overlaps, ahead)) & ((1u << lanes) - 1);
+    }
+    work->disc.count = end;
+    if (outside != 0) leave_out(work, from);
 }

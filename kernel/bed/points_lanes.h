@@ -3,6 +3,7 @@
 #define FIBRAD_BED_POINTS_LANES_H
 
 #include "base/lanes/laned.h"
+#include "bed/work.h"
 #include "sample/tables.h"
 
 /* The points of a window that no disc has hidden so far. */
@@ -12,8 +13,12 @@ typedef struct fibrad_points {
     uint64_t seen[4]; /* bit p: point p is open */
 } fibrad_points;
 
-/* Takes the open points inside a disc: the ray-sphere test of a parallel beam, without a square root. Returns how many
- * there are. */
-uint32_t LANED(fibrad_points_disc)(fibrad_points *points, double x, double y, double r);
+/* Takes away the open points inside a disc. */
+void LANED(fibrad_points_disc)(fibrad_points *points, double x, double y, double r);
+
+/* Lets the discs from order[from] on down to `depth`, from front to back, take the open points inside them: the
+ * ray-sphere test of a parallel beam, without a square root. hits tells how many each takes. Returns where in the order
+ * the deeper ones begin. */
+uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *disc, uint32_t from, double depth);
 
 #endif

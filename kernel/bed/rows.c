@@ -68,11 +68,13 @@ static void transpose_to_end(const fibrad_rows *raw, fibrad_rows *out) {
  * which a search for each entry's partner is not. The transpose waits at the end of out's arrays; the result grows from
  * their beginning and never reaches it, since what is still to come has at least as many entries as what is left of
  * the transpose. */
-int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *out) {
+int fibrad_rows_average_weighted(const fibrad_rows *raw, const double *r, const double *weight, fibrad_rows *out) {
     if (out == NULL || check(raw) != FIBRAD_OK || check_radii(r, raw->n) != FIBRAD_OK || out->n != raw->n ||
         out->start == NULL || out->start == raw->start)
         return FIBRAD_E_ARGUMENT;
     uint32_t n = raw->n;
+    for (uint32_t i = 0; i < n && weight != NULL; i++)
+        if (!(weight[i] >= 1e-100 && weight[i] <= 1e100)) return FIBRAD_E_ARGUMENT;
     uint64_t entries = raw->start[n];
     if (out->capacity > 0 && (out->col == NULL || out->f == NULL || out->col == raw->col || out->f == raw->f))
         return FIBRAD_E_ARGUMENT;
@@ -96,12 +98,18 @@ int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *ou
             /* areas relative to the larger one; the sum is the same from both sides */
             double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
             a_i *= a_i, a_j *= a_j;
+            double share = weight == NULL ? 0.5 : weight[i] / (weight[i] + weight[j]);
+            double other_share = weight == NULL ? 0.5 : weight[j] / (weight[i] + weight[j]);
             out->col[to] = j;
-            out->f[to++] = 0.5 * (a_i * f + a_j * back) / a_i;
+            out->f[to++] = (share * (a_i * f) + other_share * (a_j * back)) / a_i;
         }
     }
     out->start[n] = to;
     return FIBRAD_OK;
+}
+
+int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *out) {
+    return fibrad_rows_average_weighted(raw, r, NULL, out);
 }
 
 static double sum_of(const fibrad_rows *rows, uint32_t i) {
@@ -151,14 +159,30 @@ int fibrad_rows_close(const fibrad_rows *rows, const double *r, double (*wall)[F
     return FIBRAD_OK;
 }
 
+/* By how much A_i F_ij and A_j F_ji differ, over the larger area; the same from both sides. */
+static double difference(const double *r, uint32_t i, uint32_t j, double f, double back) {
+    double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
+    return fibrad_abs(a_i * a_i * f - a_j * a_j * back);
+}
+
 int fibrad_rows_reciprocity(const fibrad_rows *rows, const double *r, double *largest) {
     if (check(rows) != FIBRAD_OK || check_radii(r, rows->n) != FIBRAD_OK || largest == NULL) return FIBRAD_E_ARGUMENT;
     double worst = 0;
+    uint64_t below = 0, partners = 0; /* entries below the diagonal, and of those above it the partners */
     for (uint32_t i = 0; i < rows->n; i++)
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) {
             uint32_t j = rows->col[k];
-            double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
-            worst = fibrad_max(worst, fibrad_abs(a_i * a_i * rows->f[k] - a_j * a_j * factor(rows, j, i)));
+            below += j < i;
+            if (j <= i) continue;
+            uint64_t partner = find(rows, j, i);
+            partners += partner != UINT64_MAX;
+            double back = partner == UINT64_MAX ? 0 : rows->f[partner];
+            worst = fibrad_max(worst, difference(r, i, j, rows->f[k], back));
+        }
+    for (uint32_t i = 0; i < rows->n && partners < below; i++) /* some below the diagonal stand alone */
+        for (uint64_t k = rows->start[i]; k < rows->start[i + 1] && rows->col[k] < i; k++) {
+            uint32_t j = rows->col[k];
+            worst = fibrad_max(worst, difference(r, i, j, rows->f[k], factor(rows, j, i)));
         }
     *largest = worst;
     return FIBRAD_OK;

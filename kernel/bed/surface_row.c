@@ -82,7 +82,7 @@ int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
     int status = fibrad_surface_nodes_of(&rule, &task.nodes);
     if (status != FIBRAD_OK) return status;
 
-    fibrad_work_begin(work, scene, scene->place[i], rule.cutoff);
+    fibrad_work_begin(work, scene, scene->place[i], rule.cutoff, (fibrad_stride){0});
     const uint64_t count = list_near(work);
     if (count > FIBRAD_WORK_MAX) return FIBRAD_E_ARGUMENT;
     if (count > work->near.capacity) {
@@ -95,7 +95,7 @@ int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
     double sum = 0, square = 0;
     for (uint32_t k = 0; k < all.n; k++) {
         const double centre[3] = {near->x[k], near->y[k], near->z[k]}, r = near->r[k], unit = work->unit;
-        const bool first = i <= scene->order[(uint32_t)near->sphere[k]]; /* sphere i is sphere 1 */
+        const bool first = i <= scene->order[near->sphere[k]]; /* sphere i is sphere 1 */
         fibrad_surface_frame frame;
         fibrad_surface_facts facts;
         double f;
@@ -112,7 +112,7 @@ int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
         square += facts.error * facts.error;
         if (f == 0) continue;
         sum += f;
-        fibrad_entries_add(&work->entries, (uint32_t)near->sphere[k], 0, f);
+        fibrad_entries_add(&work->entries, fibrad_entries_of(&work->entries, near->sphere[k]), 0, f);
     }
     if (work->entries.missed > 0) {
         const uint64_t enough = (uint64_t)work->entries.capacity + work->entries.missed;

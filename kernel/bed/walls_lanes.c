@@ -52,9 +52,10 @@ static void turn(double frame[9], double cos, double sin) {
 static fibrad_points open_points(const fibrad_work *work, double cos, double sin) {
     fibrad_points points = {.count = POINTS, .open = POINTS, .seen = {UINT64_MAX, UINT64_MAX}};
     (void)fibrad_disc_points_get(POINTS, &points.set);
-    for (uint32_t k = 0; k < work->discs && points.open > 0; k++) {
-        const fibrad_disc *d = &work->disc[k];
-        LANED(fibrad_points_disc)(&points, cos * d->u + sin * d->v, cos * d->v - sin * d->u, d->r);
+    const fibrad_discs *disc = &work->disc;
+    for (uint32_t k = 0; k < disc->count && points.open > 0; k++) {
+        double u = disc->u[k], v = disc->v[k];
+        LANED(fibrad_points_disc)(&points, cos * u + sin * v, cos * v - sin * u, disc->r[k]);
     }
     if (points.open == 0) points.open = POINTS, points.seen[0] = points.seen[1] = UINT64_MAX;
     return points;

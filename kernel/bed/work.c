@@ -24,8 +24,8 @@ static fibrad_work *layout(fibrad_arena *arena, const fibrad_work_config *config
     near->y = fibrad_arena_take(arena, near->capacity, sizeof(double));
     near->z = fibrad_arena_take(arena, near->capacity, sizeof(double));
     near->r = fibrad_arena_take(arena, near->capacity, sizeof(double));
-    near->sphere = fibrad_arena_take(arena, near->capacity, sizeof(double));
-    near->found = fibrad_arena_take(arena, near->capacity, sizeof(uint32_t));
+    near->sphere = fibrad_arena_take(arena, (size_t)near->capacity + config->discs, sizeof(uint32_t));
+    near->entry = fibrad_arena_take(arena, (size_t)near->capacity + config->discs, sizeof(uint32_t));
 
     for (int list = 0; list < 2; list++) {
         fibrad_obstacles *blockers = &work->blockers[list];
@@ -35,9 +35,20 @@ static fibrad_work *layout(fibrad_arena *arena, const fibrad_work_config *config
         blockers->r = fibrad_arena_take(arena, near->capacity, sizeof(double));
     }
 
-    work->disc = fibrad_arena_take(arena, config->discs, sizeof *work->disc);
-    work->depth = fibrad_arena_take(arena, config->discs, sizeof *work->depth);
-    work->order = fibrad_arena_take(arena, config->discs, sizeof *work->order);
+    fibrad_discs *disc = &work->disc;
+    size_t discs = (size_t)config->discs + FIBRAD_LANES_MAX;
+    disc->capacity = config->discs;
+    disc->depth = fibrad_arena_take(arena, discs, sizeof(double));
+    disc->u = fibrad_arena_take(arena, discs, sizeof(double));
+    disc->v = fibrad_arena_take(arena, discs, sizeof(double));
+    disc->r = fibrad_arena_take(arena, discs, sizeof(double));
+    disc->fu = fibrad_arena_take(arena, discs, sizeof(float));
+    disc->fv = fibrad_arena_take(arena, discs, sizeof(float));
+    disc->square = fibrad_arena_take(arena, discs, sizeof(float));
+    disc->near = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    disc->order = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    disc->hits = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    disc->taker = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     fibrad_areas_layout(&work->areas, arena, config->discs);
 
     fibrad_entries *entries = &work->entries;
@@ -98,22 +109,15 @@ static uint32_t slot_of(const fibrad_entries *entries, uint32_t sphere) {
     return slot;
 }
 
-void fibrad_entries_add(fibrad_entries *entries, uint32_t sphere, uint32_t k, double area) {
+uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere) {
     uint32_t slot = slot_of(entries, sphere), entry = entries->at[slot];
-    if (entry == FIBRAD_NONE) {
-        if (entries->length == entries->capacity) {
-            entries->missed++;
-            return;
-        }
-        entry = entries->at[slot] = entries->length++;
-        entries->slot[entry] = slot;
-        entries->sphere[entry] = sphere;
-        for (int part = 0; part < 4; part++) entries->part[entry][part] = 0;
-        entries->lengths[entry] = entries->angles[entry] = 0;
-    }
-    double *part = entries->part[entry], other = entries->end ? area / 4 : 0; /* so even - odd holds half of it */
-    part[k % 4] += area - other;
-    part[k % 4 ^ 1] += other;
+    if (entry != FIBRAD_NONE || entries->length == entries->capacity) return entry;
+    entry = entries->at[slot] = entries->length++;
+    entries->slot[entry] = slot;
+    entries->sphere[entry] = sphere;
+    for (int part = 0; part < 4; part++) entries->part[entry][part] = 0;
+    entries->lengths[entry] = entries->angles[entry] = 0;
+    return entry;
 }
 
 uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere) {

@@ -11,12 +11,6 @@
 #include "pair/surface_lanes.h"
 
 #define FIBRAD_SHELLS 8
-/* The first shell looks FIRST mean spacings far, the spacing being the cube root of the volume per sphere, each next
- * GROWTH times as far. In a packed bed it has 130 spheres, and three shells fit into the default memory. Of the pairs
- * tried, from (2.3, 1.5) to (4.2, 1.25), this was the fastest: by 10 % over (2.3, 1.5). */
-#define FIBRAD_FIRST  3.0
-#define FIBRAD_GROWTH 1.4
-
 /* Near spheres in shells by emergence: the least depth at which a sphere can come before a window, in any direction,
  * e = sqrt(d^2 - (1 + r)^2), d being its centre distance. It does come before the window of direction w just if
  * w.c > e. All spheres with e <= limit[s] are in shells 0 ... s, so that what a window meets down to that depth is
@@ -26,19 +20,28 @@ typedef struct fibrad_near {
     float *fx, *fy, *fz, *fe; /* [capacity] centre and, a little less than, e: for the first sieve, ... */
     float *fq;                /* ... and, a little less than, d^2 + 1 - r^2: for that of rays */
     double *x, *y, *z, *r;    /* [capacity] */
-    double *sphere;           /* [capacity] place in the scene: a number in lanes like the others */
-    uint32_t *found;          /* [capacity] scratch of a sieve */
+    /* Places from `capacity` on are for the discs that a window looks up on its own. */
+    uint32_t *sphere; /* [capacity + discs] place in the scene */
+    uint32_t *entry;  /* [capacity + discs] its entry in the row; FIBRAD_NONE: not seen so far */
     uint32_t capacity, shells;
     uint32_t end[FIBRAD_SHELLS]; /* where each shell ends */
     double limit[FIBRAD_SHELLS]; /* down to which depth windows are known with it */
     bool full;                   /* no room for a further shell: windows look farther each on its own */
 } fibrad_near;
 
-/* A disc before the window: the shadow of a sphere, v and u being its centre across the direction. */
-typedef struct fibrad_disc {
-    double depth, u, v, r;
-    uint32_t sphere;
-} fibrad_disc;
+#define FIBRAD_LANES_MAX 16 /* whole vectors are written at the end of a list */
+
+/* Discs before the window in hand: the shadows of spheres, u and v being their centres across the direction. */
+typedef struct fibrad_discs {
+    double *depth, *u, *v, *r; /* [capacity + FIBRAD_LANES_MAX]; the depth is -1 once a disc is settled */
+    float *fu, *fv, *square;   /* [same] place and r^2 for points */
+    uint32_t *near;            /* [same] place in the near list */
+    uint32_t *order;           /* [same] which is the first, the second ... from front to back */
+    uint32_t *hits;            /* [same] points that the first, the second ... takes */
+    uint32_t *taker;           /* [same] which of them take any */
+    uint32_t capacity;
+    uint32_t count; /* may go on beyond the capacity */
+} fibrad_discs;
 
 #define FIBRAD_WORK_MAX (1u << 28)
 
@@ -62,10 +65,7 @@ typedef struct fibrad_entries {
 struct fibrad_work {
     fibrad_work_config config, needed;
     fibrad_near near;
-    fibrad_disc *disc; /* [config.discs] of the window in hand */
-    double *depth;     /* [config.discs] of each, -1 once it is settled */
-    uint32_t *order;   /* [config.discs] which is the first, the second ... from front to back */
-    uint32_t discs;    /* may count on beyond the capacity */
+    fibrad_discs disc;
     fibrad_areas areas;
     fibrad_entries entries;
     fibrad_obstacles blockers[2]; /* room for the two lists of the surface method, [near.capacity] */
@@ -75,50 +75,88 @@ struct fibrad_work {
     double unit, inverse;          /* its radius [L], and 1/radius */
     double centre[3];              /* [L] */
     double reach;                  /* the cutoff; infinity if there is none */
-    double step;                   /* how far the first shell looks */
+    double step, growth;           /* how far the first shell looks, and how much farther each next one */
     double farthest;               /* no sphere is farther from i; infinity with periodic axes */
     double clear;                  /* no window has its horizon nearer than this */
     double wall[FIBRAD_WALLS + 1]; /* what meets each wall, and what meets none: areas, points or rays */
+    double deepest;                /* of the discs settled; infinity once a window has stayed open */
 };
 
+/* How far the shells look: the first one `first` mean spacings, the spacing being the cube root of the volume per
+ * sphere, each next one `growth` times as far. A matter of speed alone. */
+typedef struct fibrad_stride {
+    double first, growth;
+} fibrad_stride;
+
 /* Prepares for row `place` of the scene: no near spheres, no entries. */
-void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t place, double cutoff);
+void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t place, double cutoff,
+                       fibrad_stride stride);
 
 /* The part of a beam that is asked for: all of it (0, 0, 1), or the ray at place (u, v) of its window (u, v, 0). */
 typedef struct fibrad_tube {
     double u, v, radius;
 } fibrad_tube;
 
-/* Appends to work->disc the discs before the window of direction w whose emergence lies in (from, to]; from < 0: those
+/* Appends to work->disc those before the window of direction w whose emergence lies in (from, to]; from < 0: those
  * in contact too. Discs that do not reach the tube may be left out. frame: two unit vectors across w, and w. */
 void fibrad_near_march(fibrad_work *work, const double frame[9], const fibrad_tube *tube, double from, double to);
 
 /* No sphere comes before the window of direction w deeper than this. */
 double fibrad_near_horizon(const fibrad_work *work, const double w[3]);
 
-/* Whether a sphere comes before the window. At equal depth the lower place is in front, as among discs: of spheres that
+/* Whether a sphere comes before the window. At equal depth the lower index is in front, as among discs: of spheres that
  * overlap each other only one is seen by what lies behind, so that no sphere receives more than its own disc. */
 static inline bool fibrad_work_ahead(const fibrad_work *work, double depth, double u, double v, uint32_t sphere) {
     if (depth != 0) return depth > 0;
-    if (sphere != work->place) return sphere > work->place;
+    const uint32_t *order = work->scene->order;
+    if (sphere != work->place) return order[sphere] > order[work->place];
     return u != 0 ? u > 0 : v > 0;
 }
 
-/* Appends a disc if it overlaps the window and lies ahead. */
+/* Appends the disc of sphere `sphere`, which is not in the near list, if it overlaps the window and lies ahead. */
 static inline void fibrad_work_add_disc(fibrad_work *work, const double frame[9], double x, double y, double z,
                                         double r, uint32_t sphere) {
     double depth = frame[6] * x + frame[7] * y + frame[8] * z;
     double u = frame[0] * x + frame[1] * y + frame[2] * z, v = frame[3] * x + frame[4] * y + frame[5] * z;
     bool overlaps = u * u + v * v < (1 + r) * (1 + r); /* hard to predict: no branch */
-    if (work->discs < work->config.discs) {
-        work->disc[work->discs] = (fibrad_disc){depth, u, v, r, sphere};
-        work->depth[work->discs] = depth;
+    fibrad_discs *disc = &work->disc;
+    uint32_t k = disc->count;
+    if (k < disc->capacity) {
+        disc->depth[k] = depth, disc->u[k] = u, disc->v[k] = v, disc->r[k] = r;
+        disc->near[k] = work->near.capacity + k;
+        work->near.sphere[disc->near[k]] = sphere;
+        work->near.entry[disc->near[k]] = FIBRAD_NONE;
     }
-    work->discs += (uint32_t)fibrad_work_ahead(work, depth, u, v, sphere) & (uint32_t)overlaps;
+    disc->count += (uint32_t)fibrad_work_ahead(work, depth, u, v, sphere) & (uint32_t)overlaps;
 }
 
-/* Adds visible area of a sphere to part k mod 4. Counts in entries.missed what finds no room. */
-void fibrad_entries_add(fibrad_entries *entries, uint32_t sphere, uint32_t k, double area);
+static inline uint32_t fibrad_work_sphere(const fibrad_work *work, uint32_t disc) {
+    return work->near.sphere[work->disc.near[disc]];
+}
+
+/* The entry of a sphere, a new one if it has none so far; FIBRAD_NONE if that finds no room. */
+uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere);
+
+/* Adds visible area to part k mod 4 of an entry. Counts in entries.missed what has none. */
+static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, uint32_t k, double area) {
+    if (entry == FIBRAD_NONE) {
+        entries->missed++;
+        return;
+    }
+    double *part = entries->part[entry];
+    if (entries->end) { /* so even - odd holds half of it */
+        part[k % 4 ^ 1] += area / 4;
+        area -= area / 4;
+    }
+    part[k % 4] += area;
+}
+
+/* Adds what window k sees of a disc. */
+static inline void fibrad_work_see(fibrad_work *work, uint32_t disc, uint32_t k, double area) {
+    uint32_t *entry = &work->near.entry[work->disc.near[disc]];
+    if (*entry == FIBRAD_NONE) *entry = fibrad_entries_of(&work->entries, fibrad_work_sphere(work, disc));
+    fibrad_entries_add(&work->entries, *entry, k, area);
+}
 
 /* The entry of a sphere; FIBRAD_NONE if it has found no room. */
 uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);

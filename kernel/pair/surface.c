@@ -89,9 +89,11 @@ int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *
                   obstacles->r == NULL))
         return FIBRAD_E_ARGUMENT;
     if (n > 0 && (uintptr_t)scratch % FIBRAD_ALIGNMENT != 0) return FIBRAD_E_ALIGNMENT;
+    const double most = 1e70 * r1; /* room for fourth powers */
+    if (!(r2 <= most && gap <= most)) return FIBRAD_E_ARGUMENT;
     for (uint32_t k = 0; k < n; k++)
-        if (!fibrad_finite(obstacles->x[k]) || !fibrad_finite(obstacles->y[k]) || !fibrad_finite(obstacles->z[k]) ||
-            !fibrad_finite(obstacles->r[k]) || !(obstacles->r[k] > 0))
+        if (!(fibrad_abs(obstacles->x[k]) <= most && fibrad_abs(obstacles->y[k]) <= most &&
+              fibrad_abs(obstacles->z[k]) <= most && obstacles->r[k] <= most && obstacles->r[k] > 0))
             return FIBRAD_E_ARGUMENT;
     const fibrad_surface_lanes lanes =
         fibrad_surface_lanes_of(rule.isa == FIBRAD_ISA_BEST ? (int)fibrad_isa_best() : rule.isa);

@@ -120,6 +120,20 @@ static void try_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     free(means.length), free(means.angle);
 }
 
+/* Where nothing moves, no row is off. */
+static void check_unmoved(const fibrad_scene *scene, uint32_t n, uint32_t i, const fibrad_row *row) {
+    double *error = calloc(n, sizeof *error), *reach = calloc(n, sizeof *reach), moved;
+    unsigned char *same = malloc(n), *scratch = malloc(2 * (size_t)n);
+    REQUIRE(error != NULL && reach != NULL && same != NULL && scratch != NULL);
+    REQUIRE(row->reach >= 0);
+    reach[i] = row->reach;
+    REQUIRE(fibrad_moved_error(scene, scene, i, row, &moved) == FIBRAD_OK && moved == 0);
+    REQUIRE(fibrad_moved_seen(scene, i, row, row, error) == FIBRAD_OK);
+    REQUIRE(fibrad_moved_same(scene, scene, reach, scratch, same) == FIBRAD_OK);
+    for (uint32_t j = 0; j < n; j++) REQUIRE(error[j] == 0 && same[j] == 1);
+    free(error), free(reach), free(same), free(scratch);
+}
+
 static void try_row(const fibrad_scene *scene, uint32_t n) {
     fibrad_work_config config = {number() % 300, number() % 60, number() % 40};
     size_t size = fibrad_work_size(&config);
@@ -143,8 +157,10 @@ static void try_row(const fibrad_scene *scene, uint32_t n) {
         if (which > 200) rule.cutoff = coordinate();
         if (which == 104 || which == 105) try_cast_row(scene, work, number() % (n + 1), &row, which == 105);
         if (which == 103) try_surface_row(scene, work, number() % (n + 1), &row);
-        status = fibrad_beam_row(scene, work, number() % (n + 1), &rule, &row);
+        uint32_t i = number() % (n + 1);
+        status = fibrad_beam_row(scene, work, i, &rule, &row);
         if (status == FIBRAD_OK) check_row(&row, scene, rule.points);
+        if (status == FIBRAD_OK) check_unmoved(scene, n, i, &row);
         if (status == FIBRAD_E_CAPACITY && row.length == 0) {
             fibrad_work_config more;
             fibrad_work_needed(work, &more);

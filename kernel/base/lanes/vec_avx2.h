@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 #include <immintrin.h>
+#include "base/lanes/places.h"
 
 #define VD_LANES 4
 #define VF_LANES 8
@@ -46,6 +47,12 @@ static inline vd vd_replace(vd a, uint32_t lane, double x) {
     __m256d there = _mm256_loadu_pd((const double *)(const void *)(ones + 3 - lane));
     return _mm256_blendv_pd(a, _mm256_set1_pd(x), there);
 }
+static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
+    return fibrad_compress_places(p, bits, first);
+}
+static inline vd vd_gather(const double *table, const uint32_t *k) {
+    return _mm256_set_pd(table[k[3]], table[k[2]], table[k[1]], table[k[0]]);
+}
 static inline vd vd_loadu(const double *p) { return _mm256_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm256_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm256_storeu_pd(p, a); }
@@ -69,14 +76,15 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_pd(a); }
 
 static inline vf vf_set1(float a) { return _mm256_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm256_load_ps(p); }
+static inline void vf_store(float *p, vf a) { _mm256_store_ps(p, a); }
 static inline vf vf_add(vf a, vf b) { return _mm256_add_ps(a, b); }
 static inline vf vf_sub(vf a, vf b) { return _mm256_sub_ps(a, b); }
 static inline vf vf_mul(vf a, vf b) { return _mm256_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
+static inline vf vf_lt_one(vf a, vf b) { return _mm256_and_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ), _mm256_set1_ps(1)); }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    uint32_t count = 0;
-    for (; bits != 0; bits &= bits - 1) p[count++] = first + (uint32_t)__builtin_ctz(bits);
-    return count;
+    uint32_t low = fibrad_compress_places(p, bits & 15, first);
+    return low + fibrad_compress_places(p + low, bits >> 4, first + 4);
 }
 
 #endif

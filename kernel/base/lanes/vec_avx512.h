@@ -30,6 +30,14 @@ static inline vd vd_replace(vd a, uint32_t lane, double x) {
     __asm__("" : "+v"(a));
     return a;
 }
+static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
+    __m256i place = _mm256_add_epi32(_mm256_set1_epi32((int)first), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    _mm256_storeu_si256((__m256i *)(void *)p, _mm256_maskz_compress_epi32((__mmask8)bits, place));
+    return (uint32_t)__builtin_popcount(bits);
+}
+static inline vd vd_gather(const double *table, const uint32_t *k) {
+    return _mm512_i32gather_pd(_mm256_loadu_si256((const __m256i *)(const void *)k), table, 8);
+}
 static inline vd vd_loadu(const double *p) { return _mm512_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm512_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm512_storeu_pd(p, a); }
@@ -53,10 +61,14 @@ static inline uint32_t vm_bits(vm a) { return a; }
 
 static inline vf vf_set1(float a) { return _mm512_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm512_load_ps(p); }
+static inline void vf_store(float *p, vf a) { _mm512_store_ps(p, a); }
 static inline vf vf_add(vf a, vf b) { return _mm512_add_ps(a, b); }
 static inline vf vf_sub(vf a, vf b) { return _mm512_sub_ps(a, b); }
 static inline vf vf_mul(vf a, vf b) { return _mm512_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+static inline vf vf_lt_one(vf a, vf b) {
+    return _mm512_maskz_mov_ps(_mm512_cmp_ps_mask(a, b, _CMP_LT_OQ), _mm512_set1_ps(1));
+}
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     __m512i place = _mm512_add_epi32(_mm512_set1_epi32((int)first), lane);

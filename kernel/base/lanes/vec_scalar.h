@@ -7,12 +7,14 @@
  *                            vd_lt vd_le (masks) vd_select(mask, if set, if clear)
  *                            vd_lookup(table, size, k): table[k] for lanes of whole numbers k < size (less than
  *                            the table's length where nobody looks); the table is a whole number of vectors long
+ *                            vd_gather(table, k): table[k[l]] for lane l
  *                            vd_compress(p, bits, a): the lanes named by bits side by side at p, which has room for all
  *                            vd_replace(a, lane, x): a with x in one lane
+ *                            vd_compress_places(p, bits, first): first + l for them; returns how many
  *   vm   a mask of vd lanes  vm_and vm_or vm_not vm_bits (bit l = lane l)
- *   vf   VF_LANES floats     vf_set1 vf_load vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
- *                            vf_compress_places(p, bits, first): first + l for the lanes l named by bits, side by side
- *                            at p, which has room for all; returns how many
+ *   vf   VF_LANES floats     vf_set1 vf_load vf_store vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
+ *                            vf_lt_one: 1 where a < b, else 0
+ *                            vf_compress_places(p, bits, first): as that of vd
  * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them. */
 /* clang-format on */
 #ifndef FIBRAD_VEC_SCALAR_H
@@ -35,6 +37,11 @@ static inline void vd_compress(double *p, uint32_t bits, vd a) {
     (void)bits, *p = a; /* there is room, and no branch */
 }
 static inline vd vd_replace(vd a, uint32_t lane, double x) { return (void)a, (void)lane, x; }
+static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
+    *p = first;
+    return bits;
+}
+static inline vd vd_gather(const double *table, const uint32_t *k) { return table[*k]; }
 static inline vd vd_loadu(const double *p) { return *p; }
 static inline void vd_store(double *p, vd a) { *p = a; }
 static inline void vd_storeu(double *p, vd a) { *p = a; }
@@ -58,13 +65,14 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
 
 static inline vf vf_set1(float a) { return a; }
 static inline vf vf_load(const float *p) { return *p; }
+static inline void vf_store(float *p, vf a) { *p = a; }
 static inline vf vf_add(vf a, vf b) { return a + b; }
 static inline vf vf_sub(vf a, vf b) { return a - b; }
 static inline vf vf_mul(vf a, vf b) { return a * b; }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return a < b; }
+static inline vf vf_lt_one(vf a, vf b) { return a < b ? 1.0f : 0.0f; }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    *p = first;
-    return bits;
+    return vd_compress_places(p, bits, first);
 }
 
 #endif

@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 #include <immintrin.h>
+#include "base/lanes/places.h"
 
 #define VD_LANES 2
 #define VF_LANES 4
@@ -29,6 +30,12 @@ static inline vd vd_replace(vd a, uint32_t lane, double x) {
     __m128d there = _mm_loadu_pd((const double *)(const void *)(ones + 1 - lane));
     return _mm_or_pd(_mm_and_pd(there, _mm_set1_pd(x)), _mm_andnot_pd(there, a));
 }
+static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
+    p[0] = first + (bits == 2);
+    p[1] = first + 1;
+    return (bits & 1) + (bits >> 1);
+}
+static inline vd vd_gather(const double *table, const uint32_t *k) { return _mm_set_pd(table[k[1]], table[k[0]]); }
 static inline vd vd_loadu(const double *p) { return _mm_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm_storeu_pd(p, a); }
@@ -54,14 +61,14 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm_movemask_pd(a); }
 
 static inline vf vf_set1(float a) { return _mm_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm_load_ps(p); }
+static inline void vf_store(float *p, vf a) { _mm_store_ps(p, a); }
 static inline vf vf_add(vf a, vf b) { return _mm_add_ps(a, b); }
 static inline vf vf_sub(vf a, vf b) { return _mm_sub_ps(a, b); }
 static inline vf vf_mul(vf a, vf b) { return _mm_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)); }
+static inline vf vf_lt_one(vf a, vf b) { return _mm_and_ps(_mm_cmplt_ps(a, b), _mm_set1_ps(1)); }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    uint32_t count = 0;
-    for (; bits != 0; bits &= bits - 1) p[count++] = first + (uint32_t)__builtin_ctz(bits);
-    return count;
+    return fibrad_compress_places(p, bits, first);
 }
 
 #endif
