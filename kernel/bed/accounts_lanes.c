@@ -222,7 +222,7 @@ static inline arcs_in_lanes select(vm m, const arcs_in_lanes *s, const arcs_in_l
 static inline uint32_t rising(const arcs_in_lanes *s) { return vm_bits(vd_lt(s->a, s->b)); }
 
 /* Gives the lanes named by bits to circle k. */
-static inline void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes *s, uint32_t k) {
+static void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes *s, uint32_t k) {
     uint32_t size = areas->circles + 1; /* the new one, or the rest */
     vd x = vd_lookup(areas->x, size, s->circle), y = vd_lookup(areas->y, size, s->circle);
     fibrad_arc_lanes piece = {vd_sub(s->px, x),
@@ -233,7 +233,7 @@ static inline void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes 
                               y,
                               vd_lookup(areas->r, size, s->circle),
                               s->circle};
-    fibrad_arcs_give(areas, bits, &piece, k);
+    LANED(fibrad_arcs_give)(areas, bits, &piece, k);
 }
 
 /* Gives a whole list to circle k. */

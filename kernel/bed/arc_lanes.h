@@ -40,9 +40,9 @@ static inline vd fibrad_arc_area(const fibrad_arc_lanes *a) {
 /* What the pieces so far contribute to the areas of their discs. */
 void LANED(fibrad_areas_integrate)(fibrad_areas *areas);
 
-/* Disc k takes the arcs of the lanes named by bits from the boundary. */
-static inline __attribute__((always_inline)) void fibrad_arcs_give(fibrad_areas *areas, uint32_t bits,
-                                                                   const fibrad_arc_lanes *a, uint32_t k) {
+/* Disc k takes the arcs of the lanes named by bits from the boundary. In line here, for the one place that is in a
+ * hurry, and as a function. */
+static inline void fibrad_arcs_append(fibrad_areas *areas, uint32_t bits, const fibrad_arc_lanes *a, uint32_t k) {
     fibrad_pieces *pieces = areas->pieces;
     uint32_t n = pieces->count;
     vd_compress(pieces->px + n, bits, a->px);
@@ -57,5 +57,7 @@ static inline __attribute__((always_inline)) void fibrad_arcs_give(fibrad_areas 
     pieces->count = n + fibrad_count_bits(bits);
     if (pieces->count >= FIBRAD_PIECES) LANED(fibrad_areas_integrate)(areas);
 }
+
+void LANED(fibrad_arcs_give)(fibrad_areas *areas, uint32_t bits, const fibrad_arc_lanes *a, uint32_t k);
 
 #endif

@@ -191,7 +191,7 @@ static bool clip(fibrad_areas *areas, uint32_t k, double x, double y, double r) 
                                   .cy = cy,
                                   .r = c_r,
                                   .circle = vd_load(b->circle + o)};
-        fibrad_arcs_give(areas, touching, &piece, k);
+        fibrad_arcs_append(areas, touching, &piece, k);
         p_inside |= (uint64_t)(vm_bits(p_in) & lanes) << o;
         q_inside |= (uint64_t)(vm_bits(q_in) & lanes) << o;
         twice |= (uint64_t)(vm_bits(cut_twice) & lanes) << o;
@@ -224,7 +224,7 @@ static bool clip(fibrad_areas *areas, uint32_t k, double x, double y, double r) 
                                       vd_set1(b->cy[a]),
                                       vd_set1(b->r[a]),
                                       vd_set1(b->circle[a])};
-            fibrad_arcs_give(areas, 1, &piece, k);
+            LANED(fibrad_arcs_give)(areas, 1, &piece, k);
         } else if (!add(b, b->cut[1][0][a] + dx, b->cut[1][1][a] + dy, b->old_qx[a], b->old_qy[a], b->cx[a], b->cy[a],
                         b->r[a], b->circle[a])) {
             return false;
@@ -298,7 +298,7 @@ static bool complete(fibrad_areas *areas) {
     for (uint32_t o = 0; b->alive >> o != 0; o += VD_LANES) {
         fibrad_arc_lanes piece = {vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
                                   vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
-        fibrad_arcs_give(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest);
+        LANED(fibrad_arcs_give)(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest);
     }
     LANED(fibrad_areas_integrate)(areas);
     bool right = fibrad_abs(areas->area[0] + PI) < CLOSURE;
