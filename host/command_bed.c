@@ -29,7 +29,7 @@ enum {
     KEY_PROGRESS,
     KEY_ERROR,
     KEY_WALL,
-    KEY_SAME
+    KEY_FEWER
 };
 
 static const struct option table[] = {
@@ -46,8 +46,8 @@ static const struct option table[] = {
     {KEY_SEED, "seed", "S", "cast, mc: another number, other rays [0]"},
     {KEY_CUTOFF, "cutoff", "D", "spheres with centres farther apart than D do not see each other [none]"},
     {KEY_TARGETS, "targets", "LIST", "rows wanted, such as 3,7,10-19, or all; a list implies --raw [all]"},
-    {KEY_SAME, "same-directions", NULL,
-     "as many directions also for spheres over 3 mean radii, whose S_ij come mainly from the other side [a fourth]"},
+    {KEY_FEWER, "fewer-for-large", NULL,
+     "a fourth of the directions for spheres over 3 mean radii, as S_ij is known from the small ones too [all]"},
     {KEY_RAW, "raw", NULL, "do not average F_ij and F_ji [averaged: A_i F_ij = A_j F_ji]"},
     {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},
     {KEY_WALL, "wall", WALLS_ARGUMENT, WALLS_HELP},
@@ -70,7 +70,7 @@ struct request {
     fibrad_surface_rule surface;
     fibrad_cast_rule cast;
     double cutoff, error; /* 0: none */
-    bool beam_given, surface_given, cast_given, same_directions;
+    bool beam_given, surface_given, cast_given, fewer_for_large;
     struct wall_options walls;
     struct wall_order order;
     struct read_options read;
@@ -167,8 +167,8 @@ static int take_option(struct request *request, const struct options *options, i
     case KEY_RAW:
         request->run.raw = true;
         break;
-    case KEY_SAME:
-        request->same_directions = true;
+    case KEY_FEWER:
+        request->fewer_for_large = true;
         break;
     case KEY_PROGRESS:
         request->run.progress = true;
@@ -214,7 +214,7 @@ static int choose_method(struct request *request) {
         status = options_beam_rule(&request->beam, &request->beam_rule);
         request->large_rule = request->beam_rule;
         request->large_rule.directions /= 4;
-        if (!request->same_directions && request->large_rule.directions >= FIBRAD_DIRECTIONS_MIN)
+        if (request->fewer_for_large && request->large_rule.directions >= FIBRAD_DIRECTIONS_MIN)
             request->run.method.large_rule = &request->large_rule;
         return status;
     }
