@@ -28,14 +28,14 @@ ISAS      := scalar $(if $(filter x86_64% i%86%,$(shell $(CC) -dumpmachine)),sse
 WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wshadow -Wvla $(WERROR)
 COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
 # tables of addresses would be data in position independent code
-KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) \
-    $(foreach isa,$(filter-out scalar,$(ISAS)),$(WITH_$(isa)))
+KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
 HOST_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(GSL_CFLAGS)
-TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES)
+TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 
 WITH_sse2   = -DFIBRAD_WITH_SSE2
 WITH_avx2   = -DFIBRAD_WITH_AVX2
 WITH_avx512 = -DFIBRAD_WITH_AVX512
+WITH_ISAS   = $(foreach isa,$(filter-out scalar,$(ISAS)),$(WITH_$(isa)))
 
 # no -mfma: products and sums round one by one in every instruction set
 FLAGS_scalar =
@@ -82,6 +82,8 @@ KERNEL = \
 # compiled once per instruction set
 LANED = \
     kernel/pair/surface_lanes.c \
+    kernel/bed/accounts_lanes.c \
+    kernel/bed/arc_lanes.c \
     kernel/bed/areas_lanes.c \
     kernel/bed/beam_lanes.c \
     kernel/bed/cast_lanes.c \
@@ -189,6 +191,7 @@ SCRIPTS = \
     tests/package/check_package.sh
 
 BENCHES = \
+    bench/bench_areas.c \
     bench/bench_beam.c \
     bench/bench_cast.c \
     bench/bench_error.c \
@@ -207,7 +210,7 @@ BENCHES = \
 PEERS = bench/bench_embree.c
 
 # these know the argument `quick`
-QUICK = bench/bench_beam.c bench/bench_heat.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c $(PEERS)
+QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_heat.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c $(PEERS)
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)
@@ -273,7 +276,7 @@ $(TEST_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/libfibrad.a | need
 
 $(BENCH_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/libfibrad.a | need-gsl
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(HOST_FLAGS) $(LDFLAGS) $< $(BUILD)/libhost.a $(BUILD)/libfibrad.a $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) $(HOST_FLAGS) $(WITH_ISAS) $(LDFLAGS) $< $(BUILD)/libhost.a $(BUILD)/libfibrad.a $(GSL_LIBS) -lm -o $@
 
 $(PEER_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/libfibrad.a | need-gsl
 	@mkdir -p $(@D)

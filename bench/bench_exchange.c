@@ -97,8 +97,8 @@ static void expected(struct bench *bench, uint32_t i, uint32_t paths, uint32_t d
                           .entries = &bench->work->entries};
     fibrad_row row = {.col = bench->col, .f = bench->f, .capacity = bench->n};
     (void)directions;
-    fibrad_work_begin(bench->work, bench->scene, state.place, 0);
-    fibrad_paths_version((int)fibrad_isa_best())(&state, 0, paths);
+    fibrad_work_begin(bench->work, bench->scene, state.place, 0, (fibrad_stride){0});
+    fibrad_paths_follow(&state, 0, paths);
     fibrad_entries_row(bench->work, 1.0 / paths, &row);
     for (uint32_t k = 0; k < row.length; ++k) bench->sum[row.col[k]] += row.f[k];
     *error = row.error;

@@ -270,7 +270,7 @@ static void print_summary(const struct request *request, const struct bed *bed, 
         const uint32_t wall = request->order.wall[k];
         printf("wall_%s %.17g %.17g\n", wall_name(wall), result->wall_mean[wall], result->facts.wall_area[wall]);
     }
-    puts("fallbacks 0");
+    printf("fallbacks %" PRIu64 "\n", result->fallbacks);
 }
 
 static int write_results(const struct request *request, const struct bed *bed, const struct result *result,

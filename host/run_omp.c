@@ -19,6 +19,7 @@ struct store {
     double *f;
     size_t used, capacity;
     uint32_t directions; /* the most that a row took */
+    uint64_t fallbacks;  /* of all its rows */
     fibrad_work *work;
     void *block; /* of the work */
 };
@@ -125,6 +126,7 @@ static int add_row(struct run *run, struct store *store, uint32_t i) {
     run->result->error[i] = row.error;
     if (run->weight) run->weight[i] = pow(row.directions, 3);
     store->directions = row.directions > store->directions ? row.directions : store->directions;
+    store->fallbacks += row.fallbacks;
     store->used += row.length;
     return STATUS_OK;
 }
@@ -177,10 +179,11 @@ static void compute_rows(struct run *run, uint64_t rows) {
     if (stop == STATUS_MEMORY) message_memory();
 }
 
-/* Frees what the threads have gathered; the directions the rows took are kept. */
+/* Frees what the threads have gathered; the directions and fallbacks of the rows are kept. */
 static void free_stores(struct run *run) {
     for (int t = 0; run->stores && t < run->result->threads; ++t) {
         if (run->stores[t].directions > run->result->directions) run->result->directions = run->stores[t].directions;
+        run->result->fallbacks += run->stores[t].fallbacks;
         free(run->stores[t].col);
         free(run->stores[t].f);
         free(run->stores[t].block);

@@ -30,6 +30,7 @@ struct result {
     fibrad_scene_facts facts;
     int threads;
     uint32_t directions; /* beam: the most that a row took */
+    uint64_t fallbacks;  /* beam: windows that the robust method had to do */
     double seconds;      /* computing, without reading and writing */
     double row_sum_min, row_sum_max, escaped_mean;
     double wall_mean[FIBRAD_WALLS];

@@ -196,7 +196,7 @@ size_t fibrad_work_size(const fibrad_work_config *config);
 
 /* An upper bound of fibrad_work_size as a constant expression, for static memory (no zeros here). */
 #define FIBRAD_WORK_BYTES(near, discs, entries)                                                                        \
-    (20480 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
+    (24576 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
 
 /* Makes work memory in `memory` (`size` bytes on a 64-byte boundary). It serves any scene, one row at a time.
  * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(entries). */
@@ -219,6 +219,7 @@ typedef struct fibrad_row {
     double error;        /* out: estimated Euclidean error of the row, from parts of its directions; twice the true one
                             on the median, seldom less than it */
     uint32_t directions; /* out, beam method only: how many were taken */
+    uint32_t fallbacks;  /* out, beam method only: windows whose exact areas the fast method left to the robust one */
     double reach;        /* out, beam method only: how deep the windows have looked before they were covered [L];
                             infinity if one stayed open and there is no cutoff. See fibrad_moved_same */
     double wall[FIBRAD_WALLS]; /* out: the fraction that meets each wall, 0 for walls that are not there; `error` does

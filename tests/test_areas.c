@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #define FIBRAD_ISA_SUFFIX _scalar
+#include "bed/accounts_lanes.h"
 #include "bed/areas_lanes.h"
 #include "reference.h"
 #include "scenes.h"
@@ -20,34 +21,78 @@ static void put(struct window *w, double u, double v, double r) {
     w->u[w->n] = u, w->v[w->n] = v, w->r[w->n++] = r;
 }
 
-/* The largest difference from slicing; checks closure and signs on the way. */
-static double worst_of(const struct window *w) {
+typedef void begin_function(fibrad_areas *areas);
+typedef bool disc_function(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
+typedef double end_function(fibrad_areas *areas);
+
+struct method {
+    begin_function *begin;
+    disc_function *disc;
+    end_function *end;
+};
+
+static const struct method both = {fibrad_areas_begin_scalar, fibrad_areas_disc_scalar, fibrad_areas_end_scalar};
+static const struct method accounts = {fibrad_accounts_begin_scalar, fibrad_accounts_disc_scalar,
+                                       fibrad_accounts_end_scalar};
+
+static uint32_t windows, fallbacks;
+
+/* Room for windows of MOST discs. */
+static fibrad_areas areas_make(void) {
     fibrad_arena arena = {0};
-    fibrad_areas areas;
+    fibrad_areas areas = {0};
     fibrad_areas_layout(&areas, &arena, MOST);
     size_t size = arena.used;
     void *block = block_of(size);
     memset(block, 0, size);
     arena = (fibrad_arena){block, 0, size};
     fibrad_areas_layout(&areas, &arena, MOST);
+    return areas;
+}
 
-    double mine[MOST] = {0}, expected[MOST], rest_expected, total = 0, worst = 0;
-    fibrad_areas_begin_scalar(&areas);
+static void areas_free(fibrad_areas *areas) { free(areas->x); } /* the first array begins the block */
+
+/* The visible areas by one method, after those the area that is still open; checks closure and signs. */
+static void measure(const struct method *method, fibrad_areas *areas, const struct window *w, double area[MOST + 1]) {
+    method->begin(areas);
     bool open = true;
-    for (uint32_t k = 0; k < w->n && open; k++) open = fibrad_areas_disc_scalar(&areas, k, w->u[k], w->v[k], w->r[k]);
-    double rest = fibrad_areas_end_scalar(&areas);
-    ck_assert(!areas.overflow);
-    for (uint32_t c = 1; c < areas.circles; c++) mine[areas.whose[c]] = areas.area[c];
-    ck_assert_int_eq(reference_window(w->n, w->u, w->v, w->r, expected, &rest_expected), REFERENCE_OK);
-    for (uint32_t k = 0; k < w->n; k++) {
-        ck_assert_double_gt(mine[k], -1e-12);
-        worst = fmax(worst, fabs(mine[k] - expected[k]));
-        total += mine[k];
+    for (uint32_t k = 0; k <= w->n; k++) area[k] = 0;
+    for (uint32_t k = 0; k < w->n && open; k++) open = method->disc(areas, k, w->u[k], w->v[k], w->r[k]);
+    area[w->n] = method->end(areas);
+    ck_assert(!areas->overflow);
+    for (uint32_t c = 1; c < areas->circles; c++) area[areas->whose[c]] = areas->area[c];
+    double total = 0;
+    for (uint32_t k = 0; k <= w->n; k++) {
+        ck_assert_double_gt(area[k], -1e-12);
+        total += area[k];
     }
-    ck_assert_double_eq_tol(total + rest, 3.14159265358979323846, 1e-12);
-    worst = fmax(worst, fabs(rest - rest_expected));
-    free(block);
+    ck_assert_double_eq_tol(total, 3.14159265358979323846, 1e-12);
+}
+
+static double difference(uint32_t n, const double *a, const double *b) {
+    double worst = 0;
+    for (uint32_t k = 0; k < n; k++) worst = fmax(worst, fabs(a[k] - b[k]));
     return worst;
+}
+
+/* The largest difference of either method from slicing. */
+static double worst_of(const struct window *w) {
+    fibrad_areas areas = areas_make();
+    double mine[MOST + 1], robust[MOST + 1], expected[MOST + 1], rest;
+    measure(&both, &areas, w, mine);
+    measure(&accounts, &areas, w, robust);
+    windows++, fallbacks += areas.fallbacks;
+    ck_assert_int_eq(reference_window(w->n, w->u, w->v, w->r, expected, &rest), REFERENCE_OK);
+    expected[w->n] = rest;
+    areas_free(&areas);
+    return fmax(difference(w->n + 1, mine, expected), difference(w->n + 1, robust, expected));
+}
+
+/* The part of the windows so far that was left to accounts. */
+static double fallbacks_part(void) {
+    double part = (double)fallbacks / windows;
+    windows = fallbacks = 0;
+    return part;
 }
 
 static double random_in(double low, double high) {
@@ -69,6 +114,7 @@ START_TEST(random_windows) {
     }
     printf("random windows: %.2g\n", worst);
     ck_assert_double_lt(worst, 1e-12);
+    ck_assert_double_lt(fallbacks_part(), .05); /* for want of slots */
 }
 END_TEST
 
@@ -81,6 +127,7 @@ START_TEST(hundreds_of_discs) {
     }
     printf("hundreds of discs: %.2g\n", worst);
     ck_assert_double_lt(worst, 1e-12);
+    ck_assert_double_eq(fallbacks_part(), 1); /* no slots */
 }
 END_TEST
 
@@ -97,7 +144,9 @@ START_TEST(large_and_small_discs) {
             }
             worst = fmax(worst, worst_of(&w));
         }
-        printf("radius 1e%+d: %.2g\n", power, worst);
+        double part = fallbacks_part();
+        printf("radius 1e%+d: %.2g, left to accounts %.3g\n", power, worst, part);
+        ck_assert_double_eq(part, power > 3);
         ck_assert_double_lt(worst, 1e-14 * fmax(100, 10 * pow(10, power)));
     }
 }
@@ -140,7 +189,7 @@ START_TEST(degenerate_windows) {
                 ck_assert_msg(error < 1e-11, "set %zu, nudges %g %g: %g", s, e, f, error);
             }
         }
-    printf("degenerate windows: %.2g\n", worst);
+    printf("degenerate windows: %.2g, left to accounts %.3g\n", worst, fallbacks_part());
 }
 END_TEST
 
@@ -176,8 +225,121 @@ START_TEST(lattices_along_their_axes) {
                 worst = fmax(worst, worst_of(&window));
                 bed_free(&bed);
             }
-    printf("lattices along their axes: %.2g\n", worst);
+    printf("lattices along their axes: %.2g, left to accounts %.3g\n", worst, fallbacks_part());
     ck_assert_double_lt(worst, 1e-11);
+}
+END_TEST
+
+/* Both methods on windows whose circles meet in multiples of 1/4 ... 1/8 of a radius, or as much beside them as
+ * decides between the two. */
+START_TEST(clipping_against_accounts) {
+    fibrad_areas areas = areas_make();
+    double worst = 0, clipped[MOST + 1], robust[MOST + 1];
+    const int rounds = 60000;
+    for (int round = 0; round < rounds; round++) {
+        struct window w = {0};
+        uint32_t n = 1 + (uint32_t)random_in(0, 16);
+        double grid = floor(random_in(3, 9)), nudge = pow(10, random_in(-17, -5)), turn = random_in(0, 1) < .3 ? 1 : 0;
+        for (uint32_t k = 0; k < n; k++) {
+            double u = floor(random_in(-2, 2) * grid) / grid, v = floor(random_in(-2, 2) * grid) / grid;
+            double r = ceil(random_in(0, 1.5) * grid) / grid;
+            put(&w, u + nudge * random_in(-1, 1), v * (1 - turn * .13397459621556135) + nudge * random_in(-1, 1), r);
+        }
+        measure(&both, &areas, &w, clipped);
+        measure(&accounts, &areas, &w, robust);
+        worst = fmax(worst, difference(n + 1, clipped, robust));
+    }
+    double part = (double)areas.fallbacks / rounds;
+    printf("clipping against accounts: %.2g, left to accounts %.3g\n", worst, part);
+    ck_assert_double_lt(worst, 1e-12);
+    ck_assert(part > .1 && part < .5); /* both have been tried */
+    areas_free(&areas);
+}
+END_TEST
+
+#define WIDER(isa)                                                                                                     \
+    begin_function fibrad_areas_begin_##isa;                                                                           \
+    disc_function fibrad_areas_disc_##isa;                                                                             \
+    end_function fibrad_areas_end_##isa;                                                                               \
+    static const struct method isa = {fibrad_areas_begin_##isa, fibrad_areas_disc_##isa, fibrad_areas_end_##isa};
+#ifdef FIBRAD_WITH_SSE2
+WIDER(sse2)
+#endif
+#ifdef FIBRAD_WITH_AVX2
+WIDER(avx2)
+#endif
+#ifdef FIBRAD_WITH_AVX512
+WIDER(avx512)
+#endif
+
+/* In all instruction sets the same windows are in doubt, and the areas have the same bits. */
+START_TEST(bits_of_windows) {
+    const struct method *const methods[] = {
+        [FIBRAD_ISA_SCALAR] = &both,
+#ifdef FIBRAD_WITH_SSE2
+        [FIBRAD_ISA_SSE2] = &sse2,
+#endif
+#ifdef FIBRAD_WITH_AVX2
+        [FIBRAD_ISA_AVX2] = &avx2,
+#endif
+#ifdef FIBRAD_WITH_AVX512
+        [FIBRAD_ISA_AVX512] = &avx512,
+#endif
+    };
+    fibrad_areas areas = areas_make();
+    double first[MOST + 1], other[MOST + 1];
+    for (int round = 0; round < 3000; round++) {
+        struct window w = {0};
+        uint32_t n = 1 + (uint32_t)random_in(0, round % 10 == 0 ? 100 : 16);
+        double grid = round % 3 == 0 ? 4 : 1e6, scale = pow(10, random_in(-1, 1));
+        for (uint32_t k = 0; k < n; k++) {
+            double r = ceil(grid * random_in(.1, 1)) / grid * scale, d = (1 + r) * sqrt(random_in(0, 1));
+            double t = random_in(0, 6.2831853);
+            put(&w, round % 3 == 0 ? floor(4 * d * cos(t)) / 4 : d * cos(t), d * sin(t), r);
+        }
+        areas.fallbacks = 0;
+        measure(&both, &areas, &w, first);
+        uint32_t doubts = areas.fallbacks;
+        for (int isa = FIBRAD_ISA_SSE2; isa <= (int)fibrad_isa_best(); isa++) {
+            areas.fallbacks = 0;
+            measure(methods[isa], &areas, &w, other);
+            ck_assert_uint_eq(areas.fallbacks, doubts);
+            ck_assert_mem_eq(first, other, (n + 1) * sizeof *first);
+        }
+    }
+    areas_free(&areas);
+}
+END_TEST
+
+/* What clipping must not decide is done by accounts, and counted; ordinary windows are not. */
+START_TEST(doubts) {
+    const struct window doubtful[] = {
+        {.n = 1, .u = {0}, .v = {0}, .r = {1}},                                            /* equal to the window */
+        {.n = 2, .u = {.5, .5}, .v = {.1, .1}, .r = {.4, .4}},                             /* identical */
+        {.n = 1, .u = {.5}, .v = {0}, .r = {.5}},                                          /* tangent within */
+        {.n = 1, .u = {2 - 1e-12}, .v = {0}, .r = {1}},                                    /* tangent without */
+        {.n = 2, .u = {-.3, .3}, .v = {0, 0}, .r = {.3, .3}},                              /* tangent to each other */
+        {.n = 3, .u = {.5, -.5, 0}, .v = {0, 0, .75901699437494742}, .r = {.75, .75, .2}}, /* three through a point */
+        {.n = 1, .u = {2000}, .v = {0}, .r = {2000}},                                      /* too large */
+    };
+    for (size_t d = 0; d < sizeof doubtful / sizeof *doubtful; d++) {
+        ck_assert_double_lt(worst_of(&doubtful[d]), 1e-11);
+        ck_assert_msg(fallbacks_part() == 1, "window %zu was not in doubt", d);
+    }
+    const struct window plain[] = {
+        {.n = 0},
+        {.n = 1, .u = {3}, .v = {0}, .r = {1}},                            /* beside the window */
+        {.n = 1, .u = {.1}, .v = {0}, .r = {1.2}},                         /* covers it */
+        {.n = 3, .u = {.1, .1, .1}, .v = {.2, .2, .2}, .r = {.1, .3, .2}}, /* concentric */
+        {.n = 2, .u = {.6, 0}, .v = {.1, 0}, .r = {.9, .05}},              /* an island */
+        {.n = 3, .u = {.5, -.5, 0}, .v = {0, 0, .1}, .r = {.3, .3, .95}},  /* around two others */
+        {.n = 2, .u = {.3, 0}, .v = {0, .9}, .r = {.01, .99}},
+        {.n = 3, .u = {0, 0, 0}, .v = {1.2, -1.2, 0}, .r = {1.1, 1.15, .7}}, /* two openings, cut in four */
+    };
+    for (size_t p = 0; p < sizeof plain / sizeof *plain; p++) {
+        ck_assert_double_lt(worst_of(&plain[p]), 1e-14);
+        ck_assert_msg(fallbacks_part() == 0, "window %zu was in doubt", p);
+    }
 }
 END_TEST
 
@@ -189,5 +351,8 @@ int main(void) {
     tcase_add_test(tcase, large_and_small_discs);
     tcase_add_test(tcase, degenerate_windows);
     tcase_add_test(tcase, lattices_along_their_axes);
+    tcase_add_test(tcase, clipping_against_accounts);
+    tcase_add_test(tcase, bits_of_windows);
+    tcase_add_test(tcase, doubts);
     return suite_run(suite);
 }

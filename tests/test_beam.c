@@ -48,6 +48,32 @@ START_TEST(hidden_sphere_is_not_seen) {
 }
 END_TEST
 
+/* A large sphere sees hundreds of small ones, too many for the fast method; the rows of beds have no such windows. */
+START_TEST(fallbacks_are_counted) {
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 4}});
+    for (uint32_t k = 0; k < 1000; k++) {
+        double w[3];
+        fibrad_direction(k, 1000, w);
+        add_sphere(&bed, 5 * w[0], 5 * w[1], 5 * w[2], .2);
+    }
+    fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 55}, FIBRAD_ISA_BEST);
+    ck_assert_uint_eq(row.fallbacks, 55);
+    ck_assert_double_eq_tol(row_sum(&row) + row.escaped, 1, 1e-12);
+    row_free(&row);
+    row = beam(&bed, 0, (fibrad_beam_rule){.directions = 55, .points = 64}, FIBRAD_ISA_BEST);
+    ck_assert_uint_eq(row.fallbacks, 0);
+    row_free(&row);
+    bed_free(&bed);
+    bed = packing(300, .5, 2, .5, 8, true);
+    for (uint32_t i = 0; i < bed.n; i += 30) {
+        row = beam(&bed, i, (fibrad_beam_rule){.directions = 55}, FIBRAD_ISA_BEST);
+        ck_assert_uint_eq(row.fallbacks, 0);
+        row_free(&row);
+    }
+    bed_free(&bed);
+}
+END_TEST
+
 START_TEST(raw_rows_close) {
     struct bed beds[] = {packing(300, .8, 1.2, .55, 7, false), packing(300, .5, 2, .5, 8, true), lattice('p', 6),
                          lattice('i', 6), lattice('f', 6)};
@@ -408,6 +434,7 @@ int main(void) {
     TCase *tcase = suite_case(suite, "beam");
     tcase_add_test(tcase, two_spheres_match_the_exact_pair);
     tcase_add_test(tcase, hidden_sphere_is_not_seen);
+    tcase_add_test(tcase, fallbacks_are_counted);
     tcase_add_test(tcase, raw_rows_close);
     tcase_add_test(tcase, points_agree_with_areas);
     tcase_add_test(tcase, same_bits_in_every_instruction_set);

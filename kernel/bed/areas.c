@@ -19,26 +19,29 @@ static fibrad_arcs arcs_of(fibrad_arena *arena, size_t count) {
     return arcs;
 }
 
+static void accounts_layout(fibrad_accounts *accounts, fibrad_arena *arena, uint32_t discs, size_t circles) {
+    accounts->arcs = ARCS_PER_DISC * discs + 4 * LANES;
+    size_t arcs = (size_t)accounts->arcs + LANES;
+    accounts->inverse = doubles(arena, circles);
+    accounts->from = doubles(arena, circles), accounts->to = doubles(arena, circles);
+    accounts->sx = doubles(arena, circles), accounts->sy = doubles(arena, circles);
+    accounts->ex = doubles(arena, circles), accounts->ey = doubles(arena, circles);
+    accounts->hidden.from = doubles(arena, circles + LANES), accounts->hidden.to = doubles(arena, circles + LANES);
+    accounts->hidden.circle = doubles(arena, circles + LANES);
+    accounts->open = arcs_of(arena, arcs);
+    accounts->left = arcs_of(arena, arcs);
+    accounts->seconds = accounts->arcs / 4;
+    accounts->second[0] = arcs_of(arena, accounts->seconds + LANES);
+    accounts->second[1] = arcs_of(arena, accounts->seconds + LANES);
+}
+
 void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t discs) {
     size_t circles = (size_t)discs + 2 < 2 * LANES ? 2 * LANES : (size_t)discs + 2; /* lookups load two vectors */
     areas->discs = discs;
-    areas->arcs = ARCS_PER_DISC * discs + 4 * LANES;
-    size_t arcs = (size_t)areas->arcs + LANES;
-    areas->x = doubles(arena, circles), areas->y = doubles(arena, circles);
-    areas->r = doubles(arena, circles), areas->inverse = doubles(arena, circles);
-    areas->sense = doubles(arena, circles);
-    areas->ox = doubles(arena, circles), areas->oy = doubles(arena, circles), areas->area = doubles(arena, circles);
+    areas->x = doubles(arena, circles), areas->y = doubles(arena, circles), areas->r = doubles(arena, circles);
+    areas->area = doubles(arena, circles);
     areas->whose = fibrad_arena_take(arena, circles, sizeof(uint32_t));
-    areas->from = doubles(arena, circles), areas->to = doubles(arena, circles);
-    areas->sx = doubles(arena, circles), areas->sy = doubles(arena, circles);
-    areas->ex = doubles(arena, circles), areas->ey = doubles(arena, circles);
-    areas->hidden.from = doubles(arena, circles + LANES), areas->hidden.to = doubles(arena, circles + LANES);
-    areas->hidden.circle = doubles(arena, circles + LANES);
-    areas->open = arcs_of(arena, arcs);
-    areas->left = arcs_of(arena, arcs);
-    areas->seconds = areas->arcs / 4;
-    areas->second[0] = arcs_of(arena, areas->seconds + LANES);
-    areas->second[1] = arcs_of(arena, areas->seconds + LANES);
-    areas->taken = arcs_of(arena, FIBRAD_PIECES + 2 * LANES);
-    areas->taker = doubles(arena, FIBRAD_PIECES + 2 * LANES);
+    areas->pieces = fibrad_arena_take(arena, 1, sizeof *areas->pieces);
+    areas->boundary = fibrad_arena_take(arena, 1, sizeof *areas->boundary);
+    accounts_layout(&areas->accounts, arena, discs, circles);
 }

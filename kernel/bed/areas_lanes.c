@@ -1,40 +1,32 @@
-/* areas_lanes.c - exact visible areas of discs in a window, front to back. Compiled once per instruction set.
- * SPDX-License-Identifier: MIT
+/* areas_lanes.c - exact visible areas of discs in a window by clipping its open region. Compiled once per instruction
+ * set. SPDX-License-Identifier: MIT
  *
  * The open region - what no disc covers so far - is known by its boundary: arcs of the window's circle and of the
- * circles of discs. A new disc k, seen against circle m (in lanes over all m), covers of that circle nothing, all, or
- * the arc between the two points where the circles meet; and disc m covers of circle k the rest of a like kind, between
- * the same two points. From this follow
- *   - what is seen of circle k: all of it less what the older discs and the outside of the window hide;
- *   - what disc k takes of each arc that bounds the open region.
- * The former join the boundary of the open region, the latter leave it. An arc on its way out has been seen of its own
- * disc up to here and bounds the visible part of disc k from now on, so it is integrated then, once for both.
+ * circles of discs. A new disc cuts them, in lanes over the arcs: the parts inside it leave the boundary, and are
+ * pieces of the boundary of what is seen of it. Walk along the boundary, the open region on the left: where the walk
+ * enters the disc, the boundary now goes on along the disc's circle, clockwise, to the next point where it leaves.
  *
- * Each circle keeps its own account, and two circles share nothing but the two points where they meet. A wrong decision
- * about an arc as short as rounding costs an area as small as rounding, and nothing further: there is no chain of arcs
- * that could break, and multiple points, tangent and identical circles need no special care.
+ * An arc is cut once if one of its ends is inside the disc. If both are outside it may be cut twice, about the
+ * direction in which the disc lies; if both are inside, about the opposite one. So divisions and roots say where an arc
+ * is cut, but never whether.
  *
- * The place of a direction (x, y) of unit length on its circle is told by y on the right quarter, and by -x, -y, x on
- * the top, left and bottom quarters with what makes it continuous: it rises counter-clockwise by about the angle, and
- * jumps back at the lower right diagonal, from END to BEGIN. Arcs are cut there and opposite, at MIDDLE, so that none
- * is longer than half a circle and none passes the jump. */
+ * This breaks where rounding decides. All decisions therefore have a margin, far above rounding; a window in which one
+ * of them is too close is done again by accounts. */
 #include FIBRAD_LANES_HEADER
+#include "bed/accounts_lanes.h"
+#include "bed/arc_lanes.h"
 #include "bed/areas_lanes.h"
 
-#define DIAGONAL 0.70710678118654752
-#define BEGIN    (-DIAGONAL)
-#define MIDDLE   (3 * DIAGONAL)
-#define END      (7 * DIAGONAL)
-#define AROUND   (8 * DIAGONAL)
+#define PI       3.14159265358979323846
+#define SQRT_3_4 0.86602540378443865
+#define CLOSURE  1e-12
 
-/* As `from` of an interval, and minus it as `to`: the whole circle, or nothing of it. */
-#define ALL     -16.0
-#define NOTHING 16.0
-
-/* Arcs this short are given up: they stem from rounding, and would keep windows open for nothing. */
-#define SHORT 1e-15
-
-static _Alignas(FIBRAD_ALIGNMENT) const double lane_number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+/* Decisions closer than this are in doubt: distances of points and circles, relative to the radii for tangent ones.
+ * ROUNDING: the same for what rounds with the square of a large radius. */
+#define MARGIN   1e-10
+#define ROUNDING 1e-14
+/* Discs of larger radius round too much. */
+#define LARGEST 1000.0
 
 /* The lanes below n. */
 static inline uint32_t lanes_below(uint32_t n) {
@@ -42,357 +34,282 @@ static inline uint32_t lanes_below(uint32_t n) {
     return (1u << lanes) - 1;
 }
 
-static inline vd place(vd x, vd y) {
-    vd zero = vd_set1(0);
-    vd sides = vd_select(vd_lt(x, zero), vd_sub(vd_set1(4 * DIAGONAL), y), y);
-    vd ends = vd_select(vd_lt(y, zero), vd_add(vd_set1(6 * DIAGONAL), x), vd_sub(vd_set1(2 * DIAGONAL), x));
-    return vd_select(vd_lt(vd_abs(x), vd_abs(y)), ends, sides);
+static inline void put(double *array, uint32_t slot, double value) {
+    double *vector = array + slot / VD_LANES * VD_LANES;
+    vd_store(vector, vd_replace(vd_load(vector), slot % VD_LANES, value));
 }
 
-/* The length of an interval shows if rounding has turned it round: less than half a circle (and not a little more than
- * none) where the cosine of its half-width is positive, more than half where it is negative. Writes ALL or NOTHING
- * then.
- */
-static inline void set_right(vd cosine, vd *from, vd *to) {
-    vd zero = vd_set1(0), length = vd_sub(*to, *from);
-    length = vd_select(vd_lt(length, zero), vd_add(length, vd_set1(AROUND)), length);
-    vm narrow = vd_lt(zero, cosine), nothing = vm_and(narrow, vd_lt(vd_set1(0.75 * AROUND), length));
-    vm all = vm_and(vm_not(narrow), vd_lt(length, vd_set1(0.25 * AROUND)));
-    *from = vd_select(nothing, vd_set1(NOTHING), vd_select(all, vd_set1(ALL), *from));
-    *to = vd_select(nothing, vd_set1(-NOTHING), vd_select(all, vd_set1(-ALL), *to));
+/* Puts an arc into a free slot. False if there is none. */
+static inline bool add(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy, double r,
+                       double circle) {
+    uint32_t slot = (uint32_t)__builtin_ctzll(~b->alive);
+    if (slot == FIBRAD_BOUNDARY) return false;
+    put(b->px, slot, px), put(b->py, slot, py), put(b->qx, slot, qx), put(b->qy, slot, qy);
+    put(b->cx, slot, cx), put(b->cy, slot, cy), put(b->r, slot, r), put(b->circle, slot, circle);
+    uint64_t bit = UINT64_C(1) << slot;
+    b->alive |= bit;
+    b->window = circle < 1 ? b->window | bit : b->window & ~bit;
+    return true;
 }
 
-/* What circle k, about (x, y) with radius r, does to all circles so far and they to it. Two circles at distance d meet
- * at c_m + f d -+ h d', d' being d turned left; f = (d^2 + r_m^2 - r^2)/(2 d^2), and h from the product of sum and
- * difference, without cancellation where they are nearly tangent. Returns false if an older disc contains disc k. */
-static bool meet(fibrad_areas *areas, double x, double y, double r, double inverse) {
-    vd r_k = vd_set1(r), inverse_k = vd_set1(inverse), half = vd_set1(0.5), zero = vd_set1(0);
-    fibrad_intervals *hidden = &areas->hidden;
-    hidden->count = 0;
-    hidden->all = false;
-    for (uint32_t m = 0; m < areas->circles; m += VD_LANES) {
-        vd c_x = vd_load(areas->x + m), c_y = vd_load(areas->y + m), r_m = vd_load(areas->r + m);
-        vd dx = vd_sub(vd_set1(x), c_x), dy = vd_sub(vd_set1(y), c_y);
-        vd sum = vd_add(r_m, r_k), difference = vd_sub(r_m, r_k);
-        vd square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
+/* Moves arcs to lower slots if they fit into eight slots fewer. */
+static inline void close_up(fibrad_boundary *b) {
+    uint32_t last = (63 - (uint32_t)__builtin_clzll(b->alive)) / 8 * 8;
+    if (fibrad_count_bits(b->alive) > last) return;
+    for (uint64_t bits = b->alive >> last << last; bits != 0; bits &= bits - 1) {
+        uint32_t k = (uint32_t)__builtin_ctzll(bits);
+        b->alive &= ~(UINT64_C(1) << k);
+        add(b, b->px[k], b->py[k], b->qx[k], b->qy[k], b->cx[k], b->cy[k], b->r[k], b->circle[k]);
+    }
+}
+
+/* Adds an arc of half a circle or more in four parts. */
+static bool add_parts(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy, double r,
+                      double circle) {
+    double point[5][2] = {{px, py}, {0, 0}, {0, 0}, {0, 0}, {qx, qy}};
+    for (int step = 4; step > 1; step /= 2)
+        for (int from = 0; from < 4; from += step) {
+            const double *p = point[from], *q = point[from + step];
+            double ux = q[1] - p[1], uy = p[0] - q[0], scale = r / fibrad_sqrt(ux * ux + uy * uy);
+            point[from + step / 2][0] = ux * scale, point[from + step / 2][1] = uy * scale;
+        }
+    bool done = true;
+    for (int n = 0; n < 4 && done; n++)
+        done = add(b, point[n][0], point[n][1], point[n + 1][0], point[n + 1][1], cx, cy, r, circle);
+    return done;
+}
+
+/* Which of the slots `enters` has the next point counter-clockwise from (px, py) on the circle of disc k, which is as
+ * far from its centre; NONE if one is too close to tell. */
+#define NONE FIBRAD_BOUNDARY
+static uint32_t next(const fibrad_boundary *b, uint64_t enters, uint64_t window, double px, double py, double r) {
+    double least = 4, margin = MARGIN + MARGIN / r;
+    uint32_t nearest = NONE;
+    for (uint64_t bits = enters; bits != 0; bits &= bits - 1) {
+        uint32_t k = (uint32_t)__builtin_ctzll(bits), at = ~window >> k & 1;
+        double qx = b->cut[at][0][k], qy = b->cut[at][1][k], turn = px * qy - py * qx, level = px * qx + py * qy;
+        double sum = fibrad_abs(turn) + fibrad_abs(level);
+        double ahead = turn >= 0 ? 1 - level / sum : 3 + level / sum; /* rises with the angle, 0 to 4 */
+        if (!(ahead > margin && ahead < 4 - margin)) return NONE;
+        if (ahead < least) least = ahead, nearest = k;
+    }
+    return nearest;
+}
+
+/* Adds to the boundary the arc of disc k from where slot p leaves the disc counter-clockwise to where slot q enters it.
+ * False if these are too close to tell a short arc from a whole circle, or there are no slots. */
+static inline bool join(fibrad_boundary *b, uint64_t window, uint32_t p, uint32_t q, double x, double y, double r,
+                        double k) {
+    uint32_t at_p = window >> p & 1, at_q = ~window >> q & 1; /* cut[1]: where the arc itself leaves the disc */
+    double px = b->cut[at_p][0][p], py = b->cut[at_p][1][p], qx = b->cut[at_q][0][q], qy = b->cut[at_q][1][q];
+    double turn = px * qy - py * qx, level = px * qx + py * qy, near = MARGIN * r;
+    if (turn > near) return add(b, px, py, qx, qy, x, y, r, k);
+    if (level > 0 && turn >= -near) return false;
+    return add_parts(b, px, py, qx, qy, x, y, r, k);
+}
+
+/* Joins several points where the boundary leaves the disc each with the next one where it enters it. False if they do
+ * not alternate. */
+static bool join_several(fibrad_boundary *b, uint64_t leaves, uint64_t enters, double x, double y, double r, double k) {
+    const uint64_t window = b->window;
+    uint64_t left = enters;
+    for (uint64_t bits = leaves; bits != 0; bits &= bits - 1) {
+        uint32_t p = (uint32_t)__builtin_ctzll(bits), at = window >> p & 1;
+        uint32_t q = next(b, enters, window, b->cut[at][0][p], b->cut[at][1][p], r);
+        if (q == NONE || (left >> q & 1) == 0 || !join(b, window, p, q, x, y, r, k)) return false;
+        left &= ~(UINT64_C(1) << q);
+    }
+    return left == 0;
+}
+
+/* Whether a point within the window is open: in none of the discs before k. */
+static bool is_open(const fibrad_areas *areas, uint32_t k, double x, double y) {
+    uint32_t inside = 0;
+    for (uint32_t m = 0; m < k; m += VD_LANES) {
+        vd r = vd_load(areas->r + m), dx = vd_sub(vd_set1(x), vd_load(areas->x + m));
+        vd dy = vd_sub(vd_set1(y), vd_load(areas->y + m));
+        vm in = vd_lt(vd_add(vd_mul(dx, dx), vd_mul(dy, dy)), vd_mul(r, r));
+        inside |= vm_bits(in) & lanes_below(k - m) & (m == 0 ? ~1u : ~0u);
+    }
+    return inside == 0;
+}
+
+/* Lets disc k, whose circle has been added, take its part of the open region. False: in doubt. */
+static bool clip(fibrad_areas *areas, uint32_t k, double x, double y, double r) {
+    fibrad_boundary *b = areas->boundary;
+    const uint64_t alive = b->alive;
+    const uint32_t slots = 64 - (uint32_t)__builtin_clzll(alive);
+    uint64_t p_inside = 0, q_inside = 0, twice = 0, doubt = 0;
+    if (r > areas->widest) areas->widest = r;
+    const vd u = vd_set1(x), v = vd_set1(y), radius = vd_set1(r);
+    const double widest = areas->widest * areas->widest;
+    const vd near = vd_set1(MARGIN * r + ROUNDING * widest), tangent = vd_set1(MARGIN * widest), zero = vd_set1(0),
+             half = vd_set1(0.5);
+    for (uint32_t o = 0; o < slots; o += VD_LANES) {
+        vd px = vd_load(b->px + o), py = vd_load(b->py + o), qx = vd_load(b->qx + o), qy = vd_load(b->qy + o);
+        vd cx = vd_load(b->cx + o), cy = vd_load(b->cy + o), c_r = vd_load(b->r + o);
+        /* an end p is inside if p.d > middle; both circles meet if the distance middle/d is less than the radius */
+        vd dx = vd_sub(u, cx), dy = vd_sub(v, cy), square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
+        vd sum = vd_add(c_r, radius), difference = vd_sub(c_r, radius);
+        vd middle = vd_mul(half, vd_add(square, vd_mul(sum, difference)));
+        vd p_along = vd_add(vd_mul(px, dx), vd_mul(py, dy)), q_along = vd_add(vd_mul(qx, dx), vd_mul(qy, dy));
+        vd p_across = vd_sub(vd_mul(px, dy), vd_mul(py, dx)), q_across = vd_sub(vd_mul(qx, dy), vd_mul(qy, dx));
+        vd meeting = vd_sub(vd_mul(vd_mul(c_r, c_r), square), vd_mul(middle, middle));
+        vm p_in = vd_lt(middle, p_along), q_in = vd_lt(middle, q_along), meet = vd_lt(zero, meeting);
+        vm p_before = vd_lt(zero, p_across), q_after = vd_lt(q_across, zero);
+        vm towards = vm_and(p_before, q_after), away = vm_not(vm_or(p_before, q_after));
+        vm any_in = vm_or(p_in, q_in), both_in = vm_and(p_in, q_in);
+        vm cut_twice = vm_and(meet, vm_or(vm_and(both_in, away), vm_and(vm_not(any_in), towards)));
+        vm close = vm_or(vd_le(vd_abs(vd_sub(p_along, middle)), near), vd_le(vd_abs(meeting), vd_mul(tangent, square)));
+        uint32_t lanes = (uint32_t)(alive >> o) & lanes_below(VD_LANES);
+        uint32_t touching = vm_bits(vm_or(any_in, cut_twice)) & lanes;
+        doubt |= vm_bits(close) & lanes;
+        if (touching == 0) continue;
+
+        /* the points s, where the circle enters the disc counter-clockwise, and e, where it leaves */
         vd outer = vd_sub(vd_mul(sum, sum), square), inner = vd_sub(square, vd_mul(difference, difference));
-        vm apart = vd_le(outer, zero), nested = vd_le(inner, zero), whole = vm_or(apart, nested);
-        uint32_t lanes = lanes_below(areas->circles - m);
-        uint32_t containing = vm_bits(vm_and(nested, vd_le(zero, difference))) & lanes;
-        if (containing & (m == 0 ? ~1u : ~0u)) return false; /* to lie within the window hides nothing */
-
-        vd scale = vd_div(half, square), power = vd_mul(sum, difference); /* r_m^2 - r^2 */
-        vd f = vd_mul(vd_add(square, power), scale), g = vd_mul(vd_sub(square, power), scale);
-        vd h = vd_mul(vd_sqrt(vd_mul(vd_max(outer, zero), vd_max(inner, zero))), scale);
-        vd hx = vd_mul(h, dx), hy = vd_mul(h, dy), fx = vd_mul(f, dx), fy = vd_mul(f, dy);
-        vd gx = vd_mul(g, dx), gy = vd_mul(g, dy), inverse_m = vd_load(areas->inverse + m);
+        vd scale = vd_div(half, square), f = vd_mul(vd_add(middle, middle), scale);
+        vd h = vd_mul(vd_sqrt(vd_max(vd_mul(outer, inner), zero)), scale);
+        vd fx = vd_mul(f, dx), fy = vd_mul(f, dy), hx = vd_mul(h, dx), hy = vd_mul(h, dy);
         vd sx = vd_add(fx, hy), sy = vd_sub(fy, hx), ex = vd_sub(fx, hy), ey = vd_add(fy, hx);
-        vd_store(areas->sx + m, vd_add(c_x, sx));
-        vd_store(areas->sy + m, vd_add(c_y, sy));
-        vd_store(areas->ex + m, vd_add(c_x, ex));
-        vd_store(areas->ey + m, vd_add(c_y, ey));
-
-        vd from = place(vd_mul(sx, inverse_m), vd_mul(sy, inverse_m));
-        vd to = place(vd_mul(ex, inverse_m), vd_mul(ey, inverse_m));
-        set_right(f, &from, &to);
-        vm m_inside = vm_and(nested, vd_le(difference, zero));
-        from = vd_select(m_inside, vd_set1(ALL), vd_select(whole, vd_set1(NOTHING), from));
-        to = vd_select(m_inside, vd_set1(-ALL), vd_select(whole, vd_set1(-NOTHING), to));
-        vd_store(areas->from + m, from);
-        vd_store(areas->to + m, to);
-
-        vd own_from = place(vd_mul(vd_sub(zero, vd_add(gx, hy)), inverse_k), vd_mul(vd_sub(hx, gy), inverse_k));
-        vd own_to = place(vd_mul(vd_sub(hy, gx), inverse_k), vd_mul(vd_sub(zero, vd_add(gy, hx)), inverse_k));
-        set_right(g, &own_from, &own_to);
-        if (m == 0) { /* the window hides what lies without */
-            vm first = vd_lt(vd_load(lane_number), half);
-            vd swap = own_from;
-            own_from = vd_select(first, own_to, own_from);
-            own_to = vd_select(first, swap, own_to);
-        }
-        uint32_t crossing = lanes & ~vm_bits(whole), all = vm_bits(vd_lt(own_from, vd_set1(BEGIN - 1))) & crossing;
-        if (all != 0) hidden->all = true;
-        vm empty = vm_or(vm_and(vd_le(own_from, own_to), vd_le(own_to, own_from)), vd_lt(vd_set1(END + 1), own_from));
-        uint32_t some = crossing & ~vm_bits(empty), count = hidden->count;
-        vd_compress(hidden->from + count, some, own_from);
-        vd_compress(hidden->to + count, some, own_to);
-        vd_compress(hidden->circle + count, some, vd_add(vd_load(lane_number), vd_set1(m)));
-        hidden->count = count + fibrad_count_bits(some);
+        vd_store(b->cut[0][0] + o, vd_sub(sx, dx));
+        vd_store(b->cut[0][1] + o, vd_sub(sy, dy));
+        vd_store(b->cut[1][0] + o, vd_sub(ex, dx));
+        vd_store(b->cut[1][1] + o, vd_sub(ey, dy));
+        vd_store(b->old_qx + o, qx);
+        vd_store(b->old_qy + o, qy);
+        vm ends_early = vm_or(q_in, cut_twice), goes_on = vm_and(q_in, vm_not(cut_twice));
+        vd_store(b->px + o, vd_select(p_in, ex, px));
+        vd_store(b->py + o, vd_select(p_in, ey, py));
+        vd_store(b->qx + o, vd_select(ends_early, sx, qx));
+        vd_store(b->qy + o, vd_select(ends_early, sy, qy));
+        fibrad_arc_lanes piece = {.px = vd_select(p_in, px, sx),
+                                  .py = vd_select(p_in, py, sy),
+                                  .qx = vd_select(goes_on, qx, ex),
+                                  .qy = vd_select(goes_on, qy, ey),
+                                  .cx = cx,
+                                  .cy = cy,
+                                  .r = c_r,
+                                  .circle = vd_load(b->circle + o)};
+        fibrad_arcs_append(areas, touching, &piece, k);
+        p_inside |= (uint64_t)(vm_bits(p_in) & lanes) << o;
+        q_inside |= (uint64_t)(vm_bits(q_in) & lanes) << o;
+        twice |= (uint64_t)(vm_bits(cut_twice) & lanes) << o;
     }
-    return true;
-}
-
-/* Appends an arc, in two pieces if it passes MIDDLE, the point (mx, my). */
-static void add(fibrad_arcs *arcs, double a, double b, double px, double py, double qx, double qy, double circle,
-                double mx, double my) {
-    if (b - a <= SHORT) return;
-    bool cut = a < MIDDLE && MIDDLE < b;
-    uint32_t k = arcs->count, n = k + 1;
-    arcs->a[k] = a, arcs->px[k] = px, arcs->py[k] = py, arcs->circle[k] = circle;
-    arcs->b[k] = cut ? MIDDLE : b, arcs->qx[k] = cut ? mx : qx, arcs->qy[k] = cut ? my : qy;
-    arcs->a[n] = MIDDLE, arcs->px[n] = mx, arcs->py[n] = my, arcs->circle[n] = circle;
-    arcs->b[n] = b, arcs->qx[n] = qx, arcs->qy[n] = qy;
-    arcs->count = n + cut;
-}
-
-/* Adds what is seen of the new circle to the boundary of the open region: each visible arc begins where one hidden
- * interval ends and no other goes on, and ends where the next one begins. These are exact statements about the numbers
- * at hand; rounding cannot make them contradict each other. Returns false if nothing is seen. */
-static bool see(fibrad_areas *areas, double x, double y, double r) {
-    const fibrad_intervals *h = &areas->hidden;
-    fibrad_arcs *open = &areas->open;
-    uint32_t intervals = h->count, before = open->count;
-    if (h->all) return false;
-    double k = areas->circles, d = r * DIAGONAL, jx = x + d, jy = y - d, mx = x - d, my = y + d;
-    if (intervals == 0) add(open, BEGIN, END, jx, jy, jx, jy, k, mx, my);
-    for (uint32_t i = 0; i < intervals; i += VD_LANES) {
-        vd to = vd_load(h->to + i);
-        uint32_t hidden = 0;
-        for (uint32_t j = 0; j < intervals; j++) {
-            /* does interval j hold the ends of others? Its own end for later ones only, so that the first of equal ends
-             * remains */
-            vd f = vd_set1(h->from[j]), t = vd_set1(h->to[j]);
-            uint32_t not_later = j < i ? 0 : lanes_below(j - i + 1);
-            uint32_t after = vm_bits(vd_le(f, to)),
-                     before_end = vm_bits(vd_lt(to, t)) | (vm_bits(vd_le(to, t)) & ~not_later);
-            uint32_t passes_jump = 0u - (h->to[j] < h->from[j]);
-            hidden |= (after & before_end) | ((after | before_end) & passes_jump);
+    if (doubt != 0) return false;
+    const uint64_t starts = (q_inside & ~p_inside) | twice, ends = (p_inside & ~q_inside) | twice;
+    b->alive = alive & ~(p_inside & q_inside & ~twice);
+    if ((starts | ends) == 0) { /* the disc's circle is all hidden or all open */
+        bool island = r < 1 && x * x + y * y < (1 - r) * (1 - r) && is_open(areas, k, x + r, y);
+        bool done = true;
+        for (int n = 0; n < 3 && island; n++) {
+            static const double corner[4][2] = {{1, 0}, {-0.5, SQRT_3_4}, {-0.5, -SQRT_3_4}, {1, 0}};
+            const double *p = corner[n], *q = corner[n + 1];
+            done = done && add(b, r * p[0], r * p[1], r * q[0], r * q[1], x, y, r, k);
         }
-        for (uint32_t bits = lanes_below(intervals - i) & ~hidden; bits != 0; bits &= bits - 1) {
-            uint32_t begin = i + (uint32_t)__builtin_ctz(bits), end = 0;
-            double a = h->to[begin], nearest = 2 * AROUND;
-            for (uint32_t j = 0; j < intervals; j++) {
-                double ahead = h->from[j] - a;
-                ahead = ahead < 0 ? ahead + AROUND : ahead;
-                end = ahead < nearest ? j : end;
-                nearest = fibrad_min(ahead, nearest);
-            }
-            /* what disc m hides runs from the end of what is covered of its circle to the beginning; window: reverse */
-            uint32_t m = (uint32_t)h->circle[begin], n = (uint32_t)h->circle[end];
-            double b = h->from[end], px = m == 0 ? areas->ex[m] : areas->sx[m],
-                   py = m == 0 ? areas->ey[m] : areas->sy[m];
-            double qx = n == 0 ? areas->sx[n] : areas->ex[n], qy = n == 0 ? areas->sy[n] : areas->ey[n];
-            if (open->count + 4 > areas->arcs) {
-                areas->overflow = true;
-                return false;
-            }
-            add(open, a, b < a ? END : b, px, py, b < a ? jx : qx, b < a ? jy : qy, k, mx, my);
-            if (b < a) add(open, BEGIN, b, jx, jy, qx, qy, k, mx, my);
+        areas->circles += island || b->alive != alive;
+        return done;
+    }
+
+    areas->circles++;
+    for (uint64_t bits = twice; bits != 0; bits &= bits - 1) { /* what is beyond the cut in the middle */
+        uint32_t a = (uint32_t)__builtin_ctzll(bits);
+        double dx = x - b->cx[a], dy = y - b->cy[a];
+        if (p_inside >> a & 1) {
+            fibrad_arc_lanes piece = {vd_set1(b->cut[0][0][a] + dx),
+                                      vd_set1(b->cut[0][1][a] + dy),
+                                      vd_set1(b->old_qx[a]),
+                                      vd_set1(b->old_qy[a]),
+                                      vd_set1(b->cx[a]),
+                                      vd_set1(b->cy[a]),
+                                      vd_set1(b->r[a]),
+                                      vd_set1(b->circle[a])};
+            LANED(fibrad_arcs_give)(areas, 1, &piece, k);
+        } else if (!add(b, b->cut[1][0][a] + dx, b->cut[1][1][a] + dy, b->old_qx[a], b->old_qy[a], b->cx[a], b->cy[a],
+                        b->r[a], b->circle[a])) {
+            return false;
         }
     }
-    return open->count > before;
+    const uint64_t leaves = (starts & ~b->window) | (ends & b->window);
+    const uint64_t enters = (starts & b->window) | (ends & ~b->window);
+    bool one = leaves != 0 && (leaves & (leaves - 1)) == 0 && enters != 0 && (enters & (enters - 1)) == 0;
+    if (!one) return join_several(b, leaves, enters, x, y, r, k);
+    return join(b, b->window, (uint32_t)__builtin_ctzll(leaves), (uint32_t)__builtin_ctzll(enters), x, y, r, k);
 }
 
-/* The area between an arc and its chord is s (r - g) + 2 r^2 t^3 H(t^2): half-chord s, distance g of the chord from the
- * centre, t = sin of a quarter of the arc's angle, H(x) = (asin t - t sqrt(1 - x))/t^3. Nothing cancels, for arcs of
- * any length up to half a circle. H is a polynomial fitted at Chebyshev nodes of [0, 1/2], relative error 1.3e-16. */
-static inline vd segment(vd px, vd py, vd qx, vd qy, vd cx, vd cy, vd r) {
-    static const double H[] = {0x1.5555555555556p-1, 0x1.999999999950cp-3,  0x1.b6db6db7639eap-4, 0x1.1c71c6ea1a013p-4,
-                               0x1.9745e50ec0eabp-5, 0x1.362510707243ap-5,  0x1.ed29dcdec7ec0p-6, 0x1.8eaba1514f220p-6,
-                               0x1.866be3c0027dbp-6, -0x1.932a80d626704p-8, 0x1.34cfc7195bc88p-3, -0x1.2517bc1d714a9p-1,
-                               0x1.f0fb752ef4243p+0, -0x1.33097b37a635bp+2, 0x1.1e0a7b4155c86p+3, -0x1.7fd070f4cdb6dp+3,
-                               0x1.62b30175c7d5ep+3, -0x1.93e4896655390p+2, 0x1.b5f50d9b61f3fp+0};
-    vd half = vd_set1(0.5), zero = vd_set1(0);
-    vd dx = vd_sub(qx, px), dy = vd_sub(qy, py);
-    vd chord = vd_sqrt(vd_add(vd_mul(dx, dx), vd_mul(dy, dy)));
-    vd across = vd_sub(vd_mul(dx, vd_sub(cy, py)), vd_mul(dy, vd_sub(cx, px)));
-    vd g = vd_select(vd_lt(zero, chord), vd_div(across, chord), r), s = vd_mul(half, chord);
-    vd x = vd_min(vd_div(vd_mul(s, s), vd_mul(vd_add(r, r), vd_add(r, g))), half);
-    vd t = vd_sqrt(x), xx = vd_mul(x, x), even = vd_set1(H[18]), odd = vd_set1(H[17]);
-#define STEP(k) even = vd_add(vd_mul(even, xx), vd_set1(H[k])), odd = vd_add(vd_mul(odd, xx), vd_set1(H[k - 1]))
-    STEP(16), STEP(14), STEP(12), STEP(10), STEP(8), STEP(6), STEP(4), STEP(2);
-#undef STEP
-    vd h = vd_add(vd_add(vd_mul(even, xx), vd_set1(H[0])), vd_mul(odd, x));
-    vd rx = vd_mul(vd_add(r, r), x); /* r - g */
-    return vd_add(vd_mul(s, rx), vd_mul(vd_mul(rx, r), vd_mul(t, h)));
-}
-
-/* (p - o) x (q - o)/2, the triangle that joins the chord to o. */
-static inline vd triangle(vd px, vd py, vd qx, vd qy, vd ox, vd oy) {
-    vd ax = vd_sub(px, ox), ay = vd_sub(py, oy), bx = vd_sub(qx, ox), by = vd_sub(qy, oy);
-    return vd_mul(vd_set1(0.5), vd_sub(vd_mul(ax, by), vd_mul(ay, bx)));
-}
-
-/* Green's theorem for the arcs taken so far: what each adds to its own disc, and takes from or (the window's arcs) adds
- * to its taker. Areas are computed about a point of their own, so that small ones get small rounding errors. */
-static void integrate(fibrad_areas *areas) {
-    fibrad_arcs *t = &areas->taken;
-    uint32_t size = areas->circles + 1; /* the new one, or the rest */
-    for (uint32_t k = 0; k < t->count; k += VD_LANES) {
-        vd px = vd_load(t->px + k), py = vd_load(t->py + k), qx = vd_load(t->qx + k), qy = vd_load(t->qy + k);
-        vd m = vd_load(t->circle + k), taker = vd_load(areas->taker + k);
-        vd x = vd_lookup(areas->x, size, m), y = vd_lookup(areas->y, size, m), r = vd_lookup(areas->r, size, m);
-        vd area = segment(px, py, qx, qy, x, y, r);
-        vd about_own = triangle(px, py, qx, qy, vd_lookup(areas->ox, size, m), vd_lookup(areas->oy, size, m));
-        vd about_other = triangle(px, py, qx, qy, vd_lookup(areas->ox, size, taker), vd_lookup(areas->oy, size, taker));
-        vd_store(t->a + k, vd_add(area, about_own)); /* where the places were, which are of no use any more */
-        vd_store(t->b + k, vd_mul(vd_lookup(areas->sense, size, m), vd_add(area, about_other)));
-    }
-    for (uint32_t k = 0; k < t->count; k++) {
-        areas->area[(uint32_t)t->circle[k]] += t->a[k];
-        areas->area[(uint32_t)areas->taker[k]] += t->b[k];
-    }
-    t->count = 0;
-}
-
-/* Arcs in lanes. */
-typedef struct arcs_in_lanes {
-    vd a, b, px, py, qx, qy, circle;
-} arcs_in_lanes;
-
-static inline arcs_in_lanes load(const fibrad_arcs *arcs, uint32_t k) {
-    return (arcs_in_lanes){vd_load(arcs->a + k),     vd_load(arcs->b + k),  vd_load(arcs->px + k),
-                           vd_load(arcs->py + k),    vd_load(arcs->qx + k), vd_load(arcs->qy + k),
-                           vd_load(arcs->circle + k)};
-}
-
-/* Appends the lanes named by bits. */
-static inline void append(fibrad_arcs *arcs, uint32_t bits, const arcs_in_lanes *s) {
-    uint32_t k = arcs->count;
-    vd_compress(arcs->a + k, bits, s->a);
-    vd_compress(arcs->b + k, bits, s->b);
-    vd_compress(arcs->px + k, bits, s->px);
-    vd_compress(arcs->py + k, bits, s->py);
-    vd_compress(arcs->qx + k, bits, s->qx);
-    vd_compress(arcs->qy + k, bits, s->qy);
-    vd_compress(arcs->circle + k, bits, s->circle);
-    arcs->count = k + fibrad_count_bits(bits);
-}
-
-static inline arcs_in_lanes select(vm m, const arcs_in_lanes *s, const arcs_in_lanes *t) {
-    return (arcs_in_lanes){vd_select(m, s->a, t->a),
-                           vd_select(m, s->b, t->b),
-                           vd_select(m, s->px, t->px),
-                           vd_select(m, s->py, t->py),
-                           vd_select(m, s->qx, t->qx),
-                           vd_select(m, s->qy, t->qy),
-                           s->circle};
-}
-
-static inline uint32_t rising(const arcs_in_lanes *s) { return vm_bits(vd_lt(s->a, s->b)); }
-
-/* Gives the lanes named by bits to circle k. */
-static inline void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes *s, uint32_t k) {
-    vd_compress(areas->taker + areas->taken.count, bits, vd_set1(k));
-    append(&areas->taken, bits, s);
-    if (areas->taken.count >= FIBRAD_PIECES) integrate(areas);
-}
-
-/* Gives a whole list to circle k. */
-static void give_all(fibrad_areas *areas, fibrad_arcs *list, uint32_t k) {
-    for (uint32_t o = 0; o < list->count; o += VD_LANES) {
-        arcs_in_lanes s = load(list, o);
-        give(areas, lanes_below(list->count - o), &s, k);
-    }
-    list->count = 0;
-}
-
-/* Takes from the boundary what lies in disc k. In order, an arc has a part below the bounds of the interval covered of
- * its circle, one between and one above; any may be missing. Covered is the one between, or, if the interval passes the
- * jump, are the two others. First parts and second ones are listed in turn, in the order of the arcs, whatever the
- * number of lanes. Returns whether there was anything to take. */
-static bool take(fibrad_areas *areas, uint32_t k) {
-    const fibrad_arcs open = areas->open;
-    fibrad_arcs *left = &areas->left, *second = areas->second;
-    uint32_t size = areas->circles, any = 0;
-    if (2 * open.count > areas->arcs) {
-        areas->overflow = true;
-        return true;
-    }
-    vd tiny = vd_set1(SHORT);
-    left->count = second[0].count = second[1].count = 0;
-    for (uint32_t o = 0; o < open.count; o += VD_LANES) {
-        arcs_in_lanes s = load(&open, o);
-        vd from = vd_lookup(areas->from, size, s.circle), to = vd_lookup(areas->to, size, s.circle);
-        vd sx = vd_lookup(areas->sx, size, s.circle), sy = vd_lookup(areas->sy, size, s.circle);
-        vd ex = vd_lookup(areas->ex, size, s.circle), ey = vd_lookup(areas->ey, size, s.circle);
-        vm round = vd_lt(to, from);
-        vd low = vd_min(from, to), high = vd_max(from, to);
-        vd lx = vd_select(round, ex, sx), ly = vd_select(round, ey, sy);
-        vd hx = vd_select(round, sx, ex), hy = vd_select(round, sy, ey);
-        /* a bound that does not cut goes to the end of the arc; if nothing is between them, all of the arc is below */
-        vm low_below = vd_le(vd_sub(low, s.a), tiny), high_above = vd_le(vd_sub(s.b, high), tiny);
-        vm none = vm_or(vd_le(vd_sub(high, s.a), tiny), vd_le(vd_sub(high, low), tiny));
-        none = vm_or(none, vd_le(vd_sub(s.b, low), tiny));
-        high_above = vm_or(high_above, none);
-        low = vd_select(none, s.b, vd_select(low_below, s.a, low));
-        lx = vd_select(none, s.qx, vd_select(low_below, s.px, lx));
-        ly = vd_select(none, s.qy, vd_select(low_below, s.py, ly));
-        high = vd_select(high_above, s.b, high);
-        hx = vd_select(high_above, s.qx, hx);
-        hy = vd_select(high_above, s.qy, hy);
-
-        arcs_in_lanes below = {s.a, low, s.px, s.py, lx, ly, s.circle};
-        arcs_in_lanes between = {low, high, lx, ly, hx, hy, s.circle};
-        arcs_in_lanes above = {high, s.b, hx, hy, s.qx, s.qy, s.circle};
-        arcs_in_lanes stays = select(round, &between, &below), goes = select(round, &below, &between);
-        uint32_t lanes = lanes_below(open.count - o), rounds = vm_bits(round), seconds = rising(&above) & lanes;
-        uint32_t going = rising(&goes) & lanes;
-        append(left, rising(&stays) & lanes, &stays);
-        any |= going | (seconds & rounds);
-        if (going != 0) give(areas, going, &goes, k);
-        if (seconds == 0) continue;
-        append(&second[0], seconds & ~rounds, &above);
-        append(&second[1], seconds & rounds, &above);
-        if (second[0].count > areas->seconds || second[1].count > areas->seconds) {
-            areas->overflow = true;
-            return true;
-        }
-    }
-    if (any == 0) return false;
-    give_all(areas, &second[1], k);
-    for (uint32_t o = 0; o < second[0].count; o += VD_LANES) {
-        arcs_in_lanes s = load(&second[0], o);
-        append(left, lanes_below(second[0].count - o), &s);
-    }
-    areas->open = *left;
-    *left = open;
-    return true;
-}
-
-static void add_circle(fibrad_areas *areas, uint32_t whose, double x, double y, double r, double inverse) {
-    uint32_t k = areas->circles;
-    areas->x[k] = x, areas->y[k] = y, areas->r[k] = r, areas->inverse[k] = inverse;
-    areas->ox[k] = r < 1 ? x : 0, areas->oy[k] = r < 1 ? y : 0;
-    areas->area[k] = 0;
-    areas->sense[k] = k == 0 ? 1 : -1;
-    areas->whose[k] = whose;
+/* Does the window again, up to its first `circles` circles, by accounts. */
+static bool redo(fibrad_areas *areas, uint32_t circles) {
+    bool open = true;
+    areas->doubtful = true;
+    areas->fallbacks++;
+    LANED(fibrad_accounts_begin)(areas);
+    for (uint32_t k = 1; k < circles && open; k++) /* which keeps no more circles than have been read */
+        open = LANED(fibrad_accounts_disc)(areas, areas->whose[k], areas->x[k], areas->y[k], areas->r[k]);
+    return open;
 }
 
 void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
+    /* three arcs, that begin where no symmetry of a bed does */
+    static _Alignas(FIBRAD_ALIGNMENT)
+        const double start_x[8] = {0x1.e921dd42f09bap-1, -0x1.7799ed83d9d3ap-1, -0x1.c61fbefc5b202p-3};
+    static _Alignas(FIBRAD_ALIGNMENT)
+        const double start_y[8] = {0x1.2e9cd95baba34p-2, 0x1.5bf2a3a493975p-1, -0x1.f34110526968fp-1};
+    static _Alignas(FIBRAD_ALIGNMENT)
+        const double end_x[8] = {-0x1.7799ed83d9d3ap-1, -0x1.c61fbefc5b202p-3, 0x1.e921dd42f09bap-1};
+    static _Alignas(FIBRAD_ALIGNMENT)
+        const double end_y[8] = {0x1.5bf2a3a493975p-1, -0x1.f34110526968fp-1, 0x1.2e9cd95baba34p-2};
+    fibrad_boundary *b = areas->boundary;
+    vd zero = vd_set1(0);
+    for (uint32_t o = 0; o < 3; o += VD_LANES) {
+        vd_store(b->px + o, vd_load(start_x + o));
+        vd_store(b->py + o, vd_load(start_y + o));
+        vd_store(b->qx + o, vd_load(end_x + o));
+        vd_store(b->qy + o, vd_load(end_y + o));
+        vd_store(b->cx + o, zero);
+        vd_store(b->cy + o, zero);
+        vd_store(b->r + o, vd_set1(1));
+        vd_store(b->circle + o, zero);
+    }
+    b->alive = b->window = 7;
+    areas->widest = 1;
+    areas->pieces->count = 0;
+    areas->doubtful = areas->overflow = false;
     areas->circles = 0;
-    areas->open.count = areas->taken.count = 0;
-    areas->overflow = false;
-    add_circle(areas, 0, 0, 0, 1, 1);
+    fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     areas->circles = 1;
-    double d = DIAGONAL;
-    add(&areas->open, BEGIN, END, d, -d, d, -d, 0, -d, d);
 }
 
 bool LANED(fibrad_areas_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
-    double sum = 1 + r, inverse = 1 / r;
-    if (areas->open.count == 0) return false;
-    if (sum * sum - (x * x + y * y) <= 0 || !meet(areas, x, y, r, inverse)) return true;
-
+    if (areas->doubtful) return LANED(fibrad_accounts_disc)(areas, whose, x, y, r);
+    if (areas->boundary->alive == 0) return false;
     uint32_t k = areas->circles;
-    add_circle(areas, whose, x, y, r, inverse);
-    bool any;
-    if (areas->from[0] == ALL) { /* the window lies within the disc */
-        give_all(areas, &areas->open, k);
-        any = true;
-    } else {
-        any = take(areas, k);
-        if (!areas->overflow && see(areas, x, y, r)) any = true;
+    fibrad_areas_add_circle(areas, whose, x, y, r);
+    if (r > LARGEST || !clip(areas, k, x, y, r)) return redo(areas, k + 1);
+    if (areas->boundary->alive == 0) return false;
+    close_up(areas->boundary);
+    return true;
+}
+
+/* What is still open, as the area of the last circle; false if the areas cannot be right. */
+static bool complete(fibrad_areas *areas) {
+    fibrad_boundary *b = areas->boundary;
+    uint32_t rest = areas->circles;
+    fibrad_areas_add_circle(areas, 0, 0, 0, 1);
+    for (uint32_t o = 0; b->alive >> o != 0; o += VD_LANES) {
+        fibrad_arc_lanes piece = {vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
+                                  vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
+        LANED(fibrad_arcs_give)(areas, (uint32_t)(b->alive >> o) & lanes_below(VD_LANES), &piece, rest);
     }
-    if (any) areas->circles++;
-    if (areas->overflow) areas->open.count = 0;
-    return areas->open.count > 0;
+    LANED(fibrad_areas_integrate)(areas);
+    bool right = fibrad_abs(areas->area[0] + PI) < CLOSURE;
+    for (uint32_t k = 1; k <= rest; k++) right = right & (areas->area[k] > -CLOSURE);
+    return right;
 }
 
 double LANED(fibrad_areas_end)(fibrad_areas *areas) {
-    uint32_t rest = areas->circles;
-    areas->ox[rest] = areas->oy[rest] = areas->area[rest] = 0;
-    give_all(areas, &areas->open, rest);
-    integrate(areas);
-    return areas->area[rest];
+    if (!areas->doubtful) {
+        if (complete(areas)) return areas->area[areas->circles];
+        redo(areas, areas->circles);
+    }
+    return LANED(fibrad_accounts_end)(areas);
 }

@@ -175,6 +175,7 @@ int LANED(fibrad_beam_row)(const fibrad_scene *scene, fibrad_work *work, uint32_
         if (built_in != FIBRAD_OK) return built_in;
     }
     work->areas.overflow = false;
+    work->areas.fallbacks = 0;
     fibrad_work_begin(work, scene, scene->place[i], cutoff, SHELLS);
     double open[2] = {0, 0};
     for (uint32_t k = 0; k < directions; k++) {
@@ -200,6 +201,7 @@ int LANED(fibrad_beam_row)(const fibrad_scene *scene, fibrad_work *work, uint32_
     for (int wall = 0; wall < FIBRAD_WALLS; wall++) row->wall[wall] = fibrad_max(0, work->wall[wall]) * scale;
     row->error *= fibrad_entries_gain(&work->entries);
     row->directions = directions;
+    row->fallbacks = work->areas.fallbacks;
     row->reach = fibrad_min(work->deepest, work->reach) * work->unit;
     return FIBRAD_OK;
 }

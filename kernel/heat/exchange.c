@@ -77,10 +77,9 @@ static double halves(const fibrad_entries *entries) {
 /* Follows paths until their error is not above `wanted` (0: as many as the rule says). Where reflecting surfaces are so
  * small that no path meets one, up to 64 times as many. */
 static void follow(fibrad_paths *paths, const fibrad_exchange_rule *rule, double carried, double wanted) {
-    fibrad_paths_function *version = fibrad_paths_version(paths->tracer->scene->facts.isa);
     uint64_t done = 0, first = rule->paths > 0 ? rule->paths : PATHS, next = first;
     while (done < next) {
-        version(paths, done, next);
+        fibrad_paths_follow(paths, done, next);
         done = next;
         double sum = total(paths), ratio = 0;
         if (sum == 0) {
@@ -100,7 +99,7 @@ static void join(fibrad_work *work, const fibrad_exchange_rule *rule, const fibr
         for (int part = 0; part < 4; part++) entries->part[k][part] *= scale;
     for (uint32_t k = 0; k < row->length; k++)
         for (uint32_t part = 0; part < 4; part++)
-            fibrad_entries_add(entries, work->scene->place[row->col[k]], part,
+            fibrad_entries_add(entries, fibrad_entries_of(entries, work->scene->place[row->col[k]]), part,
                                0.25 * row->f[k] * rule->emissivity[row->col[k]]);
 }
 
@@ -115,7 +114,7 @@ int fibrad_exchange_row(fibrad_tracer *tracer, fibrad_work *work, uint32_t i, co
     double carried = reflected(rule, row), scale = 0;
     fibrad_paths paths = begin(tracer, i, rule);
     paths.entries = &work->entries;
-    fibrad_work_begin(work, scene, paths.place, 0, (fibrad_stride){3.9, 1.5});
+    fibrad_work_begin(work, scene, paths.place, 0, (fibrad_stride){0});
     if (carried > 0) { /* what no path has found counts as escaped, and as an error */
         double left = rule->error * rule->error - beam_error * beam_error, least = 0.5 * rule->error;
         follow(&paths, rule, carried, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
@@ -144,7 +143,7 @@ int fibrad_exchange_spread(fibrad_tracer *tracer, uint32_t i, const fibrad_excha
     fibrad_paths paths = begin(tracer, i, rule);
     uint32_t count = rule->paths > 0 ? rule->paths : PATHS;
     paths.first = true;
-    fibrad_paths_version(tracer->scene->facts.isa)(&paths, 0, count);
+    fibrad_paths_follow(&paths, 0, count);
     for (int axis = 0; axis < 3; axis++) {
         double sum = 0, square = 0;
         for (int part = 0; part < FIBRAD_SPREAD_PARTS; part++) sum += paths.square[part][axis];

@@ -1,20 +1,23 @@
-/* paths.c - chooses the version for an instruction set. SPDX-License-Identifier: MIT */
+/* paths.c - hands paths to the version for the scene's instruction set. SPDX-License-Identifier: MIT */
 #include "heat/paths.h"
 
-fibrad_paths_function *fibrad_paths_version(int isa) {
-    switch (isa) {
+void fibrad_paths_follow(fibrad_paths *paths, uint64_t begin, uint64_t end) {
+    switch (paths->tracer->scene->facts.isa) {
 #ifdef FIBRAD_WITH_SSE2
     case FIBRAD_ISA_SSE2:
-        return fibrad_paths_follow_sse2;
+        fibrad_paths_follow_sse2(paths, begin, end);
+        return;
 #endif
 #ifdef FIBRAD_WITH_AVX2
     case FIBRAD_ISA_AVX2:
-        return fibrad_paths_follow_avx2;
+        fibrad_paths_follow_avx2(paths, begin, end);
+        return;
 #endif
 #ifdef FIBRAD_WITH_AVX512
     case FIBRAD_ISA_AVX512:
-        return fibrad_paths_follow_avx512;
+        fibrad_paths_follow_avx512(paths, begin, end);
+        return;
 #endif
     }
-    return fibrad_paths_follow_scalar;
+    fibrad_paths_follow_scalar(paths, begin, end);
 }

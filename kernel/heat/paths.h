@@ -26,12 +26,11 @@ typedef struct fibrad_paths {
     uint64_t rays;                         /* out: traced in all */
 } fibrad_paths;
 
-/* Adds paths [begin, end). */
+/* Adds paths [begin, end), in the scene's instruction set. */
+void fibrad_paths_follow(fibrad_paths *paths, uint64_t begin, uint64_t end);
+
 typedef void fibrad_paths_function(fibrad_paths *paths, uint64_t begin, uint64_t end);
 fibrad_paths_function fibrad_paths_follow_scalar, fibrad_paths_follow_sse2, fibrad_paths_follow_avx2,
     fibrad_paths_follow_avx512;
-
-/* The version for an instruction set. */
-fibrad_paths_function *fibrad_paths_version(int isa);
 
 #endif

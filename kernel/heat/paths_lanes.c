@@ -131,7 +131,9 @@ static void absorb(fibrad_paths *paths, struct path *path, uint32_t wall, bool c
     paths->absorbed += absorbed;
     for (int axis = 0; axis < 3; axis++)
         paths->square[path->k % FIBRAD_SPREAD_PARTS][axis] += absorbed * (path->centre[axis] * path->centre[axis]);
-    if (paths->entries != NULL) fibrad_entries_add(paths->entries, path->place, (uint32_t)(path->k % 4), absorbed);
+    if (paths->entries == NULL) return;
+    uint32_t entry = fibrad_entries_of(paths->entries, path->place);
+    fibrad_entries_add(paths->entries, entry, (uint32_t)(path->k % 4), absorbed);
 }
 
 static void follow(fibrad_paths *paths, uint64_t k) {

@@ -42,6 +42,11 @@ static inline void vd_compress(double *p, uint32_t bits, vd a) {
     __m256i order = _mm256_loadu_si256((const __m256i *)(const void *)half[bits & 15]);
     _mm256_storeu_ps((float *)(void *)p, _mm256_permutevar8x32_ps(_mm256_castpd_ps(a), order));
 }
+static inline vd vd_replace(vd a, uint32_t lane, double x) {
+    static const uint64_t ones[8] = {0, 0, 0, UINT64_MAX};
+    __m256d there = _mm256_loadu_pd((const double *)(const void *)(ones + 3 - lane));
+    return _mm256_blendv_pd(a, _mm256_set1_pd(x), there);
+}
 static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     return fibrad_compress_places(p, bits, first);
 }

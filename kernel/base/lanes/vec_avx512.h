@@ -24,6 +24,12 @@ static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
     _mm512_storeu_pd(p, _mm512_maskz_compress_pd((__mmask8)bits, a));
 }
+/* Without the empty statement a load, this and a store become a masked store, which the next load waits for long. */
+static inline vd vd_replace(vd a, uint32_t lane, double x) {
+    a = _mm512_mask_mov_pd(a, (__mmask8)(1u << lane), _mm512_set1_pd(x));
+    __asm__("" : "+v"(a));
+    return a;
+}
 static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     __m256i place = _mm256_add_epi32(_mm256_set1_epi32((int)first), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
     _mm256_storeu_si256((__m256i *)(void *)p, _mm256_maskz_compress_epi32((__mmask8)bits, place));

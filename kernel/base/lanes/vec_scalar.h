@@ -9,6 +9,7 @@
  *                            the table's length where nobody looks); the table is a whole number of vectors long
  *                            vd_gather(table, k): table[k[l]] for lane l
  *                            vd_compress(p, bits, a): the lanes named by bits side by side at p, which has room for all
+ *                            vd_replace(a, lane, x): a with x in one lane
  *                            vd_compress_places(p, bits, first): first + l for them; returns how many
  *   vm   a mask of vd lanes  vm_and vm_or vm_not vm_bits (bit l = lane l)
  *   vf   VF_LANES floats     vf_set1 vf_load vf_store vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
@@ -33,8 +34,9 @@ static inline vd vd_set1(double a) { return a; }
 static inline vd vd_load(const double *p) { return *p; }
 static inline vd vd_lookup(const double *table, uint32_t size, vd k) { return (void)size, table[(uint32_t)k]; }
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
-    if (bits & 1) *p = a;
+    (void)bits, *p = a; /* there is room, and no branch */
 }
+static inline vd vd_replace(vd a, uint32_t lane, double x) { return (void)a, (void)lane, x; }
 static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     *p = first;
     return bits;

@@ -20,8 +20,15 @@ static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
     return _mm_set_pd(table[(uint32_t)_mm_cvtsd_f64(_mm_unpackhi_pd(k, k))], table[(uint32_t)_mm_cvtsd_f64(k)]);
 }
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
-    if (bits & 1) _mm_store_sd(p++, a);
-    if (bits & 2) _mm_storeh_pd(p, a);
+    static const uint64_t second[4] = {0, 0, UINT64_MAX, 0}; /* where the second lane moves to the front */
+    __m128d high = _mm_castsi128_pd(_mm_loadl_epi64((const __m128i *)(const void *)(second + bits)));
+    __m128d front = _mm_or_pd(_mm_and_pd(high, _mm_unpackhi_pd(a, a)), _mm_andnot_pd(high, a));
+    _mm_storeu_pd(p, front);
+}
+static inline vd vd_replace(vd a, uint32_t lane, double x) {
+    static const uint64_t ones[4] = {0, UINT64_MAX, 0, 0};
+    __m128d there = _mm_loadu_pd((const double *)(const void *)(ones + 1 - lane));
+    return _mm_or_pd(_mm_and_pd(there, _mm_set1_pd(x)), _mm_andnot_pd(there, a));
 }
 static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     p[0] = first + (bits == 2);

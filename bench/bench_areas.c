@@ -1,0 +1,152 @@
+/* bench_areas.c - exact visible areas alone: both methods in every instruction set there is, one thread.
+ * SPDX-License-Identifier: MIT
+ *
+ *     bench_areas [quick]
+ *
+ * CSV on standard output: microseconds per window, processor time, the least of rounds in which all take turns; the
+ * part of the windows that clipping left to accounts; and how many times as long accounts take in scalar, the
+ * reference. The windows are those of a periodic random bed of equal spheres, solid fraction 0.6, with their discs
+ * sorted. */
+#include <math.h>
+
+#include "bed/areas.h"
+#include "bed_make.h"
+#include "bench.h"
+#include "message.h"
+#include "run_omp.h"
+
+enum { DISCS = 64, METHODS = 8 };
+
+struct window {
+    uint32_t n;
+    double depth[DISCS], u[DISCS], v[DISCS], r[DISCS];
+};
+
+typedef void begin_function(fibrad_areas *areas);
+typedef bool disc_function(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
+typedef double end_function(fibrad_areas *areas);
+
+struct method {
+    const char *name, *isa;
+    begin_function *begin;
+    disc_function *disc;
+    end_function *end;
+    double best, fallbacks;
+};
+
+static void add(struct method *method, const char *name, const char *isa, begin_function *begin, disc_function *disc,
+                end_function *end) {
+    *method = (struct method){name, isa, begin, disc, end, INFINITY, 0};
+}
+
+#define DECLARE(by, isa)                                                                                               \
+    begin_function fibrad_##by##_begin_##isa;                                                                          \
+    disc_function fibrad_##by##_disc_##isa;                                                                            \
+    end_function fibrad_##by##_end_##isa;
+#define METHOD(by, isa)                                                                                                \
+    add(&methods[n++], #by, #isa, fibrad_##by##_begin_##isa, fibrad_##by##_disc_##isa, fibrad_##by##_end_##isa)
+
+DECLARE(areas, scalar)
+DECLARE(accounts, scalar)
+#ifdef FIBRAD_WITH_SSE2
+DECLARE(areas, sse2)
+DECLARE(accounts, sse2)
+#endif
+#ifdef FIBRAD_WITH_AVX2
+DECLARE(areas, avx2)
+DECLARE(accounts, avx2)
+#endif
+#ifdef FIBRAD_WITH_AVX512
+DECLARE(areas, avx512)
+DECLARE(accounts, avx512)
+#endif
+
+/* Those of this machine; the scalar accounts come first. */
+static int methods_list(struct method methods[METHODS]) {
+    int n = 0;
+    METHOD(accounts, scalar);
+    METHOD(areas, scalar);
+#ifdef FIBRAD_WITH_SSE2
+    if (fibrad_isa_best() >= FIBRAD_ISA_SSE2) METHOD(accounts, sse2), METHOD(areas, sse2);
+#endif
+#ifdef FIBRAD_WITH_AVX2
+    if (fibrad_isa_best() >= FIBRAD_ISA_AVX2) METHOD(accounts, avx2), METHOD(areas, avx2);
+#endif
+#ifdef FIBRAD_WITH_AVX512
+    if (fibrad_isa_best() >= FIBRAD_ISA_AVX512) METHOD(accounts, avx512), METHOD(areas, avx512);
+#endif
+    return n;
+}
+
+/* The nearest discs before the window of sphere i, unit radius, in direction k of n. */
+static void look(struct window *window, const struct bed *bed, uint32_t i, uint32_t k, uint32_t n) {
+    double w[3] = {0};
+    fibrad_direction(k, n, w);
+    const double side = hypot(w[0], w[1]), e[3] = {-w[1] / side, w[0] / side, 0};
+    const double g[3] = {-w[2] * e[1], w[2] * e[0], side};
+    window->n = 0;
+    for (uint32_t j = 0; j < bed->n; ++j) {
+        double c[3] = {bed->x[j] - bed->x[i], bed->y[j] - bed->y[i], bed->z[j] - bed->z[i]};
+        for (int axis = 0; axis < 3; ++axis) c[axis] -= bed->period[axis] * round(c[axis] / bed->period[axis]);
+        const double depth = w[0] * c[0] + w[1] * c[1] + w[2] * c[2];
+        const double u = e[0] * c[0] + e[1] * c[1], v = g[0] * c[0] + g[1] * c[1] + g[2] * c[2];
+        if (!(depth > 0 && u * u + v * v < 4)) continue;
+        uint32_t to = window->n < DISCS ? window->n++ : DISCS - 1;
+        if (to == DISCS - 1 && depth > window->depth[to]) continue;
+        for (; to > 0 && window->depth[to - 1] > depth; --to) {
+            window->depth[to] = window->depth[to - 1];
+            window->u[to] = window->u[to - 1], window->v[to] = window->v[to - 1];
+        }
+        window->depth[to] = depth, window->u[to] = u, window->v[to] = v, window->r[window->n - 1] = 1;
+    }
+}
+
+static void measure(struct method *method, fibrad_areas *areas, const struct window *windows, uint32_t n) {
+    const double begun = bench_thread_seconds();
+    areas->fallbacks = 0;
+    for (uint32_t w = 0; w < n; ++w) {
+        bool open = true;
+        method->begin(areas);
+        for (uint32_t k = 0; k < windows[w].n && open; ++k)
+            open = method->disc(areas, k, windows[w].u[k], windows[w].v[k], windows[w].r[k]);
+        method->end(areas);
+    }
+    method->best = fmin(method->best, bench_thread_seconds() - begun);
+    method->fallbacks = (double)areas->fallbacks / n;
+}
+
+int main(int argc, char **argv) {
+    const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
+    const uint32_t rows = quick ? 10 : 400, directions = 50;
+    struct bed bed;
+    bed_init(&bed, false, 0);
+    int status = bed_make_packing(&bed, quick ? 200 : 2000, 1, 1, 0.6, 1);
+    if (status) return status;
+
+    fibrad_arena arena = {0};
+    fibrad_areas areas = {0};
+    fibrad_areas_layout(&areas, &arena, DISCS);
+    const size_t size = arena.used;
+    void *block = run_block(size);
+    struct window *windows = malloc(rows * directions * sizeof *windows);
+    if (!block || !windows) return message_memory();
+    memset(block, 0, size);
+    arena = (fibrad_arena){block, 0, size};
+    fibrad_areas_layout(&areas, &arena, DISCS);
+    for (uint32_t k = 0; k < rows * directions; ++k)
+        look(&windows[k], &bed, k / directions * (bed.n / rows), k % directions, directions);
+
+    struct method methods[METHODS];
+    const int n = methods_list(methods);
+    for (int round = 0; round < (quick ? 1 : 10); ++round)
+        for (int m = 0; m < n; ++m) measure(&methods[m], &areas, windows, rows * directions);
+    bench_preamble("bench_areas: windows of a periodic random bed of equal spheres, solid fraction 0.6", 1);
+    puts("method,isa,microseconds,left to accounts,accounts scalar / this");
+    for (int m = 0; m < n; ++m)
+        printf("%s,%s,%.3f,%g,%.2f\n", methods[m].name, methods[m].isa, 1e6 * methods[m].best / (rows * directions),
+               methods[m].fallbacks, methods[0].best / methods[m].best);
+    free(windows);
+    free(block);
+    bed_free(&bed);
+    return 0;
+}
