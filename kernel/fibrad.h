@@ -151,7 +151,7 @@ typedef struct fibrad_fault {
 size_t fibrad_scene_size(const fibrad_scene_config *config);
 
 /* An upper bound of fibrad_scene_size for up to n spheres, as a constant expression, for static memory. */
-#define FIBRAD_SCENE_BYTES(n) (8192 + (size_t)(n)*64)
+#define FIBRAD_SCENE_BYTES(n) (5120 + (size_t)(n)*64)
 
 /* Makes a scene in `memory` (`size` bytes on a 64-byte boundary) from config->spheres == spheres->n spheres, which are
  * copied: the arrays may go afterwards. On periodic axes centres may lie anywhere and are taken into the box.
