@@ -51,11 +51,13 @@ static bool whole(int picture) {
     return false;
 }
 
-/* Why: where gnuplot could not write, neither can we. */
+/* Why: where gnuplot could not write, neither can we, at the latest when a first try has filled what room there was. */
 static int failed(const struct output *picture) {
-    static const char more[8192];
-    if (write(fileno(picture->file), more, sizeof more) == sizeof more) return message(STATUS_FILE, "gnuplot failed");
-    return message_at(STATUS_FILE, picture->path, 0, "cannot be written: %s", strerror(errno));
+    static const char more[65536];
+    for (int tries = 0; tries < 2; tries++)
+        if (write(fileno(picture->file), more, sizeof more) < 0)
+            return message_at(STATUS_FILE, picture->path, 0, "cannot be written: %s", strerror(errno));
+    return message(STATUS_FILE, "gnuplot failed");
 }
 
 int gnuplot_end(struct gnuplot *gnuplot) {

@@ -63,7 +63,8 @@ static void measure(const struct method *method, fibrad_areas *areas, const stru
     for (uint32_t c = 1; c < areas->circles; c++) area[areas->whose[c]] = areas->area[c];
     double total = 0;
     for (uint32_t k = 0; k <= w->n; k++) {
-        ck_assert_double_gt(area[k], -1e-12);
+        ck_assert_double_gt(area[k],
+                            -1e-8); /* three circles tangent in one point, an ulp beside it: docs/accuracy.md */
         total += area[k];
     }
     ck_assert_double_eq_tol(total, 3.14159265358979323846, 1e-12);
@@ -122,7 +123,10 @@ START_TEST(hundreds_of_discs) {
     double worst = 0;
     for (int round = 0; round < 10; round++) {
         struct window w = {0};
-        for (uint32_t k = 0; k < MOST - 1; k++) put(&w, random_in(-1, 1), random_in(-1, 1), random_in(.01, .12));
+        for (uint32_t k = 0; k < MOST - 1; k++) {
+            double u = random_in(-1, 1), v = random_in(-1, 1);
+            put(&w, u, v, random_in(.01, .12));
+        }
         worst = fmax(worst, worst_of(&w));
     }
     printf("hundreds of discs: %.2g\n", worst);
@@ -242,8 +246,9 @@ START_TEST(clipping_against_accounts) {
         double grid = floor(random_in(3, 9)), nudge = pow(10, random_in(-17, -5)), turn = random_in(0, 1) < .3 ? 1 : 0;
         for (uint32_t k = 0; k < n; k++) {
             double u = floor(random_in(-2, 2) * grid) / grid, v = floor(random_in(-2, 2) * grid) / grid;
-            double r = ceil(random_in(0, 1.5) * grid) / grid;
-            put(&w, u + nudge * random_in(-1, 1), v * (1 - turn * .13397459621556135) + nudge * random_in(-1, 1), r);
+            double r = ceil(random_in(0, 1.5) * grid) / grid, du = nudge * random_in(-1, 1),
+                   dv = nudge * random_in(-1, 1);
+            put(&w, u + du, v * (1 - turn * .13397459621556135) + dv, r);
         }
         measure(&both, &areas, &w, clipped);
         measure(&accounts, &areas, &w, robust);
