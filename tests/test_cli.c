@@ -700,10 +700,13 @@ START_TEST(paraview_and_picture) {
 END_TEST
 
 START_TEST(picture_without_gnuplot) {
+    char *path = strdup(getenv("PATH"));
     ck_assert_int_eq(setenv("PATH", folder, 1), 0);
     ck_assert_int_eq(
         RUN("bed", write_file("a.csv", "x,y,z,r\n0,0,0,1\n"), "--plot", in_folder("a.png"), "-o", in_folder("F.csv")),
         4);
+    ck_assert_int_eq(setenv("PATH", path, 1), 0);
+    free(path);
     expect_message("", "gnuplot");
     ck_assert_int_eq(remove_files(0), 1); /* a.csv alone */
 }
@@ -763,7 +766,9 @@ END_TEST
 
 /* A disc that fills up, as far as a limit on the size of files can play it. */
 START_TEST(full_disc) {
-    const struct rlimit limit = {100000, 100000};
+    struct rlimit before;
+    ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const struct rlimit limit = {100000, before.rlim_max};
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &limit), 0);
     ck_assert_int_eq(RUN("bed", MONO, "--directions", "21", "-o", in_folder("F.csv")), 4);
     ck_assert_ptr_nonnull(strstr(said, "F.csv: cannot be written: File too large"));
@@ -774,6 +779,7 @@ START_TEST(full_disc) {
     ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.png")), 4);
     ck_assert_ptr_nonnull(strstr(said, "F.png: cannot be written: File too large"));
     ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &before), 0);
 }
 END_TEST
 
