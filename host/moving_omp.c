@@ -122,7 +122,7 @@ int moving_begin(struct moving *moving, const struct bed *bed, const fibrad_beam
     moving->reach = calloc(n, sizeof *moving->reach);
     moving->due = malloc(n);
     moving->scratch = malloc(2 * (size_t)n);
-    moving->work = calloc((size_t)moving->threads, sizeof *moving->work);
+    moving->work = calloc((size_t)moving->threads, sizeof(void *));
     if (!moving->block || !moving->spare || !moving->row || !moving->fresh || !moving->error || !moving->reach ||
         !moving->due || !moving->scratch || !moving->work)
         return message_memory();

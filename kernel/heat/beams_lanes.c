@@ -50,6 +50,7 @@ static void number(struct window *p, const double frame[9], uint32_t side, uint1
 /* Which disc hides each point of a word: the first that covers it. */
 static void find_discs(const fibrad_work *work, const fibrad_points *points, uint32_t word, struct window *p) {
     uint64_t left = ~points->seen[word];
+    for (uint32_t k = 0; k < POINTS; k++) p->disc[k] = FIBRAD_NONE;
     for (uint32_t t = 0; left != 0; t++) {
         const uint32_t k = points->taker[t];
         const double r = work->disc.r[k];
@@ -63,7 +64,6 @@ static void find_discs(const fibrad_work *work, const fibrad_points *points, uin
         for (uint64_t take = hidden & left; take != 0; take &= take - 1) p->disc[__builtin_ctzll(take)] = k;
         left &= ~hidden;
     }
-    for (uint64_t open = points->seen[word]; open != 0; open &= open - 1) p->disc[__builtin_ctzll(open)] = FIBRAD_NONE;
 }
 
 /* Normals where the points x, y meet their discs. */
