@@ -315,7 +315,7 @@ test: deps
 
 ## run-programs: build and run the test programs without the scripts
 run-programs: programs
-	@BUILD=$(BUILD) tests/run.sh $(TEST_PROGRAMS)
+	@BUILD=$(BUILD) tests/run.sh $(filter-out $(SKIP:%=$(BUILD)/tests/%),$(TEST_PROGRAMS))
 
 ## programs: build the test programs
 programs: $(TEST_PROGRAMS) $(BUILD)/fibrad

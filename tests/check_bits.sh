@@ -18,7 +18,7 @@ variant() {
     fi
     folder=$BUILD/bits/$name
     # shellcheck disable=SC2086  # flags is a list
-    if ! { $MAKE -s BUILD="$folder" CC="$compiler" HOSTCC="$HOSTCC" CFLAGS="$level" lib &&
+    if ! { $MAKE -s -j2 BUILD="$folder" CC="$compiler" HOSTCC="$HOSTCC" CFLAGS="$level" lib &&
         "$compiler" -std=c11 "$level" -ffp-contract=off -Ikernel $flags tests/bits/bits.c "$folder/libfibrad.a" -lm \
             -o "$folder/bits"; } >"$BUILD/bits/log" 2>&1; then
         echo "$name: does not build:"
