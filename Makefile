@@ -204,13 +204,14 @@ BENCHES = \
     bench/bench_scale.c \
     bench/bench_sizes.c \
     bench/bench_skips.c \
-    bench/bench_surface.c
+    bench/bench_surface.c \
+    bench/bench_window.c
 
 # built and run where Embree 3 is found (Debian: libembree-dev)
 PEERS = bench/bench_embree.c
 
 # these know the argument `quick`
-QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_heat.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c $(PEERS)
+QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_heat.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c bench/bench_window.c $(PEERS)
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)
