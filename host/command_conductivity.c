@@ -72,10 +72,11 @@ static int help(void) {
          "[m].\n"
          "FILE as for fibrad bed.\n");
     options_print(table);
-    puts("\nThe result is that of a linear field of temperature. With open axes only spheres at least 5 mean diameters "
-         "inside\n"
-         "the outermost centres emit; all absorb.\n"
-         "Standard output ends with lines `key value`, the last six F_E_x, F_E_y, F_E_z, F_E_x_error, F_E_y_error,\n"
+    printf("\nThe result is that of a linear field of temperature. With open axes only spheres at least %g mean "
+           "diameters inside\n"
+           "the outermost centres emit; all absorb.\n",
+           MARGIN);
+    puts("Standard output ends with lines `key value`, the last six F_E_x, F_E_y, F_E_z, F_E_x_error, F_E_y_error,\n"
          "F_E_z_error (standard errors, estimated).\n\n"
          "Examples:\n"
          "  fibrad conductivity packing.dump --emissivity 0.8\n"
