@@ -284,8 +284,8 @@ static int write_results(const struct request *request, const struct bed *bed, c
 /* Opens the outputs before the work, so that a path that cannot be written costs no time. */
 static int compute_and_write(struct request *request, const struct bed *bed, struct result *result) {
     struct output out = {0}, plot = {0};
-    int status = request->out ? output_open(&out, request->out) : STATUS_OK;
-    if (!status && request->plot) status = output_open(&plot, request->plot);
+    int status = output_open(&out, request->out);
+    if (!status) status = output_open(&plot, request->plot);
     if (!status)
         status = request->error > 0 ? tolerance_rows(bed, &request->run, &request->beam_rule, request->error, result)
                                     : run_rows(bed, &request->run, result);

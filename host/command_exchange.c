@@ -211,7 +211,7 @@ static void print_summary(const struct request *request, const struct bed *bed, 
 static int compute_and_write(struct request *request, const struct bed *bed, struct result *result) {
     struct output out = {0};
     uint64_t rays = 0;
-    int status = request->out ? output_open(&out, request->out) : STATUS_OK;
+    int status = output_open(&out, request->out);
     if (!status) status = run_exchange(bed, &request->run, &request->rule, request->drop, result, &rays);
     const struct contents contents = {bed, result, request->read.ids, &request->order, &request->rule};
     if (!status && request->out) status = request->write(out.file, &contents);

@@ -291,8 +291,8 @@ static void print_summary(const struct request *request, const struct furnace_ru
 static int compute_and_write(const struct request *request, const fibrad_furnace_config *config,
                              struct furnace_run *run) {
     struct output out = {0}, plot = {0};
-    int status = request->out ? output_open(&out, request->out) : STATUS_OK;
-    if (!status && request->plot) status = output_open(&plot, request->plot);
+    int status = output_open(&out, request->out);
+    if (!status) status = output_open(&plot, request->plot);
     if (!status) status = furnace_run(config, &request->run, run);
     if (!status && request->out) request->write(out.file, run);
     if (!status && request->plot) {

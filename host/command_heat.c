@@ -189,11 +189,6 @@ static int take_option(struct request *request, const struct options *options, i
     return status;
 }
 
-static bool ends(const char *path, const char *with) {
-    const size_t length = strlen(path), ending = strlen(with);
-    return length > ending && strcmp(path + length - ending, with) == 0;
-}
-
 static int check_request(struct request *request) {
     if (!request->file) return message(STATUS_USAGE, "which FILE? see fibrad heat --help");
     if (request->emissivity.value == 0 && !request->emissivity.column)
@@ -206,9 +201,9 @@ static int check_request(struct request *request) {
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
     if (request->out) {
-        request->write = ends(request->out, ".csv")   ? write_heat_csv
-                         : ends(request->out, ".vtp") ? write_heat_vtp
-                                                      : NULL;
+        request->write = output_ends(request->out, ".csv")   ? write_heat_csv
+                         : output_ends(request->out, ".vtp") ? write_heat_vtp
+                                                             : NULL;
         if (!request->write)
             return message_at(STATUS_USAGE, request->out, 0, "unknown ending; there are .csv and .vtp");
         if (output_same(request->file, request->out))
@@ -292,7 +287,7 @@ static void print_summary(const struct request *request, const struct bed *bed, 
 
 static int compute_and_write(struct request *request, const struct bed *bed, struct heat_report *report) {
     struct output out = {0};
-    int status = request->out ? output_open(&out, request->out) : STATUS_OK;
+    int status = output_open(&out, request->out);
     if (!status) status = run_heat(bed, &request->heat, report);
     if (!status && request->heat.error > 0 && report->error_estimate > request->heat.error)
         fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g\n", request->heat.file,
