@@ -105,7 +105,6 @@ HOST = \
     host/command_heat.c \
     host/command_pair.c \
     host/command_reproduce.c \
-    host/emissivity.c \
     host/exact_gsl.c \
     host/furnace_cases.c \
     host/furnace_plot.c \
@@ -120,6 +119,7 @@ HOST = \
     host/plot.c \
     host/plot_data.c \
     host/progress.c \
+    host/quantities.c \
     host/read.c \
     host/read_columns.c \
     host/read_csv.c \

@@ -11,10 +11,10 @@
 
 #include "bed.h"
 #include "commands.h"
-#include "emissivity.h"
 #include "interrupt.h"
 #include "message.h"
 #include "options.h"
+#include "quantities.h"
 #include "read.h"
 #include "run_exchange.h"
 
@@ -28,10 +28,10 @@
 #define PILOT   50000.0
 #define PER_MAX 100000000.0
 
-enum { KEY_EMISSIVITY = KEY_OWN, KEY_ERROR, KEY_PERIODIC, KEY_FRAME, KEY_THREADS, KEY_PROGRESS };
+enum { KEY_ERROR = KEY_OWN, KEY_PERIODIC, KEY_FRAME, KEY_THREADS, KEY_PROGRESS };
 
 static const struct option table[] = {
-    {KEY_EMISSIVITY, "emissivity", "E|COLUMN", "of all spheres, above 0 up to 1, or the file's column of that name"},
+    {OPTION_EMISSIVITY},
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [as many as --error takes]"},
     {KEY_ERROR, "error", "E", "as many as bring the estimated standard errors to E of F_E, 1e-4 to 1 [0.003]"},
     {KEY_SEED, "seed", "S", "another number, other paths [0]"},
@@ -44,7 +44,7 @@ static const struct option table[] = {
 
 struct request {
     const char *file;
-    struct emissivity_option emissivity;
+    struct quantity emissivity;
     bool periodic; /* --periodic was given */
     double period[3];
     fibrad_exchange_rule rule;
@@ -135,8 +135,7 @@ static int parse(struct request *request, int argc, char **argv) {
         if (status || request->help) return status;
     }
     if (!request->file) return message(STATUS_USAGE, "which FILE? see fibrad conductivity --help");
-    if (request->emissivity.value == 0 && !request->emissivity.column)
-        return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");
+    if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");
     if (request->error > 0 && request->rule.paths > 0)
         return message(STATUS_USAGE, "--error finds the rays itself; leave out --rays");
     if (request->error == 0) request->error = 0.003;
@@ -295,7 +294,7 @@ static int run(struct request *request, struct bed *bed) {
     bool *emits = calloc(bed->n, sizeof *emits);
     fibrad_spread *spread = calloc(bed->n, sizeof *spread);
     if (!emits || !spread) status = message_memory();
-    if (!status) status = emissivity_of(&request->emissivity, bed, request->run.file, 0, &emissivity);
+    if (!status) status = emissivity_of(&request->emissivity, bed, request->run.file, &emissivity);
     request->rule.emissivity = emissivity;
     if (!status) status = choose_emitters(bed, request->run.file, &result, emits);
     if (!status) status = compute(request, bed, emits, spread, &result);

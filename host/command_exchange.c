@@ -7,38 +7,26 @@
 
 #include "bed.h"
 #include "commands.h"
-#include "emissivity.h"
 #include "interrupt.h"
 #include "message.h"
 #include "options.h"
+#include "quantities.h"
 #include "read.h"
 #include "run_exchange.h"
 #include "walls.h"
 #include "write.h"
 
-enum {
-    KEY_EMISSIVITY = KEY_OWN,
-    KEY_ERROR,
-    KEY_WALL,
-    KEY_WALL_EMISSIVITY,
-    KEY_PERIODIC,
-    KEY_FRAME,
-    KEY_THREADS,
-    KEY_RAW,
-    KEY_DROP,
-    KEY_IDS,
-    KEY_PROGRESS
-};
+enum { KEY_ERROR = KEY_OWN, KEY_WALL, KEY_PERIODIC, KEY_FRAME, KEY_THREADS, KEY_RAW, KEY_DROP, KEY_IDS, KEY_PROGRESS };
 
 static const struct option table[] = {
-    {KEY_EMISSIVITY, "emissivity", "E|COLUMN", "of all spheres, above 0 up to 1, or the file's column of that name"},
+    {OPTION_EMISSIVITY},
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [400]"},
     {KEY_DIRECTIONS, "directions", "N", "beam directions for the first leg of all paths, 8 to 65536 [50]"},
     {KEY_ERROR, "error", "E",
      "as many of both as bring the estimated Euclidean error of a row to E (of the worst to 1.3 E or so), 1e-5 to 1 "
      "[none]"},
     {KEY_WALL, "wall", WALLS_ARGUMENT, WALLS_HELP},
-    {KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST", EMISSIVITY_WALL_HELP},
+    {OPTION_WALL_EMISSIVITY},
     {KEY_RAW, "raw", NULL, "do not average D_ij and D_ji [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
     {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},
     {KEY_SEED, "seed", "S", "another number, other paths [0]"},
@@ -54,7 +42,7 @@ static const struct option table[] = {
 struct request {
     const char *file, *out, *wall_emissivity;
     write_function *write;
-    struct emissivity_option emissivity;
+    struct quantity emissivity;
     bool periodic; /* --periodic was given */
     double period[3];
     struct wall_options walls;
@@ -152,8 +140,7 @@ static int take_option(struct request *request, const struct options *options, i
 
 static int check_request(struct request *request) {
     if (!request->file) return message(STATUS_USAGE, "which FILE? see fibrad exchange --help");
-    if (request->emissivity.value == 0 && !request->emissivity.column)
-        return message(STATUS_USAGE, "which --emissivity? see fibrad exchange --help");
+    if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad exchange --help");
     if (request->rule.error > 0 && request->counted)
         return message(STATUS_USAGE, "--error finds rays and directions itself; leave out --rays and --directions");
     if (request->drop > 0 && request->run.raw)
@@ -228,7 +215,7 @@ static int run(struct request *request, struct bed *bed, struct result *result) 
     if (request->periodic) memcpy(bed->period, request->period, sizeof bed->period);
     status = walls_of(&request->walls, bed, request->run.file, &request->run.walls, &request->order);
     if (!status) status = emissivity_walls(request->wall_emissivity, &request->order, request->rule.wall_emissivity);
-    if (!status) status = emissivity_of(&request->emissivity, bed, request->run.file, 0, &emissivity);
+    if (!status) status = emissivity_of(&request->emissivity, bed, request->run.file, &emissivity);
     request->rule.emissivity = emissivity;
     if (!status) status = compute_and_write(request, bed, result);
     free(emissivity);

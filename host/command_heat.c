@@ -1,5 +1,4 @@
 /* command_heat.c - `fibrad heat`: net radiative powers of grey spheres and walls. SPDX-License-Identifier: MIT */
-#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,25 +6,21 @@
 #include <string.h>
 
 #include "commands.h"
-#include "emissivity.h"
 #include "interrupt.h"
 #include "message.h"
 #include "options.h"
+#include "quantities.h"
 #include "read.h"
 #include "run_heat.h"
 #include "walls.h"
 #include "write.h"
 #include "write_heat.h"
 
-#define HOTTEST 1e9 /* K */
-
 enum {
-    KEY_EMISSIVITY = KEY_OWN,
-    KEY_TEMPERATURE,
+    KEY_TEMPERATURE = KEY_OWN,
     KEY_AMBIENT,
     KEY_WALL,
     KEY_WALL_TEMPERATURE,
-    KEY_WALL_EMISSIVITY,
     KEY_MODEL,
     KEY_PATCHES,
     KEY_ERROR,
@@ -37,13 +32,13 @@ enum {
 };
 
 static const struct option table[] = {
-    {KEY_EMISSIVITY, "emissivity", "E|COLUMN", "of all spheres, above 0 up to 1, or the file's column of that name"},
+    {OPTION_EMISSIVITY},
     {KEY_TEMPERATURE, "temperature", "T|COLUMN", "of all spheres [K], or the file's column of that name"},
     {KEY_AMBIENT, "ambient", "T", "temperature of the surroundings, which are black [0 K]"},
     {KEY_WALL, "wall", WALLS_ARGUMENT, WALLS_HELP},
     {KEY_WALL_TEMPERATURE, "wall-temperature", "LIST",
      "temperatures of the walls in the order given; the last one is that of all further [K; as the surroundings]"},
-    {KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST", EMISSIVITY_WALL_HELP},
+    {OPTION_WALL_EMISSIVITY},
     {KEY_MODEL, "model", "NAME",
      "patches: reflected light goes from point to point; spheres: one radiosity each, for emissivities near 1 "
      "[patches]"},
@@ -62,18 +57,10 @@ static const struct option table[] = {
     {KEY_HELP, "help", NULL, "this text"},
     {0, NULL, NULL, NULL}};
 
-/* --temperature: a number, or a column of the file. */
-struct temperature {
-    double value;
-    const char *column;
-    bool given;
-};
-
 struct request {
     const char *file, *out, *wall_temperature, *wall_emissivity;
     write_heat_function *write;
-    struct emissivity_option emissivity;
-    struct temperature temperature;
+    struct quantity emissivity, temperature;
     struct wall_options walls;
     struct wall_order order;
     bool periodic, counted; /* --periodic; --directions, --points or --patches */
@@ -97,15 +84,6 @@ static int help(void) {
          "  fibrad heat packing.dump --emissivity 0.3 --temperature v_T --wall zmin,cylinder:0,0,0.48 \\\n"
          "      --wall-temperature 1200,600 --wall-emissivity 0.9,0.4 --error 0.005 -o q.vtp");
     return STATUS_OK;
-}
-
-static int take_temperature(const char *text, struct temperature *temperature) {
-    *temperature = (struct temperature){.given = true};
-    if (isalpha((unsigned char)*text) || *text == '_') {
-        temperature->column = text;
-        return STATUS_OK;
-    }
-    return options_number("--temperature", text, 0, HOTTEST, &temperature->value);
 }
 
 static int take_patches(const char *text, uint32_t *patches) {
@@ -134,9 +112,9 @@ static int take_option(struct request *request, const struct options *options, i
     case KEY_EMISSIVITY:
         return emissivity_option(value, &request->emissivity);
     case KEY_TEMPERATURE:
-        return take_temperature(value, &request->temperature);
+        return temperature_option(value, &request->temperature);
     case KEY_AMBIENT:
-        return options_number("--ambient", value, 0, HOTTEST, &request->heat.sources.surroundings);
+        return options_number("--ambient", value, 0, TEMPERATURE_MAX, &request->heat.sources.surroundings);
     case KEY_WALL:
         return walls_option(value, &request->walls);
     case KEY_WALL_TEMPERATURE:
@@ -191,8 +169,7 @@ static int take_option(struct request *request, const struct options *options, i
 
 static int check_request(struct request *request) {
     if (!request->file) return message(STATUS_USAGE, "which FILE? see fibrad heat --help");
-    if (request->emissivity.value == 0 && !request->emissivity.column)
-        return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
+    if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (!request->temperature.given) return message(STATUS_USAGE, "which --temperature? see fibrad heat --help");
     if (request->heat.error > 0 && request->counted)
         return message(STATUS_USAGE,
@@ -212,6 +189,7 @@ static int check_request(struct request *request) {
     if (request->read.ids && request->write != write_heat_csv)
         return message(STATUS_USAGE, "--ids is for -o OUT.csv only");
     if (request->emissivity.column) request->columns[request->read.extras++] = request->emissivity.column;
+    request->temperature.place = request->read.extras;
     if (request->temperature.column) request->columns[request->read.extras++] = request->temperature.column;
     request->read.extra = request->columns;
     return STATUS_OK;
@@ -228,36 +206,6 @@ static int parse(struct request *request, int argc, char **argv) {
     }
     if (request->heat.error > 0 && !request->counted) request->heat.config.directions = 72;
     return check_request(request);
-}
-
-/* Temperatures of the spheres [n], to be freed. */
-static int spread_temperature(const struct request *request, const struct bed *bed, double **temperature) {
-    double *t = *temperature = malloc(bed->n * sizeof *t);
-    if (!t) return message_memory();
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const size_t last = bed->extras - 1; /* its column comes last */
-        t[i] = request->temperature.column ? bed->extra[i * bed->extras + last] : request->temperature.value;
-        if (!(t[i] >= 0 && t[i] <= HOTTEST))
-            return message_at(STATUS_INPUT, request->heat.file, bed->line[i], "the temperature is %g K", t[i]);
-    }
-    return STATUS_OK;
-}
-
-static int spread_walls(struct request *request) {
-    double given[FIBRAD_WALLS] = {request->heat.sources.surroundings};
-    int count = 1;
-    const char *text = request->wall_temperature;
-    const int status = text ? options_numbers("--wall-temperature", text, FIBRAD_WALLS, given, &count) : STATUS_OK;
-    if (status) return status;
-    if (text && (uint32_t)count > request->order.count)
-        return message(STATUS_USAGE, "--wall-temperature: %d for %u walls", count, request->order.count);
-    for (int k = 0; k < count; ++k)
-        if (!(given[k] >= 0 && given[k] <= HOTTEST))
-            return message(STATUS_USAGE, "--wall-temperature: %g is no temperature", given[k]);
-    for (uint32_t k = 0; k < request->order.count; ++k)
-        request->heat.sources.wall_temperature[request->order.wall[k]] =
-            given[k < (uint32_t)count ? k : (uint32_t)count - 1];
-    return emissivity_walls(request->wall_emissivity, &request->order, request->heat.sources.wall_emissivity);
 }
 
 static void print_summary(const struct request *request, const struct bed *bed, const struct heat_report *report) {
@@ -300,17 +248,21 @@ static int compute_and_write(struct request *request, const struct bed *bed, str
 }
 
 static int run(struct request *request, struct bed *bed, struct heat_report *report) {
+    fibrad_heat_sources *sources = &request->heat.sources;
     double *emissivity = NULL, *temperature = NULL;
     request->heat.file = strcmp(request->file, "-") ? request->file : "standard input";
     int status = read_bed(request->file, &request->read, bed);
     if (status) return status;
     if (request->periodic) memcpy(bed->period, request->period, sizeof bed->period);
     status = walls_of(&request->walls, bed, request->heat.file, &request->heat.walls, &request->order);
-    if (!status) status = spread_walls(request);
-    if (!status) status = emissivity_of(&request->emissivity, bed, request->heat.file, 0, &emissivity);
-    if (!status) status = spread_temperature(request, bed, &temperature);
-    request->heat.sources.emissivity = emissivity;
-    request->heat.sources.temperature = temperature;
+    if (!status)
+        status = temperature_walls(request->wall_temperature, &request->order, sources->surroundings,
+                                   sources->wall_temperature);
+    if (!status) status = emissivity_walls(request->wall_emissivity, &request->order, sources->wall_emissivity);
+    if (!status) status = emissivity_of(&request->emissivity, bed, request->heat.file, &emissivity);
+    if (!status) status = temperature_of(&request->temperature, bed, request->heat.file, &temperature);
+    sources->emissivity = emissivity;
+    sources->temperature = temperature;
     if (!status) status = compute_and_write(request, bed, report);
     free(emissivity);
     free(temperature);

@@ -27,6 +27,8 @@ enum {
     KEY_NO_CORRECTION,
     KEY_RAYS,
     KEY_SEED,
+    KEY_EMISSIVITY,
+    KEY_WALL_EMISSIVITY,
     KEY_OWN
 };
 
