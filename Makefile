@@ -98,6 +98,7 @@ LANED = \
 HOST = \
     host/bed.c \
     host/bed_make.c \
+    host/bed_options.c \
     host/command_bed.c \
     host/command_conductivity.c \
     host/command_exchange.c \
