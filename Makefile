@@ -98,6 +98,7 @@ LANED = \
 HOST = \
     host/bed.c \
     host/bed_make.c \
+    host/bed_options.c \
     host/command_bed.c \
     host/command_conductivity.c \
     host/command_exchange.c \
@@ -105,7 +106,6 @@ HOST = \
     host/command_heat.c \
     host/command_pair.c \
     host/command_reproduce.c \
-    host/emissivity.c \
     host/exact_gsl.c \
     host/furnace_cases.c \
     host/furnace_plot.c \
@@ -120,6 +120,7 @@ HOST = \
     host/plot.c \
     host/plot_data.c \
     host/progress.c \
+    host/quantities.c \
     host/read.c \
     host/read_columns.c \
     host/read_csv.c \

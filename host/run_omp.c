@@ -48,6 +48,14 @@ struct run {
 
 void *run_block(size_t size) { return aligned_alloc(64, (size + 63) / 64 * 64); }
 
+bool run_work(fibrad_work **work, void **block, const fibrad_work_config *config) {
+    const size_t size = fibrad_work_size(config);
+    free(*block);
+    *work = NULL;
+    *block = size ? run_block(size) : NULL;
+    return *block && fibrad_work_init(work, *block, size, config) == FIBRAD_OK;
+}
+
 /* Turns a kernel's fault into a message that names the sphere's line. */
 static int refuse(const struct bed *bed, const char *file, int status, const fibrad_fault *fault) {
     const uint32_t first = fault->first, second = fault->second;
@@ -84,10 +92,7 @@ int run_scene(const struct bed *bed, const fibrad_walls *walls, const char *file
 }
 
 static bool make_work(struct store *store, const fibrad_work_config *config) {
-    const size_t size = fibrad_work_size(config);
-    free(store->block);
-    store->block = size ? run_block(size) : NULL;
-    return store->block && fibrad_work_init(&store->work, store->block, size, config) == FIBRAD_OK;
+    return run_work(&store->work, &store->block, config);
 }
 
 static bool make_room(struct store *store, size_t entries) {
