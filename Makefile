@@ -96,6 +96,7 @@ LANED = \
 
 # besides main.c and generate_tables.c
 HOST = \
+    host/average_omp.c \
     host/bed.c \
     host/bed_make.c \
     host/bed_options.c \

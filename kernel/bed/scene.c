@@ -296,6 +296,10 @@ void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts)
     if (scene != NULL && facts != NULL) *facts = scene->facts;
 }
 
+uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k) {
+    return scene != NULL && k < scene->facts.spheres ? scene->order[k] : UINT32_MAX;
+}
+
 void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level, const double low[3],
                        const double high[3]) {
     walk->scene = scene;
