@@ -29,6 +29,9 @@ static inline void fibrad_zero(void *to, size_t bytes) { __builtin_memset(to, 0,
 
 #endif
 
+/* For the few functions whose calls would cost more than they do, and which the compiler takes for too long. */
+#define FIBRAD_INLINE static inline __attribute__((always_inline))
+
 /* From here on never a call: plain C, and a builtin that clears the sign bit. */
 
 static inline double fibrad_abs(double x) { return __builtin_fabs(x); }

@@ -70,6 +70,7 @@ typedef struct fibrad_areas {
     fibrad_boundary *boundary;
     fibrad_accounts accounts;
     double widest;      /* the largest radius so far */
+    bool open;          /* something of the window is */
     bool doubtful;      /* the window in hand is done by accounts */
     bool overflow;      /* too many arcs for the memory: start again with more discs */
     uint32_t fallbacks; /* doubtful windows since the caller set this to 0 */

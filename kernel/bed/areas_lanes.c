@@ -135,7 +135,7 @@ static bool is_open(const fibrad_areas *areas, uint32_t k, double x, double y) {
 }
 
 /* Lets disc k, whose circle has been added, take its part of the open region. False: in doubt. */
-static bool clip(fibrad_areas *areas, uint32_t k, double x, double y, double r) {
+FIBRAD_INLINE bool clip(fibrad_areas *areas, uint32_t k, double x, double y, double r) {
     fibrad_boundary *b = areas->boundary;
     const uint64_t alive = b->alive;
     const uint32_t slots = 64 - (uint32_t)__builtin_clzll(alive);
@@ -273,21 +273,38 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
     b->alive = b->window = 7;
     areas->widest = 1;
     areas->pieces->count = 0;
+    areas->open = true;
     areas->doubtful = areas->overflow = false;
     areas->circles = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     areas->circles = 1;
 }
 
-bool LANED(fibrad_areas_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+/* Lets one disc take its part. False once nothing is open. */
+FIBRAD_INLINE bool take(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
     if (areas->doubtful) return LANED(fibrad_accounts_disc)(areas, whose, x, y, r);
-    if (areas->boundary->alive == 0) return false;
     uint32_t k = areas->circles;
     fibrad_areas_add_circle(areas, whose, x, y, r);
     if (r > LARGEST || !clip(areas, k, x, y, r)) return redo(areas, k + 1);
     if (areas->boundary->alive == 0) return false;
     close_up(areas->boundary);
     return true;
+}
+
+/* A loop in here, since a call for each disc takes a tenth of the time. */
+uint32_t LANED(fibrad_areas_discs)(fibrad_areas *areas, uint32_t first, const uint32_t *which, uint32_t count,
+                                   const double *x, const double *y, const double *r) {
+    uint32_t n = 0;
+    for (; n < count && areas->open; n++) {
+        uint32_t k = which[n];
+        areas->open = take(areas, first + k, x[k], y[k], r[k]);
+    }
+    return n;
+}
+
+bool LANED(fibrad_areas_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+    LANED(fibrad_areas_discs)(areas, whose, &(uint32_t){0}, 1, &x, &y, &r);
+    return areas->open;
 }
 
 /* What is still open, as the area of the last circle; false if the areas cannot be right. */

@@ -97,10 +97,9 @@ static uint32_t settle(fibrad_work *work, fibrad_points *points, uint32_t window
     const fibrad_discs disc = work->disc;
     uint32_t to = from;
     if (points->count == 0) {
-        for (; *open && to < disc.count && disc.depth[disc.order[to]] <= depth; to++) {
-            uint32_t k = disc.order[to];
-            *open = LANED(fibrad_areas_disc)(&work->areas, k, disc.u[k], disc.v[k], disc.r[k]);
-        }
+        while (to < disc.count && disc.depth[disc.order[to]] <= depth) to++;
+        to = from + LANED(fibrad_areas_discs)(&work->areas, 0, disc.order + from, to - from, disc.u, disc.v, disc.r);
+        *open = work->areas.open;
     } else {
         to = LANED(fibrad_points_take)(points, &work->disc, from, depth);
         *open = points->open > 0;
