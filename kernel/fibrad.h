@@ -201,7 +201,7 @@ size_t fibrad_work_size(const fibrad_work_config *config);
 
 /* An upper bound of fibrad_work_size as a constant expression, for static memory (no zeros here). */
 #define FIBRAD_WORK_BYTES(near, discs, entries)                                                                        \
-    (24576 + (size_t)(near)*136 + (size_t)(discs)*768 + (size_t)(entries)*96)
+    (24576 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
 
 /* Makes work memory in `memory` (`size` bytes on a 64-byte boundary). It serves any scene, one row at a time.
  * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(entries). */
