@@ -433,6 +433,28 @@ START_TEST(crowded_rows_say_what_they_need) {
 }
 END_TEST
 
+/* A sphere with six neighbours has six entries: room for five is too little, and room for six enough. */
+START_TEST(a_row_needs_an_entry_for_every_sphere_seen) {
+    struct bed bed = lattice('p', 2);
+    ck_assert_uint_eq(bed.n, 7);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    for (uint32_t entries = 1; entries <= 7; entries++) {
+        fibrad_work *work = work_of(&(fibrad_work_config){.entries = entries});
+        fibrad_row row = row_of(bed.n);
+        int beams = fibrad_beam_row(scene, work, 0, NULL, &row);
+        ck_assert_int_eq(beams, entries < 6 ? FIBRAD_E_CAPACITY : FIBRAD_OK);
+        ck_assert_uint_eq(row.length, entries < 6 ? 0 : 6);
+        int rays = fibrad_cast_row(scene, work, 0, NULL, &row, NULL);
+        ck_assert_int_eq(rays, entries < 6 ? FIBRAD_E_CAPACITY : FIBRAD_OK);
+        ck_assert_uint_eq(row.length, entries < 6 ? 0 : 6);
+        row_free(&row);
+        free(work);
+    }
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
 /* A sphere far beyond the others, as large as to be seen: only its direction and its angle matter. A small one there is
  * nothing. */
 START_TEST(strays_are_seen_however_far) {
@@ -534,6 +556,7 @@ int main(void) {
     tcase_add_test(tcase, cutoff_takes_out_what_lies_beyond);
     tcase_add_test(tcase, overlap_changes_rows_continuously);
     tcase_add_test(tcase, spheres_at_equal_depth_are_seen_once);
+    tcase_add_test(tcase, a_row_needs_an_entry_for_every_sphere_seen);
     tcase_add_test(tcase, crowded_rows_say_what_they_need);
     tcase_add_test(tcase, strays_are_seen_however_far);
     tcase_add_test(tcase, strays_are_met_on_the_way);
