@@ -7,7 +7,7 @@
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
 export BUILD MAKE CC
-tests="base pair_exact surface rows scene direction moved areas furnace surface_row beam cast stress"
+tests="base pair_exact surface rows scene direction moved areas furnace surface_row beam cast walls trace exchange heat stress"
 whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-60}"
 
@@ -35,6 +35,9 @@ LINE
     */scene*) tests="scene beam $tests" ;;
     */rows*) tests="rows $tests" ;;
     */surface_row*) tests="surface_row $tests" ;;
+    */walls.* | */walls_lanes*) tests="walls $tests" ;;
+    */trace*) tests="trace $tests" ;;
+    kernel/heat/*) tests="exchange heat $tests" ;;
     kernel/furnace/*) tests="furnace $tests" ;;
     esac
     if awk -v old="$old" -v new="$new" 'BEGIN {sub(/^ /, "", old); sub(/ $/, "", old); sub(/^ /, "", new)}

@@ -17,9 +17,13 @@ struct versions {
 
 static const struct versions versions[] = {
     {FIBRAD_ISA_SCALAR, fibrad_trace_scalar, fibrad_trace_point_scalar},
-#ifdef __x86_64__
+#ifdef FIBRAD_WITH_SSE2
     {FIBRAD_ISA_SSE2, fibrad_trace_sse2, fibrad_trace_point_sse2},
+#endif
+#ifdef FIBRAD_WITH_AVX2
     {FIBRAD_ISA_AVX2, fibrad_trace_avx2, fibrad_trace_point_avx2},
+#endif
+#ifdef FIBRAD_WITH_AVX512
     {FIBRAD_ISA_AVX512, fibrad_trace_avx512, fibrad_trace_point_avx512},
 #endif
 };
