@@ -96,8 +96,10 @@ LANED = \
 
 # besides main.c and generate_tables.c
 HOST = \
+    host/average_omp.c \
     host/bed.c \
     host/bed_make.c \
+    host/bed_options.c \
     host/command_bed.c \
     host/command_conductivity.c \
     host/command_exchange.c \
@@ -105,7 +107,6 @@ HOST = \
     host/command_heat.c \
     host/command_pair.c \
     host/command_reproduce.c \
-    host/emissivity.c \
     host/exact_gsl.c \
     host/furnace_cases.c \
     host/furnace_plot.c \
@@ -120,6 +121,7 @@ HOST = \
     host/plot.c \
     host/plot_data.c \
     host/progress.c \
+    host/quantities.c \
     host/read.c \
     host/read_columns.c \
     host/read_csv.c \
@@ -204,13 +206,14 @@ BENCHES = \
     bench/bench_scale.c \
     bench/bench_sizes.c \
     bench/bench_skips.c \
-    bench/bench_surface.c
+    bench/bench_surface.c \
+    bench/bench_window.c
 
 # built and run where Embree 3 is found (Debian: libembree-dev)
 PEERS = bench/bench_embree.c
 
 # these know the argument `quick`
-QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_heat.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c $(PEERS)
+QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_heat.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c bench/bench_window.c $(PEERS)
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)

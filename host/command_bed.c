@@ -1,36 +1,21 @@
 /* command_bed.c - `fibrad bed`: view factors of all spheres of a file. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bed.h"
+#include "bed_options.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "message.h"
-#include "options.h"
 #include "plot.h"
-#include "read.h"
 #include "run_omp.h"
 #include "targets.h"
 #include "tolerance.h"
 #include "write.h"
 
-enum {
-    KEY_CUTOFF = KEY_OWN,
-    KEY_TARGETS,
-    KEY_THREADS,
-    KEY_PERIODIC,
-    KEY_FRAME,
-    KEY_IDS,
-    KEY_RAW,
-    KEY_PLOT,
-    KEY_PROGRESS,
-    KEY_ERROR,
-    KEY_WALL,
-    KEY_FEWER
-};
+enum { KEY_CUTOFF = KEY_OWN, KEY_TARGETS, KEY_FEWER };
 
 static const struct option table[] = {
     {KEY_METHOD, "method", "NAME",
@@ -49,21 +34,21 @@ static const struct option table[] = {
     {KEY_FEWER, "fewer-for-large", NULL,
      "a fourth of the directions for spheres over 3 mean radii, as S_ij is known from the small ones too [all]"},
     {KEY_RAW, "raw", NULL, "do not average F_ij and F_ji [averaged: A_i F_ij = A_j F_ji]"},
-    {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},
-    {KEY_WALL, "wall", WALLS_ARGUMENT, WALLS_HELP},
-    {KEY_FRAME, "frame", "K", "frame of a dump, from 0 [the last]"},
-    {KEY_THREADS, "threads", "T", "threads, 1 to 1024 [all cores]"},
+    {OPTION_PERIODIC},
+    {OPTION_WALL},
+    {OPTION_FRAME},
+    {OPTION_THREADS},
     {'o', "output", "OUT", "the matrix: .csv, .mtx, .npz (SciPy); the spheres: .vtp [summary only]"},
-    {KEY_IDS, "ids", NULL, "in .csv, name spheres by the file's ids [by positions from 0]"},
+    {OPTION_IDS},
     {KEY_PLOT, "plot", "OUT", "a picture, .svg or .png, by gnuplot [none]"},
-    {KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"},
-    {KEY_HELP, "help", NULL, "this text"},
+    {OPTION_PROGRESS},
+    {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
 struct request {
-    const char *file, *out, *plot, *targets, *periodic;
+    struct bed_options bed;
+    const char *plot, *targets;
     write_function *write;
-    double period[3];
     enum method method;
     struct beam_options beam;
     fibrad_beam_rule beam_rule, large_rule;
@@ -71,11 +56,8 @@ struct request {
     fibrad_cast_rule cast;
     double cutoff, error; /* 0: none */
     bool beam_given, surface_given, cast_given, fewer_for_large;
-    struct wall_options walls;
     struct wall_order order;
-    struct read_options read;
     struct run_options run;
-    bool help;
 };
 
 static int help(void) {
@@ -103,16 +85,8 @@ static int help(void) {
 
 static int take_option(struct request *request, const struct options *options, int key) {
     const char *value = options->value;
-    uint64_t whole = 0;
     int status = STATUS_OK;
     switch (key) {
-    case OPTIONS_POSITIONAL:
-        if (request->file) return message(STATUS_USAGE, "one FILE only, not also '%.60s'", value);
-        request->file = value;
-        break;
-    case KEY_HELP:
-        request->help = true;
-        break;
     case KEY_METHOD:
         status = options_method(value, &request->method);
         if (!status && request->method == METHOD_EXACT)
@@ -135,25 +109,9 @@ static int take_option(struct request *request, const struct options *options, i
         return options_number("--cutoff", value, 1e-150, 1e150, &request->cutoff);
     case KEY_ERROR:
         return options_number("--error", value, 1e-7, 1, &request->error);
-    case KEY_WALL:
-        return walls_option(value, &request->walls);
     case KEY_TARGETS:
         request->targets = strcmp(value, "all") == 0 ? NULL : value;
         if (request->targets) status = targets_mark(value, 0, NULL);
-        break;
-    case KEY_THREADS:
-        status = options_whole("--threads", value, 1, 1024, &whole);
-        request->run.threads = (int)whole;
-        break;
-    case KEY_PERIODIC:
-        request->periodic = value;
-        return options_periodic(value, request->period);
-    case KEY_FRAME:
-        status = options_whole("--frame", value, 0, INT64_MAX, &whole);
-        request->read.frame = (int64_t)whole;
-        break;
-    case KEY_IDS:
-        request->read.ids = true;
         break;
     case KEY_RAW:
         request->run.raw = true;
@@ -161,18 +119,11 @@ static int take_option(struct request *request, const struct options *options, i
     case KEY_FEWER:
         request->fewer_for_large = true;
         break;
-    case KEY_PROGRESS:
-        request->run.progress = true;
-        break;
     case KEY_PLOT:
         request->plot = value;
         break;
-    case 'o':
-        request->out = value;
-        break;
     default:
-        status = STATUS_USAGE;
-        break; /* OPTIONS_BAD: the message is out */
+        return bed_options_take(&request->bed, options, key);
     }
     return status;
 }
@@ -214,14 +165,10 @@ static int choose_method(struct request *request) {
 /* What can be found wrong before any work is done. */
 static int check_request(struct request *request) {
     const char *endings;
-    if (!request->file) return message(STATUS_USAGE, "which FILE? see fibrad bed --help");
-    if (request->out) {
-        request->write = write_find(request->out, &endings);
-        if (!request->write) return message_at(STATUS_USAGE, request->out, 0, "unknown ending; there are %s", endings);
-        if (output_same(request->file, request->out))
-            return message_at(STATUS_USAGE, request->out, 0, "is the bed itself; it would be replaced");
-    }
-    if (request->read.ids && request->write != write_csv) return message(STATUS_USAGE, "--ids is for -o OUT.csv only");
+    if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad bed --help");
+    request->write = write_find(request->bed.out, &endings);
+    const int status = bed_options_output(&request->bed, request->write, endings);
+    if (status) return status;
     if (request->plot && !plot_ending(request->plot))
         return message_at(STATUS_USAGE, request->plot, 0, "unknown ending; there are .svg and .png");
     if (request->targets) request->run.raw = true;
@@ -230,12 +177,11 @@ static int check_request(struct request *request) {
 
 static int parse(struct request *request, int argc, char **argv) {
     struct options options = {.command = "bed", .table = table, .argc = argc, .argv = argv};
-    *request = (struct request){.method = METHOD_BEAM, .surface.nodes = 55, .cast.rays = 20000, .read.frame = -1};
-    for (int key; (key = options_next(&options)) != OPTIONS_END;) {
-        const int status = take_option(request, &options, key);
-        if (status || request->help) return status;
-    }
-    return check_request(request);
+    *request = (struct request){.method = METHOD_BEAM, .surface.nodes = 55, .cast.rays = 20000, .bed.frame = -1};
+    int status = STATUS_OK;
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
+        status = take_option(request, &options, key);
+    return status ? status : check_request(request);
 }
 
 static void warn_of_overlap(const char *file, const struct bed *bed, const fibrad_scene_facts *facts) {
@@ -247,9 +193,8 @@ static void warn_of_overlap(const char *file, const struct bed *bed, const fibra
 
 static void print_summary(const struct request *request, const struct bed *bed, const struct result *result) {
     const fibrad_rows *rows = &result->rows;
-    printf("%s: radii %g to %g, %s rows, %s\n", strcmp(request->file, "-") ? request->file : "standard input",
-           result->facts.radius_min, result->facts.radius_max, request->run.raw ? "raw" : "reciprocal",
-           fibrad_isa_name(result->facts.isa));
+    printf("%s: radii %g to %g, %s rows, %s\n", request->bed.name, result->facts.radius_min, result->facts.radius_max,
+           request->run.raw ? "raw" : "reciprocal", fibrad_isa_name(result->facts.isa));
     printf("spheres %" PRIu32 "\n", bed->n);
     printf("nonzeros %" PRIu64 "\n", rows->start[rows->n]);
     if (request->method == METHOD_BEAM)
@@ -275,17 +220,17 @@ static void print_summary(const struct request *request, const struct bed *bed, 
 
 static int write_results(const struct request *request, const struct bed *bed, const struct result *result,
                          const struct output *out, const struct output *plot) {
-    const struct contents contents = {bed, result, request->read.ids, &request->order, NULL};
-    int status = request->out ? request->write(out->file, &contents) : STATUS_OK;
-    if (!status && request->plot) status = plot_bed(plot, request->file, &contents);
+    const struct contents contents = {bed, result, request->bed.ids, &request->order, NULL};
+    int status = request->bed.out ? request->write(out->file, &contents) : STATUS_OK;
+    if (!status && request->plot) status = plot_bed(plot, request->bed.file, &contents);
     return status;
 }
 
 /* Opens the outputs before the work, so that a path that cannot be written costs no time. */
 static int compute_and_write(struct request *request, const struct bed *bed, struct result *result) {
     struct output out = {0}, plot = {0};
-    int status = request->out ? output_open(&out, request->out) : STATUS_OK;
-    if (!status && request->plot) status = output_open(&plot, request->plot);
+    int status = output_open(&out, request->bed.out);
+    if (!status) status = output_open(&plot, request->plot);
     if (!status)
         status = request->error > 0 ? tolerance_rows(bed, &request->run, &request->beam_rule, request->error, result)
                                     : run_rows(bed, &request->run, result);
@@ -299,14 +244,15 @@ static int compute_and_write(struct request *request, const struct bed *bed, str
 }
 
 static int run(struct request *request, struct bed *bed, struct result *result) {
-    request->run.file = strcmp(request->file, "-") ? request->file : "standard input";
-    int status = read_bed(request->file, &request->read, bed);
+    request->run.file = request->bed.name;
+    request->run.threads = request->bed.threads;
+    request->run.progress = request->bed.progress;
+    int status = bed_options_read(&request->bed, bed);
     if (status) return status;
-    if (request->periodic) memcpy(bed->period, request->period, sizeof bed->period);
     if (request->method == METHOD_SURFACE && request->cutoff == 0 &&
         (bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0))
         return message(STATUS_USAGE, "--method surface needs a --cutoff in a periodic box");
-    status = walls_of(&request->walls, bed, request->run.file, &request->run.walls, &request->order);
+    status = walls_of(&request->bed.walls, bed, request->run.file, &request->run.walls, &request->order);
     if (status) return status;
     if (request->method == METHOD_SURFACE && request->order.count > 0)
         return message(STATUS_USAGE, "--wall is for the methods beam, cast and mc");
@@ -327,8 +273,7 @@ int command_bed(int argc, char **argv) {
     struct bed bed = {0};
     struct result result = {0};
     int status = parse(&request, argc, argv);
-    if (status) return status;
-    if (request.help) return help();
+    if (status) return status == STATUS_HELP ? help() : status;
     interrupt_catch();
     status = run(&request, &bed, &result);
     result_free(&result);

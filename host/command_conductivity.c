@@ -7,15 +7,13 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "bed.h"
+#include "bed_options.h"
 #include "commands.h"
-#include "emissivity.h"
 #include "interrupt.h"
 #include "message.h"
-#include "options.h"
-#include "read.h"
+#include "quantities.h"
 #include "run_exchange.h"
 
 #define PI 3.14159265358979323846
@@ -28,30 +26,24 @@
 #define PILOT   50000.0
 #define PER_MAX 100000000.0
 
-enum { KEY_EMISSIVITY = KEY_OWN, KEY_ERROR, KEY_PERIODIC, KEY_FRAME, KEY_THREADS, KEY_PROGRESS };
-
 static const struct option table[] = {
-    {KEY_EMISSIVITY, "emissivity", "E|COLUMN", "of all spheres, above 0 up to 1, or the file's column of that name"},
+    {OPTION_EMISSIVITY},
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [as many as --error takes]"},
     {KEY_ERROR, "error", "E", "as many as bring the estimated standard errors to E of F_E, 1e-4 to 1 [0.003]"},
     {KEY_SEED, "seed", "S", "another number, other paths [0]"},
-    {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},
-    {KEY_FRAME, "frame", "K", "frame of a dump, from 0 [the last]"},
-    {KEY_THREADS, "threads", "T", "threads, 1 to 1024 [all cores]"},
-    {KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"},
-    {KEY_HELP, "help", NULL, "this text"},
+    {OPTION_PERIODIC},
+    {OPTION_FRAME},
+    {OPTION_THREADS},
+    {OPTION_PROGRESS},
+    {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
 struct request {
-    const char *file;
-    struct emissivity_option emissivity;
-    bool periodic; /* --periodic was given */
-    double period[3];
+    struct bed_options bed;
+    struct quantity emissivity;
     fibrad_exchange_rule rule;
     double error;
-    struct read_options read;
     struct run_options run;
-    bool help;
 };
 
 /* The part of the bed that emits, and what comes of it. */
@@ -72,10 +64,11 @@ static int help(void) {
          "[m].\n"
          "FILE as for fibrad bed.\n");
     options_print(table);
-    puts("\nThe result is that of a linear field of temperature. With open axes only spheres at least 5 mean diameters "
-         "inside\n"
-         "the outermost centres emit; all absorb.\n"
-         "Standard output ends with lines `key value`, the last six F_E_x, F_E_y, F_E_z, F_E_x_error, F_E_y_error,\n"
+    printf("\nThe result is that of a linear field of temperature. With open axes only spheres at least %g mean "
+           "diameters inside\n"
+           "the outermost centres emit; all absorb.\n",
+           MARGIN);
+    puts("Standard output ends with lines `key value`, the last six F_E_x, F_E_y, F_E_z, F_E_x_error, F_E_y_error,\n"
          "F_E_z_error (standard errors, estimated).\n\n"
          "Examples:\n"
          "  fibrad conductivity packing.dump --emissivity 0.8\n"
@@ -85,64 +78,33 @@ static int help(void) {
 
 static int take_option(struct request *request, const struct options *options, int key) {
     const char *value = options->value;
-    uint64_t whole = 0;
-    int status = STATUS_OK;
     switch (key) {
-    case OPTIONS_POSITIONAL:
-        if (request->file) return message(STATUS_USAGE, "one FILE only, not also '%.60s'", value);
-        request->file = value;
-        break;
-    case KEY_HELP:
-        request->help = true;
-        break;
     case KEY_EMISSIVITY:
         return emissivity_option(value, &request->emissivity);
     case KEY_RAYS:
-        status = options_whole("--rays", value, 1, FIBRAD_PATHS_MAX, &whole);
-        request->rule.paths = (uint32_t)whole;
-        break;
+        return options_count("--rays", value, 1, FIBRAD_PATHS_MAX, &request->rule.paths);
     case KEY_ERROR:
         return options_number("--error", value, 1e-4, 1, &request->error);
     case KEY_SEED:
         return options_whole("--seed", value, 0, UINT64_MAX, &request->rule.seed);
-    case KEY_PERIODIC:
-        request->periodic = true;
-        return options_periodic(value, request->period);
-    case KEY_FRAME:
-        status = options_whole("--frame", value, 0, INT64_MAX, &whole);
-        request->read.frame = (int64_t)whole;
-        break;
-    case KEY_THREADS:
-        status = options_whole("--threads", value, 1, 1024, &whole);
-        request->run.threads = (int)whole;
-        break;
-    case KEY_PROGRESS:
-        request->run.progress = true;
-        break;
     default:
-        status = STATUS_USAGE;
-        break; /* OPTIONS_BAD: the message is out */
+        return bed_options_take(&request->bed, options, key);
     }
-    return status;
 }
 
 static int parse(struct request *request, int argc, char **argv) {
     struct options options = {.command = "conductivity", .table = table, .argc = argc, .argv = argv};
-    *request = (struct request){.read.frame = -1};
-    for (int key; (key = options_next(&options)) != OPTIONS_END;) {
-        const int status = take_option(request, &options, key);
-        if (status || request->help) return status;
-    }
-    if (!request->file) return message(STATUS_USAGE, "which FILE? see fibrad conductivity --help");
-    if (request->emissivity.value == 0 && !request->emissivity.column)
-        return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");
+    *request = (struct request){.bed.frame = -1};
+    int status = STATUS_OK;
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
+        status = take_option(request, &options, key);
+    if (status) return status;
+    if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad conductivity --help");
+    if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");
     if (request->error > 0 && request->rule.paths > 0)
         return message(STATUS_USAGE, "--error finds the rays itself; leave out --rays");
     if (request->error == 0) request->error = 0.003;
-    if (request->emissivity.column) {
-        request->read.extra = &request->emissivity.column;
-        request->read.extras = 1;
-    }
+    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
     return STATUS_OK;
 }
 
@@ -286,15 +248,16 @@ static void print(const struct request *request, const struct bed *bed, const st
 
 static int run(struct request *request, struct bed *bed) {
     struct conductivity result = {0};
-    request->run.file = strcmp(request->file, "-") ? request->file : "standard input";
-    int status = read_bed(request->file, &request->read, bed);
+    request->run.file = request->bed.name;
+    request->run.threads = request->bed.threads;
+    request->run.progress = request->bed.progress;
+    int status = bed_options_read(&request->bed, bed);
     if (status) return status;
-    if (request->periodic) memcpy(bed->period, request->period, sizeof bed->period);
     double *emissivity = NULL;
     bool *emits = calloc(bed->n, sizeof *emits);
     fibrad_spread *spread = calloc(bed->n, sizeof *spread);
     if (!emits || !spread) status = message_memory();
-    if (!status) status = emissivity_of(&request->emissivity, bed, request->run.file, 0, &emissivity);
+    if (!status) status = emissivity_of(&request->emissivity, bed, request->run.file, &emissivity);
     request->rule.emissivity = emissivity;
     if (!status) status = choose_emitters(bed, request->run.file, &result, emits);
     if (!status) status = compute(request, bed, emits, spread, &result);
@@ -312,8 +275,7 @@ int command_conductivity(int argc, char **argv) {
     struct request request;
     struct bed bed = {0};
     int status = parse(&request, argc, argv);
-    if (status) return status;
-    if (request.help) return help();
+    if (status) return status == STATUS_HELP ? help() : status;
     interrupt_catch();
     status = run(&request, &bed);
     bed_free(&bed);

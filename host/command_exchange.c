@@ -3,68 +3,50 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "bed.h"
+#include "bed_options.h"
 #include "commands.h"
-#include "emissivity.h"
 #include "interrupt.h"
 #include "message.h"
-#include "options.h"
-#include "read.h"
+#include "quantities.h"
 #include "run_exchange.h"
 #include "walls.h"
 #include "write.h"
 
-enum {
-    KEY_EMISSIVITY = KEY_OWN,
-    KEY_ERROR,
-    KEY_WALL,
-    KEY_WALL_EMISSIVITY,
-    KEY_PERIODIC,
-    KEY_FRAME,
-    KEY_THREADS,
-    KEY_RAW,
-    KEY_DROP,
-    KEY_IDS,
-    KEY_PROGRESS
-};
+enum { KEY_DROP = KEY_OWN };
 
 static const struct option table[] = {
-    {KEY_EMISSIVITY, "emissivity", "E|COLUMN", "of all spheres, above 0 up to 1, or the file's column of that name"},
+    {OPTION_EMISSIVITY},
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [400]"},
     {KEY_DIRECTIONS, "directions", "N", "beam directions for the first leg of all paths, 8 to 65536 [50]"},
     {KEY_ERROR, "error", "E",
      "as many of both as bring the estimated Euclidean error of a row to E (of the worst to 1.3 E or so), 1e-5 to 1 "
      "[none]"},
-    {KEY_WALL, "wall", WALLS_ARGUMENT, WALLS_HELP},
-    {KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST", EMISSIVITY_WALL_HELP},
+    {OPTION_WALL},
+    {OPTION_WALL_EMISSIVITY},
     {KEY_RAW, "raw", NULL, "do not average D_ij and D_ji [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
     {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},
     {KEY_SEED, "seed", "S", "another number, other paths [0]"},
-    {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},
-    {KEY_FRAME, "frame", "K", "frame of a dump, from 0 [the last]"},
-    {KEY_THREADS, "threads", "T", "threads, 1 to 1024 [all cores]"},
+    {OPTION_PERIODIC},
+    {OPTION_FRAME},
+    {OPTION_THREADS},
     {'o', "output", "OUT", "the factors: .csv, .mtx, .npz (SciPy) [summary only]"},
-    {KEY_IDS, "ids", NULL, "in .csv, name spheres by the file's ids [by positions from 0]"},
-    {KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"},
-    {KEY_HELP, "help", NULL, "this text"},
+    {OPTION_IDS},
+    {OPTION_PROGRESS},
+    {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
 struct request {
-    const char *file, *out, *wall_emissivity;
+    struct bed_options bed;
+    const char *wall_emissivity;
     write_function *write;
-    struct emissivity_option emissivity;
-    bool periodic; /* --periodic was given */
-    double period[3];
-    struct wall_options walls;
+    struct quantity emissivity;
     struct wall_order order;
     fibrad_exchange_rule rule;
     double drop;
     bool counted; /* --rays or --directions was given */
-    struct read_options read;
     struct run_options run;
-    bool help;
 };
 
 static int help(void) {
@@ -87,100 +69,53 @@ static int help(void) {
 
 static int take_option(struct request *request, const struct options *options, int key) {
     const char *value = options->value;
-    uint64_t whole = 0;
-    int status = STATUS_OK;
     switch (key) {
-    case OPTIONS_POSITIONAL:
-        if (request->file) return message(STATUS_USAGE, "one FILE only, not also '%.60s'", value);
-        request->file = value;
-        break;
-    case KEY_HELP:
-        request->help = true;
-        break;
     case KEY_EMISSIVITY:
         return emissivity_option(value, &request->emissivity);
     case KEY_RAYS:
-        status = options_whole("--rays", value, 1, FIBRAD_PATHS_MAX, &whole);
-        request->rule.paths = (uint32_t)whole;
         request->counted = true;
-        break;
+        return options_count("--rays", value, 1, FIBRAD_PATHS_MAX, &request->rule.paths);
     case KEY_DIRECTIONS:
-        status = options_whole("--directions", value, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX, &whole);
-        request->rule.directions = (uint32_t)whole;
         request->counted = true;
-        break;
+        return options_count("--directions", value, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX,
+                             &request->rule.directions);
     case KEY_ERROR:
         return options_number("--error", value, 1e-5, 1, &request->rule.error);
-    case KEY_WALL:
-        return walls_option(value, &request->walls);
     case KEY_WALL_EMISSIVITY:
         request->wall_emissivity = value;
-        break;
+        return STATUS_OK;
     case KEY_RAW:
         request->run.raw = true;
-        break;
+        return STATUS_OK;
     case KEY_DROP:
         return options_number("--drop", value, 0, 1, &request->drop);
     case KEY_SEED:
         return options_whole("--seed", value, 0, UINT64_MAX, &request->rule.seed);
-    case KEY_PERIODIC:
-        request->periodic = true;
-        return options_periodic(value, request->period);
-    case KEY_FRAME:
-        status = options_whole("--frame", value, 0, INT64_MAX, &whole);
-        request->read.frame = (int64_t)whole;
-        break;
-    case KEY_THREADS:
-        status = options_whole("--threads", value, 1, 1024, &whole);
-        request->run.threads = (int)whole;
-        break;
-    case KEY_IDS:
-        request->read.ids = true;
-        break;
-    case KEY_PROGRESS:
-        request->run.progress = true;
-        break;
-    case 'o':
-        request->out = value;
-        break;
     default:
-        status = STATUS_USAGE;
-        break; /* OPTIONS_BAD: the message is out */
+        return bed_options_take(&request->bed, options, key);
     }
-    return status;
 }
 
 static int check_request(struct request *request) {
-    if (!request->file) return message(STATUS_USAGE, "which FILE? see fibrad exchange --help");
-    if (request->emissivity.value == 0 && !request->emissivity.column)
-        return message(STATUS_USAGE, "which --emissivity? see fibrad exchange --help");
+    if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad exchange --help");
+    if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad exchange --help");
     if (request->rule.error > 0 && request->counted)
         return message(STATUS_USAGE, "--error finds rays and directions itself; leave out --rays and --directions");
     if (request->drop > 0 && request->run.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
-    if (request->out) {
-        request->write = write_find(request->out, NULL);
-        if (!request->write || request->write == write_vtp)
-            return message_at(STATUS_USAGE, request->out, 0, "unknown ending; there are .csv, .mtx and .npz");
-        if (output_same(request->file, request->out))
-            return message_at(STATUS_USAGE, request->out, 0, "is the bed itself; it would be replaced");
-    }
-    if (request->read.ids && request->write != write_csv) return message(STATUS_USAGE, "--ids is for -o OUT.csv only");
-    if (request->emissivity.column) {
-        request->read.extra = &request->emissivity.column;
-        request->read.extras = 1;
-    }
-    return STATUS_OK;
+    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
+    request->write = write_find(request->bed.out, NULL);
+    const bool known = request->write && request->write != write_vtp;
+    return bed_options_output(&request->bed, known, ".csv, .mtx and .npz");
 }
 
 static int parse(struct request *request, int argc, char **argv) {
     struct options options = {.command = "exchange", .table = table, .argc = argc, .argv = argv};
-    *request = (struct request){.read.frame = -1};
-    for (int key; (key = options_next(&options)) != OPTIONS_END;) {
-        const int status = take_option(request, &options, key);
-        if (status || request->help) return status;
-    }
-    return check_request(request);
+    *request = (struct request){.bed.frame = -1};
+    int status = STATUS_OK;
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
+        status = take_option(request, &options, key);
+    return status ? status : check_request(request);
 }
 
 static void print_summary(const struct request *request, const struct bed *bed, const struct result *result,
@@ -211,40 +146,38 @@ static void print_summary(const struct request *request, const struct bed *bed, 
 static int compute_and_write(struct request *request, const struct bed *bed, struct result *result) {
     struct output out = {0};
     uint64_t rays = 0;
-    int status = request->out ? output_open(&out, request->out) : STATUS_OK;
+    int status = output_open(&out, request->bed.out);
     if (!status) status = run_exchange(bed, &request->run, &request->rule, request->drop, result, &rays);
-    const struct contents contents = {bed, result, request->read.ids, &request->order, &request->rule};
-    if (!status && request->out) status = request->write(out.file, &contents);
+    const struct contents contents = {bed, result, request->bed.ids, &request->order, &request->rule};
+    if (!status && request->bed.out) status = request->write(out.file, &contents);
     status = output_close(&out, status);
     if (!status) print_summary(request, bed, result, rays);
     return status;
 }
 
-static int run(struct request *request, struct bed *bed, struct result *result) {
+static int run(struct request *request) {
+    struct bed bed = {0};
+    struct result result = {0};
     double *emissivity = NULL;
-    request->run.file = strcmp(request->file, "-") ? request->file : "standard input";
-    int status = read_bed(request->file, &request->read, bed);
-    if (status) return status;
-    if (request->periodic) memcpy(bed->period, request->period, sizeof bed->period);
-    status = walls_of(&request->walls, bed, request->run.file, &request->run.walls, &request->order);
+    request->run.file = request->bed.name;
+    request->run.threads = request->bed.threads;
+    request->run.progress = request->bed.progress;
+    int status = bed_options_read(&request->bed, &bed);
+    if (!status) status = walls_of(&request->bed.walls, &bed, request->run.file, &request->run.walls, &request->order);
     if (!status) status = emissivity_walls(request->wall_emissivity, &request->order, request->rule.wall_emissivity);
-    if (!status) status = emissivity_of(&request->emissivity, bed, request->run.file, 0, &emissivity);
+    if (!status) status = emissivity_of(&request->emissivity, &bed, request->run.file, &emissivity);
     request->rule.emissivity = emissivity;
-    if (!status) status = compute_and_write(request, bed, result);
+    if (!status) status = compute_and_write(request, &bed, &result);
     free(emissivity);
+    result_free(&result);
+    bed_free(&bed);
     return status;
 }
 
 int command_exchange(int argc, char **argv) {
     struct request request;
-    struct bed bed = {0};
-    struct result result = {0};
-    int status = parse(&request, argc, argv);
-    if (status) return status;
-    if (request.help) return help();
+    const int status = parse(&request, argc, argv);
+    if (status) return status == STATUS_HELP ? help() : status;
     interrupt_catch();
-    status = run(&request, &bed, &result);
-    result_free(&result);
-    bed_free(&bed);
-    return status;
+    return run(&request);
 }

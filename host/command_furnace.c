@@ -1,6 +1,5 @@
-/* command_furnace.c - `fibrad furnace`: a box with a medium that absorbs, emits and scatters. SPDX-License-Identifier:
- * MIT
- */
+/* command_furnace.c - `fibrad furnace`: a box with a medium that absorbs, emits and scatters.
+ * SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -24,10 +23,8 @@ enum {
     KEY_SOLVER,
     KEY_CELLS,
     KEY_BUNDLES,
-    KEY_THREADS,
     KEY_TOLERANCE,
     KEY_OUTERS,
-    KEY_PLOT,
     KEY_QUIET
 };
 
@@ -42,11 +39,11 @@ static const struct option table[] = {
     {KEY_SEED, "seed", "S", "of the bundles [1]"},
     {KEY_TOLERANCE, "tolerance", "K", "outer iterations end when no T changes by more [0.1]"},
     {KEY_OUTERS, "outers", "N", "outer iterations at most [50]"},
-    {KEY_THREADS, "threads", "T", "threads, 1 to 1024 [all cores]"},
+    {OPTION_THREADS},
     {'o', "output", "OUT", "the fields of all cells: .csv or .vti (ParaView) [summary only]"},
     {KEY_PLOT, "plot", NULL, "[OUT] a picture of the centre plane by gnuplot, .png or .svg [furnace.png]"},
     {KEY_QUIET, "quiet", NULL, "do not tell the outer iterations on standard error [told]"},
-    {KEY_HELP, "help", NULL, "this text"},
+    {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
 static const char *const methods[] = {"hfm", "mchf", "mchf-x", "mc"};
@@ -58,7 +55,6 @@ struct request {
     uint32_t cells[3]; /* 0: as the box has it */
     write_furnace_function *write;
     struct furnace_options run;
-    bool help;
 };
 
 static int help(void) {
@@ -124,12 +120,9 @@ static int take_option(struct request *request, struct options *options, int key
     int status = STATUS_OK, choice = 0;
     switch (key) {
     case OPTIONS_POSITIONAL:
-        if (request->file) return message(STATUS_USAGE, "one FILE only, not also '%.60s'", value);
-        request->file = value;
-        break;
+        return options_file(value, &request->file);
     case KEY_HELP:
-        request->help = true;
-        break;
+        return STATUS_HELP;
     case KEY_CASE:
         status = options_whole("--case", value, 1, 2, &whole);
         request->number = (int)whole;
@@ -157,13 +150,9 @@ static int take_option(struct request *request, struct options *options, int key
     case KEY_TOLERANCE:
         return options_number("--tolerance", value, 1e-6, 1e6, &run->tolerance);
     case KEY_OUTERS:
-        status = options_whole("--outers", value, 1, 1000000, &whole);
-        run->outer_max = (uint32_t)whole;
-        break;
+        return options_count("--outers", value, 1, 1000000, &run->outer_max);
     case KEY_THREADS:
-        status = options_whole("--threads", value, 1, 1024, &whole);
-        run->threads = (int)whole;
-        break;
+        return options_threads(value, &run->threads);
     case KEY_PLOT:
         take_plot(request, options);
         break;
@@ -220,11 +209,10 @@ static int parse(struct request *request, int argc, char **argv) {
         .seed = 1,
         .run = {.method = FURNACE_MCHF_X, .tolerance = 0.1, .outer_max = 50},
     };
-    for (int key; (key = options_next(&options)) != OPTIONS_END;) {
-        const int status = take_option(request, &options, key);
-        if (status || request->help) return status;
-    }
-    return check_request(request);
+    int status = STATUS_OK;
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
+        status = take_option(request, &options, key);
+    return status ? status : check_request(request);
 }
 
 static bool is_measured(const struct request *request) {
@@ -291,8 +279,8 @@ static void print_summary(const struct request *request, const struct furnace_ru
 static int compute_and_write(const struct request *request, const fibrad_furnace_config *config,
                              struct furnace_run *run) {
     struct output out = {0}, plot = {0};
-    int status = request->out ? output_open(&out, request->out) : STATUS_OK;
-    if (!status && request->plot) status = output_open(&plot, request->plot);
+    int status = output_open(&out, request->out);
+    if (!status) status = output_open(&plot, request->plot);
     if (!status) status = furnace_run(config, &request->run, run);
     if (!status && request->out) request->write(out.file, run);
     if (!status && request->plot) {
@@ -308,8 +296,7 @@ int command_furnace(int argc, char **argv) {
     struct furnace_run run = {0};
     fibrad_furnace_config config;
     int status = parse(&request, argc, argv);
-    if (status) return status;
-    if (request.help) return help();
+    if (status) return status == STATUS_HELP ? help() : status;
     if (request.number)
         config = furnace_case(request.number);
     else

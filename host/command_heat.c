@@ -1,49 +1,29 @@
 /* command_heat.c - `fibrad heat`: net radiative powers of grey spheres and walls. SPDX-License-Identifier: MIT */
-#include <ctype.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "bed_options.h"
 #include "commands.h"
-#include "emissivity.h"
 #include "interrupt.h"
 #include "message.h"
-#include "options.h"
-#include "read.h"
+#include "quantities.h"
 #include "run_heat.h"
 #include "walls.h"
 #include "write.h"
 #include "write_heat.h"
 
-#define HOTTEST 1e9 /* K */
-
-enum {
-    KEY_EMISSIVITY = KEY_OWN,
-    KEY_TEMPERATURE,
-    KEY_AMBIENT,
-    KEY_WALL,
-    KEY_WALL_TEMPERATURE,
-    KEY_WALL_EMISSIVITY,
-    KEY_MODEL,
-    KEY_PATCHES,
-    KEY_ERROR,
-    KEY_PERIODIC,
-    KEY_FRAME,
-    KEY_THREADS,
-    KEY_IDS,
-    KEY_PROGRESS
-};
+enum { KEY_TEMPERATURE = KEY_OWN, KEY_AMBIENT, KEY_WALL_TEMPERATURE, KEY_MODEL, KEY_PATCHES };
 
 static const struct option table[] = {
-    {KEY_EMISSIVITY, "emissivity", "E|COLUMN", "of all spheres, above 0 up to 1, or the file's column of that name"},
+    {OPTION_EMISSIVITY},
     {KEY_TEMPERATURE, "temperature", "T|COLUMN", "of all spheres [K], or the file's column of that name"},
     {KEY_AMBIENT, "ambient", "T", "temperature of the surroundings, which are black [0 K]"},
-    {KEY_WALL, "wall", WALLS_ARGUMENT, WALLS_HELP},
+    {OPTION_WALL},
     {KEY_WALL_TEMPERATURE, "wall-temperature", "LIST",
      "temperatures of the walls in the order given; the last one is that of all further [K; as the surroundings]"},
-    {KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST", EMISSIVITY_WALL_HELP},
+    {OPTION_WALL_EMISSIVITY},
     {KEY_MODEL, "model", "NAME",
      "patches: reflected light goes from point to point; spheres: one radiosity each, for emissivities near 1 "
      "[patches]"},
@@ -53,35 +33,23 @@ static const struct option table[] = {
     {KEY_ERROR, "error", "E",
      "as many directions and patches as bring the estimated error of the powers to E times their root mean square or "
      "less, 1e-5 to 1 [none]"},
-    {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},
-    {KEY_FRAME, "frame", "K", "frame of a dump, from 0 [the last]"},
-    {KEY_THREADS, "threads", "T", "threads, 1 to 1024 [all cores]"},
+    {OPTION_PERIODIC},
+    {OPTION_FRAME},
+    {OPTION_THREADS},
     {'o', "output", "OUT", "powers: .csv (i,T,q) or .vtp (ParaView) [summary only]"},
-    {KEY_IDS, "ids", NULL, "in .csv, name spheres by the file's ids [by positions from 0]"},
-    {KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"},
-    {KEY_HELP, "help", NULL, "this text"},
+    {OPTION_IDS},
+    {OPTION_PROGRESS},
+    {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
-/* --temperature: a number, or a column of the file. */
-struct temperature {
-    double value;
-    const char *column;
-    bool given;
-};
-
 struct request {
-    const char *file, *out, *wall_temperature, *wall_emissivity;
+    struct bed_options bed;
+    const char *wall_temperature, *wall_emissivity;
     write_heat_function *write;
-    struct emissivity_option emissivity;
-    struct temperature temperature;
-    struct wall_options walls;
+    struct quantity emissivity, temperature;
     struct wall_order order;
-    bool periodic, counted; /* --periodic; --directions, --points or --patches */
-    double period[3];
-    const char *columns[2];
-    struct read_options read;
+    bool counted; /* --directions, --points or --patches was given */
     struct heat_options heat;
-    bool help;
 };
 
 static int help(void) {
@@ -99,46 +67,24 @@ static int help(void) {
     return STATUS_OK;
 }
 
-static int take_temperature(const char *text, struct temperature *temperature) {
-    *temperature = (struct temperature){.given = true};
-    if (isalpha((unsigned char)*text) || *text == '_') {
-        temperature->column = text;
-        return STATUS_OK;
-    }
-    return options_number("--temperature", text, 0, HOTTEST, &temperature->value);
-}
-
 static int take_patches(const char *text, uint32_t *patches) {
-    uint64_t whole;
-    const int status = options_whole("--patches", text, 1, UINT32_MAX, &whole);
-    if (status) return status;
-    if (whole != 24 && whole != 96 && whole != 384)
+    const int status = options_count("--patches", text, 1, UINT32_MAX, patches);
+    if (!status && *patches != 24 && *patches != 96 && *patches != 384)
         return message(STATUS_USAGE, "--patches: %.40s is not built in; 24, 96 and 384 are", text);
-    *patches = (uint32_t)whole;
-    return STATUS_OK;
+    return status;
 }
 
 static int take_option(struct request *request, const struct options *options, int key) {
     const char *value = options->value;
-    uint64_t whole = 0;
     int status = STATUS_OK;
     struct beam_options beam = {0};
     switch (key) {
-    case OPTIONS_POSITIONAL:
-        if (request->file) return message(STATUS_USAGE, "one FILE only, not also '%.60s'", value);
-        request->file = value;
-        break;
-    case KEY_HELP:
-        request->help = true;
-        break;
     case KEY_EMISSIVITY:
         return emissivity_option(value, &request->emissivity);
     case KEY_TEMPERATURE:
-        return take_temperature(value, &request->temperature);
+        return temperature_option(value, &request->temperature);
     case KEY_AMBIENT:
-        return options_number("--ambient", value, 0, HOTTEST, &request->heat.sources.surroundings);
-    case KEY_WALL:
-        return walls_option(value, &request->walls);
+        return options_number("--ambient", value, 0, TEMPERATURE_MAX, &request->heat.sources.surroundings);
     case KEY_WALL_TEMPERATURE:
         request->wall_temperature = value;
         break;
@@ -162,42 +108,15 @@ static int take_option(struct request *request, const struct options *options, i
         break;
     case KEY_ERROR:
         return options_number("--error", value, 1e-5, 1, &request->heat.error);
-    case KEY_PERIODIC:
-        request->periodic = true;
-        return options_periodic(value, request->period);
-    case KEY_FRAME:
-        status = options_whole("--frame", value, 0, INT64_MAX, &whole);
-        request->read.frame = (int64_t)whole;
-        break;
-    case KEY_THREADS:
-        status = options_whole("--threads", value, 1, 1024, &whole);
-        request->heat.threads = (int)whole;
-        break;
-    case KEY_IDS:
-        request->read.ids = true;
-        break;
-    case KEY_PROGRESS:
-        request->heat.progress = true;
-        break;
-    case 'o':
-        request->out = value;
-        break;
     default:
-        status = STATUS_USAGE;
-        break; /* OPTIONS_BAD: the message is out */
+        return bed_options_take(&request->bed, options, key);
     }
     return status;
 }
 
-static bool ends(const char *path, const char *with) {
-    const size_t length = strlen(path), ending = strlen(with);
-    return length > ending && strcmp(path + length - ending, with) == 0;
-}
-
 static int check_request(struct request *request) {
-    if (!request->file) return message(STATUS_USAGE, "which FILE? see fibrad heat --help");
-    if (request->emissivity.value == 0 && !request->emissivity.column)
-        return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
+    if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad heat --help");
+    if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (!request->temperature.given) return message(STATUS_USAGE, "which --temperature? see fibrad heat --help");
     if (request->heat.error > 0 && request->counted)
         return message(STATUS_USAGE,
@@ -205,64 +124,24 @@ static int check_request(struct request *request) {
     if (request->heat.error > 0 && request->heat.sources.uniform)
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
-    if (request->out) {
-        request->write = ends(request->out, ".csv")   ? write_heat_csv
-                         : ends(request->out, ".vtp") ? write_heat_vtp
-                                                      : NULL;
-        if (!request->write)
-            return message_at(STATUS_USAGE, request->out, 0, "unknown ending; there are .csv and .vtp");
-        if (output_same(request->file, request->out))
-            return message_at(STATUS_USAGE, request->out, 0, "is the bed itself; it would be replaced");
-    }
-    if (request->read.ids && request->write != write_heat_csv)
-        return message(STATUS_USAGE, "--ids is for -o OUT.csv only");
-    if (request->emissivity.column) request->columns[request->read.extras++] = request->emissivity.column;
-    if (request->temperature.column) request->columns[request->read.extras++] = request->temperature.column;
-    request->read.extra = request->columns;
-    return STATUS_OK;
+    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
+    request->temperature.place = bed_options_column(&request->bed, request->temperature.column);
+    request->write = output_ends(request->bed.out, ".csv")   ? write_heat_csv
+                     : output_ends(request->bed.out, ".vtp") ? write_heat_vtp
+                                                             : NULL;
+    return bed_options_output(&request->bed, request->write, ".csv and .vtp");
 }
 
 static int parse(struct request *request, int argc, char **argv) {
     struct options options = {.command = "heat", .table = table, .argc = argc, .argv = argv};
-    *request = (struct request){.read.frame = -1,
+    *request = (struct request){.bed.frame = -1,
                                 .heat.config = {.directions = 168, .points = 64, .patches = 96},
                                 .heat.sources.sigma = FIBRAD_STEFAN_BOLTZMANN};
-    for (int key; (key = options_next(&options)) != OPTIONS_END;) {
-        const int status = take_option(request, &options, key);
-        if (status || request->help) return status;
-    }
+    int status = STATUS_OK;
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
+        status = take_option(request, &options, key);
     if (request->heat.error > 0 && !request->counted) request->heat.config.directions = 72;
-    return check_request(request);
-}
-
-/* Temperatures of the spheres [n], to be freed. */
-static int spread_temperature(const struct request *request, const struct bed *bed, double **temperature) {
-    double *t = *temperature = malloc(bed->n * sizeof *t);
-    if (!t) return message_memory();
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const size_t last = bed->extras - 1; /* its column comes last */
-        t[i] = request->temperature.column ? bed->extra[i * bed->extras + last] : request->temperature.value;
-        if (!(t[i] >= 0 && t[i] <= HOTTEST))
-            return message_at(STATUS_INPUT, request->heat.file, bed->line[i], "the temperature is %g K", t[i]);
-    }
-    return STATUS_OK;
-}
-
-static int spread_walls(struct request *request) {
-    double given[FIBRAD_WALLS] = {request->heat.sources.surroundings};
-    int count = 1;
-    const char *text = request->wall_temperature;
-    const int status = text ? options_numbers("--wall-temperature", text, FIBRAD_WALLS, given, &count) : STATUS_OK;
-    if (status) return status;
-    if (text && (uint32_t)count > request->order.count)
-        return message(STATUS_USAGE, "--wall-temperature: %d for %u walls", count, request->order.count);
-    for (int k = 0; k < count; ++k)
-        if (!(given[k] >= 0 && given[k] <= HOTTEST))
-            return message(STATUS_USAGE, "--wall-temperature: %g is no temperature", given[k]);
-    for (uint32_t k = 0; k < request->order.count; ++k)
-        request->heat.sources.wall_temperature[request->order.wall[k]] =
-            given[k < (uint32_t)count ? k : (uint32_t)count - 1];
-    return emissivity_walls(request->wall_emissivity, &request->order, request->heat.sources.wall_emissivity);
+    return status ? status : check_request(request);
 }
 
 static void print_summary(const struct request *request, const struct bed *bed, const struct heat_report *report) {
@@ -292,46 +171,49 @@ static void print_summary(const struct request *request, const struct bed *bed, 
 
 static int compute_and_write(struct request *request, const struct bed *bed, struct heat_report *report) {
     struct output out = {0};
-    int status = request->out ? output_open(&out, request->out) : STATUS_OK;
+    int status = output_open(&out, request->bed.out);
     if (!status) status = run_heat(bed, &request->heat, report);
     if (!status && request->heat.error > 0 && report->error_estimate > request->heat.error)
         fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g\n", request->heat.file,
                 report->error_estimate);
-    const struct heat_contents contents = {bed, &request->heat, report, &request->order, request->read.ids};
-    if (!status && request->out) status = request->write(out.file, &contents);
+    const struct heat_contents contents = {bed, &request->heat, report, &request->order, request->bed.ids};
+    if (!status && request->bed.out) status = request->write(out.file, &contents);
     status = output_close(&out, status);
     if (!status) print_summary(request, bed, report);
     return status;
 }
 
-static int run(struct request *request, struct bed *bed, struct heat_report *report) {
+static int run(struct request *request) {
+    struct bed bed = {0};
+    struct heat_report report = {0};
+    fibrad_heat_sources *sources = &request->heat.sources;
     double *emissivity = NULL, *temperature = NULL;
-    request->heat.file = strcmp(request->file, "-") ? request->file : "standard input";
-    int status = read_bed(request->file, &request->read, bed);
-    if (status) return status;
-    if (request->periodic) memcpy(bed->period, request->period, sizeof bed->period);
-    status = walls_of(&request->walls, bed, request->heat.file, &request->heat.walls, &request->order);
-    if (!status) status = spread_walls(request);
-    if (!status) status = emissivity_of(&request->emissivity, bed, request->heat.file, 0, &emissivity);
-    if (!status) status = spread_temperature(request, bed, &temperature);
-    request->heat.sources.emissivity = emissivity;
-    request->heat.sources.temperature = temperature;
-    if (!status) status = compute_and_write(request, bed, report);
+    request->heat.file = request->bed.name;
+    request->heat.threads = request->bed.threads;
+    request->heat.progress = request->bed.progress;
+    int status = bed_options_read(&request->bed, &bed);
+    if (!status)
+        status = walls_of(&request->bed.walls, &bed, request->heat.file, &request->heat.walls, &request->order);
+    if (!status)
+        status = temperature_walls(request->wall_temperature, &request->order, sources->surroundings,
+                                   sources->wall_temperature);
+    if (!status) status = emissivity_walls(request->wall_emissivity, &request->order, sources->wall_emissivity);
+    if (!status) status = emissivity_of(&request->emissivity, &bed, request->heat.file, &emissivity);
+    if (!status) status = temperature_of(&request->temperature, &bed, request->heat.file, &temperature);
+    sources->emissivity = emissivity;
+    sources->temperature = temperature;
+    if (!status) status = compute_and_write(request, &bed, &report);
     free(emissivity);
     free(temperature);
+    heat_report_free(&report);
+    bed_free(&bed);
     return status;
 }
 
 int command_heat(int argc, char **argv) {
     struct request request;
-    struct bed bed = {0};
-    struct heat_report report = {0};
-    int status = parse(&request, argc, argv);
-    if (status) return status;
-    if (request.help) return help();
+    const int status = parse(&request, argc, argv);
+    if (status) return status == STATUS_HELP ? help() : status;
     interrupt_catch();
-    status = run(&request, &bed, &report);
-    heat_report_free(&report);
-    bed_free(&bed);
-    return status;
+    return run(&request);
 }

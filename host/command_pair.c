@@ -26,7 +26,7 @@ static const struct option table[] = {
     {KEY_NO_CORRECTION, "no-correction", NULL, "surface: the plain sum [corrected by the exact unblocked factor]"},
     {KEY_RAYS, "rays", "N", "cast, mc: rays from sphere 1; error ~ N^-0.6, N^-0.5 [20000]"},
     {KEY_SEED, "seed", "S", "cast, mc: another number, other rays [0]"},
-    {KEY_HELP, "help", NULL, "this text"},
+    {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
 enum { SPHERES_MAX = 1000 };
@@ -42,7 +42,7 @@ struct request {
     fibrad_beam_rule rule;
     fibrad_surface_rule surface;
     fibrad_cast_rule cast;
-    bool beam_given, surface_given, cast_given, check, help;
+    bool beam_given, surface_given, cast_given, check;
 };
 
 static int help(void) {
@@ -94,8 +94,7 @@ static int take_option(struct request *request, const struct options *options, i
     case OPTIONS_POSITIONAL:
         return take_length(request, options->value);
     case KEY_HELP:
-        request->help = true;
-        return STATUS_OK;
+        return STATUS_HELP;
     case KEY_METHOD:
         return options_method(options->value, &request->method);
     case KEY_OBSTACLE:
@@ -123,10 +122,10 @@ static int parse(struct request *request, int argc, char **argv) {
     struct options options = {.command = "pair", .table = table, .argc = argc, .argv = argv};
     request->cast.rays = 20000;
     request->n = 2; /* obstacles behind spheres 1 and 2 */
-    for (int key; (key = options_next(&options)) != OPTIONS_END;) {
-        const int status = take_option(request, &options, key);
-        if (status || request->help) return status;
-    }
+    int status = STATUS_OK;
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
+        status = take_option(request, &options, key);
+    if (status) return status;
     if (request->given < 3) return message(STATUS_USAGE, "R1, R2 and GAP are needed; see fibrad pair --help");
     if (request->check && (request->method != METHOD_EXACT || request->n > 2))
         return message(STATUS_USAGE, "--check is for the exact factor without obstacles");
@@ -344,7 +343,8 @@ int command_pair(int argc, char **argv) {
     struct request *request = calloc(1, sizeof *request);
     if (!request) return message_memory();
     int status = parse(request, argc, argv);
-    if (!status) status = request->help ? help() : compute(request);
+    if (!status) status = compute(request);
+    if (status == STATUS_HELP) status = help();
     free(request);
     return status;
 }

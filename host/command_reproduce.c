@@ -18,7 +18,7 @@ enum { KEY_ONLY = KEY_OWN, KEY_NO_PLOTS };
 static const struct option table[] = {{'o', "output", "DIR", "write CSV files and plots there [none]"},
                                       {KEY_ONLY, "only", "NAME", "this experiment alone [all]"},
                                       {KEY_NO_PLOTS, "no-plots", NULL, "CSV files alone [off]"},
-                                      {KEY_HELP, "help", NULL, "this text"},
+                                      {OPTION_HELP},
                                       {0, NULL, NULL, NULL}};
 
 static const struct {

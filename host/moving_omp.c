@@ -25,11 +25,8 @@ static fibrad_scene_config config_of(const struct bed *bed) {
 }
 
 static bool make_work(fibrad_work **work, const fibrad_work_config *config) {
-    const size_t size = fibrad_work_size(config);
-    free(*work); /* work memory begins at its block */
-    *work = NULL;
-    void *block = size ? run_block(size) : NULL;
-    return block && fibrad_work_init(work, block, size, config) == FIBRAD_OK;
+    void *block = *work; /* work memory begins at its block */
+    return run_work(work, &block, config);
 }
 
 static bool make_room(fibrad_row *row, uint32_t capacity) {

@@ -94,6 +94,13 @@ int options_whole(const char *what, const char *text, uint64_t low, uint64_t hig
     return STATUS_OK;
 }
 
+int options_count(const char *what, const char *text, uint32_t low, uint32_t high, uint32_t *value) {
+    uint64_t whole;
+    const int status = options_whole(what, text, low, high, &whole);
+    if (!status) *value = (uint32_t)whole;
+    return status;
+}
+
 int options_numbers(const char *what, const char *text, int capacity, double *values, int *count) {
     for (*count = 0; *count < capacity; ++*count) {
         char *end;
@@ -109,6 +116,19 @@ int options_numbers(const char *what, const char *text, int capacity, double *va
     return message(STATUS_USAGE, "%s: more than %d numbers", what, capacity);
 }
 
+int options_file(const char *text, const char **file) {
+    if (*file) return message(STATUS_USAGE, "one FILE only, not also '%.60s'", text);
+    *file = text;
+    return STATUS_OK;
+}
+
+int options_threads(const char *text, int *threads) {
+    uint32_t count = 0;
+    const int status = options_count("--threads", text, 1, 1024, &count);
+    *threads = (int)count;
+    return status;
+}
+
 int options_method(const char *text, enum method *method) {
     static const char *const names[] = {"exact", "beam", "surface", "cast", "mc"};
     for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
@@ -120,13 +140,9 @@ int options_method(const char *text, enum method *method) {
 }
 
 int options_beam(int key, const char *text, struct beam_options *beam) {
-    uint64_t whole;
-    int status;
     switch (key) {
     case KEY_DIRECTIONS:
-        status = options_whole("--directions", text, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX, &whole);
-        if (!status) beam->directions = (uint32_t)whole;
-        return status;
+        return options_count("--directions", text, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX, &beam->directions);
     case KEY_AREAS:
         if (strcmp(text, "exact") != 0 && strcmp(text, "points") != 0)
             return message(STATUS_USAGE, "--areas: '%.40s' is neither exact nor points", text);
@@ -150,11 +166,8 @@ int options_beam_rule(const struct beam_options *beam, fibrad_beam_rule *rule) {
 }
 
 int options_cast(int key, const char *text, fibrad_cast_rule *rule) {
-    uint64_t rays;
     if (key == KEY_SEED) return options_whole("--seed", text, 0, UINT64_MAX, &rule->seed);
-    const int status = options_whole("--rays", text, 1, UINT32_MAX, &rays);
-    if (!status) rule->rays = (uint32_t)rays;
-    return status;
+    return options_count("--rays", text, 1, UINT32_MAX, &rule->rays);
 }
 
 int options_surface(int key, const char *text, fibrad_surface_rule *rule) {
@@ -163,8 +176,8 @@ int options_surface(int key, const char *text, fibrad_surface_rule *rule) {
         rule->flags |= FIBRAD_SURFACE_NO_CORRECTION;
         return STATUS_OK;
     }
-    uint64_t nodes;
-    const int status = options_whole("--nf", text, 1, UINT32_MAX, &nodes);
+    uint32_t nodes;
+    const int status = options_count("--nf", text, 1, UINT32_MAX, &nodes);
     if (status) return status;
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k)
         if (nodes == sizes[k]) {
@@ -173,13 +186,4 @@ int options_surface(int key, const char *text, fibrad_surface_rule *rule) {
         }
     return message(STATUS_USAGE, "--nf: %.40s is not built in; 8, 13, 21, 34, 55, 89, 144, 233, 377, 610 and 987 are",
                    text);
-}
-
-int options_periodic(const char *text, double period[3]) {
-    int count = 3;
-    const int status = strcmp(text, "none") == 0 ? STATUS_OK : options_numbers("--periodic", text, 3, period, &count);
-    if (status) return status;
-    if (count != 3 || period[0] < 0 || period[1] < 0 || period[2] < 0)
-        return message(STATUS_USAGE, "--periodic: '%.60s' is neither none nor three lengths LX,LY,LZ", text);
-    return STATUS_OK;
 }

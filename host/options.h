@@ -27,11 +27,29 @@ enum {
     KEY_NO_CORRECTION,
     KEY_RAYS,
     KEY_SEED,
+    KEY_ERROR,
+    KEY_RAW,
+    KEY_EMISSIVITY,
+    KEY_WALL,
+    KEY_WALL_EMISSIVITY,
+    KEY_PERIODIC,
+    KEY_FRAME,
+    KEY_THREADS,
+    KEY_IDS,
+    KEY_PLOT,
+    KEY_PROGRESS,
     KEY_OWN
 };
 
+/* Rows of tables, without braces. */
+#define OPTION_THREADS KEY_THREADS, "threads", "T", "threads, 1 to 1024 [all cores]"
+#define OPTION_HELP    KEY_HELP, "help", NULL, "this text"
+
 /* What options_next returns apart from keys. */
 enum { OPTIONS_POSITIONAL = 0, OPTIONS_END = -1, OPTIONS_BAD = -2 };
+
+/* The status of taking KEY_HELP, which ends the walk as an error does; no exit status. */
+enum { STATUS_HELP = -1 };
 
 /* A walk along the arguments; zeroed but for the first four. */
 struct options {
@@ -52,16 +70,20 @@ int options_next(struct options *options);
 /* Prints the table, one option and its help a line. */
 void options_print(const struct option *table);
 
-/* A finite number in [low, high]; a whole number in [low, high]: the entire text, or STATUS_USAGE after a message that
- * calls it `what`. */
+/* A finite number in [low, high]; a whole number in [low, high], twice: the entire text, or STATUS_USAGE after a
+ * message that calls it `what`. */
 int options_number(const char *what, const char *text, double low, double high, double *value);
 int options_whole(const char *what, const char *text, uint64_t low, uint64_t high, uint64_t *value);
+int options_count(const char *what, const char *text, uint32_t low, uint32_t high, uint32_t *value);
 
 /* Up to `capacity` numbers parted by commas; *count tells how many, which may be all that is wrong. */
 int options_numbers(const char *what, const char *text, int capacity, double *values, int *count);
 
-/* The argument of --periodic: three lengths, 0 for an open axis, or none. Status 0 or STATUS_USAGE. */
-int options_periodic(const char *text, double period[3]);
+/* Takes FILE, of which there is one only (NULL: none yet). Status 0 or STATUS_USAGE. */
+int options_file(const char *text, const char **file);
+
+/* Takes the argument of --threads. Status 0 or STATUS_USAGE. */
+int options_threads(const char *text, int *threads);
 
 /* Methods by name, in the order of the enum. */
 enum method { METHOD_EXACT, METHOD_BEAM, METHOD_SURFACE, METHOD_CAST, METHOD_MC };

@@ -11,12 +11,7 @@
 #include "message.h"
 #include "plot_data.h"
 
-static bool ends(const char *path, const char *ending) {
-    const size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && strcmp(path + length - tail, ending) == 0;
-}
-
-bool plot_ending(const char *path) { return ends(path, ".svg") || ends(path, ".png"); }
+bool plot_ending(const char *path) { return output_ends(path, ".svg") || output_ends(path, ".png"); }
 
 /* The last part of a path as a gnuplot string. */
 static void print_name(FILE *script, const char *path) {
@@ -28,7 +23,7 @@ static void print_name(FILE *script, const char *path) {
 }
 
 static void print_style(FILE *script, const struct output *output, const char *name, const struct contents *what) {
-    fputs(ends(output->path, ".png")
+    fputs(output_ends(output->path, ".png")
               ? "set terminal pngcairo size 1500,1240 font 'DejaVu Sans,13' background '#ffffff'\n"
               : "set terminal svg size 1500,1240 font 'DejaVu Sans,15' background '#ffffff'\n",
           script);

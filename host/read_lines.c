@@ -13,10 +13,11 @@ enum { LINE_MAX_BYTES = 1 << 20 }; /* far beyond any real line: binary files are
 
 static const char blanks[] = " \t\r\v\f";
 
+const char *lines_name(const char *path) { return strcmp(path, "-") == 0 ? "standard input" : path; }
+
 int lines_open(struct lines *lines, const char *path) {
-    const bool standard = strcmp(path, "-") == 0;
-    *lines = (struct lines){.name = standard ? "standard input" : path};
-    lines->file = standard ? stdin : fopen(path, "rb");
+    *lines = (struct lines){.name = lines_name(path)};
+    lines->file = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
     if (!lines->file) return message_at(STATUS_FILE, path, 0, "%s", strerror(errno));
     return STATUS_OK;
 }

@@ -22,6 +22,9 @@ struct fields {
     size_t n, capacity;
 };
 
+/* What messages call a path: "-" is standard input. */
+const char *lines_name(const char *path);
+
 /* Opens a file, or standard input for "-". Status 0 or STATUS_FILE. */
 int lines_open(struct lines *lines, const char *path);
 void lines_close(struct lines *lines);

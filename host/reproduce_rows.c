@@ -6,14 +6,6 @@
 #include "reproduce.h"
 #include "run_omp.h"
 
-static int make_work(struct rows *rows, const fibrad_work_config *config) {
-    const size_t size = fibrad_work_size(config);
-    free(rows->work_block);
-    rows->work_block = size ? run_block(size) : NULL;
-    if (!rows->work_block) return message_memory();
-    return fibrad_work_init(&rows->work, rows->work_block, size, config);
-}
-
 int rows_open(struct rows *rows, const struct bed *bed, bool periodic) {
     *rows = (struct rows){.n = bed->n};
     fibrad_scene_config config = {.spheres = bed->n};
@@ -26,7 +18,7 @@ int rows_open(struct rows *rows, const struct bed *bed, bool periodic) {
     if (!rows->scene_block || !rows->col || !rows->f) return message_memory();
     const int status = fibrad_scene_init(&rows->scene, rows->scene_block, size, &config, &spheres, NULL);
     if (status) return message(STATUS_INPUT, "bed: %s", fibrad_status_text(status));
-    return make_work(rows, NULL);
+    return run_work(&rows->work, &rows->work_block, NULL) ? STATUS_OK : message_memory();
 }
 
 void rows_close(struct rows *rows) {
@@ -46,7 +38,6 @@ int rows_row(struct rows *rows, const struct row_method *method, uint32_t i, fib
             return message(STATUS_INPUT, "%s: %s", method->name, fibrad_status_text(status));
         fibrad_work_config config;
         fibrad_work_needed(rows->work, &config);
-        const int failure = make_work(rows, &config);
-        if (failure) return failure;
+        if (!run_work(&rows->work, &rows->work_block, &config)) return message_memory();
     }
 }

@@ -20,23 +20,16 @@ struct tracing {
     void *block; /* of the work */
 };
 
-static bool make_work(struct tracing *tracing, const fibrad_work_config *config) {
-    const size_t size = fibrad_work_size(config);
-    free(tracing->block);
-    tracing->block = size ? run_block(size) : NULL;
-    return tracing->block && fibrad_work_init(&tracing->work, tracing->block, size, config) == FIBRAD_OK;
-}
-
 /* Follows the beams of a task; work memory that turns out too small is made larger. */
 static int trace(struct tracing *tracing, uint32_t task) {
-    if (!tracing->block && !make_work(tracing, NULL)) return STATUS_MEMORY;
+    if (!tracing->block && !run_work(&tracing->work, &tracing->block, NULL)) return STATUS_MEMORY;
     for (;;) {
         const int status = fibrad_heat_trace(tracing->heat, tracing->work, task);
         if (status == FIBRAD_OK) return STATUS_OK;
         if (status != FIBRAD_E_CAPACITY) return message(STATUS_INPUT, "beams: %s", fibrad_status_text(status));
         fibrad_work_config config;
         fibrad_work_needed(tracing->work, &config);
-        if (!make_work(tracing, &config)) return STATUS_MEMORY;
+        if (!run_work(&tracing->work, &tracing->block, &config)) return STATUS_MEMORY;
     }
 }
 

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "average_omp.h"
 #include "interrupt.h"
 #include "message.h"
 #include "progress.h"
@@ -48,6 +49,14 @@ struct run {
 
 void *run_block(size_t size) { return aligned_alloc(64, (size + 63) / 64 * 64); }
 
+bool run_work(fibrad_work **work, void **block, const fibrad_work_config *config) {
+    const size_t size = fibrad_work_size(config);
+    free(*block);
+    *work = NULL;
+    *block = size ? run_block(size) : NULL;
+    return *block && fibrad_work_init(work, *block, size, config) == FIBRAD_OK;
+}
+
 /* Turns a kernel's fault into a message that names the sphere's line. */
 static int refuse(const struct bed *bed, const char *file, int status, const fibrad_fault *fault) {
     const uint32_t first = fault->first, second = fault->second;
@@ -84,10 +93,7 @@ int run_scene(const struct bed *bed, const fibrad_walls *walls, const char *file
 }
 
 static bool make_work(struct store *store, const fibrad_work_config *config) {
-    const size_t size = fibrad_work_size(config);
-    free(store->block);
-    store->block = size ? run_block(size) : NULL;
-    return store->block && fibrad_work_init(&store->work, store->block, size, config) == FIBRAD_OK;
+    return run_work(&store->work, &store->block, config);
 }
 
 static bool make_room(struct store *store, size_t entries) {
@@ -157,7 +163,8 @@ static void compute_rows(struct run *run, uint64_t rows) {
         struct store *store = &run->stores[omp_get_thread_num()];
         int status = make_work(store, NULL) ? STATUS_OK : STATUS_MEMORY;
 #pragma omp for schedule(dynamic, 16)
-        for (uint32_t i = 0; i < n; ++i) {
+        for (uint32_t k = 0; k < n; ++k) {
+            const uint32_t i = fibrad_scene_sphere(run->scene, k);
             int stopped;
 #pragma omp atomic read
             stopped = stop;
@@ -205,6 +212,7 @@ static int assemble(struct run *run) {
     rows->col = malloc((rows->capacity + 1) * sizeof *rows->col);
     rows->f = malloc((rows->capacity + 1) * sizeof *rows->f);
     if (!rows->col || !rows->f) return message_memory();
+#pragma omp parallel for num_threads(run->result->threads) schedule(static)
     for (uint32_t i = 0; i < n; ++i) {
         const struct place *place = &run->places[i];
         const struct store *store = &run->stores[place->thread];
@@ -214,13 +222,6 @@ static int assemble(struct run *run) {
     }
     free_stores(run); /* averaging needs the memory */
     return STATUS_OK;
-}
-
-static void free_rows(fibrad_rows *rows) {
-    free(rows->start);
-    free(rows->col);
-    free(rows->f);
-    *rows = (fibrad_rows){0};
 }
 
 double rows_distance(const fibrad_rows *a, const fibrad_rows *b, uint32_t i) {
@@ -239,6 +240,7 @@ double rows_distance(const fibrad_rows *a, const fibrad_rows *b, uint32_t i) {
  * estimate the rows whose two errors are equal by symmetry: docs/accuracy.md. */
 static void estimate(struct run *run, const fibrad_rows *mean) {
     const fibrad_rows *raw = &run->result->rows;
+#pragma omp parallel for num_threads(run->result->threads) schedule(static)
     for (uint32_t i = 0; i < mean->n; ++i) {
         double square = 0, weight = run->weight ? run->weight[i] : 1, most = weight;
         uint64_t p = raw->start[i]; /* the columns of a raw row are among those of the mean */
@@ -256,20 +258,16 @@ static void estimate(struct run *run, const fibrad_rows *mean) {
 
 /* Replaces the rows by reciprocal ones with row sums of at most 1. */
 static int average(struct run *run) {
-    fibrad_rows *raw = &run->result->rows, mean = {.n = raw->n, .capacity = 2 * raw->start[raw->n]};
+    fibrad_rows *raw = &run->result->rows, mean;
     double *scratch = malloc(raw->n * sizeof *scratch);
-    mean.start = malloc(((size_t)mean.n + 1) * sizeof *mean.start);
-    mean.col = malloc((mean.capacity + 1) * sizeof *mean.col);
-    mean.f = malloc((mean.capacity + 1) * sizeof *mean.f);
-    int status = scratch && mean.start && mean.col && mean.f ? STATUS_OK : message_memory();
-    int kernel = FIBRAD_OK;
-    if (!status) kernel = fibrad_rows_average_weighted(raw, run->bed->r, run->weight, &mean);
-    if (!status && !kernel) kernel = fibrad_rows_limit(&mean, scratch);
+    int status = average_rows(raw, run->bed->r, run->weight, run->result->threads, &mean), kernel = FIBRAD_OK;
+    if (!status && !scratch) status = message_memory();
+    if (!status) kernel = fibrad_rows_limit(&mean, scratch);
     if (!status && !kernel) kernel = fibrad_rows_close(&mean, run->bed->r, run->result->wall, run->result->escaped);
     if (kernel) status = message(STATUS_INPUT, "averaging the rows: %s", fibrad_status_text(kernel));
     free(scratch);
     if (!status && !run->options->method.mirrored) estimate(run, &mean);
-    free_rows(status ? &mean : raw);
+    rows_free(status ? &mean : raw);
     if (!status) *raw = mean;
     return status;
 }
@@ -357,7 +355,7 @@ int run_rows(const struct bed *bed, const struct run_options *options, struct re
 }
 
 void result_free(struct result *result) {
-    free_rows(&result->rows);
+    rows_free(&result->rows);
     free(result->wanted);
     free(result->row_sum);
     free(result->error);

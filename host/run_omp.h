@@ -55,4 +55,8 @@ int run_scene(const struct bed *bed, const fibrad_walls *walls, const char *file
 /* A block on a 64-byte boundary, as the kernel wants it; free() it. NULL: out of memory. */
 void *run_block(size_t size);
 
+/* Makes work memory in *block in the place of what is there (NULL: nothing); free() it. False: out of memory, and
+ * *work is NULL. */
+bool run_work(fibrad_work **work, void **block, const fibrad_work_config *config);
+
 #endif

@@ -23,12 +23,11 @@ struct wall_order {
     uint32_t count, wall[FIBRAD_WALLS];
 };
 
-/* What --help says of it, in the table and below. */
-#define WALLS_ARGUMENT "LIST"
-#define WALLS_HELP                                                                                                     \
-    "walls: auto (box of the file, open axes), box (all six sides), xmin, xmax ... zmax, cylinder:X,Y,R (axis along "  \
-    "z) "                                                                                                              \
-    "[none]"
+/* What --help says of it: the row of a table of options, without braces, and more below. */
+#define OPTION_WALL                                                                                                    \
+    KEY_WALL, "wall", "LIST",                                                                                          \
+        "walls: auto (box of the file, open axes), box (all six sides), xmin, xmax ... zmax, cylinder:X,Y,R "          \
+        "(axis along z) [none]"
 #define WALLS_MORE                                                                                                     \
     "Walls: a LIST parted by commas. A side is xmin=VALUE, or without =VALUE the end of the file's box, or else of "   \
     "the\n"                                                                                                            \

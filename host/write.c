@@ -17,8 +17,14 @@ bool output_same(const char *a, const char *b) {
            first.st_ino == second.st_ino;
 }
 
+bool output_ends(const char *path, const char *ending) {
+    const size_t length = path ? strlen(path) : 0, tail = strlen(ending);
+    return length > tail && strcmp(path + length - tail, ending) == 0;
+}
+
 int output_open(struct output *output, const char *path) {
     *output = (struct output){.path = path};
+    if (!path) return STATUS_OK;
     struct stat there;
     if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
         return message_at(STATUS_FILE, path, 0, "exists and is not a regular file");
@@ -60,10 +66,7 @@ write_function *write_find(const char *path, const char **endings) {
         write_function *write;
     } writers[] = {{".csv", write_csv}, {".mtx", write_mtx}, {".npz", write_npz}, {".vtp", write_vtp}};
     if (endings) *endings = ".csv, .mtx, .npz and .vtp";
-    const size_t length = strlen(path);
-    for (size_t k = 0; k < sizeof writers / sizeof *writers; ++k) {
-        const size_t ending = strlen(writers[k].ending);
-        if (length > ending && strcmp(path + length - ending, writers[k].ending) == 0) return writers[k].write;
-    }
+    for (size_t k = 0; k < sizeof writers / sizeof *writers; ++k)
+        if (output_ends(path, writers[k].ending)) return writers[k].write;
     return NULL;
 }

@@ -19,7 +19,11 @@ struct output {
 /* Whether two paths name one existing file, so that writing the one would replace the other. */
 bool output_same(const char *a, const char *b);
 
-/* Opens a new file under a temporary name. Status 0, STATUS_FILE or STATUS_MEMORY. */
+/* Whether a path has this ending, such as ".csv", and something before it; NULL has none. */
+bool output_ends(const char *path, const char *ending);
+
+/* Opens a new file under a temporary name; path NULL: none, which output_close then leaves alone. Status 0, STATUS_FILE
+ * or STATUS_MEMORY. */
 int output_open(struct output *output, const char *path);
 
 /* Closes the file and gives it its name; after any trouble on the way it is removed instead. `status` is that of what
@@ -41,7 +45,8 @@ typedef int write_function(FILE *file, const struct contents *what);
 
 write_function write_csv, write_mtx, write_npz, write_vtp;
 
-/* The writer for the ending of a path; NULL if there is none. `endings`, unless NULL, gets the list of those known. */
+/* The writer for the ending of a path, NULL if there is none or no path. `endings`, unless NULL, gets the list of those
+ * known. */
 write_function *write_find(const char *path, const char **endings);
 
 #endif

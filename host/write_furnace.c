@@ -1,7 +1,7 @@
 /* write_furnace.c - the fields of a box to files. SPDX-License-Identifier: MIT */
 #include "write_furnace.h"
 
-#include <string.h>
+#include "write.h"
 
 void write_furnace_csv(FILE *file, const struct furnace_run *run) {
     const fibrad_furnace_config *c = &run->config;
@@ -47,8 +47,6 @@ void write_furnace_vti(FILE *file, const struct furnace_run *run) {
 }
 
 write_furnace_function *write_furnace_find(const char *path) {
-    size_t length = strlen(path);
-    if (length > 4 && strcmp(path + length - 4, ".csv") == 0) return write_furnace_csv;
-    if (length > 4 && strcmp(path + length - 4, ".vti") == 0) return write_furnace_vti;
-    return NULL;
+    if (output_ends(path, ".csv")) return write_furnace_csv;
+    return output_ends(path, ".vti") ? write_furnace_vti : NULL;
 }

@@ -5,7 +5,7 @@
  *   lanes    fibrad_isa_best, fibrad_isa_name
  *   sample   fibrad_direction
  *   pair     fibrad_pair_exact
- *   scene    fibrad_scene_size, FIBRAD_SCENE_BYTES, fibrad_scene_init, fibrad_scene_describe
+ *   scene    fibrad_scene_size, FIBRAD_SCENE_BYTES, fibrad_scene_init, fibrad_scene_describe, fibrad_scene_sphere
  *   work     fibrad_work_size, FIBRAD_WORK_BYTES, fibrad_work_init, fibrad_work_needed
  *   beam     fibrad_beam_row, fibrad_directions_for
  *   surface  fibrad_surface_pair, FIBRAD_SURFACE_SCRATCH, fibrad_surface_row
@@ -13,8 +13,8 @@
  *   moved    fibrad_moved_error, fibrad_moved_seen, fibrad_moved_same
  *   tracer   fibrad_tracer_size, fibrad_tracer_init
  *   exchange fibrad_exchange_row, fibrad_exchange_spread
- *   rows     fibrad_rows_average, fibrad_rows_average_weighted, fibrad_rows_limit, fibrad_rows_close,
- *            fibrad_rows_balance, fibrad_rows_drop, fibrad_rows_reciprocity
+ *   rows     fibrad_rows_average, fibrad_rows_average_weighted, fibrad_rows_average_part, fibrad_rows_limit,
+ *            fibrad_rows_close, fibrad_rows_balance, fibrad_rows_drop, fibrad_rows_reciprocity
  *   heat     fibrad_heat_size, fibrad_heat_init, fibrad_heat_tasks, fibrad_heat_trace, fibrad_heat_begin,
  *            fibrad_heat_sweep, fibrad_heat_step, fibrad_heat_read, fibrad_radiosity
  *   furnace  fibrad_furnace_size, fibrad_furnace_init, fibrad_furnace_fields, fibrad_furnace_temperature,
@@ -178,6 +178,11 @@ typedef struct fibrad_scene_facts {
 /* Fills in the facts of a scene; null pointers: nothing. No errors. Cost: a copy. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
+/* The sphere that comes k-th along the cells of the grid, k < n: a permutation of all, in which neighbours in space are
+ * mostly near each other. In large beds rows computed in this order find more of what they need in the cache.
+ * Errors: UINT32_MAX (no scene, or no such k). */
+uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k);
+
 /* ---- work ------------------------------------------------------------------------------------------------------ */
 
 /* Scratch memory for rows, one per thread. Zero means the default. */
@@ -196,7 +201,7 @@ size_t fibrad_work_size(const fibrad_work_config *config);
 
 /* An upper bound of fibrad_work_size as a constant expression, for static memory (no zeros here). */
 #define FIBRAD_WORK_BYTES(near, discs, entries)                                                                        \
-    (24576 + (size_t)(near)*128 + (size_t)(discs)*768 + (size_t)(entries)*96)
+    (24576 + (size_t)(near)*136 + (size_t)(discs)*768 + (size_t)(entries)*96)
 
 /* Makes work memory in `memory` (`size` bytes on a 64-byte boundary). It serves any scene, one row at a time.
  * Errors: _ARGUMENT, _SIZE, _ALIGNMENT. Cost: O(entries). */
@@ -449,6 +454,12 @@ int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *ou
  * the plain mean. weight [n], 1e-100 to 1e100: best is 1/variance, for beam rows directions^3; NULL: all the same. Sums
  * of rows may then exceed 1 by their errors: fibrad_rows_limit. */
 int fibrad_rows_average_weighted(const fibrad_rows *raw, const double *r, const double *weight, fibrad_rows *out);
+
+/* Rows [begin, end) of that alone, to the bit; the others are left empty. For threads or processes that share the work,
+ * each with an `out` of its own: always enough is a capacity of the entries that raw has in these rows and in these
+ * columns. Cost: O(n + entries), which are read through three times, and what these rows take. */
+int fibrad_rows_average_part(const fibrad_rows *raw, const double *r, const double *weight, uint32_t begin,
+                             uint32_t end, fibrad_rows *out);
 
 /* Brings row sums above 1 down to 1 and leaves reciprocity as it is: F_ij times min(s_i, s_j), s = min(1, 1/sum).
  * Rows averaged from exact areas need it only to the last bit. scratch [n].

@@ -1,4 +1,5 @@
 /* test_rows.c - matrices of view factors: averaging, limiting, dropping. SPDX-License-Identifier: MIT */
+#include "average_omp.h"
 #include "scenes.h"
 #include "suite.h"
 
@@ -8,12 +9,6 @@ static fibrad_rows rows_of(uint32_t n, uint64_t capacity) {
                          .start = calloc((size_t)n + 1, sizeof(uint64_t)),
                          .col = calloc(capacity, sizeof(uint32_t)),
                          .f = calloc(capacity, sizeof(double))};
-}
-
-static void rows_free(fibrad_rows *rows) {
-    free(rows->start);
-    free(rows->col);
-    free(rows->f);
 }
 
 static fibrad_rows raw_rows(const struct bed *bed, fibrad_beam_rule rule, double *escaped) {
@@ -135,7 +130,6 @@ START_TEST(averaging_entry_by_entry) {
 }
 END_TEST
 
-/* Points err by their number, and a cutoff opens rows that others close. */
 /* S_01 = (3 A_0 F_01 + A_1 F_10)/4 with A = 4 pi (1, 4); where only one side has an entry, its share of it. */
 START_TEST(averaging_with_weights) {
     fibrad_rows raw = {.n = 3,
@@ -159,6 +153,54 @@ START_TEST(averaging_with_weights) {
 }
 END_TEST
 
+/* Parts, laid one behind the other, are the whole to the bit, in just the room they need; so is the host's mean,
+ * whatever the number of threads. */
+START_TEST(averaging_in_parts) {
+    struct bed bed = packing(150, .3, 1.5, .5, 3, true);
+    double *escaped = calloc(bed.n, sizeof *escaped), *weight = calloc(bed.n, sizeof *weight);
+    fibrad_rows raw = raw_rows(&bed, (fibrad_beam_rule){.directions = 34}, escaped);
+    for (uint32_t i = 0; i < bed.n; i++) weight[i] = 1 + i % 7;
+    fibrad_rows whole = rows_of(raw.n, 2 * raw.start[raw.n]);
+    ck_assert_int_eq(fibrad_rows_average_weighted(&raw, bed.r, weight, &whole), FIBRAD_OK);
+    for (uint32_t parts = 1; parts <= 5; parts++) {
+        for (uint32_t p = 0; p < parts; p++) {
+            const uint32_t begin = bed.n * p / parts, end = bed.n * (p + 1) / parts;
+            const uint64_t from = whole.start[begin], entries = whole.start[end] - from;
+            fibrad_rows part = rows_of(raw.n, entries);
+            ck_assert_int_eq(fibrad_rows_average_part(&raw, bed.r, weight, begin, end, &part), FIBRAD_OK);
+            for (uint32_t i = 0; i <= bed.n; i++) {
+                const uint32_t row = i < begin ? begin : i > end ? end : i;
+                ck_assert_uint_eq(part.start[i], whole.start[row] - from);
+            }
+            ck_assert_mem_eq(part.col, whole.col + from, entries * sizeof *part.col);
+            ck_assert_mem_eq(part.f, whole.f + from, entries * sizeof *part.f);
+            part.capacity--;
+            ck_assert_int_eq(fibrad_rows_average_part(&raw, bed.r, weight, begin, end, &part), FIBRAD_E_CAPACITY);
+            ck_assert_uint_eq(part.start[bed.n], entries);
+            rows_free(&part);
+        }
+        fibrad_rows mean;
+        ck_assert_int_eq(average_rows(&raw, bed.r, weight, (int)parts, &mean), 0);
+        ck_assert_mem_eq(mean.start, whole.start, (bed.n + 1) * sizeof *mean.start);
+        ck_assert_mem_eq(mean.col, whole.col, whole.start[bed.n] * sizeof *mean.col);
+        ck_assert_mem_eq(mean.f, whole.f, whole.start[bed.n] * sizeof *mean.f);
+        rows_free(&mean);
+    }
+    fibrad_rows none = rows_of(raw.n, 1);
+    ck_assert_int_eq(fibrad_rows_average_part(&raw, bed.r, weight, 70, 70, &none), FIBRAD_OK);
+    ck_assert_uint_eq(none.start[bed.n], 0);
+    ck_assert_int_eq(fibrad_rows_average_part(&raw, bed.r, weight, 71, 70, &whole), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_rows_average_part(&raw, bed.r, weight, 0, bed.n + 1, &whole), FIBRAD_E_ARGUMENT);
+    rows_free(&none);
+    rows_free(&raw);
+    rows_free(&whole);
+    free(escaped);
+    free(weight);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Points err by their number, and a cutoff opens rows that others close. */
 START_TEST(limiting_keeps_reciprocity) {
     struct bed bed = packing(400, .8, 1.2, .58, 7, true);
     double *escaped = calloc(bed.n, sizeof *escaped), *scratch = calloc(bed.n, sizeof *scratch), largest;
@@ -293,6 +335,7 @@ int main(void) {
     tcase_add_test(tcase, averaging_by_hand);
     tcase_add_test(tcase, averaging_entry_by_entry);
     tcase_add_test(tcase, averaging_with_weights);
+    tcase_add_test(tcase, averaging_in_parts);
     tcase_add_test(tcase, limiting_keeps_reciprocity);
     tcase_add_test(tcase, dropping_keeps_the_books);
     tcase_add_test(tcase, dropping_at_the_threshold);

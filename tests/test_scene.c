@@ -38,6 +38,30 @@ START_TEST(sizes_hold) {
 }
 END_TEST
 
+/* Each sphere comes once along the cells, and most that follow each other are neighbours: on average less than 4 radii
+ * apart in a cube of 16, where two taken at random are 11 apart. */
+START_TEST(spheres_along_the_cells) {
+    struct bed bed = packing(500, 1, 1, .5, 4, false);
+    fibrad_scene *scene = scene_of(&bed, 0);
+    bool *seen = calloc(bed.n, sizeof *seen);
+    double sum = 0;
+    for (uint32_t k = 0, last = 0; k < bed.n; k++) {
+        const uint32_t i = fibrad_scene_sphere(scene, k);
+        ck_assert_uint_lt(i, bed.n);
+        ck_assert(!seen[i]);
+        seen[i] = true;
+        if (k > 0) sum += hypot(hypot(bed.x[i] - bed.x[last], bed.y[i] - bed.y[last]), bed.z[i] - bed.z[last]);
+        last = i;
+    }
+    ck_assert_double_lt(sum / bed.n, 4);
+    ck_assert_uint_eq(fibrad_scene_sphere(scene, bed.n), UINT32_MAX);
+    ck_assert_uint_eq(fibrad_scene_sphere(NULL, 0), UINT32_MAX);
+    free(seen);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
 START_TEST(bad_configurations_are_refused) {
     ck_assert_uint_eq(fibrad_scene_size(NULL), 0);
     static const fibrad_scene_config bad[] = {{.spheres = 0},
@@ -250,6 +274,7 @@ int main(void) {
     Suite *suite = suite_create("scene");
     TCase *tcase = suite_case(suite, "scene");
     tcase_add_test(tcase, sizes_hold);
+    tcase_add_test(tcase, spheres_along_the_cells);
     tcase_add_test(tcase, bad_configurations_are_refused);
     tcase_add_test(tcase, faults_name_their_spheres);
     tcase_add_test(tcase, any_image_of_a_centre_will_do);

@@ -24,13 +24,13 @@
 static void sieve(fibrad_work *work, const double frame[9], uint32_t shell) {
     const fibrad_near *near = &work->near;
     const float *x = near->fx, *y = near->fy, *z = near->fz, *e = near->fe;
-    uint32_t *place = work->disc.near + work->disc.count, room = work->disc.capacity - work->disc.count;
+    uint32_t *place = work->disc.near + work->disc.count;
     vf wx = vf_set1((float)frame[6]), wy = vf_set1((float)frame[7]), wz = vf_set1((float)frame[8]);
     uint32_t found = 0, end = near->end[shell];
     for (uint32_t j = shell == 0 ? 0 : near->end[shell - 1]; j < end; j += VF_LANES) {
         vf depth = vf_add(vf_add(vf_mul(wx, vf_load(x + j)), vf_mul(wy, vf_load(y + j))), vf_mul(wz, vf_load(z + j)));
         uint32_t bits = vf_lt_bits(vf_load(e + j), depth);
-        found += vf_compress_places(place + (found < room ? found : room), bits, j);
+        found += vf_compress_places(place + found, bits, j);
     }
     LANED(fibrad_near_discs)(work, frame, found);
 }
@@ -63,7 +63,8 @@ static void sort_by_insertion(fibrad_work *work) {
  * rounds can be predicted, is deeper than all. */
 #define RANKED 64
 static void sort(fibrad_work *work, uint32_t settled) {
-    _Alignas(64) float key[RANKED + FIBRAD_LANES_MAX], rank[RANKED + FIBRAD_LANES_MAX];
+    _Alignas(64) float key[RANKED + FIBRAD_LANES_MAX];
+    _Alignas(64) uint32_t rank[RANKED + FIBRAD_LANES_MAX];
     const double *depth = work->disc.depth;
     uint32_t count = work->disc.count, eights = (count + 7) / 8 * 8, *order = work->disc.order;
     if (settled == count) return;
@@ -71,19 +72,19 @@ static void sort(fibrad_work *work, uint32_t settled) {
         for (uint32_t k = 0; k < count; k += VD_LANES) vd_store_float(key + k, vd_load(depth + k));
         for (uint32_t k = 0; k < 8; k++) key[count + k] = __builtin_inff();
         for (uint32_t k = 0; k < eights; k += VF_LANES) {
-            vf at = vf_load(key + k), before_it = vf_set1(0);
+            vf at = vf_load(key + k);
+            vn before_it = vn_zero();
             for (uint32_t j = 0; j < eights; j += 8)
 #pragma GCC unroll 8
-                for (uint32_t l = 0; l < 8; l++) before_it = vf_add(before_it, vf_lt_one(vf_set1(key[j + l]), at));
-            vf_store(rank + k, before_it);
+                for (uint32_t l = 0; l < 8; l++) before_it = vn_count_lt(before_it, vf_set1(key[j + l]), at);
+            vn_store(rank + k, before_it);
         }
         uint32_t sum = 0;
         for (uint32_t k = 0; k < eights; k += 8)
 #pragma GCC unroll 8
             for (uint32_t l = 0; l < 8; l++) {
-                uint32_t to = (uint32_t)(int32_t)rank[k + l];
-                order[to] = k + l;
-                sum += to;
+                order[rank[k + l]] = k + l;
+                sum += rank[k + l];
             }
         if (sum == (count * (count - 1) - settled * (settled - 1)) / 2 + (eights - count) * count) return;
     }
@@ -132,13 +133,13 @@ static double look(fibrad_work *work, const double frame[9], fibrad_points *poin
     uint32_t settled = 0;
     double known = -1, horizon = __builtin_inf(); /* all that emerges down to `known` has been looked up */
     for (uint32_t shell = 0; open && known < horizon; shell++) {
-        if (shell == work->near.shells && !work->near.full) LANED(fibrad_near_extend)(work);
+        if (shell == work->near.shells && fibrad_near_pays(&work->near)) LANED(fibrad_near_extend)(work);
         if (shell < work->near.shells) {
             sieve(work, frame, shell);
             known = work->near.limit[shell];
         } else {
             double to = known < 0 ? work->step : work->growth * known;
-            fibrad_near_march(work, frame, &(fibrad_tube){.radius = 1}, known, to);
+            LANED(fibrad_near_march)(work, frame, &(fibrad_tube){.radius = 1}, known, to);
             known = to;
         }
         if (work->disc.count > work->disc.capacity) break;

@@ -82,7 +82,7 @@ struct hit {
  * q = c^2 + 1 - r^2, those with (w.c - w.o)^2 > q - 2 o.c. */
 static void sieve(fibrad_work *work, const struct ray *ray, uint32_t shell) {
     const fibrad_near *near = &work->near;
-    uint32_t *place = work->disc.near, room = work->disc.capacity, found = 0;
+    uint32_t *place = work->disc.near, found = 0;
     const double *v = ray->frame + 3, *w = ray->frame + 6;
     vf wx = vf_set1((float)w[0]), wy = vf_set1((float)w[1]), wz = vf_set1((float)w[2]);
     vf ox = vf_set1((float)(2 * (ray->cosine * w[0] - ray->sine * v[0])));
@@ -95,7 +95,7 @@ static void sieve(fibrad_work *work, const struct ray *ray, uint32_t shell) {
         vf twice = vf_add(vf_add(vf_mul(ox, x), vf_mul(oy, y)), vf_mul(oz, z));
         vf from = vf_sub(depth, start), rest = vf_sub(vf_load(near->fq + j), twice);
         uint32_t bits = vf_lt_bits(vf_load(near->fe + j), depth) & vf_lt_bits(rest, vf_mul(from, from));
-        found += vf_compress_places(place + (found < room ? found : room), bits, j);
+        found += vf_compress_places(place + found, bits, j);
     }
     LANED(fibrad_near_discs)(work, ray->frame, found);
 }
@@ -128,13 +128,13 @@ static bool follow(fibrad_work *work, const struct ray *ray, struct hit *first) 
     double known = -1, horizon = 0;
     for (uint32_t shell = 0; shell == 0 || known < horizon; shell++) {
         work->disc.count = 0;
-        if (shell == work->near.shells && !work->near.full) LANED(fibrad_near_extend)(work);
+        if (shell == work->near.shells && fibrad_near_pays(&work->near)) LANED(fibrad_near_extend)(work);
         if (shell < work->near.shells) {
             sieve(work, ray, shell);
             known = work->near.limit[shell];
         } else {
             double to = known < 0 ? work->step : work->growth * known;
-            fibrad_near_march(work, ray->frame, &(fibrad_tube){0, -ray->sine, 0}, known, to);
+            LANED(fibrad_near_march)(work, ray->frame, &(fibrad_tube){0, -ray->sine, 0}, known, to);
             known = to;
         }
         if (work->disc.count > work->disc.capacity) return false;

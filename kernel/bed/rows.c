@@ -40,26 +40,41 @@ static double factor(const fibrad_rows *rows, uint32_t i, uint32_t j) {
     return k == UINT64_MAX ? 0 : rows->f[k];
 }
 
-/* Entries of the union of the matrix's pattern with its transpose. */
-static uint64_t union_size(const fibrad_rows *rows) {
-    uint64_t size = rows->start[rows->n];
+/* Entries of rows [begin, end) of the union of the matrix's pattern with its transpose. */
+static uint64_t union_size(const fibrad_rows *rows, uint32_t begin, uint32_t end) {
+    uint64_t size = rows->start[end] - rows->start[begin];
     for (uint32_t i = 0; i < rows->n; i++)
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++)
-            size += find(rows, rows->col[k], i) == UINT64_MAX;
+        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) {
+            uint32_t j = rows->col[k];
+            if (j >= begin && j < end) size += find(rows, j, i) == UINT64_MAX;
+        }
     return size;
 }
 
-/* Puts the transpose of `raw` into the end of out's arrays; out->start[i] becomes the end of its row i. */
-static void transpose_to_end(const fibrad_rows *raw, fibrad_rows *out) {
-    uint32_t n = raw->n;
-    uint64_t entries = raw->start[n], *place = out->start;
-    for (uint32_t i = 0; i <= n; i++) place[i] = 0;
-    for (uint64_t k = 0; k < entries; k++) place[raw->col[k] + 1]++;
-    place[0] = out->capacity - entries;
-    for (uint32_t i = 0; i < n; i++) place[i + 1] += place[i];
-    for (uint32_t i = 0; i < n; i++)
+/* Entries of rows [begin, end) of the transpose; those of each row in place[i + 1]. */
+static uint64_t count_transposed(const fibrad_rows *raw, uint32_t begin, uint32_t end, uint64_t *place) {
+    uint64_t entries = raw->start[raw->n], count = 0;
+    for (uint32_t i = begin; i <= end; i++) place[i] = 0;
+    for (uint64_t k = 0; k < entries; k++) {
+        uint32_t j = raw->col[k];
+        if (j < begin || j >= end) continue;
+        place[j + 1]++;
+        count++;
+    }
+    return count;
+}
+
+/* Puts these rows of the transpose into the end of out's arrays; out->start[i], which told their lengths, becomes the
+ * end of row i. */
+static void transpose_to_end(const fibrad_rows *raw, uint32_t begin, uint32_t end, uint64_t from, fibrad_rows *out) {
+    uint64_t *place = out->start;
+    place[begin] = from;
+    for (uint32_t i = begin; i < end; i++) place[i + 1] += place[i];
+    for (uint32_t i = 0; i < raw->n; i++)
         for (uint64_t k = raw->start[i]; k < raw->start[i + 1]; k++) {
-            uint64_t to = place[raw->col[k]]++;
+            uint32_t j = raw->col[k];
+            if (j < begin || j >= end) continue;
+            uint64_t to = place[j]++;
             out->col[to] = i, out->f[to] = raw->f[k];
         }
 }
@@ -68,33 +83,35 @@ static void transpose_to_end(const fibrad_rows *raw, fibrad_rows *out) {
  * which a search for each entry's partner is not. The transpose waits at the end of out's arrays; the result grows from
  * their beginning and never reaches it, since what is still to come has at least as many entries as what is left of
  * the transpose. */
-int fibrad_rows_average_weighted(const fibrad_rows *raw, const double *r, const double *weight, fibrad_rows *out) {
+int fibrad_rows_average_part(const fibrad_rows *raw, const double *r, const double *weight, uint32_t begin,
+                             uint32_t end, fibrad_rows *out) {
     if (out == NULL || check(raw) != FIBRAD_OK || check_radii(r, raw->n) != FIBRAD_OK || out->n != raw->n ||
-        out->start == NULL || out->start == raw->start)
+        out->start == NULL || out->start == raw->start || begin > end || end > raw->n)
         return FIBRAD_E_ARGUMENT;
     uint32_t n = raw->n;
     for (uint32_t i = 0; i < n && weight != NULL; i++)
         if (!(weight[i] >= 1e-100 && weight[i] <= 1e100)) return FIBRAD_E_ARGUMENT;
-    uint64_t entries = raw->start[n];
     if (out->capacity > 0 && (out->col == NULL || out->f == NULL || out->col == raw->col || out->f == raw->f))
         return FIBRAD_E_ARGUMENT;
-    if (out->capacity < entries || out->capacity - entries < entries) {
-        uint64_t needed = union_size(raw);
+    uint64_t own = raw->start[end] - raw->start[begin], other = count_transposed(raw, begin, end, out->start);
+    if (out->capacity < own || out->capacity - own < other) {
+        uint64_t needed = union_size(raw, begin, end);
         if (needed > out->capacity) {
             out->start[n] = needed;
             return FIBRAD_E_CAPACITY;
         }
     }
-    transpose_to_end(raw, out);
-    uint64_t there = out->capacity - entries, to = 0;
-    for (uint32_t i = 0; i < n; i++) {
+    uint64_t there = out->capacity - other, to = 0;
+    transpose_to_end(raw, begin, end, there, out);
+    for (uint32_t i = 0; i < begin; i++) out->start[i] = 0;
+    for (uint32_t i = begin; i < end; i++) {
         uint64_t here = raw->start[i], here_end = raw->start[i + 1], there_end = out->start[i];
         out->start[i] = to;
         while (here < here_end || there < there_end) {
-            uint32_t own = here < here_end ? raw->col[here] : UINT32_MAX;
-            uint32_t other = there < there_end ? out->col[there] : UINT32_MAX;
-            uint32_t j = own < other ? own : other;
-            double f = own == j ? raw->f[here++] : 0, back = other == j ? out->f[there++] : 0;
+            uint32_t mine = here < here_end ? raw->col[here] : UINT32_MAX;
+            uint32_t theirs = there < there_end ? out->col[there] : UINT32_MAX;
+            uint32_t j = mine < theirs ? mine : theirs;
+            double f = mine == j ? raw->f[here++] : 0, back = theirs == j ? out->f[there++] : 0;
             /* areas relative to the larger one; the sum is the same from both sides */
             double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
             a_i *= a_i, a_j *= a_j;
@@ -104,8 +121,12 @@ int fibrad_rows_average_weighted(const fibrad_rows *raw, const double *r, const 
             out->f[to++] = (share * (a_i * f) + other_share * (a_j * back)) / a_i;
         }
     }
-    out->start[n] = to;
+    for (uint32_t i = end; i <= n; i++) out->start[i] = to;
     return FIBRAD_OK;
+}
+
+int fibrad_rows_average_weighted(const fibrad_rows *raw, const double *r, const double *weight, fibrad_rows *out) {
+    return fibrad_rows_average_part(raw, r, weight, 0, raw != NULL ? raw->n : 0, out);
 }
 
 int fibrad_rows_average(const fibrad_rows *raw, const double *r, fibrad_rows *out) {

@@ -296,6 +296,10 @@ void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts)
     if (scene != NULL && facts != NULL) *facts = scene->facts;
 }
 
+uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k) {
+    return scene != NULL && k < scene->facts.spheres ? scene->order[k] : UINT32_MAX;
+}
+
 void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level, const double low[3],
                        const double high[3]) {
     walk->scene = scene;
@@ -307,10 +311,11 @@ void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibra
 }
 
 /* Cell `at` of an axis as a cell of the box, and the shift of that periodic image. */
-static int32_t image(const fibrad_walk *walk, int axis, double *shift) {
-    int32_t cells = walk->level->cells[axis], at = walk->at[axis], periods = 0;
-    if (at < 0) periods = -((cells - 1 - at) / cells);
-    if (at >= cells) periods = at / cells;
+static inline int32_t image(const fibrad_walk *walk, int axis, double *shift) {
+    int32_t cells = walk->level->cells[axis], at = walk->at[axis];
+    *shift = 0;
+    if ((uint32_t)at < (uint32_t)cells) return at;
+    int32_t periods = at < 0 ? -((cells - 1 - at) / cells) : at / cells;
     *shift = periods * walk->scene->period[axis];
     return at - periods * cells;
 }

@@ -13,6 +13,7 @@ static fibrad_work *layout(fibrad_arena *arena, const fibrad_work_config *config
     fibrad_work *place = fibrad_arena_take(arena, 1, sizeof *work);
     work->config = work->needed = *config;
 
+    size_t discs = (size_t)config->discs + FIBRAD_LANES_MAX;
     fibrad_near *near = &work->near;
     near->capacity = (config->near + 15) / 16 * 16;
     near->fx = fibrad_arena_take(arena, near->capacity, sizeof(float));
@@ -24,8 +25,8 @@ static fibrad_work *layout(fibrad_arena *arena, const fibrad_work_config *config
     near->y = fibrad_arena_take(arena, near->capacity, sizeof(double));
     near->z = fibrad_arena_take(arena, near->capacity, sizeof(double));
     near->r = fibrad_arena_take(arena, near->capacity, sizeof(double));
-    near->sphere = fibrad_arena_take(arena, (size_t)near->capacity + config->discs, sizeof(uint32_t));
-    near->entry = fibrad_arena_take(arena, (size_t)near->capacity + config->discs, sizeof(uint32_t));
+    near->sphere = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
+    near->entry = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
 
     for (int list = 0; list < 2; list++) {
         fibrad_obstacles *blockers = &work->blockers[list];
@@ -36,7 +37,6 @@ static fibrad_work *layout(fibrad_arena *arena, const fibrad_work_config *config
     }
 
     fibrad_discs *disc = &work->disc;
-    size_t discs = (size_t)config->discs + FIBRAD_LANES_MAX;
     disc->capacity = config->discs;
     disc->depth = fibrad_arena_take(arena, discs, sizeof(double));
     disc->u = fibrad_arena_take(arena, discs, sizeof(double));
@@ -45,7 +45,7 @@ static fibrad_work *layout(fibrad_arena *arena, const fibrad_work_config *config
     disc->fu = fibrad_arena_take(arena, discs, sizeof(float));
     disc->fv = fibrad_arena_take(arena, discs, sizeof(float));
     disc->square = fibrad_arena_take(arena, discs, sizeof(float));
-    disc->near = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    disc->near = fibrad_arena_take(arena, discs + near->capacity, sizeof(uint32_t));
     disc->order = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     disc->hits = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     disc->taker = fibrad_arena_take(arena, discs, sizeof(uint32_t));

@@ -20,13 +20,14 @@ typedef struct fibrad_near {
     float *fx, *fy, *fz, *fe; /* [capacity] centre and, a little less than, e: for the first sieve, ... */
     float *fq;                /* ... and, a little less than, d^2 + 1 - r^2: for that of rays */
     double *x, *y, *z, *r;    /* [capacity] */
-    /* Places from `capacity` on are for the discs that a window looks up on its own. */
-    uint32_t *sphere; /* [capacity + discs] place in the scene */
-    uint32_t *entry;  /* [capacity + discs] its entry in the row; FIBRAD_NONE: not seen so far */
+    /* Place capacity + k is for disc k of a window that has looked it up on its own. */
+    uint32_t *sphere; /* [capacity + discs + FIBRAD_LANES_MAX] place in the scene */
+    uint32_t *entry;  /* [same] its entry in the row; FIBRAD_NONE: not seen so far */
     uint32_t capacity, shells;
     uint32_t end[FIBRAD_SHELLS]; /* where each shell ends */
     double limit[FIBRAD_SHELLS]; /* down to which depth windows are known with it */
     bool full;                   /* no room for a further shell: windows look farther each on its own */
+    uint32_t asked;              /* how many windows have asked for a further shell */
 } fibrad_near;
 
 #define FIBRAD_LANES_MAX 16 /* whole vectors are written at the end of a list */
@@ -35,7 +36,7 @@ typedef struct fibrad_near {
 typedef struct fibrad_discs {
     double *depth, *u, *v, *r; /* [capacity + FIBRAD_LANES_MAX]; the depth is -1 once a disc is settled */
     float *fu, *fv, *square;   /* [same] place and r^2 for points */
-    uint32_t *near;            /* [same] place in the near list */
+    uint32_t *near;            /* [same, and room for all near spheres] place in the near list */
     uint32_t *order;           /* [same] which is the first, the second ... from front to back */
     uint32_t *hits;            /* [same] points that the first, the second ... takes */
     uint32_t *taker;           /* [same] which of them take any */
@@ -92,14 +93,12 @@ typedef struct fibrad_stride {
 void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t place, double cutoff,
                        fibrad_stride stride);
 
-/* The part of a beam that is asked for: all of it (0, 0, 1), or the ray at place (u, v) of its window (u, v, 0). */
-typedef struct fibrad_tube {
-    double u, v, radius;
-} fibrad_tube;
-
-/* Appends to work->disc those before the window of direction w whose emergence lies in (from, to]; from < 0: those
- * in contact too. Discs that do not reach the tube may be left out. frame: two unit vectors across w, and w. */
-void fibrad_near_march(fibrad_work *work, const double frame[9], const fibrad_tube *tube, double from, double to);
+/* Whether a window that looks farther than all shells makes a further one for the next ones, too, or had better look on
+ * its own. The first shell is for all; the others have many spheres each, for the few windows that stay open. */
+#define FIBRAD_ASKED 8
+static inline bool fibrad_near_pays(fibrad_near *near) {
+    return !near->full && (near->shells == 0 || near->asked++ >= FIBRAD_ASKED);
+}
 
 /* No sphere comes before the window of direction w deeper than this. */
 double fibrad_near_horizon(const fibrad_work *work, const double w[3]);
@@ -111,23 +110,6 @@ static inline bool fibrad_work_ahead(const fibrad_work *work, double depth, doub
     const uint32_t *order = work->scene->order;
     if (sphere != work->place) return order[sphere] > order[work->place];
     return u != 0 ? u > 0 : v > 0;
-}
-
-/* Appends the disc of sphere `sphere`, which is not in the near list, if it overlaps the window and lies ahead. */
-static inline void fibrad_work_add_disc(fibrad_work *work, const double frame[9], double x, double y, double z,
-                                        double r, uint32_t sphere) {
-    double depth = frame[6] * x + frame[7] * y + frame[8] * z;
-    double u = frame[0] * x + frame[1] * y + frame[2] * z, v = frame[3] * x + frame[4] * y + frame[5] * z;
-    bool overlaps = u * u + v * v < (1 + r) * (1 + r); /* hard to predict: no branch */
-    fibrad_discs *disc = &work->disc;
-    uint32_t k = disc->count;
-    if (k < disc->capacity) {
-        disc->depth[k] = depth, disc->u[k] = u, disc->v[k] = v, disc->r[k] = r;
-        disc->near[k] = work->near.capacity + k;
-        work->near.sphere[disc->near[k]] = sphere;
-        work->near.entry[disc->near[k]] = FIBRAD_NONE;
-    }
-    disc->count += (uint32_t)fibrad_work_ahead(work, depth, u, v, sphere) & (uint32_t)overlaps;
 }
 
 static inline uint32_t fibrad_work_sphere(const fibrad_work *work, uint32_t disc) {

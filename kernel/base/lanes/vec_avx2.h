@@ -12,6 +12,7 @@
 typedef __m256d vd;
 typedef __m256d vm;
 typedef __m256 vf;
+typedef __m256i vn;
 
 static inline vd vd_set1(double a) { return _mm256_set1_pd(a); }
 static inline vd vd_load(const double *p) { return _mm256_load_pd(p); }
@@ -76,12 +77,15 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_pd(a); }
 
 static inline vf vf_set1(float a) { return _mm256_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm256_load_ps(p); }
-static inline void vf_store(float *p, vf a) { _mm256_store_ps(p, a); }
 static inline vf vf_add(vf a, vf b) { return _mm256_add_ps(a, b); }
 static inline vf vf_sub(vf a, vf b) { return _mm256_sub_ps(a, b); }
 static inline vf vf_mul(vf a, vf b) { return _mm256_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
-static inline vf vf_lt_one(vf a, vf b) { return _mm256_and_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ), _mm256_set1_ps(1)); }
+static inline vn vn_zero(void) { return _mm256_setzero_si256(); }
+static inline void vn_store(uint32_t *p, vn n) { _mm256_store_si256((__m256i *)(void *)p, n); }
+static inline vn vn_count_lt(vn n, vf a, vf b) {
+    return _mm256_sub_epi32(n, _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
+}
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     uint32_t low = fibrad_compress_places(p, bits & 15, first);
     return low + fibrad_compress_places(p + low, bits >> 4, first + 4);

@@ -11,6 +11,7 @@
 typedef __m512d vd;
 typedef __mmask8 vm;
 typedef __m512 vf;
+typedef __m512i vn;
 
 static inline vd vd_set1(double a) { return _mm512_set1_pd(a); }
 static inline vd vd_load(const double *p) { return _mm512_load_pd(p); }
@@ -61,13 +62,14 @@ static inline uint32_t vm_bits(vm a) { return a; }
 
 static inline vf vf_set1(float a) { return _mm512_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm512_load_ps(p); }
-static inline void vf_store(float *p, vf a) { _mm512_store_ps(p, a); }
 static inline vf vf_add(vf a, vf b) { return _mm512_add_ps(a, b); }
 static inline vf vf_sub(vf a, vf b) { return _mm512_sub_ps(a, b); }
 static inline vf vf_mul(vf a, vf b) { return _mm512_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
-static inline vf vf_lt_one(vf a, vf b) {
-    return _mm512_maskz_mov_ps(_mm512_cmp_ps_mask(a, b, _CMP_LT_OQ), _mm512_set1_ps(1));
+static inline vn vn_zero(void) { return _mm512_setzero_si512(); }
+static inline void vn_store(uint32_t *p, vn n) { _mm512_store_si512((__m512i *)(void *)p, n); }
+static inline vn vn_count_lt(vn n, vf a, vf b) {
+    return _mm512_mask_add_epi32(n, _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ), n, _mm512_set1_epi32(1));
 }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);

@@ -12,9 +12,9 @@
  *                            vd_replace(a, lane, x): a with x in one lane
  *                            vd_compress_places(p, bits, first): first + l for them; returns how many
  *   vm   a mask of vd lanes  vm_and vm_or vm_not vm_bits (bit l = lane l)
- *   vf   VF_LANES floats     vf_set1 vf_load vf_store vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
- *                            vf_lt_one: 1 where a < b, else 0
+ *   vf   VF_LANES floats     vf_set1 vf_load vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
  *                            vf_compress_places(p, bits, first): as that of vd
+ *   vn   VF_LANES numbers    vn_zero vn_store vn_count_lt(n, a, b): n, and one more where a < b
  * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them. */
 /* clang-format on */
 #ifndef FIBRAD_VEC_SCALAR_H
@@ -29,6 +29,7 @@
 typedef double vd;
 typedef int vm;
 typedef float vf;
+typedef uint32_t vn;
 
 static inline vd vd_set1(double a) { return a; }
 static inline vd vd_load(const double *p) { return *p; }
@@ -65,12 +66,13 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
 
 static inline vf vf_set1(float a) { return a; }
 static inline vf vf_load(const float *p) { return *p; }
-static inline void vf_store(float *p, vf a) { *p = a; }
 static inline vf vf_add(vf a, vf b) { return a + b; }
 static inline vf vf_sub(vf a, vf b) { return a - b; }
 static inline vf vf_mul(vf a, vf b) { return a * b; }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return a < b; }
-static inline vf vf_lt_one(vf a, vf b) { return a < b ? 1.0f : 0.0f; }
+static inline vn vn_zero(void) { return 0; }
+static inline void vn_store(uint32_t *p, vn n) { *p = n; }
+static inline vn vn_count_lt(vn n, vf a, vf b) { return n + (a < b); }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     return vd_compress_places(p, bits, first);
 }

@@ -12,6 +12,7 @@
 typedef __m128d vd;
 typedef __m128d vm;
 typedef __m128 vf;
+typedef __m128i vn;
 
 static inline vd vd_set1(double a) { return _mm_set1_pd(a); }
 static inline vd vd_load(const double *p) { return _mm_load_pd(p); }
@@ -61,12 +62,13 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm_movemask_pd(a); }
 
 static inline vf vf_set1(float a) { return _mm_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm_load_ps(p); }
-static inline void vf_store(float *p, vf a) { _mm_store_ps(p, a); }
 static inline vf vf_add(vf a, vf b) { return _mm_add_ps(a, b); }
 static inline vf vf_sub(vf a, vf b) { return _mm_sub_ps(a, b); }
 static inline vf vf_mul(vf a, vf b) { return _mm_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)); }
-static inline vf vf_lt_one(vf a, vf b) { return _mm_and_ps(_mm_cmplt_ps(a, b), _mm_set1_ps(1)); }
+static inline vn vn_zero(void) { return _mm_setzero_si128(); }
+static inline void vn_store(uint32_t *p, vn n) { _mm_store_si128((__m128i *)(void *)p, n); }
+static inline vn vn_count_lt(vn n, vf a, vf b) { return _mm_sub_epi32(n, _mm_castps_si128(_mm_cmplt_ps(a, b))); }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     return fibrad_compress_places(p, bits, first);
 }
