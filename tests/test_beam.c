@@ -124,22 +124,6 @@ static void slice(const struct bed *bed, uint32_t i, const double w[3], double *
     for (uint32_t k = 0; k < n; k++) seen[sphere[k]] += area[k];
 }
 
-/* A few large spheres, and n - 6 small ones strewn about them, in a unit cube. */
-static struct bed strewn(uint32_t n, uint64_t seed) {
-    struct bed bed = bed_of(0, NULL);
-    for (uint64_t at = 0; bed.n < n; at += 4) {
-        double c[3], r = bed.n < 6 ? .2 : .01 + .01 * bed_make_random(seed, at);
-        bool fits = true;
-        for (uint64_t axis = 0; axis < 3; axis++) c[axis] = bed_make_random(seed, at + 1 + axis);
-        for (uint32_t j = 0; j < bed.n && fits; j++) {
-            double x = c[0] - bed.x[j], y = c[1] - bed.y[j], z = c[2] - bed.z[j], sum = r + bed.r[j];
-            fits = x * x + y * y + z * z > sum * sum;
-        }
-        if (fits) add_sphere(&bed, c[0], c[1], c[2], r);
-    }
-    return bed;
-}
-
 /* Also where large spheres become known before small ones that lie in front of them. */
 START_TEST(rows_match_sliced_windows) {
     struct bed beds[] = {packing(200, .05, 2, .05, 40, false), packing(200, .5, 2, .3, 41, false), strewn(600, 42),
@@ -352,6 +336,39 @@ START_TEST(cutoff_takes_out_what_lies_beyond) {
 }
 END_TEST
 
+/* The same where spheres are looked up along each beam, for want of room in the near list. */
+START_TEST(cutoff_along_each_beam) {
+    struct bed bed = strewn(300, 45), within = bed_of(0, NULL);
+    for (uint32_t j = 0; j < bed.n; j++) {
+        double x = bed.x[j] - bed.x[50], y = bed.y[j] - bed.y[50], z = bed.z[j] - bed.z[50];
+        if (x * x + y * y + z * z <= .3 * .3) add_sphere(&within, bed.x[j], bed.y[j], bed.z[j], bed.r[j]);
+    }
+    uint32_t own = 0;
+    while (within.x[own] != bed.x[50]) own++;
+    fibrad_row row = beam(&within, own, (fibrad_beam_rule){.directions = 200}, FIBRAD_ISA_BEST);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    for (uint32_t near = 1; near <= 4096; near *= 64) {
+        fibrad_work *work = work_of(&(fibrad_work_config){.near = near});
+        fibrad_row cut = row_of(bed.n);
+        ck_assert_int_eq(fibrad_beam_row(scene, work, 50, &(fibrad_beam_rule){.directions = 200, .cutoff = .3}, &cut),
+                         FIBRAD_OK);
+        ck_assert_uint_gt(cut.length, 10);
+        ck_assert_uint_eq(cut.length, row.length);
+        ck_assert_double_eq_tol(cut.escaped, row.escaped, 1e-12);
+        for (uint32_t k = 0; k < row.length; k++) {
+            ck_assert_double_eq(bed.x[cut.col[k]], within.x[row.col[k]]);
+            ck_assert_double_eq_tol(cut.f[k], row.f[k], 1e-12);
+        }
+        row_free(&cut);
+        free(work);
+    }
+    row_free(&row);
+    free(scene);
+    bed_free(&bed);
+    bed_free(&within);
+}
+END_TEST
+
 /* Contacts that overlap a little differ little from contacts that do not. */
 START_TEST(overlap_changes_rows_continuously) {
     double last = -1;
@@ -554,6 +571,7 @@ int main(void) {
     tcase_add_test(tcase, periodic_images_are_copies);
     tcase_add_test(tcase, sphere_sees_its_own_images);
     tcase_add_test(tcase, cutoff_takes_out_what_lies_beyond);
+    tcase_add_test(tcase, cutoff_along_each_beam);
     tcase_add_test(tcase, overlap_changes_rows_continuously);
     tcase_add_test(tcase, spheres_at_equal_depth_are_seen_once);
     tcase_add_test(tcase, a_row_needs_an_entry_for_every_sphere_seen);

@@ -128,6 +128,16 @@ START_TEST(random_beds) {
 }
 END_TEST
 
+/* Large spheres, near enough to be listed, behind small ones that are not. */
+START_TEST(small_spheres_before_large_ones) {
+    for (uint64_t seed = 50; seed < 53; seed++) {
+        struct bed bed = strewn(600, seed);
+        follow(&bed, &versions[0], 600, 0, 3000, 3);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
 /* Spheres that overlap by up to a third of a radius. */
 START_TEST(overlaps) {
     struct bed bed = packing(100, .7, 1, .45, 5, true);
@@ -296,6 +306,7 @@ int main(void) {
     Suite *suite = suite_create("trace");
     TCase *cases = suite_case(suite, "trace");
     tcase_add_loop_test(cases, random_beds, 0, sizeof versions / sizeof *versions);
+    tcase_add_test(cases, small_spheres_before_large_ones);
     tcase_add_test(cases, overlaps);
     tcase_add_test(cases, large_among_small);
     tcase_add_test(cases, studded_sphere);
