@@ -2,38 +2,73 @@
 # mutate.sh - do the tests notice when the kernel is broken? SPDX-License-Identifier: MIT
 #
 # Breaks a copy of the kernel in one line at a time, as tests/mutants.txt says, and runs the quick tests (not the pinned
-# bits, which notice anything). Ends with status 1 if a break goes unnoticed, or the line is no longer there.
+# bits, which notice anything) until one fails. Ends with status 1 if a break goes unnoticed, does not compile, or the
+# line is no longer there. With numbers as arguments, these breaks alone, counted from 1. JOBS breaks at a time.
 set -u
-: "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}"
-tests="base scene direction pair_exact areas rows beam moved surface surface_row stress cast furnace"
-tree=$BUILD/mutate
-export CK_DEFAULT_TIMEOUT=60
-missed=0 caught=0
+: "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
+export BUILD MAKE CC
+tests="base pair_exact surface rows scene direction moved areas furnace surface_row beam cast walls trace exchange heat stress"
+whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
+export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-60}"
 
-rm -rf "$tree" && mkdir -p "$tree" && cp -r Makefile kernel host tests "$tree" || exit 1
-# who notices the break; nobody: empty. One test program after the other is built, as the first mostly suffices.
-noticed_by() {
-    for test in $tests; do
-        $MAKE -s -C "$tree" CC="$CC" CFLAGS=-O1 ISAS=scalar "build/tests/test_$test" >"$tree/log" 2>&1 || {
-            echo compiler
-            return
-        }
-        (cd "$tree" && timeout 1200 "build/tests/test_$test") >"$tree/log" 2>&1 || { echo "test_$test" && return; }
-    done
+# build TREE TEST: what the break does not touch is there already
+build() {
+    $MAKE -s -C "$1" BUILD=build CC="$CC" CFLAGS=-O1 ISAS=scalar "build/tests/test_$2" >"$1/log" 2>&1
 }
 
-test -z "$(noticed_by)" || { echo "the tests fail before anything is broken" && cat "$tree/log" && exit 1; }
-while IFS='|' read -r file old new; do
-    case $file in '#'*) continue ;; esac
-    file=${file% }
-    awk -v old="$old" -v new="$new" 'BEGIN {sub(/^ /, "", old); sub(/ $/, "", old); sub(/^ /, "", new)}
+run() {
+    (cd "$1" && timeout 1200 "build/tests/test_$2") >"$1/log" 2>&1
+}
+
+# one NUMBER: breaks, tries and tells about it in one line
+one() {
+    IFS='|' read -r file old new <<LINE
+$(awk -v number="$1" '!/^#/ && ++n == number' tests/mutants.txt)
+LINE
+    file=${file% } tree=$BUILD/mutate/$1 by=UNNOTICED why="" ran=""
+    rm -rf "$tree" && cp -Rp "$whole" "$tree" || exit 1
+    case $file in # what is most likely to notice comes first
+    */accounts_* | */arc_* | */areas*) tests="areas beam $tests" ;;
+    */near* | */points_* | */beam* | */work*) tests="beam cast $tests" ;;
+    */cast*) tests="cast $tests" ;;
+    */moved*) tests="moved $tests" ;;
+    */scene*) tests="scene beam $tests" ;;
+    */rows*) tests="rows $tests" ;;
+    */surface_row*) tests="surface_row $tests" ;;
+    */walls.* | */walls_lanes*) tests="walls $tests" ;;
+    */trace*) tests="trace $tests" ;;
+    kernel/heat/*) tests="exchange heat $tests" ;;
+    kernel/furnace/*) tests="furnace $tests" ;;
+    esac
+    if awk -v old="$old" -v new="$new" 'BEGIN {sub(/^ /, "", old); sub(/ $/, "", old); sub(/^ /, "", new)}
         {at = index($0, old); if (at) {found++; $0 = substr($0, 1, at - 1) new substr($0, at + length(old))} print}
-        END {exit found == 0}' "$file" >"$tree/broken" || { echo "NO SUCH LINE $file:$old" && missed=$((missed + 1)) && continue; }
-    cp "$tree/broken" "$tree/$file"
-    by=$(noticed_by)
-    cp "$file" "$tree/$file"
-    printf '%-12s %s:%s ->%s\n' "${by:-UNNOTICED}" "$file" "$old" "$new"
-    if test -n "$by"; then caught=$((caught + 1)); else missed=$((missed + 1)); fi
-done <tests/mutants.txt
-echo "$caught of $((caught + missed)) breaks noticed"
-test $missed = 0
+        END {exit found != 1}' "$file" >"$tree/$file"; then
+        for test in $tests; do
+            case " $ran " in *" $test "*) continue ;; esac
+            ran="$ran $test"
+            build "$tree" "$test" || { by=UNCOMPILED && break; }
+            run "$tree" "$test" && continue
+            by=test_$test
+            # an assertion rather than a test that did not end
+            why=$(sed -n '/Test timeout expired/!s/.*:[FE]:[^:]*:\([^:]*\):.*/\1/p' "$tree/log" | head -n 1)
+            : "${why:=no end}"
+            break
+        done
+    else
+        by=UNFOUND
+    fi
+    printf '%2d %-16s %-40s %s:%s ->%s\n' "$1" "$by" "$why" "$file" "$old" "$new"
+    rm -rf "$tree"
+}
+
+test "${1-}" != one || { one "$2" && exit; }
+
+rm -rf "$BUILD/mutate" && mkdir -p "$whole" && cp -R Makefile kernel host tests "$whole" || exit 1
+for test in $tests; do
+    if ! build "$whole" "$test" || ! run "$whole" "$test"; then
+        echo "test_$test fails before anything is broken" && cat "$whole/log" && exit 1
+    fi
+done
+if test $# = 0; then awk '!/^#/ {print ++n}' tests/mutants.txt; else printf '%s\n' "$@"; fi |
+    xargs -n 1 -P "$JOBS" "$0" one | tee "$BUILD/mutate/results"
+awk '$2 ~ /^test_/ {n++} END {print n + 0 " of " NR " breaks noticed"; exit n != NR}' "$BUILD/mutate/results"

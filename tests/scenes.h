@@ -58,6 +58,22 @@ static inline struct bed packing(uint32_t n, double low, double high, double fra
     return bed;
 }
 
+/* A few large spheres, and n - 6 small ones strewn about them, in a unit cube. */
+static inline struct bed strewn(uint32_t n, uint64_t seed) {
+    struct bed bed = bed_of(0, NULL);
+    for (uint64_t at = 0; bed.n < n; at += 4) {
+        double c[3], r = bed.n < 6 ? .2 : .01 + .01 * bed_make_random(seed, at);
+        bool fits = true;
+        for (uint64_t axis = 0; axis < 3; axis++) c[axis] = bed_make_random(seed, at + 1 + axis);
+        for (uint32_t j = 0; j < bed.n && fits; j++) {
+            double x = c[0] - bed.x[j], y = c[1] - bed.y[j], z = c[2] - bed.z[j], sum = r + bed.r[j];
+            fits = x * x + y * y + z * z > sum * sum;
+        }
+        if (fits) add_sphere(&bed, c[0], c[1], c[2], r);
+    }
+    return bed;
+}
+
 static inline fibrad_scene *scene_of(const struct bed *bed, int isa) {
     fibrad_scene_config config = {.spheres = bed->n, .isa = isa};
     memcpy(config.period, bed->period, sizeof config.period);

@@ -326,6 +326,8 @@ START_TEST(doubts) {
         {.n = 2, .u = {-.3, .3}, .v = {0, 0}, .r = {.3, .3}},                              /* tangent to each other */
         {.n = 3, .u = {.5, -.5, 0}, .v = {0, 0, .75901699437494742}, .r = {.75, .75, .2}}, /* three through a point */
         {.n = 1, .u = {2000}, .v = {0}, .r = {2000}},                                      /* too large */
+        /* over the others and the tip of the opening between two of them, which is 4e-11 wide there */
+        {.n = 4, .u = {0, -.499999, .499999, 0}, .v = {-.55, 0, 0, 1e-3 + 1e-8 - .2}, .r = {.55, .5, .5, .2}},
     };
     for (size_t d = 0; d < sizeof doubtful / sizeof *doubtful; d++) {
         ck_assert_double_lt(worst_of(&doubtful[d]), 1e-11);

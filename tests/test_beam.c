@@ -2,6 +2,7 @@
  * not matter. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
+#include "reference.h"
 #include "scenes.h"
 #include "suite.h"
 
@@ -96,6 +97,48 @@ START_TEST(raw_rows_close) {
                 }
                 row_free(&row);
             }
+        }
+        bed_free(&beds[b]);
+    }
+}
+END_TEST
+
+/* What sphere i sees along w, by exact slicing of all discs in the order of their depths: adds areas to seen[j]. */
+static void slice(const struct bed *bed, uint32_t i, const double w[3], double *seen) {
+    double u[600], v[600], r[600], depth[600], area[600], rest, flat = sqrt(w[0] * w[0] + w[1] * w[1]);
+    uint32_t sphere[600], n = 0;
+    for (uint32_t j = 0; j < bed->n; j++) {
+        double x = (bed->x[j] - bed->x[i]) / bed->r[i], y = (bed->y[j] - bed->y[i]) / bed->r[i];
+        double z = (bed->z[j] - bed->z[i]) / bed->r[i], size = bed->r[j] / bed->r[i];
+        double ahead = w[0] * x + w[1] * y + w[2] * z, across = (w[0] * y - w[1] * x) / flat;
+        double up = flat * z - w[2] * (w[0] * x + w[1] * y) / flat;
+        if (!(ahead > 0 && across * across + up * up < (1 + size) * (1 + size))) continue;
+        uint32_t to = n++;
+        for (; to > 0 && depth[to - 1] > ahead; to--) {
+            depth[to] = depth[to - 1], sphere[to] = sphere[to - 1];
+            u[to] = u[to - 1], v[to] = v[to - 1], r[to] = r[to - 1];
+        }
+        depth[to] = ahead, sphere[to] = j, u[to] = across, v[to] = up, r[to] = size;
+    }
+    ck_assert_int_eq(reference_window(n, u, v, r, area, &rest), REFERENCE_OK);
+    for (uint32_t k = 0; k < n; k++) seen[sphere[k]] += area[k];
+}
+
+/* Also where large spheres become known before small ones that lie in front of them. */
+START_TEST(rows_match_sliced_windows) {
+    struct bed beds[] = {packing(200, .05, 2, .05, 40, false), packing(200, .5, 2, .3, 41, false), strewn(600, 42),
+                         strewn(600, 43), strewn(600, 44)};
+    for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
+        for (uint32_t i = 0; i < beds[b].n; i += 3) {
+            double seen[600] = {0}, w[3];
+            for (uint32_t k = 0; k < 34; k++) {
+                ck_assert_int_eq(fibrad_direction(k, 34, w), FIBRAD_OK);
+                slice(&beds[b], i, w, seen);
+            }
+            fibrad_row row = beam(&beds[b], i, (fibrad_beam_rule){.directions = 34}, FIBRAD_ISA_BEST);
+            for (uint32_t j = 0; j < beds[b].n; j++)
+                ck_assert_double_eq_tol(row_factor(&row, j), seen[j] / (34 * acos(-1)), 1e-10);
+            row_free(&row);
         }
         bed_free(&beds[b]);
     }
@@ -293,6 +336,39 @@ START_TEST(cutoff_takes_out_what_lies_beyond) {
 }
 END_TEST
 
+/* The same where spheres are looked up along each beam, for want of room in the near list. */
+START_TEST(cutoff_along_each_beam) {
+    struct bed bed = strewn(300, 45), within = bed_of(0, NULL);
+    for (uint32_t j = 0; j < bed.n; j++) {
+        double x = bed.x[j] - bed.x[50], y = bed.y[j] - bed.y[50], z = bed.z[j] - bed.z[50];
+        if (x * x + y * y + z * z <= .3 * .3) add_sphere(&within, bed.x[j], bed.y[j], bed.z[j], bed.r[j]);
+    }
+    uint32_t own = 0;
+    while (within.x[own] != bed.x[50]) own++;
+    fibrad_row row = beam(&within, own, (fibrad_beam_rule){.directions = 200}, FIBRAD_ISA_BEST);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    for (uint32_t near = 1; near <= 4096; near *= 64) {
+        fibrad_work *work = work_of(&(fibrad_work_config){.near = near});
+        fibrad_row cut = row_of(bed.n);
+        ck_assert_int_eq(fibrad_beam_row(scene, work, 50, &(fibrad_beam_rule){.directions = 200, .cutoff = .3}, &cut),
+                         FIBRAD_OK);
+        ck_assert_uint_gt(cut.length, 10);
+        ck_assert_uint_eq(cut.length, row.length);
+        ck_assert_double_eq_tol(cut.escaped, row.escaped, 1e-12);
+        for (uint32_t k = 0; k < row.length; k++) {
+            ck_assert_double_eq(bed.x[cut.col[k]], within.x[row.col[k]]);
+            ck_assert_double_eq_tol(cut.f[k], row.f[k], 1e-12);
+        }
+        row_free(&cut);
+        free(work);
+    }
+    row_free(&row);
+    free(scene);
+    bed_free(&bed);
+    bed_free(&within);
+}
+END_TEST
+
 /* Contacts that overlap a little differ little from contacts that do not. */
 START_TEST(overlap_changes_rows_continuously) {
     double last = -1;
@@ -305,6 +381,33 @@ START_TEST(overlap_changes_rows_continuously) {
         last = f;
         row_free(&row);
         bed_free(&bed);
+    }
+}
+END_TEST
+
+/* Of two spheres that overlap, side by side across a beam to the bit, one comes before the other's window and not the
+ * other way round, as if it were a hair's breadth ahead: it sees the lens that the two discs have in common. */
+START_TEST(spheres_at_equal_depth_are_seen_once) {
+    for (uint32_t k = 4; k < 12; k++) {
+        double w[3], sum[3], lens = 0;
+        ck_assert_int_eq(fibrad_direction(k, 34, w), FIBRAD_OK);
+        for (int side = -1; side <= 1; side++) {
+            double ahead = 1e-9 * side, f[2];
+            struct bed bed = bed_of(
+                2, (const double[][4]){{0, 0, 0, .5}, {w[1] + ahead * w[0], ahead * w[1] - w[0], ahead * w[2], .5}});
+            for (uint32_t i = 0; i < 2; i++) {
+                fibrad_row row = beam(&bed, i, (fibrad_beam_rule){.directions = 34}, FIBRAD_ISA_BEST);
+                f[i] = row_factor(&row, 1 - i);
+                row_free(&row);
+            }
+            sum[side + 1] = f[0] + f[1];
+            lens += side * (f[0] - f[1]) / 2;
+            bed_free(&bed);
+        }
+        double apart = sqrt(w[0] * w[0] + w[1] * w[1]), area = 2 * acos(apart) - 2 * apart * fabs(w[2]);
+        ck_assert_double_eq_tol(lens, area / (34 * acos(-1)), 1e-7);
+        ck_assert_double_eq_tol(sum[1], sum[0], 1e-7);
+        ck_assert_double_eq_tol(sum[1], sum[2], 1e-7);
     }
 }
 END_TEST
@@ -342,6 +445,28 @@ START_TEST(crowded_rows_say_what_they_need) {
     ck_assert_uint_le(config.entries, bed.n);
     row_free(&row);
     row_free(&plenty);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A sphere with six neighbours has six entries: room for five is too little, and room for six enough. */
+START_TEST(a_row_needs_an_entry_for_every_sphere_seen) {
+    struct bed bed = lattice('p', 2);
+    ck_assert_uint_eq(bed.n, 7);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    for (uint32_t entries = 1; entries <= 7; entries++) {
+        fibrad_work *work = work_of(&(fibrad_work_config){.entries = entries});
+        fibrad_row row = row_of(bed.n);
+        int beams = fibrad_beam_row(scene, work, 0, NULL, &row);
+        ck_assert_int_eq(beams, entries < 6 ? FIBRAD_E_CAPACITY : FIBRAD_OK);
+        ck_assert_uint_eq(row.length, entries < 6 ? 0 : 6);
+        int rays = fibrad_cast_row(scene, work, 0, NULL, &row, NULL);
+        ck_assert_int_eq(rays, entries < 6 ? FIBRAD_E_CAPACITY : FIBRAD_OK);
+        ck_assert_uint_eq(row.length, entries < 6 ? 0 : 6);
+        row_free(&row);
+        free(work);
+    }
     free(scene);
     bed_free(&bed);
 }
@@ -436,6 +561,7 @@ int main(void) {
     tcase_add_test(tcase, hidden_sphere_is_not_seen);
     tcase_add_test(tcase, fallbacks_are_counted);
     tcase_add_test(tcase, raw_rows_close);
+    tcase_add_test(tcase, rows_match_sliced_windows);
     tcase_add_test(tcase, points_agree_with_areas);
     tcase_add_test(tcase, same_bits_in_every_instruction_set);
     tcase_add_test(tcase, near_capacity_is_a_matter_of_speed);
@@ -445,7 +571,10 @@ int main(void) {
     tcase_add_test(tcase, periodic_images_are_copies);
     tcase_add_test(tcase, sphere_sees_its_own_images);
     tcase_add_test(tcase, cutoff_takes_out_what_lies_beyond);
+    tcase_add_test(tcase, cutoff_along_each_beam);
     tcase_add_test(tcase, overlap_changes_rows_continuously);
+    tcase_add_test(tcase, spheres_at_equal_depth_are_seen_once);
+    tcase_add_test(tcase, a_row_needs_an_entry_for_every_sphere_seen);
     tcase_add_test(tcase, crowded_rows_say_what_they_need);
     tcase_add_test(tcase, strays_are_seen_however_far);
     tcase_add_test(tcase, strays_are_met_on_the_way);

@@ -17,9 +17,13 @@ struct versions {
 
 static const struct versions versions[] = {
     {FIBRAD_ISA_SCALAR, fibrad_trace_scalar, fibrad_trace_point_scalar},
-#ifdef __x86_64__
+#ifdef FIBRAD_WITH_SSE2
     {FIBRAD_ISA_SSE2, fibrad_trace_sse2, fibrad_trace_point_sse2},
+#endif
+#ifdef FIBRAD_WITH_AVX2
     {FIBRAD_ISA_AVX2, fibrad_trace_avx2, fibrad_trace_point_avx2},
+#endif
+#ifdef FIBRAD_WITH_AVX512
     {FIBRAD_ISA_AVX512, fibrad_trace_avx512, fibrad_trace_point_avx512},
 #endif
 };
@@ -119,6 +123,16 @@ START_TEST(random_beds) {
     for (int kind = 0; kind < 4; kind++) {
         struct bed bed = packing(150, kind == 3 ? .1 : kind == 0 ? 1 : .5, 1, kind == 2 ? .02 : .5, 3, kind != 1);
         follow(&bed, version, kind == 0 ? 8 : 256, kind == 2 ? 4 : 2, 300, 4);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
+/* Large spheres, near enough to be listed, behind small ones that are not. */
+START_TEST(small_spheres_before_large_ones) {
+    for (uint64_t seed = 50; seed < 53; seed++) {
+        struct bed bed = strewn(600, seed);
+        follow(&bed, &versions[0], 600, 0, 3000, 3);
         bed_free(&bed);
     }
 }
@@ -292,6 +306,7 @@ int main(void) {
     Suite *suite = suite_create("trace");
     TCase *cases = suite_case(suite, "trace");
     tcase_add_loop_test(cases, random_beds, 0, sizeof versions / sizeof *versions);
+    tcase_add_test(cases, small_spheres_before_large_ones);
     tcase_add_test(cases, overlaps);
     tcase_add_test(cases, large_among_small);
     tcase_add_test(cases, studded_sphere);
