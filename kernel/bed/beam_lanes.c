@@ -24,15 +24,15 @@
 static void sieve(fibrad_work *work, const double frame[9], uint32_t shell) {
     const fibrad_near *near = &work->near;
     const float *x = near->fx, *y = near->fy, *z = near->fz, *e = near->fe;
-    uint32_t *place = work->disc.near + work->disc.count;
+    uint32_t *from = work->disc.near + work->disc.count, *to = from;
     vf wx = vf_set1((float)frame[6]), wy = vf_set1((float)frame[7]), wz = vf_set1((float)frame[8]);
-    uint32_t found = 0, end = near->end[shell];
-    for (uint32_t j = shell == 0 ? 0 : near->end[shell - 1]; j < end; j += VF_LANES) {
+    size_t end = near->end[shell];
+    for (size_t j = shell == 0 ? 0 : near->end[shell - 1]; j < end; j += VF_LANES) {
         vf depth = vf_add(vf_add(vf_mul(wx, vf_load(x + j)), vf_mul(wy, vf_load(y + j))), vf_mul(wz, vf_load(z + j)));
         uint32_t bits = vf_lt_bits(vf_load(e + j), depth);
-        found += vf_compress_places(place + found, bits, j);
+        to += vf_compress_places(to, bits, (uint32_t)j);
     }
-    LANED(fibrad_near_discs)(work, frame, found);
+    LANED(fibrad_near_discs)(work, frame, (uint32_t)(to - from));
 }
 
 /* Front to back. At equal depths discs of spheres that do not interpenetrate do not overlap; a fixed order all the
@@ -103,16 +103,12 @@ static uint32_t settle(fibrad_work *work, fibrad_points *points, uint32_t window
     } else {
         to = LANED(fibrad_points_take)(points, &work->disc, from, depth);
         *open = points->open > 0;
-        uint32_t takers = 0;
-        for (uint32_t d = from; d < to; d += 4)
-            for (uint32_t l = 0; l < 4; l++) { /* beyond the end there are no hits */
-                disc.taker[takers] = d + l;
-                takers += disc.hits[d + l] > 0;
-            }
-        for (uint32_t t = 0; t < takers; t++) {
-            uint32_t d = disc.taker[t];
-            fibrad_work_see(work, disc.order[d], window, (int32_t)disc.hits[d]);
-            points->taker[points->takers++] = disc.order[d];
+        uint32_t *end = disc.taker; /* beyond `to` there are no hits */
+        for (uint32_t d = from; d < to; d += VF_LANES) end += vf_compress_places(end, vn_some_bits(disc.hits + d), d);
+        for (const uint32_t *taker = disc.taker; taker < end; taker++) {
+            uint32_t k = disc.order[*taker];
+            fibrad_work_see(work, k, window, (int32_t)disc.hits[*taker]);
+            points->taker[points->takers++] = k;
         }
     }
     if (*open)

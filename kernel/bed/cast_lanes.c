@@ -82,22 +82,23 @@ struct hit {
  * q = c^2 + 1 - r^2, those with (w.c - w.o)^2 > q - 2 o.c. */
 static void sieve(fibrad_work *work, const struct ray *ray, uint32_t shell) {
     const fibrad_near *near = &work->near;
-    uint32_t *place = work->disc.near, found = 0;
+    uint32_t *to = work->disc.near;
+    size_t end = near->end[shell];
     const double *v = ray->frame + 3, *w = ray->frame + 6;
     vf wx = vf_set1((float)w[0]), wy = vf_set1((float)w[1]), wz = vf_set1((float)w[2]);
     vf ox = vf_set1((float)(2 * (ray->cosine * w[0] - ray->sine * v[0])));
     vf oy = vf_set1((float)(2 * (ray->cosine * w[1] - ray->sine * v[1])));
     vf oz = vf_set1((float)(2 * (ray->cosine * w[2] - ray->sine * v[2])));
     vf start = vf_set1((float)ray->cosine);
-    for (uint32_t j = shell == 0 ? 0 : near->end[shell - 1]; j < near->end[shell]; j += VF_LANES) {
+    for (size_t j = shell == 0 ? 0 : near->end[shell - 1]; j < end; j += VF_LANES) {
         vf x = vf_load(near->fx + j), y = vf_load(near->fy + j), z = vf_load(near->fz + j);
         vf depth = vf_add(vf_add(vf_mul(wx, x), vf_mul(wy, y)), vf_mul(wz, z));
         vf twice = vf_add(vf_add(vf_mul(ox, x), vf_mul(oy, y)), vf_mul(oz, z));
         vf from = vf_sub(depth, start), rest = vf_sub(vf_load(near->fq + j), twice);
         uint32_t bits = vf_lt_bits(vf_load(near->fe + j), depth) & vf_lt_bits(rest, vf_mul(from, from));
-        found += vf_compress_places(place + found, bits, j);
+        to += vf_compress_places(to, bits, (uint32_t)j);
     }
-    LANED(fibrad_near_discs)(work, ray->frame, found);
+    LANED(fibrad_near_discs)(work, ray->frame, (uint32_t)(to - work->disc.near));
 }
 
 /* Of equal distances, as inside two spheres at once, the lesser depth counts. */

@@ -10,7 +10,7 @@ static inline uint64_t within(const float *x, const float *y, float at_x, float 
     uint64_t bits = 0;
 #pragma GCC unroll 64
     for (uint32_t lane = 0; lane < 64; lane += VF_LANES) {
-        vf dx = vf_sub(vf_load(x + lane), u), dy = vf_sub(vf_load(y + lane), v);
+        vf dx = vf_sub(u, vf_load(x + lane)), dy = vf_sub(v, vf_load(y + lane));
         bits += (uint64_t)vf_lt_bits(vf_add(vf_mul(dx, dx), vf_mul(dy, dy)), reach) << lane;
     }
     return bits;

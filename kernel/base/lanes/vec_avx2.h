@@ -83,6 +83,10 @@ static inline vf vf_mul(vf a, vf b) { return _mm256_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
 static inline vn vn_zero(void) { return _mm256_setzero_si256(); }
 static inline void vn_store(uint32_t *p, vn n) { _mm256_store_si256((__m256i *)(void *)p, n); }
+static inline uint32_t vn_some_bits(const uint32_t *p) {
+    __m256i n = _mm256_loadu_si256((const __m256i *)(const void *)p);
+    return ~(uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(n, _mm256_setzero_si256()))) & 255;
+}
 static inline vn vn_count_lt(vn n, vf a, vf b) {
     return _mm256_sub_epi32(n, _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
 }

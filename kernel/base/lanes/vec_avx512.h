@@ -34,7 +34,7 @@ static inline vd vd_replace(vd a, uint32_t lane, double x) {
 static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     __m256i place = _mm256_add_epi32(_mm256_set1_epi32((int)first), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
     _mm256_storeu_si256((__m256i *)(void *)p, _mm256_maskz_compress_epi32((__mmask8)bits, place));
-    return (uint32_t)__builtin_popcount(bits);
+    return (uint32_t)_mm_popcnt_u32(bits);
 }
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return _mm512_i32gather_pd(_mm256_loadu_si256((const __m256i *)(const void *)k), table, 8);
@@ -68,6 +68,10 @@ static inline vf vf_mul(vf a, vf b) { return _mm512_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 static inline vn vn_zero(void) { return _mm512_setzero_si512(); }
 static inline void vn_store(uint32_t *p, vn n) { _mm512_store_si512((__m512i *)(void *)p, n); }
+static inline uint32_t vn_some_bits(const uint32_t *p) {
+    __m512i n = _mm512_loadu_si512(p);
+    return _mm512_test_epi32_mask(n, n);
+}
 static inline vn vn_count_lt(vn n, vf a, vf b) {
     return _mm512_mask_add_epi32(n, _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ), n, _mm512_set1_epi32(1));
 }
@@ -75,7 +79,7 @@ static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t f
     __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     __m512i place = _mm512_add_epi32(_mm512_set1_epi32((int)first), lane);
     _mm512_storeu_si512(p, _mm512_maskz_compress_epi32((__mmask16)bits, place));
-    return (uint32_t)__builtin_popcount(bits);
+    return (uint32_t)_mm_popcnt_u32(bits);
 }
 
 #endif

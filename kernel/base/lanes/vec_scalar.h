@@ -15,6 +15,7 @@
  *   vf   VF_LANES floats     vf_set1 vf_load vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
  *                            vf_compress_places(p, bits, first): as that of vd
  *   vn   VF_LANES numbers    vn_zero vn_store vn_count_lt(n, a, b): n, and one more where a < b
+ *                            vn_some_bits(p): which of those at p, any address, are not 0
  * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them. */
 /* clang-format on */
 #ifndef FIBRAD_VEC_SCALAR_H
@@ -72,6 +73,7 @@ static inline vf vf_mul(vf a, vf b) { return a * b; }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return a < b; }
 static inline vn vn_zero(void) { return 0; }
 static inline void vn_store(uint32_t *p, vn n) { *p = n; }
+static inline uint32_t vn_some_bits(const uint32_t *p) { return *p != 0; }
 static inline vn vn_count_lt(vn n, vf a, vf b) { return n + (a < b); }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     return vd_compress_places(p, bits, first);

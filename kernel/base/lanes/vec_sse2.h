@@ -68,6 +68,10 @@ static inline vf vf_mul(vf a, vf b) { return _mm_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)); }
 static inline vn vn_zero(void) { return _mm_setzero_si128(); }
 static inline void vn_store(uint32_t *p, vn n) { _mm_store_si128((__m128i *)(void *)p, n); }
+static inline uint32_t vn_some_bits(const uint32_t *p) {
+    __m128i n = _mm_loadu_si128((const __m128i *)(const void *)p);
+    return ~(uint32_t)_mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(n, _mm_setzero_si128()))) & 15;
+}
 static inline vn vn_count_lt(vn n, vf a, vf b) { return _mm_sub_epi32(n, _mm_castps_si128(_mm_cmplt_ps(a, b))); }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     return fibrad_compress_places(p, bits, first);
