@@ -18,7 +18,7 @@
 enum { ROWS = 64, SCENES = 32, SAMPLES = 512 };
 
 static const uint32_t directions[] = {50, 100, 200, 400, 800, 1600, 6400};
-enum { STEPS = sizeof directions / sizeof *directions, ALL_ROWS = 5 }; /* averaged up to 800 only, for the time */
+enum { STEPS = sizeof directions / sizeof *directions, ALL_ROWS = 4 }; /* averaged up to 400 only, for the time */
 
 /* Errors and estimates of rows of one kind. */
 struct samples {
