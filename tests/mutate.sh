@@ -28,6 +28,7 @@ LINE
     file=${file% } tree=$BUILD/mutate/$1 by=UNNOTICED why="" ran=""
     rm -rf "$tree" && cp -Rp "$whole" "$tree" || exit 1
     case $file in # what is most likely to notice comes first
+    kernel/heat/*) tests="exchange heat $tests" ;;
     */accounts_* | */arc_* | */areas*) tests="areas beam $tests" ;;
     */near* | */points_* | */beam* | */work*) tests="beam cast $tests" ;;
     */cast*) tests="cast $tests" ;;
@@ -37,7 +38,6 @@ LINE
     */surface_row*) tests="surface_row $tests" ;;
     */walls.* | */walls_lanes*) tests="walls $tests" ;;
     */trace*) tests="trace $tests" ;;
-    kernel/heat/*) tests="exchange heat $tests" ;;
     kernel/furnace/*) tests="furnace $tests" ;;
     esac
     if awk -v old="$old" -v new="$new" 'BEGIN {sub(/^ /, "", old); sub(/ $/, "", old); sub(/^ /, "", new)}

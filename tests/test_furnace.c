@@ -581,6 +581,94 @@ START_TEST(parts_add_up) {
 }
 END_TEST
 
+/* A box of square cross-section with a plan of bundles. E inside is without symmetry; the walls about the axis are
+ * alike, or differ in their last digits. */
+struct square_box {
+    fibrad_furnace_config config;
+    fibrad_furnace *furnace;
+    fibrad_furnace_arrays at;
+    void *block;
+    uint64_t planned;
+};
+
+static struct square_box square_box(fibrad_furnace_physics physics, bool symmetric) {
+    struct square_box box = {.config = {.size = {1, 1, 1.5},
+                                        .cells = {4, 4, 6},
+                                        .absorption = .8,
+                                        .scattering = .4,
+                                        .source = 3000,
+                                        .wall_temperature = {900, 900, 900, 900, 1200, 600},
+                                        .wall_emissivity = {.5, .5, .5, .5, 1, .7},
+                                        .seed = 5}};
+    for (int w = 0; w < 4 && !symmetric; w++) box.config.wall_temperature[w] *= 1 + w * 1e-14;
+    const size_t size = fibrad_furnace_size(&box.config);
+    box.block = run_block(size);
+    ck_assert_int_eq(fibrad_furnace_init(&box.furnace, box.block, size, &box.config), FIBRAD_OK);
+    fibrad_furnace_fields(box.furnace, &box.at);
+    for (size_t c = 0; c < 96; c++) box.at.e[c] *= 1 + 0.1 * (double)(c % 7);
+    ck_assert_int_eq(fibrad_furnace_emit(box.furnace, physics, 30000, 1, &box.planned), FIBRAD_OK);
+    return box;
+}
+
+/* Of the faces of axis a (3: the cells) of such a box, that to which one of its eight symmetries takes face k: turns x
+ * round (1), turns y round (2), exchanges both (4). */
+static size_t image_of(int symmetry, int *a, size_t k) {
+    size_t n[2], i[2];
+    for (int b = 0; b < 2; b++) n[b] = *a == b ? 5 : 4;
+    i[0] = k % n[0], i[1] = k / n[0] % n[1];
+    const size_t layer = k / (n[0] * n[1]) * n[0] * n[1];
+    for (int b = 0; b < 2; b++)
+        if (symmetry >> b & 1) i[b] = n[b] - 1 - i[b];
+    if (!(symmetry & 4)) return layer + i[0] + n[0] * i[1];
+    if (*a < 2) *a = 1 - *a;
+    return layer + i[1] + n[1] * i[0];
+}
+
+/* What a furnace with symmetries reads in a tally is the mean of what one without them reads there at all images. */
+static void assert_mean_of_images(const fibrad_furnace_arrays *with, const fibrad_furnace_arrays *without, int a,
+                                  int g) {
+    const double *mean = a == 3 ? with->e : with->flux[a][g];
+    double difference = 0;
+    for (size_t k = 0; k < (a == 3 ? 96 : a == 2 ? 112 : 120); k++) {
+        double sum = 0;
+        for (int symmetry = 0; symmetry < 8; symmetry++) {
+            const int turned = a < 2 && symmetry >> a & 1;
+            int axis = a;
+            const size_t there = image_of(symmetry, &axis, k);
+            const double one = a == 3 ? without->e[there] : without->flux[axis][g ^ turned][there];
+            difference = fmax(difference, fabs(one / mean[k] - 1));
+            sum += one;
+        }
+        ck_assert_double_eq_tol(mean[k], sum / 8, 1e-9 * fabs(mean[k]));
+    }
+    ck_assert_double_gt(difference, 0.02); /* the images are not alike */
+}
+
+START_TEST(symmetries_take_the_mean) {
+    for (int physics = 0; physics < 2; physics++) {
+        struct square_box box[2];
+        fibrad_furnace_tally *tally;
+        for (int k = 0; k < 2; k++) box[k] = square_box((fibrad_furnace_physics)physics, k == 0);
+        const size_t size = fibrad_furnace_tally_size(box[0].furnace);
+        void *block = run_block(size);
+        ck_assert_int_eq(fibrad_furnace_tally_init(&tally, block, size, box[0].furnace), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_furnace_trace(box[0].furnace, tally, 0, box[0].planned), FIBRAD_OK);
+        for (int k = 0; k < 2; k++) {
+            const int status = physics == FIBRAD_FURNACE_EQUILIBRIUM
+                                   ? fibrad_furnace_equilibrium(box[k].furnace, tally)
+                                   : fibrad_furnace_estimate(box[k].furnace, tally, FIBRAD_THETA_DEFINITION, 0,
+                                                             FIBRAD_SCATTER_SIX_FLUX);
+            ck_assert_int_eq(status, FIBRAD_OK);
+        }
+        if (physics == FIBRAD_FURNACE_EQUILIBRIUM)
+            assert_mean_of_images(&box[0].at, &box[1].at, 3, 0);
+        else
+            for (int k = 0; k < 6; k++) assert_mean_of_images(&box[0].at, &box[1].at, k / 2, k % 2);
+        free(box[0].block), free(box[1].block), free(block);
+    }
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("furnace");
     TCase *kernel = suite_case(suite, "kernel"), *methods = suite_case(suite, "methods");
@@ -590,6 +678,7 @@ int main(void) {
     tcase_add_test(kernel, memory);
     tcase_add_test(kernel, uniform_temperature);
     tcase_add_test(kernel, parts_add_up);
+    tcase_add_test(kernel, symmetries_take_the_mean);
     tcase_add_checked_fixture(methods, NULL, free_run);
     tcase_add_test(methods, energy_balance);
     tcase_add_test(methods, slab_constant_theta);

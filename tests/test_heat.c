@@ -1,9 +1,13 @@
 /* test_heat.c - net powers against closed forms, paths followed one by one, published conductivities, and themselves
- * under every setting that must not matter. SPDX-License-Identifier: MIT */
+ * under every setting that must not matter; patches against the places they stand for. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
 #include "base/elementary.h"
 #include "base/random.h"
+#include "bed/beam_lanes.h"
+#include "bed/walls.h"
+#include "heat/heat.h"
+#include "sample/tables.h"
 #include "scenes.h"
 #include "suite.h"
 
@@ -284,9 +288,11 @@ static void diffuse(const double n[3], double u, double v, double w[3]) {
     for (int k = 0; k < 3; k++) w[k] = sqrt(u) * (cosine * a[k] + sine * b[k]) + sqrt(1 - u) * n[k];
 }
 
-/* The first thing a ray meets from `o` on along w, by trying all: sphere k, or n + wall. The new place and normal. */
+/* The first thing a ray meets from `o` on along w, by trying all: sphere k, or n + wall; UINT32_MAX: nothing. The new
+ * place and normal. */
 static uint32_t first_met(const struct problem *p, uint32_t from, double o[3], const double w[3], double normal[3]) {
     const struct bed *bed = &p->bed;
+    const double *cylinder = p->walls.cylinder;
     uint32_t met = UINT32_MAX;
     double nearest = INFINITY;
     for (uint32_t j = 0; j < bed->n; j++) {
@@ -296,13 +302,22 @@ static uint32_t first_met(const struct problem *p, uint32_t from, double o[3], c
         if (j == from || depth <= 0 || root <= 0 || depth - sqrt(root) >= nearest) continue;
         nearest = depth - sqrt(root), met = j;
     }
-    if (met == UINT32_MAX)
-        for (uint32_t k = 0; k < 6; k++) {
-            const double t = (p->walls.at[k] - o[k / 2]) / w[k / 2];
-            if ((w[k / 2] > 0) == (k % 2 == 1) && t < nearest) nearest = t, met = bed->n + k;
-        }
+    for (uint32_t k = 0; k < 6 && met >= bed->n; k++) {
+        const double t = (p->walls.at[k] - o[k / 2]) / w[k / 2];
+        if ((p->walls.planes >> k & 1) == 0 || (w[k / 2] > 0) != (k % 2 == 1) || t >= nearest) continue;
+        nearest = t, met = bed->n + k;
+    }
+    if (met >= bed->n && cylinder[2] > 0) {
+        const double x = o[0] - cylinder[0], y = o[1] - cylinder[1], across = w[0] * w[0] + w[1] * w[1];
+        const double along = x * w[0] + y * w[1], inside = cylinder[2] * cylinder[2] - (x * x + y * y);
+        const double t = (sqrt(fmax(0, along * along + across * inside)) - along) / across;
+        if (t < nearest) nearest = t, met = bed->n + FIBRAD_CYLINDER;
+    }
+    if (met == UINT32_MAX) return met;
     for (int a = 0; a < 3; a++) o[a] += nearest * w[a], normal[a] = 0;
-    if (met >= bed->n) {
+    if (met == bed->n + FIBRAD_CYLINDER) {
+        normal[0] = (cylinder[0] - o[0]) / cylinder[2], normal[1] = (cylinder[1] - o[1]) / cylinder[2];
+    } else if (met >= bed->n) {
         normal[(met - bed->n) / 2] = (met - bed->n) % 2 ? -1 : 1;
     } else {
         normal[0] = (o[0] - bed->x[met]) / bed->r[met], normal[1] = (o[1] - bed->y[met]) / bed->r[met];
@@ -352,6 +367,132 @@ START_TEST(powers_are_those_of_paths) {
         difference += (p.result.power[i] - truth) * (p.result.power[i] - truth), size += truth * truth;
     }
     ck_assert_msg(sqrt(difference / size) < cases[_i].bar, "off by %g", sqrt(difference / size));
+    free_problem(&p);
+}
+END_TEST
+
+/* Four pairs of a hot and a cold sphere in a cylinder whose wall reflects most, each pair a quarter of a turn from the
+ * next: what the wall throws from one to the other depends on where it is lit. */
+START_TEST(powers_beside_the_wall_of_a_cylinder) {
+    struct bed bed = bed_of(0, NULL);
+    double power[2] = {0, 0}, truth[2] = {0, 0};
+    for (int k = 0; k < 8; k++) {
+        const double turn = (k / 2 + .3) * (PI / 2);
+        add_sphere(&bed, .3 + 2.2 * cos(turn), 2.2 * sin(turn) - .2, k % 2 ? .6 : -.4, .4);
+    }
+    struct problem p = problem_of(bed, 0, 1);
+    p.walls = (fibrad_walls){.planes = 48, .at = {0, 0, 0, 0, -1, 1.2}, .cylinder = {.3, -.2, 3}};
+    p.sources.wall_emissivity[FIBRAD_CYLINDER] = .1;
+    for (uint32_t i = 0; i < 8; i += 2) p.temperature[i] = 1;
+    p.config.directions = 1000; /* few spheres, far apart */
+    trace_and_solve(&p);
+    for (uint32_t i = 0; i < 8; i++)
+        power[i % 2] += p.result.power[i] / 4, truth[i % 2] += power_by_paths(&p, i, 200000) / 4;
+    for (int k = 0; k < 2; k++) assert_near(power[k], truth[k], .01);
+    for (uint32_t i = 0; i < 8; i++) assert_near(p.result.power[i], power[i % 2], .004);
+    free_problem(&p);
+}
+END_TEST
+
+/* ---- patches ---- */
+
+/* Origin and direction of the beam of one point of window k of sphere i, and the normal there. */
+static void beam(const struct problem *p, uint32_t i, uint32_t k, uint32_t point, double o[3], double w[3],
+                 double normal[3]) {
+    const fibrad_heat_config *config = &p->heat->config;
+    const double centre[3] = {p->bed.x[i], p->bed.y[i], p->bed.z[i]};
+    double frame[9];
+    fibrad_disc_points set;
+    ck_assert_int_eq(fibrad_disc_points_get(config->points, &set), FIBRAD_OK);
+    fibrad_beam_frame(k, config->directions, config->points, frame);
+    const double x = set.x[point], y = set.y[point], up = sqrt(fmax(0, 1 - (x * x + y * y)));
+    for (int a = 0; a < 3; a++) {
+        w[a] = frame[6 + a];
+        normal[a] = x * frame[a] + y * frame[3 + a] + up * w[a];
+        o[a] = centre[a] + p->bed.r[i] * normal[a];
+    }
+}
+
+static double cosine_of(const double a[3], const double b[3]) {
+    const double squares = (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) * (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+    return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / sqrt(squares);
+}
+
+/* Beams leave and meet a sphere at the patch that is there: the places that they leave are about as many in each patch;
+ * all of a patch, and those that they meet, lie within 20 degrees of their mean. */
+START_TEST(a_patch_of_a_sphere_is_one_place) {
+    struct problem p = problem_of(packing(12, .5, 1.5, .5, 7, false), 1, 1);
+    trace(&p);
+    const fibrad_heat *heat = p.heat;
+    const uint32_t points = heat->config.points;
+    double mean[96][3] = {{0}}, o[3], w[3], n[3], leaving = 1, meeting = 1;
+    uint32_t beams[96] = {0}, met = 0, others = 0;
+    ck_assert_uint_eq(heat->config.patches, 96);
+    for (uint32_t b = 0; b < heat->beams; b++) {
+        beam(&p, 0, b / points, b % points, o, w, n);
+        for (int a = 0; a < 3; a++) mean[heat->leave[b]][a] += n[a];
+        beams[heat->leave[b]]++;
+    }
+    for (int k = 0; k < 96; k++) assert_near(beams[k], heat->beams / 96., .3);
+    for (uint32_t place = 0; place < p.bed.n; place++)
+        for (uint32_t b = 0; b < heat->beams; b++) {
+            const uint32_t i = p.scene->order[place], hit = heat->hit[(size_t)place * heat->beams + b];
+            beam(&p, i, b / points, b % points, o, w, n);
+            leaving = fmin(leaving, cosine_of(mean[heat->leave[b]], n));
+            const uint32_t j = first_met(&p, i, o, w, n);
+            if (j != (hit == fibrad_heat_open(heat) ? UINT32_MAX : p.scene->order[hit / 96]))
+                others++;
+            else if (j != UINT32_MAX)
+                met++, meeting = fmin(meeting, cosine_of(mean[hit % 96], n));
+        }
+    ck_assert_uint_gt(met, p.bed.n * heat->beams / 4);
+    ck_assert_uint_le(others, 10); /* that graze a sphere: the kernel's points are floats */
+    ck_assert_double_gt(leaving, cos(PI / 9));
+    ck_assert_double_gt(meeting, cos(PI / 9));
+    free_problem(&p);
+}
+END_TEST
+
+/* The same of a cylinder's wall, and of rays that go there. Patches are even on the square that leans on its corners,
+ * which makes them 2/pi to 4/pi of their mean as wide on the cylinder. */
+START_TEST(a_patch_of_a_cylinder_is_one_place) {
+    enum { TURNS = 2048, UPS = 128 };
+    struct problem p = problem_of(bed_of(1, (const double[][4]){{.3, -.2, .4, 1e-4}}), 1, 1);
+    p.walls = (fibrad_walls){.planes = 48, .at = {0, 0, 0, 0, -.5, 1.5}, .cylinder = {.3, -.2, 1}};
+    p.config.directions = 8;
+    trace(&p);
+    const fibrad_heat *heat = p.heat;
+    const uint32_t body = fibrad_heat_wall_body(heat, FIBRAD_CYLINDER), first = heat->first[body];
+    const uint32_t patches = heat->first[body + 1] - first, *squares = heat->wall[FIBRAD_CYLINDER].squares;
+    double(*mean)[4] = calloc(patches, sizeof *mean), turning = 1, rising = 0;
+    uint32_t missed = 0;
+    for (int round = 0; round < 2; round++)
+        for (uint32_t k = 0; k < TURNS * UPS; k++) {
+            const double turn = 2 * PI * (k / UPS + .5) / TURNS, up = (k % UPS + .5) / UPS;
+            const double around[3] = {cos(turn), sin(turn), 0}, at[3] = {.3 + around[0], around[1] - .2, 2 * up - .5};
+            const uint32_t patch = fibrad_heat_wall_patch(heat, FIBRAD_CYLINDER, at) - first;
+            if (patch >= patches) ck_abort_msg("patch %u of %u", patch, patches);
+            double *m = mean[patch];
+            if (round == 0) {
+                m[0] += around[0], m[1] += around[1], m[2] += up, m[3]++;
+                continue;
+            }
+            turning = fmin(turning, cosine_of((double[]){m[0], m[1], 0}, around));
+            rising = fmax(rising, fabs(up - m[2] / m[3]));
+            const double o[3] = {.3 - .4 * cos(k), .4 * sin(k) - .2, .5 + .9 * sin(3. * k)};
+            double w[3] = {at[0] - o[0], at[1] - o[1], at[2] - o[2]};
+            const double length = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+            for (int a = 0; a < 3; a++) w[a] /= length;
+            missed += fibrad_heat_leaves(heat, o, w) != first + patch;
+        }
+    for (uint32_t k = 0; k < patches; k++) {
+        ck_assert_double_gt(mean[k][3] / (TURNS * UPS) * patches, .8 * 2 / PI);
+        ck_assert_double_lt(mean[k][3] / (TURNS * UPS) * patches, 1.2 * 4 / PI);
+    }
+    ck_assert_double_gt(turning, cos(1.05 * 4 / squares[0]));
+    ck_assert_double_lt(rising, .5 / squares[1]);
+    ck_assert_uint_eq(missed, 0);
+    free(mean);
     free_problem(&p);
 }
 END_TEST
@@ -592,6 +733,28 @@ START_TEST(one_radiosity_per_sphere) {
 }
 END_TEST
 
+/* Two spheres that see each other and the surroundings: two equations. */
+START_TEST(two_radiosities) {
+    static const double r[] = {1, .5}, t[] = {900, 300}, eps[] = {.3, .8}, f[] = {.1, .4};
+    double e[2], scratch[6], power[2];
+    const fibrad_rows rows = {
+        .n = 2, .start = (uint64_t[]){0, 1, 2}, .col = (uint32_t[]){1, 0}, .f = (double[]){.1, .4}};
+    fibrad_heat_sources sources = {.temperature = t, .emissivity = eps, .sigma = 2, .tolerance = 1e-12};
+    fibrad_heat_result result = {.power = power};
+    for (sources.surroundings = 0; sources.surroundings < 2000; sources.surroundings += 500) {
+        const double e0 = 2 * emission(sources.surroundings);
+        for (int i = 0; i < 2; i++) e[i] = eps[i] * 2 * emission(t[i]) + (1 - eps[i]) * (1 - f[i]) * e0;
+        /* J_0 = e_0 + (1 - eps_0) f_0 J_1, and the same the other way round */
+        const double a = (1 - eps[0]) * f[0], b = (1 - eps[1]) * f[1];
+        const double j[] = {(e[0] + a * e[1]) / (1 - a * b), (e[1] + b * e[0]) / (1 - a * b)};
+        ck_assert_int_eq(fibrad_radiosity(&rows, r, &sources, scratch, &result), FIBRAD_OK);
+        for (int i = 0; i < 2; i++)
+            assert_near(power[i], 4 * PI * r[i] * r[i] * (f[i] * j[1 - i] + (1 - f[i]) * e0 - j[i]), 1e-9);
+        assert_near(result.surroundings_power, -power[0] - power[1], 1e-9);
+    }
+}
+END_TEST
+
 /* ---- arguments ---- */
 
 START_TEST(arguments_are_checked) {
@@ -673,7 +836,12 @@ int main(void) {
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cylinder);
     tcase_add_test(closed, two_black_spheres_in_contact);
     tcase_add_test(closed, one_radiosity_per_sphere);
+    tcase_add_test(closed, two_radiosities);
     tcase_add_loop_test(paths, powers_are_those_of_paths, 0, 3);
+    tcase_add_test(paths, powers_beside_the_wall_of_a_cylinder);
+    TCase *patches = suite_case(suite, "patches");
+    tcase_add_test(patches, a_patch_of_a_sphere_is_one_place);
+    tcase_add_test(patches, a_patch_of_a_cylinder_is_one_place);
     TCase *conducting = suite_case(suite, "conduction");
     tcase_add_loop_test(conducting, conduction_of_lattices, 0, 3);
     tcase_add_test(conducting, conduction_of_a_random_bed);
