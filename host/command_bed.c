@@ -7,7 +7,6 @@
 #include "bed.h"
 #include "bed_options.h"
 #include "commands.h"
-#include "interrupt.h"
 #include "message.h"
 #include "plot.h"
 #include "run_omp.h"
@@ -274,7 +273,6 @@ int command_bed(int argc, char **argv) {
     struct result result = {0};
     int status = parse(&request, argc, argv);
     if (status) return status == STATUS_HELP ? help() : status;
-    interrupt_catch();
     status = run(&request, &bed, &result);
     result_free(&result);
     bed_free(&bed);

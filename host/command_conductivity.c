@@ -276,7 +276,6 @@ int command_conductivity(int argc, char **argv) {
     struct bed bed = {0};
     int status = parse(&request, argc, argv);
     if (status) return status == STATUS_HELP ? help() : status;
-    interrupt_catch();
     status = run(&request, &bed);
     bed_free(&bed);
     return status;

@@ -7,7 +7,6 @@
 #include "bed.h"
 #include "bed_options.h"
 #include "commands.h"
-#include "interrupt.h"
 #include "message.h"
 #include "quantities.h"
 #include "run_exchange.h"
@@ -178,6 +177,5 @@ int command_exchange(int argc, char **argv) {
     struct request request;
     const int status = parse(&request, argc, argv);
     if (status) return status == STATUS_HELP ? help() : status;
-    interrupt_catch();
     return run(&request);
 }

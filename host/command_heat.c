@@ -6,7 +6,6 @@
 
 #include "bed_options.h"
 #include "commands.h"
-#include "interrupt.h"
 #include "message.h"
 #include "quantities.h"
 #include "run_heat.h"
@@ -214,6 +213,5 @@ int command_heat(int argc, char **argv) {
     struct request request;
     const int status = parse(&request, argc, argv);
     if (status) return status == STATUS_HELP ? help() : status;
-    interrupt_catch();
     return run(&request);
 }

@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "fibrad.h"
+#include "interrupt.h"
 #include "message.h"
 
 static const struct {
@@ -40,7 +41,10 @@ static int choose(int argc, char **argv) {
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return help();
     if (strcmp(name, "--version") == 0) return version();
     for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
-        if (strcmp(name, commands[k].name) == 0) return commands[k].run(argc - 2, argv + 2);
+        if (strcmp(name, commands[k].name) == 0) {
+            interrupt_catch();
+            return commands[k].run(argc - 2, argv + 2);
+        }
     if (*name == 0) return message(STATUS_USAGE, "which command? see fibrad --help");
     return message(STATUS_USAGE, "unknown %s %.40s; see fibrad --help", *name == '-' ? "option" : "command", name);
 }

@@ -35,6 +35,13 @@ for pair in INT:130 TERM:143 HUP:129; do
     verdict "SIG${pair%:*}" $? "${pair#*:}" interrupted
 done
 
+# The same for a furnace
+"$fibrad" furnace --case 1 --bundles 4000000000 -o "$work/F.csv" >/dev/null 2>"$work/err" &
+until_open 'F.csv*'
+kill -s INT $!
+wait $!
+verdict "SIGINT, furnace" $? 130 interrupted
+
 # Killed outright: nothing under the name asked for; a temporary file may stay, the next run does not mind it
 "$fibrad" bed "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>&1 &
 until_open 'F.csv*'
