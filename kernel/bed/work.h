@@ -27,7 +27,7 @@ typedef struct fibrad_near {
     uint32_t end[FIBRAD_SHELLS]; /* where each shell ends */
     double limit[FIBRAD_SHELLS]; /* down to which depth windows are known with it */
     bool full;                   /* no room for a further shell: windows look farther each on its own */
-    uint32_t asked;              /* how many windows have asked for a further shell */
+    uint32_t asked;              /* how many windows have asked for one more than there are */
 } fibrad_near;
 
 #define FIBRAD_LANES_MAX 16 /* whole vectors are written at the end of a list */
@@ -97,7 +97,9 @@ void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t pl
  * its own. The first shell is for all; the others have many spheres each, for the few windows that stay open. */
 #define FIBRAD_ASKED 8
 static inline bool fibrad_near_pays(fibrad_near *near) {
-    return !near->full && (near->shells == 0 || near->asked++ >= FIBRAD_ASKED);
+    if (near->full || (near->shells > 0 && near->asked++ < FIBRAD_ASKED)) return false;
+    near->asked = 0;
+    return true;
 }
 
 /* No sphere comes before the window of direction w deeper than this. */
