@@ -85,8 +85,8 @@ static void transpose_to_end(const fibrad_rows *raw, uint32_t begin, uint32_t en
  * the transpose. */
 int fibrad_rows_average_part(const fibrad_rows *raw, const double *r, const double *weight, uint32_t begin,
                              uint32_t end, fibrad_rows *out) {
-    if (out == NULL || check(raw) != FIBRAD_OK || check_radii(r, raw->n) != FIBRAD_OK || out->n != raw->n ||
-        out->start == NULL || out->start == raw->start || begin > end || end > raw->n)
+    if (out == NULL || raw == NULL || check(raw) != FIBRAD_OK || check_radii(r, raw->n) != FIBRAD_OK ||
+        out->n != raw->n || out->start == NULL || out->start == raw->start || begin > end || end > raw->n)
         return FIBRAD_E_ARGUMENT;
     uint32_t n = raw->n;
     for (uint32_t i = 0; i < n && weight != NULL; i++)
