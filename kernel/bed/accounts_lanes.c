@@ -19,6 +19,7 @@
  * jumps back at the lower right diagonal, from END to BEGIN. Arcs are cut there and opposite, at MIDDLE, so that none
  * is longer than half a circle and none passes the jump. */
 #include FIBRAD_LANES_HEADER
+#include "base/lanes/below.h"
 #include "bed/accounts_lanes.h"
 #include "bed/arc_lanes.h"
 
@@ -36,12 +37,6 @@
 #define SHORT 1e-15
 
 static _Alignas(FIBRAD_ALIGNMENT) const double lane_number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-
-/* The lanes below n. */
-static inline uint32_t lanes_below(uint32_t n) {
-    uint32_t lanes = n < VD_LANES ? n : VD_LANES;
-    return (1u << lanes) - 1;
-}
 
 static inline vd place(vd x, vd y) {
     vd zero = vd_set1(0);
@@ -78,7 +73,7 @@ static bool meet(fibrad_areas *areas, double x, double y, double r, double inver
         vd square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
         vd outer = vd_sub(vd_mul(sum, sum), square), inner = vd_sub(square, vd_mul(difference, difference));
         vm apart = vd_le(outer, zero), nested = vd_le(inner, zero), whole = vm_or(apart, nested);
-        uint32_t lanes = lanes_below(areas->circles - m);
+        uint32_t lanes = vd_lanes_below(areas->circles - m);
         uint32_t containing = vm_bits(vm_and(nested, vd_le(zero, difference))) & lanes;
         if (containing & (m == 0 ? ~1u : ~0u)) return false; /* to lie within the window hides nothing */
 
@@ -153,13 +148,13 @@ static bool see(fibrad_areas *areas, double x, double y, double r) {
             /* does interval j hold the ends of others? Its own end for later ones only, so that the first of equal ends
              * remains */
             vd f = vd_set1(h->from[j]), t = vd_set1(h->to[j]);
-            uint32_t not_later = j < i ? 0 : lanes_below(j - i + 1);
+            uint32_t not_later = j < i ? 0 : vd_lanes_below(j - i + 1);
             uint32_t after = vm_bits(vd_le(f, to)),
                      before_end = vm_bits(vd_lt(to, t)) | (vm_bits(vd_le(to, t)) & ~not_later);
             uint32_t passes_jump = 0u - (h->to[j] < h->from[j]);
             hidden |= (after & before_end) | ((after | before_end) & passes_jump);
         }
-        for (uint32_t bits = lanes_below(intervals - i) & ~hidden; bits != 0; bits &= bits - 1) {
+        for (uint32_t bits = vd_lanes_below(intervals - i) & ~hidden; bits != 0; bits &= bits - 1) {
             uint32_t begin = i + (uint32_t)__builtin_ctz(bits), end = 0;
             double a = h->to[begin], nearest = 2 * AROUND;
             for (uint32_t j = 0; j < intervals; j++) {
@@ -240,7 +235,7 @@ static void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes *s, uin
 static void give_all(fibrad_areas *areas, fibrad_arcs *list, uint32_t k) {
     for (uint32_t o = 0; o < list->count; o += VD_LANES) {
         arcs_in_lanes s = load(list, o);
-        give(areas, lanes_below(list->count - o), &s, k);
+        give(areas, vd_lanes_below(list->count - o), &s, k);
     }
     list->count = 0;
 }
@@ -284,7 +279,7 @@ static bool take(fibrad_areas *areas, uint32_t k) {
         arcs_in_lanes between = {low, high, lx, ly, hx, hy, s.circle};
         arcs_in_lanes above = {high, s.b, hx, hy, s.qx, s.qy, s.circle};
         arcs_in_lanes stays = select(round, &between, &below), goes = select(round, &below, &between);
-        uint32_t lanes = lanes_below(open.count - o), rounds = vm_bits(round), seconds = rising(&above) & lanes;
+        uint32_t lanes = vd_lanes_below(open.count - o), rounds = vm_bits(round), seconds = rising(&above) & lanes;
         uint32_t going = rising(&goes) & lanes;
         append(left, rising(&stays) & lanes, &stays);
         any |= going | (seconds & rounds);
@@ -301,7 +296,7 @@ static bool take(fibrad_areas *areas, uint32_t k) {
     give_all(areas, &second[1], k);
     for (uint32_t o = 0; o < second[0].count; o += VD_LANES) {
         arcs_in_lanes s = load(&second[0], o);
-        append(left, lanes_below(second[0].count - o), &s);
+        append(left, vd_lanes_below(second[0].count - o), &s);
     }
     areas->accounts.open = *left;
     *left = open;

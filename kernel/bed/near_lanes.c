@@ -1,6 +1,7 @@
 /* near_lanes.c - shells of spheres near the one in hand, and marches along one direction. Compiled once per instruction
  * set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
+#include "base/lanes/below.h"
 #include "bed/near_lanes.h"
 
 /* What the sieves compare, for spheres [from, to) of the list. They are in floats and may let a sphere pass that the
@@ -24,11 +25,14 @@ static void floats(fibrad_near *near, uint32_t from, uint32_t to) {
     }
 }
 
-/* The first n lanes. */
-static inline uint32_t lanes_of(uint32_t n) { return n < VD_LANES ? (1u << n) - 1 : (1u << VD_LANES) - 1; }
-
 /* Thickness of the layers of a march: thinner ones hug the beam more closely, but there are more of them. */
 #define LAYER_CELLS 1.5
+
+/* Coordinates of spheres of the run in hand, relative to the centre and in units of the radius. */
+static inline vd placed(const fibrad_work *work, const fibrad_walk *walk, int axis, const double *coordinate) {
+    vd c = vd_sub(vd_loadu(coordinate), vd_set1(work->centre[axis]));
+    return vd_mul(vd_add(c, vd_set1(walk->shift[axis])), vd_set1(work->inverse));
+}
 
 /* Appends those of the spheres on a walk whose squared emergence lies in (from, to]. False: no room. */
 static bool collect(fibrad_work *work, fibrad_walk *walk, double from, double to, uint32_t *count) {
@@ -38,18 +42,14 @@ static bool collect(fibrad_work *work, fibrad_walk *walk, double from, double to
     uint32_t n = *count;
     while (fibrad_walk_next(walk))
         for (uint32_t j = walk->begin; j < walk->end; j += VD_LANES) {
-            vd x = vd_sub(vd_loadu(scene.x + j), vd_set1(work->centre[0]));
-            vd y = vd_sub(vd_loadu(scene.y + j), vd_set1(work->centre[1]));
-            vd z = vd_sub(vd_loadu(scene.z + j), vd_set1(work->centre[2]));
-            x = vd_mul(vd_add(x, vd_set1(walk->shift[0])), inverse);
-            y = vd_mul(vd_add(y, vd_set1(walk->shift[1])), inverse);
-            z = vd_mul(vd_add(z, vd_set1(walk->shift[2])), inverse);
+            vd x = placed(work, walk, 0, scene.x + j), y = placed(work, walk, 1, scene.y + j);
+            vd z = placed(work, walk, 2, scene.z + j);
             vd r = vd_mul(vd_loadu(scene.r + j), inverse), wide = vd_add(vd_set1(1), r);
             vd square = vd_add(vd_add(vd_mul(x, x), vd_mul(y, y)), vd_mul(z, z));
             vd e = vd_sub(square, vd_mul(wide, wide));
             vm other = vm_and(vd_lt(zero, square), vd_le(square, reach)); /* than the sphere itself */
             vm emerges = vm_and(vd_lt(vd_set1(from), e), vd_le(e, vd_set1(to)));
-            uint32_t bits = vm_bits(vm_and(emerges, other)) & lanes_of(walk->end - j);
+            uint32_t bits = vm_bits(vm_and(emerges, other)) & vd_lanes_below(walk->end - j);
             if (n + VD_LANES > near.capacity) return false;
             vd_compress(near.x + n, bits, x);
             vd_compress(near.y + n, bits, y);
@@ -128,8 +128,7 @@ void LANED(fibrad_near_discs)(fibrad_work *work, const double frame[9], uint32_t
         vd_storeu(disc.v + k, v);
         vd_storeu(disc.r + k, r);
         vd_storeu(disc.depth + k, depth);
-        uint32_t lanes = end - k < VD_LANES ? end - k : VD_LANES;
-        outside |= ~vm_bits(vm_and(overlaps, ahead)) & ((1u << lanes) - 1);
+        outside |= ~vm_bits(vm_and(overlaps, ahead)) & vd_lanes_below(end - k);
     }
     work->disc.count = end;
     if (outside != 0) leave_out(work, from);
@@ -150,11 +149,8 @@ static void add_discs(fibrad_work *work, const double frame[9], fibrad_walk *wal
     uint32_t *sphere = work->near.sphere + work->near.capacity, n = disc.count;
     while (fibrad_walk_next(walk))
         for (uint32_t j = walk->begin; j < walk->end; j += VD_LANES) {
-            vd c[3] = {vd_loadu(scene.x + j), vd_loadu(scene.y + j), vd_loadu(scene.z + j)};
-            for (int axis = 0; axis < 3; axis++) {
-                c[axis] = vd_add(vd_sub(c[axis], vd_set1(work->centre[axis])), vd_set1(walk->shift[axis]));
-                c[axis] = vd_mul(c[axis], inverse);
-            }
+            const vd c[3] = {placed(work, walk, 0, scene.x + j), placed(work, walk, 1, scene.y + j),
+                             placed(work, walk, 2, scene.z + j)};
             vd r = vd_mul(vd_loadu(scene.r + j), inverse), wide = vd_add(vd_set1(1), r);
             vd square = vd_add(vd_add(vd_mul(c[0], c[0]), vd_mul(c[1], c[1])), vd_mul(c[2], c[2]));
             vd depth = along(frame + 6, c[0], c[1], c[2]), place = vd_mul(vd_set1(layer->sense), c[layer->along]);
@@ -165,7 +161,7 @@ static void add_discs(fibrad_work *work, const double frame[9], fibrad_walk *wal
             vm other = vm_and(vd_lt(zero, square), vd_le(square, reach)); /* than the sphere itself */
             vm ahead = vm_and(vd_le(zero, depth), vd_le(e, vd_mul(vd_mul(depth, depth), vd_set1(1 + 1e-12))));
             uint32_t bits = vm_bits(vm_and(vm_and(in_layer, emerges), vm_and(other, ahead)));
-            bits &= lanes_of(walk->end - j);
+            bits &= vd_lanes_below(walk->end - j);
             if (bits == 0) continue;
             vd u = along(frame, c[0], c[1], c[2]), v = along(frame + 3, c[0], c[1], c[2]);
             bits &= vm_bits(vd_lt(vd_add(vd_mul(u, u), vd_mul(v, v)), wide));

@@ -1,6 +1,7 @@
 /* points_lanes.c - points of a window that spheres hide. Compiled once per instruction set.
  * SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
+#include "base/lanes/below.h"
 #include "bed/points_lanes.h"
 
 /* Which of the 64 points from (x, y) on lie within a disc. The sum goes into a register for numbers, where an `or`
@@ -31,8 +32,8 @@ uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *di
     const fibrad_discs discs = *disc; /* a copy: what is stored cannot change its pointers */
     for (uint32_t k = 0; k < discs.count; k += VD_LANES) {
         vd r = vd_load(discs.r + k);
-        uint32_t lanes = discs.count - k < VD_LANES ? discs.count - k : VD_LANES;
-        to += fibrad_count_bits(vm_bits(vd_le(vd_load(discs.depth + k), vd_set1(depth))) & ((1u << lanes) - 1));
+        to += fibrad_count_bits(vm_bits(vd_le(vd_load(discs.depth + k), vd_set1(depth))) &
+                                vd_lanes_below(discs.count - k));
         vd_store_float(discs.fu + k, vd_load(discs.u + k));
         vd_store_float(discs.fv + k, vd_load(discs.v + k));
         vd_store_float(discs.square + k, vd_mul(r, r));
