@@ -57,99 +57,99 @@ KERNEL = \
     kernel/sample/direction.c \
     kernel/pair/exact.c \
     kernel/pair/surface.c \
-    kernel/bed/areas.c \
-    kernel/bed/beam.c \
-    kernel/bed/cast.c \
-    kernel/bed/moved.c \
-    kernel/bed/near.c \
-    kernel/bed/rows.c \
-    kernel/bed/scene.c \
-    kernel/bed/surface_row.c \
-    kernel/bed/trace.c \
-    kernel/bed/walls.c \
-    kernel/bed/work.c \
+    kernel/scene/drift.c \
+    kernel/scene/scene.c \
+    kernel/scene/walls.c \
+    kernel/window/areas.c \
+    kernel/row/beam.c \
+    kernel/row/neighbours.c \
+    kernel/row/surface_row.c \
+    kernel/row/work.c \
+    kernel/matrix/matrix.c \
+    kernel/ray/cast.c \
+    kernel/ray/tracer.c \
+    kernel/exchange/exchange.c \
+    kernel/exchange/paths.c \
+    kernel/heat/heat.c \
+    kernel/heat/radiosity.c \
+    kernel/heat/solve.c \
+    kernel/heat/wall_patch.c \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
     kernel/furnace/lines.c \
-    kernel/furnace/tally.c \
-    kernel/heat/exchange.c \
-    kernel/heat/heat.c \
-    kernel/heat/paths.c \
-    kernel/heat/radiosity.c \
-    kernel/heat/solve.c \
-    kernel/heat/walls_cut.c
+    kernel/furnace/tally.c
 
 # compiled once per instruction set
 LANED = \
     kernel/pair/surface_lanes.c \
-    kernel/bed/accounts_lanes.c \
-    kernel/bed/arc_lanes.c \
-    kernel/bed/areas_lanes.c \
-    kernel/bed/beam_lanes.c \
-    kernel/bed/cast_lanes.c \
-    kernel/bed/near_lanes.c \
-    kernel/bed/points_lanes.c \
-    kernel/bed/trace_lanes.c \
-    kernel/bed/walls_lanes.c \
-    kernel/heat/beams_lanes.c \
-    kernel/heat/paths_lanes.c
+    kernel/window/arc_lanes.c \
+    kernel/window/arrangement_lanes.c \
+    kernel/window/clip_lanes.c \
+    kernel/window/points_lanes.c \
+    kernel/row/beam_lanes.c \
+    kernel/row/neighbours_lanes.c \
+    kernel/row/wall_share_lanes.c \
+    kernel/ray/cast_lanes.c \
+    kernel/ray/trace_lanes.c \
+    kernel/exchange/paths_lanes.c \
+    kernel/heat/hits_lanes.c
 
 # besides main.c and generate_tables.c
 HOST = \
-    host/average_omp.c \
-    host/bed.c \
-    host/bed_make.c \
-    host/bed_options.c \
-    host/command_bed.c \
-    host/command_conductivity.c \
-    host/command_exchange.c \
-    host/command_furnace.c \
-    host/command_heat.c \
-    host/command_pair.c \
-    host/command_reproduce.c \
-    host/exact_gsl.c \
-    host/furnace_cases.c \
-    host/furnace_plot.c \
-    host/furnace_run.c \
-    host/furnace_shoot.c \
-    host/gnuplot.c \
-    host/interrupt.c \
-    host/message.c \
-    host/method.c \
-    host/moving_omp.c \
-    host/options.c \
-    host/plot.c \
-    host/plot_data.c \
-    host/progress.c \
-    host/quantities.c \
-    host/read.c \
-    host/read_columns.c \
-    host/read_csv.c \
-    host/read_dump.c \
-    host/read_furnace.c \
-    host/read_lines.c \
-    host/read_yade.c \
-    host/reference.c \
-    host/reproduce_beds.c \
-    host/reproduce_exchange.c \
-    host/reproduce_pairs.c \
-    host/reproduce_pebbles.c \
-    host/reproduce_rays.c \
-    host/reproduce_rows.c \
-    host/run_exchange.c \
-    host/run_heat.c \
-    host/run_omp.c \
-    host/targets.c \
-    host/tolerance.c \
-    host/vtp.c \
-    host/walls.c \
-    host/write.c \
-    host/write_csv.c \
-    host/write_furnace.c \
-    host/write_heat.c \
-    host/write_mtx.c \
-    host/write_npz.c \
-    host/write_vtp.c
+    host/cli/interrupt.c \
+    host/cli/message.c \
+    host/cli/options.c \
+    host/cli/progress.c \
+    host/cli/targets.c \
+    host/bed/bed.c \
+    host/bed/packing.c \
+    host/bed/property_option.c \
+    host/bed/wall_option.c \
+    host/read/read.c \
+    host/read/read_columns.c \
+    host/read/read_csv.c \
+    host/read/read_dump.c \
+    host/read/read_furnace.c \
+    host/read/read_lines.c \
+    host/read/read_yade.c \
+    host/compute/average.c \
+    host/compute/exchange_rows.c \
+    host/compute/heat_powers.c \
+    host/compute/method.c \
+    host/compute/moving_rows.c \
+    host/compute/rows.c \
+    host/compute/tolerance.c \
+    host/boxes/furnace_cases.c \
+    host/boxes/furnace_run.c \
+    host/boxes/furnace_shoot.c \
+    host/write/vtp.c \
+    host/write/write.c \
+    host/write/write_csv.c \
+    host/write/write_furnace.c \
+    host/write/write_heat.c \
+    host/write/write_mtx.c \
+    host/write/write_npz.c \
+    host/write/write_vtp.c \
+    host/plot/gnuplot.c \
+    host/plot/plot_bed.c \
+    host/plot/plot_data.c \
+    host/plot/plot_furnace.c \
+    host/reference/exact_gsl.c \
+    host/reference/reference.c \
+    host/reproduce/reproduce_beds.c \
+    host/reproduce/reproduce_exchange.c \
+    host/reproduce/reproduce_pairs.c \
+    host/reproduce/reproduce_pebbles.c \
+    host/reproduce/reproduce_rays.c \
+    host/reproduce/reproduce_rows.c \
+    host/command/bed_options.c \
+    host/command/command_bed.c \
+    host/command/command_conductivity.c \
+    host/command/command_exchange.c \
+    host/command/command_furnace.c \
+    host/command/command_heat.c \
+    host/command/command_pair.c \
+    host/command/command_reproduce.c
 
 TESTS = \
     tests/test_accuracy.c \
@@ -247,7 +247,7 @@ $(BUILD)/tables.o: $(BUILD)/tables.c
 $(BUILD)/tables.c: $(BUILD)/generate_tables
 	$< > $@
 
-$(BUILD)/generate_tables: host/generate_tables.c
+$(BUILD)/generate_tables: kernel/sample/generate_tables.c
 	@mkdir -p $(@D)
 	$(HOSTCC) -O2 $(COMMON) $< -lm -o $@
 
@@ -326,8 +326,9 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
 check: symbols lists format
 
-LISTED = $(KERNEL) $(LANED) $(HOST) host/main.c host/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS)
-FOUND  = $(wildcard kernel/*/*.c host/*.c tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
+LISTED = $(KERNEL) $(LANED) $(HOST) host/main.c kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS)
+FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c)) \
+         $(wildcard tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
 
 lists:
 	@test -z "$(filter-out $(LISTED),$(FOUND))" || \
@@ -337,7 +338,7 @@ lists:
 symbols: $(BUILD)/libfibrad.a
 	BUILD=$(BUILD) tests/check_symbols.sh
 
-FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.[ch] host/*/*.c tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
+FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
 
 ## format: every source is formatted by .clang-format (to repair: clang-format -i FILE)
 format:
@@ -440,7 +441,7 @@ lint:
 	cppcheck --quiet --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 	printf '%s\n' $(KERNEL) $(LANED) | xargs -I{} -P 2 clang-tidy --quiet {} -- -std=c11 $(LINT_FLAGS) $(LINT_SCALAR)
-	printf '%s\n' $(HOST) host/main.c host/generate_tables.c | xargs -I{} -P 2 \
+	printf '%s\n' $(HOST) host/main.c kernel/sample/generate_tables.c | xargs -I{} -P 2 \
 	    clang-tidy --quiet --checks=-clang-analyzer-core.* {} -- -std=c11 -fopenmp $(LINT_FLAGS)
 
 ## reproduce: the numbers of the papers beside ours, and their plots into docs/figures

@@ -9,11 +9,11 @@
  * sorted. */
 #include <math.h>
 
-#include "bed/areas.h"
-#include "bed_make.h"
+#include "window/areas.h"
+#include "bed/packing.h"
 #include "bench.h"
-#include "message.h"
-#include "run_omp.h"
+#include "cli/message.h"
+#include "compute/rows.h"
 
 enum { DISCS = 64, METHODS = 8 };
 

@@ -10,9 +10,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "bed_make.h"
-#include "message.h"
-#include "run_omp.h"
+#include "bed/packing.h"
+#include "cli/message.h"
+#include "compute/rows.h"
 
 enum { ORIENTATIONS = 24, ROWS = 20 };
 

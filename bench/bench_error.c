@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "fibrad.h"
-#include "message.h"
-#include "run_omp.h"
+#include "cli/message.h"
+#include "compute/rows.h"
 
 static int ascending(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;

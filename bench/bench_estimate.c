@@ -9,11 +9,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "fibrad.h"
-#include "message.h"
-#include "read.h"
-#include "run_omp.h"
+#include "cli/message.h"
+#include "read/read.h"
+#include "compute/rows.h"
 
 enum { ROWS = 64, SCENES = 32, SAMPLES = 512 };
 

@@ -8,11 +8,11 @@
 #include <math.h>
 
 #include "base/elementary.h"
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "bench.h"
-#include "heat/paths.h"
-#include "message.h"
-#include "run_exchange.h"
+#include "exchange/paths.h"
+#include "cli/message.h"
+#include "compute/exchange_rows.h"
 
 enum { ROWS = 24 };
 

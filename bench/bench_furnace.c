@@ -9,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "furnace_cases.h"
-#include "furnace_run.h"
-#include "message.h"
+#include "boxes/furnace_cases.h"
+#include "boxes/furnace_run.h"
+#include "cli/message.h"
 
 enum { CELLS = 20 * 20 * 40 };
 

@@ -4,7 +4,7 @@
  * 384 patches, 400 directions of 128 points. `quick` takes a smaller bed and a smaller reference. */
 #include <math.h>
 
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "bench.h"
 
 enum { PARTS = 8 };

@@ -10,11 +10,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "bench.h"
-#include "message.h"
-#include "moving_omp.h"
-#include "read.h"
+#include "cli/message.h"
+#include "compute/moving_rows.h"
+#include "read/read.h"
 
 #define PI 3.14159265358979323846
 

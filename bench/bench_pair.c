@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "bench.h"
-#include "exact_gsl.h"
+#include "reference/exact_gsl.h"
 
 enum { RADII = 16 };
 

@@ -10,10 +10,10 @@
 #include <errno.h>
 #include <sys/resource.h>
 
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "bench.h"
-#include "message.h"
-#include "run_omp.h"
+#include "cli/message.h"
+#include "compute/rows.h"
 
 enum { DIRECTIONS = 55, TILE = 10000, MILLION = 1000000 };
 

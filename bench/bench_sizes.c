@@ -8,10 +8,10 @@
  * with a fourth of the directions, as the program has them. */
 #include <math.h>
 
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "bench.h"
-#include "message.h"
-#include "run_omp.h"
+#include "cli/message.h"
+#include "compute/rows.h"
 
 enum { DIRECTIONS = 100, CAPACITY = 100000 };
 

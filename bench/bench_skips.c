@@ -7,10 +7,10 @@
  * of a random bed and a hash of the rows, for bench/skips.sh, which turns the others off in the source. */
 #include <math.h>
 
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "bench.h"
-#include "message.h"
-#include "run_omp.h"
+#include "cli/message.h"
+#include "compute/rows.h"
 
 enum { ENTRIES = 100000, SAMPLE = 200, DIRECTIONS = 100 };
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "fibrad.h"
 
 static double seconds(void) {

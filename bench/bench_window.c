@@ -9,10 +9,10 @@
  * microseconds a row: from the difference to rows of 400 directions. */
 #include <math.h>
 
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "bench.h"
-#include "message.h"
-#include "run_omp.h"
+#include "cli/message.h"
+#include "compute/rows.h"
 
 enum { FEW = 100, MANY = 400, CAPACITY = 4096, ROUNDS = 5, CASES = 16 };
 

@@ -10,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "bench.h"
-#include "message.h"
-#include "run_omp.h"
+#include "cli/message.h"
+#include "compute/rows.h"
 
 struct centre {
     struct bed bed;

@@ -3,10 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "commands.h"
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "command/commands.h"
 #include "fibrad.h"
-#include "interrupt.h"
-#include "message.h"
 
 static const struct {
     const char *name, *purpose;

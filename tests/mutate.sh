@@ -28,16 +28,17 @@ LINE
     file=${file% } tree=$BUILD/mutate/$1 by=UNNOTICED why="" ran=""
     rm -rf "$tree" && cp -Rp "$whole" "$tree" || exit 1
     case $file in # what is most likely to notice comes first
-    kernel/heat/*) tests="exchange heat $tests" ;;
-    */accounts_* | */arc_* | */areas*) tests="areas beam $tests" ;;
-    */near* | */points_* | */beam* | */work*) tests="beam cast $tests" ;;
-    */cast*) tests="cast $tests" ;;
-    */moved*) tests="moved $tests" ;;
-    */scene*) tests="scene beam $tests" ;;
-    */rows*) tests="rows $tests" ;;
+    kernel/exchange/* | kernel/heat/*) tests="exchange heat $tests" ;;
+    */points_*) tests="beam cast $tests" ;;
+    kernel/window/*) tests="areas beam $tests" ;;
     */surface_row*) tests="surface_row $tests" ;;
-    */walls.* | */walls_lanes*) tests="walls $tests" ;;
-    */trace*) tests="trace $tests" ;;
+    */walls.* | */wall_share*) tests="walls $tests" ;;
+    kernel/row/*) tests="beam cast $tests" ;;
+    */cast*) tests="cast $tests" ;;
+    kernel/ray/*) tests="trace $tests" ;;
+    */drift*) tests="moved $tests" ;;
+    kernel/scene/*) tests="scene beam $tests" ;;
+    kernel/matrix/*) tests="rows $tests" ;;
     kernel/furnace/*) tests="furnace $tests" ;;
     esac
     if awk -v old="$old" -v new="$new" 'BEGIN {sub(/^ /, "", old); sub(/ $/, "", old); sub(/^ /, "", new)}

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "fibrad.h"
 
 static inline void *block_of(size_t size) {

@@ -3,9 +3,9 @@
 #include <stdio.h>
 
 #define FIBRAD_ISA_SUFFIX _scalar
-#include "bed/accounts_lanes.h"
-#include "bed/areas_lanes.h"
-#include "reference.h"
+#include "window/arrangement_lanes.h"
+#include "window/clip_lanes.h"
+#include "reference/reference.h"
 #include "scenes.h"
 #include "suite.h"
 

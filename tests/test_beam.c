@@ -2,7 +2,7 @@
  * not matter. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
-#include "reference.h"
+#include "reference/reference.h"
 #include "scenes.h"
 #include "suite.h"
 

@@ -1,7 +1,7 @@
 /* test_bed_make.c - beds made to measure are what they claim to be. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "suite.h"
 
 #define PI 3.14159265358979323846

@@ -3,10 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "run_omp.h"
+#include "compute/rows.h"
 #include "scenes.h"
 #include "suite.h"
-#include "tolerance.h"
+#include "compute/tolerance.h"
 
 enum { ROWS = 16 };
 

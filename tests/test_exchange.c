@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "base/elementary.h"
-#include "heat/paths.h"
+#include "exchange/paths.h"
 #include "scenes.h"
 #include "suite.h"
 

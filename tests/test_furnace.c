@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/elementary.h"
-#include "furnace_cases.h"
-#include "furnace_run.h"
-#include "run_omp.h"
+#include "boxes/furnace_cases.h"
+#include "boxes/furnace_run.h"
+#include "compute/rows.h"
 #include "suite.h"
 
 #define SIGMA FIBRAD_STEFAN_BOLTZMANN

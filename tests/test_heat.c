@@ -4,8 +4,8 @@
 
 #include "base/elementary.h"
 #include "base/random.h"
-#include "bed/beam_lanes.h"
-#include "bed/walls.h"
+#include "row/beam_lanes.h"
+#include "scene/walls.h"
 #include "heat/heat.h"
 #include "sample/tables.h"
 #include "scenes.h"

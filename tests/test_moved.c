@@ -1,6 +1,6 @@
 /* test_moved.c - rows kept while a bed moves: their errors against rows computed anew, their bits, and the loop.
  * SPDX-License-Identifier: MIT */
-#include "moving_omp.h"
+#include "compute/moving_rows.h"
 #include "scenes.h"
 #include "suite.h"
 

@@ -4,8 +4,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "message.h"
-#include "read.h"
+#include "cli/message.h"
+#include "read/read.h"
 #include "suite.h"
 
 static char path[200];

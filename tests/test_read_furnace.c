@@ -5,11 +5,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "furnace_cases.h"
-#include "message.h"
-#include "read_furnace.h"
+#include "boxes/furnace_cases.h"
+#include "cli/message.h"
+#include "read/read_furnace.h"
 #include "suite.h"
-#include "write_furnace.h"
+#include "write/write_furnace.h"
 
 static char path[200];
 static char said[4096]; /* on standard error by the last `try` */

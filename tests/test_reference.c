@@ -3,7 +3,7 @@
 #include <stdint.h>
 
 #include "fibrad.h"
-#include "reference.h"
+#include "reference/reference.h"
 #include "suite.h"
 
 enum { MAX = 300 };

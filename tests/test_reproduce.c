@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "commands.h"
+#include "command/commands.h"
 #include "suite.h"
 
 static char directory[200];

@@ -1,5 +1,5 @@
 /* test_rows.c - matrices of view factors: averaging, limiting, dropping. SPDX-License-Identifier: MIT */
-#include "average_omp.h"
+#include "compute/average.h"
 #include "scenes.h"
 #include "suite.h"
 

@@ -6,8 +6,8 @@
 #include <stdio.h>
 
 #define FIBRAD_ISA_SUFFIX _scalar
-#include "bed/areas_lanes.h"
-#include "reference.h"
+#include "window/clip_lanes.h"
+#include "reference/reference.h"
 #include "scenes.h"
 #include "suite.h"
 

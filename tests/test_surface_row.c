@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "bed_make.h"
+#include "bed/packing.h"
 #include "fibrad.h"
 #include "suite.h"
 #include "surface_plain.h"

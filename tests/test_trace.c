@@ -4,8 +4,8 @@
 
 #include "base/elementary.h"
 #include "base/random.h"
-#include "bed/trace.h"
-#include "bed/work.h"
+#include "ray/tracer.h"
+#include "row/work.h"
 #include "scenes.h"
 #include "suite.h"
 

@@ -2,10 +2,10 @@
  * SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
-#include "bed/walls.h"
+#include "scene/walls.h"
 #include "scenes.h"
 #include "suite.h"
-#include "walls.h"
+#include "bed/wall_option.h"
 
 #define PI 3.14159265358979323846
 

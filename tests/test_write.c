@@ -7,9 +7,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "message.h"
+#include "cli/message.h"
 #include "suite.h"
-#include "write.h"
+#include "write/write.h"
 
 /* Three spheres; row 1 was not computed. */
 static double x[] = {0, 3, 1.0 / 3}, y[] = {0, 0.1, -7}, z[] = {1e-300, 2, 5}, r[] = {1, 0.5, 2};

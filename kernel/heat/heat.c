@@ -1,10 +1,10 @@
 /* heat.c - lays out a heat problem, has its beams followed, takes its sources and hands out its powers.
  * SPDX-License-Identifier: MIT */
 #include "base/arena.h"
-#include "heat/beams_lanes.h"
-#include "heat/patch.h"
+#include "heat/hits_lanes.h"
+#include "heat/sphere_patch.h"
+#include "row/beam_lanes.h"
 #include "sample/tables.h"
-#include "bed/beam_lanes.h"
 
 #define PI         3.14159265358979323846
 #define DIRECTIONS 168u

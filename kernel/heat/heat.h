@@ -6,7 +6,7 @@
 #ifndef FIBRAD_HEAT_HEAT_H
 #define FIBRAD_HEAT_HEAT_H
 
-#include "bed/scene.h"
+#include "scene/scene.h"
 
 #define FIBRAD_HEAT_PATCHES_MAX 384   /* of a sphere */
 #define FIBRAD_HEAT_TASK        1024u /* rays of a wall that are followed at a time */

@@ -1,6 +1,6 @@
 /* tables.h - Fibonacci samples as constant tables. SPDX-License-Identifier: MIT
  *
- * The tables are written by host/generate_tables.c into build/tables.c. Every entry is the true value rounded once.
+ * The tables are written by generate_tables.c into build/tables.c. Every entry is the true value rounded once.
  * A small target limits them when it compiles build/tables.c and the kernel:
  *   -DFIBRAD_TABLE_AZIMUTHS=N  azimuths kept at hand: 0, 256, 1024, 4096 or 10946 (default), 16 N bytes. The others, up
  *                              to FIBRAD_DIRECTIONS_MAX, are summed from 16 KB of angles; the bits are the same.

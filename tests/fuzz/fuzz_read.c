@@ -9,9 +9,9 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "read.h"
-#include "read_furnace.h"
-#include "targets.h"
+#include "read/read.h"
+#include "read/read_furnace.h"
+#include "cli/targets.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -1,0 +1,219 @@
+/* packing.c - beds made to measure: random ones and lattices. SPDX-License-Identifier: MIT */
+#include "bed/packing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "cli/interrupt.h"
+#include "cli/message.h"
+
+#define PI 3.14159265358979323846
+
+double bed_make_random(uint64_t seed, uint64_t count) {
+    uint64_t z = (seed + 1) * 0xd1342543de82ef95u + count * 0x9e3779b97f4a7c15u;
+    for (int round = 0; round < 2; ++round) {
+        z = (z ^ z >> 32) * 0xbea225f9eb34556du;
+        z = (z ^ z >> 29) * 0xbea225f9eb34556du;
+    }
+    return (double)(z >> 11) * 0x1p-53;
+}
+
+/* Spheres pushed apart a little more than they need, so that pushing comes to an end. */
+#define SPARE  1e-4
+#define SWEEPS 20000
+
+/* The centres by cells of a periodic cube, which are as wide as the largest sphere. */
+struct cells {
+    uint32_t side;  /* cells along an edge */
+    int32_t *first; /* [side^3] a sphere of the cell, or -1 */
+    int32_t *next;  /* [n] another one of the same cell, or -1 */
+};
+
+static uint32_t cell_index(double c, double edge, uint32_t side) {
+    const uint32_t cell = (uint32_t)(c / edge * side);
+    return cell < side ? cell : side - 1;
+}
+
+static void fill_cells(struct cells *cells, const struct bed *bed, double edge) {
+    const uint32_t side = cells->side;
+    for (uint32_t c = 0; c < side * side * side; ++c) cells->first[c] = -1;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const uint32_t c = (cell_index(bed->z[i], edge, side) * side + cell_index(bed->y[i], edge, side)) * side +
+                           cell_index(bed->x[i], edge, side);
+        cells->next[i] = cells->first[c];
+        cells->first[c] = (int32_t)i;
+    }
+}
+
+/* Pushes two spheres apart along their line of centres, sphere i by its share of what is missing; true if they did
+ * overlap. */
+static bool push(struct bed *bed, double edge, uint32_t i, uint32_t j, double share) {
+    double *const axis[3] = {bed->x, bed->y, bed->z};
+    double e[3], square = 0;
+    for (int a = 0; a < 3; ++a) {
+        e[a] = axis[a][j] - axis[a][i];
+        e[a] -= edge * round(e[a] / edge);
+        square += e[a] * e[a];
+    }
+    const double sum = bed->r[i] + bed->r[j], distance = sqrt(square);
+    if (distance >= sum) return false;
+    const double missing = distance > 0 ? sum * (1 + SPARE) / distance - 1 : 0;
+    for (int a = 0; a < 3; ++a) {
+        axis[a][i] -= share * missing * e[a];
+        axis[a][j] += (1 - share) * missing * e[a];
+    }
+    return true;
+}
+
+static void wrap_and_fill(struct cells *cells, struct bed *bed, double edge) {
+    double *const axis[3] = {bed->x, bed->y, bed->z};
+    for (int a = 0; a < 3; ++a)
+        for (uint32_t i = 0; i < bed->n; ++i) axis[a][i] -= edge * floor(axis[a][i] / edge);
+    fill_cells(cells, bed, edge);
+}
+
+static bool sweep(struct bed *bed, double edge, struct cells *cells) {
+    bool overlap = false;
+    wrap_and_fill(cells, bed, edge);
+    const uint32_t side = cells->side;
+    for (uint32_t c = 0; c < side * side * side; ++c)
+        for (int32_t dz = -1; dz <= 1; ++dz)
+            for (int32_t dy = -1; dy <= 1; ++dy)
+                for (int32_t dx = -1; dx <= 1; ++dx) {
+                    const uint32_t x = (c % side + side + (uint32_t)dx) % side;
+                    const uint32_t y = (c / side % side + side + (uint32_t)dy) % side;
+                    const uint32_t z = (c / side / side + side + (uint32_t)dz) % side;
+                    for (int32_t i = cells->first[c]; i >= 0; i = cells->next[i])
+                        for (int32_t j = cells->first[(z * side + y) * side + x]; j >= 0; j = cells->next[j])
+                            if (j > i) overlap |= push(bed, edge, (uint32_t)i, (uint32_t)j, 0.5);
+                }
+    return overlap;
+}
+
+/* Pushes for up to `sweeps` sweeps; *apart tells whether no spheres overlap any more. */
+static int pack(struct bed *bed, uint32_t n, double low, double high, double fraction, uint64_t seed, uint32_t sweeps,
+                bool *apart) {
+    double volume = 0, largest = 0;
+    for (uint32_t i = 0; i < n; ++i) {
+        const double r = low + (high - low) * bed_make_random(seed, 4 * (uint64_t)i);
+        const int status = bed_add(bed, &(struct bed_sphere){.r = r});
+        if (status) return status;
+        volume += 4 * PI / 3 * r * r * r;
+        largest = fmax(largest, r);
+    }
+    const double edge = cbrt(volume / fraction);
+    for (uint32_t i = 0; i < n; ++i) {
+        bed->x[i] = edge * bed_make_random(seed, 4 * (uint64_t)i + 1);
+        bed->y[i] = edge * bed_make_random(seed, 4 * (uint64_t)i + 2);
+        bed->z[i] = edge * bed_make_random(seed, 4 * (uint64_t)i + 3);
+    }
+    struct cells cells = {.side = (uint32_t)fmax(1, floor(edge / (2 * largest)))};
+    cells.first = malloc((size_t)cells.side * cells.side * cells.side * sizeof *cells.first);
+    cells.next = malloc(n * sizeof *cells.next);
+    int status = cells.first && cells.next ? STATUS_OK : message_memory();
+    *apart = false;
+    for (uint32_t round = 0; round < sweeps && !status && !*apart; ++round) {
+        *apart = !sweep(bed, edge, &cells);
+        status = interrupt_status();
+    }
+    free(cells.first);
+    free(cells.next);
+    for (int axis = 0; axis < 3; ++axis) bed->period[axis] = bed->high[axis] = edge;
+    return status;
+}
+
+int bed_make_packing(struct bed *bed, uint32_t n, double low, double high, double fraction, uint64_t seed) {
+    bool apart;
+    const int status = pack(bed, n, low, high, fraction, seed, SWEEPS, &apart);
+    if (status || apart) return status;
+    return message(STATUS_INPUT, "cannot pack %u spheres to %g of solid", n, fraction);
+}
+
+int bed_make_jammed(struct bed *bed, uint32_t n, double fraction, uint32_t sweeps, uint64_t seed) {
+    bool apart;
+    return pack(bed, n, 1, 1, fraction, seed, sweeps, &apart);
+}
+
+/* The same for spheres of very different sizes: cells are as wide as the smallest sphere, and of each pair the larger
+ * one looks for the other. The smaller one gives way. */
+static bool sweep_by_size(struct bed *bed, double edge, struct cells *cells) {
+    bool overlap = false;
+    wrap_and_fill(cells, bed, edge);
+    const int64_t side = cells->side;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double *const centre[3] = {bed->x, bed->y, bed->z};
+        int64_t low[3], high[3];
+        for (int a = 0; a < 3; ++a) {
+            low[a] = (int64_t)floor((centre[a][i] - 2 * bed->r[i]) / edge * (double)side);
+            high[a] = (int64_t)floor((centre[a][i] + 2 * bed->r[i]) / edge * (double)side);
+            if (high[a] - low[a] >= side) high[a] = low[a] + side - 1;
+        }
+        for (int64_t z = low[2]; z <= high[2]; ++z)
+            for (int64_t y = low[1]; y <= high[1]; ++y)
+                for (int64_t x = low[0]; x <= high[0]; ++x) {
+                    const int64_t cell = ((z + side) % side * side + (y + side) % side) * side + (x + side) % side;
+                    for (int32_t j = cells->first[cell]; j >= 0; j = cells->next[j]) {
+                        const double r = bed->r[j], size = pow(bed->r[i] / r, 3);
+                        if (r < bed->r[i] || (!(r > bed->r[i]) && (uint32_t)j > i))
+                            overlap |= push(bed, edge, i, (uint32_t)j, 1 / (1 + size));
+                    }
+                }
+    }
+    return overlap;
+}
+
+int bed_make_two_sizes(struct bed *bed, uint32_t large, double ratio, double fraction, uint64_t seed) {
+    const uint32_t small = (uint32_t)(large * ratio * ratio * ratio + 0.5), n = large + small;
+    const double edge = cbrt(4 * PI / 3 * (small + large * ratio * ratio * ratio) / fraction);
+    for (uint32_t i = 0; i < n; ++i) {
+        const int status = bed_add(bed, &(struct bed_sphere){.x = edge * bed_make_random(seed, 3 * (uint64_t)i),
+                                                             .y = edge * bed_make_random(seed, 3 * (uint64_t)i + 1),
+                                                             .z = edge * bed_make_random(seed, 3 * (uint64_t)i + 2),
+                                                             .r = i < large ? ratio : 1});
+        if (status) return status;
+    }
+    struct cells cells = {.side = (uint32_t)fmax(1, floor(edge / 2))};
+    cells.first = malloc((size_t)cells.side * cells.side * cells.side * sizeof *cells.first);
+    cells.next = malloc(n * sizeof *cells.next);
+    int status = cells.first && cells.next ? STATUS_OK : message_memory();
+    for (uint32_t round = 0; !status && sweep_by_size(bed, edge, &cells); ++round) {
+        status = interrupt_status();
+        if (round == SWEEPS)
+            status = message(STATUS_INPUT, "cannot pack spheres of two sizes to %g of solid", fraction);
+    }
+    free(cells.first);
+    free(cells.next);
+    for (int axis = 0; axis < 3; ++axis) bed->period[axis] = bed->high[axis] = edge;
+    return status;
+}
+
+int bed_make_copies(struct bed *to, const struct bed *from, const uint32_t copies[3]) {
+    int status = STATUS_OK;
+    for (uint32_t i = 0; i < from->n; ++i)
+        for (uint32_t a = 0; a < copies[0]; ++a)
+            for (uint32_t b = 0; b < copies[1]; ++b)
+                for (uint32_t c = 0; c < copies[2] && !status; ++c)
+                    status = bed_add(to, &(struct bed_sphere){.x = from->x[i] + a * from->period[0],
+                                                              .y = from->y[i] + b * from->period[1],
+                                                              .z = from->z[i] + c * from->period[2],
+                                                              .r = from->r[i]});
+    for (int axis = 0; axis < 3; ++axis) to->period[axis] = to->high[axis] = copies[axis] * from->period[axis];
+    return status;
+}
+
+int bed_make_fcc(struct bed *bed, double low, double distance, uint64_t seed) {
+    const double edge = sqrt(2);
+    const int most = (int)(distance / edge) + 1;
+    int status = bed_add(bed, &(struct bed_sphere){.r = 1});
+    uint64_t count = 0;
+    for (int i = -most; i <= most; ++i)
+        for (int j = -most; j <= most; ++j)
+            for (int k = -most; k <= most; ++k) {
+                const int square = i * i + j * j + k * k;
+                if ((i + j + k) % 2 != 0 || square == 0) continue;
+                const double r = low + (1 - low) * bed_make_random(seed, count++);
+                if (2 * square > distance * distance * (1 + 1e-12) || status) continue;
+                status = bed_add(bed, &(struct bed_sphere){edge * i, edge * j, edge * k, r, 0, 0});
+            }
+    return status;
+}

@@ -1,0 +1,48 @@
+/* wall_option.h - the option --wall: planes and a cylinder about a bed. SPDX-License-Identifier: MIT */
+#ifndef WALL_OPTION_H
+#define WALL_OPTION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "bed/bed.h"
+#include "fibrad.h"
+
+/* What --wall asks for; several such options add up. Zeroed: no walls. */
+struct wall_options {
+    uint32_t count;
+    uint32_t wall[FIBRAD_WALLS]; /* [count] numbers of the kernel, in the order given */
+    bool placed[FIBRAD_WALLS];   /* [count] whether its place was given */
+    double at[FIBRAD_WALLS];     /* [count] that place [L] */
+    double cylinder[3];          /* x, y, radius [L] */
+    bool automatic, box;         /* the words auto and box: which axes are open is known with the bed alone */
+};
+
+/* The walls by number, in the order given, those of auto and box last: wall[k] is j = -2 - k in a matrix. */
+struct wall_order {
+    uint32_t count, wall[FIBRAD_WALLS];
+};
+
+/* What --help says of it: the row of a table of options, without braces, and more below. */
+#define OPTION_WALL                                                                                                    \
+    KEY_WALL, "wall", "LIST",                                                                                          \
+        "walls: auto (box of the file, open axes), box (all six sides), xmin, xmax ... zmax, cylinder:X,Y,R "          \
+        "(axis along z) [none]"
+#define WALLS_MORE                                                                                                     \
+    "Walls: a LIST parted by commas. A side is xmin=VALUE, or without =VALUE the end of the file's box, or else of "   \
+    "the\n"                                                                                                            \
+    "spheres. Sides named besides auto or box come first, and stand where they say.\n"
+
+/* "xmin" ... "zmax", "cylinder". */
+const char *wall_name(uint32_t wall);
+
+/* Takes one argument of --wall. Status 0 or STATUS_USAGE. */
+int walls_option(const char *text, struct wall_options *options);
+
+/* Places the walls about a bed whose periods are settled; `file` is its name in messages. order->count is 0 if no walls
+ * were asked for. Status 0, STATUS_USAGE if walls and periodic axes do not agree, STATUS_INPUT naming the line if a
+ * centre lies beyond a wall. */
+int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, fibrad_walls *walls,
+             struct wall_order *order);
+
+#endif

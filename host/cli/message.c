@@ -1,0 +1,39 @@
+/* message.c - exit statuses and the one line that tells what went wrong. SPDX-License-Identifier: MIT */
+#include "cli/message.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+/* Prints at most one line, whatever names and tokens it quotes. */
+static void print_line(const char *prefix, const char *format, va_list arguments) {
+    char text[1024];
+    vsnprintf(text, sizeof text, format, arguments);
+    for (char *c = text; *c; ++c)
+        if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
+    fprintf(stderr, "fibrad: %s%s\n", prefix, text);
+}
+
+int message(int status, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    print_line("", format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+int message_at(int status, const char *file, uint64_t line, const char *format, ...) {
+    char place[512];
+    if (line)
+        snprintf(place, sizeof place, "%.480s:%llu: ", file, (unsigned long long)line);
+    else
+        snprintf(place, sizeof place, "%.480s: ", file);
+    for (char *c = place; *c; ++c)
+        if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
+    va_list arguments;
+    va_start(arguments, format);
+    print_line(place, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+int message_memory(void) { return message(STATUS_MEMORY, "out of memory"); }

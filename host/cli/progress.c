@@ -1,0 +1,50 @@
+/* progress.c - a bar on standard error with rate and time left. SPDX-License-Identifier: MIT */
+#include "cli/progress.h"
+
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+double progress_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void progress_begin(struct progress *progress, bool forced, const char *what, uint64_t total) {
+    const double now = progress_clock();
+    *progress = (struct progress){
+        .on = forced || isatty(STDERR_FILENO), .what = what, .total = total, .begun = now, .shown = now};
+}
+
+static void draw(const struct progress *progress, uint64_t done, double now) {
+    enum { WIDTH = 30 };
+    const double part = progress->total ? (double)done / (double)progress->total : 1;
+    const double passed = now - progress->begun;
+    const double rate = passed > 0 ? (double)done / passed : 0;
+    const double left = rate > 0 ? (double)(progress->total - done) / rate : 0;
+    char bar[WIDTH + 1] = "";
+    for (int k = 0; k < WIDTH; ++k) bar[k] = k < part * WIDTH ? '#' : '.';
+    fprintf(stderr, "\r[%s] %3.0f %%  %llu of %llu %s, %.0f/s, %d:%02d left ", bar, 100 * part,
+            (unsigned long long)done, (unsigned long long)progress->total, progress->what, rate, (int)left / 60,
+            (int)left % 60);
+    fflush(stderr);
+}
+
+void progress_show(struct progress *progress, uint64_t done) {
+    if (!progress->on) return;
+    const double now = progress_clock();
+    if (now - progress->shown < 0.1) return;
+    progress->shown = now;
+    draw(progress, done, now);
+}
+
+void progress_end(struct progress *progress, uint64_t done) {
+    if (!progress->on) return;
+    if (isatty(STDERR_FILENO)) {
+        fprintf(stderr, "\r%80s\r", "");
+    } else {
+        draw(progress, done, progress_clock());
+        fputc('\n', stderr);
+    }
+}

@@ -1,0 +1,280 @@
+/* command_bed.c - `fibrad bed`: view factors of all spheres of a file. SPDX-License-Identifier: MIT */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bed/bed.h"
+#include "cli/message.h"
+#include "cli/targets.h"
+#include "command/bed_options.h"
+#include "command/commands.h"
+#include "compute/rows.h"
+#include "compute/tolerance.h"
+#include "plot/plot_bed.h"
+#include "write/write.h"
+
+enum { KEY_CUTOFF = KEY_OWN, KEY_TARGETS, KEY_FEWER };
+
+static const struct option table[] = {
+    {KEY_METHOD, "method", "NAME",
+     "beam: along Fibonacci directions; surface: between nodes; cast: quasi-random rays; mc: random rays [beam]"},
+    {KEY_DIRECTIONS, "directions", "N", "beam: directions, 8 to 65536; error ~ N^-1.5 [233]"},
+    {KEY_AREAS, "areas", "KIND", "beam: visible areas exact, or by points (faster, less accurate) [exact]"},
+    {KEY_ERROR, "error", "E",
+     "beam: as many directions as bring the estimated Euclidean error of every row to E or less, 1e-7 to 1 [none]"},
+    {KEY_POINTS, "points", "M", "beam: points per window: 64, 128 or 256; implies --areas points [256]"},
+    {KEY_NF, "nf", "N", "surface: nodes, a Fibonacci number from 8 to 987 [55]"},
+    {KEY_NO_CORRECTION, "no-correction", NULL, "surface: the plain sums [corrected by the exact unblocked factor]"},
+    {KEY_RAYS, "rays", "N", "cast, mc: rays from each sphere; error ~ N^-0.6, N^-0.5 [20000]"},
+    {KEY_SEED, "seed", "S", "cast, mc: another number, other rays [0]"},
+    {KEY_CUTOFF, "cutoff", "D", "spheres with centres farther apart than D do not see each other [none]"},
+    {KEY_TARGETS, "targets", "LIST", "rows wanted, such as 3,7,10-19, or all; a list implies --raw [all]"},
+    {KEY_FEWER, "fewer-for-large", NULL,
+     "a fourth of the directions for spheres over 3 mean radii, as S_ij is known from the small ones too [all]"},
+    {KEY_RAW, "raw", NULL, "do not average F_ij and F_ji [averaged: A_i F_ij = A_j F_ji]"},
+    {OPTION_PERIODIC},
+    {OPTION_WALL},
+    {OPTION_FRAME},
+    {OPTION_THREADS},
+    {'o', "output", "OUT", "the matrix: .csv, .mtx, .npz (SciPy); the spheres: .vtp [summary only]"},
+    {OPTION_IDS},
+    {KEY_PLOT, "plot", "OUT", "a picture, .svg or .png, by gnuplot [none]"},
+    {OPTION_PROGRESS},
+    {OPTION_HELP},
+    {0, NULL, NULL, NULL}};
+
+struct request {
+    struct bed_options bed;
+    const char *plot, *targets;
+    write_function *write;
+    enum method method;
+    struct beam_options beam;
+    fibrad_beam_rule beam_rule, large_rule;
+    fibrad_surface_rule surface;
+    fibrad_cast_rule cast;
+    double cutoff, error; /* 0: none */
+    bool beam_given, surface_given, cast_given, fewer_for_large;
+    struct wall_order order;
+    struct run_options run;
+};
+
+static int help(void) {
+    puts("fibrad bed FILE [options]\n\n"
+         "View factors between all spheres of FILE: .csv with a header x,y,z,r, a LAMMPS or LIGGGHTS text dump,\n"
+         "YADE text (#format x_y_z_r), or - for standard input. Positions count from 0 in the order of the file.\n");
+    options_print(table);
+    puts("\n" WALLS_MORE
+         "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... in the order given and the\n"
+         "surroundings j = -1, so that rows add up to 1; i = -2, -3 ... from walls of finite area to spheres; in .vtp "
+         "an\n"
+         "array for each wall. .mtx and .npz hold spheres only.\n\n"
+         "Standard output ends with a summary, one `key value` a line; `wall_NAME`: mean F from a sphere, area.\n\n"
+         "Examples:\n"
+         "  fibrad bed packing.dump -o F.mtx --plot bed.png\n"
+         "  fibrad bed packing.dump --error 0.001 -o F.mtx\n"
+         "  fibrad bed spheres.csv --directions 987 --periodic 12,12,0 -o F.csv\n"
+         "  fibrad bed packing.dump --wall auto -o F.csv\n"
+         "  fibrad bed spheres.csv --wall cylinder:0,0,25,zmin=0 -o F.csv\n"
+         "  fibrad bed packing.dump --method cast --rays 200000 -o F.csv\n"
+         "  fibrad bed packing.dump --frame 3 --targets 0,7,100-199 -o rows.csv\n"
+         "  zcat packing.dump.gz | fibrad bed - --points 128 -o bed.vtp");
+    return STATUS_OK;
+}
+
+static int take_option(struct request *request, const struct options *options, int key) {
+    const char *value = options->value;
+    int status = STATUS_OK;
+    switch (key) {
+    case KEY_METHOD:
+        status = options_method(value, &request->method);
+        if (!status && request->method == METHOD_EXACT)
+            status = message(STATUS_USAGE, "--method %s is for pairs only", value);
+        break;
+    case KEY_DIRECTIONS:
+    case KEY_AREAS:
+    case KEY_POINTS:
+        request->beam_given = true;
+        return options_beam(key, value, &request->beam);
+    case KEY_NF:
+    case KEY_NO_CORRECTION:
+        request->surface_given = true;
+        return options_surface(key, value, &request->surface);
+    case KEY_RAYS:
+    case KEY_SEED:
+        request->cast_given = true;
+        return options_cast(key, value, &request->cast);
+    case KEY_CUTOFF:
+        return options_number("--cutoff", value, 1e-150, 1e150, &request->cutoff);
+    case KEY_ERROR:
+        return options_number("--error", value, 1e-7, 1, &request->error);
+    case KEY_TARGETS:
+        request->targets = strcmp(value, "all") == 0 ? NULL : value;
+        if (request->targets) status = targets_mark(value, 0, NULL);
+        break;
+    case KEY_RAW:
+        request->run.raw = true;
+        break;
+    case KEY_FEWER:
+        request->fewer_for_large = true;
+        break;
+    case KEY_PLOT:
+        request->plot = value;
+        break;
+    default:
+        return bed_options_take(&request->bed, options, key);
+    }
+    return status;
+}
+
+/* The row function and its rule; options of other methods are refused. */
+static int choose_method(struct request *request) {
+    int status;
+    if (request->beam_given && request->method != METHOD_BEAM)
+        return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
+    if (request->error > 0 && request->method != METHOD_BEAM)
+        return message(STATUS_USAGE, "--error is for --method beam");
+    if (request->error > 0 && request->beam.directions > 0)
+        return message(STATUS_USAGE, "--error finds the directions itself; leave out --directions");
+    if (request->surface_given && request->method != METHOD_SURFACE)
+        return message(STATUS_USAGE, "--nf and --no-correction are for --method surface");
+    if (request->cast_given && request->method != METHOD_CAST && request->method != METHOD_MC)
+        return message(STATUS_USAGE, "--rays and --seed are for --method cast and mc");
+    request->beam_rule.cutoff = request->surface.cutoff = request->cast.cutoff = request->cutoff;
+    request->cast.random = request->method == METHOD_MC;
+    switch (request->method) {
+    case METHOD_SURFACE:
+        request->run.method = method_surface(&request->surface);
+        return STATUS_OK;
+    case METHOD_CAST:
+    case METHOD_MC:
+        request->run.method = method_cast(&request->cast);
+        return STATUS_OK;
+    default:
+        request->run.method = method_beam(&request->beam_rule);
+        status = options_beam_rule(&request->beam, &request->beam_rule);
+        request->large_rule = request->beam_rule;
+        request->large_rule.directions /= 4;
+        if (request->fewer_for_large && request->large_rule.directions >= FIBRAD_DIRECTIONS_MIN)
+            request->run.method.large_rule = &request->large_rule;
+        return status;
+    }
+}
+
+/* What can be found wrong before any work is done. */
+static int check_request(struct request *request) {
+    const char *endings;
+    if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad bed --help");
+    request->write = write_find(request->bed.out, &endings);
+    const int status = bed_options_output(&request->bed, request->write, endings);
+    if (status) return status;
+    if (request->plot && !plot_ending(request->plot))
+        return message_at(STATUS_USAGE, request->plot, 0, "unknown ending; there are .svg and .png");
+    if (request->targets) request->run.raw = true;
+    return choose_method(request);
+}
+
+static int parse(struct request *request, int argc, char **argv) {
+    struct options options = {.command = "bed", .table = table, .argc = argc, .argv = argv};
+    *request = (struct request){.method = METHOD_BEAM, .surface.nodes = 55, .cast.rays = 20000, .bed.frame = -1};
+    int status = STATUS_OK;
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
+        status = take_option(request, &options, key);
+    return status ? status : check_request(request);
+}
+
+static void warn_of_overlap(const char *file, const struct bed *bed, const fibrad_scene_facts *facts) {
+    if (facts->overlap_max == 0) return;
+    const uint64_t line[2] = {bed->line[facts->overlap_pair[0]], bed->line[facts->overlap_pair[1]]};
+    fprintf(stderr, "fibrad: %s: largest overlap %.3g of a radius, lines %" PRIu64 " and %" PRIu64 "%s\n", file,
+            facts->overlap_max, line[0], line[1], facts->overlap_max > 0.05 ? ": warning: above 5 %" : "");
+}
+
+static void print_summary(const struct request *request, const struct bed *bed, const struct result *result) {
+    const fibrad_rows *rows = &result->rows;
+    printf("%s: radii %g to %g, %s rows, %s\n", request->bed.name, result->facts.radius_min, result->facts.radius_max,
+           request->run.raw ? "raw" : "reciprocal", fibrad_isa_name(result->facts.isa));
+    printf("spheres %" PRIu32 "\n", bed->n);
+    printf("nonzeros %" PRIu64 "\n", rows->start[rows->n]);
+    if (request->method == METHOD_BEAM)
+        printf("directions %" PRIu32 "\n", result->directions);
+    else if (request->method == METHOD_SURFACE)
+        printf("nf %" PRIu32 "\n", request->surface.nodes);
+    else
+        printf("rays %" PRIu32 "\n", request->cast.rays);
+    printf("threads %d\n", result->threads);
+    printf("seconds %.17g\n", result->seconds);
+    printf("row_sum_min %.17g\n", result->row_sum_min);
+    printf("row_sum_max %.17g\n", result->row_sum_max);
+    printf("escaped_mean %.17g\n", result->escaped_mean);
+    printf("closure_max %.17g\n", result->closure_max);
+    printf("reciprocity_max %.17g\n", result->reciprocity_max);
+    printf("error_estimate %.17g\n", result->error_estimate);
+    for (uint32_t k = 0; k < request->order.count; ++k) {
+        const uint32_t wall = request->order.wall[k];
+        printf("wall_%s %.17g %.17g\n", wall_name(wall), result->wall_mean[wall], result->facts.wall_area[wall]);
+    }
+    printf("fallbacks %" PRIu64 "\n", result->fallbacks);
+}
+
+static int write_results(const struct request *request, const struct bed *bed, const struct result *result,
+                         const struct output *out, const struct output *plot) {
+    const struct contents contents = {bed, result, request->bed.ids, &request->order, NULL};
+    int status = request->bed.out ? request->write(out->file, &contents) : STATUS_OK;
+    if (!status && request->plot) status = plot_bed(plot, request->bed.file, &contents);
+    return status;
+}
+
+/* Opens the outputs before the work, so that a path that cannot be written costs no time. */
+static int compute_and_write(struct request *request, const struct bed *bed, struct result *result) {
+    struct output out = {0}, plot = {0};
+    int status = output_open(&out, request->bed.out);
+    if (!status) status = output_open(&plot, request->plot);
+    if (!status)
+        status = request->error > 0 ? tolerance_rows(bed, &request->run, &request->beam_rule, request->error, result)
+                                    : run_rows(bed, &request->run, result);
+    if (!status) warn_of_overlap(request->run.file, bed, &result->facts);
+    if (!status && request->error > 0 && result->error_estimate > request->error)
+        fprintf(stderr, "fibrad: %s: warning: %d directions were not enough for --error %g\n", request->run.file,
+                FIBRAD_DIRECTIONS_MAX, request->error);
+    if (!status) status = write_results(request, bed, result, &out, &plot);
+    status = output_close(&out, status);
+    return output_close(&plot, status);
+}
+
+static int run(struct request *request, struct bed *bed, struct result *result) {
+    request->run.file = request->bed.name;
+    request->run.threads = request->bed.threads;
+    request->run.progress = request->bed.progress;
+    int status = bed_options_read(&request->bed, bed);
+    if (status) return status;
+    if (request->method == METHOD_SURFACE && request->cutoff == 0 &&
+        (bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0))
+        return message(STATUS_USAGE, "--method surface needs a --cutoff in a periodic box");
+    status = walls_of(&request->bed.walls, bed, request->run.file, &request->run.walls, &request->order);
+    if (status) return status;
+    if (request->method == METHOD_SURFACE && request->order.count > 0)
+        return message(STATUS_USAGE, "--wall is for the methods beam, cast and mc");
+    bool *marks = NULL;
+    if (request->targets) {
+        marks = calloc(bed->n, sizeof *marks);
+        status = marks ? targets_mark(request->targets, bed->n, marks) : message_memory();
+    }
+    request->run.wanted = marks;
+    if (!status) status = compute_and_write(request, bed, result);
+    if (!status) print_summary(request, bed, result);
+    free(marks);
+    return status;
+}
+
+int command_bed(int argc, char **argv) {
+    struct request request;
+    struct bed bed = {0};
+    struct result result = {0};
+    int status = parse(&request, argc, argv);
+    if (status) return status == STATUS_HELP ? help() : status;
+    status = run(&request, &bed, &result);
+    result_free(&result);
+    bed_free(&bed);
+    return status;
+}

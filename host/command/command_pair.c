@@ -1,0 +1,350 @@
+/* command_pair.c - `fibrad pair`: the view factor between two spheres. SPDX-License-Identifier: MIT */
+#include <gsl/gsl_errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/message.h"
+#include "cli/options.h"
+#include "command/commands.h"
+#include "compute/rows.h"
+#include "reference/exact_gsl.h"
+#include "reference/reference.h"
+
+enum { KEY_OBSTACLE = KEY_OWN, KEY_CHECK };
+
+static const struct option table[] = {
+    {KEY_METHOD, "method", "NAME",
+     "exact; beam: along Fibonacci directions; surface: between nodes; cast: rays; mc: random rays [exact]"},
+    {KEY_OBSTACLE, "obstacle", "X,Y,Z,R", "a sphere in the way; may be given again [none]"},
+    {KEY_CHECK, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]"},
+    {KEY_DIRECTIONS, "directions", "N", "beam: directions, 8 to 65536; error ~ N^-1.5 [233]"},
+    {KEY_AREAS, "areas", "KIND", "beam: visible areas exact, or by points [exact]"},
+    {KEY_POINTS, "points", "M", "beam: points per window: 64, 128 or 256; implies --areas points [256]"},
+    {KEY_NF, "nf", "N", "surface: nodes, a Fibonacci number from 8 to 987 [55]"},
+    {KEY_NO_CORRECTION, "no-correction", NULL, "surface: the plain sum [corrected by the exact unblocked factor]"},
+    {KEY_RAYS, "rays", "N", "cast, mc: rays from sphere 1; error ~ N^-0.6, N^-0.5 [20000]"},
+    {KEY_SEED, "seed", "S", "cast, mc: another number, other rays [0]"},
+    {OPTION_HELP},
+    {0, NULL, NULL, NULL}};
+
+enum { SPHERES_MAX = 1000 };
+
+struct request {
+    double r1, r2, gap;
+    int given; /* of these three */
+    /* sphere 1, sphere 2, obstacles */
+    uint32_t n;
+    double x[SPHERES_MAX], y[SPHERES_MAX], z[SPHERES_MAX], r[SPHERES_MAX];
+    enum method method;
+    struct beam_options beam;
+    fibrad_beam_rule rule;
+    fibrad_surface_rule surface;
+    fibrad_cast_rule cast;
+    bool beam_given, surface_given, cast_given, check;
+};
+
+static int help(void) {
+    puts("fibrad pair R1 R2 GAP [options]\n\n"
+         "View factor from sphere 1 (radius R1, at the origin) to sphere 2 (radius R2, at 0,0,R1+R2+GAP). GAP may be\n"
+         "negative: the spheres overlap. With obstacles, exact means adaptive quadrature, to about 1e-9 and slow.\n");
+    options_print(table);
+    puts("\nThe last line of the output is `F12 VALUE`.\n\n"
+         "Examples:\n"
+         "  fibrad pair 1 1 0\n"
+         "  fibrad pair 1 0.3 0.05 --check\n"
+         "  fibrad pair 1 1 1 --obstacle 0.8,0,1.5,0.4 --method beam --directions 4181\n"
+         "  fibrad pair 1 1 1 --obstacle 0.8,0,1.5,0.4 --method surface --nf 144\n"
+         "  fibrad pair 1 1 2 --method cast --rays 200000");
+    return STATUS_OK;
+}
+
+static int take_obstacle(struct request *request, const char *text) {
+    double sphere[4];
+    int count;
+    const int status = options_numbers("--obstacle", text, 4, sphere, &count);
+    if (status) return status;
+    if (count != 4 || !(sphere[3] > 0))
+        return message(STATUS_USAGE, "--obstacle: '%.60s' is not X,Y,Z,R with R above 0", text);
+    if (request->n == SPHERES_MAX) return message(STATUS_USAGE, "more than %d obstacles", SPHERES_MAX - 2);
+    const uint32_t i = request->n++;
+    request->x[i] = sphere[0];
+    request->y[i] = sphere[1];
+    request->z[i] = sphere[2];
+    request->r[i] = sphere[3];
+    return STATUS_OK;
+}
+
+static int take_length(struct request *request, const char *text) {
+    switch (request->given++) {
+    case 0:
+        return options_number("R1", text, 1e-150, 1e150, &request->r1);
+    case 1:
+        return options_number("R2", text, 1e-150, 1e150, &request->r2);
+    case 2:
+        return options_number("GAP", text, -1e150, 1e150, &request->gap);
+    default:
+        return message(STATUS_USAGE, "three lengths only, not also '%.40s'; see fibrad pair --help", text);
+    }
+}
+
+static int take_option(struct request *request, const struct options *options, int key) {
+    switch (key) {
+    case OPTIONS_POSITIONAL:
+        return take_length(request, options->value);
+    case KEY_HELP:
+        return STATUS_HELP;
+    case KEY_METHOD:
+        return options_method(options->value, &request->method);
+    case KEY_OBSTACLE:
+        return take_obstacle(request, options->value);
+    case KEY_CHECK:
+        request->check = true;
+        return STATUS_OK;
+    case KEY_NF:
+    case KEY_NO_CORRECTION:
+        request->surface_given = true;
+        return options_surface(key, options->value, &request->surface);
+    case KEY_RAYS:
+    case KEY_SEED:
+        request->cast_given = true;
+        return options_cast(key, options->value, &request->cast);
+    case OPTIONS_BAD:
+        return STATUS_USAGE;
+    default:
+        request->beam_given = true;
+        return options_beam(key, options->value, &request->beam);
+    }
+}
+
+static int parse(struct request *request, int argc, char **argv) {
+    struct options options = {.command = "pair", .table = table, .argc = argc, .argv = argv};
+    request->cast.rays = 20000;
+    request->n = 2; /* obstacles behind spheres 1 and 2 */
+    int status = STATUS_OK;
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
+        status = take_option(request, &options, key);
+    if (status) return status;
+    if (request->given < 3) return message(STATUS_USAGE, "R1, R2 and GAP are needed; see fibrad pair --help");
+    if (request->check && (request->method != METHOD_EXACT || request->n > 2))
+        return message(STATUS_USAGE, "--check is for the exact factor without obstacles");
+    if (request->beam_given && request->method != METHOD_BEAM)
+        return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
+    if (request->surface_given && request->method != METHOD_SURFACE)
+        return message(STATUS_USAGE, "--nf and --no-correction are for --method surface");
+    if (request->cast_given && request->method != METHOD_CAST && request->method != METHOD_MC)
+        return message(STATUS_USAGE, "--rays and --seed are for --method cast and mc");
+    if (request->gap <= -2 * fmin(request->r1, request->r2))
+        return message(STATUS_USAGE, "GAP: %g: one sphere lies inside the other", request->gap);
+    request->r[0] = request->r1;
+    request->r[1] = request->r2;
+    request->z[1] = request->r1 + request->r2 + request->gap;
+    return options_beam_rule(&request->beam, &request->rule);
+}
+
+static int report_check(const char *name, int error, double value, double abserr, double f12) {
+    if (error) return message(STATUS_USAGE, "%s: %s", name, gsl_strerror(error));
+    printf("%s %.17g error %.3g difference %.3g\n", name, value, abserr, value / f12 - 1);
+    return STATUS_OK;
+}
+
+/* Differences are relative to the kernel's value. */
+static int check(const struct request *request, double f12) {
+    double value = 0, abserr = 0;
+    int status = STATUS_OK;
+    printf("kernel %.17g\n", f12);
+    if (request->gap >= 0) {
+        const int error = exact_gsl_polar(request->r1, request->r2, request->gap, &value, &abserr);
+        status = report_check("gsl_polar", error, value, abserr, f12);
+    } else {
+        puts("gsl_polar none: the spheres overlap");
+    }
+    if (status) return status;
+    const int error = exact_gsl_lens(request->r1, request->r2, request->gap, &value, &abserr);
+    return report_check("gsl_lens", error, value, abserr, f12);
+}
+
+static int exact(const struct request *request, double *f12) {
+    const int status = fibrad_pair_exact(request->r1, request->r2, request->gap, f12);
+    if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
+    return request->check ? check(request, *f12) : STATUS_OK;
+}
+
+static const char *name_of(uint32_t i, char text[32]) {
+    if (i < 2)
+        snprintf(text, 32, "sphere %" PRIu32, i + 1);
+    else
+        snprintf(text, 32, "obstacle %" PRIu32, i - 1);
+    return text;
+}
+
+static int refuse(int status, const fibrad_fault *fault) {
+    char first[32], second[32];
+    return message(STATUS_USAGE, "%s and %s: %s", name_of(fault->first, first), name_of(fault->second, second),
+                   fibrad_status_text(status));
+}
+
+/* The spheres as a scene in a block to be freed; only sound ones make one. */
+static int make_scene(const struct request *request, fibrad_scene **scene, void **block) {
+    const fibrad_scene_config config = {.spheres = request->n};
+    const fibrad_spheres spheres = {request->x, request->y, request->z, request->r, request->n};
+    const size_t size = fibrad_scene_size(&config);
+    fibrad_fault fault;
+    *block = run_block(size);
+    if (!*block) return message_memory();
+    const int status = fibrad_scene_init(scene, *block, size, &config, &spheres, &fault);
+    return status ? refuse(status, &fault) : STATUS_OK;
+}
+
+/* Pairs with obstacles: the value to 1e-9 of the unobstructed factor, or as near as a minute's work gets. */
+static int reference(const struct request *request, double *f12) {
+    const struct reference_rule rule = {.tolerance = 1e-9, .max_evaluations = 5000000};
+    const fibrad_spheres spheres = {request->x, request->y, request->z, request->r, request->n};
+    struct reference_report report;
+    fibrad_scene *scene;
+    void *block;
+    int status = make_scene(request, &scene, &block);
+    free(block);
+    if (status) return status;
+    switch (reference_pair(&spheres, 0, 1, &rule, f12, &report)) {
+    case REFERENCE_OK:
+        break;
+    case REFERENCE_UNCONVERGED:
+        message(STATUS_OK, "warning: stopped at an estimated error of %.1e", report.error);
+        break;
+    case REFERENCE_MEMORY:
+        return message_memory();
+    default:
+        return message(STATUS_USAGE, "these spheres cannot be computed");
+    }
+    printf("evaluations %" PRIu64 "\nerror_estimate %.3g\n", report.evaluations, report.error);
+    return STATUS_OK;
+}
+
+/* Memory for rows of a few spheres. */
+struct few {
+    fibrad_scene *scene;
+    fibrad_work *work;
+    void *scene_block, *work_block;
+    uint32_t col[SPHERES_MAX];
+    double f[SPHERES_MAX], length[SPHERES_MAX], angle[SPHERES_MAX];
+};
+
+static int make_few(struct few *few, const struct request *request) {
+    const fibrad_work_config config = {.near = SPHERES_MAX, .discs = SPHERES_MAX, .entries = SPHERES_MAX};
+    const size_t size = fibrad_work_size(&config);
+    int status = make_scene(request, &few->scene, &few->scene_block);
+    if (status) return status;
+    few->work_block = run_block(size);
+    if (!few->work_block) return message_memory();
+    status = fibrad_work_init(&few->work, few->work_block, size, &config);
+    return status ? message(STATUS_USAGE, "%s", fibrad_status_text(status)) : STATUS_OK;
+}
+
+static void free_few(struct few *few) {
+    free(few->scene_block);
+    free(few->work_block);
+    free(few);
+}
+
+/* Where sphere j stands in a row; its length if it is not there. */
+static uint32_t find(const fibrad_row *row, uint32_t j) {
+    uint32_t k = 0;
+    while (k < row->length && row->col[k] != j) ++k;
+    return k;
+}
+
+/* F from sphere i to sphere j by the row of i. */
+static int beam_factor(struct few *few, const struct request *request, uint32_t i, uint32_t j, double *f) {
+    fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
+    const int status = fibrad_beam_row(few->scene, few->work, i, &request->rule, &row);
+    if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
+    const uint32_t k = find(&row, j);
+    *f = k < row.length ? row.f[k] : 0;
+    printf("F%" PRIu32 "%" PRIu32 "_raw %.17g\nerror_estimate_%" PRIu32 " %.3g\n", i + 1, j + 1, *f, i + 1, row.error);
+    return STATUS_OK;
+}
+
+static int beam(const struct request *request, double *f12) {
+    struct few *few = calloc(1, sizeof *few);
+    if (!few) return message_memory();
+    double there = 0, back = 0;
+    int status = make_few(few, request);
+    if (!status) status = beam_factor(few, request, 0, 1, &there);
+    if (!status) status = beam_factor(few, request, 1, 0, &back);
+    const double ratio = request->r2 / request->r1;
+    *f12 = (there + ratio * ratio * back) / 2;
+    free_few(few);
+    return status;
+}
+
+/* F12 by rays from sphere 1 alone. */
+static int cast_factor(struct few *few, const struct request *request, double *f12) {
+    fibrad_cast_rule rule = request->cast;
+    fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
+    rule.random = request->method == METHOD_MC;
+    const int status =
+        fibrad_cast_row(few->scene, few->work, 0, &rule, &row, &(fibrad_cast_means){few->length, few->angle});
+    if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
+    const uint32_t k = find(&row, 1);
+    *f12 = k < row.length ? row.f[k] : 0;
+    printf("rays %" PRIu32 "\nerror_estimate %.3g\n", rule.rays, row.error);
+    if (k < row.length) printf("mean_ray_length %.17g\nmean_angle %.17g\n", few->length[k], few->angle[k]);
+    return STATUS_OK;
+}
+
+static int cast(const struct request *request, double *f12) {
+    struct few *few = calloc(1, sizeof *few);
+    if (!few) return message_memory();
+    int status = make_few(few, request);
+    if (!status) status = cast_factor(few, request, f12);
+    free_few(few);
+    return status;
+}
+
+static int surface(const struct request *request, double *f12) {
+    const uint32_t n = request->n - 2;
+    const fibrad_spheres obstacles = {request->x + 2, request->y + 2, request->z + 2, request->r + 2, n};
+    fibrad_surface_facts facts;
+    fibrad_scene *scene;
+    void *block;
+    int status = make_scene(request, &scene, &block);
+    free(block);
+    if (status) return status;
+    block = run_block(FIBRAD_SURFACE_SCRATCH(n + 1) * sizeof(double));
+    if (!block) return message_memory();
+    status =
+        fibrad_surface_pair(request->r1, request->r2, request->gap, &obstacles, &request->surface, block, f12, &facts);
+    free(block);
+    if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
+    printf("error_estimate %.3g\n", facts.error);
+    return STATUS_OK;
+}
+
+static int compute(const struct request *request) {
+    double f12 = 0;
+    int status;
+    if (request->method == METHOD_BEAM)
+        status = beam(request, &f12);
+    else if (request->method == METHOD_SURFACE)
+        status = surface(request, &f12);
+    else if (request->method == METHOD_CAST || request->method == METHOD_MC)
+        status = cast(request, &f12);
+    else if (request->n > 2)
+        status = reference(request, &f12);
+    else
+        status = exact(request, &f12);
+    if (!status) printf("F12 %.17g\n", f12);
+    return status;
+}
+
+int command_pair(int argc, char **argv) {
+    struct request *request = calloc(1, sizeof *request);
+    if (!request) return message_memory();
+    int status = parse(request, argc, argv);
+    if (!status) status = compute(request);
+    if (status == STATUS_HELP) status = help();
+    free(request);
+    return status;
+}

@@ -1,0 +1,177 @@
+/* command_reproduce.c - `fibrad reproduce`: the numbers of the papers beside ours. SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "cli/progress.h"
+#include "command/commands.h"
+#include "plot/gnuplot.h"
+#include "reproduce/reproduce.h"
+
+enum { KEY_ONLY = KEY_OWN, KEY_NO_PLOTS };
+
+static const struct option table[] = {{'o', "output", "DIR", "write CSV files and plots there [none]"},
+                                      {KEY_ONLY, "only", "NAME", "this experiment alone [all]"},
+                                      {KEY_NO_PLOTS, "no-plots", NULL, "CSV files alone [off]"},
+                                      {OPTION_HELP},
+                                      {0, NULL, NULL, NULL}};
+
+static const struct {
+    const char *name, *what;
+    experiment *run;
+} experiments[] = {
+    {"fig3", "error of the surface method against the gap, nothing in between", reproduce_fig3},
+    {"fig4", "equal spheres against the exact factor and other formulas", reproduce_fig4},
+    {"fig7-9", "a third sphere touching both", reproduce_third_sphere},
+    {"fig10", "face-centred cubic beds: sum of the factors against distance", reproduce_fig10},
+    {"table1", "all factors of random beds: seconds", reproduce_table1},
+    {"pebble-pair", "two pebbles: factor, ray length, angle, received radiation", reproduce_pebble_pair},
+    {"pebble-rays", "the same by rays: error, rays for 1 %", reproduce_pebble_rays},
+    {"pebble-bed", "random bed of pebbles: factor within 2 and 3 diameters", reproduce_pebble_bed},
+    {"conductivity", "grey spheres: exchange factor F_E of a random bed and of lattices", reproduce_conductivity},
+    {"exchange", "grey spheres: exchange factor against centre distance", reproduce_exchange},
+};
+enum { EXPERIMENTS = sizeof experiments / sizeof *experiments };
+
+static int help(void) {
+    puts(
+        "fibrad reproduce [options]\n\n"
+        "Computes the tables and figures of the papers that the methods come from, on one thread, and prints what was\n"
+        "published (paper), or found independently by their methods (check), beside ours.\n");
+    options_print(table);
+    puts("\nExperiments:");
+    for (int k = 0; k < EXPERIMENTS; ++k) printf("  %-12s %s\n", experiments[k].name, experiments[k].what);
+    puts("\nExamples:\n"
+         "  fibrad reproduce\n"
+         "  fibrad reproduce --only fig3 -o figures");
+    return STATUS_OK;
+}
+
+void reproduce_compare(struct reproduce *reproduce, const char *what, const char *source, const char *unit,
+                       double theirs, double ours) {
+    const bool points = strcmp(unit, "%") == 0;
+    const double difference = points ? ours - theirs : 100 * (ours / theirs - 1);
+    if (isnan(theirs))
+        printf("%-12s %-70s %-5s %12s %12.6g %-3s\n", reproduce->experiment, what, "", "", ours, unit);
+    else
+        printf("%-12s %-70s %-5s %12.6g %12.6g %-3s %+8.2f %s\n", reproduce->experiment, what, source, theirs, ours,
+               unit, difference, points ? "points" : "%");
+    if (!reproduce->comparison.file) return;
+    fprintf(reproduce->comparison.file, "%s,\"%s\",%s,%s,", reproduce->experiment, what, isnan(theirs) ? "" : source,
+            unit);
+    if (isnan(theirs))
+        fprintf(reproduce->comparison.file, ",%.6g,\n", ours);
+    else
+        fprintf(reproduce->comparison.file, "%.6g,%.6g,%.3f\n", theirs, ours, difference);
+}
+
+static char *path_of(const struct reproduce *reproduce, const char *name, const char *ending) {
+    const size_t size = strlen(reproduce->directory) + strlen(name) + strlen(ending) + 2;
+    char *path = malloc(size);
+    if (path) snprintf(path, size, "%s/%s%s", reproduce->directory, name, ending);
+    return path;
+}
+
+static int write_text(const struct reproduce *reproduce, const char *name) {
+    char *path = path_of(reproduce, name, ".csv");
+    if (!path) return message_memory();
+    struct output output = {0};
+    int status = output_open(&output, path);
+    if (!status) fwrite(reproduce->text, 1, reproduce->length, output.file);
+    status = output_close(&output, status);
+    free(path);
+    return status;
+}
+
+static int draw(const struct reproduce *reproduce, const char *name, const char *script) {
+    char *path = path_of(reproduce, name, ".svg");
+    if (!path) return message_memory();
+    struct output output = {0};
+    struct gnuplot gnuplot;
+    int status = output_open(&output, path);
+    if (!status) status = gnuplot_start(&gnuplot, &output);
+    if (!status) {
+        const char *body = strchr(reproduce->text, '\n');
+        fprintf(gnuplot.script,
+                "set terminal svg size 900,600 font 'Helvetica,13' background 'white'\n"
+                "set datafile separator ','\nset grid\nset style data linespoints\nset key font ',11'\n"
+                "$data << END%s\nEND\n%s\n",
+                body ? body : "\n", script);
+        status = gnuplot_end(&gnuplot);
+    }
+    status = output_close(&output, status);
+    free(path);
+    return status;
+}
+
+int reproduce_figure(struct reproduce *reproduce, const char *name, const char *script) {
+    if (fflush(reproduce->data) != 0) return message_memory();
+    if (!reproduce->directory) return STATUS_OK;
+    const int status = write_text(reproduce, name);
+    return status || !reproduce->plots || !script ? status : draw(reproduce, name, script);
+}
+
+static int run(struct reproduce *reproduce, int which) {
+    reproduce->experiment = experiments[which].name;
+    reproduce->data = open_memstream(&reproduce->text, &reproduce->length);
+    if (!reproduce->data) return message_memory();
+    printf("\n%s: %s\n", experiments[which].name, experiments[which].what);
+    const double begun = progress_clock();
+    int status = experiments[which].run(reproduce);
+    fprintf(stderr, "%s: %.1f s\n", experiments[which].name, progress_clock() - begun);
+    fclose(reproduce->data);
+    free(reproduce->text);
+    return status ? status : interrupt_status();
+}
+
+static int open_directory(struct reproduce *reproduce, char **path) {
+    if (!reproduce->directory) return STATUS_OK;
+    if (mkdir(reproduce->directory, 0777) != 0 && errno != EEXIST)
+        return message_at(STATUS_FILE, reproduce->directory, 0, "%s", strerror(errno));
+    *path = path_of(reproduce, "comparison", ".csv");
+    if (!*path) return message_memory();
+    const int status = output_open(&reproduce->comparison, *path);
+    if (!status)
+        fputs("experiment,what,source,unit,theirs,ours,difference_percent_or_points\n", reproduce->comparison.file);
+    return status;
+}
+
+int command_reproduce(int argc, char **argv) {
+    struct options options = {.command = "reproduce", .table = table, .argc = argc, .argv = argv};
+    struct reproduce reproduce = {.plots = true};
+    int only = -1;
+    for (int key; (key = options_next(&options)) != OPTIONS_END;) switch (key) {
+        case 'o':
+            reproduce.directory = options.value;
+            break;
+        case KEY_HELP:
+            return help();
+        case KEY_NO_PLOTS:
+            reproduce.plots = false;
+            break;
+        case KEY_ONLY:
+            for (only = EXPERIMENTS - 1; only >= 0 && strcmp(experiments[only].name, options.value) != 0;) --only;
+            if (only < 0)
+                return message(STATUS_USAGE, "no experiment %.40s; see fibrad reproduce --help", options.value);
+            break;
+        case OPTIONS_BAD:
+            return STATUS_USAGE;
+        default:
+            return message(STATUS_USAGE, "'%.40s': reproduce takes options only", options.value);
+        }
+
+    char *path = NULL;
+    int status = open_directory(&reproduce, &path);
+    if (!status)
+        printf("%-12s %-70s %-5s %12s %12s     %s\n", "experiment", "what", "from", "theirs", "ours", "difference");
+    for (int k = 0; k < EXPERIMENTS && !status; ++k)
+        if (only < 0 || only == k) status = run(&reproduce, k);
+    status = output_close(&reproduce.comparison, status);
+    free(path);
+    return status;
+}

@@ -1,0 +1,160 @@
+/* plot_bed.c - a picture of a bed and its view factors, by gnuplot. SPDX-License-Identifier: MIT */
+#include "plot/plot_bed.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "plot/gnuplot.h"
+#include "plot/plot_data.h"
+
+bool plot_ending(const char *path) { return output_ends(path, ".svg") || output_ends(path, ".png"); }
+
+/* The last part of a path as a gnuplot string. */
+static void print_name(FILE *script, const char *path) {
+    const char *slash = strrchr(path, '/');
+    for (const char *c = slash ? slash + 1 : path; *c; ++c) {
+        if (*c == '\'') fputc('\'', script);
+        fputc((unsigned char)*c < ' ' ? '?' : *c, script);
+    }
+}
+
+static void print_style(FILE *script, const struct output *output, const char *name, const struct contents *what) {
+    fputs(output_ends(output->path, ".png")
+              ? "set terminal pngcairo size 1500,1240 font 'DejaVu Sans,13' background '#ffffff'\n"
+              : "set terminal svg size 1500,1240 font 'DejaVu Sans,15' background '#ffffff'\n",
+          script);
+    fputs("set border 3 lc '#555555'\n"
+          "set tics nomirror out scale 0.6 tc '#333333'\n"
+          "set grid lc '#e6e6e6' lw 1 lt 1\n"
+          "set palette defined (0 '#440154', 1 '#46327e', 2 '#365c8d', 3 '#277f8e', 4 '#1fa187', 5 '#4ac16d', "
+          "6 '#a0da39', 7 '#fde725')\n"
+          "set multiplot layout 2,2 margins 0.06,0.89,0.065,0.90 spacing 0.14,0.115\n"
+          "set label 1 '",
+          script);
+    print_name(script, name);
+    fprintf(script,
+            "' at screen 0.015,0.975 font ',19' tc '#111111' noenhanced\n"
+            "set label 2 '%u spheres, %llu view factors; row sums %.4f to %.4f, %.2f %% of the radiation leaves the "
+            "bed' at screen 0.015,0.945 tc '#444444'\n",
+            what->bed->n, (unsigned long long)what->result->rows.start[what->result->rows.n], what->result->row_sum_min,
+            what->result->row_sum_max, 100 * what->result->escaped_mean);
+}
+
+/* The range that spheres take up along an axis. */
+static void bounds(const double *centre, const double *r, uint32_t n, double *low, double *high) {
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (uint32_t i = 0; i < n; ++i) {
+        *low = fmin(*low, centre[i] - r[i]);
+        *high = fmax(*high, centre[i] + r[i]);
+    }
+}
+
+/* Circles in which the spheres cut the plane y = middle of the bed, coloured by the escaped fraction. */
+static void print_slice(FILE *script, const struct contents *what) {
+    const struct bed *bed = what->bed;
+    double low[3], high[3];
+    bounds(bed->x, bed->r, bed->n, &low[0], &high[0]);
+    bounds(bed->y, bed->r, bed->n, &low[1], &high[1]);
+    bounds(bed->z, bed->r, bed->n, &low[2], &high[2]);
+    const double middle = low[1] + (high[1] - low[1]) / 2;
+    fputs("$slice << END\n", script);
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double off = fabs(bed->y[i] - middle);
+        if (off >= bed->r[i] || !what->result->wanted[i]) continue;
+        fprintf(script, "%.6g %.6g %.6g %.6g\n", bed->x[i], bed->z[i], sqrt(bed->r[i] * bed->r[i] - off * off),
+                what->result->escaped[i]);
+    }
+    fprintf(script,
+            "END\n"
+            "set title 'Escaped fraction, slice at y = %.3f'\n"
+            "set xlabel 'x'; set ylabel 'z'\n"
+            "set size ratio -1; set xrange [%.9g:%.9g]; set yrange [%.9g:%.9g]\n"
+            "set cbrange [0:*]; set colorbox; unset key; unset grid\n"
+            "plot $slice using 1:2:3:4 with circles fillcolor palette fillstyle solid noborder\n"
+            "unset label 1; unset label 2; set size noratio; set size nosquare\n",
+            middle, low[0], high[0], low[2], high[2]);
+}
+
+static void print_pairs(FILE *script, const struct plot_data *data) {
+    fputs("$pairs << END\n", script);
+    for (int d = 0; d < PLOT_DISTANCES; ++d)
+        for (int f = 0; f < PLOT_FACTORS; ++f)
+            fprintf(script, data->pairs[d][f] > 0 ? "%.6g %.6g %.6g\n" : "%.6g %.6g NaN\n",
+                    (d + 0.5) * PLOT_DISTANCE_MAX / PLOT_DISTANCES, PLOT_FACTOR_MIN * (1 - (f + 0.5) / PLOT_FACTORS),
+                    log10(data->pairs[d][f]));
+    fputs("END\n$free << END\n", script);
+    for (int k = 0; k <= 200; ++k) {
+        const double apart = 1 + (PLOT_DISTANCE_MAX - 1) * k / 200;
+        double f12 = NAN;
+        fibrad_pair_exact(1, 1, 2 * (apart - 1), &f12);
+        fprintf(script, "%.6g %.6g\n", apart, log10(f12));
+    }
+    fprintf(script,
+            "END\n"
+            "set title 'View factor against distance: how far the pairs are seen'\n"
+            "set xlabel 'centre distance / (r_i + r_j)'; set ylabel 'F_{ij} r_i / r_j'\n"
+            "set xrange [0.8:%g]; set yrange [%g:-0.8]; set xtics 1\n"
+            "set ytics ('10^{-6}' -6, '10^{-5}' -5, '10^{-4}' -4, '10^{-3}' -3, '10^{-2}' -2, '10^{-1}' -1)\n"
+            "set cbrange [0:*]; set cblabel 'log_{10} of the number of pairs' offset 1; set grid\n"
+            "set key top right\n"
+            "plot $pairs using 1:2:3 with image notitle, $free with lines lw 2.5 lc '#d1495b' "
+            "title 'equal spheres, nothing between'\n"
+            "unset colorbox; unset cblabel\n",
+            PLOT_DISTANCE_MAX, PLOT_FACTOR_MIN);
+}
+
+static void print_within(FILE *script, const struct plot_data *data) {
+    fputs("$within << END\n", script);
+    for (int d = 0; d <= PLOT_DISTANCES; ++d)
+        fprintf(script, "%.6g %.6g %.6g %.6g\n", d * PLOT_DISTANCE_MAX / PLOT_DISTANCES, data->within[d][0],
+                data->within[d][1], data->within[d][2]);
+    fprintf(script,
+            "END\n"
+            "set title 'Where the radiation ends: sum of F within a distance'\n"
+            "set xlabel 'centre distance / mean diameter'; set ylabel 'sum of F_{ij}'\n"
+            "set xrange [0:%g]; set yrange [0:1.02]; set ytics 0.2; set key bottom right\n"
+            "plot $within using 1:2:4 with filledcurves fc '#1fa187' fs transparent solid 0.25 noborder "
+            "title '10 %% to 90 %% of the spheres', '' using 1:3 with lines lw 2.5 lc '#277f8e' title 'median'\n",
+            PLOT_DISTANCE_MAX);
+}
+
+static void print_factors(FILE *script, const struct plot_data *data) {
+    fputs("$factors << END\n", script);
+    for (int f = 0; f < PLOT_FACTORS; ++f)
+        fprintf(script, "%.6g %.6g %.6g\n", PLOT_FACTOR_MIN * (1 - (f + 0.5) / PLOT_FACTORS), 100 * data->entries[f],
+                100 * data->carried[f]);
+    fprintf(script,
+            "END\n"
+            "set title 'Sizes of the view factors, and what they carry'\n"
+            "set xlabel 'F_{ij}'; set ylabel 'share [%%]'\n"
+            "set xrange [%g:-0.8]; set yrange [0:*]; set ytics auto; set key top left\n"
+            "set xtics ('<10^{-6}' -6, '10^{-5}' -5, '10^{-4}' -4, '10^{-3}' -3, '10^{-2}' -2, '10^{-1}' -1)\n"
+            "set boxwidth 0.9 relative\n"
+            "plot $factors using 1:2 with boxes fc '#365c8d' fs transparent solid 0.55 noborder title 'of the "
+            "entries', '' using 1:3 with boxes fc '#e9a23b' fs transparent solid 0.65 noborder title 'of the "
+            "radiation'\n"
+            "unset multiplot\n",
+            PLOT_FACTOR_MIN);
+}
+
+int plot_bed(const struct output *output, const char *name, const struct contents *what) {
+    struct gnuplot gnuplot;
+    struct plot_data *data = malloc(sizeof *data);
+    int status = data ? plot_data_collect(data, what) : message_memory();
+    if (!status) status = gnuplot_start(&gnuplot, output);
+    if (!status) {
+        print_style(gnuplot.script, output, name, what);
+        print_slice(gnuplot.script, what);
+        print_pairs(gnuplot.script, data);
+        print_within(gnuplot.script, data);
+        print_factors(gnuplot.script, data);
+        status = gnuplot_end(&gnuplot);
+    }
+    free(data);
+    return status;
+}

@@ -1,0 +1,179 @@
+/* write_npz.c - view factors as a NumPy archive that scipy.sparse.load_npz opens. SPDX-License-Identifier: MIT
+ *
+ * A ZIP archive without compression, one member per array of the matrix in compressed rows: a header of 128 bytes that
+ * names type and shape, then the array as it stands in memory. All members carry 64-bit sizes (ZIP64), so that small
+ * and large files go one way. The checksum stands before the data and is computed first. */
+#include <inttypes.h>
+#include <string.h>
+
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "write/write.h"
+
+enum { HEADER = 128, BLOCK = 1 << 20 };
+
+#define SCALAR UINT64_MAX /* length of an array without dimensions */
+
+struct member {
+    const char *name, *type; /* type: kind and bytes as NumPy has them */
+    const void *data;
+    uint64_t length, bytes; /* elements, or SCALAR; bytes of data */
+    uint64_t offset;        /* where in the file the member begins */
+    uint32_t crc;
+};
+
+static uint32_t crc_table[256];
+
+static void make_crc_table(void) {
+    for (uint32_t k = 0; k < 256; ++k) {
+        uint32_t c = k;
+        for (int bit = 0; bit < 8; ++bit) c = c & 1 ? c >> 1 ^ 0xedb88320u : c >> 1;
+        crc_table[k] = c;
+    }
+}
+
+static uint32_t crc_add(uint32_t crc, const unsigned char *data, size_t bytes) {
+    for (size_t k = 0; k < bytes; ++k) crc = crc >> 8 ^ crc_table[(crc ^ data[k]) & 255];
+    return crc;
+}
+
+/* Writes `bytes` bytes of a number, the lowest first. */
+static void put(FILE *file, uint64_t value, int bytes) {
+    for (; bytes > 0; --bytes, value >>= 8) putc((int)(value & 255), file);
+}
+
+static void make_header(const struct member *member, unsigned char header[HEADER]) {
+    static const char magic[] = "\x93NUMPY\1";
+    const uint16_t one = 1;
+    const bool little = *(const unsigned char *)&one == 1;
+    const char order = member->type[0] == 'S' ? '|' : little ? '<' : '>';
+    char text[HEADER];
+    char shape[32] = "";
+    if (member->length != SCALAR) snprintf(shape, sizeof shape, "%" PRIu64 ",", member->length);
+    const int used = snprintf(text, sizeof text, "{'descr': '%c%s', 'fortran_order': False, 'shape': (%s), }", order,
+                              member->type, shape);
+    memset(header, ' ', HEADER);
+    memcpy(header, magic, sizeof magic);
+    header[8] = HEADER - 10;
+    header[9] = 0;
+    memcpy(header + 10, text, (size_t)used);
+    header[HEADER - 1] = '\n';
+}
+
+/* What local and central header have in common, from the version to the length of the name. */
+static void put_common(FILE *file, const struct member *member) {
+    put(file, 45, 2);         /* version that reads ZIP64 */
+    put(file, 0, 2);          /* flags */
+    put(file, 0, 2);          /* stored */
+    put(file, 0x00210000, 4); /* time and date: 1 January 1980, so that equal matrices make equal files */
+    put(file, member->crc, 4);
+    put(file, UINT32_MAX, 4); /* both sizes stand in the ZIP64 field */
+    put(file, UINT32_MAX, 4);
+    put(file, strlen(member->name), 2);
+}
+
+static void put_sizes(FILE *file, const struct member *member, uint64_t field) {
+    put(file, 1, 2); /* the ZIP64 field */
+    put(file, field, 2);
+    put(file, HEADER + member->bytes, 8);
+    put(file, HEADER + member->bytes, 8);
+}
+
+static int write_member(FILE *file, struct member *member) {
+    unsigned char header[HEADER];
+    make_header(member, header);
+    uint32_t crc = crc_add(UINT32_MAX, header, HEADER);
+    const unsigned char *data = member->data;
+    for (uint64_t done = 0; done < member->bytes; done += BLOCK) {
+        if (interrupt_status()) return interrupt_status();
+        const uint64_t left = member->bytes - done;
+        crc = crc_add(crc, data + done, left < BLOCK ? left : BLOCK);
+    }
+    member->crc = ~crc;
+    put(file, 0x04034b50, 4);
+    put_common(file, member);
+    put(file, 20, 2);
+    fputs(member->name, file);
+    put_sizes(file, member, 16);
+    fwrite(header, 1, HEADER, file);
+    for (uint64_t done = 0; done < member->bytes; done += BLOCK) {
+        if (interrupt_status()) return interrupt_status();
+        const uint64_t left = member->bytes - done;
+        if (!fwrite(data + done, left < BLOCK ? left : BLOCK, 1, file)) break; /* the caller asks ferror */
+    }
+    return STATUS_OK;
+}
+
+/* Bytes of a member in the file, and of its entry in the directory at the end. */
+static uint64_t member_size(const struct member *member) {
+    return 30 + strlen(member->name) + 20 + HEADER + member->bytes;
+}
+
+static uint64_t entry_size(const struct member *member) { return 46 + strlen(member->name) + 28; }
+
+static void put_entry(FILE *file, const struct member *member) {
+    put(file, 0x02014b50, 4);
+    put(file, 45, 2);
+    put_common(file, member);
+    put(file, 28, 2);
+    put(file, 0, 2);          /* comment */
+    put(file, 0, 2);          /* disk */
+    put(file, 0, 2);          /* internal attributes */
+    put(file, 0, 4);          /* external attributes */
+    put(file, UINT32_MAX, 4); /* the offset stands in the ZIP64 field too */
+    fputs(member->name, file);
+    put_sizes(file, member, 24);
+    put(file, member->offset, 8);
+}
+
+/* The end of the directory, in ZIP64 and, with nothing but all bits set, as of old. */
+static void put_end(FILE *file, uint64_t members, uint64_t offset, uint64_t size) {
+    put(file, 0x06064b50, 4);
+    put(file, 44, 8);
+    put(file, 45, 2);
+    put(file, 45, 2);
+    put(file, 0, 8); /* disks */
+    put(file, members, 8);
+    put(file, members, 8);
+    put(file, size, 8);
+    put(file, offset, 8);
+
+    put(file, 0x07064b50, 4);
+    put(file, 0, 4);
+    put(file, offset + size, 8);
+    put(file, 1, 4); /* disks in all */
+
+    put(file, 0x06054b50, 4);
+    put(file, 0, 4); /* disks */
+    put(file, members, 2);
+    put(file, members, 2);
+    put(file, UINT32_MAX, 4);
+    put(file, UINT32_MAX, 4);
+    put(file, 0, 2); /* comment */
+}
+
+int write_npz(FILE *file, const struct contents *what) {
+    const fibrad_rows *rows = &what->result->rows;
+    const uint64_t n = rows->n, entries = rows->start[n];
+    const int64_t shape[2] = {rows->n, rows->n};
+    struct member members[] = {{.name = "indices.npy", .type = "i4", .data = rows->col, entries, 4 * entries},
+                               {.name = "indptr.npy", .type = "i8", .data = rows->start, n + 1, 8 * (n + 1)},
+                               {.name = "format.npy", .type = "S3", .data = "csr", SCALAR, 3},
+                               {.name = "shape.npy", .type = "i8", .data = shape, 2, 16},
+                               {.name = "data.npy", .type = "f8", .data = rows->f, entries, 8 * entries}};
+    const size_t count = sizeof members / sizeof *members;
+    uint64_t offset = 0, directory = 0;
+    make_crc_table();
+    for (size_t k = 0; k < count; ++k) {
+        members[k].offset = offset;
+        const int status = write_member(file, &members[k]);
+        if (status) return status;
+        offset += member_size(&members[k]);
+    }
+    for (size_t k = 0; k < count; ++k) {
+        put_entry(file, &members[k]);
+        directory += entry_size(&members[k]);
+    }
+    put_end(file, count, offset, directory);
+    return STATUS_OK;
+}

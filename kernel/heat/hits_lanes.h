@@ -1,0 +1,15 @@
+/* hits_lanes.h - where beams and rays go, one version per instruction set. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_HEAT_HITS_LANES_H
+#define FIBRAD_HEAT_HITS_LANES_H
+
+#include "heat/heat.h"
+#include "row/work.h"
+
+/* Fills heat->hit of sphere `task`; from the number of spheres on, a part of heat->ray. FIBRAD_E_CAPACITY: the work
+ * memory is too small. */
+typedef int fibrad_heat_follow_function(fibrad_heat *heat, fibrad_work *work, uint32_t task);
+
+fibrad_heat_follow_function fibrad_heat_follow_scalar, fibrad_heat_follow_sse2, fibrad_heat_follow_avx2,
+    fibrad_heat_follow_avx512;
+
+#endif

@@ -1,0 +1,141 @@
+/* wall_patch.c - the patches of walls, and the rays that leave them. SPDX-License-Identifier: MIT */
+#include "base/elementary.h"
+#include "base/random.h"
+#include "heat/heat.h"
+#include "scene/walls.h"
+
+#define PI 3.14159265358979323846
+/* Patches of walls are about as large as those of the spheres, unless that makes more of them than FEW and a fourth of
+ * those of the spheres. What spheres and walls exchange is known from the beams of the spheres, which are spread far
+ * more evenly than rays; rays of walls tell what walls exchange with each other. Where there is a bed between them that
+ * is little, so that a few of each patch do, but RAYS_MIN in all. */
+#define FEW            1536.0
+#define RAYS_PER_PATCH 8.0
+#define RAYS_MIN       262144.0
+
+/* What of a wall is cut, along one axis: all of it, or where it goes on for ever, the bed and as much on either side.
+ */
+static bool stretch(const fibrad_scene *scene, uint32_t axis, double *low, double *size) {
+    const fibrad_container *c = &scene->container;
+    double wide = 0;
+    for (int a = 0; a < 3; a++)
+        wide = fibrad_max(wide, scene->box_high[a] - scene->box_low[a] + 2 * scene->facts.radius_max);
+    double from = c->low[axis], to = c->high[axis];
+    if (scene->period[axis] > 0)
+        from = scene->low[axis], to = scene->low[axis] + scene->period[axis];
+    else if (c->radius < __builtin_inf() && axis < 2)
+        from = c->axis[axis] - c->radius, to = c->axis[axis] + c->radius;
+    *low = fibrad_finite(from) ? from : scene->box_low[axis] - wide;
+    *size = (fibrad_finite(to) ? to : scene->box_high[axis] + wide) - *low;
+    return !fibrad_finite(from) || !fibrad_finite(to);
+}
+
+static double area_of(const fibrad_heat *heat, uint32_t wall) {
+    const fibrad_heat_wall *w = &heat->wall[wall];
+    double around = wall == FIBRAD_CYLINDER ? 2 * PI * heat->scene->container.radius : 1;
+    return w->size[0] * around * w->size[1];
+}
+
+/* An even number of squares, 2 at least. */
+static uint32_t squares(double length, double square) {
+    return 2 * (uint32_t)fibrad_max(1, fibrad_floor(fibrad_min(length / square, 1e5) / 2 + .5));
+}
+
+void fibrad_heat_cut_walls(fibrad_heat *heat) {
+    const fibrad_scene *scene = heat->scene;
+    double area = 0, surface = 0;
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
+        fibrad_heat_wall *wall = &heat->wall[k];
+        *wall = (fibrad_heat_wall){0};
+        if (!(scene->facts.wall_area[k] > 0)) continue;
+        wall->size[0] = 1;
+        for (uint32_t side = k == FIBRAD_CYLINDER; side < 2; side++)
+            wall->unbounded |=
+                stretch(scene, k == FIBRAD_CYLINDER ? 2 : (k / 2 + 1 + side) % 3, &wall->low[side], &wall->size[side]);
+        area += area_of(heat, k);
+    }
+    if (area == 0) return;
+    for (uint32_t i = 0; i < scene->facts.spheres; i++) surface += 4 * PI * scene->r[i] * scene->r[i];
+    const double of_spheres = (double)scene->facts.spheres * heat->config.patches, most = FEW + of_spheres / 4;
+    const double square = fibrad_sqrt(fibrad_max(surface / of_spheres, area / most));
+    const double density = fibrad_max(RAYS_PER_PATCH / (square * square), RAYS_MIN / area);
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
+        fibrad_heat_wall *wall = &heat->wall[k];
+        if (!(scene->facts.wall_area[k] > 0)) continue;
+        wall->squares[0] = squares(k == FIBRAD_CYLINDER ? 2 * PI * scene->container.radius : wall->size[0], square);
+        wall->squares[1] = squares(wall->size[1], square);
+        wall->first_ray = heat->rays;
+        wall->rays = (uint32_t)fibrad_min(1 + density * area_of(heat, k), 0x1p30);
+        wall->density = wall->rays / area_of(heat, k);
+        heat->rays += wall->rays;
+    }
+}
+
+/* Where on the square around the origin that leans on its corners, (1, 0) being 0, the other corners 1/4, 1/2, 3/4. */
+static double around(double x, double y) {
+    const double t = y / (fibrad_abs(x) + fibrad_abs(y));
+    return (x < 0 ? 2 - t : t < 0 ? 4 + t : t) / 4;
+}
+
+uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]) {
+    const fibrad_heat_wall *w = &heat->wall[wall];
+    const fibrad_scene *scene = heat->scene;
+    uint32_t cell[2];
+    for (uint32_t side = 0; side < 2; side++) {
+        const uint32_t axis = wall == FIBRAD_CYLINDER ? 2 : (wall / 2 + 1 + side) % 3;
+        double share = (at[axis] - w->low[side]) / w->size[side];
+        if (wall == FIBRAD_CYLINDER && side == 0)
+            share = around(at[0] - scene->container.axis[0], at[1] - scene->container.axis[1]);
+        else if (scene->period[axis] > 0)
+            share -= fibrad_floor(share);
+        else if (w->unbounded && !(share >= 0 && share <= 1))
+            return heat->first[fibrad_heat_beyond(heat, wall)];
+        const double place = fibrad_max(0, fibrad_min(share * w->squares[side], w->squares[side] - 1));
+        cell[side] = (uint32_t)place;
+    }
+    return heat->first[fibrad_heat_wall_body(heat, wall)] +
+           ((cell[0] >> 1) * (w->squares[1] >> 1) + (cell[1] >> 1)) * 4 + (cell[0] & 1) * 2 + (cell[1] & 1);
+}
+
+double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch) {
+    for (uint32_t wall = 0; wall < FIBRAD_WALLS; wall++) {
+        const uint32_t *first = heat->first + fibrad_heat_wall_body(heat, wall);
+        if (patch >= first[0] && patch < first[1]) return heat->wall[wall].density;
+    }
+    return 0;
+}
+
+uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]) {
+    double distance, at[3];
+    const uint32_t wall =
+        heat->scene->container.walls ? fibrad_walls_exit(heat->scene, origin, w, &distance) : FIBRAD_NONE;
+    if (wall == FIBRAD_NONE) return fibrad_heat_open(heat);
+    for (int axis = 0; axis < 3; axis++) at[axis] = origin[axis] + distance * w[axis];
+    return fibrad_heat_wall_patch(heat, wall, at);
+}
+
+bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, double origin[3], double w[3]) {
+    const fibrad_heat_wall *part = &heat->wall[wall];
+    const fibrad_container *c = &heat->scene->container;
+    double x[4], normal[3], sine, cosine;
+    for (int d = 0; d < 4; d++) x[d] = fibrad_quasirandom(wall, k, d);
+    if (wall == FIBRAD_CYLINDER) {
+        fibrad_sincos_turn(x[0], &sine, &cosine);
+        origin[0] = c->axis[0] + c->radius * cosine, origin[1] = c->axis[1] + c->radius * sine;
+        origin[2] = part->low[1] + x[1] * part->size[1];
+    } else {
+        origin[wall / 2] = wall % 2 == 0 ? c->low[wall / 2] : c->high[wall / 2];
+        for (uint32_t side = 0; side < 2; side++)
+            origin[(wall / 2 + 1 + side) % 3] = part->low[side] + x[side] * part->size[side];
+        if (!fibrad_walls_hold(c, origin)) return false;
+    }
+    fibrad_wall_normal(heat->scene, wall, origin, normal);
+    /* across the normal: the next axis for planes, the tangent for the cylinder; and along z, or the third axis */
+    double across[3] = {-normal[1], normal[0], 0}, along[3] = {0, 0, 1};
+    if (wall < FIBRAD_CYLINDER)
+        for (uint32_t a = 0; a < 3; a++) across[a] = a == (wall / 2 + 1) % 3, along[a] = a == (wall / 2 + 2) % 3;
+    const double ring = fibrad_sqrt(x[2]), up = fibrad_sqrt(1 - x[2]); /* the cosine law */
+    fibrad_sincos_turn(x[3], &sine, &cosine);
+    for (int a = 0; a < 3; a++) w[a] = ring * (cosine * across[a] + sine * along[a]) + up * normal[a];
+    return true;
+}

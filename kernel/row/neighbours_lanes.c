@@ -1,0 +1,257 @@
+/* neighbours_lanes.c - shells of spheres near the one in hand, and marches along one direction. Compiled once per
+ * instruction set. SPDX-License-Identifier: MIT */
+#include FIBRAD_LANES_HEADER
+#include "base/lanes/below.h"
+#include "row/neighbours_lanes.h"
+
+/* What the sieves compare, for spheres [from, to) of the list. They are in floats and may let a sphere pass that the
+ * exact test then refuses, but not the other way round: three products and two sums err by less than 4 ulp of the
+ * distance, squares of them by less than 40 of its square. Beyond the range of floats they let all pass. */
+static void floats(fibrad_near *near, uint32_t from, uint32_t to) {
+    const vd one = vd_set1(1), zero = vd_set1(0);
+    for (uint32_t k = from; k < to; k += VD_LANES) {
+        vd x = vd_load(near->x + k), y = vd_load(near->y + k), z = vd_load(near->z + k), r = vd_load(near->r + k);
+        vd square = vd_add(vd_add(vd_mul(x, x), vd_mul(y, y)), vd_mul(z, z)), wide = vd_add(one, r);
+        vd size = vd_add(vd_add(vd_abs(x), vd_abs(y)), vd_abs(z)); /* at least the distance */
+        vd e = vd_sqrt(vd_max(vd_sub(square, vd_mul(wide, wide)), zero)), about = vd_add(one, size);
+        vd q = vd_sub(vd_add(square, one), vd_mul(r, r));
+        vm small = vd_lt(size, vd_set1(1e18));
+        vd_store_float(near->fx + k, vd_select(small, x, zero));
+        vd_store_float(near->fy + k, vd_select(small, y, zero));
+        vd_store_float(near->fz + k, vd_select(small, z, zero));
+        vd_store_float(near->fe + k, vd_select(small, vd_sub(e, vd_mul(vd_set1(1e-6), size)), vd_set1(-1)));
+        q = vd_sub(q, vd_mul(vd_set1(4e-6), vd_mul(about, about)));
+        vd_store_float(near->fq + k, vd_select(small, q, vd_set1(-FLT_MAX)));
+    }
+}
+
+/* Thickness of the layers of a march: thinner ones hug the beam more closely, but there are more of them. */
+#define LAYER_CELLS 1.5
+
+/* Coordinates of spheres of the run in hand, relative to the centre and in units of the radius. */
+static inline vd placed(const fibrad_work *work, const fibrad_walk *walk, int axis, const double *coordinate) {
+    vd c = vd_sub(vd_loadu(coordinate), vd_set1(work->centre[axis]));
+    return vd_mul(vd_add(c, vd_set1(walk->shift[axis])), vd_set1(work->inverse));
+}
+
+/* Appends those of the spheres on a walk whose squared emergence lies in (from, to]. False: no room. */
+static bool collect(fibrad_work *work, fibrad_walk *walk, double from, double to, uint32_t *count) {
+    const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
+    const fibrad_scene scene = *work->scene;
+    const vd inverse = vd_set1(work->inverse), reach = vd_set1(work->reach * work->reach), zero = vd_set1(0);
+    uint32_t n = *count;
+    while (fibrad_walk_next(walk))
+        for (uint32_t j = walk->begin; j < walk->end; j += VD_LANES) {
+            vd x = placed(work, walk, 0, scene.x + j), y = placed(work, walk, 1, scene.y + j);
+            vd z = placed(work, walk, 2, scene.z + j);
+            vd r = vd_mul(vd_loadu(scene.r + j), inverse), wide = vd_add(vd_set1(1), r);
+            vd square = vd_add(vd_add(vd_mul(x, x), vd_mul(y, y)), vd_mul(z, z));
+            vd e = vd_sub(square, vd_mul(wide, wide));
+            vm other = vm_and(vd_lt(zero, square), vd_le(square, reach)); /* than the sphere itself */
+            vm emerges = vm_and(vd_lt(vd_set1(from), e), vd_le(e, vd_set1(to)));
+            uint32_t bits = vm_bits(vm_and(emerges, other)) & vd_lanes_below(walk->end - j);
+            if (n + VD_LANES > near.capacity) return false;
+            vd_compress(near.x + n, bits, x);
+            vd_compress(near.y + n, bits, y);
+            vd_compress(near.z + n, bits, z);
+            vd_compress(near.r + n, bits, r);
+            n += vd_compress_places(near.sphere + n, bits, j);
+        }
+    *count = n;
+    return true;
+}
+
+void LANED(fibrad_near_extend)(fibrad_work *work) {
+    const fibrad_scene *scene = work->scene;
+    fibrad_near *near = &work->near;
+    uint32_t shell = near->shells, begin = shell > 0 ? near->end[shell - 1] : 0, count = begin;
+    double from = shell > 0 ? near->limit[shell - 1] : 0;
+    double to = shell > 0 ? work->growth * from : work->step;
+    near->full = shell == FIBRAD_SHELLS;
+    for (uint32_t l = 0; l < scene->levels && !near->full; l++) {
+        double wide = 1 + scene->level[l].radius_max * work->inverse;
+        double ball = fibrad_min(fibrad_sqrt(to * to + wide * wide), work->reach) * work->unit, low[3], high[3];
+        for (int axis = 0; axis < 3; axis++)
+            low[axis] = work->centre[axis] - ball, high[axis] = work->centre[axis] + ball;
+        fibrad_walk walk;
+        fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
+        near->full = !collect(work, &walk, shell > 0 ? from * from : -__builtin_inf(), to * to, &count);
+    }
+    if (near->full) return;
+    for (; count % 16 != 0; count++) { /* the capacity is a multiple of 16 */
+        near->x[count] = near->y[count] = near->z[count] = near->r[count] = 0;
+        near->sphere[count] = 0;
+    }
+    floats(near, begin, count);
+    for (uint32_t k = begin; k < count; k++) near->entry[k] = FIBRAD_NONE;
+    near->end[shell] = count;
+    near->limit[shell] = to;
+    near->shells++;
+}
+
+/* Leaves out the discs from number `from` on that do not overlap the window or do not lie ahead. */
+static void leave_out(fibrad_work *work, uint32_t from) {
+    const fibrad_discs disc = work->disc;
+    uint32_t to = from, own = work->near.capacity;
+    for (uint32_t k = from; k < disc.count; k++) {
+        double depth = disc.depth[k], u = disc.u[k], v = disc.v[k], wide = 1 + disc.r[k];
+        uint32_t near = disc.near[k];
+        if (near >= own) work->near.sphere[own + to] = work->near.sphere[near], near = own + to;
+        disc.depth[to] = depth, disc.u[to] = u, disc.v[to] = v, disc.r[to] = disc.r[k], disc.near[to] = near;
+        to += u * u + v * v < wide * wide && fibrad_work_ahead(work, depth, u, v, fibrad_work_sphere(work, k));
+    }
+    work->disc.count = to;
+}
+
+static inline vd along(const double a[3], vd x, vd y, vd z) {
+    return vd_add(vd_add(vd_mul(vd_set1(a[0]), x), vd_mul(vd_set1(a[1]), y)), vd_mul(vd_set1(a[2]), z));
+}
+
+void LANED(fibrad_near_discs)(fibrad_work *work, const double frame[9], uint32_t found) {
+    const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
+    const fibrad_discs disc = work->disc;
+    uint32_t from = disc.count, end = from + found;
+    if (end > disc.capacity) {
+        work->disc.count = end;
+        return;
+    }
+    fibrad_zero(disc.near + end, VD_LANES * sizeof *disc.near); /* looked up, too, in the last vector */
+    uint32_t outside = 0;                                       /* of the window, or not surely ahead */
+    for (uint32_t k = from; k < end; k += VD_LANES) {
+        const uint32_t *place = disc.near + k;
+        vd x = vd_gather(near.x, place), y = vd_gather(near.y, place), z = vd_gather(near.z, place);
+        vd u = along(frame, x, y, z), v = along(frame + 3, x, y, z), depth = along(frame + 6, x, y, z);
+        vd r = vd_gather(near.r, place), wide = vd_add(vd_set1(1), r);
+        vm overlaps = vd_lt(vd_add(vd_mul(u, u), vd_mul(v, v)), vd_mul(wide, wide));
+        vm ahead = vd_lt(vd_set1(0), depth);
+        vd_storeu(disc.u + k, u);
+        vd_storeu(disc.v + k, v);
+        vd_storeu(disc.r + k, r);
+        vd_storeu(disc.depth + k, depth);
+        outside |= ~vm_bits(vm_and(overlaps, ahead)) & vd_lanes_below(end - k);
+    }
+    work->disc.count = end;
+    if (outside != 0) leave_out(work, from);
+}
+
+/* The part of a march in hand: spheres whose squared emergence lies in (from, to], and whose place along an axis, in
+ * the sense of the beam, in [edge, end). */
+typedef struct fibrad_layer {
+    int along;
+    double sense, edge, end, from, to;
+} fibrad_layer;
+
+/* Appends the discs of the spheres on a walk, of which those at depth 0 may turn out not to lie ahead. */
+static void add_discs(fibrad_work *work, const double frame[9], fibrad_walk *walk, const fibrad_layer *layer) {
+    const fibrad_scene scene = *work->scene; /* copies: what is stored cannot change their pointers */
+    const fibrad_discs disc = work->disc;
+    const vd inverse = vd_set1(work->inverse), reach = vd_set1(work->reach * work->reach), zero = vd_set1(0);
+    uint32_t *sphere = work->near.sphere + work->near.capacity, n = disc.count;
+    while (fibrad_walk_next(walk))
+        for (uint32_t j = walk->begin; j < walk->end; j += VD_LANES) {
+            const vd c[3] = {placed(work, walk, 0, scene.x + j), placed(work, walk, 1, scene.y + j),
+                             placed(work, walk, 2, scene.z + j)};
+            vd r = vd_mul(vd_loadu(scene.r + j), inverse), wide = vd_add(vd_set1(1), r);
+            vd square = vd_add(vd_add(vd_mul(c[0], c[0]), vd_mul(c[1], c[1])), vd_mul(c[2], c[2]));
+            vd depth = along(frame + 6, c[0], c[1], c[2]), place = vd_mul(vd_set1(layer->sense), c[layer->along]);
+            wide = vd_mul(wide, wide);
+            vd e = vd_sub(square, wide);
+            vm in_layer = vm_and(vd_le(vd_set1(layer->edge), place), vd_lt(place, vd_set1(layer->end)));
+            vm emerges = vm_and(vd_lt(vd_set1(layer->from), e), vd_le(e, vd_set1(layer->to)));
+            vm other = vm_and(vd_lt(zero, square), vd_le(square, reach)); /* than the sphere itself */
+            vm ahead = vm_and(vd_le(zero, depth), vd_le(e, vd_mul(vd_mul(depth, depth), vd_set1(1 + 1e-12))));
+            uint32_t bits = vm_bits(vm_and(vm_and(in_layer, emerges), vm_and(other, ahead)));
+            bits &= vd_lanes_below(walk->end - j);
+            if (bits == 0) continue;
+            vd u = along(frame, c[0], c[1], c[2]), v = along(frame + 3, c[0], c[1], c[2]);
+            bits &= vm_bits(vd_lt(vd_add(vd_mul(u, u), vd_mul(v, v)), wide));
+            if (n <= disc.capacity) {
+                vd_compress(disc.depth + n, bits, depth);
+                vd_compress(disc.u + n, bits, u);
+                vd_compress(disc.v + n, bits, v);
+                vd_compress(disc.r + n, bits, r);
+                vd_compress_places(sphere + n, bits, j);
+            }
+            n += fibrad_count_bits(bits);
+        }
+    work->disc.count = n;
+}
+
+/* How far it is from `edge`, a place along an axis, to where the grid begins, or, beyond the grid, for ever: only stray
+ * spheres are there. 0 within the grid and on a periodic axis. */
+static double outside(const fibrad_work *work, int axis, double sense, double edge) {
+    const fibrad_scene *scene = work->scene;
+    if (scene->period[axis] > 0) return 0;
+    const double low = (scene->box_low[axis] - work->centre[axis]) * sense * work->inverse;
+    const double high = (scene->box_high[axis] - work->centre[axis]) * sense * work->inverse;
+    if (edge >= fibrad_max(low, high)) return __builtin_inf();
+    return fibrad_max(0, fibrad_min(low, high) - edge);
+}
+
+/* Spheres of one level, emerging in (from, to], lie in a stretch of the tube of radius 1 + r about the beam, or of
+ * radius r about a ray of it. It is cut into layers across the axis the beam is most nearly along, so that the boxes
+ * walked hug the tube. Outside the grid layers grow, up to where the tube passes one period of another axis. */
+static void march_level(fibrad_work *work, const fibrad_level *level, const double frame[9], const fibrad_tube *tube,
+                        double from, double to) {
+    const fibrad_scene *scene = work->scene;
+    const double *w = frame + 6, radius = level->radius_max * work->inverse;
+    const double wide = tube->radius + radius, deepest = fibrad_sqrt(to * to + (1 + radius) * (1 + radius));
+    double middle[3], lateral[3]; /* the tube's cross-section: place and reach */
+    int a = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        middle[axis] = tube->u * frame[axis] + tube->v * frame[3 + axis];
+        lateral[axis] = wide * fibrad_sqrt(fibrad_max(0, 1 - w[axis] * w[axis]));
+        if (fibrad_abs(w[axis]) > fibrad_abs(w[a])) a = axis;
+    }
+    const double slope = fibrad_abs(w[a]), side = lateral[a], sense = w[a] < 0 ? -1 : 1, begin = fibrad_max(from, 0);
+    double first = begin * slope - side + sense * middle[a], last = deepest * slope + side + sense * middle[a];
+    double stride = last - first;
+    for (int axis = 0; axis < 3; axis++)
+        if (axis != a && scene->period[axis] > 0 && w[axis] != 0)
+            stride = fibrad_min(stride, scene->period[axis] * work->inverse * fibrad_abs(w[a] / w[axis]));
+    stride = fibrad_max(stride, level->cell[a] * work->inverse);
+    if (scene->period[a] == 0) { /* nothing beyond the box */
+        double start = sense > 0 ? scene->low[a] - work->centre[a] : work->centre[a] - scene->high[a];
+        double stop = sense > 0 ? scene->high[a] - work->centre[a] : work->centre[a] - scene->low[a];
+        first = fibrad_max(first, start * work->inverse), last = fibrad_min(last, stop * work->inverse);
+    }
+    /* layers [edge, edge + thick) along that axis, in radii from the centre; they need not match the cells, but then a
+     * sphere could be met twice: its own place along the axis decides which layer it belongs to */
+    const double least = fibrad_min(stride, LAYER_CELLS * level->cell[a] * work->inverse);
+    double thick = least;
+    for (double edge = first; edge <= last; edge += thick) {
+        double clear = outside(work, a, sense, edge);
+        thick = clear > least ? fibrad_min(fibrad_min(2 * thick, stride), clear) : least;
+        double height = edge - sense * middle[a], low[3], high[3];
+        double near_depth = fibrad_max((height - side) / slope, begin);
+        double far_depth = fibrad_min((height + thick + side) / slope, deepest);
+        for (int axis = 0; axis < 3; axis++) {
+            double p = near_depth * w[axis], q = far_depth * w[axis];
+            low[axis] = middle[axis] + fibrad_min(p, q) - lateral[axis];
+            high[axis] = middle[axis] + fibrad_max(p, q) + lateral[axis];
+        }
+        low[a] = sense > 0 ? edge : -edge - thick, high[a] = sense > 0 ? edge + thick : -edge;
+        for (int axis = 0; axis < 3; axis++) {
+            low[axis] = work->centre[axis] + low[axis] * work->unit;
+            high[axis] = work->centre[axis] + high[axis] * work->unit;
+        }
+        const fibrad_layer layer = {a, sense, edge, edge + thick, from < 0 ? -__builtin_inf() : from * from, to * to};
+        fibrad_walk walk;
+        fibrad_walk_begin(&walk, scene, level, low, high);
+        add_discs(work, frame, &walk, &layer);
+    }
+}
+
+void LANED(fibrad_near_march)(fibrad_work *work, const double frame[9], const fibrad_tube *tube, double from,
+                              double to) {
+    uint32_t first = work->disc.count, own = work->near.capacity;
+    for (uint32_t l = 0; l < work->scene->levels; l++) march_level(work, &work->scene->level[l], frame, tube, from, to);
+    if (work->disc.count > work->disc.capacity) return;
+    bool ahead = true;
+    for (uint32_t k = first; k < work->disc.count; k++) {
+        work->disc.near[k] = own + k;
+        work->near.entry[own + k] = FIBRAD_NONE;
+        ahead = ahead && work->disc.depth[k] > 0;
+    }
+    if (!ahead) leave_out(work, first);
+}

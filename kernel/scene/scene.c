@@ -1,0 +1,345 @@
+/* scene.c - copies spheres into a fixed-memory cell grid, checks them, and walks through the cells.
+ * SPDX-License-Identifier: MIT */
+#include "scene/scene.h"
+#include "base/arena.h"
+#include "base/cpu.h"
+#include "scene/walls.h"
+
+/* Cells on average hold this many spheres of their level. */
+#define SPHERES_PER_CELL 2.0
+/* Cells a level may have beyond one per sphere. */
+#define SPARE_CELLS 8u
+
+static fibrad_scene *layout(fibrad_arena *arena, uint32_t n) {
+    fibrad_scene *scene = fibrad_arena_take(arena, 1, sizeof *scene);
+    double *x = fibrad_arena_take(arena, n, sizeof *x), *y = fibrad_arena_take(arena, n, sizeof *y);
+    double *z = fibrad_arena_take(arena, n, sizeof *z), *r = fibrad_arena_take(arena, n, sizeof *r);
+    uint32_t *order = fibrad_arena_take(arena, n, sizeof *order), *place = fibrad_arena_take(arena, n, sizeof *place);
+    uint32_t *start = fibrad_arena_take(arena, (size_t)n + FIBRAD_LEVELS * SPARE_CELLS + 1, sizeof *start);
+    if (arena->base != NULL) {
+        fibrad_zero(scene, sizeof *scene);
+        scene->x = x, scene->y = y, scene->z = z, scene->r = r;
+        scene->order = order, scene->place = place, scene->start = start;
+    }
+    return scene;
+}
+
+static bool valid(const fibrad_scene_config *config) {
+    if (config == NULL || config->spheres == 0 || config->spheres > FIBRAD_SPHERES_MAX) return false;
+    for (int axis = 0; axis < 3; axis++)
+        if (!(config->period[axis] >= 0 && fibrad_finite(config->period[axis]))) return false;
+    if (!fibrad_walls_valid(config)) return false;
+    return fibrad_isa_choose(config->isa) >= 0;
+}
+
+size_t fibrad_scene_size(const fibrad_scene_config *config) {
+    if (!valid(config)) return 0;
+    fibrad_arena arena = {0};
+    layout(&arena, config->spheres);
+    return fibrad_arena_total(&arena);
+}
+
+static int fail(int status, fibrad_fault *fault, uint32_t first, uint32_t second) {
+    if (fault != NULL) fault->first = first, fault->second = second;
+    return status;
+}
+
+/* Narrows [low, high] to where the bulk of the coordinates lies: mean and four standard deviations, again and again
+ * while that leaves some out. A particle lost far away must not spread the cells; it goes into the outermost one. */
+static void trim(const double *c, uint32_t n, double *low, double *high) {
+    for (int round = 0; round < 16; round++) {
+        double sum = 0, square = 0, middle = *low + (*high - *low) / 2, half = (*high - *low) / 2;
+        uint32_t within = 0;
+        if (half == 0) return;
+        for (uint32_t i = 0; i < n; i++) {
+            double d = (c[i] - middle) / half;
+            if (!(fibrad_abs(d) <= 1)) continue;
+            sum += d, square += d * d;
+            within++;
+        }
+        if (within == 0) return; /* two heaps at the ends, and rounding has left both out */
+        double mean = sum / within, spread = 4 * fibrad_sqrt(fibrad_max(0, square / within - mean * mean));
+        double from = fibrad_max(-1, mean - spread), to = fibrad_min(1, mean + spread);
+        if (from == -1 && to == 1) return;
+        *low = middle + half * from, *high = middle + half * to;
+    }
+}
+
+/* Lengths must leave room for squares, and coordinates for the digits of a radius. */
+#define LENGTH_MAX     1e150
+#define COORDINATE_MAX 0x1p45 /* smallest radii */
+
+/* Box of the centres and range of the radii. A centre on a periodic axis belongs into [low, low + period), low being
+ * the least coordinate: a bed that fits its box keeps its coordinates to the bit. */
+static int measure(fibrad_scene *scene, const fibrad_spheres *s, fibrad_fault *fault) {
+    const double *coordinate[3] = {s->x, s->y, s->z};
+    scene->facts.radius_min = scene->facts.radius_max = s->r[0];
+    for (uint32_t i = 0; i < s->n; i++) {
+        for (int axis = 0; axis < 3; axis++) {
+            double c = coordinate[axis][i];
+            if (!(fibrad_abs(c) <= LENGTH_MAX)) return fail(FIBRAD_E_ARGUMENT, fault, i, i);
+            if (i == 0 || c < scene->low[axis]) scene->low[axis] = c;
+            if (i == 0 || c > scene->high[axis]) scene->high[axis] = c;
+        }
+        if (!(s->r[i] >= 1 / LENGTH_MAX && s->r[i] <= LENGTH_MAX)) return fail(FIBRAD_E_ARGUMENT, fault, i, i);
+        scene->facts.radius_min = fibrad_min(scene->facts.radius_min, s->r[i]);
+        scene->facts.radius_max = fibrad_max(scene->facts.radius_max, s->r[i]);
+    }
+    for (uint32_t i = 0; i < s->n; i++) {
+        for (int axis = 0; axis < 3; axis++)
+            if (fibrad_abs(coordinate[axis][i]) > COORDINATE_MAX * scene->facts.radius_min)
+                return fail(FIBRAD_E_ARGUMENT, fault, i, i);
+        if (!fibrad_walls_hold(&scene->container, (double[3]){s->x[i], s->y[i], s->z[i]}))
+            return fail(FIBRAD_E_ARGUMENT, fault, i, i);
+    }
+    if (fibrad_walls_reach(&scene->container) > COORDINATE_MAX * scene->facts.radius_min)
+        return fail(FIBRAD_E_ARGUMENT, fault, s->n, s->n);
+    for (int axis = 0; axis < 3; axis++) {
+        scene->box_low[axis] = scene->low[axis], scene->box_high[axis] = scene->high[axis];
+        if (scene->period[axis] > 0)
+            scene->high[axis] = scene->box_high[axis] = scene->low[axis] + scene->period[axis];
+        else
+            trim(coordinate[axis], s->n, &scene->box_low[axis], &scene->box_high[axis]);
+    }
+    return FIBRAD_OK;
+}
+
+static double wrapped(double c, double low, double period) {
+    if (period == 0 || (c - low >= 0 && c - low < period)) return c;
+    double inside = c - period * fibrad_floor((c - low) / period);
+    return inside >= low && inside - low < period ? inside : low; /* the quotient may have been rounded up */
+}
+
+static uint32_t level_of(double r, double radius_min) {
+    uint32_t level = 0;
+    for (double bound = 2 * radius_min; r >= bound && level < FIBRAD_LEVELS - 1; bound *= 2) level++;
+    return level;
+}
+
+/* Newton's iteration from above; enough digits for a length scale. */
+static double cube_root(double v, double above) {
+    double root = above;
+    for (int i = 0; i < 200 && root * root * root > 1.01 * v; i++) root -= (root - v / (root * root)) / 3;
+    return root;
+}
+
+/* Length of the box of the grid along an axis. */
+static double side(const fibrad_scene *scene, int axis) {
+    return scene->period[axis] > 0 ? scene->period[axis] : scene->box_high[axis] - scene->box_low[axis];
+}
+
+/* Chooses the cells of a level of `count` spheres: as near to cubes as the box allows, SPHERES_PER_CELL on average, and
+ * never more cells than spheres and a few. */
+static uint32_t choose_cells(const fibrad_scene *scene, fibrad_level *level, uint32_t count) {
+    double extent[3], longest = 0, volume = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        extent[axis] = side(scene, axis);
+        if (scene->period[axis] == 0) extent[axis] += 2 * level->radius_max;
+        longest = fibrad_max(longest, extent[axis]);
+    }
+    for (int axis = 0; axis < 3; axis++) volume *= extent[axis] / longest;
+    double cell = longest * cube_root(fibrad_min(1, volume * (SPHERES_PER_CELL / count)), 1), total;
+    do {
+        total = 1;
+        for (int axis = 0; axis < 3; axis++) {
+            double cells = fibrad_max(1, fibrad_floor(fibrad_min(extent[axis] / cell, 1e6)));
+            level->cells[axis] = (int32_t)cells;
+            level->cell[axis] = extent[axis] / cells;
+            level->inverse[axis] = cells / extent[axis];
+            total *= cells;
+        }
+        cell *= 1.0625;
+    } while (total > (double)count + SPARE_CELLS);
+    return (uint32_t)total;
+}
+
+static int32_t cell_of(const fibrad_scene *scene, const fibrad_level *level, int axis, double c) {
+    double from_low = c - scene->box_low[axis];
+    if (scene->period[axis] == 0) from_low += level->radius_max;
+    double cell = fibrad_floor(from_low * level->inverse[axis]);
+    if (scene->period[axis] == 0) cell = fibrad_max(0, fibrad_min(cell, level->cells[axis] - 1));
+    return (int32_t)fibrad_max(-1e9, fibrad_min(cell, 1e9));
+}
+
+/* The cell a sphere belongs to, as an index into scene->start. */
+static uint32_t home(const fibrad_scene *scene, const fibrad_level *level, const double centre[3]) {
+    uint32_t cell = 0;
+    for (int axis = 2; axis >= 0; axis--) {
+        int32_t c = cell_of(scene, level, axis, centre[axis]);
+        if (c < 0) c = 0; /* a periodic axis, rounded */
+        if (c >= level->cells[axis]) c = level->cells[axis] - 1;
+        cell = cell * (uint32_t)level->cells[axis] + (uint32_t)c;
+    }
+    return level->first_cell + cell;
+}
+
+/* Counting sort of the spheres by level and cell, stable, in O(n). */
+static void fill(fibrad_scene *scene, const fibrad_spheres *s) {
+    uint32_t count[FIBRAD_LEVELS] = {0}, index[FIBRAD_LEVELS] = {0};
+    double largest[FIBRAD_LEVELS] = {0};
+    for (uint32_t i = 0; i < s->n; i++) {
+        uint32_t level = level_of(s->r[i], scene->facts.radius_min);
+        count[level]++;
+        largest[level] = fibrad_max(largest[level], s->r[i]);
+    }
+    uint32_t cells = 0, spheres = 0;
+    for (uint32_t l = 0; l < FIBRAD_LEVELS; l++) {
+        if (count[l] == 0) continue;
+        fibrad_level *level = &scene->level[scene->levels];
+        level->radius_max = largest[l];
+        level->first_cell = cells;
+        level->first_sphere = spheres;
+        cells += choose_cells(scene, level, count[l]);
+        spheres += count[l];
+        index[l] = scene->levels++;
+    }
+    scene->facts.cells = cells;
+    fibrad_zero(scene->start, ((size_t)cells + 1) * sizeof *scene->start);
+
+    uint32_t *start = scene->start;
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t i = 0; i < s->n; i++) {
+            double centre[3] = {wrapped(s->x[i], scene->low[0], scene->period[0]),
+                                wrapped(s->y[i], scene->low[1], scene->period[1]),
+                                wrapped(s->z[i], scene->low[2], scene->period[2])};
+            uint32_t cell = home(scene, &scene->level[index[level_of(s->r[i], scene->facts.radius_min)]], centre);
+            if (pass == 0) {
+                start[cell + 1]++;
+                continue;
+            }
+            uint32_t k = start[cell]++;
+            scene->x[k] = centre[0], scene->y[k] = centre[1], scene->z[k] = centre[2], scene->r[k] = s->r[i];
+            scene->order[k] = i, scene->place[i] = k;
+        }
+        if (pass == 0) {
+            for (uint32_t c = 0; c < cells; c++) start[c + 1] += start[c];
+        } else { /* placing moved each start to its cell's end: move them back */
+            for (uint32_t c = cells; c > 0; c--) start[c] = start[c - 1];
+            start[0] = 0;
+        }
+    }
+}
+
+/* Finds the largest overlap, and refuses centres inside other spheres. */
+static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
+    for (uint32_t l = 0; l < scene->levels; l++) {
+        uint32_t end = l + 1 < scene->levels ? scene->level[l + 1].first_sphere : scene->facts.spheres;
+        for (uint32_t i = scene->level[l].first_sphere; i < end; i++) {
+            for (uint32_t other = 0; other <= l; other++) {
+                double reach = scene->r[i] + scene->level[other].radius_max;
+                double low[3] = {scene->x[i] - reach, scene->y[i] - reach, scene->z[i] - reach};
+                double high[3] = {scene->x[i] + reach, scene->y[i] + reach, scene->z[i] + reach};
+                fibrad_walk walk;
+                fibrad_walk_begin(&walk, scene, &scene->level[other], low, high);
+                while (fibrad_walk_next(&walk))
+                    for (uint32_t j = walk.begin; j < walk.end; j++) {
+                        double dx = scene->x[j] - scene->x[i] + walk.shift[0];
+                        double dy = scene->y[j] - scene->y[i] + walk.shift[1];
+                        double dz = scene->z[j] - scene->z[i] + walk.shift[2], sum = scene->r[i] + scene->r[j];
+                        bool image = walk.shift[0] != 0 || walk.shift[1] != 0 || walk.shift[2] != 0;
+                        if (fibrad_abs(dx) >= sum || fibrad_abs(dy) >= sum || fibrad_abs(dz) >= sum) continue;
+                        if (j == i && !image) continue;
+                        /* in units of the sum of radii, so that no square can leave the range of a double */
+                        dx /= sum, dy /= sum, dz /= sum;
+                        double distance = sum * fibrad_sqrt(dx * dx + dy * dy + dz * dz);
+                        double smaller = fibrad_min(scene->r[i], scene->r[j]);
+                        if (distance < sum - smaller || distance == 0) {
+                            uint32_t a = scene->order[i], b = scene->order[j];
+                            return fail(FIBRAD_E_GEOMETRY, fault, a < b ? a : b, a < b ? b : a);
+                        }
+                        double overlap = (sum - distance) / smaller;
+                        if (overlap > scene->facts.overlap_max) {
+                            scene->facts.overlap_max = overlap;
+                            scene->facts.overlap_pair[0] = scene->order[i];
+                            scene->facts.overlap_pair[1] = scene->order[j];
+                        }
+                    }
+            }
+        }
+    }
+    return FIBRAD_OK;
+}
+
+int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibrad_scene_config *config,
+                      const fibrad_spheres *spheres, fibrad_fault *fault) {
+    uint32_t none = spheres != NULL ? spheres->n : 0;
+    if (out == NULL || spheres == NULL || !valid(config) || spheres->n != config->spheres || spheres->x == NULL ||
+        spheres->y == NULL || spheres->z == NULL || spheres->r == NULL)
+        return fail(FIBRAD_E_ARGUMENT, fault, none, none);
+    fibrad_arena arena;
+    int status = fibrad_arena_open(&arena, memory, size, fibrad_scene_size(config));
+    if (status != FIBRAD_OK) return fail(status, fault, none, none);
+
+    fibrad_scene *scene = layout(&arena, spheres->n);
+    scene->facts.spheres = spheres->n;
+    scene->facts.isa = fibrad_isa_choose(config->isa);
+    fibrad_copy(scene->period, config->period, sizeof scene->period);
+    fibrad_walls_build(scene, &config->walls);
+    status = measure(scene, spheres, fault);
+    if (status != FIBRAD_OK) return status;
+    for (int axis = 0; axis < 3; axis++)
+        if (scene->period[axis] > 0 && scene->period[axis] < scene->facts.radius_max)
+            return fail(FIBRAD_E_GEOMETRY, fault, none, none);
+
+    double longest = 2 * scene->facts.radius_max, volume = 1;
+    for (int axis = 0; axis < 3; axis++) longest = fibrad_max(longest, side(scene, axis));
+    for (int axis = 0; axis < 3; axis++) volume *= fibrad_max(side(scene, axis), 2 * scene->facts.radius_max) / longest;
+    scene->spacing = longest * cube_root(volume / spheres->n, 1);
+
+    fill(scene, spheres);
+    status = check_overlaps(scene, fault);
+    if (status == FIBRAD_OK) *out = scene;
+    return status;
+}
+
+void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts) {
+    if (scene != NULL && facts != NULL) *facts = scene->facts;
+}
+
+uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k) {
+    return scene != NULL && k < scene->facts.spheres ? scene->order[k] : UINT32_MAX;
+}
+
+void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level, const double low[3],
+                       const double high[3]) {
+    walk->scene = scene;
+    walk->level = level;
+    for (int axis = 0; axis < 3; axis++) {
+        walk->low[axis] = walk->at[axis] = cell_of(scene, level, axis, low[axis]);
+        walk->high[axis] = cell_of(scene, level, axis, high[axis]);
+    }
+}
+
+/* Cell `at` of an axis as a cell of the box, and the shift of that periodic image. */
+static inline int32_t image(const fibrad_walk *walk, int axis, double *shift) {
+    int32_t cells = walk->level->cells[axis], at = walk->at[axis];
+    *shift = 0;
+    if ((uint32_t)at < (uint32_t)cells) return at;
+    int32_t periods = at < 0 ? -((cells - 1 - at) / cells) : at / cells;
+    *shift = periods * walk->scene->period[axis];
+    return at - periods * cells;
+}
+
+bool fibrad_walk_next(fibrad_walk *walk) {
+    const fibrad_level *level = walk->level;
+    while (walk->at[2] <= walk->high[2]) {
+        int32_t x = image(walk, 0, &walk->shift[0]), y = image(walk, 1, &walk->shift[1]);
+        int32_t z = image(walk, 2, &walk->shift[2]);
+        int32_t run = level->cells[0] - x; /* to the end of the box, or of the walk */
+        if (run > walk->high[0] - walk->at[0] + 1) run = walk->high[0] - walk->at[0] + 1;
+        uint32_t row =
+            level->first_cell + (uint32_t)level->cells[0] * ((uint32_t)level->cells[1] * (uint32_t)z + (uint32_t)y);
+        walk->begin = walk->scene->start[row + (uint32_t)x];
+        walk->end = walk->scene->start[row + (uint32_t)x + (uint32_t)run];
+        walk->at[0] += run;
+        if (walk->at[0] > walk->high[0]) {
+            walk->at[0] = walk->low[0];
+            if (++walk->at[1] > walk->high[1]) {
+                walk->at[1] = walk->low[1];
+                walk->at[2]++;
+            }
+        }
+        if (walk->begin < walk->end) return true;
+    }
+    return false;
+}

@@ -1,0 +1,88 @@
+/* areas.h - exact visible areas of discs in a window, front to back. SPDX-License-Identifier: MIT
+ *
+ * The window is the unit disc about the origin. Its open region is what no disc covers so far; discs are handed over
+ * front to back and take their visible areas from it. Two methods know how: clipping (clip_lanes.c), fast, which tells
+ * when it is in doubt; and accounts (arrangement_lanes.c), which no arrangement disturbs, and which does the window
+ * again then. docs/methods.md section 4 explains both. */
+#ifndef FIBRAD_WINDOW_AREAS_H
+#define FIBRAD_WINDOW_AREAS_H
+
+#include "base/arena.h"
+#include "base/port.h"
+
+#define FIBRAD_PIECES 48 /* pieces summed at a time, about */
+
+/* Pieces of the open region's boundary that discs have taken: the area each contributes by Green's theorem, to the disc
+ * that took it, and less of it to the disc of its circle. Room for a vector more. */
+typedef struct fibrad_pieces {
+    _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_PIECES + 8], py[FIBRAD_PIECES + 8];
+    double qx[FIBRAD_PIECES + 8], qy[FIBRAD_PIECES + 8];
+    double cx[FIBRAD_PIECES + 8], cy[FIBRAD_PIECES + 8], r[FIBRAD_PIECES + 8];
+    double circle[FIBRAD_PIECES + 8], taker[FIBRAD_PIECES + 8]; /* numbers */
+    uint32_t count;
+} fibrad_pieces;
+
+#define FIBRAD_BOUNDARY 48 /* arcs that bound the open region, at most, while clipping */
+
+/* The boundary of the open region while clipping: arcs counter-clockwise from c + p to c + q about c, shorter than half
+ * a circle, each in a slot of its own, in no particular order. */
+typedef struct fibrad_boundary {
+    _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_BOUNDARY], py[FIBRAD_BOUNDARY];
+    double qx[FIBRAD_BOUNDARY], qy[FIBRAD_BOUNDARY];
+    double cx[FIBRAD_BOUNDARY], cy[FIBRAD_BOUNDARY], r[FIBRAD_BOUNDARY], circle[FIBRAD_BOUNDARY];
+    double cut[2][2][FIBRAD_BOUNDARY]; /* x, y of where each enters and leaves the new disc, relative to its centre, */
+    double old_qx[FIBRAD_BOUNDARY], old_qy[FIBRAD_BOUNDARY]; /* and where it ended before */
+    uint64_t alive, window;                                  /* bit k: slot k holds an arc; it is one of the window's */
+} fibrad_boundary;
+
+/* Arcs of the accounts, each counter-clockwise from p to q on a circle (its number) and at most half of it; a and b
+ * tell the places of p and q on it. */
+typedef struct fibrad_arcs {
+    double *a, *b, *px, *py, *qx, *qy, *circle;
+    uint32_t count;
+} fibrad_arcs;
+
+/* Intervals of the new disc's circle that are out of sight, and the circles on account of which they are. */
+typedef struct fibrad_intervals {
+    double *from, *to, *circle;
+    uint32_t count;
+    bool all; /* nothing is in sight */
+} fibrad_intervals;
+
+typedef struct fibrad_accounts {
+    uint32_t arcs;             /* capacities: arcs that bound the open region, ... */
+    uint32_t seconds;          /* ... second parts at a time */
+    double *inverse;           /* [discs + 2] 1/r of each circle */
+    double *from, *to;         /* [discs + 2] what the new disc covers of each circle, ... */
+    double *sx, *sy, *ex, *ey; /* ... and the points where that begins and ends */
+    fibrad_intervals hidden;   /* [discs + 1] */
+    fibrad_arcs open, left;    /* [arcs] the boundary of the open region; what is left when a disc has taken its */
+    fibrad_arcs second[2];     /* [seconds] second parts, that stay or go, of arcs cut in three: for a moment */
+} fibrad_accounts;
+
+typedef struct fibrad_areas {
+    uint32_t discs;    /* capacity: discs that a window may meet */
+    uint32_t circles;  /* the window, and the discs whose circles may bound the open region */
+    double *x, *y, *r; /* [discs + 2] circle 0 is the window */
+    double *area;      /* [discs + 2] what is seen of each; of the window: -pi */
+    uint32_t *whose;   /* [discs + 2] the caller's number of each */
+    fibrad_pieces *pieces;
+    fibrad_boundary *boundary;
+    fibrad_accounts accounts;
+    double widest;      /* the largest radius so far */
+    bool open;          /* something of the window is */
+    bool doubtful;      /* the window in hand is done by accounts */
+    bool overflow;      /* too many arcs for the memory: start again with more discs */
+    uint32_t fallbacks; /* doubtful windows since the caller set this to 0 */
+} fibrad_areas;
+
+void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t discs);
+
+/* Appends a circle. */
+static inline void fibrad_areas_add_circle(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+    uint32_t k = areas->circles;
+    areas->x[k] = x, areas->y[k] = y, areas->r[k] = r, areas->area[k] = 0;
+    areas->whose[k] = whose;
+}
+
+#endif

@@ -1,0 +1,15 @@
+/* arrangement_lanes.h - visible areas by accounts of circles, in lanes: no arrangement of discs disturbs them.
+ * SPDX-License-Identifier: MIT
+ *
+ * The three functions are those of clip_lanes.h. */
+#ifndef FIBRAD_WINDOW_ARRANGEMENT_LANES_H
+#define FIBRAD_WINDOW_ARRANGEMENT_LANES_H
+
+#include "base/lanes/laned.h"
+#include "window/areas.h"
+
+void LANED(fibrad_accounts_begin)(fibrad_areas *areas);
+bool LANED(fibrad_accounts_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
+double LANED(fibrad_accounts_end)(fibrad_areas *areas);
+
+#endif
