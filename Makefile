@@ -58,11 +58,13 @@ KERNEL = \
     kernel/pair/exact.c \
     kernel/pair/surface.c \
     kernel/scene/drift.c \
+    kernel/scene/grid_walk.c \
     kernel/scene/scene.c \
     kernel/scene/walls.c \
     kernel/window/areas.c \
     kernel/row/beam.c \
     kernel/row/neighbours.c \
+    kernel/row/row_sum.c \
     kernel/row/surface_row.c \
     kernel/row/work.c \
     kernel/matrix/matrix.c \
@@ -89,6 +91,7 @@ LANED = \
     kernel/row/beam_lanes.c \
     kernel/row/neighbours_lanes.c \
     kernel/row/wall_share_lanes.c \
+    kernel/row/window_lanes.c \
     kernel/ray/cast_lanes.c \
     kernel/ray/trace_lanes.c \
     kernel/exchange/paths_lanes.c \
@@ -99,6 +102,7 @@ HOST = \
     host/cli/interrupt.c \
     host/cli/message.c \
     host/cli/options.c \
+    host/cli/output.c \
     host/cli/progress.c \
     host/cli/targets.c \
     host/bed/bed.c \

@@ -4,7 +4,7 @@
 
 #include "base/elementary.h"
 #include "base/random.h"
-#include "row/beam_lanes.h"
+#include "row/beam.h"
 #include "scene/walls.h"
 #include "heat/heat.h"
 #include "sample/tables.h"

@@ -1,7 +1,7 @@
 /* test_scene.c - scenes: sizes, faults, and that the grid finds what brute force finds. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
-#include "scene/scene.h"
+#include "scene/grid_walk.h"
 #include "scenes.h"
 #include "suite.h"
 

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "cli/output.h"
 #include "read/read.h"
-#include "write/write.h"
 
 static int take_period(const char *text, double period[3]) {
     int count = 3;

@@ -6,6 +6,7 @@
 
 #include "bed/bed.h"
 #include "cli/message.h"
+#include "cli/output.h"
 #include "cli/targets.h"
 #include "command/bed_options.h"
 #include "command/commands.h"

@@ -8,6 +8,7 @@
 #include "bed/property_option.h"
 #include "bed/wall_option.h"
 #include "cli/message.h"
+#include "cli/output.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
 #include "compute/exchange_rows.h"

@@ -9,11 +9,11 @@
 #include "boxes/furnace_run.h"
 #include "cli/message.h"
 #include "cli/options.h"
+#include "cli/output.h"
 #include "command/commands.h"
 #include "plot/plot_bed.h"
 #include "plot/plot_furnace.h"
 #include "read/read_furnace.h"
-#include "write/write.h"
 #include "write/write_furnace.h"
 
 enum {

@@ -7,10 +7,10 @@
 #include "bed/property_option.h"
 #include "bed/wall_option.h"
 #include "cli/message.h"
+#include "cli/output.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
 #include "compute/heat_powers.h"
-#include "write/write.h"
 #include "write/write_heat.h"
 
 enum { KEY_TEMPERATURE = KEY_OWN, KEY_AMBIENT, KEY_WALL_TEMPERATURE, KEY_MODEL, KEY_PATCHES };

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <sys/types.h>
 
-#include "write/write.h"
+#include "cli/output.h"
 
 struct gnuplot {
     FILE *script; /* what is written here, gnuplot executes */

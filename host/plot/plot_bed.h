@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "cli/output.h"
 #include "write/write.h"
 
 /* Can a plot be written to a path with this ending? */

@@ -3,7 +3,7 @@
 #define PLOT_FURNACE_H
 
 #include "boxes/furnace_run.h"
-#include "write/write.h"
+#include "cli/output.h"
 
 /* Temperature and, if it was measured, 1/Theta in the plane y = Y/2, and the temperature on the axis, beside the
  * reference if `number` is a published case, 0 if it is none. Status 0, STATUS_FILE, or that of a signal. */

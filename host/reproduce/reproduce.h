@@ -8,9 +8,9 @@
 #include <stdio.h>
 
 #include "bed/bed.h"
+#include "cli/output.h"
 #include "compute/method.h"
 #include "fibrad.h"
-#include "write/write.h"
 
 /* Where results go. */
 struct reproduce {

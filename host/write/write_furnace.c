@@ -1,7 +1,7 @@
 /* write_furnace.c - the fields of a box to files. SPDX-License-Identifier: MIT */
 #include "write/write_furnace.h"
 
-#include "write/write.h"
+#include "cli/output.h"
 
 void write_furnace_csv(FILE *file, const struct furnace_run *run) {
     const fibrad_furnace_config *c = &run->config;

@@ -3,7 +3,7 @@
 #include "base/arena.h"
 #include "heat/hits_lanes.h"
 #include "heat/sphere_patch.h"
-#include "row/beam_lanes.h"
+#include "row/beam.h"
 #include "sample/tables.h"
 
 #define PI         3.14159265358979323846

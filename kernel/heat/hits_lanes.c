@@ -4,7 +4,7 @@
 #include "heat/hits_lanes.h"
 #include "heat/sphere_patch.h"
 #include "ray/tracer.h"
-#include "row/beam_lanes.h"
+#include "row/beam.h"
 #include "row/window_lanes.h"
 
 #define POINTS 64                          /* of a window at a time */

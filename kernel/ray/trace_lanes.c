@@ -5,6 +5,7 @@
 #include FIBRAD_LANES_HEADER
 #include "ray/tracer.h"
 #include "row/work.h"
+#include "scene/grid_walk.h"
 
 /* A ray sees no farther than this many periods along any periodic axis. */
 #define PERIODS 100.0

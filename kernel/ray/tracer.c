@@ -3,6 +3,7 @@
 #include "base/arena.h"
 #include "base/sort.h"
 #include "row/work.h"
+#include "scene/grid_walk.h"
 
 /* A list looks REACH mean spacings beyond the surface of its sphere, or as far as its room goes. */
 #define REACH      1.8

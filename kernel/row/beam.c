@@ -1,5 +1,6 @@
 /* beam.c - checks a beam rule and hands it to the version for the scene's instruction set. SPDX-License-Identifier: MIT
  */
+#include "row/beam.h"
 #include "row/beam_lanes.h"
 #include "sample/direction.h"
 

@@ -10,8 +10,4 @@ typedef int fibrad_beam_function(const fibrad_scene *scene, fibrad_work *work, u
 
 fibrad_beam_function fibrad_beam_row_scalar, fibrad_beam_row_sse2, fibrad_beam_row_avx2, fibrad_beam_row_avx512;
 
-/* The axes of window k of a rule: two unit vectors across its direction, and the direction. points: 0 for exact areas.
- */
-void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]);
-
 #endif

@@ -3,6 +3,7 @@
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
 #include "row/neighbours_lanes.h"
+#include "scene/grid_walk.h"
 
 /* What the sieves compare, for spheres [from, to) of the list. They are in floats and may let a sphere pass that the
  * exact test then refuses, but not the other way round: three products and two sums err by less than 4 ulp of the

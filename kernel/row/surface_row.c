@@ -1,6 +1,7 @@
 /* surface_row.c - a row of view factors by the surface method. SPDX-License-Identifier: MIT */
 #include "pair/surface.h"
 #include "row/work.h"
+#include "scene/grid_walk.h"
 
 /* Whether the cutoff reaches farther than FIBRAD_PERIODS periods along some axis. */
 static bool too_far(const fibrad_scene *scene, double cutoff) {

@@ -1,7 +1,6 @@
-/* work.c - lays out the work memory of one thread, and collects the entries of a row. SPDX-License-Identifier: MIT */
+/* work.c - lays out the work memory of one thread. SPDX-License-Identifier: MIT */
 #include "row/work.h"
 #include "base/arena.h"
-#include "base/sort.h"
 
 #define DEFAULT_NEAR    1024u
 #define DEFAULT_DISCS   256u
@@ -101,65 +100,4 @@ int fibrad_work_init(fibrad_work **out, void *memory, size_t size, const fibrad_
 
 void fibrad_work_needed(const fibrad_work *work, fibrad_work_config *config) {
     if (work != NULL && config != NULL) *config = work->needed;
-}
-
-static uint32_t slot_of(const fibrad_entries *entries, uint32_t sphere) {
-    uint32_t mask = entries->slots - 1, slot = (sphere * 2654435769u >> 7) & mask; /* Fibonacci hashing */
-    while (entries->at[slot] != FIBRAD_NONE && entries->sphere[entries->at[slot]] != sphere) slot = (slot + 1) & mask;
-    return slot;
-}
-
-uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere) {
-    uint32_t slot = slot_of(entries, sphere), entry = entries->at[slot];
-    if (entry != FIBRAD_NONE || entries->length == entries->capacity) return entry;
-    entry = entries->at[slot] = entries->length++;
-    entries->slot[entry] = slot;
-    entries->sphere[entry] = sphere;
-    for (int part = 0; part < 4; part++) entries->part[entry][part] = 0;
-    entries->lengths[entry] = entries->angles[entry] = 0;
-    return entry;
-}
-
-uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere) {
-    return entries->at[slot_of(entries, sphere)];
-}
-
-int fibrad_entries_row(const fibrad_work *work, double scale, fibrad_row *row) {
-    const fibrad_entries *entries = &work->entries;
-    uint32_t n = entries->length;
-    row->length = n;
-    if (n > row->capacity) return FIBRAD_E_CAPACITY;
-    double square = 0;
-    for (uint32_t k = 0; k < n; k++) {
-        const double *part = entries->part[k];
-        double difference = (part[0] + part[2] - part[1] - part[3]) * scale;
-        square += difference * difference;
-        entries->key[0][k] = (uint64_t)work->scene->order[entries->sphere[k]] << 32 | k;
-    }
-    row->error = fibrad_sqrt(square);
-
-    const uint64_t *key = fibrad_sort_keys(entries->key[0], entries->key[1], n, 32, work->scene->facts.spheres - 1);
-    for (uint32_t k = 0; k < n; k++) {
-        uint32_t entry = (uint32_t)key[k];
-        row->col[k] = (uint32_t)(key[k] >> 32);
-        const double *part = entries->part[entry];
-        row->f[k] = (part[0] + part[2] + (part[1] + part[3])) * scale;
-    }
-    return FIBRAD_OK;
-}
-
-/* Where the error falls by the same ratio from fourths to halves as from halves to the whole, it is halves^2/fourths.
- * The bounds are measured, docs/accuracy.md: the factor where many windows see each sphere, and that of independent
- * windows. */
-double fibrad_entries_gain(const fibrad_entries *entries) {
-    const double least = 0.5, most = 1.1;
-    double halves = 0, fourths = 0;
-    for (uint32_t k = 0; k < entries->length; k++) {
-        const double *part = entries->part[k];
-        double half = part[0] + part[2] - part[1] - part[3], even = part[0] - part[2], odd = part[1] - part[3];
-        halves += half * half;
-        fourths += even * even + odd * odd;
-    }
-    if (!(halves < fourths)) return most;
-    return fibrad_max(least, most * fibrad_sqrt(halves / fourths));
 }

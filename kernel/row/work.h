@@ -1,4 +1,4 @@
-/* work.h - the inside of the work memory of one thread: near spheres, the discs of a window, the entries of a row.
+/* work.h - the inside of the work memory of one thread: near spheres, and the row in hand.
  * SPDX-License-Identifier: MIT
  *
  * All lengths in here are in units of the radius of sphere i, whose row it is, and all places relative to its centre.
@@ -7,8 +7,10 @@
 #define FIBRAD_ROW_WORK_H
 
 #include "pair/surface_lanes.h"
+#include "row/row_sum.h"
 #include "scene/scene.h"
 #include "window/areas.h"
+#include "window/discs.h"
 
 #define FIBRAD_SHELLS 8
 /* Near spheres in shells by emergence: the least depth at which a sphere can come before a window, in any direction,
@@ -30,38 +32,10 @@ typedef struct fibrad_near {
     uint32_t asked;              /* how many windows have asked for one more than there are */
 } fibrad_near;
 
-#define FIBRAD_LANES_MAX 16 /* whole vectors are written at the end of a list */
-
-/* Discs before the window in hand: the shadows of spheres, u and v being their centres across the direction. */
-typedef struct fibrad_discs {
-    double *depth, *u, *v, *r; /* [capacity + FIBRAD_LANES_MAX]; the depth is -1 once a disc is settled */
-    float *fu, *fv, *square;   /* [same] place and r^2 for points */
-    uint32_t *near;            /* [same, and room for all near spheres] place in the near list */
-    uint32_t *order;           /* [same] which is the first, the second ... from front to back */
-    uint32_t *hits;            /* [same] points that the first, the second ... takes */
-    uint32_t *taker;           /* [same] which of them take any */
-    uint32_t capacity;
-    uint32_t count; /* may go on beyond the capacity */
-} fibrad_discs;
-
 #define FIBRAD_WORK_MAX (1u << 28)
 
 /* A row sees no farther than this many periods along any periodic axis. */
 #define FIBRAD_PERIODS 100.0
-
-/* What has been seen of each sphere so far, in the order of first sight; the sum over each fourth direction or ray
- * apart, for the estimate of the error. */
-typedef struct fibrad_entries {
-    uint32_t *at;      /* [slots] open addressing by sphere: which entry is its; FIBRAD_NONE: free */
-    uint32_t *slot;    /* [capacity] where `at` tells of each entry */
-    uint32_t *sphere;  /* [capacity] */
-    double (*part)[4]; /* [capacity] visible area over all windows k = 0, 1, 2, 3 mod 4, or number of rays */
-    double *lengths;   /* [capacity] of the rays, summed [L] */
-    double *angles;    /* [capacity] between the rays and the line of centres, summed */
-    uint64_t *key[2];  /* [capacity] scratch of the sort by columns */
-    uint32_t slots, capacity, length, missed;
-    bool end; /* the window in hand is the first or the last: it counts half in differences of even and odd windows */
-} fibrad_entries;
 
 struct fibrad_work {
     fibrad_work_config config, needed;
@@ -118,39 +92,11 @@ static inline uint32_t fibrad_work_sphere(const fibrad_work *work, uint32_t disc
     return work->near.sphere[work->disc.near[disc]];
 }
 
-/* The entry of a sphere, a new one if it has none so far; FIBRAD_NONE if that finds no room. */
-uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere);
-
-/* Adds visible area to part k mod 4 of an entry. Counts in entries.missed what has none. */
-static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, uint32_t k, double area) {
-    if (entry == FIBRAD_NONE) {
-        entries->missed++;
-        return;
-    }
-    double *part = entries->part[entry];
-    if (entries->end) { /* so even - odd holds half of it */
-        part[k % 4 ^ 1] += area / 4;
-        area -= area / 4;
-    }
-    part[k % 4] += area;
-}
-
 /* Adds what window k sees of a disc. */
 static inline void fibrad_work_see(fibrad_work *work, uint32_t disc, uint32_t k, double area) {
     uint32_t *entry = &work->near.entry[work->disc.near[disc]];
     if (*entry == FIBRAD_NONE) *entry = fibrad_entries_of(&work->entries, fibrad_work_sphere(work, disc));
     fibrad_entries_add(&work->entries, *entry, k, area);
 }
-
-/* The entry of a sphere; FIBRAD_NONE if it has found no room. */
-uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);
-
-/* Writes the row: entries times `scale`, columns ascending, and as its error the distance of the sums over even and odd
- * windows. */
-int fibrad_entries_row(const fibrad_work *work, double scale, fibrad_row *row);
-
-/* The error of a beam row over that distance, from how much the sums over every fourth window differ, docs/methods.md
- * section 3. */
-double fibrad_entries_gain(const fibrad_entries *entries);
 
 #endif

@@ -1,5 +1,5 @@
 /* drift.c - which rows of a bed may be kept when its spheres move. SPDX-License-Identifier: MIT */
-#include "scene/scene.h"
+#include "scene/grid_walk.h"
 
 /* Seen from sphere i, the edge of sphere j sweeps over FACTOR F delta/width of the row when j moves by delta. The
  * factor bounds what was measured, docs/methods.md section 10. */

@@ -1,8 +1,8 @@
-/* scene.c - copies spheres into a fixed-memory cell grid, checks them, and walks through the cells.
- * SPDX-License-Identifier: MIT */
+/* scene.c - copies spheres into a fixed-memory cell grid, and checks them. SPDX-License-Identifier: MIT */
 #include "scene/scene.h"
 #include "base/arena.h"
 #include "base/cpu.h"
+#include "scene/grid_walk.h"
 #include "scene/walls.h"
 
 /* Cells on average hold this many spheres of their level. */
@@ -153,19 +153,11 @@ static uint32_t choose_cells(const fibrad_scene *scene, fibrad_level *level, uin
     return (uint32_t)total;
 }
 
-static int32_t cell_of(const fibrad_scene *scene, const fibrad_level *level, int axis, double c) {
-    double from_low = c - scene->box_low[axis];
-    if (scene->period[axis] == 0) from_low += level->radius_max;
-    double cell = fibrad_floor(from_low * level->inverse[axis]);
-    if (scene->period[axis] == 0) cell = fibrad_max(0, fibrad_min(cell, level->cells[axis] - 1));
-    return (int32_t)fibrad_max(-1e9, fibrad_min(cell, 1e9));
-}
-
 /* The cell a sphere belongs to, as an index into scene->start. */
 static uint32_t home(const fibrad_scene *scene, const fibrad_level *level, const double centre[3]) {
     uint32_t cell = 0;
     for (int axis = 2; axis >= 0; axis--) {
-        int32_t c = cell_of(scene, level, axis, centre[axis]);
+        int32_t c = fibrad_grid_cell(scene, level, axis, centre[axis]);
         if (c < 0) c = 0; /* a periodic axis, rounded */
         if (c >= level->cells[axis]) c = level->cells[axis] - 1;
         cell = cell * (uint32_t)level->cells[axis] + (uint32_t)c;
@@ -298,48 +290,4 @@ void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts)
 
 uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k) {
     return scene != NULL && k < scene->facts.spheres ? scene->order[k] : UINT32_MAX;
-}
-
-void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level, const double low[3],
-                       const double high[3]) {
-    walk->scene = scene;
-    walk->level = level;
-    for (int axis = 0; axis < 3; axis++) {
-        walk->low[axis] = walk->at[axis] = cell_of(scene, level, axis, low[axis]);
-        walk->high[axis] = cell_of(scene, level, axis, high[axis]);
-    }
-}
-
-/* Cell `at` of an axis as a cell of the box, and the shift of that periodic image. */
-static inline int32_t image(const fibrad_walk *walk, int axis, double *shift) {
-    int32_t cells = walk->level->cells[axis], at = walk->at[axis];
-    *shift = 0;
-    if ((uint32_t)at < (uint32_t)cells) return at;
-    int32_t periods = at < 0 ? -((cells - 1 - at) / cells) : at / cells;
-    *shift = periods * walk->scene->period[axis];
-    return at - periods * cells;
-}
-
-bool fibrad_walk_next(fibrad_walk *walk) {
-    const fibrad_level *level = walk->level;
-    while (walk->at[2] <= walk->high[2]) {
-        int32_t x = image(walk, 0, &walk->shift[0]), y = image(walk, 1, &walk->shift[1]);
-        int32_t z = image(walk, 2, &walk->shift[2]);
-        int32_t run = level->cells[0] - x; /* to the end of the box, or of the walk */
-        if (run > walk->high[0] - walk->at[0] + 1) run = walk->high[0] - walk->at[0] + 1;
-        uint32_t row =
-            level->first_cell + (uint32_t)level->cells[0] * ((uint32_t)level->cells[1] * (uint32_t)z + (uint32_t)y);
-        walk->begin = walk->scene->start[row + (uint32_t)x];
-        walk->end = walk->scene->start[row + (uint32_t)x + (uint32_t)run];
-        walk->at[0] += run;
-        if (walk->at[0] > walk->high[0]) {
-            walk->at[0] = walk->low[0];
-            if (++walk->at[1] > walk->high[1]) {
-                walk->at[1] = walk->low[1];
-                walk->at[2]++;
-            }
-        }
-        if (walk->begin < walk->end) return true;
-    }
-    return false;
 }

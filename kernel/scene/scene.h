@@ -1,5 +1,4 @@
-/* scene.h - the inside of a scene: spheres in the order of a cell grid, and the walk through its cells.
- * SPDX-License-Identifier: MIT */
+/* scene.h - the inside of a scene: spheres in the order of a cell grid. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_SCENE_SCENE_H
 #define FIBRAD_SCENE_SCENE_H
 
@@ -40,22 +39,5 @@ struct fibrad_scene {
     uint32_t *place;                   /* [n] where the caller's sphere i stands */
     uint32_t *start;                   /* [cells + 1] */
 };
-
-/* A walk through the cells of one level that meet a box, as runs of spheres side by side in memory. */
-typedef struct fibrad_walk {
-    const fibrad_scene *scene;
-    const fibrad_level *level;
-    int32_t low[3], high[3], at[3]; /* cells; beyond [0, cells) they are periodic images */
-    /* the run: spheres [begin, end), seen shifted by whole periods */
-    uint32_t begin, end;
-    double shift[3];
-} fibrad_walk;
-
-/* Starts a walk over the box from low to high [L]. */
-void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level, const double low[3],
-                       const double high[3]);
-
-/* The next run with spheres in it; false when there is none. */
-bool fibrad_walk_next(fibrad_walk *walk);
 
 #endif

@@ -3,8 +3,8 @@
 #define FIBRAD_WINDOW_POINTS_LANES_H
 
 #include "base/lanes/laned.h"
-#include "row/work.h"
 #include "sample/tables.h"
+#include "window/discs.h"
 
 /* The points of a window that no disc has hidden so far. */
 typedef struct fibrad_points {

@@ -1,0 +1,49 @@
+/* row_sum.h - the entries of a row while they are summed. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_ROW_ROW_SUM_H
+#define FIBRAD_ROW_ROW_SUM_H
+
+#include "scene/scene.h"
+
+/* What has been seen of each sphere so far, in the order of first sight; the sum over each fourth direction or ray
+ * apart, for the estimate of the error. */
+typedef struct fibrad_entries {
+    uint32_t *at;      /* [slots] open addressing by sphere: which entry is its; FIBRAD_NONE: free */
+    uint32_t *slot;    /* [capacity] where `at` tells of each entry */
+    uint32_t *sphere;  /* [capacity] */
+    double (*part)[4]; /* [capacity] visible area over all windows k = 0, 1, 2, 3 mod 4, or number of rays */
+    double *lengths;   /* [capacity] of the rays, summed [L] */
+    double *angles;    /* [capacity] between the rays and the line of centres, summed */
+    uint64_t *key[2];  /* [capacity] scratch of the sort by columns */
+    uint32_t slots, capacity, length, missed;
+    bool end; /* the window in hand is the first or the last: it counts half in differences of even and odd windows */
+} fibrad_entries;
+
+/* The entry of a sphere, a new one if it has none so far; FIBRAD_NONE if that finds no room. */
+uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere);
+
+/* Adds visible area to part k mod 4 of an entry. Counts in entries.missed what has none. */
+static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, uint32_t k, double area) {
+    if (entry == FIBRAD_NONE) {
+        entries->missed++;
+        return;
+    }
+    double *part = entries->part[entry];
+    if (entries->end) { /* so even - odd holds half of it */
+        part[k % 4 ^ 1] += area / 4;
+        area -= area / 4;
+    }
+    part[k % 4] += area;
+}
+
+/* The entry of a sphere; FIBRAD_NONE if it has found no room. */
+uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);
+
+/* Writes the row: entries times `scale`, columns ascending, and as its error the distance of the sums over even and odd
+ * windows. */
+int fibrad_entries_row(const fibrad_work *work, double scale, fibrad_row *row);
+
+/* The error of a beam row over that distance, from how much the sums over every fourth window differ, docs/methods.md
+ * section 3. */
+double fibrad_entries_gain(const fibrad_entries *entries);
+
+#endif

@@ -1,0 +1,27 @@
+/* grid_walk.h - cells of the grid of a scene, and the walk through them. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_SCENE_GRID_WALK_H
+#define FIBRAD_SCENE_GRID_WALK_H
+
+#include "scene/scene.h"
+
+/* The cell of a coordinate [L] along an axis; on a periodic axis it may be one of an image, beyond [0, cells). */
+int32_t fibrad_grid_cell(const fibrad_scene *scene, const fibrad_level *level, int axis, double c);
+
+/* A walk through the cells of one level that meet a box, as runs of spheres side by side in memory. */
+typedef struct fibrad_walk {
+    const fibrad_scene *scene;
+    const fibrad_level *level;
+    int32_t low[3], high[3], at[3]; /* cells; beyond [0, cells) they are periodic images */
+    /* the run: spheres [begin, end), seen shifted by whole periods */
+    uint32_t begin, end;
+    double shift[3];
+} fibrad_walk;
+
+/* Starts a walk over the box from low to high [L]. */
+void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level, const double low[3],
+                       const double high[3]);
+
+/* The next run with spheres in it; false when there is none. */
+bool fibrad_walk_next(fibrad_walk *walk);
+
+#endif

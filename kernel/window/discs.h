@@ -1,0 +1,21 @@
+/* discs.h - the discs before a window. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_WINDOW_DISCS_H
+#define FIBRAD_WINDOW_DISCS_H
+
+#include "base/port.h"
+
+#define FIBRAD_LANES_MAX 16 /* whole vectors are written at the end of a list */
+
+/* Discs before the window in hand: the shadows of spheres, u and v being their centres across the direction. */
+typedef struct fibrad_discs {
+    double *depth, *u, *v, *r; /* [capacity + FIBRAD_LANES_MAX]; the depth is -1 once a disc is settled */
+    float *fu, *fv, *square;   /* [same] place and r^2 for points */
+    uint32_t *near;            /* [same, and room for all near spheres] place in the near list */
+    uint32_t *order;           /* [same] which is the first, the second ... from front to back */
+    uint32_t *hits;            /* [same] points that the first, the second ... takes */
+    uint32_t *taker;           /* [same] which of them take any */
+    uint32_t capacity;
+    uint32_t count; /* may go on beyond the capacity */
+} fibrad_discs;
+
+#endif
