@@ -191,6 +191,7 @@ SCRIPTS = \
     tests/check_faults.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
+    tests/check_rooms.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
     tests/freestanding/check_freestanding.sh \
