@@ -193,7 +193,8 @@ typedef struct fibrad_work_config {
     uint32_t entries; /* different spheres seen by one row: default 1024 */
 } fibrad_work_config;
 
-typedef struct fibrad_work fibrad_work;
+typedef struct fibrad_workspace fibrad_workspace;
+typedef fibrad_workspace fibrad_work;
 
 /* Bytes that fibrad_work_init needs (NULL: all defaults). Errors: 0 if a number is above 2^28. Cost: tens of
  * nanoseconds. */

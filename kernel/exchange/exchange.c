@@ -32,7 +32,7 @@ static fibrad_paths begin(fibrad_tracer *tracer, uint32_t i, const fibrad_exchan
 }
 
 /* The first leg: a beam row, and the error of what it makes spheres absorb. */
-static int first_leg(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
+static int first_leg(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i, const fibrad_exchange_rule *rule,
                      fibrad_row *row, double *error) {
     fibrad_beam_rule beam = {.directions = rule->directions > 0 ? rule->directions : DIRECTIONS};
     for (;;) {
@@ -93,7 +93,7 @@ static void follow(fibrad_paths *paths, const fibrad_exchange_rule *rule, double
 }
 
 /* Adds the first leg to the scaled sums of the paths. */
-static void join(fibrad_work *work, const fibrad_exchange_rule *rule, const fibrad_row *row, double scale) {
+static void join(fibrad_workspace *work, const fibrad_exchange_rule *rule, const fibrad_row *row, double scale) {
     fibrad_entries *entries = &work->entries;
     for (uint32_t k = 0; k < entries->length; k++)
         for (int part = 0; part < 4; part++) entries->part[k][part] *= scale;
@@ -103,7 +103,7 @@ static void join(fibrad_work *work, const fibrad_exchange_rule *rule, const fibr
                                0.25 * row->f[k] * rule->emissivity[row->col[k]]);
 }
 
-int fibrad_exchange_row(fibrad_tracer *tracer, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
+int fibrad_exchange_row(fibrad_tracer *tracer, fibrad_workspace *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays) {
     if (!valid(tracer, i, rule)) return FIBRAD_E_ARGUMENT;
     const fibrad_scene *scene = tracer->scene;

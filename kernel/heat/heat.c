@@ -141,7 +141,7 @@ uint32_t fibrad_heat_tasks(const fibrad_heat *heat) {
     return heat->scene->facts.spheres + (heat->rays + FIBRAD_HEAT_TASK - 1) / FIBRAD_HEAT_TASK;
 }
 
-int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task) {
+int fibrad_heat_trace(fibrad_heat *heat, fibrad_workspace *work, uint32_t task) {
     if (heat == NULL || work == NULL || task >= fibrad_heat_tasks(heat)) return FIBRAD_E_ARGUMENT;
     switch (heat->scene->facts.isa) {
 #ifdef FIBRAD_WITH_SSE2

@@ -48,7 +48,7 @@ static void number(struct window *p, const double frame[9], uint32_t side, uint1
 }
 
 /* Which disc hides each point of a word: the first that covers it. */
-static void find_discs(const fibrad_work *work, const fibrad_points *points, uint32_t word, struct window *p) {
+static void find_discs(const fibrad_workspace *work, const fibrad_points *points, uint32_t word, struct window *p) {
     uint64_t left = ~points->seen[word];
     for (uint32_t k = 0; k < POINTS; k++) p->disc[k] = FIBRAD_NONE;
     for (uint32_t t = 0; left != 0; t++) {
@@ -67,7 +67,7 @@ static void find_discs(const fibrad_work *work, const fibrad_points *points, uin
 }
 
 /* Normals where the points x, y meet their discs. */
-static void find_normals(const fibrad_work *work, const float *x, const float *y, struct window *p) {
+static void find_normals(const fibrad_workspace *work, const float *x, const float *y, struct window *p) {
     for (uint32_t k = 0; k < POINTS; k++) {
         const uint32_t d = p->disc[k];
         p->u[k] = p->v[k] = 0;
@@ -91,7 +91,7 @@ static void find_normals(const fibrad_work *work, const float *x, const float *y
 #define SHIFT   21u
 
 /* The patch that the beam of open point p of window k meets. */
-static uint32_t escape(const fibrad_heat *heat, const fibrad_work *work, const double frame[9],
+static uint32_t escape(const fibrad_heat *heat, const fibrad_workspace *work, const double frame[9],
                        const fibrad_disc_points *set, uint32_t k, uint32_t p) {
     if (!heat->scene->container.walls) return fibrad_heat_open(heat);
     const uint32_t other = (PAIRING * p + SHIFT * k) & (heat->config.points - 1);
@@ -108,7 +108,7 @@ static uint32_t escape(const fibrad_heat *heat, const fibrad_work *work, const d
     return fibrad_heat_leaves(heat, origin, w);
 }
 
-static int follow_beams(fibrad_heat *heat, fibrad_work *work, uint32_t place) {
+static int follow_beams(fibrad_heat *heat, fibrad_workspace *work, uint32_t place) {
     fibrad_points points = {.count = heat->config.points};
     struct window window;
     uint16_t patch[POINTS];
@@ -160,7 +160,7 @@ static void follow_rays(fibrad_heat *heat, uint32_t task) {
     }
 }
 
-int LANED(fibrad_heat_follow)(fibrad_heat *heat, fibrad_work *work, uint32_t task) {
+int LANED(fibrad_heat_follow)(fibrad_heat *heat, fibrad_workspace *work, uint32_t task) {
     const fibrad_scene *scene = heat->scene;
     if (task < scene->facts.spheres) return follow_beams(heat, work, scene->place[task]);
     follow_rays(heat, task - scene->facts.spheres);

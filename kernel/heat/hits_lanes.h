@@ -7,7 +7,7 @@
 
 /* Fills heat->hit of sphere `task`; from the number of spheres on, a part of heat->ray. FIBRAD_E_CAPACITY: the work
  * memory is too small. */
-typedef int fibrad_heat_follow_function(fibrad_heat *heat, fibrad_work *work, uint32_t task);
+typedef int fibrad_heat_follow_function(fibrad_heat *heat, fibrad_workspace *work, uint32_t task);
 
 fibrad_heat_follow_function fibrad_heat_follow_scalar, fibrad_heat_follow_sse2, fibrad_heat_follow_avx2,
     fibrad_heat_follow_avx512;

@@ -4,7 +4,7 @@
 
 #define RAYS 20000u
 
-int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_cast_rule *rule,
+int fibrad_cast_row(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i, const fibrad_cast_rule *rule,
                     fibrad_row *row, const fibrad_cast_means *means) {
     if (scene == NULL || work == NULL || row == NULL || i >= scene->facts.spheres) return FIBRAD_E_ARGUMENT;
     if (row->capacity > 0 && (row->col == NULL || row->f == NULL)) return FIBRAD_E_ARGUMENT;

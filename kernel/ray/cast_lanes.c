@@ -80,7 +80,7 @@ struct hit {
 
 /* Appends the discs of one shell that lie before the window and may be met by the ray from o along w: with
  * q = c^2 + 1 - r^2, those with (w.c - w.o)^2 > q - 2 o.c. */
-static void sieve(fibrad_work *work, const struct ray *ray, uint32_t shell) {
+static void sieve(fibrad_workspace *work, const struct ray *ray, uint32_t shell) {
     const fibrad_near *near = &work->near;
     uint32_t *to = work->disc.near;
     size_t end = near->end[shell];
@@ -108,7 +108,7 @@ static bool before(const struct hit *a, const struct hit *b) {
 }
 
 /* Compares the discs at hand with the first sphere so far. */
-static void meet(const fibrad_work *work, const struct ray *ray, struct hit *first) {
+static void meet(const fibrad_workspace *work, const struct ray *ray, struct hit *first) {
     const fibrad_discs *disc = &work->disc;
     for (uint32_t k = 0; k < disc->count; k++) {
         struct hit hit = {0, disc->depth[k], disc->u[k], disc->v[k], disc->r[k], fibrad_work_sphere(work, k)};
@@ -123,7 +123,7 @@ static void meet(const fibrad_work *work, const struct ray *ray, struct hit *fir
  * behind all that are less deep. If k is deeper than j and yet met first, the ray's whole stretch in j lies in the cap
  * of j that is inside k, whose height is at most the overlap h r_j; such a chord is inclined to the line of centres so
  * much that k is deeper by no more than (r_j + r_k) sqrt(2 h). False: too many discs for the memory. */
-static bool follow(fibrad_work *work, const struct ray *ray, struct hit *first) {
+static bool follow(fibrad_workspace *work, const struct ray *ray, struct hit *first) {
     const fibrad_scene_facts *facts = &work->scene->facts;
     double lead = fibrad_sqrt(2 * facts->overlap_max + 1e-12), largest = facts->radius_max * work->inverse;
     double known = -1, horizon = 0;
@@ -157,7 +157,7 @@ static double angle(double y, double x) {
 }
 
 /* Counts a ray that meets no sphere: by the wall through which it leaves. */
-static void leave(fibrad_work *work, const struct ray *ray) {
+static void leave(fibrad_workspace *work, const struct ray *ray) {
     double origin[3], distance;
     for (int axis = 0; axis < 3; axis++)
         origin[axis] =
@@ -167,7 +167,7 @@ static void leave(fibrad_work *work, const struct ray *ray) {
 }
 
 /* Counts a hit. */
-static void note(fibrad_work *work, const struct hit *first, uint32_t k, bool means) {
+static void note(fibrad_workspace *work, const struct hit *first, uint32_t k, bool means) {
     uint32_t entry = fibrad_entries_of(&work->entries, first->sphere);
     fibrad_entries_add(&work->entries, entry, k, 1);
     if (!means || entry == FIBRAD_NONE) return;
@@ -175,7 +175,7 @@ static void note(fibrad_work *work, const struct hit *first, uint32_t k, bool me
     work->entries.angles[entry] += angle(fibrad_sqrt(first->u * first->u + first->v * first->v), first->depth);
 }
 
-static void write_means(const fibrad_work *work, const fibrad_row *row, const fibrad_cast_means *means) {
+static void write_means(const fibrad_workspace *work, const fibrad_row *row, const fibrad_cast_means *means) {
     const fibrad_entries *entries = &work->entries;
     for (uint32_t k = 0; k < row->length; k++) {
         uint32_t entry = fibrad_entries_find(entries, work->scene->place[row->col[k]]);
@@ -186,7 +186,7 @@ static void write_means(const fibrad_work *work, const fibrad_row *row, const fi
     }
 }
 
-int LANED(fibrad_cast_row)(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_cast_rule *rule,
+int LANED(fibrad_cast_row)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i, const fibrad_cast_rule *rule,
                            fibrad_row *row, const fibrad_cast_means *means) {
     struct rays rays;
     fibrad_random stream = {fibrad_mix(fibrad_random_ahead((fibrad_random){rule->seed}, i))};

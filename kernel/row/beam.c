@@ -28,7 +28,7 @@ void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double 
     frame[6] = d.ring * d.cos, frame[7] = d.ring * d.sin, frame[8] = d.z;
 }
 
-int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
+int fibrad_beam_row(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row) {
     if (scene == NULL || work == NULL || row == NULL || i >= scene->facts.spheres) return FIBRAD_E_ARGUMENT;
     if (row->capacity > 0 && (row->col == NULL || row->f == NULL)) return FIBRAD_E_ARGUMENT;

@@ -15,14 +15,14 @@
 #define SHELLS ((fibrad_stride){3.9, 1.5})
 
 /* Notes what discs the row lacked, if it did. */
-static bool lacking(fibrad_work *work) {
+static bool lacking(fibrad_workspace *work) {
     uint32_t met = work->disc.count, room = work->disc.capacity;
     bool crowded = met > room || work->areas.overflow;
     if (crowded && room > 0) work->needed.discs = met > 2 * room ? met : 2 * room;
     return crowded;
 }
 
-int LANED(fibrad_beam_row)(const fibrad_scene *scene, fibrad_work *work, uint32_t i, uint32_t directions,
+int LANED(fibrad_beam_row)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i, uint32_t directions,
                            uint32_t points, double cutoff, fibrad_row *row) {
     fibrad_points window = {.count = points};
     if (points > 0) {

@@ -2,14 +2,14 @@
 #include "row/work.h"
 
 /* How far along an axis, forwards or backwards, there may be spheres that come before a window. */
-static double room(const fibrad_work *work, int axis, double sense) {
+static double room(const fibrad_workspace *work, int axis, double sense) {
     const fibrad_scene *scene = work->scene;
     double far = sense > 0 ? scene->high[axis] - work->centre[axis] : work->centre[axis] - scene->low[axis];
     if (scene->period[axis] > 0) far = FIBRAD_PERIODS * scene->period[axis];
     return (far + (work->unit + scene->facts.radius_max)) * work->inverse;
 }
 
-void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t place, double cutoff,
+void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32_t place, double cutoff,
                        fibrad_stride stride) {
     for (uint32_t k = 0; k < work->entries.length; k++) work->entries.at[work->entries.slot[k]] = FIBRAD_NONE;
     work->entries.length = work->entries.missed = 0;
@@ -41,7 +41,7 @@ void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t pl
     work->near.asked = 0;
 }
 
-double fibrad_near_horizon(const fibrad_work *work, const double w[3]) {
+double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]) {
     double horizon = work->farthest;
     for (int axis = 0; axis < 3; axis++) {
         if (w[axis] != 0) horizon = fibrad_min(horizon, room(work, axis, w[axis]) / fibrad_abs(w[axis]));

@@ -30,13 +30,13 @@ static void floats(fibrad_near *near, uint32_t from, uint32_t to) {
 #define LAYER_CELLS 1.5
 
 /* Coordinates of spheres of the run in hand, relative to the centre and in units of the radius. */
-static inline vd placed(const fibrad_work *work, const fibrad_walk *walk, int axis, const double *coordinate) {
+static inline vd placed(const fibrad_workspace *work, const fibrad_walk *walk, int axis, const double *coordinate) {
     vd c = vd_sub(vd_loadu(coordinate), vd_set1(work->centre[axis]));
     return vd_mul(vd_add(c, vd_set1(walk->shift[axis])), vd_set1(work->inverse));
 }
 
 /* Appends those of the spheres on a walk whose squared emergence lies in (from, to]. False: no room. */
-static bool collect(fibrad_work *work, fibrad_walk *walk, double from, double to, uint32_t *count) {
+static bool collect(fibrad_workspace *work, fibrad_walk *walk, double from, double to, uint32_t *count) {
     const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
     const fibrad_scene scene = *work->scene;
     const vd inverse = vd_set1(work->inverse), reach = vd_set1(work->reach * work->reach), zero = vd_set1(0);
@@ -62,7 +62,7 @@ static bool collect(fibrad_work *work, fibrad_walk *walk, double from, double to
     return true;
 }
 
-void LANED(fibrad_near_extend)(fibrad_work *work) {
+void LANED(fibrad_near_extend)(fibrad_workspace *work) {
     const fibrad_scene *scene = work->scene;
     fibrad_near *near = &work->near;
     uint32_t shell = near->shells, begin = shell > 0 ? near->end[shell - 1] : 0, count = begin;
@@ -91,7 +91,7 @@ void LANED(fibrad_near_extend)(fibrad_work *work) {
 }
 
 /* Leaves out the discs from number `from` on that do not overlap the window or do not lie ahead. */
-static void leave_out(fibrad_work *work, uint32_t from) {
+static void leave_out(fibrad_workspace *work, uint32_t from) {
     const fibrad_discs disc = work->disc;
     uint32_t to = from, own = work->near.capacity;
     for (uint32_t k = from; k < disc.count; k++) {
@@ -108,7 +108,7 @@ static inline vd along(const double a[3], vd x, vd y, vd z) {
     return vd_add(vd_add(vd_mul(vd_set1(a[0]), x), vd_mul(vd_set1(a[1]), y)), vd_mul(vd_set1(a[2]), z));
 }
 
-void LANED(fibrad_near_discs)(fibrad_work *work, const double frame[9], uint32_t found) {
+void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uint32_t found) {
     const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
     const fibrad_discs disc = work->disc;
     uint32_t from = disc.count, end = from + found;
@@ -143,7 +143,7 @@ typedef struct fibrad_layer {
 } fibrad_layer;
 
 /* Appends the discs of the spheres on a walk, of which those at depth 0 may turn out not to lie ahead. */
-static void add_discs(fibrad_work *work, const double frame[9], fibrad_walk *walk, const fibrad_layer *layer) {
+static void add_discs(fibrad_workspace *work, const double frame[9], fibrad_walk *walk, const fibrad_layer *layer) {
     const fibrad_scene scene = *work->scene; /* copies: what is stored cannot change their pointers */
     const fibrad_discs disc = work->disc;
     const vd inverse = vd_set1(work->inverse), reach = vd_set1(work->reach * work->reach), zero = vd_set1(0);
@@ -180,7 +180,7 @@ static void add_discs(fibrad_work *work, const double frame[9], fibrad_walk *wal
 
 /* How far it is from `edge`, a place along an axis, to where the grid begins, or, beyond the grid, for ever: only stray
  * spheres are there. 0 within the grid and on a periodic axis. */
-static double outside(const fibrad_work *work, int axis, double sense, double edge) {
+static double outside(const fibrad_workspace *work, int axis, double sense, double edge) {
     const fibrad_scene *scene = work->scene;
     if (scene->period[axis] > 0) return 0;
     const double low = (scene->box_low[axis] - work->centre[axis]) * sense * work->inverse;
@@ -192,8 +192,8 @@ static double outside(const fibrad_work *work, int axis, double sense, double ed
 /* Spheres of one level, emerging in (from, to], lie in a stretch of the tube of radius 1 + r about the beam, or of
  * radius r about a ray of it. It is cut into layers across the axis the beam is most nearly along, so that the boxes
  * walked hug the tube. Outside the grid layers grow, up to where the tube passes one period of another axis. */
-static void march_level(fibrad_work *work, const fibrad_level *level, const double frame[9], const fibrad_tube *tube,
-                        double from, double to) {
+static void march_level(fibrad_workspace *work, const fibrad_level *level, const double frame[9],
+                        const fibrad_tube *tube, double from, double to) {
     const fibrad_scene *scene = work->scene;
     const double *w = frame + 6, radius = level->radius_max * work->inverse;
     const double wide = tube->radius + radius, deepest = fibrad_sqrt(to * to + (1 + radius) * (1 + radius));
@@ -243,7 +243,7 @@ static void march_level(fibrad_work *work, const fibrad_level *level, const doub
     }
 }
 
-void LANED(fibrad_near_march)(fibrad_work *work, const double frame[9], const fibrad_tube *tube, double from,
+void LANED(fibrad_near_march)(fibrad_workspace *work, const double frame[9], const fibrad_tube *tube, double from,
                               double to) {
     uint32_t first = work->disc.count, own = work->near.capacity;
     for (uint32_t l = 0; l < work->scene->levels; l++) march_level(work, &work->scene->level[l], frame, tube, from, to);

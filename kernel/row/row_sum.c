@@ -24,7 +24,7 @@ uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere) {
     return entries->at[slot_of(entries, sphere)];
 }
 
-int fibrad_entries_row(const fibrad_work *work, double scale, fibrad_row *row) {
+int fibrad_entries_row(const fibrad_workspace *work, double scale, fibrad_row *row) {
     const fibrad_entries *entries = &work->entries;
     uint32_t n = entries->length;
     row->length = n;

@@ -13,7 +13,7 @@ static bool too_far(const fibrad_scene *scene, double cutoff) {
 /* Lists all spheres within the cutoff of sphere i (images included, itself not), at their places in the scene [L], in
  * work->near, and counts them beyond its capacity. Gives up, with a count above FIBRAD_WORK_MAX, if there are more than
  * that in the cube about the cutoff. */
-static uint64_t list_near(fibrad_work *work) {
+static uint64_t list_near(fibrad_workspace *work) {
     const fibrad_scene *scene = work->scene;
     fibrad_near *near = &work->near;
     const double reach = work->farthest * work->unit * (1 + 1e-9);
@@ -71,7 +71,7 @@ static double frame_of(fibrad_surface_frame *frame, const double c1[3], double r
     return (distance - 1) * (r1 + r2);
 }
 
-int fibrad_surface_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_surface_rule *given,
+int fibrad_surface_row(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i, const fibrad_surface_rule *given,
                        fibrad_row *row) {
     if (scene == NULL || work == NULL || row == NULL || i >= scene->facts.spheres) return FIBRAD_E_ARGUMENT;
     if (row->capacity > 0 && (row->col == NULL || row->f == NULL)) return FIBRAD_E_ARGUMENT;

@@ -49,7 +49,7 @@ static void turn(double frame[9], double cos, double sin) {
 }
 
 /* The points of the window that no disc in hand covers; all of them if there is none. */
-static fibrad_points open_points(const fibrad_work *work, double cos, double sin) {
+static fibrad_points open_points(const fibrad_workspace *work, double cos, double sin) {
     fibrad_points points = {.count = POINTS, .open = POINTS, .seen = {UINT64_MAX, UINT64_MAX}};
     (void)fibrad_disc_points_get(POINTS, &points.set);
     const fibrad_discs *disc = &work->disc;
@@ -66,7 +66,7 @@ struct view {
     double low[3], high[3], axis[2], radius;
 };
 
-static struct view view_of(const fibrad_work *work) {
+static struct view view_of(const fibrad_workspace *work) {
     const fibrad_container *c = &work->scene->container;
     struct view view = {.radius = c->radius * work->inverse};
     for (int axis = 0; axis < 3; axis++) {
@@ -130,7 +130,7 @@ static void follow(const fibrad_points *points, const struct view *view, const d
     }
 }
 
-void LANED(fibrad_walls_share)(fibrad_work *work, const double frame[9], const fibrad_points *points, uint32_t k,
+void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
                                uint32_t n, double rest) {
     if (rest == 0) return;
     const fibrad_container *container = &work->scene->container;

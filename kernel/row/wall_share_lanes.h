@@ -8,7 +8,7 @@
 
 /* Adds `rest`, what is open of window k of n and thus meets no sphere, to work->wall by the walls it meets. points: as
  * the window has left them; count 0: areas are exact, and the discs in hand tell what is open. */
-void LANED(fibrad_walls_share)(fibrad_work *work, const double frame[9], const fibrad_points *points, uint32_t k,
+void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
                                uint32_t n, double rest);
 
 #endif

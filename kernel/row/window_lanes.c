@@ -11,7 +11,7 @@
 
 /* Appends the discs of one shell that come before the window. That the places are listed before they are used spares
  * one mispredicted branch for most vectors. */
-static void sieve(fibrad_work *work, const double frame[9], uint32_t shell) {
+static void sieve(fibrad_workspace *work, const double frame[9], uint32_t shell) {
     const fibrad_near *near = &work->near;
     const float *x = near->fx, *y = near->fy, *z = near->fz, *e = near->fe;
     uint32_t *from = work->disc.near + work->disc.count, *to = from;
@@ -27,7 +27,7 @@ static void sieve(fibrad_work *work, const double frame[9], uint32_t shell) {
 
 /* Front to back. At equal depths discs of spheres that do not interpenetrate do not overlap; a fixed order all the
  * same, since they may touch. Settled ones stay in front. */
-static bool before(const fibrad_work *work, uint32_t k, uint32_t other) {
+static bool before(const fibrad_workspace *work, uint32_t k, uint32_t other) {
     const fibrad_discs *disc = &work->disc;
     if (disc->depth[k] != disc->depth[other]) return disc->depth[k] < disc->depth[other];
     uint32_t sphere = fibrad_work_sphere(work, k), second = fibrad_work_sphere(work, other);
@@ -35,7 +35,7 @@ static bool before(const fibrad_work *work, uint32_t k, uint32_t other) {
     return disc->u[k] != disc->u[other] ? disc->u[k] < disc->u[other] : disc->v[k] < disc->v[other];
 }
 
-static void sort_by_insertion(fibrad_work *work) {
+static void sort_by_insertion(fibrad_workspace *work) {
     uint32_t *order = work->disc.order, count = work->disc.count;
     for (uint32_t k = 0; k < count; k++) order[k] = k;
     for (uint64_t gap = fibrad_sort_first_gap(count); gap > 0; gap = fibrad_sort_next_gap(gap))
@@ -52,7 +52,7 @@ static void sort_by_insertion(fibrad_work *work) {
  * share a rank, and the ranks add up to less than they should. What makes the list whole eights, so that the number of
  * rounds can be predicted, is deeper than all. */
 #define RANKED 64
-static void sort(fibrad_work *work, uint32_t settled) {
+static void sort(fibrad_workspace *work, uint32_t settled) {
     _Alignas(64) float key[RANKED + FIBRAD_LANES_MAX];
     _Alignas(64) uint32_t rank[RANKED + FIBRAD_LANES_MAX];
     const double *depth = work->disc.depth;
@@ -82,7 +82,7 @@ static void sort(fibrad_work *work, uint32_t settled) {
 }
 
 /* Settles discs [from, return) of the window, the ones down to `depth`. False in *open once the window is covered. */
-static uint32_t settle(fibrad_work *work, fibrad_points *points, uint32_t window, uint32_t from, double depth,
+static uint32_t settle(fibrad_workspace *work, fibrad_points *points, uint32_t window, uint32_t from, double depth,
                        bool *open) {
     const fibrad_discs disc = work->disc;
     uint32_t to = from;
@@ -107,7 +107,7 @@ static uint32_t settle(fibrad_work *work, fibrad_points *points, uint32_t window
 }
 
 /* One window: adds what it sees to the entries and returns what stays open, an area or a number of points. */
-static double look(fibrad_work *work, const double frame[9], fibrad_points *points, uint32_t k) {
+static double look(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k) {
     work->disc.count = 0;
     if (points->count == 0) LANED(fibrad_areas_begin)(&work->areas);
     points->open = points->count;
@@ -141,6 +141,6 @@ static double look(fibrad_work *work, const double frame[9], fibrad_points *poin
     return rest;
 }
 
-double LANED(fibrad_beam_window)(fibrad_work *work, const double frame[9], fibrad_points *points, uint32_t k) {
+double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k) {
     return look(work, frame, points, k);
 }

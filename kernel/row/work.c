@@ -8,8 +8,8 @@
 
 /* Takes the arrays of `work` from the arena; the object itself is to be copied to the address returned.
  * FIBRAD_WORK_BYTES in fibrad.h must be kept above what this takes. */
-static fibrad_work *layout(fibrad_arena *arena, const fibrad_work_config *config, fibrad_work *work) {
-    fibrad_work *place = fibrad_arena_take(arena, 1, sizeof *work);
+static fibrad_workspace *layout(fibrad_arena *arena, const fibrad_work_config *config, fibrad_workspace *work) {
+    fibrad_workspace *place = fibrad_arena_take(arena, 1, sizeof *work);
     work->config = work->needed = *config;
 
     size_t discs = (size_t)config->discs + FIBRAD_LANES_MAX;
@@ -83,7 +83,7 @@ size_t fibrad_work_size(const fibrad_work_config *config) {
     return fibrad_arena_total(&arena);
 }
 
-int fibrad_work_init(fibrad_work **out, void *memory, size_t size, const fibrad_work_config *config) {
+int fibrad_work_init(fibrad_workspace **out, void *memory, size_t size, const fibrad_work_config *config) {
     if (out == NULL) return FIBRAD_E_ARGUMENT;
     fibrad_arena arena;
     int status = fibrad_arena_open(&arena, memory, size, fibrad_work_size(config));
@@ -91,13 +91,13 @@ int fibrad_work_init(fibrad_work **out, void *memory, size_t size, const fibrad_
     fibrad_work_config c = completed(config);
     fibrad_work fields = {0};
     fibrad_zero(memory, fibrad_work_size(config)); /* lanes beyond a count are computed too, and must be harmless */
-    fibrad_work *work = layout(&arena, &c, &fields);
+    fibrad_workspace *work = layout(&arena, &c, &fields);
     for (uint32_t slot = 0; slot < fields.entries.slots; slot++) fields.entries.at[slot] = FIBRAD_NONE;
     *work = fields;
     *out = work;
     return FIBRAD_OK;
 }
 
-void fibrad_work_needed(const fibrad_work *work, fibrad_work_config *config) {
+void fibrad_work_needed(const fibrad_workspace *work, fibrad_work_config *config) {
     if (work != NULL && config != NULL) *config = work->needed;
 }

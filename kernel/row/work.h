@@ -37,7 +37,7 @@ typedef struct fibrad_near {
 /* A row sees no farther than this many periods along any periodic axis. */
 #define FIBRAD_PERIODS 100.0
 
-struct fibrad_work {
+struct fibrad_workspace {
     fibrad_work_config config, needed;
     fibrad_near near;
     fibrad_discs disc;
@@ -64,7 +64,7 @@ typedef struct fibrad_stride {
 } fibrad_stride;
 
 /* Prepares for row `place` of the scene: no near spheres, no entries. */
-void fibrad_work_begin(fibrad_work *work, const fibrad_scene *scene, uint32_t place, double cutoff,
+void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32_t place, double cutoff,
                        fibrad_stride stride);
 
 /* Whether a window that looks farther than all shells makes a further one for the next ones, too, or had better look on
@@ -77,23 +77,23 @@ static inline bool fibrad_near_pays(fibrad_near *near) {
 }
 
 /* No sphere comes before the window of direction w deeper than this. */
-double fibrad_near_horizon(const fibrad_work *work, const double w[3]);
+double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]);
 
 /* Whether a sphere comes before the window. At equal depth the lower index is in front, as among discs: of spheres that
  * overlap each other only one is seen by what lies behind, so that no sphere receives more than its own disc. */
-static inline bool fibrad_work_ahead(const fibrad_work *work, double depth, double u, double v, uint32_t sphere) {
+static inline bool fibrad_work_ahead(const fibrad_workspace *work, double depth, double u, double v, uint32_t sphere) {
     if (depth != 0) return depth > 0;
     const uint32_t *order = work->scene->order;
     if (sphere != work->place) return order[sphere] > order[work->place];
     return u != 0 ? u > 0 : v > 0;
 }
 
-static inline uint32_t fibrad_work_sphere(const fibrad_work *work, uint32_t disc) {
+static inline uint32_t fibrad_work_sphere(const fibrad_workspace *work, uint32_t disc) {
     return work->near.sphere[work->disc.near[disc]];
 }
 
 /* Adds what window k sees of a disc. */
-static inline void fibrad_work_see(fibrad_work *work, uint32_t disc, uint32_t k, double area) {
+static inline void fibrad_work_see(fibrad_workspace *work, uint32_t disc, uint32_t k, double area) {
     uint32_t *entry = &work->near.entry[work->disc.near[disc]];
     if (*entry == FIBRAD_NONE) *entry = fibrad_entries_of(&work->entries, fibrad_work_sphere(work, disc));
     fibrad_entries_add(&work->entries, *entry, k, area);
