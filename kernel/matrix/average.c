@@ -1,0 +1,48 @@
+/* average.c - the mean of a matrix and its transpose, some rows at a time. SPDX-License-Identifier: MIT
+ *
+ * A row of the result is the merged row of the matrix and of its transpose, both ascending: memory is only read in
+ * order, which a search for each entry's partner is not. The rows of the transpose wait at the end of the part's
+ * stretch; the result grows from its beginning and never reaches them, since what is still to come has at least as many
+ * entries as what is left of the transpose. */
+#include "matrix/matrix.h"
+
+/* Writes the rows of the transpose; matrix->place[j] becomes where row j ends. */
+static void transpose_part(fibrad_matrix *m, const fibrad_matrix_part *part) {
+    const fibrad_sparse *to = &m->result;
+    for (uint32_t i = 0; i < to->n; i++) {
+        const uint32_t *col = fibrad_record_col(m->row[i]), length = m->row[i]->length;
+        const double *f = fibrad_record_f(m->row[i]);
+        for (uint32_t k = 0; k < length; k++) {
+            const uint32_t j = col[k];
+            if (j < part->begin || j >= part->end) continue;
+            const uint64_t at = m->place[j]++;
+            to->col[at] = i, to->f[at] = f[k];
+        }
+    }
+}
+
+void fibrad_matrix_average_part(fibrad_matrix *m, fibrad_matrix_part *part) {
+    const fibrad_sparse *to = &m->result;
+    const double *r = m->r;
+    uint64_t at = part->first, there = part->transposed;
+    transpose_part(m, part);
+    for (uint32_t i = part->begin; i < part->end; i++) {
+        const uint32_t *col = fibrad_record_col(m->row[i]), length = m->row[i]->length;
+        const double *f = fibrad_record_f(m->row[i]);
+        const uint64_t there_end = m->place[i];
+        uint32_t here = 0;
+        to->start[i] = at;
+        while (here < length || there < there_end) {
+            const uint32_t mine = here < length ? col[here] : UINT32_MAX;
+            const uint32_t theirs = there < there_end ? to->col[there] : UINT32_MAX, j = mine < theirs ? mine : theirs;
+            const double own = mine == j ? f[here++] : 0, back = theirs == j ? to->f[there++] : 0;
+            /* areas relative to the larger one; the sum is the same from both sides */
+            double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
+            a_i *= a_i, a_j *= a_j;
+            to->col[at] = j;
+            to->f[at++] = (0.5 * (a_i * own) + 0.5 * (a_j * back)) / a_i;
+        }
+    }
+    part->filled = at;
+    part->done = 1;
+}

@@ -1,0 +1,44 @@
+/* record.h - rows as a collection keeps them. SPDX-License-Identifier: MIT
+ *
+ * A record is this head, the factors to bodies, the factors, and the columns, padded to 8 bytes. Records follow each
+ * other from the first 8-byte boundary of the block on. */
+#ifndef FIBRAD_STORE_RECORD_H
+#define FIBRAD_STORE_RECORD_H
+
+#include "fibrad.h"
+#include "base/port.h"
+
+typedef struct fibrad_record {
+    uint32_t sphere, length, bodies;
+    uint32_t symmetric;
+    double escaped, beyond, error;
+} fibrad_record;
+
+static inline const double *fibrad_record_body(const fibrad_record *record) { return (const double *)(record + 1); }
+static inline const double *fibrad_record_f(const fibrad_record *record) {
+    return fibrad_record_body(record) + record->bodies;
+}
+static inline const uint32_t *fibrad_record_col(const fibrad_record *record) {
+    return (const uint32_t *)(fibrad_record_f(record) + record->length);
+}
+
+/* Bytes of a record. */
+static inline size_t fibrad_record_size(uint32_t length, uint32_t bodies) {
+    return sizeof(fibrad_record) + ((size_t)bodies + length) * sizeof(double) + ((size_t)length + 1) / 2 * 8;
+}
+
+/* The first record at or after byte `at` of a collection; NULL: there is none. *at becomes where the next one begins.
+ */
+const fibrad_record *fibrad_rows_next(const fibrad_rows *rows, size_t *at);
+
+/* The free space of a collection as the arrays of a row, with as much capacity as there is; false: not even that of an
+ * empty row. */
+bool fibrad_rows_open(const fibrad_rows *rows, uint32_t bodies, fibrad_row *row);
+
+/* Makes room for one more row of `length` entries: FIBRAD_E_CAPACITY and memory.needed, or _E_MEMORY, if it cannot. */
+int fibrad_rows_reserve(fibrad_rows *rows, uint32_t length, uint32_t bodies);
+
+/* Appends the row that has been written into the arrays of fibrad_rows_open. */
+void fibrad_rows_commit(fibrad_rows *rows, uint32_t bodies, const fibrad_row *row);
+
+#endif

@@ -1,0 +1,99 @@
+/* rows.c - a collection of rows in one block, fixed or growing. SPDX-License-Identifier: MIT */
+#include "store/record.h"
+
+/* Bytes before the first record. */
+static size_t lead_of(const fibrad_rows *rows) { return (size_t) - (uintptr_t)rows->memory.block & 7; }
+
+/* Where the next record begins; NULL: there is no block. */
+static unsigned char *end_of(const fibrad_rows *rows) {
+    unsigned char *block = rows->memory.block;
+    return block == NULL ? NULL : block + lead_of(rows) + rows->used;
+}
+
+static size_t free_bytes(const fibrad_rows *rows) {
+    const size_t taken = lead_of(rows) + rows->used;
+    return rows->memory.block != NULL && rows->memory.size > taken ? rows->memory.size - taken : 0;
+}
+
+bool fibrad_rows_open(const fibrad_rows *rows, uint32_t bodies, fibrad_row *row) {
+    const size_t space = free_bytes(rows), head = fibrad_record_size(0, bodies);
+    if (space < head) return false;
+    const size_t capacity = (space - head) / (sizeof *row->f + sizeof *row->col);
+    row->body = (double *)(void *)(end_of(rows) + sizeof(fibrad_record));
+    row->f = row->body + bodies;
+    row->capacity = capacity < FIBRAD_SPHERES_MAX ? (uint32_t)capacity : FIBRAD_SPHERES_MAX;
+    row->capacity -= row->capacity % 2;
+    row->col = (uint32_t *)(void *)(row->f + row->capacity);
+    return true;
+}
+
+int fibrad_rows_reserve(fibrad_rows *rows, uint32_t length, uint32_t bodies) {
+    fibrad_memory *memory = &rows->memory;
+    /* 8 for another alignment of the block, 16 for a capacity that is rounded down */
+    const size_t needed = rows->used + fibrad_record_size(length, bodies) + 24;
+    if (needed <= memory->size && memory->block != NULL) return FIBRAD_OK;
+    memory->needed = needed;
+    if (memory->resize == NULL) return FIBRAD_E_CAPACITY;
+    const size_t lead = lead_of(rows), size = needed < SIZE_MAX / 2 ? 2 * needed : needed;
+    void *block = memory->resize(memory->context, memory->block, size);
+    if (block == NULL) return FIBRAD_E_MEMORY;
+    memory->block = block;
+    memory->size = size;
+    if (rows->used > 0 && lead_of(rows) != lead) {
+        unsigned char *from = (unsigned char *)block + lead, *to = (unsigned char *)block + lead_of(rows);
+        __builtin_memmove(to, from, rows->used);
+    }
+    return FIBRAD_OK;
+}
+
+void fibrad_rows_commit(fibrad_rows *rows, uint32_t bodies, const fibrad_row *row) {
+    fibrad_record *record = (fibrad_record *)(void *)end_of(rows);
+    *record = (fibrad_record){.sphere = row->sphere,
+                              .length = row->length,
+                              .bodies = bodies,
+                              .symmetric = row->symmetric != 0,
+                              .escaped = row->escaped,
+                              .beyond = row->beyond,
+                              .error = row->error};
+    __builtin_memmove((void *)(row->f + row->length), row->col, row->length * sizeof *row->col);
+    rows->used += fibrad_record_size(row->length, bodies);
+    rows->count++;
+    rows->entries += row->length;
+}
+
+const fibrad_record *fibrad_rows_next(const fibrad_rows *rows, size_t *at) {
+    if (*at >= rows->used || rows->memory.block == NULL) return NULL;
+    const unsigned char *first = (const unsigned char *)rows->memory.block + lead_of(rows);
+    const fibrad_record *record = (const fibrad_record *)(const void *)(first + *at);
+    *at += fibrad_record_size(record->length, record->bodies);
+    return record;
+}
+
+static bool row_valid(const fibrad_row *row, uint32_t bodies) {
+    if (row->length > 0 && (row->col == NULL || row->f == NULL)) return false;
+    if ((bodies > 0 && row->body == NULL) || row->length > FIBRAD_SPHERES_MAX) return false;
+    for (uint32_t k = 0; k < row->length; k++)
+        if (!(row->f[k] >= 0 && row->f[k] <= 1.01) || (k > 0 && row->col[k] <= row->col[k - 1])) return false;
+    for (uint32_t k = 0; k < bodies; k++)
+        if (!(row->body[k] >= 0 && row->body[k] <= 1.01)) return false;
+    return fibrad_abs(row->escaped) <= 1.01 && fibrad_abs(row->beyond) <= 1.01 && row->error >= 0;
+}
+
+int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t bodies) {
+    if (rows == NULL || row == NULL || row->rows != NULL || !row_valid(row, bodies)) return FIBRAD_E_ARGUMENT;
+    fibrad_row to = *row;
+    int status = fibrad_rows_reserve(rows, row->length, bodies);
+    if (status != FIBRAD_OK) return status;
+    fibrad_rows_open(rows, bodies, &to);
+    fibrad_copy(to.body, row->body, bodies * sizeof *to.body);
+    fibrad_copy(to.f, row->f, row->length * sizeof *to.f);
+    fibrad_copy(to.col, row->col, row->length * sizeof *to.col);
+    fibrad_rows_commit(rows, bodies, &to);
+    return FIBRAD_OK;
+}
+
+void fibrad_rows_clear(fibrad_rows *rows) {
+    if (rows == NULL) return;
+    rows->used = rows->count = 0;
+    rows->entries = 0;
+}
