@@ -15,7 +15,7 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->entries.length = work->entries.missed = 0;
     work->entries.end = false;
     fibrad_zero(work->wall, sizeof work->wall);
-    work->needed = work->config;
+    work->needed = work->plan;
     work->scene = scene;
     work->place = place;
     work->unit = scene->r[place];
@@ -35,7 +35,6 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->clear = work->farthest;
     for (int axis = 0; axis < 3; axis++)
         for (int sense = -1; sense <= 1; sense += 2) work->clear = fibrad_min(work->clear, room(work, axis, sense));
-    work->deepest = 0;
     work->near.shells = 0;
     work->near.full = false;
     work->near.asked = 0;
