@@ -42,8 +42,9 @@ static fibrad_isa isa_of_machine(void) {
 static fibrad_isa isa_of_machine(void) { return FIBRAD_ISA_SCALAR; }
 #endif
 
-static bool isa_built(int isa) {
+int fibrad_isa_built(int isa) {
     switch (isa) {
+    case FIBRAD_ISA_BEST:
     case FIBRAD_ISA_SCALAR:
         return true;
 #ifdef FIBRAD_WITH_SSE2
@@ -65,14 +66,14 @@ static bool isa_built(int isa) {
 
 fibrad_isa fibrad_isa_best(void) {
     int isa = (int)isa_of_machine();
-    while (!isa_built(isa)) isa--;
+    while (!fibrad_isa_built(isa)) isa--;
     return (fibrad_isa)isa;
 }
 
 int fibrad_isa_choose(int wish) {
     if (wish == FIBRAD_ISA_BEST) return (int)fibrad_isa_best();
     if (wish < FIBRAD_ISA_SCALAR || wish > FIBRAD_ISA_AVX512) return -2;
-    return isa_built(wish) && wish <= (int)isa_of_machine() ? wish : -1;
+    return fibrad_isa_built(wish) && wish <= (int)isa_of_machine() ? wish : -1;
 }
 
 const char *fibrad_isa_name(int isa) {

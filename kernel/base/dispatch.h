@@ -11,6 +11,9 @@
  * build or this machine lacks it, -2 if it is none. */
 int fibrad_isa_choose(int wish);
 
+/* Whether this build has an instruction set; FIBRAD_ISA_BEST it always has. */
+int fibrad_isa_built(int isa);
+
 #ifdef FIBRAD_WITH_SSE2
 #define FIBRAD_SSE2(name) name##_sse2
 #else

@@ -12,9 +12,9 @@
 #include "window/discs.h"
 
 #define FIBRAD_SHELLS 8
-/* Near spheres in shells by their minimum depth: the least depth at which a sphere can come before a window, in any direction,
- * e = sqrt(d^2 - (1 + r)^2), d being its centre distance. It does come before the window of direction w just if
- * w.c > e. All spheres with e <= limit[s] are in shells 0 ... s, so that what a window meets down to that depth is
+/* Near spheres in shells by their minimum depth: the least depth at which a sphere can come before a window, in any
+ * direction, e = sqrt(d^2 - (1 + r)^2), d being its centre distance. It does come before the window of direction w just
+ * if w.c > e. All spheres with e <= limit[s] are in shells 0 ... s, so that what a window meets down to that depth is
  * known after s + 1 shells. Each shell begins on a whole vector; the gaps are filled with points at the centre, which
  * never lie ahead. */
 typedef struct fibrad_near {
