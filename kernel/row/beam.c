@@ -4,8 +4,8 @@
 #include "row/beam_lanes.h"
 #include "sample/direction.h"
 
-#define DIRECTIONS 233u
-#define PILOT      100u /* directions to begin with, if there is a tolerance */
+#define BEAM_DIRECTIONS 233u
+#define BEAM_PILOT      100u /* directions to begin with, if there is a tolerance */
 
 /* In steps of an eighth, each of which takes a sixth off the error, to a little less than is wanted; a fifth more in
  * any case, for rows whose error falls more slowly. */
@@ -31,7 +31,7 @@ void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double 
 int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) {
     *rule = given != NULL ? *given : (fibrad_beam_rule){0};
     if (!(rule->tolerance >= 0 && fibrad_finite(rule->tolerance))) return FIBRAD_E_ARGUMENT;
-    if (rule->directions == 0) rule->directions = rule->tolerance > 0 ? PILOT : DIRECTIONS;
+    if (rule->directions == 0) rule->directions = rule->tolerance > 0 ? BEAM_PILOT : BEAM_DIRECTIONS;
     if (rule->directions < FIBRAD_DIRECTIONS_MIN || rule->directions > FIBRAD_DIRECTIONS_MAX) return FIBRAD_E_ARGUMENT;
     return rule->cutoff >= 0 && fibrad_finite(rule->cutoff) ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
