@@ -77,6 +77,7 @@ KERNEL = \
     kernel/heat/heat.c \
     kernel/heat/solve.c \
     kernel/heat/wall_patch.c \
+    kernel/furnace/bundle_plan.c \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
     kernel/furnace/lines.c \
