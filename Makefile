@@ -127,7 +127,6 @@ HOST = \
     host/compute/tolerance.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
-    host/boxes/furnace_shoot.c \
     host/write/vtp.c \
     host/write/write.c \
     host/write/write_csv.c \
