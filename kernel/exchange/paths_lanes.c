@@ -49,10 +49,10 @@ static void make_points(const fibrad_paths *paths, struct path *path) {
     for (uint32_t b = 0; b < BATCH; b += VD_LANES) {
         vd height = vd_load(at[0] + b), cosine, sine;
         vd_turn(vd_load(at[1] + b), &cosine, &sine);
-        vd ring = vd_sqrt(vd_mul(vd_mul(vd_set1(4), height), vd_sub(one, height)));
-        vd_store(path->even[0] + b, vd_mul(ring, cosine));
-        vd_store(path->even[1] + b, vd_mul(ring, sine));
-        vd_store(path->even[2] + b, vd_sub(one, vd_add(height, height)));
+        vd ring = vd_sqrt(4 * height * (one - height));
+        vd_store(path->even[0] + b, ring * cosine);
+        vd_store(path->even[1] + b, ring * sine);
+        vd_store(path->even[2] + b, one - (height + height));
     }
 }
 

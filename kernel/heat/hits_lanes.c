@@ -26,8 +26,7 @@ static void number(struct window *p, const double frame[9], uint32_t side, uint1
     for (uint32_t k = 0; k < POINTS; k += VD_LANES) {
         vd u = vd_load(p->u + k), v = vd_load(p->v + k), w = vd_load(p->w + k), n[3], size[3];
         for (int axis = 0; axis < 3; axis++) {
-            n[axis] = vd_add(vd_add(vd_mul(u, vd_set1(axes[axis])), vd_mul(v, vd_set1(axes[3 + axis]))),
-                             vd_mul(w, vd_set1(axes[6 + axis])));
+            n[axis] = u * axes[axis] + v * axes[3 + axis] + w * axes[6 + axis];
             size[axis] = vd_abs(n[axis]);
         }
         vm second = vd_lt(size[0], size[1]);
@@ -35,14 +34,14 @@ static void number(struct window *p, const double frame[9], uint32_t side, uint1
         vm third = vd_lt(largest, size[2]);
         largest = vd_max(largest, size[2]), high = vd_select(third, n[2], high);
         vd face = vd_select(third, vd_set1(4), vd_select(second, vd_set1(2), zero));
-        vd a = vd_div(vd_select(third, n[0], vd_select(second, n[0], n[1])), largest);
-        vd b = vd_div(vd_select(third, n[1], n[2]), largest);
+        vd a = vd_select(third, n[0], vd_select(second, n[0], n[1])) / largest;
+        vd b = vd_select(third, n[1], n[2]) / largest;
         /* t (5 - t^2)/4 is nearly proportional to the angle, atan t */
-        a = vd_mul(a, vd_sub(vd_set1(1.25), vd_mul(vd_set1(.25), vd_mul(a, a))));
-        b = vd_mul(b, vd_sub(vd_set1(1.25), vd_mul(vd_set1(.25), vd_mul(b, b))));
-        vd_store(p->face + k, vd_add(face, vd_select(vd_lt(high, zero), one, zero)));
-        vd_store(p->x + k, vd_mul(vd_max(vd_add(a, one), zero), half));
-        vd_store(p->y + k, vd_mul(vd_max(vd_add(b, one), zero), half));
+        a *= 1.25 - .25 * (a * a);
+        b *= 1.25 - .25 * (b * b);
+        vd_store(p->face + k, face + vd_select(vd_lt(high, zero), one, zero));
+        vd_store(p->x + k, vd_max(a + one, zero) * half);
+        vd_store(p->y + k, vd_max(b + one, zero) * half);
     }
     for (uint32_t k = 0; k < POINTS; k++)
         patch[k] = (uint16_t)fibrad_patch_number((uint32_t)p->face[k], (uint32_t)p->x[k], (uint32_t)p->y[k], side);
@@ -58,9 +57,9 @@ static void find_discs(const fibrad_workspace *work, const fibrad_points *points
         vf u = vf_set1((float)work->disc.u[k]), v = vf_set1((float)work->disc.v[k]), square = vf_set1((float)(r * r));
         uint64_t hidden = 0;
         for (uint32_t lane = 0; lane < POINTS; lane += VF_LANES) {
-            vf dx = vf_sub(vf_load(points->set.x + POINTS * word + lane), u);
-            vf dy = vf_sub(vf_load(points->set.y + POINTS * word + lane), v);
-            hidden |= (uint64_t)vf_lt_bits(vf_add(vf_mul(dx, dx), vf_mul(dy, dy)), square) << lane;
+            vf dx = vf_load(points->set.x + POINTS * word + lane) - u;
+            vf dy = vf_load(points->set.y + POINTS * word + lane) - v;
+            hidden |= (uint64_t)vf_lt_bits(dx * dx + dy * dy, square) << lane;
         }
         for (uint64_t take = hidden & left; take != 0; take &= take - 1) p->disc[__builtin_ctzll(take)] = k;
         left &= ~hidden;
@@ -78,8 +77,8 @@ static void find_normals(const fibrad_workspace *work, const float *x, const flo
     }
     for (uint32_t k = 0; k < POINTS; k += VD_LANES) {
         vd u = vd_load(p->u + k), v = vd_load(p->v + k);
-        vd square = vd_max(vd_set1(0), vd_sub(vd_set1(1), vd_add(vd_mul(u, u), vd_mul(v, v))));
-        vd_store(p->w + k, vd_sub(vd_set1(0), vd_sqrt(square)));
+        vd square = vd_max(vd_set1(0), 1 - (u * u + v * v));
+        vd_store(p->w + k, 0 - vd_sqrt(square));
     }
 }
 

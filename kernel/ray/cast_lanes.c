@@ -49,17 +49,17 @@ static void aim(struct rays *rays) {
         vd height = vd_load(rays->at[0] + b), square = vd_load(rays->at[2] + b), cos, sin, across, along;
         vd_turn(vd_load(rays->at[1] + b), &cos, &sin);
         vd_turn(vd_load(rays->at[3] + b), &across, &along);
-        vd z = vd_sub(one, vd_add(height, height));
-        vd ring = vd_sqrt(vd_mul(vd_mul(vd_set1(4), height), vd_sub(one, height)));
-        vd sine = vd_sqrt(square), cosine = vd_sqrt(vd_sub(one, square)), zero = vd_set1(0);
-        vd axis_a[3] = {vd_sub(zero, sin), cos, zero};
-        vd axis_b[3] = {vd_sub(zero, vd_mul(z, cos)), vd_sub(zero, vd_mul(z, sin)), ring};
-        vd normal[3] = {vd_mul(ring, cos), vd_mul(ring, sin), z};
+        vd z = one - (height + height);
+        vd ring = vd_sqrt(4 * height * (one - height));
+        vd sine = vd_sqrt(square), cosine = vd_sqrt(one - square), zero = vd_set1(0);
+        vd axis_a[3] = {zero - sin, cos, zero};
+        vd axis_b[3] = {zero - z * cos, zero - z * sin, ring};
+        vd normal[3] = {ring * cos, ring * sin, z};
         for (int axis = 0; axis < 3; axis++) {
-            vd side = vd_add(vd_mul(across, axis_a[axis]), vd_mul(along, axis_b[axis]));
-            vd_store(rays->u[axis] + b, vd_sub(vd_mul(along, axis_a[axis]), vd_mul(across, axis_b[axis])));
-            vd_store(rays->v[axis] + b, vd_sub(vd_mul(cosine, side), vd_mul(sine, normal[axis])));
-            vd_store(rays->w[axis] + b, vd_add(vd_mul(sine, side), vd_mul(cosine, normal[axis])));
+            vd side = across * axis_a[axis] + along * axis_b[axis];
+            vd_store(rays->u[axis] + b, along * axis_a[axis] - across * axis_b[axis]);
+            vd_store(rays->v[axis] + b, cosine * side - sine * normal[axis]);
+            vd_store(rays->w[axis] + b, sine * side + cosine * normal[axis]);
         }
         vd_store(rays->sine + b, sine);
         vd_store(rays->cosine + b, cosine);
@@ -92,10 +92,10 @@ static void sieve(fibrad_workspace *work, const struct ray *ray, uint32_t shell)
     vf start = vf_set1((float)ray->cosine);
     for (size_t j = shell == 0 ? 0 : near->end[shell - 1]; j < end; j += VF_LANES) {
         vf x = vf_load(near->fx + j), y = vf_load(near->fy + j), z = vf_load(near->fz + j);
-        vf depth = vf_add(vf_add(vf_mul(wx, x), vf_mul(wy, y)), vf_mul(wz, z));
-        vf twice = vf_add(vf_add(vf_mul(ox, x), vf_mul(oy, y)), vf_mul(oz, z));
-        vf from = vf_sub(depth, start), rest = vf_sub(vf_load(near->fq + j), twice);
-        uint32_t bits = vf_lt_bits(vf_load(near->fe + j), depth) & vf_lt_bits(rest, vf_mul(from, from));
+        vf depth = wx * x + wy * y + wz * z;
+        vf twice = ox * x + oy * y + oz * z;
+        vf from = depth - start, rest = vf_load(near->fq + j) - twice;
+        uint32_t bits = vf_lt_bits(vf_load(near->fe + j), depth) & vf_lt_bits(rest, from * from);
         to += vf_compress_places(to, bits, (uint32_t)j);
     }
     LANED(fibrad_near_discs)(work, ray->frame, (uint32_t)(to - work->disc.near));

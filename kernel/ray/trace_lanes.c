@@ -53,10 +53,10 @@ static void meet_group(const struct ray *ray, const fibrad_nearby *list, uint32_
     const fibrad_scene *scene = ray->scene;
     for (uint32_t k = group * FIBRAD_GROUP; k < (group + 1) * FIBRAD_GROUP; k += VF_LANES) {
         vf x = vf_load(list->x + k), y = vf_load(list->y + k), z = vf_load(list->z + k);
-        vf depth = vf_add(vf_add(vf_mul(sieve[0], x), vf_mul(sieve[1], y)), vf_mul(sieve[2], z));
-        vf twice = vf_add(vf_add(vf_mul(sieve[3], x), vf_mul(sieve[4], y)), vf_mul(sieve[5], z));
-        vf from = vf_sub(depth, sieve[6]);
-        uint32_t bits = vf_lt_bits(vf_sub(vf_load(list->q + k), twice), vf_mul(from, from));
+        vf depth = sieve[0] * x + sieve[1] * y + sieve[2] * z;
+        vf twice = sieve[3] * x + sieve[4] * y + sieve[5] * z;
+        vf from = depth - sieve[6];
+        uint32_t bits = vf_lt_bits(vf_load(list->q + k) - twice, from * from);
         bits &= vf_lt_bits(sieve[7], depth);
         for (; bits != 0; bits &= bits - 1) {
             uint32_t at = k + (uint32_t)__builtin_ctz(bits), j = list->sphere[at];

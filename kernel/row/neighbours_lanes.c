@@ -12,16 +12,16 @@ static void floats(fibrad_near *near, uint32_t from, uint32_t to) {
     const vd one = vd_set1(1), zero = vd_set1(0);
     for (uint32_t k = from; k < to; k += VD_LANES) {
         vd x = vd_load(near->x + k), y = vd_load(near->y + k), z = vd_load(near->z + k), r = vd_load(near->r + k);
-        vd square = vd_add(vd_add(vd_mul(x, x), vd_mul(y, y)), vd_mul(z, z)), wide = vd_add(one, r);
-        vd size = vd_add(vd_add(vd_abs(x), vd_abs(y)), vd_abs(z)); /* at least the distance */
-        vd e = vd_sqrt(vd_max(vd_sub(square, vd_mul(wide, wide)), zero)), about = vd_add(one, size);
-        vd q = vd_sub(vd_add(square, one), vd_mul(r, r));
+        vd square = x * x + y * y + z * z, wide = one + r;
+        vd size = vd_abs(x) + vd_abs(y) + vd_abs(z); /* at least the distance */
+        vd e = vd_sqrt(vd_max(square - wide * wide, zero)), about = one + size;
+        vd q = square + one - r * r;
         vm small = vd_lt(size, vd_set1(1e18));
         vd_store_float(near->fx + k, vd_select(small, x, zero));
         vd_store_float(near->fy + k, vd_select(small, y, zero));
         vd_store_float(near->fz + k, vd_select(small, z, zero));
-        vd_store_float(near->fe + k, vd_select(small, vd_sub(e, vd_mul(vd_set1(1e-6), size)), vd_set1(-1)));
-        q = vd_sub(q, vd_mul(vd_set1(4e-6), vd_mul(about, about)));
+        vd_store_float(near->fe + k, vd_select(small, e - 1e-6 * size, vd_set1(-1)));
+        q -= 4e-6 * (about * about);
         vd_store_float(near->fq + k, vd_select(small, q, vd_set1(-FLT_MAX)));
     }
 }
@@ -31,8 +31,8 @@ static void floats(fibrad_near *near, uint32_t from, uint32_t to) {
 
 /* Coordinates of spheres of the run in hand, relative to the centre and in units of the radius. */
 static inline vd placed(const fibrad_workspace *work, const fibrad_walk *walk, int axis, const double *coordinate) {
-    vd c = vd_sub(vd_loadu(coordinate), vd_set1(work->centre[axis]));
-    return vd_mul(vd_add(c, vd_set1(walk->shift[axis])), vd_set1(work->inverse));
+    vd c = vd_loadu(coordinate) - work->centre[axis];
+    return (c + walk->shift[axis]) * work->inverse;
 }
 
 /* Appends those of the spheres on a walk whose squared emergence lies in (from, to]. False: no room. */
@@ -45,9 +45,9 @@ static bool collect(fibrad_workspace *work, fibrad_walk *walk, double from, doub
         for (uint32_t j = walk->begin; j < walk->end; j += VD_LANES) {
             vd x = placed(work, walk, 0, scene.x + j), y = placed(work, walk, 1, scene.y + j);
             vd z = placed(work, walk, 2, scene.z + j);
-            vd r = vd_mul(vd_loadu(scene.r + j), inverse), wide = vd_add(vd_set1(1), r);
-            vd square = vd_add(vd_add(vd_mul(x, x), vd_mul(y, y)), vd_mul(z, z));
-            vd e = vd_sub(square, vd_mul(wide, wide));
+            vd r = vd_loadu(scene.r + j) * inverse, wide = 1 + r;
+            vd square = x * x + y * y + z * z;
+            vd e = square - wide * wide;
             vm other = vm_and(vd_lt(zero, square), vd_le(square, reach)); /* than the sphere itself */
             vm emerges = vm_and(vd_lt(vd_set1(from), e), vd_le(e, vd_set1(to)));
             uint32_t bits = vm_bits(vm_and(emerges, other)) & vd_lanes_below(walk->end - j);
@@ -104,9 +104,7 @@ static void leave_out(fibrad_workspace *work, uint32_t from) {
     work->disc.count = to;
 }
 
-static inline vd along(const double a[3], vd x, vd y, vd z) {
-    return vd_add(vd_add(vd_mul(vd_set1(a[0]), x), vd_mul(vd_set1(a[1]), y)), vd_mul(vd_set1(a[2]), z));
-}
+static inline vd along(const double a[3], vd x, vd y, vd z) { return a[0] * x + a[1] * y + a[2] * z; }
 
 void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uint32_t found) {
     const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
@@ -122,8 +120,8 @@ void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uin
         const uint32_t *place = disc.near + k;
         vd x = vd_gather(near.x, place), y = vd_gather(near.y, place), z = vd_gather(near.z, place);
         vd u = along(frame, x, y, z), v = along(frame + 3, x, y, z), depth = along(frame + 6, x, y, z);
-        vd r = vd_gather(near.r, place), wide = vd_add(vd_set1(1), r);
-        vm overlaps = vd_lt(vd_add(vd_mul(u, u), vd_mul(v, v)), vd_mul(wide, wide));
+        vd r = vd_gather(near.r, place), wide = 1 + r;
+        vm overlaps = vd_lt(u * u + v * v, wide * wide);
         vm ahead = vd_lt(vd_set1(0), depth);
         vd_storeu(disc.u + k, u);
         vd_storeu(disc.v + k, v);
@@ -152,20 +150,20 @@ static void add_discs(fibrad_workspace *work, const double frame[9], fibrad_walk
         for (uint32_t j = walk->begin; j < walk->end; j += VD_LANES) {
             const vd c[3] = {placed(work, walk, 0, scene.x + j), placed(work, walk, 1, scene.y + j),
                              placed(work, walk, 2, scene.z + j)};
-            vd r = vd_mul(vd_loadu(scene.r + j), inverse), wide = vd_add(vd_set1(1), r);
-            vd square = vd_add(vd_add(vd_mul(c[0], c[0]), vd_mul(c[1], c[1])), vd_mul(c[2], c[2]));
-            vd depth = along(frame + 6, c[0], c[1], c[2]), place = vd_mul(vd_set1(layer->sense), c[layer->along]);
-            wide = vd_mul(wide, wide);
-            vd e = vd_sub(square, wide);
+            vd r = vd_loadu(scene.r + j) * inverse, wide = 1 + r;
+            vd square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+            vd depth = along(frame + 6, c[0], c[1], c[2]), place = layer->sense * c[layer->along];
+            wide *= wide;
+            vd e = square - wide;
             vm in_layer = vm_and(vd_le(vd_set1(layer->edge), place), vd_lt(place, vd_set1(layer->end)));
             vm emerges = vm_and(vd_lt(vd_set1(layer->from), e), vd_le(e, vd_set1(layer->to)));
             vm other = vm_and(vd_lt(zero, square), vd_le(square, reach)); /* than the sphere itself */
-            vm ahead = vm_and(vd_le(zero, depth), vd_le(e, vd_mul(vd_mul(depth, depth), vd_set1(1 + 1e-12))));
+            vm ahead = vm_and(vd_le(zero, depth), vd_le(e, depth * depth * (1 + 1e-12)));
             uint32_t bits = vm_bits(vm_and(vm_and(in_layer, emerges), vm_and(other, ahead)));
             bits &= vd_lanes_below(walk->end - j);
             if (bits == 0) continue;
             vd u = along(frame, c[0], c[1], c[2]), v = along(frame + 3, c[0], c[1], c[2]);
-            bits &= vm_bits(vd_lt(vd_add(vd_mul(u, u), vd_mul(v, v)), wide));
+            bits &= vm_bits(vd_lt(u * u + v * v, wide));
             if (n <= disc.capacity) {
                 vd_compress(disc.depth + n, bits, depth);
                 vd_compress(disc.u + n, bits, u);

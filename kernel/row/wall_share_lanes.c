@@ -84,18 +84,18 @@ static vd exits(const struct view *view, const vd origin[3], const vd w[3]) {
     for (int axis = 0; axis < 3; axis++) {
         vm down = vd_lt(w[axis], zero), level = vd_le(vd_abs(w[axis]), zero);
         vd at = vd_select(down, vd_set1(view->low[axis]), vd_set1(view->high[axis]));
-        vd t = vd_div(vd_sub(at, origin[axis]), vd_select(level, one, w[axis]));
+        vd t = (at - origin[axis]) / vd_select(level, one, w[axis]);
         vm nearer = vd_lt(vd_select(level, vd_set1(__builtin_inf()), t), least);
         vd number = vd_select(down, vd_set1(2 * axis), vd_set1(2 * axis + 1));
         least = vd_select(nearer, t, least), wall = vd_select(nearer, number, wall);
     }
     if (!(view->radius < __builtin_inf())) return wall;
-    vd x = vd_sub(origin[0], vd_set1(view->axis[0])), y = vd_sub(origin[1], vd_set1(view->axis[1]));
-    vd across = vd_add(vd_mul(w[0], w[0]), vd_mul(w[1], w[1])), along = vd_add(vd_mul(x, w[0]), vd_mul(y, w[1]));
-    vd inside = vd_sub(vd_set1(view->radius * view->radius), vd_add(vd_mul(x, x), vd_mul(y, y)));
-    vd root = vd_sqrt(vd_max(vd_add(vd_mul(along, along), vd_mul(across, inside)), zero));
+    vd x = origin[0] - view->axis[0], y = origin[1] - view->axis[1];
+    vd across = w[0] * w[0] + w[1] * w[1], along = x * w[0] + y * w[1];
+    vd inside = view->radius * view->radius - (x * x + y * y);
+    vd root = vd_sqrt(vd_max(along * along + across * inside, zero));
     vm away = vd_lt(zero, along), level = vd_le(across, zero);
-    vd t = vd_div(vd_select(away, inside, vd_sub(root, along)), vd_select(away, vd_add(along, root), across));
+    vd t = vd_select(away, inside, root - along) / vd_select(away, along + root, across);
     vm nearer = vd_lt(vd_select(level, vd_set1(__builtin_inf()), t), least);
     return vd_select(nearer, vd_set1(FIBRAD_CYLINDER), wall);
 }
@@ -115,12 +115,12 @@ static void follow(const fibrad_points *points, const struct view *view, const d
             uint32_t p = 64 * word + lane, bits = (uint32_t)(points->seen[word] >> lane) & ((1u << VD_LANES) - 1);
             if (bits == 0) continue;
             vd u = vd_load_float(points->set.x + p), v = vd_load_float(points->set.y + p), origin[3], w[3];
-            vd du = vd_mul(vd_load_float(a + lane), vd_set1(spread));
-            vd dv = vd_mul(vd_load_float(b + lane), vd_set1(spread));
+            vd du = vd_load_float(a + lane) * spread;
+            vd dv = vd_load_float(b + lane) * spread;
             for (int axis = 0; axis < 3; axis++) {
                 vd along_u = vd_set1(frame[axis]), along_v = vd_set1(frame[3 + axis]);
-                origin[axis] = vd_add(vd_mul(u, along_u), vd_mul(v, along_v));
-                w[axis] = vd_add(vd_set1(frame[6 + axis]), vd_add(vd_mul(du, along_u), vd_mul(dv, along_v)));
+                origin[axis] = u * along_u + v * along_v;
+                w[axis] = frame[6 + axis] + (du * along_u + dv * along_v);
             }
             _Alignas(64) double wall[VD_LANES];
             vd_store(wall, exits(view, origin, w));

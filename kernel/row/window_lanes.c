@@ -18,7 +18,7 @@ static void sieve(fibrad_workspace *work, const double frame[9], uint32_t shell)
     vf wx = vf_set1((float)frame[6]), wy = vf_set1((float)frame[7]), wz = vf_set1((float)frame[8]);
     size_t end = near->end[shell];
     for (size_t j = shell == 0 ? 0 : near->end[shell - 1]; j < end; j += VF_LANES) {
-        vf depth = vf_add(vf_add(vf_mul(wx, vf_load(x + j)), vf_mul(wy, vf_load(y + j))), vf_mul(wz, vf_load(z + j)));
+        vf depth = wx * vf_load(x + j) + wy * vf_load(y + j) + wz * vf_load(z + j);
         uint32_t bits = vf_lt_bits(vf_load(e + j), depth);
         to += vf_compress_places(to, bits, (uint32_t)j);
     }

@@ -10,9 +10,7 @@
 #define STEPS  (GROUP / VD_LANES)
 #define MARGIN 1e-12
 
-static vd dot(vd ax, vd ay, vd az, vd bx, vd by, vd bz) {
-    return vd_add(vd_add(vd_mul(ax, bx), vd_mul(ay, by)), vd_mul(az, bz));
-}
+static vd dot(vd ax, vd ay, vd az, vd bx, vd by, vd bz) { return ax * bx + ay * by + az * bz; }
 
 static vd rotated(const double row[3], vd x, vd y, vd z) {
     return dot(vd_set1(row[0]), vd_set1(row[1]), vd_set1(row[2]), x, y, z);
@@ -51,17 +49,17 @@ bool LANED(fibrad_surface_filter)(fibrad_surface_task *task, const fibrad_surfac
     bool hidden = false;
     task->obstacles.n = 0;
     for (uint32_t k = 0; k < all->n; k += VD_LANES) {
-        const vd cx = vd_sub(vd_load(all->x + k), vd_set1(frame->origin[0]));
-        const vd cy = vd_sub(vd_load(all->y + k), vd_set1(frame->origin[1]));
-        const vd cz = vd_sub(vd_load(all->z + k), vd_set1(frame->origin[2]));
+        const vd cx = vd_load(all->x + k) - frame->origin[0];
+        const vd cy = vd_load(all->y + k) - frame->origin[1];
+        const vd cz = vd_load(all->z + k) - frame->origin[2];
         const vd x = rotated(frame->x, cx, cy, cz), y = rotated(frame->y, cx, cy, cz);
-        const vd z = rotated(frame->z, cx, cy, cz), r = vd_mul(vd_load(all->r + k), vd_set1(frame->scale));
-        const vd aside = vd_sqrt(vd_add(vd_mul(x, x), vd_mul(y, y)));
-        const vd slack = vd_mul(vd_set1(MARGIN), vd_add(vd_add(aside, vd_abs(z)), vd_add(high, r)));
-        const vd wide = vd_add(r, slack), depth = vd_sub(one, vd_mul(z, sine)); /* from axis to cone */
-        const vm in_cone = vd_lt(vd_sub(vd_mul(aside, cosine), depth), wide);
-        const vm between = vm_and(vd_lt(low, vd_add(z, wide)), vd_lt(vd_sub(z, wide), high));
-        const vm covers = vm_and(vd_le(vd_add(vd_mul(vd_add(aside, slack), cosine), depth), vd_mul(r, cosine)),
+        const vd z = rotated(frame->z, cx, cy, cz), r = vd_load(all->r + k) * frame->scale;
+        const vd aside = vd_sqrt(x * x + y * y);
+        const vd slack = MARGIN * (aside + vd_abs(z) + (high + r));
+        const vd wide = r + slack, depth = one - z * sine; /* from axis to cone */
+        const vm in_cone = vd_lt(aside * cosine - depth, wide);
+        const vm between = vm_and(vd_lt(low, z + wide), vd_lt(z - wide, high));
+        const vm covers = vm_and(vd_le((aside + slack) * cosine + depth, r * cosine),
                                  vm_and(vd_le(one, z), vd_le(z, vd_set1(task->d - task->r2))));
         uint32_t valid = lanes_below(all->n, k);
         if (self - k < VD_LANES) valid &= ~(1u << (self - k));
@@ -83,24 +81,22 @@ static bool obstacles_of_node(const fibrad_surface_task *task, double x, double 
     const double tangent2 = fibrad_max(0, far2 - task->r2 * task->r2), tangent = fibrad_sqrt(tangent2);
     const double front = fibrad_sqrt(far2) - task->r2;
     const vd px = vd_set1(x), py = vd_set1(y), pz = vd_set1(z), zero = vd_set1(0), far = vd_set1(far2);
-    const vd ax = vd_sub(zero, px), ay = vd_sub(zero, py), az = vd_set1(axis_z);
+    const vd ax = zero - px, ay = zero - py, az = vd_set1(axis_z);
     const vd tt = vd_set1(tangent2), r2 = vd_set1(task->r2);
     list->n = 0;
     for (uint32_t k = 0; k < all->n; k += VD_LANES) {
-        const vd cx = vd_sub(vd_load(all->x + k), px), cy = vd_sub(vd_load(all->y + k), py);
-        const vd cz = vd_sub(vd_load(all->z + k), pz), r = vd_load(all->r + k), rr = vd_mul(r, r);
-        const vd cc = dot(cx, cy, cz, cx, cy, cz), power = vd_sub(cc, rr);
-        const vd slack = vd_mul(vd_set1(MARGIN), vd_add(cc, far));
+        const vd cx = vd_load(all->x + k) - px, cy = vd_load(all->y + k) - py;
+        const vd cz = vd_load(all->z + k) - pz, r = vd_load(all->r + k), rr = r * r;
+        const vd cc = dot(cx, cy, cz, cx, cy, cz), power = cc - rr;
+        const vd slack = MARGIN * (cc + far);
         const vd axes = dot(cx, cy, cz, ax, ay, az), height = dot(cx, cy, cz, px, py, pz);
-        const vd cosines = vd_sqrt(vd_mul(vd_max(power, zero), tt)), sines = vd_mul(r, r2);
-        const vd reach = vd_add(tt, vd_mul(vd_set1(2 * tangent), r));
+        const vd cosines = vd_sqrt(vd_max(power, zero) * tt), sines = r * r2;
+        const vd reach = tt + 2 * tangent * r;
         const vm inside = vd_lt(power, zero);
-        const vm apart =
-            vm_or(vd_lt(vd_add(vd_add(axes, sines), slack), cosines),
-                  vm_or(vd_lt(vd_add(reach, slack), power), vd_lt(vd_add(vd_add(height, r), slack), zero)));
-        const vm covers = vm_and(vd_lt(vd_add(cosines, slack), vd_sub(axes, sines)),
-                                 vm_and(vd_lt(vd_mul(vd_mul(r2, r2), cc), vd_mul(rr, far)),
-                                        vd_lt(vd_add(cc, slack), vd_set1(front * front))));
+        const vm apart = vm_or(vd_lt(axes + sines + slack, cosines),
+                               vm_or(vd_lt(reach + slack, power), vd_lt(height + r + slack, zero)));
+        const vm covers = vm_and(vd_lt(cosines + slack, axes - sines),
+                                 vm_and(vd_lt(r2 * r2 * cc, rr * far), vd_lt(cc + slack, vd_set1(front * front))));
         uint32_t valid = lanes_below(all->n, k), keep = valid;
         if ((vm_bits(inside) & valid) != 0) return true;
         if ((vm_bits(covers) & valid) != 0 && (task->flags & FIBRAD_SURFACE_NO_HIDDEN) == 0) return true;
@@ -116,8 +112,7 @@ static bool obstacles_of_node(const fibrad_surface_task *task, double x, double 
 static vm meets(const fibrad_obstacles *list, uint32_t o, vd ex, vd ey, vd ez, vd ee, vd half_ee) {
     const vd p = vd_set1(list->r[o]), half_p = vd_set1(0.5 * list->r[o]);
     const vd b = rotated((double[3]){list->x[o], list->y[o], list->z[o]}, ex, ey, ez);
-    return vm_and(vm_and(vd_lt(vd_set1(0), b), vd_lt(vd_mul(p, ee), vd_mul(b, b))),
-                  vd_lt(half_p, vd_sub(vd_max(b, ee), half_ee)));
+    return vm_and(vm_and(vd_lt(vd_set1(0), b), vd_lt(p * ee, b * b)), vd_lt(half_p, vd_max(b, ee) - half_ee));
 }
 
 static double total(const vd part[STEPS]) {
@@ -147,32 +142,32 @@ void LANED(fibrad_surface_sum)(const fibrad_surface_task *task, fibrad_surface_s
         const double x = nodes->ring[k] * nodes->cos[k], y = nodes->ring[k] * nodes->sin[k], z = nodes->z[k];
         const bool hidden = obstacles_of_node(task, x, y, z, &near);
         const vd px = vd_set1(x), py = vd_set1(y), weight1 = vd_set1(nodes->weight[k]);
-        const vd nx = vd_mul(weight1, px), ny = vd_mul(weight1, py), nz = vd_mul(weight1, vd_set1(z));
+        const vd nx = weight1 * px, ny = weight1 * py, nz = weight1 * z;
         for (uint32_t group = 0; group < end; group += GROUP)
             for (uint32_t step = 0; step < STEPS; step++) {
                 const uint32_t l = group + step * VD_LANES;
-                const vd ring = vd_mul(vd_set1(task->r2), vd_load(nodes->ring + l));
-                const vd x2 = vd_mul(ring, vd_load(nodes->cos + l)), y2 = vd_mul(ring, vd_load(nodes->sin + l));
-                const vd uz = vd_mul(vd_set1(task->r2), vd_load(nodes->z + l));
-                const vd ez = vd_add(uz, vd_set1(task->d - z)), weight2 = vd_load(nodes->weight + l);
+                const vd ring = task->r2 * vd_load(nodes->ring + l);
+                const vd x2 = ring * vd_load(nodes->cos + l), y2 = ring * vd_load(nodes->sin + l);
+                const vd minus_x2 = zero - x2, minus_y2 = zero - y2, uz = task->r2 * vd_load(nodes->z + l);
+                const vd ez = uz + (task->d - z), weight2 = vd_load(nodes->weight + l);
                 for (uint32_t turn = 0; turn < 2; turn++) {
-                    const vd ux = turn == 0 ? x2 : vd_sub(zero, x2), uy = turn == 0 ? y2 : vd_sub(zero, y2);
-                    const vd ex = vd_sub(ux, px), ey = vd_sub(uy, py);
-                    const vd cos1 = dot(nx, ny, nz, ex, ey, ez), cos2 = vd_sub(zero, dot(ux, uy, uz, ex, ey, ez));
+                    const vd ux = turn == 0 ? x2 : minus_x2, uy = turn == 0 ? y2 : minus_y2;
+                    const vd ex = ux - px, ey = uy - py;
+                    const vd cos1 = dot(nx, ny, nz, ex, ey, ez), cos2 = zero - dot(ux, uy, uz, ex, ey, ez);
                     const vm facing = vm_and(vd_lt(zero, cos1), vd_lt(zero, cos2));
                     if (vm_bits(facing) == 0) continue;
                     sums->rays += VD_LANES;
-                    const vd ee = dot(ex, ey, ez, ex, ey, ez), half_ee = vd_mul(vd_set1(0.5), ee);
-                    const vd quotient = vd_div(vd_mul(vd_mul(cos1, cos2), weight2), vd_mul(ee, ee));
+                    const vd ee = dot(ex, ey, ez, ex, ey, ez), half_ee = 0.5 * ee;
+                    const vd quotient = cos1 * cos2 * weight2 / (ee * ee);
                     const vd g = vd_select(facing, quotient, zero);
-                    open[turn][step] = vd_add(open[turn][step], g);
+                    open[turn][step] += g;
                     if (hidden) continue;
                     vm clear = facing;
                     for (uint32_t o = 0; o < near.n && vm_bits(clear) != 0; o++) {
                         clear = vm_and(clear, vm_not(meets(&near, o, ex, ey, ez, ee, half_ee)));
                         sums->tests += VD_LANES;
                     }
-                    seen[turn][step] = vd_add(seen[turn][step], vd_select(clear, g, zero));
+                    seen[turn][step] += vd_select(clear, g, zero);
                 }
             }
     }

@@ -10,7 +10,7 @@ void LANED(fibrad_areas_integrate)(fibrad_areas *areas) {
                               vd_load(p->cx + k), vd_load(p->cy + k), vd_load(p->r + k),  vd_load(p->circle + k)};
         vd area = fibrad_arc_area(&a);
         /* the open region is on the left of the window's arcs, on the right of discs' */
-        vd_store(p->r + k, vd_select(vd_lt(a.circle, vd_set1(1)), area, vd_sub(vd_set1(0), area)));
+        vd_store(p->r + k, vd_select(vd_lt(a.circle, vd_set1(1)), area, 0 - area));
     }
     for (uint32_t k = 0; k < p->count; k++) {
         sum[(uint32_t)p->circle[k]] -= p->r[k];

@@ -18,23 +18,23 @@ static inline vd fibrad_arc_area(const fibrad_arc_lanes *a) {
                                   -0x1.249249003cd48p-3, 0x1.c71c646ead620p-4,  -0x1.745ba79b91c34p-4,
                                   0x1.3afaddd7ea785p-4,  -0x1.0ffaaea631d14p-4, 0x1.d1f09979b889ap-5,
                                   -0x1.640c82dcf0b1cp-5, 0x1.59ee37d6e78cbp-6};
-    vd zero = vd_set1(0), dx = vd_sub(a->qx, a->px), dy = vd_sub(a->qy, a->py), square = vd_mul(a->r, a->r);
-    vd sine = vd_sub(vd_mul(a->px, dy), vd_mul(a->py, dx)); /* r^2 sin v, r^2 cos v */
-    vd cosine = vd_add(vd_mul(a->px, a->qx), vd_mul(a->py, a->qy)), minus_sine = vd_sub(zero, sine);
+    vd zero = vd_set1(0), dx = a->qx - a->px, dy = a->qy - a->py, square = a->r * a->r;
+    vd sine = a->px * dy - a->py * dx; /* r^2 sin v, r^2 cos v */
+    vd cosine = a->px * a->qx + a->py * a->qy, minus_sine = zero - sine;
     vm acute = vd_lt(sine, cosine), straight = vd_lt(cosine, minus_sine);
-    vd opposite = vd_select(acute, sine, vd_select(straight, minus_sine, vd_sub(zero, cosine)));
-    vd adjacent = vd_select(acute, cosine, vd_select(straight, vd_sub(zero, cosine), sine));
+    vd opposite = vd_select(acute, sine, vd_select(straight, minus_sine, zero - cosine));
+    vd adjacent = vd_select(acute, cosine, vd_select(straight, zero - cosine, sine));
     vd quarters =
         vd_select(acute, zero, vd_select(straight, vd_set1(0x1.921fb54442d18p+0), vd_set1(0x1.921fb54442d18p-1)));
-    vd t = vd_div(opposite, vd_add(square, adjacent)), x = vd_mul(t, t), xx = vd_mul(x, x);
+    vd t = opposite / (square + adjacent), x = t * t, xx = x * x;
     vd even = vd_set1(ATAN[10]), odd = vd_set1(ATAN[9]);
-#define STEP(k) even = vd_add(vd_mul(even, xx), vd_set1(ATAN[k])), odd = vd_add(vd_mul(odd, xx), vd_set1(ATAN[k - 1]))
+#define STEP(k) even = even * xx + ATAN[k], odd = odd * xx + ATAN[k - 1]
     STEP(8), STEP(6), STEP(4), STEP(2);
 #undef STEP
-    even = vd_add(vd_mul(even, xx), vd_set1(ATAN[0]));
-    vd half_angle = vd_add(quarters, vd_mul(t, vd_add(even, vd_mul(odd, x))));
-    vd shift = vd_sub(vd_mul(a->cx, dy), vd_mul(a->cy, dx));
-    return vd_add(vd_mul(square, half_angle), vd_mul(vd_set1(0.5), shift));
+    even = even * xx + ATAN[0];
+    vd half_angle = quarters + t * (even + odd * x);
+    vd shift = a->cx * dy - a->cy * dx;
+    return square * half_angle + 0.5 * shift;
 }
 
 /* What the pieces so far contribute to the areas of their discs. */

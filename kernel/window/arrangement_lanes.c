@@ -40,8 +40,8 @@ static _Alignas(FIBRAD_ALIGNMENT) const double lane_number[8] = {0, 1, 2, 3, 4, 
 
 static inline vd place(vd x, vd y) {
     vd zero = vd_set1(0);
-    vd sides = vd_select(vd_lt(x, zero), vd_sub(vd_set1(4 * DIAGONAL), y), y);
-    vd ends = vd_select(vd_lt(y, zero), vd_add(vd_set1(6 * DIAGONAL), x), vd_sub(vd_set1(2 * DIAGONAL), x));
+    vd sides = vd_select(vd_lt(x, zero), 4 * DIAGONAL - y, y);
+    vd ends = vd_select(vd_lt(y, zero), 6 * DIAGONAL + x, 2 * DIAGONAL - x);
     return vd_select(vd_lt(vd_abs(x), vd_abs(y)), ends, sides);
 }
 
@@ -50,8 +50,8 @@ static inline vd place(vd x, vd y) {
  * then.
  */
 static inline void set_right(vd cosine, vd *from, vd *to) {
-    vd zero = vd_set1(0), length = vd_sub(*to, *from);
-    length = vd_select(vd_lt(length, zero), vd_add(length, vd_set1(AROUND)), length);
+    vd zero = vd_set1(0), length = *to - *from;
+    length = vd_select(vd_lt(length, zero), length + AROUND, length);
     vm narrow = vd_lt(zero, cosine), nothing = vm_and(narrow, vd_lt(vd_set1(0.75 * AROUND), length));
     vm all = vm_and(vm_not(narrow), vd_lt(length, vd_set1(0.25 * AROUND)));
     *from = vd_select(nothing, vd_set1(NOTHING), vd_select(all, vd_set1(ALL), *from));
@@ -68,28 +68,28 @@ static bool meet(fibrad_areas *areas, double x, double y, double r, double inver
     hidden->all = false;
     for (uint32_t m = 0; m < areas->circles; m += VD_LANES) {
         vd c_x = vd_load(areas->x + m), c_y = vd_load(areas->y + m), r_m = vd_load(areas->r + m);
-        vd dx = vd_sub(vd_set1(x), c_x), dy = vd_sub(vd_set1(y), c_y);
-        vd sum = vd_add(r_m, r_k), difference = vd_sub(r_m, r_k);
-        vd square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
-        vd outer = vd_sub(vd_mul(sum, sum), square), inner = vd_sub(square, vd_mul(difference, difference));
+        vd dx = x - c_x, dy = y - c_y;
+        vd sum = r_m + r_k, difference = r_m - r_k;
+        vd square = dx * dx + dy * dy;
+        vd outer = sum * sum - square, inner = square - difference * difference;
         vm apart = vd_le(outer, zero), nested = vd_le(inner, zero), whole = vm_or(apart, nested);
         uint32_t lanes = vd_lanes_below(areas->circles - m);
         uint32_t containing = vm_bits(vm_and(nested, vd_le(zero, difference))) & lanes;
         if (containing & (m == 0 ? ~1u : ~0u)) return false; /* to lie within the window hides nothing */
 
-        vd scale = vd_div(half, square), power = vd_mul(sum, difference); /* r_m^2 - r^2 */
-        vd f = vd_mul(vd_add(square, power), scale), g = vd_mul(vd_sub(square, power), scale);
-        vd h = vd_mul(vd_sqrt(vd_mul(vd_max(outer, zero), vd_max(inner, zero))), scale);
-        vd hx = vd_mul(h, dx), hy = vd_mul(h, dy), fx = vd_mul(f, dx), fy = vd_mul(f, dy);
-        vd gx = vd_mul(g, dx), gy = vd_mul(g, dy), inverse_m = vd_load(areas->accounts.inverse + m);
-        vd sx = vd_add(fx, hy), sy = vd_sub(fy, hx), ex = vd_sub(fx, hy), ey = vd_add(fy, hx);
-        vd_store(areas->accounts.sx + m, vd_add(c_x, sx));
-        vd_store(areas->accounts.sy + m, vd_add(c_y, sy));
-        vd_store(areas->accounts.ex + m, vd_add(c_x, ex));
-        vd_store(areas->accounts.ey + m, vd_add(c_y, ey));
+        vd scale = half / square, power = sum * difference; /* r_m^2 - r^2 */
+        vd f = (square + power) * scale, g = (square - power) * scale;
+        vd h = vd_sqrt(vd_max(outer, zero) * vd_max(inner, zero)) * scale;
+        vd hx = h * dx, hy = h * dy, fx = f * dx, fy = f * dy;
+        vd gx = g * dx, gy = g * dy, inverse_m = vd_load(areas->accounts.inverse + m);
+        vd sx = fx + hy, sy = fy - hx, ex = fx - hy, ey = fy + hx;
+        vd_store(areas->accounts.sx + m, c_x + sx);
+        vd_store(areas->accounts.sy + m, c_y + sy);
+        vd_store(areas->accounts.ex + m, c_x + ex);
+        vd_store(areas->accounts.ey + m, c_y + ey);
 
-        vd from = place(vd_mul(sx, inverse_m), vd_mul(sy, inverse_m));
-        vd to = place(vd_mul(ex, inverse_m), vd_mul(ey, inverse_m));
+        vd from = place(sx * inverse_m, sy * inverse_m);
+        vd to = place(ex * inverse_m, ey * inverse_m);
         set_right(f, &from, &to);
         vm m_inside = vm_and(nested, vd_le(difference, zero));
         from = vd_select(m_inside, vd_set1(ALL), vd_select(whole, vd_set1(NOTHING), from));
@@ -97,8 +97,8 @@ static bool meet(fibrad_areas *areas, double x, double y, double r, double inver
         vd_store(areas->accounts.from + m, from);
         vd_store(areas->accounts.to + m, to);
 
-        vd own_from = place(vd_mul(vd_sub(zero, vd_add(gx, hy)), inverse_k), vd_mul(vd_sub(hx, gy), inverse_k));
-        vd own_to = place(vd_mul(vd_sub(hy, gx), inverse_k), vd_mul(vd_sub(zero, vd_add(gy, hx)), inverse_k));
+        vd own_from = place((zero - (gx + hy)) * inverse_k, (hx - gy) * inverse_k);
+        vd own_to = place((hy - gx) * inverse_k, (zero - (gy + hx)) * inverse_k);
         set_right(g, &own_from, &own_to);
         if (m == 0) { /* the window hides what lies without */
             vm first = vd_lt(vd_load(lane_number), half);
@@ -112,7 +112,7 @@ static bool meet(fibrad_areas *areas, double x, double y, double r, double inver
         uint32_t some = crossing & ~vm_bits(empty), count = hidden->count;
         vd_compress(hidden->from + count, some, own_from);
         vd_compress(hidden->to + count, some, own_to);
-        vd_compress(hidden->circle + count, some, vd_add(vd_load(lane_number), vd_set1(m)));
+        vd_compress(hidden->circle + count, some, vd_load(lane_number) + m);
         hidden->count = count + fibrad_count_bits(some);
     }
     return true;
@@ -220,13 +220,7 @@ static inline uint32_t rising(const arcs_in_lanes *s) { return vm_bits(vd_lt(s->
 static void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes *s, uint32_t k) {
     uint32_t size = areas->circles + 1; /* the new one, or the rest */
     vd x = vd_lookup(areas->x, size, s->circle), y = vd_lookup(areas->y, size, s->circle);
-    fibrad_arc_lanes piece = {vd_sub(s->px, x),
-                              vd_sub(s->py, y),
-                              vd_sub(s->qx, x),
-                              vd_sub(s->qy, y),
-                              x,
-                              y,
-                              vd_lookup(areas->r, size, s->circle),
+    fibrad_arc_lanes piece = {s->px - x, s->py - y, s->qx - x, s->qy - y, x, y, vd_lookup(areas->r, size, s->circle),
                               s->circle};
     LANED(fibrad_arcs_give)(areas, bits, &piece, k);
 }
@@ -264,9 +258,9 @@ static bool take(fibrad_areas *areas, uint32_t k) {
         vd lx = vd_select(round, ex, sx), ly = vd_select(round, ey, sy);
         vd hx = vd_select(round, sx, ex), hy = vd_select(round, sy, ey);
         /* a bound that does not cut goes to the end of the arc; if nothing is between them, all of the arc is below */
-        vm low_below = vd_le(vd_sub(low, s.a), tiny), high_above = vd_le(vd_sub(s.b, high), tiny);
-        vm none = vm_or(vd_le(vd_sub(high, s.a), tiny), vd_le(vd_sub(high, low), tiny));
-        none = vm_or(none, vd_le(vd_sub(s.b, low), tiny));
+        vm low_below = vd_le(low - s.a, tiny), high_above = vd_le(s.b - high, tiny);
+        vm none = vm_or(vd_le(high - s.a, tiny), vd_le(high - low, tiny));
+        none = vm_or(none, vd_le(s.b - low, tiny));
         high_above = vm_or(high_above, none);
         low = vd_select(none, s.b, vd_select(low_below, s.a, low));
         lx = vd_select(none, s.qx, vd_select(low_below, s.px, lx));

@@ -121,9 +121,9 @@ static bool join_several(fibrad_boundary *b, uint64_t leaves, uint64_t enters, d
 static bool is_open(const fibrad_areas *areas, uint32_t k, double x, double y) {
     uint32_t inside = 0;
     for (uint32_t m = 0; m < k; m += VD_LANES) {
-        vd r = vd_load(areas->r + m), dx = vd_sub(vd_set1(x), vd_load(areas->x + m));
-        vd dy = vd_sub(vd_set1(y), vd_load(areas->y + m));
-        vm in = vd_lt(vd_add(vd_mul(dx, dx), vd_mul(dy, dy)), vd_mul(r, r));
+        vd r = vd_load(areas->r + m), dx = x - vd_load(areas->x + m);
+        vd dy = y - vd_load(areas->y + m);
+        vm in = vd_lt(dx * dx + dy * dy, r * r);
         inside |= vm_bits(in) & vd_lanes_below(k - m) & (m == 0 ? ~1u : ~0u);
     }
     return inside == 0;
@@ -144,33 +144,33 @@ FIBRAD_INLINE bool clip(fibrad_areas *areas, uint32_t k, double x, double y, dou
         vd px = vd_load(b->px + o), py = vd_load(b->py + o), qx = vd_load(b->qx + o), qy = vd_load(b->qy + o);
         vd cx = vd_load(b->cx + o), cy = vd_load(b->cy + o), c_r = vd_load(b->r + o);
         /* an end p is inside if p.d > middle; both circles meet if the distance middle/d is less than the radius */
-        vd dx = vd_sub(u, cx), dy = vd_sub(v, cy), square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
-        vd sum = vd_add(c_r, radius), difference = vd_sub(c_r, radius);
-        vd middle = vd_mul(half, vd_add(square, vd_mul(sum, difference)));
-        vd p_along = vd_add(vd_mul(px, dx), vd_mul(py, dy)), q_along = vd_add(vd_mul(qx, dx), vd_mul(qy, dy));
-        vd p_across = vd_sub(vd_mul(px, dy), vd_mul(py, dx)), q_across = vd_sub(vd_mul(qx, dy), vd_mul(qy, dx));
-        vd meeting = vd_sub(vd_mul(vd_mul(c_r, c_r), square), vd_mul(middle, middle));
+        vd dx = u - cx, dy = v - cy, square = dx * dx + dy * dy;
+        vd sum = c_r + radius, difference = c_r - radius;
+        vd middle = half * (square + sum * difference);
+        vd p_along = px * dx + py * dy, q_along = qx * dx + qy * dy;
+        vd p_across = px * dy - py * dx, q_across = qx * dy - qy * dx;
+        vd meeting = c_r * c_r * square - middle * middle;
         vm p_in = vd_lt(middle, p_along), q_in = vd_lt(middle, q_along), meet = vd_lt(zero, meeting);
         vm p_before = vd_lt(zero, p_across), q_after = vd_lt(q_across, zero);
         vm towards = vm_and(p_before, q_after), away = vm_not(vm_or(p_before, q_after));
         vm any_in = vm_or(p_in, q_in), both_in = vm_and(p_in, q_in);
         vm cut_twice = vm_and(meet, vm_or(vm_and(both_in, away), vm_and(vm_not(any_in), towards)));
-        vm close = vm_or(vd_le(vd_abs(vd_sub(p_along, middle)), near), vd_le(vd_abs(meeting), vd_mul(tangent, square)));
+        vm close = vm_or(vd_le(vd_abs(p_along - middle), near), vd_le(vd_abs(meeting), tangent * square));
         uint32_t lanes = (uint32_t)(alive >> o) & vd_lanes_below(VD_LANES);
         uint32_t touching = vm_bits(vm_or(any_in, cut_twice)) & lanes;
         doubt |= vm_bits(close) & lanes;
         if (touching == 0) continue;
 
         /* the points s, where the circle enters the disc counter-clockwise, and e, where it leaves */
-        vd outer = vd_sub(vd_mul(sum, sum), square), inner = vd_sub(square, vd_mul(difference, difference));
-        vd scale = vd_div(half, square), f = vd_mul(vd_add(middle, middle), scale);
-        vd h = vd_mul(vd_sqrt(vd_max(vd_mul(outer, inner), zero)), scale);
-        vd fx = vd_mul(f, dx), fy = vd_mul(f, dy), hx = vd_mul(h, dx), hy = vd_mul(h, dy);
-        vd sx = vd_add(fx, hy), sy = vd_sub(fy, hx), ex = vd_sub(fx, hy), ey = vd_add(fy, hx);
-        vd_store(b->cut[0][0] + o, vd_sub(sx, dx));
-        vd_store(b->cut[0][1] + o, vd_sub(sy, dy));
-        vd_store(b->cut[1][0] + o, vd_sub(ex, dx));
-        vd_store(b->cut[1][1] + o, vd_sub(ey, dy));
+        vd outer = sum * sum - square, inner = square - difference * difference;
+        vd scale = half / square, f = (middle + middle) * scale;
+        vd h = vd_sqrt(vd_max(outer * inner, zero)) * scale;
+        vd fx = f * dx, fy = f * dy, hx = h * dx, hy = h * dy;
+        vd sx = fx + hy, sy = fy - hx, ex = fx - hy, ey = fy + hx;
+        vd_store(b->cut[0][0] + o, sx - dx);
+        vd_store(b->cut[0][1] + o, sy - dy);
+        vd_store(b->cut[1][0] + o, ex - dx);
+        vd_store(b->cut[1][1] + o, ey - dy);
         vd_store(b->old_qx + o, qx);
         vd_store(b->old_qy + o, qy);
         vm ends_early = vm_or(q_in, cut_twice), goes_on = vm_and(q_in, vm_not(cut_twice));

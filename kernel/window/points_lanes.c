@@ -11,8 +11,8 @@ static inline uint64_t within(const float *x, const float *y, float at_x, float 
     uint64_t bits = 0;
 #pragma GCC unroll 64
     for (uint32_t lane = 0; lane < 64; lane += VF_LANES) {
-        vf dx = vf_sub(u, vf_load(x + lane)), dy = vf_sub(v, vf_load(y + lane));
-        bits += (uint64_t)vf_lt_bits(vf_add(vf_mul(dx, dx), vf_mul(dy, dy)), reach) << lane;
+        vf dx = u - vf_load(x + lane), dy = v - vf_load(y + lane);
+        bits += (uint64_t)vf_lt_bits(dx * dx + dy * dy, reach) << lane;
     }
     return bits;
 }
@@ -36,7 +36,7 @@ uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *di
                                 vd_lanes_below(discs.count - k));
         vd_store_float(discs.fu + k, vd_load(discs.u + k));
         vd_store_float(discs.fv + k, vd_load(discs.v + k));
-        vd_store_float(discs.square + k, vd_mul(r, r));
+        vd_store_float(discs.square + k, r * r);
     }
     for (uint32_t d = from; d < to; d += 16) fibrad_zero(discs.hits + d, 16 * sizeof *discs.hits);
     points->open = 0;
