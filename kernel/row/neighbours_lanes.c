@@ -48,9 +48,9 @@ static bool collect(fibrad_workspace *work, fibrad_walk *walk, double from, doub
             vd r = vd_loadu(scene.r + j) * inverse, wide = 1 + r;
             vd square = x * x + y * y + z * z;
             vd e = square - wide * wide;
-            vm other = vm_and(vd_lt(zero, square), vd_le(square, reach)); /* than the sphere itself */
-            vm emerges = vm_and(vd_lt(vd_set1(from), e), vd_le(e, vd_set1(to)));
-            uint32_t bits = vm_bits(vm_and(emerges, other)) & vd_lanes_below(walk->end - j);
+            vm other = vd_lt(zero, square) & vd_le(square, reach); /* than the sphere itself */
+            vm emerges = vd_lt(vd_set1(from), e) & vd_le(e, vd_set1(to));
+            uint32_t bits = vm_bits(emerges & other) & vd_lanes_below(walk->end - j);
             if (n + VD_LANES > near.capacity) return false;
             vd_compress(near.x + n, bits, x);
             vd_compress(near.y + n, bits, y);
@@ -127,7 +127,7 @@ void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uin
         vd_storeu(disc.v + k, v);
         vd_storeu(disc.r + k, r);
         vd_storeu(disc.depth + k, depth);
-        outside |= ~vm_bits(vm_and(overlaps, ahead)) & vd_lanes_below(end - k);
+        outside |= ~vm_bits(overlaps & ahead) & vd_lanes_below(end - k);
     }
     work->disc.count = end;
     if (outside != 0) leave_out(work, from);
@@ -155,11 +155,11 @@ static void add_discs(fibrad_workspace *work, const double frame[9], fibrad_walk
             vd depth = along(frame + 6, c[0], c[1], c[2]), place = layer->sense * c[layer->along];
             wide *= wide;
             vd e = square - wide;
-            vm in_layer = vm_and(vd_le(vd_set1(layer->edge), place), vd_lt(place, vd_set1(layer->end)));
-            vm emerges = vm_and(vd_lt(vd_set1(layer->from), e), vd_le(e, vd_set1(layer->to)));
-            vm other = vm_and(vd_lt(zero, square), vd_le(square, reach)); /* than the sphere itself */
-            vm ahead = vm_and(vd_le(zero, depth), vd_le(e, depth * depth * (1 + 1e-12)));
-            uint32_t bits = vm_bits(vm_and(vm_and(in_layer, emerges), vm_and(other, ahead)));
+            vm in_layer = vd_le(vd_set1(layer->edge), place) & vd_lt(place, vd_set1(layer->end));
+            vm emerges = vd_lt(vd_set1(layer->from), e) & vd_le(e, vd_set1(layer->to));
+            vm other = vd_lt(zero, square) & vd_le(square, reach); /* than the sphere itself */
+            vm ahead = vd_le(zero, depth) & vd_le(e, depth * depth * (1 + 1e-12));
+            uint32_t bits = vm_bits(in_layer & emerges & other & ahead);
             bits &= vd_lanes_below(walk->end - j);
             if (bits == 0) continue;
             vd u = along(frame, c[0], c[1], c[2]), v = along(frame + 3, c[0], c[1], c[2]);

@@ -58,13 +58,13 @@ bool LANED(fibrad_surface_filter)(fibrad_surface_task *task, const fibrad_surfac
         const vd slack = MARGIN * (aside + vd_abs(z) + (high + r));
         const vd wide = r + slack, depth = one - z * sine; /* from axis to cone */
         const vm in_cone = vd_lt(aside * cosine - depth, wide);
-        const vm between = vm_and(vd_lt(low, z + wide), vd_lt(z - wide, high));
-        const vm covers = vm_and(vd_le((aside + slack) * cosine + depth, r * cosine),
-                                 vm_and(vd_le(one, z), vd_le(z, vd_set1(task->d - task->r2))));
+        const vm between = vd_lt(low, z + wide) & vd_lt(z - wide, high);
+        const vm covers =
+            vd_le((aside + slack) * cosine + depth, r * cosine) & vd_le(one, z) & vd_le(z, vd_set1(task->d - task->r2));
         uint32_t valid = lanes_below(all->n, k);
         if (self - k < VD_LANES) valid &= ~(1u << (self - k));
         if ((vm_bits(covers) & valid) != 0) hidden = true;
-        uint32_t keep = task->flags & FIBRAD_SURFACE_NO_REGION ? valid : valid & vm_bits(vm_and(in_cone, between));
+        uint32_t keep = task->flags & FIBRAD_SURFACE_NO_REGION ? valid : valid & vm_bits(in_cone & between);
         if (keep != 0) append(&task->obstacles, keep, x, y, z, r);
     }
     return hidden;
@@ -93,10 +93,10 @@ static bool obstacles_of_node(const fibrad_surface_task *task, double x, double 
         const vd cosines = vd_sqrt(vd_max(power, zero) * tt), sines = r * r2;
         const vd reach = tt + 2 * tangent * r;
         const vm inside = vd_lt(power, zero);
-        const vm apart = vm_or(vd_lt(axes + sines + slack, cosines),
-                               vm_or(vd_lt(reach + slack, power), vd_lt(height + r + slack, zero)));
-        const vm covers = vm_and(vd_lt(cosines + slack, axes - sines),
-                                 vm_and(vd_lt(r2 * r2 * cc, rr * far), vd_lt(cc + slack, vd_set1(front * front))));
+        const vm apart =
+            vd_lt(axes + sines + slack, cosines) | vd_lt(reach + slack, power) | vd_lt(height + r + slack, zero);
+        const vm covers = vd_lt(cosines + slack, axes - sines) & vd_lt(r2 * r2 * cc, rr * far) &
+                          vd_lt(cc + slack, vd_set1(front * front));
         uint32_t valid = lanes_below(all->n, k), keep = valid;
         if ((vm_bits(inside) & valid) != 0) return true;
         if ((vm_bits(covers) & valid) != 0 && (task->flags & FIBRAD_SURFACE_NO_HIDDEN) == 0) return true;
@@ -112,7 +112,7 @@ static bool obstacles_of_node(const fibrad_surface_task *task, double x, double 
 static vm meets(const fibrad_obstacles *list, uint32_t o, vd ex, vd ey, vd ez, vd ee, vd half_ee) {
     const vd p = vd_set1(list->r[o]), half_p = vd_set1(0.5 * list->r[o]);
     const vd b = rotated((double[3]){list->x[o], list->y[o], list->z[o]}, ex, ey, ez);
-    return vm_and(vm_and(vd_lt(vd_set1(0), b), vd_lt(p * ee, b * b)), vd_lt(half_p, vd_max(b, ee) - half_ee));
+    return vd_lt(vd_set1(0), b) & vd_lt(p * ee, b * b) & vd_lt(half_p, vd_max(b, ee) - half_ee);
 }
 
 static double total(const vd part[STEPS]) {
@@ -154,7 +154,7 @@ void LANED(fibrad_surface_sum)(const fibrad_surface_task *task, fibrad_surface_s
                     const vd ux = turn == 0 ? x2 : minus_x2, uy = turn == 0 ? y2 : minus_y2;
                     const vd ex = ux - px, ey = uy - py;
                     const vd cos1 = dot(nx, ny, nz, ex, ey, ez), cos2 = zero - dot(ux, uy, uz, ex, ey, ez);
-                    const vm facing = vm_and(vd_lt(zero, cos1), vd_lt(zero, cos2));
+                    const vm facing = vd_lt(zero, cos1) & vd_lt(zero, cos2);
                     if (vm_bits(facing) == 0) continue;
                     sums->rays += VD_LANES;
                     const vd ee = dot(ex, ey, ez, ex, ey, ez), half_ee = 0.5 * ee;
@@ -164,7 +164,7 @@ void LANED(fibrad_surface_sum)(const fibrad_surface_task *task, fibrad_surface_s
                     if (hidden) continue;
                     vm clear = facing;
                     for (uint32_t o = 0; o < near.n && vm_bits(clear) != 0; o++) {
-                        clear = vm_and(clear, vm_not(meets(&near, o, ex, ey, ez, ee, half_ee)));
+                        clear &= vm_not(meets(&near, o, ex, ey, ez, ee, half_ee));
                         sums->tests += VD_LANES;
                     }
                     seen[turn][step] += vd_select(clear, g, zero);

@@ -52,8 +52,8 @@ static inline vd place(vd x, vd y) {
 static inline void set_right(vd cosine, vd *from, vd *to) {
     vd zero = vd_set1(0), length = *to - *from;
     length = vd_select(vd_lt(length, zero), length + AROUND, length);
-    vm narrow = vd_lt(zero, cosine), nothing = vm_and(narrow, vd_lt(vd_set1(0.75 * AROUND), length));
-    vm all = vm_and(vm_not(narrow), vd_lt(length, vd_set1(0.25 * AROUND)));
+    vm narrow = vd_lt(zero, cosine), nothing = narrow & vd_lt(vd_set1(0.75 * AROUND), length);
+    vm all = vm_not(narrow) & vd_lt(length, vd_set1(0.25 * AROUND));
     *from = vd_select(nothing, vd_set1(NOTHING), vd_select(all, vd_set1(ALL), *from));
     *to = vd_select(nothing, vd_set1(-NOTHING), vd_select(all, vd_set1(-ALL), *to));
 }
@@ -72,9 +72,9 @@ static bool meet(fibrad_areas *areas, double x, double y, double r, double inver
         vd sum = r_m + r_k, difference = r_m - r_k;
         vd square = dx * dx + dy * dy;
         vd outer = sum * sum - square, inner = square - difference * difference;
-        vm apart = vd_le(outer, zero), nested = vd_le(inner, zero), whole = vm_or(apart, nested);
+        vm apart = vd_le(outer, zero), nested = vd_le(inner, zero), whole = apart | nested;
         uint32_t lanes = vd_lanes_below(areas->circles - m);
-        uint32_t containing = vm_bits(vm_and(nested, vd_le(zero, difference))) & lanes;
+        uint32_t containing = vm_bits(nested & vd_le(zero, difference)) & lanes;
         if (containing & (m == 0 ? ~1u : ~0u)) return false; /* to lie within the window hides nothing */
 
         vd scale = half / square, power = sum * difference; /* r_m^2 - r^2 */
@@ -91,7 +91,7 @@ static bool meet(fibrad_areas *areas, double x, double y, double r, double inver
         vd from = place(sx * inverse_m, sy * inverse_m);
         vd to = place(ex * inverse_m, ey * inverse_m);
         set_right(f, &from, &to);
-        vm m_inside = vm_and(nested, vd_le(difference, zero));
+        vm m_inside = nested & vd_le(difference, zero);
         from = vd_select(m_inside, vd_set1(ALL), vd_select(whole, vd_set1(NOTHING), from));
         to = vd_select(m_inside, vd_set1(-ALL), vd_select(whole, vd_set1(-NOTHING), to));
         vd_store(areas->accounts.from + m, from);
@@ -108,7 +108,7 @@ static bool meet(fibrad_areas *areas, double x, double y, double r, double inver
         }
         uint32_t crossing = lanes & ~vm_bits(whole), all = vm_bits(vd_lt(own_from, vd_set1(BEGIN - 1))) & crossing;
         if (all != 0) hidden->all = true;
-        vm empty = vm_or(vm_and(vd_le(own_from, own_to), vd_le(own_to, own_from)), vd_lt(vd_set1(END + 1), own_from));
+        vm empty = (vd_le(own_from, own_to) & vd_le(own_to, own_from)) | vd_lt(vd_set1(END + 1), own_from);
         uint32_t some = crossing & ~vm_bits(empty), count = hidden->count;
         vd_compress(hidden->from + count, some, own_from);
         vd_compress(hidden->to + count, some, own_to);
@@ -259,9 +259,9 @@ static bool take(fibrad_areas *areas, uint32_t k) {
         vd hx = vd_select(round, sx, ex), hy = vd_select(round, sy, ey);
         /* a bound that does not cut goes to the end of the arc; if nothing is between them, all of the arc is below */
         vm low_below = vd_le(low - s.a, tiny), high_above = vd_le(s.b - high, tiny);
-        vm none = vm_or(vd_le(high - s.a, tiny), vd_le(high - low, tiny));
-        none = vm_or(none, vd_le(s.b - low, tiny));
-        high_above = vm_or(high_above, none);
+        vm none = vd_le(high - s.a, tiny) | vd_le(high - low, tiny);
+        none |= vd_le(s.b - low, tiny);
+        high_above |= none;
         low = vd_select(none, s.b, vd_select(low_below, s.a, low));
         lx = vd_select(none, s.qx, vd_select(low_below, s.px, lx));
         ly = vd_select(none, s.qy, vd_select(low_below, s.py, ly));

@@ -152,12 +152,12 @@ FIBRAD_INLINE bool clip(fibrad_areas *areas, uint32_t k, double x, double y, dou
         vd meeting = c_r * c_r * square - middle * middle;
         vm p_in = vd_lt(middle, p_along), q_in = vd_lt(middle, q_along), meet = vd_lt(zero, meeting);
         vm p_before = vd_lt(zero, p_across), q_after = vd_lt(q_across, zero);
-        vm towards = vm_and(p_before, q_after), away = vm_not(vm_or(p_before, q_after));
-        vm any_in = vm_or(p_in, q_in), both_in = vm_and(p_in, q_in);
-        vm cut_twice = vm_and(meet, vm_or(vm_and(both_in, away), vm_and(vm_not(any_in), towards)));
-        vm close = vm_or(vd_le(vd_abs(p_along - middle), near), vd_le(vd_abs(meeting), tangent * square));
+        vm towards = p_before & q_after, away = vm_not(p_before | q_after);
+        vm any_in = p_in | q_in, both_in = p_in & q_in;
+        vm cut_twice = meet & ((both_in & away) | (vm_not(any_in) & towards));
+        vm close = vd_le(vd_abs(p_along - middle), near) | vd_le(vd_abs(meeting), tangent * square);
         uint32_t lanes = (uint32_t)(alive >> o) & vd_lanes_below(VD_LANES);
-        uint32_t touching = vm_bits(vm_or(any_in, cut_twice)) & lanes;
+        uint32_t touching = vm_bits(any_in | cut_twice) & lanes;
         doubt |= vm_bits(close) & lanes;
         if (touching == 0) continue;
 
@@ -173,7 +173,7 @@ FIBRAD_INLINE bool clip(fibrad_areas *areas, uint32_t k, double x, double y, dou
         vd_store(b->cut[1][1] + o, ey - dy);
         vd_store(b->old_qx + o, qx);
         vd_store(b->old_qy + o, qy);
-        vm ends_early = vm_or(q_in, cut_twice), goes_on = vm_and(q_in, vm_not(cut_twice));
+        vm ends_early = q_in | cut_twice, goes_on = q_in & vm_not(cut_twice);
         vd_store(b->px + o, vd_select(p_in, ex, px));
         vd_store(b->py + o, vd_select(p_in, ey, py));
         vd_store(b->qx + o, vd_select(ends_early, sx, qx));

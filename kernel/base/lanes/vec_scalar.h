@@ -12,7 +12,7 @@
  *                            vd_compress(p, bits, a): the lanes named by bits side by side at p, which has room for all
  *                            vd_replace(a, lane, x): a with x in one lane
  *                            vd_compress_places(p, bits, first): first + l for them; returns how many
- *   vm   a mask of vd lanes  vm_and vm_or vm_not vm_bits (bit l = lane l)
+ *   vm   a mask of vd lanes  & | vm_not vm_bits (bit l = lane l)
  *   vf   VF_LANES floats     + - * vf_set1 vf_load vf_lt_bits (bit l = lane l)
  *                            vf_compress_places(p, bits, first): as that of vd
  *   vn   VF_LANES numbers    vn_zero vn_store vn_count_lt(n, a, b): n, and one more where a < b
@@ -58,8 +58,6 @@ static inline vd vd_abs(vd a) { return __builtin_fabs(a); }
 static inline vm vd_lt(vd a, vd b) { return a < b; }
 static inline vm vd_le(vd a, vd b) { return a <= b; }
 static inline vd vd_select(vm m, vd a, vd b) { return m ? a : b; }
-static inline vm vm_and(vm a, vm b) { return a & b; }
-static inline vm vm_or(vm a, vm b) { return a | b; }
 static inline vm vm_not(vm a) { return !a; }
 static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
 
