@@ -52,7 +52,7 @@ static void find_discs(const fibrad_workspace *work, const fibrad_points *points
     uint64_t left = ~points->seen[word];
     for (uint32_t k = 0; k < POINTS; k++) p->disc[k] = FIBRAD_NONE;
     for (uint32_t t = 0; left != 0; t++) {
-        const uint32_t k = points->taker[t];
+        const uint32_t k = points->occluder[t];
         const double r = work->disc.r[k];
         vf u = vf_set1((float)work->disc.u[k]), v = vf_set1((float)work->disc.v[k]), square = vf_set1((float)(r * r));
         uint64_t hidden = 0;

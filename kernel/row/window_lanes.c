@@ -91,14 +91,15 @@ static uint32_t settle(fibrad_workspace *work, fibrad_points *points, uint32_t w
         to = from + LANED(fibrad_areas_discs)(&work->areas, 0, disc.order + from, to - from, disc.u, disc.v, disc.r);
         *open = work->areas.open;
     } else {
-        to = LANED(fibrad_points_take)(points, &work->disc, from, depth);
+        to = LANED(fibrad_points_discs)(points, &work->disc, from, depth);
         *open = points->open > 0;
-        uint32_t *end = disc.taker; /* beyond `to` there are no hits */
-        for (uint32_t d = from; d < to; d += VF_LANES) end += vf_compress_places(end, vn_some_bits(disc.hits + d), d);
-        for (const uint32_t *taker = disc.taker; taker < end; taker++) {
+        uint32_t *end = disc.occluder; /* beyond `to` there are no hits */
+        for (uint32_t d = from; d < to; d += VF_LANES)
+            end += vf_compress_places(end, vn_some_bits(disc.hidden_points + d), d);
+        for (const uint32_t *taker = disc.occluder; taker < end; taker++) {
             uint32_t k = disc.order[*taker];
-            fibrad_work_see(work, k, window, (int32_t)disc.hits[*taker]);
-            points->taker[points->takers++] = k;
+            fibrad_work_accumulate(work, k, window, (int32_t)disc.hidden_points[*taker]);
+            points->occluder[points->occluders++] = k;
         }
     }
     if (*open)
@@ -111,7 +112,7 @@ static double look(fibrad_workspace *work, const double frame[9], fibrad_points 
     work->disc.count = 0;
     if (points->count == 0) LANED(fibrad_areas_begin)(&work->areas);
     points->open = points->count;
-    points->takers = 0;
+    points->occluders = 0;
     for (uint32_t word = 0; word < points->count / 64; word++) points->seen[word] = UINT64_MAX;
 
     bool open = true;
@@ -135,7 +136,7 @@ static double look(fibrad_workspace *work, const double frame[9], fibrad_points 
     if (points->count > 0) return points->open;
     double rest = LANED(fibrad_areas_end)(&work->areas);
     for (uint32_t c = 1; c < work->areas.circles; c++)
-        if (work->areas.area[c] > 0) fibrad_work_see(work, work->areas.whose[c], k, work->areas.area[c]);
+        if (work->areas.area[c] > 0) fibrad_work_accumulate(work, work->areas.whose[c], k, work->areas.area[c]);
     return rest;
 }
 

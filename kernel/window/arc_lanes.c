@@ -14,7 +14,7 @@ void LANED(fibrad_areas_integrate)(fibrad_areas *areas) {
     }
     for (uint32_t k = 0; k < p->count; k++) {
         sum[(uint32_t)p->circle[k]] -= p->r[k];
-        sum[(uint32_t)p->taker[k]] += p->r[k];
+        sum[(uint32_t)p->occluder[k]] += p->r[k];
     }
     p->count = 0;
 }

@@ -53,7 +53,7 @@ static inline void fibrad_arcs_append(fibrad_areas *areas, uint32_t bits, const 
     vd_compress(pieces->cy + n, bits, a->cy);
     vd_compress(pieces->r + n, bits, a->r);
     vd_compress(pieces->circle + n, bits, a->circle);
-    vd_storeu(pieces->taker + n, vd_set1(k));
+    vd_storeu(pieces->occluder + n, vd_set1(k));
     pieces->count = n + fibrad_count_bits(bits);
     if (pieces->count >= FIBRAD_PIECES) LANED(fibrad_areas_integrate)(areas);
 }

@@ -19,20 +19,21 @@ static fibrad_arcs arcs_of(fibrad_arena *arena, size_t count) {
     return arcs;
 }
 
-static void accounts_layout(fibrad_accounts *accounts, fibrad_arena *arena, uint32_t discs, size_t circles) {
-    accounts->arcs = ARCS_PER_DISC * discs + 4 * LANES;
-    size_t arcs = (size_t)accounts->arcs + LANES;
-    accounts->inverse = doubles(arena, circles);
-    accounts->from = doubles(arena, circles), accounts->to = doubles(arena, circles);
-    accounts->sx = doubles(arena, circles), accounts->sy = doubles(arena, circles);
-    accounts->ex = doubles(arena, circles), accounts->ey = doubles(arena, circles);
-    accounts->hidden.from = doubles(arena, circles + LANES), accounts->hidden.to = doubles(arena, circles + LANES);
-    accounts->hidden.circle = doubles(arena, circles + LANES);
-    accounts->open = arcs_of(arena, arcs);
-    accounts->left = arcs_of(arena, arcs);
-    accounts->seconds = accounts->arcs / 4;
-    accounts->second[0] = arcs_of(arena, accounts->seconds + LANES);
-    accounts->second[1] = arcs_of(arena, accounts->seconds + LANES);
+static void arrangement_layout(fibrad_arrangement *arrangement, fibrad_arena *arena, uint32_t discs, size_t circles) {
+    arrangement->arcs = ARCS_PER_DISC * discs + 4 * LANES;
+    size_t arcs = (size_t)arrangement->arcs + LANES;
+    arrangement->inverse = doubles(arena, circles);
+    arrangement->from = doubles(arena, circles), arrangement->to = doubles(arena, circles);
+    arrangement->sx = doubles(arena, circles), arrangement->sy = doubles(arena, circles);
+    arrangement->ex = doubles(arena, circles), arrangement->ey = doubles(arena, circles);
+    arrangement->hidden.from = doubles(arena, circles + LANES),
+    arrangement->hidden.to = doubles(arena, circles + LANES);
+    arrangement->hidden.circle = doubles(arena, circles + LANES);
+    arrangement->open = arcs_of(arena, arcs);
+    arrangement->left = arcs_of(arena, arcs);
+    arrangement->seconds = arrangement->arcs / 4;
+    arrangement->second[0] = arcs_of(arena, arrangement->seconds + LANES);
+    arrangement->second[1] = arcs_of(arena, arrangement->seconds + LANES);
 }
 
 void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t discs) {
@@ -43,5 +44,5 @@ void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t disc
     areas->whose = fibrad_arena_take(arena, circles, sizeof(uint32_t));
     areas->pieces = fibrad_arena_take(arena, 1, sizeof *areas->pieces);
     areas->boundary = fibrad_arena_take(arena, 1, sizeof *areas->boundary);
-    accounts_layout(&areas->accounts, arena, discs, circles);
+    arrangement_layout(&areas->arrangement, arena, discs, circles);
 }

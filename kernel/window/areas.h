@@ -18,7 +18,7 @@ typedef struct fibrad_pieces {
     _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_PIECES + 8], py[FIBRAD_PIECES + 8];
     double qx[FIBRAD_PIECES + 8], qy[FIBRAD_PIECES + 8];
     double cx[FIBRAD_PIECES + 8], cy[FIBRAD_PIECES + 8], r[FIBRAD_PIECES + 8];
-    double circle[FIBRAD_PIECES + 8], taker[FIBRAD_PIECES + 8]; /* numbers */
+    double circle[FIBRAD_PIECES + 8], occluder[FIBRAD_PIECES + 8]; /* numbers */
     uint32_t count;
 } fibrad_pieces;
 
@@ -49,7 +49,7 @@ typedef struct fibrad_intervals {
     bool all; /* nothing is in sight */
 } fibrad_intervals;
 
-typedef struct fibrad_accounts {
+typedef struct fibrad_arrangement {
     uint32_t arcs;             /* capacities: arcs that bound the open region, ... */
     uint32_t seconds;          /* ... second parts at a time */
     double *inverse;           /* [discs + 2] 1/r of each circle */
@@ -58,7 +58,7 @@ typedef struct fibrad_accounts {
     fibrad_intervals hidden;   /* [discs + 1] */
     fibrad_arcs open, left;    /* [arcs] the boundary of the open region; what is left when a disc has taken its */
     fibrad_arcs second[2];     /* [seconds] second parts, that stay or go, of arcs cut in three: for a moment */
-} fibrad_accounts;
+} fibrad_arrangement;
 
 typedef struct fibrad_areas {
     uint32_t discs;    /* capacity: discs that a window may meet */
@@ -68,10 +68,10 @@ typedef struct fibrad_areas {
     uint32_t *whose;   /* [discs + 2] the caller's number of each */
     fibrad_pieces *pieces;
     fibrad_boundary *boundary;
-    fibrad_accounts accounts;
+    fibrad_arrangement arrangement;
     double widest;      /* the largest radius so far */
     bool open;          /* something of the window is */
-    bool doubtful;      /* the window in hand is done by accounts */
+    bool degenerate;    /* the window in hand is done by accounts */
     bool overflow;      /* too many arcs for the memory: start again with more discs */
     uint32_t fallbacks; /* doubtful windows since the caller set this to 0 */
 } fibrad_areas;

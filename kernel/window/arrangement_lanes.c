@@ -63,7 +63,7 @@ static inline void set_right(vd cosine, vd *from, vd *to) {
  * difference, without cancellation where they are nearly tangent. Returns false if an older disc contains disc k. */
 static bool meet(fibrad_areas *areas, double x, double y, double r, double inverse) {
     vd r_k = vd_set1(r), inverse_k = vd_set1(inverse), half = vd_set1(0.5), zero = vd_set1(0);
-    fibrad_intervals *hidden = &areas->accounts.hidden;
+    fibrad_intervals *hidden = &areas->arrangement.hidden;
     hidden->count = 0;
     hidden->all = false;
     for (uint32_t m = 0; m < areas->circles; m += VD_LANES) {
@@ -81,12 +81,12 @@ static bool meet(fibrad_areas *areas, double x, double y, double r, double inver
         vd f = (square + power) * scale, g = (square - power) * scale;
         vd h = vd_sqrt(vd_max(outer, zero) * vd_max(inner, zero)) * scale;
         vd hx = h * dx, hy = h * dy, fx = f * dx, fy = f * dy;
-        vd gx = g * dx, gy = g * dy, inverse_m = vd_load(areas->accounts.inverse + m);
+        vd gx = g * dx, gy = g * dy, inverse_m = vd_load(areas->arrangement.inverse + m);
         vd sx = fx + hy, sy = fy - hx, ex = fx - hy, ey = fy + hx;
-        vd_store(areas->accounts.sx + m, c_x + sx);
-        vd_store(areas->accounts.sy + m, c_y + sy);
-        vd_store(areas->accounts.ex + m, c_x + ex);
-        vd_store(areas->accounts.ey + m, c_y + ey);
+        vd_store(areas->arrangement.sx + m, c_x + sx);
+        vd_store(areas->arrangement.sy + m, c_y + sy);
+        vd_store(areas->arrangement.ex + m, c_x + ex);
+        vd_store(areas->arrangement.ey + m, c_y + ey);
 
         vd from = place(sx * inverse_m, sy * inverse_m);
         vd to = place(ex * inverse_m, ey * inverse_m);
@@ -94,8 +94,8 @@ static bool meet(fibrad_areas *areas, double x, double y, double r, double inver
         vm m_inside = nested & vd_le(difference, zero);
         from = vd_select(m_inside, vd_set1(ALL), vd_select(whole, vd_set1(NOTHING), from));
         to = vd_select(m_inside, vd_set1(-ALL), vd_select(whole, vd_set1(-NOTHING), to));
-        vd_store(areas->accounts.from + m, from);
-        vd_store(areas->accounts.to + m, to);
+        vd_store(areas->arrangement.from + m, from);
+        vd_store(areas->arrangement.to + m, to);
 
         vd own_from = place((zero - (gx + hy)) * inverse_k, (hx - gy) * inverse_k);
         vd own_to = place((hy - gx) * inverse_k, (zero - (gy + hx)) * inverse_k);
@@ -135,8 +135,8 @@ static void add(fibrad_arcs *arcs, double a, double b, double px, double py, dou
  * interval ends and no other goes on, and ends where the next one begins. These are exact statements about the numbers
  * at hand; rounding cannot make them contradict each other. Returns false if nothing is seen. */
 static bool see(fibrad_areas *areas, double x, double y, double r) {
-    const fibrad_intervals *h = &areas->accounts.hidden;
-    fibrad_arcs *open = &areas->accounts.open;
+    const fibrad_intervals *h = &areas->arrangement.hidden;
+    fibrad_arcs *open = &areas->arrangement.open;
     uint32_t intervals = h->count, before = open->count;
     if (h->all) return false;
     double k = areas->circles, d = r * DIAGONAL, jx = x + d, jy = y - d, mx = x - d, my = y + d;
@@ -165,11 +165,11 @@ static bool see(fibrad_areas *areas, double x, double y, double r) {
             }
             /* what disc m hides runs from the end of what is covered of its circle to the beginning; window: reverse */
             uint32_t m = (uint32_t)h->circle[begin], n = (uint32_t)h->circle[end];
-            double b = h->from[end], px = m == 0 ? areas->accounts.ex[m] : areas->accounts.sx[m],
-                   py = m == 0 ? areas->accounts.ey[m] : areas->accounts.sy[m];
-            double qx = n == 0 ? areas->accounts.sx[n] : areas->accounts.ex[n],
-                   qy = n == 0 ? areas->accounts.sy[n] : areas->accounts.ey[n];
-            if (open->count + 4 > areas->accounts.arcs) {
+            double b = h->from[end], px = m == 0 ? areas->arrangement.ex[m] : areas->arrangement.sx[m],
+                   py = m == 0 ? areas->arrangement.ey[m] : areas->arrangement.sy[m];
+            double qx = n == 0 ? areas->arrangement.sx[n] : areas->arrangement.ex[n],
+                   qy = n == 0 ? areas->arrangement.sy[n] : areas->arrangement.ey[n];
+            if (open->count + 4 > areas->arrangement.arcs) {
                 areas->overflow = true;
                 return false;
             }
@@ -239,10 +239,10 @@ static void give_all(fibrad_areas *areas, fibrad_arcs *list, uint32_t k) {
  * jump, are the two others. First parts and second ones are listed in turn, in the order of the arcs, whatever the
  * number of lanes. Returns whether there was anything to take. */
 static bool take(fibrad_areas *areas, uint32_t k) {
-    const fibrad_arcs open = areas->accounts.open;
-    fibrad_arcs *left = &areas->accounts.left, *second = areas->accounts.second;
+    const fibrad_arcs open = areas->arrangement.open;
+    fibrad_arcs *left = &areas->arrangement.left, *second = areas->arrangement.second;
     uint32_t size = areas->circles, any = 0;
-    if (2 * open.count > areas->accounts.arcs) {
+    if (2 * open.count > areas->arrangement.arcs) {
         areas->overflow = true;
         return true;
     }
@@ -250,9 +250,10 @@ static bool take(fibrad_areas *areas, uint32_t k) {
     left->count = second[0].count = second[1].count = 0;
     for (uint32_t o = 0; o < open.count; o += VD_LANES) {
         arcs_in_lanes s = load(&open, o);
-        vd from = vd_lookup(areas->accounts.from, size, s.circle), to = vd_lookup(areas->accounts.to, size, s.circle);
-        vd sx = vd_lookup(areas->accounts.sx, size, s.circle), sy = vd_lookup(areas->accounts.sy, size, s.circle);
-        vd ex = vd_lookup(areas->accounts.ex, size, s.circle), ey = vd_lookup(areas->accounts.ey, size, s.circle);
+        vd from = vd_lookup(areas->arrangement.from, size, s.circle),
+           to = vd_lookup(areas->arrangement.to, size, s.circle);
+        vd sx = vd_lookup(areas->arrangement.sx, size, s.circle), sy = vd_lookup(areas->arrangement.sy, size, s.circle);
+        vd ex = vd_lookup(areas->arrangement.ex, size, s.circle), ey = vd_lookup(areas->arrangement.ey, size, s.circle);
         vm round = vd_lt(to, from);
         vd low = vd_min(from, to), high = vd_max(from, to);
         vd lx = vd_select(round, ex, sx), ly = vd_select(round, ey, sy);
@@ -281,7 +282,7 @@ static bool take(fibrad_areas *areas, uint32_t k) {
         if (seconds == 0) continue;
         append(&second[0], seconds & ~rounds, &above);
         append(&second[1], seconds & rounds, &above);
-        if (second[0].count > areas->accounts.seconds || second[1].count > areas->accounts.seconds) {
+        if (second[0].count > areas->arrangement.seconds || second[1].count > areas->arrangement.seconds) {
             areas->overflow = true;
             return true;
         }
@@ -292,46 +293,46 @@ static bool take(fibrad_areas *areas, uint32_t k) {
         arcs_in_lanes s = load(&second[0], o);
         append(left, vd_lanes_below(second[0].count - o), &s);
     }
-    areas->accounts.open = *left;
+    areas->arrangement.open = *left;
     *left = open;
     return true;
 }
 
-void LANED(fibrad_accounts_begin)(fibrad_areas *areas) {
+void LANED(fibrad_arrangement_begin)(fibrad_areas *areas) {
     areas->circles = 0;
-    areas->accounts.open.count = areas->pieces->count = 0;
+    areas->arrangement.open.count = areas->pieces->count = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
-    areas->accounts.inverse[0] = 1;
+    areas->arrangement.inverse[0] = 1;
     areas->circles = 1;
     double d = DIAGONAL;
-    add(&areas->accounts.open, BEGIN, END, d, -d, d, -d, 0, -d, d);
+    add(&areas->arrangement.open, BEGIN, END, d, -d, d, -d, 0, -d, d);
 }
 
-bool LANED(fibrad_accounts_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+bool LANED(fibrad_arrangement_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
     double sum = 1 + r, inverse = 1 / r;
-    if (areas->accounts.open.count == 0) return false;
+    if (areas->arrangement.open.count == 0) return false;
     if (sum * sum - (x * x + y * y) <= 0 || !meet(areas, x, y, r, inverse)) return true;
 
     uint32_t k = areas->circles;
     fibrad_areas_add_circle(areas, whose, x, y, r);
-    areas->accounts.inverse[k] = inverse;
+    areas->arrangement.inverse[k] = inverse;
     bool any;
-    if (areas->accounts.from[0] == ALL) { /* the window lies within the disc */
-        give_all(areas, &areas->accounts.open, k);
+    if (areas->arrangement.from[0] == ALL) { /* the window lies within the disc */
+        give_all(areas, &areas->arrangement.open, k);
         any = true;
     } else {
         any = take(areas, k);
         if (!areas->overflow && see(areas, x, y, r)) any = true;
     }
     if (any) areas->circles++;
-    if (areas->overflow) areas->accounts.open.count = 0;
-    return areas->accounts.open.count > 0;
+    if (areas->overflow) areas->arrangement.open.count = 0;
+    return areas->arrangement.open.count > 0;
 }
 
-double LANED(fibrad_accounts_end)(fibrad_areas *areas) {
+double LANED(fibrad_arrangement_end)(fibrad_areas *areas) {
     uint32_t rest = areas->circles;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
-    give_all(areas, &areas->accounts.open, rest);
+    give_all(areas, &areas->arrangement.open, rest);
     LANED(fibrad_areas_integrate)(areas);
     return areas->area[rest];
 }

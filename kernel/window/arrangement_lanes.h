@@ -8,8 +8,8 @@
 #include "base/lanes/laned.h"
 #include "window/areas.h"
 
-void LANED(fibrad_accounts_begin)(fibrad_areas *areas);
-bool LANED(fibrad_accounts_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
-double LANED(fibrad_accounts_end)(fibrad_areas *areas);
+void LANED(fibrad_arrangement_begin)(fibrad_areas *areas);
+bool LANED(fibrad_arrangement_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
+double LANED(fibrad_arrangement_end)(fibrad_areas *areas);
 
 #endif

@@ -235,11 +235,11 @@ FIBRAD_INLINE bool clip(fibrad_areas *areas, uint32_t k, double x, double y, dou
 /* Does the window again, up to its first `circles` circles, by accounts. */
 static bool redo(fibrad_areas *areas, uint32_t circles) {
     bool open = true;
-    areas->doubtful = true;
+    areas->degenerate = true;
     areas->fallbacks++;
-    LANED(fibrad_accounts_begin)(areas);
+    LANED(fibrad_arrangement_begin)(areas);
     for (uint32_t k = 1; k < circles && open; k++) /* which keeps no more circles than have been read */
-        open = LANED(fibrad_accounts_disc)(areas, areas->whose[k], areas->x[k], areas->y[k], areas->r[k]);
+        open = LANED(fibrad_arrangement_disc)(areas, areas->whose[k], areas->x[k], areas->y[k], areas->r[k]);
     return open;
 }
 
@@ -269,7 +269,7 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
     areas->widest = 1;
     areas->pieces->count = 0;
     areas->open = true;
-    areas->doubtful = areas->overflow = false;
+    areas->degenerate = areas->overflow = false;
     areas->circles = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     areas->circles = 1;
@@ -277,7 +277,7 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
 
 /* Lets one disc take its part. False once nothing is open. */
 FIBRAD_INLINE bool take(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
-    if (areas->doubtful) return LANED(fibrad_accounts_disc)(areas, whose, x, y, r);
+    if (areas->degenerate) return LANED(fibrad_arrangement_disc)(areas, whose, x, y, r);
     uint32_t k = areas->circles;
     fibrad_areas_add_circle(areas, whose, x, y, r);
     if (r > LARGEST || !clip(areas, k, x, y, r)) return redo(areas, k + 1);
@@ -319,9 +319,9 @@ static bool complete(fibrad_areas *areas) {
 }
 
 double LANED(fibrad_areas_end)(fibrad_areas *areas) {
-    if (!areas->doubtful) {
+    if (!areas->degenerate) {
         if (complete(areas)) return areas->area[areas->circles];
         redo(areas, areas->circles);
     }
-    return LANED(fibrad_accounts_end)(areas);
+    return LANED(fibrad_arrangement_end)(areas);
 }

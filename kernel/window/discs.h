@@ -12,8 +12,8 @@ typedef struct fibrad_discs {
     float *fu, *fv, *square;   /* [same] place and r^2 for points */
     uint32_t *near;            /* [same, and room for all near spheres] place in the near list */
     uint32_t *order;           /* [same] which is the first, the second ... from front to back */
-    uint32_t *hits;            /* [same] points that the first, the second ... takes */
-    uint32_t *taker;           /* [same] which of them take any */
+    uint32_t *hidden_points;   /* [same] points that the first, the second ... takes */
+    uint32_t *occluder;        /* [same] which of them take any */
     uint32_t capacity;
     uint32_t count; /* may go on beyond the capacity */
 } fibrad_discs;

@@ -27,7 +27,7 @@ void LANED(fibrad_points_disc)(fibrad_points *points, double x, double y, double
 }
 
 /* Word by word of 64 points, which stay in registers and are done with once all of them are hidden. */
-uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *disc, uint32_t from, double depth) {
+uint32_t LANED(fibrad_points_discs)(fibrad_points *points, const fibrad_discs *disc, uint32_t from, double depth) {
     uint32_t to = 0;
     const fibrad_discs discs = *disc; /* a copy: what is stored cannot change its pointers */
     for (uint32_t k = 0; k < discs.count; k += VD_LANES) {
@@ -38,7 +38,7 @@ uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *di
         vd_store_float(discs.fv + k, vd_load(discs.v + k));
         vd_store_float(discs.square + k, r * r);
     }
-    for (uint32_t d = from; d < to; d += 16) fibrad_zero(discs.hits + d, 16 * sizeof *discs.hits);
+    for (uint32_t d = from; d < to; d += 16) fibrad_zero(discs.hidden_points + d, 16 * sizeof *discs.hidden_points);
     points->open = 0;
     for (uint32_t word = 0; word < points->count / 64; word++) {
         const float *x = points->set.x + 64 * word, *y = points->set.y + 64 * word;
@@ -46,7 +46,7 @@ uint32_t LANED(fibrad_points_take)(fibrad_points *points, const fibrad_discs *di
         for (uint32_t d = from; d < to && seen != 0; d++) {
             uint32_t k = discs.order[d];
             uint64_t hidden = seen & within(x, y, discs.fu[k], discs.fv[k], discs.square[k]);
-            discs.hits[d] += fibrad_count_bits(hidden);
+            discs.hidden_points[d] += fibrad_count_bits(hidden);
             seen -= hidden;
         }
         points->seen[word] = seen;
