@@ -19,6 +19,6 @@ void LANED(fibrad_areas_integrate)(fibrad_areas *areas) {
     p->count = 0;
 }
 
-void LANED(fibrad_arcs_give)(fibrad_areas *areas, uint32_t bits, const fibrad_arc_lanes *a, uint32_t k) {
+void LANED(fibrad_arcs_add)(fibrad_areas *areas, uint32_t bits, const fibrad_arc_lanes *a, uint32_t k) {
     fibrad_arcs_append(areas, bits, a, k);
 }

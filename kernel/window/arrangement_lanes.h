@@ -1,4 +1,4 @@
-/* arrangement_lanes.h - visible areas by accounts of circles, in lanes: no arrangement of discs disturbs them.
+/* arrangement_lanes.h - visible areas by the arrangement of circles, in lanes: no configuration of discs disturbs it.
  * SPDX-License-Identifier: MIT
  *
  * The three functions are those of clip_lanes.h. */
