@@ -188,6 +188,7 @@ TESTS = \
 
 SCRIPTS = \
     tests/check_bits.sh \
+    tests/check_dist.sh \
     tests/check_examples.sh \
     tests/check_faults.sh \
     tests/check_header.sh \
@@ -230,7 +231,7 @@ TEST_PROGRAMS  = $(TESTS:%.c=$(BUILD)/%)
 BENCH_PROGRAMS = $(BENCHES:%.c=$(BUILD)/%)
 PEER_PROGRAMS  = $(PEERS:%.c=$(BUILD)/%)
 
-.PHONY: all lib demo reproduce test run-programs programs check symbols lists format bench bench-quick bench-peers \
+.PHONY: all lib dist demo reproduce test run-programs programs check symbols lists format bench bench-quick bench-peers \
     skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
 
 ## all: build/fibrad and build/libfibrad.a (the default)
@@ -315,6 +316,12 @@ demo: deps
 	@echo
 	@echo "The matrix of view factors: $(BUILD)/demo/F.mtx"
 	@echo "The picture of the bed:     $(BUILD)/demo/bed.png"
+
+## dist: build/dist/fibrad.c and fibrad.h, the whole kernel in two files for other build systems
+dist: $(BUILD)/dist/fibrad.c
+
+$(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*.h kernel/*/*.h kernel/*/*/*.h) kernel/dist/join.sh
+	kernel/dist/join.sh $(abspath $<) $(abspath $(@D)) $(KERNEL) $(LANED)
 
 ## test: install what is missing, build and run all tests
 test: deps

@@ -7,7 +7,7 @@
 set -u
 
 # what the field has other words for, or what says less than a plain verb
-words='accounts|taker|takers|doubtful|in doubt|emergence|sieve|sieves|plain sweep|gets farther|had better|books|lacks|fibrad_moved_[a-z]*'
+words='accounts|taker|takers|doubtful|in doubt|emergence|sieve|sieves|plain sweep|gets farther|had better|books|fibrad_moved_[a-z]*'
 
 # rooms FOLDER: reads lines "ROOM: other rooms it may include"
 rooms() {
