@@ -56,24 +56,25 @@ KERNEL = \
     kernel/base/status.c \
     kernel/sample/direction.c \
     kernel/pair/exact.c \
-    kernel/pair/surface.c \
     kernel/scene/drift.c \
     kernel/scene/grid_walk.c \
     kernel/scene/scene.c \
     kernel/scene/walls.c \
+    kernel/store/rows.c \
     kernel/window/areas.c \
     kernel/row/beam.c \
-    kernel/row/neighbours.c \
+    kernel/row/row.c \
     kernel/row/row_sum.c \
-    kernel/row/surface_row.c \
     kernel/row/work.c \
+    kernel/matrix/average.c \
     kernel/matrix/matrix.c \
+    kernel/matrix/scale.c \
+    kernel/surface/surface.c \
+    kernel/surface/surface_row.c \
     kernel/ray/cast.c \
     kernel/ray/tracer.c \
     kernel/exchange/exchange.c \
-    kernel/exchange/paths.c \
     kernel/heat/heat.c \
-    kernel/heat/radiosity.c \
     kernel/heat/solve.c \
     kernel/heat/wall_patch.c \
     kernel/furnace/bundles.c \
@@ -83,7 +84,7 @@ KERNEL = \
 
 # compiled once per instruction set
 LANED = \
-    kernel/pair/surface_lanes.c \
+    kernel/surface/surface_lanes.c \
     kernel/window/arc_lanes.c \
     kernel/window/arrangement_lanes.c \
     kernel/window/clip_lanes.c \

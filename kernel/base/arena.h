@@ -28,18 +28,23 @@ static inline void *fibrad_arena_take(fibrad_arena *arena, size_t count, size_t 
     return arena->base != NULL && arena->used <= arena->size ? arena->base + start : NULL;
 }
 
-/* What _size returns after counting: the bytes, or 0 if no size_t can hold them. */
-static inline size_t fibrad_arena_total(const fibrad_arena *arena) { return arena->used == SIZE_MAX ? 0 : arena->used; }
+/* What _size returns after counting: the bytes, wherever the block begins, or 0 if no size_t can hold them. */
+static inline size_t fibrad_arena_total(const fibrad_arena *arena) {
+    return arena->used > SIZE_MAX - FIBRAD_ALIGNMENT ? 0 : arena->used + FIBRAD_ALIGNMENT - 1;
+}
 
-/* Checks the caller's block before an _init lays out `needed` bytes in it.
- * Errors: FIBRAD_E_ARGUMENT (NULL, or needed 0: a configuration that is not valid), _ALIGNMENT, _SIZE. */
+/* Bytes before the first boundary of a block. */
+static inline size_t fibrad_arena_lead(const void *memory) { return (size_t) - (uintptr_t)memory % FIBRAD_ALIGNMENT; }
+
+/* Checks the caller's block before an _init lays out what fibrad_arena_total has counted.
+ * Errors: FIBRAD_E_ARGUMENT (NULL, or needed 0: a configuration that is not valid), _SIZE. */
 static inline int fibrad_arena_open(fibrad_arena *arena, void *memory, size_t size, size_t needed) {
     if (memory == NULL || needed == 0) return FIBRAD_E_ARGUMENT;
-    if ((uintptr_t)memory % FIBRAD_ALIGNMENT != 0) return FIBRAD_E_ALIGNMENT;
     if (size < needed) return FIBRAD_E_SIZE;
-    arena->base = memory;
+    const size_t lead = fibrad_arena_lead(memory);
+    arena->base = (unsigned char *)memory + lead;
     arena->used = 0;
-    arena->size = size;
+    arena->size = size - lead;
     return FIBRAD_OK;
 }
 

@@ -2,7 +2,7 @@
  *
  * CPUID tells what the processor can do, XGETBV which registers the operating system saves; both must agree. Asked
  * directly: __builtin_cpu_supports would bring in a constructor and a global of libgcc. */
-#include "base/cpu.h"
+#include "base/dispatch.h"
 
 #include <stdbool.h>
 
@@ -23,26 +23,28 @@ enum {
 };
 #define LEAF7_EBX_AVX512VL 0x80000000u
 
-static bool all(unsigned set, unsigned bits) { return (set & bits) == bits; }
+static bool all_bits(unsigned set, unsigned bits) { return (set & bits) == bits; }
 
-static fibrad_isa widest(void) {
+static fibrad_isa isa_of_machine(void) {
     unsigned eax, ebx, ecx, edx, ebx7, ecx7, edx7, xcr0, xcr0_high;
-    if (!__get_cpuid(1, &eax, &ebx, &ecx, &edx) || !all(edx, LEAF1_EDX_SSE2)) return FIBRAD_ISA_SCALAR;
-    if (!all(ecx, LEAF1_ECX_POPCNT | LEAF1_ECX_OSXSAVE | LEAF1_ECX_AVX)) return FIBRAD_ISA_SSE2;
+    if (!__get_cpuid(1, &eax, &ebx, &ecx, &edx) || !all_bits(edx, LEAF1_EDX_SSE2)) return FIBRAD_ISA_SCALAR;
+    if (!all_bits(ecx, LEAF1_ECX_POPCNT | LEAF1_ECX_OSXSAVE | LEAF1_ECX_AVX)) return FIBRAD_ISA_SSE2;
     __asm__ volatile("xgetbv" : "=a"(xcr0), "=d"(xcr0_high) : "c"(0));
-    if (!all(xcr0, XCR0_YMM) || !__get_cpuid_count(7, 0, &eax, &ebx7, &ecx7, &edx7) || !all(ebx7, LEAF7_EBX_AVX2))
+    if (!all_bits(xcr0, XCR0_YMM) || !__get_cpuid_count(7, 0, &eax, &ebx7, &ecx7, &edx7) ||
+        !all_bits(ebx7, LEAF7_EBX_AVX2))
         return FIBRAD_ISA_SSE2;
-    if (!all(xcr0, XCR0_ZMM) ||
-        !all(ebx7, LEAF7_EBX_AVX512F | LEAF7_EBX_AVX512DQ | LEAF7_EBX_AVX512BW | LEAF7_EBX_AVX512VL))
+    if (!all_bits(xcr0, XCR0_ZMM) ||
+        !all_bits(ebx7, LEAF7_EBX_AVX512F | LEAF7_EBX_AVX512DQ | LEAF7_EBX_AVX512BW | LEAF7_EBX_AVX512VL))
         return FIBRAD_ISA_AVX2;
     return FIBRAD_ISA_AVX512;
 }
 #else
-static fibrad_isa widest(void) { return FIBRAD_ISA_SCALAR; }
+static fibrad_isa isa_of_machine(void) { return FIBRAD_ISA_SCALAR; }
 #endif
 
-static bool built(int isa) {
+int fibrad_isa_built(int isa) {
     switch (isa) {
+    case FIBRAD_ISA_BEST:
     case FIBRAD_ISA_SCALAR:
         return true;
 #ifdef FIBRAD_WITH_SSE2
@@ -63,14 +65,15 @@ static bool built(int isa) {
 }
 
 fibrad_isa fibrad_isa_best(void) {
-    int isa = (int)widest();
-    while (!built(isa)) isa--;
+    int isa = (int)isa_of_machine();
+    while (!fibrad_isa_built(isa)) isa--;
     return (fibrad_isa)isa;
 }
 
 int fibrad_isa_choose(int wish) {
     if (wish == FIBRAD_ISA_BEST) return (int)fibrad_isa_best();
-    return built(wish) && wish <= (int)widest() ? wish : -1;
+    if (wish < FIBRAD_ISA_SCALAR || wish > FIBRAD_ISA_AVX512) return -2;
+    return fibrad_isa_built(wish) && wish <= (int)isa_of_machine() ? wish : -1;
 }
 
 const char *fibrad_isa_name(int isa) {

@@ -10,13 +10,25 @@ const char *fibrad_status_text(int status) {
     case FIBRAD_E_SIZE:
         return "the memory block is too small";
     case FIBRAD_E_ALIGNMENT:
-        return "the memory block does not begin on a 64-byte boundary";
+        return "reserved";
     case FIBRAD_E_CAPACITY:
-        return "an output array or the work memory is too small";
+        return "the arrays for a row are too small";
     case FIBRAD_E_TABLE:
         return "that number of samples is not built in";
     case FIBRAD_E_GEOMETRY:
         return "two spheres have the same centre, or the centre of one lies inside another";
+    case FIBRAD_E_WORK:
+        return "the work memory is too small";
+    case FIBRAD_E_STATE:
+        return "a call is missing, too early or repeated, or the scene has changed";
+    case FIBRAD_E_ISA:
+        return "this build or this machine lacks the instruction set";
+    case FIBRAD_E_UNSUPPORTED:
+        return "this version does not compute that";
+    case FIBRAD_E_MEMORY:
+        return "out of memory";
+    case FIBRAD_E_CANCELLED:
+        return "stopped on request";
     default:
         return "no known status";
     }

@@ -9,28 +9,26 @@
 #include "ray/tracer.h"
 #include "row/work.h"
 
-#define FIBRAD_SPREAD_PARTS 16
+#define FIBRAD_DISPLACEMENT_PARTS 16
 
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
     uint32_t place;                /* of the sphere they leave */
     const double *emissivity;      /* [spheres], in the caller's order */
-    const double *wall_emissivity; /* [FIBRAD_WALLS] */
+    const double *wall_emissivity; /* [FIBRAD_WALLS] by slot */
     fibrad_random stream;          /* all numbers of path k come from it and k */
     bool first;                    /* whether what the first surface absorbs counts */
     fibrad_entries *entries;       /* out: what each sphere absorbs, path k in part k mod 4; NULL: not asked for */
     double wall[FIBRAD_WALLS];     /* out: what each wall absorbs */
     double escaped, absorbed;      /* out: what leaves, and what all spheres absorb */
-    double square[FIBRAD_SPREAD_PARTS][3]; /* out: sum over what spheres absorb times the squares of their centre's
-                            distance along each axis [L^2] from that of the sphere left, path k in part k mod that */
-    uint64_t rays;                         /* out: traced in all */
+    double square[FIBRAD_DISPLACEMENT_PARTS]
+                 [3]; /* out: sum over what spheres absorb times the squares of their centre's
+ distance along each axis [L^2] from that of the sphere left, path k in part k mod that */
+    uint64_t rays;    /* out: traced in all */
 } fibrad_paths;
 
-/* Adds paths [begin, end), in the scene's instruction set. */
-void fibrad_paths_follow(fibrad_paths *paths, uint64_t begin, uint64_t end);
-
+/* Adds paths [begin, end). */
 typedef void fibrad_paths_function(fibrad_paths *paths, uint64_t begin, uint64_t end);
-fibrad_paths_function fibrad_paths_follow_scalar, fibrad_paths_follow_sse2, fibrad_paths_follow_avx2,
-    fibrad_paths_follow_avx512;
+FIBRAD_DECLARE_VERSIONS(fibrad_paths_function, fibrad_paths_follow);
 
 #endif

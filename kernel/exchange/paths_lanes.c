@@ -130,7 +130,8 @@ static void absorb(fibrad_paths *paths, struct path *path, uint32_t wall, bool c
     }
     paths->absorbed += absorbed;
     for (int axis = 0; axis < 3; axis++)
-        paths->square[path->k % FIBRAD_SPREAD_PARTS][axis] += absorbed * (path->centre[axis] * path->centre[axis]);
+        paths->square[path->k % FIBRAD_DISPLACEMENT_PARTS][axis] +=
+            absorbed * (path->centre[axis] * path->centre[axis]);
     if (paths->entries == NULL) return;
     uint32_t entry = fibrad_entries_of(paths->entries, path->place);
     fibrad_entries_add(paths->entries, entry, (uint32_t)(path->k % 4), absorbed);

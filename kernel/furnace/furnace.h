@@ -6,7 +6,7 @@
 #define FIBRAD_FURNACE_FURNACE_H
 
 #include "base/port.h"
-#include "fibrad.h"
+#include "fibrad_furnace.h"
 
 /* A mapping of the box onto itself: axis a becomes axis[a], turned round if flip[a]. */
 typedef struct fibrad_symmetry {

@@ -1,12 +1,13 @@
 /* heat.c - lays out a heat problem, has its beams followed, takes its sources and hands out its powers.
  * SPDX-License-Identifier: MIT */
 #include "base/arena.h"
+#include "base/constants.h"
+#include "base/dispatch.h"
 #include "heat/hits_lanes.h"
 #include "heat/sphere_patch.h"
 #include "row/beam.h"
 #include "sample/tables.h"
 
-#define PI         3.14159265358979323846
 #define DIRECTIONS 168u
 #define POINTS     64u
 #define PATCHES    96u
@@ -19,7 +20,7 @@
 #define BEAM_ERROR  .2
 #define FEW_ERROR   .25
 
-static fibrad_heat_config completed(const fibrad_heat_config *config) {
+static fibrad_heat_config config_of(const fibrad_heat_config *config) {
     fibrad_heat_config c = {0};
     if (config != NULL) c = *config;
     if (c.directions == 0) c.directions = DIRECTIONS;
@@ -32,55 +33,79 @@ static fibrad_heat_config completed(const fibrad_heat_config *config) {
 /* Squares along an edge of the cube; 0: no such number of patches. */
 static uint32_t side_of(uint32_t patches) { return patches == 24 ? 2 : patches == 96 ? 4 : patches == 384 ? 8 : 0; }
 
-static bool valid(const fibrad_heat_config *c, const fibrad_scene *scene) {
+/* Whether a completed configuration fits a scene; FIBRAD_E_ARGUMENT, _UNSUPPORTED, _STATE. */
+static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
     fibrad_disc_points set;
-    return c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX &&
-           fibrad_disc_points_get(c->points, &set) == FIBRAD_OK && side_of(c->patches) > 0 && c->parts <= PARTS_MAX &&
-           scene->facts.spheres <= (UINT32_MAX >> 1) / c->patches;
+    if (scene == NULL) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
+    const bool valid = c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX &&
+                       fibrad_disc_points_get(c->points, &set) == FIBRAD_OK && side_of(c->patches) > 0 &&
+                       c->parts <= PARTS_MAX && scene->facts.spheres <= (UINT32_MAX >> 1) / c->patches &&
+                       c->cutoff >= 0;
+    return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
 }
 
-/* The numbers that follow from a valid configuration. */
+/* The numbers that follow from a valid configuration and a scene. */
 static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const fibrad_scene *scene) {
     const uint32_t spheres = scene->facts.spheres;
     heat->config = *config;
     heat->scene = scene;
+    heat->hash = scene->hash;
+    heat->spheres = spheres;
+    heat->given_bodies = scene->facts.bodies;
+    fibrad_copy(heat->slot, scene->slot, sizeof heat->slot);
     heat->beams = config->directions * config->points;
     heat->side = side_of(config->patches);
     heat->bodies = spheres + 2 * FIBRAD_WALLS + 1;
     heat->patches = spheres * config->patches + 1;
+    heat->rays = 0;
     fibrad_heat_cut_walls(heat);
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
         heat->patches += heat->wall[k].squares[0] * heat->wall[k].squares[1] + heat->wall[k].unbounded;
 }
 
+/* A fourth more patches and rays of walls than this scene has: when the bed moves they may become more. */
+static void add_room(fibrad_heat *heat) {
+    const uint32_t of_walls = heat->patches - heat->spheres * heat->config.patches;
+    heat->patches_capacity = heat->patches + of_walls / 4;
+    heat->rays_capacity = heat->rays + heat->rays / 4;
+}
+
+static uint32_t tasks_for(uint32_t spheres, uint32_t rays) {
+    return spheres + (rays + FIBRAD_HEAT_TASK - 1) / FIBRAD_HEAT_TASK;
+}
+
 /* Takes the arrays from the arena; the object itself is to be copied to the address returned. */
-static fibrad_heat *layout(fibrad_arena *arena, fibrad_heat *heat) {
+static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_heat *place = fibrad_arena_take(arena, 1, sizeof *place);
-    const uint32_t spheres = heat->scene->facts.spheres;
+    const uint32_t spheres = heat->spheres, patches = heat->patches_capacity;
     heat->first = fibrad_arena_take(arena, heat->bodies + 1, sizeof *heat->first);
     heat->leave = fibrad_arena_take(arena, heat->beams, sizeof *heat->leave);
     heat->hit = fibrad_arena_take(arena, (size_t)spheres * heat->beams, sizeof *heat->hit);
-    heat->ray = fibrad_arena_take(arena, heat->rays, sizeof *heat->ray);
-    heat->source = fibrad_arena_take(arena, heat->patches, sizeof *heat->source);
-    heat->gathered = fibrad_arena_take(arena, (size_t)heat->patches * heat->config.parts, sizeof(double));
+    heat->ray = fibrad_arena_take(arena, heat->rays_capacity, sizeof *heat->ray);
+    heat->source = fibrad_arena_take(arena, patches, sizeof *heat->source);
+    heat->gathered = fibrad_arena_take(arena, (size_t)patches * heat->config.parts, sizeof(double));
     double **const of_patches[] = {&heat->area, &heat->radiosity, &heat->detail, &heat->net, &heat->direction};
     for (size_t k = 0; k < sizeof of_patches / sizeof *of_patches; k++)
-        *of_patches[k] = fibrad_arena_take(arena, heat->patches, sizeof(double));
+        *of_patches[k] = fibrad_arena_take(arena, patches, sizeof(double));
     double **const of_bodies[] = {&heat->emissivity, &heat->emission, &heat->coarse, &heat->power};
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
         *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
-    heat->doubt = fibrad_arena_take(arena, spheres, sizeof(double));
+    heat->halves = fibrad_arena_take(arena, spheres, sizeof(double));
+    heat->order = fibrad_arena_take(arena, spheres, sizeof *heat->order);
+    heat->traced = fibrad_arena_take(arena, tasks_for(spheres, heat->rays_capacity), 1);
+    heat->swept = fibrad_arena_take(arena, heat->config.parts, 1);
     return place;
 }
 
 size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene) {
-    if (scene == NULL) return 0;
-    fibrad_heat_config c = completed(config);
-    if (!valid(&c, scene)) return 0;
+    const fibrad_heat_config c = config_of(config);
+    if (heat_check(&c, scene) != FIBRAD_OK) return 0;
     fibrad_arena arena = {0};
     fibrad_heat fields = {0};
     dimension(&fields, &c, scene);
-    layout(&arena, &fields);
+    add_room(&fields);
+    heat_layout(&arena, &fields);
     return fibrad_arena_total(&arena);
 }
 
@@ -89,11 +114,11 @@ static void number_patches(fibrad_heat *heat) {
     const fibrad_scene *scene = heat->scene;
     uint32_t a = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const uint32_t wall = b - scene->facts.spheres; /* only if not a sphere */
+        const uint32_t wall = b - heat->spheres; /* only if not a sphere */
         uint32_t count = 1;
         double density = 0;
-        if (b < scene->facts.spheres)
-            count = heat->config.patches, density = heat->beams / (4 * PI * scene->r[b] * scene->r[b]);
+        if (b < heat->spheres)
+            count = heat->config.patches, density = heat->beams / (4 * FIBRAD_PI * scene->r[b] * scene->r[b]);
         else if (wall < FIBRAD_WALLS)
             count = heat->wall[wall].squares[0] * heat->wall[wall].squares[1];
         else if (wall < 2 * FIBRAD_WALLS)
@@ -120,44 +145,113 @@ static void find_origins(fibrad_heat *heat) {
     }
 }
 
+/* Begins with a scene: nothing is traced. */
+static void forget_beams(fibrad_heat *heat) {
+    number_patches(heat);
+    fibrad_copy(heat->order, heat->scene->order, heat->spheres * sizeof *heat->order);
+    fibrad_zero(heat->traced, fibrad_heat_tasks(heat));
+    heat->areas = false;
+    heat->phase = FIBRAD_HEAT_IDLE;
+}
+
 int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene) {
-    if (out == NULL || scene == NULL) return FIBRAD_E_ARGUMENT;
+    if (out == NULL) return FIBRAD_E_ARGUMENT;
+    const fibrad_heat_config c = config_of(config);
     fibrad_arena arena;
-    int status = fibrad_arena_open(&arena, memory, size, fibrad_heat_size(config, scene));
+    int status = heat_check(&c, scene);
+    if (status == FIBRAD_OK) status = fibrad_arena_open(&arena, memory, size, fibrad_heat_size(config, scene));
     if (status != FIBRAD_OK) return status;
-    fibrad_heat_config c = completed(config);
     fibrad_heat fields = {0};
     dimension(&fields, &c, scene);
-    fibrad_heat *heat = layout(&arena, &fields);
+    add_room(&fields);
+    fibrad_heat *heat = heat_layout(&arena, &fields);
     *heat = fields;
-    number_patches(heat);
     find_origins(heat);
+    forget_beams(heat);
     *out = heat;
     return FIBRAD_OK;
 }
 
-uint32_t fibrad_heat_tasks(const fibrad_heat *heat) {
-    return heat->scene->facts.spheres + (heat->rays + FIBRAD_HEAT_TASK - 1) / FIBRAD_HEAT_TASK;
+/* Puts `each` values per sphere into the order of another scene; scratch has room for them. */
+static void reorder(double *value, uint32_t each, const fibrad_scene *scene, const uint32_t *old_place, uint32_t n,
+                    double *scratch) {
+    for (uint32_t place = 0; place < n; place++)
+        fibrad_copy(scratch + (size_t)place * each, value + (size_t)old_place[scene->order[place]] * each,
+                    each * sizeof *value);
+    fibrad_copy(value, scratch, (size_t)n * each * sizeof *value);
 }
 
-int fibrad_heat_trace(fibrad_heat *heat, fibrad_workspace *work, uint32_t task) {
-    if (heat == NULL || work == NULL || task >= fibrad_heat_tasks(heat)) return FIBRAD_E_ARGUMENT;
-    switch (heat->scene->facts.isa) {
-#ifdef FIBRAD_WITH_SSE2
-    case FIBRAD_ISA_SSE2:
-        return fibrad_heat_follow_sse2(heat, work, task);
-#endif
-#ifdef FIBRAD_WITH_AVX2
-    case FIBRAD_ISA_AVX2:
-        return fibrad_heat_follow_avx2(heat, work, task);
-#endif
-#ifdef FIBRAD_WITH_AVX512
-    case FIBRAD_ISA_AVX512:
-        return fibrad_heat_follow_avx512(heat, work, task);
-#endif
+/* Whether the patches of all walls are as many as before. */
+static bool same_patches(const fibrad_heat *a, const fibrad_heat *b) {
+    bool same = true;
+    for (int k = 0; k < FIBRAD_WALLS; k++) {
+        const fibrad_heat_wall *x = &a->wall[k], *y = &b->wall[k];
+        same = same && x->squares[0] == y->squares[0] && x->squares[1] == y->squares[1] && x->unbounded == y->unbounded;
     }
-    return fibrad_heat_follow_scalar(heat, work, task);
+    return same;
+}
+
+/* Takes the radiosities of the last solution along. Patches of walls that are cut otherwise begin anew. */
+static void carry_over(fibrad_heat *heat, const fibrad_heat *next) {
+    const uint32_t n = heat->spheres, each = heat->config.patches;
+    uint32_t *old_place = (uint32_t *)(void *)heat->source;
+    for (uint32_t place = 0; place < n; place++) old_place[heat->order[place]] = place;
+    reorder(heat->radiosity, each, next->scene, old_place, n, heat->gathered);
+    reorder(heat->detail, each, next->scene, old_place, n, heat->gathered);
+    reorder(heat->emission, 1, next->scene, old_place, n, heat->gathered);
+    if (same_patches(heat, next)) return;
+    uint32_t a = n * each;
+    for (uint32_t b = n; b < heat->bodies; b++) {
+        const uint32_t wall = b - n;
+        uint32_t count = 1;
+        if (wall < FIBRAD_WALLS)
+            count = next->wall[wall].squares[0] * next->wall[wall].squares[1];
+        else if (wall < 2 * FIBRAD_WALLS)
+            count = next->wall[wall - FIBRAD_WALLS].unbounded;
+        for (uint32_t end = a + count; a < end; a++) heat->radiosity[a] = heat->emission[b], heat->detail[a] = 0;
+    }
+}
+
+int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
+    if (heat == NULL || scene == NULL) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
+    if (scene->facts.spheres != heat->spheres || scene->facts.bodies != heat->given_bodies) return FIBRAD_E_ARGUMENT;
+    for (uint32_t b = 0; b < heat->given_bodies; b++)
+        if (scene->slot[b] != heat->slot[b]) return FIBRAD_E_ARGUMENT;
+    fibrad_heat next = *heat;
+    dimension(&next, &heat->config, scene);
+    if (next.patches > heat->patches_capacity || next.rays > heat->rays_capacity) return FIBRAD_E_SIZE;
+    if (heat->warm) carry_over(heat, &next);
+    *heat = next;
+    forget_beams(heat);
+    return FIBRAD_OK;
+}
+
+uint32_t fibrad_heat_tasks(const fibrad_heat *heat) { return heat != NULL ? tasks_for(heat->spheres, heat->rays) : 0; }
+
+uint32_t fibrad_heat_parts(const fibrad_heat *heat) { return heat != NULL ? heat->config.parts : 0; }
+
+/* Whether the scene is the one the heat problem was made for. */
+static bool scene_kept(const fibrad_heat *heat) { return heat->scene->hash == heat->hash; }
+
+int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task) {
+    if (heat == NULL || work == NULL || task >= fibrad_heat_tasks(heat)) return FIBRAD_E_ARGUMENT;
+    if (!scene_kept(heat) || heat->traced[task]) return FIBRAD_E_STATE;
+    fibrad_workspace *space;
+    int status = fibrad_work_open(work, 0, 0, &space);
+    while (status == FIBRAD_OK) {
+        status = FIBRAD_VERSION_OF(fibrad_heat_follow, heat->scene->facts.isa)(heat, space, task);
+        if (status != FIBRAD_E_WORK) break;
+        status = fibrad_work_grow(work, &space);
+    }
+    if (status == FIBRAD_OK) heat->traced[task] = 1;
+    return status;
+}
+
+void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
+    if (sources == NULL) return;
+    *sources = (fibrad_heat_sources){.surroundings = __builtin_nan(""), .sigma = FIBRAD_STEFAN_BOLTZMANN};
 }
 
 static bool is_share(double x) { return x >= 0 && x <= 1; }
@@ -165,13 +259,13 @@ static bool is_share(double x) { return x >= 0 && x <= 1; }
 static bool is_temperature(double t) { return t >= 0 && fibrad_finite(t); }
 
 static bool sources_valid(const fibrad_heat *heat, const fibrad_heat_sources *s) {
-    if (s->temperature == NULL || s->emissivity == NULL) return false;
-    for (uint32_t i = 0; i < heat->scene->facts.spheres; i++)
+    const uint32_t bodies = heat->given_bodies;
+    if (heat->spheres > 0 && (s->temperature == NULL || s->emissivity == NULL)) return false;
+    if (bodies > 0 && (s->body_temperature == NULL || s->body_emissivity == NULL)) return false;
+    for (uint32_t i = 0; i < heat->spheres; i++)
         if (!is_temperature(s->temperature[i]) || !is_share(s->emissivity[i])) return false;
-    for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
-        if (!(heat->scene->facts.wall_area[k] > 0)) continue;
-        if (!is_temperature(s->wall_temperature[k]) || !is_share(s->wall_emissivity[k])) return false;
-    }
+    for (uint32_t b = 0; b < bodies; b++)
+        if (!is_temperature(s->body_temperature[b]) || !is_share(s->body_emissivity[b])) return false;
     return is_temperature(s->surroundings) && s->sigma > 0 && fibrad_finite(s->sigma) && s->tolerance >= 0 &&
            s->tolerance < 1;
 }
@@ -185,10 +279,10 @@ static double emission_of(const fibrad_heat_sources *s, double t) {
 /* Emissivity and emission of a body. What lies beyond the patches of a wall receives no more than the surroundings
  * send, its area being infinite; so it is like a black body of that radiosity. */
 static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
-    const uint32_t spheres = heat->scene->facts.spheres;
+    const uint32_t spheres = heat->spheres;
     double eps = 1, emission = 0;
     if (b < spheres) {
-        const uint32_t i = heat->scene->order[b];
+        const uint32_t i = heat->order[b];
         eps = s->emissivity[i], emission = emission_of(s, s->temperature[i]);
     } else if (b + 1 < heat->bodies) {
         const uint32_t wall = (b - spheres) % FIBRAD_WALLS;
@@ -200,7 +294,7 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b
     }
     /* an earlier solution goes up or down with the emission; the coarser level begins with what it had of it */
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        if (heat->phase == FIBRAD_HEAT_DONE && !s->uniform && eps < 1)
+        if (heat->warm && !s->uniform && eps < 1)
             heat->radiosity[a] += emission - heat->emission[b] - heat->detail[a];
         else
             heat->radiosity[a] = emission, heat->detail[a] = 0;
@@ -210,47 +304,54 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b
 
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     if (heat == NULL || sources == NULL || !sources_valid(heat, sources)) return FIBRAD_E_ARGUMENT;
-    for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
-        const bool there = heat->scene->facts.wall_area[k] > 0;
-        heat->wall_emissivity[k] = there ? sources->wall_emissivity[k] : 0;
-        heat->wall_emission[k] = there ? emission_of(sources, sources->wall_temperature[k]) : 0;
+    if (!scene_kept(heat)) return FIBRAD_E_STATE;
+    for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
+        if (!heat->traced[task]) return FIBRAD_E_STATE;
+    fibrad_zero(heat->wall_emissivity, sizeof heat->wall_emissivity);
+    fibrad_zero(heat->wall_emission, sizeof heat->wall_emission);
+    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+        heat->wall_emissivity[heat->slot[b]] = sources->body_emissivity[b];
+        heat->wall_emission[heat->slot[b]] = emission_of(sources, sources->body_temperature[b]);
     }
     for (uint32_t b = 0; b < heat->bodies; b++) set_body(heat, sources, b);
     heat->group = sources->uniform ? UINT32_MAX : 4;
     heat->tolerance = sources->tolerance > 0 ? sources->tolerance : TOLERANCE;
     heat->limit = sources->sweeps_max > 0 ? sources->sweeps_max : SWEEPS_MAX;
     heat->sweeps = 0;
+    heat->warm = false;
+    fibrad_zero(heat->swept, heat->config.parts);
     fibrad_heat_start(heat);
     return FIBRAD_OK;
 }
 
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
-    if (heat == NULL || result == NULL || result->power == NULL || heat->phase != FIBRAD_HEAT_DONE)
-        return FIBRAD_E_ARGUMENT;
-    const uint32_t spheres = heat->scene->facts.spheres, open = heat->bodies - 1;
+    if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
+    if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
+    if (heat->phase != FIBRAD_HEAT_DONE || !scene_kept(heat)) return FIBRAD_E_STATE;
+    const uint32_t spheres = heat->spheres, open = heat->bodies - 1;
     double patches = 0, beams = 0, square = 0, reflected = 0;
     for (uint32_t b = 0; b < spheres; b++) {
         const double change = heat->power[b] - heat->coarse[b];
-        result->power[heat->scene->order[b]] = heat->power[b];
+        result->power[heat->order[b]] = heat->power[b];
         patches += change * change, square += heat->power[b] * heat->power[b], reflected += 1 - heat->emissivity[b];
-        beams += heat->doubt[b] * heat->doubt[b];
+        beams += heat->halves[b] * heat->halves[b];
     }
     result->surroundings_power = heat->power[open];
-    for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
-        const uint32_t beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
-        result->wall_power[k] = heat->power[fibrad_heat_wall_body(heat, k)];
+    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+        const uint32_t k = heat->slot[b], beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
+        result->body_power[b] = heat->power[fibrad_heat_wall_body(heat, k)];
         if (a == heat->first[beyond + 1]) continue;
         /* beyond its patches the wall takes eps of what comes and reflects the rest to the surroundings */
         const double less = heat->radiosity[a] - heat->wall_emission[k];
         const double absorbed = heat->wall_emissivity[k] * (heat->net[a] + heat->area[a] * less);
-        result->wall_power[k] += absorbed;
+        result->body_power[b] += absorbed;
         result->surroundings_power += heat->power[beyond] - absorbed;
     }
     /* patches that few beams leave send too much back along each; not so if there is one radiosity per body */
     const double each = heat->group == 1 ? 2.0 * heat->beams / heat->config.patches : __builtin_inf();
-    const double few = FEW_ERROR / each * fibrad_sqrt(reflected / spheres);
-    result->error_patches = PATCH_ERROR * fibrad_sqrt(patches / spheres);
-    result->error_beams = fibrad_sqrt((BEAM_ERROR * BEAM_ERROR * beams + few * few * square) / spheres);
+    const double few = FEW_ERROR / each * fibrad_sqrt(reflected / fibrad_max(1, spheres));
+    result->error_patches = PATCH_ERROR * fibrad_sqrt(patches / fibrad_max(1, spheres));
+    result->error_beams = fibrad_sqrt((BEAM_ERROR * BEAM_ERROR * beams + few * few * square) / fibrad_max(1, spheres));
     result->sweeps = heat->sweeps;
     result->residual = heat->scale > 0 ? fibrad_sqrt(heat->slope / heat->scale) : 0;
     return FIBRAD_OK;

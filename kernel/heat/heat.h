@@ -6,6 +6,7 @@
 #ifndef FIBRAD_HEAT_HEAT_H
 #define FIBRAD_HEAT_HEAT_H
 
+#include "row/work.h"
 #include "scene/scene.h"
 
 #define FIBRAD_HEAT_PATCHES_MAX 384   /* of a sphere */
@@ -46,16 +47,23 @@ typedef enum fibrad_heat_phase {
 struct fibrad_heat {
     fibrad_heat_config config;
     const fibrad_scene *scene;
-    uint32_t beams;   /* of one sphere: directions times points */
-    uint32_t side;    /* patches of a sphere along an edge of its cube */
-    uint32_t bodies;  /* spheres, FIBRAD_WALLS twice, 1 */
-    uint32_t patches; /* all of them */
-    uint32_t rays;    /* of all walls */
+    uint64_t hash;                             /* of its contents */
+    uint32_t spheres;                          /* of it */
+    uint32_t given_bodies, slot[FIBRAD_WALLS]; /* of it */
+    uint32_t beams;                            /* of one sphere: directions times points */
+    uint32_t side;                             /* patches of a sphere along an edge of its cube */
+    uint32_t bodies;                           /* spheres, FIBRAD_WALLS twice, 1 */
+    uint32_t patches;                          /* all of them */
+    uint32_t rays;                             /* of all walls */
+    uint32_t patches_capacity, rays_capacity;
     fibrad_heat_wall wall[FIBRAD_WALLS];
-    uint32_t *first;      /* [bodies + 1] */
-    uint16_t *leave;      /* [beams] which patch of its sphere each beam leaves: the same for all spheres */
-    uint32_t *hit;        /* [spheres][beams] the patch it meets */
-    fibrad_heat_ray *ray; /* [rays] */
+    uint32_t *first;       /* [bodies + 1] */
+    uint32_t *order;       /* [spheres] the caller's index of each, as the scene had it */
+    unsigned char *traced; /* [tasks of rays_capacity] 1: this task is */
+    unsigned char *swept;  /* [parts] 1: this part is */
+    uint16_t *leave;       /* [beams] which patch of its sphere each beam leaves: the same for all spheres */
+    uint32_t *hit;         /* [spheres][beams] the patch it meets */
+    fibrad_heat_ray *ray;  /* [rays] */
 
     fibrad_heat_source *source;    /* [patches] of the sweep in hand */
     double *gathered;              /* [parts][patches] what the beams of each part bring */
@@ -65,10 +73,12 @@ struct fibrad_heat {
     double *direction;             /* [patches] of the search */
     double *emissivity, *emission; /* [bodies] eps and E */
     double *coarse, *power;        /* [bodies] net power at the coarser level, and extrapolated */
-    double *doubt;                 /* [spheres] of the power, from the directions */
-    double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS];
+    double *halves;                /* [spheres] by how much the power by even directions exceeds that by odd ones */
+    double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
 
     fibrad_heat_phase phase;
+    bool warm;       /* the radiosities are those of a solution */
+    bool areas;      /* so are the areas, those of the beams as they are */
     uint32_t group;  /* patches that share one J, the most: 1, 4, or PATCHES_MAX and more for whole bodies */
     double slope;    /* residual times preconditioned residual */
     double scale;    /* what the slope is compared with */
@@ -78,11 +88,9 @@ struct fibrad_heat {
 };
 
 /* The body beyond the patches of wall k, and the surroundings. */
-static inline uint32_t fibrad_heat_wall_body(const fibrad_heat *heat, uint32_t wall) {
-    return heat->scene->facts.spheres + wall;
-}
+static inline uint32_t fibrad_heat_wall_body(const fibrad_heat *heat, uint32_t wall) { return heat->spheres + wall; }
 static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall) {
-    return heat->scene->facts.spheres + FIBRAD_WALLS + wall;
+    return heat->spheres + FIBRAD_WALLS + wall;
 }
 static inline uint32_t fibrad_heat_open(const fibrad_heat *heat) { return heat->patches - 1; }
 

@@ -119,10 +119,7 @@ static int follow_beams(fibrad_heat *heat, fibrad_workspace *work, uint32_t plac
         double frame[9];
         fibrad_beam_frame(k, heat->config.directions, points.count, frame);
         LANED(fibrad_beam_window)(work, frame, &points, 0);
-        if (work->disc.count > work->disc.capacity) {
-            work->needed.discs = work->disc.count;
-            return FIBRAD_E_CAPACITY;
-        }
+        if (work->disc.count > work->disc.capacity) return fibrad_work_discs_missed(work);
         uint32_t *hit = heat->hit + (size_t)place * heat->beams + (size_t)k * points.count;
         for (uint32_t word = 0; word < points.count / POINTS; word++, hit += POINTS) {
             find_discs(work, &points, word, &window);

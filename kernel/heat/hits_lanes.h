@@ -2,14 +2,14 @@
 #ifndef FIBRAD_HEAT_HITS_LANES_H
 #define FIBRAD_HEAT_HITS_LANES_H
 
+#include "base/dispatch.h"
 #include "heat/heat.h"
 #include "row/work.h"
 
-/* Fills heat->hit of sphere `task`; from the number of spheres on, a part of heat->ray. FIBRAD_E_CAPACITY: the work
+/* Fills heat->hit of sphere `task`; from the number of spheres on, a part of heat->ray. FIBRAD_E_WORK: the work
  * memory is too small. */
 typedef int fibrad_heat_follow_function(fibrad_heat *heat, fibrad_workspace *work, uint32_t task);
 
-fibrad_heat_follow_function fibrad_heat_follow_scalar, fibrad_heat_follow_sse2, fibrad_heat_follow_avx2,
-    fibrad_heat_follow_avx512;
+FIBRAD_DECLARE_VERSIONS(fibrad_heat_follow_function, fibrad_heat_follow);
 
 #endif

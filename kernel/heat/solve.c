@@ -77,12 +77,13 @@ static double sweep_halves(const fibrad_heat *heat, uint32_t place) {
     return half[0] - half[1];
 }
 
-void fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
-    const uint32_t spheres = heat->scene->facts.spheres;
+/* All of a part but the note that it is done. */
+static void sweep_part(fibrad_heat *heat, uint32_t part) {
+    const uint32_t spheres = heat->spheres;
     const uint32_t begin = share(heat, spheres, part), end = share(heat, spheres, part + 1);
     double *to = heat->gathered + (size_t)part * heat->patches, away[BEYOND] = {0};
     if (heat->phase == FIBRAD_HEAT_CHECK) {
-        for (uint32_t place = begin; place < end; place++) heat->doubt[place] = sweep_halves(heat, place);
+        for (uint32_t place = begin; place < end; place++) heat->halves[place] = sweep_halves(heat, place);
         return;
     }
     fibrad_zero(to, heat->patches * sizeof *to);
@@ -93,8 +94,16 @@ void fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
     fibrad_copy(to + few, away, (heat->patches - few) * sizeof *to);
 }
 
+int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
+    if (heat == NULL || part >= heat->config.parts) return FIBRAD_E_ARGUMENT;
+    if (heat->phase == FIBRAD_HEAT_IDLE || heat->phase == FIBRAD_HEAT_DONE || heat->swept[part]) return FIBRAD_E_STATE;
+    sweep_part(heat, part);
+    heat->swept[part] = 1;
+    return FIBRAD_OK;
+}
+
 /* Adds up what the parts have gathered, in the first part's place. */
-static const double *gather(fibrad_heat *heat) {
+static const double *gather_parts_of(fibrad_heat *heat) {
     double *sum = heat->gathered;
     for (uint32_t part = 1; part < heat->config.parts; part++) {
         const double *from = heat->gathered + (size_t)part * heat->patches;
@@ -161,7 +170,7 @@ static void send(fibrad_heat *heat, fibrad_heat_phase phase) {
 }
 
 void fibrad_heat_start(fibrad_heat *heat) {
-    if (heat->phase != FIBRAD_HEAT_IDLE && heat->phase != FIBRAD_HEAT_AREA)
+    if (heat->areas)
         send(heat, FIBRAD_HEAT_FIRST);
     else
         heat->phase = FIBRAD_HEAT_AREA;
@@ -189,7 +198,7 @@ static bool settled(const fibrad_heat *heat) {
 }
 
 /* The direction to search next: the residual, and `keep` of the last direction. */
-static void turn(fibrad_heat *heat, double keep) {
+static void turn_direction(fibrad_heat *heat, double keep) {
     for (uint32_t a = 0; a < heat->patches; a++) {
         heat->direction[a] = heat->source[a].value + (keep != 0 ? keep * heat->direction[a] : 0);
         heat->source[a].value = heat->direction[a];
@@ -210,7 +219,7 @@ static void refine(fibrad_heat *heat) {
 }
 
 /* Goes on with the search, or with the finer level, if there is something left to do. */
-static int search(fibrad_heat *heat, bool restart) {
+static void search(fibrad_heat *heat, bool restart) {
     const double last = heat->slope;
     heat->slope = find_residual(heat);
     if (settled(heat)) {
@@ -218,11 +227,10 @@ static int search(fibrad_heat *heat, bool restart) {
             refine(heat);
         else
             finish(heat);
-        return 1;
+        return;
     }
-    turn(heat, restart ? 0 : heat->slope / last);
+    turn_direction(heat, restart ? 0 : heat->slope / last);
     heat->phase = FIBRAD_HEAT_STEPS;
-    return 1;
 }
 
 /* Goes along the direction whose product with N is `product`, as far as the error falls. */
@@ -244,22 +252,39 @@ static void advance(fibrad_heat *heat, const double *product) {
     }
 }
 
-int fibrad_heat_step(fibrad_heat *heat) {
-    if (heat->phase == FIBRAD_HEAT_CHECK) heat->phase = FIBRAD_HEAT_DONE;
-    if (heat->phase == FIBRAD_HEAT_IDLE || heat->phase == FIBRAD_HEAT_DONE) return 0;
-    const double *sum = gather(heat);
+/* What the sweep in hand was for. */
+static void end_sweep(fibrad_heat *heat) {
+    if (heat->phase == FIBRAD_HEAT_CHECK) {
+        heat->phase = FIBRAD_HEAT_DONE;
+        heat->warm = true;
+        return;
+    }
+    const double *sum = gather_parts_of(heat);
     heat->sweeps++;
     switch (heat->phase) {
     case FIBRAD_HEAT_AREA:
         fibrad_copy(heat->area, sum, heat->patches * sizeof *sum);
+        heat->areas = true;
         send(heat, FIBRAD_HEAT_FIRST);
-        return 1;
+        return;
     case FIBRAD_HEAT_FIRST:
         fibrad_copy(heat->net, sum, heat->patches * sizeof *sum);
         find_scale(heat);
-        return search(heat, true);
+        search(heat, true);
+        return;
     default:
         advance(heat, sum);
-        return search(heat, false);
+        search(heat, false);
     }
+}
+
+int fibrad_heat_step(fibrad_heat *heat, int *solved) {
+    if (heat == NULL || solved == NULL) return FIBRAD_E_ARGUMENT;
+    if (heat->phase == FIBRAD_HEAT_IDLE || heat->phase == FIBRAD_HEAT_DONE) return FIBRAD_E_STATE;
+    for (uint32_t part = 0; part < heat->config.parts; part++)
+        if (!heat->swept[part]) return FIBRAD_E_STATE;
+    end_sweep(heat);
+    fibrad_zero(heat->swept, heat->config.parts);
+    *solved = heat->phase == FIBRAD_HEAT_DONE;
+    return FIBRAD_OK;
 }

@@ -1,10 +1,10 @@
 /* wall_patch.c - the patches of walls, and the rays that leave them. SPDX-License-Identifier: MIT */
+#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
 #include "heat/heat.h"
 #include "scene/walls.h"
 
-#define PI 3.14159265358979323846
 /* Patches of walls are about as large as those of the spheres, unless that makes more of them than FEW and a fourth of
  * those of the spheres. What spheres and walls exchange is known from the beams of the spheres, which are spread far
  * more evenly than rays; rays of walls tell what walls exchange with each other. Where there is a bed between them that
@@ -32,7 +32,7 @@ static bool stretch(const fibrad_scene *scene, uint32_t axis, double *low, doubl
 
 static double area_of(const fibrad_heat *heat, uint32_t wall) {
     const fibrad_heat_wall *w = &heat->wall[wall];
-    double around = wall == FIBRAD_CYLINDER ? 2 * PI * heat->scene->container.radius : 1;
+    double around = wall == FIBRAD_CYLINDER ? 2 * FIBRAD_PI * heat->scene->container.radius : 1;
     return w->size[0] * around * w->size[1];
 }
 
@@ -47,7 +47,7 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         fibrad_heat_wall *wall = &heat->wall[k];
         *wall = (fibrad_heat_wall){0};
-        if (!(scene->facts.wall_area[k] > 0)) continue;
+        if (!(scene->wall_area[k] > 0)) continue;
         wall->size[0] = 1;
         for (uint32_t side = k == FIBRAD_CYLINDER; side < 2; side++)
             wall->unbounded |=
@@ -55,14 +55,15 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
         area += area_of(heat, k);
     }
     if (area == 0) return;
-    for (uint32_t i = 0; i < scene->facts.spheres; i++) surface += 4 * PI * scene->r[i] * scene->r[i];
-    const double of_spheres = (double)scene->facts.spheres * heat->config.patches, most = FEW + of_spheres / 4;
+    for (uint32_t i = 0; i < heat->spheres; i++) surface += 4 * FIBRAD_PI * scene->r[i] * scene->r[i];
+    const double of_spheres = (double)heat->spheres * heat->config.patches, most = FEW + of_spheres / 4;
     const double square = fibrad_sqrt(fibrad_max(surface / of_spheres, area / most));
     const double density = fibrad_max(RAYS_PER_PATCH / (square * square), RAYS_MIN / area);
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         fibrad_heat_wall *wall = &heat->wall[k];
-        if (!(scene->facts.wall_area[k] > 0)) continue;
-        wall->squares[0] = squares(k == FIBRAD_CYLINDER ? 2 * PI * scene->container.radius : wall->size[0], square);
+        if (!(scene->wall_area[k] > 0)) continue;
+        wall->squares[0] =
+            squares(k == FIBRAD_CYLINDER ? 2 * FIBRAD_PI * scene->container.radius : wall->size[0], square);
         wall->squares[1] = squares(wall->size[1], square);
         wall->first_ray = heat->rays;
         wall->rays = (uint32_t)fibrad_min(1 + density * area_of(heat, k), 0x1p30);

@@ -4,34 +4,20 @@
 
 #define RAYS 20000u
 
-int fibrad_cast_row(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i, const fibrad_cast_rule *rule,
-                    fibrad_row *row, const fibrad_cast_means *means) {
-    if (scene == NULL || work == NULL || row == NULL || i >= scene->facts.spheres) return FIBRAD_E_ARGUMENT;
-    if (row->capacity > 0 && (row->col == NULL || row->f == NULL)) return FIBRAD_E_ARGUMENT;
-    if (row->capacity > 0 && means != NULL && (means->length == NULL || means->angle == NULL)) return FIBRAD_E_ARGUMENT;
-    fibrad_cast_rule r = {0};
-    if (rule != NULL) r = *rule;
-    if (r.rays == 0) r.rays = RAYS;
-    if (r.random != 0 && r.random != 1) return FIBRAD_E_ARGUMENT;
-    if (!(r.cutoff >= 0 && fibrad_finite(r.cutoff))) return FIBRAD_E_ARGUMENT;
+static int cast_compute(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *task,
+                        fibrad_row *row) {
+    return FIBRAD_VERSION_OF(fibrad_cast_lanes, scene->facts.isa)(scene, space, i, task, row);
+}
 
-    fibrad_cast_function *version = fibrad_cast_row_scalar;
-    switch (scene->facts.isa) {
-#ifdef FIBRAD_WITH_SSE2
-    case FIBRAD_ISA_SSE2:
-        version = fibrad_cast_row_sse2;
-        break;
-#endif
-#ifdef FIBRAD_WITH_AVX2
-    case FIBRAD_ISA_AVX2:
-        version = fibrad_cast_row_avx2;
-        break;
-#endif
-#ifdef FIBRAD_WITH_AVX512
-    case FIBRAD_ISA_AVX512:
-        version = fibrad_cast_row_avx512;
-        break;
-#endif
-    }
-    return version(scene, work, i, &r, row, means);
+int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_cast_rule *rule,
+                    fibrad_row *row, const fibrad_cast_means *means) {
+    if (row == NULL) return FIBRAD_E_ARGUMENT;
+    if (means != NULL && (row->rows != NULL || (row->capacity > 0 && (means->length == NULL || means->angle == NULL))))
+        return FIBRAD_E_ARGUMENT;
+    fibrad_cast_task task = {.means = means};
+    if (rule != NULL) task.rule = *rule;
+    if (task.rule.rays == 0) task.rule.rays = RAYS;
+    if (task.rule.random != 0 && task.rule.random != 1) return FIBRAD_E_ARGUMENT;
+    if (!(task.rule.cutoff >= 0 && fibrad_finite(task.rule.cutoff))) return FIBRAD_E_ARGUMENT;
+    return fibrad_row_run(scene, work, i, &(fibrad_row_method){cast_compute, &task, 0, 0}, row);
 }

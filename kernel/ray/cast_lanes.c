@@ -186,10 +186,12 @@ static void write_means(const fibrad_workspace *work, const fibrad_row *row, con
     }
 }
 
-int LANED(fibrad_cast_row)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i, const fibrad_cast_rule *rule,
-                           fibrad_row *row, const fibrad_cast_means *means) {
+int LANED(fibrad_cast_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
+                             const fibrad_cast_task *task, fibrad_row *row) {
+    const fibrad_cast_rule *rule = &task->rule;
+    const fibrad_cast_means *means = task->means;
     struct rays rays;
-    fibrad_random stream = {fibrad_mix(fibrad_random_ahead((fibrad_random){rule->seed}, i))};
+    fibrad_random stream = {fibrad_mix(fibrad_random_ahead((fibrad_random){rule->seed}, fibrad_scene_id(scene, i)))};
     fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, SHELLS);
     for (uint32_t k = 0; k < rule->rays; k++) {
         uint32_t b = k % BATCH;
@@ -204,24 +206,20 @@ int LANED(fibrad_cast_row)(const fibrad_scene *scene, fibrad_workspace *work, ui
             ray.frame[6 + axis] = rays.w[axis][b];
         }
         struct hit first = {.distance = __builtin_inf()};
-        if (!follow(work, &ray, &first)) {
-            work->needed.discs = work->disc.count;
-            return row->length = 0, FIBRAD_E_CAPACITY;
-        }
+        if (!follow(work, &ray, &first)) return fibrad_work_discs_missed(work);
         if (first.distance < __builtin_inf())
             note(work, &first, k, means != NULL);
         else
             leave(work, &ray);
     }
-    if (work->entries.missed > 0) {
-        uint64_t enough = (uint64_t)work->entries.capacity + work->entries.missed;
-        work->needed.entries = (uint32_t)(enough < scene->facts.spheres ? enough : scene->facts.spheres);
-        return row->length = 0, FIBRAD_E_CAPACITY;
-    }
-    int status = fibrad_entries_row(work, 1.0 / rule->rays, row);
+    if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
+    int status = fibrad_entries_row(&work->entries, scene, 1.0 / rule->rays, row);
     if (status != FIBRAD_OK) return status;
     row->escaped = work->wall[FIBRAD_WALLS] * (1.0 / rule->rays);
-    for (int wall = 0; wall < FIBRAD_WALLS; wall++) row->wall[wall] = work->wall[wall] * (1.0 / rule->rays);
+    for (int wall = 0; wall < FIBRAD_WALLS; wall++) work->wall[wall] *= 1.0 / rule->rays;
+    fibrad_row_bodies(scene, work->wall, row);
+    row->directions = row->fallbacks = 0;
+    row->symmetric = 0;
     /* row->error stays: each half is a sample of half as many rays, its error sqrt 2 times as large, and they differ by
      * twice that of their mean; 0.65 to 1.9 times that was measured with quasi-random rays */
     if (means != NULL) write_means(work, row, means);

@@ -2,12 +2,18 @@
 #ifndef FIBRAD_RAY_CAST_LANES_H
 #define FIBRAD_RAY_CAST_LANES_H
 
-#include "row/work.h"
+#include "base/dispatch.h"
+#include "row/row.h"
 
-/* fibrad_cast_row with arguments that have been checked and defaults filled in. */
+/* A completed rule, and where the means go; NULL: nowhere. */
+typedef struct fibrad_cast_task {
+    fibrad_cast_rule rule;
+    const fibrad_cast_means *means;
+} fibrad_cast_task;
+
+/* Row i by rays. Errors: _CAPACITY, _WORK. */
 typedef int fibrad_cast_function(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
-                                 const fibrad_cast_rule *rule, fibrad_row *row, const fibrad_cast_means *means);
-
-fibrad_cast_function fibrad_cast_row_scalar, fibrad_cast_row_sse2, fibrad_cast_row_avx2, fibrad_cast_row_avx512;
+                                 const fibrad_cast_task *task, fibrad_row *row);
+FIBRAD_DECLARE_VERSIONS(fibrad_cast_function, fibrad_cast_lanes);
 
 #endif

@@ -2,14 +2,12 @@
 #include "ray/tracer.h"
 #include "base/arena.h"
 #include "base/sort.h"
-#include "row/work.h"
 #include "scene/grid_walk.h"
 
 /* A list looks REACH mean spacings beyond the surface of its sphere, or as far as its room goes. */
 #define REACH      1.8
 #define CANDIDATES 512
-#define LISTS      2048
-#define LISTS_MAX  (1u << 20)
+#define LISTS_MIN  16u
 
 typedef struct fibrad_candidate {
     double clearance, c[3], r;
@@ -17,49 +15,48 @@ typedef struct fibrad_candidate {
     int8_t periods[3];
 } fibrad_candidate;
 
-static fibrad_tracer *layout(fibrad_arena *arena, uint32_t lists, fibrad_tracer *tracer) {
-    fibrad_tracer *place = fibrad_arena_take(arena, 1, sizeof *place);
+static void tracer_layout(fibrad_arena *arena, uint32_t lists, fibrad_tracer *tracer) {
     tracer->lists = lists;
     tracer->owner = fibrad_arena_take(arena, lists, sizeof *tracer->owner);
     tracer->nearby = fibrad_arena_take(arena, lists, sizeof *tracer->nearby);
     for (int k = 0; k < 2; k++) tracer->key[k] = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->key[k]);
     tracer->candidate = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->candidate);
-    return place;
 }
 
-/* The number of lists of a configuration, a power of two; 0 if it is not valid. */
-static uint32_t lists_of(const fibrad_tracer_config *config) {
-    uint32_t wanted = config != NULL && config->lists > 0 ? config->lists : LISTS, lists = 1;
-    if (wanted > LISTS_MAX) return 0;
-    while (lists < wanted) lists *= 2;
-    return lists;
-}
-
-size_t fibrad_tracer_size(const fibrad_tracer_config *config) {
-    uint32_t lists = lists_of(config);
-    if (lists == 0) return 0;
+/* Bytes of a tracer with so many lists, a power of two. */
+static size_t tracer_bytes(uint32_t lists) {
     fibrad_arena arena = {0};
     fibrad_tracer fields = {0};
-    layout(&arena, lists, &fields);
-    return fibrad_arena_total(&arena);
+    fibrad_arena_take(&arena, 1, sizeof fields);
+    tracer_layout(&arena, lists, &fields);
+    return arena.used;
 }
 
-int fibrad_tracer_init(fibrad_tracer **out, void *memory, size_t size, const fibrad_tracer_config *config,
-                       const fibrad_scene *scene) {
-    if (out == NULL || scene == NULL) return FIBRAD_E_ARGUMENT;
-    fibrad_arena arena;
-    int status = fibrad_arena_open(&arena, memory, size, fibrad_tracer_size(config));
-    if (status != FIBRAD_OK) return status;
-    fibrad_tracer fields = {.scene = scene};
-    fibrad_tracer *tracer = layout(&arena, lists_of(config), &fields);
-    for (uint32_t k = 0; k < fields.lists; k++) fields.owner[k] = FIBRAD_NONE;
-    *tracer = fields;
-    *out = tracer;
-    return FIBRAD_OK;
+size_t fibrad_tracer_least(void) { return tracer_bytes(LISTS_MIN); }
+
+size_t fibrad_tracer_best(const fibrad_scene *scene) {
+    uint32_t lists = LISTS_MIN;
+    while (lists < FIBRAD_LISTS && lists < scene->facts.spheres) lists *= 2;
+    return tracer_bytes(lists);
+}
+
+fibrad_tracer *fibrad_tracer_of(fibrad_workspace *space, const fibrad_scene *scene) {
+    fibrad_tracer *tracer = space->extra;
+    if (space->extra_owner != scene->hash) {
+        uint32_t lists = LISTS_MIN;
+        while (2 * lists <= FIBRAD_LISTS && tracer_bytes(2 * lists) <= space->plan.extra) lists *= 2;
+        fibrad_arena arena = {.base = space->extra, .size = space->plan.extra};
+        fibrad_arena_take(&arena, 1, sizeof *tracer);
+        tracer_layout(&arena, lists, tracer);
+        for (uint32_t k = 0; k < lists; k++) tracer->owner[k] = FIBRAD_NONE;
+        space->extra_owner = scene->hash;
+    }
+    tracer->scene = scene;
+    return tracer;
 }
 
 /* Gathers the spheres with a clearance of at most `limit` from the sphere at `place`. False: there is no room. */
-static bool gather(fibrad_tracer *tracer, uint32_t place, double limit, uint32_t *count) {
+static bool gather_candidates(fibrad_tracer *tracer, uint32_t place, double limit, uint32_t *count) {
     const fibrad_scene *scene = tracer->scene;
     double centre[3] = {scene->x[place], scene->y[place], scene->z[place]}, inverse = 1 / scene->r[place];
     *count = 0;
@@ -91,7 +88,7 @@ static bool gather(fibrad_tracer *tracer, uint32_t place, double limit, uint32_t
 
 /* Fills one place of a list. Floats err so that a sphere may be looked at in vain, but never the other way round, as in
  * row/neighbours_lanes.c; beyond the range of floats all are looked at. */
-static void enter(fibrad_nearby *list, uint32_t k, const fibrad_candidate *s) {
+static void enter_nearby(fibrad_nearby *list, uint32_t k, const fibrad_candidate *s) {
     double square = s->c[0] * s->c[0] + s->c[1] * s->c[1] + s->c[2] * s->c[2];
     double about = 1 + fibrad_abs(s->c[0]) + fibrad_abs(s->c[1]) + fibrad_abs(s->c[2]);
     bool small = about < 1e18;
@@ -106,7 +103,7 @@ static void enter(fibrad_nearby *list, uint32_t k, const fibrad_candidate *s) {
 /* Rays start at distance 1 from the centre; the rest is for rounding. */
 static double length_for(double clearance) { return clearance * (1 - 1e-9) - 1 - 1e-9; }
 
-static void make(fibrad_tracer *tracer, fibrad_nearby *list, uint32_t place) {
+static void make_nearby(fibrad_tracer *tracer, fibrad_nearby *list, uint32_t place) {
     const fibrad_scene *scene = tracer->scene;
     double reach = REACH * scene->spacing / scene->r[place];
     /* so few periods that they fit into their bytes */
@@ -114,7 +111,7 @@ static void make(fibrad_tracer *tracer, fibrad_nearby *list, uint32_t place) {
         if (scene->period[axis] > 0) reach = fibrad_min(reach, 60 * scene->period[axis] / scene->r[place]);
     double limit = 1 + reach;
     uint32_t count = 0;
-    while (!gather(tracer, place, limit, &count)) {
+    while (!gather_candidates(tracer, place, limit, &count)) {
         if (limit > 1.001) {
             limit = 1 + (limit - 1) / 2;
         } else { /* hundreds of small ones touch this sphere: the grid alone */
@@ -140,7 +137,7 @@ static void make(fibrad_tracer *tracer, fibrad_nearby *list, uint32_t place) {
                 const fibrad_candidate *s = &tracer->candidate[(uint32_t)key[k]];
                 least = fibrad_min(least, s->clearance);
                 farthest = fibrad_max(farthest, s->clearance + s->r);
-                enter(list, k, s);
+                enter_nearby(list, k, s);
             } else {
                 list->x[k] = list->y[k] = list->z[k] = 0;
                 list->q[k] = FLT_MAX;
@@ -155,7 +152,7 @@ const fibrad_nearby *fibrad_tracer_nearby(fibrad_tracer *tracer, uint32_t place)
     uint32_t slot = place & (tracer->lists - 1);
     fibrad_nearby *list = &tracer->nearby[slot];
     if (tracer->owner[slot] != place) {
-        make(tracer, list, place);
+        make_nearby(tracer, list, place);
         tracer->owner[slot] = place;
     }
     return list;

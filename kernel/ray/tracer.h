@@ -2,14 +2,15 @@
  *
  * A ray that leaves a sphere mostly meets one of its nearest neighbours. So each sphere's near ones are listed once, in
  * the order of their clearance, the distance from its centre to their surface; a ray looks at them in that order, and
- * has met its first sphere as soon as all further ones are beyond it. Lists are kept in the caller's memory, each in
+ * has met its first sphere as soon as all further ones are beyond it. Lists are kept in work memory, each in
  * the slot of its sphere's place modulo their number, and made anew when another sphere has taken the slot. What a list
  * says depends on its sphere alone. Rays that get beyond their list go through the grid on their own. */
 #ifndef FIBRAD_RAY_TRACER_H
 #define FIBRAD_RAY_TRACER_H
 
+#include "base/dispatch.h"
 #include "base/lanes/laned.h"
-#include "scene/scene.h"
+#include "row/work.h"
 
 #define FIBRAD_NEARBY 96 /* spheres of a list: whole groups */
 #define FIBRAD_GROUP  16
@@ -27,14 +28,24 @@ typedef struct fibrad_nearby {
     float behind; /* depths in floats are right to this: minus it, of spheres that are not behind */
 } fibrad_nearby;
 
-struct fibrad_tracer {
+typedef struct fibrad_tracer {
     const fibrad_scene *scene;
     uint32_t lists;        /* a power of two */
     uint32_t *owner;       /* [lists] the place of the sphere whose list is here; FIBRAD_NONE */
     fibrad_nearby *nearby; /* [lists] */
     uint64_t *key[2];      /* [] scratch: clearances and numbers of the spheres that may be listed */
     struct fibrad_candidate *candidate;
-};
+} fibrad_tracer;
+
+/* Extra bytes of work memory for a tracer: of the fewest lists, and of as many as there are spheres, or FIBRAD_LISTS.
+ */
+#define FIBRAD_LISTS 4096u
+size_t fibrad_tracer_least(void);
+size_t fibrad_tracer_best(const fibrad_scene *scene);
+
+/* The tracer in the extra bytes of work memory, with as many lists as there is room for. Lists of an earlier call are
+ * kept if they were made for the same contents of a scene. */
+fibrad_tracer *fibrad_tracer_of(fibrad_workspace *space, const fibrad_scene *scene);
 
 /* The first sphere that a ray meets. */
 typedef struct fibrad_hit {
@@ -52,12 +63,11 @@ const fibrad_nearby *fibrad_tracer_nearby(fibrad_tracer *tracer, uint32_t place)
  * ray; one that holds its origin is met at distance 0, at the point where the ray, prolonged backwards, enters it. */
 typedef void fibrad_trace_function(fibrad_tracer *tracer, uint32_t place, const double n[3], const double w[3],
                                    fibrad_hit *hit);
-fibrad_trace_function fibrad_trace_scalar, fibrad_trace_sse2, fibrad_trace_avx2, fibrad_trace_avx512;
+FIBRAD_DECLARE_VERSIONS(fibrad_trace_function, fibrad_trace);
 
 /* Follows the ray from any point [L] in direction w. A sphere that holds the point is met at distance 0. */
 typedef void fibrad_trace_point_function(const fibrad_scene *scene, const double point[3], const double w[3],
                                          fibrad_hit *hit);
-fibrad_trace_point_function fibrad_trace_point_scalar, fibrad_trace_point_sse2, fibrad_trace_point_avx2,
-    fibrad_trace_point_avx512;
+FIBRAD_DECLARE_VERSIONS(fibrad_trace_point_function, fibrad_trace_point);
 
 #endif

@@ -9,9 +9,9 @@
 
 /* In steps of an eighth, each of which takes a sixth off the error, to a little less than is wanted; a fifth more in
  * any case, for rows whose error falls more slowly. */
-uint32_t fibrad_directions_for(uint32_t directions, double error, double wanted) {
+uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance) {
     double n = directions < FIBRAD_DIRECTIONS_MIN ? FIBRAD_DIRECTIONS_MIN : directions;
-    for (; n < FIBRAD_DIRECTIONS_MAX && (error > 0.9 * wanted || n < 1.2 * directions); n *= 1.125) error *= 0.838;
+    for (; n < FIBRAD_DIRECTIONS_MAX && (error > 0.9 * tolerance || n < 1.2 * directions); n *= 1.125) error *= 0.838;
     return n < FIBRAD_DIRECTIONS_MAX ? (uint32_t)n : FIBRAD_DIRECTIONS_MAX;
 }
 
@@ -28,41 +28,36 @@ void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double 
     frame[6] = d.ring * d.cos, frame[7] = d.ring * d.sin, frame[8] = d.z;
 }
 
-int fibrad_beam_row(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i, const fibrad_beam_rule *rule,
-                    fibrad_row *row) {
-    if (scene == NULL || work == NULL || row == NULL || i >= scene->facts.spheres) return FIBRAD_E_ARGUMENT;
-    if (row->capacity > 0 && (row->col == NULL || row->f == NULL)) return FIBRAD_E_ARGUMENT;
-    fibrad_beam_rule r = {0};
-    if (rule != NULL) r = *rule;
-    if (!(r.error >= 0 && fibrad_finite(r.error))) return FIBRAD_E_ARGUMENT;
-    if (r.directions == 0) r.directions = r.error > 0 ? PILOT : DIRECTIONS;
-    if (r.directions < FIBRAD_DIRECTIONS_MIN || r.directions > FIBRAD_DIRECTIONS_MAX) return FIBRAD_E_ARGUMENT;
-    if (!(r.cutoff >= 0 && fibrad_finite(r.cutoff))) return FIBRAD_E_ARGUMENT;
+int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) {
+    *rule = given != NULL ? *given : (fibrad_beam_rule){0};
+    if (!(rule->tolerance >= 0 && fibrad_finite(rule->tolerance))) return FIBRAD_E_ARGUMENT;
+    if (rule->directions == 0) rule->directions = rule->tolerance > 0 ? PILOT : DIRECTIONS;
+    if (rule->directions < FIBRAD_DIRECTIONS_MIN || rule->directions > FIBRAD_DIRECTIONS_MAX) return FIBRAD_E_ARGUMENT;
+    return rule->cutoff >= 0 && fibrad_finite(rule->cutoff) ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
+}
 
-    fibrad_beam_function *version = fibrad_beam_row_scalar;
-    switch (scene->facts.isa) {
-#ifdef FIBRAD_WITH_SSE2
-    case FIBRAD_ISA_SSE2:
-        version = fibrad_beam_row_sse2;
-        break;
-#endif
-#ifdef FIBRAD_WITH_AVX2
-    case FIBRAD_ISA_AVX2:
-        version = fibrad_beam_row_avx2;
-        break;
-#endif
-#ifdef FIBRAD_WITH_AVX512
-    case FIBRAD_ISA_AVX512:
-        version = fibrad_beam_row_avx512;
-        break;
-#endif
+int fibrad_beam_compute(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_beam_rule *rule,
+                        fibrad_row *row) {
+    return FIBRAD_VERSION_OF(fibrad_beam_lanes, scene->facts.isa)(scene, space, i, rule, row);
+}
+
+/* Repeats the row with more directions until its error is small enough. */
+static int beam_to_tolerance(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *given,
+                             fibrad_row *row) {
+    fibrad_beam_rule rule = *(const fibrad_beam_rule *)given;
+    for (;;) {
+        const int status = fibrad_beam_compute(scene, space, i, &rule, row);
+        if (status != FIBRAD_OK || !(rule.tolerance > 0 && row->error > rule.tolerance)) return status;
+        if (rule.directions == FIBRAD_DIRECTIONS_MAX) return status;
+        rule.directions = fibrad_directions_for(rule.directions, row->error, rule.tolerance);
     }
-    int status = version(scene, work, i, r.directions, r.points, r.cutoff, row);
-    while (status == FIBRAD_OK && r.error > 0 && row->error > r.error && r.directions < FIBRAD_DIRECTIONS_MAX) {
-        double reach = row->reach; /* what the first rows have met decides about the last */
-        r.directions = fibrad_directions_for(r.directions, row->error, r.error);
-        status = version(scene, work, i, r.directions, r.points, r.cutoff, row);
-        if (status == FIBRAD_OK) row->reach = fibrad_max(row->reach, reach);
-    }
-    return status;
+}
+
+int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *given,
+                    fibrad_row *row) {
+    fibrad_beam_rule rule;
+    const int status = fibrad_beam_complete(given, &rule);
+    return status != FIBRAD_OK
+               ? status
+               : fibrad_row_run(scene, work, i, &(fibrad_row_method){beam_to_tolerance, &rule, 0, 0}, row);
 }

@@ -2,10 +2,17 @@
 #ifndef FIBRAD_ROW_BEAM_H
 #define FIBRAD_ROW_BEAM_H
 
-#include "base/port.h"
+#include "row/row.h"
 
 /* The axes of window k of a rule: two unit vectors across its direction, and the direction. points: 0 for exact areas.
  */
 void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]);
+
+/* Completes and checks a rule; NULL is all defaults. Errors: _ARGUMENT. */
+int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule);
+
+/* Row i by a completed rule, without regard to its tolerance: what the method of fibrad_beam_row computes. */
+int fibrad_beam_compute(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_beam_rule *rule,
+                        fibrad_row *row);
 
 #endif

@@ -2,12 +2,13 @@
 #ifndef FIBRAD_ROW_BEAM_LANES_H
 #define FIBRAD_ROW_BEAM_LANES_H
 
-#include "row/work.h"
+#include "base/dispatch.h"
+#include "row/row.h"
 
-/* fibrad_beam_row with arguments that have been checked. points: 0 for exact areas. */
-typedef int fibrad_beam_function(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i, uint32_t directions,
-                                 uint32_t points, double cutoff, fibrad_row *row);
-
-fibrad_beam_function fibrad_beam_row_scalar, fibrad_beam_row_sse2, fibrad_beam_row_avx2, fibrad_beam_row_avx512;
+/* Row i by a beam rule whose numbers have been completed and checked, into a row with bodies. The factors to walls are
+ * left in space->wall by slot, too. Errors: _TABLE, _CAPACITY, _WORK. */
+typedef int fibrad_beam_function(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
+                                 const fibrad_beam_rule *rule, fibrad_row *row);
+FIBRAD_DECLARE_VERSIONS(fibrad_beam_function, fibrad_beam_lanes);
 
 #endif

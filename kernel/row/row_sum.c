@@ -1,16 +1,15 @@
 /* row_sum.c - collects the entries of a row. SPDX-License-Identifier: MIT */
 #include "row/row_sum.h"
 #include "base/sort.h"
-#include "row/work.h"
 
-static uint32_t slot_of(const fibrad_entries *entries, uint32_t sphere) {
+static uint32_t hash_slot_of(const fibrad_entries *entries, uint32_t sphere) {
     uint32_t mask = entries->slots - 1, slot = (sphere * 2654435769u >> 7) & mask; /* Fibonacci hashing */
     while (entries->at[slot] != FIBRAD_NONE && entries->sphere[entries->at[slot]] != sphere) slot = (slot + 1) & mask;
     return slot;
 }
 
 uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere) {
-    uint32_t slot = slot_of(entries, sphere), entry = entries->at[slot];
+    uint32_t slot = hash_slot_of(entries, sphere), entry = entries->at[slot];
     if (entry != FIBRAD_NONE || entries->length == entries->capacity) return entry;
     entry = entries->at[slot] = entries->length++;
     entries->slot[entry] = slot;
@@ -21,11 +20,10 @@ uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere) {
 }
 
 uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere) {
-    return entries->at[slot_of(entries, sphere)];
+    return entries->at[hash_slot_of(entries, sphere)];
 }
 
-int fibrad_entries_row(const fibrad_workspace *work, double scale, fibrad_row *row) {
-    const fibrad_entries *entries = &work->entries;
+int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row) {
     uint32_t n = entries->length;
     row->length = n;
     if (n > row->capacity) return FIBRAD_E_CAPACITY;
@@ -34,11 +32,11 @@ int fibrad_entries_row(const fibrad_workspace *work, double scale, fibrad_row *r
         const double *part = entries->part[k];
         double difference = (part[0] + part[2] - part[1] - part[3]) * scale;
         square += difference * difference;
-        entries->key[0][k] = (uint64_t)work->scene->order[entries->sphere[k]] << 32 | k;
+        entries->key[0][k] = (uint64_t)scene->order[entries->sphere[k]] << 32 | k;
     }
     row->error = fibrad_sqrt(square);
 
-    const uint64_t *key = fibrad_sort_keys(entries->key[0], entries->key[1], n, 32, work->scene->facts.spheres - 1);
+    const uint64_t *key = fibrad_sort_keys(entries->key[0], entries->key[1], n, 32, scene->facts.spheres - 1);
     for (uint32_t k = 0; k < n; k++) {
         uint32_t entry = (uint32_t)key[k];
         row->col[k] = (uint32_t)(key[k] >> 32);

@@ -40,7 +40,7 @@ uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);
 
 /* Writes the row: entries times `scale`, columns ascending, and as its error the distance of the sums over even and odd
  * windows. */
-int fibrad_entries_row(const fibrad_workspace *work, double scale, fibrad_row *row);
+int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row);
 
 /* The error of a beam row over that distance, from how much the sums over every fourth window differ, docs/methods.md
  * section 3. */

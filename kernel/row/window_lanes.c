@@ -132,8 +132,6 @@ static double look(fibrad_workspace *work, const double frame[9], fibrad_points 
         sort(work, settled);
         settled = settle(work, points, k, settled, known < horizon ? known : __builtin_inf(), &open);
     }
-    double depth = open ? __builtin_inf() : settled > 0 ? work->disc.depth[work->disc.order[settled - 1]] : 0;
-    work->deepest = fibrad_max(work->deepest, depth);
     if (points->count > 0) return points->open;
     double rest = LANED(fibrad_areas_end)(&work->areas);
     for (uint32_t c = 1; c < work->areas.circles; c++)

@@ -1,20 +1,29 @@
-/* work.c - lays out the work memory of one thread. SPDX-License-Identifier: MIT */
+/* work.c - lays out the work memory of one thread, and makes it grow. SPDX-License-Identifier: MIT
+ *
+ * The inside of work memory is a matter of the kernel's: it begins with what a packed bed takes, or as much of that as
+ * the block has room for, and is laid out anew when a row asks for more: in the same block at the expense of what is
+ * only a matter of speed, or in a larger one. Nothing is lost thereby, since rows begin with empty memory. */
 #include "row/work.h"
 #include "base/arena.h"
+#include "base/random.h"
 
-#define DEFAULT_NEAR    1024u
-#define DEFAULT_DISCS   256u
-#define DEFAULT_ENTRIES 1024u
+/* What a packed bed takes. */
+#define USUAL_NEAR    1024u
+#define USUAL_DISCS   256u
+#define USUAL_ENTRIES 1024u
+/* The least there may be of each. */
+#define LEAST_NEAR  16u
+#define LEAST_COUNT 4u
 
 /* Takes the arrays of `work` from the arena; the object itself is to be copied to the address returned.
  * FIBRAD_WORK_BYTES in fibrad.h must be kept above what this takes. */
-static fibrad_workspace *layout(fibrad_arena *arena, const fibrad_work_config *config, fibrad_workspace *work) {
+static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan *plan, fibrad_workspace *work) {
     fibrad_workspace *place = fibrad_arena_take(arena, 1, sizeof *work);
-    work->config = work->needed = *config;
+    work->plan = work->needed = *plan;
 
-    size_t discs = (size_t)config->discs + FIBRAD_LANES_MAX;
+    size_t discs = (size_t)plan->discs + FIBRAD_LANES_MAX;
     fibrad_near *near = &work->near;
-    near->capacity = (config->near + 15) / 16 * 16;
+    near->capacity = (plan->near + 15) / 16 * 16;
     near->fx = fibrad_arena_take(arena, near->capacity, sizeof(float));
     near->fy = fibrad_arena_take(arena, near->capacity, sizeof(float));
     near->fz = fibrad_arena_take(arena, near->capacity, sizeof(float));
@@ -27,16 +36,8 @@ static fibrad_workspace *layout(fibrad_arena *arena, const fibrad_work_config *c
     near->sphere = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
     near->entry = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
 
-    for (int list = 0; list < 2; list++) {
-        fibrad_obstacles *blockers = &work->blockers[list];
-        blockers->x = fibrad_arena_take(arena, near->capacity, sizeof(double));
-        blockers->y = fibrad_arena_take(arena, near->capacity, sizeof(double));
-        blockers->z = fibrad_arena_take(arena, near->capacity, sizeof(double));
-        blockers->r = fibrad_arena_take(arena, near->capacity, sizeof(double));
-    }
-
     fibrad_discs *disc = &work->disc;
-    disc->capacity = config->discs;
+    disc->capacity = plan->discs;
     disc->depth = fibrad_arena_take(arena, discs, sizeof(double));
     disc->u = fibrad_arena_take(arena, discs, sizeof(double));
     disc->v = fibrad_arena_take(arena, discs, sizeof(double));
@@ -48,12 +49,12 @@ static fibrad_workspace *layout(fibrad_arena *arena, const fibrad_work_config *c
     disc->order = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     disc->hits = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     disc->taker = fibrad_arena_take(arena, discs, sizeof(uint32_t));
-    fibrad_areas_layout(&work->areas, arena, config->discs);
+    fibrad_areas_layout(&work->areas, arena, plan->discs);
 
     fibrad_entries *entries = &work->entries;
-    entries->capacity = config->entries;
+    entries->capacity = plan->entries;
     entries->slots = 16;
-    while (entries->slots < config->entries + config->entries / 2) entries->slots *= 2;
+    while (entries->slots < plan->entries + plan->entries / 2) entries->slots *= 2;
     entries->at = fibrad_arena_take(arena, entries->slots, sizeof(uint32_t));
     entries->slot = fibrad_arena_take(arena, entries->capacity, sizeof(uint32_t));
     entries->sphere = fibrad_arena_take(arena, entries->capacity, sizeof(uint32_t));
@@ -62,42 +63,184 @@ static fibrad_workspace *layout(fibrad_arena *arena, const fibrad_work_config *c
     entries->angles = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
+    work->extra = fibrad_arena_take(arena, plan->extra, 1);
     return place;
 }
 
-static fibrad_work_config completed(const fibrad_work_config *config) {
-    fibrad_work_config c = {0};
-    if (config != NULL) c = *config;
-    if (c.near == 0) c.near = DEFAULT_NEAR;
-    if (c.discs == 0) c.discs = DEFAULT_DISCS;
-    if (c.entries == 0) c.entries = DEFAULT_ENTRIES;
-    return c;
-}
-
-size_t fibrad_work_size(const fibrad_work_config *config) {
-    fibrad_work_config c = completed(config);
-    if (c.near > FIBRAD_WORK_MAX || c.discs > FIBRAD_WORK_MAX || c.entries > FIBRAD_WORK_MAX) return 0;
+static size_t bytes_of(const fibrad_work_plan *plan) {
+    if (plan->near > FIBRAD_WORK_MAX || plan->discs > FIBRAD_WORK_MAX || plan->entries > FIBRAD_WORK_MAX) return 0;
     fibrad_arena arena = {0};
-    fibrad_work fields = {0};
-    layout(&arena, &c, &fields);
+    fibrad_workspace fields = {0};
+    work_layout(&arena, plan, &fields);
     return fibrad_arena_total(&arena);
 }
 
-int fibrad_work_init(fibrad_workspace **out, void *memory, size_t size, const fibrad_work_config *config) {
-    if (out == NULL) return FIBRAD_E_ARGUMENT;
-    fibrad_arena arena;
-    int status = fibrad_arena_open(&arena, memory, size, fibrad_work_size(config));
-    if (status != FIBRAD_OK) return status;
-    fibrad_work_config c = completed(config);
-    fibrad_work fields = {0};
-    fibrad_zero(memory, fibrad_work_size(config)); /* lanes beyond a count are computed too, and must be harmless */
-    fibrad_workspace *work = layout(&arena, &c, &fields);
-    for (uint32_t slot = 0; slot < fields.entries.slots; slot++) fields.entries.at[slot] = FIBRAD_NONE;
-    *work = fields;
-    *out = work;
-    return FIBRAD_OK;
+/* A word that only laid out memory has, in this block. */
+static uint64_t seal_of(const fibrad_work *work) {
+    return fibrad_mix((uintptr_t)work->memory.block ^ fibrad_mix(work->memory.size));
 }
 
-void fibrad_work_needed(const fibrad_workspace *work, fibrad_work_config *config) {
-    if (work != NULL && config != NULL) *config = work->needed;
+/* The inside, if the block is the one that was laid out. */
+static fibrad_workspace *inside_of(const fibrad_work *work) {
+    unsigned char *block = work->memory.block;
+    if (block == NULL || work->memory.size < sizeof(fibrad_workspace) + FIBRAD_ALIGNMENT) return NULL;
+    fibrad_workspace *space = (fibrad_workspace *)(void *)(block + fibrad_arena_lead(block));
+    return work->inside == space && space->seal == seal_of(work) ? space : NULL;
+}
+
+static fibrad_workspace *lay_out_work(fibrad_work *work, const fibrad_work_plan *plan) {
+    fibrad_arena arena = {0};
+    fibrad_workspace fields = {0};
+    if (fibrad_arena_open(&arena, work->memory.block, work->memory.size, bytes_of(plan)) != FIBRAD_OK) return NULL;
+    /* lanes beyond a count are computed too, and must be harmless */
+    fibrad_zero(arena.base, bytes_of(plan) - plan->extra - (FIBRAD_ALIGNMENT - 1));
+    fibrad_workspace *space = work_layout(&arena, plan, &fields);
+    for (uint32_t slot = 0; slot < fields.entries.slots; slot++) fields.entries.at[slot] = FIBRAD_NONE;
+    fields.seal = seal_of(work);
+    *space = fields;
+    work->inside = space;
+    return space;
+}
+
+static uint32_t less_of(uint32_t count, uint32_t least) {
+    const uint32_t less = count - count / 4;
+    return less > least && less < count ? less : least;
+}
+
+/* Takes from a plan until it fits into `size` bytes: first what is only a matter of speed, then from the larger one of
+ * discs and entries, down to `least`. False: it does not fit. */
+static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t size) {
+    while (bytes_of(plan) > size) {
+        const bool entries_first = (size_t)plan->entries * 96 > (size_t)plan->discs * 768;
+        if (plan->near > least->near)
+            plan->near = less_of(plan->near, least->near);
+        else if (plan->extra > least->extra)
+            plan->extra = plan->extra / 2 > least->extra ? plan->extra / 2 : least->extra;
+        else if (plan->entries > least->entries && (entries_first || plan->discs == least->discs))
+            plan->entries = less_of(plan->entries, least->entries);
+        else if (plan->discs > least->discs)
+            plan->discs = less_of(plan->discs, least->discs);
+        else
+            return false;
+    }
+    return true;
+}
+
+/* Lays out a plan in the block, in a larger one, or as much of it as there is room for, but no less than `least`. */
+static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan *least, fibrad_workspace **space) {
+    fibrad_memory *memory = &work->memory;
+    size_t bytes = bytes_of(&plan);
+    if (bytes == 0) return FIBRAD_E_ARGUMENT;
+    work->inside = NULL;
+    if (memory->resize != NULL && (memory->block == NULL || memory->size < bytes)) {
+        memory->needed = bytes;
+        void *block = memory->resize(memory->context, memory->block, bytes);
+        if (block == NULL) return FIBRAD_E_MEMORY;
+        memory->block = block;
+        memory->size = bytes;
+    } else if (memory->block == NULL || !shrink(&plan, least, memory->size)) {
+        /* at once what a next call would ask for, too */
+        fibrad_work_plan wanted = plan;
+        wanted.near = least->near;
+        memory->needed = bytes_of(&wanted);
+        if (memory->needed < bytes_of(least)) memory->needed = bytes_of(least);
+        return FIBRAD_E_WORK;
+    }
+    *space = lay_out_work(work, &plan);
+    return *space != NULL ? FIBRAD_OK : FIBRAD_E_WORK;
+}
+
+int fibrad_work_open(fibrad_work *work, size_t extra_min, size_t extra_best, fibrad_workspace **space) {
+    if (work->memory.block != NULL && work->memory.size == 0) return FIBRAD_E_ARGUMENT;
+    fibrad_workspace *inside = inside_of(work);
+    fibrad_work_plan plan = {USUAL_NEAR, USUAL_DISCS, USUAL_ENTRIES, extra_best};
+    const fibrad_work_plan least = {LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min};
+    if (inside != NULL && inside->plan.extra >= extra_min) {
+        inside->least = least;
+        *space = inside;
+        return FIBRAD_OK;
+    }
+    if (inside != NULL) {
+        plan = inside->plan;
+        plan.extra = extra_best;
+    }
+    const int status = fit(work, plan, &least, space);
+    if (status == FIBRAD_OK) (*space)->least = least;
+    return status;
+}
+
+int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
+    const fibrad_workspace *now = *space;
+    fibrad_work_plan plan = now->plan, least = now->least;
+    const fibrad_work_plan needed = now->needed;
+    /* what has been too small once in this call must not shrink again */
+    if (needed.near > plan.near) plan.near = least.near = needed.near;
+    if (needed.discs > plan.discs) least.discs = plan.discs + 1, plan.discs = needed.discs;
+    if (needed.entries > plan.entries) least.entries = plan.entries + 1, plan.entries = needed.entries;
+    if (needed.extra > plan.extra) plan.extra = least.extra = needed.extra;
+    const int status = fit(work, plan, &least, space);
+    if (status == FIBRAD_OK) (*space)->least = least;
+    return status;
+}
+
+int fibrad_work_entries_missed(fibrad_workspace *space) {
+    if (space->entries.missed == 0) return FIBRAD_OK;
+    const uint64_t enough = (uint64_t)space->entries.capacity + space->entries.missed;
+    const uint32_t spheres = space->scene->facts.spheres;
+    space->needed.entries = (uint32_t)(enough < spheres ? enough : spheres);
+    return FIBRAD_E_WORK;
+}
+
+int fibrad_work_discs_missed(fibrad_workspace *space) {
+    const uint32_t met = space->disc.count, room = space->disc.capacity;
+    space->needed.discs = met > 2 * room ? met : 2 * room;
+    return FIBRAD_E_WORK;
+}
+
+/* How far along an axis, forwards or backwards, there may be spheres that come before a window. */
+static double extent_along(const fibrad_workspace *work, int axis, double sense) {
+    const fibrad_scene *scene = work->scene;
+    double far = sense > 0 ? scene->high[axis] - work->centre[axis] : work->centre[axis] - scene->low[axis];
+    if (scene->period[axis] > 0) far = FIBRAD_PERIODS * scene->period[axis];
+    return (far + (work->unit + scene->facts.radius_max)) * work->inverse;
+}
+
+void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32_t place, double cutoff,
+                       fibrad_stride stride) {
+    for (uint32_t k = 0; k < work->entries.length; k++) work->entries.at[work->entries.slot[k]] = FIBRAD_NONE;
+    work->entries.length = work->entries.missed = 0;
+    work->entries.end = false;
+    fibrad_zero(work->wall, sizeof work->wall);
+    work->needed = work->plan;
+    work->scene = scene;
+    work->place = place;
+    work->unit = scene->r[place];
+    work->inverse = 1 / work->unit;
+    work->centre[0] = scene->x[place], work->centre[1] = scene->y[place], work->centre[2] = scene->z[place];
+    work->reach = cutoff > 0 ? cutoff * (1 + 1e-12) * work->inverse : __builtin_inf();
+    work->step = stride.first * scene->spacing * work->inverse;
+    work->growth = stride.growth;
+
+    double farthest[3];
+    for (int axis = 0; axis < 3; axis++)
+        farthest[axis] = scene->period[axis] > 0 ? __builtin_inf()
+                                                 : fibrad_max(work->centre[axis] - scene->low[axis],
+                                                              scene->high[axis] - work->centre[axis]) *
+                                                       work->inverse;
+    work->farthest = fibrad_min(farthest[0] + farthest[1] + farthest[2], work->reach);
+    work->clear = work->farthest;
+    for (int axis = 0; axis < 3; axis++)
+        for (int sense = -1; sense <= 1; sense += 2)
+            work->clear = fibrad_min(work->clear, extent_along(work, axis, sense));
+    work->near.shells = 0;
+    work->near.full = false;
+    work->near.asked = 0;
+}
+
+double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]) {
+    double horizon = work->farthest;
+    for (int axis = 0; axis < 3; axis++) {
+        if (w[axis] != 0) horizon = fibrad_min(horizon, extent_along(work, axis, w[axis]) / fibrad_abs(w[axis]));
+    }
+    return horizon;
 }

@@ -6,16 +6,15 @@
 #ifndef FIBRAD_ROW_WORK_H
 #define FIBRAD_ROW_WORK_H
 
-#include "pair/surface_lanes.h"
 #include "row/row_sum.h"
 #include "scene/scene.h"
 #include "window/areas.h"
 #include "window/discs.h"
 
 #define FIBRAD_SHELLS 8
-/* Near spheres in shells by emergence: the least depth at which a sphere can come before a window, in any direction,
- * e = sqrt(d^2 - (1 + r)^2), d being its centre distance. It does come before the window of direction w just if
- * w.c > e. All spheres with e <= limit[s] are in shells 0 ... s, so that what a window meets down to that depth is
+/* Near spheres in shells by their minimum depth: the least depth at which a sphere can come before a window, in any
+ * direction, e = sqrt(d^2 - (1 + r)^2), d being its centre distance. It does come before the window of direction w just
+ * if w.c > e. All spheres with e <= limit[s] are in shells 0 ... s, so that what a window meets down to that depth is
  * known after s + 1 shells. Each shell begins on a whole vector; the gaps are filled with points at the centre, which
  * never lie ahead. */
 typedef struct fibrad_near {
@@ -37,13 +36,26 @@ typedef struct fibrad_near {
 /* A row sees no farther than this many periods along any periodic axis. */
 #define FIBRAD_PERIODS 100.0
 
-struct fibrad_workspace {
-    fibrad_work_config config, needed;
+/* What work memory is laid out for, or is asked for. */
+typedef struct fibrad_work_plan {
+    uint32_t near;    /* near spheres kept per row for all its directions; a matter of speed alone for beams and rays */
+    uint32_t discs;   /* spheres met in one window, hidden ones included */
+    uint32_t entries; /* different spheres seen by one row */
+    size_t extra;     /* bytes for what other methods keep */
+} fibrad_work_plan;
+
+/* The inside of a fibrad_work. Nothing but `extra` outlives a call. */
+typedef struct fibrad_workspace {
+    uint64_t seal;           /* that it is laid out, and for which block */
+    fibrad_work_plan plan;   /* as laid out */
+    fibrad_work_plan least;  /* what the call in hand cannot do without */
+    fibrad_work_plan needed; /* after FIBRAD_E_WORK inside the kernel: at least this, in what differs from plan */
     fibrad_near near;
     fibrad_discs disc;
     fibrad_areas areas;
     fibrad_entries entries;
-    fibrad_obstacles blockers[2]; /* room for the two lists of the surface method, [near.capacity] */
+    void *extra;          /* [plan.extra] */
+    uint64_t extra_owner; /* whose contents `extra` has, 0: nobody's; methods have numbers of their own */
     /* the row in hand */
     const fibrad_scene *scene;
     uint32_t place;                /* of sphere i in the scene */
@@ -53,9 +65,22 @@ struct fibrad_workspace {
     double step, growth;           /* how far the first shell looks, and how much farther each next one */
     double farthest;               /* no sphere is farther from i; infinity with periodic axes */
     double clear;                  /* no window has its horizon nearer than this */
-    double wall[FIBRAD_WALLS + 1]; /* what meets each wall, and what meets none: areas, points or rays */
-    double deepest;                /* of the discs settled; infinity once a window has stayed open */
-};
+    double wall[FIBRAD_WALLS + 1]; /* what meets each wall, and what meets none: areas, points or rays, then factors */
+} fibrad_workspace;
+
+/* Lays work memory out, or finds it laid out, with `extra_min` extra bytes at least and `extra_best` at best.
+ * Errors: FIBRAD_E_ARGUMENT, _WORK (memory.needed is written), _MEMORY. */
+int fibrad_work_open(fibrad_work *work, size_t extra_min, size_t extra_best, fibrad_workspace **space);
+
+/* Lays it out anew after the kernel's own FIBRAD_E_WORK, for what (*space)->needed asks. Errors: _WORK, _MEMORY. */
+int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space);
+
+/* Notes in space->needed that more entries are needed, and returns FIBRAD_E_WORK, if a row has found no room for all;
+ * else FIBRAD_OK. */
+int fibrad_work_entries_missed(fibrad_workspace *space);
+
+/* Notes that more discs are needed, by what the window in hand has met, and returns FIBRAD_E_WORK. */
+int fibrad_work_discs_missed(fibrad_workspace *space);
 
 /* How far the shells look: the first one `first` mean spacings, the spacing being the cube root of the volume per
  * sphere, each next one `growth` times as far. A matter of speed alone. */

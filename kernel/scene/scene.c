@@ -1,7 +1,8 @@
 /* scene.c - copies spheres into a fixed-memory cell grid, and checks them. SPDX-License-Identifier: MIT */
 #include "scene/scene.h"
+#include "base/random.h"
 #include "base/arena.h"
-#include "base/cpu.h"
+#include "base/dispatch.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 
@@ -10,49 +11,69 @@
 /* Cells a level may have beyond one per sphere. */
 #define SPARE_CELLS 8u
 
-static fibrad_scene *layout(fibrad_arena *arena, uint32_t n) {
+static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids) {
     fibrad_scene *scene = fibrad_arena_take(arena, 1, sizeof *scene);
     double *x = fibrad_arena_take(arena, n, sizeof *x), *y = fibrad_arena_take(arena, n, sizeof *y);
     double *z = fibrad_arena_take(arena, n, sizeof *z), *r = fibrad_arena_take(arena, n, sizeof *r);
     uint32_t *order = fibrad_arena_take(arena, n, sizeof *order), *place = fibrad_arena_take(arena, n, sizeof *place);
     uint32_t *start = fibrad_arena_take(arena, (size_t)n + FIBRAD_LEVELS * SPARE_CELLS + 1, sizeof *start);
+    uint64_t *id = ids ? fibrad_arena_take(arena, n, sizeof *id) : NULL;
     if (arena->base != NULL) {
         fibrad_zero(scene, sizeof *scene);
         scene->x = x, scene->y = y, scene->z = z, scene->r = r;
-        scene->order = order, scene->place = place, scene->start = start;
+        scene->order = order, scene->place = place, scene->start = start, scene->id = id;
     }
     return scene;
 }
 
-static bool valid(const fibrad_scene_config *config) {
-    if (config == NULL || config->spheres == 0 || config->spheres > FIBRAD_SPHERES_MAX) return false;
+/* Whether a scene can be made for a configuration; FIBRAD_E_ARGUMENT, _UNSUPPORTED, _ISA. */
+static int check_config(const fibrad_scene_config *config) {
     for (int axis = 0; axis < 3; axis++)
-        if (!(config->period[axis] >= 0 && fibrad_finite(config->period[axis]))) return false;
-    if (!fibrad_walls_valid(config)) return false;
-    return fibrad_isa_choose(config->isa) >= 0;
+        if (!(config->period[axis] >= 0 && fibrad_finite(config->period[axis]))) return FIBRAD_E_ARGUMENT;
+    const int status = fibrad_walls_check(config);
+    if (status != FIBRAD_OK) return status;
+    for (int axis = 0; axis < 3; axis++)
+        if (config->known_low[axis] != 0 || config->known_high[axis] != 0) return FIBRAD_E_UNSUPPORTED;
+    const int isa = fibrad_isa_choose(config->isa);
+    return isa == -2 ? FIBRAD_E_ARGUMENT : isa == -1 ? FIBRAD_E_ISA : FIBRAD_OK;
 }
 
-size_t fibrad_scene_size(const fibrad_scene_config *config) {
-    if (!valid(config)) return 0;
+size_t fibrad_scene_size(uint32_t n, int ids) {
+    if (n > FIBRAD_SPHERES_MAX) return 0;
     fibrad_arena arena = {0};
-    layout(&arena, config->spheres);
+    scene_layout(&arena, n, ids != 0);
     return fibrad_arena_total(&arena);
 }
 
-static int fail(int status, fibrad_fault *fault, uint32_t first, uint32_t second) {
+static int scene_fault(int status, fibrad_fault *fault, uint32_t first, uint32_t second) {
     if (fault != NULL) fault->first = first, fault->second = second;
     return status;
 }
 
+/* Arrays of the caller's without strides left open. */
+static fibrad_spheres with_strides(const fibrad_spheres *spheres) {
+    fibrad_spheres s = *spheres;
+    if (s.stride == 0) s.stride = 1;
+    if (s.stride_r == 0) s.stride_r = 1;
+    return s;
+}
+
+static double coordinate_of(const fibrad_spheres *s, int axis, uint32_t i) {
+    return (axis == 0 ? s->x : axis == 1 ? s->y : s->z)[(size_t)i * s->stride];
+}
+
+static double radius_of(const fibrad_spheres *s, uint32_t i) { return s->r[(size_t)i * s->stride_r]; }
+
 /* Narrows [low, high] to where the bulk of the coordinates lies: mean and four standard deviations, again and again
  * while that leaves some out. A particle lost far away must not spread the cells; it goes into the outermost one. */
-static void trim(const double *c, uint32_t n, double *low, double *high) {
+static void trim(const fibrad_spheres *s, int axis, double *low, double *high) {
+    const uint32_t n = s->n;
     for (int round = 0; round < 16; round++) {
         double sum = 0, square = 0, middle = *low + (*high - *low) / 2, half = (*high - *low) / 2;
         uint32_t within = 0;
         if (half == 0) return;
         for (uint32_t i = 0; i < n; i++) {
-            double d = (c[i] - middle) / half;
+            double d = (coordinate_of(s, axis, i) - middle) / half;
             if (!(fibrad_abs(d) <= 1)) continue;
             sum += d, square += d * d;
             within++;
@@ -65,6 +86,30 @@ static void trim(const double *c, uint32_t n, double *low, double *high) {
     }
 }
 
+/* A hash of all that a scene is made from: two scenes that differ have the same one in one case of 2^64. Never 0. */
+static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
+    const fibrad_container *c = &scene->container;
+    const double fixed[] = {scene->period[0], scene->period[1], scene->period[2], c->low[0],  c->low[1],  c->low[2],
+                            c->high[0],       c->high[1],       c->high[2],       c->axis[0], c->axis[1], c->radius};
+    uint64_t hash = fibrad_mix(s->n), word;
+    for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) {
+        fibrad_copy(&word, &fixed[k], sizeof word);
+        hash = fibrad_mix(hash ^ word);
+    }
+    for (uint32_t b = 0; b < scene->facts.bodies; b++) hash = fibrad_mix(hash ^ scene->slot[b]);
+    for (uint32_t i = 0; i < s->n; i++) {
+        const double sphere[] = {coordinate_of(s, 0, i), coordinate_of(s, 1, i), coordinate_of(s, 2, i),
+                                 radius_of(s, i)};
+        for (int k = 0; k < 4; k++) {
+            fibrad_copy(&word, &sphere[k], sizeof word);
+            hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+            hash ^= hash >> 32;
+        }
+        if (s->id != NULL) hash = (hash ^ s->id[i]) * 0x9e3779b97f4a7c15u;
+    }
+    return fibrad_mix(hash) | 1;
+}
+
 /* Lengths must leave room for squares, and coordinates for the digits of a radius. */
 #define LENGTH_MAX     1e150
 #define COORDINATE_MAX 0x1p45 /* smallest radii */
@@ -72,34 +117,35 @@ static void trim(const double *c, uint32_t n, double *low, double *high) {
 /* Box of the centres and range of the radii. A centre on a periodic axis belongs into [low, low + period), low being
  * the least coordinate: a bed that fits its box keeps its coordinates to the bit. */
 static int measure(fibrad_scene *scene, const fibrad_spheres *s, fibrad_fault *fault) {
-    const double *coordinate[3] = {s->x, s->y, s->z};
-    scene->facts.radius_min = scene->facts.radius_max = s->r[0];
+    scene->facts.radius_min = scene->facts.radius_max = s->n > 0 ? radius_of(s, 0) : 0;
     for (uint32_t i = 0; i < s->n; i++) {
         for (int axis = 0; axis < 3; axis++) {
-            double c = coordinate[axis][i];
-            if (!(fibrad_abs(c) <= LENGTH_MAX)) return fail(FIBRAD_E_ARGUMENT, fault, i, i);
+            double c = coordinate_of(s, axis, i);
+            if (!(fibrad_abs(c) <= LENGTH_MAX)) return scene_fault(FIBRAD_E_ARGUMENT, fault, i, i);
             if (i == 0 || c < scene->low[axis]) scene->low[axis] = c;
             if (i == 0 || c > scene->high[axis]) scene->high[axis] = c;
         }
-        if (!(s->r[i] >= 1 / LENGTH_MAX && s->r[i] <= LENGTH_MAX)) return fail(FIBRAD_E_ARGUMENT, fault, i, i);
-        scene->facts.radius_min = fibrad_min(scene->facts.radius_min, s->r[i]);
-        scene->facts.radius_max = fibrad_max(scene->facts.radius_max, s->r[i]);
+        const double r = radius_of(s, i);
+        if (!(r >= 1 / LENGTH_MAX && r <= LENGTH_MAX)) return scene_fault(FIBRAD_E_ARGUMENT, fault, i, i);
+        scene->facts.radius_min = fibrad_min(scene->facts.radius_min, r);
+        scene->facts.radius_max = fibrad_max(scene->facts.radius_max, r);
     }
     for (uint32_t i = 0; i < s->n; i++) {
         for (int axis = 0; axis < 3; axis++)
-            if (fibrad_abs(coordinate[axis][i]) > COORDINATE_MAX * scene->facts.radius_min)
-                return fail(FIBRAD_E_ARGUMENT, fault, i, i);
-        if (!fibrad_walls_hold(&scene->container, (double[3]){s->x[i], s->y[i], s->z[i]}))
-            return fail(FIBRAD_E_ARGUMENT, fault, i, i);
+            if (fibrad_abs(coordinate_of(s, axis, i)) > COORDINATE_MAX * scene->facts.radius_min)
+                return scene_fault(FIBRAD_E_ARGUMENT, fault, i, i);
+        if (!fibrad_walls_hold(&scene->container,
+                               (double[3]){coordinate_of(s, 0, i), coordinate_of(s, 1, i), coordinate_of(s, 2, i)}))
+            return scene_fault(FIBRAD_E_ARGUMENT, fault, i, i);
     }
-    if (fibrad_walls_reach(&scene->container) > COORDINATE_MAX * scene->facts.radius_min)
-        return fail(FIBRAD_E_ARGUMENT, fault, s->n, s->n);
+    if (s->n > 0 && fibrad_walls_reach(&scene->container) > COORDINATE_MAX * scene->facts.radius_min)
+        return scene_fault(FIBRAD_E_ARGUMENT, fault, s->n, s->n);
     for (int axis = 0; axis < 3; axis++) {
         scene->box_low[axis] = scene->low[axis], scene->box_high[axis] = scene->high[axis];
         if (scene->period[axis] > 0)
             scene->high[axis] = scene->box_high[axis] = scene->low[axis] + scene->period[axis];
         else
-            trim(coordinate[axis], s->n, &scene->box_low[axis], &scene->box_high[axis]);
+            trim(s, axis, &scene->box_low[axis], &scene->box_high[axis]);
     }
     return FIBRAD_OK;
 }
@@ -166,13 +212,13 @@ static uint32_t home(const fibrad_scene *scene, const fibrad_level *level, const
 }
 
 /* Counting sort of the spheres by level and cell, stable, in O(n). */
-static void fill(fibrad_scene *scene, const fibrad_spheres *s) {
+static void sort_into_cells(fibrad_scene *scene, const fibrad_spheres *s) {
     uint32_t count[FIBRAD_LEVELS] = {0}, index[FIBRAD_LEVELS] = {0};
     double largest[FIBRAD_LEVELS] = {0};
     for (uint32_t i = 0; i < s->n; i++) {
-        uint32_t level = level_of(s->r[i], scene->facts.radius_min);
+        uint32_t level = level_of(radius_of(s, i), scene->facts.radius_min);
         count[level]++;
-        largest[level] = fibrad_max(largest[level], s->r[i]);
+        largest[level] = fibrad_max(largest[level], radius_of(s, i));
     }
     uint32_t cells = 0, spheres = 0;
     for (uint32_t l = 0; l < FIBRAD_LEVELS; l++) {
@@ -191,16 +237,17 @@ static void fill(fibrad_scene *scene, const fibrad_spheres *s) {
     uint32_t *start = scene->start;
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t i = 0; i < s->n; i++) {
-            double centre[3] = {wrapped(s->x[i], scene->low[0], scene->period[0]),
-                                wrapped(s->y[i], scene->low[1], scene->period[1]),
-                                wrapped(s->z[i], scene->low[2], scene->period[2])};
-            uint32_t cell = home(scene, &scene->level[index[level_of(s->r[i], scene->facts.radius_min)]], centre);
+            double centre[3] = {wrapped(coordinate_of(s, 0, i), scene->low[0], scene->period[0]),
+                                wrapped(coordinate_of(s, 1, i), scene->low[1], scene->period[1]),
+                                wrapped(coordinate_of(s, 2, i), scene->low[2], scene->period[2])};
+            uint32_t cell =
+                home(scene, &scene->level[index[level_of(radius_of(s, i), scene->facts.radius_min)]], centre);
             if (pass == 0) {
                 start[cell + 1]++;
                 continue;
             }
             uint32_t k = start[cell]++;
-            scene->x[k] = centre[0], scene->y[k] = centre[1], scene->z[k] = centre[2], scene->r[k] = s->r[i];
+            scene->x[k] = centre[0], scene->y[k] = centre[1], scene->z[k] = centre[2], scene->r[k] = radius_of(s, i);
             scene->order[k] = i, scene->place[i] = k;
         }
         if (pass == 0) {
@@ -237,7 +284,7 @@ static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
                         double smaller = fibrad_min(scene->r[i], scene->r[j]);
                         if (distance < sum - smaller || distance == 0) {
                             uint32_t a = scene->order[i], b = scene->order[j];
-                            return fail(FIBRAD_E_GEOMETRY, fault, a < b ? a : b, a < b ? b : a);
+                            return scene_fault(FIBRAD_E_GEOMETRY, fault, a < b ? a : b, a < b ? b : a);
                         }
                         double overlap = (sum - distance) / smaller;
                         if (overlap > scene->facts.overlap_max) {
@@ -252,36 +299,55 @@ static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
     return FIBRAD_OK;
 }
 
-int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibrad_scene_config *config,
-                      const fibrad_spheres *spheres, fibrad_fault *fault) {
-    uint32_t none = spheres != NULL ? spheres->n : 0;
-    if (out == NULL || spheres == NULL || !valid(config) || spheres->n != config->spheres || spheres->x == NULL ||
-        spheres->y == NULL || spheres->z == NULL || spheres->r == NULL)
-        return fail(FIBRAD_E_ARGUMENT, fault, none, none);
-    fibrad_arena arena;
-    int status = fibrad_arena_open(&arena, memory, size, fibrad_scene_size(config));
-    if (status != FIBRAD_OK) return fail(status, fault, none, none);
-
-    fibrad_scene *scene = layout(&arena, spheres->n);
-    scene->facts.spheres = spheres->n;
-    scene->facts.isa = fibrad_isa_choose(config->isa);
-    fibrad_copy(scene->period, config->period, sizeof scene->period);
-    fibrad_walls_build(scene, &config->walls);
-    status = measure(scene, spheres, fault);
-    if (status != FIBRAD_OK) return status;
-    for (int axis = 0; axis < 3; axis++)
-        if (scene->period[axis] > 0 && scene->period[axis] < scene->facts.radius_max)
-            return fail(FIBRAD_E_GEOMETRY, fault, none, none);
-
+/* Cube root of the volume per sphere. */
+static double spacing_of(const fibrad_scene *scene) {
     double longest = 2 * scene->facts.radius_max, volume = 1;
     for (int axis = 0; axis < 3; axis++) longest = fibrad_max(longest, side(scene, axis));
     for (int axis = 0; axis < 3; axis++) volume *= fibrad_max(side(scene, axis), 2 * scene->facts.radius_max) / longest;
-    scene->spacing = longest * cube_root(volume / spheres->n, 1);
+    return longest * cube_root(volume / scene->facts.spheres, 1);
+}
 
-    fill(scene, spheres);
-    status = check_overlaps(scene, fault);
-    if (status == FIBRAD_OK) *out = scene;
-    return status;
+int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibrad_scene_config *given,
+                      const fibrad_spheres *spheres, fibrad_fault *fault) {
+    const fibrad_scene_config config = given != NULL ? *given : (fibrad_scene_config){0};
+    if (out == NULL || spheres == NULL) return scene_fault(FIBRAD_E_ARGUMENT, fault, 0, 0);
+    const uint32_t n = spheres->n;
+    if (n > 0 && (spheres->x == NULL || spheres->y == NULL || spheres->z == NULL || spheres->r == NULL))
+        return scene_fault(FIBRAD_E_ARGUMENT, fault, n, n);
+    fibrad_arena arena;
+    int status = check_config(&config);
+    if (status == FIBRAD_OK)
+        status = fibrad_arena_open(&arena, memory, size, fibrad_scene_size(n, spheres->id != NULL));
+    if (status != FIBRAD_OK) return scene_fault(status, fault, n, n);
+
+    const fibrad_spheres s = with_strides(spheres);
+    fibrad_scene *scene =
+        scene_layout(&arena, n, s.id != NULL); /* hash 0: whoever kept the scene that was here sees it */
+    scene->facts.spheres = n;
+    scene->facts.bodies = config.bodies;
+    scene->facts.isa = fibrad_isa_choose(config.isa);
+    fibrad_copy(scene->period, config.period, sizeof scene->period);
+    fibrad_walls_build(scene, config.body, config.bodies);
+    status = measure(scene, &s, fault);
+    if (status != FIBRAD_OK) return status;
+    for (int axis = 0; axis < 3; axis++)
+        if (scene->period[axis] > 0 && scene->period[axis] < scene->facts.radius_max)
+            return scene_fault(FIBRAD_E_GEOMETRY, fault, n, n);
+    if (n > 0) {
+        scene->spacing = spacing_of(scene);
+        sort_into_cells(scene, &s);
+        if (s.id != NULL) fibrad_copy(scene->id, s.id, n * sizeof *s.id);
+        status = check_overlaps(scene, fault);
+        if (status != FIBRAD_OK) return status;
+    }
+    scene->hash = hash_of(scene, &s);
+    *out = scene;
+    return FIBRAD_OK;
+}
+
+double fibrad_scene_body_area(const fibrad_scene *scene, uint32_t body) {
+    if (!fibrad_scene_ready(scene) || body >= scene->facts.bodies) return __builtin_nan("");
+    return scene->wall_area[scene->slot[body]];
 }
 
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts) {

@@ -7,6 +7,11 @@
 
 #define FIBRAD_NONE UINT32_MAX
 
+/* Walls have slots: 0 to 5 are planes across the axes, x low, x high, y low, y high, z low, z high; 6 is the cylinder.
+ */
+#define FIBRAD_WALLS    7
+#define FIBRAD_CYLINDER 6u
+
 /* Spheres whose radii differ by less than a factor two share a level, a grid of its own with cells to their measure:
  * a small sphere among large ones does not search cells as wide as the large ones need. */
 #define FIBRAD_LEVELS 32
@@ -31,13 +36,25 @@ struct fibrad_scene {
     double period[3], low[3], high[3]; /* box of the centres; on a periodic axis high = low + period */
     double box_low[3], box_high[3];    /* box of the grid: the same without stray spheres */
     fibrad_container container;
-    double spacing; /* cube root of the volume per sphere [L] */
+    uint32_t slot[FIBRAD_WALLS];    /* [facts.bodies] of each body */
+    double wall_area[FIBRAD_WALLS]; /* [L^2] by slot, as fibrad_scene_body_area; 0: no such wall */
+    uint64_t hash;                  /* of all that was handed over; 0: the scene is not complete */
+    double spacing;                 /* cube root of the volume per sphere [L] */
     uint32_t levels;
     fibrad_level level[FIBRAD_LEVELS]; /* by ascending radius; empty ones left out */
     double *x, *y, *z, *r;             /* [n] in cell order */
     uint32_t *order;                   /* [n] the caller's index of each */
     uint32_t *place;                   /* [n] where the caller's sphere i stands */
     uint32_t *start;                   /* [cells + 1] */
+    uint64_t *id;                      /* [n] by the caller's index; NULL: that is the id */
 };
+
+/* Whether there is a complete scene. */
+static inline bool fibrad_scene_ready(const fibrad_scene *scene) { return scene != NULL && scene->hash != 0; }
+
+/* The number of the random paths of the caller's sphere i. */
+static inline uint64_t fibrad_scene_id(const fibrad_scene *scene, uint32_t i) {
+    return scene->id != NULL ? scene->id[i] : i;
+}
 
 #endif

@@ -1,48 +1,76 @@
 /* walls.c - the walls of a scene: which of them a ray meets. SPDX-License-Identifier: MIT */
 #include "scene/walls.h"
 
-#define PI         3.14159265358979323846
-#define INFINITE   __builtin_inf()
-#define LENGTH_MAX 1e150
+#include "base/constants.h"
 
-static bool there(const fibrad_walls *walls, uint32_t plane) { return (walls->planes >> plane & 1) != 0; }
+#define INFINITE        __builtin_inf()
+#define WALL_LENGTH_MAX 1e150
 
-bool fibrad_walls_valid(const fibrad_scene_config *config) {
-    const fibrad_walls *walls = &config->walls;
-    const double *cylinder = walls->cylinder;
-    if (walls->planes >= 1u << FIBRAD_CYLINDER) return false;
-    for (uint32_t k = 0; k < FIBRAD_CYLINDER; k++) {
-        if (!there(walls, k)) continue;
-        if (config->period[k / 2] > 0 || !(fibrad_abs(walls->at[k]) <= LENGTH_MAX)) return false;
-        if (k % 2 == 1 && there(walls, k - 1) && !(walls->at[k - 1] < walls->at[k])) return false;
+static bool wall_length_valid(double length) { return fibrad_abs(length) <= WALL_LENGTH_MAX; }
+
+/* The slot of a body; FIBRAD_WALLS: it is not valid. */
+static uint32_t slot_of_body(const fibrad_body *body) {
+    if (body->kind == FIBRAD_BODY_CYLINDER) {
+        const bool valid = wall_length_valid(body->cylinder.x) && wall_length_valid(body->cylinder.y) &&
+                           wall_length_valid(body->cylinder.radius) && body->cylinder.radius > 0;
+        return valid ? FIBRAD_CYLINDER : FIBRAD_WALLS;
     }
-    if (cylinder[2] == 0) return true;
-    for (int k = 0; k < 3; k++)
-        if (!(fibrad_abs(cylinder[k]) <= LENGTH_MAX)) return false;
-    return cylinder[2] > 0 && config->period[0] == 0 && config->period[1] == 0 && (walls->planes & 15) == 0;
+    const int axis = body->plane.axis, upper = body->plane.upper;
+    const bool valid = body->kind == FIBRAD_BODY_PLANE && axis >= 0 && axis < 3 && (upper == 0 || upper == 1) &&
+                       wall_length_valid(body->plane.at);
+    return valid ? (uint32_t)(2 * axis + upper) : FIBRAD_WALLS;
 }
 
-/* How far the container reaches along an axis, per period. */
-static double extent(const fibrad_scene *scene, uint32_t axis) {
+int fibrad_walls_check(const fibrad_scene_config *config) {
+    const fibrad_body *found[FIBRAD_WALLS] = {NULL};
+    if (config->bodies > 0 && config->body == NULL) return FIBRAD_E_ARGUMENT;
+    for (uint32_t b = 0; b < config->bodies; b++)
+        if (config->body[b].kind == FIBRAD_BODY_MESH) return FIBRAD_E_UNSUPPORTED;
+    if (config->bodies > FIBRAD_WALLS) return FIBRAD_E_UNSUPPORTED;
+    for (uint32_t b = 0; b < config->bodies; b++) {
+        const uint32_t slot = slot_of_body(&config->body[b]);
+        if (slot == FIBRAD_WALLS || found[slot] != NULL) return FIBRAD_E_ARGUMENT;
+        if (slot < FIBRAD_CYLINDER && config->period[slot / 2] > 0) return FIBRAD_E_ARGUMENT;
+        found[slot] = &config->body[b];
+    }
+    for (uint32_t k = 0; k < FIBRAD_CYLINDER; k += 2)
+        if (found[k] != NULL && found[k + 1] != NULL && !(found[k]->plane.at < found[k + 1]->plane.at))
+            return FIBRAD_E_ARGUMENT;
+    if (found[FIBRAD_CYLINDER] == NULL) return FIBRAD_OK;
+    const bool across = found[0] != NULL || found[1] != NULL || found[2] != NULL || found[3] != NULL;
+    return across || config->period[0] > 0 || config->period[1] > 0 ? FIBRAD_E_ARGUMENT : FIBRAD_OK;
+}
+
+/* How far the container extends along an axis, per period. */
+static double container_extent(const fibrad_scene *scene, uint32_t axis) {
     const fibrad_container *c = &scene->container;
     return scene->period[axis] > 0 ? scene->period[axis] : c->high[axis] - c->low[axis];
 }
 
-void fibrad_walls_build(fibrad_scene *scene, const fibrad_walls *walls) {
+/* Area of the wall of a slot. */
+static double wall_area_of(const fibrad_scene *scene, uint32_t slot) {
+    const double radius = scene->container.radius;
+    if (slot == FIBRAD_CYLINDER) return 2 * FIBRAD_PI * radius * container_extent(scene, 2);
+    if (radius < INFINITE) return FIBRAD_PI * radius * radius;
+    return container_extent(scene, (slot / 2 + 1) % 3) * container_extent(scene, (slot / 2 + 2) % 3);
+}
+
+void fibrad_walls_build(fibrad_scene *scene, const fibrad_body *body, uint32_t bodies) {
     fibrad_container *c = &scene->container;
-    const bool cylinder = walls->cylinder[2] > 0;
-    c->walls = walls->planes != 0 || cylinder;
-    for (uint32_t axis = 0; axis < 3; axis++) {
-        c->low[axis] = there(walls, 2 * axis) ? walls->at[2 * axis] : -INFINITE;
-        c->high[axis] = there(walls, 2 * axis + 1) ? walls->at[2 * axis + 1] : INFINITE;
+    c->walls = bodies > 0;
+    for (int axis = 0; axis < 3; axis++) c->low[axis] = -INFINITE, c->high[axis] = INFINITE;
+    c->axis[0] = c->axis[1] = 0;
+    c->radius = INFINITE;
+    for (uint32_t b = 0; b < bodies; b++) {
+        const uint32_t slot = scene->slot[b] = slot_of_body(&body[b]);
+        if (slot == FIBRAD_CYLINDER)
+            c->axis[0] = body[b].cylinder.x, c->axis[1] = body[b].cylinder.y, c->radius = body[b].cylinder.radius;
+        else if (slot % 2 == 0)
+            c->low[slot / 2] = body[b].plane.at;
+        else
+            c->high[slot / 2] = body[b].plane.at;
     }
-    c->axis[0] = cylinder ? walls->cylinder[0] : 0, c->axis[1] = cylinder ? walls->cylinder[1] : 0;
-    c->radius = cylinder ? walls->cylinder[2] : INFINITE;
-    for (uint32_t k = 0; k < FIBRAD_CYLINDER; k++)
-        if (there(walls, k))
-            scene->facts.wall_area[k] =
-                cylinder ? PI * c->radius * c->radius : extent(scene, (k / 2 + 1) % 3) * extent(scene, (k / 2 + 2) % 3);
-    if (cylinder) scene->facts.wall_area[FIBRAD_CYLINDER] = 2 * PI * c->radius * extent(scene, 2);
+    for (uint32_t b = 0; b < bodies; b++) scene->wall_area[scene->slot[b]] = wall_area_of(scene, scene->slot[b]);
 }
 
 bool fibrad_walls_hold(const fibrad_container *c, const double at[3]) {

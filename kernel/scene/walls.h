@@ -4,13 +4,11 @@
 
 #include "scene/scene.h"
 
-#define FIBRAD_CYLINDER 6u /* its number among the walls */
+/* Whether bodies and periods of a configuration fit together; FIBRAD_E_ARGUMENT, _UNSUPPORTED. */
+int fibrad_walls_check(const fibrad_scene_config *config);
 
-/* Whether walls and periods of a configuration fit together. */
-bool fibrad_walls_valid(const fibrad_scene_config *config);
-
-/* Sets scene->container and facts.wall_area from walls found valid; scene->period is set already. */
-void fibrad_walls_build(fibrad_scene *scene, const fibrad_walls *walls);
+/* Sets scene->container, slot and wall_area from bodies found valid; scene->period is set already. */
+void fibrad_walls_build(fibrad_scene *scene, const fibrad_body *body, uint32_t bodies);
 
 /* Whether a place [L] lies within the walls, or on one. */
 bool fibrad_walls_hold(const fibrad_container *container, const double at[3]);

@@ -2,11 +2,12 @@
  *
  * Pair frame: sphere 1 is the unit sphere at the origin (all lengths are in its radii), sphere 2 has radius r2 and
  * centre (0, 0, d), d >= 1 + r2. */
-#ifndef FIBRAD_PAIR_SURFACE_LANES_H
-#define FIBRAD_PAIR_SURFACE_LANES_H
+#ifndef FIBRAD_SURFACE_SURFACE_LANES_H
+#define FIBRAD_SURFACE_SURFACE_LANES_H
 
 #include "base/port.h"
-#include "fibrad.h"
+#include "base/dispatch.h"
+#include "fibrad_surface.h"
 #include "sample/tables.h"
 
 /* Spheres in arrays on 64-byte boundaries, which can be read up to a multiple of 8. */
@@ -37,14 +38,12 @@ typedef struct fibrad_surface_sums {
 
 /* Fills task->obstacles with what of `all` (except number `self`, which is one of the two spheres) reaches into
  * the space between the two spheres; true if one of them hides all of sphere 2. */
-typedef bool fibrad_surface_filter(fibrad_surface_task *task, const fibrad_surface_frame *frame,
-                                   const fibrad_obstacles *all, uint32_t self);
+typedef bool fibrad_surface_filter_function(fibrad_surface_task *task, const fibrad_surface_frame *frame,
+                                            const fibrad_obstacles *all, uint32_t self);
 
-typedef void fibrad_surface_sum(const fibrad_surface_task *task, fibrad_surface_sums *sums);
+typedef void fibrad_surface_sum_function(const fibrad_surface_task *task, fibrad_surface_sums *sums);
 
-extern fibrad_surface_filter fibrad_surface_filter_scalar, fibrad_surface_filter_sse2, fibrad_surface_filter_avx2,
-    fibrad_surface_filter_avx512;
-extern fibrad_surface_sum fibrad_surface_sum_scalar, fibrad_surface_sum_sse2, fibrad_surface_sum_avx2,
-    fibrad_surface_sum_avx512;
+FIBRAD_DECLARE_VERSIONS(fibrad_surface_filter_function, fibrad_surface_filter);
+FIBRAD_DECLARE_VERSIONS(fibrad_surface_sum_function, fibrad_surface_sum);
 
 #endif

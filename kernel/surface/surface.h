@@ -1,16 +1,16 @@
 /* surface.h - the surface method between pairs and rows. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_PAIR_SURFACE_H
-#define FIBRAD_PAIR_SURFACE_H
+#ifndef FIBRAD_SURFACE_SURFACE_H
+#define FIBRAD_SURFACE_SURFACE_H
 
-#include "pair/surface_lanes.h"
+#include "surface/surface_lanes.h"
 
 /* The laned functions of one instruction set. */
 typedef struct fibrad_surface_lanes {
-    fibrad_surface_filter *filter;
-    fibrad_surface_sum *sum;
+    fibrad_surface_filter_function *filter;
+    fibrad_surface_sum_function *sum;
 } fibrad_surface_lanes;
 
-/* NULLs if the build has no such instruction set. Whether the machine has it is not asked. */
+/* Those of an instruction set of this build. Whether the machine has it is not asked. */
 fibrad_surface_lanes fibrad_surface_lanes_of(int isa);
 
 /* The nodes of a rule, its default number included. FIBRAD_E_ARGUMENT for unknown flags, _TABLE. */

@@ -4,7 +4,7 @@
  * left out with a margin above rounding: it could not have changed a bit of the sums either. */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/laned.h"
-#include "pair/surface_lanes.h"
+#include "surface/surface_lanes.h"
 
 #define GROUP  8
 #define STEPS  (GROUP / VD_LANES)

@@ -1,30 +1,15 @@
 /* surface.c - view factors by tensor-product Fibonacci integration. SPDX-License-Identifier: MIT */
-#include "pair/surface.h"
+#include "surface/surface.h"
 #include "base/arena.h"
+#include "base/dispatch.h"
 
 #define ALL_FLAGS                                                                                                      \
     (FIBRAD_SURFACE_NO_CORRECTION | FIBRAD_SURFACE_NO_HORIZON | FIBRAD_SURFACE_NO_REGION | FIBRAD_SURFACE_NO_EXACT |   \
      FIBRAD_SURFACE_NO_HIDDEN)
 
 fibrad_surface_lanes fibrad_surface_lanes_of(int isa) {
-    switch (isa) {
-#ifdef FIBRAD_WITH_AVX512
-    case FIBRAD_ISA_AVX512:
-        return (fibrad_surface_lanes){fibrad_surface_filter_avx512, fibrad_surface_sum_avx512};
-#endif
-#ifdef FIBRAD_WITH_AVX2
-    case FIBRAD_ISA_AVX2:
-        return (fibrad_surface_lanes){fibrad_surface_filter_avx2, fibrad_surface_sum_avx2};
-#endif
-#ifdef FIBRAD_WITH_SSE2
-    case FIBRAD_ISA_SSE2:
-        return (fibrad_surface_lanes){fibrad_surface_filter_sse2, fibrad_surface_sum_sse2};
-#endif
-    case FIBRAD_ISA_SCALAR:
-        return (fibrad_surface_lanes){fibrad_surface_filter_scalar, fibrad_surface_sum_scalar};
-    default:
-        return (fibrad_surface_lanes){NULL, NULL};
-    }
+    return (fibrad_surface_lanes){FIBRAD_VERSION_OF(fibrad_surface_filter, isa),
+                                  FIBRAD_VERSION_OF(fibrad_surface_sum, isa)};
 }
 
 int fibrad_surface_nodes_of(const fibrad_surface_rule *rule, fibrad_surface_nodes *nodes) {
@@ -88,29 +73,33 @@ int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *
     if (n > 0 && (scratch == NULL || obstacles->x == NULL || obstacles->y == NULL || obstacles->z == NULL ||
                   obstacles->r == NULL))
         return FIBRAD_E_ARGUMENT;
-    if (n > 0 && (uintptr_t)scratch % FIBRAD_ALIGNMENT != 0) return FIBRAD_E_ALIGNMENT;
     const double most = 1e70 * r1; /* room for fourth powers */
     if (!(r2 <= most && gap <= most)) return FIBRAD_E_ARGUMENT;
-    for (uint32_t k = 0; k < n; k++)
-        if (!(fibrad_abs(obstacles->x[k]) <= most && fibrad_abs(obstacles->y[k]) <= most &&
-              fibrad_abs(obstacles->z[k]) <= most && obstacles->r[k] <= most && obstacles->r[k] > 0))
+    const size_t stride = n > 0 && obstacles->stride > 0 ? obstacles->stride : 1;
+    const size_t stride_r = n > 0 && obstacles->stride_r > 0 ? obstacles->stride_r : 1;
+    for (size_t k = 0; k < n; k++)
+        if (!(fibrad_abs(obstacles->x[k * stride]) <= most && fibrad_abs(obstacles->y[k * stride]) <= most &&
+              fibrad_abs(obstacles->z[k * stride]) <= most && obstacles->r[k * stride_r] <= most &&
+              obstacles->r[k * stride_r] > 0))
             return FIBRAD_E_ARGUMENT;
+    if (rule.isa < FIBRAD_ISA_BEST || rule.isa > FIBRAD_ISA_AVX512) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_isa_built(rule.isa)) return FIBRAD_E_ISA;
     const fibrad_surface_lanes lanes =
         fibrad_surface_lanes_of(rule.isa == FIBRAD_ISA_BEST ? (int)fibrad_isa_best() : rule.isa);
-    if (lanes.sum == NULL) return FIBRAD_E_ARGUMENT;
     fibrad_surface_task task = {.flags = rule.flags};
     const int status = fibrad_surface_nodes_of(&rule, &task.nodes);
     if (status != FIBRAD_OK) return status;
 
-    const fibrad_obstacles all = list_of(scratch, n, 0);
-    task.obstacles = list_of(scratch, n, 1);
-    task.of_node = list_of(scratch, n, 2);
+    double *aligned = n > 0 ? scratch + fibrad_arena_lead(scratch) / sizeof *scratch : NULL;
+    const fibrad_obstacles all = list_of(aligned, n, 0);
+    task.obstacles = list_of(aligned, n, 1);
+    task.of_node = list_of(aligned, n, 2);
     if (n > 0) fibrad_zero(scratch, FIBRAD_SURFACE_SCRATCH(n) * sizeof *scratch);
-    for (uint32_t k = 0; k < n; k++) {
-        all.x[k] = obstacles->x[k];
-        all.y[k] = obstacles->y[k];
-        all.z[k] = obstacles->z[k];
-        all.r[k] = obstacles->r[k];
+    for (size_t k = 0; k < n; k++) {
+        all.x[k] = obstacles->x[k * stride];
+        all.y[k] = obstacles->y[k * stride];
+        all.z[k] = obstacles->z[k * stride];
+        all.r[k] = obstacles->r[k * stride_r];
     }
     const double scale = 1 / r1;
     const fibrad_surface_frame frame = {{0}, {scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, scale};

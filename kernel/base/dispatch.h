@@ -1,0 +1,43 @@
+/* dispatch.h - the choice of an instruction set. SPDX-License-Identifier: MIT
+ *
+ * FIBRAD_WITH_SSE2, FIBRAD_WITH_AVX2, FIBRAD_WITH_AVX512 are defined when the laned sources were also compiled for
+ * them; scalar is always there. */
+#ifndef FIBRAD_BASE_DISPATCH_H
+#define FIBRAD_BASE_DISPATCH_H
+
+#include "fibrad.h"
+
+/* The instruction set to use for a wish (a fibrad_isa): the wish itself or, for FIBRAD_ISA_BEST, the widest; -1 if this
+ * build or this machine lacks it, -2 if it is none. */
+int fibrad_isa_choose(int wish);
+
+/* Whether this build has an instruction set; FIBRAD_ISA_BEST it always has. */
+int fibrad_isa_built(int isa);
+
+#ifdef FIBRAD_WITH_SSE2
+#define FIBRAD_SSE2(name) name##_sse2
+#else
+#define FIBRAD_SSE2(name) name##_scalar
+#endif
+#ifdef FIBRAD_WITH_AVX2
+#define FIBRAD_AVX2(name) name##_avx2
+#else
+#define FIBRAD_AVX2(name) name##_scalar
+#endif
+#ifdef FIBRAD_WITH_AVX512
+#define FIBRAD_AVX512(name) name##_avx512
+#else
+#define FIBRAD_AVX512(name) name##_scalar
+#endif
+
+/* The version of a laned function for an instruction set of this build, as fibrad_isa_choose returned it. */
+#define FIBRAD_VERSION_OF(name, isa)                                                                                   \
+    ((isa) == FIBRAD_ISA_AVX512 ? FIBRAD_AVX512(name)                                                                  \
+     : (isa) == FIBRAD_ISA_AVX2 ? FIBRAD_AVX2(name)                                                                    \
+     : (isa) == FIBRAD_ISA_SSE2 ? FIBRAD_SSE2(name)                                                                    \
+                                : name##_scalar)
+
+/* Declares all versions of a laned function of a type. */
+#define FIBRAD_DECLARE_VERSIONS(type, name) type name##_scalar, name##_sse2, name##_avx2, name##_avx512
+
+#endif
