@@ -164,6 +164,24 @@ static inline void work_free(fibrad_work *work) {
     *work = (fibrad_work){0};
 }
 
+/* After a call with fixed memory from malloc, at first none: more of it, as much as the kernel asks for, and true if
+ * the call is to be repeated. */
+static inline bool work_again(fibrad_work *work, int status) {
+    if (status != FIBRAD_E_WORK) return false;
+    ck_assert_uint_gt(work->memory.needed, work->memory.size);
+    free(work->memory.block);
+    work->memory.size = work->memory.needed;
+    work->memory.block = malloc(work->memory.size);
+    ck_assert_ptr_nonnull(work->memory.block);
+    return true;
+}
+
+/* Frees fixed memory from malloc. */
+static inline void work_free_fixed(fibrad_work *work) {
+    free(work->memory.block);
+    *work = (fibrad_work){0};
+}
+
 static inline void rows_free(fibrad_rows *rows) {
     if (rows->memory.resize != NULL) free(rows->memory.block);
     *rows = (fibrad_rows){0};
