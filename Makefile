@@ -212,8 +212,11 @@ BENCHES = \
 # built and run where Embree 3 is found (Debian: libembree-dev)
 PEERS = bench/bench_embree.c
 
+# linked with a library that counts its instructions, bench/count_cc.sh; built and run on x86-64
+COUNTED = bench/bench_instructions.c
+
 # these know the argument `quick`
-QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_heat.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c bench/bench_window.c $(PEERS)
+QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_heat.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c bench/bench_window.c $(COUNTED) $(PEERS)
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)
@@ -223,9 +226,10 @@ HOST_OBJECTS   = $(HOST:%.c=$(BUILD)/%.o)
 TEST_PROGRAMS  = $(TESTS:%.c=$(BUILD)/%)
 BENCH_PROGRAMS = $(BENCHES:%.c=$(BUILD)/%)
 PEER_PROGRAMS  = $(PEERS:%.c=$(BUILD)/%)
+COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 
 .PHONY: all lib demo reproduce test run-programs programs check symbols lists format bench bench-quick bench-peers \
-    skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
+    bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
 
 ## all: build/fibrad and build/libfibrad.a (the default)
 all: $(BUILD)/fibrad $(BUILD)/libfibrad.a
@@ -285,6 +289,10 @@ $(PEER_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/libfibrad.a | need
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -O3 $(HOST_FLAGS) $(LDFLAGS) $< $(BUILD)/libhost.a $(BUILD)/libfibrad.a -lembree3 $(GSL_LIBS) -lm -o $@
 
+$(COUNT_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/counted/libfibrad.a | need-gsl
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(HOST_FLAGS) $(LDFLAGS) $< $(BUILD)/libhost.a $(BUILD)/counted/libfibrad.a $(GSL_LIBS) -lm -o $@
+
 need-gsl:
 	@$(PKG_CONFIG) --exists gsl || { echo "The program fibrad needs GSL: run 'make deps' (Debian: pkg-config, libgsl-dev)." \
 	    "'make lib' builds libfibrad.a without it." >&2; exit 1; }
@@ -293,9 +301,9 @@ need-check:
 	@$(PKG_CONFIG) --exists check || { echo "The tests need libcheck: run 'make deps' (Debian: check)." >&2; exit 1; }
 
 # other flags, other objects (for flags on the command line: another BUILD)
-$(KERNEL_OBJECTS) $(HOST_OBJECTS) $(BUILD)/host/main.o $(TEST_PROGRAMS) $(BENCH_PROGRAMS) $(PEER_PROGRAMS): Makefile
+$(KERNEL_OBJECTS) $(HOST_OBJECTS) $(BUILD)/host/main.o $(TEST_PROGRAMS) $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS): Makefile
 
--include $(KERNEL_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d) $(PEER_PROGRAMS:=.d) $(BUILD)/host/main.d
+-include $(KERNEL_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d) $(PEER_PROGRAMS:=.d) $(COUNT_PROGRAMS:=.d) $(BUILD)/host/main.d
 
 # ---- what one does with them ----------------------------------------------------------------------------------------
 DEMO_BED = tests/data/mono2000.dump
@@ -326,7 +334,7 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
 check: symbols lists format
 
-LISTED = $(KERNEL) $(LANED) $(HOST) host/main.c host/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS)
+LISTED = $(KERNEL) $(LANED) $(HOST) host/main.c host/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
 FOUND  = $(wildcard kernel/*/*.c host/*.c tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
 
 lists:
@@ -346,15 +354,15 @@ format:
 BENCH_ENV = BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" BENCH_FLAGS="$(CFLAGS) -ffp-contract=off"
 
 ## bench: build and run all benches; CSV into build/bench, plots into docs/figures
-bench: $(BENCH_PROGRAMS) bench-peers
-	@set -e; for b in $(BENCH_PROGRAMS) $(PEER_PROGRAMS); do \
+bench: $(BENCH_PROGRAMS) bench-peers bench-counted
+	@set -e; for b in $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS); do \
 	    test -x $$b || continue; echo "$$b > $$b.csv"; $(BENCH_ENV) $$b > $$b.csv; done
 	gnuplot -e "in='$(BUILD)/bench/bench_beam.csv'; peer='$(BUILD)/bench/bench_embree.csv'; \
 	    out='docs/figures/beam_error.svg'" bench/plot_beam.gp
 	gnuplot -e "in='$(BUILD)/bench/bench_scale.csv'; out='docs/figures/scale.svg'" bench/plot_scale.gp
 
 ## bench-quick: build all benches and run the smallest case of some: do they still work?
-bench-quick: $(BENCH_PROGRAMS) bench-peers
+bench-quick: $(BENCH_PROGRAMS) bench-peers bench-counted
 	@set -e; mkdir -p $(BUILD)/bench/quick; for b in $(QUICK:bench/%.c=%); do \
 	    test -x $(BUILD)/bench/$$b || continue; echo "$$b quick"; \
 	    $(BENCH_ENV) $(BUILD)/bench/$$b quick > $(BUILD)/bench/quick/$$b.csv; done
@@ -367,6 +375,13 @@ bench-peers:
 	@if echo '#include <embree3/rtcore.h>' | $(CC) -E -xc - >/dev/null 2>&1; then \
 	    $(MAKE) -s --no-print-directory $(PEER_PROGRAMS); \
 	else echo "No Embree 3 (Debian: libembree-dev): its benches are skipped"; fi
+
+# the library is made anew where its sources have changed: its own make knows
+bench-counted: $(BUILD)/libhost.a
+	@case $$($(CC) -dumpmachine) in x86_64*) \
+	    $(MAKE) -s --no-print-directory BUILD=$(BUILD)/counted CC="bench/count_cc.sh $(CC)" HOSTCC="$(HOSTCC)" lib && \
+	    $(MAKE) -s --no-print-directory $(COUNT_PROGRAMS) ;; \
+	*) echo "Instructions are only counted on x86-64" ;; esac
 
 ## skips: what the skips save that no argument turns off, each turned off in a copy of the kernel (some minutes)
 skips:
