@@ -169,13 +169,13 @@ TESTS = \
     tests/test_exchange.c \
     tests/test_furnace.c \
     tests/test_heat.c \
+    tests/test_matrix.c \
     tests/test_moved.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
     tests/test_read.c \
     tests/test_reference.c \
     tests/test_reproduce.c \
-    tests/test_rows.c \
     tests/test_scene.c \
     tests/test_status.c \
     tests/test_stress.c \
