@@ -211,12 +211,13 @@ typedef struct fibrad_row {
     double *f;         /* [capacity] out: factor from sphere i to sphere col[.], all > 0 */
     double *body;      /* [bodies of the scene] out: factor to each; may be NULL if there are none */
     uint32_t capacity; /* in */
-    fibrad_rows *rows; /* in: the row is appended to these, and col, f, body are not used; NULL: they are */
-    uint32_t sphere;   /* out: i */
-    uint32_t length;   /* out: entries; after FIBRAD_E_CAPACITY: the entries there would be */
-    double escaped;    /* out: the fraction that meets no sphere and no body, measured */
-    double beyond;     /* out: the fraction that leaves the known region; 0 */
-    double error;      /* out: Euclidean error of f, estimated: on the median twice the true one, seldom less than it */
+    fibrad_rows
+        *rows;       /* in: NULL, or the row is appended to these; col, f, body then point into it till the next row */
+    uint32_t sphere; /* out: i */
+    uint32_t length; /* out: entries; after FIBRAD_E_CAPACITY: the entries there would be */
+    double escaped;  /* out: the fraction that meets no sphere and no body, measured */
+    double beyond;   /* out: the fraction that leaves the known region; 0 */
+    double error;    /* out: Euclidean error of f, estimated: on the median twice the true one, seldom less than it */
     uint32_t directions; /* out, beams only: how many were taken */
     uint32_t fallbacks;  /* out, beams only: windows whose exact areas the fast method left to the robust one */
     int symmetric;       /* out: 1 if the method makes A_i F_ij = A_j F_ji by itself, so that averaging adds nothing */
