@@ -4,9 +4,10 @@
 #include "base/constants.h"
 #include "base/dispatch.h"
 #include "heat/hits_lanes.h"
+#include "heat/solve.h"
 #include "heat/sphere_patch.h"
-#include "row/beam.h"
-#include "sample/tables.h"
+#include "heat/wall_patch.h"
+#include "sample/direction.h"
 
 #define HEAT_DIRECTIONS 168u
 #define HEAT_POINTS     64u
@@ -20,7 +21,7 @@
 #define BEAM_ERROR  .2
 #define FEW_ERROR   .25
 
-static fibrad_heat_config config_of(const fibrad_heat_config *config) {
+static fibrad_heat_config heat_config_of(const fibrad_heat_config *config) {
     fibrad_heat_config c = {0};
     if (config != NULL) c = *config;
     if (c.directions == 0) c.directions = HEAT_DIRECTIONS;
@@ -99,7 +100,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
 }
 
 size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene) {
-    const fibrad_heat_config c = config_of(config);
+    const fibrad_heat_config c = heat_config_of(config);
     if (heat_check(&c, scene) != FIBRAD_OK) return 0;
     fibrad_arena arena = {0};
     fibrad_heat fields = {0};
@@ -157,7 +158,7 @@ static void forget_beams(fibrad_heat *heat) {
 int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene) {
     if (out == NULL) return FIBRAD_E_ARGUMENT;
-    const fibrad_heat_config c = config_of(config);
+    const fibrad_heat_config c = heat_config_of(config);
     fibrad_arena arena;
     int status = heat_check(&c, scene);
     if (status == FIBRAD_OK) status = fibrad_arena_open(&arena, memory, size, fibrad_heat_size(config, scene));

@@ -2,7 +2,6 @@
  */
 #include "row/beam.h"
 #include "row/beam_lanes.h"
-#include "sample/direction.h"
 
 #define BEAM_DIRECTIONS 233u
 #define BEAM_PILOT      100u /* directions to begin with, if there is a tolerance */
@@ -13,19 +12,6 @@ uint32_t fibrad_directions_for(uint32_t directions, double error, double toleran
     double n = directions < FIBRAD_DIRECTIONS_MIN ? FIBRAD_DIRECTIONS_MIN : directions;
     for (; n < FIBRAD_DIRECTIONS_MAX && (error > 0.9 * tolerance || n < 1.2 * directions); n *= 1.125) error *= 0.838;
     return n < FIBRAD_DIRECTIONS_MAX ? (uint32_t)n : FIBRAD_DIRECTIONS_MAX;
-}
-
-/* Windows of points are turned by five golden angles each, so that the points of one do not lie as those of its
- * neighbours: of what was tried the error is least, half of that without, at 2000 directions of 256 points. */
-void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]) {
-    fibrad_polar d = fibrad_direction_polar(k, directions);
-    double across[2][3] = {{-d.sin, d.cos, 0}, {-d.z * d.cos, -d.z * d.sin, d.ring}}, cos = 1, sin = 0;
-    if (points > 0) fibrad_azimuth(5 * k % FIBRAD_DIRECTIONS_MAX, &cos, &sin);
-    for (int axis = 0; axis < 3; axis++) {
-        double u = across[0][axis], v = across[1][axis];
-        frame[axis] = cos * u + sin * v, frame[3 + axis] = cos * v - sin * u;
-    }
-    frame[6] = d.ring * d.cos, frame[7] = d.ring * d.sin, frame[8] = d.z;
 }
 
 int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) {

@@ -114,10 +114,10 @@ static uint32_t less_of(uint32_t count, uint32_t least) {
 static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t size) {
     while (bytes_of(plan) > size) {
         const bool entries_first = (size_t)plan->entries * 96 > (size_t)plan->discs * 768;
-        if (plan->near > least->near)
-            plan->near = less_of(plan->near, least->near);
-        else if (plan->extra > least->extra)
+        if (plan->extra > least->extra && (plan->extra > (size_t)plan->near * 64 || plan->near == least->near))
             plan->extra = plan->extra / 2 > least->extra ? plan->extra / 2 : least->extra;
+        else if (plan->near > least->near)
+            plan->near = less_of(plan->near, least->near);
         else if (plan->entries > least->entries && (entries_first || plan->discs == least->discs))
             plan->entries = less_of(plan->entries, least->entries);
         else if (plan->discs > least->discs)
