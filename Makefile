@@ -205,6 +205,7 @@ SCRIPTS = \
     tests/check_header.sh \
     tests/check_npz.sh \
     tests/check_house.sh \
+    tests/check_map.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
     tests/freestanding/check_freestanding.sh \
