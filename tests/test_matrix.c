@@ -717,6 +717,8 @@ START_TEST(rows_added_are_rows_computed) {
             if (i % 2) continue;
             ck_assert_uint_eq(append.sphere, i); /* said of a row that is appended, too */
             ck_assert(append.length > 0 && append.length < bed.n);
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+            ck_assert(same_bits_with(&append, &row, 2)); /* where it stands now */
             ck_assert_uint_eq(append.directions, 34);
             ck_assert_double_gt(append.error, 0);
         }
