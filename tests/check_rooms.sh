@@ -26,24 +26,26 @@ sample: base
 pair: base sample
 window: base sample
 scene: base
-row: base sample pair window scene
-matrix: base row
+store: base
+row: base sample pair window scene store
+matrix: base scene store
+surface: base sample pair scene row
 ray: base sample pair window scene row
 exchange: base sample pair window scene row ray
 heat: base sample pair window scene row ray
 furnace: base
 LIST
     rooms host <<LIST
+simple:
 cli:
-bed: cli
+bed: cli simple
 read: cli bed
-compute: cli bed
-boxes: cli bed compute
-write: cli bed compute boxes
-plot: cli bed compute boxes write
+boxes: cli bed
+write: cli bed simple boxes
+plot: cli bed simple boxes write
 reference: cli
-reproduce: cli bed compute boxes write plot reference
-command: cli bed read compute boxes write plot reference reproduce
+reproduce: cli bed simple boxes write plot reference
+command: cli bed read simple boxes write plot reference reproduce
 examples:
 LIST
     find kernel host -name '*.[ch]' | sed 's|.*/||' | sort | uniq -d | sed 's/$/: a name of two sources/'
