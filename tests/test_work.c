@@ -209,8 +209,8 @@ START_TEST(blocks_of_any_alignment) {
         fibrad_work work = work_fixed(block + offset, size);
         ck_assert_int_eq(call(function, scene, &work, 5, &out), FIBRAD_OK);
         ck_assert_msg(same_output(function, &out, &truth), "%s at %zu", names[function], offset);
-        for (size_t k = 0; k < offset; k++) ck_assert_uint_eq(block[k], 0x5a);
-        for (size_t k = offset + size; k < size + 128; k++) ck_assert_uint_eq(block[k], 0x5a);
+        ck_assert(bytes_are(block, 0, offset, 0x5a));
+        ck_assert(bytes_are(block, offset + size, size + 128, 0x5a));
     }
     output_free(&truth), output_free(&out);
     free(block), free(scene);
@@ -348,8 +348,8 @@ START_TEST(heat_blocks_of_any_alignment) {
         memset(block, 0xa5, size + 128);
         powers_in(block, size, offset, scene, bed.n, power);
         ck_assert_mem_eq(power, first, (bed.n + 5) * sizeof *power);
-        for (size_t k = 0; k < offset; k++) ck_assert_uint_eq(block[k], 0xa5);
-        for (size_t k = offset + size; k < size + 128; k++) ck_assert_uint_eq(block[k], 0xa5);
+        ck_assert(bytes_are(block, 0, offset, 0xa5));
+        ck_assert(bytes_are(block, offset + size, size + 128, 0xa5));
     }
     ck_assert(first[0] != 0 && isfinite(first[0]));
     free(block), free(scene);
