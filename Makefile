@@ -197,6 +197,7 @@ TESTS = \
     tests/test_tables.c \
     tests/test_trace.c \
     tests/test_walls.c \
+    tests/test_work.c \
     tests/test_write.c
 
 SCRIPTS = \
