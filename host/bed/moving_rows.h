@@ -3,7 +3,6 @@
 #ifndef MOVING_ROWS_H
 #define MOVING_ROWS_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "bed/bed.h"
@@ -20,12 +19,11 @@ struct moving {
     uint32_t rounds;     /* in how many rounds, since new rows tell of further ones */
     fibrad_scene *scene; /* of the last step */
     /* its own */
-    void *block, *spare; /* of the scene, and of the next one */
-    fibrad_row *fresh;   /* [n] rows computed in this round */
-    unsigned char *due;  /* [n] DUE: to be computed; DONE: computed in this step */
-    unsigned char *scratch;
-    double *reach;
-    fibrad_work **work; /* [threads], and their blocks */
+    void *block;        /* of the scene */
+    fibrad_row *fresh;  /* [n] rows computed in this round */
+    unsigned char *due; /* [n] DUE: to be computed; DONE: computed in this step */
+    fibrad_work *work;  /* [threads] */
+    fibrad_rows *rows;  /* [threads] the row in hand */
 };
 
 /* Computes all rows of a bed. threads: 0 is all. End it also after an error. Status 0, STATUS_INPUT or STATUS_MEMORY.
@@ -33,7 +31,7 @@ struct moving {
 int moving_begin(struct moving *moving, const struct bed *bed, const fibrad_beam_rule *rule, int threads);
 
 /* Goes on to the same spheres at other places: computes anew those rows whose estimated error through motion would
- * exceed `error`; with 0, all that have changed by a single bit. Nothing depends on the number of threads. */
+ * exceed `error`; with 0, all. Nothing depends on the number of threads. */
 int moving_step(struct moving *moving, const struct bed *bed, double error);
 
 void moving_end(struct moving *moving);
