@@ -177,12 +177,13 @@ TESTS = \
     tests/test_cast.c \
     tests/test_cli.c \
     tests/test_direction.c \
+    tests/test_drift.c \
     tests/test_estimate.c \
     tests/test_exchange.c \
     tests/test_furnace.c \
     tests/test_heat.c \
     tests/test_matrix.c \
-    tests/test_moved.c \
+    tests/test_protocol.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
     tests/test_read.c \
