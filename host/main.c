@@ -21,7 +21,7 @@ static const struct {
     {"reproduce", "the numbers of the papers beside ours", command_reproduce},
 };
 
-static int help(void) {
+static int main_help(void) {
     printf("fibrad %s - view factors for thermal radiation between spheres\n\nCommands:\n", fibrad_version());
     for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
         printf("  %-12s %s\n", commands[k].name, commands[k].purpose);
@@ -31,15 +31,15 @@ static int help(void) {
     return STATUS_OK;
 }
 
-static int version(void) {
+static int main_version(void) {
     printf("fibrad %s (%s)\n", fibrad_version(), fibrad_isa_name((int)fibrad_isa_best()));
     return STATUS_OK;
 }
 
-static int choose(int argc, char **argv) {
+static int main_choose(int argc, char **argv) {
     const char *name = argc > 1 ? argv[1] : "";
-    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return help();
-    if (strcmp(name, "--version") == 0) return version();
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return main_help();
+    if (strcmp(name, "--version") == 0) return main_version();
     for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
         if (strcmp(name, commands[k].name) == 0) {
             interrupt_catch();
@@ -50,7 +50,7 @@ static int choose(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-    int status = choose(argc, argv);
+    int status = main_choose(argc, argv);
     if (status > STATUS_SIGNAL) message(status, "interrupted");
     if ((ferror(stdout) || fclose(stdout) != 0) && !status)
         status = message(STATUS_FILE, "standard output: %s", strerror(errno));

@@ -236,7 +236,8 @@ typedef struct fibrad_row {
     double *f;           /* [capacity] out: factor from sphere i to sphere col[.], all > 0 */
     double *body;        /* [bodies of the scene] out: factor to each; may be NULL if there are none */
     uint32_t capacity;   /* in */
-    fibrad_rows *rows;   /* in: the row is appended to these, and col, f, body are not used; NULL: they are */
+    fibrad_rows *rows;   /* in: NULL, or the row is appended to these: then col, f and body are out, where it stands
+                            until the next one is appended, and capacity is not used */
     uint32_t sphere;     /* out: i */
     uint32_t length;     /* out: entries; after FIBRAD_E_CAPACITY: the entries there would be */
     double escaped;      /* out: the fraction that meets no sphere and no body, measured */

@@ -8,7 +8,7 @@
 #include "cli/message.h"
 #include "cli/options.h"
 
-static int take(const char *what, const char *text, double most, struct quantity *quantity) {
+static int take_quantity(const char *what, const char *text, double most, struct quantity *quantity) {
     *quantity = (struct quantity){.given = true};
     if (!isalpha((unsigned char)*text) && *text != '_') return options_number(what, text, 0, most, &quantity->value);
     quantity->column = text;
@@ -16,17 +16,17 @@ static int take(const char *what, const char *text, double most, struct quantity
 }
 
 int emissivity_option(const char *text, struct quantity *emissivity) {
-    const int status = take("--emissivity", text, 1, emissivity);
+    const int status = take_quantity("--emissivity", text, 1, emissivity);
     if (!status && !emissivity->column && !(emissivity->value > 0))
         return message(STATUS_USAGE, "--emissivity: '%.60s' is neither a number above 0 up to 1 nor a column", text);
     return status;
 }
 
 int temperature_option(const char *text, struct quantity *temperature) {
-    return take("--temperature", text, TEMPERATURE_MAX, temperature);
+    return take_quantity("--temperature", text, TEMPERATURE_MAX, temperature);
 }
 
-static double *spread(const struct quantity *quantity, const struct bed *bed) {
+static double *spread_spheres(const struct quantity *quantity, const struct bed *bed) {
     double *values = malloc(bed->n * sizeof *values);
     for (uint32_t i = 0; values && i < bed->n; ++i)
         values[i] = quantity->column ? bed->extra[i * bed->extras + quantity->place] : quantity->value;
@@ -34,7 +34,7 @@ static double *spread(const struct quantity *quantity, const struct bed *bed) {
 }
 
 int emissivity_of(const struct quantity *quantity, const struct bed *bed, const char *file, double **emissivity) {
-    const double *e = *emissivity = spread(quantity, bed);
+    const double *e = *emissivity = spread_spheres(quantity, bed);
     if (!e) return message_memory();
     for (uint32_t i = 0; i < bed->n; ++i)
         if (!(e[i] > 0 && e[i] <= 1))
@@ -44,7 +44,7 @@ int emissivity_of(const struct quantity *quantity, const struct bed *bed, const 
 }
 
 int temperature_of(const struct quantity *quantity, const struct bed *bed, const char *file, double **temperature) {
-    const double *t = *temperature = spread(quantity, bed);
+    const double *t = *temperature = spread_spheres(quantity, bed);
     if (!t) return message_memory();
     for (uint32_t i = 0; i < bed->n; ++i)
         if (!(t[i] >= 0 && t[i] <= TEMPERATURE_MAX))
@@ -52,33 +52,29 @@ int temperature_of(const struct quantity *quantity, const struct bed *bed, const
     return STATUS_OK;
 }
 
-/* The list over the walls in their order, its last number for all further ones; `otherwise` if there is no list. */
-static int spread_walls(const char *what, const char *text, double otherwise, const struct wall_order *order,
-                        double values[FIBRAD_WALLS]) {
-    double given[FIBRAD_WALLS] = {otherwise};
+/* The list over the walls, its last number for all further ones; `otherwise` if there is no list. */
+static int spread_walls(const char *what, const char *text, double otherwise, uint32_t walls,
+                        double values[WALLS_MAX]) {
     int count = 1;
-    const int status = text ? options_numbers(what, text, FIBRAD_WALLS, given, &count) : STATUS_OK;
-    if (status) return status;
-    if (text && (uint32_t)count > order->count)
-        return message(STATUS_USAGE, "%s: %d for %u walls", what, count, order->count);
-    for (int wall = 0; wall < FIBRAD_WALLS; ++wall) values[wall] = otherwise;
-    for (uint32_t k = 0; k < order->count; ++k)
-        values[order->wall[k]] = given[k < (uint32_t)count ? k : (uint32_t)count - 1];
-    return STATUS_OK;
-}
-
-int emissivity_walls(const char *text, const struct wall_order *order, double e[FIBRAD_WALLS]) {
-    const int status = spread_walls("--wall-emissivity", text, 1, order, e);
-    for (uint32_t k = 0; k < order->count && !status; ++k)
-        if (!(e[order->wall[k]] >= 0 && e[order->wall[k]] <= 1))
-            return message(STATUS_USAGE, "--wall-emissivity: %g is not in 0 to 1", e[order->wall[k]]);
+    values[0] = otherwise;
+    const int status = text ? options_numbers(what, text, WALLS_MAX, values, &count) : STATUS_OK;
+    if (!status && text && (uint32_t)count > walls)
+        return message(STATUS_USAGE, "%s: %d for %u walls", what, count, walls);
+    for (int k = count; k < WALLS_MAX && !status; ++k) values[k] = values[count - 1];
     return status;
 }
 
-int temperature_walls(const char *text, const struct wall_order *order, double surroundings, double t[FIBRAD_WALLS]) {
-    const int status = spread_walls("--wall-temperature", text, surroundings, order, t);
-    for (uint32_t k = 0; k < order->count && !status; ++k)
-        if (!(t[order->wall[k]] >= 0 && t[order->wall[k]] <= TEMPERATURE_MAX))
-            return message(STATUS_USAGE, "--wall-temperature: %g is no temperature", t[order->wall[k]]);
+int emissivity_walls(const char *text, uint32_t walls, double e[WALLS_MAX]) {
+    const int status = spread_walls("--wall-emissivity", text, 1, walls, e);
+    for (uint32_t k = 0; k < walls && !status; ++k)
+        if (!(e[k] >= 0 && e[k] <= 1)) return message(STATUS_USAGE, "--wall-emissivity: %g is not in 0 to 1", e[k]);
+    return status;
+}
+
+int temperature_walls(const char *text, uint32_t walls, double surroundings, double t[WALLS_MAX]) {
+    const int status = spread_walls("--wall-temperature", text, surroundings, walls, t);
+    for (uint32_t k = 0; k < walls && !status; ++k)
+        if (!(t[k] >= 0 && t[k] <= TEMPERATURE_MAX))
+            return message(STATUS_USAGE, "--wall-temperature: %g is no temperature", t[k]);
     return status;
 }

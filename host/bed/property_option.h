@@ -36,10 +36,9 @@ int temperature_option(const char *text, struct quantity *temperature);
 int emissivity_of(const struct quantity *quantity, const struct bed *bed, const char *file, double **emissivity);
 int temperature_of(const struct quantity *quantity, const struct bed *bed, const char *file, double **temperature);
 
-/* Spread the list of --wall-emissivity or --wall-temperature over the walls there are. NULL: it was not given, and
- * walls are black, or as hot as the surroundings. Status 0 or STATUS_USAGE. */
-int emissivity_walls(const char *text, const struct wall_order *order, double emissivity[FIBRAD_WALLS]);
-int temperature_walls(const char *text, const struct wall_order *order, double surroundings,
-                      double temperature[FIBRAD_WALLS]);
+/* Spread the list of --wall-emissivity or --wall-temperature over so many walls. NULL: it was not given, and walls are
+ * black, or as hot as the surroundings. Status 0 or STATUS_USAGE. */
+int emissivity_walls(const char *text, uint32_t walls, double emissivity[WALLS_MAX]);
+int temperature_walls(const char *text, uint32_t walls, double surroundings, double temperature[WALLS_MAX]);
 
 #endif

@@ -7,32 +7,42 @@
 
 #include "cli/message.h"
 
-enum { PLANES = 6, CYLINDER = 6 };
+enum { PLANES = 6 };
 
-static const char *const names[FIBRAD_WALLS] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "cylinder"};
+static const char *const plane_names[PLANES] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
 
-const char *wall_name(uint32_t wall) { return names[wall]; }
+static fibrad_body plane_at(int number, double at) {
+    return (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {number / 2, number % 2, at}};
+}
 
-static bool is(const char *word, size_t length, const char *name) {
+static bool is_cylinder(const fibrad_body *wall) { return wall->kind == FIBRAD_BODY_CYLINDER; }
+
+const char *wall_name(const fibrad_body *wall) {
+    return is_cylinder(wall) ? "cylinder" : plane_names[2 * wall->plane.axis + wall->plane.upper];
+}
+
+static bool is_word(const char *word, size_t length, const char *name) {
     return strlen(name) == length && strncmp(word, name, length) == 0;
 }
 
-static bool named(const struct wall_options *options, uint32_t wall) {
-    for (uint32_t k = 0; k < options->count; ++k)
-        if (options->wall[k] == wall) return true;
-    return false;
+/* The wall of a name; NULL: there is none. */
+static const fibrad_body *wall_named(const struct walls *walls, const char *name) {
+    for (uint32_t k = 0; k < walls->count; ++k)
+        if (strcmp(wall_name(&walls->body[k]), name) == 0) return &walls->body[k];
+    return NULL;
 }
 
-static int add(struct wall_options *options, uint32_t wall, bool placed, double at) {
-    if (named(options, wall)) return message(STATUS_USAGE, "--wall: %s is named twice", names[wall]);
-    options->wall[options->count] = wall;
-    options->placed[options->count] = placed;
-    options->at[options->count++] = at;
+static int add_wall(struct wall_options *options, fibrad_body wall, bool placed) {
+    struct walls *walls = &options->walls;
+    if (wall_named(walls, wall_name(&wall)))
+        return message(STATUS_USAGE, "--wall: %s is named twice", wall_name(&wall));
+    options->placed[walls->count] = placed;
+    walls->body[walls->count++] = wall;
     return STATUS_OK;
 }
 
 /* One finite number at *text, which moves behind it. */
-static bool number(const char **text, double *value) {
+static bool take_number(const char **text, double *value) {
     char *end;
     *value = strtod(*text, &end);
     const bool found = end != *text && isfinite(*value);
@@ -41,23 +51,23 @@ static bool number(const char **text, double *value) {
 }
 
 /* X,Y,R; *text moves behind them. */
-static int cylinder(const char **text, struct wall_options *options) {
-    double *c = options->cylinder;
-    bool good = number(text, &c[0]);
-    for (int k = 1; k < 3 && good; ++k) good = *(*text)++ == ',' && number(text, &c[k]);
+static int take_cylinder(const char **text, struct wall_options *options) {
+    double c[3];
+    bool good = take_number(text, &c[0]);
+    for (int k = 1; k < 3 && good; ++k) good = *(*text)++ == ',' && take_number(text, &c[k]);
     if (!good || !(c[2] > 0)) return message(STATUS_USAGE, "--wall: a cylinder is cylinder:X,Y,R with a radius R > 0");
-    return add(options, CYLINDER, true, 0);
+    return add_wall(options, (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {c[0], c[1], c[2]}}, true);
 }
 
-static int plane(const char *word, size_t length, const char **text, struct wall_options *options) {
-    for (uint32_t wall = 0; wall < PLANES; ++wall) {
-        if (!is(word, length, names[wall])) continue;
+static int take_plane(const char *word, size_t length, const char **text, struct wall_options *options) {
+    for (int k = 0; k < PLANES; ++k) {
+        if (!is_word(word, length, plane_names[k])) continue;
         double at = 0;
         const bool placed = **text == '=';
-        if (!placed) return add(options, wall, false, 0);
-        ++*text;
-        if (!number(text, &at)) return message(STATUS_USAGE, "--wall: %s= needs a number", names[wall]);
-        return add(options, wall, true, at);
+        if (placed) ++*text;
+        if (placed && !take_number(text, &at))
+            return message(STATUS_USAGE, "--wall: %s= needs a number", plane_names[k]);
+        return add_wall(options, plane_at(k, at), placed);
     }
     return message(STATUS_USAGE, "--wall: '%.40s' is neither auto, box, xmin ... zmax nor cylinder:X,Y,R", word);
 }
@@ -68,15 +78,15 @@ int walls_option(const char *text, struct wall_options *options) {
         const size_t length = strcspn(word, ",=:");
         int status = STATUS_OK;
         text += length;
-        if (is(word, length, "cylinder") && *text == ':') {
+        if (is_word(word, length, "cylinder") && *text == ':') {
             ++text;
-            status = cylinder(&text, options);
-        } else if (is(word, length, "auto")) {
+            status = take_cylinder(&text, options);
+        } else if (is_word(word, length, "auto")) {
             options->automatic = true;
-        } else if (is(word, length, "box")) {
+        } else if (is_word(word, length, "box")) {
             options->box = true;
         } else {
-            status = plane(word, length, &text, options);
+            status = take_plane(word, length, &text, options);
         }
         if (status || *text == 0) return status;
         if (*text++ != ',') return message(STATUS_USAGE, "--wall: '%.40s' is not understood", word);
@@ -87,73 +97,64 @@ int walls_option(const char *text, struct wall_options *options) {
 static int spell_out(struct wall_options *options, const struct bed *bed, const char *file) {
     if (options->automatic && !(bed->low[0] < bed->high[0]))
         return message_at(STATUS_USAGE, file, 0, "--wall auto needs a box in the file; --wall box takes the spheres'");
-    for (uint32_t wall = 0; wall < PLANES; ++wall) {
-        const bool periodic = bed->period[wall / 2] > 0;
-        if (named(options, wall) || (!options->box && (!options->automatic || periodic))) continue;
-        add(options, wall, false, 0);
+    for (int k = 0; k < PLANES; ++k) {
+        const bool wanted = options->box || (options->automatic && !(bed->period[k / 2] > 0));
+        if (wanted && !wall_named(&options->walls, plane_names[k])) add_wall(options, plane_at(k, 0), false);
     }
     return STATUS_OK;
 }
 
 /* Where a plane stands whose place was not given. */
-static double end_of_bed(const struct bed *bed, uint32_t wall) {
-    const uint32_t axis = wall / 2;
-    const bool high = wall % 2;
-    if (bed->low[axis] < bed->high[axis]) return high ? bed->high[axis] : bed->low[axis];
+static double end_of_bed(const struct bed *bed, int axis, bool upper) {
+    if (bed->low[axis] < bed->high[axis]) return upper ? bed->high[axis] : bed->low[axis];
     const double *c = axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z;
-    double end = high ? -INFINITY : INFINITY;
-    for (uint32_t i = 0; i < bed->n; ++i) end = high ? fmax(end, c[i] + bed->r[i]) : fmin(end, c[i] - bed->r[i]);
+    double end = upper ? -INFINITY : INFINITY;
+    for (uint32_t i = 0; i < bed->n; ++i) end = upper ? fmax(end, c[i] + bed->r[i]) : fmin(end, c[i] - bed->r[i]);
     return end;
 }
 
-static int check_axes(const fibrad_walls *walls, const struct bed *bed) {
-    for (uint32_t wall = 0; wall < PLANES; ++wall) {
-        if (!(walls->planes >> wall & 1)) continue;
-        if (bed->period[wall / 2] > 0)
-            return message(STATUS_USAGE, "--wall: %s stands across a periodic axis", names[wall]);
-        if (walls->cylinder[2] > 0 && wall / 2 < 2)
-            return message(STATUS_USAGE, "--wall: %s and a cylinder do not go together", names[wall]);
-        if (wall % 2 && walls->planes >> (wall - 1) & 1 && !(walls->at[wall - 1] < walls->at[wall]))
-            return message(STATUS_USAGE, "--wall: %s does not lie below %s", names[wall - 1], names[wall]);
+static int check_axes(const struct walls *walls, const struct bed *bed) {
+    const bool cylinder = wall_named(walls, "cylinder");
+    for (int k = 0; k < PLANES; ++k) {
+        const fibrad_body *wall = wall_named(walls, plane_names[k]), *lower = NULL;
+        if (!wall) continue;
+        if (bed->period[k / 2] > 0)
+            return message(STATUS_USAGE, "--wall: %s stands across a periodic axis", plane_names[k]);
+        if (cylinder && k / 2 < 2)
+            return message(STATUS_USAGE, "--wall: %s and a cylinder do not go together", plane_names[k]);
+        if (k % 2) lower = wall_named(walls, plane_names[k - 1]);
+        if (lower && !(lower->plane.at < wall->plane.at))
+            return message(STATUS_USAGE, "--wall: %s does not lie below %s", plane_names[k - 1], plane_names[k]);
     }
-    if (walls->cylinder[2] > 0 && (bed->period[0] > 0 || bed->period[1] > 0))
+    if (cylinder && (bed->period[0] > 0 || bed->period[1] > 0))
         return message(STATUS_USAGE, "--wall: a cylinder needs x and y axes that are not periodic");
     return STATUS_OK;
 }
 
-static int check_centres(const fibrad_walls *walls, const struct bed *bed, const char *file) {
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const double centre[3] = {bed->x[i], bed->y[i], bed->z[i]};
-        uint32_t beyond = FIBRAD_WALLS;
-        for (uint32_t wall = 0; wall < PLANES; ++wall) {
-            const double c = centre[wall / 2], at = walls->at[wall];
-            if (walls->planes >> wall & 1 && (wall % 2 ? c > at : c < at)) beyond = wall;
-        }
-        const double *cyl = walls->cylinder;
-        if (cyl[2] > 0 && hypot(centre[0] - cyl[0], centre[1] - cyl[1]) > cyl[2]) beyond = CYLINDER;
-        if (beyond < FIBRAD_WALLS)
-            return message_at(STATUS_INPUT, file, bed->line[i], "the centre of sphere %u lies beyond the wall %s", i,
-                              names[beyond]);
-    }
+static bool is_beyond(const fibrad_body *wall, const double centre[3]) {
+    if (is_cylinder(wall))
+        return hypot(centre[0] - wall->cylinder.x, centre[1] - wall->cylinder.y) > wall->cylinder.radius;
+    const double c = centre[wall->plane.axis];
+    return wall->plane.upper ? c > wall->plane.at : c < wall->plane.at;
+}
+
+static int check_centres(const struct walls *walls, const struct bed *bed, const char *file) {
+    for (uint32_t i = 0; i < bed->n; ++i)
+        for (uint32_t k = 0; k < walls->count; ++k)
+            if (is_beyond(&walls->body[k], (const double[]){bed->x[i], bed->y[i], bed->z[i]}))
+                return message_at(STATUS_INPUT, file, bed->line[i], "the centre of sphere %u lies beyond the wall %s",
+                                  i, wall_name(&walls->body[k]));
     return STATUS_OK;
 }
 
-int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, fibrad_walls *walls,
-             struct wall_order *order) {
+int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, struct walls *walls) {
     struct wall_options all = *options;
-    *walls = (fibrad_walls){0};
-    *order = (struct wall_order){0};
     int status = all.automatic || all.box ? spell_out(&all, bed, file) : STATUS_OK;
     if (status) return status;
-    order->count = all.count;
-    for (uint32_t k = 0; k < all.count; ++k) {
-        const uint32_t wall = order->wall[k] = all.wall[k];
-        if (wall == CYLINDER) {
-            memcpy(walls->cylinder, all.cylinder, sizeof walls->cylinder);
-        } else {
-            walls->planes |= 1u << wall;
-            walls->at[wall] = all.placed[k] ? all.at[k] : end_of_bed(bed, wall);
-        }
+    *walls = all.walls;
+    for (uint32_t k = 0; k < walls->count; ++k) {
+        fibrad_body *wall = &walls->body[k];
+        if (!is_cylinder(wall) && !all.placed[k]) wall->plane.at = end_of_bed(bed, wall->plane.axis, wall->plane.upper);
     }
     status = check_axes(walls, bed);
     return status ? status : check_centres(walls, bed, file);

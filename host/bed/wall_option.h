@@ -8,19 +8,19 @@
 #include "bed/bed.h"
 #include "fibrad.h"
 
-/* What --wall asks for; several such options add up. Zeroed: no walls. */
-struct wall_options {
+enum { WALLS_MAX = 7 }; /* six planes and a cylinder */
+
+/* Walls in the order given, those of auto and box last: body[k] is j = -2 - k in a matrix. */
+struct walls {
     uint32_t count;
-    uint32_t wall[FIBRAD_WALLS]; /* [count] numbers of the kernel, in the order given */
-    bool placed[FIBRAD_WALLS];   /* [count] whether its place was given */
-    double at[FIBRAD_WALLS];     /* [count] that place [L] */
-    double cylinder[3];          /* x, y, radius [L] */
-    bool automatic, box;         /* the words auto and box: which axes are open is known with the bed alone */
+    fibrad_body body[WALLS_MAX];
 };
 
-/* The walls by number, in the order given, those of auto and box last: wall[k] is j = -2 - k in a matrix. */
-struct wall_order {
-    uint32_t count, wall[FIBRAD_WALLS];
+/* What --wall asks for; several such options add up. Zeroed: no walls. */
+struct wall_options {
+    struct walls walls;
+    bool placed[WALLS_MAX]; /* whether its place was given */
+    bool automatic, box;    /* the words auto and box: which axes are open is known with the bed alone */
 };
 
 /* What --help says of it: the row of a table of options, without braces, and more below. */
@@ -34,15 +34,13 @@ struct wall_order {
     "spheres. Sides named besides auto or box come first, and stand where they say.\n"
 
 /* "xmin" ... "zmax", "cylinder". */
-const char *wall_name(uint32_t wall);
+const char *wall_name(const fibrad_body *wall);
 
 /* Takes one argument of --wall. Status 0 or STATUS_USAGE. */
 int walls_option(const char *text, struct wall_options *options);
 
-/* Places the walls about a bed whose periods are settled; `file` is its name in messages. order->count is 0 if no walls
- * were asked for. Status 0, STATUS_USAGE if walls and periodic axes do not agree, STATUS_INPUT naming the line if a
- * centre lies beyond a wall. */
-int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, fibrad_walls *walls,
-             struct wall_order *order);
+/* Places the walls about a bed whose periods are settled; `file` is its name in messages. Status 0, STATUS_USAGE if
+ * walls and periodic axes do not agree, STATUS_INPUT naming the line if a centre lies beyond a wall. */
+int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, struct walls *walls);
 
 #endif

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "fibrad.h"
+#include "fibrad_surface.h"
 
 /* An option of a command. A table of them ends with a name of NULL. */
 struct option {

@@ -5,6 +5,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/interrupt.h"
+
 double progress_clock(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
@@ -13,11 +15,15 @@ double progress_clock(void) {
 
 void progress_begin(struct progress *progress, bool forced, const char *what, uint64_t total) {
     const double now = progress_clock();
-    *progress = (struct progress){
-        .on = forced || isatty(STDERR_FILENO), .what = what, .total = total, .begun = now, .shown = now};
+    *progress = (struct progress){.forced = forced,
+                                  .on = forced || isatty(STDERR_FILENO),
+                                  .what = what,
+                                  .total = total,
+                                  .begun = now,
+                                  .shown = now};
 }
 
-static void draw(const struct progress *progress, uint64_t done, double now) {
+static void draw_bar(const struct progress *progress, uint64_t done, double now) {
     enum { WIDTH = 30 };
     const double part = progress->total ? (double)done / (double)progress->total : 1;
     const double passed = now - progress->begun;
@@ -32,11 +38,12 @@ static void draw(const struct progress *progress, uint64_t done, double now) {
 }
 
 void progress_show(struct progress *progress, uint64_t done) {
+    progress->done = done;
     if (!progress->on) return;
     const double now = progress_clock();
     if (now - progress->shown < 0.1) return;
     progress->shown = now;
-    draw(progress, done, now);
+    draw_bar(progress, done, now);
 }
 
 void progress_end(struct progress *progress, uint64_t done) {
@@ -44,7 +51,20 @@ void progress_end(struct progress *progress, uint64_t done) {
     if (isatty(STDERR_FILENO)) {
         fprintf(stderr, "\r%80s\r", "");
     } else {
-        draw(progress, done, progress_clock());
+        draw_bar(progress, done, progress_clock());
         fputc('\n', stderr);
     }
+    progress->on = false;
 }
+
+int progress_stage(void *context, const char *stage, uint64_t done, uint64_t total) {
+    struct progress *progress = context;
+    if (total > 0 && done == 0) progress_begin(progress, progress->forced, stage, total);
+    if (total > 0 && done == total)
+        progress_end(progress, done);
+    else if (total > 0)
+        progress_show(progress, done);
+    return interrupt_status() != 0;
+}
+
+void progress_stop(struct progress *progress) { progress_end(progress, progress->done); }

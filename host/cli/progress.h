@@ -6,9 +6,11 @@
 #include <stdint.h>
 
 struct progress {
+    bool forced; /* for progress_stage: show the bar even if standard error is no terminal */
     bool on;
     const char *what; /* plural of what is counted */
     uint64_t total;
+    uint64_t done;
     double begun, shown; /* [s] */
 };
 
@@ -20,6 +22,13 @@ void progress_show(struct progress *progress, uint64_t done);
 
 /* Leaves no trace of the bar on a terminal, and its last state elsewhere. */
 void progress_end(struct progress *progress, uint64_t done);
+
+/* A fibrad_progress of the library, whose context is a struct progress: one bar after the other, none for stages of
+ * unknown length. Asks to stop when a signal has come. */
+int progress_stage(void *progress, const char *stage, uint64_t done, uint64_t total);
+
+/* Ends a bar that an error has left. */
+void progress_stop(struct progress *progress);
 
 /* A clock that only goes forward [s]. */
 double progress_clock(void);

@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include "cli/message.h"
@@ -17,7 +18,7 @@ static bool position(const char **text, unsigned long long *value) {
     return errno == 0;
 }
 
-int targets_mark(const char *list, uint32_t n, bool *marks) {
+int targets_mark(const char *list, uint32_t n, unsigned char *marks) {
     for (const char *text = list;; ++text) {
         unsigned long long first, last;
         bool good = position(&text, &first);
@@ -30,7 +31,7 @@ int targets_mark(const char *list, uint32_t n, bool *marks) {
             return message(STATUS_USAGE, "--targets: '%.60s' is no list such as 3,7,10-19", list);
         if (marks && last >= n)
             return message(STATUS_USAGE, "--targets: there is no sphere %llu; the last is %u", last, n - 1);
-        for (; marks && first <= last; ++first) marks[first] = true;
+        for (; marks && first <= last; ++first) marks[first] = 1;
         if (*text == 0) return STATUS_OK;
     }
 }

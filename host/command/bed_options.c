@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "bed/bed_scene.h"
 #include "cli/message.h"
 #include "cli/output.h"
 #include "read/read.h"
@@ -41,7 +42,7 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
         asked->ids = true;
         return STATUS_OK;
     case KEY_PROGRESS:
-        asked->progress = true;
+        asked->progress.forced = true;
         return STATUS_OK;
     case 'o':
         asked->out = value;
@@ -62,6 +63,15 @@ int bed_options_output(const struct bed_options *asked, bool known, const char *
         return message_at(STATUS_USAGE, asked->out, 0, "is the bed itself; it would be replaced");
     if (asked->ids && !output_ends(asked->out, ".csv")) return message(STATUS_USAGE, "--ids is for -o OUT.csv only");
     return STATUS_OK;
+}
+
+fibrad_run bed_options_run(struct bed_options *asked) {
+    return (fibrad_run){.threads = asked->threads, .progress = progress_stage, .context = &asked->progress};
+}
+
+int bed_options_status(struct bed_options *asked, const struct bed *bed, int status, const fibrad_fault *fault) {
+    progress_stop(&asked->progress);
+    return bed_status(bed, asked->name, status, fault);
 }
 
 int bed_options_read(const struct bed_options *asked, struct bed *bed) {

@@ -9,6 +9,8 @@
 #include "bed/bed.h"
 #include "bed/wall_option.h"
 #include "cli/options.h"
+#include "cli/progress.h"
+#include "simple/fibrad_host.h"
 
 /* Rows of a table of options, without braces, besides those of options.h and wall_option.h. */
 #define OPTION_PERIODIC                                                                                                \
@@ -29,7 +31,8 @@ struct bed_options {
     size_t columns;
     struct wall_options walls;
     int threads; /* 0: all cores */
-    bool ids, progress;
+    bool ids;
+    struct progress progress;
 };
 
 /* Takes FILE, -o, --wall and all options of this header and of OPTION_THREADS and OPTION_HELP; a key that it does not
@@ -42,6 +45,12 @@ size_t bed_options_column(struct bed_options *asked, const char *name);
 /* Is there something wrong with -o or --ids? `known`: there is a writer for its ending, of those that `endings` lists.
  * Status 0 or STATUS_USAGE. */
 int bed_options_output(const struct bed_options *asked, bool known, const char *endings);
+
+/* How the library is to be run: threads, and a bar that is kept in `asked`. */
+fibrad_run bed_options_run(struct bed_options *asked);
+
+/* The exit status for a status of the library run so, after a message; the bar is ended. As bed_status. */
+int bed_options_status(struct bed_options *asked, const struct bed *bed, int status, const fibrad_fault *fault);
 
 /* Reads the bed, with the box that was asked for. Free it also after an error. Status as read_bed. */
 int bed_options_read(const struct bed_options *asked, struct bed *bed);

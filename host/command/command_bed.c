@@ -4,20 +4,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed/bed.h"
+#include "bed/bed_scene.h"
 #include "cli/message.h"
 #include "cli/output.h"
 #include "cli/targets.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
-#include "compute/rows.h"
-#include "compute/tolerance.h"
 #include "plot/plot_bed.h"
 #include "write/write.h"
 
-enum { KEY_CUTOFF = KEY_OWN, KEY_TARGETS, KEY_FEWER };
+enum { KEY_CUTOFF = KEY_OWN, KEY_TARGETS };
 
-static const struct option table[] = {
+static const struct option bed_table[] = {
     {KEY_METHOD, "method", "NAME",
      "beam: along Fibonacci directions; surface: between nodes; cast: quasi-random rays; mc: random rays [beam]"},
     {KEY_DIRECTIONS, "directions", "N", "beam: directions, 8 to 65536; error ~ N^-1.5 [233]"},
@@ -31,8 +29,6 @@ static const struct option table[] = {
     {KEY_SEED, "seed", "S", "cast, mc: another number, other rays [0]"},
     {KEY_CUTOFF, "cutoff", "D", "spheres with centres farther apart than D do not see each other [none]"},
     {KEY_TARGETS, "targets", "LIST", "rows wanted, such as 3,7,10-19, or all; a list implies --raw [all]"},
-    {KEY_FEWER, "fewer-for-large", NULL,
-     "a fourth of the directions for spheres over 3 mean radii, as S_ij is known from the small ones too [all]"},
     {KEY_RAW, "raw", NULL, "do not average F_ij and F_ji [averaged: A_i F_ij = A_j F_ji]"},
     {OPTION_PERIODIC},
     {OPTION_WALL},
@@ -45,26 +41,26 @@ static const struct option table[] = {
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
-struct request {
+struct bed_request {
     struct bed_options bed;
     const char *plot, *targets;
     write_function *write;
     enum method method;
     struct beam_options beam;
-    fibrad_beam_rule beam_rule, large_rule;
+    fibrad_beam_rule beam_rule;
     fibrad_surface_rule surface;
     fibrad_cast_rule cast;
     double cutoff, error; /* 0: none */
-    bool beam_given, surface_given, cast_given, fewer_for_large;
-    struct wall_order order;
-    struct run_options run;
+    bool beam_given, surface_given, cast_given;
+    struct walls walls;
+    fibrad_bed_options options;
 };
 
-static int help(void) {
+static int bed_help(void) {
     puts("fibrad bed FILE [options]\n\n"
          "View factors between all spheres of FILE: .csv with a header x,y,z,r, a LAMMPS or LIGGGHTS text dump,\n"
          "YADE text (#format x_y_z_r), or - for standard input. Positions count from 0 in the order of the file.\n");
-    options_print(table);
+    options_print(bed_table);
     puts("\n" WALLS_MORE
          "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... in the order given and the\n"
          "surroundings j = -1, so that rows add up to 1; i = -2, -3 ... from walls of finite area to spheres; in .vtp "
@@ -83,7 +79,7 @@ static int help(void) {
     return STATUS_OK;
 }
 
-static int take_option(struct request *request, const struct options *options, int key) {
+static int bed_take(struct bed_request *request, const struct options *options, int key) {
     const char *value = options->value;
     int status = STATUS_OK;
     switch (key) {
@@ -114,10 +110,7 @@ static int take_option(struct request *request, const struct options *options, i
         if (request->targets) status = targets_mark(value, 0, NULL);
         break;
     case KEY_RAW:
-        request->run.raw = true;
-        break;
-    case KEY_FEWER:
-        request->fewer_for_large = true;
+        request->options.raw = 1;
         break;
     case KEY_PLOT:
         request->plot = value;
@@ -128,9 +121,9 @@ static int take_option(struct request *request, const struct options *options, i
     return status;
 }
 
-/* The row function and its rule; options of other methods are refused. */
-static int choose_method(struct request *request) {
-    int status;
+/* The rule of the method; options of other methods are refused. */
+static int bed_choose(struct bed_request *request) {
+    fibrad_beam_rule *beam = &request->beam_rule;
     if (request->beam_given && request->method != METHOD_BEAM)
         return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
     if (request->error > 0 && request->method != METHOD_BEAM)
@@ -141,29 +134,22 @@ static int choose_method(struct request *request) {
         return message(STATUS_USAGE, "--nf and --no-correction are for --method surface");
     if (request->cast_given && request->method != METHOD_CAST && request->method != METHOD_MC)
         return message(STATUS_USAGE, "--rays and --seed are for --method cast and mc");
-    request->beam_rule.cutoff = request->surface.cutoff = request->cast.cutoff = request->cutoff;
+    beam->cutoff = request->surface.cutoff = request->cast.cutoff = request->cutoff;
     request->cast.random = request->method == METHOD_MC;
-    switch (request->method) {
-    case METHOD_SURFACE:
-        request->run.method = method_surface(&request->surface);
-        return STATUS_OK;
-    case METHOD_CAST:
-    case METHOD_MC:
-        request->run.method = method_cast(&request->cast);
-        return STATUS_OK;
-    default:
-        request->run.method = method_beam(&request->beam_rule);
-        status = options_beam_rule(&request->beam, &request->beam_rule);
-        request->large_rule = request->beam_rule;
-        request->large_rule.directions /= 4;
-        if (request->fewer_for_large && request->large_rule.directions >= FIBRAD_DIRECTIONS_MIN)
-            request->run.method.large_rule = &request->large_rule;
-        return status;
-    }
+    if (request->method == METHOD_SURFACE)
+        request->options.surface = &request->surface;
+    else if (request->method != METHOD_BEAM)
+        request->options.cast = &request->cast;
+    else
+        request->options.beam = beam;
+    const int status = options_beam_rule(&request->beam, beam);
+    beam->tolerance = request->error;
+    if (request->error > 0) beam->directions = 0; /* as many as it takes */
+    return status;
 }
 
 /* What can be found wrong before any work is done. */
-static int check_request(struct request *request) {
+static int bed_check(struct bed_request *request) {
     const char *endings;
     if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad bed --help");
     request->write = write_find(request->bed.out, &endings);
@@ -171,17 +157,16 @@ static int check_request(struct request *request) {
     if (status) return status;
     if (request->plot && !plot_ending(request->plot))
         return message_at(STATUS_USAGE, request->plot, 0, "unknown ending; there are .svg and .png");
-    if (request->targets) request->run.raw = true;
-    return choose_method(request);
+    if (request->targets) request->options.raw = 1;
+    return bed_choose(request);
 }
 
-static int parse(struct request *request, int argc, char **argv) {
-    struct options options = {.command = "bed", .table = table, .argc = argc, .argv = argv};
-    *request = (struct request){.method = METHOD_BEAM, .surface.nodes = 55, .cast.rays = 20000, .bed.frame = -1};
+static int bed_parse(struct bed_request *request, int argc, char **argv) {
+    struct options options = {.command = "bed", .table = bed_table, .argc = argc, .argv = argv};
+    *request = (struct bed_request){.method = METHOD_BEAM, .surface.nodes = 55, .cast.rays = 20000, .bed.frame = -1};
     int status = STATUS_OK;
-    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
-        status = take_option(request, &options, key);
-    return status ? status : check_request(request);
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = bed_take(request, &options, key);
+    return status ? status : bed_check(request);
 }
 
 static void warn_of_overlap(const char *file, const struct bed *bed, const fibrad_scene_facts *facts) {
@@ -191,91 +176,92 @@ static void warn_of_overlap(const char *file, const struct bed *bed, const fibra
             facts->overlap_max, line[0], line[1], facts->overlap_max > 0.05 ? ": warning: above 5 %" : "");
 }
 
-static void print_summary(const struct request *request, const struct bed *bed, const struct result *result) {
-    const fibrad_rows *rows = &result->rows;
-    printf("%s: radii %g to %g, %s rows, %s\n", request->bed.name, result->facts.radius_min, result->facts.radius_max,
-           request->run.raw ? "raw" : "reciprocal", fibrad_isa_name(result->facts.isa));
-    printf("spheres %" PRIu32 "\n", bed->n);
-    printf("nonzeros %" PRIu64 "\n", rows->start[rows->n]);
+static void bed_print(const struct bed_request *request, const struct contents *what, const struct summary *summary) {
+    const fibrad_bed_factors *factors = what->factors;
+    const fibrad_scene_facts *facts = &factors->facts;
+    printf("%s: radii %g to %g, %s rows, %s\n", request->bed.name, facts->radius_min, facts->radius_max,
+           request->options.raw ? "raw" : "reciprocal", fibrad_isa_name(facts->isa));
+    printf("spheres %" PRIu32 "\n", facts->spheres);
+    printf("nonzeros %" PRIu64 "\n", factors->matrix.start[facts->spheres]);
     if (request->method == METHOD_BEAM)
-        printf("directions %" PRIu32 "\n", result->directions);
+        printf("directions %" PRIu32 "\n", factors->directions);
     else if (request->method == METHOD_SURFACE)
         printf("nf %" PRIu32 "\n", request->surface.nodes);
     else
         printf("rays %" PRIu32 "\n", request->cast.rays);
-    printf("threads %d\n", result->threads);
-    printf("seconds %.17g\n", result->seconds);
-    printf("row_sum_min %.17g\n", result->row_sum_min);
-    printf("row_sum_max %.17g\n", result->row_sum_max);
-    printf("escaped_mean %.17g\n", result->escaped_mean);
-    printf("closure_max %.17g\n", result->closure_max);
-    printf("reciprocity_max %.17g\n", result->reciprocity_max);
-    printf("error_estimate %.17g\n", result->error_estimate);
-    for (uint32_t k = 0; k < request->order.count; ++k) {
-        const uint32_t wall = request->order.wall[k];
-        printf("wall_%s %.17g %.17g\n", wall_name(wall), result->wall_mean[wall], result->facts.wall_area[wall]);
-    }
-    printf("fallbacks %" PRIu64 "\n", result->fallbacks);
+    printf("threads %d\n", factors->threads);
+    printf("seconds %.17g\n", factors->seconds);
+    printf("row_sum_min %.17g\n", summary->row_sum_min);
+    printf("row_sum_max %.17g\n", summary->row_sum_max);
+    printf("escaped_mean %.17g\n", summary->escaped_mean);
+    printf("closure_max %.17g\n", factors->closure_error);
+    printf("reciprocity_max %.17g\n", factors->reciprocity_error);
+    printf("error_estimate %.17g\n", summary->error_max);
+    summary_print_walls(summary, what);
+    printf("fallbacks %" PRIu64 "\n", factors->fallbacks);
 }
 
-static int write_results(const struct request *request, const struct bed *bed, const struct result *result,
-                         const struct output *out, const struct output *plot) {
-    const struct contents contents = {bed, result, request->bed.ids, &request->order, NULL};
-    int status = request->bed.out ? request->write(out->file, &contents) : STATUS_OK;
-    if (!status && request->plot) status = plot_bed(plot, request->bed.file, &contents);
-    return status;
+static int bed_compute(struct bed_request *request, const struct bed *bed, fibrad_bed_factors **factors) {
+    const fibrad_scene_config scene = bed_scene(bed, &request->walls);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    fibrad_run run = bed_options_run(&request->bed);
+    const int status = fibrad_view_factors(&scene, &spheres, &request->options, &run, factors);
+    return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
 /* Opens the outputs before the work, so that a path that cannot be written costs no time. */
-static int compute_and_write(struct request *request, const struct bed *bed, struct result *result) {
+static int bed_write(struct bed_request *request, struct contents *what, fibrad_bed_factors **factors) {
     struct output out = {0}, plot = {0};
+    struct summary summary = {0};
     int status = output_open(&out, request->bed.out);
     if (!status) status = output_open(&plot, request->plot);
-    if (!status)
-        status = request->error > 0 ? tolerance_rows(bed, &request->run, &request->beam_rule, request->error, result)
-                                    : run_rows(bed, &request->run, result);
-    if (!status) warn_of_overlap(request->run.file, bed, &result->facts);
-    if (!status && request->error > 0 && result->error_estimate > request->error)
-        fprintf(stderr, "fibrad: %s: warning: %d directions were not enough for --error %g\n", request->run.file,
+    if (!status) status = bed_compute(request, what->bed, factors);
+    if (!status) {
+        what->factors = *factors;
+        summary_make(&summary, what);
+        warn_of_overlap(request->bed.name, what->bed, &what->factors->facts);
+    }
+    if (!status && request->error > 0 && summary.error_max > request->error)
+        fprintf(stderr, "fibrad: %s: warning: %d directions were not enough for --error %g\n", request->bed.name,
                 FIBRAD_DIRECTIONS_MAX, request->error);
-    if (!status) status = write_results(request, bed, result, &out, &plot);
+    if (!status && request->bed.out) status = request->write(out.file, what);
+    if (!status && request->plot) status = plot_bed(&plot, request->bed.file, what);
     status = output_close(&out, status);
-    return output_close(&plot, status);
+    status = output_close(&plot, status);
+    if (!status) bed_print(request, what, &summary);
+    return status;
 }
 
-static int run(struct request *request, struct bed *bed, struct result *result) {
-    request->run.file = request->bed.name;
-    request->run.threads = request->bed.threads;
-    request->run.progress = request->bed.progress;
+static int bed_run(struct bed_request *request, struct bed *bed, fibrad_bed_factors **factors) {
     int status = bed_options_read(&request->bed, bed);
     if (status) return status;
     if (request->method == METHOD_SURFACE && request->cutoff == 0 &&
         (bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0))
         return message(STATUS_USAGE, "--method surface needs a --cutoff in a periodic box");
-    status = walls_of(&request->bed.walls, bed, request->run.file, &request->run.walls, &request->order);
+    status = walls_of(&request->bed.walls, bed, request->bed.name, &request->walls);
     if (status) return status;
-    if (request->method == METHOD_SURFACE && request->order.count > 0)
+    if (request->method == METHOD_SURFACE && request->walls.count > 0)
         return message(STATUS_USAGE, "--wall is for the methods beam, cast and mc");
-    bool *marks = NULL;
+    unsigned char *marks = NULL;
     if (request->targets) {
-        marks = calloc(bed->n, sizeof *marks);
+        marks = calloc(bed->n, 1);
         status = marks ? targets_mark(request->targets, bed->n, marks) : message_memory();
     }
-    request->run.wanted = marks;
-    if (!status) status = compute_and_write(request, bed, result);
-    if (!status) print_summary(request, bed, result);
+    request->options.wanted = marks;
+    struct contents what = {.bed = bed, .wanted = marks, .ids = request->bed.ids, .walls = &request->walls};
+    if (!status) status = bed_write(request, &what, factors);
     free(marks);
     return status;
 }
 
 int command_bed(int argc, char **argv) {
-    struct request request;
+    struct bed_request request;
     struct bed bed = {0};
-    struct result result = {0};
-    int status = parse(&request, argc, argv);
-    if (status) return status == STATUS_HELP ? help() : status;
-    status = run(&request, &bed, &result);
-    result_free(&result);
+    fibrad_bed_factors *factors = NULL;
+    int status = bed_parse(&request, argc, argv);
+    if (status) return status == STATUS_HELP ? bed_help() : status;
+    status = bed_run(&request, &bed, &factors);
+    fibrad_bed_free(factors);
     bed_free(&bed);
     return status;
 }

@@ -8,13 +8,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "bed/bed.h"
+#include "bed/bed_scene.h"
 #include "bed/property_option.h"
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
-#include "compute/exchange_rows.h"
 
 #define PI 3.14159265358979323846
 
@@ -26,7 +24,7 @@
 #define PILOT   50000.0
 #define PER_MAX 100000000.0
 
-static const struct option table[] = {
+static const struct option conductivity_table[] = {
     {OPTION_EMISSIVITY},
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [as many as --error takes]"},
     {KEY_ERROR, "error", "E", "as many as bring the estimated standard errors to E of F_E, 1e-4 to 1 [0.003]"},
@@ -38,12 +36,11 @@ static const struct option table[] = {
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
-struct request {
+struct conductivity_request {
     struct bed_options bed;
     struct quantity emissivity;
     fibrad_exchange_rule rule;
     double error;
-    struct run_options run;
 };
 
 /* The part of the bed that emits, and what comes of it. */
@@ -56,14 +53,14 @@ struct conductivity {
     double seconds;
 };
 
-static int help(void) {
+static int conductivity_help(void) {
     puts("fibrad conductivity FILE --emissivity E|COLUMN [options]\n\n"
          "Exchange factor F_E = k/(4 sigma T^3 d) along each axis, k being the radiative conductivity [W/(m K)] of a "
          "bed of\n"
          "grey diffuse spheres, each of one temperature (their own conductivity is large), and d the mean diameter "
          "[m].\n"
          "FILE as for fibrad bed.\n");
-    options_print(table);
+    options_print(conductivity_table);
     printf("\nThe result is that of a linear field of temperature. With open axes only spheres at least %g mean "
            "diameters inside\n"
            "the outermost centres emit; all absorb.\n",
@@ -76,7 +73,7 @@ static int help(void) {
     return STATUS_OK;
 }
 
-static int take_option(struct request *request, const struct options *options, int key) {
+static int conductivity_take(struct conductivity_request *request, const struct options *options, int key) {
     const char *value = options->value;
     switch (key) {
     case KEY_EMISSIVITY:
@@ -92,12 +89,12 @@ static int take_option(struct request *request, const struct options *options, i
     }
 }
 
-static int parse(struct request *request, int argc, char **argv) {
-    struct options options = {.command = "conductivity", .table = table, .argc = argc, .argv = argv};
-    *request = (struct request){.bed.frame = -1};
+static int conductivity_parse(struct conductivity_request *request, int argc, char **argv) {
+    struct options options = {.command = "conductivity", .table = conductivity_table, .argc = argc, .argv = argv};
+    *request = (struct conductivity_request){.bed.frame = -1};
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
-        status = take_option(request, &options, key);
+        status = conductivity_take(request, &options, key);
     if (status) return status;
     if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad conductivity --help");
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");
@@ -138,7 +135,7 @@ static int find_core(const struct bed *bed, const char *file, double diameter, s
     return STATUS_OK;
 }
 
-static bool inside(const struct core *core, const double at[3]) {
+static bool is_inside(const struct core *core, const double at[3]) {
     for (int axis = 0; axis < 3; ++axis)
         if (!(at[axis] >= core->low[axis] && at[axis] < core->high[axis])) return false;
     return true;
@@ -155,14 +152,14 @@ static double part_inside(const struct bed *bed, uint32_t i, const struct core *
         const double depth =
             bed->r[i] * cbrt(fmod((k + .5) * .7548776662466927, 1)); /* even in the cube of the radius */
         const double at[3] = {bed->x[i] + depth * w[0], bed->y[i] + depth * w[1], bed->z[i] + depth * w[2]};
-        count += inside(core, at);
+        count += is_inside(core, at);
     }
     return count / (double)POINTS;
 }
 
 /* Marks the spheres that emit, and measures the volume that belongs to them: that of the spheres themselves over the
  * solid fraction of the core. */
-static int choose_emitters(const struct bed *bed, const char *file, struct conductivity *result, bool *emits) {
+static int choose_emitters(const struct bed *bed, const char *file, struct conductivity *result, unsigned char *emits) {
     struct core core;
     double solid = 0, emitting = 0;
     for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
@@ -170,7 +167,7 @@ static int choose_emitters(const struct bed *bed, const char *file, struct condu
     if (status) return status;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double volume = 4 * PI / 3 * pow(bed->r[i], 3);
-        emits[i] = inside(&core, (const double[]){bed->x[i], bed->y[i], bed->z[i]});
+        emits[i] = is_inside(&core, (const double[]){bed->x[i], bed->y[i], bed->z[i]});
         emitting += emits[i] * volume;
         solid += part_inside(bed, i, &core) * volume;
         result->emitters += emits[i];
@@ -184,8 +181,8 @@ static int choose_emitters(const struct bed *bed, const char *file, struct condu
 }
 
 /* Adds up what the emitters have told. Summed in order, whatever the threads did. */
-static void add_up(const struct bed *bed, const double *emissivity, const bool *emits, const fibrad_spread *spread,
-                   struct conductivity *result) {
+static void add_emitters(const struct bed *bed, const double *emissivity, const unsigned char *emits,
+                         const fibrad_displacement *moved, struct conductivity *result) {
     double square[3] = {0}, lost = 0, all = 0;
     for (int axis = 0; axis < 3; ++axis) result->factor[axis] = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
@@ -193,48 +190,50 @@ static void add_up(const struct bed *bed, const double *emissivity, const bool *
         const double emission = 4 * PI * bed->r[i] * bed->r[i] * emissivity[i];
         const double weight = emission / (2 * result->volume * result->diameter);
         for (int axis = 0; axis < 3; ++axis) {
-            result->factor[axis] += weight * spread[i].square[axis];
-            square[axis] += pow(weight * spread[i].error[axis], 2);
+            result->factor[axis] += weight * moved[i].square[axis];
+            square[axis] += pow(weight * moved[i].error[axis], 2);
         }
-        lost += emission * (1 - spread[i].absorbed);
+        lost += emission * (1 - moved[i].absorbed);
         all += emission;
-        result->rays += spread[i].rays;
+        result->rays += moved[i].rays;
     }
     for (int axis = 0; axis < 3; ++axis) result->error[axis] = sqrt(square[axis]);
     result->escaped = fmax(0, lost / all);
 }
 
 /* The paths per sphere that bring the error of the worst axis down to what is asked for, a tenth to spare. */
-static double paths_for(const struct request *request, const struct conductivity *result) {
+static double paths_for(const struct conductivity_request *request, const struct conductivity *result) {
     double worst = 0;
     for (int axis = 0; axis < 3; ++axis)
         if (result->factor[axis] > 0) worst = fmax(worst, result->error[axis] / result->factor[axis]);
     return request->rule.paths * fmax(1, 1.1 * pow(worst / request->error, 2));
 }
 
-static int compute(struct request *request, const struct bed *bed, const bool *emits, fibrad_spread *spread,
-                   struct conductivity *result) {
+static int conductivity_compute(struct conductivity_request *request, const struct bed *bed, const unsigned char *emits,
+                                fibrad_displacement *moved, struct conductivity *result) {
+    const fibrad_scene_config scene = bed_scene(bed, NULL);
+    const fibrad_spheres spheres = bed_spheres(bed);
     const bool search = request->rule.paths == 0;
+    const double begun = progress_clock();
     if (search) request->rule.paths = (uint32_t)fmin(PER_MAX, fmax(16, ceil(PILOT / result->emitters)));
-    request->run.wanted = emits;
-    request->run.raw = true;
     for (int round = 0; round < 3; ++round) {
-        struct result run;
-        int status = run_spread(bed, &request->run, &request->rule, spread, &run);
-        result->seconds += run.seconds;
-        result_free(&run);
+        fibrad_run run = bed_options_run(&request->bed);
+        int status = fibrad_displacements(&scene, &spheres, &request->rule, emits, &run, moved, NULL);
+        status = bed_options_status(&request->bed, bed, status, &run.fault);
         if (status) return status;
-        add_up(bed, request->rule.emissivity, emits, spread, result);
+        add_emitters(bed, request->rule.emissivity, emits, moved, result);
         const double paths = paths_for(request, result);
         if (!search || paths <= request->rule.paths) break;
         request->rule.paths = (uint32_t)fmin(PER_MAX, paths);
     }
-    return interrupt_status();
+    result->seconds = progress_clock() - begun;
+    return STATUS_OK;
 }
 
-static void print(const struct request *request, const struct bed *bed, const struct conductivity *result) {
+static void conductivity_print(const struct conductivity_request *request, const struct bed *bed,
+                               const struct conductivity *result) {
     static const char axes[] = "xyz";
-    printf("%s: paths of grey diffuse radiation in a linear field of temperature\n", request->run.file);
+    printf("%s: paths of grey diffuse radiation in a linear field of temperature\n", request->bed.name);
     printf("spheres %" PRIu32 "\n", bed->n);
     printf("emitters %" PRIu32 "\n", result->emitters);
     printf("diameter %.17g\n", result->diameter);
@@ -246,37 +245,35 @@ static void print(const struct request *request, const struct bed *bed, const st
     for (int axis = 0; axis < 3; ++axis) printf("F_E_%c_error %.17g\n", axes[axis], result->error[axis]);
 }
 
-static int run(struct request *request, struct bed *bed) {
+static int conductivity_run(struct conductivity_request *request, struct bed *bed) {
     struct conductivity result = {0};
-    request->run.file = request->bed.name;
-    request->run.threads = request->bed.threads;
-    request->run.progress = request->bed.progress;
+    const char *file = request->bed.name;
     int status = bed_options_read(&request->bed, bed);
     if (status) return status;
     double *emissivity = NULL;
-    bool *emits = calloc(bed->n, sizeof *emits);
-    fibrad_spread *spread = calloc(bed->n, sizeof *spread);
-    if (!emits || !spread) status = message_memory();
-    if (!status) status = emissivity_of(&request->emissivity, bed, request->run.file, &emissivity);
+    unsigned char *emits = calloc(bed->n, 1);
+    fibrad_displacement *moved = calloc(bed->n, sizeof *moved);
+    if (!emits || !moved) status = message_memory();
+    if (!status) status = emissivity_of(&request->emissivity, bed, file, &emissivity);
     request->rule.emissivity = emissivity;
-    if (!status) status = choose_emitters(bed, request->run.file, &result, emits);
-    if (!status) status = compute(request, bed, emits, spread, &result);
+    if (!status) status = choose_emitters(bed, file, &result, emits);
+    if (!status) status = conductivity_compute(request, bed, emits, moved, &result);
     if (!status && result.escaped > 1e-3)
-        fprintf(stderr, "fibrad: %s: warning: %.2g of what the core emits leaves the bed; F_E is too low\n",
-                request->run.file, result.escaped);
-    if (!status) print(request, bed, &result);
+        fprintf(stderr, "fibrad: %s: warning: %.2g of what the core emits leaves the bed; F_E is too low\n", file,
+                result.escaped);
+    if (!status) conductivity_print(request, bed, &result);
     free(emits);
-    free(spread);
+    free(moved);
     free(emissivity);
     return status;
 }
 
 int command_conductivity(int argc, char **argv) {
-    struct request request;
+    struct conductivity_request request;
     struct bed bed = {0};
-    int status = parse(&request, argc, argv);
-    if (status) return status == STATUS_HELP ? help() : status;
-    status = run(&request, &bed);
+    int status = conductivity_parse(&request, argc, argv);
+    if (status) return status == STATUS_HELP ? conductivity_help() : status;
+    status = conductivity_run(&request, &bed);
     bed_free(&bed);
     return status;
 }

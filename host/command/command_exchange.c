@@ -1,22 +1,19 @@
 /* command_exchange.c - `fibrad exchange`: exchange factors of grey spheres. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "bed/bed.h"
+#include "bed/bed_scene.h"
 #include "bed/property_option.h"
-#include "bed/wall_option.h"
 #include "cli/message.h"
 #include "cli/output.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
-#include "compute/exchange_rows.h"
 #include "write/write.h"
 
 enum { KEY_DROP = KEY_OWN };
 
-static const struct option table[] = {
+static const struct option exchange_table[] = {
     {OPTION_EMISSIVITY},
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [400]"},
     {KEY_DIRECTIONS, "directions", "N", "beam directions for the first leg of all paths, 8 to 65536 [50]"},
@@ -37,24 +34,23 @@ static const struct option table[] = {
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
-struct request {
+struct exchange_request {
     struct bed_options bed;
     const char *wall_emissivity;
     write_function *write;
     struct quantity emissivity;
-    struct wall_order order;
+    struct walls walls;
     fibrad_exchange_rule rule;
-    double drop;
+    fibrad_bed_options options;
     bool counted; /* --rays or --directions was given */
-    struct run_options run;
 };
 
-static int help(void) {
+static int exchange_help(void) {
     puts("fibrad exchange FILE --emissivity E|COLUMN [options]\n\n"
          "Exchange factors between all spheres of FILE, which are grey and diffuse: D_ij is the fraction of what "
          "sphere i\n"
          "emits that sphere j absorbs, directly or after any number of reflections. FILE as for fibrad bed.\n");
-    options_print(table);
+    options_print(exchange_table);
     puts("\nThe .csv holds i,j,D: spheres by position from 0, the surroundings j = -1, walls j = -2, -3 ... in the "
          "order\n"
          "given; then from walls of finite area to spheres, i = -2, -3 ... .mtx and .npz hold spheres only. Net power "
@@ -67,7 +63,7 @@ static int help(void) {
     return STATUS_OK;
 }
 
-static int take_option(struct request *request, const struct options *options, int key) {
+static int exchange_take(struct exchange_request *request, const struct options *options, int key) {
     const char *value = options->value;
     switch (key) {
     case KEY_EMISSIVITY:
@@ -80,15 +76,15 @@ static int take_option(struct request *request, const struct options *options, i
         return options_count("--directions", value, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX,
                              &request->rule.directions);
     case KEY_ERROR:
-        return options_number("--error", value, 1e-5, 1, &request->rule.error);
+        return options_number("--error", value, 1e-5, 1, &request->rule.tolerance);
     case KEY_WALL_EMISSIVITY:
         request->wall_emissivity = value;
         return STATUS_OK;
     case KEY_RAW:
-        request->run.raw = true;
+        request->options.raw = 1;
         return STATUS_OK;
     case KEY_DROP:
-        return options_number("--drop", value, 0, 1, &request->drop);
+        return options_number("--drop", value, 0, 1, &request->options.drop);
     case KEY_SEED:
         return options_whole("--seed", value, 0, UINT64_MAX, &request->rule.seed);
     default:
@@ -96,12 +92,12 @@ static int take_option(struct request *request, const struct options *options, i
     }
 }
 
-static int check_request(struct request *request) {
+static int exchange_check(struct exchange_request *request) {
     if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad exchange --help");
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad exchange --help");
-    if (request->rule.error > 0 && request->counted)
+    if (request->rule.tolerance > 0 && request->counted)
         return message(STATUS_USAGE, "--error finds rays and directions itself; leave out --rays and --directions");
-    if (request->drop > 0 && request->run.raw)
+    if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
     request->write = write_find(request->bed.out, NULL);
@@ -109,74 +105,79 @@ static int check_request(struct request *request) {
     return bed_options_output(&request->bed, known, ".csv, .mtx and .npz");
 }
 
-static int parse(struct request *request, int argc, char **argv) {
-    struct options options = {.command = "exchange", .table = table, .argc = argc, .argv = argv};
-    *request = (struct request){.bed.frame = -1};
+static int exchange_parse(struct exchange_request *request, int argc, char **argv) {
+    struct options options = {.command = "exchange", .table = exchange_table, .argc = argc, .argv = argv};
+    *request = (struct exchange_request){.bed.frame = -1};
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
-        status = take_option(request, &options, key);
-    return status ? status : check_request(request);
+        status = exchange_take(request, &options, key);
+    return status ? status : exchange_check(request);
 }
 
-static void print_summary(const struct request *request, const struct bed *bed, const struct result *result,
-                          uint64_t rays) {
-    printf("%s: radii %g to %g, %s rows, %s\n", request->run.file, result->facts.radius_min, result->facts.radius_max,
-           request->run.raw ? "raw" : "reciprocal", fibrad_isa_name(result->facts.isa));
-    printf("spheres %" PRIu32 "\n", bed->n);
-    printf("nonzeros %" PRIu64 "\n", result->rows.start[result->rows.n]);
-    printf("directions %" PRIu32 "\n", result->directions);
-    printf("rays %" PRIu64 "\n", rays);
-    printf("threads %d\n", result->threads);
-    printf("seconds %.17g\n", result->seconds);
-    printf("row_sum_min %.17g\n", result->row_sum_min);
-    printf("row_sum_max %.17g\n", result->row_sum_max);
-    printf("escaped_mean %.17g\n", result->escaped_mean);
-    for (uint32_t k = 0; k < request->order.count; ++k) {
-        const uint32_t wall = request->order.wall[k];
-        printf("wall_%s %.17g %.17g\n", wall_name(wall), result->wall_mean[wall], result->facts.wall_area[wall]);
-    }
-    printf("closure_max %.17g\n", result->closure_max);
-    printf("reciprocity_max %.17g\n", result->reciprocity_max);
-    double square = 0;
-    for (uint32_t i = 0; i < bed->n; ++i) square += result->error[i] * result->error[i] / bed->n;
-    printf("error_rms %.17g\n", sqrt(square));
-    printf("error_estimate %.17g\n", result->error_estimate);
+static void exchange_print(const struct exchange_request *request, const struct contents *what) {
+    const fibrad_bed_factors *factors = what->factors;
+    const fibrad_scene_facts *facts = &factors->facts;
+    struct summary summary;
+    summary_make(&summary, what);
+    printf("%s: radii %g to %g, %s rows, %s\n", request->bed.name, facts->radius_min, facts->radius_max,
+           request->options.raw ? "raw" : "reciprocal", fibrad_isa_name(facts->isa));
+    printf("spheres %" PRIu32 "\n", facts->spheres);
+    printf("nonzeros %" PRIu64 "\n", factors->matrix.start[facts->spheres]);
+    printf("directions %" PRIu32 "\n", factors->directions);
+    printf("rays %" PRIu64 "\n", factors->rays);
+    printf("threads %d\n", factors->threads);
+    printf("seconds %.17g\n", factors->seconds);
+    printf("row_sum_min %.17g\n", summary.row_sum_min);
+    printf("row_sum_max %.17g\n", summary.row_sum_max);
+    printf("escaped_mean %.17g\n", summary.escaped_mean);
+    summary_print_walls(&summary, what);
+    printf("closure_max %.17g\n", summary.closure_max);
+    printf("reciprocity_max %.17g\n", factors->reciprocity_error);
+    printf("error_rms %.17g\n", summary.error_rms);
+    printf("error_estimate %.17g\n", summary.error_max);
 }
 
-static int compute_and_write(struct request *request, const struct bed *bed, struct result *result) {
+static int exchange_compute(struct exchange_request *request, const struct bed *bed, fibrad_bed_factors **factors) {
+    const fibrad_scene_config scene = bed_scene(bed, &request->walls);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    fibrad_run run = bed_options_run(&request->bed);
+    const int status = fibrad_exchange_factors(&scene, &spheres, &request->rule, &request->options, &run, factors);
+    return bed_options_status(&request->bed, bed, status, &run.fault);
+}
+
+static int exchange_write(struct exchange_request *request, const struct bed *bed) {
     struct output out = {0};
-    uint64_t rays = 0;
+    fibrad_bed_factors *factors = NULL;
     int status = output_open(&out, request->bed.out);
-    if (!status) status = run_exchange(bed, &request->run, &request->rule, request->drop, result, &rays);
-    const struct contents contents = {bed, result, request->bed.ids, &request->order, &request->rule};
-    if (!status && request->bed.out) status = request->write(out.file, &contents);
+    if (!status) status = exchange_compute(request, bed, &factors);
+    const struct contents what = {
+        .bed = bed, .factors = factors, .ids = request->bed.ids, .walls = &request->walls, .grey = &request->rule};
+    if (!status && request->bed.out) status = request->write(out.file, &what);
     status = output_close(&out, status);
-    if (!status) print_summary(request, bed, result, rays);
+    if (!status) exchange_print(request, &what);
+    fibrad_bed_free(factors);
     return status;
 }
 
-static int run(struct request *request) {
+static int exchange_run(struct exchange_request *request) {
     struct bed bed = {0};
-    struct result result = {0};
-    double *emissivity = NULL;
-    request->run.file = request->bed.name;
-    request->run.threads = request->bed.threads;
-    request->run.progress = request->bed.progress;
+    double *emissivity = NULL, wall_emissivity[WALLS_MAX];
+    const char *file = request->bed.name;
     int status = bed_options_read(&request->bed, &bed);
-    if (!status) status = walls_of(&request->bed.walls, &bed, request->run.file, &request->run.walls, &request->order);
-    if (!status) status = emissivity_walls(request->wall_emissivity, &request->order, request->rule.wall_emissivity);
-    if (!status) status = emissivity_of(&request->emissivity, &bed, request->run.file, &emissivity);
+    if (!status) status = walls_of(&request->bed.walls, &bed, file, &request->walls);
+    if (!status) status = emissivity_walls(request->wall_emissivity, request->walls.count, wall_emissivity);
+    if (!status) status = emissivity_of(&request->emissivity, &bed, file, &emissivity);
     request->rule.emissivity = emissivity;
-    if (!status) status = compute_and_write(request, &bed, &result);
+    request->rule.body_emissivity = wall_emissivity;
+    if (!status) status = exchange_write(request, &bed);
     free(emissivity);
-    result_free(&result);
     bed_free(&bed);
     return status;
 }
 
 int command_exchange(int argc, char **argv) {
-    struct request request;
-    const int status = parse(&request, argc, argv);
-    if (status) return status == STATUS_HELP ? help() : status;
-    return run(&request);
+    struct exchange_request request;
+    const int status = exchange_parse(&request, argc, argv);
+    if (status) return status == STATUS_HELP ? exchange_help() : status;
+    return exchange_run(&request);
 }

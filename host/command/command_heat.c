@@ -1,21 +1,22 @@
 /* command_heat.c - `fibrad heat`: net radiative powers of grey spheres and walls. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
+#include <math.h>
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "bed/bed_scene.h"
 #include "bed/property_option.h"
-#include "bed/wall_option.h"
 #include "cli/message.h"
 #include "cli/output.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
-#include "compute/heat_powers.h"
 #include "write/write_heat.h"
 
 enum { KEY_TEMPERATURE = KEY_OWN, KEY_AMBIENT, KEY_WALL_TEMPERATURE, KEY_MODEL, KEY_PATCHES };
 
-static const struct option table[] = {
+static const struct option heat_table[] = {
     {OPTION_EMISSIVITY},
     {KEY_TEMPERATURE, "temperature", "T|COLUMN", "of all spheres [K], or the file's column of that name"},
     {KEY_AMBIENT, "ambient", "T", "temperature of the surroundings, which are black [0 K]"},
@@ -41,21 +42,23 @@ static const struct option table[] = {
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
-struct request {
+struct heat_request {
     struct bed_options bed;
     const char *wall_temperature, *wall_emissivity;
     write_heat_function *write;
     struct quantity emissivity, temperature;
-    struct wall_order order;
-    bool counted; /* --directions, --points or --patches was given */
-    struct heat_options heat;
+    struct walls walls;
+    bool counted;              /* --directions, --points or --patches was given */
+    fibrad_heat_config config; /* with --error, where to begin */
+    fibrad_heat_sources sources;
+    double error; /* wanted of the powers, over their root mean square; 0: config as it is */
 };
 
-static int help(void) {
+static int heat_help(void) {
     puts("fibrad heat FILE --emissivity E --temperature T [options]\n\n"
          "Net radiative power of every sphere of FILE, of walls and of the surroundings, all grey and diffuse.\n"
          "SI units: metres, kelvins, watts; q is positive where heat is gained.\n");
-    options_print(table);
+    options_print(heat_table);
     puts("\nIn .csv the surroundings are i = -1 and the walls -2, -3 ... in the order given. All q add up to zero.\n"
          "Standard output ends with a summary, one `key value` a line; `wall_NAME`: power and temperature.\n\n"
          "Examples:\n"
@@ -73,7 +76,7 @@ static int take_patches(const char *text, uint32_t *patches) {
     return status;
 }
 
-static int take_option(struct request *request, const struct options *options, int key) {
+static int heat_take(struct heat_request *request, const struct options *options, int key) {
     const char *value = options->value;
     int status = STATUS_OK;
     struct beam_options beam = {0};
@@ -83,7 +86,7 @@ static int take_option(struct request *request, const struct options *options, i
     case KEY_TEMPERATURE:
         return temperature_option(value, &request->temperature);
     case KEY_AMBIENT:
-        return options_number("--ambient", value, 0, TEMPERATURE_MAX, &request->heat.sources.surroundings);
+        return options_number("--ambient", value, 0, TEMPERATURE_MAX, &request->sources.surroundings);
     case KEY_WALL_TEMPERATURE:
         request->wall_temperature = value;
         break;
@@ -91,36 +94,36 @@ static int take_option(struct request *request, const struct options *options, i
         request->wall_emissivity = value;
         break;
     case KEY_MODEL:
-        request->heat.sources.uniform = strcmp(value, "spheres") == 0;
-        if (!request->heat.sources.uniform && strcmp(value, "patches") != 0)
+        request->sources.uniform = strcmp(value, "spheres") == 0;
+        if (!request->sources.uniform && strcmp(value, "patches") != 0)
             status = message(STATUS_USAGE, "--model: '%.40s' is neither patches nor spheres", value);
         break;
     case KEY_PATCHES:
         request->counted = true;
-        return take_patches(value, &request->heat.config.patches);
+        return take_patches(value, &request->config.patches);
     case KEY_DIRECTIONS:
     case KEY_POINTS:
         request->counted = true;
         status = options_beam(key, value, &beam);
-        if (key == KEY_DIRECTIONS) request->heat.config.directions = beam.directions;
-        if (key == KEY_POINTS) request->heat.config.points = beam.points;
+        if (key == KEY_DIRECTIONS) request->config.directions = beam.directions;
+        if (key == KEY_POINTS) request->config.points = beam.points;
         break;
     case KEY_ERROR:
-        return options_number("--error", value, 1e-5, 1, &request->heat.error);
+        return options_number("--error", value, 1e-5, 1, &request->error);
     default:
         return bed_options_take(&request->bed, options, key);
     }
     return status;
 }
 
-static int check_request(struct request *request) {
+static int heat_check(struct heat_request *request) {
     if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad heat --help");
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (!request->temperature.given) return message(STATUS_USAGE, "which --temperature? see fibrad heat --help");
-    if (request->heat.error > 0 && request->counted)
+    if (request->error > 0 && request->counted)
         return message(STATUS_USAGE,
                        "--error finds directions and patches itself; leave out --directions, --points and --patches");
-    if (request->heat.error > 0 && request->heat.sources.uniform)
+    if (request->error > 0 && request->sources.uniform)
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
@@ -131,87 +134,150 @@ static int check_request(struct request *request) {
     return bed_options_output(&request->bed, request->write, ".csv and .vtp");
 }
 
-static int parse(struct request *request, int argc, char **argv) {
-    struct options options = {.command = "heat", .table = table, .argc = argc, .argv = argv};
-    *request = (struct request){.bed.frame = -1,
-                                .heat.config = {.directions = 168, .points = 64, .patches = 96},
-                                .heat.sources.sigma = FIBRAD_STEFAN_BOLTZMANN};
+static int heat_parse(struct heat_request *request, int argc, char **argv) {
+    struct options options = {.command = "heat", .table = heat_table, .argc = argc, .argv = argv};
+    *request = (struct heat_request){.bed.frame = -1, .config = {.directions = 168, .points = 64, .patches = 96}};
+    fibrad_heat_sources_init(&request->sources);
+    request->sources.surroundings = 0;
     int status = STATUS_OK;
-    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
-        status = take_option(request, &options, key);
-    if (request->heat.error > 0 && !request->counted) request->heat.config.directions = 72;
-    return status ? status : check_request(request);
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = heat_take(request, &options, key);
+    if (request->error > 0 && !request->counted) request->config.directions = 72;
+    return status ? status : heat_check(request);
 }
 
-static void print_summary(const struct request *request, const struct bed *bed, const struct heat_report *report) {
-    const fibrad_heat_result *heat = &report->heat;
-    printf("%s: radii %g to %g, %s\n", request->heat.file, report->facts.radius_min, report->facts.radius_max,
+/* Powers, and what is said of them. */
+struct heat_report {
+    fibrad_heat_result result;
+    fibrad_heat_config config; /* as used in the end */
+    fibrad_scene_facts facts;
+    double seconds;              /* computing, without reading and writing */
+    double mean_square, largest; /* of the spheres: root mean square [W]; of all: largest [W] */
+    double balance;              /* sum of all powers over the largest */
+    double error_estimate;       /* of the powers, over their root mean square */
+};
+
+static void heat_summarise(const struct bed *bed, const struct walls *walls, struct heat_report *report) {
+    const fibrad_heat_result *result = &report->result;
+    double square = 0, sum = result->surroundings_power;
+    report->largest = fabs(sum);
+    for (uint32_t k = 0; k < walls->count; ++k) {
+        sum += result->body_power[k];
+        report->largest = fmax(report->largest, fabs(result->body_power[k]));
+    }
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        sum += result->power[i];
+        square += result->power[i] * result->power[i];
+        report->largest = fmax(report->largest, fabs(result->power[i]));
+    }
+    report->mean_square = sqrt(square / bed->n);
+    report->balance = report->largest > 0 ? sum / report->largest : 0;
+    const double error = hypot(result->error_patches, result->error_beams);
+    report->error_estimate = report->mean_square > 0 ? error / report->mean_square : 0;
+}
+
+static int heat_once(struct heat_request *request, const struct bed *bed, struct heat_report *report) {
+    const fibrad_scene_config scene = bed_scene(bed, &request->walls);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    fibrad_run run = bed_options_run(&request->bed);
+    fibrad_radiation *radiation;
+    int status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
+    if (!status) status = fibrad_radiation_solve(radiation, &request->sources, &report->result);
+    fibrad_radiation_describe(radiation, &report->facts, &run.fault);
+    fibrad_radiation_free(radiation);
+    if (!status) heat_summarise(bed, &request->walls, report);
+    return bed_options_status(&request->bed, bed, status, &run.fault);
+}
+
+/* More of what makes the larger part of the error. False: there is no more. */
+static bool heat_refine(struct heat_report *report) {
+    fibrad_heat_config *config = &report->config;
+    const bool beams = report->result.error_beams > report->result.error_patches;
+    if ((beams || config->patches == 384) && config->directions <= FIBRAD_DIRECTIONS_MAX / 4)
+        config->directions *= 2;
+    else if (config->patches < 384)
+        config->patches *= 4;
+    else
+        return false;
+    return true;
+}
+
+static int heat_compute(struct heat_request *request, const struct bed *bed, struct heat_report *report) {
+    const double begun = progress_clock();
+    report->config = request->config;
+    int status = heat_once(request, bed, report);
+    while (!status && request->error > 0 && report->error_estimate > request->error && heat_refine(report))
+        status = heat_once(request, bed, report);
+    report->seconds = progress_clock() - begun;
+    return status;
+}
+
+static void heat_print(const struct heat_request *request, const struct bed *bed, const struct heat_report *report) {
+    const fibrad_heat_result *result = &report->result;
+    printf("%s: radii %g to %g, %s\n", request->bed.name, report->facts.radius_min, report->facts.radius_max,
            fibrad_isa_name(report->facts.isa));
     printf("spheres %" PRIu32 "\n", bed->n);
-    printf("model %s\n", request->heat.sources.uniform ? "spheres" : "patches");
+    printf("model %s\n", request->sources.uniform ? "spheres" : "patches");
     printf("patches %" PRIu32 "\n", report->config.patches);
     printf("directions %" PRIu32 "\n", report->config.directions);
     printf("points %" PRIu32 "\n", report->config.points);
-    printf("threads %d\n", report->threads);
+    printf("threads %d\n", request->bed.threads ? request->bed.threads : omp_get_max_threads());
     printf("seconds %.17g\n", report->seconds);
-    printf("sweeps %" PRIu32 "\n", heat->sweeps);
-    printf("residual %.17g\n", heat->residual);
+    printf("sweeps %" PRIu32 "\n", result->sweeps);
+    printf("residual %.17g\n", result->residual);
     printf("power_rms %.17g\n", report->mean_square);
     printf("power_largest %.17g\n", report->largest);
-    printf("surroundings %.17g %.17g\n", heat->surroundings_power, request->heat.sources.surroundings);
-    for (uint32_t k = 0; k < request->order.count; ++k) {
-        const uint32_t wall = request->order.wall[k];
-        printf("wall_%s %.17g %.17g\n", wall_name(wall), heat->wall_power[wall],
-               request->heat.sources.wall_temperature[wall]);
-    }
+    printf("surroundings %.17g %.17g\n", result->surroundings_power, request->sources.surroundings);
+    for (uint32_t k = 0; k < request->walls.count; ++k)
+        printf("wall_%s %.17g %.17g\n", wall_name(&request->walls.body[k]), result->body_power[k],
+               request->sources.body_temperature[k]);
     printf("balance %.17g\n", report->balance);
     printf("error_estimate %.17g\n", report->error_estimate);
 }
 
-static int compute_and_write(struct request *request, const struct bed *bed, struct heat_report *report) {
+static int heat_write(struct heat_request *request, const struct bed *bed, struct heat_report *report) {
     struct output out = {0};
     int status = output_open(&out, request->bed.out);
-    if (!status) status = run_heat(bed, &request->heat, report);
-    if (!status && request->heat.error > 0 && report->error_estimate > request->heat.error)
-        fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g\n", request->heat.file,
+    if (!status) status = heat_compute(request, bed, report);
+    if (!status && request->error > 0 && report->error_estimate > request->error)
+        fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g\n", request->bed.name,
                 report->error_estimate);
-    const struct heat_contents contents = {bed, &request->heat, report, &request->order, request->bed.ids};
+    const struct heat_contents contents = {bed, &request->walls, &request->sources, &report->result, request->bed.ids};
     if (!status && request->bed.out) status = request->write(out.file, &contents);
     status = output_close(&out, status);
-    if (!status) print_summary(request, bed, report);
+    if (!status) heat_print(request, bed, report);
     return status;
 }
 
-static int run(struct request *request) {
+static int heat_run(struct heat_request *request) {
     struct bed bed = {0};
     struct heat_report report = {0};
-    fibrad_heat_sources *sources = &request->heat.sources;
-    double *emissivity = NULL, *temperature = NULL;
-    request->heat.file = request->bed.name;
-    request->heat.threads = request->bed.threads;
-    request->heat.progress = request->bed.progress;
+    fibrad_heat_sources *sources = &request->sources;
+    double *emissivity = NULL, *temperature = NULL, *power = NULL;
+    double wall_temperature[WALLS_MAX], wall_emissivity[WALLS_MAX], wall_power[WALLS_MAX];
+    const char *file = request->bed.name;
     int status = bed_options_read(&request->bed, &bed);
-    if (!status)
-        status = walls_of(&request->bed.walls, &bed, request->heat.file, &request->heat.walls, &request->order);
-    if (!status)
-        status = temperature_walls(request->wall_temperature, &request->order, sources->surroundings,
-                                   sources->wall_temperature);
-    if (!status) status = emissivity_walls(request->wall_emissivity, &request->order, sources->wall_emissivity);
-    if (!status) status = emissivity_of(&request->emissivity, &bed, request->heat.file, &emissivity);
-    if (!status) status = temperature_of(&request->temperature, &bed, request->heat.file, &temperature);
-    sources->emissivity = emissivity;
-    sources->temperature = temperature;
-    if (!status) status = compute_and_write(request, &bed, &report);
+    if (!status) status = walls_of(&request->bed.walls, &bed, file, &request->walls);
+    const uint32_t walls = request->walls.count;
+    if (!status) status = temperature_walls(request->wall_temperature, walls, sources->surroundings, wall_temperature);
+    if (!status) status = emissivity_walls(request->wall_emissivity, walls, wall_emissivity);
+    if (!status) status = emissivity_of(&request->emissivity, &bed, file, &emissivity);
+    if (!status) status = temperature_of(&request->temperature, &bed, file, &temperature);
+    if (!status) power = malloc(bed.n * sizeof *power);
+    if (!status && !power) status = message_memory();
+    sources->emissivity = emissivity, sources->temperature = temperature;
+    sources->body_emissivity = wall_emissivity, sources->body_temperature = wall_temperature;
+    report.result = (fibrad_heat_result){.power = power, .body_power = wall_power};
+    if (!status) status = heat_write(request, &bed, &report);
     free(emissivity);
     free(temperature);
-    heat_report_free(&report);
+    free(power);
     bed_free(&bed);
     return status;
 }
 
 int command_heat(int argc, char **argv) {
-    struct request request;
-    const int status = parse(&request, argc, argv);
-    if (status) return status == STATUS_HELP ? help() : status;
-    return run(&request);
+    struct heat_request request;
+    const int status = heat_parse(&request, argc, argv);
+    if (status) return status == STATUS_HELP ? heat_help() : status;
+    return heat_run(&request);
 }

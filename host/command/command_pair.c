@@ -8,13 +8,13 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "command/commands.h"
-#include "compute/rows.h"
 #include "reference/exact_gsl.h"
 #include "reference/reference.h"
+#include "simple/heap.h"
 
 enum { KEY_OBSTACLE = KEY_OWN, KEY_CHECK };
 
-static const struct option table[] = {
+static const struct option pair_table[] = {
     {KEY_METHOD, "method", "NAME",
      "exact; beam: along Fibonacci directions; surface: between nodes; cast: rays; mc: random rays [exact]"},
     {KEY_OBSTACLE, "obstacle", "X,Y,Z,R", "a sphere in the way; may be given again [none]"},
@@ -31,7 +31,7 @@ static const struct option table[] = {
 
 enum { SPHERES_MAX = 1000 };
 
-struct request {
+struct pair_request {
     double r1, r2, gap;
     int given; /* of these three */
     /* sphere 1, sphere 2, obstacles */
@@ -45,11 +45,11 @@ struct request {
     bool beam_given, surface_given, cast_given, check;
 };
 
-static int help(void) {
+static int pair_help(void) {
     puts("fibrad pair R1 R2 GAP [options]\n\n"
          "View factor from sphere 1 (radius R1, at the origin) to sphere 2 (radius R2, at 0,0,R1+R2+GAP). GAP may be\n"
          "negative: the spheres overlap. With obstacles, exact means adaptive quadrature, to about 1e-9 and slow.\n");
-    options_print(table);
+    options_print(pair_table);
     puts("\nThe last line of the output is `F12 VALUE`.\n\n"
          "Examples:\n"
          "  fibrad pair 1 1 0\n"
@@ -60,7 +60,7 @@ static int help(void) {
     return STATUS_OK;
 }
 
-static int take_obstacle(struct request *request, const char *text) {
+static int take_obstacle(struct pair_request *request, const char *text) {
     double sphere[4];
     int count;
     const int status = options_numbers("--obstacle", text, 4, sphere, &count);
@@ -76,7 +76,7 @@ static int take_obstacle(struct request *request, const char *text) {
     return STATUS_OK;
 }
 
-static int take_length(struct request *request, const char *text) {
+static int take_length(struct pair_request *request, const char *text) {
     switch (request->given++) {
     case 0:
         return options_number("R1", text, 1e-150, 1e150, &request->r1);
@@ -89,7 +89,7 @@ static int take_length(struct request *request, const char *text) {
     }
 }
 
-static int take_option(struct request *request, const struct options *options, int key) {
+static int pair_take(struct pair_request *request, const struct options *options, int key) {
     switch (key) {
     case OPTIONS_POSITIONAL:
         return take_length(request, options->value);
@@ -118,13 +118,12 @@ static int take_option(struct request *request, const struct options *options, i
     }
 }
 
-static int parse(struct request *request, int argc, char **argv) {
-    struct options options = {.command = "pair", .table = table, .argc = argc, .argv = argv};
+static int pair_parse(struct pair_request *request, int argc, char **argv) {
+    struct options options = {.command = "pair", .table = pair_table, .argc = argc, .argv = argv};
     request->cast.rays = 20000;
     request->n = 2; /* obstacles behind spheres 1 and 2 */
     int status = STATUS_OK;
-    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
-        status = take_option(request, &options, key);
+    for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = pair_take(request, &options, key);
     if (status) return status;
     if (request->given < 3) return message(STATUS_USAGE, "R1, R2 and GAP are needed; see fibrad pair --help");
     if (request->check && (request->method != METHOD_EXACT || request->n > 2))
@@ -150,7 +149,7 @@ static int report_check(const char *name, int error, double value, double abserr
 }
 
 /* Differences are relative to the kernel's value. */
-static int check(const struct request *request, double f12) {
+static int pair_check(const struct pair_request *request, double f12) {
     double value = 0, abserr = 0;
     int status = STATUS_OK;
     printf("kernel %.17g\n", f12);
@@ -165,13 +164,13 @@ static int check(const struct request *request, double f12) {
     return report_check("gsl_lens", error, value, abserr, f12);
 }
 
-static int exact(const struct request *request, double *f12) {
+static int pair_exact(const struct pair_request *request, double *f12) {
     const int status = fibrad_pair_exact(request->r1, request->r2, request->gap, f12);
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
-    return request->check ? check(request, *f12) : STATUS_OK;
+    return request->check ? pair_check(request, *f12) : STATUS_OK;
 }
 
-static const char *name_of(uint32_t i, char text[32]) {
+static const char *pair_name(uint32_t i, char text[32]) {
     if (i < 2)
         snprintf(text, 32, "sphere %" PRIu32, i + 1);
     else
@@ -179,33 +178,45 @@ static const char *name_of(uint32_t i, char text[32]) {
     return text;
 }
 
-static int refuse(int status, const fibrad_fault *fault) {
+static int pair_refuse(int status, const fibrad_fault *fault) {
     char first[32], second[32];
-    return message(STATUS_USAGE, "%s and %s: %s", name_of(fault->first, first), name_of(fault->second, second),
+    return message(STATUS_USAGE, "%s and %s: %s", pair_name(fault->first, first), pair_name(fault->second, second),
                    fibrad_status_text(status));
 }
 
+/* The spheres from `first` on. */
+static fibrad_spheres pair_spheres(const struct pair_request *request, uint32_t first) {
+    return (fibrad_spheres){.x = request->x + first,
+                            .y = request->y + first,
+                            .z = request->z + first,
+                            .r = request->r + first,
+                            .n = request->n - first};
+}
+
 /* The spheres as a scene in a block to be freed; only sound ones make one. */
-static int make_scene(const struct request *request, fibrad_scene **scene, void **block) {
-    const fibrad_scene_config config = {.spheres = request->n};
-    const fibrad_spheres spheres = {request->x, request->y, request->z, request->r, request->n};
-    const size_t size = fibrad_scene_size(&config);
+static int pair_scene(const struct pair_request *request, fibrad_scene **scene, void **block) {
+    const fibrad_spheres spheres = pair_spheres(request, 0);
     fibrad_fault fault;
-    *block = run_block(size);
-    if (!*block) return message_memory();
-    const int status = fibrad_scene_init(scene, *block, size, &config, &spheres, &fault);
-    return status ? refuse(status, &fault) : STATUS_OK;
+    const int status = fibrad_heap_scene(scene, block, NULL, &spheres, &fault);
+    if (status == FIBRAD_E_MEMORY) return message_memory();
+    return status ? pair_refuse(status, &fault) : STATUS_OK;
+}
+
+/* Whether the spheres make a scene. */
+static int pair_sound(const struct pair_request *request) {
+    fibrad_scene *scene;
+    void *block;
+    const int status = pair_scene(request, &scene, &block);
+    free(block);
+    return status;
 }
 
 /* Pairs with obstacles: the value to 1e-9 of the unobstructed factor, or as near as a minute's work gets. */
-static int reference(const struct request *request, double *f12) {
+static int pair_reference(const struct pair_request *request, double *f12) {
     const struct reference_rule rule = {.tolerance = 1e-9, .max_evaluations = 5000000};
-    const fibrad_spheres spheres = {request->x, request->y, request->z, request->r, request->n};
+    const fibrad_spheres spheres = pair_spheres(request, 0);
     struct reference_report report;
-    fibrad_scene *scene;
-    void *block;
-    int status = make_scene(request, &scene, &block);
-    free(block);
+    const int status = pair_sound(request);
     if (status) return status;
     switch (reference_pair(&spheres, 0, 1, &rule, f12, &report)) {
     case REFERENCE_OK:
@@ -222,129 +233,103 @@ static int reference(const struct request *request, double *f12) {
     return STATUS_OK;
 }
 
-/* Memory for rows of a few spheres. */
+/* Rows of a few spheres. */
 struct few {
     fibrad_scene *scene;
-    fibrad_work *work;
-    void *scene_block, *work_block;
+    void *block; /* of the scene */
+    fibrad_work work;
     uint32_t col[SPHERES_MAX];
     double f[SPHERES_MAX], length[SPHERES_MAX], angle[SPHERES_MAX];
 };
 
-static int make_few(struct few *few, const struct request *request) {
-    const fibrad_work_config config = {.near = SPHERES_MAX, .discs = SPHERES_MAX, .entries = SPHERES_MAX};
-    const size_t size = fibrad_work_size(&config);
-    int status = make_scene(request, &few->scene, &few->scene_block);
-    if (status) return status;
-    few->work_block = run_block(size);
-    if (!few->work_block) return message_memory();
-    status = fibrad_work_init(&few->work, few->work_block, size, &config);
-    return status ? message(STATUS_USAGE, "%s", fibrad_status_text(status)) : STATUS_OK;
-}
-
-static void free_few(struct few *few) {
-    free(few->scene_block);
-    free(few->work_block);
-    free(few);
-}
-
 /* Where sphere j stands in a row; its length if it is not there. */
-static uint32_t find(const fibrad_row *row, uint32_t j) {
+static uint32_t find_column(const fibrad_row *row, uint32_t j) {
     uint32_t k = 0;
     while (k < row->length && row->col[k] != j) ++k;
     return k;
 }
 
 /* F from sphere i to sphere j by the row of i. */
-static int beam_factor(struct few *few, const struct request *request, uint32_t i, uint32_t j, double *f) {
+static int beam_factor(struct few *few, const struct pair_request *request, uint32_t i, uint32_t j, double *f) {
     fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
-    const int status = fibrad_beam_row(few->scene, few->work, i, &request->rule, &row);
+    const int status = fibrad_beam_row(few->scene, &few->work, i, &request->rule, &row);
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
-    const uint32_t k = find(&row, j);
+    const uint32_t k = find_column(&row, j);
     *f = k < row.length ? row.f[k] : 0;
     printf("F%" PRIu32 "%" PRIu32 "_raw %.17g\nerror_estimate_%" PRIu32 " %.3g\n", i + 1, j + 1, *f, i + 1, row.error);
     return STATUS_OK;
 }
 
-static int beam(const struct request *request, double *f12) {
-    struct few *few = calloc(1, sizeof *few);
-    if (!few) return message_memory();
+static int pair_beam(struct few *few, const struct pair_request *request, double *f12) {
     double there = 0, back = 0;
-    int status = make_few(few, request);
-    if (!status) status = beam_factor(few, request, 0, 1, &there);
+    int status = beam_factor(few, request, 0, 1, &there);
     if (!status) status = beam_factor(few, request, 1, 0, &back);
     const double ratio = request->r2 / request->r1;
     *f12 = (there + ratio * ratio * back) / 2;
-    free_few(few);
     return status;
 }
 
 /* F12 by rays from sphere 1 alone. */
-static int cast_factor(struct few *few, const struct request *request, double *f12) {
+static int pair_cast(struct few *few, const struct pair_request *request, double *f12) {
     fibrad_cast_rule rule = request->cast;
     fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
     rule.random = request->method == METHOD_MC;
     const int status =
-        fibrad_cast_row(few->scene, few->work, 0, &rule, &row, &(fibrad_cast_means){few->length, few->angle});
+        fibrad_cast_row(few->scene, &few->work, 0, &rule, &row, &(fibrad_cast_means){few->length, few->angle});
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
-    const uint32_t k = find(&row, 1);
+    const uint32_t k = find_column(&row, 1);
     *f12 = k < row.length ? row.f[k] : 0;
     printf("rays %" PRIu32 "\nerror_estimate %.3g\n", rule.rays, row.error);
     if (k < row.length) printf("mean_ray_length %.17g\nmean_angle %.17g\n", few->length[k], few->angle[k]);
     return STATUS_OK;
 }
 
-static int cast(const struct request *request, double *f12) {
+static int pair_rows(const struct pair_request *request, double *f12) {
     struct few *few = calloc(1, sizeof *few);
     if (!few) return message_memory();
-    int status = make_few(few, request);
-    if (!status) status = cast_factor(few, request, f12);
-    free_few(few);
+    few->work.memory.resize = fibrad_heap_resize;
+    int status = pair_scene(request, &few->scene, &few->block);
+    if (!status) status = request->method == METHOD_BEAM ? pair_beam(few, request, f12) : pair_cast(few, request, f12);
+    free(few->block);
+    free(few->work.memory.block);
+    free(few);
     return status;
 }
 
-static int surface(const struct request *request, double *f12) {
-    const uint32_t n = request->n - 2;
-    const fibrad_spheres obstacles = {request->x + 2, request->y + 2, request->z + 2, request->r + 2, n};
+static int pair_surface(const struct pair_request *request, double *f12) {
+    const fibrad_spheres obstacles = pair_spheres(request, 2);
     fibrad_surface_facts facts;
-    fibrad_scene *scene;
-    void *block;
-    int status = make_scene(request, &scene, &block);
-    free(block);
+    int status = pair_sound(request);
     if (status) return status;
-    block = run_block(FIBRAD_SURFACE_SCRATCH(n + 1) * sizeof(double));
-    if (!block) return message_memory();
-    status =
-        fibrad_surface_pair(request->r1, request->r2, request->gap, &obstacles, &request->surface, block, f12, &facts);
-    free(block);
+    double *scratch = malloc(FIBRAD_SURFACE_SCRATCH(obstacles.n) * sizeof *scratch);
+    if (!scratch) return message_memory();
+    status = fibrad_surface_pair(request->r1, request->r2, request->gap, &obstacles, &request->surface, scratch, f12,
+                                 &facts);
+    free(scratch);
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
     printf("error_estimate %.3g\n", facts.error);
     return STATUS_OK;
 }
 
-static int compute(const struct request *request) {
+static int pair_compute(const struct pair_request *request) {
     double f12 = 0;
     int status;
-    if (request->method == METHOD_BEAM)
-        status = beam(request, &f12);
-    else if (request->method == METHOD_SURFACE)
-        status = surface(request, &f12);
-    else if (request->method == METHOD_CAST || request->method == METHOD_MC)
-        status = cast(request, &f12);
-    else if (request->n > 2)
-        status = reference(request, &f12);
+    if (request->method == METHOD_SURFACE)
+        status = pair_surface(request, &f12);
+    else if (request->method != METHOD_EXACT)
+        status = pair_rows(request, &f12);
     else
-        status = exact(request, &f12);
+        status = request->n > 2 ? pair_reference(request, &f12) : pair_exact(request, &f12);
     if (!status) printf("F12 %.17g\n", f12);
     return status;
 }
 
 int command_pair(int argc, char **argv) {
-    struct request *request = calloc(1, sizeof *request);
+    struct pair_request *request = calloc(1, sizeof *request);
     if (!request) return message_memory();
-    int status = parse(request, argc, argv);
-    if (!status) status = compute(request);
-    if (status == STATUS_HELP) status = help();
+    int status = pair_parse(request, argc, argv);
+    if (!status) status = pair_compute(request);
+    if (status == STATUS_HELP) status = pair_help();
     free(request);
     return status;
 }

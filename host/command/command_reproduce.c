@@ -15,11 +15,11 @@
 
 enum { KEY_ONLY = KEY_OWN, KEY_NO_PLOTS };
 
-static const struct option table[] = {{'o', "output", "DIR", "write CSV files and plots there [none]"},
-                                      {KEY_ONLY, "only", "NAME", "this experiment alone [all]"},
-                                      {KEY_NO_PLOTS, "no-plots", NULL, "CSV files alone [off]"},
-                                      {OPTION_HELP},
-                                      {0, NULL, NULL, NULL}};
+static const struct option reproduce_table[] = {{'o', "output", "DIR", "write CSV files and plots there [none]"},
+                                                {KEY_ONLY, "only", "NAME", "this experiment alone [all]"},
+                                                {KEY_NO_PLOTS, "no-plots", NULL, "CSV files alone [off]"},
+                                                {OPTION_HELP},
+                                                {0, NULL, NULL, NULL}};
 
 static const struct {
     const char *name, *what;
@@ -38,12 +38,12 @@ static const struct {
 };
 enum { EXPERIMENTS = sizeof experiments / sizeof *experiments };
 
-static int help(void) {
+static int reproduce_help(void) {
     puts(
         "fibrad reproduce [options]\n\n"
         "Computes the tables and figures of the papers that the methods come from, on one thread, and prints what was\n"
         "published (paper), or found independently by their methods (check), beside ours.\n");
-    options_print(table);
+    options_print(reproduce_table);
     puts("\nExperiments:");
     for (int k = 0; k < EXPERIMENTS; ++k) printf("  %-12s %s\n", experiments[k].name, experiments[k].what);
     puts("\nExamples:\n"
@@ -77,7 +77,7 @@ static char *path_of(const struct reproduce *reproduce, const char *name, const 
     return path;
 }
 
-static int write_text(const struct reproduce *reproduce, const char *name) {
+static int write_figure(const struct reproduce *reproduce, const char *name) {
     char *path = path_of(reproduce, name, ".csv");
     if (!path) return message_memory();
     struct output output = {0};
@@ -88,7 +88,7 @@ static int write_text(const struct reproduce *reproduce, const char *name) {
     return status;
 }
 
-static int draw(const struct reproduce *reproduce, const char *name, const char *script) {
+static int draw_figure(const struct reproduce *reproduce, const char *name, const char *script) {
     char *path = path_of(reproduce, name, ".svg");
     if (!path) return message_memory();
     struct output output = {0};
@@ -112,11 +112,11 @@ static int draw(const struct reproduce *reproduce, const char *name, const char 
 int reproduce_figure(struct reproduce *reproduce, const char *name, const char *script) {
     if (fflush(reproduce->data) != 0) return message_memory();
     if (!reproduce->directory) return STATUS_OK;
-    const int status = write_text(reproduce, name);
-    return status || !reproduce->plots || !script ? status : draw(reproduce, name, script);
+    const int status = write_figure(reproduce, name);
+    return status || !reproduce->plots || !script ? status : draw_figure(reproduce, name, script);
 }
 
-static int run(struct reproduce *reproduce, int which) {
+static int run_experiment(struct reproduce *reproduce, int which) {
     reproduce->experiment = experiments[which].name;
     reproduce->data = open_memstream(&reproduce->text, &reproduce->length);
     if (!reproduce->data) return message_memory();
@@ -142,7 +142,7 @@ static int open_directory(struct reproduce *reproduce, char **path) {
 }
 
 int command_reproduce(int argc, char **argv) {
-    struct options options = {.command = "reproduce", .table = table, .argc = argc, .argv = argv};
+    struct options options = {.command = "reproduce", .table = reproduce_table, .argc = argc, .argv = argv};
     struct reproduce reproduce = {.plots = true};
     int only = -1;
     for (int key; (key = options_next(&options)) != OPTIONS_END;) switch (key) {
@@ -150,7 +150,7 @@ int command_reproduce(int argc, char **argv) {
             reproduce.directory = options.value;
             break;
         case KEY_HELP:
-            return help();
+            return reproduce_help();
         case KEY_NO_PLOTS:
             reproduce.plots = false;
             break;
@@ -170,7 +170,7 @@ int command_reproduce(int argc, char **argv) {
     if (!status)
         printf("%-12s %-70s %-5s %12s %12s     %s\n", "experiment", "what", "from", "theirs", "ours", "difference");
     for (int k = 0; k < EXPERIMENTS && !status; ++k)
-        if (only < 0 || only == k) status = run(&reproduce, k);
+        if (only < 0 || only == k) status = run_experiment(&reproduce, k);
     status = output_close(&reproduce.comparison, status);
     free(path);
     return status;

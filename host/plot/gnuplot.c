@@ -13,7 +13,7 @@
 
 extern char **environ;
 
-static int spawn(struct gnuplot *gnuplot, int script, int script_end, int picture) {
+static int gnuplot_spawn(struct gnuplot *gnuplot, int script, int script_end, int picture) {
     char *arguments[] = {"gnuplot", NULL};
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
@@ -30,7 +30,7 @@ static int spawn(struct gnuplot *gnuplot, int script, int script_end, int pictur
 int gnuplot_start(struct gnuplot *gnuplot, const struct output *picture) {
     int ends[2];
     if (pipe(ends) != 0) return message(STATUS_FILE, "gnuplot: %s", strerror(errno));
-    const int error = spawn(gnuplot, ends[0], ends[1], fileno(picture->file));
+    const int error = gnuplot_spawn(gnuplot, ends[0], ends[1], fileno(picture->file));
     close(ends[0]);
     gnuplot->picture = picture;
     gnuplot->script = error ? NULL : fdopen(ends[1], "w");
@@ -41,7 +41,7 @@ int gnuplot_start(struct gnuplot *gnuplot, const struct output *picture) {
 }
 
 /* gnuplot does not tell when the disc is full: has the picture got its end? */
-static bool whole(int picture) {
+static bool picture_whole(int picture) {
     char tail[32];
     const off_t size = lseek(picture, 0, SEEK_END);
     if (size < (off_t)sizeof tail || pread(picture, tail, sizeof tail, size - (off_t)sizeof tail) != sizeof tail)
@@ -52,7 +52,7 @@ static bool whole(int picture) {
 }
 
 /* Why: where gnuplot could not write, neither can we, at the latest when a first try has filled what room there was. */
-static int failed(const struct output *picture) {
+static int picture_failed(const struct output *picture) {
     static const char more[65536];
     for (int tries = 0; tries < 2; tries++)
         if (write(fileno(picture->file), more, sizeof more) < 0)
@@ -66,5 +66,5 @@ int gnuplot_end(struct gnuplot *gnuplot) {
     while (waitpid(gnuplot->process, &end, 0) < 0 && errno == EINTR) {}
     if (interrupt_status()) return interrupt_status();
     const bool content = closed == 0 && WIFEXITED(end) && WEXITSTATUS(end) == 0;
-    return content && whole(fileno(gnuplot->picture->file)) ? STATUS_OK : failed(gnuplot->picture);
+    return content && picture_whole(fileno(gnuplot->picture->file)) ? STATUS_OK : picture_failed(gnuplot->picture);
 }

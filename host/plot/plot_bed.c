@@ -36,12 +36,14 @@ static void print_style(FILE *script, const struct output *output, const char *n
           "set label 1 '",
           script);
     print_name(script, name);
+    struct summary summary;
+    summary_make(&summary, what);
     fprintf(script,
             "' at screen 0.015,0.975 font ',19' tc '#111111' noenhanced\n"
             "set label 2 '%u spheres, %llu view factors; row sums %.4f to %.4f, %.2f %% of the radiation leaves the "
             "bed' at screen 0.015,0.945 tc '#444444'\n",
-            what->bed->n, (unsigned long long)what->result->rows.start[what->result->rows.n], what->result->row_sum_min,
-            what->result->row_sum_max, 100 * what->result->escaped_mean);
+            what->bed->n, (unsigned long long)what->factors->matrix.start[what->bed->n], summary.row_sum_min,
+            summary.row_sum_max, 100 * summary.escaped_mean);
 }
 
 /* The range that spheres take up along an axis. */
@@ -65,9 +67,9 @@ static void print_slice(FILE *script, const struct contents *what) {
     fputs("$slice << END\n", script);
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double off = fabs(bed->y[i] - middle);
-        if (off >= bed->r[i] || !what->result->wanted[i]) continue;
+        if (off >= bed->r[i] || (what->wanted && !what->wanted[i])) continue;
         fprintf(script, "%.6g %.6g %.6g %.6g\n", bed->x[i], bed->z[i], sqrt(bed->r[i] * bed->r[i] - off * off),
-                what->result->escaped[i]);
+                what->factors->matrix.escaped[i]);
     }
     fprintf(script,
             "END\n"

@@ -8,7 +8,7 @@
 #include "cli/message.h"
 
 /* Distance of two centres, across periodic faces if that is shorter; of a sphere from its next image if i = j. */
-static double distance(const struct bed *bed, uint32_t i, uint32_t j) {
+static double distance_of_pair(const struct bed *bed, uint32_t i, uint32_t j) {
     const double between[3] = {bed->x[j] - bed->x[i], bed->y[j] - bed->y[i], bed->z[j] - bed->z[i]};
     double square = 0, shortest = INFINITY;
     for (int axis = 0; axis < 3; ++axis) {
@@ -21,52 +21,52 @@ static double distance(const struct bed *bed, uint32_t i, uint32_t j) {
 }
 
 /* The bin of x in [low, high) cut into n; what is beyond goes into the first and the last. */
-static int bin(double x, double low, double high, int n) {
+static int bin_index(double x, double low, double high, int n) {
     const double k = floor((x - low) / (high - low) * n);
     return k < 0 ? 0 : k >= n ? n - 1 : (int)k;
 }
 
 static void count_pairs(struct plot_data *data, const struct contents *what) {
     const struct bed *bed = what->bed;
-    const fibrad_rows *rows = &what->result->rows;
+    const fibrad_factors *matrix = &what->factors->matrix;
     double sum = 0;
-    for (uint32_t i = 0; i < rows->n; ++i)
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; ++k) {
-            const uint32_t j = rows->col[k];
-            const double apart = distance(bed, i, j) / (bed->r[i] + bed->r[j]);
-            const double symmetric = log10(rows->f[k] * bed->r[i] / bed->r[j]);
-            const int factor = bin(log10(rows->f[k]), PLOT_FACTOR_MIN, 0, PLOT_FACTORS);
+    for (uint32_t i = 0; i < matrix->n; ++i)
+        for (uint64_t k = matrix->start[i]; k < matrix->start[i + 1]; ++k) {
+            const uint32_t j = matrix->col[k];
+            const double apart = distance_of_pair(bed, i, j) / (bed->r[i] + bed->r[j]);
+            const double symmetric = log10(matrix->f[k] * bed->r[i] / bed->r[j]);
+            const int factor = bin_index(log10(matrix->f[k]), PLOT_FACTOR_MIN, 0, PLOT_FACTORS);
             if (apart < PLOT_DISTANCE_MAX && symmetric >= PLOT_FACTOR_MIN)
-                data->pairs[bin(apart, 0, PLOT_DISTANCE_MAX, PLOT_DISTANCES)]
-                           [bin(symmetric, PLOT_FACTOR_MIN, 0, PLOT_FACTORS)] += 1;
+                data->pairs[bin_index(apart, 0, PLOT_DISTANCE_MAX, PLOT_DISTANCES)]
+                           [bin_index(symmetric, PLOT_FACTOR_MIN, 0, PLOT_FACTORS)] += 1;
             data->entries[factor] += 1;
-            data->carried[factor] += rows->f[k];
-            sum += rows->f[k];
+            data->carried[factor] += matrix->f[k];
+            sum += matrix->f[k];
         }
-    const double count = (double)rows->start[rows->n];
+    const double count = (double)matrix->start[matrix->n];
     for (int k = 0; k < PLOT_FACTORS && count > 0; ++k) {
         data->entries[k] /= count;
         data->carried[k] /= sum;
     }
 }
 
-static int compare(const void *a, const void *b) {
+static int ascending_sums(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
 /* Sums of F up to each distance for a selection of the rows, [distance][row]. */
-static uint32_t add_up(const struct plot_data *data, const struct contents *what, double (*sums)[PLOT_ROWS]) {
-    const fibrad_rows *rows = &what->result->rows;
-    const uint32_t stride = rows->n / PLOT_ROWS + 1;
+static uint32_t add_distances(const struct plot_data *data, const struct contents *what, double (*sums)[PLOT_ROWS]) {
+    const fibrad_factors *matrix = &what->factors->matrix;
+    const uint32_t stride = matrix->n / PLOT_ROWS + 1;
     uint32_t taken = 0;
-    for (uint32_t i = 0; i < rows->n; i += stride) {
-        if (!what->result->wanted[i]) continue;
+    for (uint32_t i = 0; i < matrix->n; i += stride) {
+        if (what->wanted && !what->wanted[i]) continue;
         for (int d = 0; d <= PLOT_DISTANCES; ++d) sums[d][taken] = 0;
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; ++k) {
-            const double apart = distance(what->bed, i, rows->col[k]) / data->diameter;
+        for (uint64_t k = matrix->start[i]; k < matrix->start[i + 1]; ++k) {
+            const double apart = distance_of_pair(what->bed, i, matrix->col[k]) / data->diameter;
             if (apart < PLOT_DISTANCE_MAX)
-                sums[bin(apart, 0, PLOT_DISTANCE_MAX, PLOT_DISTANCES) + 1][taken] += rows->f[k];
+                sums[bin_index(apart, 0, PLOT_DISTANCE_MAX, PLOT_DISTANCES) + 1][taken] += matrix->f[k];
         }
         for (int d = 1; d <= PLOT_DISTANCES; ++d) sums[d][taken] += sums[d - 1][taken];
         ++taken;
@@ -81,9 +81,9 @@ int plot_data_collect(struct plot_data *data, const struct contents *what) {
     count_pairs(data, what);
     double(*sums)[PLOT_ROWS] = calloc(PLOT_DISTANCES + 1, sizeof *sums);
     if (!sums) return message_memory();
-    const uint32_t taken = add_up(data, what, sums);
+    const uint32_t taken = add_distances(data, what, sums);
     for (int d = 0; d <= PLOT_DISTANCES && taken > 0; ++d) {
-        qsort(sums[d], taken, sizeof *sums[d], compare);
+        qsort(sums[d], taken, sizeof *sums[d], ascending_sums);
         for (int q = 0; q < 3; ++q) data->within[d][q] = sums[d][(taken - 1) * (uint32_t)(1 + 4 * q) / 10];
     }
     free(sums);

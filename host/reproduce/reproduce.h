@@ -9,8 +9,7 @@
 
 #include "bed/bed.h"
 #include "cli/output.h"
-#include "compute/method.h"
-#include "fibrad.h"
+#include "simple/fibrad_host.h"
 
 /* Where results go. */
 struct reproduce {
@@ -44,12 +43,13 @@ experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig
 
 /* ---- rows of a bed, one thread ---- */
 
+/* The row in hand. */
 struct rows {
     fibrad_scene *scene;
-    fibrad_work *work;
-    void *scene_block, *work_block;
+    void *block; /* of the scene */
+    fibrad_work work;
     uint32_t n;
-    uint32_t *col; /* [n] of the row in hand */
+    uint32_t *col; /* [n] */
     double *f;     /* [n] */
 };
 
@@ -57,7 +57,7 @@ struct rows {
 int rows_open(struct rows *rows, const struct bed *bed, bool periodic);
 void rows_close(struct rows *rows);
 
-/* Row i into rows->col and f; length and the rest in *row. Status. */
-int rows_row(struct rows *rows, const struct row_method *method, uint32_t i, fibrad_row *row);
+/* Row i by the rule of `method` into rows->col and f; length and the rest in *row. Status. */
+int rows_row(struct rows *rows, const fibrad_bed_options *method, uint32_t i, fibrad_row *row);
 
 #endif

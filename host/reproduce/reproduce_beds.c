@@ -16,10 +16,11 @@ static const double distances[DISTANCES] = {2, 3, 4, 5, 6, 8, 10};
 static const char *const names[METHODS] = {"surface", "beam", "reference"};
 
 /* Row sum of the first sphere, spheres whose centres are farther than `distance` left out. */
-static int row_sum(struct rows *rows, int method, double distance, double *sum) {
+static int lattice_row_sum(struct rows *rows, int method, double distance, double *sum) {
     const fibrad_surface_rule surface = {.cutoff = distance};
     const fibrad_beam_rule beam = {.directions = method == 1 ? 0 : 8192, .cutoff = distance};
-    const struct row_method which = method == 0 ? method_surface(&surface) : method_beam(&beam);
+    const fibrad_bed_options which =
+        method == 0 ? (fibrad_bed_options){.surface = &surface} : (fibrad_bed_options){.beam = &beam};
     fibrad_row row;
     const int status = rows_row(rows, &which, 0, &row);
     *sum = 0;
@@ -34,7 +35,7 @@ static int draw_lattice(double low, uint64_t seed, double sums[METHODS][DISTANCE
     int status = bed_make_fcc(&bed, low, distances[DISTANCES - 1], seed);
     if (!status) status = rows_open(&rows, &bed, false);
     for (int m = 0; m < METHODS; ++m)
-        for (int d = 0; d < DISTANCES && !status; ++d) status = row_sum(&rows, m, distances[d], &sums[m][d]);
+        for (int d = 0; d < DISTANCES && !status; ++d) status = lattice_row_sum(&rows, m, distances[d], &sums[m][d]);
     rows_close(&rows);
     bed_free(&bed);
     return status;
@@ -106,13 +107,13 @@ struct truth {
     double *f; /* [count][n], of spheres k n/count */
 };
 
-static void add_row(double *f, const struct rows *rows, const fibrad_row *row, double factor) {
+static void add_factors(double *f, const struct rows *rows, const fibrad_row *row, double factor) {
     for (uint32_t k = 0; k < row->length; ++k) f[rows->col[k]] += factor * rows->f[k];
 }
 
 static int make_truth(struct truth *truth, struct rows *rows) {
     const fibrad_beam_rule rule = {.directions = 16384, .cutoff = CUTOFF};
-    const struct row_method fine = method_beam(&rule);
+    const fibrad_bed_options fine = {.beam = &rule};
     truth->n = rows->n;
     truth->count = rows->n < SAMPLE ? rows->n : SAMPLE;
     truth->f = calloc((size_t)truth->count * truth->n, sizeof *truth->f);
@@ -120,13 +121,13 @@ static int make_truth(struct truth *truth, struct rows *rows) {
     for (uint32_t k = 0; k < truth->count && !status; ++k) {
         fibrad_row row;
         status = rows_row(rows, &fine, (uint32_t)((uint64_t)k * truth->n / truth->count), &row);
-        if (!status) add_row(truth->f + (size_t)k * truth->n, rows, &row, 1);
+        if (!status) add_factors(truth->f + (size_t)k * truth->n, rows, &row, 1);
     }
     return status;
 }
 
 /* Root mean square over the rows of their Euclidean errors. */
-static int error_of(struct rows *rows, const struct row_method *method, const struct truth *truth, double *error) {
+static int error_of(struct rows *rows, const fibrad_bed_options *method, const struct truth *truth, double *error) {
     double *difference = malloc(truth->n * sizeof *difference), square = 0;
     int status = difference ? STATUS_OK : message_memory();
     for (uint32_t k = 0; k < truth->count && !status; ++k) {
@@ -134,7 +135,7 @@ static int error_of(struct rows *rows, const struct row_method *method, const st
         status = rows_row(rows, method, (uint32_t)((uint64_t)k * truth->n / truth->count), &row);
         if (status) break;
         memcpy(difference, truth->f + (size_t)k * truth->n, truth->n * sizeof *difference);
-        add_row(difference, rows, &row, -1);
+        add_factors(difference, rows, &row, -1);
         for (uint32_t j = 0; j < truth->n; ++j) square += difference[j] * difference[j];
     }
     free(difference);
@@ -143,7 +144,7 @@ static int error_of(struct rows *rows, const struct row_method *method, const st
 }
 
 /* Seconds for all rows; small beds again and again, to have something to measure. */
-static int seconds_of(struct rows *rows, const struct row_method *method, double *seconds) {
+static int seconds_of(struct rows *rows, const fibrad_bed_options *method, double *seconds) {
     const double begun = progress_clock();
     uint32_t times = 0;
     do {
@@ -159,11 +160,11 @@ static int seconds_of(struct rows *rows, const struct row_method *method, double
 }
 
 /* The fewest directions, in steps of a quarter, whose error is at most `error`. */
-static int directions_for(struct rows *rows, const struct truth *truth, double error, fibrad_beam_rule *rule) {
+static int fewest_directions(struct rows *rows, const struct truth *truth, double error, fibrad_beam_rule *rule) {
     double found;
     rule->directions = FIBRAD_DIRECTIONS_MIN;
     for (;;) {
-        const struct row_method beam = method_beam(rule);
+        const fibrad_bed_options beam = {.beam = rule};
         const int status = error_of(rows, &beam, truth, &found);
         if (status || found <= error || rule->directions > 8192) return status;
         rule->directions += rule->directions / 4;
@@ -178,7 +179,7 @@ struct rays_at {
 
 /* As many rays as bring about the error, by the law they follow from 20,000 on. */
 static int time_rays(struct rows *rows, const struct truth *truth, double error, struct rays_at *rays) {
-    const struct row_method method = method_cast(&rays->rule);
+    const fibrad_bed_options method = {.cast = &rays->rule};
     rays->rule.rays = 20000;
     int status = error_of(rows, &method, truth, &rays->error);
     if (status) return status;
@@ -193,12 +194,12 @@ static int time_bed(struct reproduce *reproduce, struct rows *rows, double publi
     struct truth truth = {0};
     const fibrad_surface_rule surface_rule = {.cutoff = CUTOFF};
     fibrad_beam_rule beam_rule = {.cutoff = CUTOFF};
-    const struct row_method surface = method_surface(&surface_rule), beam = method_beam(&beam_rule);
+    const fibrad_bed_options surface = {.surface = &surface_rule}, beam = {.beam = &beam_rule};
     double error = 0, beam_error = 0, surface_seconds = 0, beam_seconds = 0;
     struct rays_at cast = {.rule.cutoff = CUTOFF}, mc = {.rule = {.random = 1, .cutoff = CUTOFF}};
     int status = make_truth(&truth, rows);
     if (!status) status = error_of(rows, &surface, &truth, &error);
-    if (!status) status = directions_for(rows, &truth, error, &beam_rule);
+    if (!status) status = fewest_directions(rows, &truth, error, &beam_rule);
     if (!status) status = error_of(rows, &beam, &truth, &beam_error);
     if (!status) status = seconds_of(rows, &surface, &surface_seconds);
     if (!status) status = seconds_of(rows, &beam, &beam_seconds);

@@ -7,15 +7,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bed/bed_scene.h"
 #include "bed/packing.h"
 #include "cli/message.h"
-#include "compute/exchange_rows.h"
+#include "cli/progress.h"
 #include "reproduce/reproduce.h"
 
 #define PI 3.14159265358979323846
 
 enum { EMISSIVITIES = 5, LATTICES = 3 };
 static const double emissivities[EMISSIVITIES] = {.2, .4, .6, .8, 1};
+
+static fibrad_run one_thread(struct progress *bar) {
+    return (fibrad_run){.threads = 1, .progress = progress_stage, .context = bar};
+}
 
 static double *constant(uint32_t n, double value) {
     double *e = malloc(n * sizeof *e);
@@ -25,24 +30,29 @@ static double *constant(uint32_t n, double value) {
 
 /* F_E of a periodic bed of unit spheres, mean of three axes, with so many paths from each. */
 static int factor_of(const struct bed *bed, double emissivity, uint32_t paths, double *factor) {
-    const struct run_options options = {.file = "bed", .threads = 1};
+    const fibrad_scene_config box = bed_scene(bed, NULL);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    struct progress bar = {0};
+    fibrad_run run = one_thread(&bar);
     double *e = constant(bed->n, emissivity), square = 0;
-    fibrad_spread *spread = calloc(bed->n, sizeof *spread);
-    struct result result = {0};
-    int status = e && spread ? STATUS_OK : message_memory();
+    fibrad_displacement *moved = calloc(bed->n, sizeof *moved);
+    int status = e && moved ? STATUS_OK : message_memory();
     const fibrad_exchange_rule rule = {.emissivity = e, .paths = paths};
-    if (!status) status = run_spread(bed, &options, &rule, spread, &result);
+    if (!status) {
+        status = fibrad_displacements(&box, &spheres, &rule, NULL, &run, moved, NULL);
+        progress_stop(&bar);
+        status = bed_status(bed, "bed", status, &run.fault);
+    }
     for (uint32_t i = 0; i < bed->n && !status; ++i)
-        for (int axis = 0; axis < 3; ++axis) square += spread[i].square[axis] / 3;
+        for (int axis = 0; axis < 3; ++axis) square += moved[i].square[axis] / 3;
     *factor = 4 * PI * emissivity * square / (2 * bed->period[0] * bed->period[1] * bed->period[2] * 2);
-    result_free(&result);
-    free(spread);
+    free(moved);
     free(e);
     return status;
 }
 
 /* A cell of touching unit spheres. */
-static int lattice(struct bed *bed, double edge, int sites, const double site[][3]) {
+static int lattice_cell(struct bed *bed, double edge, int sites, const double site[][3]) {
     int status = STATUS_OK;
     for (int k = 0; k < sites && !status; ++k)
         status = bed_add(bed, &(struct bed_sphere){edge * site[k][0], edge * site[k][1], edge * site[k][2], 1, 0, 0});
@@ -56,9 +66,9 @@ static int conductivities(struct bed beds[1 + LATTICES], double factor[1 + LATTI
     static const uint32_t paths[1 + LATTICES] = {300, 400000, 200000, 100000};
     for (int k = 0; k <= LATTICES; ++k) bed_init(&beds[k], false, 0);
     int status = bed_make_packing(&beds[0], 2000, 1, 1, .586, 1);
-    if (!status) status = lattice(&beds[1], 2, 1, site);
-    if (!status) status = lattice(&beds[2], 4 / sqrt(3), 2, body);
-    if (!status) status = lattice(&beds[3], 2 * sqrt(2), 4, site);
+    if (!status) status = lattice_cell(&beds[1], 2, 1, site);
+    if (!status) status = lattice_cell(&beds[2], 4 / sqrt(3), 2, body);
+    if (!status) status = lattice_cell(&beds[3], 2 * sqrt(2), 4, site);
     for (int k = 0; k <= LATTICES; ++k)
         for (int e = 0; e < EMISSIVITIES && !status; ++e)
             status = factor_of(&beds[k], emissivities[e], paths[k], &factor[k][e]);
@@ -118,7 +128,7 @@ static int bin_of(double distance) {
     return (int)((distance - CENTRE) / WIDTH + .5);
 }
 
-static void add_row(const struct bed *bed, const fibrad_rows *rows, uint32_t i, struct curve *curve) {
+static void add_curve(const struct bed *bed, const fibrad_factors *rows, uint32_t i, struct curve *curve) {
     uint64_t at = rows->start[i];
     const double *place[3] = {bed->x, bed->y, bed->z};
     for (uint32_t j = 0; j < bed->n; ++j) {
@@ -138,18 +148,24 @@ static void add_row(const struct bed *bed, const fibrad_rows *rows, uint32_t i, 
 }
 
 static int measure(double fraction, double emissivity, struct curve *curve) {
-    const struct run_options options = {.file = "bed", .threads = 1};
+    struct progress bar = {0};
+    fibrad_run run = one_thread(&bar);
+    fibrad_bed_factors *factors = NULL;
     struct bed bed;
-    struct result result = {0};
-    uint64_t rays;
     bed_init(&bed, false, 0);
     int status = bed_make_jammed(&bed, 1500, fraction, 1000, 1);
     double *e = constant(1500, emissivity);
     if (!status && !e) status = message_memory();
     const fibrad_exchange_rule rule = {.emissivity = e, .directions = 144, .paths = 400};
-    if (!status) status = run_exchange(&bed, &options, &rule, 0, &result, &rays);
-    for (uint32_t i = 0; i < bed.n && !status; ++i) add_row(&bed, &result.rows, i, curve);
-    result_free(&result);
+    if (!status) {
+        const fibrad_scene_config box = bed_scene(&bed, NULL);
+        const fibrad_spheres spheres = bed_spheres(&bed);
+        status = fibrad_exchange_factors(&box, &spheres, &rule, NULL, &run, &factors);
+        progress_stop(&bar);
+        status = bed_status(&bed, "bed", status, &run.fault);
+    }
+    for (uint32_t i = 0; i < bed.n && !status; ++i) add_curve(&bed, &factors->matrix, i, curve);
+    fibrad_bed_free(factors);
     bed_free(&bed);
     free(e);
     return status;

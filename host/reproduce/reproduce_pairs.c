@@ -13,17 +13,18 @@ static const double gaps[] = {0, .01, .02, .05, .1, .5, 1, 2, 4, 6, 8};
 enum { RADII = sizeof radii / sizeof *radii, GAPS = sizeof gaps / sizeof *gaps };
 
 /* The surface factor from a unit sphere; obstacle: x, y, z, r or NULL. Its arguments are always valid. */
-static double surface(double r2, double gap, const double *obstacle, uint32_t nodes, uint32_t flags) {
-    static _Alignas(64) double scratch[FIBRAD_SURFACE_SCRATCH(1)];
+static double surface_factor(double r2, double gap, const double *obstacle, uint32_t nodes, uint32_t flags) {
+    static double scratch[FIBRAD_SURFACE_SCRATCH(1)];
     const fibrad_surface_rule rule = {.nodes = nodes, .flags = flags};
     fibrad_spheres one = {.n = 0};
-    if (obstacle) one = (fibrad_spheres){obstacle, obstacle + 1, obstacle + 2, obstacle + 3, 1};
+    if (obstacle)
+        one = (fibrad_spheres){.x = obstacle, .y = obstacle + 1, .z = obstacle + 2, .r = obstacle + 3, .n = 1};
     double f12 = NAN;
     fibrad_surface_pair(1, r2, gap, &one, &rule, scratch, &f12, NULL);
     return f12;
 }
 
-static double exact(double r2, double gap) {
+static double exact_factor(double r2, double gap) {
     double f12 = NAN;
     fibrad_pair_exact(1, r2, gap, &f12);
     return f12;
@@ -43,8 +44,8 @@ int reproduce_fig3(struct reproduce *reproduce) {
         for (size_t k = 0; k < sizeof nodes / sizeof *nodes; ++k) {
             double worst = 0;
             for (int g = 0; g < GAPS; ++g) {
-                const double f = surface(radii[p], gaps[g], NULL, nodes[k], FIBRAD_SURFACE_NO_CORRECTION);
-                const double truth = exact(radii[p], gaps[g]), error = 100 * (f / truth - 1);
+                const double f = surface_factor(radii[p], gaps[g], NULL, nodes[k], FIBRAD_SURFACE_NO_CORRECTION);
+                const double truth = exact_factor(radii[p], gaps[g]), error = 100 * (f / truth - 1);
                 fprintf(reproduce->data, "%g,%u,%g,%.17g,%.17g,%.4f\n", radii[p], nodes[k], gaps[g], f, truth, error);
                 if (fabs(error) > fabs(worst)) worst = error;
             }
@@ -77,21 +78,22 @@ int reproduce_fig4(struct reproduce *reproduce) {
                    {3, 1.017e-2, 1.021e-2},
                    {4, .698e-2, .704e-2}};
     char what[64];
-    reproduce_compare(reproduce, "exact, in contact: 1/2 - 4/(3 pi)", SOURCE_PAPER, "", .5 - 4 / (3 * PI), exact(1, 0));
+    reproduce_compare(reproduce, "exact, in contact: 1/2 - 4/(3 pi)", SOURCE_PAPER, "", .5 - 4 / (3 * PI),
+                      exact_factor(1, 0));
     for (size_t k = 0; k < sizeof pebbles / sizeof *pebbles; ++k) {
         const double gap = pebbles[k].gap;
         snprintf(what, sizeof what, "surface, 55 nodes, not corrected, H = %g: numerical", gap + 2);
         reproduce_compare(reproduce, what, SOURCE_PAPER, "", pebbles[k].numerical,
-                          surface(1, gap, NULL, 55, FIBRAD_SURFACE_NO_CORRECTION));
+                          surface_factor(1, gap, NULL, 55, FIBRAD_SURFACE_NO_CORRECTION));
         snprintf(what, sizeof what, "exact, H = %g: rays", gap + 2);
-        reproduce_compare(reproduce, what, SOURCE_PAPER, "", pebbles[k].rays, exact(1, gap));
+        reproduce_compare(reproduce, what, SOURCE_PAPER, "", pebbles[k].rays, exact_factor(1, gap));
     }
     fputs("gap,surface,corrected,exact,point_source,far_field\n", reproduce->data);
     for (int k = 0; k <= 60; ++k) {
         const double gap = 8 * pow(k / 60.0, 2), sine = 1 / (2 + gap);
         fprintf(reproduce->data, "%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", gap,
-                surface(1, gap, NULL, 55, FIBRAD_SURFACE_NO_CORRECTION), surface(1, gap, NULL, 55, 0), exact(1, gap),
-                .5 * (1 - sqrt(1 - sine * sine)), .25 * sine * sine);
+                surface_factor(1, gap, NULL, 55, FIBRAD_SURFACE_NO_CORRECTION), surface_factor(1, gap, NULL, 55, 0),
+                exact_factor(1, gap), .5 * (1 - sqrt(1 - sine * sine)), .25 * sine * sine);
     }
     return reproduce_figure(reproduce, "fig4",
                             "set logscale y\nset xlabel 'gap p_2 [radii]'\nset ylabel 'F_{12}, equal spheres'\n"
@@ -102,10 +104,10 @@ int reproduce_fig4(struct reproduce *reproduce) {
 }
 
 /* The blocked factor by adaptive quadrature, to about 1e-7. */
-static int reference(double r2, double gap, const double obstacle[4], double *f12) {
+static int reference_factor(double r2, double gap, const double obstacle[4], double *f12) {
     const double x[3] = {0, 0, obstacle[0]}, y[3] = {0, 0, obstacle[1]}, z[3] = {0, 1 + r2 + gap, obstacle[2]};
     const double r[3] = {1, r2, obstacle[3]};
-    const fibrad_spheres spheres = {x, y, z, r, 3};
+    const fibrad_spheres spheres = {.x = x, .y = y, .z = z, .r = r, .n = 3};
     const struct reference_rule rule = {.tolerance = 1e-7, .max_evaluations = 3000000};
     struct reference_report report;
     const int status = reference_pair(&spheres, 0, 1, &rule, f12, &report);
@@ -141,15 +143,17 @@ static int third_sphere(struct reproduce *reproduce, double r, double gap, doubl
     struct spread raw = {0}, corrected = {0};
     const double obstacle[4] = {to_axis, 0, z, r};
     double truth;
-    const int status = reference(r, gap, obstacle, &truth);
+    const int status = reference_factor(r, gap, obstacle, &truth);
     if (status) return status;
     for (int a = 0; a < AZIMUTHS; ++a) {
         const double turned[4] = {to_axis * cos(2 * PI * a / AZIMUTHS), to_axis * sin(2 * PI * a / AZIMUTHS), z, r};
-        widen(&raw, a, 100 * (surface(r, gap, turned, 55, plain) / truth - 1));
-        widen(&corrected, a, 100 * (surface(r, gap, turned, 55, 0) / truth - 1));
+        widen(&raw, a, 100 * (surface_factor(r, gap, turned, 55, plain) / truth - 1));
+        widen(&corrected, a, 100 * (surface_factor(r, gap, turned, 55, 0) / truth - 1));
     }
-    const double f55 = surface(r, gap, obstacle, 55, plain), f55_corrected = surface(r, gap, obstacle, 55, 0);
-    const double f987 = surface(r, gap, obstacle, 987, plain), f987_corrected = surface(r, gap, obstacle, 987, 0);
+    const double f55 = surface_factor(r, gap, obstacle, 55, plain),
+                 f55_corrected = surface_factor(r, gap, obstacle, 55, 0);
+    const double f987 = surface_factor(r, gap, obstacle, 987, plain),
+                 f987_corrected = surface_factor(r, gap, obstacle, 987, 0);
     fprintf(reproduce->data, "%g,%g,%.10g,%.10g,%.10g,%.10g,%.10g,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", r, gap,
             f55, f55_corrected, f987, f987_corrected, truth, raw.at_zero, raw.low, raw.high, corrected.at_zero,
             corrected.low, corrected.high, 100 * (f987 / truth - 1), 100 * (f987_corrected / truth - 1));

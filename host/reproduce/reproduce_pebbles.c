@@ -138,9 +138,9 @@ static double apart(const struct bed *bed, uint32_t i, uint32_t j) {
     return sqrt(square);
 }
 
-static int collect(struct within *within, const struct bed *bed, struct rows *rows) {
+static int collect_within(struct within *within, const struct bed *bed, struct rows *rows) {
     const fibrad_beam_rule rule = {.directions = 610};
-    const struct row_method beam = method_beam(&rule);
+    const fibrad_bed_options beam = {.beam = &rule};
     for (uint32_t s = 0; s < SAMPLE; ++s) {
         const uint32_t i = s * (PEBBLES / SAMPLE);
         fibrad_row row;
@@ -189,7 +189,7 @@ int reproduce_pebble_bed(struct reproduce *reproduce) {
         bed_init(&bed, false, 0);
         int status = bed_make_packing(&bed, PEBBLES, 1, 1, fractions[k], 1);
         if (!status) status = rows_open(&rows, &bed, true);
-        if (!status) status = collect(&within, &bed, &rows);
+        if (!status) status = collect_within(&within, &bed, &rows);
         if (!status) tell_bed(reproduce, fractions[k], &within);
         rows_close(&rows);
         bed_free(&bed);

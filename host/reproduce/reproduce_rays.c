@@ -15,11 +15,11 @@ struct pair_rays {
     double f12, length, angle;
 };
 
-static int cast(struct rows *rows, const fibrad_cast_rule *rule, double exact, struct pair_rays *means) {
+static int cast_once(struct rows *rows, const fibrad_cast_rule *rule, double exact, struct pair_rays *means) {
     double length[2] = {0}, angle[2] = {0};
     fibrad_row row = {.col = rows->col, .f = rows->f, .capacity = rows->n};
-    const int status =
-        fibrad_cast_row(rows->scene, rows->work, 0, rule, &row, &(fibrad_cast_means){.length = length, .angle = angle});
+    const int status = fibrad_cast_row(rows->scene, &rows->work, 0, rule, &row,
+                                       &(fibrad_cast_means){.length = length, .angle = angle});
     if (status) return message(STATUS_INPUT, "rays: %s", fibrad_status_text(status));
     const double f12 = row.length ? row.f[0] : 0;
     means->error += pow(f12 / exact - 1, 2) / ORIENTATIONS;
@@ -43,7 +43,7 @@ static int cast_pair(double h, fibrad_cast_rule rule, struct pair_rays *means) {
         status = bed_add(&bed, &(struct bed_sphere){.r = 1});
         if (!status) status = bed_add(&bed, &(struct bed_sphere){.x = h * w[0], .y = h * w[1], .z = h * w[2], .r = 1});
         if (!status) status = rows_open(&rows, &bed, false);
-        if (!status) status = cast(&rows, &rule, exact, means);
+        if (!status) status = cast_once(&rows, &rule, exact, means);
         rows_close(&rows);
         bed_free(&bed);
     }

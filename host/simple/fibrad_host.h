@@ -3,13 +3,18 @@
  *
  * Index
  *   run       fibrad_run: threads, progress, cancelling
- *   factors   fibrad_view_factors, fibrad_exchange_factors, fibrad_displacements, fibrad_bed_free
- *   heat      fibrad_radiation_new, _move, _solve, _free
- *   binding   fibrad_host_sizeof
+ *   factors   fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_displacements
+ *   heat      fibrad_radiation_new, _move, _solve, _describe, _free
+ *   kernel    fibrad_heap_resize, fibrad_host_sizeof
  *
- * Units, numbers, errors and zeroed structures are as in fibrad.h. Every result is the same for any number of threads.
- * Objects belong to one thread at a time; different objects are independent. Besides the codes of the kernel functions:
- * FIBRAD_E_MEMORY, FIBRAD_E_CANCELLED. On any error nothing is left to free and the out-pointer is NULL.
+ * Typical  fibrad_bed_factors *bed;
+ *          int status = fibrad_view_factors(NULL, &spheres, NULL, NULL, &bed);
+ *          ... bed->matrix has the rows; then fibrad_bed_free(bed);
+ *
+ * Units, numbers, errors and zeroed structures are as in fibrad.h. Every result is the same for any number of threads,
+ * and so is every error. Objects belong to one thread at a time; different objects are independent. Besides the codes
+ * of the kernel functions: FIBRAD_E_MEMORY, FIBRAD_E_CANCELLED. On any error nothing is left to free and the
+ * out-pointer is NULL.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_HOST_H
@@ -24,95 +29,102 @@ extern "C" {
 
 /* ---- run ------------------------------------------------------------------------------------------------------- */
 
-/* Called now and then by the thread that made the call: `done` of `total` things of this stage ("rows", "beams", ...)
- * are done. Not 0: stop, which the call then returns as FIBRAD_E_CANCELLED. */
+/* Called by the thread that made the call, at the beginning and the end of each stage ("rows", "beams", "sweeps") and
+ * up to 20 times a second in between: `done` of `total` things are done; total 0: unknown. Not 0: stop, which the call
+ * then returns as FIBRAD_E_CANCELLED. */
 typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uint64_t total);
 
 /* How a call is run. NULL or zeroed: OpenMP's threads, no progress. */
 typedef struct fibrad_run {
-    int threads;               /* 0: as OpenMP has it: OMP_NUM_THREADS, else all processors */
+    int threads;               /* [0, 1024]; 0: as OpenMP has it: OMP_NUM_THREADS, else all processors */
     fibrad_progress *progress; /* NULL: none */
     void *context;             /* handed to progress */
-    fibrad_fault fault;        /* out, of FIBRAD_E_ARGUMENT and _GEOMETRY: the spheres concerned; n: none of them */
+    fibrad_fault fault;        /* out, of an error: the spheres concerned; their number n: none of them */
 } fibrad_run;
 
 /* ---- factors --------------------------------------------------------------------------------------------------- */
 
 /* What of a matrix is wanted, and how. NULL or zeroed: all rows by the default beam rule, reciprocal and closed. */
-typedef struct fibrad_factors_options {
-    const fibrad_beam_rule *beam;       /* at most one of these rules is set. With beam->tolerance all rows get the */
-    const fibrad_surface_rule *surface; /* same number of directions, as many as the worst error needs */
-    const fibrad_cast_rule *cast;
-    const unsigned char *wanted; /* [spheres] 1: this row. Sets raw; rows not wanted are empty. NULL: all rows */
-    int raw;                     /* 1: leave the rows as the method gave them */
-    double drop;                 /* as in fibrad_matrix_rule */
-} fibrad_factors_options;
+typedef struct fibrad_bed_options {
+    const fibrad_beam_rule *beam;       /* at most one of these three rules is set. Rows that are averaged all get */
+    const fibrad_surface_rule *surface; /* one number of directions, as many as beam->tolerance takes for the worst */
+    const fibrad_cast_rule *cast;       /* of them; raw rows get what each needs */
+    const unsigned char *wanted;        /* [spheres] not 0: this row; sets raw. NULL: all rows */
+    int raw;                            /* 1: leave the rows as the method gave them */
+    double drop;                        /* as in fibrad_matrix_rule */
+} fibrad_bed_options;
 
-/* A matrix, and what is worth knowing of it. */
+/* A matrix, and what else is known of it. */
 typedef struct fibrad_bed_factors {
-    fibrad_factors matrix;
+    fibrad_factors matrix; /* rows not wanted are empty */
     fibrad_scene_facts facts;
     const double *body_area;  /* [bodies] [L^2] as fibrad_scene_body_area */
     int threads;              /* used */
-    uint32_t directions;      /* the most that a beam row took; 0: other methods */
+    uint32_t directions;      /* the most that a row took; 0: a method without */
     uint64_t fallbacks, rays; /* beams: windows left to the robust method; exchange: rays traced */
-    double seconds;           /* of computing */
-    double closure_error;     /* largest |sum - 1| of the raw rows */
+    double seconds;           /* of computing, checks left out */
+    double closure_error;     /* largest |f + body + escaped + beyond - 1| of the raw rows */
     double reciprocity_error; /* as fibrad_matrix_reciprocity; NaN if rows are missing */
 } fibrad_bed_factors;
 
 /* View factors of a whole bed. config: NULL: open on all sides, no bodies. Free the result with fibrad_bed_free.
- * Errors: as fibrad_scene_init and the row functions. Cost: a row's times rows over threads; 24 to 40 bytes an entry.
- */
+ * Errors: as fibrad_scene_init, the row functions and fibrad_matrix_init. Cost: a row's times rows over threads; up to
+ * 48 bytes an entry. */
 int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                        const fibrad_factors_options *options, fibrad_run *run, fibrad_bed_factors **factors);
+                        const fibrad_bed_options *options, fibrad_run *run, fibrad_bed_factors **factors);
 
-/* Exchange factors of a whole bed; rule->tolerance holds for the rows of the matrix as it is in the end. Of options,
- * wanted, raw and drop are used. Otherwise as fibrad_view_factors. */
+/* Exchange factors of a whole bed; rule->tolerance is meant for the rows as they are in the end. The rules in options
+ * are to be NULL. Otherwise as fibrad_view_factors. */
 int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
-                            const fibrad_exchange_rule *rule, const fibrad_factors_options *options, fibrad_run *run,
+                            const fibrad_exchange_rule *rule, const fibrad_bed_options *options, fibrad_run *run,
                             fibrad_bed_factors **factors);
 
-/* fibrad_exchange_displacement of all spheres, or of those wanted ([spheres] 1; NULL: all), into displacement
- * [spheres]; facts, unless NULL, of the scene. Errors: as fibrad_exchange_factors. */
+/* Frees factors. NULL: nothing. No errors. */
+void fibrad_bed_free(fibrad_bed_factors *factors);
+
+/* fibrad_exchange_displacement of the spheres wanted ([spheres] not 0; NULL: all) into displacement [spheres], whose
+ * other elements are left as they are; facts, unless NULL, of the scene. Errors: as fibrad_exchange_factors; then some
+ * elements may have been written. */
 int fibrad_displacements(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                          const fibrad_exchange_rule *rule, const unsigned char *wanted, fibrad_run *run,
                          fibrad_displacement *displacement, fibrad_scene_facts *facts);
-
-/* Frees a result. NULL: nothing. */
-void fibrad_bed_free(fibrad_bed_factors *factors);
 
 /* ---- heat ------------------------------------------------------------------------------------------------------ */
 
 /* Radiation in a bed, step after step. */
 typedef struct fibrad_radiation fibrad_radiation;
 
-/* Makes the problem for a bed and follows its beams. Of heat_config (NULL: defaults) parts is fixed to 16. `run` (NULL:
- * defaults) is copied for all later calls. Errors: as fibrad_scene_init, fibrad_heat_init, _trace. Free with
- * fibrad_radiation_free. */
+/* Makes the problem for a bed and traces its beams. heat_config: NULL: defaults; its parts are always 16. run: NULL:
+ * defaults; threads, progress and context are kept for later calls. Free it with fibrad_radiation_free. Errors: as
+ * fibrad_scene_init, fibrad_heat_init, fibrad_heat_trace. Cost: that of the traces, over threads. */
 int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config *config, const fibrad_spheres *spheres,
                          const fibrad_heat_config *heat_config, fibrad_run *run);
 
-/* Goes on to the same spheres and bodies at other places, and follows the beams anew; the next solution starts from the
- * last one. Errors: as fibrad_radiation_new; _ARGUMENT: another number of spheres or other bodies. After an error the
- * bed is that of the last good call or there is none, and _solve returns FIBRAD_E_STATE. */
+/* Goes on to the same spheres and bodies at other places, and traces the beams anew; the next solution starts from the
+ * last one. Errors: as fibrad_radiation_new; _ARGUMENT: another number of spheres or other kinds of bodies. After an
+ * error _solve is for the last bed that was traced, or FIBRAD_E_STATE if this call has begun to trace. */
 int fibrad_radiation_move(fibrad_radiation *radiation, const fibrad_scene_config *config,
                           const fibrad_spheres *spheres);
 
 /* Net powers for these sources into the caller's result (power [spheres], body_power [bodies]). Errors: as
- * fibrad_heat_begin, _read. */
+ * fibrad_heat_begin, fibrad_heat_read. Cost: its sweeps, over threads. */
 int fibrad_radiation_solve(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_heat_result *result);
 
-/* Facts of the scene in use; the fault of the last call that failed. */
+/* Facts of the scene in use, and the spheres concerned by the last error, as in fibrad_run. Outputs may be NULL;
+ * radiation NULL: nothing. No errors. */
 void fibrad_radiation_describe(const fibrad_radiation *radiation, fibrad_scene_facts *facts, fibrad_fault *fault);
 
-/* Frees it. NULL: nothing. */
+/* Frees it. NULL: nothing. No errors. */
 void fibrad_radiation_free(fibrad_radiation *radiation);
 
-/* ---- binding --------------------------------------------------------------------------------------------------- */
+/* ---- kernel ---------------------------------------------------------------------------------------------------- */
 
-/* Bytes of a public structure by its name ("fibrad_row", ...), for bindings that lay them out themselves; 0: no such
- * structure. A library of the same soname has the same sizes and fields. */
+/* A fibrad_resize on the heap, for `fibrad_work work = {.memory.resize = fibrad_heap_resize}`; the block is to be freed
+ * with free(). context: not used. Errors: NULL. */
+void *fibrad_heap_resize(void *context, void *block, size_t size);
+
+/* Bytes of a public structure by its name ("fibrad_row", ...), for bindings that lay them out themselves. A library of
+ * the same soname has the same sizes and fields. Errors: 0: no such structure. */
 size_t fibrad_host_sizeof(const char *name);
 
 #ifdef __cplusplus

@@ -6,6 +6,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdbool.h>
 
 /* Base64 of a stream of bytes. */
 struct base64 {
@@ -21,56 +22,56 @@ static void put_sextets(struct base64 *to, int count) {
     to->bytes = 0;
 }
 
-static void put(struct base64 *to, const void *data, size_t size) {
+static void put_bytes(struct base64 *to, const void *data, size_t size) {
     for (const unsigned char *byte = data; size > 0; ++byte, --size) {
         to->bits |= (uint32_t)*byte << (16 - 8 * to->bytes);
         if (++to->bytes == 3) put_sextets(to, 4);
     }
 }
 
-static void put_double(struct base64 *to, double value) { put(to, &value, sizeof value); }
+static void put_double(struct base64 *to, double value) { put_bytes(to, &value, sizeof value); }
 
-static struct base64 begin(FILE *file, const char *type, const char *name, int components, uint64_t values) {
+static struct base64 begin_array(FILE *file, const char *type, const char *name, int components, uint64_t values) {
     struct base64 to = {.file = file};
     const uint64_t bytes = values * 8;
     fprintf(file, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"binary\">\n", type, name,
             components);
-    put(&to, &bytes, sizeof bytes);
+    put_bytes(&to, &bytes, sizeof bytes);
     return to;
 }
 
-static void end(struct base64 *to) {
+static void end_array(struct base64 *to) {
     if (to->bytes) put_sextets(to, to->bytes + 1);
     fputs("\n</DataArray>\n", to->file);
 }
 
-void vtp_doubles(FILE *file, const char *name, const double *values, uint32_t n, const bool *valid) {
-    struct base64 to = begin(file, "Float64", name, 1, n);
+void vtp_doubles(FILE *file, const char *name, const double *values, uint32_t n, const unsigned char *valid) {
+    struct base64 to = begin_array(file, "Float64", name, 1, n);
     for (uint32_t i = 0; i < n; ++i) put_double(&to, !valid || valid[i] ? values[i] : NAN);
-    end(&to);
+    end_array(&to);
 }
 
 /* Connectivity (first = 0) or offsets (first = 1) of one vertex per point. */
 static void write_count(FILE *file, const char *name, uint32_t n, int64_t first) {
-    struct base64 to = begin(file, "Int64", name, 1, n);
-    for (int64_t i = first; i < first + n; ++i) put(&to, &i, sizeof i);
-    end(&to);
+    struct base64 to = begin_array(file, "Int64", name, 1, n);
+    for (int64_t i = first; i < first + n; ++i) put_bytes(&to, &i, sizeof i);
+    end_array(&to);
 }
 
 static void write_points(FILE *file, const struct bed *bed) {
-    struct base64 to = begin(file, "Float64", "Points", 3, 3 * (uint64_t)bed->n);
+    struct base64 to = begin_array(file, "Float64", "Points", 3, 3 * (uint64_t)bed->n);
     for (uint32_t i = 0; i < bed->n; ++i) {
         put_double(&to, bed->x[i]);
         put_double(&to, bed->y[i]);
         put_double(&to, bed->z[i]);
     }
-    end(&to);
+    end_array(&to);
 }
 
 void vtp_counts(FILE *file, const char *name, const int64_t *values, uint32_t n) {
-    struct base64 to = begin(file, "Int64", name, 1, n);
-    for (uint32_t i = 0; i < n; ++i) put(&to, &values[i], sizeof values[i]);
-    end(&to);
+    struct base64 to = begin_array(file, "Int64", name, 1, n);
+    for (uint32_t i = 0; i < n; ++i) put_bytes(&to, &values[i], sizeof values[i]);
+    end_array(&to);
 }
 
 void vtp_begin(FILE *file, const struct bed *bed, const char *scalars) {

@@ -2,7 +2,6 @@
 #ifndef VTP_H
 #define VTP_H
 
-#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -14,7 +13,7 @@ void vtp_begin(FILE *file, const struct bed *bed, const char *scalars);
 void vtp_end(FILE *file, const struct bed *bed);
 
 /* An array of numbers; valid, unless NULL, tells which are there. */
-void vtp_doubles(FILE *file, const char *name, const double *values, uint32_t n, const bool *valid);
+void vtp_doubles(FILE *file, const char *name, const double *values, uint32_t n, const unsigned char *valid);
 
 /* An array of whole numbers. */
 void vtp_counts(FILE *file, const char *name, const int64_t *values, uint32_t n);

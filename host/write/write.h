@@ -1,4 +1,4 @@
-/* write.h - matrices to files. SPDX-License-Identifier: MIT */
+/* write.h - matrices to files, and what is said of them. SPDX-License-Identifier: MIT */
 #ifndef WRITE_H
 #define WRITE_H
 
@@ -7,14 +7,15 @@
 
 #include "bed/bed.h"
 #include "bed/wall_option.h"
-#include "compute/rows.h"
+#include "simple/fibrad_host.h"
 
 /* What is written. */
 struct contents {
     const struct bed *bed;
-    const struct result *result;
+    const fibrad_bed_factors *factors;
+    const unsigned char *wanted;      /* [n] not 0: this row was computed; NULL: all were */
     bool ids;                         /* the file's ids instead of positions */
-    const struct wall_order *walls;   /* NULL: neither walls nor surroundings are written; none in it: no walls, and
+    const struct walls *walls;        /* NULL: neither walls nor surroundings are written; none in it: no walls, and
                                          surroundings only with exchange factors */
     const fibrad_exchange_rule *grey; /* NULL: view factors; else exchange factors by this rule */
 };
@@ -27,5 +28,21 @@ write_function write_csv, write_mtx, write_npz, write_vtp;
 /* The writer for the ending of a path, NULL if there is none or no path. `endings`, unless NULL, gets the list of those
  * known. */
 write_function *write_find(const char *path, const char **endings);
+
+/* What the rows that were computed have in common. */
+struct summary {
+    double row_sum_min, row_sum_max, escaped_mean;
+    double closure_max; /* largest |row sum + escaped + walls - 1| */
+    double error_max, error_rms;
+    double wall_mean[WALLS_MAX];
+};
+
+/* The sum over the spheres that row i sees. */
+double summary_row(const fibrad_factors *matrix, uint32_t i);
+
+void summary_make(struct summary *summary, const struct contents *what);
+
+/* Prints a line `wall_NAME mean-F area` for each wall. */
+void summary_print_walls(const struct summary *summary, const struct contents *what);
 
 #endif

@@ -7,13 +7,13 @@
 
 #include "bed/bed.h"
 #include "bed/wall_option.h"
-#include "compute/heat_powers.h"
+#include "fibrad.h"
 
 struct heat_contents {
     const struct bed *bed;
-    const struct heat_options *options;
-    const struct heat_report *report;
-    const struct wall_order *walls;
+    const struct walls *walls;
+    const fibrad_heat_sources *sources;
+    const fibrad_heat_result *result;
     bool ids; /* the file's ids instead of positions */
 };
 

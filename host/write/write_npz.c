@@ -38,7 +38,7 @@ static uint32_t crc_add(uint32_t crc, const unsigned char *data, size_t bytes) {
 }
 
 /* Writes `bytes` bytes of a number, the lowest first. */
-static void put(FILE *file, uint64_t value, int bytes) {
+static void put_number(FILE *file, uint64_t value, int bytes) {
     for (; bytes > 0; --bytes, value >>= 8) putc((int)(value & 255), file);
 }
 
@@ -62,21 +62,21 @@ static void make_header(const struct member *member, unsigned char header[HEADER
 
 /* What local and central header have in common, from the version to the length of the name. */
 static void put_common(FILE *file, const struct member *member) {
-    put(file, 45, 2);         /* version that reads ZIP64 */
-    put(file, 0, 2);          /* flags */
-    put(file, 0, 2);          /* stored */
-    put(file, 0x00210000, 4); /* time and date: 1 January 1980, so that equal matrices make equal files */
-    put(file, member->crc, 4);
-    put(file, UINT32_MAX, 4); /* both sizes stand in the ZIP64 field */
-    put(file, UINT32_MAX, 4);
-    put(file, strlen(member->name), 2);
+    put_number(file, 45, 2);         /* version that reads ZIP64 */
+    put_number(file, 0, 2);          /* flags */
+    put_number(file, 0, 2);          /* stored */
+    put_number(file, 0x00210000, 4); /* time and date: 1 January 1980, so that equal matrices make equal files */
+    put_number(file, member->crc, 4);
+    put_number(file, UINT32_MAX, 4); /* both sizes stand in the ZIP64 field */
+    put_number(file, UINT32_MAX, 4);
+    put_number(file, strlen(member->name), 2);
 }
 
 static void put_sizes(FILE *file, const struct member *member, uint64_t field) {
-    put(file, 1, 2); /* the ZIP64 field */
-    put(file, field, 2);
-    put(file, HEADER + member->bytes, 8);
-    put(file, HEADER + member->bytes, 8);
+    put_number(file, 1, 2); /* the ZIP64 field */
+    put_number(file, field, 2);
+    put_number(file, HEADER + member->bytes, 8);
+    put_number(file, HEADER + member->bytes, 8);
 }
 
 static int write_member(FILE *file, struct member *member) {
@@ -90,9 +90,9 @@ static int write_member(FILE *file, struct member *member) {
         crc = crc_add(crc, data + done, left < BLOCK ? left : BLOCK);
     }
     member->crc = ~crc;
-    put(file, 0x04034b50, 4);
+    put_number(file, 0x04034b50, 4);
     put_common(file, member);
-    put(file, 20, 2);
+    put_number(file, 20, 2);
     fputs(member->name, file);
     put_sizes(file, member, 16);
     fwrite(header, 1, HEADER, file);
@@ -112,55 +112,55 @@ static uint64_t member_size(const struct member *member) {
 static uint64_t entry_size(const struct member *member) { return 46 + strlen(member->name) + 28; }
 
 static void put_entry(FILE *file, const struct member *member) {
-    put(file, 0x02014b50, 4);
-    put(file, 45, 2);
+    put_number(file, 0x02014b50, 4);
+    put_number(file, 45, 2);
     put_common(file, member);
-    put(file, 28, 2);
-    put(file, 0, 2);          /* comment */
-    put(file, 0, 2);          /* disk */
-    put(file, 0, 2);          /* internal attributes */
-    put(file, 0, 4);          /* external attributes */
-    put(file, UINT32_MAX, 4); /* the offset stands in the ZIP64 field too */
+    put_number(file, 28, 2);
+    put_number(file, 0, 2);          /* comment */
+    put_number(file, 0, 2);          /* disk */
+    put_number(file, 0, 2);          /* internal attributes */
+    put_number(file, 0, 4);          /* external attributes */
+    put_number(file, UINT32_MAX, 4); /* the offset stands in the ZIP64 field too */
     fputs(member->name, file);
     put_sizes(file, member, 24);
-    put(file, member->offset, 8);
+    put_number(file, member->offset, 8);
 }
 
 /* The end of the directory, in ZIP64 and, with nothing but all bits set, as of old. */
 static void put_end(FILE *file, uint64_t members, uint64_t offset, uint64_t size) {
-    put(file, 0x06064b50, 4);
-    put(file, 44, 8);
-    put(file, 45, 2);
-    put(file, 45, 2);
-    put(file, 0, 8); /* disks */
-    put(file, members, 8);
-    put(file, members, 8);
-    put(file, size, 8);
-    put(file, offset, 8);
+    put_number(file, 0x06064b50, 4);
+    put_number(file, 44, 8);
+    put_number(file, 45, 2);
+    put_number(file, 45, 2);
+    put_number(file, 0, 8); /* disks */
+    put_number(file, members, 8);
+    put_number(file, members, 8);
+    put_number(file, size, 8);
+    put_number(file, offset, 8);
 
-    put(file, 0x07064b50, 4);
-    put(file, 0, 4);
-    put(file, offset + size, 8);
-    put(file, 1, 4); /* disks in all */
+    put_number(file, 0x07064b50, 4);
+    put_number(file, 0, 4);
+    put_number(file, offset + size, 8);
+    put_number(file, 1, 4); /* disks in all */
 
-    put(file, 0x06054b50, 4);
-    put(file, 0, 4); /* disks */
-    put(file, members, 2);
-    put(file, members, 2);
-    put(file, UINT32_MAX, 4);
-    put(file, UINT32_MAX, 4);
-    put(file, 0, 2); /* comment */
+    put_number(file, 0x06054b50, 4);
+    put_number(file, 0, 4); /* disks */
+    put_number(file, members, 2);
+    put_number(file, members, 2);
+    put_number(file, UINT32_MAX, 4);
+    put_number(file, UINT32_MAX, 4);
+    put_number(file, 0, 2); /* comment */
 }
 
 int write_npz(FILE *file, const struct contents *what) {
-    const fibrad_rows *rows = &what->result->rows;
-    const uint64_t n = rows->n, entries = rows->start[n];
-    const int64_t shape[2] = {rows->n, rows->n};
-    struct member members[] = {{.name = "indices.npy", .type = "i4", .data = rows->col, entries, 4 * entries},
-                               {.name = "indptr.npy", .type = "i8", .data = rows->start, n + 1, 8 * (n + 1)},
+    const fibrad_factors *matrix = &what->factors->matrix;
+    const uint64_t n = matrix->n, entries = matrix->start[n];
+    const int64_t shape[2] = {matrix->n, matrix->n};
+    struct member members[] = {{.name = "indices.npy", .type = "i4", .data = matrix->col, entries, 4 * entries},
+                               {.name = "indptr.npy", .type = "i8", .data = matrix->start, n + 1, 8 * (n + 1)},
                                {.name = "format.npy", .type = "S3", .data = "csr", SCALAR, 3},
                                {.name = "shape.npy", .type = "i8", .data = shape, 2, 16},
-                               {.name = "data.npy", .type = "f8", .data = rows->f, entries, 8 * entries}};
+                               {.name = "data.npy", .type = "f8", .data = matrix->f, entries, 8 * entries}};
     const size_t count = sizeof members / sizeof *members;
     uint64_t offset = 0, directory = 0;
     make_crc_table();

@@ -49,7 +49,7 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
     own.beyond = 0;
     if (rows != NULL) fibrad_rows_commit(rows, scene->facts.bodies, &own);
     own.rows = rows;
-    if (rows != NULL) own.col = row->col, own.f = row->f, own.body = row->body, own.capacity = row->capacity;
+    if (rows != NULL) own.col = (uint32_t *)(void *)(own.f + own.length), own.capacity = row->capacity;
     *row = own;
     return FIBRAD_OK;
 }

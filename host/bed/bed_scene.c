@@ -1,0 +1,45 @@
+/* bed_scene.c - a bed as the library takes it, and what the library says of it as messages.
+ * SPDX-License-Identifier: MIT */
+#include "bed/bed_scene.h"
+
+#include "cli/interrupt.h"
+#include "cli/message.h"
+
+fibrad_spheres bed_spheres(const struct bed *bed) {
+    return (fibrad_spheres){.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
+}
+
+fibrad_scene_config bed_scene(const struct bed *bed, const struct walls *walls) {
+    return (fibrad_scene_config){.period = {bed->period[0], bed->period[1], bed->period[2]},
+                                 .body = walls ? walls->body : NULL,
+                                 .bodies = walls ? walls->count : 0};
+}
+
+/* Two spheres that cannot be there both; the one that comes later in the file is at fault. */
+static int bed_overlap(const struct bed *bed, const char *file, uint32_t first, uint32_t second) {
+    const uint32_t later = bed->line[first] < bed->line[second] ? second : first;
+    const uint32_t other = later == first ? second : first;
+    if (later == other)
+        return message_at(STATUS_INPUT, file, bed->line[later], "sphere %u reaches its own image in the periodic box",
+                          later);
+    const bool equal =
+        bed->x[first] == bed->x[second] && bed->y[first] == bed->y[second] && bed->z[first] == bed->z[second];
+    return message_at(STATUS_INPUT, file, bed->line[later],
+                      equal ? "sphere %u has the same centre as sphere %u of line %llu"
+                            : "sphere %u and sphere %u of line %llu: the centre of one lies inside the other",
+                      later, other, (unsigned long long)bed->line[other]);
+}
+
+int bed_status(const struct bed *bed, const char *file, int status, const fibrad_fault *fault) {
+    const uint32_t first = fault->first, second = fault->second;
+    const bool known = first < bed->n && second < bed->n;
+    if (status == FIBRAD_OK) return STATUS_OK;
+    if (status == FIBRAD_E_CANCELLED) return interrupt_status();
+    if (status == FIBRAD_E_MEMORY) return message_memory();
+    if (status == FIBRAD_E_GEOMETRY && known) return bed_overlap(bed, file, first, second);
+    if (status == FIBRAD_E_GEOMETRY)
+        return message_at(STATUS_INPUT, file, 0, "the periodic box is smaller than a sphere's radius");
+    if (!known)
+        return message_at(STATUS_INPUT, file, 0, "this bed and box cannot be computed: %s", fibrad_status_text(status));
+    return message_at(STATUS_INPUT, file, bed->line[first], "sphere %u: %s", first, fibrad_status_text(status));
+}

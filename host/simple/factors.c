@@ -1,0 +1,117 @@
+/* factors.c - view factors, exchange factors and displacements of whole beds. SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+
+#include "simple/job.h"
+
+static int row_by_beams(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
+                        uint64_t *rays) {
+    (void)rays;
+    return fibrad_beam_row(scene, work, i, rule, row);
+}
+
+static int row_by_surface(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
+                          uint64_t *rays) {
+    (void)rays;
+    return fibrad_surface_row(scene, work, i, rule, row);
+}
+
+static int row_by_rays(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
+                       uint64_t *rays) {
+    (void)rays;
+    return fibrad_cast_row(scene, work, i, rule, row, NULL);
+}
+
+static int row_by_paths(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
+                        uint64_t *rays) {
+    return fibrad_exchange_row(scene, work, i, rule, row, rays);
+}
+
+/* Not more than `most` rules, and a sound threshold. */
+static int check_options(const fibrad_bed_options *options, int most) {
+    const int rules = (options->beam != NULL) + (options->surface != NULL) + (options->cast != NULL);
+    return rules <= most && options->drop >= 0 && options->drop <= 1 ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
+}
+
+/* Rows by one rule, and their matrix. */
+static int run_rule(fibrad_job *job, fibrad_job_row *row, const void *rule, const fibrad_bed_options *options,
+                    const double *emissivity, fibrad_bed_factors **factors) {
+    const fibrad_matrix_rule how = {
+        .emissivity = emissivity, .raw = options->raw || options->wanted, .drop = options->drop};
+    fibrad_job_report report;
+    const int status = fibrad_job_rows(job, row, rule, options->wanted, NULL, &report);
+    return status ? status : fibrad_job_factors(job, &how, &report, factors);
+}
+
+static int run_options(fibrad_job *job, const fibrad_bed_options *options, fibrad_bed_factors **factors) {
+    const fibrad_beam_rule *beam = options->beam;
+    if (options->surface) return run_rule(job, row_by_surface, options->surface, options, NULL, factors);
+    if (options->cast) return run_rule(job, row_by_rays, options->cast, options, NULL, factors);
+    if (beam && beam->tolerance > 0 && !options->raw && !options->wanted)
+        return fibrad_job_tolerance(job, row_by_beams, beam, options->drop, factors);
+    return run_rule(job, row_by_beams, beam, options, NULL, factors);
+}
+
+int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
+                        const fibrad_bed_options *options, fibrad_run *run, fibrad_bed_factors **factors) {
+    static const fibrad_bed_options defaults;
+    fibrad_job job;
+    if (!factors) return FIBRAD_E_ARGUMENT;
+    *factors = NULL;
+    if (!options) options = &defaults;
+    int status = fibrad_job_open(&job, config, spheres, run);
+    if (!status) status = check_options(options, 1);
+    if (!status) status = run_options(&job, options, factors);
+    fibrad_job_close(&job);
+    return status;
+}
+
+/* The error there may be in a row to be averaged, over that of the mean, which is smaller by the square root of 2, the
+ * errors of partners being independent; the rest is kept for rows that come out worse than most. */
+#define BEFORE_AVERAGING 1.1
+
+int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
+                            const fibrad_exchange_rule *rule, const fibrad_bed_options *options, fibrad_run *run,
+                            fibrad_bed_factors **factors) {
+    static const fibrad_bed_options defaults;
+    fibrad_job job;
+    if (!factors) return FIBRAD_E_ARGUMENT;
+    *factors = NULL;
+    if (!options) options = &defaults;
+    int status = fibrad_job_open(&job, config, spheres, run);
+    if (!status) status = rule ? check_options(options, 0) : FIBRAD_E_ARGUMENT;
+    if (!status) {
+        fibrad_exchange_rule used = *rule;
+        if (!options->raw && !options->wanted) used.tolerance *= BEFORE_AVERAGING;
+        status = run_rule(&job, row_by_paths, &used, options, rule->emissivity, factors);
+    }
+    fibrad_job_close(&job);
+    return status;
+}
+
+struct displacement_rule {
+    const fibrad_exchange_rule *rule;
+    fibrad_displacement *to; /* [spheres] */
+};
+
+/* No row, but the displacement of one sphere: the row stays empty. */
+static int displacement_of(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
+                           uint64_t *rays) {
+    const struct displacement_rule *how = rule;
+    (void)rays;
+    *row = (fibrad_row){0};
+    return fibrad_exchange_displacement(scene, work, i, how->rule, &how->to[i]);
+}
+
+int fibrad_displacements(const fibrad_scene_config *config, const fibrad_spheres *spheres,
+                         const fibrad_exchange_rule *rule, const unsigned char *wanted, fibrad_run *run,
+                         fibrad_displacement *displacement, fibrad_scene_facts *facts) {
+    fibrad_job job;
+    fibrad_job_report report;
+    const struct displacement_rule how = {rule, displacement};
+    int status = fibrad_job_open(&job, config, spheres, run);
+    if (!status && (!rule || !displacement)) status = FIBRAD_E_ARGUMENT;
+    if (!status) status = fibrad_job_rows(&job, displacement_of, &how, wanted, NULL, &report);
+    if (!status && facts) *facts = job.facts;
+    fibrad_job_close(&job);
+    return status;
+}

@@ -1,0 +1,165 @@
+/* job.c - rows of a bed by many threads, and their matrix. SPDX-License-Identifier: MIT */
+#include "simple/job.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "simple/heap.h"
+
+#define ROWS_AT_ONCE 16 /* that a thread takes: few enough to share out a bed, enough to share a neighbourhood */
+#define AVERAGES_MAX 16 /* tasks of averaging: each reads all entries */
+
+int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fibrad_spheres *spheres,
+                    fibrad_run *run) {
+    const uint32_t n = spheres ? spheres->n : 0;
+    fibrad_fault fault = {n, n};
+    *job = (fibrad_job){.run = run, .begun = omp_get_wtime()};
+    if (run) run->fault = fault;
+    int status = fibrad_team_open(&job->team, run);
+    if (!status) status = fibrad_heap_scene(&job->scene, &job->block, config, spheres, &fault);
+    if (status && run) run->fault = fault;
+    if (!status) fibrad_scene_describe(job->scene, &job->facts);
+    return status;
+}
+
+void fibrad_job_close(fibrad_job *job) {
+    fibrad_team_close(&job->team);
+    free(job->block);
+}
+
+/* Rows in work. */
+struct row_tasks {
+    fibrad_job *job;
+    fibrad_job_row *row;
+    const void *rule;
+    const uint32_t *order; /* [tasks] spheres */
+    double *error;
+    fibrad_job_report *report; /* [threads] */
+};
+
+static double sum_of_row(const fibrad_row *row, uint32_t bodies) {
+    double sum = 0;
+    for (uint32_t k = 0; k < row->length; ++k) sum += row->f[k];
+    sum += row->escaped;
+    for (uint32_t b = 0; b < bodies; ++b) sum += row->body[b];
+    return sum + row->beyond;
+}
+
+static int run_row(void *tasks, int thread, uint32_t task) {
+    const struct row_tasks *rows = tasks;
+    fibrad_job *job = rows->job;
+    fibrad_job_report *report = &rows->report[thread];
+    const uint32_t i = rows->order[task];
+    fibrad_row row = {.rows = &job->team.rows[thread]};
+    uint64_t rays = 0;
+    const int status = rows->row(rows->rule, job->scene, &job->team.work[thread], i, &row, &rays);
+    if (status) return status;
+    if (rows->error) rows->error[i] = row.error;
+    ++report->rows;
+    report->directions = row.directions > report->directions ? row.directions : report->directions;
+    report->fallbacks += row.fallbacks;
+    report->rays += rays;
+    if (row.rows) /* else there is none */
+        report->closure_error = fmax(report->closure_error, fabs(sum_of_row(&row, job->facts.bodies) - 1));
+    return FIBRAD_OK;
+}
+
+/* The spheres wanted, in the order of the cells. */
+static uint32_t list_spheres(const fibrad_job *job, const unsigned char *wanted, uint32_t *order) {
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < job->facts.spheres; ++k) {
+        const uint32_t i = fibrad_scene_sphere(job->scene, k);
+        if (!wanted || wanted[i]) order[count++] = i;
+    }
+    return count;
+}
+
+int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, const unsigned char *wanted, double *error,
+                    fibrad_job_report *report) {
+    const uint32_t n = job->facts.spheres;
+    fibrad_team *team = &job->team;
+    uint32_t *order = malloc(((size_t)n + 1) * sizeof *order), failed;
+    fibrad_job_report *part = calloc((size_t)team->threads, sizeof *part);
+    int status = order && part ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    *report = (fibrad_job_report){0};
+    if (error) memset(error, 0, n * sizeof *error);
+    for (int t = 0; t < team->threads; ++t) fibrad_rows_clear(&team->rows[t]);
+    if (!status) {
+        struct row_tasks tasks = {job, row, rule, order, error, part};
+        const uint32_t count = list_spheres(job, wanted, order);
+        status = fibrad_team_run(team, "rows", count, ROWS_AT_ONCE, run_row, &tasks, &failed);
+        if (status && job->run && failed < count) job->run->fault = (fibrad_fault){order[failed], order[failed]};
+    }
+    for (int t = 0; t < team->threads && !status; ++t) {
+        report->rows += part[t].rows;
+        report->directions = part[t].directions > report->directions ? part[t].directions : report->directions;
+        report->fallbacks += part[t].fallbacks;
+        report->rays += part[t].rays;
+        report->closure_error = fmax(report->closure_error, part[t].closure_error);
+    }
+    free(order);
+    free(part);
+    return status;
+}
+
+static int run_average(void *matrix, int thread, uint32_t task) {
+    (void)thread;
+    return fibrad_matrix_average(matrix, task);
+}
+
+static int make_matrix(fibrad_job *job, const fibrad_matrix_rule *rule, fibrad_matrix **matrix, void **block) {
+    fibrad_team *team = &job->team;
+    fibrad_matrix_rule divided = *rule;
+    divided.tasks = team->threads < AVERAGES_MAX ? (uint32_t)team->threads : AVERAGES_MAX;
+    const size_t size = fibrad_matrix_size(job->scene, team->rows, (uint32_t)team->threads, &divided);
+    if (!size) return FIBRAD_E_ARGUMENT;
+    *block = malloc(size);
+    if (!*block) return FIBRAD_E_MEMORY;
+    int status =
+        fibrad_matrix_init(matrix, *block, size, job->scene, team->rows, (uint32_t)team->threads, &divided, NULL);
+    if (!status && !divided.raw) status = fibrad_team_run(team, NULL, divided.tasks, 1, run_average, *matrix, NULL);
+    return status ? status : fibrad_matrix_close(*matrix);
+}
+
+/* Factors with what they own. */
+struct owned_factors {
+    fibrad_bed_factors factors; /* first, so that its address is that of the whole */
+    void *block;                /* of the matrix */
+    double area[];
+};
+
+void fibrad_bed_free(fibrad_bed_factors *factors) {
+    if (!factors) return;
+    free(((struct owned_factors *)factors)->block);
+    free(factors);
+}
+
+int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fibrad_job_report *report,
+                       fibrad_bed_factors **factors) {
+    const uint32_t bodies = job->facts.bodies;
+    struct owned_factors *owned = calloc(1, sizeof *owned + bodies * sizeof *owned->area);
+    fibrad_matrix *matrix;
+    if (!owned) return FIBRAD_E_MEMORY;
+    int status = make_matrix(job, rule, &matrix, &owned->block);
+    if (!status) status = fibrad_matrix_read(matrix, &owned->factors.matrix);
+    if (status) {
+        fibrad_bed_free(&owned->factors);
+        return status;
+    }
+    fibrad_bed_factors *f = &owned->factors;
+    for (uint32_t b = 0; b < bodies; ++b) owned->area[b] = fibrad_scene_body_area(job->scene, b);
+    f->body_area = owned->area;
+    f->facts = job->facts;
+    f->threads = job->team.threads;
+    f->directions = report->directions;
+    f->fallbacks = report->fallbacks;
+    f->rays = report->rays;
+    f->closure_error = report->closure_error;
+    f->seconds = omp_get_wtime() - job->begun;
+    f->reciprocity_error = NAN;
+    if (report->rows == job->facts.spheres) fibrad_matrix_reciprocity(matrix, &f->reciprocity_error);
+    *factors = f;
+    return FIBRAD_OK;
+}

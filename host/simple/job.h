@@ -1,0 +1,47 @@
+/* job.h - a bed being computed: its scene, its threads and the rows they collect. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_SIMPLE_JOB_H
+#define FIBRAD_SIMPLE_JOB_H
+
+#include "simple/team.h"
+
+typedef struct fibrad_job {
+    fibrad_scene *scene;
+    void *block; /* of the scene */
+    fibrad_scene_facts facts;
+    fibrad_team team;
+    fibrad_run *run;
+    double begun; /* [s] */
+} fibrad_job;
+
+/* Makes a scene and a team. Close it also after an error. Errors: as fibrad_view_factors; run->fault is set. */
+int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fibrad_spheres *spheres, fibrad_run *run);
+void fibrad_job_close(fibrad_job *job);
+
+/* Row i by some method; into row->rows or elsewhere. A status. */
+typedef int fibrad_job_row(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
+                           uint64_t *rays);
+
+/* What is known of rows besides the matrix. */
+typedef struct fibrad_job_report {
+    uint64_t rows;
+    uint32_t directions;
+    uint64_t fallbacks, rays;
+    double closure_error;
+} fibrad_job_report;
+
+/* Computes rows, those wanted ([spheres] not 0; NULL: all), into the collections of the team, which are emptied first.
+ * error: NULL, or [spheres] out: estimated error of each row; 0 of others. Errors: those of the rows; run->fault is
+ * set. */
+int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, const unsigned char *wanted, double *error,
+                    fibrad_job_report *report);
+
+/* Makes the matrix of the rows that the team has collected. Errors: as fibrad_matrix_init, _MEMORY. */
+int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fibrad_job_report *report,
+                       fibrad_bed_factors **factors);
+
+/* Rows by the beam rule such that the worst averaged one has an estimated error of rule->tolerance or less, if
+ * FIBRAD_DIRECTIONS_MAX suffices, and their matrix. Errors: as the two above. */
+int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule, double drop,
+                         fibrad_bed_factors **factors);
+
+#endif

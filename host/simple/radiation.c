@@ -1,0 +1,117 @@
+/* radiation.c - net radiative powers of a bed, step after step. SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+
+#include "simple/heap.h"
+#include "simple/team.h"
+
+enum { PARTS = 16, TASKS_AT_ONCE = 16 };
+
+struct fibrad_radiation {
+    fibrad_team team;
+    fibrad_heat_config config;
+    fibrad_heat *heat; /* NULL: none yet */
+    void *heat_block;
+    fibrad_scene *scene;
+    void *scene_block;
+    uint32_t n;
+    fibrad_fault fault;
+};
+
+static int trace_beams(void *radiation, int thread, uint32_t task) {
+    fibrad_radiation *r = radiation;
+    return fibrad_heat_trace(r->heat, &r->team.work[thread], task);
+}
+
+/* Another problem in the place of the one there is. */
+static int replace_heat(fibrad_radiation *r, const fibrad_scene *scene) {
+    fibrad_heat *heat;
+    const size_t size = fibrad_heat_size(&r->config, scene);
+    if (!size) return FIBRAD_E_ARGUMENT;
+    void *block = malloc(size);
+    if (!block) return FIBRAD_E_MEMORY;
+    const int status = fibrad_heat_init(&heat, block, size, &r->config, scene);
+    if (status) {
+        free(block);
+        return status;
+    }
+    free(r->heat_block);
+    r->heat = heat;
+    r->heat_block = block;
+    return FIBRAD_OK;
+}
+
+/* The same problem in another scene; walls that have moved far may ask for more room than there is. */
+static int move_heat(fibrad_radiation *r, const fibrad_scene *scene) {
+    const int status = r->heat ? fibrad_heat_move(r->heat, scene) : FIBRAD_E_SIZE;
+    return status == FIBRAD_E_SIZE ? replace_heat(r, scene) : status;
+}
+
+int fibrad_radiation_move(fibrad_radiation *r, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
+    fibrad_scene *scene;
+    void *block;
+    if (!r || !spheres) return FIBRAD_E_ARGUMENT;
+    r->fault = (fibrad_fault){spheres->n, spheres->n};
+    if (r->heat && spheres->n != r->n) return FIBRAD_E_ARGUMENT;
+    int status = fibrad_heap_scene(&scene, &block, config, spheres, &r->fault);
+    if (!status) status = move_heat(r, scene);
+    if (status) {
+        free(block);
+        return status;
+    }
+    free(r->scene_block);
+    r->scene = scene;
+    r->scene_block = block;
+    r->n = spheres->n;
+    return fibrad_team_run(&r->team, "beams", fibrad_heat_tasks(r->heat), TASKS_AT_ONCE, trace_beams, r, NULL);
+}
+
+int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config *config, const fibrad_spheres *spheres,
+                         const fibrad_heat_config *heat_config, fibrad_run *run) {
+    if (!radiation) return FIBRAD_E_ARGUMENT;
+    fibrad_radiation *r = calloc(1, sizeof *r);
+    *radiation = NULL;
+    if (!r) return FIBRAD_E_MEMORY;
+    if (spheres) r->fault = (fibrad_fault){spheres->n, spheres->n};
+    if (heat_config) r->config = *heat_config;
+    r->config.parts = PARTS;
+    int status = fibrad_team_open(&r->team, run);
+    if (!status) status = fibrad_radiation_move(r, config, spheres);
+    if (run) run->fault = r->fault;
+    if (status)
+        fibrad_radiation_free(r);
+    else
+        *radiation = r;
+    return status;
+}
+
+static int sweep_part(void *heat, int thread, uint32_t part) {
+    (void)thread;
+    return fibrad_heat_sweep(heat, part);
+}
+
+int fibrad_radiation_solve(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
+    if (!r) return FIBRAD_E_ARGUMENT;
+    if (!r->heat) return FIBRAD_E_STATE;
+    r->fault = (fibrad_fault){r->n, r->n};
+    int solved = 0, status = fibrad_heat_begin(r->heat, sources);
+    for (uint64_t sweeps = 0; !status && !solved; ++sweeps) {
+        status = fibrad_team_report(&r->team, "sweeps", sweeps, 0);
+        if (!status) status = fibrad_team_run(&r->team, NULL, PARTS, 1, sweep_part, r->heat, NULL);
+        if (!status) status = fibrad_heat_step(r->heat, &solved);
+    }
+    return status ? status : fibrad_heat_read(r->heat, result);
+}
+
+void fibrad_radiation_describe(const fibrad_radiation *r, fibrad_scene_facts *facts, fibrad_fault *fault) {
+    if (!r) return;
+    if (facts) fibrad_scene_describe(r->scene, facts);
+    if (fault) *fault = r->fault;
+}
+
+void fibrad_radiation_free(fibrad_radiation *r) {
+    if (!r) return;
+    fibrad_team_close(&r->team);
+    free(r->heat_block);
+    free(r->scene_block);
+    free(r);
+}

@@ -1,0 +1,90 @@
+/* team.c - the threads of a call, by OpenMP. SPDX-License-Identifier: MIT */
+#include "simple/team.h"
+
+#include <omp.h>
+#include <stdlib.h>
+
+#define THREADS_MAX 1024
+#define INTERVAL    0.05 /* between two calls of the progress function [s] */
+
+int fibrad_team_open(fibrad_team *team, const fibrad_run *run) {
+    *team = (fibrad_team){.threads = omp_get_max_threads()};
+    if (run && (run->threads < 0 || run->threads > THREADS_MAX)) return FIBRAD_E_ARGUMENT;
+    if (run && run->threads) team->threads = run->threads;
+    if (run) team->progress = run->progress, team->context = run->context;
+    team->work = calloc((size_t)team->threads, sizeof *team->work);
+    team->rows = calloc((size_t)team->threads, sizeof *team->rows);
+    team->error = calloc((size_t)team->threads, sizeof *team->error);
+    if (!team->work || !team->rows || !team->error) return FIBRAD_E_MEMORY;
+    for (int t = 0; t < team->threads; ++t)
+        team->work[t].memory.resize = team->rows[t].memory.resize = fibrad_heap_resize;
+    return FIBRAD_OK;
+}
+
+void fibrad_team_close(fibrad_team *team) {
+    for (int t = 0; t < team->threads; ++t) {
+        if (team->work) free(team->work[t].memory.block);
+        if (team->rows) free(team->rows[t].memory.block);
+    }
+    free(team->work);
+    free(team->rows);
+    free(team->error);
+    *team = (fibrad_team){0};
+}
+
+int fibrad_team_report(const fibrad_team *team, const char *stage, uint64_t done, uint64_t total) {
+    if (!stage || !team->progress || !team->progress(team->context, stage, done, total)) return FIBRAD_OK;
+    return FIBRAD_E_CANCELLED;
+}
+
+/* Tasks are begun in ascending order, and none below a task that fails is left out, so that the lowest one that fails
+ * is found whatever the threads do. */
+static void run_tasks(fibrad_team *team, const char *stage, uint32_t tasks, int chunk, fibrad_team_task *task,
+                      void *job) {
+    uint32_t end = tasks; /* a task that failed: those behind it are left out */
+    uint64_t done = 0;
+#pragma omp parallel num_threads(team->threads)
+    {
+        const int thread = omp_get_thread_num();
+        fibrad_team_error *error = &team->error[thread];
+        double reported = omp_get_wtime();
+#pragma omp for schedule(dynamic, chunk)
+        for (uint32_t k = 0; k < tasks; ++k) {
+            uint32_t last;
+            uint64_t count;
+#pragma omp atomic read
+            last = end;
+            if (k >= last) continue;
+            int status = task(job, thread, k);
+#pragma omp atomic capture
+            count = ++done;
+            uint32_t at = k;
+            if (!status && thread == 0 && omp_get_wtime() - reported > INTERVAL) {
+                status = fibrad_team_report(team, stage, count, tasks);
+                if (status) at = 0;
+                reported = omp_get_wtime();
+            }
+            if (!status || error->status == FIBRAD_E_CANCELLED || (error->status && error->task < at)) continue;
+            *error = (fibrad_team_error){at, status};
+#pragma omp atomic write
+            end = at;
+        }
+    }
+}
+
+int fibrad_team_run(fibrad_team *team, const char *stage, uint32_t tasks, int chunk, fibrad_team_task *task, void *job,
+                    uint32_t *failed) {
+    uint32_t lowest = tasks;
+    int status = fibrad_team_report(team, stage, 0, tasks);
+    if (failed) *failed = tasks;
+    if (status) return status;
+    for (int t = 0; t < team->threads; ++t) team->error[t] = (fibrad_team_error){0};
+    run_tasks(team, stage, tasks, chunk, task, job);
+    for (int t = 0; t < team->threads; ++t) {
+        const fibrad_team_error *error = &team->error[t];
+        if (error->status == FIBRAD_E_CANCELLED) return FIBRAD_E_CANCELLED;
+        if (error->status && error->task < lowest) lowest = error->task, status = error->status;
+    }
+    if (failed) *failed = lowest;
+    return status ? status : fibrad_team_report(team, stage, tasks, tasks);
+}

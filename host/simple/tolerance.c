@@ -1,0 +1,79 @@
+/* tolerance.c - as many directions as a stated error takes. SPDX-License-Identifier: MIT
+ *
+ * Rows to be averaged take one number of directions, for only then are their sums at most 1: that which the worst rows
+ * of a pilot need by themselves, and more if the estimates then turn out too large. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "simple/job.h"
+
+enum { PILOT = 50, SAMPLE = 48 };
+
+/* The largest estimate of averaged rows over that of raw ones, 0.4 to 0.7 as measured; more in sparse beds, which are
+ * then repeated. */
+static const double averaged_over_raw = 0.6;
+
+static int descending(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x < y) - (x > y);
+}
+
+/* Marks the rows of largest estimate: those at the surface of a bed, mostly. */
+static int mark_worst(uint32_t n, const double *error, unsigned char *wanted) {
+    double *sorted = malloc(n * sizeof *sorted);
+    if (!sorted) return FIBRAD_E_MEMORY;
+    memcpy(sorted, error, n * sizeof *sorted);
+    qsort(sorted, n, sizeof *sorted, descending);
+    uint32_t rows = n < SAMPLE ? n : SAMPLE;
+    const double least = sorted[rows - 1];
+    for (uint32_t i = 0; i < n && rows > 0; ++i)
+        if (error[i] >= least) wanted[i] = 1, --rows;
+    free(sorted);
+    return FIBRAD_OK;
+}
+
+/* Computes all rows with few directions, and then the worst with as many as they need by themselves. */
+static int find_directions(fibrad_job *job, fibrad_job_row *row, fibrad_beam_rule rule, double *error,
+                           unsigned char *wanted, uint32_t *directions) {
+    const double tolerance = rule.tolerance;
+    fibrad_job_report report;
+    const fibrad_beam_rule pilot = {.directions = PILOT, .points = rule.points, .cutoff = rule.cutoff};
+    int status = fibrad_job_rows(job, row, &pilot, NULL, error, &report);
+    if (!status) status = mark_worst(job->facts.spheres, error, wanted);
+    rule.tolerance = tolerance / averaged_over_raw;
+    if (!status) status = fibrad_job_rows(job, row, &rule, wanted, NULL, &report);
+    *directions = report.directions;
+    return status;
+}
+
+static double worst_error(const fibrad_factors *matrix) {
+    double worst = 0;
+    for (uint32_t i = 0; i < matrix->n; ++i) worst = matrix->error[i] > worst ? matrix->error[i] : worst;
+    return worst;
+}
+
+int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule, double drop,
+                         fibrad_bed_factors **factors) {
+    const uint32_t n = job->facts.spheres;
+    const fibrad_matrix_rule average = {.drop = drop};
+    fibrad_beam_rule used = *rule;
+    fibrad_job_report report;
+    double *error = malloc(((size_t)n + 1) * sizeof *error);
+    unsigned char *wanted = calloc((size_t)n + 1, 1);
+    int status = error && wanted ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    if (!status && n > 0) status = find_directions(job, row, *rule, error, wanted, &used.directions);
+    free(error);
+    free(wanted);
+    used.tolerance = 0;
+    while (!status) {
+        status = fibrad_job_rows(job, row, &used, NULL, NULL, &report);
+        if (!status) status = fibrad_job_factors(job, &average, &report, factors);
+        if (status) break;
+        const double worst = worst_error(&(*factors)->matrix);
+        if (worst <= rule->tolerance || used.directions == FIBRAD_DIRECTIONS_MAX) break;
+        used.directions = fibrad_directions_for(used.directions, worst, rule->tolerance);
+        fibrad_bed_free(*factors);
+        *factors = NULL;
+    }
+    return status;
+}

@@ -1,0 +1,42 @@
+/* summary.c - what the rows of a matrix have in common. SPDX-License-Identifier: MIT */
+#include <math.h>
+
+#include "write/write.h"
+
+double summary_row(const fibrad_factors *matrix, uint32_t i) {
+    double sum = 0;
+    for (uint64_t k = matrix->start[i]; k < matrix->start[i + 1]; ++k) sum += matrix->f[k];
+    return sum;
+}
+
+static void add_summary(struct summary *summary, const fibrad_factors *matrix, uint32_t i, double rows) {
+    const double sum = summary_row(matrix, i), *wall = matrix->body + (size_t)i * matrix->bodies;
+    double all = sum + matrix->escaped[i];
+    for (uint32_t k = 0; k < matrix->bodies; ++k) {
+        summary->wall_mean[k] += wall[k] / rows;
+        all += wall[k];
+    }
+    summary->row_sum_min = fmin(summary->row_sum_min, sum);
+    summary->row_sum_max = fmax(summary->row_sum_max, sum);
+    summary->closure_max = fmax(summary->closure_max, fabs(all - 1));
+    summary->error_max = fmax(summary->error_max, matrix->error[i]);
+    summary->error_rms += matrix->error[i] * matrix->error[i] / rows;
+    summary->escaped_mean += matrix->escaped[i];
+}
+
+void summary_make(struct summary *summary, const struct contents *what) {
+    const fibrad_factors *matrix = &what->factors->matrix;
+    uint32_t rows = 0;
+    *summary = (struct summary){.row_sum_min = INFINITY, .row_sum_max = -INFINITY};
+    for (uint32_t i = 0; i < matrix->n; ++i) rows += !what->wanted || what->wanted[i];
+    for (uint32_t i = 0; i < matrix->n; ++i)
+        if (!what->wanted || what->wanted[i]) add_summary(summary, matrix, i, rows);
+    summary->escaped_mean /= rows;
+    summary->error_rms = sqrt(summary->error_rms);
+}
+
+void summary_print_walls(const struct summary *summary, const struct contents *what) {
+    for (uint32_t k = 0; k < what->walls->count; ++k)
+        printf("wall_%s %.17g %.17g\n", wall_name(&what->walls->body[k]), summary->wall_mean[k],
+               what->factors->body_area[k]);
+}
