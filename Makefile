@@ -58,7 +58,7 @@ KERNEL = \
     kernel/pair/exact.c \
     kernel/scene/drift.c \
     kernel/scene/grid_walk.c \
-    kernel/scene/scene.c \
+    kernel/scene/scene_build.c \
     kernel/scene/walls.c \
     kernel/store/rows.c \
     kernel/window/areas.c \
@@ -192,7 +192,7 @@ SCRIPTS = \
     tests/check_faults.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
-    tests/check_rooms.sh \
+    tests/check_house.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
     tests/freestanding/check_freestanding.sh \

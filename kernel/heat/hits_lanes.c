@@ -3,8 +3,9 @@
 #include FIBRAD_LANES_HEADER
 #include "heat/hits_lanes.h"
 #include "heat/sphere_patch.h"
+#include "heat/wall_patch.h"
 #include "ray/tracer.h"
-#include "row/beam.h"
+#include "sample/direction.h"
 #include "row/window_lanes.h"
 
 #define POINTS 64                          /* of a window at a time */

@@ -176,6 +176,8 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
 
 void LANED(fibrad_trace_point)(const fibrad_scene *scene, const double point[3], const double w[3], fibrad_hit *hit) {
     static const double origin[3] = {0, 0, 0};
+    hit->sphere = FIBRAD_NONE;
+    if (scene->facts.spheres == 0) return;
     struct ray ray = {scene,      origin, w, {point[0], point[1], point[2]}, scene->spacing, 1 / scene->spacing,
                       FIBRAD_NONE};
     struct first first = {.distance = __builtin_inf()};

@@ -2,7 +2,7 @@
  * MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
-#include "row/beam.h"
+#include "sample/direction.h"
 #include "row/beam_lanes.h"
 #include "row/wall_share_lanes.h"
 #include "row/window_lanes.h"
