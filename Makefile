@@ -77,6 +77,7 @@ KERNEL = \
     kernel/heat/heat.c \
     kernel/heat/solve.c \
     kernel/heat/wall_patch.c \
+    kernel/furnace/bundle_plan.c \
     kernel/furnace/bundles.c \
     kernel/furnace/furnace.c \
     kernel/furnace/lines.c \
@@ -126,7 +127,6 @@ HOST = \
     host/compute/tolerance.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
-    host/boxes/furnace_shoot.c \
     host/write/vtp.c \
     host/write/write.c \
     host/write/write_csv.c \
@@ -169,13 +169,13 @@ TESTS = \
     tests/test_exchange.c \
     tests/test_furnace.c \
     tests/test_heat.c \
+    tests/test_matrix.c \
     tests/test_moved.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
     tests/test_read.c \
     tests/test_reference.c \
     tests/test_reproduce.c \
-    tests/test_rows.c \
     tests/test_scene.c \
     tests/test_status.c \
     tests/test_stress.c \

@@ -4,11 +4,14 @@
 
 #include <check.h>
 #include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bed/packing.h"
 #include "fibrad.h"
+#include "worst.h"
 
 static inline void *block_of(size_t size) {
     void *block = aligned_alloc(64, (size + 63) / 64 * 64);
@@ -74,37 +77,131 @@ static inline struct bed strewn(uint32_t n, uint64_t seed) {
     return bed;
 }
 
-static inline fibrad_scene *scene_of(const struct bed *bed, int isa) {
-    fibrad_scene_config config = {.spheres = bed->n, .isa = isa};
-    memcpy(config.period, bed->period, sizeof config.period);
-    size_t size = fibrad_scene_size(&config);
+/* ---- instruction sets ------------------------------------------------------------------------------------------- */
+
+#define ISAS_MOST 4
+
+/* The instruction sets to compare, scalar first: those this build and this machine have. The others are skips, which
+ * tests/run.sh counts. Returns how many there are. */
+static inline int isas_there(int isa[ISAS_MOST]) {
+    int count = 0;
+    for (int set = FIBRAD_ISA_SCALAR; set <= FIBRAD_ISA_AVX512; set++) {
+        static unsigned char memory[FIBRAD_SCENE_BYTES(0)];
+        fibrad_scene *scene = NULL;
+        const int status = fibrad_scene_init(&scene, memory, sizeof memory, &(fibrad_scene_config){.isa = set},
+                                             &(fibrad_spheres){0}, NULL);
+        ck_assert(status == FIBRAD_OK || (status == FIBRAD_E_ISA && set != FIBRAD_ISA_SCALAR));
+        if (status == FIBRAD_OK)
+            isa[count++] = set;
+        else
+            printf("SKIP %s\n", fibrad_isa_name(set));
+    }
+    return count;
+}
+
+/* ---- scenes ----------------------------------------------------------------------------------------------------- */
+
+static inline fibrad_spheres spheres_of(const struct bed *bed) {
+    return (fibrad_spheres){.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
+}
+
+static inline fibrad_body plane_at(int axis, int upper, double at) {
+    return (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {axis, upper, at}};
+}
+
+static inline fibrad_body cylinder_at(double x, double y, double radius) {
+    return (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {x, y, radius}};
+}
+
+/* A scene of a bed in its periodic box; config: NULL or what else there is, its period is not used. Returns the status;
+ * free(*scene) frees the scene. */
+static inline int scene_try(fibrad_scene **scene, const struct bed *bed, const fibrad_scene_config *config,
+                            fibrad_fault *fault) {
+    fibrad_scene_config whole = config != NULL ? *config : (fibrad_scene_config){0};
+    memcpy(whole.period, bed->period, sizeof whole.period);
+    const fibrad_spheres spheres = spheres_of(bed);
+    const size_t size = fibrad_scene_size(bed->n, 0);
     ck_assert_uint_gt(size, 0);
-    fibrad_spheres spheres = {bed->x, bed->y, bed->z, bed->r, bed->n};
-    fibrad_scene *scene = NULL;
+    fibrad_scene *made = NULL;
     void *block = block_of(size);
-    ck_assert_int_eq(fibrad_scene_init(&scene, block, size, &config, &spheres, NULL), FIBRAD_OK);
-    ck_assert_ptr_eq(scene, block); /* so that free(scene) frees the block */
+    const int status = fibrad_scene_init(&made, block, size, &whole, &spheres, fault);
+    ck_assert_ptr_eq(made, status == FIBRAD_OK ? block : NULL); /* so that free(scene) frees the block */
+    if (status == FIBRAD_OK)
+        *scene = made;
+    else
+        free(block);
+    return status;
+}
+
+static inline fibrad_scene *scene_with(const struct bed *bed, const fibrad_scene_config *config) {
+    fibrad_scene *scene = NULL;
+    ck_assert_int_eq(scene_try(&scene, bed, config, NULL), FIBRAD_OK);
     return scene;
 }
 
-static inline fibrad_work *work_of(const fibrad_work_config *config) {
-    size_t size = fibrad_work_size(config);
-    ck_assert_uint_gt(size, 0);
-    fibrad_work *work = NULL;
-    void *block = block_of(size);
-    ck_assert_int_eq(fibrad_work_init(&work, block, size, config), FIBRAD_OK);
-    ck_assert_ptr_eq(work, block);
-    return work;
+static inline fibrad_scene *scene_of(const struct bed *bed, int isa) {
+    return scene_with(bed, &(fibrad_scene_config){.isa = isa});
 }
 
+/* ---- memory ----------------------------------------------------------------------------------------------------- */
+
+static inline void *test_resize(void *context, void *block, size_t size) {
+    (void)context;
+    return realloc(block, size);
+}
+
+static inline fibrad_memory memory_growing(void) { return (fibrad_memory){.resize = test_resize}; }
+
+static inline fibrad_work work_growing(void) { return (fibrad_work){.memory = {.resize = test_resize}}; }
+
+static inline fibrad_work work_fixed(void *block, size_t size) {
+    return (fibrad_work){.memory = {.block = block, .size = size}};
+}
+
+/* Frees memory that has grown; a fixed block is the caller's. */
+static inline void work_free(fibrad_work *work) {
+    if (work->memory.resize != NULL) free(work->memory.block);
+    *work = (fibrad_work){0};
+}
+
+/* After a call with fixed memory from malloc, at first none: more of it, as much as the kernel asks for, and true if
+ * the call is to be repeated. */
+static inline bool work_again(fibrad_work *work, int status) {
+    if (status != FIBRAD_E_WORK) return false;
+    ck_assert_uint_gt(work->memory.needed, work->memory.size);
+    free(work->memory.block);
+    work->memory.size = work->memory.needed;
+    work->memory.block = malloc(work->memory.size);
+    ck_assert_ptr_nonnull(work->memory.block);
+    return true;
+}
+
+/* Frees fixed memory from malloc. */
+static inline void work_free_fixed(fibrad_work *work) {
+    free(work->memory.block);
+    *work = (fibrad_work){0};
+}
+
+static inline void rows_free(fibrad_rows *rows) {
+    if (rows->memory.resize != NULL) free(rows->memory.block);
+    *rows = (fibrad_rows){0};
+}
+
+/* ---- rows ------------------------------------------------------------------------------------------------------- */
+
+#define BODIES_MOST 7
+
 static inline fibrad_row row_of(uint32_t capacity) {
-    return (fibrad_row){
-        .col = calloc(capacity, sizeof(uint32_t)), .f = calloc(capacity, sizeof(double)), .capacity = capacity};
+    return (fibrad_row){.col = calloc((size_t)capacity + 1, sizeof(uint32_t)),
+                        .f = calloc((size_t)capacity + 1, sizeof(double)),
+                        .body = calloc(BODIES_MOST, sizeof(double)),
+                        .capacity = capacity};
 }
 
 static inline void row_free(fibrad_row *row) {
     free(row->col);
     free(row->f);
+    free(row->body);
 }
 
 static inline double row_sum(const fibrad_row *row) {
@@ -135,7 +232,100 @@ static inline bool same_bits(const fibrad_row *a, const fibrad_row *b) {
     return a->length == b->length && memcmp(a->col, b->col, a->length * sizeof *a->col) == 0 &&
            memcmp(a->f, b->f, a->length * sizeof *a->f) == 0 &&
            memcmp(&a->escaped, &b->escaped, sizeof a->escaped) == 0 &&
-           memcmp(&a->error, &b->error, sizeof a->error) == 0;
+           memcmp(&a->beyond, &b->beyond, sizeof a->beyond) == 0 && memcmp(&a->error, &b->error, sizeof a->error) == 0;
+}
+
+/* The same for scenes with bodies. */
+static inline bool same_bits_with(const fibrad_row *a, const fibrad_row *b, uint32_t bodies) {
+    return same_bits(a, b) && memcmp(a->body, b->body, bodies * sizeof *a->body) == 0;
+}
+
+/* ---- matrices --------------------------------------------------------------------------------------------------- */
+
+/* The beam rows of all spheres of a scene, in order. rule: NULL: all defaults. */
+static inline fibrad_rows rows_by_beams(const fibrad_scene *scene, const fibrad_beam_rule *rule) {
+    fibrad_scene_facts facts;
+    fibrad_scene_describe(scene, &facts);
+    fibrad_work work = work_growing();
+    fibrad_rows rows = {.memory = memory_growing()};
+    for (uint32_t i = 0; i < facts.spheres; i++)
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
+    ck_assert_uint_eq(rows.count, facts.spheres);
+    work_free(&work);
+    return rows;
+}
+
+/* A matrix that has been read, with the block it is in. */
+struct matrix {
+    fibrad_matrix *matrix;
+    fibrad_factors factors;
+};
+
+/* The matrix of `count` collections of rows, averaged and closed. rule: NULL: view factors. */
+static inline struct matrix matrix_of(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
+                                      const fibrad_matrix_rule *rule) {
+    struct matrix m = {NULL, {0}};
+    const size_t size = fibrad_matrix_size(scene, rows, count, rule);
+    ck_assert_uint_gt(size, 0);
+    void *block = block_of(size);
+    uint32_t sphere = UINT32_MAX;
+    const int status = fibrad_matrix_init(&m.matrix, block, size, scene, rows, count, rule, &sphere);
+    ck_assert_msg(status == FIBRAD_OK, "%s, sphere %u", fibrad_status_text(status), sphere);
+    ck_assert_ptr_eq(m.matrix, block);
+    ck_assert_int_eq(fibrad_matrix_close(m.matrix), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_matrix_read(m.matrix, &m.factors), FIBRAD_OK);
+    return m;
+}
+
+/* The view factors of a scene by beams; raw: as the rows are. */
+static inline struct matrix matrix_by_beams(const fibrad_scene *scene, const fibrad_beam_rule *beam, bool raw) {
+    fibrad_rows rows = rows_by_beams(scene, beam);
+    const struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw});
+    rows_free(&rows);
+    return m;
+}
+
+static inline void matrix_free(struct matrix *m) {
+    free(m->matrix);
+    *m = (struct matrix){NULL, {0}};
+}
+
+/* Row i of a matrix, not to be freed nor written. */
+static inline fibrad_row matrix_row(const fibrad_factors *m, uint32_t i) {
+    const uint64_t begin = m->start[i];
+    fibrad_row row = {.sphere = i, .length = (uint32_t)(m->start[i + 1] - begin)};
+    row.capacity = row.length;
+    row.col = (uint32_t *)(uintptr_t)(m->col + begin);
+    row.f = (double *)(uintptr_t)(m->f + begin);
+    row.body = (double *)(uintptr_t)(m->body + (size_t)i * m->bodies);
+    row.escaped = m->escaped[i], row.beyond = m->beyond[i], row.error = m->error[i];
+    return row;
+}
+
+static inline double matrix_factor(const fibrad_factors *m, uint32_t i, uint32_t j) {
+    const fibrad_row row = matrix_row(m, i);
+    return row_factor(&row, j);
+}
+
+/* Sum of the factors of row i to spheres; with bodies, escaped and beyond: matrix_total. */
+static inline double matrix_sum(const fibrad_factors *m, uint32_t i) {
+    const fibrad_row row = matrix_row(m, i);
+    return row_sum(&row);
+}
+
+static inline double matrix_total(const fibrad_factors *m, uint32_t i) {
+    double sum = matrix_sum(m, i) + m->escaped[i] + m->beyond[i];
+    for (uint32_t b = 0; b < m->bodies; b++) sum += m->body[(size_t)i * m->bodies + b];
+    return sum;
+}
+
+static inline bool matrix_same_bits(const fibrad_factors *a, const fibrad_factors *b) {
+    bool same = a->n == b->n && a->bodies == b->bodies;
+    for (uint32_t i = 0; same && i < a->n; i++) {
+        const fibrad_row p = matrix_row(a, i), q = matrix_row(b, i);
+        same = a->start[i] == b->start[i] && same_bits_with(&p, &q, a->bodies);
+    }
+    return same;
 }
 
 #endif

@@ -1,8 +1,10 @@
-/* test_base.c - arena, port header and choice of the instruction set. SPDX-License-Identifier: MIT */
+/* test_base.c - arena, port header, choice of the instruction set, and the tests' own worst_of.
+ * SPDX-License-Identifier: MIT */
 #include "base/arena.h"
-#include "base/cpu.h"
+#include "base/dispatch.h"
 #include "base/port.h"
 #include "suite.h"
+#include "worst.h"
 
 #include <float.h>
 #include <math.h>
@@ -34,16 +36,18 @@ static size_t size_of(size_t n) {
 
 START_TEST(arena_counts_what_it_hands_out) {
     for (size_t n = 0; n < 200; n++) {
-        size_t size = size_of(n);
-        ck_assert_uint_eq(size % FIBRAD_ALIGNMENT, 0);
-        unsigned char *block = aligned_alloc(FIBRAD_ALIGNMENT, size + FIBRAD_ALIGNMENT);
-        memset(block, 0x5a, size + FIBRAD_ALIGNMENT);
+        const size_t size = size_of(n), offset = n % FIBRAD_ALIGNMENT; /* every offset from a boundary */
+        unsigned char *whole = aligned_alloc(FIBRAD_ALIGNMENT, (size / FIBRAD_ALIGNMENT + 4) * FIBRAD_ALIGNMENT);
+        unsigned char *block = whole + FIBRAD_ALIGNMENT + offset;
+        memset(whole, 0x5a, (size / FIBRAD_ALIGNMENT + 4) * FIBRAD_ALIGNMENT);
         fibrad_arena arena;
         object *head;
         ck_assert_int_eq(fibrad_arena_open(&arena, block, size, size), FIBRAD_OK);
         object o = layout(&arena, n, &head);
-        ck_assert_uint_eq(arena.used, size);
-        ck_assert_ptr_eq(head, block);
+        ck_assert_uint_le(arena.used, arena.size);
+        ck_assert_uint_eq(arena.used + FIBRAD_ALIGNMENT - 1, size);
+        ck_assert((unsigned char *)head >= block && (unsigned char *)head < block + FIBRAD_ALIGNMENT);
+        ck_assert_uint_eq((uintptr_t)head % FIBRAD_ALIGNMENT, 0);
         ck_assert_uint_eq((uintptr_t)o.a % FIBRAD_ALIGNMENT, 0);
         ck_assert_uint_eq((uintptr_t)o.b % FIBRAD_ALIGNMENT, 0);
         ck_assert((unsigned char *)o.a >= (unsigned char *)(head + 1));
@@ -53,7 +57,8 @@ START_TEST(arena_counts_what_it_hands_out) {
         memset(o.a, 0, n * sizeof *o.a);
         memset(o.b, 0, n * sizeof *o.b);
         for (size_t i = 0; i < FIBRAD_ALIGNMENT; i++) ck_assert_uint_eq(block[size + i], 0x5a);
-        free(block);
+        for (size_t i = 0; i < FIBRAD_ALIGNMENT + offset; i++) ck_assert_uint_eq(whole[i], 0x5a);
+        free(whole);
     }
 }
 END_TEST
@@ -64,11 +69,16 @@ START_TEST(arena_refuses_what_it_cannot_hold) {
     ck_assert_ptr_eq(fibrad_arena_take(&arena, 1, 65), block);
     ck_assert_ptr_eq(fibrad_arena_take(&arena, 128, 1), block + 128);
     ck_assert_ptr_null(fibrad_arena_take(&arena, 1, 1));
-    ck_assert_uint_eq(fibrad_arena_total(&arena), 320);
+    ck_assert_uint_eq(fibrad_arena_total(&arena), 320 + 63);
     ck_assert_int_eq(fibrad_arena_open(&arena, NULL, 256, 64), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_arena_open(&arena, block, 256, 0), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_arena_open(&arena, block + 8, 248, 64), FIBRAD_E_ALIGNMENT);
     ck_assert_int_eq(fibrad_arena_open(&arena, block, 256, 320), FIBRAD_E_SIZE);
+    ck_assert_int_eq(fibrad_arena_open(&arena, block, 255, 256), FIBRAD_E_SIZE);
+    ck_assert_int_eq(fibrad_arena_open(&arena, block, 256, 256), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_arena_open(&arena, block + 8, 248, 248), FIBRAD_OK);
+    ck_assert_ptr_eq(fibrad_arena_take(&arena, 1, 1), block + 64);
+    ck_assert_ptr_eq(fibrad_arena_take(&arena, 2, 64), block + 128);
+    ck_assert_ptr_null(fibrad_arena_take(&arena, 1, 1));
 }
 END_TEST
 
@@ -167,10 +177,29 @@ START_TEST(best_instruction_set_is_what_the_machine_offers) {
     ck_assert_int_eq(fibrad_isa_choose(FIBRAD_ISA_BEST), (int)best);
     ck_assert_int_eq(fibrad_isa_choose((int)best), (int)best);
     ck_assert_int_eq(fibrad_isa_choose(FIBRAD_ISA_SCALAR), FIBRAD_ISA_SCALAR);
-    ck_assert_int_eq(fibrad_isa_choose(-1), -1);
-    for (int isa = (int)best + 1; isa <= FIBRAD_ISA_AVX512 + 1; isa++) ck_assert_int_eq(fibrad_isa_choose(isa), -1);
+    ck_assert_int_eq(fibrad_isa_choose(-1), -2); /* there is no such instruction set */
+    ck_assert_int_eq(fibrad_isa_choose(FIBRAD_ISA_AVX512 + 1), -2);
+    for (int isa = (int)best + 1; isa <= FIBRAD_ISA_AVX512; isa++) ck_assert_int_eq(fibrad_isa_choose(isa), -1);
+    for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)best; isa++) /* a build may lack one in between */
+        ck_assert(fibrad_isa_choose(isa) == isa || fibrad_isa_choose(isa) == -1);
     if (best >= FIBRAD_ISA_AVX2) ck_assert_int_ne(offered("avx2"), 0);
     if (best >= FIBRAD_ISA_AVX512) ck_assert_int_ne(offered("avx512vl"), 0);
+}
+END_TEST
+
+START_TEST(worst_keeps_nan) {
+    double worst = 0, least = 9;
+    worst_of(&worst, 2), worst_of(&worst, 1), least_of(&least, 3), least_of(&least, 4);
+    ck_assert_double_eq(worst, 2);
+    ck_assert_double_eq(least, 3);
+    worst_of(&worst, INFINITY), least_of(&least, -INFINITY);
+    ck_assert_double_infinite(worst);
+    worst_of(&worst, NAN), least_of(&least, NAN);
+    ck_assert_double_nan(worst);
+    worst_of(&worst, 1), worst_of(&worst, INFINITY), least_of(&least, 1), least_of(&least, -INFINITY);
+    ck_assert_double_nan(worst);
+    ck_assert_double_nan(least);
+    ck_assert(!(worst <= 1e300) && !(least >= -1e300));
 }
 END_TEST
 
@@ -183,5 +212,6 @@ int main(void) {
     tcase_add_test(tests, floor_agrees_with_the_c_library);
     tcase_add_test(tests, port_does_what_it_says);
     tcase_add_test(tests, best_instruction_set_is_what_the_machine_offers);
+    tcase_add_test(tests, worst_keeps_nan);
     return suite_run(suite);
 }

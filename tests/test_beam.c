@@ -1,19 +1,41 @@
 /* test_beam.c - beam rows against exact pairs, symmetries of the problem, and themselves under every setting that must
  * not matter. SPDX-License-Identifier: MIT */
-#include <stdio.h>
-
 #include "reference/reference.h"
 #include "scenes.h"
 #include "suite.h"
 
 static fibrad_row beam(const struct bed *bed, uint32_t i, fibrad_beam_rule rule, int isa) {
     fibrad_scene *scene = scene_of(bed, isa);
-    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 512, .entries = bed->n});
+    fibrad_work work = work_growing();
     fibrad_row row = row_of(bed->n);
-    ck_assert_int_eq(fibrad_beam_row(scene, work, i, &rule, &row), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+    ck_assert_uint_eq(row.sphere, i);
     free(scene);
-    free(work);
+    work_free(&work);
     return row;
+}
+
+/* A row with the least fixed work memory that will do, asked for step by step. Returns how much that is. */
+static size_t beam_in_little(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, fibrad_row *row) {
+    fibrad_work work = work_fixed(NULL, 0);
+    int status = FIBRAD_E_WORK, tries = 0;
+    do {
+        status = fibrad_beam_row(scene, &work, i, rule, row);
+        ck_assert_int_lt(tries++, 40);
+    } while (work_again(&work, status));
+    ck_assert_int_eq(status, FIBRAD_OK);
+    const size_t size = work.memory.size;
+    work_free_fixed(&work);
+    return size;
+}
+
+/* The same with a fixed block of so many bytes, which suffices. */
+static void beam_in(size_t size, const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, fibrad_row *row) {
+    void *block = malloc(size);
+    ck_assert_ptr_nonnull(block);
+    fibrad_work work = work_fixed(block, size);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, row), FIBRAD_OK);
+    free(block);
 }
 
 START_TEST(two_spheres_match_the_exact_pair) {
@@ -162,39 +184,42 @@ END_TEST
 
 START_TEST(same_bits_in_every_instruction_set) {
     struct bed bed = packing(300, .5, 1.5, .55, 3, true);
+    int isa[ISAS_MOST];
+    const int sets = isas_there(isa);
     for (uint32_t points = 0; points <= 128; points += 128)
         for (uint32_t i = 0; i < bed.n; i += 23) {
             fibrad_beam_rule rule = {.directions = 100, .points = points};
             fibrad_row scalar = beam(&bed, i, rule, FIBRAD_ISA_SCALAR);
-            for (int isa = FIBRAD_ISA_SSE2; isa <= (int)fibrad_isa_best(); isa++) {
-                fibrad_row row = beam(&bed, i, rule, isa);
-                ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isa));
+            for (int s = 1; s < sets; s++) {
+                fibrad_row row = beam(&bed, i, rule, isa[s]);
+                ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isa[s]));
                 row_free(&row);
             }
             row_free(&scalar);
         }
-    for (int isa = FIBRAD_ISA_AVX512; isa > (int)fibrad_isa_best(); isa--) printf("SKIP %s\n", fibrad_isa_name(isa));
     bed_free(&bed);
 }
 END_TEST
 
-/* Whether spheres are kept near or looked up along each direction. */
-START_TEST(near_capacity_is_a_matter_of_speed) {
+/* Whether spheres are kept near or looked up along each direction is a matter of speed: with the least memory there is
+ * room for few of them. */
+START_TEST(work_memory_is_a_matter_of_speed) {
     struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false), lattice('p', 9)};
     for (size_t b = 0; b < 3; b++) {
         fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
-        fibrad_row rows[2] = {row_of(beds[b].n), row_of(beds[b].n)};
+        fibrad_row row = row_of(beds[b].n), grown = row_of(beds[b].n);
+        fibrad_work work = work_growing();
         for (uint32_t i = 0; i < beds[b].n; i += 31) {
-            for (int which = 0; which < 2; which++) {
-                fibrad_work *work =
-                    work_of(&(fibrad_work_config){.near = which == 0 ? 1 : 8192, .discs = 512, .entries = beds[b].n});
-                ck_assert_int_eq(fibrad_beam_row(scene, work, i, NULL, &rows[which]), FIBRAD_OK);
-                free(work);
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, NULL, &grown), FIBRAD_OK);
+            const size_t least = beam_in_little(scene, i, NULL, &row);
+            ck_assert(same_bits(&row, &grown));
+            for (size_t more = 100; more <= 6400; more *= 2) { /* per cent */
+                beam_in(least / 100 * more + least % 100, scene, i, NULL, &row);
+                ck_assert(same_bits(&row, &grown));
             }
-            ck_assert(same_bits(&rows[0], &rows[1]));
         }
-        row_free(&rows[0]);
-        row_free(&rows[1]);
+        row_free(&row), row_free(&grown);
+        work_free(&work);
         free(scene);
         bed_free(&beds[b]);
     }
@@ -202,7 +227,7 @@ START_TEST(near_capacity_is_a_matter_of_speed) {
 END_TEST
 
 /* The same for a sphere so large that the first shell ends within a radius of it. */
-START_TEST(near_capacity_of_a_large_sphere) {
+START_TEST(work_memory_of_a_large_sphere) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 5}});
     for (int k = 0; k < 19 * 19 * 19; k++) {
         double x = .8 * (k % 19 - 9), y = .8 * (k / 19 % 19 - 9) + .1, z = .8 * (k / 361 - 9) + .2;
@@ -210,18 +235,17 @@ START_TEST(near_capacity_of_a_large_sphere) {
         if (d > 5.3 && d < 8) add_sphere(&bed, x, y, z, .3);
     }
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_row rows[2] = {row_of(bed.n), row_of(bed.n)};
-    for (int which = 0; which < 2; which++) {
-        fibrad_work *work =
-            work_of(&(fibrad_work_config){.near = which == 0 ? 1 : 16384, .discs = 2048, .entries = bed.n});
-        ck_assert_int_eq(fibrad_beam_row(scene, work, 0, &(fibrad_beam_rule){.directions = 8}, &rows[which]),
-                         FIBRAD_OK);
-        free(work);
-    }
+    fibrad_row rows[3] = {row_of(bed.n), row_of(bed.n), row_of(bed.n)};
+    const fibrad_beam_rule rule = {.directions = 8};
+    fibrad_work work = work_growing();
+    const size_t least = beam_in_little(scene, 0, &rule, &rows[0]);
+    beam_in(16 * least, scene, 0, &rule, &rows[1]);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &rows[2]), FIBRAD_OK);
     ck_assert(same_bits(&rows[0], &rows[1]));
+    ck_assert(same_bits(&rows[0], &rows[2]));
     ck_assert_double_gt(row_sum(&rows[0]), .8);
-    row_free(&rows[0]);
-    row_free(&rows[1]);
+    for (int k = 0; k < 3; k++) row_free(&rows[k]);
+    work_free(&work);
     free(scene);
     bed_free(&bed);
 }
@@ -347,11 +371,14 @@ START_TEST(cutoff_along_each_beam) {
     while (within.x[own] != bed.x[50]) own++;
     fibrad_row row = beam(&within, own, (fibrad_beam_rule){.directions = 200}, FIBRAD_ISA_BEST);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    for (uint32_t near = 1; near <= 4096; near *= 64) {
-        fibrad_work *work = work_of(&(fibrad_work_config){.near = near});
+    const fibrad_beam_rule rule = {.directions = 200, .cutoff = .3};
+    size_t size = 0;
+    for (int room = 0; room < 3; room++) {
         fibrad_row cut = row_of(bed.n);
-        ck_assert_int_eq(fibrad_beam_row(scene, work, 50, &(fibrad_beam_rule){.directions = 200, .cutoff = .3}, &cut),
-                         FIBRAD_OK);
+        if (room == 0)
+            size = beam_in_little(scene, 50, &rule, &cut);
+        else
+            beam_in(size * (room == 1 ? 3 : 50), scene, 50, &rule, &cut);
         ck_assert_uint_gt(cut.length, 10);
         ck_assert_uint_eq(cut.length, row.length);
         ck_assert_double_eq_tol(cut.escaped, row.escaped, 1e-12);
@@ -360,7 +387,6 @@ START_TEST(cutoff_along_each_beam) {
             ck_assert_double_eq_tol(cut.f[k], row.f[k], 1e-12);
         }
         row_free(&cut);
-        free(work);
     }
     row_free(&row);
     free(scene);
@@ -420,31 +446,37 @@ START_TEST(crowded_rows_say_what_they_need) {
         if (bed.r[i] > bed.r[largest]) largest = i;
     fibrad_row plenty = beam(&bed, largest, (fibrad_beam_rule){0}, FIBRAD_ISA_BEST);
 
-    fibrad_work_config config = {.near = 1, .discs = 1, .entries = 1};
     fibrad_row row = row_of(bed.n);
     row.capacity = 0;
-    row.escaped = row.error = -5;
-    int status = FIBRAD_E_CAPACITY;
-    for (int attempt = 0; attempt < 200 && status == FIBRAD_E_CAPACITY; attempt++) {
-        fibrad_work *work = work_of(&config);
-        status = fibrad_beam_row(scene, work, largest, NULL, &row);
-        if (status == FIBRAD_E_CAPACITY && row.length > 0) {
+    row.escaped = row.error = row.beyond = -5;
+    row.sphere = row.directions = 12345;
+    row.length = 54321;
+    fibrad_work work = work_fixed(NULL, 0);
+    int status = FIBRAD_E_WORK, for_row = 0, for_work = 0;
+    while (status != FIBRAD_OK) {
+        ck_assert_int_lt(for_work + for_row, 40);
+        status = fibrad_beam_row(scene, &work, largest, NULL, &row);
+        if (status == FIBRAD_OK) break;
+        ck_assert_double_eq(row.escaped, -5);
+        ck_assert_double_eq(row.error, -5);
+        ck_assert_double_eq(row.beyond, -5);
+        ck_assert(row.sphere == 12345 && row.directions == 12345);
+        if (status == FIBRAD_E_CAPACITY) {
+            for_row++;
             ck_assert_uint_eq(row.length, plenty.length);
-            ck_assert_double_eq(row.escaped, -5);
-            ck_assert_double_eq(row.error, -5);
             row.capacity = row.length;
-        } else if (status == FIBRAD_E_CAPACITY) {
-            fibrad_work_config before = config;
-            fibrad_work_needed(work, &config);
-            ck_assert(config.discs > before.discs || config.entries > before.entries);
+        } else {
+            for_work++;
+            ck_assert_uint_eq(row.length, for_row ? plenty.length : 54321);
+            ck_assert(work_again(&work, status));
         }
-        free(work);
     }
-    ck_assert_int_eq(status, FIBRAD_OK);
+    ck_assert(for_work > 0 && for_row == 1);
     ck_assert(same_bits(&row, &plenty));
-    ck_assert_uint_le(config.entries, bed.n);
+    ck_assert_uint_eq(row.sphere, largest);
     row_free(&row);
     row_free(&plenty);
+    work_free_fixed(&work);
     free(scene);
     bed_free(&bed);
 }
@@ -455,19 +487,43 @@ START_TEST(a_row_needs_an_entry_for_every_sphere_seen) {
     struct bed bed = lattice('p', 2);
     ck_assert_uint_eq(bed.n, 7);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    for (uint32_t entries = 1; entries <= 7; entries++) {
-        fibrad_work *work = work_of(&(fibrad_work_config){.entries = entries});
-        fibrad_row row = row_of(bed.n);
-        int beams = fibrad_beam_row(scene, work, 0, NULL, &row);
-        ck_assert_int_eq(beams, entries < 6 ? FIBRAD_E_CAPACITY : FIBRAD_OK);
-        ck_assert_uint_eq(row.length, entries < 6 ? 0 : 6);
-        int rays = fibrad_cast_row(scene, work, 0, NULL, &row, NULL);
-        ck_assert_int_eq(rays, entries < 6 ? FIBRAD_E_CAPACITY : FIBRAD_OK);
-        ck_assert_uint_eq(row.length, entries < 6 ? 0 : 6);
-        row_free(&row);
-        free(work);
-    }
+    fibrad_work work = work_growing();
+    for (uint32_t entries = 0; entries <= 7; entries++)
+        for (int rays = 0; rays < 2; rays++) {
+            fibrad_row row = row_of(bed.n);
+            for (uint32_t k = 0; k < bed.n; k++) row.col[k] = 99, row.f[k] = -1;
+            row.capacity = entries;
+            ck_assert_int_eq(rays ? fibrad_cast_row(scene, &work, 0, NULL, &row, NULL)
+                                  : fibrad_beam_row(scene, &work, 0, NULL, &row),
+                             entries < 6 ? FIBRAD_E_CAPACITY : FIBRAD_OK);
+            ck_assert_uint_eq(row.length, 6);
+            for (uint32_t k = entries < 6 ? 0 : 6; k < bed.n; k++) ck_assert(row.col[k] == 99 && row.f[k] == -1);
+            row_free(&row);
+        }
+    work_free(&work);
     free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* The numbers of random paths are nothing to beams. */
+START_TEST(ids_change_no_beam) {
+    struct bed bed = packing(150, .5, 1.5, .5, 3, true);
+    fibrad_spheres spheres = spheres_of(&bed);
+    uint64_t id[150];
+    for (uint32_t i = 0; i < bed.n; i++) id[i] = 0x9e3779b97f4a7c15u * (i + 1);
+    spheres.id = id;
+    fibrad_scene_config config = {0};
+    memcpy(config.period, bed.period, sizeof config.period);
+    const size_t size = fibrad_scene_size(bed.n, 1);
+    void *block = block_of(size);
+    fibrad_scene *with = NULL, *without = scene_of(&bed, 0);
+    ck_assert_int_eq(fibrad_scene_init(&with, block, size, &config, &spheres, NULL), FIBRAD_OK);
+    memset(id, 0, sizeof id); /* copied */
+    struct matrix a = matrix_by_beams(with, NULL, true), b = matrix_by_beams(without, NULL, true);
+    ck_assert(matrix_same_bits(&a.factors, &b.factors));
+    matrix_free(&a), matrix_free(&b);
+    free(block), free(without);
     bed_free(&bed);
 }
 END_TEST
@@ -514,19 +570,18 @@ START_TEST(strays_are_met_on_the_way) {
             add_sphere(&bed, periods > 0 ? 0 : side * (3 * k - 4), periods > 1 ? side / 2 : side * (5 - 4 * k),
                        side * (k % 2 ? 3 + k : -2 - 2 * k), 1);
         fibrad_scene *scene = scene_of(&bed, 0);
-        fibrad_work *less = work_of(&(fibrad_work_config){.near = 1, .discs = 4096, .entries = bed.n});
-        fibrad_work *more = work_of(&(fibrad_work_config){.near = 100000, .discs = 4096, .entries = bed.n});
+        fibrad_work more = work_growing();
         uint32_t strays_seen = 0;
         for (uint32_t i = 50; i < bed.n; i++) {
             fibrad_row a = row_of(bed.n), b = row_of(bed.n);
-            ck_assert_int_eq(fibrad_beam_row(scene, less, i, &rule, &a), FIBRAD_OK);
-            ck_assert_int_eq(fibrad_beam_row(scene, more, i, &rule, &b), FIBRAD_OK);
+            beam_in_little(scene, i, &rule, &a);
+            ck_assert_int_eq(fibrad_beam_row(scene, &more, i, &rule, &b), FIBRAD_OK);
             ck_assert(same_bits(&a, &b));
             strays_seen += a.length > 0 && a.col[a.length - 1] >= 60;
             row_free(&a), row_free(&b);
         }
         ck_assert_uint_gt(strays_seen, 3);
-        free(scene), free(less), free(more);
+        free(scene), work_free(&more);
         bed_free(&bed);
     }
 }
@@ -535,21 +590,30 @@ END_TEST
 START_TEST(bad_arguments_are_refused) {
     struct bed bed = lattice('p', 3);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work *work = work_of(NULL);
+    fibrad_work work = work_growing();
     fibrad_row row = row_of(bed.n);
     row.length = 77;
-    ck_assert_int_eq(fibrad_beam_row(NULL, work, 0, NULL, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_row(NULL, &work, 0, NULL, &row), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_row(scene, NULL, 0, NULL, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_row(scene, work, 0, NULL, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_row(scene, work, bed.n, NULL, &row), FIBRAD_E_ARGUMENT);
-    static const fibrad_beam_rule bad[] = {{.directions = 7}, {.directions = 65537}, {.cutoff = -1}, {.cutoff = NAN}};
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, bed.n, NULL, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, UINT32_MAX, NULL, &row), FIBRAD_E_ARGUMENT);
+    static const fibrad_beam_rule bad[] = {{.directions = 7}, {.directions = 65537}, {.cutoff = -1},
+                                           {.cutoff = NAN},   {.tolerance = -1},     {.tolerance = NAN}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
-        ck_assert_int_eq(fibrad_beam_row(scene, work, 0, &bad[k], &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_row(scene, work, 0, &(fibrad_beam_rule){.points = 100}, &row), FIBRAD_E_TABLE);
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &bad[k], &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.points = 100}, &row), FIBRAD_E_TABLE);
     ck_assert_uint_eq(row.length, 77);
+    fibrad_row arrays = row;
+    arrays.col = NULL;
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &arrays), FIBRAD_E_ARGUMENT);
+    arrays = row, arrays.f = NULL;
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &arrays), FIBRAD_E_ARGUMENT);
+    arrays = row, arrays.body = NULL; /* there are none */
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &arrays), FIBRAD_OK);
     row_free(&row);
     free(scene);
-    free(work);
+    work_free(&work);
     bed_free(&bed);
 }
 END_TEST
@@ -564,8 +628,8 @@ int main(void) {
     tcase_add_test(tcase, rows_match_sliced_windows);
     tcase_add_test(tcase, points_agree_with_areas);
     tcase_add_test(tcase, same_bits_in_every_instruction_set);
-    tcase_add_test(tcase, near_capacity_is_a_matter_of_speed);
-    tcase_add_test(tcase, near_capacity_of_a_large_sphere);
+    tcase_add_test(tcase, work_memory_is_a_matter_of_speed);
+    tcase_add_test(tcase, work_memory_of_a_large_sphere);
     tcase_add_test(tcase, scaling_by_powers_of_two_changes_no_bit);
     tcase_add_test(tcase, moved_beds_have_the_same_rows);
     tcase_add_test(tcase, periodic_images_are_copies);
@@ -576,6 +640,7 @@ int main(void) {
     tcase_add_test(tcase, spheres_at_equal_depth_are_seen_once);
     tcase_add_test(tcase, a_row_needs_an_entry_for_every_sphere_seen);
     tcase_add_test(tcase, crowded_rows_say_what_they_need);
+    tcase_add_test(tcase, ids_change_no_beam);
     tcase_add_test(tcase, strays_are_seen_however_far);
     tcase_add_test(tcase, strays_are_met_on_the_way);
     tcase_add_test(tcase, bad_arguments_are_refused);

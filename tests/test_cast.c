@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "base/random.h"
+#include "row/work.h"
 #include "scenes.h"
 #include "suite.h"
 
@@ -10,11 +11,13 @@
 
 static fibrad_row cast(const struct bed *bed, uint32_t i, fibrad_cast_rule rule, int isa) {
     fibrad_scene *scene = scene_of(bed, isa);
-    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 1024, .entries = bed->n});
+    fibrad_work work = work_growing();
     fibrad_row row = row_of(bed->n);
-    ck_assert_int_eq(fibrad_cast_row(scene, work, i, &rule, &row, NULL), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, i, &rule, &row, NULL), FIBRAD_OK);
+    ck_assert_uint_eq(row.sphere, i);
+    ck_assert_int_eq(row.symmetric, 0);
     free(scene);
-    free(work);
+    work_free(&work);
     return row;
 }
 
@@ -65,17 +68,17 @@ START_TEST(pebble_table) {
         for (uint32_t k = 0; k < 24; k++) {
             struct bed bed = pair(1, 1, table[t].h, k);
             fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-            fibrad_work *work = work_of(NULL);
+            fibrad_work work = work_growing();
             fibrad_row row = row_of(2);
             double lengths[2], angles[2];
             const fibrad_cast_rule rule = {.rays = 200000, .seed = k};
             const fibrad_cast_means means = {lengths, angles};
-            ck_assert_int_eq(fibrad_cast_row(scene, work, 0, &rule, &row, &means), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &rule, &row, &means), FIBRAD_OK);
             error += pow(row.f[0] / exact - 1, 2) / 24;
             length += lengths[0] / 24;
             angle += angles[0] * 180 / PI / 24;
             free(scene);
-            free(work);
+            work_free(&work);
             row_free(&row);
             bed_free(&bed);
         }
@@ -168,12 +171,13 @@ START_TEST(deeper_spheres_are_met_first) {
                 4, (const double[][4]){
                        {0, 0, 0, 1}, {0, 0, depth, 10}, {9.9, 0, depth + 1.5, 10}, {0, 0, k == 0 ? -20 : -2000, 1e-6}});
             fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-            fibrad_work *work = work_of(NULL);
+            fibrad_work work = work_growing();
             fibrad_row row = row_of(4);
-            ck_assert_int_eq(fibrad_cast_row(scene, work, 0, &(fibrad_cast_rule){.rays = 3000}, &row, NULL), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 3000}, &row, NULL),
+                             FIBRAD_OK);
             for (uint32_t j = 0; j < 2; j++) f[k][j] = row_factor(&row, j + 1);
             row_free(&row);
-            free(scene), free(work);
+            free(scene), work_free(&work);
             bed_free(&bed);
         }
         ck_assert_double_eq(f[0][0], f[1][0]);
@@ -186,15 +190,15 @@ START_TEST(rays_agree_with_beams) {
     struct bed beds[] = {packing(300, .8, 1.2, .55, 7, true), packing(300, .3, 2, .5, 8, true)};
     for (size_t b = 0; b < 2; b++) {
         fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
-        fibrad_work *work = work_of(&(fibrad_work_config){.discs = 1024});
+        fibrad_work work = work_growing();
         fibrad_row ours = row_of(beds[b].n), beams = row_of(beds[b].n);
         for (int random = 0; random <= 1; random++) {
             double error = 0, estimate = 0, bias = 0;
             for (uint32_t i = 0; i < 30; i++) {
                 const fibrad_cast_rule rule = {.rays = 20000, .random = random, .seed = 3};
                 const fibrad_beam_rule fine = {.directions = 4000};
-                ck_assert_int_eq(fibrad_cast_row(scene, work, i, &rule, &ours, NULL), FIBRAD_OK);
-                ck_assert_int_eq(fibrad_beam_row(scene, work, i, &fine, &beams), FIBRAD_OK);
+                ck_assert_int_eq(fibrad_cast_row(scene, &work, i, &rule, &ours, NULL), FIBRAD_OK);
+                ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &fine, &beams), FIBRAD_OK);
                 error += pow(row_distance(&ours, &beams), 2) / 30;
                 estimate += pow(ours.error, 2) / 30;
                 bias += (ours.f[0] - row_factor(&beams, ours.col[0])) / 30;
@@ -207,7 +211,7 @@ START_TEST(rays_agree_with_beams) {
         row_free(&ours);
         row_free(&beams);
         free(scene);
-        free(work);
+        work_free(&work);
         bed_free(&beds[b]);
     }
 }
@@ -231,33 +235,34 @@ END_TEST
 
 START_TEST(same_bits_in_every_instruction_set) {
     struct bed bed = packing(300, .5, 1.5, .55, 3, true);
+    int isa[ISAS_MOST];
+    const int sets = isas_there(isa);
     for (int random = 0; random <= 1; random++)
         for (uint32_t i = 0; i < bed.n; i += 23) {
             const fibrad_cast_rule rule = {1001, random, i, 0};
             double length[2][300], angle[2][300];
-            for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)fibrad_isa_best(); isa++) {
-                fibrad_scene *scene = scene_of(&bed, isa);
-                fibrad_work *work = work_of(NULL);
+            for (int k = 0; k < sets; k++) {
+                fibrad_scene *scene = scene_of(&bed, isa[k]);
+                fibrad_work work = work_growing();
                 fibrad_row scalar = cast(&bed, i, rule, FIBRAD_ISA_SCALAR), row = row_of(bed.n);
-                const int which = isa > FIBRAD_ISA_SCALAR;
+                const int which = k > 0;
                 const fibrad_cast_means means = {length[which], angle[which]};
-                ck_assert_int_eq(fibrad_cast_row(scene, work, i, &rule, &row, &means), FIBRAD_OK);
-                ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isa));
+                ck_assert_int_eq(fibrad_cast_row(scene, &work, i, &rule, &row, &means), FIBRAD_OK);
+                ck_assert_msg(same_bits(&scalar, &row), "row %u differs in %s", i, fibrad_isa_name(isa[k]));
                 ck_assert_mem_eq(length[0], length[which], row.length * sizeof(double));
                 ck_assert_mem_eq(angle[0], angle[which], row.length * sizeof(double));
                 row_free(&scalar);
                 row_free(&row);
                 free(scene);
-                free(work);
+                work_free(&work);
             }
         }
-    for (int isa = FIBRAD_ISA_AVX512; isa > (int)fibrad_isa_best(); isa--) printf("SKIP %s\n", fibrad_isa_name(isa));
     bed_free(&bed);
 }
 END_TEST
 
-/* Whether spheres are kept near or looked up along each ray; overlapping ones included. */
-START_TEST(near_capacity_is_a_matter_of_speed) {
+/* Whether spheres are kept near, or looked up along each ray for want of room; overlapping ones included. */
+START_TEST(room_is_a_matter_of_speed) {
     struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false),
                          packing(400, .2, 2, .5, 11, false), lattice('p', 9)};
     for (uint32_t i = 0; i < beds[2].n; i++) beds[2].r[i] *= 1.05;
@@ -266,11 +271,16 @@ START_TEST(near_capacity_is_a_matter_of_speed) {
         fibrad_row rows[2] = {row_of(beds[b].n), row_of(beds[b].n)};
         for (uint32_t i = 0; i < beds[b].n; i += 31) {
             for (int which = 0; which < 2; which++) {
-                fibrad_work *work =
-                    work_of(&(fibrad_work_config){.near = which == 0 ? 1 : 8192, .discs = 1024, .entries = beds[b].n});
+                const size_t size = FIBRAD_WORK_BYTES(4, beds[b].n);
+                fibrad_work work = which == 0 ? work_fixed(block_of(size), size) : work_growing();
                 const fibrad_cast_rule rule = {.rays = 2000};
-                ck_assert_int_eq(fibrad_cast_row(scene, work, i, &rule, &rows[which], NULL), FIBRAD_OK);
-                free(work);
+                ck_assert_int_eq(fibrad_cast_row(scene, &work, i, &rule, &rows[which], NULL), FIBRAD_OK);
+                const fibrad_workspace *space = work.inside;
+                if (which == 0)
+                    ck_assert_uint_lt(space->near.capacity, 64);
+                else
+                    ck_assert_uint_gt(space->near.capacity, 512);
+                free(work.memory.block);
             }
             ck_assert(same_bits(&rows[0], &rows[1]));
         }
@@ -322,38 +332,55 @@ END_TEST
 START_TEST(refusals_and_capacities) {
     struct bed bed = packing(200, .8, 1.2, .5, 5, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work *work = work_of(NULL);
+    fibrad_work work = work_growing();
+    fibrad_rows rows = {.memory = memory_growing()};
     fibrad_row row = row_of(200), small = {.capacity = 0};
     const fibrad_cast_rule bad[] = {{.random = 2}, {.random = -1}, {.cutoff = -1}, {.cutoff = NAN}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
-        ck_assert_int_eq(fibrad_cast_row(scene, work, 0, &bad[k], &row, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_cast_row(NULL, work, 0, NULL, &row, NULL), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &bad[k], &row, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_cast_row(NULL, &work, 0, NULL, &row, NULL), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_cast_row(scene, NULL, 0, NULL, &row, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_cast_row(scene, work, 200, NULL, &row, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_cast_row(scene, work, 0, NULL, NULL, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_cast_row(scene, work, 0, NULL, &row, &(fibrad_cast_means){NULL, NULL}), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_cast_row(scene, work, 0, NULL, &row, NULL), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_cast_row(scene, work, 0, NULL, &small, NULL), FIBRAD_E_CAPACITY);
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, 200, NULL, &row, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &row, &(fibrad_cast_means){NULL, NULL}), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &row, NULL), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &small, NULL), FIBRAD_E_CAPACITY);
     ck_assert_uint_eq(small.length, row.length);
-    free(work);
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &(fibrad_row){.rows = &rows},
+                                     &(fibrad_cast_means){(double[200]){0}, (double[200]){0}}),
+                     FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(rows.count, 0);
+
+    /* in a collection: the same row */
+    fibrad_row added = {.rows = &rows};
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &added, NULL), FIBRAD_OK);
+    ck_assert_uint_eq(added.length, row.length);
+    ck_assert_double_eq(added.error, row.error);
+    struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
+    const fibrad_row kept = matrix_row(&m.factors, 0);
+    ck_assert(same_bits(&row, &kept));
+    matrix_free(&m);
+    rows_free(&rows);
+    work_free(&work);
 
     /* too little work memory: what it asks for makes it succeed, with the same bits */
-    fibrad_work_config config = {.near = 1, .discs = 1, .entries = 1};
     fibrad_row again = row_of(200);
-    for (int attempt = 0;; attempt++) {
-        work = work_of(&config);
-        const int status = fibrad_cast_row(scene, work, 0, NULL, &again, NULL);
-        if (status == FIBRAD_OK) break;
-        ck_assert_int_eq(status, FIBRAD_E_CAPACITY);
+    void *block = block_of(64);
+    work = work_fixed(block, 64);
+    int status;
+    for (int attempt = 0; (status = fibrad_cast_row(scene, &work, 0, NULL, &again, NULL)) != FIBRAD_OK; attempt++) {
+        ck_assert_int_eq(status, FIBRAD_E_WORK);
+        ck_assert_uint_gt(work.memory.needed, work.memory.size);
         ck_assert_uint_eq(again.length, 0);
         ck_assert_int_lt(attempt, 30);
-        fibrad_work_needed(work, &config);
-        free(work);
+        free(block);
+        block = block_of(work.memory.needed);
+        work = work_fixed(block, work.memory.needed);
     }
     ck_assert(same_bits(&row, &again));
     row_free(&row);
     row_free(&again);
-    free(work);
+    free(block);
     free(scene);
     bed_free(&bed);
 }
@@ -369,7 +396,7 @@ int main(void) {
     tcase_add_test(tests, rays_agree_with_beams);
     tcase_add_test(tests, seeds);
     tcase_add_test(tests, same_bits_in_every_instruction_set);
-    tcase_add_test(tests, near_capacity_is_a_matter_of_speed);
+    tcase_add_test(tests, room_is_a_matter_of_speed);
     tcase_add_test(tests, scaling_by_powers_of_two_changes_no_bit);
     tcase_add_test(tests, cutoff);
     tcase_add_test(tests, refusals_and_capacities);

@@ -3,6 +3,7 @@
 #include "sample/direction.h"
 #include "golden_angle.h"
 #include "suite.h"
+#include "worst.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -76,9 +77,9 @@ START_TEST(nearest_neighbours_keep_their_distance) {
     for (uint32_t k = 0; k < n; k++) {
         double nearest = 2;
         for (uint32_t j = 0; j < n; j++)
-            if (j != k) nearest = fmin(nearest, hypot(hypot(d[j][0] - d[k][0], d[j][1] - d[k][1]), d[j][2] - d[k][2]));
-        closest = fmin(closest, nearest);
-        farthest = fmax(farthest, nearest);
+            if (j != k) least_of(&nearest, hypot(hypot(d[j][0] - d[k][0], d[j][1] - d[k][1]), d[j][2] - d[k][2]));
+        least_of(&closest, nearest);
+        worst_of(&farthest, nearest);
     }
     ck_assert_double_gt(closest * sqrt(n), 2.6);
     ck_assert_double_lt(farthest * sqrt(n), 3.81);

@@ -9,12 +9,20 @@
 #include "base/elementary.h"
 #include "boxes/furnace_cases.h"
 #include "boxes/furnace_run.h"
-#include "compute/rows.h"
 #include "suite.h"
 
 #define SIGMA FIBRAD_STEFAN_BOLTZMANN
 
 static struct furnace_run run;
+
+/* The larger of two numbers, NaN if either is: fmax would drop it. */
+static double larger(double a, double b) { return isnan(a) || a >= b ? a : b; }
+
+static void *allocate(size_t bytes) {
+    void *block = malloc(bytes);
+    ck_assert_ptr_nonnull(block);
+    return block;
+}
 
 static void free_run(void) { furnace_free(&run); }
 
@@ -109,75 +117,36 @@ START_TEST(bad_configurations) {
 }
 END_TEST
 
-/* Numbers that a caller may have written, and tallies of another furnace: refused, not traced. */
-START_TEST(bad_states) {
-    const fibrad_furnace_config small = coarse_case(1, 2), large = coarse_case(1, 3);
-    fibrad_furnace *furnace, *other;
-    void *block = run_block(fibrad_furnace_size(&small)), *other_block = run_block(fibrad_furnace_size(&large));
-    ck_assert_int_eq(fibrad_furnace_init(&furnace, block, fibrad_furnace_size(&small), &small), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_furnace_init(&other, other_block, fibrad_furnace_size(&large), &large), FIBRAD_OK);
-    fibrad_furnace_tally *tally;
-    void *tally_block = run_block(fibrad_furnace_tally_size(other));
-    ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, fibrad_furnace_tally_size(other), other), 0);
-
-    uint64_t planned = 42;
-    ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 1000, 1, &planned), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, 0, 1), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_DEFINITION, 0, FIBRAD_SCATTER_EXACT),
-                     FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_EQUILIBRIUM, 1000, 1, &planned), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_furnace_equilibrium(furnace, tally), FIBRAD_E_ARGUMENT);
-
-    fibrad_furnace_arrays at;
-    fibrad_furnace_fields(furnace, NULL);
-    fibrad_furnace_fields(furnace, &at);
-    const double wrong[] = {NAN, INFINITY, -INFINITY, 1e300, 1e25}, before = at.e[3];
-    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
-        ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 1000, 1, &planned), FIBRAD_OK);
-        at.e[3] = wrong[k];
-        const uint64_t plan = planned;
-        ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 1000, 0, &planned), FIBRAD_E_ARGUMENT);
-        ck_assert_uint_eq(planned, plan);
-        ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, 0, 1), FIBRAD_E_ARGUMENT); /* no plan */
-        at.e[3] = before;
-    }
-    free(tally_block), free(block), free(other_block);
-}
-END_TEST
-
 START_TEST(memory) {
     fibrad_furnace_config config = coarse_case(1, 2);
     size_t size = fibrad_furnace_size(&config);
-    unsigned char *block = run_block(size + 128);
+    unsigned char *block = allocate(size + 128);
     fibrad_furnace *furnace = NULL;
     memset(block, 0xa5, size + 128);
     ck_assert_int_eq(fibrad_furnace_init(&furnace, block, size - 1, &config), FIBRAD_E_SIZE);
-    ck_assert_int_eq(fibrad_furnace_init(&furnace, block + 8, size, &config), FIBRAD_E_ALIGNMENT);
     ck_assert_int_eq(fibrad_furnace_init(&furnace, NULL, size, &config), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_init(NULL, block, size, &config), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_init(&furnace, block, size, NULL), FIBRAD_E_ARGUMENT);
     ck_assert_ptr_null(furnace);
     ck_assert_int_eq(fibrad_furnace_init(&furnace, block, size, &config), FIBRAD_OK);
 
     size_t tally_size = fibrad_furnace_tally_size(furnace);
-    unsigned char *tally_block = run_block(tally_size + 128);
+    unsigned char *tally_block = allocate(tally_size + 128);
     memset(tally_block, 0xa5, tally_size + 128);
     fibrad_furnace_tally *tally = NULL;
+    ck_assert_uint_eq(fibrad_furnace_tally_size(NULL), 0);
     ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, tally_size - 1, furnace), FIBRAD_E_SIZE);
-    ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, tally_size, furnace), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, tally_size, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_ptr_null(tally);
 
     fibrad_furnace_report report;
     uint64_t planned;
-    ck_assert_int_eq(fibrad_furnace_theta(furnace, 0), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_furnace_theta(furnace, 1.01), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_furnace_solve(furnace, FIBRAD_SCATTER_EXACT, 0, 10, &report), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 0, 0, &planned), FIBRAD_E_ARGUMENT);
     for (int physics = 0; physics < 2; physics++) {
+        ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, tally_size, furnace), FIBRAD_OK);
         ck_assert_int_eq(fibrad_furnace_emit(furnace, (fibrad_furnace_physics)physics, 3000, 1, &planned), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, 0, planned + 1), FIBRAD_E_ARGUMENT);
-        ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, planned, 0), FIBRAD_OK);
         ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, 0, planned), FIBRAD_OK);
     }
-    ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_PAPER, 1, FIBRAD_SCATTER_EXACT),
-                     FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_equilibrium(furnace, tally), FIBRAD_OK);
     ck_assert_int_eq(fibrad_furnace_solve(furnace, FIBRAD_SCATTER_EXACT, 1e-6, 1000, &report), FIBRAD_OK);
     for (size_t k = 0; k < 128; k++) {
         ck_assert_uint_eq(block[size + k], 0xa5);
@@ -185,6 +154,392 @@ START_TEST(memory) {
     }
     free(tally_block);
     free(block);
+}
+END_TEST
+
+/* ---- the order of calls ---------------------------------------------------------------------------------------- */
+
+enum { TALLIES = 4, BOX_CELLS = 4 * 4 * 8 };
+
+/* A small furnace with some tallies, all empty. */
+struct box {
+    fibrad_furnace_config config;
+    fibrad_furnace *furnace;
+    fibrad_furnace_arrays at;
+    fibrad_furnace_tally *tally[TALLIES];
+    unsigned char *block, *tally_block[TALLIES];
+    uint64_t planned;
+};
+
+static void clear_tally(struct box *box, int k) {
+    size_t size = fibrad_furnace_tally_size(box->furnace);
+    free(box->tally_block[k]);
+    box->tally_block[k] = allocate(size + 64);
+    memset(box->tally_block[k], 0xa5, size + 64);
+    unsigned char *begin = box->tally_block[k] + 3 * k; /* any alignment */
+    ck_assert_int_eq(fibrad_furnace_tally_init(&box->tally[k], begin, size, box->furnace), FIBRAD_OK);
+}
+
+static struct box make_box(const fibrad_furnace_config *config) {
+    struct box box = {.config = *config};
+    size_t size = fibrad_furnace_size(config);
+    box.block = allocate(size + 1);
+    ck_assert_int_eq(fibrad_furnace_init(&box.furnace, box.block + 1, size, config), FIBRAD_OK);
+    fibrad_furnace_fields(box.furnace, &box.at);
+    for (size_t c = 0; c < (size_t)config->cells[0] * config->cells[1] * config->cells[2]; c++)
+        box.at.e[c] *= 1 + 0.1 * (double)(c % 7);
+    for (int k = 0; k < TALLIES; k++) clear_tally(&box, k);
+    return box;
+}
+
+static void free_box(struct box *box) {
+    for (int k = 0; k < TALLIES; k++) free(box->tally_block[k]);
+    free(box->block);
+}
+
+static void emit(struct box *box, fibrad_furnace_physics physics, int restart) {
+    ck_assert_int_eq(fibrad_furnace_emit(box->furnace, physics, 2000, restart, &box->planned), FIBRAD_OK);
+}
+
+static int trace(struct box *box, int tally, uint64_t first, uint64_t count) {
+    return fibrad_furnace_trace(box->furnace, box->tally[tally], first, count);
+}
+
+static int estimate(struct box *box, int tally) {
+    return fibrad_furnace_estimate(box->furnace, box->tally[tally], FIBRAD_THETA_DEFINITION, 1, FIBRAD_SCATTER_EXACT);
+}
+
+static int equilibrium(struct box *box, int tally) {
+    return fibrad_furnace_equilibrium(box->furnace, box->tally[tally]);
+}
+
+/* The tally is refused by the evaluation of its physics, and all fields remain as they are. */
+static void assert_refused(struct box *box, int tally, fibrad_furnace_physics physics) {
+    double e[BOX_CELLS], flux[BOX_CELLS], theta[BOX_CELLS], power[6];
+    memcpy(e, box->at.e, sizeof e);
+    memcpy(flux, box->at.flux[2][0], sizeof flux);
+    memcpy(theta, box->at.theta[2][0], sizeof theta);
+    memcpy(power, box->at.power, sizeof power);
+    int status = physics == FIBRAD_FURNACE_ATTENUATED ? estimate(box, tally) : equilibrium(box, tally);
+    ck_assert_int_eq(status, FIBRAD_E_STATE);
+    ck_assert_mem_eq(e, box->at.e, sizeof e);
+    ck_assert_mem_eq(flux, box->at.flux[2][0], sizeof flux);
+    ck_assert_mem_eq(theta, box->at.theta[2][0], sizeof theta);
+    ck_assert_mem_eq(power, box->at.power, sizeof power);
+}
+
+START_TEST(bad_arguments) {
+    const fibrad_furnace_config config = coarse_case(1, 4);
+    struct box box = make_box(&config);
+    fibrad_furnace *furnace = box.furnace;
+    fibrad_furnace_tally *tally = box.tally[0];
+    fibrad_furnace_report report = {77, 7};
+    uint64_t planned = 42;
+    const fibrad_furnace_physics physics = FIBRAD_FURNACE_ATTENUATED, no_physics = (fibrad_furnace_physics)2;
+    const fibrad_furnace_scatter exact = FIBRAD_SCATTER_EXACT, no_scatter = (fibrad_furnace_scatter)2;
+    const fibrad_furnace_estimator no_estimator = (fibrad_furnace_estimator)2;
+    ck_assert_int_eq(fibrad_furnace_theta(furnace, 0), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_theta(furnace, 1.01), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_theta(furnace, NAN), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_theta(NULL, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_balance(NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_solve(furnace, exact, 0, 10, &report), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_solve(furnace, exact, NAN, 10, &report), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_solve(furnace, no_scatter, 1, 10, &report), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_solve(furnace, exact, 1, 10, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_solve(NULL, exact, 1, 10, &report), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(report.sweeps, 77);
+
+    ck_assert_int_eq(fibrad_furnace_emit(NULL, physics, 10, 0, &planned), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, physics, 10, 0, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, physics, 0, 0, &planned), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, physics, ((uint64_t)1 << 32) + 1, 0, &planned), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, no_physics, 10, 0, &planned), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(planned, 42);
+
+    emit(&box, physics, 1);
+    ck_assert_int_eq(fibrad_furnace_trace(NULL, tally, 0, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_trace(furnace, NULL, 0, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned + 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, box.planned, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, box.planned + 1, 0), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, 1, UINT64_MAX), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, UINT64_MAX, 2), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_tally_add(NULL, tally), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_tally_add(tally, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_tally_add(tally, tally), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK); /* all of this has changed nothing */
+    ck_assert_int_eq(fibrad_furnace_estimate(NULL, tally, FIBRAD_THETA_PAPER, 0, exact), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_estimate(furnace, NULL, FIBRAD_THETA_PAPER, 0, exact), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_PAPER, 1, exact), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, no_estimator, 0, exact), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_PAPER, 0, no_scatter), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_equilibrium(NULL, tally), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_equilibrium(furnace, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+    fibrad_furnace_fields(furnace, NULL);
+    free_box(&box);
+}
+END_TEST
+
+START_TEST(no_plan) {
+    const fibrad_furnace_config config = coarse_case(1, 4);
+    const double wrong[] = {NAN, INFINITY, -INFINITY, 1e300, 1e25};
+    struct box box = make_box(&config);
+    ck_assert_int_eq(trace(&box, 0, 0, 0), FIBRAD_E_STATE);
+    ck_assert_int_eq(trace(&box, 0, 0, 1), FIBRAD_E_STATE);
+    assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+    assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
+        clear_tally(&box, 0);
+        ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+        const double before = box.at.e[3];
+        const uint64_t plan = box.planned;
+        box.at.e[3] = wrong[k];
+        ck_assert_int_eq(fibrad_furnace_emit(box.furnace, FIBRAD_FURNACE_ATTENUATED, 2000, 0, &box.planned),
+                         FIBRAD_E_ARGUMENT);
+        ck_assert_uint_eq(box.planned, plan);
+        box.at.e[3] = before;
+        ck_assert_int_eq(trace(&box, 0, 0, 1), FIBRAD_E_STATE);
+        assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+        emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* a first plan, whether it is asked for or not */
+        ck_assert_uint_eq(box.planned, plan);
+        assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+    }
+    free_box(&box);
+}
+END_TEST
+
+/* Every bundle once, in any order and any tallies, is accepted; anything else is refused. */
+START_TEST(every_bundle_once) {
+    /* parts of a hundredth of the plan, traced that often: 1 but for these */
+    static const struct {
+        int missing[3], repeated[3];
+    } wrong[] = {
+        {{0, -1, -1}, {-1, -1, -1}},  {{99, -1, -1}, {-1, -1, -1}}, {{50, -1, -1}, {-1, -1, -1}},
+        {{-1, -1, -1}, {0, -1, -1}},  {{-1, -1, -1}, {99, -1, -1}}, {{-1, -1, -1}, {7, 8, -1}},
+        {{20, -1, -1}, {21, -1, -1}}, {{0, -1, -1}, {99, -1, -1}},  {{-1, -1, -1}, {5, 5, -1}},
+        {{10, 14, 15}, {11, 12, 16}}, /* equal in number, sum and sum of squares */
+    };
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    for (int physics = 0; physics < 2; physics++) {
+        struct box box = make_box(&config);
+        emit(&box, (fibrad_furnace_physics)physics, 1);
+        assert_refused(&box, 0, (fibrad_furnace_physics)physics);
+        for (size_t w = 0; w < 1 + sizeof wrong / sizeof *wrong; w++) {
+            for (int k = 0; k < TALLIES; k++) clear_tally(&box, k);
+            for (int part = 99; part >= 0; part--) {
+                uint64_t first = box.planned * (uint64_t)part / 100, end = box.planned * (uint64_t)(part + 1) / 100;
+                int times = 1;
+                for (int k = 0; k < 3 && w > 0; k++)
+                    times += (wrong[w - 1].repeated[k] == part) - (wrong[w - 1].missing[k] == part);
+                for (int time = 0; time < times; time++)
+                    ck_assert_int_eq(trace(&box, (part + time) % TALLIES, first, end - first), FIBRAD_OK);
+            }
+            for (int k = 1; k < TALLIES; k++)
+                ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[k]), FIBRAD_OK);
+            if (w > 0)
+                assert_refused(&box, 0, (fibrad_furnace_physics)physics);
+            else
+                ck_assert_int_eq(physics ? equilibrium(&box, 0) : estimate(&box, 0), FIBRAD_OK);
+        }
+        free_box(&box);
+    }
+}
+END_TEST
+
+/* A tally and an equal one, added: all bundles twice. */
+START_TEST(tallies_added_twice) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    struct box box = make_box(&config);
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
+    ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[2]), FIBRAD_OK); /* an empty one */
+    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&box, 1), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
+    assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+    for (int k = 0; k < 300; k++) /* sums beyond 64 bits: refused, not undefined */
+        ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[k % 2], box.tally[1 - k % 2]), FIBRAD_OK);
+    assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+    free_box(&box);
+}
+END_TEST
+
+START_TEST(further_plans) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    struct box box = make_box(&config);
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+    for (size_t c = 0; c < BOX_CELLS; c++) box.at.e[c] *= 1 + 0.01 * (double)(c % 3);
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0);
+    ck_assert_uint_gt(box.planned, 1);
+    assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED); /* of the first plan only */
+    ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+    assert_refused(&box, 1, FIBRAD_FURNACE_ATTENUATED); /* of the second only */
+    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* E has not changed: nothing to trace */
+    ck_assert_uint_eq(box.planned, 0);
+    ck_assert_int_eq(trace(&box, 0, 0, 0), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+
+    for (size_t c = 0; c < BOX_CELLS; c++) box.at.e[c] *= 1.01;
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* a plan that is not traced is missing in all that follow */
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0);
+    ck_assert_uint_eq(box.planned, 0);
+    assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+    free_box(&box);
+}
+END_TEST
+
+/* In equilibrium a further plan has no bundles, and changes no result. */
+START_TEST(further_plan_of_equilibrium) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    struct box box = make_box(&config);
+    double e[BOX_CELLS], power[6];
+    emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 1);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+    ck_assert_int_eq(equilibrium(&box, 0), FIBRAD_OK);
+    memcpy(e, box.at.e, sizeof e);
+    memcpy(power, box.at.power, sizeof power);
+    emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 0);
+    ck_assert_uint_eq(box.planned, 0);
+    ck_assert_int_eq(equilibrium(&box, 0), FIBRAD_OK);
+    ck_assert_mem_eq(e, box.at.e, sizeof e);
+    ck_assert_mem_eq(power, box.at.power, sizeof power);
+    free_box(&box);
+}
+END_TEST
+
+/* Tallies from before a restart, whether it is asked for or follows from another physics. */
+START_TEST(restarts) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    for (int physics = 0; physics < 2; physics++) {
+        struct box box = make_box(&config);
+        emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
+        ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+        ck_assert_int_eq(equilibrium(&box, 0), FIBRAD_E_STATE);
+        ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+        emit(&box, (fibrad_furnace_physics)physics, physics == FIBRAD_FURNACE_ATTENUATED);
+        assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+        assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
+        ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_E_STATE);
+        ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_E_STATE);
+        ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[1], box.tally[0]), FIBRAD_E_STATE);
+        ck_assert_int_eq(physics ? equilibrium(&box, 1) : estimate(&box, 1), FIBRAD_OK);
+        assert_refused(&box, 1, (fibrad_furnace_physics)!physics);
+        free_box(&box);
+    }
+}
+END_TEST
+
+/* Tallies of a furnace of other cells, and of the same cells but another seed, medium, wall or E. */
+START_TEST(other_furnaces) {
+    for (int difference = 0; difference < 6; difference++) {
+        fibrad_furnace_config config = coarse_case(2, 4), changed = config;
+        if (difference == 0) changed.cells[2] = 7;
+        if (difference == 1) changed.seed++;
+        if (difference == 2) changed.absorption *= 1 + 1e-15;
+        if (difference == 3) changed.wall_emissivity[0] -= 1e-15;
+        if (difference == 4) changed.wall_temperature[5] += 1e-12;
+        struct box box = make_box(&config), other = make_box(&changed);
+        if (difference == 5) other.at.e[7] *= 1 + 1e-15;
+        emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
+        emit(&other, FIBRAD_FURNACE_ATTENUATED, 1);
+        ck_assert_int_eq(trace(&other, 0, 0, other.planned), FIBRAD_OK);
+        fibrad_furnace_tally *own = box.tally[0];
+        box.tally[0] = other.tally[0];
+        assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+        ck_assert_int_eq(trace(&box, 0, 0, 1), FIBRAD_E_STATE);
+        ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[1], box.tally[0]), FIBRAD_E_STATE);
+        ck_assert_int_eq(estimate(&box, 1), FIBRAD_OK); /* unchanged by what was refused */
+        ck_assert_int_eq(estimate(&other, 0), FIBRAD_OK);
+        box.tally[0] = own;
+        free_box(&box);
+        free_box(&other);
+    }
+}
+END_TEST
+
+/* A furnace made anew in the same memory does not know the tallies of the former one. */
+START_TEST(furnace_made_anew) {
+    fibrad_furnace_config config = coarse_case(2, 4);
+    struct box box = make_box(&config);
+    emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 1);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+    config.scattering *= 2;
+    ck_assert_int_eq(fibrad_furnace_init(&box.furnace, box.block + 1, fibrad_furnace_size(&config), &config), 0);
+    assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
+    emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 1);
+    assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
+    free_box(&box);
+}
+END_TEST
+
+/* Furnaces that are equal in all have equal plans: two processes may share the work. */
+START_TEST(equal_furnaces) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    struct box one = make_box(&config), two = make_box(&config);
+    emit(&one, FIBRAD_FURNACE_ATTENUATED, 1);
+    emit(&two, FIBRAD_FURNACE_ATTENUATED, 1);
+    ck_assert_int_eq(trace(&one, 0, 0, 500), FIBRAD_OK);
+    ck_assert_int_eq(trace(&two, 0, 500, two.planned - 500), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_tally_add(one.tally[0], two.tally[0]), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&one, 0), FIBRAD_OK);
+    ck_assert_int_eq(trace(&two, 0, 0, 500), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&two, 0), FIBRAD_OK);
+    ck_assert_mem_eq(one.at.theta[0][0], two.at.theta[0][0], BOX_CELLS * sizeof(double));
+    free_box(&one);
+    free_box(&two);
+}
+END_TEST
+
+/* Walls of one temperature, no source, E theirs: no bundles, and an empty tally is complete. */
+START_TEST(nothing_to_trace) {
+    fibrad_furnace_config config = coarse_case(2, 4);
+    config.source = 0;
+    for (int w = 0; w < 6; w++) config.wall_temperature[w] = 900;
+    struct box box = make_box(&config);
+    for (size_t c = 0; c < BOX_CELLS; c++) box.at.e[c] = SIGMA * 900 * 900 * (900.0 * 900);
+    for (int physics = 0; physics < 2; physics++) {
+        emit(&box, (fibrad_furnace_physics)physics, 1);
+        ck_assert_int_eq(physics ? equilibrium(&box, 0) : estimate(&box, 0), FIBRAD_OK);
+        ck_assert_double_eq_tol(fibrad_furnace_temperature(box.at.e[5]), 900, 1e-9);
+    }
+    free_box(&box);
+}
+END_TEST
+
+/* What the caller may write is refused if it is NaN or infinite, wherever it stands, also in a solved field, where all
+ * other cells have converged. */
+START_TEST(solve_refuses_nan) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    const double wrong[] = {NAN, INFINITY, -INFINITY};
+    fibrad_furnace_report report;
+    for (size_t k = 0; k < BOX_CELLS; k++) {
+        for (int field = 0; field < 4; field++) {
+            struct box box = make_box(&config);
+            ck_assert_int_eq(fibrad_furnace_solve(box.furnace, FIBRAD_SCATTER_SIX_FLUX, 1e-5, 1000, &report),
+                             FIBRAD_OK);
+            const fibrad_furnace_report before = report;
+            const size_t layers = k + BOX_CELLS / 8; /* the upper face of the cell */
+            if (field == 0) box.at.e[k] = wrong[k % 3];
+            if (field == 1) box.at.theta[2][0][layers] = NAN;
+            if (field == 2) box.at.theta[2][1][k] = NAN;
+            if (field == 3) box.at.transverse[2][k % 2][k] = NAN;
+            ck_assert_int_eq(fibrad_furnace_solve(box.furnace, FIBRAD_SCATTER_SIX_FLUX, 1, 1000, &report),
+                             FIBRAD_E_ARGUMENT);
+            ck_assert_mem_eq(&before, &report, sizeof report);
+            free_box(&box);
+        }
+    }
 }
 END_TEST
 
@@ -225,7 +580,7 @@ START_TEST(uniform_temperature) {
     for (int w = 0; w < 6; w++) config.wall_temperature[w] = 900;
     for (int k = 0; k < 3; k++) {
         size_t size = fibrad_furnace_size(&config);
-        void *block = run_block(size);
+        void *block = allocate(size);
         fibrad_furnace *furnace;
         fibrad_furnace_arrays at;
         fibrad_furnace_report report;
@@ -256,7 +611,7 @@ static double slab_flux(void) {
     return run.at.power[4] / area / (SIGMA * (pow(1000, 4) - pow(500, 4)));
 }
 
-/* c: with constant Theta the flux is 1/(1 + tau/(2 Theta)), by either solver. */
+/* c: with constant Theta the flux is 1/(1 + tau/(2 Theta)). */
 START_TEST(slab_constant_theta) {
     static const double taus[] = {0.5, 1, 2}, thetas[] = {1, 0.75, 2.0 / 3};
     for (int k = 0; k < 9; k++) {
@@ -265,10 +620,6 @@ START_TEST(slab_constant_theta) {
         struct furnace_options options = options_for(FURNACE_MCHF, theta, 1);
         compute(&config, &options);
         ck_assert_double_eq_tol(slab_flux(), 1 / (1 + tau / (2 * theta)), 1e-7);
-        config = slab(tau, 1, 60);
-        options.shooting = true; /* here J is constant in each cell */
-        compute(&config, &options);
-        ck_assert_double_eq_tol(slab_flux(), 1 / (1 + tau / (2 * theta)), 1.5e-5 * tau * tau);
     }
 }
 END_TEST
@@ -450,8 +801,9 @@ START_TEST(theta_on_the_axis) {
     options.measure = true;
     compute(&config, &options);
     for (int estimator = 0; estimator < 2; estimator++) {
-        fibrad_furnace_estimate(run.furnace, run.tallies[run.threads], (fibrad_furnace_estimator)estimator, 0,
-                                FIBRAD_SCATTER_EXACT);
+        const int status = fibrad_furnace_estimate(run.furnace, run.tallies[run.threads],
+                                                   (fibrad_furnace_estimator)estimator, 0, FIBRAD_SCATTER_EXACT);
+        ck_assert_int_eq(status, FIBRAD_OK);
         for (int k = 0; k < 9; k++)
             ck_assert_double_eq_tol(1 / furnace_axis_theta(&run, 0, z_up[k]), up[estimator][k], 0.01);
         for (int k = 0; k < 7; k++)
@@ -462,23 +814,45 @@ END_TEST
 
 /* ---- consistency ----------------------------------------------------------------------------------------------- */
 
-/* Runge-Kutta with J constant in each cell and the trapezoidal rule both err as the square of the cell. */
-START_TEST(solvers_agree) {
+/* Net power of the wall z = 0 [kW] by exact integration along the lines of z: in a cell of constant source J and
+ * constant Theta, q approaches J/beta as exp(-beta x/Theta). The walls are satisfied by iteration. */
+static double integrated_power(double theta) {
+    const fibrad_furnace_config *c = &run.config;
+    const size_t n = c->cells[2], layer = (size_t)c->cells[0] * c->cells[1];
+    const double beta = c->absorption + c->scattering, passed = exp(-beta * c->size[2] / (double)n / theta);
+    double power = 0, own[2];
+    for (int side = 0; side < 2; side++)
+        own[side] = c->wall_emissivity[4 + side] * SIGMA * pow(c->wall_temperature[4 + side], 4);
+    for (size_t line = 0; line < layer; line++) {
+        double up = 0, down = 0, start = 0;
+        for (int k = 0; k < 60; k++) {
+            start = up = own[0] + (1 - c->wall_emissivity[4]) * down;
+            for (size_t i = 0; i < n; i++)
+                up = up * passed + (1 - passed) * c->absorption * run.at.e[line + i * layer] / beta;
+            down = own[1] + (1 - c->wall_emissivity[5]) * up;
+            for (size_t i = n; i > 0; i--)
+                down = down * passed + (1 - passed) * c->absorption * run.at.e[line + (i - 1) * layer] / beta;
+        }
+        power += (start - down) * c->size[0] * c->size[1] / (double)layer / 1000;
+    }
+    return power;
+}
+
+/* The trapezoidal rule differs from exact integration by the square of the cell. */
+START_TEST(lines_are_of_second_order) {
     double before = 0;
     for (uint32_t across = 4; across <= 16; across *= 2) {
         fibrad_furnace_config config = coarse_case(1, across);
         struct furnace_options options = options_for(FURNACE_MCHF, 2.0 / 3, 1);
-        double lines[4], shooting[4];
+        double power[4];
         compute(&config, &options);
-        furnace_powers(&run, lines);
-        options.shooting = true;
-        compute(&config, &options);
-        furnace_powers(&run, shooting);
-        double apart = fabs(shooting[0] - lines[0]);
+        furnace_powers(&run, power);
+        double apart = fabs(integrated_power(2.0 / 3) - power[0]);
         if (across > 4) ck_assert_double_eq_tol(before / apart, 4, 0.6);
         before = apart;
     }
-    ck_assert_double_le(before, 0.05);
+    ck_assert_double_le(before, 0.2);
+    ck_assert_double_gt(before, 0);
 }
 END_TEST
 
@@ -531,12 +905,12 @@ START_TEST(axes_are_alike) {
                 for (uint32_t i = 0; i < 4; i++) {
                     double here = e[0][i + 4 * (j + 5 * k)], there = e[1][k + 6 * (i + 4 * j)];
                     ck_assert_double_le(fabs(there / here - 1), allowed);
-                    difference = fmax(difference, fabs(there / here - 1));
+                    difference = larger(difference, fabs(there / here - 1));
                 }
         for (int w = 0; w < 6; w++)
             ck_assert_double_eq_tol(power[0][w], power[1][w], method == FURNACE_HFM ? 0.01 : 600);
     }
-    ck_assert_double_gt(difference, 0); /* other bundles, after all */
+    ck_assert_double_gt(difference, 0); /* the bundles are not the same */
 }
 END_TEST
 
@@ -544,7 +918,7 @@ END_TEST
 START_TEST(parts_add_up) {
     fibrad_furnace_config config = coarse_case(2, 4);
     size_t size = fibrad_furnace_size(&config);
-    void *block = run_block(size), *tally_block[3];
+    void *block = allocate(size), *tally_block[3];
     fibrad_furnace *furnace;
     fibrad_furnace_tally *tally[3];
     fibrad_furnace_arrays at;
@@ -557,61 +931,53 @@ START_TEST(parts_add_up) {
     ck_assert_uint_le(planned, 20000 + 400);
     size = fibrad_furnace_tally_size(furnace);
     for (int k = 0; k < 3; k++) {
-        tally_block[k] = run_block(size);
+        tally_block[k] = allocate(size);
         fibrad_furnace_tally_init(&tally[k], tally_block[k], size, furnace);
     }
     fibrad_furnace_trace(furnace, tally[0], 0, planned);
-    for (uint64_t first = planned; first > 0;) { /* backwards, by turns into two tallies */
+    for (uint64_t first = planned; first > 0;) { /* backwards, alternately into two tallies */
         uint64_t count = first < 777 ? first : 777;
         first -= count;
         fibrad_furnace_trace(furnace, tally[1 + first % 2], first, count);
     }
-    fibrad_furnace_tally_add(tally[1], tally[2]);
+    ck_assert_int_eq(fibrad_furnace_tally_add(tally[1], tally[2]), FIBRAD_OK);
     double theta[2][80];
     for (int k = 0; k < 2; k++) {
-        fibrad_furnace_estimate(furnace, tally[k], FIBRAD_THETA_DEFINITION, 0, FIBRAD_SCATTER_SIX_FLUX);
+        const int status =
+            fibrad_furnace_estimate(furnace, tally[k], FIBRAD_THETA_DEFINITION, 0, FIBRAD_SCATTER_SIX_FLUX);
+        ck_assert_int_eq(status, FIBRAD_OK);
         memcpy(theta[k], at.theta[0][1], sizeof theta[k]);
     }
     ck_assert_mem_eq(theta[0], theta[1], sizeof theta[0]);
     uint64_t again;
     fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 20000, 0, &again);
-    ck_assert_uint_eq(again, 0); /* E has not changed: there is nothing left to carry */
+    ck_assert_uint_eq(again, 0); /* E has not changed: nothing is left to trace */
     for (int k = 0; k < 3; k++) free(tally_block[k]);
     free(block);
 }
 END_TEST
 
-/* A box of square cross-section with a plan of bundles. E inside is without symmetry; the walls about the axis are
- * alike, or differ in their last digits. */
-struct square_box {
-    fibrad_furnace_config config;
-    fibrad_furnace *furnace;
-    fibrad_furnace_arrays at;
-    void *block;
-    uint64_t planned;
-};
-
-static struct square_box square_box(fibrad_furnace_physics physics, bool symmetric) {
-    struct square_box box = {.config = {.size = {1, 1, 1.5},
-                                        .cells = {4, 4, 6},
-                                        .absorption = .8,
-                                        .scattering = .4,
-                                        .source = 3000,
-                                        .wall_temperature = {900, 900, 900, 900, 1200, 600},
-                                        .wall_emissivity = {.5, .5, .5, .5, 1, .7},
-                                        .seed = 5}};
-    for (int w = 0; w < 4 && !symmetric; w++) box.config.wall_temperature[w] *= 1 + w * 1e-14;
-    const size_t size = fibrad_furnace_size(&box.config);
-    box.block = run_block(size);
-    ck_assert_int_eq(fibrad_furnace_init(&box.furnace, box.block, size, &box.config), FIBRAD_OK);
-    fibrad_furnace_fields(box.furnace, &box.at);
-    for (size_t c = 0; c < 96; c++) box.at.e[c] *= 1 + 0.1 * (double)(c % 7);
+/* A box of square cross-section with a plan of bundles. E inside is without symmetry. The walls about the axis are
+ * alike, or differ in the last digits of their emissivities; since they have the reference temperature, they send no
+ * bundles, and the plans are the same. */
+static struct box square_box(fibrad_furnace_physics physics, bool symmetric) {
+    fibrad_furnace_config config = {.size = {1, 1, 1.5},
+                                    .cells = {4, 4, 6},
+                                    .absorption = .8,
+                                    .scattering = .4,
+                                    .source = 3000,
+                                    .wall_temperature = {900, 900, 900, 900, 1200, 600},
+                                    .wall_emissivity = {.5, .5, .5, .5, 1, .7},
+                                    .seed = 5};
+    for (int w = 0; w < 4 && !symmetric; w++) config.wall_emissivity[w] *= 1 + w * 1e-14;
+    struct box box = make_box(&config);
     ck_assert_int_eq(fibrad_furnace_emit(box.furnace, physics, 30000, 1, &box.planned), FIBRAD_OK);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
     return box;
 }
 
-/* Of the faces of axis a (3: the cells) of such a box, that to which one of its eight symmetries takes face k: turns x
- * round (1), turns y round (2), exchanges both (4). */
+/* Of the faces of axis a (3: the cells) of such a box, that to which one of its eight symmetries takes face k: reverses
+ * x (1), reverses y (2), exchanges both (4). */
 static size_t image_of(int symmetry, int *a, size_t k) {
     size_t n[2], i[2];
     for (int b = 0; b < 2; b++) n[b] = *a == b ? 5 : 4;
@@ -624,7 +990,7 @@ static size_t image_of(int symmetry, int *a, size_t k) {
     return layer + i[1] + n[1] * i[0];
 }
 
-/* What a furnace with symmetries reads in a tally is the mean of what one without them reads there at all images. */
+/* The fields of a furnace with symmetries are the means of those of one without, over all images. */
 static void assert_mean_of_images(const fibrad_furnace_arrays *with, const fibrad_furnace_arrays *without, int a,
                                   int g) {
     const double *mean = a == 3 ? with->e : with->flux[a][g];
@@ -636,7 +1002,7 @@ static void assert_mean_of_images(const fibrad_furnace_arrays *with, const fibra
             int axis = a;
             const size_t there = image_of(symmetry, &axis, k);
             const double one = a == 3 ? without->e[there] : without->flux[axis][g ^ turned][there];
-            difference = fmax(difference, fabs(one / mean[k] - 1));
+            difference = larger(difference, fabs(one / mean[k] - 1));
             sum += one;
         }
         ck_assert_double_eq_tol(mean[k], sum / 8, 1e-9 * fabs(mean[k]));
@@ -646,39 +1012,47 @@ static void assert_mean_of_images(const fibrad_furnace_arrays *with, const fibra
 
 START_TEST(symmetries_take_the_mean) {
     for (int physics = 0; physics < 2; physics++) {
-        struct square_box box[2];
-        fibrad_furnace_tally *tally;
-        for (int k = 0; k < 2; k++) box[k] = square_box((fibrad_furnace_physics)physics, k == 0);
-        const size_t size = fibrad_furnace_tally_size(box[0].furnace);
-        void *block = run_block(size);
-        ck_assert_int_eq(fibrad_furnace_tally_init(&tally, block, size, box[0].furnace), FIBRAD_OK);
-        ck_assert_int_eq(fibrad_furnace_trace(box[0].furnace, tally, 0, box[0].planned), FIBRAD_OK);
+        struct box box[2];
         for (int k = 0; k < 2; k++) {
+            box[k] = square_box((fibrad_furnace_physics)physics, k == 0);
             const int status = physics == FIBRAD_FURNACE_EQUILIBRIUM
-                                   ? fibrad_furnace_equilibrium(box[k].furnace, tally)
-                                   : fibrad_furnace_estimate(box[k].furnace, tally, FIBRAD_THETA_DEFINITION, 0,
-                                                             FIBRAD_SCATTER_SIX_FLUX);
+                                   ? equilibrium(&box[k], 0)
+                                   : fibrad_furnace_estimate(box[k].furnace, box[k].tally[0], FIBRAD_THETA_DEFINITION,
+                                                             0, FIBRAD_SCATTER_SIX_FLUX);
             ck_assert_int_eq(status, FIBRAD_OK);
         }
+        ck_assert_uint_eq(box[0].planned, box[1].planned);
         if (physics == FIBRAD_FURNACE_EQUILIBRIUM)
             assert_mean_of_images(&box[0].at, &box[1].at, 3, 0);
         else
             for (int k = 0; k < 6; k++) assert_mean_of_images(&box[0].at, &box[1].at, k / 2, k % 2);
-        free(box[0].block), free(box[1].block), free(block);
+        for (int k = 0; k < 2; k++) free_box(&box[k]);
     }
 }
 END_TEST
 
 int main(void) {
     Suite *suite = suite_create("furnace");
-    TCase *kernel = suite_case(suite, "kernel"), *methods = suite_case(suite, "methods");
+    TCase *kernel = suite_case(suite, "kernel"), *order = suite_case(suite, "order");
+    TCase *methods = suite_case(suite, "methods");
     tcase_add_test(kernel, elementary_functions);
     tcase_add_test(kernel, bad_configurations);
-    tcase_add_test(kernel, bad_states);
+    tcase_add_test(kernel, bad_arguments);
     tcase_add_test(kernel, memory);
+    tcase_add_test(kernel, solve_refuses_nan);
     tcase_add_test(kernel, uniform_temperature);
     tcase_add_test(kernel, parts_add_up);
     tcase_add_test(kernel, symmetries_take_the_mean);
+    tcase_add_test(order, no_plan);
+    tcase_add_test(order, every_bundle_once);
+    tcase_add_test(order, tallies_added_twice);
+    tcase_add_test(order, further_plans);
+    tcase_add_test(order, further_plan_of_equilibrium);
+    tcase_add_test(order, restarts);
+    tcase_add_test(order, other_furnaces);
+    tcase_add_test(order, furnace_made_anew);
+    tcase_add_test(order, equal_furnaces);
+    tcase_add_test(order, nothing_to_trace);
     tcase_add_checked_fixture(methods, NULL, free_run);
     tcase_add_test(methods, energy_balance);
     tcase_add_test(methods, slab_constant_theta);
@@ -691,7 +1065,7 @@ int main(void) {
     tcase_add_test(methods, transverse_numbers);
     tcase_add_test(methods, literal_numbers);
     tcase_add_test(methods, theta_on_the_axis);
-    tcase_add_test(methods, solvers_agree);
+    tcase_add_test(methods, lines_are_of_second_order);
     tcase_add_test(methods, threads_change_nothing);
     tcase_add_test(methods, axes_are_alike);
     return suite_run(suite);

@@ -103,7 +103,7 @@ START_TEST(bad_files) {
         {"size 1 1 1\ncells 1 1 1\n" WALLS, ": ", "absorption is missing"},
         {"size 1 1 1\ncells 1 1 1\nabsorption 1\nwall sides 900 1\nwall z0 900 1\n", ": ", "wall z1 is missing"},
         {"size 1 1 1\ncells 1 1 1\nabsorption 1\nwall sides 9 0\nwall z0 9 0\nwall z1 9 0\n", ": ", "emissivity 0"},
-        {"size 1 1 1\ncells 1 1 1\nabsorption 1e-12\n" WALLS, ": ", "out of all range"},
+        {"size 1 1 1\ncells 1 1 1\nabsorption 1e-12\n" WALLS, ": ", "out of range"},
     };
     for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
         char begin[300];

@@ -1,40 +1,138 @@
 /* test_scene.c - scenes: sizes, faults, and that the grid finds what brute force finds. SPDX-License-Identifier: MIT */
-#include <stdio.h>
-
 #include "scene/grid_walk.h"
 #include "scenes.h"
 #include "suite.h"
 
+/* Sizes at every offset of the block: a byte less is too little, nothing is written beside the block, and rows have the
+ * same bits. */
 START_TEST(sizes_hold) {
-    static _Alignas(64) unsigned char memory[FIBRAD_SCENE_BYTES(500)], work_memory[FIBRAD_WORK_BYTES(64, 32, 64)];
-    for (uint32_t n = 1; n <= 500; n += n < 40 ? 1 : 53) {
-        fibrad_scene_config config = {.spheres = n};
-        size_t size = fibrad_scene_size(&config);
+    static unsigned char memory[64 + FIBRAD_SCENE_BYTES(500) + 64];
+    for (uint32_t n = 0; n <= 500; n += n < 40 ? 1 : 53) {
+        const size_t size = fibrad_scene_size(n, 0), offset = n * 7 % 64;
         ck_assert_uint_gt(size, 0);
         ck_assert_uint_le(size, FIBRAD_SCENE_BYTES(n));
-        struct bed bed = packing(n, .5, 1, .4, n, false);
-        fibrad_spheres spheres = {bed.x, bed.y, bed.z, bed.r, n};
+        ck_assert_uint_gt(fibrad_scene_size(n, 1), n == 0 ? 0 : size);
+        ck_assert_uint_ge(fibrad_scene_size(n, 1), size);
+        struct bed bed = packing(n > 0 ? n : 1, .5, 1, .4, n, false);
+        bed.n = n;
+        const fibrad_spheres spheres = spheres_of(&bed);
         fibrad_scene *scene = NULL;
         memset(memory, 0xa5, sizeof memory);
-        ck_assert_int_eq(fibrad_scene_init(&scene, memory, size - 1, &config, &spheres, NULL), FIBRAD_E_SIZE);
-        ck_assert_int_eq(fibrad_scene_init(&scene, memory + 8, size, &config, &spheres, NULL), FIBRAD_E_ALIGNMENT);
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory + offset, size - 1, NULL, &spheres, NULL), FIBRAD_E_SIZE);
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory + offset, 0, NULL, &spheres, NULL), FIBRAD_E_SIZE);
         ck_assert_ptr_null(scene);
-        ck_assert_int_eq(fibrad_scene_init(&scene, memory, size, &config, &spheres, NULL), FIBRAD_OK);
-        for (size_t k = size; k < sizeof memory; k++) ck_assert_uint_eq(memory[k], 0xa5);
+        for (size_t k = 0; k < sizeof memory; k++) ck_assert_uint_eq(memory[k], 0xa5);
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory + offset, size, NULL, &spheres, NULL), FIBRAD_OK);
+        for (size_t k = 0; k < offset; k++) ck_assert_uint_eq(memory[k], 0xa5);
+        for (size_t k = offset + size; k < sizeof memory; k++) ck_assert_uint_eq(memory[k], 0xa5);
         bed_free(&bed);
     }
-    for (uint32_t near = 1; near <= 64; near += 9)
-        for (uint32_t discs = 1; discs <= 32; discs += 7)
-            for (uint32_t entries = 1; entries <= 64; entries += 9)
-                ck_assert_uint_le(fibrad_work_size(&(fibrad_work_config){near, discs, entries}),
-                                  FIBRAD_WORK_BYTES(near, discs, entries));
-    fibrad_work *work = NULL;
-    fibrad_work_config config = {64, 32, 64};
-    ck_assert_int_eq(fibrad_work_init(&work, work_memory, sizeof work_memory, &config), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_work_init(&work, work_memory, 100, &config), FIBRAD_E_SIZE);
-    ck_assert_int_eq(fibrad_work_init(&work, work_memory + 1, sizeof work_memory - 1, &config), FIBRAD_E_ALIGNMENT);
-    ck_assert_int_eq(fibrad_work_init(NULL, work_memory, sizeof work_memory, &config), FIBRAD_E_ARGUMENT);
-    ck_assert_uint_eq(fibrad_work_size(&(fibrad_work_config){.near = UINT32_MAX}), 0);
+    ck_assert_uint_eq(fibrad_scene_size(FIBRAD_SPHERES_MAX + 1, 0), 0);
+    ck_assert_uint_eq(fibrad_scene_size(UINT32_MAX, 1), 0);
+    if (sizeof(size_t) > 4) ck_assert_uint_gt(fibrad_scene_size(FIBRAD_SPHERES_MAX, 1), FIBRAD_SPHERES_MAX * 52.);
+}
+END_TEST
+
+/* Scene and work memory at each of the 64 offsets from a boundary. */
+START_TEST(blocks_of_any_alignment) {
+    struct bed bed = packing(80, .5, 1, .4, 3, true);
+    fibrad_scene *aligned = scene_of(&bed, 0);
+    struct matrix expected = matrix_by_beams(aligned, &(fibrad_beam_rule){.directions = 34}, true);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    fibrad_scene_config config = {0};
+    memcpy(config.period, bed.period, sizeof config.period);
+    const size_t size = fibrad_scene_size(bed.n, 0), work_size = FIBRAD_WORK_BYTES(1024, 200);
+    unsigned char *block = block_of(size + 64), *work_block = block_of(work_size + 128);
+    fibrad_row row = row_of(bed.n);
+    for (size_t offset = 0; offset < 64; offset++) {
+        fibrad_scene *scene = NULL;
+        memset(block, 0xa5, size + 64);
+        memset(work_block, 0x5a, work_size + 128);
+        ck_assert_int_eq(fibrad_scene_init(&scene, block + offset, size, &config, &spheres, NULL), FIBRAD_OK);
+        fibrad_work work = work_fixed(work_block + offset, work_size);
+        for (uint32_t i = 0; i < bed.n; i += 9) {
+            const fibrad_row same = matrix_row(&expected.factors, i);
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 34}, &row), FIBRAD_OK);
+            ck_assert(same_bits(&row, &same));
+        }
+        for (size_t k = 0; k < offset; k++) ck_assert(work_block[k] == 0x5a && block[k] == 0xa5);
+        for (size_t k = offset + size; k < size + 64; k++) ck_assert_uint_eq(block[k], 0xa5);
+        for (size_t k = offset + work_size; k < work_size + 128; k++) ck_assert_uint_eq(work_block[k], 0x5a);
+    }
+    row_free(&row);
+    free(block), free(work_block), free(aligned);
+    matrix_free(&expected);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Places as x[n][3], radii as every fifth number, against arrays of their own. */
+START_TEST(strides_change_no_bit) {
+    struct bed bed = packing(150, .5, 1, .4, 3, false);
+    double(*at)[3] = calloc(bed.n, sizeof *at), *r = calloc((size_t)5 * bed.n, sizeof *r);
+    for (uint32_t k = 0; k < 5 * bed.n; k++) r[k] = NAN;
+    for (uint32_t i = 0; i < bed.n; i++) at[i][0] = bed.x[i], at[i][1] = bed.y[i], at[i][2] = bed.z[i];
+    for (uint32_t i = 0; i < bed.n; i++) r[(size_t)5 * i] = bed.r[i];
+    fibrad_scene *plain = scene_of(&bed, 0);
+    const fibrad_spheres strided[] = {
+        {&at[0][0], &at[0][1], &at[0][2], r, bed.n, .stride = 3, .stride_r = 5},
+        {&at[0][0], &at[0][1], &at[0][2], bed.r, bed.n, .stride = 3},
+        {bed.x, bed.y, bed.z, r, bed.n, .stride_r = 5},
+        {bed.x, bed.y, bed.z, bed.r, bed.n, .stride = 1, .stride_r = 1},
+    };
+    struct matrix expected = matrix_by_beams(plain, &(fibrad_beam_rule){.directions = 34}, true);
+    const size_t size = fibrad_scene_size(bed.n, 0);
+    void *block = block_of(size);
+    for (int k = 0; k < 4; k++) {
+        fibrad_scene *scene = NULL;
+        ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &strided[k], NULL), FIBRAD_OK);
+        struct matrix m = matrix_by_beams(scene, &(fibrad_beam_rule){.directions = 34}, true);
+        ck_assert(matrix_same_bits(&m.factors, &expected.factors));
+        for (uint32_t s = 0; s < bed.n; s++)
+            ck_assert_uint_eq(fibrad_scene_sphere(scene, s), fibrad_scene_sphere(plain, s));
+        matrix_free(&m);
+    }
+    matrix_free(&expected);
+    free(block), free(plain), free(at), free(r);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A bed may be empty: a scene without rows, and a matrix of none. */
+START_TEST(no_spheres) {
+    static unsigned char memory[FIBRAD_SCENE_BYTES(0)];
+    const fibrad_spheres none = {.n = 0};
+    const fibrad_body floor_plane = plane_at(2, 0, 0);
+    for (int walls = 0; walls < 2; walls++) {
+        const fibrad_scene_config config = {.body = &floor_plane, .bodies = (uint32_t)walls, .period = {3, 0, 0}};
+        fibrad_scene *scene = NULL;
+        fibrad_scene_facts facts;
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, &config, &none, NULL), FIBRAD_OK);
+        fibrad_scene_describe(scene, &facts);
+        ck_assert_uint_eq(facts.spheres, 0);
+        ck_assert_uint_eq(facts.bodies, (uint32_t)walls);
+        ck_assert_uint_eq(facts.cells, 0);
+        ck_assert(facts.radius_min == 0 && facts.radius_max == 0 && facts.overlap_max == 0);
+        ck_assert_uint_eq(fibrad_scene_sphere(scene, 0), UINT32_MAX);
+        fibrad_work work = work_growing();
+        fibrad_row row = row_of(4);
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &row, NULL), FIBRAD_E_ARGUMENT);
+        for (int raw = 0; raw < 2; raw++) {
+            const fibrad_rows rows = {0};
+            struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = raw}), nothing;
+            ck_assert_uint_eq(m.factors.n, 0);
+            ck_assert_uint_eq(m.factors.start[0], 0);
+            double largest = -1;
+            ck_assert_int_eq(fibrad_matrix_reciprocity(m.matrix, &largest), FIBRAD_OK);
+            ck_assert_double_eq(largest, 0);
+            nothing = matrix_of(scene, NULL, 0, &(fibrad_matrix_rule){.raw = raw, .drop = raw ? 0 : .1, .tasks = 3});
+            ck_assert_uint_eq(nothing.factors.n, 0);
+            matrix_free(&m), matrix_free(&nothing);
+        }
+        row_free(&row);
+        work_free(&work);
+    }
 }
 END_TEST
 
@@ -63,28 +161,68 @@ START_TEST(spheres_along_the_cells) {
 END_TEST
 
 START_TEST(bad_configurations_are_refused) {
-    ck_assert_uint_eq(fibrad_scene_size(NULL), 0);
-    static const fibrad_scene_config bad[] = {{.spheres = 0},
-                                              {.spheres = FIBRAD_SPHERES_MAX + 1},
-                                              {.spheres = 1, .isa = 99},
-                                              {.spheres = 1, .isa = -1},
-                                              {.spheres = 1, .period = {0, -1, 0}},
-                                              {.spheres = 1, .period = {0, 0, NAN}},
-                                              {.spheres = 1, .period = {INFINITY, 0, 0}}};
-    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) ck_assert_uint_eq(fibrad_scene_size(&bad[k]), 0);
+    static unsigned char memory[FIBRAD_SCENE_BYTES(1)];
+    const double zero = 0, one = 1;
+    const fibrad_spheres good = {&zero, &zero, &zero, &one, .n = 1},
+                         too_many = {&zero, &zero, &zero, &one, .n = UINT32_MAX};
+    fibrad_scene *scene = NULL;
+    fibrad_fault fault;
+    static const fibrad_scene_config bad[] = {{.isa = 99},
+                                              {.isa = -1},
+                                              {.isa = FIBRAD_ISA_AVX512 + 1},
+                                              {.period = {0, -1, 0}},
+                                              {.period = {0, 0, NAN}},
+                                              {.period = {INFINITY, 0, 0}}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, &bad[k], &good, &fault), FIBRAD_E_ARGUMENT);
+        ck_assert(fault.first == 1 && fault.second == 1);
+    }
+    ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &too_many, &fault), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_scene_init(NULL, memory, sizeof memory, NULL, &good, &fault), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_scene_init(&scene, NULL, sizeof memory, NULL, &good, &fault), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, NULL, &fault), FIBRAD_E_ARGUMENT);
+    for (int missing = 0; missing < 4; missing++) {
+        fibrad_spheres spheres = good;
+        *(missing == 0 ? &spheres.x : missing == 1 ? &spheres.y : missing == 2 ? &spheres.z : &spheres.r) = NULL;
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &spheres, &fault), FIBRAD_E_ARGUMENT);
+        ck_assert_uint_eq(fault.first, 1);
+    }
+    ck_assert_ptr_null(scene);
+    ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &good, NULL), FIBRAD_OK);
+}
+END_TEST
+
+/* An instruction set that this build or this machine lacks is said to be missing, with any spheres. */
+START_TEST(missing_instruction_sets) {
+    struct bed bed = lattice('p', 3);
+    int isa[ISAS_MOST];
+    const int sets = isas_there(isa);
+    bool best = false;
+    for (int set = FIBRAD_ISA_SCALAR; set <= FIBRAD_ISA_AVX512; set++) {
+        bool there = false;
+        for (int k = 0; k < sets; k++) there |= isa[k] == set;
+        best |= there && set == (int)fibrad_isa_best();
+        if (set > (int)fibrad_isa_best()) ck_assert(!there);
+        fibrad_scene *scene = NULL;
+        fibrad_fault fault;
+        ck_assert_int_eq(scene_try(&scene, &bed, &(fibrad_scene_config){.isa = set}, &fault),
+                         there ? FIBRAD_OK : FIBRAD_E_ISA);
+        if (!there) ck_assert_ptr_null(scene);
+        if (!there) continue;
+        fibrad_scene_facts facts;
+        fibrad_scene_describe(scene, &facts);
+        ck_assert_int_eq(facts.isa, set);
+        free(scene);
+    }
+    ck_assert(best);
+    bed_free(&bed);
 }
 END_TEST
 
 static int fault_of(const struct bed *bed, fibrad_fault *fault) {
-    fibrad_scene_config config = {.spheres = bed->n};
-    memcpy(config.period, bed->period, sizeof config.period);
-    size_t size = fibrad_scene_size(&config);
-    fibrad_spheres spheres = {bed->x, bed->y, bed->z, bed->r, bed->n};
     fibrad_scene *scene = NULL;
-    void *block = block_of(size);
-    int status = fibrad_scene_init(&scene, block, size, &config, &spheres, fault);
-    ck_assert(status == FIBRAD_OK || scene == NULL);
-    free(block);
+    int status = scene_try(&scene, bed, NULL, fault);
+    free(scene);
     return status;
 }
 
@@ -149,9 +287,9 @@ START_TEST(any_image_of_a_centre_will_do) {
         double period = 1 + floor(900 * bed_make_random(3, 3 * k)) / 100;
         double x[2] = {floor(1000 * bed_make_random(3, 3 * k + 1)) / 100, 0}, y[2] = {0, .5}, r[2] = {.1, .1};
         x[1] = x[0] + period * (1 + floor(5 * bed_make_random(3, 3 * k + 2)));
-        fibrad_scene_config config = {.spheres = 2, .period = {period, 0, 0}};
-        fibrad_spheres spheres = {x, y, y, r, 2};
-        static _Alignas(64) unsigned char memory[FIBRAD_SCENE_BYTES(2)];
+        fibrad_scene_config config = {.period = {period, 0, 0}};
+        fibrad_spheres spheres = {.x = x, .y = y, .z = y, .r = r, .n = 2};
+        static unsigned char memory[FIBRAD_SCENE_BYTES(2)];
         fibrad_scene *scene;
         ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, &config, &spheres, NULL), FIBRAD_OK);
     }
@@ -274,8 +412,12 @@ int main(void) {
     Suite *suite = suite_create("scene");
     TCase *tcase = suite_case(suite, "scene");
     tcase_add_test(tcase, sizes_hold);
+    tcase_add_test(tcase, blocks_of_any_alignment);
+    tcase_add_test(tcase, strides_change_no_bit);
+    tcase_add_test(tcase, no_spheres);
     tcase_add_test(tcase, spheres_along_the_cells);
     tcase_add_test(tcase, bad_configurations_are_refused);
+    tcase_add_test(tcase, missing_instruction_sets);
     tcase_add_test(tcase, faults_name_their_spheres);
     tcase_add_test(tcase, any_image_of_a_centre_will_do);
     tcase_add_test(tcase, strays_do_not_spread_the_cells);

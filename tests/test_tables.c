@@ -2,6 +2,7 @@
 #include "sample/tables.h"
 #include "golden_angle.h"
 #include "suite.h"
+#include "worst.h"
 
 #include <stdlib.h>
 
@@ -73,7 +74,7 @@ START_TEST(disc_points_are_sunflowers) {
             ck_assert_ldouble_le(fabsl(x - radius * cosl(golden_angle(remainder))), half);
             ck_assert_ldouble_le(fabsl(y - radius * sinl(golden_angle(remainder))), half);
             for (uint32_t j = 0; j < k; j++)
-                closest = fmin(closest, hypot(x - (double)points.x[j], y - (double)points.y[j]));
+                least_of(&closest, hypot(x - (double)points.x[j], y - (double)points.y[j]));
             sum_x += x;
             sum_y += y;
             sum_square += x * x + y * y;

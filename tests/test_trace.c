@@ -28,11 +28,16 @@ static const struct versions versions[] = {
 #endif
 };
 
-static fibrad_tracer *tracer_of(const fibrad_scene *scene, uint32_t lists) {
-    fibrad_tracer_config config = {.lists = lists};
-    size_t size = fibrad_tracer_size(&config);
-    fibrad_tracer *tracer = NULL;
-    ck_assert_int_eq(fibrad_tracer_init(&tracer, block_of(size), size, &config, scene), FIBRAD_OK);
+/* Few lists, which spheres share, or one for each sphere. */
+enum { FEW, EACH };
+
+static fibrad_tracer *tracer_of(const fibrad_scene *scene, int lists, fibrad_work *work) {
+    fibrad_workspace *space = NULL;
+    const size_t extra = lists == FEW ? fibrad_tracer_least() : fibrad_tracer_best(scene);
+    *work = work_growing();
+    ck_assert_int_eq(fibrad_work_open(work, extra, extra, &space), FIBRAD_OK);
+    fibrad_tracer *tracer = fibrad_tracer_of(space, scene);
+    if (lists == EACH) ck_assert_uint_ge(tracer->lists, scene->facts.spheres);
     return tracer;
 }
 
@@ -79,10 +84,11 @@ static fibrad_hit try_all(const struct bed *bed, uint32_t from, const double o[3
 }
 
 /* Paths of `bounces` reflections from some spheres of the bed, each ray against try_all. */
-static void follow(const struct bed *bed, const struct versions *version, uint32_t lists, int images, uint32_t paths,
+static void follow(const struct bed *bed, const struct versions *version, int lists, int images, uint32_t paths,
                    int bounces) {
     fibrad_scene *scene = scene_of(bed, version->isa);
-    fibrad_tracer *tracer = tracer_of(scene, lists);
+    fibrad_work work;
+    fibrad_tracer *tracer = tracer_of(scene, lists, &work);
     uint32_t met = 0;
     for (uint32_t k = 0; k < paths; k++) {
         fibrad_random random = fibrad_random_start(7, k);
@@ -107,14 +113,14 @@ static void follow(const struct bed *bed, const struct versions *version, uint32
             ck_assert_double_eq_tol(hit.distance, truth.distance, 1e-9 * (1 + truth.distance));
             ck_assert_double_eq_tol(dot(hit.normal, hit.normal), 1, 1e-11);
             double error = 0;
-            for (int axis = 0; axis < 3; axis++) error = fmax(error, fabs(hit.normal[axis] - truth.normal[axis]));
+            for (int axis = 0; axis < 3; axis++) worst_of(&error, fabs(hit.normal[axis] - truth.normal[axis]));
             ck_assert_double_lt(error, 1e-5);
             memcpy(n, hit.normal, sizeof n);
         }
     }
     ck_assert_uint_gt(met, paths / 4);
     free(scene);
-    free(tracer);
+    work_free(&work);
 }
 
 START_TEST(random_beds) {
@@ -122,7 +128,7 @@ START_TEST(random_beds) {
     if (version->isa > (int)fibrad_isa_best()) return;
     for (int kind = 0; kind < 4; kind++) {
         struct bed bed = packing(150, kind == 3 ? .1 : kind == 0 ? 1 : .5, 1, kind == 2 ? .02 : .5, 3, kind != 1);
-        follow(&bed, version, kind == 0 ? 8 : 256, kind == 2 ? 4 : 2, 300, 4);
+        follow(&bed, version, kind == 0 ? FEW : EACH, kind == 2 ? 4 : 2, 300, 4);
         bed_free(&bed);
     }
 }
@@ -132,7 +138,7 @@ END_TEST
 START_TEST(small_spheres_before_large_ones) {
     for (uint64_t seed = 50; seed < 53; seed++) {
         struct bed bed = strewn(600, seed);
-        follow(&bed, &versions[0], 600, 0, 3000, 3);
+        follow(&bed, &versions[0], EACH, 0, 3000, 3);
         bed_free(&bed);
     }
 }
@@ -142,7 +148,7 @@ END_TEST
 START_TEST(overlaps) {
     struct bed bed = packing(100, .7, 1, .45, 5, true);
     for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.15;
-    follow(&bed, &versions[0], 64, 2, 500, 4);
+    follow(&bed, &versions[0], FEW, 2, 500, 4);
     bed_free(&bed);
 }
 END_TEST
@@ -157,7 +163,7 @@ START_TEST(large_among_small) {
         ck_assert_int_eq(fibrad_direction(k, 1500, w), FIBRAD_OK);
         add_sphere(&bed, d * w[0], d * w[1], d * w[2], .02);
     }
-    follow(&bed, &versions[0], 2048, 0, 1500, 3);
+    follow(&bed, &versions[0], EACH, 0, 1500, 3);
     bed_free(&bed);
 }
 END_TEST
@@ -172,7 +178,7 @@ START_TEST(studded_sphere) {
         ck_assert_int_eq(fibrad_direction(k, 700, w), FIBRAD_OK);
         add_sphere(&bed, 1.01 * w[0], 1.01 * w[1], 1.01 * w[2], .03);
     }
-    follow(&bed, &versions[0], 2048, 0, 1400, 3);
+    follow(&bed, &versions[0], EACH, 0, 1400, 3);
     bed_free(&bed);
 }
 END_TEST
@@ -181,7 +187,7 @@ END_TEST
 START_TEST(one_sphere_and_its_images) {
     struct bed bed = bed_of(1, (const double[][4]){{.3, .4, .5, 1}});
     bed.period[0] = 2, bed.period[1] = 2.5, bed.period[2] = 3;
-    follow(&bed, &versions[0], 1, 12, 200, 5);
+    follow(&bed, &versions[0], FEW, 12, 200, 5);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_hit hit;
     fibrad_trace_point_scalar(scene, (const double[3]){1.3, 1.65, 0}, (const double[3]){0, 0, 1}, &hit);
@@ -196,7 +202,8 @@ START_TEST(stray) {
     struct bed bed = packing(200, .5, 1, .3, 9, false);
     add_sphere(&bed, 4e6, 10, 10, 1e5);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_tracer *tracer = tracer_of(scene, 0);
+    fibrad_work work;
+    fibrad_tracer *tracer = tracer_of(scene, EACH, &work);
     fibrad_hit hit;
     const double right[3] = {1, 0, 0}, left[3] = {-1, 0, 0};
     double most = 0;
@@ -217,7 +224,7 @@ START_TEST(stray) {
     }
     ck_assert_uint_eq(seen, 20);
     free(scene);
-    free(tracer);
+    work_free(&work);
     bed_free(&bed);
 }
 END_TEST
@@ -248,7 +255,8 @@ END_TEST
 START_TEST(same_bits_everywhere) {
     struct bed bed = packing(400, .2, 1, .55, 2, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_tracer *tracers[2] = {tracer_of(scene, 4), tracer_of(scene, 1024)};
+    fibrad_work work[2];
+    fibrad_tracer *tracers[2] = {tracer_of(scene, FEW, &work[0]), tracer_of(scene, EACH, &work[1])};
     for (uint32_t k = 0; k < 20000; k++) {
         fibrad_random random = fibrad_random_start(3, k);
         double n[3], w[3];
@@ -267,35 +275,71 @@ START_TEST(same_bits_everywhere) {
             ck_assert_mem_eq(&other, &third, sizeof other);
         }
     }
-    for (int t = 0; t < 2; t++) free(tracers[t]);
+    for (int t = 0; t < 2; t++) work_free(&work[t]);
     free(scene);
     bed_free(&bed);
 }
 END_TEST
 
+/* The ray along x from the first of two spheres: its length, and whether the list it takes was there before. */
+static double length_along_x(fibrad_tracer *tracer, bool *kept) {
+    const uint32_t place = tracer->scene->place[0];
+    fibrad_hit hit;
+    *kept = tracer->owner[place & (tracer->lists - 1)] == place;
+    fibrad_trace_scalar(tracer, place, (const double[3]){1, 0, 0}, (const double[3]){1, 0, 0}, &hit);
+    return hit.distance;
+}
+
+/* Lists are kept from call to call, but not for another scene in the same place. */
+START_TEST(lists_belong_to_contents) {
+    static unsigned char memory[FIBRAD_SCENE_BYTES(2)];
+    fibrad_work work = work_growing();
+    static const double distances[] = {5, 5, 7, 7, 5};
+    for (size_t k = 0; k < sizeof distances / sizeof *distances; k++) {
+        struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {distances[k], 0, 0, 1}});
+        const fibrad_spheres spheres = spheres_of(&bed);
+        fibrad_scene *scene = NULL;
+        fibrad_workspace *space = NULL;
+        bool kept;
+        ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &spheres, NULL), FIBRAD_OK);
+        const size_t extra = fibrad_tracer_least();
+        ck_assert_int_eq(fibrad_work_open(&work, extra, extra, &space), FIBRAD_OK);
+        ck_assert_double_eq(length_along_x(fibrad_tracer_of(space, scene), &kept), distances[k] - 2);
+        ck_assert_int_eq(kept, k % 2 == 1);
+        bed_free(&bed);
+    }
+    work_free(&work);
+}
+END_TEST
+
+/* A block too small is left alone and what it lacks is said; a large enough one, of any alignment, is not left. */
 START_TEST(memory) {
     struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_tracer_config config = {.lists = 5}, most = {.lists = UINT32_MAX};
-    size_t size = fibrad_tracer_size(&config);
-    ck_assert_uint_gt(size, 0);
-    ck_assert_uint_eq(fibrad_tracer_size(&(fibrad_tracer_config){.lists = 8}), size);
-    ck_assert_uint_eq(fibrad_tracer_size(&most), 0);
-    unsigned char *block = block_of(size + 64);
-    memset(block + size, 0x5a, 64);
-    fibrad_tracer *tracer = NULL;
-    ck_assert_int_eq(fibrad_tracer_init(NULL, block, size, &config, scene), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_tracer_init(&tracer, NULL, size, &config, scene), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_tracer_init(&tracer, block, size, &config, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_tracer_init(&tracer, block, size, &most, scene), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_tracer_init(&tracer, block, size - 1, &config, scene), FIBRAD_E_SIZE);
-    ck_assert_int_eq(fibrad_tracer_init(&tracer, block + 8, size, &config, scene), FIBRAD_E_ALIGNMENT);
-    ck_assert_ptr_null(tracer);
-    ck_assert_int_eq(fibrad_tracer_init(&tracer, block, size, &config, scene), FIBRAD_OK);
-    fibrad_hit hit;
-    fibrad_trace_scalar(tracer, 0, (const double[3]){1, 0, 0}, (const double[3]){1, 0, 0}, &hit);
-    ck_assert_uint_eq(hit.sphere, FIBRAD_NONE);
-    for (size_t k = size; k < size + 64; k++) ck_assert_uint_eq(block[k], 0x5a);
+    fibrad_workspace *space = NULL;
+    const size_t extra = fibrad_tracer_least();
+    unsigned char small[64];
+    memset(small, 0x5a, sizeof small);
+    fibrad_work work = work_fixed(small, sizeof small);
+    ck_assert_int_eq(fibrad_work_open(&work, extra, extra, &space), FIBRAD_E_WORK);
+    ck_assert_ptr_null(space);
+    ck_assert_uint_gt(work.memory.needed, extra);
+    for (size_t k = 0; k < sizeof small; k++) ck_assert_uint_eq(small[k], 0x5a);
+
+    const size_t size = work.memory.needed;
+    unsigned char *block = block_of(size + 128);
+    for (size_t shift = 0; shift < 64; shift += 7) {
+        memset(block, 0x5a, size + 128);
+        work = work_fixed(block + shift, size);
+        ck_assert_int_eq(fibrad_work_open(&work, extra, extra, &space), FIBRAD_OK);
+        fibrad_tracer *tracer = fibrad_tracer_of(space, scene);
+        ck_assert_uint_ge((uintptr_t)tracer, (uintptr_t)work.memory.block);
+        fibrad_hit hit;
+        fibrad_trace_scalar(tracer, 0, (const double[3]){1, 0, 0}, (const double[3]){1, 0, 0}, &hit);
+        ck_assert_uint_eq(hit.sphere, FIBRAD_NONE);
+        for (size_t k = 0; k < shift; k++) ck_assert_uint_eq(block[k], 0x5a);
+        for (size_t k = shift + size; k < size + 128; k++) ck_assert_uint_eq(block[k], 0x5a);
+    }
     free(block);
     free(scene);
     bed_free(&bed);
@@ -314,6 +358,7 @@ int main(void) {
     tcase_add_test(cases, stray);
     tcase_add_test(cases, from_points);
     tcase_add_test(cases, same_bits_everywhere);
+    tcase_add_test(cases, lists_belong_to_contents);
     tcase_add_test(cases, memory);
     return suite_run(suite);
 }

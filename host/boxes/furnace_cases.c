@@ -17,8 +17,8 @@ fibrad_furnace_config furnace_case(int number) {
 const double furnace_reference_z[FURNACE_REFERENCES] = {0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0,
                                                         2.2, 2.4, 2.6, 2.8, 3.0, 3.2, 3.4, 3.6, 3.8, 3.9};
 
-/* Both cases have the same extinction, hence the same incident radiation, and E = incident/4 + source/(4 absorption):
- * one table serves both. */
+/* Both cases have the same extinction, hence the same incident radiation, and E = incident/4 + source/(4 absorption),
+ * so one table is valid for both. */
 double furnace_reference(int number, int k) {
     static const double t[FURNACE_REFERENCES] = {1094.52, 1081.62, 1057.76, 1036.54, 1017.96, 1002.14, 988.77,
                                                  977.33,  967.53,  958.93,  951.15,  943.82,  936.64,  929.32,
@@ -40,8 +40,8 @@ const double furnace_reference_theta[2][2][FURNACE_REFERENCES] = {
      {1.3446, 1.3440, 1.3441, 1.3445, 1.3456, 1.3472, 1.3497, 1.3533, 1.3569, 1.3620, 1.3683,
       1.3759, 1.3849, 1.3948, 1.4051, 1.4142, 1.4176, 1.4095, 1.3871, 1.3578, 1.3333}}};
 
-/* The mean over the two middle cells of an axis, or twice the one if their number is odd. */
-static double middle(const double *values, size_t start, const uint32_t cells[3]) {
+/* The mean over the two middle cells along x and y; if their number is odd, these are the same. */
+static double furnace_axis_mean(const double *values, size_t start, const uint32_t cells[3]) {
     double sum = 0;
     for (uint32_t j = 0; j < 2; j++)
         for (uint32_t i = 0; i < 2; i++)
@@ -55,7 +55,7 @@ double furnace_axis_temperature(const struct furnace_run *run, double z) {
     size_t low = n[2] == 1 ? 0 : place < n[2] - 1 ? (size_t)place : n[2] - 2, layer = (size_t)n[0] * n[1];
     for (size_t k = 0; k < 2; k++) {
         size_t level = low + k < n[2] ? low + k : low;
-        t[k] = fibrad_furnace_temperature(middle(run->at.e, level * layer, n));
+        t[k] = fibrad_furnace_temperature(furnace_axis_mean(run->at.e, level * layer, n));
     }
     return t[0] + (place - (double)low) * (t[1] - t[0]);
 }
@@ -64,8 +64,8 @@ double furnace_axis_theta(const struct furnace_run *run, int g, double z) {
     const uint32_t *n = run->config.cells;
     double place = fmin(fmax(z / run->config.size[2] * n[2], 0), n[2]);
     size_t low = place < n[2] ? (size_t)place : n[2] - 1, layer = (size_t)n[0] * n[1];
-    double here = middle(run->at.theta[2][g], low * layer, n);
-    return here + (place - (double)low) * (middle(run->at.theta[2][g], (low + 1) * layer, n) - here);
+    double here = furnace_axis_mean(run->at.theta[2][g], low * layer, n);
+    return here + (place - (double)low) * (furnace_axis_mean(run->at.theta[2][g], (low + 1) * layer, n) - here);
 }
 
 void furnace_powers(const struct furnace_run *run, double kilowatts[4]) {

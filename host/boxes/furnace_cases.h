@@ -9,12 +9,12 @@
 fibrad_furnace_config furnace_case(int number);
 
 /* Reference temperatures on the axis, at `furnace_reference_z`: Monte Carlo in equilibrium with 3e8 bundles, cells of
- * 0.1 m, interpolated as below; standard error 0.1 K or less. docs/furnace.md tells how they were made. */
+ * 0.1 m, interpolated as below; standard error 0.1 K or less. docs/furnace.md describes how they were made. */
 enum { FURNACE_REFERENCES = 21 };
 extern const double furnace_reference_z[FURNACE_REFERENCES];
 double furnace_reference(int number, int k);
 
-/* What the walls z = 0, z = Z and all sides give [kW], the same in both cases. */
+/* Net powers of the walls z = 0, z = Z and of all sides [kW], the same in both cases. */
 extern const double furnace_reference_power[3];
 
 /* 1/Theta+ and 1/Theta- of the z axis at z = 0.2 k, k = 0 ... 20, case 1, of both estimators: from 1e8 bundles. */

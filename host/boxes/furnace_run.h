@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fibrad.h"
+#include "fibrad_furnace.h"
 
 enum furnace_method {
     FURNACE_HFM,    /* heat fluxes, Theta = 1 */
@@ -19,10 +19,9 @@ struct furnace_options {
     double theta; /* FURNACE_MCHF: a constant, (0, 1]; 0: measured */
     fibrad_furnace_estimator estimator;
     fibrad_furnace_scatter scatter;
-    bool shooting;      /* solve the lines by Runge-Kutta and shooting */
     bool measure;       /* FURNACE_MC: measure Theta afterwards */
-    bool quiet;         /* do not tell each outer iteration on standard error */
-    uint64_t bundles;   /* about, over all outer iterations but for what changes of E add */
+    bool quiet;         /* do not report the outer iterations on standard error */
+    uint64_t bundles;   /* of the first plan, about; further ones add what changes of E need */
     int threads;        /* 0: all cores */
     double tolerance;   /* K: outer iterations end when no cell changes by more */
     uint32_t outer_max; /* outer iterations at most */

@@ -16,33 +16,22 @@
 #include "read/read_furnace.h"
 #include "write/write_furnace.h"
 
-enum {
-    KEY_CASE = KEY_OWN,
-    KEY_THETA,
-    KEY_SCATTER,
-    KEY_SOLVER,
-    KEY_CELLS,
-    KEY_BUNDLES,
-    KEY_TOLERANCE,
-    KEY_OUTERS,
-    KEY_QUIET
-};
+enum { KEY_CASE = KEY_OWN, KEY_THETA, KEY_SCATTER, KEY_CELLS, KEY_BUNDLES, KEY_TOLERANCE, KEY_OUTERS, KEY_QUIET };
 
 static const struct option table[] = {
     {KEY_CASE, "case", "1|2", "the published furnace, without or with scattering, instead of FILE"},
     {KEY_METHOD, "method", "NAME", "hfm, mchf, mchf-x or mc [mchf-x]"},
     {KEY_THETA, "theta", "WHICH", "of mchf: definition, paper, or a constant in (0, 1] [definition]"},
     {KEY_SCATTER, "scatter", "KIND", "scattering source: six_flux or exact [exact for mchf-x, else six_flux]"},
-    {KEY_SOLVER, "solver", "NAME", "of the heat-flux equations: lines, or shooting as in the paper [lines]"},
     {KEY_CELLS, "cells", "NX,NY,NZ", "cells along the axes [20,20,40 for the cases, else as FILE says]"},
-    {KEY_BUNDLES, "bundles", "N", "bundles of rays, about, 1 to 4294967296 [8000000; mc 20000000]"},
+    {KEY_BUNDLES, "bundles", "N", "bundles of rays, approximately, 1 to 4294967296 [8000000; mc 20000000]"},
     {KEY_SEED, "seed", "S", "of the bundles [1]"},
     {KEY_TOLERANCE, "tolerance", "K", "outer iterations end when no T changes by more [0.1]"},
     {KEY_OUTERS, "outers", "N", "outer iterations at most [50]"},
     {OPTION_THREADS},
     {'o', "output", "OUT", "the fields of all cells: .csv or .vti (ParaView) [summary only]"},
     {KEY_PLOT, "plot", NULL, "[OUT] a picture of the centre plane by gnuplot, .png or .svg [furnace.png]"},
-    {KEY_QUIET, "quiet", NULL, "do not tell the outer iterations on standard error [told]"},
+    {KEY_QUIET, "quiet", NULL, "no report of the outer iterations on standard error"},
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
@@ -57,14 +46,14 @@ struct request {
     struct furnace_options run;
 };
 
-static int help(void) {
+static int furnace_help(void) {
     puts(
         "fibrad furnace --case 1|2 [options]\n"
         "fibrad furnace FILE [options]\n\n"
-        "Temperatures and wall fluxes of a box full of a grey medium between grey diffuse walls.\n"
+        "Temperatures and wall fluxes of a box filled with a grey medium, between grey diffuse walls.\n"
         "  hfm     heat-flux method: six fluxes, Theta = 1\n"
         "  mchf    Monte Carlo + heat flux: Theta, the ratio of moments of the intensity, measured by bundles of rays\n"
-        "  mchf-x  with the transverse term that mchf leaves out, measured too\n"
+        "  mchf-x  with the transverse term, which mchf omits, measured too\n"
         "  mc      direct Monte Carlo in radiative equilibrium: the reference\n");
     options_print(table);
     puts("\nFILE has lines of keys and values, # begins a comment:\n"
@@ -72,24 +61,24 @@ static int help(void) {
          "  cells 20 20 40\n"
          "  absorption 0.15        [1/m], above 0\n"
          "  scattering 0.35        [1/m], 0 if left out\n"
-         "  source 5000            radiation the medium gives off [W/m3], 0 if left out\n"
+         "  source 5000            net emission of the medium [W/m3], 0 if left out\n"
          "  wall z0 1200 0.85      temperature [K] and emissivity; walls x0 x1 y0 y1 z0 z1, or `sides` for x and y\n\n"
-         "Standard output ends with a summary, one `key value` a line; powers are what walls give to the medium,\n"
-         "balance_kW is their sum plus that of the source, which should be 0.\n\n"
+         "Standard output ends with a summary, one `key value` a line; powers are net and\n"
+         "leave the wall; balance_kW is their sum plus the power of the source, which should be 0.\n\n"
          "Examples:\n"
          "  fibrad furnace --case 1 --plot\n"
-         "  fibrad furnace --case 2 --method mchf --theta paper --solver shooting\n"
+         "  fibrad furnace --case 2 --method mchf --theta paper\n"
          "  fibrad furnace box.txt --method mc --bundles 20000000 -o box.vti");
     return STATUS_OK;
 }
 
-static int choose(const char *what, const char *text, const char *const *names, int count, int *choice) {
+static int furnace_choose(const char *what, const char *text, const char *const *names, int count, int *choice) {
     for (*choice = 0; *choice < count; ++*choice)
         if (strcmp(text, names[*choice]) == 0) return STATUS_OK;
     return message(STATUS_USAGE, "--%s: unknown '%.40s'; see fibrad furnace --help", what, text);
 }
 
-static int parse_cells(const char *text, uint32_t cells[3]) {
+static int furnace_parse_cells(const char *text, uint32_t cells[3]) {
     double values[3], product = 1;
     int count, status = options_numbers("--cells", text, 3, values, &count);
     if (status) return status;
@@ -106,14 +95,13 @@ static int parse_cells(const char *text, uint32_t cells[3]) {
 }
 
 /* The argument of --plot may be left out: it is one only if it looks like a picture. */
-static void take_plot(struct request *request, struct options *options) {
+static void furnace_take_plot(struct request *request, struct options *options) {
     request->plot = "furnace.png";
     if (options->at < options->argc && plot_ending(options->argv[options->at]))
         request->plot = options->argv[options->at++];
 }
 
-static int take_option(struct request *request, struct options *options, int key) {
-    static const char *const solvers[] = {"lines", "shooting"};
+static int furnace_take_option(struct request *request, struct options *options, int key) {
     const char *value = options->value;
     struct furnace_options *run = &request->run;
     uint64_t whole = 0;
@@ -128,7 +116,7 @@ static int take_option(struct request *request, struct options *options, int key
         request->number = (int)whole;
         break;
     case KEY_METHOD:
-        status = choose("method", value, methods, 4, &choice);
+        status = furnace_choose("method", value, methods, 4, &choice);
         run->method = (enum furnace_method)choice;
         break;
     case KEY_THETA:
@@ -137,12 +125,8 @@ static int take_option(struct request *request, struct options *options, int key
     case KEY_SCATTER:
         request->scatter = value;
         break;
-    case KEY_SOLVER:
-        status = choose("solver", value, solvers, 2, &choice);
-        run->shooting = choice == 1;
-        break;
     case KEY_CELLS:
-        return parse_cells(value, request->cells);
+        return furnace_parse_cells(value, request->cells);
     case KEY_BUNDLES:
         return options_whole("--bundles", value, 1, (uint64_t)1 << 32, &run->bundles);
     case KEY_SEED:
@@ -154,7 +138,7 @@ static int take_option(struct request *request, struct options *options, int key
     case KEY_THREADS:
         return options_threads(value, &run->threads);
     case KEY_PLOT:
-        take_plot(request, options);
+        furnace_take_plot(request, options);
         break;
     case KEY_QUIET:
         run->quiet = true;
@@ -169,7 +153,7 @@ static int take_option(struct request *request, struct options *options, int key
     return status;
 }
 
-static int check_theta(struct request *request) {
+static int furnace_check_theta(struct request *request) {
     const char *theta = request->theta;
     struct furnace_options *run = &request->run;
     if (theta == NULL) return STATUS_OK;
@@ -180,16 +164,16 @@ static int check_theta(struct request *request) {
     return options_number("--theta (definition, paper or a constant)", theta, 0.01, 1, &run->theta);
 }
 
-static int check_scatter(struct request *request) {
+static int furnace_check_scatter(struct request *request) {
     static const char *const kinds[] = {"six_flux", "exact"};
     int kind = request->run.method == FURNACE_MCHF_X ? FIBRAD_SCATTER_EXACT : FIBRAD_SCATTER_SIX_FLUX;
-    int status = request->scatter ? choose("scatter", request->scatter, kinds, 2, &kind) : STATUS_OK;
+    int status = request->scatter ? furnace_choose("scatter", request->scatter, kinds, 2, &kind) : STATUS_OK;
     request->run.scatter = kind == 0 ? FIBRAD_SCATTER_SIX_FLUX : FIBRAD_SCATTER_EXACT;
     return status;
 }
 
-/* What can be found wrong before any work is done. */
-static int check_request(struct request *request) {
+/* Checks that need no computation. */
+static int furnace_check_request(struct request *request) {
     if (!request->file == !request->number)
         return message(STATUS_USAGE, "either --case 1, --case 2 or a FILE; see fibrad furnace --help");
     if (request->out) {
@@ -199,11 +183,11 @@ static int check_request(struct request *request) {
     }
     request->run.measure = request->plot != NULL;
     if (request->run.bundles == 0) request->run.bundles = request->run.method == FURNACE_MC ? 20000000 : 8000000;
-    int status = check_theta(request);
-    return status ? status : check_scatter(request);
+    int status = furnace_check_theta(request);
+    return status ? status : furnace_check_scatter(request);
 }
 
-static int parse(struct request *request, int argc, char **argv) {
+static int furnace_parse(struct request *request, int argc, char **argv) {
     struct options options = {.command = "furnace", .table = table, .argc = argc, .argv = argv};
     *request = (struct request){
         .seed = 1,
@@ -211,20 +195,20 @@ static int parse(struct request *request, int argc, char **argv) {
     };
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
-        status = take_option(request, &options, key);
-    return status ? status : check_request(request);
+        status = furnace_take_option(request, &options, key);
+    return status ? status : furnace_check_request(request);
 }
 
-static bool is_measured(const struct request *request) {
+static bool furnace_is_measured(const struct request *request) {
     const struct furnace_options *run = &request->run;
     return run->method == FURNACE_MCHF_X || (run->method == FURNACE_MCHF && run->theta == 0) ||
            (run->method == FURNACE_MC && run->measure);
 }
 
-/* The published case beside the reference and the claims. */
-static void print_comparison(const struct request *request, const struct furnace_run *run) {
+/* The published case compared with the reference. */
+static void furnace_print_comparison(const struct request *request, const struct furnace_run *run) {
     static const char *const names[3] = {"wall z=0", "wall z=4", "sides"};
-    bool measured = is_measured(request), paper = request->run.estimator == FIBRAD_THETA_PAPER;
+    bool measured = furnace_is_measured(request), paper = request->run.estimator == FIBRAD_THETA_PAPER;
     double power[4];
     printf("# case %d, %s: axis of the furnace, reference by direct Monte Carlo\n", request->number,
            methods[request->run.method]);
@@ -243,20 +227,20 @@ static void print_comparison(const struct request *request, const struct furnace
     furnace_powers(run, power);
     for (int w = 0; w < 3; w++)
         printf("# %-8s %9.3f kW, reference %9.3f kW\n", names[w], power[w], furnace_reference_power[w]);
-    puts("# The paper claims at most 1 % between mchf and the zone method, and a colder furnace in case 2. The "
+    puts("# The paper states at most 1 % between mchf and the zone method, and a colder furnace in case 2. The "
          "reference\n"
-         "# bears out neither: mchf is off by up to 6 % in case 1 and 19 % in case 2, and case 2 is hotter everywhere\n"
+         "# confirms neither: mchf errs by up to 6 % in case 1 and 19 % in case 2, and case 2 is hotter everywhere\n"
          "# (docs/furnace.md).");
 }
 
 /* z as in the keys T_axis_0.4, T_axis_2.0. */
-static void print_height(double z) {
+static void furnace_print_height(double z) {
     char text[32];
     snprintf(text, sizeof text, "%.4g", z);
     printf("T_axis_%s%s", text, strpbrk(text, ".e") ? "" : ".0");
 }
 
-static void print_summary(const struct request *request, const struct furnace_run *run) {
+static void furnace_print_summary(const struct request *request, const struct furnace_run *run) {
     double power[4];
     furnace_powers(run, power);
     printf("method %s\n", methods[request->run.method]);
@@ -266,7 +250,7 @@ static void print_summary(const struct request *request, const struct furnace_ru
            power[3]);
     for (int k = 0; k < 3; k++) {
         double z = run->config.size[2] * (k == 0 ? 0.1 : k == 1 ? 0.5 : 0.9);
-        print_height(z);
+        furnace_print_height(z);
         printf(" %.17g\n", furnace_axis_temperature(run, z));
     }
     printf("bundles %" PRIu64 "\n", run->bundles);
@@ -275,9 +259,9 @@ static void print_summary(const struct request *request, const struct furnace_ru
     printf("seconds %.17g\n", run->seconds);
 }
 
-/* Opens the outputs before the work, so that a path that cannot be written costs no time. */
-static int compute_and_write(const struct request *request, const fibrad_furnace_config *config,
-                             struct furnace_run *run) {
+/* Outputs are opened first: a path that cannot be written is an error before the computation. */
+static int furnace_compute_and_write(const struct request *request, const fibrad_furnace_config *config,
+                                     struct furnace_run *run) {
     struct output out = {0}, plot = {0};
     int status = output_open(&out, request->out);
     if (!status) status = output_open(&plot, request->plot);
@@ -285,7 +269,7 @@ static int compute_and_write(const struct request *request, const fibrad_furnace
     if (!status && request->out) request->write(out.file, run);
     if (!status && request->plot) {
         const char *name = request->number == 0 ? request->file : request->number == 1 ? "case 1" : "case 2";
-        status = furnace_plot(&plot, name, run, is_measured(request), request->number);
+        status = furnace_plot(&plot, name, run, furnace_is_measured(request), request->number);
     }
     status = output_close(&out, status);
     return output_close(&plot, status);
@@ -295,8 +279,8 @@ int command_furnace(int argc, char **argv) {
     struct request request;
     struct furnace_run run = {0};
     fibrad_furnace_config config;
-    int status = parse(&request, argc, argv);
-    if (status) return status == STATUS_HELP ? help() : status;
+    int status = furnace_parse(&request, argc, argv);
+    if (status) return status == STATUS_HELP ? furnace_help() : status;
     if (request.number)
         config = furnace_case(request.number);
     else
@@ -304,10 +288,10 @@ int command_furnace(int argc, char **argv) {
     if (status) return status;
     if (request.cells[0]) memcpy(config.cells, request.cells, sizeof config.cells);
     config.seed = request.seed;
-    status = compute_and_write(&request, &config, &run);
+    status = furnace_compute_and_write(&request, &config, &run);
     if (!status) {
-        if (request.number) print_comparison(&request, &run);
-        print_summary(&request, &run);
+        if (request.number) furnace_print_comparison(&request, &run);
+        furnace_print_summary(&request, &run);
     }
     furnace_free(&run);
     return status;

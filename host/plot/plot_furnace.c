@@ -18,7 +18,7 @@ struct map {
 };
 
 /* Mean over the two cells next to the plane y = Y/2. */
-static double in_plane(const struct furnace_run *run, const struct map *map, size_t i, size_t k) {
+static double furnace_plane_mean(const struct furnace_run *run, const struct map *map, size_t i, size_t k) {
     const uint32_t *n = run->config.cells;
     size_t across = n[0] + (map->axis == 0 ? 1u : 0u);
     double value = 0;
@@ -29,14 +29,14 @@ static double in_plane(const struct furnace_run *run, const struct map *map, siz
     return value;
 }
 
-static void print_map(FILE *script, const struct furnace_run *run, const struct map *map) {
+static void furnace_print_map(FILE *script, const struct furnace_run *run, const struct map *map) {
     const fibrad_furnace_config *c = &run->config;
     uint32_t across = c->cells[0] + (map->axis == 0), up = c->cells[2] + (map->axis == 2);
-    double low = in_plane(run, map, 0, 0), high = low;
+    double low = furnace_plane_mean(run, map, 0, 0), high = low;
     fputs("$map << END\n", script);
     for (uint32_t k = 0; k < up; k++) {
         for (uint32_t i = 0; i < across; i++) {
-            double value = in_plane(run, map, i, k);
+            double value = furnace_plane_mean(run, map, i, k);
             fprintf(script, "%.6g %.6g %.6g\n", (i + (map->axis == 0 ? 0 : 0.5)) * c->size[0] / c->cells[0],
                     (k + (map->axis == 2 ? 0 : 0.5)) * c->size[2] / c->cells[2], value);
             low = fmin(low, value);
@@ -57,7 +57,7 @@ static void print_map(FILE *script, const struct furnace_run *run, const struct 
 }
 
 /* The last part of a path, for a gnuplot string in single quotes. */
-static void print_name(FILE *script, const char *path) {
+static void furnace_print_name(FILE *script, const char *path) {
     const char *slash = strrchr(path, '/');
     for (const char *c = slash ? slash + 1 : path; *c; c++) {
         if (*c == '\'') fputc('\'', script);
@@ -66,7 +66,7 @@ static void print_name(FILE *script, const char *path) {
 }
 
 /* A round number near half the range of T on the axis. */
-static double tic_interval(const struct furnace_run *run) {
+static double furnace_tic_interval(const struct furnace_run *run) {
     double low = furnace_axis_temperature(run, 0), high = low;
     for (int k = 1; k <= 20; k++) {
         double t = furnace_axis_temperature(run, run->config.size[2] * k / 20);
@@ -77,7 +77,7 @@ static double tic_interval(const struct furnace_run *run) {
     return power * (half < 2 * power ? 1 : half < 5 * power ? 2 : 5);
 }
 
-static void print_profile(FILE *script, const struct furnace_run *run, int number) {
+static void furnace_print_profile(FILE *script, const struct furnace_run *run, int number) {
     const fibrad_furnace_config *c = &run->config;
     fputs("$axis << END\n", script);
     for (int k = 0; k <= 200; k++) {
@@ -93,7 +93,7 @@ static void print_profile(FILE *script, const struct furnace_run *run, int numbe
             "set size ratio %g; unset colorbox; set grid lc '#e6e6e6' lw 1 lt 1; set key bottom left reverse Left "
             "samplen 2\n"
             "plot $axis using 1:2 with lines lw 2.5 lc '#365c8d' title 'this run'%s\n",
-            tic_interval(run), c->size[2] / c->size[0],
+            furnace_tic_interval(run), c->size[2] / c->size[0],
             number ? ", $reference using 1:2 with points pt 6 ps 1.1 lw 1.6 lc '#d1495b' title 'reference'" : "");
 }
 
@@ -123,13 +123,13 @@ int furnace_plot(const struct output *output, const char *name, const struct fur
             png ? "pngcairo" : "svg", 300 * (count + 1) + 60, 140 + 205 * fmin(c->size[2] / c->size[0], 6),
             png ? 11 : 13, count + 1, 0.2 / (double)(count + 1), 0.38 / (double)(count + 1), c->size[0], c->size[2]);
     fputs("set label 1 '", script);
-    print_name(script, name);
+    furnace_print_name(script, name);
     fprintf(script, ", plane y = %g m' at screen 0.012,0.968 font ',15' tc '#111111' noenhanced\n", c->size[1] / 2);
     for (size_t m = 0; m < count; m++) {
-        print_map(script, run, &maps[m]);
+        furnace_print_map(script, run, &maps[m]);
         fputs("unset label 1; unset ylabel\n", script);
     }
-    print_profile(script, run, number);
+    furnace_print_profile(script, run, number);
     fputs("unset multiplot\n", script);
     return gnuplot_end(&gnuplot);
 }

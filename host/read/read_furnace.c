@@ -21,24 +21,26 @@ struct reading {
     struct lines lines;
     struct fields fields;
     fibrad_furnace_config *config;
-    uint64_t line_of[KEYS], line_of_wall[6]; /* 0: not met yet */
+    uint64_t line_of[KEYS], line_of_wall[6]; /* 0: none yet */
 };
 
 /* A number of the line that is at least `low`, or above it. */
-static int bounded(const struct reading *r, const char *what, size_t field, double low, bool above, double *value) {
+static int furnace_read_number(const struct reading *r, const char *what, size_t field, double low, bool above,
+                               double *value) {
     int status = lines_number(&r->lines, what, r->fields.at[field], value);
     if (status || *value > low || (!above && *value == low)) return status;
     return message_at(STATUS_INPUT, r->lines.name, r->lines.number, "%s must be %s %g, not %s", what,
                       above ? "above" : "at least", low, r->fields.at[field]);
 }
 
-static int read_size(struct reading *r) {
+static int furnace_read_size(struct reading *r) {
     int status = STATUS_OK;
-    for (size_t a = 0; a < 3 && !status; a++) status = bounded(r, "size", 1 + a, 0, true, &r->config->size[a]);
+    for (size_t a = 0; a < 3 && !status; a++)
+        status = furnace_read_number(r, "size", 1 + a, 0, true, &r->config->size[a]);
     return status;
 }
 
-static int read_cells(struct reading *r) {
+static int furnace_read_cells(struct reading *r) {
     uint64_t product = 1;
     for (size_t a = 0; a < 3; a++) {
         int64_t count;
@@ -54,7 +56,7 @@ static int read_cells(struct reading *r) {
     return STATUS_OK;
 }
 
-static int set_wall(struct reading *r, size_t w, double temperature, double emissivity) {
+static int furnace_set_wall(struct reading *r, size_t w, double temperature, double emissivity) {
     if (r->line_of_wall[w])
         return message_at(STATUS_INPUT, r->lines.name, r->lines.number, "wall %s was given in line %" PRIu64 " already",
                           walls[w], r->line_of_wall[w]);
@@ -64,26 +66,26 @@ static int set_wall(struct reading *r, size_t w, double temperature, double emis
     return STATUS_OK;
 }
 
-static int read_wall(struct reading *r) {
+static int furnace_read_wall(struct reading *r) {
     const char *name = r->fields.at[1];
     double temperature, emissivity;
-    int status = bounded(r, "wall temperature", 2, 0, true, &temperature);
-    if (!status) status = bounded(r, "emissivity", 3, 0, false, &emissivity);
+    int status = furnace_read_number(r, "wall temperature", 2, 0, true, &temperature);
+    if (!status) status = furnace_read_number(r, "emissivity", 3, 0, false, &emissivity);
     if (status) return status;
     if (emissivity > 1)
         return message_at(STATUS_INPUT, r->lines.name, r->lines.number, "emissivity must be at most 1, not %s",
                           r->fields.at[3]);
     if (strcmp(name, "sides") == 0) {
-        for (size_t w = 0; w < 4 && !status; w++) status = set_wall(r, w, temperature, emissivity);
+        for (size_t w = 0; w < 4 && !status; w++) status = furnace_set_wall(r, w, temperature, emissivity);
         return status;
     }
     for (size_t w = 0; w < 6; w++)
-        if (strcmp(name, walls[w]) == 0) return set_wall(r, w, temperature, emissivity);
+        if (strcmp(name, walls[w]) == 0) return furnace_set_wall(r, w, temperature, emissivity);
     return message_at(STATUS_INPUT, r->lines.name, r->lines.number,
                       "unknown wall '%.40s'; there are x0, x1, y0, y1, z0, z1 and sides", name);
 }
 
-static int read_line(struct reading *r) {
+static int furnace_read_line(struct reading *r) {
     const char *name = r->fields.at[0];
     uint64_t line = r->lines.number;
     size_t k = 0;
@@ -98,33 +100,33 @@ static int read_line(struct reading *r) {
     r->line_of[k] = line;
     switch (k) {
     case KEY_SIZE:
-        return read_size(r);
+        return furnace_read_size(r);
     case KEY_CELLS:
-        return read_cells(r);
+        return furnace_read_cells(r);
     case KEY_ABSORPTION:
-        return bounded(r, name, 1, 0, true, &r->config->absorption);
+        return furnace_read_number(r, name, 1, 0, true, &r->config->absorption);
     case KEY_SCATTERING:
-        return bounded(r, name, 1, 0, false, &r->config->scattering);
+        return furnace_read_number(r, name, 1, 0, false, &r->config->scattering);
     case KEY_SOURCE:
         return lines_number(&r->lines, name, r->fields.at[1], &r->config->source);
     default:
-        return read_wall(r);
+        return furnace_read_wall(r);
     }
 }
 
-static int read_all(struct reading *r) {
+static int furnace_read_lines(struct reading *r) {
     for (;;) {
         bool more;
         int status = lines_next(&r->lines, &more);
         if (status || !more) return status;
         r->lines.text[strcspn(r->lines.text, "#")] = 0;
         status = fields_split(&r->fields, r->lines.text, " \t\v\f\r");
-        if (!status && r->fields.n > 0) status = read_line(r);
+        if (!status && r->fields.n > 0) status = furnace_read_line(r);
         if (status) return status;
     }
 }
 
-static int check_complete(const struct reading *r) {
+static int furnace_check_complete(const struct reading *r) {
     double emissivity = 0;
     for (size_t k = 0; k < KEYS; k++)
         if (!r->line_of[k] && k != KEY_SCATTERING && k != KEY_SOURCE)
@@ -137,15 +139,15 @@ static int check_complete(const struct reading *r) {
         return message_at(STATUS_INPUT, r->lines.name, 0, "all walls have emissivity 0: nothing fixes the temperature");
     if (fibrad_furnace_size(r->config) > 0) return STATUS_OK;
     return message_at(STATUS_INPUT, r->lines.name, 0,
-                      "sizes, coefficients times the edge of a cell, source or temperatures are out of all range");
+                      "sizes, coefficients times the edge of a cell, source or temperatures are out of range");
 }
 
 int read_furnace(const char *path, fibrad_furnace_config *config) {
     struct reading r = {.config = config};
     *config = (fibrad_furnace_config){0};
     int status = lines_open(&r.lines, path);
-    if (!status) status = read_all(&r);
-    if (!status) status = check_complete(&r);
+    if (!status) status = furnace_read_lines(&r);
+    if (!status) status = furnace_check_complete(&r);
     free(r.fields.at);
     lines_close(&r.lines);
     return status;

@@ -20,8 +20,8 @@ void write_furnace_csv(FILE *file, const struct furnace_run *run) {
     }
 }
 
-static void write_field(FILE *file, const struct furnace_run *run, const char *name, const double *values,
-                        bool temperature) {
+static void furnace_write_field(FILE *file, const struct furnace_run *run, const char *name, const double *values,
+                                bool temperature) {
     const uint32_t *n = run->config.cells;
     size_t cells = (size_t)n[0] * n[1] * n[2];
     fprintf(file, "        <DataArray type=\"Float64\" Name=\"%s\" format=\"ascii\">\n", name);
@@ -40,9 +40,9 @@ void write_furnace_vti(FILE *file, const struct furnace_run *run) {
             "    <Piece Extent=\"0 %u 0 %u 0 %u\">\n"
             "      <CellData Scalars=\"T\">\n",
             n[0], n[1], n[2], c->size[0] / n[0], c->size[1] / n[1], c->size[2] / n[2], n[0], n[1], n[2]);
-    write_field(file, run, "T", run->at.e, true);
-    write_field(file, run, "E", run->at.e, false);
-    write_field(file, run, "divq", run->at.divergence, false);
+    furnace_write_field(file, run, "T", run->at.e, true);
+    furnace_write_field(file, run, "E", run->at.e, false);
+    furnace_write_field(file, run, "divq", run->at.divergence, false);
     fputs("      </CellData>\n    </Piece>\n  </ImageData>\n</VTKFile>\n", file);
 }
 

@@ -6,7 +6,7 @@
 
 #include "boxes/furnace_run.h"
 
-/* Writes to the file; a failing file is noticed by the caller. */
+/* Writes to the file; the caller checks it for errors. */
 typedef void write_furnace_function(FILE *file, const struct furnace_run *run);
 
 /* `x,y,z,T,E,divq` of each cell, x fastest; and image data for ParaView with the same three fields. */

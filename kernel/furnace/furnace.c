@@ -3,29 +3,31 @@
 
 #include "base/arena.h"
 
-static bool within(double x, double low, double high) { return x >= low && x <= high; }
+static bool furnace_in_range(double x, double low, double high) { return x >= low && x <= high; }
 
-/* The ranges leave room for products of a few of these numbers, and digits for what a cell takes from a flux. */
-static bool is_valid(const fibrad_furnace_config *c) {
-    if (c == NULL || !within(c->source, -1e30, 1e30)) return false;
+/* Within these ranges products of a few of the numbers are finite, and extinction in a cell is above rounding. */
+static bool furnace_config_valid(const fibrad_furnace_config *c) {
+    if (c == NULL || !furnace_in_range(c->source, -1e30, 1e30)) return false;
     uint64_t cells = 1;
     for (int a = 0; a < 3; a++) {
-        if (!within(c->size[a], 1e-9, 1e9) || c->cells[a] == 0) return false;
+        if (!furnace_in_range(c->size[a], 1e-9, 1e9) || c->cells[a] == 0) return false;
         if (c->cells[a] > FIBRAD_FURNACE_CELLS_MAX / cells) return false;
         cells *= c->cells[a];
         double step = c->size[a] / c->cells[a];
-        if (!within(c->absorption * step, 1e-9, 1e9) || !within(c->scattering * step, 0, 1e9)) return false;
+        if (!furnace_in_range(c->absorption * step, 1e-9, 1e9) || !furnace_in_range(c->scattering * step, 0, 1e9))
+            return false;
     }
     double widest = 0;
     for (int w = 0; w < 6; w++) {
-        if (!within(c->wall_temperature[w], 1e-3, 1e9) || !within(c->wall_emissivity[w], 0, 1)) return false;
+        if (!furnace_in_range(c->wall_temperature[w], 1e-3, 1e9) || !furnace_in_range(c->wall_emissivity[w], 0, 1))
+            return false;
         widest = fibrad_max(widest, c->wall_emissivity[w]);
     }
     return widest > 0;
 }
 
 /* The one layout of fibrad_furnace_size and _init. */
-static fibrad_furnace *lay_out(fibrad_arena *arena, const fibrad_furnace_config *c) {
+static fibrad_furnace *furnace_lay_out(fibrad_arena *arena, const fibrad_furnace_config *c) {
     fibrad_furnace *furnace = fibrad_arena_take(arena, 1, sizeof *furnace);
     fibrad_furnace count = {0}, *f = furnace != NULL ? furnace : &count;
     f->config = *c;
@@ -66,14 +68,14 @@ static fibrad_furnace *lay_out(fibrad_arena *arena, const fibrad_furnace_config 
 }
 
 size_t fibrad_furnace_size(const fibrad_furnace_config *config) {
-    if (!is_valid(config)) return 0;
+    if (!furnace_config_valid(config)) return 0;
     fibrad_arena arena = {0};
-    lay_out(&arena, config);
+    furnace_lay_out(&arena, config);
     return fibrad_arena_total(&arena);
 }
 
-/* The E that leaves the walls least to emit, above and below it: their median, weighted by emissivity and area. */
-static double median_wall(const fibrad_furnace *f) {
+/* The E for which the walls emit least above and below it: their median, weighted by emissivity and area. */
+static double furnace_median_wall(const fibrad_furnace *f) {
     double best = 0, least = DBL_MAX;
     for (int m = 0; m < 6; m++) {
         double sum = 0;
@@ -89,12 +91,12 @@ static double median_wall(const fibrad_furnace *f) {
     return best;
 }
 
-static bool same_wall(const fibrad_furnace_config *c, int v, int w) {
+static bool furnace_walls_alike(const fibrad_furnace_config *c, int v, int w) {
     return c->wall_temperature[v] == c->wall_temperature[w] && c->wall_emissivity[v] == c->wall_emissivity[w];
 }
 
-/* Of the 48 ways to map axes onto axes, those that change neither the box, its cells nor its walls. */
-static void find_symmetries(fibrad_furnace *f) {
+/* Of the 48 mappings of axes onto axes, those that change neither the box nor its cells nor its walls. */
+static void furnace_find_symmetries(fibrad_furnace *f) {
     const fibrad_furnace_config *c = &f->config;
     f->symmetries = 0;
     for (unsigned code = 0; code < 6 * 8; code++) {
@@ -105,13 +107,14 @@ static void find_symmetries(fibrad_furnace *f) {
         for (int a = 0; a < 3; a++) {
             int b = s.axis[a];
             same = same && c->size[a] == c->size[b] && c->cells[a] == c->cells[b];
-            for (int side = 0; side < 2; side++) same = same && same_wall(c, 2 * a + side, 2 * b + (side ^ s.flip[a]));
+            for (int side = 0; side < 2; side++)
+                same = same && furnace_walls_alike(c, 2 * a + side, 2 * b + (side ^ s.flip[a]));
         }
         if (same) f->symmetry[f->symmetries++] = s;
     }
 }
 
-static void fill(double *array, size_t n, double value) {
+static void furnace_fill(double *array, size_t n, double value) {
     for (size_t k = 0; k < n; k++) array[k] = value;
 }
 
@@ -122,17 +125,17 @@ int fibrad_furnace_init(fibrad_furnace **furnace, void *memory, size_t size, con
     int status = fibrad_arena_open(&arena, memory, size, needed);
     if (status != FIBRAD_OK) return status;
     fibrad_zero(memory, needed);
-    fibrad_furnace *f = lay_out(&arena, config);
+    fibrad_furnace *f = furnace_lay_out(&arena, config);
     for (int w = 0; w < 6; w++) {
         double t2 = config->wall_temperature[w] * config->wall_temperature[w];
         f->wall_e[w] = FIBRAD_STEFAN_BOLTZMANN * t2 * t2;
     }
-    f->reference = median_wall(f);
-    find_symmetries(f);
-    fill(f->at.e, f->cells, f->reference);
-    fill(f->traced, f->cells, f->reference);
+    f->reference = furnace_median_wall(f);
+    furnace_find_symmetries(f);
+    furnace_fill(f->at.e, f->cells, f->reference);
+    furnace_fill(f->traced, f->cells, f->reference);
     for (int a = 0; a < 3; a++) {
-        for (int g = 0; g < 2; g++) fill(f->at.flux[a][g], f->faces[a], f->reference);
+        for (int g = 0; g < 2; g++) furnace_fill(f->at.flux[a][g], f->faces[a], f->reference);
     }
     fibrad_furnace_balance(f);
     *furnace = f;
@@ -151,8 +154,8 @@ int fibrad_furnace_theta(fibrad_furnace *furnace, double theta) {
     if (furnace == NULL || !(theta > 0) || theta > 1) return FIBRAD_E_ARGUMENT;
     for (int a = 0; a < 3; a++) {
         for (int g = 0; g < 2; g++) {
-            fill(furnace->at.theta[a][g], furnace->faces[a], theta);
-            fill(furnace->at.transverse[a][g], furnace->cells, 0);
+            furnace_fill(furnace->at.theta[a][g], furnace->faces[a], theta);
+            furnace_fill(furnace->at.transverse[a][g], furnace->cells, 0);
         }
     }
     return FIBRAD_OK;

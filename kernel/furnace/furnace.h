@@ -5,10 +5,11 @@
 #ifndef FIBRAD_FURNACE_FURNACE_H
 #define FIBRAD_FURNACE_FURNACE_H
 
-#include "base/port.h"
+#include "base/random.h"
+#include "fibrad_furnace.h"
 #include "fibrad_furnace.h"
 
-/* A mapping of the box onto itself: axis a becomes axis[a], turned round if flip[a]. */
+/* A mapping of the box onto itself: axis a becomes axis[a], reversed if flip[a]. */
 typedef struct fibrad_symmetry {
     uint8_t axis[3], flip[3];
 } fibrad_symmetry;
@@ -30,29 +31,41 @@ struct fibrad_furnace {
     double *gain[3][2], *feed[3][2], *response;
 
     /* plan of bundles */
-    double reference;    /* E that is everywhere and carried by no bundle [W/m2] */
-    double bundle_power; /* W; 0 until the first plan */
+    double reference;    /* uniform part of E, which needs no bundles [W/m2] */
+    double bundle_power; /* W; 0: there is no plan */
     fibrad_furnace_physics physics;
     uint64_t origin, planned; /* bundles before this plan, and in it */
     double *traced;           /* cell: E carried by all plans up to this one [W/m2] */
     double *power;            /* source: what this plan carries [W] */
     uint64_t *first;          /* [sources + 1]: first bundle of each source */
+    uint64_t restarts;
+    uint64_t series; /* hash of the first plan since the restart, not 0 */
+    uint64_t plan;   /* hash of all plans since the restart */
+    uint64_t mark;   /* of a tally that holds all bundles since the restart once */
 };
+
+/* The mark of a range of bundles of a plan: the hash of its end less that of its beginning. Marks are added modulo
+ * 2^64, in any order. Ranges that cover a plan exactly once then have the sum mark(plan, 0, planned), since the hashes
+ * of all other ends cancel; a range that is missing or repeated leaves hashes over, whose sum is as good as random. */
+static inline uint64_t fibrad_bundles_mark(uint64_t plan, uint64_t first, uint64_t count) {
+    return fibrad_mix(plan + first + count) - fibrad_mix(plan + first);
+}
 
 /* Weights are whole multiples of bundle_power / FIBRAD_TALLY_UNIT: 2^32 crossings of one face fit into 63 bits. */
 #define FIBRAD_TALLY_UNIT 0x1p30
 
-/* F0, F1 and F2 of a face lie together, since a bundle adds to all of them: one cache line instead of three. */
+/* F0, F1 and F2 of a face are adjacent, since a bundle adds to all of them: one cache line instead of three. */
 typedef struct fibrad_moments {
     int64_t f[3];
 } fibrad_moments;
 
 struct fibrad_furnace_tally {
     uint32_t cells[3];            /* of the furnace it is for */
+    uint64_t series, mark;        /* of the bundles in it; 0: none */
     fibrad_moments *moment[3][2]; /* faces of axis, hemisphere */
     int64_t *path;                /* cell: weight times length in diagonals of a cell */
     int64_t *absorbed;            /* patch */
-    int64_t *counts;              /* all of them in one piece, for sums */
+    int64_t *counts;              /* all of the above, which are contiguous */
     size_t length;                /* of counts */
 };
 
@@ -67,6 +80,12 @@ static inline double fibrad_face_area(const fibrad_furnace *f, int a) {
     return f->step[(a + 1) % 3] * f->step[(a + 2) % 3];
 }
 
+/* What a patch of wall w emits above the reference E [W]. */
+static inline double fibrad_patch_power(const fibrad_furnace *f, int w) {
+    double net = f->config.wall_emissivity[w] * (f->wall_e[w] - f->reference);
+    return net * fibrad_face_area(f, w / 2);
+}
+
 static inline double fibrad_cell_diagonal(const fibrad_furnace *f) {
     return fibrad_sqrt(f->step[0] * f->step[0] + f->step[1] * f->step[1] + f->step[2] * f->step[2]);
 }
@@ -78,8 +97,8 @@ static inline double fibrad_line_source(const fibrad_furnace *f, double e, doubl
     return ka * e + ks * (scatter == FIBRAD_SCATTER_EXACT ? e - f->config.source / (4 * ka) : six_flux / 6);
 }
 
-/* The weight of the flux that enters a cell in the rule for its extinction: half of the optical thickness, as the
- * trapezoidal rule says, but never so much that the flux that leaves could be negative. */
+/* The weight of the flux that enters a cell in the rule for its extinction: half of the optical thickness by the
+ * trapezoidal rule, limited so that the flux that leaves cannot be negative. */
 static inline double fibrad_line_entry(double thickness, double theta_in) {
     return fibrad_min(thickness / 2, theta_in);
 }

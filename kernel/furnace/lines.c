@@ -1,14 +1,14 @@
 /* lines.c - the heat-flux equations, solved along lines of cells. SPDX-License-Identifier: MIT
  *
- * Across a cell of thickness d the equation of one hemisphere, d(Theta q)/dx + C = J - beta q with C = chi q, is taken
- * by the trapezoidal rule, so that q_out is affine in q_in. So then is the flux at one end of a line in the flux at the
- * other, and with the two walls, where q leaving = eps E + (1 - eps) q arriving, there are two equations for the two
- * fluxes that start. E of all cells is then corrected at once by the heat that each gives off too little or too much,
- * over the change of that heat with its own E, fluxes entering it being held. */
+ * Across a cell of thickness d the equation of one hemisphere, d(Theta q)/dx + C = J - beta q with C = chi q, is
+ * discretised by the trapezoidal rule, so that q_out is affine in q_in. So is the flux at one end of a line in the flux
+ * at the other, and with the two walls, where q leaving = eps E + (1 - eps) q arriving, there are two equations for the
+ * two fluxes that start. E of all cells is then corrected at once: by the excess or deficit of heat of each cell,
+ * divided by the derivative of that heat with respect to its own E, the fluxes that enter being held. */
 #include "furnace/furnace.h"
 
-/* Coefficients of one solve; they do not change from sweep to sweep. */
-static void prepare(fibrad_furnace *f, fibrad_furnace_scatter scatter) {
+/* The coefficients of one solution, the same in all sweeps. */
+static void line_set_coefficients(fibrad_furnace *f, fibrad_furnace_scatter scatter) {
     const fibrad_furnace_config *c = &f->config;
     double beta = c->absorption + c->scattering;
     double own = scatter == FIBRAD_SCATTER_EXACT ? beta : c->absorption; /* dJ/dE */
@@ -22,7 +22,8 @@ static void prepare(fibrad_furnace *f, fibrad_furnace_scatter scatter) {
                 size_t low = k + k / block * stride;
                 double in = theta[g ? low + stride : low], out = theta[g ? low : low + stride];
                 double entry = fibrad_line_entry(beta * d, in), side = f->at.transverse[a][g][k] * d / 2;
-                double sum = fibrad_max(out + beta * d - entry + side, 0.01); /* less only by noise */
+                double sum = out + beta * d - entry + side;
+                if (sum < 0.01) sum = 0.01; /* less only by noise; NaN stays */
                 f->gain[a][g][k] = (in - entry - side) / sum;
                 f->feed[a][g][k] = d / sum;
                 f->response[k] += own / sum;
@@ -33,7 +34,7 @@ static void prepare(fibrad_furnace *f, fibrad_furnace_scatter scatter) {
 }
 
 /* Fluxes of the line along axis a that begins at `cell` and `face`, from the sources J of the cells. */
-static void solve_line(fibrad_furnace *f, int a, size_t cell, size_t face, const double *source) {
+static void line_solve(fibrad_furnace *f, int a, size_t cell, size_t face, const double *source) {
     size_t n = f->config.cells[a], stride = f->cell_stride[a];
     const double *gain_up = f->gain[a][0] + cell, *feed_up = f->feed[a][0] + cell;
     const double *gain_down = f->gain[a][1] + cell, *feed_down = f->feed[a][1] + cell;
@@ -59,7 +60,7 @@ static void solve_line(fibrad_furnace *f, int a, size_t cell, size_t face, const
         down[k - stride] = gain_down[k - stride] * down[k] + feed_down[k - stride] * source[k - stride];
 }
 
-static void set_sums(fibrad_furnace *f) {
+static void line_set_sums(fibrad_furnace *f) {
     fibrad_zero(f->at.six_flux, f->cells * sizeof(double));
     fibrad_zero(f->at.divergence, f->cells * sizeof(double));
     for (int a = 0; a < 3; a++) {
@@ -74,7 +75,7 @@ static void set_sums(fibrad_furnace *f) {
     }
 }
 
-static void set_walls(fibrad_furnace *f) {
+static void line_set_walls(fibrad_furnace *f) {
     for (int w = 0; w < 6; w++) {
         int a = w / 2;
         const double *out = f->at.flux[a][w % 2], *in = f->at.flux[a][1 - w % 2];
@@ -91,9 +92,36 @@ static void set_walls(fibrad_furnace *f) {
 
 int fibrad_furnace_balance(fibrad_furnace *furnace) {
     if (furnace == NULL) return FIBRAD_E_ARGUMENT;
-    set_sums(furnace);
-    set_walls(furnace);
+    line_set_sums(furnace);
+    line_set_walls(furnace);
     return FIBRAD_OK;
+}
+
+/* All lines of all axes, for E as it is; the source J of the cells is in `divergence` until the sums replace it. */
+static void line_sweep(fibrad_furnace *f, fibrad_furnace_scatter scatter) {
+    double *source = f->at.divergence;
+    for (size_t k = 0; k < f->cells; k++) source[k] = fibrad_line_source(f, f->at.e[k], f->at.six_flux[k], scatter);
+    for (int a = 0; a < 3; a++) {
+        size_t stride = f->cell_stride[a], n = f->config.cells[a];
+        for (size_t line = 0; line < f->patches[a]; line++) {
+            size_t low = line % stride, high = line / stride;
+            line_solve(f, a, low + high * stride * n, low + high * stride * (n + 1), source);
+        }
+    }
+    line_set_sums(f);
+}
+
+/* Corrects E of all cells. Returns whether all changes are finite; *largest of them [W/m2]. */
+static bool line_correct(fibrad_furnace *f, double *largest) {
+    bool finite = true;
+    *largest = 0;
+    for (size_t k = 0; k < f->cells; k++) {
+        double change = (f->config.source - f->at.divergence[k]) * f->response[k];
+        f->at.e[k] += change;
+        finite = finite && fibrad_finite(change); /* the maximum drops NaN */
+        *largest = fibrad_max(*largest, fibrad_abs(change));
+    }
+    return finite;
 }
 
 int fibrad_furnace_solve(fibrad_furnace *furnace, fibrad_furnace_scatter scatter, double tolerance, uint32_t sweeps_max,
@@ -101,27 +129,14 @@ int fibrad_furnace_solve(fibrad_furnace *furnace, fibrad_furnace_scatter scatter
     fibrad_furnace *f = furnace;
     if (f == NULL || report == NULL || !(tolerance > 0)) return FIBRAD_E_ARGUMENT;
     if (scatter != FIBRAD_SCATTER_SIX_FLUX && scatter != FIBRAD_SCATTER_EXACT) return FIBRAD_E_ARGUMENT;
-    prepare(f, scatter);
-    *report = (fibrad_furnace_report){0, DBL_MAX};
-    double *source = f->at.divergence; /* J lives there during the first half of each sweep */
-    while (report->sweeps < sweeps_max && !(report->change <= tolerance)) {
-        for (size_t k = 0; k < f->cells; k++) source[k] = fibrad_line_source(f, f->at.e[k], f->at.six_flux[k], scatter);
-        for (int a = 0; a < 3; a++) {
-            size_t stride = f->cell_stride[a], n = f->config.cells[a];
-            for (size_t line = 0; line < f->patches[a]; line++) {
-                size_t low = line % stride, high = line / stride;
-                solve_line(f, a, low + high * stride * n, low + high * stride * (n + 1), source);
-            }
-        }
-        set_sums(f);
-        report->change = 0;
-        for (size_t k = 0; k < f->cells; k++) {
-            double change = (f->config.source - f->at.divergence[k]) * f->response[k];
-            f->at.e[k] += change;
-            report->change = fibrad_max(report->change, fibrad_abs(change));
-        }
-        report->sweeps++;
+    line_set_coefficients(f, scatter);
+    fibrad_furnace_report result = {0, DBL_MAX};
+    while (result.sweeps < sweeps_max && result.change > tolerance) {
+        line_sweep(f, scatter);
+        if (!line_correct(f, &result.change)) return FIBRAD_E_ARGUMENT;
+        result.sweeps++;
     }
-    set_walls(f);
+    line_set_walls(f);
+    *report = result;
     return FIBRAD_OK;
 }

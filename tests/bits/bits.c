@@ -1,16 +1,18 @@
 /* bits.c - prints a hash of everything the kernel computes for fixed scenes. SPDX-License-Identifier: MIT
  *
  * Usage: bits ISA. Exit status 77 if this build or machine lacks it. One line per method and scene: name, hash. Needs
- * nothing but fibrad.h, stdio and static memory, so that it runs wherever the kernel does; tests/check_bits.sh compares
- * its output with tests/golden/bits.txt on every target. */
+ * nothing but the public headers, stdio and static memory, so that it runs wherever the kernel does;
+ * tests/check_bits.sh compares its output with tests/golden/bits.txt on every target. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "fibrad.h"
+#include "fibrad_furnace.h"
+#include "fibrad_surface.h"
 
 #define SPHERES 300
-#define ENTRIES (2 * SPHERES * SPHERES)
+#define WALLS   7
 #define DISCS   2048 /* a perfect lattice is seen through for a hundred periods */
 
 /* ---- FNV-1a ----------------------------------------------------------------------------------------------------- */
@@ -43,18 +45,29 @@ static double random_in(double low, double high) {
 
 static double x[SPHERES], y[SPHERES], z[SPHERES], r[SPHERES];
 
+/* What bounds a scene: nothing; periods; six planes; a cylinder with a plane at either end; planes at both ends of z
+ * and periods across; a plane below, without end. */
+enum { OPEN, PERIODIC, BOX, CAN, SLAB, FLOOR };
+
 /* What a scene is made of: sites of a grid, filled in order, moved at random. */
 static const struct scene {
     const char *name;
     uint32_t n, side; /* spheres; sites per axis */
     double spacing, jitter, smallest, largest;
-    int periodic;
+    int bounds;
     double cutoff;
 } scenes[] = {
-    {"random", 300, 7, 2.1, .15, .7, 1.05, 0, 0},    {"periodic", 216, 6, 2.05, .1, .8, 1.1, 1, 0},
-    {"lattice", 216, 6, 2, 0, 1, 1, 0, 0},           {"torus", 125, 5, 2, 0, 1, 1, 1, 0},
-    {"sizes", 300, 7, 4.2, .3, .05, 2, 0, 0},        {"sparse", 100, 5, 9, 3, .1, 1, 0, 0},
-    {"settled", 300, 7, 1.96, .02, .98, 1.02, 0, 0}, {"cutoff", 216, 6, 2.05, .1, .8, 1.1, 1, 4.5},
+    {"random", 300, 7, 2.1, .15, .7, 1.05, OPEN, 0},    {"periodic", 216, 6, 2.05, .1, .8, 1.1, PERIODIC, 0},
+    {"lattice", 216, 6, 2, 0, 1, 1, OPEN, 0},           {"torus", 125, 5, 2, 0, 1, 1, PERIODIC, 0},
+    {"sizes", 300, 7, 4.2, .3, .05, 2, OPEN, 0},        {"sparse", 100, 5, 9, 3, .1, 1, OPEN, 0},
+    {"settled", 300, 7, 1.96, .02, .98, 1.02, OPEN, 0}, {"cutoff", 216, 6, 2.05, .1, .8, 1.1, PERIODIC, 4.5},
+};
+
+/* Small ones, for what takes long or needs walls. */
+static const struct scene small[] = {
+    {"cube", 27, 3, 2.1, .1, .75, 1.1, PERIODIC, 0}, {"box", 27, 3, 2.1, .1, .75, 1.1, BOX, 0},
+    {"can", 25, 3, 2.1, .1, .75, 1.1, CAN, 0},       {"slab", 18, 3, 2.1, .1, .75, 1.1, SLAB, 0},
+    {"floor", 12, 3, 2.1, .1, .75, 1.1, FLOOR, 0},
 };
 
 static void make(const struct scene *s) {
@@ -69,16 +82,37 @@ static void make(const struct scene *s) {
 
 /* ---- what is hashed --------------------------------------------------------------------------------------------- */
 
-static _Alignas(64) unsigned char scene_memory[FIBRAD_SCENE_BYTES(SPHERES)];
-static _Alignas(64) unsigned char work_memory[FIBRAD_WORK_BYTES(2048, DISCS, SPHERES)];
-static uint64_t raw_start[SPHERES + 1], start[SPHERES + 1];
-static uint32_t raw_col[ENTRIES], col[ENTRIES];
-static double raw_f[ENTRIES], f[ENTRIES], scratch[3 * SPHERES];
+static unsigned char scene_memory[FIBRAD_SCENE_BYTES(SPHERES)], work_memory[FIBRAD_WORK_BYTES(DISCS, SPHERES)];
+static unsigned char rows_memory[SPHERES * (12 * SPHERES + 128)], matrix_memory[SPHERES * (36 * SPHERES + 512)];
+static fibrad_work work = {.memory = {.block = work_memory, .size = sizeof work_memory}}; /* of all that follows */
+static fibrad_rows rows = {.memory = {.block = rows_memory, .size = sizeof rows_memory}};
+static uint32_t col[SPHERES];
+static double f[SPHERES], on_body[WALLS];
 
-static void hash_rows(const fibrad_rows *rows) {
+static uint32_t bodies;
+static uint32_t wall_of[WALLS]; /* x low, x high, y low, y high, z low, z high, cylinder: which of these each body is */
+
+/* A row with room for all there is. */
+static fibrad_row row_here(void) { return (fibrad_row){.col = col, .f = f, .body = on_body, .capacity = SPHERES}; }
+
+static void hash_factors(const fibrad_factors *factors) {
     hash_begin();
-    for (uint32_t i = 0; i <= rows->n; i++) hash_word(rows->start[i]);
-    for (uint64_t k = 0; k < rows->start[rows->n]; k++) hash_word(rows->col[k]), hash_number(rows->f[k]);
+    for (uint32_t i = 0; i <= factors->n; i++) hash_word(factors->start[i]);
+    for (uint64_t k = 0; k < factors->start[factors->n]; k++) hash_word(factors->col[k]), hash_number(factors->f[k]);
+}
+
+/* Numbers of bodies by wall, 0 for those that are not there. */
+static void hash_walls(const double *of_body) {
+    double wall[WALLS] = {0};
+    for (uint32_t b = 0; b < bodies; b++) wall[wall_of[b]] = of_body[b];
+    for (int k = 0; k < WALLS; k++) hash_number(wall[k]);
+}
+
+static void hash_row(const fibrad_row *row) {
+    hash_word(row->length);
+    for (uint32_t k = 0; k < row->length; k++) hash_word(row->col[k]), hash_number(row->f[k]);
+    hash_walls(row->body);
+    hash_number(row->escaped), hash_number(row->error);
 }
 
 static int hash_pairs(void) {
@@ -105,42 +139,76 @@ static int hash_directions(void) {
     return 0;
 }
 
-static int set_up(const struct scene *s, int isa, fibrad_scene **scene, fibrad_work **work) {
-    double period = s->periodic ? s->spacing * s->side : 0;
-    fibrad_scene_config config = {.spheres = s->n, .period = {period, period, period}, .isa = isa};
-    return fibrad_scene_init(scene, scene_memory, sizeof scene_memory, &config, &(fibrad_spheres){x, y, z, r, s->n},
-                             NULL) != FIBRAD_OK ||
-           fibrad_work_init(work, work_memory, sizeof work_memory,
-                            &(fibrad_work_config){.near = 2048, .discs = DISCS, .entries = SPHERES}) != FIBRAD_OK;
+static void add_body(fibrad_body *body, uint32_t wall, fibrad_body fields) {
+    wall_of[bodies] = wall;
+    body[bodies++] = fields;
+}
+
+/* Makes the scene; its bodies are in the order of wall_of. */
+static int scene_at(void *memory, size_t size, const struct scene *s, int isa, fibrad_scene **scene) {
+    const double low = -.95, high = s->spacing * (s->side - 1) - low, middle = (low + high) / 2;
+    const double period = s->spacing * s->side, across = s->bounds == PERIODIC || s->bounds == SLAB ? period : 0;
+    const uint32_t planes = s->bounds < BOX ? 0 : s->bounds == BOX ? 63 : s->bounds == FLOOR ? 16 : 48;
+    fibrad_body body[WALLS];
+    bodies = 0;
+    for (uint32_t k = 0; k < 6; k++)
+        if (planes >> k & 1)
+            add_body(body, k,
+                     (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {(int)k / 2, k % 2, k % 2 ? high : low}});
+    if (s->bounds == CAN)
+        add_body(body, 6,
+                 (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {middle, middle, .75 * (high - low)}});
+    const fibrad_scene_config config = {
+        .isa = isa, .period = {across, across, s->bounds == PERIODIC ? period : 0}, .body = body, .bodies = bodies};
+    const fibrad_spheres spheres = {.x = x, .y = y, .z = z, .r = r, .n = s->n};
+    return fibrad_scene_init(scene, memory, size, &config, &spheres, NULL) != FIBRAD_OK;
+}
+
+static int set_up(const struct scene *s, int isa, fibrad_scene **scene) {
+    return scene_at(scene_memory, sizeof scene_memory, s, isa, scene);
+}
+
+/* Puts the rows together by a rule. */
+static int matrix_of(const fibrad_scene *scene, const fibrad_matrix_rule *rule, fibrad_factors *factors,
+                     double *reciprocity) {
+    fibrad_matrix *matrix;
+    if (fibrad_matrix_init(&matrix, matrix_memory, sizeof matrix_memory, scene, &rows, 1, rule, NULL) != FIBRAD_OK)
+        return 1;
+    /* some of the tasks; closing does the others */
+    for (uint32_t k = rule->tasks; k-- > rule->tasks / 2;)
+        if (fibrad_matrix_average(matrix, k) != FIBRAD_OK) return 1;
+    return fibrad_matrix_close(matrix) != FIBRAD_OK || fibrad_matrix_read(matrix, factors) != FIBRAD_OK ||
+           fibrad_matrix_reciprocity(matrix, reciprocity) != FIBRAD_OK;
 }
 
 /* All rows of a scene, and what is made of them. */
 static int hash_beam(const struct scene *s, int isa, uint32_t points) {
     static const char *const names[] = {"areas", "points64", "points128", "", "points256"};
+    static const fibrad_matrix_rule raw = {.raw = 1}, drop = {.drop = 1e-3, .tasks = 7};
     fibrad_scene *scene;
-    fibrad_work *work;
-    if (set_up(s, isa, &scene, &work)) return 1;
-    fibrad_rows raw = {.n = s->n, .capacity = ENTRIES, .start = raw_start, .col = raw_col, .f = raw_f};
-    fibrad_beam_rule rule = {.directions = 55, .points = points, .cutoff = s->cutoff};
+    fibrad_factors factors;
+    double largest;
+    if (set_up(s, isa, &scene)) return 1;
+    const fibrad_beam_rule rule = {.directions = 55, .points = points, .cutoff = s->cutoff};
+    fibrad_rows_clear(&rows);
     hash_begin();
     for (uint32_t i = 0; i < s->n; i++) {
-        fibrad_row row = {.col = raw_col + raw_start[i], .f = raw_f + raw_start[i], .capacity = SPHERES};
-        if (fibrad_beam_row(scene, work, i, &rule, &row) != FIBRAD_OK) return 1;
-        raw_start[i + 1] = raw_start[i] + row.length;
+        fibrad_row row = {.rows = &rows};
+        if (fibrad_beam_row(scene, &work, i, &rule, &row) != FIBRAD_OK) return 1;
         hash_number(row.escaped), hash_number(row.error);
     }
     uint64_t first = hash;
-    hash_rows(&raw);
+    if (matrix_of(scene, &raw, &factors, &largest)) return 1;
+    hash_factors(&factors);
     hash_word(first);
     tell(s->name, names[points / 64]);
     if (points != 0 && points != 64) return 0;
 
-    fibrad_rows rows = {.n = s->n, .capacity = ENTRIES, .start = start, .col = col, .f = f};
-    if (fibrad_rows_average(&raw, r, &rows) != FIBRAD_OK || fibrad_rows_limit(&rows, scratch) != FIBRAD_OK) return 1;
-    hash_rows(&rows);
+    if (matrix_of(scene, &(fibrad_matrix_rule){0}, &factors, &largest)) return 1;
+    hash_factors(&factors);
     tell(s->name, points == 0 ? "areas.reciprocal" : "points64.reciprocal");
-    if (fibrad_rows_drop(&rows, r, 1e-3, scratch) != FIBRAD_OK) return 1;
-    hash_rows(&rows);
+    if (matrix_of(scene, &drop, &factors, &largest)) return 1;
+    hash_factors(&factors);
     tell(s->name, points == 0 ? "areas.dropped" : "points64.dropped");
     return 0;
 }
@@ -148,13 +216,12 @@ static int hash_beam(const struct scene *s, int isa, uint32_t points) {
 /* Raw rows by the surface method, of every seventh sphere. */
 static int hash_surface(const struct scene *s, int isa) {
     fibrad_scene *scene;
-    fibrad_work *work;
-    if (set_up(s, isa, &scene, &work)) return 1;
+    if (set_up(s, isa, &scene)) return 1;
     fibrad_surface_rule rule = {.nodes = 13, .cutoff = 5};
     hash_begin();
     for (uint32_t i = 0; i < s->n; i += 7) {
-        fibrad_row row = {.col = col, .f = f, .capacity = SPHERES};
-        if (fibrad_surface_row(scene, work, i, &rule, &row) != FIBRAD_OK) return 1;
+        fibrad_row row = row_here();
+        if (fibrad_surface_row(scene, &work, i, &rule, &row) != FIBRAD_OK) return 1;
         for (uint32_t k = 0; k < row.length; k++) hash_word(col[k]), hash_number(f[k]);
         hash_number(row.escaped), hash_number(row.error);
     }
@@ -166,13 +233,12 @@ static int hash_surface(const struct scene *s, int isa) {
 static int hash_cast(const struct scene *s, int isa, int random) {
     static double length[SPHERES], angle[SPHERES];
     fibrad_scene *scene;
-    fibrad_work *work;
-    if (set_up(s, isa, &scene, &work)) return 1;
+    if (set_up(s, isa, &scene)) return 1;
     fibrad_cast_rule rule = {.rays = 1000, .random = random, .seed = 5, .cutoff = s->cutoff};
     hash_begin();
     for (uint32_t i = 0; i < s->n; i += 7) {
-        fibrad_row row = {.col = col, .f = f, .capacity = SPHERES};
-        if (fibrad_cast_row(scene, work, i, &rule, &row, &(fibrad_cast_means){length, angle}) != FIBRAD_OK) return 1;
+        fibrad_row row = row_here();
+        if (fibrad_cast_row(scene, &work, i, &rule, &row, &(fibrad_cast_means){length, angle}) != FIBRAD_OK) return 1;
         for (uint32_t k = 0; k < row.length; k++)
             hash_word(col[k]), hash_number(f[k]), hash_number(length[k]), hash_number(angle[k]);
         hash_number(row.escaped), hash_number(row.error);
@@ -180,6 +246,252 @@ static int hash_cast(const struct scene *s, int isa, int random) {
     tell(s->name, random ? "mc" : "cast");
     return 0;
 }
+
+/* ---- heat, exchange, walls, what moves: small scenes ------------------------------------------------------------ */
+
+static double temperature[SPHERES], emissivity[SPHERES], power[SPHERES];
+static double wall_temperature[WALLS], wall_emissivity[WALLS]; /* of all walls, and of the bodies there are: */
+static double body_temperature[WALLS], body_emissivity[WALLS], body_power[WALLS];
+
+/* Temperatures, and emissivities between two bounds, of all spheres and walls. */
+static fibrad_heat_sources sources_of(const struct scene *s, uint64_t seed, double lowest, double highest) {
+    fibrad_heat_sources sources;
+    fibrad_heat_sources_init(&sources);
+    sources.temperature = temperature, sources.emissivity = emissivity;
+    sources.body_temperature = body_temperature, sources.body_emissivity = body_emissivity;
+    sources.surroundings = .5, sources.sigma = 1;
+    state = seed;
+    for (uint32_t i = 0; i < s->n; i++) temperature[i] = random_in(1, 2), emissivity[i] = random_in(lowest, highest);
+    for (int k = 0; k < WALLS; k++)
+        wall_temperature[k] = random_in(1, 2), wall_emissivity[k] = random_in(lowest, highest);
+    for (uint32_t b = 0; b < bodies; b++)
+        body_temperature[b] = wall_temperature[wall_of[b]], body_emissivity[b] = wall_emissivity[wall_of[b]];
+    return sources;
+}
+
+static void hash_result(const struct scene *s, const fibrad_heat_result *result) {
+    hash_begin();
+    for (uint32_t i = 0; i < s->n; i++) hash_number(result->power[i]);
+    hash_walls(result->body_power);
+    hash_number(result->surroundings_power), hash_number(result->error_patches), hash_number(result->error_beams);
+    hash_number(result->residual), hash_word(result->sweeps);
+}
+
+static void hash_facts(const struct scene *s, const fibrad_scene *scene) {
+    fibrad_scene_facts facts;
+    fibrad_scene_describe(scene, &facts);
+    hash_begin();
+    hash_word(facts.spheres), hash_number(facts.radius_min), hash_number(facts.radius_max);
+    hash_number(facts.overlap_max), hash_word(facts.overlap_pair[0]), hash_word(facts.overlap_pair[1]);
+    double area[WALLS];
+    for (uint32_t b = 0; b < bodies; b++) area[b] = fibrad_scene_body_area(scene, b);
+    hash_walls(area);
+    tell(s->name, "facts");
+}
+
+/* The matrix of the rows, closed. */
+static int hash_matrix(const struct scene *s, const fibrad_scene *scene, const fibrad_matrix_rule *rule,
+                       const char *name) {
+    fibrad_factors factors;
+    double largest;
+    if (matrix_of(scene, rule, &factors, &largest)) return 1;
+    hash_factors(&factors);
+    hash_number(largest);
+    for (uint32_t i = 0; i < s->n; i++) {
+        hash_walls(factors.body + (size_t)i * bodies);
+        hash_number(factors.escaped[i]), hash_number(factors.error[i]);
+    }
+    tell(s->name, name);
+    return 0;
+}
+
+/* Rows with what meets walls, and their matrix. */
+static int hash_closed(const struct scene *s, int isa, uint32_t points) {
+    static const char *const names[] = {"areas.walls", "points64.walls", "points128.walls", "", "points256.walls"};
+    fibrad_scene *scene;
+    if (set_up(s, isa, &scene)) return 1;
+    if (points == 0) hash_facts(s, scene);
+    fibrad_beam_rule rule = {.points = points};
+    fibrad_rows_clear(&rows);
+    hash_begin();
+    for (uint32_t i = 0; i < s->n; i++) {
+        rule.directions = 34 + 13 * (i % 3);
+        fibrad_row row = row_here();
+        if (fibrad_beam_row(scene, &work, i, &rule, &row) != FIBRAD_OK ||
+            fibrad_rows_add(&rows, &row, bodies) != FIBRAD_OK)
+            return 1;
+        hash_row(&row);
+        hash_word(row.directions);
+    }
+    tell(s->name, names[points / 64]);
+    return points == 0 && hash_matrix(s, scene, &(fibrad_matrix_rule){.tasks = 3}, "areas.closed");
+}
+
+/* Beam rows to a tolerance, by areas and by points, and the directions that would be next. */
+static int hash_tolerance(const struct scene *s, int isa) {
+    fibrad_scene *scene;
+    if (set_up(s, isa, &scene)) return 1;
+    for (uint32_t points = 0; points <= 256; points += 256) {
+        fibrad_beam_rule rule = {.directions = 20, .points = points, .tolerance = .02};
+        hash_begin();
+        for (uint32_t i = 0; i < s->n; i += 9) {
+            fibrad_row row = row_here();
+            rule.directions = i == 0 ? 0 : 20;
+            if (fibrad_beam_row(scene, &work, i, &rule, &row) != FIBRAD_OK) return 1;
+            hash_row(&row);
+            hash_word(row.directions), hash_word(fibrad_directions_for(row.directions, row.error, 1e-4 * (i + 1)));
+        }
+        tell(s->name, points ? "points256.tolerance" : "areas.tolerance");
+    }
+    return 0;
+}
+
+/* Exchange rows by a fixed number of paths and to a tolerance, their matrix, and displacements. */
+static int hash_exchange(const struct scene *s, int isa) {
+    fibrad_scene *scene;
+    if (set_up(s, isa, &scene)) return 1;
+    (void)sources_of(s, 9, .2, 1);
+    for (uint32_t b = 0; b < bodies; b++)
+        body_emissivity[b] = wall_of[b] == 6 ? .4 : wall_of[b] % 3 ? wall_emissivity[wall_of[b]] : 0;
+    fibrad_exchange_rule rule = {.emissivity = emissivity, .body_emissivity = body_emissivity, .paths = 100, .seed = 3};
+    uint64_t rays;
+    for (int tolerance = 0; tolerance < 2; tolerance++) {
+        rule.tolerance = tolerance ? .03 : 0;
+        hash_begin();
+        for (uint32_t i = 0; i < s->n; i += tolerance ? 9 : 4) {
+            fibrad_row row = row_here();
+            rule.directions = i % 8 == 0 ? 160 : 0; /* by areas, by points */
+            if (fibrad_exchange_row(scene, &work, i, &rule, &row, &rays) != FIBRAD_OK) return 1;
+            hash_row(&row);
+            hash_word(rays);
+        }
+        tell(s->name, tolerance ? "exchange.tolerance" : "exchange");
+    }
+    rule.tolerance = 0, rule.directions = 0;
+    fibrad_rows_clear(&rows);
+    for (uint32_t i = s->n; i-- > 0;)
+        if (fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL) != FIBRAD_OK) return 1;
+    if (hash_matrix(s, scene, &(fibrad_matrix_rule){.emissivity = emissivity}, "exchange.closed")) return 1;
+    hash_begin();
+    for (uint32_t i = 0; i < s->n; i += 4) {
+        fibrad_displacement displacement;
+        if (fibrad_exchange_displacement(scene, &work, i, &rule, &displacement) != FIBRAD_OK) return 1;
+        for (int axis = 0; axis < 3; axis++)
+            hash_number(displacement.square[axis]), hash_number(displacement.error[axis]);
+        hash_number(displacement.absorbed), hash_word(displacement.rays);
+    }
+    tell(s->name, "spread");
+    return 0;
+}
+
+/* What rows say of a bed in which a few spheres have moved: some a little, some so far that others come into sight. */
+static int hash_moved(const struct scene *s, int isa) {
+    static unsigned char now_memory[FIBRAD_SCENE_BYTES(SPHERES)];
+    static uint32_t old_col[SPHERES];
+    static double old_f[SPHERES], error[SPHERES], seen[SPHERES];
+    fibrad_scene *before, *now;
+    if (set_up(s, isa, &before)) return 1;
+    for (uint32_t i = 0; i < s->n; i += 29) x[i] += random_in(-.02, .02), z[i] += i % 2 ? .35 : .01;
+    if (scene_at(now_memory, sizeof now_memory, s, isa, &now)) return 1;
+    const fibrad_beam_rule rule = {.directions = 20, .points = 64};
+    for (uint32_t i = 0; i < s->n; i++) seen[i] = 0;
+    for (uint32_t i = 0; i < s->n; i++) {
+        fibrad_row old = {.col = old_col, .f = old_f, .capacity = SPHERES}, row = row_here();
+        if (fibrad_beam_row(before, &work, i, &rule, &old) != FIBRAD_OK ||
+            fibrad_beam_row(now, &work, i, &rule, &row) != FIBRAD_OK ||
+            fibrad_drift_row(before, now, i, old.col, old.length, &error[i]) != FIBRAD_OK ||
+            fibrad_drift_partners(now, i, &old, &row, seen) != FIBRAD_OK)
+            return 1;
+    }
+    hash_begin();
+    for (uint32_t i = 0; i < s->n; i++) hash_number(error[i]);
+    tell(s->name, "moved.error");
+    hash_begin();
+    for (uint32_t i = 0; i < s->n; i++) hash_number(seen[i]);
+    tell(s->name, "moved.seen");
+    return 0;
+}
+
+static unsigned char heat_memory[12 << 20];
+
+/* The beams of all surfaces. */
+static int heat_trace(const struct scene *s, int isa, const fibrad_heat_config *config, fibrad_heat **heat) {
+    fibrad_scene *scene;
+    if (set_up(s, isa, &scene) || fibrad_heat_init(heat, heat_memory, sizeof heat_memory, config, scene) != FIBRAD_OK)
+        return 1;
+    for (uint32_t k = fibrad_heat_tasks(*heat); k-- > 0;)
+        if (fibrad_heat_trace(*heat, &work, k) != FIBRAD_OK) return 1;
+    return 0;
+}
+
+static int heat_solve(const struct scene *s, fibrad_heat *heat, const fibrad_heat_sources *sources, const char *name) {
+    fibrad_heat_result result = {.power = power, .body_power = body_power};
+    if (fibrad_heat_begin(heat, sources) != FIBRAD_OK) return 1;
+    for (int solved = 0; !solved;) {
+        for (uint32_t k = 0; k < fibrad_heat_parts(heat); k++)
+            if (fibrad_heat_sweep(heat, k) != FIBRAD_OK) return 1;
+        if (fibrad_heat_step(heat, &solved) != FIBRAD_OK) return 1;
+    }
+    if (fibrad_heat_read(heat, &result) != FIBRAD_OK) return 1;
+    hash_result(s, &result);
+    tell(s->name, name);
+    return 0;
+}
+
+/* Powers: anew, from the solution before, and from it without coming to an end. */
+static int hash_heat(const struct scene *s, int isa) {
+    const fibrad_heat_config config = {.directions = 40, .parts = 3};
+    fibrad_heat *heat;
+    if (heat_trace(s, isa, &config, &heat)) return 1;
+    fibrad_heat_sources sources = sources_of(s, 7, .1, .9);
+    if (heat_solve(s, heat, &sources, "heat")) return 1;
+    sources = sources_of(s, 8, .2, 1);
+    emissivity[0] = 0, emissivity[1] = 1;
+    if (heat_solve(s, heat, &sources, "heat.again")) return 1;
+    sources = sources_of(s, 7, .1, .9);
+    sources.sweeps_max = 4, sources.tolerance = 1e-9;
+    return heat_solve(s, heat, &sources, "heat.unfinished");
+}
+
+/* Powers under other settings, at two emissivities. */
+static int hash_heat_settings(const struct scene *s, int isa) {
+    static const struct {
+        fibrad_heat_config config;
+        int uniform;
+        const char *name[2];
+    } cases[] = {
+        {{30, 64, 24, 1, 0}, 0, {"heat.patches24.3", "heat.patches24.8"}},
+        {{30, 64, 96, 1, 0}, 0, {"heat.patches96.3", "heat.patches96.8"}},
+        {{30, 64, 384, 1, 0}, 0, {"heat.patches384.3", "heat.patches384.8"}},
+        {{30, 64, 24, 2, 0}, 0, {"heat.parts2.3", "heat.parts2.8"}},
+        {{30, 64, 24, 7, 0}, 0, {"heat.parts7.3", "heat.parts7.8"}},
+        {{10, 128, 24, 2, 0}, 0, {"heat.points128.3", "heat.points128.8"}},
+        {{10, 256, 24, 2, 0}, 0, {"heat.points256.3", "heat.points256.8"}},
+        {{30, 64, 24, 2, 0}, 1, {"heat.uniform.3", "heat.uniform.8"}},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        fibrad_heat *heat;
+        if (heat_trace(s, isa, &cases[k].config, &heat)) return 1;
+        for (int high = 0; high < 2; high++) {
+            fibrad_heat_sources sources = sources_of(s, 7, .1, .9);
+            for (uint32_t i = 0; i < s->n; i++) emissivity[i] = high ? .8 : .3;
+            sources.uniform = cases[k].uniform;
+            if (heat_solve(s, heat, &sources, cases[k].name[high])) return 1;
+        }
+    }
+    return 0;
+}
+
+static int hash_small(const struct scene *s, int isa) {
+    int failed = 0;
+    for (uint32_t points = 0; points <= 256; points = points == 0 ? 64 : 2 * points)
+        failed |= hash_closed(s, isa, points);
+    failed |= hash_tolerance(s, isa);
+    failed |= hash_exchange(s, isa);
+    return s->bounds == SLAB ? failed : failed | hash_heat(s, isa); /* the rays of walls take long */
+}
+
+/* ---- furnace ---------------------------------------------------------------------------------------------------- */
 
 /* Rays, then heat fluxes in a small box. */
 static int hash_furnace(void) {
@@ -196,8 +508,8 @@ static int hash_furnace(void) {
     fibrad_furnace_arrays arrays;
     fibrad_furnace_report report;
     uint64_t planned;
-    if (fibrad_furnace_init(&furnace, scene_memory, sizeof scene_memory, &config) != FIBRAD_OK ||
-        fibrad_furnace_tally_init(&tally, work_memory, sizeof work_memory, furnace) != FIBRAD_OK ||
+    if (fibrad_furnace_init(&furnace, matrix_memory, sizeof matrix_memory, &config) != FIBRAD_OK ||
+        fibrad_furnace_tally_init(&tally, rows_memory, sizeof rows_memory, furnace) != FIBRAD_OK ||
         fibrad_furnace_emit(furnace, FIBRAD_FURNACE_ATTENUATED, 20000, 1, &planned) != FIBRAD_OK ||
         fibrad_furnace_trace(furnace, tally, 0, planned) != FIBRAD_OK ||
         fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_DEFINITION, 1, FIBRAD_SCATTER_EXACT) != FIBRAD_OK ||
@@ -215,7 +527,10 @@ static int hash_furnace(void) {
 int main(int argc, char **argv) {
     int isa = FIBRAD_ISA_SCALAR, failed = 0;
     while (isa <= FIBRAD_ISA_AVX512 && (argc < 2 || strcmp(argv[1], fibrad_isa_name(isa)) != 0)) isa++;
-    if (fibrad_scene_size(&(fibrad_scene_config){.spheres = 1, .isa = isa}) == 0) return 77;
+    fibrad_scene *empty;
+    const int status = fibrad_scene_init(&empty, scene_memory, sizeof scene_memory, &(fibrad_scene_config){.isa = isa},
+                                         &(fibrad_spheres){0}, NULL);
+    if (status != FIBRAD_OK) return status == FIBRAD_E_ISA ? 77 : 1;
     failed |= hash_pairs();
     failed |= hash_directions();
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
@@ -227,5 +542,13 @@ int main(int argc, char **argv) {
         failed |= hash_cast(&scenes[k], isa, 1);
     }
     failed |= hash_furnace();
+    make(&scenes[1]);
+    failed |= hash_moved(&scenes[1], isa);
+    for (size_t k = 0; k < sizeof small / sizeof *small; k++) {
+        make(&small[k]);
+        failed |= hash_small(&small[k], isa);
+    }
+    make(&small[0]);
+    failed |= hash_heat_settings(&small[0], isa);
     return failed;
 }

@@ -1,0 +1,879 @@
+/* test_matrix.c - collections of rows, and the matrices made of them: averaged, limited, balanced, closed, dropped.
+ * SPDX-License-Identifier: MIT */
+#include "scenes.h"
+#include "suite.h"
+
+/* Spheres of these radii, too far apart to see each other: rows are made by hand. */
+static fibrad_scene *apart(uint32_t n, const double *r) {
+    struct bed bed;
+    bed_init(&bed, false, 0);
+    for (uint32_t i = 0; i < n; i++) add_sphere(&bed, 1000. * (i + 1), 0, 0, r[i]);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    bed_free(&bed);
+    return scene;
+}
+
+/* Rows by hand, in the arrays of a compressed matrix. */
+static void add_rows(fibrad_rows *rows, uint32_t n, const uint64_t *start, const uint32_t *col, const double *f) {
+    const fibrad_factors all = {.n = n, .start = start, .col = col, .f = f};
+    for (uint32_t i = 0; i < n; i++) {
+        const uint64_t begin = all.start[i];
+        const fibrad_row row = {.sphere = i,
+                                .col = (uint32_t *)(uintptr_t)(all.col + begin),
+                                .f = (double *)(uintptr_t)(all.f + begin),
+                                .length = (uint32_t)(all.start[i + 1] - begin)};
+        ck_assert_int_eq(fibrad_rows_add(rows, &row, 0), FIBRAD_OK);
+    }
+}
+
+/* A matrix of rows by hand. */
+static struct matrix matrix_by_hand(uint32_t n, const double *r, const uint64_t *start, const uint32_t *col,
+                                    const double *f, const fibrad_matrix_rule *rule) {
+    fibrad_scene *scene = apart(n, r);
+    fibrad_rows rows = {.memory = memory_growing()};
+    add_rows(&rows, n, start, col, f);
+    const struct matrix m = matrix_of(scene, &rows, 1, rule);
+    rows_free(&rows);
+    free(scene);
+    return m;
+}
+
+static double reciprocity(const struct matrix *m) {
+    double largest = NAN;
+    ck_assert_int_eq(fibrad_matrix_reciprocity(m->matrix, &largest), FIBRAD_OK);
+    return largest;
+}
+
+static void ascending(const fibrad_factors *m) {
+    for (uint32_t i = 0; i < m->n; i++) {
+        for (uint64_t k = m->start[i] + 1; k < m->start[i + 1]; k++) ck_assert_uint_lt(m->col[k - 1], m->col[k]);
+        if (m->start[i + 1] > m->start[i]) ck_assert_uint_lt(m->col[m->start[i + 1] - 1], m->n);
+    }
+}
+
+static void all_closed(const fibrad_factors *m) {
+    for (uint32_t i = 0; i < m->n; i++) {
+        ck_assert_double_eq_tol(matrix_total(m, i), 1, 1e-13);
+        ck_assert_double_le(matrix_sum(m, i), 1 + 1e-14);
+        ck_assert(m->escaped[i] >= 0 && m->beyond[i] == 0 && m->error[i] >= 0);
+        for (uint32_t b = 0; b < m->bodies; b++) ck_assert(m->body[(size_t)i * m->bodies + b] >= 0);
+    }
+}
+
+/* The mean of rows and their transpose, entry by entry, before anything else is done to it: dense, [n][n]. */
+static double *mean_of(const fibrad_factors *raw, const double *area) {
+    double *mean = calloc((size_t)raw->n * raw->n, sizeof *mean);
+    for (uint32_t i = 0; i < raw->n; i++)
+        for (uint64_t k = raw->start[i]; k < raw->start[i + 1]; k++) {
+            const uint32_t j = raw->col[k];
+            mean[(size_t)i * raw->n + j] += raw->f[k] / 2;
+            mean[(size_t)j * raw->n + i] += area[i] / area[j] * raw->f[k] / 2;
+        }
+    return mean;
+}
+
+static double *squares(const struct bed *bed, const double *emissivity) {
+    double *area = calloc(bed->n, sizeof *area);
+    for (uint32_t i = 0; i < bed->n; i++) area[i] = bed->r[i] * bed->r[i] * (emissivity != NULL ? emissivity[i] : 1);
+    return area;
+}
+
+/* ---- view factors ----------------------------------------------------------------------------------------------- */
+
+/* What is received is never more than a sphere's own disc: sums stay at most 1 with exact areas. */
+START_TEST(averaging_makes_rows_reciprocal) {
+    struct bed beds[] = {packing(400, .8, 1.2, .55, 7, true), packing(400, .3, 1.5, .5, 8, false), lattice('f', 5)};
+    for (size_t b = 0; b < 3; b++) {
+        fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
+        const fibrad_beam_rule rule = {.directions = 100};
+        struct matrix raw = matrix_by_beams(scene, &rule, true), out = matrix_by_beams(scene, &rule, false);
+        ascending(&raw.factors);
+        ascending(&out.factors);
+        all_closed(&out.factors);
+        ck_assert_double_gt(reciprocity(&raw), 1e-4);
+        ck_assert_double_le(reciprocity(&out), 1e-14);
+        double *area = squares(&beds[b], NULL), *mean = mean_of(&raw.factors, area);
+        const uint32_t n = beds[b].n;
+        for (uint32_t i = 0; i < n; i++) {
+            double sum = 0;
+            for (uint32_t j = 0; j < n; j++) sum += mean[(size_t)i * n + j];
+            ck_assert_double_le(sum, 1 + 1e-12);
+            for (uint32_t j = 0; j < n; j++)
+                ck_assert_double_eq_tol(matrix_factor(&out.factors, i, j), mean[(size_t)i * n + j], 1e-12);
+        }
+        for (uint32_t i = 0; i < n; i++) /* every raw entry is there, and half its exchange at least */
+            for (uint64_t k = raw.factors.start[i]; k < raw.factors.start[i + 1]; k++)
+                ck_assert_double_ge(matrix_factor(&out.factors, i, raw.factors.col[k]),
+                                    raw.factors.f[k] / 2 * (1 - 1e-12));
+        free(area), free(mean), free(scene);
+        matrix_free(&raw), matrix_free(&out);
+        bed_free(&beds[b]);
+    }
+}
+END_TEST
+
+START_TEST(averaging_by_hand) {
+    const double r[] = {1, 2, 1}; /* areas 1 : 4 : 1; 0 sees 1, nobody sees 0 but 2, and 2 sees itself */
+    struct matrix m =
+        matrix_by_hand(3, r, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125}, NULL);
+    static const uint32_t col[] = {1, 2, 0, 0, 2};
+    static const double f[] = {.25, .125, .0625, .125, .125};
+    ck_assert_uint_eq(m.factors.n, 3);
+    ck_assert_mem_eq(m.factors.start, ((uint64_t[]){0, 2, 3, 5}), 4 * sizeof(uint64_t));
+    ck_assert_mem_eq(m.factors.col, col, sizeof col);
+    for (int k = 0; k < 5; k++) ck_assert_double_eq(m.factors.f[k], f[k]);
+    static const double escaped[] = {1 - .375, 1 - .0625, 1 - .25}; /* rows that met nothing: what is left */
+    for (int i = 0; i < 3; i++) ck_assert_double_eq(m.factors.escaped[i], escaped[i]);
+    matrix_free(&m);
+}
+END_TEST
+
+/* Entry by entry the formula of the header. */
+START_TEST(averaging_entry_by_entry) {
+    struct bed bed = packing(120, .3, 1.5, .5, 9, false);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    const fibrad_beam_rule rule = {.directions = 34};
+    struct matrix raw = matrix_by_beams(scene, &rule, true), out = matrix_by_beams(scene, &rule, false);
+    uint64_t wanted = 0;
+    for (uint32_t i = 0; i < bed.n; i++)
+        for (uint32_t j = 0; j < bed.n; j++) {
+            const double here = matrix_factor(&raw.factors, i, j), there = matrix_factor(&raw.factors, j, i);
+            const double ratio = bed.r[j] / bed.r[i];
+            wanted += here > 0 || there > 0;
+            ck_assert_double_eq_tol(matrix_factor(&out.factors, i, j), (here + ratio * ratio * there) / 2, 1e-15);
+        }
+    ck_assert_uint_eq(out.factors.start[bed.n], wanted);
+    ck_assert_uint_lt(wanted, 2 * raw.factors.start[bed.n]);
+    free(scene);
+    matrix_free(&raw), matrix_free(&out);
+    bed_free(&bed);
+}
+END_TEST
+
+/* The estimate follows from how far the mean is off the raw row, and is half the raw one at least; rows that are
+ * symmetric by themselves keep theirs. */
+START_TEST(errors_of_averaged_rows) {
+    struct bed bed = packing(120, .3, 1.5, .5, 9, false);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
+    fibrad_rows symmetric = {.memory = memory_growing()};
+    struct matrix raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
+    struct matrix out = matrix_of(scene, &rows, 1, NULL);
+    uint32_t by_distance = 0;
+    for (uint32_t i = 0; i < bed.n; i++) {
+        fibrad_row before = matrix_row(&raw.factors, i);
+        const fibrad_row after = matrix_row(&out.factors, i);
+        const double distance = 1.6 * row_distance(&before, &after), half = before.error / 2;
+        ck_assert_double_gt(before.error, 0);
+        ck_assert_double_eq_tol(after.error, distance > half ? distance : half, 1e-14);
+        by_distance += distance > half;
+        before.symmetric = 1;
+        ck_assert_int_eq(fibrad_rows_add(&symmetric, &before, 0), FIBRAD_OK);
+    }
+    ck_assert(by_distance > 0 && by_distance < bed.n);
+    struct matrix kept = matrix_of(scene, &symmetric, 1, NULL);
+    for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq(kept.factors.error[i], raw.factors.error[i]);
+    rows_free(&rows), rows_free(&symmetric), free(scene);
+    matrix_free(&raw), matrix_free(&out), matrix_free(&kept);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Points err by their number, and a cutoff opens rows that others close. */
+START_TEST(limiting_keeps_reciprocity) {
+    struct bed bed = packing(400, .8, 1.2, .58, 7, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    const fibrad_beam_rule rule = {.directions = 55, .points = 64};
+    struct matrix raw = matrix_by_beams(scene, &rule, true), limited = matrix_by_beams(scene, &rule, false);
+    double *area = squares(&bed, NULL), *mean = mean_of(&raw.factors, area), above = 0, moved = 0;
+    for (uint32_t i = 0; i < bed.n; i++) {
+        double sum = 0;
+        for (uint32_t j = 0; j < bed.n; j++) sum += mean[(size_t)i * bed.n + j];
+        worst_of(&above, sum - 1);
+    }
+    ck_assert_double_gt(above, 1e-6); /* there is something to do */
+    all_closed(&limited.factors);
+    ck_assert_double_le(reciprocity(&limited), 1e-14);
+    for (uint32_t i = 0; i < bed.n; i++)
+        for (uint64_t k = limited.factors.start[i]; k < limited.factors.start[i + 1]; k++)
+            worst_of(&moved, 1 - limited.factors.f[k] / mean[(size_t)i * bed.n + limited.factors.col[k]]);
+    ck_assert_double_le(moved, above);
+    free(area), free(mean), free(scene);
+    matrix_free(&raw), matrix_free(&limited);
+    bed_free(&bed);
+}
+END_TEST
+
+/* ---- exchange factors ------------------------------------------------------------------------------------------- */
+
+/* A_i emissivity_i D_ij is symmetric, and the row sums are those of the raw rows. */
+START_TEST(exchange_factors_are_balanced) {
+    struct bed bed = packing(150, .5, 1.5, .5, 3, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    double *emissivity = calloc(bed.n, sizeof *emissivity);
+    for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = .2 + .8 * bed_make_random(5, i);
+    fibrad_rows rows = {.memory = memory_growing()};
+    fibrad_work work = work_growing();
+    const fibrad_exchange_rule rule = {.emissivity = emissivity};
+    for (uint32_t i = 0; i < bed.n; i++)
+        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
+    struct matrix raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = emissivity, .raw = 1});
+    struct matrix out = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = emissivity});
+    double *area = squares(&bed, emissivity), *mean = mean_of(&raw.factors, area), moved = 0;
+    ck_assert_double_gt(reciprocity(&raw), 1e-4);
+    ck_assert_double_le(reciprocity(&out), 1e-14);
+    ascending(&out.factors);
+    all_closed(&out.factors);
+    for (uint32_t i = 0; i < bed.n; i++) {
+        double sum = 0;
+        ck_assert_double_eq_tol(matrix_sum(&out.factors, i), matrix_sum(&raw.factors, i), 2e-13);
+        for (uint32_t j = 0; j < bed.n; j++) {
+            const double f = matrix_factor(&out.factors, i, j), before = mean[(size_t)i * bed.n + j];
+            sum += before;
+            ck_assert((f > 0) == (before > 0));
+            if (f > 0) worst_of(&moved, fabs(f / before - 1));
+        }
+        ck_assert_double_eq_tol(sum, matrix_sum(&raw.factors, i), .2);
+    }
+    ck_assert(moved > 1e-4 && moved < .5);                 /* the mean is scaled, by little */
+    struct matrix view = matrix_of(scene, &rows, 1, NULL); /* what the same rows would be as view factors */
+    ck_assert(!matrix_same_bits(&view.factors, &out.factors));
+    free(area), free(mean), free(emissivity), free(scene);
+    rows_free(&rows), work_free(&work);
+    matrix_free(&raw), matrix_free(&out), matrix_free(&view);
+    bed_free(&bed);
+}
+END_TEST
+
+/* S_01 = (3 A_0 D_01 + A_1 D_10)/2 with A = 4 pi (1, 4), in units of the largest emissivity; loops of one: sums of any
+ * size can be reached. Where all emissivities are equal, areas alone count. */
+START_TEST(exchange_by_hand) {
+    const double r[] = {1, 2}, emissivity[] = {.9, .3};
+    const uint64_t start[] = {0, 2, 4};
+    const uint32_t col[] = {0, 1, 0, 1};
+    const double f[] = {.2, .4, .3, .25}; /* 3 x 1 x .4 = 1.2, and 4 x .3 = 1.2: reciprocal, as they are to stay */
+    struct matrix m = matrix_by_hand(2, r, start, col, f, &(fibrad_matrix_rule){.emissivity = emissivity});
+    ck_assert_uint_eq(m.factors.start[2], 4);
+    for (int k = 0; k < 4; k++) ck_assert_double_eq_tol(m.factors.f[k], f[k], 2e-15);
+    matrix_free(&m);
+    const double skew[] = {.2, .5, .2, .25};
+    m = matrix_by_hand(2, r, start, col, skew, &(fibrad_matrix_rule){.emissivity = emissivity});
+    ck_assert_double_le(reciprocity(&m), 1e-15);
+    ck_assert_double_eq_tol(3 * m.factors.f[1], 4 * m.factors.f[2], 1e-15);
+    ck_assert_double_eq_tol(matrix_sum(&m.factors, 0), .7, 2e-14);
+    ck_assert_double_eq_tol(matrix_sum(&m.factors, 1), .45, 2e-14);
+    /* D_ij u_i u_j of the mean (.2, 2.3/6; 2.3/8, .25) */
+    const double u0 = sqrt(m.factors.f[0] / .2), u1 = sqrt(m.factors.f[3] / .25);
+    ck_assert_double_eq_tol(m.factors.f[1], 2.3 / 6 * u0 * u1, 1e-14);
+    matrix_free(&m);
+    const double same[] = {.7, .7}, reciprocal[] = {.2, .4, .1, .25};
+    m = matrix_by_hand(2, r, start, col, reciprocal, &(fibrad_matrix_rule){.emissivity = same});
+    for (int k = 0; k < 4; k++) ck_assert_double_eq_tol(m.factors.f[k], reciprocal[k], 2e-15);
+    matrix_free(&m);
+}
+END_TEST
+
+/* ---- dropping --------------------------------------------------------------------------------------------------- */
+
+START_TEST(dropping_keeps_the_books) {
+    struct bed bed = packing(400, .7, 1.3, .55, 17, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 233});
+    struct matrix before = matrix_of(scene, &rows, 1, NULL);
+    const double thresholds[] = {0, 1e-3, 1e-2, 1};
+    uint64_t last = UINT64_MAX;
+    for (int t = 0; t < 4; t++) {
+        struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.drop = thresholds[t]});
+        ascending(&m.factors);
+        all_closed(&m.factors);
+        ck_assert_double_le(reciprocity(&m), 1e-14);
+        for (uint32_t i = 0; i < bed.n; i++) {
+            ck_assert_double_eq_tol(matrix_sum(&m.factors, i), matrix_sum(&before.factors, i), 2e-14);
+            ck_assert_double_eq(m.factors.escaped[i], before.factors.escaped[i]);
+        }
+        for (uint64_t k = 0; k < m.factors.start[bed.n]; k++) ck_assert_double_ge(m.factors.f[k], 0);
+        ck_assert_uint_lt(m.factors.start[bed.n], last);
+        last = m.factors.start[bed.n];
+        if (t == 0) ck_assert(matrix_same_bits(&m.factors, &before.factors));
+        if (t == 3) ck_assert_uint_eq(last, bed.n); /* all gone: each row keeps what it had in F_ii */
+        matrix_free(&m);
+    }
+    matrix_free(&before);
+    rows_free(&rows);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A threshold that equals an entry: both of a pair must go, or neither. */
+START_TEST(dropping_at_the_threshold) {
+    uint32_t gone = 0, stayed = 0;
+    for (uint64_t k = 0; k < 2000; k++) {
+        const double r[2] = {.1 + bed_make_random(9, 3 * k), .1 + bed_make_random(9, 3 * k + 1)};
+        const double f = .01 * bed_make_random(9, 3 * k + 2), back = r[0] / r[1] * (r[0] / r[1]) * f;
+        const uint64_t start[] = {0, 1, 2};
+        const uint32_t col[] = {1, 0};
+        const double both[] = {f, back};
+        struct matrix whole = matrix_by_hand(2, r, start, col, both, NULL);
+        ck_assert_uint_eq(whole.factors.start[2], 2);
+        const fibrad_matrix_rule rule = {.drop = whole.factors.f[k % 2]};
+        struct matrix m = matrix_by_hand(2, r, start, col, both, &rule);
+        ck_assert_double_le(reciprocity(&m), 1e-14);
+        for (uint32_t i = 0; i < 2; i++)
+            ck_assert_double_eq_tol(matrix_sum(&m.factors, i), matrix_sum(&whole.factors, i), 1e-14);
+        ck_assert_uint_eq(m.factors.start[2], 2);
+        ck_assert((m.factors.col[0] == 1) == (m.factors.col[1] == 0));
+        *(m.factors.col[0] == 1 ? &stayed : &gone) += 1;
+        matrix_free(&whole), matrix_free(&m);
+    }
+    ck_assert_uint_gt(stayed, 1000); /* the other one is above the threshold, or the entry itself is not below */
+    ck_assert_uint_eq(stayed + gone, 2000);
+}
+END_TEST
+
+/* A star: what its centre gives away cannot be given back to the leaves by any scaling. */
+START_TEST(dropping_where_no_scaling_exists) {
+    const double r[] = {1, 1, 1, 1};
+    static const uint64_t start[] = {0, 2, 5, 7, 8};
+    static const uint32_t col[] = {1, 2, 0, 2, 3, 0, 1, 1};
+    static const double f[] = {.3, .001, .3, .2, .1, .001, .2, .1};
+    struct matrix whole = matrix_by_hand(4, r, start, col, f, NULL);
+    struct matrix m = matrix_by_hand(4, r, start, col, f, &(fibrad_matrix_rule){.drop = .01});
+    ascending(&m.factors);
+    for (uint32_t i = 0; i < 4; i++)
+        ck_assert_double_eq_tol(matrix_sum(&m.factors, i), matrix_sum(&whole.factors, i), 1e-14);
+    ck_assert_double_le(reciprocity(&m), 1e-14);
+    ck_assert_double_eq(matrix_factor(&m.factors, 0, 2), 0);
+    matrix_free(&whole), matrix_free(&m);
+}
+END_TEST
+
+/* ---- raw rows --------------------------------------------------------------------------------------------------- */
+
+/* Pairs of which one factor is missing, on either side of the diagonal: it counts in full. */
+START_TEST(lone_factors_are_not_reciprocal) {
+    const double r[] = {1, 2, 1};
+    const fibrad_matrix_rule raw = {.raw = 1};
+    struct matrix above =
+        matrix_by_hand(3, r, (uint64_t[]){0, 2, 3, 3}, (uint32_t[]){1, 2, 0}, (double[]){.2, .3, .05}, &raw);
+    ck_assert_double_eq_tol(reciprocity(&above), .3, 1e-16); /* F_02 */
+    struct matrix below =
+        matrix_by_hand(3, r, (uint64_t[]){0, 1, 2, 3}, (uint32_t[]){1, 0, 1}, (double[]){.2, .05, .4}, &raw);
+    ck_assert_double_eq_tol(reciprocity(&below), .1, 1e-16); /* F_21, a quarter of it by area */
+    struct matrix diagonal =
+        matrix_by_hand(2, r, (uint64_t[]){0, 2, 4}, (uint32_t[]){0, 1, 0, 1}, (double[]){.5, .2, .05, .125}, &raw);
+    ck_assert_double_eq(reciprocity(&diagonal), 0);
+    const double emissivity[] = {1, .5, 1}; /* 4 x .5 x .1 = .2: reciprocal with these alone */
+    const double grey[] = {.2, .1};
+    struct matrix exchange = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, grey,
+                                            &(fibrad_matrix_rule){.raw = 1, .emissivity = emissivity});
+    ck_assert_double_le(reciprocity(&exchange), 1e-16);
+    matrix_free(&above), matrix_free(&below), matrix_free(&diagonal), matrix_free(&exchange);
+}
+END_TEST
+
+/* Raw rows are what they were, in the order of the spheres, and what is missing is empty. */
+START_TEST(raw_rows_stay_as_they_are) {
+    struct bed bed = packing(100, .5, 1.5, .4, 3, false);
+    const fibrad_body floor_plane = plane_at(2, 0, -100);
+    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    fibrad_work work = work_growing();
+    fibrad_rows rows = {.memory = memory_growing()};
+    const fibrad_beam_rule rule = {.directions = 34};
+    fibrad_row row = row_of(bed.n);
+    for (uint32_t i = bed.n; i-- > 0;)
+        if (i % 3 != 1)
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
+    struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
+    ck_assert_uint_eq(m.factors.start[bed.n], rows.entries);
+    for (uint32_t i = 0; i < bed.n; i++) {
+        const fibrad_row there = matrix_row(&m.factors, i);
+        if (i % 3 == 1) {
+            ck_assert(there.length == 0 && there.escaped == 0 && there.error == 0 && there.body[0] == 0);
+            continue;
+        }
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+        ck_assert(same_bits_with(&row, &there, 1));
+        ck_assert_double_gt(there.body[0], 0);
+    }
+    uint32_t sphere = 999;
+    fibrad_matrix *none = NULL;
+    const size_t size = fibrad_matrix_size(scene, &rows, 1, NULL);
+    void *block = block_of(size);
+    ck_assert_int_eq(fibrad_matrix_init(&none, block, size, scene, &rows, 1, NULL, &sphere), FIBRAD_E_STATE);
+    ck_assert_uint_eq(sphere, 1);
+    ck_assert_ptr_null(none);
+    free(block), free(scene);
+    row_free(&row), rows_free(&rows), work_free(&work);
+    matrix_free(&m);
+    bed_free(&bed);
+}
+END_TEST
+
+/* ---- tasks and states ------------------------------------------------------------------------------------------- */
+
+/* The matrix of `tasks` tasks, every one but each `left`-th averaged here, backwards or by several threads. */
+static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
+                              fibrad_matrix_rule rule, uint32_t tasks, uint32_t left, bool threads) {
+    struct matrix m = {NULL, {0}};
+    rule.tasks = tasks;
+    const size_t size = fibrad_matrix_size(scene, rows, count, &rule);
+    void *block = block_of(size);
+    memset(block, 0xa5, size);
+    ck_assert_int_eq(fibrad_matrix_init(&m.matrix, block, size, scene, rows, count, &rule, NULL), FIBRAD_OK);
+    int failed = 0;
+#pragma omp parallel for num_threads(threads ? 4 : 1) schedule(dynamic, 1) reduction(+ : failed)
+    for (uint32_t k = 0; k < tasks; k++)
+        if (left == 0 || k % left != 0) failed += fibrad_matrix_average(m.matrix, tasks - 1 - k) != FIBRAD_OK;
+    ck_assert_int_eq(failed, 0);
+    ck_assert_int_eq(fibrad_matrix_close(m.matrix), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_matrix_read(m.matrix, &m.factors), FIBRAD_OK);
+    return m;
+}
+
+/* No bit depends on the number of tasks, on who averages them, nor on how rows are spread over collections. */
+START_TEST(tasks_change_no_bit) {
+    struct bed bed = packing(150, .3, 1.5, .5, 3, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    double *emissivity = calloc(bed.n, sizeof *emissivity);
+    for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = (1 + i % 7) / 7.;
+    const fibrad_matrix_rule rules[] = {{0}, {.emissivity = emissivity}, {.drop = 5e-3}};
+    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34}), spread[4];
+    for (int c = 0; c < 4; c++) spread[c] = (fibrad_rows){.memory = memory_growing()};
+    fibrad_work work = work_growing();
+    for (uint32_t i = bed.n; i-- > 0;) { /* none in the third */
+        fibrad_row to = {.rows = &spread[i % 3 == 2 ? 3 : i % 3]};
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 34}, &to), FIBRAD_OK);
+    }
+    for (int k = 0; k < 3; k++) {
+        struct matrix whole = matrix_of(scene, &rows, 1, &rules[k]), other = matrix_of(scene, spread, 4, &rules[k]);
+        ck_assert(matrix_same_bits(&whole.factors, &other.factors));
+        matrix_free(&other);
+        for (uint32_t tasks = 1; tasks <= 1024; tasks += tasks < 16 ? 1 : 1008) {
+            for (uint32_t left = 0; left <= 3; left++) {
+                struct matrix m =
+                    by_tasks(scene, left % 2 ? spread : &rows, left % 2 ? 4 : 1, rules[k], tasks, left, left == 0);
+                ck_assert(matrix_same_bits(&whole.factors, &m.factors));
+                matrix_free(&m);
+            }
+        }
+        matrix_free(&whole);
+    }
+    for (int c = 0; c < 4; c++) rows_free(&spread[c]);
+    rows_free(&rows), work_free(&work);
+    free(emissivity), free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(calls_out_of_order) {
+    const double r[] = {1, 2, 1};
+    fibrad_scene *scene = apart(3, r);
+    fibrad_rows rows = {.memory = memory_growing()};
+    add_rows(&rows, 3, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125});
+    for (int raw = 0; raw < 2; raw++) {
+        const fibrad_matrix_rule rule = {.tasks = 2, .raw = raw};
+        const size_t size = fibrad_matrix_size(scene, &rows, 1, &rule);
+        void *block = block_of(size);
+        fibrad_matrix *m = NULL;
+        fibrad_factors factors = {.n = 77};
+        double largest = -7;
+        ck_assert_int_eq(fibrad_matrix_init(&m, block, size, scene, &rows, 1, &rule, NULL), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_E_STATE);
+        ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_E_STATE);
+        ck_assert(factors.n == 77 && factors.start == NULL && largest == -7);
+        ck_assert_int_eq(fibrad_matrix_average(m, 2), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_matrix_average(m, UINT32_MAX), FIBRAD_E_ARGUMENT);
+        if (!raw) {
+            ck_assert_int_eq(fibrad_matrix_average(m, 1), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_matrix_average(m, 1), FIBRAD_E_STATE);
+            ck_assert_int_eq(fibrad_matrix_average(m, 0), FIBRAD_OK);
+        }
+        ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK);
+        const double first = factors.f[0];
+        ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_E_STATE);
+        if (!raw) ck_assert_int_eq(fibrad_matrix_average(m, 0), FIBRAD_E_STATE);
+        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK); /* as often as one likes */
+        ck_assert_double_eq(factors.f[0], first);
+        ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_matrix_read(m, NULL), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_matrix_reciprocity(m, NULL), FIBRAD_E_ARGUMENT);
+        free(block);
+    }
+    fibrad_factors factors;
+    double largest;
+    ck_assert_int_eq(fibrad_matrix_average(NULL, 0), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_close(NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_read(NULL, &factors), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_reciprocity(NULL, &largest), FIBRAD_E_ARGUMENT);
+    rows_free(&rows);
+    free(scene);
+}
+END_TEST
+
+/* A row that is missing or there twice, in one collection or in two, is named, and there is no matrix. */
+START_TEST(rows_missing_or_double) {
+    const double r[] = {1, 2, 1, 1, 3}, f = .5;
+    fibrad_scene *scene = apart(5, r);
+    const uint32_t col = 2;
+    unsigned char block[8192];
+    for (int raw = 0; raw < 2; raw++)
+        for (uint32_t missing = 0; missing < 6; missing++)
+            for (uint32_t twice = 0; twice < 6; twice++) {
+                fibrad_rows rows[2] = {{.memory = memory_growing()}, {.memory = memory_growing()}};
+                for (uint32_t i = 0; i < 5; i++) {
+                    fibrad_row row = {.sphere = i, .col = (uint32_t *)(uintptr_t)&col, .f = (double *)(uintptr_t)&f};
+                    row.length = i % 2;
+                    if (i != missing) ck_assert_int_eq(fibrad_rows_add(&rows[0], &row, 0), FIBRAD_OK);
+                    if (i == twice) ck_assert_int_eq(fibrad_rows_add(&rows[i % 2], &row, 0), FIBRAD_OK);
+                }
+                const fibrad_matrix_rule rule = {.raw = raw};
+                const bool doubled = twice < 5 && (twice != missing);
+                const bool lacks = missing < 5 && twice != missing;
+                fibrad_matrix *m = NULL;
+                uint32_t sphere = 99;
+                const size_t size = fibrad_matrix_size(scene, rows, 2, &rule);
+                ck_assert(size > 0 && size <= sizeof block);
+                const int status = fibrad_matrix_init(&m, block, size, scene, rows, 2, &rule, &sphere);
+                if (doubled || (lacks && !raw)) {
+                    ck_assert_int_eq(status, FIBRAD_E_STATE);
+                    ck_assert(doubled && lacks && !raw ? sphere == twice || sphere == missing
+                                                       : sphere == (doubled ? twice : missing));
+                    ck_assert_ptr_null(m);
+                    ck_assert_int_eq(fibrad_matrix_init(&m, block, size, scene, rows, 2, &rule, NULL), FIBRAD_E_STATE);
+                } else {
+                    ck_assert_int_eq(status, FIBRAD_OK);
+                    ck_assert_uint_eq(sphere, 99);
+                }
+                rows_free(&rows[0]), rows_free(&rows[1]);
+            }
+    fibrad_matrix *m = NULL; /* no collections at all */
+    uint32_t sphere = 99;
+    ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, NULL, 0, NULL, &sphere), FIBRAD_E_STATE);
+    ck_assert_uint_eq(sphere, 0);
+    struct matrix empty = matrix_of(scene, NULL, 0, &(fibrad_matrix_rule){.raw = 1});
+    ck_assert_uint_eq(empty.factors.start[5], 0);
+    matrix_free(&empty);
+    free(scene);
+}
+END_TEST
+
+/* ---- memory of matrices ----------------------------------------------------------------------------------------- */
+
+/* At every offset the same bits, nothing written beside the block, and a byte less is too little. */
+START_TEST(matrix_blocks_of_any_alignment) {
+    struct bed bed = packing(60, .5, 1.5, .5, 3, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
+    double emissivity[60];
+    for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = (1 + i % 5) / 5.;
+    const fibrad_matrix_rule rules[] = {
+        {.tasks = 3}, {.raw = 1}, {.emissivity = emissivity, .tasks = 7}, {.drop = .02}};
+    for (int k = 0; k < 4; k++) {
+        struct matrix expected = matrix_of(scene, &rows, 1, &rules[k]);
+        const size_t size = fibrad_matrix_size(scene, &rows, 1, &rules[k]);
+        /* what the header says of it */
+        ck_assert_uint_le(size, (k == 1 ? 12 : 36) * rows.entries + (k == 1 ? 60 : 120) * bed.n + 2048);
+        unsigned char *block = block_of(size + 128);
+        for (size_t offset = 0; offset < 64; offset++) {
+            fibrad_matrix *m = NULL;
+            fibrad_factors factors;
+            memset(block, 0xa5, size + 128);
+            ck_assert_int_eq(fibrad_matrix_init(&m, block + offset, size - 1, scene, &rows, 1, &rules[k], NULL),
+                             FIBRAD_E_SIZE);
+            ck_assert_int_eq(fibrad_matrix_init(&m, block + offset, 0, scene, &rows, 1, &rules[k], NULL),
+                             FIBRAD_E_SIZE);
+            ck_assert_ptr_null(m);
+            ck_assert_int_eq(fibrad_matrix_init(&m, block + offset, size, scene, &rows, 1, &rules[k], NULL), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK);
+            ck_assert(matrix_same_bits(&factors, &expected.factors));
+            for (size_t b = 0; b < offset; b++) ck_assert_uint_eq(block[b], 0xa5);
+            for (size_t b = offset + size; b < size + 128; b++) ck_assert_uint_eq(block[b], 0xa5);
+        }
+        free(block);
+        matrix_free(&expected);
+    }
+    rows_free(&rows);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(bad_matrices_are_refused) {
+    const double r[] = {1, 2}, f = .5;
+    fibrad_scene *scene = apart(2, r);
+    uint32_t col = 1;
+    fibrad_rows rows = {.memory = memory_growing()}, stranger = rows, seen = rows, walled = rows;
+    const double body = .1;
+    fibrad_row row = {.col = &col, .f = (double *)(uintptr_t)&f, .length = 1};
+    for (row.sphere = 0; row.sphere < 2; row.sphere++) {
+        col = 1;
+        ck_assert_int_eq(fibrad_rows_add(&rows, &row, 0), FIBRAD_OK);
+        row.body = (double *)(uintptr_t)&body;
+        ck_assert_int_eq(fibrad_rows_add(&walled, &row, 1), FIBRAD_OK);
+        row.body = NULL;
+        col = 1 + row.sphere; /* 2: no such sphere */
+        ck_assert_int_eq(fibrad_rows_add(&seen, &row, 0), FIBRAD_OK);
+    }
+    col = 1;
+    row.sphere = 2; /* no such sphere */
+    ck_assert_int_eq(fibrad_rows_add(&stranger, &row, 0), FIBRAD_OK);
+    static unsigned char block[8192];
+    fibrad_matrix *m = NULL;
+    ck_assert_int_eq(fibrad_matrix_init(NULL, block, sizeof block, scene, &rows, 1, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_init(&m, NULL, sizeof block, scene, &rows, 1, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, NULL, &rows, 1, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, NULL, 1, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(fibrad_matrix_size(NULL, &rows, 1, NULL), 0);
+    ck_assert_uint_eq(fibrad_matrix_size(scene, NULL, 1, NULL), 0);
+    const fibrad_rows *const bad_rows[] = {&stranger, &seen, &walled};
+    for (int k = 0; k < 3; k++) {
+        ck_assert_uint_eq(fibrad_matrix_size(scene, bad_rows[k], 1, NULL), 0);
+        ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, bad_rows[k], 1, NULL, NULL),
+                         FIBRAD_E_ARGUMENT);
+    }
+    static const double emissivity[][2] = {{1, 0}, {1, -1}, {NAN, 1}, {1, INFINITY}, {1.5, 1}};
+    fibrad_matrix_rule bad[10] = {{.tasks = 1025}, {.tasks = UINT32_MAX}, {.drop = -1}, {.drop = NAN}};
+    for (int k = 0; k < 5; k++) bad[4 + k].emissivity = emissivity[k];
+    for (int k = 0; k < 9; k++) {
+        ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &bad[k]), 0);
+        ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, &bad[k], NULL),
+                         FIBRAD_E_ARGUMENT);
+    }
+    ck_assert_ptr_null(m);
+    ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, NULL, NULL), FIBRAD_OK);
+    rows_free(&rows), rows_free(&stranger), rows_free(&seen), rows_free(&walled);
+    free(scene);
+}
+END_TEST
+
+/* ---- collections ------------------------------------------------------------------------------------------------ */
+
+static bool same_collection(const fibrad_rows *a, const fibrad_rows *b) {
+    return a->count == b->count && a->entries == b->entries;
+}
+
+START_TEST(bad_rows_are_refused) {
+    fibrad_rows rows = {.memory = memory_growing()};
+    uint32_t col[] = {1, 3}, descending[] = {3, 1}, equal[] = {1, 1};
+    double f[] = {.1, .2}, body[] = {.5};
+    const fibrad_row good = {.sphere = 7, .col = col, .f = f, .body = body, .length = 2, .escaped = .7, .error = .01};
+    ck_assert_int_eq(fibrad_rows_add(&rows, &good, 1), FIBRAD_OK);
+    ck_assert(rows.count == 1 && rows.entries == 2 && rows.used > 0);
+    const fibrad_rows before = rows;
+    fibrad_row bad = good;
+    bad.col = descending;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    bad.col = equal;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    bad.col = NULL;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    bad = good, bad.f = NULL;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    bad = good, bad.body = NULL;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    const double wrong[] = {0, -.0, -.1, 1.1, NAN, INFINITY, -INFINITY};
+    for (size_t k = 0; k < 2 * sizeof wrong / sizeof *wrong; k++) {
+        double g[] = {.1, .2};
+        g[k % 2] = wrong[k / 2];
+        bad = good, bad.f = g;
+        ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    }
+    ck_assert_int_eq(fibrad_rows_add(NULL, &good, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_rows_add(&rows, NULL, 1), FIBRAD_E_ARGUMENT);
+    ck_assert(same_collection(&rows, &before) && rows.used == before.used);
+    bad = good, bad.body = NULL; /* no bodies, no array */
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
+    bad = (fibrad_row){.sphere = 3, .escaped = 1}; /* nothing seen */
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
+    double whole[] = {1 + 1e-15};
+    bad = (fibrad_row){.sphere = 4, .col = col, .f = whole, .length = 1}; /* above 1 by rounding */
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
+    ck_assert(rows.count == 4 && rows.entries == 5);
+    rows_free(&rows);
+    fibrad_rows_clear(NULL);
+}
+END_TEST
+
+/* Rows by the kernel and rows added come out alike, with one and the other in one collection, which is then emptied and
+ * used again without more memory. */
+START_TEST(rows_added_are_rows_computed) {
+    struct bed bed = packing(50, .5, 1.5, .4, 3, false);
+    const fibrad_body walls[] = {cylinder_at(0, 0, 500), plane_at(2, 0, -100)};
+    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
+    fibrad_work work = work_growing();
+    const fibrad_beam_rule rule = {.directions = 34};
+    fibrad_rows computed = rows_by_beams(scene, &rule), mixed = {.memory = memory_growing()};
+    fibrad_row row = row_of(bed.n);
+    struct matrix expected = matrix_of(scene, &computed, 1, NULL);
+    size_t size = 0;
+    for (int round = 0; round < 3; round++) {
+        for (uint32_t i = 0; i < bed.n; i++) {
+            fibrad_row append = {.rows = &mixed, .sphere = 1000, .length = 1000};
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, i % 2 ? &row : &append), FIBRAD_OK);
+            if (i % 2) ck_assert_int_eq(fibrad_rows_add(&mixed, &row, 2), FIBRAD_OK);
+            if (i % 2) continue;
+            ck_assert_uint_eq(append.sphere, i); /* said of a row that is appended, too */
+            ck_assert(append.length > 0 && append.length < bed.n);
+            ck_assert_uint_eq(append.directions, 34);
+            ck_assert_double_gt(append.error, 0);
+        }
+        ck_assert(same_collection(&mixed, &computed));
+        ck_assert_uint_eq(mixed.used, computed.used);
+        struct matrix m = matrix_of(scene, &mixed, 1, NULL);
+        ck_assert(matrix_same_bits(&m.factors, &expected.factors));
+        matrix_free(&m);
+        if (round > 0) ck_assert_uint_eq(mixed.memory.size, size);
+        size = mixed.memory.size;
+        const void *block = mixed.memory.block;
+        fibrad_rows_clear(&mixed);
+        ck_assert(mixed.count == 0 && mixed.used == 0 && mixed.entries == 0);
+        ck_assert(mixed.memory.block == block && mixed.memory.size == size);
+    }
+    matrix_free(&expected);
+    row_free(&row), rows_free(&computed), rows_free(&mixed), work_free(&work);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Fixed memory: what a row lacks is said, nothing is lost or written beside the block, and with as much memory the row
+ * goes in. At every offset of the block. */
+START_TEST(collections_in_fixed_memory) {
+    struct bed bed = packing(40, .5, 1.5, .4, 3, false);
+    fibrad_scene *scene = scene_of(&bed, 0);
+    fibrad_work work = work_growing();
+    const fibrad_beam_rule rule = {.directions = 13};
+    fibrad_rows plenty = rows_by_beams(scene, &rule);
+    struct matrix expected = matrix_of(scene, &plenty, 1, NULL);
+    const size_t room = plenty.used + 256;
+    unsigned char *block = block_of(room + 128);
+    fibrad_row row = row_of(bed.n);
+    for (size_t offset = 0; offset < 64; offset++) {
+        memset(block, 0xa5, room + 128);
+        fibrad_rows rows = {.memory = {.block = block + offset, .size = offset % 8}};
+        uint32_t refused = 0;
+        for (uint32_t i = 0; i < bed.n; i++) {
+            const bool added = (i + offset) % 2;
+            if (added) ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+            fibrad_row append = {.rows = &rows};
+            for (;;) {
+                const uint64_t entries = rows.entries;
+                const size_t used = rows.used;
+                const int status =
+                    added ? fibrad_rows_add(&rows, &row, 0) : fibrad_beam_row(scene, &work, i, &rule, &append);
+                if (status == FIBRAD_OK) break;
+                ck_assert_int_eq(status, FIBRAD_E_CAPACITY);
+                ck_assert_uint_gt(rows.memory.needed, rows.memory.size);
+                ck_assert(rows.count == i && rows.entries == entries && rows.used == used);
+                ck_assert_uint_le(rows.memory.needed, room);
+                ck_assert(rows.memory.block == block + offset);
+                for (size_t b = offset + rows.memory.size; b < room + 128; b++) ck_assert_uint_eq(block[b], 0xa5);
+                rows.memory.size = rows.memory.needed;
+                ck_assert_uint_le(++refused, 3 * bed.n);
+            }
+        }
+        ck_assert_uint_ge(refused, bed.n / 2);
+        ck_assert(same_collection(&rows, &plenty));
+        for (size_t b = 0; b < offset; b++) ck_assert_uint_eq(block[b], 0xa5);
+        for (size_t b = offset + rows.memory.size; b < room + 128; b++) ck_assert_uint_eq(block[b], 0xa5);
+        struct matrix m = matrix_of(scene, &rows, 1, NULL);
+        ck_assert(matrix_same_bits(&m.factors, &expected.factors));
+        matrix_free(&m);
+    }
+    fibrad_rows nothing = {0}; /* no block at all */
+    ck_assert_int_eq(fibrad_rows_add(&nothing, &row, 0), FIBRAD_E_CAPACITY);
+    ck_assert_uint_gt(nothing.memory.needed, 0);
+    fibrad_row append = {.rows = &nothing};
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &append), FIBRAD_E_CAPACITY);
+    ck_assert_uint_gt(nothing.memory.needed, 0);
+    free(block), free(scene);
+    matrix_free(&expected);
+    row_free(&row), rows_free(&plenty), work_free(&work);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A source of memory that refuses now and then, and moves its block to another offset each time. */
+struct source {
+    uint32_t calls, refuse_at; /* 0: never */
+    size_t size;
+    unsigned char *whole;
+};
+
+static void *moving_resize(void *context, void *block, size_t size) {
+    struct source *source = context;
+    if (++source->calls == source->refuse_at) return NULL;
+    unsigned char *whole = malloc(size + 64), *to = whole + source->calls * 13 % 64;
+    ck_assert_ptr_nonnull(whole);
+    memset(whole, 0xff, size + 64);
+    if (block != NULL) memcpy(to, block, source->size < size ? source->size : size);
+    if (source->whole != NULL) memset(source->whole, 0xee, source->size);
+    free(source->whole);
+    source->whole = whole, source->size = size;
+    return to;
+}
+
+START_TEST(collections_that_grow) {
+    struct bed bed = packing(60, .5, 1.5, .4, 3, false);
+    fibrad_scene *scene = scene_of(&bed, 0);
+    const fibrad_beam_rule rule = {.directions = 13};
+    fibrad_rows plenty = rows_by_beams(scene, &rule);
+    struct matrix expected = matrix_of(scene, &plenty, 1, NULL);
+    for (uint32_t refuse = 0; refuse < 5; refuse++) {
+        struct source source = {.refuse_at = refuse};
+        fibrad_rows rows = {.memory = {.resize = moving_resize, .context = &source}};
+        fibrad_work work = work_growing();
+        uint32_t refused = 0;
+        for (uint32_t i = 0; i < bed.n; i++) {
+            int status = fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows});
+            if (status == FIBRAD_E_MEMORY) {
+                refused++;
+                ck_assert_uint_eq(rows.count, i);
+                status = fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows});
+            }
+            ck_assert_int_eq(status, FIBRAD_OK);
+        }
+        ck_assert_uint_eq(refused, refuse > 0 && source.calls >= refuse);
+        ck_assert(same_collection(&rows, &plenty));
+        struct matrix m = matrix_of(scene, &rows, 1, NULL);
+        ck_assert(matrix_same_bits(&m.factors, &expected.factors));
+        matrix_free(&m);
+        free(source.whole);
+        work_free(&work);
+    }
+    matrix_free(&expected);
+    rows_free(&plenty);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("matrix");
+    TCase *tcase = suite_case(suite, "matrix");
+    tcase_add_test(tcase, averaging_makes_rows_reciprocal);
+    tcase_add_test(tcase, averaging_by_hand);
+    tcase_add_test(tcase, averaging_entry_by_entry);
+    tcase_add_test(tcase, errors_of_averaged_rows);
+    tcase_add_test(tcase, limiting_keeps_reciprocity);
+    tcase_add_test(tcase, exchange_factors_are_balanced);
+    tcase_add_test(tcase, exchange_by_hand);
+    tcase_add_test(tcase, dropping_keeps_the_books);
+    tcase_add_test(tcase, dropping_at_the_threshold);
+    tcase_add_test(tcase, dropping_where_no_scaling_exists);
+    tcase_add_test(tcase, lone_factors_are_not_reciprocal);
+    tcase_add_test(tcase, raw_rows_stay_as_they_are);
+    tcase_add_test(tcase, tasks_change_no_bit);
+    tcase_add_test(tcase, calls_out_of_order);
+    tcase_add_test(tcase, rows_missing_or_double);
+    tcase_add_test(tcase, matrix_blocks_of_any_alignment);
+    tcase_add_test(tcase, bad_matrices_are_refused);
+    tcase_add_test(tcase, bad_rows_are_refused);
+    tcase_add_test(tcase, rows_added_are_rows_computed);
+    tcase_add_test(tcase, collections_in_fixed_memory);
+    tcase_add_test(tcase, collections_that_grow);
+    return suite_run(suite);
+}
