@@ -113,9 +113,9 @@ static int expected_row(const fibrad_scene *scene, fibrad_workspace *space, uint
 static void expected(struct bench *bench, uint32_t i, uint32_t paths, uint32_t directions, double *error,
                      uint64_t *rays) {
     const struct expected_rule rule = {bench->emissivity, paths, rays};
-    const fibrad_row_method method = {expected_row, &rule, fibrad_tracer_least(), fibrad_tracer_best(bench->scene)};
+    const fibrad_row_method how = {expected_row, &rule, fibrad_tracer_least(), fibrad_tracer_best(bench->scene)};
     (void)directions;
-    bench_check("row", fibrad_row_run(bench->scene, &bench->work, i, &method, &bench->row));
+    bench_check("row", fibrad_row_run(bench->scene, &bench->work, i, &how, &bench->row));
     add_row(bench, error);
 }
 

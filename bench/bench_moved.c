@@ -9,7 +9,7 @@
  * one. `inf`: nothing is computed anew. */
 #include "bed/packing.h"
 #include "bench_bed.h"
-#include "compute/moving_rows.h"
+#include "bed/moving_rows.h"
 #include "read/read.h"
 
 #define PI 3.14159265358979323846
