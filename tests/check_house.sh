@@ -42,16 +42,16 @@ heat: base sample scene row ray
 furnace: base
 LIST
     rooms host <<LIST
+simple:
 cli:
-bed: cli
+bed: cli simple
 read: cli bed
-compute: cli bed
-boxes: cli bed compute
-write: cli bed compute boxes
-plot: cli bed compute boxes write
+boxes: cli bed
+write: cli bed simple boxes
+plot: cli bed simple boxes write
 reference: cli
-reproduce: cli bed compute boxes write plot reference
-command: cli bed read compute boxes write plot reference reproduce
+reproduce: cli bed simple boxes write plot reference
+command: cli bed read simple boxes write plot reference reproduce
 examples:
 LIST
     find kernel host -name '*.[ch]' | sed 's|.*/||' | sort | uniq -d | sed 's/$/: a name of two sources/'

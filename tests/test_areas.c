@@ -32,8 +32,8 @@ struct method {
 };
 
 static const struct method both = {fibrad_areas_begin_scalar, fibrad_areas_disc_scalar, fibrad_areas_end_scalar};
-static const struct method accounts = {fibrad_accounts_begin_scalar, fibrad_accounts_disc_scalar,
-                                       fibrad_accounts_end_scalar};
+static const struct method accounts = {fibrad_arrangement_begin_scalar, fibrad_arrangement_disc_scalar,
+                                       fibrad_arrangement_end_scalar};
 
 static uint32_t windows, fallbacks;
 

@@ -14,9 +14,9 @@
 #error "fibrad needs arithmetic in the precision of its types (on 32-bit x86: -msse2 -mfpmath=sse)"
 #endif
 
-#ifdef FIBRAD_PORT_HEADER
+#if defined(FIBRAD_PORT_HEADER)
 #include FIBRAD_PORT_HEADER
-#else
+#elif !defined(FIBRAD_PORT_GIVEN) /* by whoever includes this */
 
 /* With -fno-math-errno these are single instructions where the machine has them, else calls of sqrt and sqrtf. */
 static inline double fibrad_sqrt(double x) { return __builtin_sqrt(x); }

@@ -49,8 +49,8 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     disc->square = fibrad_arena_take(arena, discs, sizeof(float));
     disc->near = fibrad_arena_take(arena, discs + near->capacity, sizeof(uint32_t));
     disc->order = fibrad_arena_take(arena, discs, sizeof(uint32_t));
-    disc->hits = fibrad_arena_take(arena, discs, sizeof(uint32_t));
-    disc->taker = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    disc->hidden_points = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    disc->occluder = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     fibrad_areas_layout(&work->areas, arena, plan->discs);
 
     fibrad_entries *entries = &work->entries;

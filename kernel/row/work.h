@@ -118,7 +118,7 @@ static inline uint32_t fibrad_work_sphere(const fibrad_workspace *work, uint32_t
 }
 
 /* Adds what window k sees of a disc. */
-static inline void fibrad_work_see(fibrad_workspace *work, uint32_t disc, uint32_t k, double area) {
+static inline void fibrad_work_accumulate(fibrad_workspace *work, uint32_t disc, uint32_t k, double area) {
     uint32_t *entry = &work->near.entry[work->disc.near[disc]];
     if (*entry == FIBRAD_NONE) *entry = fibrad_entries_of(&work->entries, fibrad_work_sphere(work, disc));
     fibrad_entries_add(&work->entries, *entry, k, area);
