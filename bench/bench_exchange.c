@@ -175,12 +175,12 @@ static void measure_rows(const struct bench *bench, const struct bed *bed, doubl
     fibrad_bed_free(factors);
 }
 
-static void find_truth(struct bench *bench) {
+static void find_truth(struct bench *bench, uint32_t paths) {
     for (uint32_t k = 0; k < ROWS; ++k) {
         double error;
         uint64_t rays;
         memset(bench->sum, 0, bench->n * sizeof *bench->sum);
-        beam(bench, target(bench, k), 600000, 3200, &error, &rays);
+        beam(bench, target(bench, k), paths, 3200, &error, &rays);
         memcpy(bench->truth + (size_t)k * bench->n, bench->sum, bench->n * sizeof *bench->sum);
     }
 }
@@ -196,7 +196,7 @@ int main(int argc, char **argv) {
     puts("method,emissivity,directions,paths,error,relative_error,error_estimate,seconds,rays");
     for (double emissivity = .3; emissivity < .9; emissivity += .5) {
         for (uint32_t i = 0; i < bed.n; ++i) bench.emissivity[i] = emissivity;
-        find_truth(&bench);
+        find_truth(&bench, quick ? 101000 : 600000);
         for (uint32_t paths = 100; paths <= (quick ? 100 : 100000); paths *= 10)
             measure(&bench, "analog", analog, emissivity, paths, 0);
         for (uint32_t paths = 100; paths <= (quick ? 100 : 100000); paths *= 10)

@@ -69,7 +69,7 @@ int main(int argc, char **argv) {
                    {"mchf-x", FURNACE_MCHF_X, FIBRAD_THETA_DEFINITION}};
     const bool quick = argc == 2 && strcmp(argv[1], "quick") == 0;
     uint64_t reference_bundles = quick ? 200000 : argc > 1 ? strtoull(argv[1], NULL, 10) : 20000000;
-    uint64_t largest = quick ? 250000 : argc > 2 ? strtoull(argv[2], NULL, 10) : 2000000;
+    uint64_t largest = quick ? 62500 : argc > 2 ? strtoull(argv[2], NULL, 10) : 2000000;
     int threads = argc > 3 ? atoi(argv[3]) : 2;
     static double reference[CELLS];
     print_preamble(threads, reference_bundles);
