@@ -15,7 +15,9 @@
 
 /* A beam stands for the area 1/(n + m) if its two surfaces send out n and m beams per area: so the beams either way
  * together tell what the two exchange, those of the denser one counting as much more as there are more of them. */
-static double beam_area(const fibrad_heat_source *a, const fibrad_heat_source *b) { return 1 / (a->density + b->density); }
+static double beam_area(const fibrad_heat_source *a, const fibrad_heat_source *b) {
+    return 1 / (a->density + b->density);
+}
 
 /* Many beams meet the few patches that lie beyond the walls and their patches; one sum of all would lose digits. So
  * what has come to them lately is moved to a longer sum. */
