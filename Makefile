@@ -177,12 +177,13 @@ TESTS = \
     tests/test_cast.c \
     tests/test_cli.c \
     tests/test_direction.c \
+    tests/test_drift.c \
     tests/test_estimate.c \
     tests/test_exchange.c \
     tests/test_furnace.c \
     tests/test_heat.c \
     tests/test_matrix.c \
-    tests/test_moved.c \
+    tests/test_protocol.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
     tests/test_read.c \
@@ -197,15 +198,18 @@ TESTS = \
     tests/test_tables.c \
     tests/test_trace.c \
     tests/test_walls.c \
+    tests/test_work.c \
     tests/test_write.c
 
 SCRIPTS = \
     tests/check_bits.sh \
+    tests/check_dist.sh \
     tests/check_examples.sh \
     tests/check_faults.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
     tests/check_house.sh \
+    tests/check_map.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
     tests/freestanding/check_freestanding.sh \
@@ -231,8 +235,8 @@ BENCHES = \
 # built and run where Embree 3 is found (Debian: libembree-dev)
 PEERS = bench/bench_embree.c
 
-# these know the argument `quick`
-QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_heat.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c bench/bench_window.c $(PEERS)
+# linked with a library that counts its instructions, bench/count_cc.sh; built and run on x86-64
+COUNTED = bench/bench_instructions.c
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)
@@ -245,9 +249,12 @@ LIBRARIES      = $(BUILD)/libhost.a $(BUILD)/libfibrad_host.a $(BUILD)/libfibrad
 TEST_PROGRAMS  = $(TESTS:%.c=$(BUILD)/%)
 BENCH_PROGRAMS = $(BENCHES:%.c=$(BUILD)/%)
 PEER_PROGRAMS  = $(PEERS:%.c=$(BUILD)/%)
+COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfibrad.a
+COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
+ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib lib-host demo reproduce test run-programs programs check symbols lists format bench bench-quick bench-peers \
-    skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
+.PHONY: all lib lib-host dist demo reproduce test run-programs programs check symbols lists format bench bench-quick \
+    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
 
 ## all: build/fibrad and the libraries (the default)
 all: $(BUILD)/fibrad lib lib-host
@@ -330,6 +337,10 @@ $(PEER_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-gsl
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -O3 $(HOST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) -lembree3 $(GSL_LIBS) -lm -o $@
 
+$(COUNT_PROGRAMS): $(BUILD)/%: %.c $(COUNTING) | need-gsl
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(HOST_FLAGS) $(LDFLAGS) $< $(COUNTING) $(GSL_LIBS) -lm -o $@
+
 need-gsl:
 	@$(PKG_CONFIG) --exists gsl || { echo "The program fibrad needs GSL: run 'make deps' (Debian: pkg-config, libgsl-dev)." \
 	    "'make lib' builds libfibrad.a without it." >&2; exit 1; }
@@ -338,9 +349,9 @@ need-check:
 	@$(PKG_CONFIG) --exists check || { echo "The tests need libcheck: run 'make deps' (Debian: check)." >&2; exit 1; }
 
 # other flags, other objects (for flags on the command line: another BUILD)
-$(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) $(HOST_OBJECTS) $(BUILD)/host/main.o $(TEST_PROGRAMS) $(BENCH_PROGRAMS) $(PEER_PROGRAMS): Makefile
+$(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) $(HOST_OBJECTS) $(BUILD)/host/main.o $(TEST_PROGRAMS) $(ALL_BENCHES): Makefile
 
--include $(KERNEL_OBJECTS:.o=.d) $(SIMPLE_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d) $(PEER_PROGRAMS:=.d) $(BUILD)/host/main.d
+-include $(KERNEL_OBJECTS:.o=.d) $(SIMPLE_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(ALL_BENCHES:=.d) $(BUILD)/host/main.d
 
 # ---- what one does with them ----------------------------------------------------------------------------------------
 DEMO_BED = tests/data/mono2000.dump
@@ -354,6 +365,12 @@ demo: deps
 	@echo
 	@echo "The matrix of view factors: $(BUILD)/demo/F.mtx"
 	@echo "The picture of the bed:     $(BUILD)/demo/bed.png"
+
+## dist: build/dist/fibrad.c and fibrad.h, the whole kernel in two files for other build systems
+dist: $(BUILD)/dist/fibrad.c
+
+$(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*.h kernel/*/*.h kernel/*/*/*.h) kernel/dist/join.sh
+	kernel/dist/join.sh $(abspath $<) $(abspath $(@D)) $(KERNEL) $(LANED)
 
 ## test: install what is missing, build and run all tests
 test: deps
@@ -371,7 +388,7 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
 check: symbols lists format
 
-LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS)
+LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
 FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c)) \
          $(wildcard tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
 
@@ -392,16 +409,16 @@ format:
 BENCH_ENV = BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" BENCH_FLAGS="$(CFLAGS) -ffp-contract=off"
 
 ## bench: build and run all benches; CSV into build/bench, plots into docs/figures
-bench: $(BENCH_PROGRAMS) bench-peers
-	@set -e; for b in $(BENCH_PROGRAMS) $(PEER_PROGRAMS); do \
+bench: $(BENCH_PROGRAMS) bench-peers bench-counted
+	@set -e; for b in $(ALL_BENCHES); do \
 	    test -x $$b || continue; echo "$$b > $$b.csv"; $(BENCH_ENV) $$b > $$b.csv; done
 	gnuplot -e "in='$(BUILD)/bench/bench_beam.csv'; peer='$(BUILD)/bench/bench_embree.csv'; \
 	    out='docs/figures/beam_error.svg'" bench/plot_beam.gp
 	gnuplot -e "in='$(BUILD)/bench/bench_scale.csv'; out='docs/figures/scale.svg'" bench/plot_scale.gp
 
-## bench-quick: build all benches and run the smallest case of some: do they still work?
-bench-quick: $(BENCH_PROGRAMS) bench-peers
-	@set -e; mkdir -p $(BUILD)/bench/quick; for b in $(QUICK:bench/%.c=%); do \
+## bench-quick: build all benches and run the smallest case of each: do they still work?
+bench-quick: $(BENCH_PROGRAMS) bench-peers bench-counted
+	@set -e; mkdir -p $(BUILD)/bench/quick; for b in $(notdir $(ALL_BENCHES)); do \
 	    test -x $(BUILD)/bench/$$b || continue; echo "$$b quick"; \
 	    $(BENCH_ENV) $(BUILD)/bench/$$b quick > $(BUILD)/bench/quick/$$b.csv; done
 	gnuplot -e "in='$(BUILD)/bench/quick/bench_beam.csv'; peer='$(BUILD)/bench/quick/bench_embree.csv'; \
@@ -413,6 +430,13 @@ bench-peers:
 	@if echo '#include <embree3/rtcore.h>' | $(CC) -E -xc - >/dev/null 2>&1; then \
 	    $(MAKE) -s --no-print-directory $(PEER_PROGRAMS); \
 	else echo "No Embree 3 (Debian: libembree-dev): its benches are skipped"; fi
+
+# the library is made anew where its sources have changed: its own make knows
+bench-counted: $(filter-out %/libfibrad.a,$(LIBRARIES))
+	@case $$($(CC) -dumpmachine) in x86_64*) \
+	    $(MAKE) -s --no-print-directory BUILD=$(BUILD)/counted CC="bench/count_cc.sh $(CC)" HOSTCC="$(HOSTCC)" lib && \
+	    $(MAKE) -s --no-print-directory $(COUNT_PROGRAMS) ;; \
+	*) echo "Instructions are only counted on x86-64" ;; esac
 
 ## skips: what the skips save that no argument turns off, each turned off in a copy of the kernel (some minutes)
 skips:

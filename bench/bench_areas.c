@@ -12,8 +12,6 @@
 #include "window/areas.h"
 #include "bed/packing.h"
 #include "bench.h"
-#include "cli/message.h"
-#include "compute/rows.h"
 
 enum { DISCS = 64, METHODS = 8 };
 
@@ -126,12 +124,10 @@ int main(int argc, char **argv) {
     fibrad_arena arena = {0};
     fibrad_areas areas = {0};
     fibrad_areas_layout(&areas, &arena, DISCS);
-    const size_t size = arena.used;
-    void *block = run_block(size);
-    struct window *windows = malloc(rows * directions * sizeof *windows);
-    if (!block || !windows) return message_memory();
-    memset(block, 0, size);
-    arena = (fibrad_arena){block, 0, size};
+    const size_t size = fibrad_arena_total(&arena);
+    void *block = bench_array(size, 1);
+    struct window *windows = bench_array(rows * directions, sizeof *windows);
+    bench_check("areas", fibrad_arena_open(&arena, block, size, size));
     fibrad_areas_layout(&areas, &arena, DISCS);
     for (uint32_t k = 0; k < rows * directions; ++k)
         look(&windows[k], &bed, k / directions * (bed.n / rows), k % directions, directions);

@@ -7,7 +7,7 @@
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
 export BUILD MAKE CC
-tests="base pair_exact surface rows scene direction moved areas furnace surface_row beam cast walls trace exchange heat stress"
+tests="base pair_exact surface matrix scene direction moved areas furnace surface_row work beam cast walls trace exchange heat stress"
 whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-60}"
 
@@ -33,12 +33,13 @@ LINE
     kernel/window/*) tests="areas beam $tests" ;;
     */surface_row*) tests="surface_row $tests" ;;
     */walls.* | */wall_share*) tests="walls $tests" ;;
+    */work.*) tests="work beam cast $tests" ;;
     kernel/row/*) tests="beam cast $tests" ;;
     */cast*) tests="cast $tests" ;;
     kernel/ray/*) tests="trace $tests" ;;
     */drift*) tests="moved $tests" ;;
     kernel/scene/*) tests="scene beam $tests" ;;
-    kernel/matrix/*) tests="rows $tests" ;;
+    kernel/matrix/* | kernel/store/*) tests="matrix $tests" ;;
     kernel/furnace/*) tests="furnace $tests" ;;
     esac
     if awk -v old="$old" -v new="$new" 'BEGIN {sub(/^ /, "", old); sub(/ $/, "", old); sub(/^ /, "", new)}
