@@ -63,7 +63,7 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
 /* The numbers that follow from the arguments; false if these are not valid. */
 static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                              const fibrad_matrix_rule *rule) {
-    if (scene == NULL || (rows == NULL && count > 0) || !matrix_rule_valid(scene, rule)) return false;
+    if ((rows == NULL && count > 0) || !matrix_rule_valid(scene, rule)) return false;
     const uint64_t entries = entries_of(scene, rows, count);
     *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule)};
     m->raw = rule != NULL && rule->raw;
@@ -78,7 +78,7 @@ size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, ui
                           const fibrad_matrix_rule *rule) {
     fibrad_matrix fields;
     fibrad_arena arena = {0};
-    if (!matrix_dimension(&fields, scene, rows, count, rule)) return 0;
+    if (!fibrad_scene_ready(scene) || !matrix_dimension(&fields, scene, rows, count, rule)) return 0;
     matrix_layout(&arena, &fields);
     return fibrad_arena_total(&arena);
 }
@@ -161,7 +161,9 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
                        const fibrad_rows *rows, uint32_t count, const fibrad_matrix_rule *rule, uint32_t *sphere) {
     fibrad_matrix fields;
     fibrad_arena arena;
-    if (out == NULL || !matrix_dimension(&fields, scene, rows, count, rule)) return FIBRAD_E_ARGUMENT;
+    if (out == NULL || scene == NULL) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
+    if (!matrix_dimension(&fields, scene, rows, count, rule)) return FIBRAD_E_ARGUMENT;
     int status = fibrad_arena_open(&arena, memory, size, fibrad_matrix_size(scene, rows, count, rule));
     if (status != FIBRAD_OK) return status;
     fibrad_matrix *m = matrix_layout(&arena, &fields);

@@ -49,4 +49,3 @@ double smoke_sqrt(double x) {
     return view.value;
 }
 
-float smoke_sqrtf(float x) { return (float)smoke_sqrt((double)x); } /* rounding twice is harmless for square roots */
