@@ -129,6 +129,27 @@ START_TEST(averaging_by_hand) {
 }
 END_TEST
 
+/* Factors of 0 stand where they were. */
+START_TEST(averaging_nothing) {
+    const double r[] = {1, 2};
+    const fibrad_matrix_rule rules[] = {{0}, {.raw = 1}};
+    for (int k = 0; k < 2; k++) {
+        struct matrix m = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, (double[]){0, 0}, &rules[k]);
+        ck_assert_double_eq(reciprocity(&m), 0);
+        for (uint32_t i = 0; i < 2; i++) {
+            ck_assert_double_eq(matrix_sum(&m.factors, i), 0);
+            ck_assert_double_eq(matrix_total(&m.factors, i), k == 0 ? 1 : 0);
+        }
+        matrix_free(&m);
+    }
+    const double emissivity[] = {.5, .25};
+    struct matrix m = matrix_by_hand(2, r, (uint64_t[]){0, 1, 2}, (uint32_t[]){1, 0}, (double[]){0, 0},
+                                     &(fibrad_matrix_rule){.emissivity = emissivity, .drop = .1});
+    for (uint32_t i = 0; i < 2; i++) ck_assert_double_eq(matrix_total(&m.factors, i), 1);
+    matrix_free(&m);
+}
+END_TEST
+
 /* Entry by entry the formula of the header. */
 START_TEST(averaging_entry_by_entry) {
     struct bed bed = packing(120, .3, 1.5, .5, 9, false);
@@ -675,13 +696,22 @@ START_TEST(bad_rows_are_refused) {
     ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
     bad = good, bad.body = NULL;
     ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
-    const double wrong[] = {0, -.0, -.1, 1.1, NAN, INFINITY, -INFINITY};
+    const double wrong[] = {-.1, 1.1, NAN, INFINITY, -INFINITY};
     for (size_t k = 0; k < 2 * sizeof wrong / sizeof *wrong; k++) {
         double g[] = {.1, .2};
         g[k % 2] = wrong[k / 2];
         bad = good, bad.f = g;
         ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
     }
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        double g = wrong[k];
+        bad = good, bad.body = &g;
+        ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    }
+    bad = good, bad.escaped = NAN;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    bad = good, bad.error = NAN;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_rows_add(NULL, &good, 1), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_rows_add(&rows, NULL, 1), FIBRAD_E_ARGUMENT);
     ck_assert(same_collection(&rows, &before) && rows.used == before.used);
@@ -689,10 +719,10 @@ START_TEST(bad_rows_are_refused) {
     ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
     bad = (fibrad_row){.sphere = 3, .escaped = 1}; /* nothing seen */
     ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
-    double whole[] = {1 + 1e-15};
-    bad = (fibrad_row){.sphere = 4, .col = col, .f = whole, .length = 1}; /* above 1 by rounding */
+    double whole[] = {1 + 1e-15, 0};
+    bad = (fibrad_row){.sphere = 4, .col = col, .f = whole, .length = 2}; /* above 1 by rounding, and nothing */
     ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
-    ck_assert(rows.count == 4 && rows.entries == 5);
+    ck_assert(rows.count == 4 && rows.entries == 6);
     rows_free(&rows);
     fibrad_rows_clear(NULL);
 }
@@ -859,6 +889,7 @@ int main(void) {
     TCase *tcase = suite_case(suite, "matrix");
     tcase_add_test(tcase, averaging_makes_rows_reciprocal);
     tcase_add_test(tcase, averaging_by_hand);
+    tcase_add_test(tcase, averaging_nothing);
     tcase_add_test(tcase, averaging_entry_by_entry);
     tcase_add_test(tcase, errors_of_averaged_rows);
     tcase_add_test(tcase, limiting_keeps_reciprocity);
