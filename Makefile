@@ -177,18 +177,20 @@ TESTS = \
     tests/test_cast.c \
     tests/test_cli.c \
     tests/test_direction.c \
+    tests/test_drift.c \
     tests/test_estimate.c \
     tests/test_exchange.c \
     tests/test_furnace.c \
     tests/test_heat.c \
     tests/test_matrix.c \
-    tests/test_moved.c \
+    tests/test_protocol.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
     tests/test_read.c \
     tests/test_reference.c \
     tests/test_reproduce.c \
     tests/test_scene.c \
+    tests/test_simple.c \
     tests/test_status.c \
     tests/test_stress.c \
     tests/test_surface.c \
@@ -196,15 +198,18 @@ TESTS = \
     tests/test_tables.c \
     tests/test_trace.c \
     tests/test_walls.c \
+    tests/test_work.c \
     tests/test_write.c
 
 SCRIPTS = \
     tests/check_bits.sh \
+    tests/check_dist.sh \
     tests/check_examples.sh \
     tests/check_faults.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
     tests/check_house.sh \
+    tests/check_map.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
     tests/freestanding/check_freestanding.sh \
@@ -248,7 +253,7 @@ COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfi
 COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib lib-host demo reproduce test run-programs programs check symbols lists format bench bench-quick \
+.PHONY: all lib lib-host dist demo reproduce test run-programs programs check symbols lists format bench bench-quick \
     bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
 
 ## all: build/fibrad and the libraries (the default)
@@ -360,6 +365,12 @@ demo: deps
 	@echo
 	@echo "The matrix of view factors: $(BUILD)/demo/F.mtx"
 	@echo "The picture of the bed:     $(BUILD)/demo/bed.png"
+
+## dist: build/dist/fibrad.c and fibrad.h, the whole kernel in two files for other build systems
+dist: $(BUILD)/dist/fibrad.c
+
+$(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*.h kernel/*/*.h kernel/*/*/*.h) kernel/dist/join.sh
+	kernel/dist/join.sh $(abspath $<) $(abspath $(@D)) $(KERNEL) $(LANED)
 
 ## test: install what is missing, build and run all tests
 test: deps

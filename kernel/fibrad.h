@@ -205,7 +205,8 @@ typedef struct fibrad_work {
 /* ---- row ------------------------------------------------------------------------------------------------------- */
 typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
 
-/* One row of a matrix of factors: in the caller's arrays, or appended to a collection of rows. */
+/* One row of a matrix of factors: in the caller's arrays, or appended to a collection of rows, into which col, f and
+ * body then point until the next row is appended. */
 typedef struct fibrad_row {
     uint32_t *col;     /* [capacity] out: the spheres seen, ascending */
     double *f;         /* [capacity] out: factor from sphere i to sphere col[.], all > 0 */
@@ -235,8 +236,7 @@ typedef struct fibrad_beam_rule {
  * directions^-1.5, that of the sharing between walls about as directions^-1 (5e-4 each at 233). rule: NULL is all
  * defaults. Beams end after 100 periods; periodic images of one sphere share an entry, and i may see its own. Errors:
  * _ARGUMENT, _TABLE (points), _CAPACITY, _WORK, _MEMORY. Cost: some microseconds per direction with ten discs in the
- * window, and with the square of their number, large for a sphere among much smaller ones. Source: docs/methods.md
- * sections 3 and 4. */
+ * window; it grows with the square of their number. Source: docs/methods.md sections 3 and 4. */
 int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row);
 

@@ -1,59 +1,15 @@
 #!/bin/sh
 # check_house.sh - the order of the house. SPDX-License-Identifier: MIT
 #
-# No room includes one that it should not know; no circle of includes among files; at most sixteen sources in a folder;
-# no two sources, and no two static functions of kernel and host, share a name; the field's words and not our own; lines
-# of README.md within 140 columns.
+# No circle of includes among files; at most sixteen sources in a folder; no two sources, and no two static functions of
+# kernel and host, share a name; the field's words and not our own; lines of README.md within 140 columns. Which folder
+# may include which: tests/check_map.sh.
 set -u
 
-# what the field has other words for, or what says less than a plain verb
-words='accounts|taker|takers|doubtful|in doubt|emergence|sieve|sieves|plain sweep|gets farther|had better|books|lacks|fibrad_moved_[a-z]*'
-
-# rooms FOLDER: reads lines "ROOM: other rooms it may include"
-rooms() {
-    list=$(cat)
-    for path in "$1"/*/; do
-        room=$(basename "$path")
-        allowed=$(echo "$list" | sed -n "s/^$room://p")
-        echo "$list" | grep -q "^$room:" || echo "$path: not in the list of tests/check_house.sh"
-        grep -rE '^#include "[a-z_]+/' "$path" | sed 's/:#include "/ /; s/"$//' | while read -r file header; do
-            case " $room $allowed " in
-            *" ${header%%/*} "*) ;;
-            *) echo "$file: $room/ should not know $header" ;;
-            esac
-        done
-    done
-}
+# what the field has other words for, or what says less than a plain verb; the changelog has names of before
+words='accounts|taker|takers|doubtful|in doubt|emergence|sieve|sieves|plain sweep|gets farther|had better|books|fibrad_moved_[a-z]*'
 
 faults=$(
-    rooms kernel <<LIST
-base:
-sample: base
-pair: base
-scene: base
-store: base
-window: base sample
-row: base sample scene store window
-surface: base sample scene row
-matrix: base scene store
-ray: base sample scene row window
-exchange: base sample scene row ray
-heat: base sample scene row ray
-furnace: base
-LIST
-    rooms host <<LIST
-simple:
-cli:
-bed: cli simple
-read: cli bed
-boxes: cli bed
-write: cli bed simple boxes
-plot: cli bed simple boxes write
-reference: cli
-reproduce: cli bed simple boxes write plot reference
-command: cli bed read simple boxes write plot reference reproduce
-examples:
-LIST
     find kernel host -name '*.[ch]' | sed 's|.*/||' | sort | uniq -d | sed 's/$/: a name of two sources/'
     find kernel host -name '*.[ch]' | sed 's|/[^/]*$||' | sort | uniq -c | awk '$1 > 16 {print $2 ": " $1 " sources"}'
 
@@ -69,7 +25,7 @@ LIST
         }' {} + | sort -u | awk '
         $1 == last { print $2 " and " file ": static " $1 } { last = $1; file = $2 }'
 
-    grep -rnwiE --include='*.[ch]' --include='*.md' "$words" kernel host tests bench docs README.md CHANGELOG.md
+    grep -rnwiE --include='*.[ch]' --include='*.md' "$words" kernel host tests bench docs README.md
     awk 'length($0) > 140 {print "README.md:" NR ": " length($0) " columns"}' README.md
 )
 test -z "$faults" && exit

@@ -14,7 +14,7 @@ typedef struct point {
     double at[3], normal[3], area;
 } point;
 
-static uint32_t lattice(point *p, uint32_t n, double r, double centre_z, double turn) {
+static uint32_t plain_nodes(point *p, uint32_t n, double r, double centre_z, double turn) {
     uint32_t before = 5;
     for (uint32_t size = 8; size < n;) {
         const uint32_t next = size + before;
@@ -35,7 +35,7 @@ static uint32_t lattice(point *p, uint32_t n, double r, double centre_z, double 
 }
 
 /* The distance of the obstacle's centre from the segment is below its radius. */
-static int blocked(const double from[3], const double e[3], double ee, const fibrad_spheres *o, uint32_t k) {
+static int plain_blocked(const double from[3], const double e[3], double ee, const fibrad_spheres *o, uint32_t k) {
     const double c[3] = {o->x[k] - from[0], o->y[k] - from[1], o->z[k] - from[2]};
     const double t = fmin(1, fmax(0, (c[0] * e[0] + c[1] * e[1] + c[2] * e[2]) / ee));
     double dd = 0;
@@ -47,9 +47,9 @@ static int blocked(const double from[3], const double e[3], double ee, const fib
 static void surface_plain(double r1, double r2, double gap, const fibrad_spheres *o, uint32_t n, double *unblocked,
                           double *raw) {
     static point first[NODES_MAX], second[2 * NODES_MAX];
-    lattice(first, n, r1, 0, 0);
-    lattice(second, n, r2, r1 + r2 + gap, 0);
-    lattice(second + n, n, r2, r1 + r2 + gap, PI);
+    plain_nodes(first, n, r1, 0, 0);
+    plain_nodes(second, n, r2, r1 + r2 + gap, 0);
+    plain_nodes(second + n, n, r2, r1 + r2 + gap, PI);
     long double open = 0, seen = 0;
     for (uint32_t k = 0; k < n; k++)
         for (uint32_t l = 0; l < 2 * n; l++) {
@@ -64,7 +64,7 @@ static void surface_plain(double r1, double r2, double gap, const fibrad_spheres
             if (cos1 <= 0 || cos2 <= 0) continue;
             const double g = cos1 * cos2 / (PI * ee * ee) * a->area * b->area;
             int hidden = 0;
-            for (uint32_t m = 0; o != NULL && m < o->n; m++) hidden |= blocked(a->at, e, ee, o, m);
+            for (uint32_t m = 0; o != NULL && m < o->n; m++) hidden |= plain_blocked(a->at, e, ee, o, m);
             open += g;
             if (!hidden) seen += g;
         }

@@ -8,21 +8,21 @@
 /* Euclidean error of row i by the beam method with exact areas. */
 static double error_of(const struct bed *bed, uint32_t i, uint32_t directions, double tolerance) {
     double *f = calloc(bed->n, sizeof *f), escaped;
-    fibrad_spheres spheres = {bed->x, bed->y, bed->z, bed->r, bed->n};
+    const fibrad_spheres spheres = spheres_of(bed);
     struct reference_report report;
     struct reference_rule rule = {tolerance, 2000000};
     ck_assert_int_eq(reference_row(&spheres, i, &rule, f, &escaped, &report), REFERENCE_OK);
 
     fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_BEST);
-    fibrad_work *work = work_of(NULL);
+    fibrad_work work = work_growing();
     fibrad_row row = row_of(bed->n);
-    ck_assert_int_eq(fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = directions}, &row), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = directions}, &row), FIBRAD_OK);
     double square = 0;
     for (uint32_t j = 0; j < bed->n; j++) square += pow(row_factor(&row, j) - f[j], 2);
     ck_assert_double_eq_tol(row.escaped, escaped, 3e-5);
     row_free(&row);
     free(scene);
-    free(work);
+    work_free(&work);
     free(f);
     return sqrt(square);
 }
@@ -43,7 +43,7 @@ START_TEST(small_scenes) {
     for (uint64_t seed = 0; seed < 12; seed++) {
         struct bed bed = packing(3 + (uint32_t)(seed % 6), .3, 1.2, .3, seed, false);
         double error = error_of(&bed, 0, 4181, 1e-6);
-        worst = fmax(worst, error);
+        worst_of(&worst, error);
         bed_free(&bed);
     }
     printf("3 to 8 spheres: %.2g\n", worst);
@@ -73,14 +73,14 @@ END_TEST
 START_TEST(error_falls_as_it_should) {
     struct bed bed = packing(300, .8, 1.2, .55, 5, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 2048});
+    fibrad_work work = work_growing();
     double mean[3] = {0};
     for (uint32_t i = 0; i < 10; i++) {
         fibrad_row truth = row_of(bed.n), row = row_of(bed.n);
-        ck_assert_int_eq(fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = 30000}, &truth), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 30000}, &truth), FIBRAD_OK);
         for (int k = 0; k < 3; k++) {
             fibrad_beam_rule rule = {.directions = 100u << 2 * k};
-            ck_assert_int_eq(fibrad_beam_row(scene, work, i, &rule, &row), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
             mean[k] += row_distance(&row, &truth) / 10;
         }
         row_free(&truth);
@@ -90,7 +90,7 @@ START_TEST(error_falls_as_it_should) {
     ck_assert_double_gt(mean[0] / mean[2], 35);
     ck_assert_double_lt(mean[2], 1.2e-4);
     free(scene);
-    free(work);
+    work_free(&work);
     bed_free(&bed);
 }
 END_TEST

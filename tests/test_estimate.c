@@ -1,12 +1,8 @@
 /* test_estimate.c - rows are as accurate as they claim, and as they are asked to be. SPDX-License-Identifier: MIT */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
-#include "compute/rows.h"
+#include "bed/bed_scene.h"
 #include "scenes.h"
+#include "simple/fibrad_host.h"
 #include "suite.h"
-#include "compute/tolerance.h"
 
 enum { ROWS = 16 };
 
@@ -20,21 +16,28 @@ static const struct {
     struct bed (*make)(void);
 } beds[] = {{"random", random_bed}, {"sparse", sparse_bed}, {"sizes 1:4", unequal_bed}, {"cubic", cubic_bed}};
 
-static struct result rows(const struct bed *bed, uint32_t directions, bool raw, const bool *wanted) {
-    struct result result;
-    const fibrad_beam_rule rule = {.directions = directions};
-    const struct run_options options = {
-        .file = "bed", .method = method_beam(&rule), .threads = 1, .raw = raw, .wanted = wanted};
-    ck_assert_int_eq(run_rows(bed, &options, &result), 0);
-    return result;
+static fibrad_bed_factors *rows(const struct bed *bed, const fibrad_beam_rule *rule, bool raw,
+                                const unsigned char *wanted) {
+    const fibrad_spheres spheres = bed_spheres(bed);
+    const fibrad_scene_config config = bed_scene(bed, NULL);
+    const fibrad_bed_options options = {.beam = rule, .wanted = wanted, .raw = raw};
+    fibrad_run run = {.threads = 1};
+    fibrad_bed_factors *factors = NULL;
+    ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options, &run, &factors), FIBRAD_OK);
+    return factors;
 }
 
-/* ROWS rows of a bed with many directions. */
-static struct result truth_of(const struct bed *bed) {
-    bool wanted[1000] = {false};
+/* ROWS rows of a bed with many directions, and which they are. */
+static fibrad_bed_factors *truth_of(const struct bed *bed, unsigned char wanted[1000]) {
     ck_assert_uint_lt(bed->n, 1000);
-    for (uint32_t k = 0; k < ROWS; k++) wanted[bed->n * (2 * k + 1) / (2 * ROWS)] = true;
-    return rows(bed, 10000, true, wanted);
+    memset(wanted, 0, 1000);
+    for (uint32_t k = 0; k < ROWS; k++) wanted[bed->n * (2 * k + 1) / (2 * ROWS)] = 1;
+    return rows(bed, &(fibrad_beam_rule){.directions = 10000}, true, wanted);
+}
+
+static double distance_of(const fibrad_bed_factors *a, const fibrad_bed_factors *b, uint32_t i) {
+    const fibrad_row of_a = matrix_row(&a->matrix, i), of_b = matrix_row(&b->matrix, i);
+    return row_distance(&of_a, &of_b);
 }
 
 static int ascending(const void *a, const void *b) {
@@ -46,15 +49,19 @@ static int ascending(const void *a, const void *b) {
  * the median. */
 START_TEST(estimates_are_honest) {
     struct bed bed = beds[_i].make();
-    struct result truth = truth_of(&bed);
+    unsigned char wanted[1000];
+    fibrad_bed_factors *truth = truth_of(&bed, wanted);
     for (int raw = 0; raw < 2; raw++) {
         double ratio[3 * ROWS];
         uint32_t count = 0;
         for (uint32_t directions = 60; directions <= 540; directions *= 3) {
-            struct result result = rows(&bed, directions, raw, NULL);
-            for (uint32_t i = 0; i < bed.n; i++)
-                if (truth.wanted[i]) ratio[count++] = result.error[i] / rows_distance(&result.rows, &truth.rows, i);
-            result_free(&result);
+            fibrad_bed_factors *factors = rows(&bed, &(fibrad_beam_rule){.directions = directions}, raw, NULL);
+            for (uint32_t i = 0; i < bed.n; i++) {
+                if (!wanted[i]) continue;
+                ratio[count] = factors->matrix.error[i] / distance_of(factors, truth, i);
+                ck_assert_double_finite(ratio[count++]);
+            }
+            fibrad_bed_free(factors);
         }
         ck_assert_uint_eq(count, 3 * ROWS);
         qsort(ratio, count, sizeof *ratio, ascending);
@@ -63,7 +70,7 @@ START_TEST(estimates_are_honest) {
         ck_assert_double_ge(ratio[2], _i == 3 && raw ? .85 : 1);
         ck_assert_double_lt(ratio[count / 2], 4);
     }
-    result_free(&truth);
+    fibrad_bed_free(truth);
     bed_free(&bed);
 }
 END_TEST
@@ -71,25 +78,29 @@ END_TEST
 /* The rows asked for are that accurate, by the truth and by their own account; averaged ones closed and reciprocal. */
 START_TEST(tolerance_is_met) {
     struct bed bed = beds[_i].make();
-    struct result truth = truth_of(&bed), result;
+    unsigned char of_truth[1000];
+    fibrad_bed_factors *truth = truth_of(&bed, of_truth);
     const double wanted = _i == 1 ? .1 : 4e-3;
     for (int raw = 0; raw < 2; raw++) {
-        const struct run_options options = {.file = "bed", .threads = 1, .raw = raw};
-        ck_assert_int_eq(tolerance_rows(&bed, &options, &(fibrad_beam_rule){0}, wanted, &result), 0);
+        fibrad_bed_factors *factors = rows(&bed, &(fibrad_beam_rule){.tolerance = wanted}, raw, NULL);
         uint32_t above = 0;
+        double largest = 0;
         for (uint32_t i = 0; i < bed.n; i++) {
-            ck_assert_double_le(result.error[i], wanted);
-            if (truth.wanted[i]) above += rows_distance(&result.rows, &truth.rows, i) > wanted;
+            ck_assert_double_le(factors->matrix.error[i], wanted);
+            worst_of(&largest, factors->matrix.error[i]);
+            if (of_truth[i]) above += !(distance_of(factors, truth, i) <= wanted);
+            ck_assert_double_le(matrix_sum(&factors->matrix, i), 1 + 1e-12);
+            ck_assert_double_eq_tol(matrix_total(&factors->matrix, i), 1, 1e-12);
         }
         printf("%s, %s: %u directions for %g, estimate %.2g\n", beds[_i].name, raw ? "raw" : "averaged",
-               result.directions, wanted, result.error_estimate);
+               factors->directions, wanted, largest);
         ck_assert_uint_le(above, 1);
-        ck_assert_double_gt(result.error_estimate, wanted / 4);
-        ck_assert_double_le(result.row_sum_max, 1 + 1e-12);
-        if (!raw) ck_assert_double_lt(result.reciprocity_max, 1e-14);
-        result_free(&result);
+        ck_assert_double_gt(largest, wanted / 4);
+        ck_assert_double_le(factors->closure_error, 1e-12);
+        if (!raw) ck_assert_double_lt(factors->reciprocity_error, 1e-14);
+        fibrad_bed_free(factors);
     }
-    result_free(&truth);
+    fibrad_bed_free(truth);
     bed_free(&bed);
 }
 END_TEST
@@ -98,29 +109,30 @@ END_TEST
 START_TEST(rows_by_themselves) {
     struct bed bed = random_bed();
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work *work = work_of(&(fibrad_work_config){.discs = 2048});
+    fibrad_work work = work_growing();
     fibrad_row row = row_of(bed.n), plain = row_of(bed.n);
     uint32_t before = 0;
     for (double error = 1e-2; error > 1e-4; error /= 3) {
-        ck_assert_int_eq(fibrad_beam_row(scene, work, 7, &(fibrad_beam_rule){.error = error}, &row), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.tolerance = error}, &row), FIBRAD_OK);
         ck_assert_double_le(row.error, error);
         ck_assert_uint_ge(row.directions, before);
         before = row.directions;
-        ck_assert_int_eq(fibrad_beam_row(scene, work, 7, &(fibrad_beam_rule){.directions = before}, &plain), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.directions = before}, &plain),
+                         FIBRAD_OK);
         ck_assert_double_eq(row_distance(&row, &plain), 0);
         ck_assert_double_eq(row.error, plain.error);
     }
     ck_assert_uint_gt(before, 400);
     const uint32_t room = row.capacity;
     row.capacity = 3;
-    ck_assert_int_eq(fibrad_beam_row(scene, work, 7, &(fibrad_beam_rule){.error = .01}, &row), FIBRAD_E_CAPACITY);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.tolerance = .01}, &row), FIBRAD_E_CAPACITY);
     row.capacity = room;
-    ck_assert_int_eq(fibrad_beam_row(scene, work, 7, &(fibrad_beam_rule){.error = -1}, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_beam_row(scene, work, 7, &(fibrad_beam_rule){.error = NAN}, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.tolerance = -1}, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 7, &(fibrad_beam_rule){.tolerance = NAN}, &row), FIBRAD_E_ARGUMENT);
     row_free(&row);
     row_free(&plain);
     free(scene);
-    free(work);
+    work_free(&work);
     bed_free(&bed);
 }
 END_TEST
@@ -129,9 +141,9 @@ END_TEST
 START_TEST(out_of_reach) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1, 2, 3, 1}});
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work *work = work_of(NULL);
+    fibrad_work work = work_growing();
     fibrad_row row = row_of(bed.n);
-    ck_assert_int_eq(fibrad_beam_row(scene, work, 0, &(fibrad_beam_rule){.error = 1e-15}, &row), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.tolerance = 1e-15}, &row), FIBRAD_OK);
     ck_assert_uint_eq(row.directions, FIBRAD_DIRECTIONS_MAX);
     ck_assert_double_gt(row.error, 1e-15);
     ck_assert_uint_eq(fibrad_directions_for(FIBRAD_DIRECTIONS_MAX, 2, 1), FIBRAD_DIRECTIONS_MAX);
@@ -139,58 +151,7 @@ START_TEST(out_of_reach) {
     ck_assert_uint_lt(fibrad_directions_for(100, 8, 1), 500); /* 400 and some */
     row_free(&row);
     free(scene);
-    free(work);
-    bed_free(&bed);
-}
-END_TEST
-
-/* Large spheres among small ones with a fourth of the directions: rows stay reciprocal, their sums at most 1; the worst
- * row is no worse than it was, the large ones still have less error than the small ones, and estimates hold. */
-START_TEST(fewer_directions_for_large_spheres) {
-    enum { LARGE = 5 };
-    struct bed bed;
-    bed_init(&bed, false, 0);
-    ck_assert_int_eq(bed_make_two_sizes(&bed, LARGE, 4, .5, 1), 0);
-    struct result truth = rows(&bed, 1200, false, NULL), with[2];
-    const fibrad_beam_rule rule = {.directions = 100}, large_rule = {.directions = 25};
-    double worst[2][2] = {{0}};
-    for (int fewer = 0; fewer < 2; fewer++) {
-        struct run_options options = {.file = "bed", .method = method_beam(&rule), .threads = 1};
-        if (fewer) options.method.large_rule = &large_rule;
-        ck_assert_int_eq(run_rows(&bed, &options, &with[fewer]), 0);
-        uint32_t below = 0;
-        for (uint32_t i = 0; i < bed.n; i++) {
-            const double e = rows_distance(&with[fewer].rows, &truth.rows, i);
-            worst[fewer][i >= LARGE] = fmax(worst[fewer][i >= LARGE], e);
-            below += e < with[fewer].error[i];
-        }
-        ck_assert_uint_gt(below, bed.n * 95 / 100);
-        ck_assert_double_lt(with[fewer].reciprocity_max, 1e-14);
-        ck_assert_double_lt(with[fewer].row_sum_max, 1 + 1e-12);
-    }
-    ck_assert(with[0].rows.f[0] != with[1].rows.f[0]); /* the option does something */
-    ck_assert_double_lt(worst[1][1], 1.1 * worst[0][1]);
-    ck_assert_double_lt(worst[1][0], .5 * worst[1][1]);
-    result_free(&truth);
-    result_free(&with[0]);
-    result_free(&with[1]);
-    bed_free(&bed);
-}
-END_TEST
-
-/* Nothing changes where no sphere is large. */
-START_TEST(large_rule_is_for_large_spheres) {
-    struct bed bed = random_bed();
-    const fibrad_beam_rule rule = {.directions = 50}, large_rule = {.directions = 12};
-    struct run_options options = {.file = "bed", .method = method_beam(&rule), .threads = 1};
-    options.method.large_rule = &large_rule;
-    struct result plain = rows(&bed, 50, false, NULL), with;
-    ck_assert_int_eq(run_rows(&bed, &options, &with), 0);
-    ck_assert_uint_eq(with.rows.start[bed.n], plain.rows.start[bed.n]);
-    ck_assert_mem_eq(with.rows.f, plain.rows.f, plain.rows.start[bed.n] * sizeof *plain.rows.f);
-    ck_assert_mem_eq(with.error, plain.error, bed.n * sizeof *plain.error);
-    result_free(&plain);
-    result_free(&with);
+    work_free(&work);
     bed_free(&bed);
 }
 END_TEST
@@ -203,7 +164,5 @@ int main(void) {
     tcase_add_loop_test(tcase, tolerance_is_met, 0, count);
     tcase_add_test(tcase, rows_by_themselves);
     tcase_add_test(tcase, out_of_reach);
-    tcase_add_test(tcase, fewer_directions_for_large_spheres);
-    tcase_add_test(tcase, large_rule_is_for_large_spheres);
     return suite_run(suite);
 }

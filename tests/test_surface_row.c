@@ -1,11 +1,7 @@
 /* test_surface_row.c - rows by the surface method against ray-by-ray sums and against beams.
  * SPDX-License-Identifier: MIT */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include "bed/packing.h"
-#include "fibrad.h"
+#include "fibrad_surface.h"
+#include "scenes.h"
 #include "suite.h"
 #include "surface_plain.h"
 
@@ -14,53 +10,33 @@
 
 static struct bed bed;
 static fibrad_scene *scene;
-static fibrad_work *work;
-static void *scene_block, *work_block;
+static fibrad_work work;
 static uint32_t col[MOST];
 static double f[MOST];
 
-static void *block(size_t size) {
-    void *memory = aligned_alloc(64, (size + 63) / 64 * 64);
-    ck_assert_ptr_nonnull(memory);
-    return memory;
-}
-
 static void make_scene(int isa, bool periodic) {
-    fibrad_scene_config config = {.spheres = bed.n, .isa = isa};
-    for (int axis = 0; axis < 3; axis++) config.period[axis] = periodic ? bed.period[axis] : 0;
-    const fibrad_spheres spheres = {bed.x, bed.y, bed.z, bed.r, bed.n};
-    const size_t size = fibrad_scene_size(&config);
-    free(scene_block);
-    scene_block = block(size);
-    ck_assert_int_eq(fibrad_scene_init(&scene, scene_block, size, &config, &spheres, NULL), FIBRAD_OK);
-}
-
-static void make_work(const fibrad_work_config *config) {
-    const size_t size = fibrad_work_size(config);
-    free(work_block);
-    work_block = block(size);
-    ck_assert_int_eq(fibrad_work_init(&work, work_block, size, config), FIBRAD_OK);
+    struct bed open = bed;
+    for (int axis = 0; axis < 3; axis++) open.period[axis] = periodic ? bed.period[axis] : 0;
+    free(scene);
+    scene = scene_of(&open, isa);
 }
 
 /* A random bed of n spheres. */
 static void make(uint32_t n, bool periodic) {
     bed_free(&bed);
-    bed_init(&bed, false, 0);
-    ck_assert_int_eq(bed_make_packing(&bed, n, .8, 1.2, .55, 1), 0);
+    bed = packing(n, .8, 1.2, .55, 1, true);
     make_scene(FIBRAD_ISA_BEST, periodic);
-    make_work(&(fibrad_work_config){.near = MOST});
+    work_free(&work);
+    work = work_growing();
 }
 
-static fibrad_row row_of(uint32_t i, const fibrad_surface_rule *rule) {
+static fibrad_row surface_row(uint32_t i, const fibrad_surface_rule *rule) {
     fibrad_row row = {.col = col, .f = f, .capacity = MOST};
-    ck_assert_int_eq(fibrad_surface_row(scene, work, i, rule, &row), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_surface_row(scene, &work, i, rule, &row), FIBRAD_OK);
+    ck_assert_uint_eq(row.sphere, i);
+    ck_assert_int_eq(row.symmetric, 1);
+    ck_assert(row.beyond == 0 && row.error >= 0);
     return row;
-}
-
-static double entry(const fibrad_row *row, uint32_t j) {
-    for (uint32_t k = 0; k < row->length; k++)
-        if (row->col[k] == j) return row->f[k];
-    return 0;
 }
 
 /* F from i to j, both at their own places, ray by ray, in the frame that fibrad.h tells. */
@@ -81,7 +57,7 @@ static double plain(uint32_t i, uint32_t j, uint32_t nodes) {
     const double v[3] = {w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2], w[0] * u[1] - w[1] * u[0]};
 
     static double x[MOST], y[MOST], z[MOST], r[MOST];
-    fibrad_spheres obstacles = {x, y, z, r, 0};
+    fibrad_spheres obstacles = {.x = x, .y = y, .z = z, .r = r};
     for (uint32_t k = 0; k < bed.n; k++) {
         const double from_i[3] = {bed.x[k] - bed.x[i], bed.y[k] - bed.y[i], bed.z[k] - bed.z[i]};
         const double e[3] = {bed.x[k] - c1[0], bed.y[k] - c1[1], bed.z[k] - c1[2]};
@@ -104,11 +80,11 @@ START_TEST(equals_plain_sums) {
     make(150, false);
     uint32_t entries = 0;
     for (uint32_t i = 0; i < bed.n; i += 10) {
-        const fibrad_row row = row_of(i, &(fibrad_surface_rule){.nodes = 34, .cutoff = CUTOFF});
+        const fibrad_row row = surface_row(i, &(fibrad_surface_rule){.nodes = 34, .cutoff = CUTOFF});
         for (uint32_t j = 0; j < bed.n; j++) {
             const double e[3] = {bed.x[j] - bed.x[i], bed.y[j] - bed.y[i], bed.z[j] - bed.z[i]};
             const bool within = j != i && e[0] * e[0] + e[1] * e[1] + e[2] * e[2] <= CUTOFF * CUTOFF;
-            ck_assert_double_eq_tol(entry(&row, j), within ? plain(i, j, 34) : 0, 1e-12);
+            ck_assert_double_eq_tol(row_factor(&row, j), within ? plain(i, j, 34) : 0, 1e-12);
         }
         entries += row.length;
     }
@@ -119,19 +95,21 @@ END_TEST
 START_TEST(skips_and_instruction_sets_change_no_bit) {
     static uint32_t col_first[MOST];
     static double f_first[MOST];
+    int isa[ISAS_MOST];
+    const int sets = isas_there(isa);
     for (int periodic = 0; periodic < 2; periodic++) {
         make(200, periodic);
         for (uint32_t i = 0; i < bed.n; i += 20) {
             fibrad_surface_rule rule = {.cutoff = CUTOFF};
             make_scene(FIBRAD_ISA_SCALAR, periodic);
-            const fibrad_row first = row_of(i, &rule);
+            const fibrad_row first = surface_row(i, &rule);
             memcpy(col_first, col, first.length * sizeof *col);
             memcpy(f_first, f, first.length * sizeof *f);
-            for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)fibrad_isa_best(); isa++) {
-                make_scene(isa, periodic);
+            for (int set = 0; set < sets; set++) {
+                make_scene(isa[set], periodic);
                 for (uint32_t skip = 2; skip <= 32; skip *= 2) {
                     rule.flags = skip < 32 ? skip : 30;
-                    const fibrad_row row = row_of(i, &rule);
+                    const fibrad_row row = surface_row(i, &rule);
                     ck_assert_uint_eq(row.length, first.length);
                     ck_assert(memcmp(col, col_first, row.length * sizeof *col) == 0);
                     ck_assert(memcmp(f, f_first, row.length * sizeof *f) == 0);
@@ -149,12 +127,12 @@ START_TEST(agrees_with_beams) {
     static double beam_f[MOST];
     double difference = 0, estimate = 0;
     for (uint32_t i = 0; i < bed.n; i += 5) {
-        const fibrad_row row = row_of(i, &(fibrad_surface_rule){.cutoff = CUTOFF});
+        const fibrad_row row = surface_row(i, &(fibrad_surface_rule){.cutoff = CUTOFF});
         fibrad_row beam = {.col = beam_col, .f = beam_f, .capacity = MOST};
         const fibrad_beam_rule rule = {.directions = 2000, .cutoff = CUTOFF};
-        ck_assert_int_eq(fibrad_beam_row(scene, work, i, &rule, &beam), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &beam), FIBRAD_OK);
         for (uint32_t j = 0; j < bed.n; j++) {
-            const double e = entry(&row, j) - entry(&beam, j);
+            const double e = row_factor(&row, j) - row_factor(&beam, j);
             difference += e * e;
         }
         estimate += row.error * row.error;
@@ -168,9 +146,9 @@ START_TEST(reciprocal_without_cutoff) {
     make(60, false);
     static double all[60][60];
     for (uint32_t i = 0; i < bed.n; i++) {
-        const fibrad_row row = row_of(i, NULL);
+        const fibrad_row row = surface_row(i, NULL);
         double sum = row.escaped;
-        for (uint32_t j = 0; j < bed.n; j++) sum += all[i][j] = entry(&row, j);
+        for (uint32_t j = 0; j < bed.n; j++) sum += all[i][j] = row_factor(&row, j);
         ck_assert_double_eq_tol(sum, 1, 1e-14);
     }
     for (uint32_t i = 0; i < bed.n; i++)
@@ -181,24 +159,52 @@ START_TEST(reciprocal_without_cutoff) {
 }
 END_TEST
 
+/* The rows of a matrix are as they were but for rounding, and as accurate as they said. */
+START_TEST(rows_of_a_matrix) {
+    make(60, false);
+    fibrad_rows rows = {.memory = memory_growing()};
+    for (uint32_t i = 0; i < bed.n; i++)
+        ck_assert_int_eq(fibrad_surface_row(scene, &work, i, NULL, &(fibrad_row){.rows = &rows}), FIBRAD_OK);
+    struct matrix raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
+    struct matrix m = matrix_of(scene, &rows, 1, NULL);
+    double above = 0, largest;
+    for (uint32_t i = 0; i < bed.n; i++) worst_of(&above, matrix_sum(&raw.factors, i) - 1);
+    for (uint32_t i = 0; i < bed.n; i++) {
+        const fibrad_row before = matrix_row(&raw.factors, i), after = matrix_row(&m.factors, i);
+        ck_assert_double_eq(before.error, after.error);
+        ck_assert_uint_eq(before.length, after.length);
+        ck_assert_double_le(row_distance(&before, &after), 1e-15 + above);
+        ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-14);
+    }
+    ck_assert_int_eq(fibrad_matrix_reciprocity(raw.matrix, &largest), FIBRAD_OK);
+    ck_assert_double_le(largest, 1e-15);
+    rows_free(&rows);
+    matrix_free(&raw), matrix_free(&m);
+}
+END_TEST
+
 START_TEST(tells_what_it_needs) {
     make(200, true);
     const fibrad_surface_rule rule = {.cutoff = CUTOFF};
-    const fibrad_row enough = row_of(0, &rule);
-    make_work(&(fibrad_work_config){.near = 16, .entries = 4});
-    fibrad_row row = {.col = col, .f = f, .capacity = MOST};
+    static uint32_t col_enough[MOST];
+    static double f_enough[MOST];
+    const fibrad_row enough = surface_row(0, &rule);
+    memcpy(col_enough, col, sizeof col), memcpy(f_enough, f, sizeof f);
+    fibrad_work little = work_fixed(NULL, 0);
+    fibrad_row row = {.col = col, .f = f, .capacity = MOST, .length = 77};
     int tries = 0;
-    for (; fibrad_surface_row(scene, work, 0, &rule, &row) == FIBRAD_E_CAPACITY; tries++) {
-        ck_assert_uint_eq(row.length, 0);
-        fibrad_work_config needed;
-        fibrad_work_needed(work, &needed);
-        make_work(&needed);
+    while (work_again(&little, fibrad_surface_row(scene, &little, 0, &rule, &row))) {
+        ck_assert_uint_eq(row.length, 77);
+        ck_assert_int_lt(++tries, 5);
     }
-    ck_assert_int_eq(tries, 2);
+    ck_assert_int_ge(tries, 1);
     ck_assert_uint_eq(row.length, enough.length);
+    ck_assert_mem_eq(col, col_enough, row.length * sizeof *col);
+    ck_assert_mem_eq(f, f_enough, row.length * sizeof *f);
     row.capacity = 3;
-    ck_assert_int_eq(fibrad_surface_row(scene, work, 0, &rule, &row), FIBRAD_E_CAPACITY);
+    ck_assert_int_eq(fibrad_surface_row(scene, &little, 0, &rule, &row), FIBRAD_E_CAPACITY);
     ck_assert_uint_eq(row.length, enough.length);
+    work_free_fixed(&little);
 }
 END_TEST
 
@@ -208,41 +214,50 @@ START_TEST(bounds_the_search_for_images) {
     make(60, true);
     const double period = bed.period[0];
     fibrad_row row = {.col = col, .f = f, .capacity = MOST};
+    static unsigned char block[1 << 18];
+    fibrad_work little = work_fixed(block, sizeof block);
     const struct {
         double periods;
         int status;
-    } cases[] = {{3, FIBRAD_E_CAPACITY}, {100, FIBRAD_E_ARGUMENT}, {101, FIBRAD_E_ARGUMENT}, {1e9, FIBRAD_E_ARGUMENT}};
+    } cases[] = {{3, FIBRAD_E_WORK}, {100, FIBRAD_E_ARGUMENT}, {101, FIBRAD_E_ARGUMENT}, {1e9, FIBRAD_E_ARGUMENT}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
         ck_assert_int_eq(
-            fibrad_surface_row(scene, work, 0, &(fibrad_surface_rule){.cutoff = cases[k].periods * period}, &row),
+            fibrad_surface_row(scene, &little, 0, &(fibrad_surface_rule){.cutoff = cases[k].periods * period}, &row),
             cases[k].status);
 
-    /* one sphere and its images are few enough, at 100 periods still */
+    /* one sphere and its images are few enough, at 100 periods still: 128 bytes each, and what all rows take */
     bed.n = 1;
     make_scene(FIBRAD_ISA_BEST, true);
     const fibrad_surface_rule most = {.cutoff = 100 * period}, more = {.cutoff = 100.001 * period};
-    ck_assert_int_eq(fibrad_surface_row(scene, work, 0, &most, &row), FIBRAD_E_CAPACITY);
-    fibrad_work_config needed;
-    fibrad_work_needed(work, &needed);
-    ck_assert_double_eq_tol(needed.near, 4. / 3 * 3.14159265358979 * 1e6, 3e4);
-    ck_assert_int_eq(fibrad_surface_row(scene, work, 0, &more, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_surface_row(scene, &little, 0, &most, &row), FIBRAD_E_WORK);
+    ck_assert_double_eq_tol((double)little.memory.needed, 4. / 3 * 3.14159265358979 * 1e6 * 128, 3e4 * 128 + 1e6);
+    ck_assert_int_eq(fibrad_surface_row(scene, &little, 0, &more, &row), FIBRAD_E_ARGUMENT);
 }
 END_TEST
 
 START_TEST(refuses_what_is_wrong) {
     make(20, true);
-    fibrad_row row = {.col = col, .f = f, .capacity = MOST};
+    fibrad_row row = {.col = col, .f = f, .capacity = MOST, .length = 77};
     const fibrad_surface_rule good = {.cutoff = CUTOFF}, many = {.nodes = 54, .cutoff = CUTOFF},
                               negative = {.cutoff = -1};
     const fibrad_surface_rule flags = {.flags = 64, .cutoff = CUTOFF};
-    ck_assert_int_eq(fibrad_surface_row(NULL, work, 0, &good, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_surface_row(NULL, &work, 0, &good, &row), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_surface_row(scene, NULL, 0, &good, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_row(scene, work, 20, &good, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_row(scene, work, 0, &good, NULL), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_row(scene, work, 0, NULL, &row), FIBRAD_E_ARGUMENT); /* periodic, no cutoff */
-    ck_assert_int_eq(fibrad_surface_row(scene, work, 0, &negative, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_row(scene, work, 0, &flags, &row), FIBRAD_E_ARGUMENT);
-    ck_assert_int_eq(fibrad_surface_row(scene, work, 0, &many, &row), FIBRAD_E_TABLE);
+    ck_assert_int_eq(fibrad_surface_row(scene, &work, 20, &good, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &good, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, NULL, &row), FIBRAD_E_ARGUMENT); /* periodic, no cutoff */
+    ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &negative, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &flags, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, &many, &row), FIBRAD_E_TABLE);
+    struct bed one = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    const fibrad_body floor_plane = plane_at(2, 0, -2);
+    fibrad_scene *walled = scene_with(&one, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    double body = -5;
+    row.body = &body;
+    ck_assert_int_eq(fibrad_surface_row(walled, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);
+    ck_assert(body == -5 && row.length == 77);
+    free(walled);
+    bed_free(&one);
 }
 END_TEST
 
@@ -253,6 +268,7 @@ int main(void) {
     tcase_add_test(cases, skips_and_instruction_sets_change_no_bit);
     tcase_add_test(cases, agrees_with_beams);
     tcase_add_test(cases, reciprocal_without_cutoff);
+    tcase_add_test(cases, rows_of_a_matrix);
     tcase_add_test(cases, tells_what_it_needs);
     tcase_add_test(cases, bounds_the_search_for_images);
     tcase_add_test(cases, refuses_what_is_wrong);

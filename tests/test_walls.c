@@ -1,11 +1,9 @@
 /* test_walls.c - walls of a scene: what a ray meets, rows that close in containers, the option --wall.
  * SPDX-License-Identifier: MIT */
-#include <stdio.h>
-
+#include "bed/wall_option.h"
 #include "scene/walls.h"
 #include "scenes.h"
 #include "suite.h"
-#include "bed/wall_option.h"
 
 #define PI 3.14159265358979323846
 
@@ -14,7 +12,7 @@ static double uniform(double low, double high) { return low + (high - low) * (ra
 #define WALLS 7 /* x low, x high, y low, y high, z low, z high, cylinder, as the kernel has them inside */
 
 /* Walls by place. */
-struct walls {
+struct container {
     uint32_t planes; /* sum of 1 << place */
     double at[6], cylinder[3];
 };
@@ -30,7 +28,7 @@ static const uint32_t orders[][WALLS] = {
     {0, 1, 2, 3, 4, 5, 6}, {3, 6, 0, 5, 2, 4, 1}, {6, 5, 4, 3, 2, 1, 0}, {4, 2, 6, 1, 5, 3, 0}};
 enum { ORDERS = sizeof orders / sizeof *orders };
 
-static struct places bodies_of(const struct walls *walls, const uint32_t order[WALLS]) {
+static struct places bodies_of(const struct container *walls, const uint32_t order[WALLS]) {
     struct places places = {0};
     for (int k = 0; k < WALLS; k++) {
         const uint32_t place = order[k];
@@ -49,13 +47,13 @@ static int init(fibrad_scene **scene, const struct bed *bed, uint32_t bodies, co
     return scene_try(scene, bed, &(fibrad_scene_config){.body = body, .bodies = bodies}, fault);
 }
 
-static fibrad_scene *scene_in(const struct bed *bed, const struct walls *walls, int isa) {
+static fibrad_scene *scene_in(const struct bed *bed, const struct container *walls, int isa) {
     const struct places places = bodies_of(walls, orders[1]);
     return scene_with(bed, &(fibrad_scene_config){.isa = isa, .body = places.body, .bodies = places.count});
 }
 
 /* Turns the factors to bodies, in the order of their naming, into those to walls by place, 0 for what is not there. */
-static void by_place(const struct walls *walls, const uint32_t order[WALLS], double body[BODIES_MOST]) {
+static void by_place(const struct container *walls, const uint32_t order[WALLS], double body[BODIES_MOST]) {
     const struct places places = bodies_of(walls, order);
     double wall[WALLS] = {0};
     for (uint32_t b = 0; b < places.count; b++) wall[places.place[b]] = body[b];
@@ -63,7 +61,7 @@ static void by_place(const struct walls *walls, const uint32_t order[WALLS], dou
 }
 
 /* Row i by beams, the walls in row.body by place. */
-static fibrad_row beam_in_order(const struct bed *bed, const struct walls *walls, const uint32_t order[WALLS],
+static fibrad_row beam_in_order(const struct bed *bed, const struct container *walls, const uint32_t order[WALLS],
                                 uint32_t i, const fibrad_beam_rule *rule, int isa) {
     const struct places places = bodies_of(walls, order);
     fibrad_scene *scene =
@@ -78,20 +76,20 @@ static fibrad_row beam_in_order(const struct bed *bed, const struct walls *walls
     return row;
 }
 
-static fibrad_row beam(const struct bed *bed, const struct walls *walls, uint32_t i, uint32_t directions,
+static fibrad_row beam(const struct bed *bed, const struct container *walls, uint32_t i, uint32_t directions,
                        uint32_t points, int isa) {
     const fibrad_beam_rule rule = {.directions = directions, .points = points};
     return beam_in_order(bed, walls, orders[1], i, &rule, isa);
 }
 
 /* Row i by rays in a scene of scene_in, the walls by place. */
-static void cast(const fibrad_scene *scene, const struct walls *walls, fibrad_work *work, uint32_t i, uint32_t rays,
+static void cast(const fibrad_scene *scene, const struct container *walls, fibrad_work *work, uint32_t i, uint32_t rays,
                  fibrad_row *row) {
     ck_assert_int_eq(fibrad_cast_row(scene, work, i, &(fibrad_cast_rule){.rays = rays}, row, NULL), FIBRAD_OK);
     by_place(walls, orders[1], row->body);
 }
 
-static fibrad_row lone(double x, double y, double z, double r, const struct walls *walls, uint32_t directions) {
+static fibrad_row lone(double x, double y, double z, double r, const struct container *walls, uint32_t directions) {
     struct bed bed = bed_of(1, (const double[][4]){{x, y, z, r}});
     fibrad_row row = beam(&bed, walls, 0, directions, 0, FIBRAD_ISA_BEST);
     bed_free(&bed);
@@ -131,8 +129,8 @@ static double to_disc(double R, double s, double d) {
     return sum / 2000 / 2;
 }
 
-static const struct walls box10 = {.planes = 63, .at = {0, 10, 0, 10, 0, 10}};
-static const struct walls can10 = {.planes = 48, .at = {0, 0, 0, 0, 0, 10}, .cylinder = {5, 5, 5}};
+static const struct container box10 = {.planes = 63, .at = {0, 10, 0, 10, 0, 10}};
+static const struct container can10 = {.planes = 48, .at = {0, 0, 0, 0, 0, 10}, .cylinder = {5, 5, 5}};
 
 START_TEST(bad_walls_are_refused) {
     const double spheres[][4] = {{5, 5, 5, 1}, {2, 5, 5, 1}, {5, 5, 9.5, 1}};
@@ -250,8 +248,8 @@ END_TEST
 /* Factors follow the index of the body, with the same bits, whatever the order in which bodies are named. */
 START_TEST(bodies_in_any_order) {
     struct bed bed = packing(60, .6, 1.4, .3, 3, false);
-    const struct walls walls[] = {{.planes = 63, .at = {-3, 40, -4, 41, -5, 42}},
-                                  {.planes = 48, .at = {[4] = -3, [5] = 40}, .cylinder = {5, 6, 30}}};
+    const struct container walls[] = {{.planes = 63, .at = {-3, 40, -4, 41, -5, 42}},
+                                      {.planes = 48, .at = {[4] = -3, [5] = 40}, .cylinder = {5, 6, 30}}};
     for (int k = 0; k < 2; k++)
         for (uint32_t points = 0; points <= 64; points += 64) {
             const fibrad_beam_rule rule = {.directions = 101, .points = points};
@@ -269,11 +267,11 @@ END_TEST
 
 START_TEST(areas_of_walls) {
     struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
-    const struct walls walls[] = {{.planes = 63, .at = {0, 10, 1, 10, 3, 10}},
-                                  can10,
-                                  {.planes = 16},
-                                  {.planes = 48, .at = {[5] = 10}},
-                                  {.cylinder = {5, 5, 5}}};
+    const struct container walls[] = {{.planes = 63, .at = {0, 10, 1, 10, 3, 10}},
+                                      can10,
+                                      {.planes = 16},
+                                      {.planes = 48, .at = {[5] = 10}},
+                                      {.cylinder = {5, 5, 5}}};
     const double inf = INFINITY, area[][WALLS] = {{63, 63, 70, 70, 90, 90, 0},
                                                   {0, 0, 0, 0, 25 * PI, 25 * PI, 100 * PI},
                                                   {0, 0, 0, 0, inf, 0, 0},
@@ -302,16 +300,16 @@ START_TEST(areas_of_walls) {
 END_TEST
 
 /* How far a place lies within a wall. */
-static double within(const struct walls *walls, uint32_t wall, const double at[3]) {
+static double within(const struct container *walls, uint32_t wall, const double at[3]) {
     if (wall == 6) return walls->cylinder[2] - hypot(at[0] - walls->cylinder[0], at[1] - walls->cylinder[1]);
     return wall % 2 ? walls->at[wall] - at[wall / 2] : at[wall / 2] - walls->at[wall];
 }
 
-static bool has(const struct walls *walls, uint32_t wall) {
+static bool has(const struct container *walls, uint32_t wall) {
     return wall == 6 ? walls->cylinder[2] > 0 : walls->planes >> wall & 1;
 }
 
-static void assert_exit(const fibrad_scene *scene, const struct walls *walls, const double o[3], const double w[3],
+static void assert_exit(const fibrad_scene *scene, const struct container *walls, const double o[3], const double w[3],
                         uint32_t from) {
     double distance, at[3], normal[3], middle[3];
     uint32_t wall = fibrad_walls_exit(scene, o, w, &distance);
@@ -342,12 +340,12 @@ static void assert_exit(const fibrad_scene *scene, const struct walls *walls, co
 /* On from the wall it met, a ray comes to another one, or to the same cylinder farther on, and back outwards it is at
  * once at the same; also where rounding or more has put the place beyond the wall. */
 START_TEST(a_ray_leaves_through_the_first_wall) {
-    const struct walls walls[] = {box10,
-                                  can10,
-                                  {.planes = 1},
-                                  {.planes = 48, .at = {[5] = 10}},
-                                  {.cylinder = {5, 5, 5}},
-                                  {.planes = 37, .at = {[5] = 10}}};
+    const struct container walls[] = {box10,
+                                      can10,
+                                      {.planes = 1},
+                                      {.planes = 48, .at = {[5] = 10}},
+                                      {.cylinder = {5, 5, 5}},
+                                      {.planes = 37, .at = {[5] = 10}}};
     struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     srand(1);
     for (size_t k = 0; k < sizeof walls / sizeof *walls; k++) {
@@ -387,7 +385,7 @@ START_TEST(half_of_a_sphere_sees_a_plane) {
     const uint32_t directions[] = {8, 9, 100, 101, 233, 987, 1000};
     for (size_t k = 0; k < sizeof directions / sizeof *directions; k++)
         for (uint32_t wall = 0; wall < 6; wall++) {
-            const struct walls plane = {.planes = 1u << wall, .at = {-1, 1, -1, 1, -1, 1}};
+            const struct container plane = {.planes = 1u << wall, .at = {-1, 1, -1, 1, -1, 1}};
             fibrad_row row = lone(0, 0, 0, 1, &plane, directions[k]);
             double tolerance = wall >= 4 ? 1e-14 : .4 / directions[k];
             ck_assert_double_eq_tol(row.body[wall], .5, tolerance);
@@ -395,7 +393,7 @@ START_TEST(half_of_a_sphere_sees_a_plane) {
             assert_closed(&row);
             row_free(&row);
         }
-    const struct walls slit = {.planes = 48, .at = {[4] = -1.5, [5] = 40}};
+    const struct container slit = {.planes = 48, .at = {[4] = -1.5, [5] = 40}};
     fibrad_row row = lone(0, 0, 0, 2, &slit, 101); /* half a radius beyond one of them */
     ck_assert_double_eq_tol(row.body[4], .5, 1e-14);
     ck_assert_double_eq_tol(row.body[5], .5, 1e-14);
@@ -412,7 +410,7 @@ START_TEST(sphere_in_a_box) {
     for (int k = 0; k < 3; k++)
         for (int t = 0; t < 40; t++) {
             double side[3], c[3], r = uniform(.5, 2);
-            struct walls box = {.planes = 63};
+            struct container box = {.planes = 63};
             for (int axis = 0; axis < 3; axis++) {
                 side[axis] = r * 2.5 * pow(400, t / 39.) * uniform(1, 2);
                 box.at[2 * axis] = uniform(-9, 9);
@@ -440,7 +438,7 @@ START_TEST(sphere_in_a_cylinder) {
         double R = 1.5 * pow(200, t / 39.), h = R * uniform(.8, 3) + 2, z = uniform(1, h - 1), s = uniform(0, R - 1);
         double phi = uniform(0, 2 * PI), bottom = to_disc(R, s, z), top = to_disc(R, s, h - z);
         for (uint32_t kind = 0; kind < 3; kind++) { /* closed, open above, open */
-            struct walls can = {.planes = kind == 0 ? 48 : kind == 1 ? 16 : 0, .at = {[4] = 2, [5] = 2 + h}};
+            struct container can = {.planes = kind == 0 ? 48 : kind == 1 ? 16 : 0, .at = {[4] = 2, [5] = 2 + h}};
             can.cylinder[0] = 3, can.cylinder[1] = -4, can.cylinder[2] = R;
             fibrad_row row = lone(3 + s * cos(phi), -4 + s * sin(phi), 2 + z, 1, &can, 987);
             double low = row.body[4], high = kind == 0 ? row.body[5] : row.escaped;
@@ -465,7 +463,8 @@ START_TEST(walls_take_what_escapes) {
             double c = axis == 0 ? bed.x[i] : axis == 1 ? bed.y[i] : bed.z[i];
             least_of(&low[axis], c - .5), worst_of(&high[axis], c + bed.r[i]);
         }
-    struct walls walls[4] = {{.planes = 63}, {.planes = 48}, {.planes = 48}, {.planes = 29 /* two sides missing */}};
+    struct container walls[4] = {
+        {.planes = 63}, {.planes = 48}, {.planes = 48}, {.planes = 29 /* two sides missing */}};
     for (int k = 0; k < 4; k++)
         for (int axis = 0; axis < 3; axis++) walls[k].at[2 * axis] = low[axis], walls[k].at[2 * axis + 1] = high[axis];
     walls[2].cylinder[0] = (low[0] + high[0]) / 2, walls[2].cylinder[1] = (low[1] + high[1]) / 2;
@@ -477,7 +476,7 @@ START_TEST(walls_take_what_escapes) {
         fibrad_scene *scene = scene_in(&bed, &walls[k], 0);
         for (uint32_t i = 0; i < bed.n; i += 11)
             for (uint32_t points = 0; points <= 256; points += 128) {
-                fibrad_row free_row = beam(&bed, &(struct walls){0}, i, 610, points, 0);
+                fibrad_row free_row = beam(&bed, &(struct container){0}, i, 610, points, 0);
                 fibrad_row row = beam(&bed, &walls[k], i, 610, points, 0);
                 ck_assert_uint_eq(row.length, free_row.length);
                 ck_assert_mem_eq(row.f, free_row.f, row.length * sizeof *row.f);
@@ -506,7 +505,7 @@ START_TEST(walls_of_a_periodic_bed) {
     bed.period[2] = 0;
     double low = 1e9, high = -1e9;
     for (uint32_t i = 0; i < bed.n; i++) least_of(&low, bed.z[i] - 1), worst_of(&high, bed.z[i] + 1);
-    const struct walls slit = {.planes = 48, .at = {[4] = low, [5] = high}};
+    const struct container slit = {.planes = 48, .at = {[4] = low, [5] = high}};
     fibrad_scene *scene = scene_in(&bed, &slit, 0);
     fibrad_work work = work_growing();
     fibrad_row rays = row_of(1024);
@@ -528,7 +527,7 @@ END_TEST
 
 START_TEST(same_bits_in_every_instruction_set) {
     struct bed bed = packing(60, .6, 1.4, .3, 3, false);
-    struct walls walls[2] = {{.planes = 63, .at = {-3, 40, -3, 40, -3, 40}}, {.planes = 16, .at = {[4] = -3}}};
+    struct container walls[2] = {{.planes = 63, .at = {-3, 40, -3, 40, -3, 40}}, {.planes = 16, .at = {[4] = -3}}};
     walls[1].cylinder[0] = walls[1].cylinder[1] = 5, walls[1].cylinder[2] = 30;
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
@@ -553,11 +552,11 @@ END_TEST
 /* Another order of the spheres and another unit of length change nothing but rounding; other axes no more than the
  * rule's error. */
 START_TEST(order_scale_and_axes) {
-    const struct walls box = {.planes = 63, .at = {-2, 14, -3, 16, -4, 15}};
+    const struct container box = {.planes = 63, .at = {-2, 14, -3, 16, -4, 15}};
     struct bed bed = packing(50, .8, 1.2, .2, 4, false), other, turned;
     bed_init(&other, false, 0);
     bed_init(&turned, false, 0);
-    struct walls scaled = box, cyclic = box;
+    struct container scaled = box, cyclic = box;
     for (int k = 0; k < 6; k++) scaled.at[k] *= 4, cyclic.at[(k + 2) % 6] = box.at[k];
     for (uint32_t i = 0; i < bed.n; i++) {
         uint32_t j = bed.n - 1 - i;
@@ -639,45 +638,56 @@ START_TEST(misspelt_option) {
 }
 END_TEST
 
+/* Checks the walls that options place: their places in order, `at` by place, the cylinder's axis and radius. */
+static void assert_walls(const struct wall_options *options, const struct bed *bed, uint32_t count,
+                         const uint32_t *place, const double at[WALLS], const double cylinder[3]) {
+    struct walls walls;
+    ck_assert_int_eq(walls_of(options, bed, "bed", &walls), 0);
+    ck_assert_uint_eq(walls.count, count);
+    for (uint32_t k = 0; k < count; k++) {
+        const fibrad_body *body = &walls.body[k];
+        if (place[k] == 6) {
+            ck_assert_int_eq(body->kind, FIBRAD_BODY_CYLINDER);
+            ck_assert(body->cylinder.x == cylinder[0] && body->cylinder.y == cylinder[1]);
+            ck_assert(body->cylinder.radius == cylinder[2]);
+            ck_assert_str_eq(wall_name(body), "cylinder");
+        } else {
+            static const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+            ck_assert_int_eq(body->kind, FIBRAD_BODY_PLANE);
+            ck_assert_int_eq(2 * body->plane.axis + body->plane.upper, (int)place[k]);
+            ck_assert(body->plane.at == at[place[k]]);
+            ck_assert_str_eq(wall_name(body), names[place[k]]);
+        }
+    }
+}
+
 START_TEST(option_places_walls) {
     struct bed bed = bed_of(2, (const double[][4]){{1, 2, 3, 1}, {4, 6, 8, 2}});
     struct wall_options options = {0}, box = {0}, automatic = {0}, clash = {0}, beyond = {0}, mixed = {0};
-    fibrad_walls walls;
-    struct wall_order order;
+    struct walls walls;
     ck_assert_int_eq(walls_option("zmax,cylinder:2.5,4,30,zmin=-4", &options), 0);
-    ck_assert_int_eq(walls_of(&options, &bed, "bed", &walls, &order), 0);
-    ck_assert_uint_eq(order.count, 3);
-    ck_assert(order.wall[0] == 5 && order.wall[1] == 6 && order.wall[2] == 4);
-    ck_assert_uint_eq(walls.planes, 48);
-    ck_assert(walls.at[4] == -4 && walls.at[5] == 10);
-    ck_assert(walls.cylinder[0] == 2.5 && walls.cylinder[1] == 4 && walls.cylinder[2] == 30);
+    assert_walls(&options, &bed, 3, (uint32_t[]){5, 6, 4}, (double[WALLS]){[4] = -4, [5] = 10}, (double[]){2.5, 4, 30});
     ck_assert_int_eq(walls_option("xmin", &options), 0); /* a second option adds to the first */
-    ck_assert_int_eq(walls_of(&options, &bed, "bed", &walls, &order), 2);
+    ck_assert_int_eq(walls_of(&options, &bed, "bed", &walls), 2);
 
-    const double ends[6] = {0, 6, 1, 8, 2, 10}, file[6] = {-1, 7, -2, 9, -3, 12};
+    const uint32_t all[] = {0, 1, 2, 3, 4, 5};
+    const double ends[WALLS] = {0, 6, 1, 8, 2, 10}, file[WALLS] = {-1, 7, -2, 9, -3, 12};
     ck_assert_int_eq(walls_option("box", &box), 0);
-    ck_assert_int_eq(walls_of(&box, &bed, "bed", &walls, &order), 0);
-    ck_assert_uint_eq(walls.planes, 63);
-    for (uint32_t k = 0; k < 6; k++) ck_assert(walls.at[k] == ends[k] && order.wall[k] == k);
+    assert_walls(&box, &bed, 6, all, ends, NULL);
     ck_assert_int_eq(walls_option("auto", &automatic), 0);
-    ck_assert_int_eq(walls_of(&automatic, &bed, "bed", &walls, &order), 2);
+    ck_assert_int_eq(walls_of(&automatic, &bed, "bed", &walls), 2);
     for (int axis = 0; axis < 3; axis++) bed.low[axis] = file[2 * axis], bed.high[axis] = file[2 * axis + 1];
-    ck_assert_int_eq(walls_of(&automatic, &bed, "bed", &walls, &order), 0);
-    for (int k = 0; k < 6; k++) ck_assert(walls.at[k] == file[k]);
+    assert_walls(&automatic, &bed, 6, all, file, NULL);
     ck_assert_int_eq(walls_option("box,ymax=9.5,auto", &mixed), 0);
-    ck_assert_int_eq(walls_of(&mixed, &bed, "bed", &walls, &order), 0);
-    ck_assert(walls.planes == 63 && walls.at[3] == 9.5 && walls.at[2] == -2);
-    ck_assert(order.count == 6 && order.wall[0] == 3 && order.wall[1] == 0 && order.wall[3] == 2 && order.wall[4] == 4);
+    assert_walls(&mixed, &bed, 6, (uint32_t[]){3, 0, 1, 2, 4, 5}, (double[WALLS]){-1, 7, -2, 9.5, -3, 12}, NULL);
     bed.period[0] = 8;
-    ck_assert_int_eq(walls_of(&automatic, &bed, "bed", &walls, &order), 0);
-    ck_assert(walls.planes == 60 && order.count == 4 && order.wall[0] == 2);
-    ck_assert_int_eq(walls_of(&box, &bed, "bed", &walls, &order), 2);
+    assert_walls(&automatic, &bed, 4, (uint32_t[]){2, 3, 4, 5}, file, NULL);
+    ck_assert_int_eq(walls_of(&box, &bed, "bed", &walls), 2);
     ck_assert_int_eq(walls_option("zmin=9,zmax=8", &clash), 0);
-    ck_assert_int_eq(walls_of(&clash, &bed, "bed", &walls, &order), 2);
+    ck_assert_int_eq(walls_of(&clash, &bed, "bed", &walls), 2);
     ck_assert_int_eq(walls_option("zmin=4", &beyond), 0);
-    ck_assert_int_eq(walls_of(&beyond, &bed, "bed", &walls, &order), 3);
-    ck_assert_int_eq(walls_of(&(struct wall_options){0}, &bed, "bed", &walls, &order), 0);
-    ck_assert_uint_eq(order.count, 0);
+    ck_assert_int_eq(walls_of(&beyond, &bed, "bed", &walls), 3);
+    assert_walls(&(struct wall_options){0}, &bed, 0, NULL, NULL, NULL);
     bed_free(&bed);
 }
 END_TEST

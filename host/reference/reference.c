@@ -251,7 +251,8 @@ static uint32_t collect_discs(struct integral *in, const double w[3], const uint
     const double last = in->goal < in->n ? dot_product(w, in->target[in->goal].c) : INFINITY;
     for (uint32_t k = 0; k < count; k++) {
         const struct target *target = &in->target[near[k]];
-        const double depth = dot_product(w, target->c), u = dot_product(side, target->c), v = dot_product(up, target->c);
+        const double depth = dot_product(w, target->c), u = dot_product(side, target->c),
+                     v = dot_product(up, target->c);
         if (depth <= 0 || depth > last || u * u + v * v >= square(1 + target->r)) continue;
         disc[met++] = (struct disc){u, v, target->r, depth, near[k]};
     }
@@ -325,7 +326,7 @@ static void evaluate(struct integral *in, const struct cell *cell, const uint32_
  * agree. The difference, mostly the error of the whole, counts as error. Agreement may be an accident: where the cell
  * that this one is a quarter of was far off (`inherited`), one more step is taken. */
 static void refine_cell(struct integral *in, const struct cell *cell, const double *whole, const uint32_t *near,
-                   uint32_t count, int depth, double inherited) {
+                        uint32_t count, int depth, double inherited) {
     if (in->evaluations > in->max_evaluations) return;
     double *part = in->value + (size_t)depth * 4 * in->entries;
     uint32_t *own = in->near + (size_t)depth * in->n;
@@ -371,9 +372,9 @@ static double sweep_charts(struct integral *in, const struct cell *cell, uint32_
 }
 
 /* Sweeps with falling thresholds until the estimate meets the tolerance; the first, a coarse one, is always finished.
- * The differences of `refine_cell` are errors of the coarser values. Where the integrand bends, an error of h^3.5 per cell,
- * those of the quarters are five times smaller, elsewhere smaller still; but cells that miss a narrow gap between discs
- * count too little, so half of the differences is taken. */
+ * The differences of `refine_cell` are errors of the coarser values. Where the integrand bends, an error of h^3.5 per
+ * cell, those of the quarters are five times smaller, elsewhere smaller still; but cells that miss a narrow gap between
+ * discs count too little, so half of the differences is taken. */
 static int integrate(struct integral *in, const struct cell *cell, uint32_t cells, uint32_t self,
                      const struct reference_rule *rule, double tolerance, double *result,
                      struct reference_report *report) {

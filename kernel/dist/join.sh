@@ -16,14 +16,16 @@ plain=$(printf '%s\n' "$@" | sed 's|^kernel/||' | grep -v '_lanes\.c$')
 laned=$(printf '%s\n' "$@" | sed 's|^kernel/||' | grep '_lanes\.c$')
 version=$(sed -n 's/^#define FIBRAD_VERSION "\(.*\)"/\1/p' fibrad.h)
 
-# Headers that only laned sources may include: they use lanes.
+# Headers that use lanes, for laned sources alone, and all others.
 lanes_headers=$(grep -lE '\<(LANED\(|v[dfmn]_[a-z]+\(|vd |vf )' ./*/*.h ./*/*/*.h | sed 's|^\./||' |
-    grep -vE '^base/lanes/(laned|vec_[a-z0-9]*)\.h$|^dist/')
+    grep -vE '^base/lanes/(laned|places|vec_[a-z0-9]*)\.h$|^dist/')
+headers=$(find . -name '*.h' | sed 's|^\./||' | sort | grep / | grep -vE '^base/lanes/(vec_|places)|^dist/' | grep -vxF "$lanes_headers")
 
 # expand FILE...: the files with their headers, each of which goes in once; what stays an #include is printed. A header
 # in the list $skip is left for later; macros of a source end with it.
 expand() {
-    awk -v skip=" $(echo $skip) " '
+    # shellcheck disable=SC2086  # a list
+    awk -v skip=" $(printf '%s ' $skip) " '
     function put(name, source,   line, header, n, i, own) {
         while ((getline line < name) > 0) {
             if (line ~ /^#include "/ || line ~ /^#include FIBRAD_LANES_HEADER/) {
@@ -52,7 +54,9 @@ expand() {
     BEGIN {
         for (i = 1; i < ARGC; i++) {
             split("", macro)
-            put(ARGV[i], 1)
+            if (ARGV[i] in done) continue
+            done[ARGV[i]] = 1
+            put(ARGV[i], ARGV[i] ~ /\.c$/)
             for (n in macro) if (n !~ /^FIBRAD_PORT/) list = list "#undef " n "\n"
             printf "%s", list
             list = ""
@@ -76,7 +80,7 @@ cp "$tables" "$work/tables.c"
     echo '#include "fibrad.h"'
     skip=$lanes_headers
     # shellcheck disable=SC2086  # a list of files
-    expand $plain "$work/tables.c"
+    expand $plain $headers "$work/tables.c"
     cat <<'PASSES'
 
 /* ---- the laned sources, once per instruction set ---- */
@@ -89,7 +93,7 @@ PASSES
     for pass in 2:sse2:sse2 3:avx2:avx2,popcnt 4:avx512:avx512f,avx512dq,avx512bw,avx512vl,popcnt; do
         number=${pass%%:*} isa=$(echo $pass | cut -d : -f 2) target=${pass##*:}
         cat <<PASS
-#ifdef FIBRAD_WITH_$(echo "$isa" | tr a-z A-Z)
+#ifdef FIBRAD_WITH_$(echo "$isa" | tr '[:lower:]' '[:upper:]')
 #ifdef __clang__
 #pragma clang attribute push(__attribute__((target("$target"))), apply_to = function)
 #else
@@ -116,10 +120,10 @@ PASS
         for isa in scalar sse2 avx2 avx512; do
             number=$((number + 1))
             echo "#if FIBRAD_PASS == $number"
-            cat base/lanes/vec_$isa.h
+            skip=$headers
+            expand base/lanes/vec_$isa.h
             echo '#endif'
         done
-        skip=
         expand $laned
     } | grep -vE '^#include [<"]' >"$work/laned"
     # names that each pass has for itself

@@ -17,19 +17,13 @@
 #include <stddef.h>
 #if defined(__x86_64__)
 static inline double fibrad_sqrt(double x) { return _mm_cvtsd_f64(_mm_sqrt_pd(_mm_set_sd(x))); }
-static inline float fibrad_sqrtf(float x) { return _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(x))); }
 #elif defined(__aarch64__)
 static inline double fibrad_sqrt(double x) {
     __asm__("fsqrt %d0, %d1" : "=w"(x) : "w"(x));
     return x;
 }
-static inline float fibrad_sqrtf(float x) {
-    __asm__("fsqrt %s0, %s1" : "=w"(x) : "w"(x));
-    return x;
-}
 #else
 static inline double fibrad_sqrt(double x) { return __builtin_sqrt(x); }
-static inline float fibrad_sqrtf(float x) { return __builtin_sqrtf(x); }
 #endif
 static inline void fibrad_copy(void *to, const void *from, size_t bytes) { __builtin_memcpy(to, from, bytes); }
 static inline void fibrad_zero(void *to, size_t bytes) { __builtin_memset(to, 0, bytes); }

@@ -6,16 +6,18 @@
  *
  * a symmetric positive definite system. A sweep forms the net flows N J = K J - A J beam by beam, each beam giving to
  * one end what it takes from the other: they add up to zero whatever J is, and are zero where all J are equal. Times
- * rho/A the residual is eps (E - J) + rho N J/A: what a plain sweep would change. Patches with rho = 0 have J = E and
- * take no part. On the coarser level J is the same on the patches of a group. For that the residuals of a group are
- * replaced by their mean, and all vectors stay within such J; the finer level goes on from there. */
+ * rho/A the residual is eps (E - J) + rho N J/A: what one Jacobi iteration would change. Patches with rho = 0 have J =
+ * E and take no part. On the coarser level J is the same on the patches of a group. For that the residuals of a group
+ * are replaced by their mean, and all vectors stay within such J; the finer level goes on from there. */
 #include "heat/solve.h"
 
 #define BEYOND (FIBRAD_WALLS + 1)
 
 /* A beam stands for the area 1/(n + m) if its two surfaces send out n and m beams per area: so the beams either way
  * together tell what the two exchange, those of the denser one counting as much more as there are more of them. */
-static double weight(const fibrad_heat_source *a, const fibrad_heat_source *b) { return 1 / (a->density + b->density); }
+static double beam_area(const fibrad_heat_source *a, const fibrad_heat_source *b) {
+    return 1 / (a->density + b->density);
+}
 
 /* Many beams meet the few patches that lie beyond the walls and their patches; one sum of all would lose digits. So
  * what has come to them lately is moved to a longer sum. */
@@ -34,7 +36,7 @@ static void sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to, do
     for (uint32_t begin = 0; begin < heat->beams; begin += heat->config.points) {
         for (uint32_t k = begin; k < begin + heat->config.points; k++) {
             const uint32_t a = heat->leave[k], b = hit[k];
-            const double area = weight(mine, &source[b]);
+            const double area = beam_area(mine, &source[b]);
             const double flow = areas ? area : area * (source[b].value - mine[a].value);
             own[a] += flow;
             to[b] += areas ? flow : -flow;
@@ -70,7 +72,7 @@ static double sweep_halves(const fibrad_heat *heat, uint32_t place) {
         double sum = 0;
         for (uint32_t p = k * points; p < (k + 1) * points; p++) {
             const fibrad_heat_source *other = &source[hit[p]];
-            sum += weight(mine, other) * (other->value - mine[heat->leave[p]].value);
+            sum += beam_area(mine, other) * (other->value - mine[heat->leave[p]].value);
         }
         half[k % 2] += k == 0 || k + 1 == heat->config.directions ? sum / 2 : sum;
     }
@@ -112,7 +114,7 @@ static const double *gather_parts_of(fibrad_heat *heat) {
     return sum;
 }
 
-/* What a plain sweep would change: of all patches, into source[].value. Returns the residual times that. */
+/* What one Jacobi iteration would change: of all patches, into source[].value. Returns the residual times that. */
 static double find_residual(fibrad_heat *heat) {
     double slope = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {

@@ -8,6 +8,16 @@ void *memcpy(void *restrict to, const void *restrict from, size_t bytes) {
     return to;
 }
 
+void *memmove(void *to, const void *from, size_t bytes) {
+    unsigned char *a = to;
+    const unsigned char *b = from;
+    if ((uintptr_t)a <= (uintptr_t)b)
+        for (size_t k = 0; k < bytes; k++) a[k] = b[k];
+    else
+        for (size_t k = bytes; k-- > 0;) a[k] = b[k];
+    return to;
+}
+
 void *memset(void *to, int byte, size_t bytes) {
     for (size_t k = 0; k < bytes; k++) ((unsigned char *)to)[k] = (unsigned char)byte;
     return to;

@@ -6,12 +6,11 @@
 #include "fibrad.h"
 
 #define SPHERES 100
-#define NEAR    16
 #define DISCS   10
-#define SEEN    SPHERES
+#define SEEN    90
 
-static _Alignas(64) unsigned char scene_memory[FIBRAD_SCENE_BYTES(SPHERES)];
-static _Alignas(64) unsigned char work_memory[FIBRAD_WORK_BYTES(NEAR, DISCS, SEEN)];
+static unsigned char scene_memory[FIBRAD_SCENE_BYTES(SPHERES)];
+static unsigned char work_memory[FIBRAD_WORK_BYTES(DISCS, SEEN)];
 static double x[SPHERES], y[SPHERES], z[SPHERES], r[SPHERES], f[SEEN];
 static uint32_t col[SEEN];
 
@@ -55,16 +54,13 @@ int smoke(void) {
         z[i] = 2.1 * (i / 25) + random_in(-.1, .1), r[i] = random_in(.8, 1);
     }
     fibrad_scene *scene;
-    fibrad_work *work;
-    fibrad_scene_config config = {.spheres = SPHERES};
-    fibrad_work_config small = {.near = NEAR, .discs = DISCS, .entries = SEEN};
-    fibrad_spheres spheres = {x, y, z, r, SPHERES};
-    if (fibrad_scene_init(&scene, scene_memory, sizeof scene_memory, &config, &spheres, NULL) != FIBRAD_OK) return 2;
-    if (fibrad_work_init(&work, work_memory, sizeof work_memory, &small) != FIBRAD_OK) return 3;
+    fibrad_work work = {.memory = {.block = work_memory, .size = sizeof work_memory}};
+    const fibrad_spheres spheres = {.x = x, .y = y, .z = z, .r = r, .n = SPHERES};
+    if (fibrad_scene_init(&scene, scene_memory, sizeof scene_memory, NULL, &spheres, NULL) != FIBRAD_OK) return 2;
     fibrad_row row = {.col = col, .f = f, .capacity = SEEN};
-    if (fibrad_beam_row(scene, work, 62, &(fibrad_beam_rule){.directions = 100}, &row) != FIBRAD_OK) return 4;
+    if (fibrad_beam_row(scene, &work, 62, &(fibrad_beam_rule){.directions = 100}, &row) != FIBRAD_OK) return 3;
     write_row(&row);
-    if (fibrad_cast_row(scene, work, 62, &(fibrad_cast_rule){.rays = 500}, &row, NULL) != FIBRAD_OK) return 5;
+    if (fibrad_cast_row(scene, &work, 62, &(fibrad_cast_rule){.rays = 500}, &row, NULL) != FIBRAD_OK) return 4;
     write_row(&row);
     return 0;
 }

@@ -11,6 +11,7 @@
 double smoke_sqrt(double x);
 float smoke_sqrtf(float x);
 void *memcpy(void *restrict to, const void *restrict from, size_t bytes);
+void *memmove(void *to, const void *from, size_t bytes);
 void *memset(void *to, int byte, size_t bytes);
 
 #if defined(__ARM_FP) && (__ARM_FP & 8) || defined(__riscv_fdiv)

@@ -1,8 +1,9 @@
 #!/bin/sh
 # stack.sh OBJDUMP FOLDER - bytes of stack that the deepest chain of calls takes. SPDX-License-Identifier: MIT
 #
-# Frames come from the compiler (-fstack-usage), calls from the disassembly; the only calls through pointers, of
-# fibrad_surface_factor, are added by name. Fails on recursion, on frames without a bound and on other such calls.
+# Frames come from the compiler (-fstack-usage), calls from the disassembly; calls through pointers are added by name:
+# those of fibrad_surface_factor, and of fibrad_row_run to the methods. The caller's function that resizes memory is not
+# counted. Fails on recursion, on frames without a bound and on other such calls.
 set -u
 find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $6}' >"$2/frames"
 {
@@ -12,8 +13,13 @@ find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $
         /R_ARM_(THM_)?(CALL|JUMP24)|R_RISCV_(CALL|JAL)/ {
             to = $NF; sub(/[-+].*/, "", to); sub(/^\.text\./, "", to); sub(/\.(part|constprop|isra)\..*/, "", to)
             if (to != from && to !~ /^\./) print "call", from, to}
-        /\tblx\tr/ && from != "fibrad_surface_factor" {print "pointer", from}'
+        /\tblx\tr/ && from !~ /^(fibrad_surface_factor|fibrad_row_run|attempt|fibrad_rows_reserve|fit)$/ {
+            print "pointer", from}'
     for version in filter sum; do echo "call fibrad_surface_factor fibrad_surface_${version}_scalar"; done
+    for method in beam_to_tolerance cast_compute exchange_compute surface_compute; do
+        grep -q "^frame $method " "$2/frames" || echo "gone $method"
+        echo "call fibrad_row_run $method"
+    done
 } | awk '
     $1 == "frame" {
         name = $2; sub(/\.(part|constprop|isra)\..*/, "", name)
@@ -21,6 +27,7 @@ find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $
         if ($4 !~ /static/ && $4 !~ /bounded/) {print name " has a frame without a bound"; failed = 1}
     }
     $1 == "pointer" {print $2 " calls through a pointer"; failed = 1}
+    $1 == "gone" {print $2 " is no function any more"; failed = 1}
     $1 == "call" && !(($2, $3) in known) {known[$2, $3]; calls[$2] = calls[$2] " " $3}
     function depth(name,   list, n, k, most, d) {
         if (state[name] == 1) {print "recursion through " name; failed = 1; return 0}

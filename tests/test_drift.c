@@ -1,0 +1,306 @@
+/* test_drift.c - rows kept while a bed moves: their estimated errors against rows computed anew, and the loop.
+ * SPDX-License-Identifier: MIT */
+#include "bed/moving_rows.h"
+#include "scenes.h"
+#include "suite.h"
+
+static struct bed copy_of(const struct bed *bed) {
+    struct bed to;
+    bed_init(&to, false, 0);
+    for (uint32_t i = 0; i < bed->n; i++) add_sphere(&to, bed->x[i], bed->y[i], bed->z[i], bed->r[i]);
+    memcpy(to.period, bed->period, sizeof to.period);
+    return to;
+}
+
+/* Each sphere by at most `amplitude` radii along each axis. */
+static void jitter(struct bed *bed, double amplitude, uint64_t seed) {
+    double *at[3] = {bed->x, bed->y, bed->z};
+    for (uint32_t i = 0; i < bed->n; i++)
+        for (uint32_t axis = 0; axis < 3; axis++)
+            at[axis][i] += amplitude * bed->r[i] * (2 * bed_make_random(seed, 3 * i + axis) - 1);
+}
+
+/* The work memory is kept from one row to the next. */
+static fibrad_row row_in(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule, uint32_t n) {
+    static fibrad_work work = {.memory = {.resize = test_resize}};
+    fibrad_row row = row_of(n);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &row), FIBRAD_OK);
+    return row;
+}
+
+static double error_of(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const fibrad_row *row) {
+    double error;
+    ck_assert_int_eq(fibrad_drift_row(before, now, i, row->col, row->length, &error), FIBRAD_OK);
+    return error;
+}
+
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The factor of two spheres alone, which is known, as their distance changes. */
+START_TEST(estimate_bounds_the_change_of_a_pair) {
+    static const double ratios[] = {.1, .3, 1, 3, 10}, gaps[] = {0, .01, .1, 1, 10, 100}, moves[] = {-1e-3, 1e-4, 1e-2};
+    for (size_t k = 0; k < 5 * 6 * 3; k++) {
+        double r = ratios[k % 5], gap = gaps[k / 5 % 6], move = moves[k / 30], from, to;
+        struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1 + r + gap, 0, 0, r}}), moved = copy_of(&bed);
+        move *= fmin(1, r);
+        moved.x[1] += move;
+        ck_assert_int_eq(fibrad_pair_exact(1, r, gap, &from), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_pair_exact(1, r, gap + move, &to), FIBRAD_OK);
+        fibrad_scene *before = scene_of(&bed, FIBRAD_ISA_BEST), *now = scene_of(&moved, FIBRAD_ISA_BEST);
+        fibrad_row row = {.col = &(uint32_t){1}, .length = 1};
+        double estimate = error_of(before, now, 0, &row);
+        ck_assert_msg(fabs(to - from) <= estimate, "ratio %g, gap %g, move %g: %g above %g", r, gap, move,
+                      fabs(to - from), estimate);
+        ck_assert_msg(gap > .1 || estimate < 20 * fabs(to - from), "ratio %g, gap %g, move %g: %g far below %g", r, gap,
+                      move, fabs(to - from), estimate);
+        free(before);
+        free(now);
+        bed_free(&bed);
+        bed_free(&moved);
+    }
+}
+END_TEST
+
+START_TEST(estimates_hold_in_beds) {
+    struct bed beds[] = {packing(300, .8, 1.2, .55, 7, true), packing(300, .8, 1.2, .4, 7, false),
+                         packing(300, .3, 1.5, .5, 3, true)};
+    const fibrad_beam_rule rule = {.directions = 200};
+    for (size_t b = 0; b < 3; b++)
+        for (int kind = 0; kind < 3; kind++)
+            for (double amplitude = 1e-4; amplitude < .05; amplitude *= 20) {
+                struct bed moved = copy_of(&beds[b]);
+                if (kind == 0) jitter(&moved, amplitude, 5);
+                for (uint32_t i = 0; i < moved.n && kind == 1; i++) /* a strain */
+                    moved.x[i] += amplitude * cos(6.283185307179586 * moved.y[i] / 12) * 12 / 6.283185307179586;
+                for (uint32_t i = 0; i < moved.n && kind == 2; i += 40) moved.z[i] += amplitude * moved.r[i];
+                fibrad_scene *before = scene_of(&beds[b], FIBRAD_ISA_BEST), *now = scene_of(&moved, FIBRAD_ISA_BEST);
+                double ratio[100];
+                size_t rows = 0;
+                for (uint32_t i = 0; i < moved.n; i += 7) {
+                    fibrad_row old = row_in(before, i, &rule, moved.n), new = row_in(now, i, &rule, moved.n);
+                    ratio[rows++] = row_distance(&old, &new) / error_of(before, now, i, &old);
+                    row_free(&old);
+                    row_free(&new);
+                }
+                qsort(ratio, rows, sizeof *ratio, ascending);
+                ck_assert_msg(ratio[rows - 1] < 1, "bed %zu, motion %d of %g: %g", b, kind, amplitude, ratio[rows - 1]);
+                ck_assert_msg(kind == 2 || ratio[rows / 2] > .1, "bed %zu, motion %d of %g: %g", b, kind, amplitude,
+                              ratio[rows / 2]);
+                free(before);
+                free(now);
+                bed_free(&moved);
+            }
+    for (size_t b = 0; b < 3; b++) bed_free(&beds[b]);
+}
+END_TEST
+
+/* Nothing moves against anything else, also where spheres leave the box on one side and come in on the other. */
+START_TEST(moving_as_a_whole_is_no_error) {
+    struct bed bed = packing(200, .8, 1.2, .5, 2, true), moved = copy_of(&bed);
+    for (uint32_t i = 0; i < bed.n; i++) moved.x[i] += 3, moved.y[i] -= 2.5;
+    fibrad_scene *before = scene_of(&bed, FIBRAD_ISA_BEST), *now = scene_of(&moved, FIBRAD_ISA_BEST);
+    for (uint32_t i = 0; i < bed.n; i += 3) {
+        fibrad_row row = row_in(before, i, NULL, bed.n);
+        ck_assert_double_lt(error_of(before, now, i, &row), 1e-13);
+        row_free(&row);
+    }
+    free(before);
+    free(now);
+    bed_free(&bed);
+    bed_free(&moved);
+}
+END_TEST
+
+/* The largest error of the rows kept, against rows computed anew. */
+static double worst_row(const struct moving *moving, const struct bed *bed) {
+    struct moving anew;
+    ck_assert_int_eq(moving_begin(&anew, bed, &moving->rule, 1), 0);
+    double worst = 0;
+    for (uint32_t i = 0; i < bed->n; i++) worst_of(&worst, row_distance(&moving->row[i], &anew.row[i]));
+    moving_end(&anew);
+    return worst;
+}
+
+static void check_closed(const struct moving *moving) {
+    for (uint32_t i = 0; i < moving->n; i++)
+        ck_assert_double_eq_tol(row_sum(&moving->row[i]) + moving->row[i].escaped, 1, 1e-12);
+}
+
+/* Rows of different ages, averaged. */
+static void check_averaged(const struct moving *moving) {
+    fibrad_rows rows = {.memory = memory_growing()};
+    double reciprocity;
+    for (uint32_t i = 0; i < moving->n; i++) {
+        ck_assert_uint_eq(moving->row[i].sphere, i);
+        ck_assert_int_eq(fibrad_rows_add(&rows, &moving->row[i], 0), FIBRAD_OK);
+    }
+    struct matrix m = matrix_of(moving->scene, &rows, 1, NULL);
+    ck_assert_int_eq(fibrad_matrix_reciprocity(m.matrix, &reciprocity), FIBRAD_OK);
+    ck_assert_double_lt(reciprocity, 1e-14);
+    for (uint32_t i = 0; i < moving->n; i++) {
+        ck_assert_double_le(matrix_sum(&m.factors, i), 1 + 1e-12);
+        ck_assert_double_eq_tol(matrix_total(&m.factors, i), 1, 1e-12);
+    }
+    matrix_free(&m);
+    rows_free(&rows);
+}
+
+START_TEST(the_loop_keeps_its_error) {
+    struct bed bed = packing(300, .8, 1.2, .55, 7, true);
+    const fibrad_beam_rule rule = {.directions = 60};
+    for (double allowed = 5e-3; allowed < .02; allowed *= 3) {
+        struct bed now = copy_of(&bed);
+        struct moving moving;
+        ck_assert_int_eq(moving_begin(&moving, &bed, &rule, 1), 0);
+        ck_assert_uint_eq(moving.redone, bed.n);
+        uint32_t redone = 0;
+        for (uint64_t step = 1; step <= 8; step++) {
+            jitter(&now, 3e-3, step);
+            ck_assert_int_eq(moving_step(&moving, &now, allowed), 0);
+            redone += moving.redone;
+            check_closed(&moving);
+        }
+        ck_assert_double_lt(worst_row(&moving, &now), allowed);
+        ck_assert_uint_gt(redone, 0);
+        ck_assert_uint_lt(redone, 6 * bed.n);
+        check_averaged(&moving);
+        moving_end(&moving);
+        bed_free(&now);
+    }
+    bed_free(&bed);
+}
+END_TEST
+
+/* A sphere goes to a free place far away: it comes into the sight of rows that see nothing move. */
+START_TEST(what_comes_into_sight_is_found) {
+    struct bed bed = packing(400, .8, 1.2, .4, 9, true);
+    bed.r[0] = .5;
+    struct bed now = copy_of(&bed);
+    const double edge = bed.period[0];
+    for (uint64_t draw = 0, free_place = 0; !free_place; draw++) {
+        now.x[0] = edge * bed_make_random(1, 3 * draw);
+        now.y[0] = edge * bed_make_random(1, 3 * draw + 1);
+        now.z[0] = edge * bed_make_random(1, 3 * draw + 2);
+        free_place = 1;
+        for (uint32_t j = 0; j < bed.n; j++) {
+            double x = remainder(now.x[0] - bed.x[j], edge), y = remainder(now.y[0] - bed.y[j], edge);
+            double z = remainder(now.z[0] - bed.z[j], edge);
+            if (sqrt(x * x + y * y + z * z) < (j == 0 ? 7 : .5 + bed.r[j])) free_place = 0;
+        }
+    }
+    struct moving moving;
+    ck_assert_int_eq(moving_begin(&moving, &bed, &(fibrad_beam_rule){.directions = 60}, 1), 0);
+    ck_assert_double_gt(worst_row(&moving, &now), .01);
+    ck_assert_int_eq(moving_step(&moving, &now, 4e-3), 0);
+    ck_assert_uint_gt(moving.rounds, 1);
+    ck_assert_uint_lt(moving.redone, bed.n / 2);
+    ck_assert_double_lt(worst_row(&moving, &now), 4e-3);
+    moving_end(&moving);
+    bed_free(&bed);
+    bed_free(&now);
+}
+END_TEST
+
+START_TEST(threads_and_exact_steps_change_no_bit) {
+    struct bed bed = packing(200, .8, 1.2, .55, 7, true);
+    const fibrad_beam_rule rule = {.directions = 50};
+    for (int exact = 0; exact < 2; exact++) {
+        struct bed now = copy_of(&bed);
+        struct moving one, many, anew;
+        ck_assert_int_eq(moving_begin(&one, &bed, &rule, 1), 0);
+        ck_assert_int_eq(moving_begin(&many, &bed, &rule, 3), 0);
+        for (uint64_t step = 1; step <= 3; step++) {
+            if (exact)
+                now.z[7] += 1e-3;
+            else
+                jitter(&now, 3e-3, step);
+            ck_assert_int_eq(moving_step(&one, &now, exact ? 0 : 6e-3), 0);
+            ck_assert_int_eq(moving_step(&many, &now, exact ? 0 : 6e-3), 0);
+            ck_assert_uint_eq(one.redone, many.redone);
+        }
+        ck_assert_int_eq(moving_begin(&anew, &now, &rule, 2), 0);
+        for (uint32_t i = 0; i < bed.n; i++) {
+            ck_assert(same_bits(&one.row[i], &many.row[i]));
+            ck_assert(!exact || same_bits(&one.row[i], &anew.row[i]));
+        }
+        moving_end(&one);
+        moving_end(&many);
+        moving_end(&anew);
+        bed_free(&now);
+    }
+    bed_free(&bed);
+}
+END_TEST
+
+/* The estimate counts spheres alone: walls may have moved, or be others. */
+START_TEST(walls_that_move_are_not_counted) {
+    struct bed bed = packing(100, .8, 1.2, .4, 1, false);
+    fibrad_body wall = plane_at(2, 1, 30);
+    fibrad_scene_config config = {.body = &wall, .bodies = 1};
+    fibrad_scene *before = scene_with(&bed, &config), *open = scene_of(&bed, FIBRAD_ISA_BEST);
+    wall.plane.at = 31;
+    fibrad_scene *now = scene_with(&bed, &config);
+    for (uint32_t i = 0; i < bed.n; i += 9) {
+        fibrad_row row = row_in(before, i, NULL, bed.n);
+        ck_assert_double_eq(error_of(before, now, i, &row), 0);
+        ck_assert_double_eq(error_of(before, open, i, &row), 0);
+        row_free(&row);
+    }
+    free(before);
+    free(now);
+    free(open);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(bad_arguments_are_refused) {
+    struct bed bed = packing(50, .8, 1.2, .4, 1, true), less = packing(49, .8, 1.2, .4, 1, true), open = copy_of(&bed);
+    open.period[1] = 0;
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *other = scene_of(&less, FIBRAD_ISA_BEST);
+    fibrad_scene *unlike = scene_of(&open, FIBRAD_ISA_BEST);
+    fibrad_row row = {.col = (uint32_t[]){1, 50}, .f = (double[]){.1, .1}, .length = 1}, beyond = row;
+    beyond.length = 2;
+    double error[50] = {0};
+    ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, row.col, row.length, error), FIBRAD_OK);
+    ck_assert_double_eq(error[0], 0);
+    ck_assert_int_eq(fibrad_drift_row(NULL, scene, 0, row.col, row.length, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_row(scene, NULL, 0, row.col, row.length, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_row(scene, other, 0, row.col, row.length, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_row(scene, unlike, 0, row.col, row.length, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_row(scene, scene, 50, row.col, row.length, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, NULL, 1, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, beyond.col, beyond.length, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_row(scene, scene, 0, row.col, row.length, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_partners(scene, 0, &row, &row, error), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_drift_partners(NULL, 0, &row, &row, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_partners(scene, 50, &row, &row, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_partners(scene, 0, &beyond, &row, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_partners(scene, 0, &row, &beyond, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_partners(scene, 0, &row, NULL, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_partners(scene, 0, NULL, &row, error), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_drift_partners(scene, 0, &row, &row, NULL), FIBRAD_E_ARGUMENT);
+    free(scene);
+    free(other);
+    free(unlike);
+    bed_free(&bed);
+    bed_free(&less);
+    bed_free(&open);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("drift");
+    TCase *tests = suite_case(suite, "drift");
+    tcase_add_test(tests, estimate_bounds_the_change_of_a_pair);
+    tcase_add_test(tests, estimates_hold_in_beds);
+    tcase_add_test(tests, moving_as_a_whole_is_no_error);
+    tcase_add_test(tests, the_loop_keeps_its_error);
+    tcase_add_test(tests, what_comes_into_sight_is_found);
+    tcase_add_test(tests, threads_and_exact_steps_change_no_bit);
+    tcase_add_test(tests, walls_that_move_are_not_counted);
+    tcase_add_test(tests, bad_arguments_are_refused);
+    return suite_run(suite);
+}
