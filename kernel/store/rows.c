@@ -73,7 +73,7 @@ static bool row_valid(const fibrad_row *row, uint32_t bodies) {
     if (row->length > 0 && (row->col == NULL || row->f == NULL)) return false;
     if ((bodies > 0 && row->body == NULL) || row->length > FIBRAD_SPHERES_MAX) return false;
     for (uint32_t k = 0; k < row->length; k++)
-        if (!(row->f[k] > 0 && row->f[k] <= 1.01) || (k > 0 && row->col[k] <= row->col[k - 1])) return false;
+        if (!(row->f[k] >= 0 && row->f[k] <= 1.01) || (k > 0 && row->col[k] <= row->col[k - 1])) return false;
     for (uint32_t k = 0; k < bodies; k++)
         if (!(row->body[k] >= 0 && row->body[k] <= 1.01)) return false;
     return fibrad_abs(row->escaped) <= 1.01 && fibrad_abs(row->beyond) <= 1.01 && row->error >= 0;
