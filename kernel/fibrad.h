@@ -211,7 +211,7 @@ typedef struct fibrad_row {
     uint32_t *col;     /* [capacity] out: the spheres seen, ascending */
     double *f;         /* [capacity] out: factor from sphere i to sphere col[.], all > 0 */
     double *body;      /* [bodies of the scene] out: factor to each; may be NULL if there are none */
-    uint32_t capacity; /* in */
+    uint32_t capacity; /* in; 0 after a row was appended to `rows` */
     fibrad_rows *rows; /* in: NULL, or the row is appended to these, and capacity is not used */
     uint32_t sphere;   /* out: i */
     uint32_t length;   /* out: entries; after FIBRAD_E_CAPACITY: the entries there would be */
@@ -269,9 +269,9 @@ int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
  * then be made larger with its contents kept), or FIBRAD_E_MEMORY. */
 struct fibrad_rows {
     fibrad_memory memory;
-    size_t used;      /* the kernel's own, 0 at first: bytes that rows take */
-    uint32_t count;   /* rows in it */
-    uint64_t entries; /* of all of them */
+    size_t used, lead;      /* the kernel's own, 0 at first, as all below: bytes that rows take, and before them */
+    uint32_t count, serial; /* rows; changes so far */
+    uint64_t entries;       /* of all rows */
 };
 
 /* _add: appends a row computed elsewhere: sphere, col, f, length, escaped, beyond, error, symmetric, body[bodies].
@@ -413,12 +413,12 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
 /* What radiates. Begin with fibrad_heat_sources_init, which zeroes all but sigma, FIBRAD_STEFAN_BOLTZMANN, and
  * surroundings, NaN, which is refused: set it. */
 typedef struct fibrad_heat_sources {
-    const double *temperature;      /* [spheres] >= 0 */
+    const double *temperature;      /* [spheres] 0 to 1e20 */
     const double *emissivity;       /* [spheres] [0, 1] */
-    const double *body_temperature; /* [bodies] >= 0; NULL if there are none */
+    const double *body_temperature; /* [bodies] 0 to 1e20; NULL if there are none */
     const double *body_emissivity;  /* [bodies] [0, 1]; NULL if there are none */
     double surroundings;            /* temperature of what beams meet that escape; black */
-    double sigma;                   /* emission is sigma T^4 */
+    double sigma;                   /* emission is sigma T^4; 1e-30 to 1e30 */
     double tolerance;               /* residual at which to stop, relative to the differences of emission; 0: 1e-3 */
     uint32_t sweeps_max;            /* 0: 1000 */
     int uniform; /* 1: one radiosity per sphere and wall, no extrapolation; wrong but for emissivities near 1 */

@@ -150,17 +150,13 @@ START_TEST(faults_name_spheres) {
     for (int i = 0; i < 100; i++) emissivity[i] = .5;
     emissivity[70] = emissivity[71] = emissivity[3] = NAN;
     const fibrad_exchange_rule rule = {.emissivity = emissivity, .paths = 10};
-    uint32_t first = 0; /* of the three, along the cells */
-    fibrad_scene *scene = scene_with(&bed, NULL);
-    while (!isnan(emissivity[fibrad_scene_sphere(scene, first)])) first++;
-    first = fibrad_scene_sphere(scene, first);
+    const uint32_t first = 3;
     for (int t = 0; t < 3; t++) {
         run.threads = threads[t];
         const fibrad_bed_options raw = {.raw = 1};
         ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, &rule, &raw, &run, &factors), FIBRAD_E_ARGUMENT);
         ck_assert(run.fault.first == first && run.fault.second == first && factors == NULL);
     }
-    free(scene);
     bed.x[5] = bed.x[60], bed.y[5] = bed.y[60], bed.z[5] = bed.z[60];
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, &run, &factors), FIBRAD_E_GEOMETRY);
     ck_assert_uint_eq(run.fault.first + run.fault.second, 65);
@@ -238,8 +234,7 @@ START_TEST(progress_and_cancelling) {
         ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_OK);
         ck_assert(calls.ends == 1 && calls.total == 200 && calls.count >= 2);
         fibrad_bed_free(factors);
-        const uint64_t all = calls.count;
-        for (uint64_t at = 1; at <= all && at <= 3; at++) {
+        for (uint64_t at = 1; at <= 2; at++) {
             calls = (struct calls){.stop_at = at};
             ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_E_CANCELLED);
             ck_assert_uint_eq(calls.count, at);

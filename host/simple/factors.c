@@ -69,6 +69,17 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
  * errors of partners being independent; the rest is kept for rows that come out worse than most. */
 #define BEFORE_AVERAGING 1.1
 
+/* The emissivities of all spheres, since paths meet them all; the fault is the first that is not valid. */
+static int check_emissivities(fibrad_job *job, const fibrad_exchange_rule *rule) {
+    if (!rule || (!rule->emissivity && job->facts.spheres > 0)) return FIBRAD_E_ARGUMENT;
+    for (uint32_t i = 0; i < job->facts.spheres; ++i)
+        if (!(rule->emissivity[i] > 0 && rule->emissivity[i] <= 1)) {
+            if (job->run) job->run->fault = (fibrad_fault){i, i};
+            return FIBRAD_E_ARGUMENT;
+        }
+    return FIBRAD_OK;
+}
+
 int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                             const fibrad_exchange_rule *rule, const fibrad_bed_options *options, fibrad_run *run,
                             fibrad_bed_factors **factors) {
@@ -78,7 +89,8 @@ int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_sphe
     *factors = NULL;
     if (!options) options = &defaults;
     int status = fibrad_job_open(&job, config, spheres, run);
-    if (!status) status = rule ? check_options(options, 0) : FIBRAD_E_ARGUMENT;
+    if (!status) status = check_options(options, 0);
+    if (!status) status = check_emissivities(&job, rule);
     if (!status) {
         fibrad_exchange_rule used = *rule;
         if (!options->raw && !options->wanted) used.tolerance *= BEFORE_AVERAGING;

@@ -151,6 +151,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     status = fibrad_entries_row(&space->entries, scene, 1, row);
     if (status != FIBRAD_OK) return status;
     row->error = fibrad_sqrt(row->error * row->error + beam_error * beam_error);
+    if (!fibrad_finite(row->error + scale)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
     row->escaped += paths.escaped * scale;
     for (int slot = 0; slot < FIBRAD_WALLS; slot++)
         wall[slot] = wall[slot] * task->wall_emissivity[slot] + paths.wall[slot] * scale;

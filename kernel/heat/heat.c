@@ -16,6 +16,7 @@
 #define HEAT_PARTS_MAX  1024u
 #define HEAT_TOLERANCE  1e-3
 #define HEAT_SWEEPS_MAX 1000u
+#define HEAT_RADIUS_MIN 1e-30 /* and its inverse the largest */
 /* Errors over what they are told from, as measured: docs/heat.md. */
 #define PATCH_ERROR .2
 #define BEAM_ERROR  .2
@@ -42,7 +43,9 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
     const bool valid = c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX &&
                        fibrad_disc_points_get(c->points, &set) == FIBRAD_OK && side_of(c->patches) > 0 &&
                        c->parts <= HEAT_PARTS_MAX && scene->facts.spheres <= (UINT32_MAX >> 1) / c->patches &&
-                       c->cutoff >= 0;
+                       c->cutoff >= 0 &&
+                       (scene->facts.spheres == 0 ||
+                        (scene->facts.radius_min >= HEAT_RADIUS_MIN && scene->facts.radius_max <= 1 / HEAT_RADIUS_MIN));
     return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
 }
 
@@ -254,7 +257,9 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
 
 static bool is_share(double x) { return x >= 0 && x <= 1; }
 
-static bool is_temperature(double t) { return t >= 0 && fibrad_finite(t); }
+/* Within these bounds no square of an emission, nor its product with areas, leaves the range of doubles. */
+static bool is_temperature(double t) { return t >= 0 && t <= 1e20; }
+static bool is_sigma(double sigma) { return sigma >= 1e-30 && sigma <= 1e30; }
 
 static bool sources_valid(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     const uint32_t bodies = heat->given_bodies;
@@ -264,8 +269,7 @@ static bool sources_valid(const fibrad_heat *heat, const fibrad_heat_sources *s)
         if (!is_temperature(s->temperature[i]) || !is_share(s->emissivity[i])) return false;
     for (uint32_t b = 0; b < bodies; b++)
         if (!is_temperature(s->body_temperature[b]) || !is_share(s->body_emissivity[b])) return false;
-    return is_temperature(s->surroundings) && s->sigma > 0 && fibrad_finite(s->sigma) && s->tolerance >= 0 &&
-           s->tolerance < 1;
+    return is_temperature(s->surroundings) && is_sigma(s->sigma) && s->tolerance >= 0 && s->tolerance < 1;
 }
 
 /* sigma (T^4 - T0^4), T0 being that of the surroundings: all emission and radiosity is counted from theirs. */

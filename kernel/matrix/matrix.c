@@ -83,14 +83,27 @@ size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, ui
     return fibrad_arena_total(&arena);
 }
 
-/* Finds the row of each sphere. FIBRAD_E_STATE: one is missing or there twice. */
-static int find_rows(fibrad_matrix *m, const fibrad_rows *rows, uint32_t count, uint32_t *sphere) {
+/* All changes of the collections so far. */
+static uint64_t serial_of(const fibrad_rows *rows, uint32_t count) {
+    uint64_t serial = 0;
+    for (uint32_t c = 0; c < count; c++) serial += rows[c].serial;
+    return serial;
+}
+
+/* Whether a matrix is there, and its rows are as they were. */
+static bool matrix_open(const fibrad_matrix *m) {
+    return m->open && !m->closed && serial_of(m->given, m->given_count) == m->given_serial;
+}
+
+/* Finds the row of each sphere. FIBRAD_E_STATE: one is missing, there twice, or of another scene. */
+static int find_rows(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
+                     uint32_t *sphere) {
     const uint32_t n = m->result.n;
     for (uint32_t i = 0; i < n; i++) m->row[i] = NULL;
     for (uint32_t c = 0; c < count; c++) {
         size_t at = 0;
         for (const fibrad_record *row; (row = fibrad_rows_next(&rows[c], &at)) != NULL; m->row[row->sphere] = row) {
-            if (m->row[row->sphere] == NULL) continue;
+            if (m->row[row->sphere] == NULL && (row->scene == 0 || row->scene == scene->hash)) continue;
             if (sphere != NULL) *sphere = row->sphere;
             return FIBRAD_E_STATE;
         }
@@ -163,12 +176,14 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
     fibrad_arena arena;
     if (out == NULL || scene == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
+    for (uint32_t c = 0; c < count && rows != NULL; c++)
+        if (!fibrad_rows_settled(&rows[c])) return FIBRAD_E_STATE;
     if (!matrix_dimension(&fields, scene, rows, count, rule)) return FIBRAD_E_ARGUMENT;
     int status = fibrad_arena_open(&arena, memory, size, fibrad_matrix_size(scene, rows, count, rule));
     if (status != FIBRAD_OK) return status;
     fibrad_matrix *m = matrix_layout(&arena, &fields);
     *m = fields;
-    status = find_rows(m, rows, count, sphere);
+    status = find_rows(m, scene, rows, count, sphere);
     if (status != FIBRAD_OK) return status;
     for (uint32_t i = 0; i < m->result.n; i++) {
         m->r[i] = scene->r[scene->place[i]];
@@ -179,13 +194,15 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
         copy_raw(m);
     else
         divide(m);
+    m->given = rows, m->given_count = count, m->given_serial = serial_of(rows, count);
+    m->open = true;
     *out = m;
     return FIBRAD_OK;
 }
 
 int fibrad_matrix_average(fibrad_matrix *m, uint32_t task) {
     if (m == NULL || task >= m->tasks) return FIBRAD_E_ARGUMENT;
-    if (m->raw || m->closed || m->part[task].done) return FIBRAD_E_STATE;
+    if (m->raw || !matrix_open(m) || m->part[task].done) return FIBRAD_E_STATE;
     fibrad_matrix_average_part(m, &m->part[task]);
     return FIBRAD_OK;
 }
@@ -264,7 +281,7 @@ static void estimate_errors(fibrad_matrix *m) {
 
 int fibrad_matrix_close(fibrad_matrix *m) {
     if (m == NULL) return FIBRAD_E_ARGUMENT;
-    if (m->closed) return FIBRAD_E_STATE;
+    if (!matrix_open(m)) return FIBRAD_E_STATE;
     m->closed = true;
     if (m->raw) return FIBRAD_OK;
     for (uint32_t p = 0; p < m->tasks; p++)

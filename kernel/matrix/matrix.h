@@ -24,7 +24,10 @@ typedef struct fibrad_sparse {
 struct fibrad_matrix {
     fibrad_sparse result;
     uint32_t bodies, tasks;
-    bool raw, exchange, closed;
+    bool raw, exchange, open, closed;
+    const fibrad_rows *given; /* [given_count] the collections, and the sum of their changes so far */
+    uint32_t given_count;
+    uint64_t given_serial;
     double drop;
     const fibrad_record **row; /* [n] raw rows by sphere */
     double *r;                 /* [n] radii, times the root of the emissivity with exchange factors */

@@ -47,9 +47,9 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
     if (status != FIBRAD_OK) return status;
     own.sphere = i;
     own.beyond = 0;
-    if (rows != NULL) fibrad_rows_commit(rows, scene->facts.bodies, &own);
+    if (rows != NULL) fibrad_rows_commit(rows, scene->hash, scene->facts.bodies, &own);
     own.rows = rows;
-    if (rows != NULL) own.col = (uint32_t *)(void *)(own.f + own.length), own.capacity = row->capacity;
+    if (rows != NULL) own.col = (uint32_t *)(void *)(own.f + own.length), own.capacity = 0; /* not the caller's */
     *row = own;
     return FIBRAD_OK;
 }

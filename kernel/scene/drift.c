@@ -65,7 +65,8 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
     for (int which = 0; which < 2; which++) {
         if (rows[which]->length > 0 && (rows[which]->col == NULL || rows[which]->f == NULL)) return FIBRAD_E_ARGUMENT;
         for (uint32_t k = 0; k < rows[which]->length; k++)
-            if (rows[which]->col[k] >= now->facts.spheres) return FIBRAD_E_ARGUMENT;
+            if (rows[which]->col[k] >= now->facts.spheres || !(rows[which]->f[k] >= 0 && rows[which]->f[k] <= 2))
+                return FIBRAD_E_ARGUMENT;
     }
     double r_i = now->r[now->place[i]];
     for (uint32_t p = 0, q = 0; p < before->length || q < row->length;) {

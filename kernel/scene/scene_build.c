@@ -140,6 +140,9 @@ static int measure_spheres(fibrad_scene *scene, const fibrad_spheres *s, fibrad_
     }
     if (s->n > 0 && fibrad_walls_reach(&scene->container) > COORDINATE_MAX * scene->facts.radius_min)
         return scene_fault(FIBRAD_E_ARGUMENT, fault, s->n, s->n);
+    const double longest = s->n > 0 ? COORDINATE_MAX * scene->facts.radius_min : LENGTH_MAX;
+    for (int axis = 0; axis < 3; axis++)
+        if (scene->period[axis] > longest) return scene_fault(FIBRAD_E_ARGUMENT, fault, s->n, s->n);
     for (int axis = 0; axis < 3; axis++) {
         scene->box_low[axis] = scene->low[axis], scene->box_high[axis] = scene->high[axis];
         if (scene->period[axis] > 0)
@@ -351,9 +354,9 @@ double fibrad_scene_body_area(const fibrad_scene *scene, uint32_t body) {
 }
 
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts) {
-    if (scene != NULL && facts != NULL) *facts = scene->facts;
+    if (fibrad_scene_ready(scene) && facts != NULL) *facts = scene->facts;
 }
 
 uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k) {
-    return scene != NULL && k < scene->facts.spheres ? scene->order[k] : UINT32_MAX;
+    return fibrad_scene_ready(scene) && k < scene->facts.spheres ? scene->order[k] : UINT32_MAX;
 }

@@ -11,6 +11,7 @@
 typedef struct fibrad_record {
     uint32_t sphere, length, bodies;
     uint32_t symmetric;
+    uint64_t scene; /* hash of the scene it was computed for; 0: none */
     double escaped, beyond, error;
 } fibrad_record;
 
@@ -39,6 +40,9 @@ bool fibrad_rows_open(const fibrad_rows *rows, uint32_t bodies, fibrad_row *row)
 int fibrad_rows_reserve(fibrad_rows *rows, uint32_t length, uint32_t bodies);
 
 /* Appends the row that has been written into the arrays of fibrad_rows_open. */
-void fibrad_rows_commit(fibrad_rows *rows, uint32_t bodies, const fibrad_row *row);
+void fibrad_rows_commit(fibrad_rows *rows, uint64_t scene, uint32_t bodies, const fibrad_row *row);
+
+/* Whether the records are where they were written: not so in a block of another alignment, until a row is appended. */
+bool fibrad_rows_settled(const fibrad_rows *rows);
 
 #endif

@@ -15,7 +15,17 @@ static size_t free_bytes(const fibrad_rows *rows) {
     return rows->memory.block != NULL && rows->memory.size > taken ? rows->memory.size - taken : 0;
 }
 
+bool fibrad_rows_settled(const fibrad_rows *rows) { return rows->used == 0 || rows->lead == lead_of(rows); }
+
+/* Moves the records to the first boundary of a block of another alignment. */
+static void settle_rows(fibrad_rows *rows) {
+    unsigned char *block = rows->memory.block;
+    if (!fibrad_rows_settled(rows)) __builtin_memmove(block + lead_of(rows), block + rows->lead, rows->used);
+    rows->lead = lead_of(rows);
+}
+
 bool fibrad_rows_open(const fibrad_rows *rows, uint32_t bodies, fibrad_row *row) {
+    if (!fibrad_rows_settled(rows)) return false;
     const size_t space = free_bytes(rows), head = fibrad_record_size(0, bodies);
     if (space < head) return false;
     const size_t capacity = (space - head) / (sizeof *row->f + sizeof *row->col);
@@ -31,27 +41,27 @@ int fibrad_rows_reserve(fibrad_rows *rows, uint32_t length, uint32_t bodies) {
     fibrad_memory *memory = &rows->memory;
     /* 8 for another alignment of the block, 16 for a capacity that is rounded down */
     const size_t needed = rows->used + fibrad_record_size(length, bodies) + 24;
-    if (needed <= memory->size && memory->block != NULL) return FIBRAD_OK;
+    if (needed <= memory->size && memory->block != NULL) return settle_rows(rows), FIBRAD_OK;
     memory->needed = needed;
     if (memory->resize == NULL) return FIBRAD_E_CAPACITY;
-    const size_t lead = lead_of(rows), size = needed < SIZE_MAX / 2 ? 2 * needed : needed;
+    const size_t size = needed < SIZE_MAX / 2 ? 2 * needed : needed;
     void *block = memory->resize(memory->context, memory->block, size);
     if (block == NULL) return FIBRAD_E_MEMORY;
     memory->block = block;
     memory->size = size;
-    if (rows->used > 0 && lead_of(rows) != lead) {
-        unsigned char *from = (unsigned char *)block + lead, *to = (unsigned char *)block + lead_of(rows);
-        __builtin_memmove(to, from, rows->used);
-    }
+    settle_rows(rows);
     return FIBRAD_OK;
 }
 
-void fibrad_rows_commit(fibrad_rows *rows, uint32_t bodies, const fibrad_row *row) {
+void fibrad_rows_commit(fibrad_rows *rows, uint64_t scene, uint32_t bodies, const fibrad_row *row) {
+    rows->lead = lead_of(rows);
+    rows->serial++;
     fibrad_record *record = (fibrad_record *)(void *)end_of(rows);
     *record = (fibrad_record){.sphere = row->sphere,
                               .length = row->length,
                               .bodies = bodies,
                               .symmetric = row->symmetric != 0,
+                              .scene = scene,
                               .escaped = row->escaped,
                               .beyond = row->beyond,
                               .error = row->error};
@@ -88,12 +98,13 @@ int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t bodies) {
     fibrad_copy(to.body, row->body, bodies * sizeof *to.body);
     fibrad_copy(to.f, row->f, row->length * sizeof *to.f);
     fibrad_copy(to.col, row->col, row->length * sizeof *to.col);
-    fibrad_rows_commit(rows, bodies, &to);
+    fibrad_rows_commit(rows, 0, bodies, &to);
     return FIBRAD_OK;
 }
 
 void fibrad_rows_clear(fibrad_rows *rows) {
     if (rows == NULL) return;
+    rows->serial++;
     rows->used = rows->count = 0;
     rows->entries = 0;
 }
