@@ -1,4 +1,4 @@
-# Makefile - builds libfibrad.a (kernel) and fibrad (host); `make help` lists the targets. SPDX-License-Identifier: MIT
+# Makefile - builds libfibrad.a (kernel), libfibrad_host.a (simple layer), libfibrad.so (both) and fibrad (program); `make help` lists the targets. SPDX-License-Identifier: MIT
 
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
@@ -21,6 +21,8 @@ WERROR     =
 TABLES     =
 # position independent, so that the archive also goes into shared objects; empty for machines without an operating system
 PIC        = -fPIC -fno-semantic-interposition
+# number in the name of the shared library: another one when a function or structure of the public headers changes
+ABI        = 0
 # instruction sets of the laned sources: scalar, then any of sse2 avx2 avx512
 ISAS      := scalar $(if $(filter x86_64% i%86%,$(shell $(CC) -dumpmachine)),sse2 avx2 avx512)
 
@@ -29,6 +31,7 @@ WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wshadow -Wvla $(WERROR)
 COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
 # tables of addresses would be data in position independent code
 KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
+SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp $(PIC)
 HOST_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(GSL_CFLAGS)
 TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 
@@ -49,6 +52,10 @@ GSL_LIBS     = $(shell $(PKG_CONFIG) --libs gsl)
 CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
 CHECK_LIBS   = $(shell $(PKG_CONFIG) --libs check)
 
+# the public headers, and sed that finds their functions
+HEADERS   = kernel/fibrad.h kernel/fibrad_surface.h kernel/fibrad_furnace.h host/simple/fibrad_host.h
+FUNCTIONS = '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1;/p'
+
 # ---- sources --------------------------------------------------------------------------------------------------------
 # `make check` tells of files that are missing here
 KERNEL = \
@@ -58,7 +65,7 @@ KERNEL = \
     kernel/pair/exact.c \
     kernel/scene/drift.c \
     kernel/scene/grid_walk.c \
-    kernel/scene/scene.c \
+    kernel/scene/scene_build.c \
     kernel/scene/walls.c \
     kernel/store/rows.c \
     kernel/window/areas.c \
@@ -99,7 +106,16 @@ LANED = \
     kernel/exchange/paths_lanes.c \
     kernel/heat/hits_lanes.c
 
-# besides main.c and generate_tables.c
+# the simple layer, libfibrad_host.a
+SIMPLE = \
+    host/simple/factors.c \
+    host/simple/heap.c \
+    host/simple/job.c \
+    host/simple/radiation.c \
+    host/simple/team.c \
+    host/simple/tolerance.c
+
+# the program, besides main.c
 HOST = \
     host/cli/interrupt.c \
     host/cli/message.c \
@@ -108,6 +124,8 @@ HOST = \
     host/cli/progress.c \
     host/cli/targets.c \
     host/bed/bed.c \
+    host/bed/bed_scene.c \
+    host/bed/moving_rows.c \
     host/bed/packing.c \
     host/bed/property_option.c \
     host/bed/wall_option.c \
@@ -118,15 +136,9 @@ HOST = \
     host/read/read_furnace.c \
     host/read/read_lines.c \
     host/read/read_yade.c \
-    host/compute/average.c \
-    host/compute/exchange_rows.c \
-    host/compute/heat_powers.c \
-    host/compute/method.c \
-    host/compute/moving_rows.c \
-    host/compute/rows.c \
-    host/compute/tolerance.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
+    host/write/summary.c \
     host/write/vtp.c \
     host/write/write.c \
     host/write/write_csv.c \
@@ -178,6 +190,7 @@ TESTS = \
     tests/test_reference.c \
     tests/test_reproduce.c \
     tests/test_scene.c \
+    tests/test_simple.c \
     tests/test_status.c \
     tests/test_stress.c \
     tests/test_surface.c \
@@ -185,15 +198,18 @@ TESTS = \
     tests/test_tables.c \
     tests/test_trace.c \
     tests/test_walls.c \
+    tests/test_work.c \
     tests/test_write.c
 
 SCRIPTS = \
     tests/check_bits.sh \
+    tests/check_dist.sh \
     tests/check_examples.sh \
     tests/check_faults.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
-    tests/check_rooms.sh \
+    tests/check_house.sh \
+    tests/check_map.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
     tests/freestanding/check_freestanding.sh \
@@ -219,26 +235,35 @@ BENCHES = \
 # built and run where Embree 3 is found (Debian: libembree-dev)
 PEERS = bench/bench_embree.c
 
-# these know the argument `quick`
-QUICK = bench/bench_areas.c bench/bench_beam.c bench/bench_heat.c bench/bench_moved.c bench/bench_pair.c bench/bench_scale.c bench/bench_sizes.c bench/bench_skips.c bench/bench_window.c $(PEERS)
+# linked with a library that counts its instructions, bench/count_cc.sh; built and run on x86-64
+COUNTED = bench/bench_instructions.c
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)
 LANED_OBJECTS  = $(foreach isa,$(ISAS),$(LANED:%.c=$(BUILD)/%_$(isa).o))
 KERNEL_OBJECTS = $(BUILD)/tables.o $(PLAIN_OBJECTS) $(LANED_OBJECTS)
+SIMPLE_OBJECTS = $(SIMPLE:%.c=$(BUILD)/%.o)
 HOST_OBJECTS   = $(HOST:%.c=$(BUILD)/%.o)
+SHARED         = $(BUILD)/libfibrad.so.$(ABI)
+LIBRARIES      = $(BUILD)/libhost.a $(BUILD)/libfibrad_host.a $(BUILD)/libfibrad.a
 TEST_PROGRAMS  = $(TESTS:%.c=$(BUILD)/%)
 BENCH_PROGRAMS = $(BENCHES:%.c=$(BUILD)/%)
 PEER_PROGRAMS  = $(PEERS:%.c=$(BUILD)/%)
+COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfibrad.a
+COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
+ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib demo reproduce test run-programs programs check symbols lists format bench bench-quick bench-peers \
-    skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
+.PHONY: all lib lib-host dist demo reproduce test run-programs programs check symbols lists format bench bench-quick \
+    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
 
-## all: build/fibrad and build/libfibrad.a (the default)
-all: $(BUILD)/fibrad $(BUILD)/libfibrad.a
+## all: build/fibrad and the libraries (the default)
+all: $(BUILD)/fibrad lib lib-host
 
 ## lib: build/libfibrad.a alone; needs nothing but a C compiler
 lib: $(BUILD)/libfibrad.a
+
+## lib-host: build/libfibrad_host.a, and libfibrad.so, which has libfibrad.a in it; need OpenMP
+lib-host: $(BUILD)/libfibrad_host.a $(BUILD)/libfibrad.so
 
 $(BUILD)/libfibrad.a: $(KERNEL_OBJECTS)
 	rm -f $@
@@ -268,7 +293,27 @@ $(LANED:%.c=$(BUILD)/%_$(1).o): $(BUILD)/%_$(1).o: %.c
 endef
 $(foreach isa,$(ISAS),$(eval $(call laned_rule,$(isa))))
 
-$(BUILD)/fibrad: $(BUILD)/host/main.o $(BUILD)/libhost.a $(BUILD)/libfibrad.a
+$(BUILD)/libfibrad_host.a: $(SIMPLE_OBJECTS)
+	rm -f $@
+	$(AR) rcs $@ $^
+
+$(SIMPLE_OBJECTS): $(BUILD)/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(SIMPLE_FLAGS) -c $< -o $@
+
+# exports the functions of the public headers
+$(BUILD)/fibrad.map: $(HEADERS) Makefile
+	@mkdir -p $(@D)
+	{ echo 'FIBRAD_$(ABI) { global:'; sed -n $(FUNCTIONS) $(HEADERS); echo 'local: *; };'; } > $@
+
+$(SHARED): $(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) $(BUILD)/fibrad.map
+	$(CC) $(CFLAGS) $(LDFLAGS) -shared -fopenmp -Wl,-soname,$(@F) -Wl,--version-script=$(BUILD)/fibrad.map \
+	    -Wl,-Bsymbolic -Wl,-z,defs $(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) -o $@
+
+$(BUILD)/libfibrad.so: $(SHARED)
+	ln -sf $(<F) $@
+
+$(BUILD)/fibrad: $(BUILD)/host/main.o $(LIBRARIES)
 	$(CC) $(LDFLAGS) -fopenmp $^ $(GSL_LIBS) -lm -o $@
 
 # all of the host but main, for tests and benches to link
@@ -280,17 +325,21 @@ $(BUILD)/host/main.o $(HOST_OBJECTS): $(BUILD)/%.o: %.c | need-gsl
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(HOST_FLAGS) -c $< -o $@
 
-$(TEST_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/libfibrad.a | need-gsl need-check
+$(TEST_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-gsl need-check
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(TEST_FLAGS) $(LDFLAGS) $< $(BUILD)/libhost.a $(BUILD)/libfibrad.a $(CHECK_LIBS) $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) $(TEST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) $(CHECK_LIBS) $(GSL_LIBS) -lm -o $@
 
-$(BENCH_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/libfibrad.a | need-gsl
+$(BENCH_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-gsl
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(HOST_FLAGS) $(WITH_ISAS) $(LDFLAGS) $< $(BUILD)/libhost.a $(BUILD)/libfibrad.a $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) $(HOST_FLAGS) $(WITH_ISAS) $(LDFLAGS) $< $(LIBRARIES) $(GSL_LIBS) -lm -o $@
 
-$(PEER_PROGRAMS): $(BUILD)/%: %.c $(BUILD)/libhost.a $(BUILD)/libfibrad.a | need-gsl
+$(PEER_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-gsl
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -O3 $(HOST_FLAGS) $(LDFLAGS) $< $(BUILD)/libhost.a $(BUILD)/libfibrad.a -lembree3 $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) -O3 $(HOST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) -lembree3 $(GSL_LIBS) -lm -o $@
+
+$(COUNT_PROGRAMS): $(BUILD)/%: %.c $(COUNTING) | need-gsl
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(HOST_FLAGS) $(LDFLAGS) $< $(COUNTING) $(GSL_LIBS) -lm -o $@
 
 need-gsl:
 	@$(PKG_CONFIG) --exists gsl || { echo "The program fibrad needs GSL: run 'make deps' (Debian: pkg-config, libgsl-dev)." \
@@ -300,9 +349,9 @@ need-check:
 	@$(PKG_CONFIG) --exists check || { echo "The tests need libcheck: run 'make deps' (Debian: check)." >&2; exit 1; }
 
 # other flags, other objects (for flags on the command line: another BUILD)
-$(KERNEL_OBJECTS) $(HOST_OBJECTS) $(BUILD)/host/main.o $(TEST_PROGRAMS) $(BENCH_PROGRAMS) $(PEER_PROGRAMS): Makefile
+$(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) $(HOST_OBJECTS) $(BUILD)/host/main.o $(TEST_PROGRAMS) $(ALL_BENCHES): Makefile
 
--include $(KERNEL_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d) $(PEER_PROGRAMS:=.d) $(BUILD)/host/main.d
+-include $(KERNEL_OBJECTS:.o=.d) $(SIMPLE_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(ALL_BENCHES:=.d) $(BUILD)/host/main.d
 
 # ---- what one does with them ----------------------------------------------------------------------------------------
 DEMO_BED = tests/data/mono2000.dump
@@ -316,6 +365,12 @@ demo: deps
 	@echo
 	@echo "The matrix of view factors: $(BUILD)/demo/F.mtx"
 	@echo "The picture of the bed:     $(BUILD)/demo/bed.png"
+
+## dist: build/dist/fibrad.c and fibrad.h, the whole kernel in two files for other build systems
+dist: $(BUILD)/dist/fibrad.c
+
+$(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*.h kernel/*/*.h kernel/*/*/*.h) kernel/dist/join.sh
+	kernel/dist/join.sh $(abspath $<) $(abspath $(@D)) $(KERNEL) $(LANED)
 
 ## test: install what is missing, build and run all tests
 test: deps
@@ -333,7 +388,7 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
 check: symbols lists format
 
-LISTED = $(KERNEL) $(LANED) $(HOST) host/main.c kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS)
+LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
 FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c)) \
          $(wildcard tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
 
@@ -341,8 +396,8 @@ lists:
 	@test -z "$(filter-out $(LISTED),$(FOUND))" || \
 	    { echo "not in the lists of the Makefile: $(filter-out $(LISTED),$(FOUND))" >&2; exit 1; }
 
-## symbols: libfibrad.a defines only fibrad_*, asks for nothing but memory copying, holds no variables
-symbols: $(BUILD)/libfibrad.a
+## symbols: libfibrad.a defines only fibrad_*, asks for nothing but memory copying, holds no variables; what others export
+symbols: lib lib-host
 	BUILD=$(BUILD) tests/check_symbols.sh
 
 FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
@@ -354,16 +409,16 @@ format:
 BENCH_ENV = BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" BENCH_FLAGS="$(CFLAGS) -ffp-contract=off"
 
 ## bench: build and run all benches; CSV into build/bench, plots into docs/figures
-bench: $(BENCH_PROGRAMS) bench-peers
-	@set -e; for b in $(BENCH_PROGRAMS) $(PEER_PROGRAMS); do \
+bench: $(BENCH_PROGRAMS) bench-peers bench-counted
+	@set -e; for b in $(ALL_BENCHES); do \
 	    test -x $$b || continue; echo "$$b > $$b.csv"; $(BENCH_ENV) $$b > $$b.csv; done
 	gnuplot -e "in='$(BUILD)/bench/bench_beam.csv'; peer='$(BUILD)/bench/bench_embree.csv'; \
 	    out='docs/figures/beam_error.svg'" bench/plot_beam.gp
 	gnuplot -e "in='$(BUILD)/bench/bench_scale.csv'; out='docs/figures/scale.svg'" bench/plot_scale.gp
 
-## bench-quick: build all benches and run the smallest case of some: do they still work?
-bench-quick: $(BENCH_PROGRAMS) bench-peers
-	@set -e; mkdir -p $(BUILD)/bench/quick; for b in $(QUICK:bench/%.c=%); do \
+## bench-quick: build all benches and run the smallest case of each: do they still work?
+bench-quick: $(BENCH_PROGRAMS) bench-peers bench-counted
+	@set -e; mkdir -p $(BUILD)/bench/quick; for b in $(notdir $(ALL_BENCHES)); do \
 	    test -x $(BUILD)/bench/$$b || continue; echo "$$b quick"; \
 	    $(BENCH_ENV) $(BUILD)/bench/$$b quick > $(BUILD)/bench/quick/$$b.csv; done
 	gnuplot -e "in='$(BUILD)/bench/quick/bench_beam.csv'; peer='$(BUILD)/bench/quick/bench_embree.csv'; \
@@ -375,6 +430,13 @@ bench-peers:
 	@if echo '#include <embree3/rtcore.h>' | $(CC) -E -xc - >/dev/null 2>&1; then \
 	    $(MAKE) -s --no-print-directory $(PEER_PROGRAMS); \
 	else echo "No Embree 3 (Debian: libembree-dev): its benches are skipped"; fi
+
+# the library is made anew where its sources have changed: its own make knows
+bench-counted: $(filter-out %/libfibrad.a,$(LIBRARIES))
+	@case $$($(CC) -dumpmachine) in x86_64*) \
+	    $(MAKE) -s --no-print-directory BUILD=$(BUILD)/counted CC="bench/count_cc.sh $(CC)" HOSTCC="$(HOSTCC)" lib && \
+	    $(MAKE) -s --no-print-directory $(COUNT_PROGRAMS) ;; \
+	*) echo "Instructions are only counted on x86-64" ;; esac
 
 ## skips: what the skips save that no argument turns off, each turned off in a copy of the kernel (some minutes)
 skips:
@@ -407,10 +469,10 @@ SANITIZE     = address,undefined -fno-sanitize-recover=undefined
 
 fuzz-programs: need-gsl
 	@$(MAKE) -s --no-print-directory BUILD=$(FUZZ) CC=$(FUZZ_CC) CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE)" \
-	    $(FUZZ)/libfibrad.a $(FUZZ)/libhost.a
+	    $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%)
 	@set -e; for target in read kernel; do \
 	    $(FUZZ_CC) -O1 -g -fsanitize=fuzzer,$(SANITIZE) $(HOST_FLAGS) tests/fuzz/fuzz_$$target.c \
-	        $(FUZZ)/libhost.a $(FUZZ)/libfibrad.a $(GSL_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
+	        $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%) $(GSL_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
 	done
 
 ## fuzz: hostile input for the readers and the kernel, FUZZ_SECONDS=60 in all
@@ -448,7 +510,7 @@ lint:
 	cppcheck --quiet --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 	printf '%s\n' $(KERNEL) $(LANED) | xargs -I{} -P 2 clang-tidy --quiet {} -- -std=c11 $(LINT_FLAGS) $(LINT_SCALAR)
-	printf '%s\n' $(HOST) host/main.c kernel/sample/generate_tables.c | xargs -I{} -P 2 \
+	printf '%s\n' $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c | xargs -I{} -P 2 \
 	    clang-tidy --quiet --checks=-clang-analyzer-core.* {} -- -std=c11 -fopenmp $(LINT_FLAGS)
 
 ## reproduce: the numbers of the papers beside ours, and their plots into docs/figures
@@ -465,19 +527,22 @@ deps-ci:
 	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
 	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-scipy
 
-## install: fibrad, libfibrad.a, fibrad.h and fibrad.pc, to DESTDIR and PREFIX
+## install: the program, the libraries, their headers and .pc files, to DESTDIR and PREFIX
 install: install-lib $(BUILD)/fibrad
 	install -d $(DESTDIR)$(PREFIX)/bin
 	install $(BUILD)/fibrad $(DESTDIR)$(PREFIX)/bin
 
+PC_FILES = kernel/fibrad.pc.in host/simple/fibrad_host.pc.in
+
 ## install-lib: the same without the program
-install-lib: $(BUILD)/libfibrad.a
+install-lib: lib lib-host
 	install -d $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(PREFIX)/lib/pkgconfig
-	install -m 644 kernel/fibrad.h $(DESTDIR)$(PREFIX)/include
-	install -m 644 $(BUILD)/libfibrad.a $(DESTDIR)$(PREFIX)/lib
-	version=$$(sed -n 's/^#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel/fibrad.h); \
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$version|" kernel/fibrad.pc.in \
-	    > $(DESTDIR)$(PREFIX)/lib/pkgconfig/fibrad.pc
+	install -m 644 $(HEADERS) $(DESTDIR)$(PREFIX)/include
+	install -m 644 $(BUILD)/libfibrad.a $(BUILD)/libfibrad_host.a $(SHARED) $(DESTDIR)$(PREFIX)/lib
+	ln -sf $(notdir $(SHARED)) $(DESTDIR)$(PREFIX)/lib/libfibrad.so
+	version=$$(sed -n 's/^#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel/fibrad.h); for pc in $(PC_FILES:.in=); do \
+	    sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$version|" $$pc.in \
+	        > $(DESTDIR)$(PREFIX)/lib/pkgconfig/$${pc##*/} || exit 1; done
 
 ## clean: remove all that was built
 clean:

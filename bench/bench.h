@@ -1,4 +1,4 @@
-/* bench.h - what all benches print first, and clocks. SPDX-License-Identifier: MIT */
+/* bench.h - what all benches print first, clocks, memory, and what becomes of errors. SPDX-License-Identifier: MIT */
 #ifndef BENCH_H
 #define BENCH_H
 
@@ -15,6 +15,31 @@ static inline double bench_thread_seconds(void) {
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
+
+/* Ends the program, with a message, unless the status is FIBRAD_OK. */
+static inline void bench_check(const char *what, int status) {
+    if (status == FIBRAD_OK) return;
+    fprintf(stderr, "bench: %s: %s\n", what, fibrad_status_text(status));
+    exit(1);
+}
+
+/* A zeroed array. Ends the program if there is no memory. */
+static inline void *bench_array(size_t count, size_t size) {
+    void *array = calloc(count > 0 ? count : 1, size);
+    if (!array) bench_check("array", FIBRAD_E_MEMORY);
+    return array;
+}
+
+static inline void *bench_resize(void *context, void *block, size_t size) {
+    (void)context;
+    return realloc(block, size);
+}
+
+/* Empty work memory or rows that grow on the heap; memory.block is to be freed. */
+#define BENCH_GROWING                                                                                                  \
+    {                                                                                                                  \
+        .memory = {.resize = bench_resize }                                                                            \
+    }
 
 /* One line `# key: value` each. `make bench` hands commit and flags over in the environment. */
 static inline void bench_preamble(const char *what, int threads) {

@@ -4,7 +4,7 @@
  *     bench_areas [quick]
  *
  * CSV on standard output: microseconds per window, processor time, the least of rounds in which all take turns; the
- * part of the windows that clipping left to accounts; and how many times as long accounts take in scalar, the
+ * part of the windows that clipping left to the arrangement; and how many times as long that takes in scalar, the
  * reference. The windows are those of a periodic random bed of equal spheres, solid fraction 0.6, with their discs
  * sorted. */
 #include <math.h>
@@ -12,8 +12,6 @@
 #include "window/areas.h"
 #include "bed/packing.h"
 #include "bench.h"
-#include "cli/message.h"
-#include "compute/rows.h"
 
 enum { DISCS = 64, METHODS = 8 };
 
@@ -47,33 +45,33 @@ static void add(struct method *method, const char *name, const char *isa, begin_
     add(&methods[n++], #by, #isa, fibrad_##by##_begin_##isa, fibrad_##by##_disc_##isa, fibrad_##by##_end_##isa)
 
 DECLARE(areas, scalar)
-DECLARE(accounts, scalar)
+DECLARE(arrangement, scalar)
 #ifdef FIBRAD_WITH_SSE2
 DECLARE(areas, sse2)
-DECLARE(accounts, sse2)
+DECLARE(arrangement, sse2)
 #endif
 #ifdef FIBRAD_WITH_AVX2
 DECLARE(areas, avx2)
-DECLARE(accounts, avx2)
+DECLARE(arrangement, avx2)
 #endif
 #ifdef FIBRAD_WITH_AVX512
 DECLARE(areas, avx512)
-DECLARE(accounts, avx512)
+DECLARE(arrangement, avx512)
 #endif
 
-/* Those of this machine; the scalar accounts come first. */
+/* Those of this machine; the scalar arrangement comes first. */
 static int methods_list(struct method methods[METHODS]) {
     int n = 0;
-    METHOD(accounts, scalar);
+    METHOD(arrangement, scalar);
     METHOD(areas, scalar);
 #ifdef FIBRAD_WITH_SSE2
-    if (fibrad_isa_best() >= FIBRAD_ISA_SSE2) METHOD(accounts, sse2), METHOD(areas, sse2);
+    if (fibrad_isa_best() >= FIBRAD_ISA_SSE2) METHOD(arrangement, sse2), METHOD(areas, sse2);
 #endif
 #ifdef FIBRAD_WITH_AVX2
-    if (fibrad_isa_best() >= FIBRAD_ISA_AVX2) METHOD(accounts, avx2), METHOD(areas, avx2);
+    if (fibrad_isa_best() >= FIBRAD_ISA_AVX2) METHOD(arrangement, avx2), METHOD(areas, avx2);
 #endif
 #ifdef FIBRAD_WITH_AVX512
-    if (fibrad_isa_best() >= FIBRAD_ISA_AVX512) METHOD(accounts, avx512), METHOD(areas, avx512);
+    if (fibrad_isa_best() >= FIBRAD_ISA_AVX512) METHOD(arrangement, avx512), METHOD(areas, avx512);
 #endif
     return n;
 }
@@ -126,12 +124,10 @@ int main(int argc, char **argv) {
     fibrad_arena arena = {0};
     fibrad_areas areas = {0};
     fibrad_areas_layout(&areas, &arena, DISCS);
-    const size_t size = arena.used;
-    void *block = run_block(size);
-    struct window *windows = malloc(rows * directions * sizeof *windows);
-    if (!block || !windows) return message_memory();
-    memset(block, 0, size);
-    arena = (fibrad_arena){block, 0, size};
+    const size_t size = fibrad_arena_total(&arena);
+    void *block = bench_array(size, 1);
+    struct window *windows = bench_array(rows * directions, sizeof *windows);
+    bench_check("areas", fibrad_arena_open(&arena, block, size, size));
     fibrad_areas_layout(&areas, &arena, DISCS);
     for (uint32_t k = 0; k < rows * directions; ++k)
         look(&windows[k], &bed, k / directions * (bed.n / rows), k % directions, directions);
@@ -141,7 +137,7 @@ int main(int argc, char **argv) {
     for (int round = 0; round < (quick ? 1 : 10); ++round)
         for (int m = 0; m < n; ++m) measure(&methods[m], &areas, windows, rows * directions);
     bench_preamble("bench_areas: windows of a periodic random bed of equal spheres, solid fraction 0.6", 1);
-    puts("method,isa,microseconds,left to accounts,accounts scalar / this");
+    puts("method,isa,microseconds,left to the arrangement,scalar arrangement / this");
     for (int m = 0; m < n; ++m)
         printf("%s,%s,%.3f,%g,%.2f\n", methods[m].name, methods[m].isa, 1e6 * methods[m].best / (rows * directions),
                methods[m].fallbacks, methods[0].best / methods[m].best);

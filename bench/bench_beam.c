@@ -2,28 +2,25 @@
  *
  *     bench_beam [quick]
  *
- * CSV on standard output; centre.h tells of bed and truth. Times are processor times, the least of three rounds. */
+ * CSV on standard output; bed and truth are those of centre.h. Times are processor times, the least of three rounds. */
 #include "centre.h"
 
-static int bench(const struct centre *centre, const struct row_method *method, const char *kind, uint32_t setting) {
-    double *full = calloc(centre->bed.n, sizeof *full), best = INFINITY;
-    if (!full) return message_memory();
+static void bench(struct centre *centre, const struct bench_method *method, const char *kind, uint32_t setting) {
+    double *full = bench_array(centre->bed.n, sizeof *full), best = INFINITY;
     struct centre_error sum = {0};
-    int status = STATUS_OK;
-    for (int round = 0; round < 3 && !status; ++round) {
+    for (int round = 0; round < 3; ++round) {
         double seconds = 0;
         sum = (struct centre_error){0};
-        for (uint32_t k = 0; k < centre->rows && !status; ++k) {
+        for (uint32_t k = 0; k < centre->rows; ++k) {
             const double begun = bench_thread_seconds();
-            status = centre_row(centre, method, centre->sphere[k], full);
+            centre_row(centre, method, centre->sphere[k], full);
             seconds += bench_thread_seconds() - begun;
             centre_add_error(centre, k, full, &sum);
         }
         best = fmin(best, seconds);
     }
-    if (!status) centre_print(method->name, kind, setting, best, &sum);
+    centre_print(method->name, kind, setting, best, &sum);
     free(full);
-    return status;
 }
 
 int main(int argc, char **argv) {
@@ -31,29 +28,26 @@ int main(int argc, char **argv) {
     static const uint32_t rays[] = {1000, 10000, 100000, 1000000}, nodes[] = {21, 34, 55, 89, 144};
     const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
     const size_t most = quick ? 2 : 100; /* settings of each method */
-    struct centre centre = {0};
-    int status = centre_make(&centre, quick ? 200 : 1000, quick ? 2 : 10, quick ? 2000 : 40000);
+    struct centre centre;
+    const int status = centre_make(&centre, quick ? 200 : 1000, quick ? 2 : 10, quick ? 2000 : 40000);
     if (status) return status;
     bench_preamble("bench_beam: rows in the middle of an open random bed of 1,000 (quick: 200)", 1);
     puts(CENTRE_COLUMNS);
     for (uint32_t points = 0; points <= 256; points = points ? 2 * points : 64)
-        for (size_t d = 0; d < sizeof directions / sizeof *directions && d < most && !status; ++d) {
+        for (size_t d = 0; d < sizeof directions / sizeof *directions && d < most; ++d) {
             const fibrad_beam_rule rule = {.directions = directions[d], .points = points};
-            const struct row_method method = method_beam(&rule);
             char kind[20] = "areas";
             if (points) snprintf(kind, sizeof kind, "points %u", points);
-            status = bench(&centre, &method, kind, directions[d]);
+            bench(&centre, &(struct bench_method){.name = "beam", .beam = &rule}, kind, directions[d]);
         }
     for (int random = 0; random <= 1; ++random)
-        for (size_t r = 0; r < sizeof rays / sizeof *rays && r < most && !status; ++r) {
+        for (size_t r = 0; r < sizeof rays / sizeof *rays && r < most; ++r) {
             const fibrad_cast_rule rule = {.rays = rays[r], .random = random};
-            const struct row_method method = method_cast(&rule);
-            status = bench(&centre, &method, "rays", rays[r]);
+            bench(&centre, &(struct bench_method){.name = random ? "mc" : "cast", .cast = &rule}, "rays", rays[r]);
         }
-    for (size_t k = 0; k < sizeof nodes / sizeof *nodes && k < most && !status; ++k) {
+    for (size_t k = 0; k < sizeof nodes / sizeof *nodes && k < most; ++k) {
         const fibrad_surface_rule rule = {.nodes = nodes[k]};
-        const struct row_method method = method_surface(&rule);
-        status = bench(&centre, &method, "nodes", nodes[k]);
+        bench(&centre, &(struct bench_method){.name = "surface", .surface = &rule}, "nodes", nodes[k]);
     }
-    return status;
+    return 0;
 }

@@ -1,67 +1,62 @@
 /* bench_error.c - error of beam rows against the number of directions, on a random bed. SPDX-License-Identifier: MIT
  *
+ *     bench_error [quick]
+ *
  * CSV on standard output. Bed: 1000 spheres, radii 0.8-1.2, solid fraction 0.55, open; rows: those at least 4 away from
  * its faces. Truth: exact areas with 40000 directions. `averaged`: the error of (V_ij + V_ji)/2A_i instead of V_ij/A_i.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "bed/packing.h"
-#include "fibrad.h"
-#include "cli/message.h"
-#include "compute/rows.h"
+#include "bench_bed.h"
 
 static int ascending(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
-static int rows_of(const struct bed *bed, fibrad_beam_rule rule, bool raw, const bool *wanted, struct result *result) {
-    struct run_options options = {.file = "random bed", .method = method_beam(&rule), .raw = raw, .wanted = wanted};
-    return run_rows(bed, &options, result);
+static fibrad_bed_factors *rows_of(const struct bed *bed, uint32_t directions, uint32_t points, int raw,
+                                   const unsigned char *wanted) {
+    const fibrad_beam_rule rule = {.directions = directions, .points = points};
+    const fibrad_bed_options options = {.beam = &rule, .raw = raw, .wanted = wanted};
+    return bench_factors(bed, &options, 0);
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     static const uint32_t directions[] = {50, 100, 200, 400, 800, 1600, 6400};
+    const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
+    const uint32_t fine = quick ? 4000 : 40000;
     struct bed bed;
     bed_init(&bed, false, 0);
-    int status = bed_make_packing(&bed, 1000, 0.8, 1.2, 0.55, 1);
+    const int status = bed_make_packing(&bed, 1000, 0.8, 1.2, 0.55, 1);
     if (status) return status;
-    double edge = bed.period[0];
+    const double edge = bed.period[0];
     memset(bed.period, 0, sizeof bed.period);
-    double *error = calloc(bed.n, sizeof *error);
-    bool *wanted = calloc(bed.n, sizeof *wanted);
-    if (!error || !wanted) return message_memory();
+    double *error = bench_array(bed.n, sizeof *error);
+    unsigned char *wanted = bench_array(bed.n, 1);
     for (uint32_t i = 0; i < bed.n; i++)
         wanted[i] =
             fmin(fmin(fmin(bed.x[i], bed.y[i]), bed.z[i]), edge - fmax(fmax(bed.x[i], bed.y[i]), bed.z[i])) >= 4;
-    struct result truth;
-    status = rows_of(&bed, (fibrad_beam_rule){.directions = 40000}, true, wanted, &truth);
-    if (status) return status;
-    printf("# fibrad %s; random bed of 1000, radii 0.8-1.2, solid fraction 0.55; truth n = 40000\n", fibrad_version());
+    fibrad_bed_factors *truth = rows_of(&bed, fine, 0, 1, wanted);
+    printf("# fibrad %s; random bed of 1000, radii 0.8-1.2, solid fraction 0.55; truth n = %u\n", fibrad_version(),
+           fine);
     printf("directions,points,averaged,rows,median,mean,largest,seconds\n");
-    for (size_t d = 0; d < sizeof directions / sizeof *directions; d++)
+    for (size_t d = 0; d < (quick ? 1 : sizeof directions / sizeof *directions); d++)
         for (uint32_t points = 0; points <= 256; points = points ? 2 * points : 64)
             for (int raw = 1; raw >= 0; raw--) {
-                struct result result;
-                status = rows_of(&bed, (fibrad_beam_rule){.directions = directions[d], .points = points}, raw, NULL,
-                                 &result);
-                if (status) return status;
+                fibrad_bed_factors *factors = rows_of(&bed, directions[d], points, raw, NULL);
                 uint32_t rows = 0;
                 double sum = 0;
                 for (uint32_t i = 0; i < bed.n; i++) {
                     if (!wanted[i]) continue;
-                    sum += error[rows++] = rows_distance(&result.rows, &truth.rows, i);
+                    sum += error[rows++] = bench_distance(bench_matrix_entries(&factors->matrix, i),
+                                                          bench_matrix_entries(&truth->matrix, i));
                 }
                 qsort(error, rows, sizeof *error, ascending);
                 printf("%u,%u,%d,%u,%.3g,%.3g,%.3g,%.3f\n", directions[d], points, !raw, rows, error[rows / 2],
-                       sum / rows, error[rows - 1], result.seconds);
+                       sum / rows, error[rows - 1], factors->seconds);
                 fflush(stdout);
-                result_free(&result);
+                fibrad_bed_free(factors);
             }
-    result_free(&truth);
+    fibrad_bed_free(truth);
     free(error);
     free(wanted);
     bed_free(&bed);

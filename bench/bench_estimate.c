@@ -1,19 +1,15 @@
 /* bench_estimate.c - is the error that a row claims above its true one? SPDX-License-Identifier: MIT
  *
+ *     bench_estimate [quick | BED...]
+ *
  * CSV on standard output: true Euclidean errors and estimates of rows at equal distances in several beds, raw and
  * averaged with their partners, from 50 to 6400 directions. `honest`: per cent of true errors below the estimate;
  * `low`, `median`, `high`: estimate over true error, 5 %, 50 % and 95 % of rows below. Truth: exact areas with 40000
  * directions. Beds: those of tests/data, random beds, a lattice, scenes of 3 to 8 spheres, and files named as
- * arguments. Run it from the project's root. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
+ * arguments; `quick`: the last scenes alone. Run it from the project's root. */
 #include "bed/packing.h"
-#include "fibrad.h"
-#include "cli/message.h"
+#include "bench_bed.h"
 #include "read/read.h"
-#include "compute/rows.h"
 
 enum { ROWS = 64, SCENES = 32, SAMPLES = 512 };
 
@@ -28,43 +24,36 @@ struct samples {
 
 static struct samples kinds[STEPS][2]; /* raw, averaged */
 
-static void note(struct samples *samples, const struct result *result, const struct result *truth, uint32_t i) {
+static void note(struct samples *samples, const fibrad_factors *matrix, const fibrad_factors *truth, uint32_t i) {
     if (samples->count == SAMPLES) return;
-    const double error = rows_distance(&result->rows, &truth->rows, i);
+    const double error = bench_distance(bench_matrix_entries(matrix, i), bench_matrix_entries(truth, i));
     samples->error[samples->count] = error;
-    samples->ratio[samples->count++] = error > 0 ? result->error[i] / error : 1;
+    samples->ratio[samples->count++] = error > 0 ? matrix->error[i] / error : 1;
 }
 
-static int compare(const struct bed *bed, const struct result *truth, uint32_t step, bool raw) {
-    fibrad_beam_rule rule = {.directions = directions[step]};
-    struct result result;
-    const struct run_options options = {
-        .file = "bed", .method = method_beam(&rule), .threads = 1, .raw = raw, .wanted = raw ? truth->wanted : NULL};
-    const int status = run_rows(bed, &options, &result);
-    for (uint32_t i = 0; !status && i < bed->n; ++i)
-        if (truth->wanted[i]) note(&kinds[step][!raw], &result, truth, i);
-    result_free(&result);
-    return status;
+static void compare(const struct bed *bed, const fibrad_factors *truth, const unsigned char *wanted, uint32_t step,
+                    bool raw) {
+    const fibrad_beam_rule rule = {.directions = directions[step]};
+    const fibrad_bed_options options = {.beam = &rule, .raw = raw, .wanted = raw ? wanted : NULL};
+    fibrad_bed_factors *factors = bench_factors(bed, &options, 1);
+    for (uint32_t i = 0; i < bed->n; ++i)
+        if (wanted[i]) note(&kinds[step][!raw], &factors->matrix, truth, i);
+    fibrad_bed_free(factors);
 }
 
 /* Adds the rows of a bed to all kinds. */
-static int add(const struct bed *bed) {
-    fibrad_beam_rule rule = {.directions = 40000};
-    struct result truth = {0};
-    bool *wanted = calloc(bed->n, sizeof *wanted);
-    if (!wanted) return message_memory();
+static void add(const struct bed *bed) {
+    const fibrad_beam_rule rule = {.directions = 40000};
+    unsigned char *wanted = bench_array(bed->n, 1);
     const uint32_t rows = bed->n < ROWS ? bed->n : ROWS;
-    for (uint32_t k = 0; k < rows; ++k) wanted[(uint64_t)bed->n * (2 * k + 1) / (2 * rows)] = true;
-    const struct run_options options = {
-        .file = "bed", .method = method_beam(&rule), .threads = 1, .raw = true, .wanted = wanted};
-    int status = run_rows(bed, &options, &truth);
-    for (uint32_t step = 0; !status && step < STEPS; ++step) {
-        status = compare(bed, &truth, step, true);
-        if (!status && step < ALL_ROWS) status = compare(bed, &truth, step, false);
+    for (uint32_t k = 0; k < rows; ++k) wanted[(uint64_t)bed->n * (2 * k + 1) / (2 * rows)] = 1;
+    fibrad_bed_factors *truth = bench_factors(bed, &(fibrad_bed_options){.beam = &rule, .wanted = wanted}, 1);
+    for (uint32_t step = 0; step < STEPS; ++step) {
+        compare(bed, &truth->matrix, wanted, step, true);
+        if (step < ALL_ROWS) compare(bed, &truth->matrix, wanted, step, false);
     }
-    result_free(&truth);
+    fibrad_bed_free(truth);
     free(wanted);
-    return status;
 }
 
 static int ascending(const void *a, const void *b) {
@@ -90,7 +79,7 @@ static void print(const char *name) {
 }
 
 static int finish(int status, struct bed *bed, const char *name) {
-    if (!status) status = add(bed);
+    if (!status) add(bed);
     if (!status && name) print(name);
     bed_free(bed);
     return status;
@@ -133,8 +122,10 @@ static int of_scenes(void) {
 }
 
 int main(int argc, char **argv) {
+    const bool quick = argc == 2 && strcmp(argv[1], "quick") == 0;
     printf("# fibrad %s; truth n = 40000\n", fibrad_version());
     printf("bed,directions,averaged,rows,median_error,honest,low,median,high\n");
+    if (quick) return of_scenes();
     int status = of_file("tests/data/mono2000.dump");
     if (!status) status = of_file("tests/data/poly2000.dump");
     if (!status) status = of_file("tests/data/monoper2000.dump");

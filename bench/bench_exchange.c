@@ -1,51 +1,40 @@
 /* bench_exchange.c - exchange factors of grey spheres: error against time. SPDX-License-Identifier: MIT
  *
+ *     bench_exchange [quick]
+ *
  * CSV on standard output. Random periodic bed of 2,000 equal spheres, solid fraction 0.586; root mean square of the
- * Euclidean error of ROWS rows, not averaged with their partners, the truth being 6,400 beams and 2,000,000 paths;
- * error as estimated; seconds of one thread for a row; rays traced for a row, without beams. Methods: analog    random
- * paths, each absorbed as a whole where a random number says so expected  quasi-random paths that leave at each surface
- * what it absorbs beam      fibrad_exchange_row: the first leg by beams, the others by such paths */
-#include <math.h>
-
+ * Euclidean error of ROWS rows, not averaged with their partners, the truth being 3,200 beams and 600,000 paths;
+ * error as estimated; seconds of one thread for a row; rays traced for a row, without beams. Methods:
+ *   analog    random paths, each absorbed as a whole where a random number says so
+ *   expected  quasi-random paths that leave at each surface what it absorbs
+ *   beam      fibrad_exchange_row: the first leg by beams, the others by such paths
+ *   rows      fibrad_exchange_factors: all rows of the bed, tolerance 0.01, two threads; directions: the most of a row
+ */
 #include "base/elementary.h"
 #include "bed/packing.h"
-#include "bench.h"
+#include "bench_bed.h"
 #include "exchange/paths.h"
-#include "cli/message.h"
-#include "compute/exchange_rows.h"
+#include "row/row.h"
 
 enum { ROWS = 24 };
 
 struct bench {
     uint32_t n;
-    fibrad_scene *scene;
-    fibrad_work *work;
-    fibrad_tracer *tracer;
+    const fibrad_scene *scene;
+    fibrad_work work;
+    fibrad_row row;
     double *emissivity, *truth, *sum;
-    uint32_t *col;
-    double *f;
 };
 
-static int open_bench(struct bench *bench, const struct bed *bed) {
-    const fibrad_scene_config config = {.spheres = bed->n, .period = {bed->period[0], bed->period[1], bed->period[2]}};
-    const fibrad_work_config room = {.entries = bed->n};
-    const fibrad_spheres spheres = {bed->x, bed->y, bed->z, bed->r, bed->n};
-    const size_t size[3] = {fibrad_scene_size(&config), fibrad_work_size(&room), fibrad_tracer_size(NULL)};
-    void *block[3];
-    for (int k = 0; k < 3; ++k) block[k] = run_block(size[k]);
-    *bench = (struct bench){.n = bed->n};
-    bench->emissivity = calloc(bed->n, sizeof(double));
-    bench->truth = calloc((size_t)bed->n * ROWS, sizeof(double));
-    bench->sum = calloc(bed->n, sizeof(double));
-    bench->col = calloc(bed->n, sizeof(uint32_t));
-    bench->f = calloc(bed->n, sizeof(double));
-    if (!block[0] || !block[1] || !block[2] || !bench->emissivity || !bench->truth || !bench->sum || !bench->col ||
-        !bench->f)
-        return message_memory();
-    int status = fibrad_scene_init(&bench->scene, block[0], size[0], &config, &spheres, NULL);
-    if (!status) status = fibrad_work_init(&bench->work, block[1], size[1], &room);
-    if (!status) status = fibrad_tracer_init(&bench->tracer, block[2], size[2], NULL, bench->scene);
-    return status ? message(STATUS_INPUT, "%s", fibrad_status_text(status)) : STATUS_OK;
+static struct bench open_bench(const struct bed *bed) {
+    void *block; /* kept until the end */
+    return (struct bench){.n = bed->n,
+                          .scene = bench_scene(bed, FIBRAD_ISA_BEST, &block),
+                          .work = BENCH_GROWING,
+                          .row = bench_arrays(bed->n),
+                          .emissivity = bench_array(bed->n, sizeof(double)),
+                          .truth = bench_array((size_t)bed->n * ROWS, sizeof(double)),
+                          .sum = bench_array(bed->n, sizeof(double))};
 }
 
 static uint32_t target(const struct bench *bench, uint32_t k) { return k * (bench->n / ROWS); }
@@ -64,7 +53,12 @@ static void point(fibrad_random *random, double at[3]) {
 static void analog(struct bench *bench, uint32_t i, uint32_t paths, uint32_t directions, double *error,
                    uint64_t *rays) {
     fibrad_random random = fibrad_random_start(1, i);
+    fibrad_trace_function *trace = FIBRAD_VERSION_OF(fibrad_trace, bench->scene->facts.isa);
+    fibrad_workspace *space;
     (void)directions;
+    bench_check("work",
+                fibrad_work_open(&bench->work, fibrad_tracer_least(), fibrad_tracer_best(bench->scene), &space));
+    fibrad_tracer *tracer = fibrad_tracer_of(space, bench->scene);
     for (uint32_t k = 0; k < paths; ++k) {
         uint32_t place = bench->scene->place[i];
         fibrad_hit hit;
@@ -75,7 +69,7 @@ static void analog(struct bench *bench, uint32_t i, uint32_t paths, uint32_t dir
             for (int axis = 0; axis < 3; ++axis) w[axis] += n[axis];
             const double inverse = 1 / sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
             for (int axis = 0; axis < 3; ++axis) w[axis] *= inverse;
-            fibrad_trace_avx512(bench->tracer, place, n, w, &hit);
+            trace(tracer, place, n, w, &hit);
             ++*rays;
             place = hit.sphere;
             memcpy(n, hit.normal, sizeof n);
@@ -85,34 +79,51 @@ static void analog(struct bench *bench, uint32_t i, uint32_t paths, uint32_t dir
     *error = 1 / sqrt(paths);
 }
 
-static void expected(struct bench *bench, uint32_t i, uint32_t paths, uint32_t directions, double *error,
-                     uint64_t *rays) {
+/* Adds bench->row. */
+static void add_row(struct bench *bench, double *error) {
+    const fibrad_row *row = &bench->row;
+    for (uint32_t k = 0; k < row->length; ++k) bench->sum[row->col[k]] += row->f[k];
+    *error = row->error;
+}
+
+struct expected_rule {
+    const double *emissivity;
+    uint32_t paths;
+    uint64_t *rays;
+};
+
+static int expected_row(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *of,
+                        fibrad_row *row) {
     static const double walls[FIBRAD_WALLS];
-    fibrad_paths state = {.tracer = bench->tracer,
-                          .place = bench->scene->place[i],
-                          .emissivity = bench->emissivity,
+    const struct expected_rule *rule = of;
+    fibrad_paths state = {.tracer = fibrad_tracer_of(space, scene),
+                          .place = scene->place[i],
+                          .emissivity = rule->emissivity,
                           .wall_emissivity = walls,
                           .stream = fibrad_random_start(1, i),
                           .first = true,
-                          .entries = &bench->work->entries};
-    fibrad_row row = {.col = bench->col, .f = bench->f, .capacity = bench->n};
+                          .entries = &space->entries};
+    fibrad_work_begin(space, scene, state.place, 0, (fibrad_stride){0});
+    FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa)(&state, 0, rule->paths);
+    *rule->rays = state.rays;
+    const int status = fibrad_work_entries_missed(space);
+    return status ? status : fibrad_entries_row(&space->entries, scene, 1.0 / rule->paths, row);
+}
+
+static void expected(struct bench *bench, uint32_t i, uint32_t paths, uint32_t directions, double *error,
+                     uint64_t *rays) {
+    const struct expected_rule rule = {bench->emissivity, paths, rays};
+    const fibrad_row_method how = {expected_row, &rule, fibrad_tracer_least(), fibrad_tracer_best(bench->scene)};
     (void)directions;
-    fibrad_work_begin(bench->work, bench->scene, state.place, 0, (fibrad_stride){0});
-    fibrad_paths_follow(&state, 0, paths);
-    fibrad_entries_row(bench->work, 1.0 / paths, &row);
-    for (uint32_t k = 0; k < row.length; ++k) bench->sum[row.col[k]] += row.f[k];
-    *error = row.error;
-    *rays = state.rays;
+    bench_check("row", fibrad_row_run(bench->scene, &bench->work, i, &how, &bench->row));
+    add_row(bench, error);
 }
 
 static void beam(struct bench *bench, uint32_t i, uint32_t paths, uint32_t directions, double *error, uint64_t *rays) {
     const fibrad_exchange_rule rule = {
         .emissivity = bench->emissivity, .directions = directions, .paths = paths, .seed = paths > 100000};
-    fibrad_row row = {.col = bench->col, .f = bench->f, .capacity = bench->n};
-    const int status = fibrad_exchange_row(bench->tracer, bench->work, i, &rule, &row, rays);
-    if (status) message(STATUS_INPUT, "row %u: %s", i, fibrad_status_text(status));
-    for (uint32_t k = 0; k < row.length; ++k) bench->sum[row.col[k]] += row.f[k];
-    *error = row.error;
+    bench_check("row", fibrad_exchange_row(bench->scene, &bench->work, i, &rule, &bench->row, rays));
+    add_row(bench, error);
 }
 
 static void measure(struct bench *bench, const char *name, method *run, double emissivity, uint32_t paths,
@@ -139,63 +150,61 @@ static void measure(struct bench *bench, const char *name, method *run, double e
 }
 
 /* All rows of the bed at once. */
-static int measure_rows(const struct bench *bench, const struct bed *bed, double emissivity) {
-    const struct run_options options = {.file = "bench", .threads = 2};
-    const fibrad_exchange_rule rule = {.emissivity = bench->emissivity, .error = .01, .seed = 7};
-    struct result result;
-    uint64_t rays;
+static void measure_rows(const struct bench *bench, const struct bed *bed, double emissivity) {
+    const fibrad_exchange_rule rule = {.emissivity = bench->emissivity, .tolerance = .01, .seed = 7};
+    const fibrad_spheres spheres = bench_spheres(bed);
+    const fibrad_scene_config config = bench_config(bed, FIBRAD_ISA_BEST);
+    fibrad_run run = {.threads = 2};
+    fibrad_bed_factors *factors;
     double error = 0, size = 0, estimate = 0;
-    const int status = run_exchange(bed, &options, &rule, 0, &result, &rays);
-    for (uint32_t k = 0; k < ROWS && !status; ++k) {
+    bench_check("factors", fibrad_exchange_factors(&config, &spheres, &rule, NULL, &run, &factors));
+    for (uint32_t k = 0; k < ROWS; ++k) {
         const uint32_t i = target(bench, k);
         const double *truth = bench->truth + (size_t)k * bench->n;
-        uint64_t at = result.rows.start[i];
-        for (uint32_t j = 0; j < bench->n; ++j) {
-            const bool here = at < result.rows.start[i + 1] && result.rows.col[at] == j;
-            error += pow((here ? result.rows.f[at++] : 0) - truth[j], 2) / ROWS;
+        const struct bench_entries row = bench_matrix_entries(&factors->matrix, i);
+        for (uint32_t j = 0, at = 0; j < bench->n; ++j) {
+            const bool here = at < row.length && row.col[at] == j;
+            error += pow((here ? row.f[at++] : 0) - truth[j], 2) / ROWS;
             size += truth[j] * truth[j] / ROWS;
         }
-        estimate += result.error[i] * result.error[i] / ROWS;
+        estimate += factors->matrix.error[i] * factors->matrix.error[i] / ROWS;
     }
-    if (!status)
-        printf("rows,%.1f,%u,0,%.3e,%.3e,%.3e,%.3e,%.0f\n", emissivity, result.directions, sqrt(error),
-               sqrt(error / size), sqrt(estimate), result.seconds, (double)rays / bed->n);
+    printf("rows,%.1f,%u,0,%.3e,%.3e,%.3e,%.3e,%.0f\n", emissivity, factors->directions, sqrt(error),
+           sqrt(error / size), sqrt(estimate), factors->seconds, (double)factors->rays / bed->n);
     fflush(stdout);
-    result_free(&result);
-    return status;
+    fibrad_bed_free(factors);
 }
 
-static void find_truth(struct bench *bench) {
+static void find_truth(struct bench *bench, uint32_t paths) {
     for (uint32_t k = 0; k < ROWS; ++k) {
         double error;
         uint64_t rays;
         memset(bench->sum, 0, bench->n * sizeof *bench->sum);
-        beam(bench, target(bench, k), 600000, 3200, &error, &rays);
+        beam(bench, target(bench, k), paths, 3200, &error, &rays);
         memcpy(bench->truth + (size_t)k * bench->n, bench->sum, bench->n * sizeof *bench->sum);
     }
 }
 
 int main(int argc, char **argv) {
     const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
-    struct bench bench;
     struct bed bed;
     bed_init(&bed, false, 0);
-    int status = bed_make_packing(&bed, quick ? 200 : 2000, 1, 1, .586, 1);
-    if (!status) status = open_bench(&bench, &bed);
+    const int status = bed_make_packing(&bed, quick ? 200 : 2000, 1, 1, .586, 1);
     if (status) return status;
+    struct bench bench = open_bench(&bed);
     bench_preamble("exchange factors of grey spheres: error against time", 1);
     puts("method,emissivity,directions,paths,error,relative_error,error_estimate,seconds,rays");
     for (double emissivity = .3; emissivity < .9; emissivity += .5) {
         for (uint32_t i = 0; i < bed.n; ++i) bench.emissivity[i] = emissivity;
-        find_truth(&bench);
+        find_truth(&bench, quick ? 101000 : 600000);
         for (uint32_t paths = 100; paths <= (quick ? 100 : 100000); paths *= 10)
             measure(&bench, "analog", analog, emissivity, paths, 0);
         for (uint32_t paths = 100; paths <= (quick ? 100 : 100000); paths *= 10)
             measure(&bench, "expected", expected, emissivity, paths, 0);
         for (uint32_t paths = 100, directions = 25; paths <= (quick ? 100 : 100000); paths *= 10, directions *= 4)
             measure(&bench, "beam", beam, emissivity, paths, directions);
-        if (!status) status = measure_rows(&bench, &bed, emissivity);
-        if (quick || status) break;
+        measure_rows(&bench, &bed, emissivity);
+        if (quick) break;
     }
-    return status;
+    return 0;
 }

@@ -1,6 +1,8 @@
 /* bench_furnace.c - the published furnace: time against error of mc, mchf and mchf-x. SPDX-License-Identifier: MIT
  *
- * bench_furnace [REFERENCE_BUNDLES [LARGEST_BUNDLES [THREADS]]] writes CSV to standard output. Errors are those of
+ *     bench_furnace [quick | REFERENCE_BUNDLES [LARGEST_BUNDLES [THREADS]]]
+ *
+ * CSV on standard output. Errors are those of
  * temperatures, in per cent of a Monte Carlo run with REFERENCE_BUNDLES (2e7) bundles and another seed on the same
  * 20 x 20 x 40 cells: largest of all cells, largest in the plane y = 1 m, root mean square. Up to LARGEST_BUNDLES
  * (2e6). The table of docs/furnace.md: bench_furnace 100000000 16000000, some minutes. */
@@ -65,8 +67,9 @@ int main(int argc, char **argv) {
                    {"mchf", FURNACE_MCHF, FIBRAD_THETA_DEFINITION},
                    {"mchf-paper", FURNACE_MCHF, FIBRAD_THETA_PAPER},
                    {"mchf-x", FURNACE_MCHF_X, FIBRAD_THETA_DEFINITION}};
-    uint64_t reference_bundles = argc > 1 ? strtoull(argv[1], NULL, 10) : 20000000;
-    uint64_t largest = argc > 2 ? strtoull(argv[2], NULL, 10) : 2000000;
+    const bool quick = argc == 2 && strcmp(argv[1], "quick") == 0;
+    uint64_t reference_bundles = quick ? 200000 : argc > 1 ? strtoull(argv[1], NULL, 10) : 20000000;
+    uint64_t largest = quick ? 62500 : argc > 2 ? strtoull(argv[2], NULL, 10) : 2000000;
     int threads = argc > 3 ? atoi(argv[3]) : 2;
     static double reference[CELLS];
     print_preamble(threads, reference_bundles);

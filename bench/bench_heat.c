@@ -2,61 +2,38 @@
  *
  * A random bed of 500 equal spheres in a periodic box, solid fraction 0.58, temperatures at random; the reference has
  * 384 patches, 400 directions of 128 points. `quick` takes a smaller bed and a smaller reference. */
-#include <math.h>
-
 #include "bed/packing.h"
-#include "bench.h"
+#include "bench_bed.h"
 
 enum { PARTS = 8 };
 
 struct heat {
-    fibrad_heat *heat;
     double traced, solved; /* [s] */
     size_t bytes;
     fibrad_heat_result result;
 };
 
-static void *block_of(size_t size) {
-    void *block = aligned_alloc(64, (size + 63) / 64 * 64);
-    if (!size || !block) exit(1);
-    return block;
-}
-
-static void check(int status) {
-    if (status == FIBRAD_OK) return;
-    fprintf(stderr, "bench_heat: %s\n", fibrad_status_text(status));
-    exit(1);
-}
-
-static fibrad_scene *scene_of(const struct bed *bed) {
-    fibrad_scene_config config = {.spheres = bed->n, .period = {bed->period[0], bed->period[1], bed->period[2]}};
-    fibrad_spheres spheres = {bed->x, bed->y, bed->z, bed->r, bed->n};
-    fibrad_scene *scene;
-    size_t size = fibrad_scene_size(&config);
-    check(fibrad_scene_init(&scene, block_of(size), size, &config, &spheres, NULL));
-    return scene;
-}
-
 static struct heat solve(const fibrad_scene *scene, const fibrad_heat_config *config,
                          const fibrad_heat_sources *sources, double *power) {
-    struct heat heat = {.bytes = fibrad_heat_size(config, scene), .result.power = power};
-    fibrad_work *work;
-    size_t size = fibrad_work_size(NULL);
-    double begun = bench_thread_seconds();
-    check(fibrad_work_init(&work, block_of(size), size, NULL));
-    check(fibrad_heat_init(&heat.heat, block_of(heat.bytes), heat.bytes, config, scene));
-    for (uint32_t task = 0; task < fibrad_heat_tasks(heat.heat); task++)
-        check(fibrad_heat_trace(heat.heat, work, task));
-    heat.traced = bench_thread_seconds() - begun;
-    check(fibrad_heat_begin(heat.heat, sources));
-    do
-        for (uint32_t part = 0; part < PARTS; part++) fibrad_heat_sweep(heat.heat, part);
-    while (fibrad_heat_step(heat.heat));
-    heat.solved = bench_thread_seconds() - begun - heat.traced;
-    check(fibrad_heat_read(heat.heat, &heat.result));
-    free(work);
-    free(heat.heat);
-    return heat;
+    struct heat took = {.bytes = fibrad_heat_size(config, scene), .result.power = power};
+    fibrad_work work = BENCH_GROWING;
+    fibrad_heat *heat;
+    const double begun = bench_thread_seconds();
+    void *block = malloc(took.bytes); /* pages are cleared where they are used */
+    bench_check("heat", fibrad_heat_init(&heat, block, took.bytes, config, scene));
+    for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
+        bench_check("trace", fibrad_heat_trace(heat, &work, task));
+    took.traced = bench_thread_seconds() - begun;
+    bench_check("begin", fibrad_heat_begin(heat, sources));
+    for (int solved = 0; !solved;) {
+        for (uint32_t part = 0; part < PARTS; part++) bench_check("sweep", fibrad_heat_sweep(heat, part));
+        bench_check("step", fibrad_heat_step(heat, &solved));
+    }
+    took.solved = bench_thread_seconds() - begun - took.traced;
+    bench_check("read", fibrad_heat_read(heat, &took.result));
+    free(work.memory.block);
+    free(block);
+    return took;
 }
 
 static double mean_square(const double *a, const double *b, uint32_t n) {
@@ -73,22 +50,24 @@ int main(int argc, char **argv) {
     struct bed bed;
     bed_init(&bed, false, 0);
     if (bed_make_packing(&bed, quick ? 100 : 500, 1, 1, .58, 1) != 0) return 1;
-    fibrad_scene *scene = scene_of(&bed);
-    double *temperature = malloc(bed.n * sizeof(double)), *emissivity = malloc(bed.n * sizeof(double));
-    double *truth = malloc(bed.n * sizeof(double)), *power = malloc(bed.n * sizeof(double));
-    if (!temperature || !emissivity || !truth || !power) return 1;
+    void *block;
+    const fibrad_scene *scene = bench_scene(&bed, FIBRAD_ISA_BEST, &block);
+    double *temperature = bench_array(bed.n, sizeof(double)), *emissivity = bench_array(bed.n, sizeof(double));
+    double *truth = bench_array(bed.n, sizeof(double)), *power = bench_array(bed.n, sizeof(double));
     bench_preamble("net powers: error over their root mean square, and processor seconds of one thread", 1);
     puts("emissivity,patches,directions,points,trace_s,solve_s,sweeps,bytes_per_sphere,error,estimate");
     for (size_t e = 0; e < 2; e++) {
         for (uint32_t i = 0; i < bed.n; i++)
             temperature[i] = 1 + bed_make_random(3, i), emissivity[i] = emissivities[e];
         const fibrad_heat_sources sources = {.temperature = temperature, .emissivity = emissivity, .sigma = 1};
-        const fibrad_heat_config fine = {quick ? 100 : 400, quick ? 64 : 128, quick ? 96 : 384, PARTS};
+        const fibrad_heat_config fine = {
+            .directions = quick ? 100 : 400, .points = quick ? 64 : 128, .patches = quick ? 96 : 384, .parts = PARTS};
         solve(scene, &fine, &sources, truth);
         const double size = mean_square(truth, NULL, bed.n);
         for (size_t p = 0; p < (quick ? 1 : sizeof patches / sizeof *patches); p++)
             for (size_t k = 0; k < (quick ? 2 : sizeof rules / sizeof *rules); k++) {
-                const fibrad_heat_config config = {rules[k][0], rules[k][1], patches[p], PARTS};
+                const fibrad_heat_config config = {
+                    .directions = rules[k][0], .points = rules[k][1], .patches = patches[p], .parts = PARTS};
                 const struct heat heat = solve(scene, &config, &sources, power);
                 printf("%g,%u,%u,%u,%.3f,%.3f,%u,%zu,%.2e,%.2e\n", emissivities[e], config.patches, config.directions,
                        config.points, heat.traced, heat.solved, heat.result.sweeps, heat.bytes / bed.n,
@@ -96,7 +75,7 @@ int main(int argc, char **argv) {
                        hypot(heat.result.error_patches, heat.result.error_beams) / size);
             }
     }
-    free(temperature), free(emissivity), free(truth), free(power), free(scene);
+    free(temperature), free(emissivity), free(truth), free(power), free(block);
     bed_free(&bed);
     return 0;
 }

@@ -6,14 +6,10 @@
  * processor time, per step and as fractions of those of all rows; then, over all rows as they stand after the last step
  * against rows computed anew by the same rule, the largest and root mean square error, the median of estimate over
  * error, the largest excess of an error over its estimate (negative if there is none), and the fraction of rows with
- * one. `inf`: nothing is computed anew; 0: all rows that change by a bit. */
-#include <math.h>
-#include <string.h>
-
+ * one. `inf`: nothing is computed anew. */
 #include "bed/packing.h"
-#include "bench.h"
-#include "cli/message.h"
-#include "compute/moving_rows.h"
+#include "bench_bed.h"
+#include "bed/moving_rows.h"
 #include "read/read.h"
 
 #define PI 3.14159265358979323846
@@ -53,16 +49,6 @@ static void move(struct bed *to, const struct bed *from, enum motion motion, dou
     }
 }
 
-static double row_distance(const fibrad_row *a, const fibrad_row *b) {
-    double square = 0;
-    for (uint32_t p = 0, q = 0; p < a->length || q < b->length;) {
-        const uint32_t i = p < a->length ? a->col[p] : UINT32_MAX, j = q < b->length ? b->col[q] : UINT32_MAX;
-        const double difference = (i <= j ? a->f[p++] : 0) - (j <= i ? b->f[q++] : 0);
-        square += difference * difference;
-    }
-    return sqrt(square);
-}
-
 static double processor(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
 static int ascending(const void *a, const void *b) {
@@ -72,10 +58,11 @@ static int ascending(const void *a, const void *b) {
 
 /* Prints the errors of the rows as they stand. */
 static void print_errors(const struct moving *moving, const struct moving *anew) {
-    double worst = 0, square = 0, excess = -INFINITY, *ratio = malloc(moving->n * sizeof *ratio);
+    double worst = 0, square = 0, excess = -INFINITY, *ratio = bench_array(moving->n, sizeof *ratio);
     uint32_t above = 0, ratios = 0;
-    for (uint32_t i = 0; i < moving->n && ratio; ++i) {
-        const double e = row_distance(&moving->row[i], &anew->row[i]), estimate = moving->error[i];
+    for (uint32_t i = 0; i < moving->n; ++i) {
+        const double e = bench_distance(bench_row_entries(&moving->row[i]), bench_row_entries(&anew->row[i])),
+                     estimate = moving->error[i];
         worst = fmax(worst, e);
         square += e * e;
         if (e == 0) continue;
@@ -123,7 +110,7 @@ static int bench(const char *name, const struct bed *bed, enum motion motion, do
 
 static int bench_bed(const char *name, const struct bed *bed, bool quick) {
     static const double amplitudes[] = {1e-1, 1e-2, 1e-3, 1e-4}, allowed[] = {1e-3, 3e-3, 1e-2};
-    int status = STATUS_OK;
+    int status = 0;
     for (enum motion motion = JITTER; motion < MOTIONS && !status; ++motion) {
         for (size_t a = quick ? 3 : 0; a < 4 && !status; ++a)
             status = bench(name, bed, motion, amplitudes[a], 1, INFINITY);
@@ -134,28 +121,17 @@ static int bench_bed(const char *name, const struct bed *bed, bool quick) {
     return status;
 }
 
-/* Rows that may not change by a bit, in a bed large enough for some to be out of reach. */
-static int bench_same(const struct bed *bed) {
-    struct bed large;
-    bed_init(&large, false, 0);
-    int status = bed_make_copies(&large, bed, (const uint32_t[3]){2, 2, 2});
-    if (!status) status = bench("random x 8", &large, LOCAL, 1e-2, 1, 0);
-    bed_free(&large);
-    return status;
-}
-
 int main(int argc, char **argv) {
     const bool quick = argc == 2 && strcmp(argv[1], "quick") == 0;
     bench_preamble("bench_moved: 100 directions, exact areas, one thread", 1);
     puts(
         "bed,motion,amplitude,steps,allowed,rows_redone,time,error_max,error_rms,estimate_over_error,excess_max,above");
     struct bed bed;
-    int status = STATUS_OK;
+    int status = 0;
     if (quick || argc == 1) {
         bed_init(&bed, false, 0);
         status = bed_make_packing(&bed, quick ? 200 : 2000, 0.8, 1.2, 0.55, 1);
         if (!status) status = bench_bed("random", &bed, quick);
-        if (!status) status = bench_same(&bed);
         bed_free(&bed);
     }
     for (int k = 1; k < argc && !quick && !status; ++k) {

@@ -11,9 +11,8 @@
 #include <sys/resource.h>
 
 #include "bed/packing.h"
-#include "bench.h"
+#include "bench_bed.h"
 #include "cli/message.h"
-#include "compute/rows.h"
 
 enum { DIRECTIONS = 55, TILE = 10000, MILLION = 1000000 };
 
@@ -39,22 +38,19 @@ static int make_bed(struct bed *bed, uint32_t n) {
 
 static int bench(uint32_t n, int threads) {
     struct bed bed;
-    struct result result = {0};
     int status = make_bed(&bed, n);
+    if (status) return status;
     const fibrad_beam_rule rule = {.directions = DIRECTIONS};
-    const struct run_options options = {.file = "random bed", .method = method_beam(&rule), .threads = threads};
     const clock_t begun = clock();
-    if (!status) status = run_rows(&bed, &options, &result);
+    fibrad_bed_factors *factors = bench_factors(&bed, &(fibrad_bed_options){.beam = &rule}, threads);
     const double processor = (double)(clock() - begun) / CLOCKS_PER_SEC;
-    if (!status) {
-        printf("%u,%d,%llu,%.3f,%.2f,%.3f,%.0f,%.1e\n", bed.n, threads, (unsigned long long)result.rows.start[bed.n],
-               result.seconds, 1e6 * result.seconds / bed.n, 1e6 * processor / bed.n / DIRECTIONS, peak_bytes() / bed.n,
-               result.closure_max);
-        fflush(stdout);
-        if (!(result.closure_max < 1e-12 && result.reciprocity_max < 1e-14))
-            status = message(STATUS_INPUT, "bench_scale: the rows are wrong");
-    }
-    result_free(&result);
+    printf("%u,%d,%llu,%.3f,%.2f,%.3f,%.0f,%.1e\n", bed.n, threads, (unsigned long long)factors->matrix.start[bed.n],
+           factors->seconds, 1e6 * factors->seconds / bed.n, 1e6 * processor / bed.n / DIRECTIONS, peak_bytes() / bed.n,
+           factors->closure_error);
+    fflush(stdout);
+    if (!(factors->closure_error < 1e-12 && factors->reciprocity_error < 1e-14))
+        status = message(STATUS_INPUT, "bench_scale: the rows are wrong");
+    fibrad_bed_free(factors);
     bed_free(&bed);
     return status;
 }

@@ -4,16 +4,11 @@
  *
  * CSV on standard output. Periodic random beds, solid fraction 0.55, in which spheres of radius 1 and of radius `ratio`
  * take up equal volumes; 100 directions, exact areas, one thread. For each size: rows, entries of a row, processor time
- * of a row and of an entry; and its ratio to the time of an entry in the bed of equal spheres. `fewer`: large spheres
- * with a fourth of the directions, as the program has them. */
-#include <math.h>
-
+ * of a row and of an entry; and its ratio to the time of an entry in the bed of equal spheres. */
 #include "bed/packing.h"
-#include "bench.h"
-#include "cli/message.h"
-#include "compute/rows.h"
+#include "bench_bed.h"
 
-enum { DIRECTIONS = 100, CAPACITY = 100000 };
+enum { DIRECTIONS = 100 };
 
 struct cost {
     double seconds, entries;
@@ -21,18 +16,14 @@ struct cost {
 };
 
 /* Adds row i to the cost. */
-static int add(struct cost *cost, const fibrad_scene *scene, fibrad_work *work, uint32_t i, uint32_t directions) {
-    static uint32_t col[CAPACITY];
-    static double f[CAPACITY];
-    fibrad_row row = {.col = col, .f = f, .capacity = CAPACITY};
+static void add(struct cost *cost, const fibrad_scene *scene, fibrad_work *work, uint32_t i, uint32_t directions,
+                fibrad_row *row) {
     const fibrad_beam_rule rule = {.directions = directions};
     const double begun = bench_thread_seconds();
-    const int status = fibrad_beam_row(scene, work, i, &rule, &row);
-    if (status) return message(STATUS_INPUT, "row %u: %s", i, fibrad_status_text(status));
+    bench_check("row", fibrad_beam_row(scene, work, i, &rule, row));
     cost->seconds += bench_thread_seconds() - begun;
-    cost->entries += row.length;
+    cost->entries += row->length;
     cost->rows++;
-    return STATUS_OK;
 }
 
 static void print(double ratio, const char *size, const struct cost *cost, double equal) {
@@ -46,40 +37,30 @@ static void print(double ratio, const char *size, const struct cost *cost, doubl
 static int bench(double ratio, uint32_t large, uint32_t skip, double *equal) {
     struct bed bed;
     bed_init(&bed, false, 0);
-    int status =
+    const int status =
         ratio > 1 ? bed_make_two_sizes(&bed, large, ratio, 0.55, 1) : bed_make_packing(&bed, large, 1, 1, 0.55, 1);
     if (status) return status;
-    const fibrad_scene_config config = {.spheres = bed.n, .period = {bed.period[0], bed.period[1], bed.period[2]}};
-    const fibrad_work_config work_config = {.near = 16384, .discs = 16384, .entries = bed.n};
-    const fibrad_spheres views = {bed.x, bed.y, bed.z, bed.r, bed.n};
-    const size_t scene_size = fibrad_scene_size(&config), work_size = fibrad_work_size(&work_config);
-    void *scene_block = run_block(scene_size), *work_block = run_block(work_size);
-    fibrad_scene *scene = NULL;
-    fibrad_work *work = NULL;
-    if (!scene_block || !work_block)
-        status = message_memory();
-    else if (fibrad_scene_init(&scene, scene_block, scene_size, &config, &views, NULL) ||
-             fibrad_work_init(&work, work_block, work_size, &work_config))
-        status = message(STATUS_INPUT, "the bed is refused");
-    struct cost large_cost = {0}, fewer_cost = {0}, small_cost = {0};
+    void *block;
+    const fibrad_scene *scene = bench_scene(&bed, FIBRAD_ISA_BEST, &block);
+    fibrad_work work = BENCH_GROWING;
+    fibrad_row row = bench_arrays(bed.n);
+    struct cost large_cost = {0}, small_cost = {0}, first = {0};
     const uint32_t split = ratio > 1 ? large : 0;
-    for (uint32_t i = 0; i < split && !status; ++i) status = add(&large_cost, scene, work, i, DIRECTIONS);
-    for (uint32_t i = 0; i < split && !status; ++i) status = add(&fewer_cost, scene, work, i, DIRECTIONS / 4);
-    for (uint32_t i = split; i < bed.n && !status; i += skip) status = add(&small_cost, scene, work, i, DIRECTIONS);
-    if (!status) {
-        const double scale = (double)(bed.n - split) / small_cost.rows, entries = small_cost.entries * scale;
-        struct cost all = {large_cost.seconds + scale * small_cost.seconds, large_cost.entries + entries, bed.n};
-        if (ratio <= 1) *equal = all.seconds / all.entries;
-        if (split > 0) print(ratio, "large", &large_cost, *equal);
-        if (split > 0) print(ratio, "small", &small_cost, *equal);
-        print(ratio, "all", &all, *equal);
-        all.seconds += fewer_cost.seconds - large_cost.seconds;
-        if (split > 0) print(ratio, "all; fewer", &all, *equal);
-    }
-    free(scene_block);
-    free(work_block);
+    for (uint32_t i = 0; i < split; ++i) add(&first, scene, &work, i, DIRECTIONS / 4, &row); /* memory grows */
+    for (uint32_t i = 0; i < split; ++i) add(&large_cost, scene, &work, i, DIRECTIONS, &row);
+    for (uint32_t i = split; i < bed.n; i += skip) add(&small_cost, scene, &work, i, DIRECTIONS, &row);
+    const double scale = (double)(bed.n - split) / small_cost.rows, entries = small_cost.entries * scale;
+    const struct cost all = {large_cost.seconds + scale * small_cost.seconds, large_cost.entries + entries, bed.n};
+    if (ratio <= 1) *equal = all.seconds / all.entries;
+    if (split > 0) print(ratio, "large", &large_cost, *equal);
+    if (split > 0) print(ratio, "small", &small_cost, *equal);
+    print(ratio, "all", &all, *equal);
+    free(work.memory.block);
+    free(row.col);
+    free(row.f);
+    free(block);
     bed_free(&bed);
-    return status;
+    return 0;
 }
 
 int main(int argc, char **argv) {

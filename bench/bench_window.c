@@ -7,19 +7,15 @@
  * bed of equal spheres (20,000), solid fraction 0.58; rows of spheres spread over all of it, set up anew each, of 100
  * directions: microseconds a window, the row's setting up and writing out shared among them. These two alone, in
  * microseconds a row: from the difference to rows of 400 directions. */
-#include <math.h>
-
 #include "bed/packing.h"
-#include "bench.h"
-#include "cli/message.h"
-#include "compute/rows.h"
+#include "bench_bed.h"
 
 enum { FEW = 100, MANY = 400, CAPACITY = 4096, ROUNDS = 5, CASES = 16 };
 
 struct window_case {
     int isa;
     uint32_t points;
-    fibrad_scene *scene;
+    const fibrad_scene *scene;
     double few, many; /* least seconds of a round */
 };
 
@@ -31,7 +27,7 @@ static double seconds(const struct window_case *c, fibrad_work *work, uint32_t n
     const fibrad_beam_rule rule = {.directions = directions, .points = c->points};
     const double begun = bench_thread_seconds();
     for (uint32_t k = 0; k < rows; ++k)
-        if (fibrad_beam_row(c->scene, work, (uint32_t)((uint64_t)k * n / rows), &rule, &row)) return NAN;
+        bench_check("row", fibrad_beam_row(c->scene, work, (uint32_t)((uint64_t)k * n / rows), &rule, &row));
     return bench_thread_seconds() - begun;
 }
 
@@ -42,29 +38,22 @@ int main(int argc, char **argv) {
     bench_preamble("bench_window: rows of a periodic random bed, solid fraction 0.58", 1);
     struct bed bed;
     bed_init(&bed, false, 0);
-    int status = bed_make_packing(&bed, n, 1, 1, 0.58, 1);
+    const int status = bed_make_packing(&bed, n, 1, 1, 0.58, 1);
     if (status) return status;
-    const fibrad_spheres views = {bed.x, bed.y, bed.z, bed.r, bed.n};
-    void *work_block = run_block(fibrad_work_size(NULL));
-    fibrad_work *work = NULL;
-    if (!work_block || fibrad_work_init(&work, work_block, fibrad_work_size(NULL), NULL)) return message_memory();
+    fibrad_work work = BENCH_GROWING;
 
     struct window_case cases[CASES];
     int count = 0;
     for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)fibrad_isa_best(); ++isa) {
-        fibrad_scene_config config = {.spheres = n, .isa = isa};
-        for (int axis = 0; axis < 3; ++axis) config.period[axis] = bed.period[axis];
-        const size_t size = fibrad_scene_size(&config);
-        if (size == 0) continue; /* not in this library */
-        fibrad_scene *scene = NULL;
-        void *block = run_block(size); /* kept until the end */
-        if (!block || fibrad_scene_init(&scene, block, size, &config, &views, NULL)) return message_memory();
-        for (int k = 0; k < 4; ++k) cases[count++] = (struct window_case){isa, points[k], scene, INFINITY, INFINITY};
+        void *block; /* kept until the end */
+        const fibrad_scene *scene = bench_scene(&bed, isa, &block);
+        for (int k = 0; k < 4 && scene; ++k)
+            cases[count++] = (struct window_case){isa, points[k], scene, INFINITY, INFINITY};
     }
     for (int round = 0; round < (quick ? 1 : ROUNDS); ++round)
         for (int k = 0; k < count; ++k) {
-            cases[k].few = fmin(cases[k].few, seconds(&cases[k], work, n, rows, FEW));
-            cases[k].many = fmin(cases[k].many, seconds(&cases[k], work, n, rows, MANY));
+            cases[k].few = fmin(cases[k].few, seconds(&cases[k], &work, n, rows, FEW));
+            cases[k].many = fmin(cases[k].many, seconds(&cases[k], &work, n, rows, MANY));
         }
     puts("isa,points,us_per_window,row_set_up_us");
     for (int k = 0; k < count; ++k)

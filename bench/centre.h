@@ -7,18 +7,15 @@
 #define CENTRE_H
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "bed/packing.h"
-#include "bench.h"
-#include "cli/message.h"
-#include "compute/rows.h"
+#include "bench_bed.h"
 
 struct centre {
     struct bed bed;
     fibrad_scene *scene;
-    fibrad_work *work;
+    fibrad_work work;
+    fibrad_row row;         /* with room for n entries */
     uint32_t rows, *sphere; /* [rows] */
     double *truth;          /* [rows][n] */
 };
@@ -37,42 +34,32 @@ static inline void centre_find(struct centre *centre, double edge) {
     }
 }
 
-/* A row by one of the kernel's methods, spread over all n columns. Returns its status. */
-static inline int centre_row(const struct centre *centre, const struct row_method *method, uint32_t i, double *full) {
-    static uint32_t col[4096];
-    static double f[4096];
-    fibrad_row row = {.col = col, .f = f, .capacity = 4096};
-    const int status = method->row(centre->scene, centre->work, i, method->rule, &row);
-    if (status) return message(STATUS_INPUT, "row %u: %s", i, fibrad_status_text(status));
+/* A row by one of the kernel's methods, over all n columns. */
+static inline void centre_row(struct centre *centre, const struct bench_method *method, uint32_t i, double *full) {
+    bench_row(centre->scene, &centre->work, method, i, &centre->row);
     memset(full, 0, centre->bed.n * sizeof *full);
-    for (uint32_t k = 0; k < row.length; ++k) full[col[k]] = f[k];
-    return STATUS_OK;
+    for (uint32_t k = 0; k < centre->row.length; ++k) full[centre->row.col[k]] = centre->row.f[k];
 }
 
-/* Makes bed, scene and truth; the program ends without freeing them. */
+/* Makes bed, scene and truth; the program ends without freeing them. Status of bed_make_packing. */
 static inline int centre_make(struct centre *centre, uint32_t spheres, uint32_t rows, uint32_t directions) {
-    const fibrad_work_config work_config = {.near = 4096, .discs = 512, .entries = 4096};
-    const fibrad_scene_config scene_config = {.spheres = spheres};
-    const size_t scene_size = fibrad_scene_size(&scene_config), work_size = fibrad_work_size(&work_config);
     struct bed *bed = &centre->bed;
+    void *block;
+    *centre = (struct centre){.work = BENCH_GROWING, .rows = rows};
     bed_init(bed, false, 0);
-    int status = bed_make_packing(bed, spheres, 0.8, 1.2, 0.55, 1);
+    const int status = bed_make_packing(bed, spheres, 0.8, 1.2, 0.55, 1);
     if (status) return status;
-    void *scene_block = run_block(scene_size), *work_block = run_block(work_size);
-    centre->rows = rows;
-    centre->sphere = calloc(rows, sizeof *centre->sphere);
-    centre->truth = calloc((size_t)rows * spheres, sizeof *centre->truth);
-    if (!scene_block || !work_block || !centre->sphere || !centre->truth) return message_memory();
+    centre->row = bench_arrays(spheres);
+    centre->sphere = bench_array(rows, sizeof *centre->sphere);
+    centre->truth = bench_array((size_t)rows * spheres, sizeof *centre->truth);
     centre_find(centre, bed->period[0]);
-    const fibrad_spheres views = {bed->x, bed->y, bed->z, bed->r, bed->n};
-    if (fibrad_scene_init(&centre->scene, scene_block, scene_size, &scene_config, &views, NULL) ||
-        fibrad_work_init(&centre->work, work_block, work_size, &work_config))
-        return message(STATUS_INPUT, "the random bed is refused");
+    memset(bed->period, 0, sizeof bed->period);
+    centre->scene = bench_scene(bed, FIBRAD_ISA_BEST, &block);
     const fibrad_beam_rule fine = {.directions = directions};
-    const struct row_method beam = method_beam(&fine);
-    for (uint32_t k = 0; k < rows && !status; ++k)
-        status = centre_row(centre, &beam, centre->sphere[k], centre->truth + (size_t)k * spheres);
-    return status;
+    const struct bench_method beam = {.name = "beam", .beam = &fine};
+    for (uint32_t k = 0; k < rows; ++k)
+        centre_row(centre, &beam, centre->sphere[k], centre->truth + (size_t)k * spheres);
+    return 0;
 }
 
 /* Adds up squares of a row's errors, and how many entries the row truly has. */

@@ -1,13 +1,16 @@
 #!/bin/sh
-# check_header.sh - fibrad.h stands alone in C99, C11, C++11 and C++17. SPDX-License-Identifier: MIT
+# check_header.sh - each public header stands alone in C99, C11, C++11 and C++17. SPDX-License-Identifier: MIT
 set -u
 status=0
 check() { # COMPILER LANGUAGE STANDARD
     if command -v "$1" >/dev/null; then
-        printf '#include "fibrad.h"\nint main(void) { return fibrad_status_text(FIBRAD_OK) == 0; }\n' |
-            "$1" -x "$2" -std="$3" -pedantic-errors -Wall -Wextra -Werror -Ikernel -fsyntax-only - || status=1
+        for header in fibrad.h fibrad_surface.h fibrad_furnace.h fibrad_host.h; do
+            printf '#include "%s"\nint main(void) { return fibrad_status_text(FIBRAD_OK) == 0; }\n' $header |
+                "$1" -x "$2" -std="$3" -pedantic-errors -Wall -Wextra -Werror -Ikernel -Ihost/simple -fsyntax-only - ||
+                status=1
+        done
     else
-        echo "SKIP header in $3: no $1 on this machine"
+        echo "SKIP headers in $3: no $1 on this machine"
     fi
 }
 check "${CC:=cc}" c c99

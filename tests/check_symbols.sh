@@ -1,6 +1,7 @@
 #!/bin/sh
 # check_symbols.sh - libfibrad.a defines only fibrad_*, asks for nothing but copying and clearing of memory, and has no
-# variables and no constructors. SPDX-License-Identifier: MIT
+# variables and no constructors; libfibrad_host.a defines only fibrad_*, asks for a heap and OpenMP besides, and has no
+# variables. SPDX-License-Identifier: MIT
 set -u
 library=${BUILD:=build}/libfibrad.a
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
@@ -29,10 +30,22 @@ fault "symbols that the port header does not name" "$(comm -23 "$work/undefined"
 
 fault "variables (data, bss)" "$(awk 'NR > 1 && $2 + $3 > 0 {print $6 ": " $2 + $3 " bytes"}' "$work/size")"
 
-# Every function of the public header is there.
-declared=$(sed -n 's/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1/p' kernel/fibrad.h | sort -u)
-fault "functions of fibrad.h that are missing" "$(echo "$declared" | comm -23 - "$work/defined")"
+# functions HEADER...: those that they declare
+functions() { sed -n '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1/p' "$@" | sort -u; }
+
+fault "functions of the headers that are missing" "$(functions kernel/*.h | comm -23 - "$work/defined")"
 
 test $faults -eq 0 && echo "$library: $(wc -l <"$work/defined") symbols, all fibrad_*; needs" \
     "$(comm -23 "$work/undefined" "$work/defined" | tr '\n' ' ')"
+
+library=$BUILD/libfibrad_host.a
+if test -e "$library"; then # it needs OpenMP, which not every machine has
+    nm -g --defined-only "$library" | awk 'NF == 3 {print $3}' | sort -u >"$work/host"
+    fault "symbols that do not begin with fibrad_" "$(grep -v '^fibrad_' "$work/host")"
+    fault "functions of the header that are missing" "$(functions host/simple/fibrad_host.h | comm -23 - "$work/host")"
+    fault "symbols but of a heap, strings and OpenMP" "$(nm -g --undefined-only "$library" | awk '$1 == "U" {print $2}' |
+        sort -u | comm -23 - "$work/host" | comm -23 - "$work/defined" |
+        grep -vxE '(malloc|calloc|realloc|free|qsort|strcmp|mem[a-z]*|_GLOBAL_OFFSET_TABLE_|omp_.*|GOMP_.*|__kmpc_.*)')"
+    fault "variables (data, bss)" "$(size -A "$library" | awk '/^\.(data|bss) / && $2 > 0 {print $1 ": " $2 " bytes"}')"
+fi
 exit $faults

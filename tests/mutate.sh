@@ -7,7 +7,7 @@
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
 export BUILD MAKE CC
-tests="base pair_exact surface matrix scene direction drift areas furnace surface_row beam cast walls trace exchange protocol heat stress"
+tests="base pair_exact surface matrix scene direction drift areas furnace surface_row work beam cast walls trace exchange protocol heat stress"
 whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-60}"
 
@@ -35,6 +35,7 @@ LINE
     */surface_row*) tests="surface_row $tests" ;;
     */walls.* | */wall_share*) tests="walls $tests" ;;
     kernel/surface/*) tests="surface $tests" ;;
+    */work.*) tests="work beam cast $tests" ;;
     kernel/row/*) tests="beam cast protocol $tests" ;;
     */cast*) tests="cast $tests" ;;
     kernel/ray/*) tests="trace $tests" ;;

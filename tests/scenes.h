@@ -19,6 +19,13 @@ static inline void *block_of(size_t size) {
     return block;
 }
 
+/* Whether bytes [from, to) of a block are all `value`: a guard. */
+static inline bool bytes_are(const unsigned char *block, size_t from, size_t to, unsigned char value) {
+    bool are = true;
+    for (size_t k = from; k < to; k++) are = are && block[k] == value;
+    return are;
+}
+
 static inline void add_sphere(struct bed *bed, double x, double y, double z, double r) {
     ck_assert_int_eq(bed_add(bed, &(struct bed_sphere){.x = x, .y = y, .z = z, .r = r}), 0);
 }

@@ -32,8 +32,8 @@ struct method {
 };
 
 static const struct method both = {fibrad_areas_begin_scalar, fibrad_areas_disc_scalar, fibrad_areas_end_scalar};
-static const struct method accounts = {fibrad_accounts_begin_scalar, fibrad_accounts_disc_scalar,
-                                       fibrad_accounts_end_scalar};
+static const struct method arrangement = {fibrad_arrangement_begin_scalar, fibrad_arrangement_disc_scalar,
+                                          fibrad_arrangement_end_scalar};
 
 static uint32_t windows, fallbacks;
 
@@ -81,7 +81,7 @@ static double error_of(const struct window *w) {
     fibrad_areas areas = areas_make();
     double mine[MOST + 1], robust[MOST + 1], expected[MOST + 1], rest;
     measure(&both, &areas, w, mine);
-    measure(&accounts, &areas, w, robust);
+    measure(&arrangement, &areas, w, robust);
     windows++, fallbacks += areas.fallbacks;
     ck_assert_int_eq(reference_window(w->n, w->u, w->v, w->r, expected, &rest), REFERENCE_OK);
     expected[w->n] = rest;
@@ -91,7 +91,7 @@ static double error_of(const struct window *w) {
     return worst;
 }
 
-/* The part of the windows so far that was left to accounts. */
+/* The part of the windows so far that was left to arrangements. */
 static double fallbacks_part(void) {
     double part = (double)fallbacks / windows;
     windows = fallbacks = 0;
@@ -151,7 +151,7 @@ START_TEST(large_and_small_discs) {
             worst_of(&worst, error_of(&w));
         }
         double part = fallbacks_part();
-        printf("radius 1e%+d: %.2g, left to accounts %.3g\n", power, worst, part);
+        printf("radius 1e%+d: %.2g, left to arrangements %.3g\n", power, worst, part);
         ck_assert_double_eq(part, power > 3);
         ck_assert_double_lt(worst, 1e-14 * fmax(100, 10 * pow(10, power)));
     }
@@ -195,7 +195,7 @@ START_TEST(degenerate_windows) {
                 ck_assert_msg(error < 1e-11, "set %zu, nudges %g %g: %g", s, e, f, error);
             }
         }
-    printf("degenerate windows: %.2g, left to accounts %.3g\n", worst, fallbacks_part());
+    printf("degenerate windows: %.2g, left to arrangements %.3g\n", worst, fallbacks_part());
 }
 END_TEST
 
@@ -231,7 +231,7 @@ START_TEST(lattices_along_their_axes) {
                 worst_of(&worst, error_of(&window));
                 bed_free(&bed);
             }
-    printf("lattices along their axes: %.2g, left to accounts %.3g\n", worst, fallbacks_part());
+    printf("lattices along their axes: %.2g, left to arrangements %.3g\n", worst, fallbacks_part());
     ck_assert_double_lt(worst, 1e-11);
 }
 END_TEST
@@ -253,11 +253,11 @@ START_TEST(clipping_against_accounts) {
             put(&w, u + du, v * (1 - turn * .13397459621556135) + dv, r);
         }
         measure(&both, &areas, &w, clipped);
-        measure(&accounts, &areas, &w, robust);
+        measure(&arrangement, &areas, &w, robust);
         worst_of(&worst, difference(n + 1, clipped, robust));
     }
     double part = (double)areas.fallbacks / rounds;
-    printf("clipping against accounts: %.2g, left to accounts %.3g\n", worst, part);
+    printf("clipping against arrangements: %.2g, left to arrangements %.3g\n", worst, part);
     ck_assert_double_lt(worst, 1e-12);
     ck_assert(part > .1 && part < .5); /* both have been tried */
     areas_free(&areas);
@@ -279,7 +279,7 @@ WIDER(avx2)
 WIDER(avx512)
 #endif
 
-/* In all instruction sets the same windows are in doubt, and the areas have the same bits. */
+/* In all instruction sets the same windows are degenerate, and the areas have the same bits. */
 START_TEST(bits_of_windows) {
     const struct method *const methods[] = {
         [FIBRAD_ISA_SCALAR] = &both,
@@ -320,9 +320,9 @@ START_TEST(bits_of_windows) {
 }
 END_TEST
 
-/* What clipping must not decide is done by accounts, and counted; ordinary windows are not. */
+/* What clipping must not decide is done by arrangements, and counted; ordinary windows are not. */
 START_TEST(doubts) {
-    const struct window doubtful[] = {
+    const struct window degenerate[] = {
         {.n = 1, .u = {0}, .v = {0}, .r = {1}},                                            /* equal to the window */
         {.n = 2, .u = {.5, .5}, .v = {.1, .1}, .r = {.4, .4}},                             /* identical */
         {.n = 1, .u = {.5}, .v = {0}, .r = {.5}},                                          /* tangent within */
@@ -333,9 +333,9 @@ START_TEST(doubts) {
         /* over the others and the tip of the opening between two of them, which is 4e-11 wide there */
         {.n = 4, .u = {0, -.499999, .499999, 0}, .v = {-.55, 0, 0, 1e-3 + 1e-8 - .2}, .r = {.55, .5, .5, .2}},
     };
-    for (size_t d = 0; d < sizeof doubtful / sizeof *doubtful; d++) {
-        ck_assert_double_lt(error_of(&doubtful[d]), 1e-11);
-        ck_assert_msg(fallbacks_part() == 1, "window %zu was not in doubt", d);
+    for (size_t d = 0; d < sizeof degenerate / sizeof *degenerate; d++) {
+        ck_assert_double_lt(error_of(&degenerate[d]), 1e-11);
+        ck_assert_msg(fallbacks_part() == 1, "window %zu was not degenerate", d);
     }
     const struct window plain[] = {
         {.n = 0},
@@ -349,7 +349,7 @@ START_TEST(doubts) {
     };
     for (size_t p = 0; p < sizeof plain / sizeof *plain; p++) {
         ck_assert_double_lt(error_of(&plain[p]), 1e-14);
-        ck_assert_msg(fallbacks_part() == 0, "window %zu was in doubt", p);
+        ck_assert_msg(fallbacks_part() == 0, "window %zu was degenerate", p);
     }
 }
 END_TEST

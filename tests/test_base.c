@@ -142,7 +142,6 @@ START_TEST(port_does_what_it_says) {
     for (int i = 0; i < 1000; i++) {
         double x = ldexp(1 + i * 1e-3, i - 500);
         ck_assert_double_eq(fibrad_sqrt(x), sqrt(x));
-        ck_assert_float_eq(fibrad_sqrtf((float)i * 0.7f), sqrtf((float)i * 0.7f));
     }
     ck_assert_uint_eq(fibrad_count_bits(0), 0);
     ck_assert_uint_eq(fibrad_count_bits(UINT64_MAX), 64);

@@ -1,5 +1,5 @@
 /* test_exchange.c - exchange factors and displacements against view factors, radiosity solved by hand, closed forms,
- * plain paths, and the books. SPDX-License-Identifier: MIT */
+ * plain paths, and balances. SPDX-License-Identifier: MIT */
 #include "base/elementary.h"
 #include "exchange/paths.h"
 #include "scenes.h"
@@ -316,7 +316,7 @@ START_TEST(displacement_in_a_chain) {
 }
 END_TEST
 
-/* Rows of a whole bed, averaged with areas A e and balanced: reciprocal and closed; dropping keeps the books. */
+/* Rows of a whole bed, averaged with areas A e and balanced: reciprocal and closed; dropping keeps the sums. */
 START_TEST(rows_keep_the_books) {
     struct bed bed = packing(120, .5, 1, .5, 12, true);
     const uint32_t n = bed.n;

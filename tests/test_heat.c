@@ -606,7 +606,7 @@ START_TEST(conduction_of_a_random_bed) {
 }
 END_TEST
 
-/* ---- books ---- */
+/* ---- balances ---- */
 
 START_TEST(powers_add_up_to_zero) {
     struct problem p = problem_of(packing(150, .4, 1.6, .5, 9, false), 1, .5);

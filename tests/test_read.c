@@ -242,7 +242,7 @@ static const struct {
     {4, HEAD "many\n" BOX ATOMS SPHERE, "the number of atoms is not a whole number: 'many'"},
     {4, HEAD "-1\n" BOX ATOMS SPHERE, "the number of atoms is negative"},
     {4, HEAD "1 1\n" BOX ATOMS SPHERE, "the number of atoms is expected"},
-    {4, HEAD BOX ATOMS SPHERE, "a section begins where the one before lacks lines"},
+    {4, HEAD BOX ATOMS SPHERE, "a section begins where lines of the one before are missing"},
     {4, HEAD "99999999999999999999\n" BOX ATOMS SPHERE, "not a whole number"},
     {10, HEAD "99999999999\n" BOX ATOMS SPHERE, "the frame ends after 1 atoms; 99999999999 were declared"},
     {11, HEAD "3\n" BOX ATOMS SPHERE SPHERE, "the frame ends after 2 atoms; 3 were declared"},
@@ -266,7 +266,7 @@ static const struct {
     {7, HEAD "1\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 inf\n0 1\n" ATOMS SPHERE, "the upper bound is not finite"},
     {7, HEAD "1\nITEM: BOX BOUNDS pp pp pp\n0 1\n0\n0 1\n" ATOMS SPHERE, "the two bounds of the box"},
     {0, HEAD "0\n" BOX ATOMS, "no spheres"},
-    {5, HEAD "1\n" HEAD "1\n" BOX ATOMS SPHERE, "a frame begins where the one before lacks its atoms"},
+    {5, HEAD "1\n" HEAD "1\n" BOX ATOMS SPHERE, "a frame begins where atoms of the one before are missing"},
 };
 
 START_TEST(faults) {

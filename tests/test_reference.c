@@ -8,7 +8,7 @@
 
 enum { MAX = 300 };
 static double x[MAX], y[MAX], z[MAX], r[MAX], f[MAX], escaped;
-static fibrad_spheres spheres = {x, y, z, r, 0};
+static fibrad_spheres spheres = {.x = x, .y = y, .z = z, .r = r};
 static struct reference_report report;
 
 static void add(double x_, double y_, double z_, double r_) {

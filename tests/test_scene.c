@@ -21,10 +21,10 @@ START_TEST(sizes_hold) {
         ck_assert_int_eq(fibrad_scene_init(&scene, memory + offset, size - 1, NULL, &spheres, NULL), FIBRAD_E_SIZE);
         ck_assert_int_eq(fibrad_scene_init(&scene, memory + offset, 0, NULL, &spheres, NULL), FIBRAD_E_SIZE);
         ck_assert_ptr_null(scene);
-        for (size_t k = 0; k < sizeof memory; k++) ck_assert_uint_eq(memory[k], 0xa5);
+        ck_assert(bytes_are(memory, 0, sizeof memory, 0xa5));
         ck_assert_int_eq(fibrad_scene_init(&scene, memory + offset, size, NULL, &spheres, NULL), FIBRAD_OK);
-        for (size_t k = 0; k < offset; k++) ck_assert_uint_eq(memory[k], 0xa5);
-        for (size_t k = offset + size; k < sizeof memory; k++) ck_assert_uint_eq(memory[k], 0xa5);
+        ck_assert(bytes_are(memory, 0, offset, 0xa5));
+        ck_assert(bytes_are(memory, offset + size, sizeof memory, 0xa5));
         bed_free(&bed);
     }
     ck_assert_uint_eq(fibrad_scene_size(FIBRAD_SPHERES_MAX + 1, 0), 0);
@@ -55,9 +55,9 @@ START_TEST(blocks_of_any_alignment) {
             ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 34}, &row), FIBRAD_OK);
             ck_assert(same_bits(&row, &same));
         }
-        for (size_t k = 0; k < offset; k++) ck_assert(work_block[k] == 0x5a && block[k] == 0xa5);
-        for (size_t k = offset + size; k < size + 64; k++) ck_assert_uint_eq(block[k], 0xa5);
-        for (size_t k = offset + work_size; k < work_size + 128; k++) ck_assert_uint_eq(work_block[k], 0x5a);
+        ck_assert(bytes_are(work_block, 0, offset, 0x5a) && bytes_are(block, 0, offset, 0xa5));
+        ck_assert(bytes_are(block, offset + size, size + 64, 0xa5));
+        ck_assert(bytes_are(work_block, offset + work_size, work_size + 128, 0x5a));
     }
     row_free(&row);
     free(block), free(work_block), free(aligned);

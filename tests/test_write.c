@@ -20,25 +20,22 @@ static const struct bed bed = {.n = 3, .x = x, .y = y, .z = z, .r = r, .ids = tr
 static uint64_t start[] = {0, 2, 2, 4};
 static uint32_t col[] = {1, 2, 0, 2};
 static double f[] = {0.1, 1.0 / 3, 5e-324, 0.75586818421612400e-1};
-static bool wanted[] = {true, false, true};
-static double row_sum[] = {0.1 + 1.0 / 3, 0, 0.0755868184216124}, escaped[] = {0.5, 0, 0.25};
-static double wall[3][FIBRAD_WALLS] = {{[4] = 0.25, [6] = 0.0625}, {[4] = 0.125}, {0}};
-static const struct result result = {.rows = {3, 4, start, col, f},
-                                     .wanted = wanted,
-                                     .row_sum = row_sum,
-                                     .escaped = escaped,
-                                     .wall = wall,
-                                     .facts.wall_area = {[4] = INFINITY, [6] = 100}};
-static const struct wall_order walls = {2, {6, 4}};
+static const unsigned char wanted[] = {1, 0, 1};
+static double row_sum[] = {0.1 + 1.0 / 3, 0, 0.0755868184216124}, escaped[] = {0.5, 0, 0.25}, error[] = {0.03, 0, 0.04};
+static double wall[3][2] = {{0.0625, 0.25}, {0, 0.125}, {0}}, area[] = {100, INFINITY};
+static const fibrad_bed_factors factors = {.matrix = {3, 2, start, col, f, escaped, (double[3]){0}, error, &wall[0][0]},
+                                           .body_area = area};
+static const struct walls walls = {
+    2, {{.kind = FIBRAD_BODY_CYLINDER, .cylinder = {0, 0, 9}}, {.kind = FIBRAD_BODY_PLANE, .plane = {2, 0, -9}}}};
 
 static char text[20000]; /* what a writer wrote */
 
-static const struct wall_order *order; /* NULL: no walls */
+static const struct walls *order; /* NULL: no walls */
 
 static void write_text(write_function *write, bool ids) {
     FILE *file = tmpfile();
     ck_assert_ptr_nonnull(file);
-    ck_assert_int_eq(write(file, &(struct contents){&bed, &result, ids, order, NULL}), 0);
+    ck_assert_int_eq(write(file, &(struct contents){&bed, &factors, wanted, ids, order, NULL}), 0);
     rewind(file);
     text[fread(text, 1, sizeof text - 1, file)] = 0;
     fclose(file);
@@ -193,6 +190,21 @@ START_TEST(numpy) {
 }
 END_TEST
 
+/* Over the rows that were computed. */
+START_TEST(summaries) {
+    struct summary summary;
+    summary_make(&summary, &(struct contents){.bed = &bed, .factors = &factors, .wanted = wanted, .walls = &walls});
+    ck_assert_double_eq(summary.row_sum_min, row_sum[2]);
+    ck_assert_double_eq(summary.row_sum_max, row_sum[0]);
+    ck_assert_double_eq(summary.escaped_mean, 0.375);
+    ck_assert_double_eq(summary.wall_mean[0], 0.03125);
+    ck_assert_double_eq(summary.wall_mean[1], 0.125);
+    ck_assert_double_eq(summary.error_max, 0.04);
+    ck_assert_double_eq_tol(summary.error_rms, sqrt(0.00125), 1e-17);
+    ck_assert_double_eq_tol(summary.closure_max, 1 - 0.25 - row_sum[2], 1e-15);
+}
+END_TEST
+
 START_TEST(endings) {
     ck_assert(write_find("a.csv", NULL) == write_csv);
     ck_assert(write_find("b/c.d.mtx", NULL) == write_mtx);
@@ -280,6 +292,7 @@ int main(void) {
     tcase_add_test(formats, csv);
     tcase_add_test(formats, csv_of_walls);
     tcase_add_test(formats, matrix_market);
+    tcase_add_test(formats, summaries);
     tcase_add_test(formats, paraview);
     tcase_add_test(formats, numpy);
     tcase_add_test(formats, endings);

@@ -72,7 +72,7 @@ static void wrap_and_fill(struct cells *cells, struct bed *bed, double edge) {
     fill_cells(cells, bed, edge);
 }
 
-static bool sweep(struct bed *bed, double edge, struct cells *cells) {
+static bool sweep_cells(struct bed *bed, double edge, struct cells *cells) {
     bool overlap = false;
     wrap_and_fill(cells, bed, edge);
     const uint32_t side = cells->side;
@@ -113,7 +113,7 @@ static int pack(struct bed *bed, uint32_t n, double low, double high, double fra
     int status = cells.first && cells.next ? STATUS_OK : message_memory();
     *apart = false;
     for (uint32_t round = 0; round < sweeps && !status && !*apart; ++round) {
-        *apart = !sweep(bed, edge, &cells);
+        *apart = !sweep_cells(bed, edge, &cells);
         status = interrupt_status();
     }
     free(cells.first);

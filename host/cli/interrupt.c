@@ -14,7 +14,7 @@ enum { FILES = 4 };
 static volatile sig_atomic_t caught;
 static const char *volatile temporary[FILES];
 
-static void note(int number) {
+static void note_signal(int number) {
     if (caught) { /* again, or too long ago: a single row may take minutes */
         for (int k = 0; k < FILES; ++k)
             if (temporary[k]) unlink(temporary[k]);
@@ -29,7 +29,7 @@ static void note(int number) {
 
 /* Without SA_RESTART, so that a read that waits for input returns. */
 void interrupt_catch(void) {
-    struct sigaction action = {.sa_handler = note};
+    struct sigaction action = {.sa_handler = note_signal};
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);

@@ -11,13 +11,13 @@
 
 #include "cli/message.h"
 
-static int unknown(const struct options *options, const char *name, int length) {
+static int unknown_option(const struct options *options, const char *name, int length) {
     message(STATUS_USAGE, "unknown option %.*s; see fibrad %s --help", length, name, options->command);
     return OPTIONS_BAD;
 }
 
 /* Sets value from `inline_value` (behind = or the letter) or from the next argument. */
-static int take(struct options *options, const struct option *option, const char *inline_value) {
+static int take_argument(struct options *options, const struct option *option, const char *inline_value) {
     options->name = option->name;
     options->value = inline_value;
     if (!option->argument && inline_value) {
@@ -51,14 +51,14 @@ int options_next(struct options *options) {
     }
     if (text[1] != '-') {
         for (const struct option *option = options->table; option->name; ++option)
-            if (option->key == text[1]) return take(options, option, text[2] ? text + 2 : NULL);
-        return unknown(options, text, 2);
+            if (option->key == text[1]) return take_argument(options, option, text[2] ? text + 2 : NULL);
+        return unknown_option(options, text, 2);
     }
     const size_t length = strcspn(text + 2, "=");
     for (const struct option *option = options->table; option->name; ++option)
         if (strlen(option->name) == length && strncmp(option->name, text + 2, length) == 0)
-            return take(options, option, text[2 + length] ? text + 3 + length : NULL);
-    return unknown(options, text, (int)length + 2);
+            return take_argument(options, option, text[2 + length] ? text + 3 + length : NULL);
+    return unknown_option(options, text, (int)length + 2);
 }
 
 void options_print(const struct option *table) {

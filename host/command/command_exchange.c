@@ -137,7 +137,7 @@ static void exchange_print(const struct exchange_request *request, const struct 
     printf("error_estimate %.17g\n", summary.error_max);
 }
 
-static int exchange_compute(struct exchange_request *request, const struct bed *bed, fibrad_bed_factors **factors) {
+static int exchange_solve(struct exchange_request *request, const struct bed *bed, fibrad_bed_factors **factors) {
     const fibrad_scene_config scene = bed_scene(bed, &request->walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     fibrad_run run = bed_options_run(&request->bed);
@@ -149,7 +149,7 @@ static int exchange_write(struct exchange_request *request, const struct bed *be
     struct output out = {0};
     fibrad_bed_factors *factors = NULL;
     int status = output_open(&out, request->bed.out);
-    if (!status) status = exchange_compute(request, bed, &factors);
+    if (!status) status = exchange_solve(request, bed, &factors);
     const struct contents what = {
         .bed = bed, .factors = factors, .ids = request->bed.ids, .walls = &request->walls, .grey = &request->rule};
     if (!status && request->bed.out) status = request->write(out.file, &what);

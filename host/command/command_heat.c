@@ -116,7 +116,7 @@ static int heat_take(struct heat_request *request, const struct options *options
     return status;
 }
 
-static int heat_check(struct heat_request *request) {
+static int heat_check_request(struct heat_request *request) {
     if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad heat --help");
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (!request->temperature.given) return message(STATUS_USAGE, "which --temperature? see fibrad heat --help");
@@ -142,7 +142,7 @@ static int heat_parse(struct heat_request *request, int argc, char **argv) {
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = heat_take(request, &options, key);
     if (request->error > 0 && !request->counted) request->config.directions = 72;
-    return status ? status : heat_check(request);
+    return status ? status : heat_check_request(request);
 }
 
 /* Powers, and what is said of them. */

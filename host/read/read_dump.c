@@ -18,7 +18,7 @@ struct dump {
     struct fields fields;
     int64_t frame;  /* the current one; -1 before the first */
     int64_t atoms;  /* as declared; -1 before that */
-    bool box, open; /* the box is known; the frame lacks its atoms */
+    bool box, open; /* the box is known; atoms of the frame are missing */
 };
 
 static int fail(const struct dump *dump, const char *what) {
@@ -38,7 +38,7 @@ static int section_line(struct dump *dump) {
     const int status = lines_next(dump->lines, &more);
     if (status) return status;
     if (!more) return fail(dump, "the file ends within a frame");
-    if (item(dump, "ITEM:")) return fail(dump, "a section begins where the one before lacks lines");
+    if (item(dump, "ITEM:")) return fail(dump, "a section begins where lines of the one before are missing");
     return STATUS_OK;
 }
 
@@ -122,7 +122,7 @@ static int skip_section(struct dump *dump) {
 }
 
 static int begin_frame(struct dump *dump) {
-    if (dump->open) return fail(dump, "a frame begins where the one before lacks its atoms");
+    if (dump->open) return fail(dump, "a frame begins where atoms of the one before are missing");
     ++dump->frame;
     dump->atoms = -1;
     dump->box = false;

@@ -66,7 +66,7 @@ int exact_gsl_polar(double r1, double r2, double gap, double *f12, double *abser
 }
 
 /* Area of the segment with half angle a in the unit circle, a - sin a cos a, by its series when thin. */
-static double segment(double a) {
+static double segment_area(double a) {
     if (a > 0.5) return a - sin(2 * a) / 2;
     double term = 4 * a * a * a / 6, sum = 0;
     for (int n = 4; sum + term != sum; n += 2) {
@@ -87,8 +87,8 @@ static double lens_integrand(double v, void *params) {
     if (outer <= 0) return 0;
     if (inner <= 0) return M_PI;
     double chord = sqrt(outer * inner), s2 = inner + gsl_pow_2(R - r);
-    return gsl_pow_2(R / r) * segment(atan2(chord, s2 + (R - r) * (R + r))) +
-           segment(atan2(chord, s2 - (R - r) * (R + r)));
+    return gsl_pow_2(R / r) * segment_area(atan2(chord, s2 + (R - r) * (R + r))) +
+           segment_area(atan2(chord, s2 - (R - r) * (R + r)));
 }
 
 int exact_gsl_lens(double r1, double r2, double gap, double *f12, double *abserr) {

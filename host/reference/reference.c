@@ -112,7 +112,7 @@ static uint32_t find_events(struct slicer *s) {
 }
 
 /* Lets disc `b` take what is open of its stretch at x; the open stretches shrink. */
-static uint32_t take(struct slicer *s, uint32_t open, uint32_t b, double x, double x1, double x2) {
+static uint32_t take_stretch(struct slicer *s, uint32_t open, uint32_t b, double x, double x1, double x2) {
     const struct disc *disc = &s->disc[b];
     if (fabs(x - disc->u) >= disc->r) return open;
     const double half = ordinate(disc, x);
@@ -147,7 +147,7 @@ static void visible_areas(struct slicer *s) {
         const double half = ordinate(&s->disc[0], x);
         s->open[0] = (struct stretch){{0, -1, -half}, {0, 1, half}};
         uint32_t open = 1;
-        for (uint32_t b = 1; b < s->discs && open; b++) open = take(s, open, b, x, x1, x2);
+        for (uint32_t b = 1; b < s->discs && open; b++) open = take_stretch(s, open, b, x, x1, x2);
         for (uint32_t m = 0; m < open; m++)
             s->area[0] += below(s, &s->open[m].high, x1, x2) - below(s, &s->open[m].low, x1, x2);
     }
@@ -189,9 +189,9 @@ struct integral {
     uint64_t evaluations, max_evaluations;
 };
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot_product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-static void cross(const double a[3], const double b[3], double out[3]) {
+static void cross_product(const double a[3], const double b[3], double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
@@ -201,10 +201,10 @@ static void across(const double w[3], double side[3], double up[3]) {
     if (fabs(w[2]) < fabs(w[k])) k = 2;
     double axis[3] = {0};
     axis[k] = 1;
-    cross(w, axis, side);
-    const double length = sqrt(dot(side, side));
+    cross_product(w, axis, side);
+    const double length = sqrt(dot_product(side, side));
     for (k = 0; k < 3; k++) side[k] /= length;
-    cross(w, side, up);
+    cross_product(w, side, up);
 }
 
 /* The direction at (x, y) of a chart; returns solid angle per dx dy. In theta, x^2 (3 - 2 x) takes the square-root-like
@@ -243,15 +243,16 @@ static int by_depth(const void *a, const void *b) {
 
 /* Puts the discs that the spheres near[count] throw into the window along w into the slicer, nearest first, without
  * those that lie wholly behind a nearer one. */
-static uint32_t collect(struct integral *in, const double w[3], const uint32_t *near, uint32_t count) {
+static uint32_t collect_discs(struct integral *in, const double w[3], const uint32_t *near, uint32_t count) {
     struct disc *disc = in->slicer.disc;
     double side[3], up[3];
     across(w, side, up);
     uint32_t met = 1, kept = 1;
-    const double last = in->goal < in->n ? dot(w, in->target[in->goal].c) : INFINITY;
+    const double last = in->goal < in->n ? dot_product(w, in->target[in->goal].c) : INFINITY;
     for (uint32_t k = 0; k < count; k++) {
         const struct target *target = &in->target[near[k]];
-        const double depth = dot(w, target->c), u = dot(side, target->c), v = dot(up, target->c);
+        const double depth = dot_product(w, target->c), u = dot_product(side, target->c),
+                     v = dot_product(up, target->c);
         if (depth <= 0 || depth > last || u * u + v * v >= square(1 + target->r)) continue;
         disc[met++] = (struct disc){u, v, target->r, depth, near[k]};
     }
@@ -271,7 +272,7 @@ static uint32_t collect(struct integral *in, const double w[3], const uint32_t *
 static void add_direction(struct integral *in, const double w[3], double weight, const uint32_t *near, uint32_t count,
                           double *value) {
     struct slicer *s = &in->slicer;
-    const uint32_t discs = collect(in, w, near, count);
+    const uint32_t discs = collect_discs(in, w, near, count);
     s->discs = 8;
     do {
         s->discs = 2 * s->discs < discs ? 2 * s->discs : discs;
@@ -324,8 +325,8 @@ static void evaluate(struct integral *in, const struct cell *cell, const uint32_
 /* Adds a cell, whose value by one application of the rule is `whole`, to the sum: quartered until whole and quarters
  * agree. The difference, mostly the error of the whole, counts as error. Agreement may be an accident: where the cell
  * that this one is a quarter of was far off (`inherited`), one more step is taken. */
-static void refine(struct integral *in, const struct cell *cell, const double *whole, const uint32_t *near,
-                   uint32_t count, int depth, double inherited) {
+static void refine_cell(struct integral *in, const struct cell *cell, const double *whole, const uint32_t *near,
+                        uint32_t count, int depth, double inherited) {
     if (in->evaluations > in->max_evaluations) return;
     double *part = in->value + (size_t)depth * 4 * in->entries;
     uint32_t *own = in->near + (size_t)depth * in->n;
@@ -344,7 +345,7 @@ static void refine(struct integral *in, const struct cell *cell, const double *w
     }
     if ((coarse || largest > in->threshold || inherited > 20 * in->threshold) && depth + 1 < DEPTH) {
         for (int k = 0; k < 4; k++)
-            refine(in, &quarter[k], part + (size_t)k * in->entries, own, held, depth + 1, largest);
+            refine_cell(in, &quarter[k], part + (size_t)k * in->entries, own, held, depth + 1, largest);
         return;
     }
     for (uint32_t j = 0; j < in->entries; j++) {
@@ -355,7 +356,7 @@ static void refine(struct integral *in, const struct cell *cell, const double *w
 }
 
 /* One pass over all charts at one threshold; returns the largest error. */
-static double sweep(struct integral *in, const struct cell *cell, uint32_t cells, uint32_t self) {
+static double sweep_charts(struct integral *in, const struct cell *cell, uint32_t cells, uint32_t self) {
     memset(in->sum, 0, in->entries * sizeof *in->sum);
     memset(in->error, 0, in->entries * sizeof *in->error);
     uint32_t *all = in->near, count = 0;
@@ -363,7 +364,7 @@ static double sweep(struct integral *in, const struct cell *cell, uint32_t cells
         if (k != self) all[count++] = k;
     for (uint32_t k = 0; k < cells; k++) {
         evaluate(in, &cell[k], all, count, in->value);
-        refine(in, &cell[k], in->value, all, count, 1, 0);
+        refine_cell(in, &cell[k], in->value, all, count, 1, 0);
     }
     double largest = 0;
     for (uint32_t j = 0; j < in->entries; j++) largest = fmax(largest, in->error[j]);
@@ -371,16 +372,16 @@ static double sweep(struct integral *in, const struct cell *cell, uint32_t cells
 }
 
 /* Sweeps with falling thresholds until the estimate meets the tolerance; the first, a coarse one, is always finished.
- * The differences of `refine` are errors of the coarser values. Where the integrand bends, an error of h^3.5 per cell,
- * those of the quarters are five times smaller, elsewhere smaller still; but cells that miss a narrow gap between discs
- * count too little, so half of the differences is taken. */
+ * The differences of `refine_cell` are errors of the coarser values. Where the integrand bends, an error of h^3.5 per
+ * cell, those of the quarters are five times smaller, elsewhere smaller still; but cells that miss a narrow gap between
+ * discs count too little, so half of the differences is taken. */
 static int integrate(struct integral *in, const struct cell *cell, uint32_t cells, uint32_t self,
                      const struct reference_rule *rule, double tolerance, double *result,
                      struct reference_report *report) {
     in->threshold = 1e-2 * sqrt(tolerance);
     in->max_evaluations = UINT64_MAX;
     for (;;) {
-        const double estimate = sweep(in, cell, cells, self) / 2;
+        const double estimate = sweep_charts(in, cell, cells, self) / 2;
         report->evaluations = in->evaluations;
         if (in->evaluations > in->max_evaluations) return REFERENCE_UNCONVERGED;
         memcpy(result, in->sum, in->entries * sizeof *result);
@@ -426,7 +427,7 @@ int reference_window(uint32_t n, const double *u, const double *v, const double 
     return room ? REFERENCE_OK : REFERENCE_MEMORY;
 }
 
-static void release(struct integral *in) {
+static void integral_release(struct integral *in) {
     free(in->target);
     slicer_free(&in->slicer);
     free(in->sum);
@@ -436,7 +437,7 @@ static void release(struct integral *in) {
 }
 
 /* Sphere i to the origin and to radius 1. goal: as in struct integral. */
-static int prepare(struct integral *in, const fibrad_spheres *spheres, uint32_t i, uint32_t goal) {
+static int integral_prepare(struct integral *in, const fibrad_spheres *spheres, uint32_t i, uint32_t goal) {
     const size_t n = spheres->n;
     *in = (struct integral){.n = spheres->n, .goal = goal, .entries = goal < spheres->n ? 1 : spheres->n + 1};
     in->target = calloc(n, sizeof *in->target);
@@ -453,7 +454,7 @@ static int prepare(struct integral *in, const fibrad_spheres *spheres, uint32_t 
         target->c[1] = (spheres->y[k] - spheres->y[i]) / unit;
         target->c[2] = (spheres->z[k] - spheres->z[i]) / unit;
         target->r = spheres->r[k] / unit;
-        target->distance = sqrt(dot(target->c, target->c));
+        target->distance = sqrt(dot_product(target->c, target->c));
         target->cone = asin(fmin((1 + target->r) / target->distance, 1));
         if (k != i && !(target->distance > 0)) return REFERENCE_ARGUMENT;
     }
@@ -473,14 +474,14 @@ int reference_row(const fibrad_spheres *spheres, uint32_t i, const struct refere
     }
     struct integral in;
     double *row = malloc(((size_t)spheres->n + 1) * sizeof *row);
-    int status = prepare(&in, spheres, i, spheres->n);
+    int status = integral_prepare(&in, spheres, i, spheres->n);
     if (!row) status = REFERENCE_MEMORY;
     if (!status) {
         status = integrate(&in, cell, 6, i, rule, rule->tolerance, row, report);
         memcpy(f, row, spheres->n * sizeof *f);
         *escaped = row[spheres->n];
     }
-    release(&in);
+    integral_release(&in);
     free(row);
     return status;
 }
@@ -489,7 +490,7 @@ int reference_pair(const fibrad_spheres *spheres, uint32_t i, uint32_t j, const 
                    struct reference_report *report) {
     if (i >= spheres->n || j >= spheres->n || i == j) return REFERENCE_ARGUMENT;
     struct integral in;
-    int status = prepare(&in, spheres, i, j);
+    int status = integral_prepare(&in, spheres, i, j);
     const struct target *target = status ? NULL : &in.target[j];
     double unobstructed = 0;
     if (target && fibrad_pair_exact(1, target->r, target->distance - 1 - target->r, &unobstructed))
@@ -509,6 +510,6 @@ int reference_pair(const fibrad_spheres *spheres, uint32_t i, uint32_t j, const 
         status = integrate(&in, cell, 8, i, rule, rule->tolerance * unobstructed, f, report);
         report->error /= unobstructed;
     }
-    release(&in);
+    integral_release(&in);
     return status;
 }

@@ -147,7 +147,7 @@ static void add_curve(const struct bed *bed, const fibrad_factors *rows, uint32_
     }
 }
 
-static int measure(double fraction, double emissivity, struct curve *curve) {
+static int measure_curve(double fraction, double emissivity, struct curve *curve) {
     struct progress bar = {0};
     fibrad_run run = one_thread(&bar);
     fibrad_bed_factors *factors = NULL;
@@ -184,7 +184,7 @@ int reproduce_exchange(struct reproduce *reproduce) {
     static const double paper[2][5] = {{.0712, .0458, .0214, .0035, .0009}, {.0696, .0417, .0167, .0009, .0003}};
     struct curve curves[2] = {{{0}, {0}}, {{0}, {0}}};
     for (int k = 0; k < 2; ++k) {
-        const int status = measure(fraction[k], .86, &curves[k]);
+        const int status = measure_curve(fraction[k], .86, &curves[k]);
         if (status) return status;
         for (int d = 0; d < 5; ++d) {
             const int bin = bin_of(distance[d]);

@@ -65,7 +65,7 @@ static double received(double h, double t) {
 }
 
 /* Share of what is received within the angle t. */
-static double share(double h, double t) {
+static double share_within(double h, double t) {
     enum { STEPS = 4000 };
     double within = 0, all = 0;
     for (int k = 0; k < STEPS; ++k) {
@@ -100,8 +100,8 @@ int reproduce_pebble_pair(struct reproduce *reproduce) {
         COMPARE("mean ray length", SOURCE_CHECK, "r", table[k].length_check, length);
         COMPARE("mean angle", SOURCE_PAPER, "deg", table[k].angle, angle);
         COMPARE("mean angle", SOURCE_CHECK, "deg", table[k].angle_check, angle);
-        COMPARE("received within 30 deg; cosine law", SOURCE_PAPER, "", .25, share(h, PI / 6));
-        COMPARE("received within 60 deg; cosine law", SOURCE_PAPER, "", .75, share(h, PI / 3));
+        COMPARE("received within 30 deg; cosine law", SOURCE_PAPER, "", .25, share_within(h, PI / 6));
+        COMPARE("received within 60 deg; cosine law", SOURCE_PAPER, "", .75, share_within(h, PI / 3));
     }
     fputs("angle_degrees,cosine,H2,H3,H4,H6\n", reproduce->data);
     for (int degrees = 0; degrees <= 90; degrees += 2) {

@@ -29,7 +29,7 @@ int fibrad_heap_scene(fibrad_scene **scene, void **block, const fibrad_scene_con
 
 size_t fibrad_host_sizeof(const char *name) {
     static const struct {
-        const char *name;
+        char name[24];
         size_t size;
     } structures[] = {
         STRUCTURE(fibrad_memory),       STRUCTURE(fibrad_spheres),       STRUCTURE(fibrad_body),

@@ -39,6 +39,8 @@ struct row_tasks {
     fibrad_job_report *report; /* [threads] */
 };
 
+static double larger_of(double a, double b) { return a > b ? a : b; } /* no library of mathematics for this alone */
+
 static double sum_of_row(const fibrad_row *row, uint32_t bodies) {
     double sum = 0;
     for (uint32_t k = 0; k < row->length; ++k) sum += row->f[k];
@@ -62,7 +64,7 @@ static int run_row(void *tasks, int thread, uint32_t task) {
     report->fallbacks += row.fallbacks;
     report->rays += rays;
     if (row.rows) /* else there is none */
-        report->closure_error = fmax(report->closure_error, fabs(sum_of_row(&row, job->facts.bodies) - 1));
+        report->closure_error = larger_of(report->closure_error, fabs(sum_of_row(&row, job->facts.bodies) - 1));
     return FIBRAD_OK;
 }
 
@@ -97,7 +99,7 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
         report->directions = part[t].directions > report->directions ? part[t].directions : report->directions;
         report->fallbacks += part[t].fallbacks;
         report->rays += part[t].rays;
-        report->closure_error = fmax(report->closure_error, part[t].closure_error);
+        report->closure_error = larger_of(report->closure_error, part[t].closure_error);
     }
     free(order);
     free(part);

@@ -84,7 +84,7 @@ int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config
     return status;
 }
 
-static int sweep_part(void *heat, int thread, uint32_t part) {
+static int sweep_beams(void *heat, int thread, uint32_t part) {
     (void)thread;
     return fibrad_heat_sweep(heat, part);
 }
@@ -96,7 +96,7 @@ int fibrad_radiation_solve(fibrad_radiation *r, const fibrad_heat_sources *sourc
     int solved = 0, status = fibrad_heat_begin(r->heat, sources);
     for (uint64_t sweeps = 0; !status && !solved; ++sweeps) {
         status = fibrad_team_report(&r->team, "sweeps", sweeps, 0);
-        if (!status) status = fibrad_team_run(&r->team, NULL, PARTS, 1, sweep_part, r->heat, NULL);
+        if (!status) status = fibrad_team_run(&r->team, NULL, PARTS, 1, sweep_beams, r->heat, NULL);
         if (!status) status = fibrad_heat_step(r->heat, &solved);
     }
     return status ? status : fibrad_heat_read(r->heat, result);

@@ -35,12 +35,12 @@ static int mark_worst(uint32_t n, const double *error, unsigned char *wanted) {
 /* Computes all rows with few directions, and then the worst with as many as they need by themselves. */
 static int find_directions(fibrad_job *job, fibrad_job_row *row, fibrad_beam_rule rule, double *error,
                            unsigned char *wanted, uint32_t *directions) {
-    const double tolerance = rule.tolerance;
     fibrad_job_report report;
     const fibrad_beam_rule pilot = {.directions = PILOT, .points = rule.points, .cutoff = rule.cutoff};
     int status = fibrad_job_rows(job, row, &pilot, NULL, error, &report);
     if (!status) status = mark_worst(job->facts.spheres, error, wanted);
-    rule.tolerance = tolerance / averaged_over_raw;
+    rule.tolerance /= averaged_over_raw;
+    if (!rule.directions) rule.directions = PILOT;
     if (!status) status = fibrad_job_rows(job, row, &rule, wanted, NULL, &report);
     *directions = report.directions;
     return status;

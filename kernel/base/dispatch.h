@@ -8,7 +8,7 @@
 #include "fibrad.h"
 
 /* The instruction set to use for a wish (a fibrad_isa): the wish itself or, for FIBRAD_ISA_BEST, the widest; -1 if this
- * build or this machine lacks it, -2 if it is none. */
+ * build or this machine does not have it, -2 if it is none. */
 int fibrad_isa_choose(int wish);
 
 /* Whether this build has an instruction set; FIBRAD_ISA_BEST it always has. */

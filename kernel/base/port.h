@@ -1,7 +1,7 @@
 /* port.h - all that the kernel takes from the C library and the compiler. SPDX-License-Identifier: MIT
  *
  * A target with its own ideas names a header of its own: -DFIBRAD_PORT_HEADER='"my_port.h"'; it then defines
- * fibrad_sqrt, fibrad_sqrtf, fibrad_copy and fibrad_zero as below. The square roots must round correctly (IEEE 754). */
+ * fibrad_sqrt, fibrad_copy and fibrad_zero as below. The square root must round correctly (IEEE 754). */
 #ifndef FIBRAD_BASE_PORT_H
 #define FIBRAD_BASE_PORT_H
 
@@ -10,17 +10,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if FLT_EVAL_METHOD != 0
+/* 16: half precision has its own arithmetic, and all other types theirs */
+#if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
 #error "fibrad needs arithmetic in the precision of its types (on 32-bit x86: -msse2 -mfpmath=sse)"
 #endif
 
-#ifdef FIBRAD_PORT_HEADER
+#if defined(FIBRAD_PORT_HEADER)
 #include FIBRAD_PORT_HEADER
-#else
+#elif !defined(FIBRAD_PORT_GIVEN) /* by whoever includes this */
 
-/* With -fno-math-errno these are single instructions where the machine has them, else calls of sqrt and sqrtf. */
+/* With -fno-math-errno this is a single instruction where the machine has one, else a call of sqrt. */
 static inline double fibrad_sqrt(double x) { return __builtin_sqrt(x); }
-static inline float fibrad_sqrtf(float x) { return __builtin_sqrtf(x); }
 
 /* Copies bytes between blocks that do not overlap. */
 static inline void fibrad_copy(void *to, const void *from, size_t bytes) { __builtin_memcpy(to, from, bytes); }

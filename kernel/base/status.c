@@ -22,7 +22,7 @@ const char *fibrad_status_text(int status) {
     case FIBRAD_E_STATE:
         return "a call is missing, too early or repeated, or the scene has changed";
     case FIBRAD_E_ISA:
-        return "this build or this machine lacks the instruction set";
+        return "this build or this machine does not have the instruction set";
     case FIBRAD_E_UNSUPPORTED:
         return "this version does not compute that";
     case FIBRAD_E_MEMORY:

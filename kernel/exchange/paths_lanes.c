@@ -1,4 +1,4 @@
-/* paths_lanes.c - follows paths. Compiled once per instruction set. SPDX-License-Identifier: MIT */
+/* paths_lanes.c - traces paths. Compiled once per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/laned.h"
 #include "base/lanes/turn.h"
@@ -6,19 +6,20 @@
 #include "scene/walls.h"
 
 /* Points of the unit sphere are made this many at a time. */
-#define BATCH 8
-/* A path ends after so many legs, which is for surfaces that absorb nothing at all. */
-#define LEGS 100000u
-/* A path of less weight goes on with this weight, in as many cases out of all as keep the mean. Of 0.05, 0.1, 0.2 and
- * 0.4 this gave the least error in a given number of rays, at emissivities of 0.3 and 0.8. */
-#define LEAST 0.2
+#define PATH_BATCH 8
+/* A path ends after so many legs, in case no surface absorbs anything. */
+#define PATH_LEGS 100000u
+/* Russian roulette: a path of weight w below this survives with probability w/ROULETTE_WEIGHT, and then has this
+ * weight. Of 0.05, 0.1, 0.2 and 0.4 this gave the least error in a given number of rays, at emissivities of 0.3 and
+ * 0.8. */
+#define ROULETTE_WEIGHT 0.2
 /* Coordinates that are quasi-random: those of the start and of the first two directions. Two more than four save a
  * tenth to a fifth of the rays. */
-#define QUASI 6
+#define QUASI_COORDINATES 6
 
-/* A path underway. */
-struct path {
-    _Alignas(64) double even[3][BATCH]; /* points of the unit sphere */
+/* A path so far. */
+struct grey_path {
+    _Alignas(64) double even[3][PATH_BATCH]; /* points of the unit sphere */
     uint64_t k;
     fibrad_random own; /* numbers of this path alone */
     double weight;
@@ -29,44 +30,44 @@ struct path {
     uint32_t used;   /* how many of all its points are used up */
 };
 
-/* The next BATCH points of the unit sphere: the first is where the path starts, each further one belongs to a
- * direction. The first QUASI coordinates are those of the additive recurrence with the steps g^-1 ... g^-6, g^7 = g +
- * 1, in units of 2^-64, as for the rays of ray/cast_lanes.c; all others are random. */
-static void make_points(const fibrad_paths *paths, struct path *path) {
-    static const uint64_t step[QUASI] = {UINT64_C(0xe60e2b722b53aeeb), UINT64_C(0xcebd76d9edb6a8ef),
-                                         UINT64_C(0xb9c9aa3a51d00b65), UINT64_C(0xa6f5777f6f88983f),
-                                         UINT64_C(0x9609c71eb7d03f7a), UINT64_C(0x86d516e50b04ab1b)};
-    _Alignas(64) double at[2][BATCH];
-    for (uint32_t b = 0; b < BATCH; b++)
+/* The next PATH_BATCH points of the unit sphere: the first is where the path starts, each further one belongs to a
+ * direction. The first QUASI_COORDINATES coordinates are those of the additive recurrence with the steps g^-1 ... g^-6,
+ * g^7 = g + 1, in units of 2^-64, as for the rays of ray/cast_lanes.c; all others are random. */
+static void make_sphere_points(const fibrad_paths *paths, struct grey_path *path) {
+    static const uint64_t step[QUASI_COORDINATES] = {UINT64_C(0xe60e2b722b53aeeb), UINT64_C(0xcebd76d9edb6a8ef),
+                                                     UINT64_C(0xb9c9aa3a51d00b65), UINT64_C(0xa6f5777f6f88983f),
+                                                     UINT64_C(0x9609c71eb7d03f7a), UINT64_C(0x86d516e50b04ab1b)};
+    _Alignas(64) double at[2][PATH_BATCH];
+    for (uint32_t b = 0; b < PATH_BATCH; b++)
         for (uint32_t d = 0; d < 2; d++) {
             uint32_t coordinate = 2 * (path->used + b) + d;
-            uint64_t x = coordinate < QUASI
+            uint64_t x = coordinate < QUASI_COORDINATES
                              ? fibrad_random_ahead(paths->stream, coordinate) + path->k * step[coordinate]
                              : fibrad_random_ahead(path->own, coordinate);
             at[d][b] = fibrad_fraction(x);
         }
     const vd one = vd_set1(1);
-    for (uint32_t b = 0; b < BATCH; b += VD_LANES) {
+    for (uint32_t b = 0; b < PATH_BATCH; b += VD_LANES) {
         vd height = vd_load(at[0] + b), cosine, sine;
         vd_turn(vd_load(at[1] + b), &cosine, &sine);
-        vd ring = vd_sqrt(vd_mul(vd_mul(vd_set1(4), height), vd_sub(one, height)));
-        vd_store(path->even[0] + b, vd_mul(ring, cosine));
-        vd_store(path->even[1] + b, vd_mul(ring, sine));
-        vd_store(path->even[2] + b, vd_sub(one, vd_add(height, height)));
+        vd ring = vd_sqrt(4 * height * (one - height));
+        vd_store(path->even[0] + b, ring * cosine);
+        vd_store(path->even[1] + b, ring * sine);
+        vd_store(path->even[2] + b, one - (height + height));
     }
 }
 
-static void next_point(const fibrad_paths *paths, struct path *path, double at[3]) {
-    uint32_t b = path->used % BATCH;
-    if (b == 0) make_points(paths, path);
+static void next_sphere_point(const fibrad_paths *paths, struct grey_path *path, double at[3]) {
+    uint32_t b = path->used % PATH_BATCH;
+    if (b == 0) make_sphere_points(paths, path);
     path->used++;
     for (int axis = 0; axis < 3; axis++) at[axis] = path->even[axis][b];
 }
 
-/* A direction by the cosine law about the normal: that of the normal plus an even point of the unit sphere. */
-static void aim(const fibrad_paths *paths, struct path *path, double w[3]) {
+/* A direction by the cosine law about the normal: that of the normal plus a uniform point of the unit sphere. */
+static void draw_direction(const fibrad_paths *paths, struct grey_path *path, double w[3]) {
     double even[3];
-    next_point(paths, path, even);
+    next_sphere_point(paths, path, even);
     for (int axis = 0; axis < 3; axis++) w[axis] = path->n[axis] + even[axis];
     double square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
     if (square < 1e-24) {
@@ -77,8 +78,8 @@ static void aim(const fibrad_paths *paths, struct path *path, double w[3]) {
     for (int axis = 0; axis < 3; axis++) w[axis] *= inverse;
 }
 
-/* Follows one ray. False: it meets neither sphere nor wall. */
-static bool move(fibrad_paths *paths, struct path *path, const double w[3], uint32_t *wall) {
+/* Traces one ray. False: it meets neither sphere nor wall. */
+static bool trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3], uint32_t *wall) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
     paths->rays++;
@@ -116,8 +117,8 @@ static bool move(fibrad_paths *paths, struct path *path, const double w[3], uint
     return true;
 }
 
-/* Puts down what the surface met absorbs, and takes it off the path. */
-static void absorb(fibrad_paths *paths, struct path *path, uint32_t wall, bool counts) {
+/* Subtracts from the path what the surface met absorbs, and adds that to the surface if it counts. */
+static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint32_t wall, bool counts) {
     const fibrad_scene *scene = paths->tracer->scene;
     double emissivity =
         wall != FIBRAD_NONE ? paths->wall_emissivity[wall] : paths->emissivity[scene->order[path->place]];
@@ -137,26 +138,27 @@ static void absorb(fibrad_paths *paths, struct path *path, uint32_t wall, bool c
     fibrad_entries_add(paths->entries, entry, (uint32_t)(path->k % 4), absorbed);
 }
 
-static void follow(fibrad_paths *paths, uint64_t k) {
-    struct path path = {.k = k, .own = {fibrad_random_ahead(paths->stream, 8 + k)}, .weight = 1, .place = paths->place};
-    next_point(paths, &path, path.n);
-    for (uint32_t leg = 0; leg < LEGS && path.weight > 0; leg++) {
+static void follow_path(fibrad_paths *paths, uint64_t k) {
+    struct grey_path path = {
+        .k = k, .own = {fibrad_random_ahead(paths->stream, 8 + k)}, .weight = 1, .place = paths->place};
+    next_sphere_point(paths, &path, path.n);
+    for (uint32_t leg = 0; leg < PATH_LEGS && path.weight > 0; leg++) {
         double w[3];
         uint32_t wall;
-        aim(paths, &path, w);
-        if (!move(paths, &path, w, &wall)) {
+        draw_direction(paths, &path, w);
+        if (!trace_leg(paths, &path, w, &wall)) {
             if (leg > 0 || paths->first) paths->escaped += path.weight;
             return;
         }
-        absorb(paths, &path, wall, leg > 0 || paths->first);
-        if (path.weight < LEAST) {
+        absorb_at_surface(paths, &path, wall, leg > 0 || paths->first);
+        if (path.weight < ROULETTE_WEIGHT) {
             double draw = fibrad_fraction(fibrad_random_ahead(path.own, UINT64_C(1) << 32 | leg));
-            if (draw * LEAST >= path.weight) return;
-            path.weight = LEAST;
+            if (draw * ROULETTE_WEIGHT >= path.weight) return;
+            path.weight = ROULETTE_WEIGHT;
         }
     }
 }
 
 void LANED(fibrad_paths_follow)(fibrad_paths *paths, uint64_t begin, uint64_t end) {
-    for (uint64_t k = begin; k < end; k++) follow(paths, k);
+    for (uint64_t k = begin; k < end; k++) follow_path(paths, k);
 }

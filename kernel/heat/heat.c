@@ -4,29 +4,30 @@
 #include "base/constants.h"
 #include "base/dispatch.h"
 #include "heat/hits_lanes.h"
+#include "heat/solve.h"
 #include "heat/sphere_patch.h"
-#include "row/beam.h"
-#include "sample/tables.h"
+#include "heat/wall_patch.h"
+#include "sample/direction.h"
 
-#define DIRECTIONS 168u
-#define POINTS     64u
-#define PATCHES    96u
-#define PARTS      8u
-#define PARTS_MAX  1024u
-#define TOLERANCE  1e-3
-#define SWEEPS_MAX 1000u
+#define HEAT_DIRECTIONS 168u
+#define HEAT_POINTS     64u
+#define HEAT_PATCHES    96u
+#define HEAT_PARTS      8u
+#define HEAT_PARTS_MAX  1024u
+#define HEAT_TOLERANCE  1e-3
+#define HEAT_SWEEPS_MAX 1000u
 /* Errors over what they are told from, as measured: docs/heat.md. */
 #define PATCH_ERROR .2
 #define BEAM_ERROR  .2
 #define FEW_ERROR   .25
 
-static fibrad_heat_config config_of(const fibrad_heat_config *config) {
+static fibrad_heat_config heat_config_of(const fibrad_heat_config *config) {
     fibrad_heat_config c = {0};
     if (config != NULL) c = *config;
-    if (c.directions == 0) c.directions = DIRECTIONS;
-    if (c.points == 0) c.points = POINTS;
-    if (c.patches == 0) c.patches = PATCHES;
-    if (c.parts == 0) c.parts = PARTS;
+    if (c.directions == 0) c.directions = HEAT_DIRECTIONS;
+    if (c.points == 0) c.points = HEAT_POINTS;
+    if (c.patches == 0) c.patches = HEAT_PATCHES;
+    if (c.parts == 0) c.parts = HEAT_PARTS;
     return c;
 }
 
@@ -40,7 +41,7 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     const bool valid = c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX &&
                        fibrad_disc_points_get(c->points, &set) == FIBRAD_OK && side_of(c->patches) > 0 &&
-                       c->parts <= PARTS_MAX && scene->facts.spheres <= (UINT32_MAX >> 1) / c->patches &&
+                       c->parts <= HEAT_PARTS_MAX && scene->facts.spheres <= (UINT32_MAX >> 1) / c->patches &&
                        c->cutoff >= 0;
     return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
 }
@@ -99,7 +100,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
 }
 
 size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene) {
-    const fibrad_heat_config c = config_of(config);
+    const fibrad_heat_config c = heat_config_of(config);
     if (heat_check(&c, scene) != FIBRAD_OK) return 0;
     fibrad_arena arena = {0};
     fibrad_heat fields = {0};
@@ -157,7 +158,7 @@ static void forget_beams(fibrad_heat *heat) {
 int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene) {
     if (out == NULL) return FIBRAD_E_ARGUMENT;
-    const fibrad_heat_config c = config_of(config);
+    const fibrad_heat_config c = heat_config_of(config);
     fibrad_arena arena;
     int status = heat_check(&c, scene);
     if (status == FIBRAD_OK) status = fibrad_arena_open(&arena, memory, size, fibrad_heat_size(config, scene));
@@ -315,8 +316,8 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     }
     for (uint32_t b = 0; b < heat->bodies; b++) set_body(heat, sources, b);
     heat->group = sources->uniform ? UINT32_MAX : 4;
-    heat->tolerance = sources->tolerance > 0 ? sources->tolerance : TOLERANCE;
-    heat->limit = sources->sweeps_max > 0 ? sources->sweeps_max : SWEEPS_MAX;
+    heat->tolerance = sources->tolerance > 0 ? sources->tolerance : HEAT_TOLERANCE;
+    heat->limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
     heat->sweeps = 0;
     heat->warm = false;
     fibrad_zero(heat->swept, heat->config.parts);

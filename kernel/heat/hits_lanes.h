@@ -3,7 +3,7 @@
 #define FIBRAD_HEAT_HITS_LANES_H
 
 #include "base/dispatch.h"
-#include "heat/heat.h"
+#include "heat/problem.h"
 #include "row/work.h"
 
 /* Fills heat->hit of sphere `task`; from the number of spheres on, a part of heat->ray. FIBRAD_E_WORK: the work

@@ -6,16 +6,18 @@
  *
  * a symmetric positive definite system. A sweep forms the net flows N J = K J - A J beam by beam, each beam giving to
  * one end what it takes from the other: they add up to zero whatever J is, and are zero where all J are equal. Times
- * rho/A the residual is eps (E - J) + rho N J/A: what a plain sweep would change. Patches with rho = 0 have J = E and
- * take no part. On the coarser level J is the same on the patches of a group. For that the residuals of a group are
- * replaced by their mean, and all vectors stay within such J; the finer level goes on from there. */
-#include "heat/heat.h"
+ * rho/A the residual is eps (E - J) + rho N J/A: what one Jacobi iteration would change. Patches with rho = 0 have J =
+ * E and take no part. On the coarser level J is the same on the patches of a group. For that the residuals of a group
+ * are replaced by their mean, and all vectors stay within such J; the finer level goes on from there. */
+#include "heat/solve.h"
 
 #define BEYOND (FIBRAD_WALLS + 1)
 
 /* A beam stands for the area 1/(n + m) if its two surfaces send out n and m beams per area: so the beams either way
  * together tell what the two exchange, those of the denser one counting as much more as there are more of them. */
-static double weight(const fibrad_heat_source *a, const fibrad_heat_source *b) { return 1 / (a->density + b->density); }
+static double beam_area(const fibrad_heat_source *a, const fibrad_heat_source *b) {
+    return 1 / (a->density + b->density);
+}
 
 /* Many beams meet the few patches that lie beyond the walls and their patches; one sum of all would lose digits. So
  * what has come to them lately is moved to a longer sum. */
@@ -34,7 +36,7 @@ static void sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to, do
     for (uint32_t begin = 0; begin < heat->beams; begin += heat->config.points) {
         for (uint32_t k = begin; k < begin + heat->config.points; k++) {
             const uint32_t a = heat->leave[k], b = hit[k];
-            const double area = weight(mine, &source[b]);
+            const double area = beam_area(mine, &source[b]);
             const double flow = areas ? area : area * (source[b].value - mine[a].value);
             own[a] += flow;
             to[b] += areas ? flow : -flow;
@@ -57,7 +59,7 @@ static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, do
 }
 
 /* Where a part begins of n things. */
-static uint32_t share(const fibrad_heat *heat, uint32_t n, uint32_t part) {
+static uint32_t part_begin(const fibrad_heat *heat, uint32_t n, uint32_t part) {
     return (uint32_t)((uint64_t)n * part / heat->config.parts);
 }
 
@@ -70,7 +72,7 @@ static double sweep_halves(const fibrad_heat *heat, uint32_t place) {
         double sum = 0;
         for (uint32_t p = k * points; p < (k + 1) * points; p++) {
             const fibrad_heat_source *other = &source[hit[p]];
-            sum += weight(mine, other) * (other->value - mine[heat->leave[p]].value);
+            sum += beam_area(mine, other) * (other->value - mine[heat->leave[p]].value);
         }
         half[k % 2] += k == 0 || k + 1 == heat->config.directions ? sum / 2 : sum;
     }
@@ -80,7 +82,7 @@ static double sweep_halves(const fibrad_heat *heat, uint32_t place) {
 /* All of a part but the note that it is done. */
 static void sweep_part(fibrad_heat *heat, uint32_t part) {
     const uint32_t spheres = heat->spheres;
-    const uint32_t begin = share(heat, spheres, part), end = share(heat, spheres, part + 1);
+    const uint32_t begin = part_begin(heat, spheres, part), end = part_begin(heat, spheres, part + 1);
     double *to = heat->gathered + (size_t)part * heat->patches, away[BEYOND] = {0};
     if (heat->phase == FIBRAD_HEAT_CHECK) {
         for (uint32_t place = begin; place < end; place++) heat->halves[place] = sweep_halves(heat, place);
@@ -88,7 +90,7 @@ static void sweep_part(fibrad_heat *heat, uint32_t part) {
     }
     fibrad_zero(to, heat->patches * sizeof *to);
     for (uint32_t place = begin; place < end; place++) sweep_sphere(heat, place, to, away);
-    sweep_rays(heat, share(heat, heat->rays, part), share(heat, heat->rays, part + 1), to, away);
+    sweep_rays(heat, part_begin(heat, heat->rays, part), part_begin(heat, heat->rays, part + 1), to, away);
     set_aside(heat, to, away);
     const uint32_t few = heat->first[fibrad_heat_beyond(heat, 0)];
     fibrad_copy(to + few, away, (heat->patches - few) * sizeof *to);
@@ -112,7 +114,7 @@ static const double *gather_parts_of(fibrad_heat *heat) {
     return sum;
 }
 
-/* What a plain sweep would change: of all patches, into source[].value. Returns the residual times that. */
+/* What one Jacobi iteration would change: of all patches, into source[].value. Returns the residual times that. */
 static double find_residual(fibrad_heat *heat) {
     double slope = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -164,14 +166,14 @@ static void find_scale(fibrad_heat *heat) {
 }
 
 /* Makes the next sweep one of the radiosities. */
-static void send(fibrad_heat *heat, fibrad_heat_phase phase) {
+static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
     for (uint32_t a = 0; a < heat->patches; a++) heat->source[a].value = heat->radiosity[a];
     heat->phase = phase;
 }
 
 void fibrad_heat_start(fibrad_heat *heat) {
     if (heat->areas)
-        send(heat, FIBRAD_HEAT_FIRST);
+        send_radiosities(heat, FIBRAD_HEAT_FIRST);
     else
         heat->phase = FIBRAD_HEAT_AREA;
 }
@@ -180,7 +182,7 @@ void fibrad_heat_start(fibrad_heat *heat) {
  * with the area of patches, and a third of the difference from the coarser powers would be right; near contacts they
  * are not quite, and this is what settled beds ask for: docs/heat.md. */
 #define EXTRAPOLATION 0.4
-static void finish(fibrad_heat *heat) {
+static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->power);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (heat->group > 1) heat->coarse[b] = heat->power[b];
@@ -188,11 +190,11 @@ static void finish(fibrad_heat *heat) {
     }
     if (heat->group == 1)
         for (uint32_t a = 0; a < heat->patches; a++) heat->detail[a] += heat->radiosity[a];
-    send(heat, FIBRAD_HEAT_CHECK);
+    send_radiosities(heat, FIBRAD_HEAT_CHECK);
 }
 
 /* Whether the radiosities of the level in hand are good enough. */
-static bool settled(const fibrad_heat *heat) {
+static bool level_solved(const fibrad_heat *heat) {
     return heat->slope <= fibrad_max(heat->tolerance * heat->tolerance * heat->scale, heat->smallest) ||
            heat->sweeps >= heat->limit;
 }
@@ -207,7 +209,7 @@ static void turn_direction(fibrad_heat *heat, double keep) {
 
 /* From the coarser level to the finer one, with the detail that an earlier solution had. Until this one has its own,
  * `detail` holds what is to be taken from it. */
-static void refine(fibrad_heat *heat) {
+static void refine_patches(fibrad_heat *heat) {
     find_powers(heat, heat->coarse);
     heat->group = 1;
     for (uint32_t a = 0; a < heat->patches; a++) {
@@ -215,18 +217,18 @@ static void refine(fibrad_heat *heat) {
         heat->radiosity[a] += heat->detail[a];
         heat->detail[a] = -coarse;
     }
-    send(heat, FIBRAD_HEAT_FIRST);
+    send_radiosities(heat, FIBRAD_HEAT_FIRST);
 }
 
 /* Goes on with the search, or with the finer level, if there is something left to do. */
-static void search(fibrad_heat *heat, bool restart) {
+static void search_on(fibrad_heat *heat, bool restart) {
     const double last = heat->slope;
     heat->slope = find_residual(heat);
-    if (settled(heat)) {
+    if (level_solved(heat)) {
         if (heat->group == 4)
-            refine(heat);
+            refine_patches(heat);
         else
-            finish(heat);
+            finish_powers(heat);
         return;
     }
     turn_direction(heat, restart ? 0 : heat->slope / last);
@@ -234,7 +236,7 @@ static void search(fibrad_heat *heat, bool restart) {
 }
 
 /* Goes along the direction whose product with N is `product`, as far as the error falls. */
-static void advance(fibrad_heat *heat, const double *product) {
+static void advance_radiosities(fibrad_heat *heat, const double *product) {
     double curvature = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (heat->emissivity[b] == 1) continue;
@@ -265,16 +267,16 @@ static void end_sweep(fibrad_heat *heat) {
     case FIBRAD_HEAT_AREA:
         fibrad_copy(heat->area, sum, heat->patches * sizeof *sum);
         heat->areas = true;
-        send(heat, FIBRAD_HEAT_FIRST);
+        send_radiosities(heat, FIBRAD_HEAT_FIRST);
         return;
     case FIBRAD_HEAT_FIRST:
         fibrad_copy(heat->net, sum, heat->patches * sizeof *sum);
         find_scale(heat);
-        search(heat, true);
+        search_on(heat, true);
         return;
     default:
-        advance(heat, sum);
-        search(heat, false);
+        advance_radiosities(heat, sum);
+        search_on(heat, false);
     }
 }
 

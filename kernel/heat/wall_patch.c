@@ -2,7 +2,7 @@
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
-#include "heat/heat.h"
+#include "heat/wall_patch.h"
 #include "scene/walls.h"
 
 /* Patches of walls are about as large as those of the spheres, unless that makes more of them than FEW and a fourth of

@@ -96,7 +96,7 @@ void fibrad_sparse_balance(fibrad_sparse *rows, const double *target, double *sc
     bring_down(rows, target, scratch);
 }
 
-/* Puts into F_ii what a row lacks of its target, by more than rounding; rows move up to make room. */
+/* Puts into F_ii what a row is short of its target, by more than rounding; rows move up to make room. */
 static void fill_up(fibrad_sparse *rows, const double *target) {
     double rounding = 4e-15;
     uint64_t wanted = 0;

@@ -58,8 +58,8 @@ static double mean_overlapping(double e, double q) {
 /* Area a - sin a cos a of the segment of the unit circle with half angle a, from t = tan(a/2) > 0. Below t = 1 it is
  * 2 (atan t - t) + 2 t^3 (3 + t^2)/(1 + t^2)^2, and atan t = 4 atan u with u = tan(a/8) <= 0.2, so that no digits
  * cancel in a thin segment. */
-static double segment(double t) {
-    if (t > 1) return pi - segment(1 / t);
+static double lens_segment(double t) {
+    if (t > 1) return pi - lens_segment(1 / t);
     double half = t / (1 + fibrad_sqrt(1 + t * t));
     double u = half / (1 + fibrad_sqrt(1 + half * half));
     double v = u * u, tail = 0; /* atan u = u + u^3 tail */
@@ -81,8 +81,9 @@ static double exchange_overlapping(double R, double r, double gap) {
     double a = 2 * R + gap, b = 2 * r + gap, c = a + 2 * r, g = -gap; /* all > 0 */
     double d = R - r + b;
     double w2 = a / d * (b / d), w = fibrad_sqrt(w2);
-    double lens = R / r * (R / r * segment(fibrad_sqrt(g / a * (b / c)))) + segment(fibrad_sqrt(g / b * (a / c)));
-    double even = R / d * (R / d) * segment(fibrad_sqrt(a / g * (b / c)));
+    double lens =
+        R / r * (R / r * lens_segment(fibrad_sqrt(g / a * (b / c)))) + lens_segment(fibrad_sqrt(g / b * (a / c)));
+    double even = R / d * (R / d) * lens_segment(fibrad_sqrt(a / g * (b / c)));
     double chord = d / r * w2;
     double e = g / a * fibrad_min(c / b, 1e300); /* where c / b is more, the chord is nothing */
     double odd = pi / 16 * chord * chord * w * mean_overlapping(e, w2);

@@ -1,8 +1,8 @@
 /* cast_lanes.c - a row of view factors by rays. Compiled once per instruction set. SPDX-License-Identifier: MIT
  *
  * Rays are made in batches, lanes over rays, from points of the unit 4-cube: two coordinates for the origin on the
- * sphere, two for the direction in the frame of its normal. Each is then followed on its own, lanes over the near
- * spheres of work.h, shell by shell: a sieve in floats, then the distances in doubles of the few that pass. */
+ * sphere, two for the direction in the frame of its normal. Each is then traced on its own, lanes over the near spheres
+ * of work.h, shell by shell: a cull in floats, then the distances in doubles of the few that pass. */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/laned.h"
 #include "base/lanes/turn.h"
@@ -11,29 +11,29 @@
 #include "row/neighbours_lanes.h"
 #include "scene/walls.h"
 
-#define BATCH  (8 * VD_LANES)              /* rays: 64 in AVX-512; fewer take less stack where there are no lanes */
-#define SHELLS ((fibrad_stride){3.0, 1.4}) /* smaller than those of windows: a ray ends sooner */
+#define CAST_BATCH  (8 * VD_LANES) /* rays: 64 in AVX-512; fewer take less stack where there are no lanes */
+#define CAST_STRIDE ((fibrad_stride){3.0, 1.4}) /* shorter than that of windows: a ray ends sooner */
 
-/* Places in the 4-cube, then rays: the direction w, two unit vectors u and v across it such that the origin is
+/* Points of the 4-cube, then rays: the direction w, two unit vectors u and v across it such that the origin is
  * cosine w - sine v, and the angle to the normal. */
-struct rays {
-    _Alignas(64) double at[4][BATCH];
-    _Alignas(64) double u[3][BATCH];
-    _Alignas(64) double v[3][BATCH];
-    _Alignas(64) double w[3][BATCH];
-    _Alignas(64) double sine[BATCH];
-    _Alignas(64) double cosine[BATCH];
+struct cast_batch {
+    _Alignas(64) double at[4][CAST_BATCH];
+    _Alignas(64) double u[3][CAST_BATCH];
+    _Alignas(64) double v[3][CAST_BATCH];
+    _Alignas(64) double w[3][CAST_BATCH];
+    _Alignas(64) double sine[CAST_BATCH];
+    _Alignas(64) double cosine[CAST_BATCH];
 };
 
 /* The quasi-random set is the additive recurrence with the steps g^-1 ... g^-4, g^5 = g + 1, in units of 2^-64: the
- * golden angle's way in four dimensions, good for any number of rays. It is moved as a whole by a shift of the row's
- * own. Every number is a function of (seed, i, ray), so rows depend on no other row. */
-static void fill(struct rays *rays, const fibrad_cast_rule *rule, fibrad_random stream, uint32_t first) {
+ * golden angle's recurrence in four dimensions, good for any number of rays. A random shift of the row moves it as a
+ * whole. Every number is a function of (seed, i, ray), so rows depend on no other row. */
+static void fill_batch(struct cast_batch *rays, const fibrad_cast_rule *rule, fibrad_random stream, uint32_t first) {
     static const uint64_t step[4] = {UINT64_C(0xdb4f0b9175ae2165), UINT64_C(0xbbe0563303a4615f),
                                      UINT64_C(0xa0f2ec75a1fe1576), UINT64_C(0x89e182857d9ed689)};
     for (uint64_t d = 0; d < 4; d++) {
         uint64_t shift = fibrad_random_ahead(stream, d);
-        for (uint32_t b = 0; b < BATCH; b++) {
+        for (uint32_t b = 0; b < CAST_BATCH; b++) {
             uint64_t k = (uint64_t)first + b;
             uint64_t x = rule->random ? fibrad_random_ahead(stream, 4 * k + d) : shift + k * step[d];
             rays->at[d][b] = fibrad_fraction(x);
@@ -41,38 +41,38 @@ static void fill(struct rays *rays, const fibrad_cast_rule *rule, fibrad_random 
     }
 }
 
-/* Origin n: z even over [-1, 1], azimuth even. Direction: squared sine of the angle to n even over [0, 1], which is the
- * cosine law, and the other angle even about n, in the frame of the parallel a, the meridian b and n. */
-static void aim(struct rays *rays) {
+/* Origin n: z uniform over [-1, 1], azimuth uniform. Direction: squared sine of the angle to n uniform over [0, 1],
+ * which is the cosine law, and the azimuth uniform about n, in the frame of the parallel a, the meridian b and n. */
+static void aim_batch(struct cast_batch *rays) {
     const vd one = vd_set1(1);
-    for (uint32_t b = 0; b < BATCH; b += VD_LANES) {
+    for (uint32_t b = 0; b < CAST_BATCH; b += VD_LANES) {
         vd height = vd_load(rays->at[0] + b), square = vd_load(rays->at[2] + b), cos, sin, across, along;
         vd_turn(vd_load(rays->at[1] + b), &cos, &sin);
         vd_turn(vd_load(rays->at[3] + b), &across, &along);
-        vd z = vd_sub(one, vd_add(height, height));
-        vd ring = vd_sqrt(vd_mul(vd_mul(vd_set1(4), height), vd_sub(one, height)));
-        vd sine = vd_sqrt(square), cosine = vd_sqrt(vd_sub(one, square)), zero = vd_set1(0);
-        vd axis_a[3] = {vd_sub(zero, sin), cos, zero};
-        vd axis_b[3] = {vd_sub(zero, vd_mul(z, cos)), vd_sub(zero, vd_mul(z, sin)), ring};
-        vd normal[3] = {vd_mul(ring, cos), vd_mul(ring, sin), z};
+        vd z = one - (height + height);
+        vd ring = vd_sqrt(4 * height * (one - height));
+        vd sine = vd_sqrt(square), cosine = vd_sqrt(one - square), zero = vd_set1(0);
+        vd axis_a[3] = {zero - sin, cos, zero};
+        vd axis_b[3] = {zero - z * cos, zero - z * sin, ring};
+        vd normal[3] = {ring * cos, ring * sin, z};
         for (int axis = 0; axis < 3; axis++) {
-            vd side = vd_add(vd_mul(across, axis_a[axis]), vd_mul(along, axis_b[axis]));
-            vd_store(rays->u[axis] + b, vd_sub(vd_mul(along, axis_a[axis]), vd_mul(across, axis_b[axis])));
-            vd_store(rays->v[axis] + b, vd_sub(vd_mul(cosine, side), vd_mul(sine, normal[axis])));
-            vd_store(rays->w[axis] + b, vd_add(vd_mul(sine, side), vd_mul(cosine, normal[axis])));
+            vd side = across * axis_a[axis] + along * axis_b[axis];
+            vd_store(rays->u[axis] + b, along * axis_a[axis] - across * axis_b[axis]);
+            vd_store(rays->v[axis] + b, cosine * side - sine * normal[axis]);
+            vd_store(rays->w[axis] + b, sine * side + cosine * normal[axis]);
         }
         vd_store(rays->sine + b, sine);
         vd_store(rays->cosine + b, cosine);
     }
 }
 
-/* One ray: at place (0, -sine) of the window of direction w, it starts at depth `cosine`. */
-struct ray {
+/* One ray: at (0, -sine) of the window of direction w, it starts at depth `cosine`. */
+struct cast_ray {
     double frame[9], sine, cosine;
 };
 
 /* The first sphere so far. */
-struct hit {
+struct cast_hit {
     double distance;       /* infinity: none */
     double depth, u, v, r; /* its disc */
     uint32_t sphere;
@@ -80,7 +80,7 @@ struct hit {
 
 /* Appends the discs of one shell that lie before the window and may be met by the ray from o along w: with
  * q = c^2 + 1 - r^2, those with (w.c - w.o)^2 > q - 2 o.c. */
-static void sieve(fibrad_workspace *work, const struct ray *ray, uint32_t shell) {
+static void cull_for_ray(fibrad_workspace *work, const struct cast_ray *ray, uint32_t shell) {
     const fibrad_near *near = &work->near;
     uint32_t *to = work->disc.near;
     size_t end = near->end[shell];
@@ -92,38 +92,38 @@ static void sieve(fibrad_workspace *work, const struct ray *ray, uint32_t shell)
     vf start = vf_set1((float)ray->cosine);
     for (size_t j = shell == 0 ? 0 : near->end[shell - 1]; j < end; j += VF_LANES) {
         vf x = vf_load(near->fx + j), y = vf_load(near->fy + j), z = vf_load(near->fz + j);
-        vf depth = vf_add(vf_add(vf_mul(wx, x), vf_mul(wy, y)), vf_mul(wz, z));
-        vf twice = vf_add(vf_add(vf_mul(ox, x), vf_mul(oy, y)), vf_mul(oz, z));
-        vf from = vf_sub(depth, start), rest = vf_sub(vf_load(near->fq + j), twice);
-        uint32_t bits = vf_lt_bits(vf_load(near->fe + j), depth) & vf_lt_bits(rest, vf_mul(from, from));
+        vf depth = wx * x + wy * y + wz * z;
+        vf twice = ox * x + oy * y + oz * z;
+        vf from = depth - start, rest = vf_load(near->fq + j) - twice;
+        uint32_t bits = vf_lt_bits(vf_load(near->fe + j), depth) & vf_lt_bits(rest, from * from);
         to += vf_compress_places(to, bits, (uint32_t)j);
     }
     LANED(fibrad_near_discs)(work, ray->frame, (uint32_t)(to - work->disc.near));
 }
 
 /* Of equal distances, as inside two spheres at once, the lesser depth counts. */
-static bool before(const struct hit *a, const struct hit *b) {
+static bool cast_hit_before(const struct cast_hit *a, const struct cast_hit *b) {
     if (a->distance != b->distance) return a->distance < b->distance;
     return a->depth != b->depth ? a->depth < b->depth : a->sphere < b->sphere;
 }
 
-/* Compares the discs at hand with the first sphere so far. */
-static void meet(const fibrad_workspace *work, const struct ray *ray, struct hit *first) {
+/* Compares the discs of `work` with the first sphere so far. */
+static void intersect_discs(const fibrad_workspace *work, const struct cast_ray *ray, struct cast_hit *first) {
     const fibrad_discs *disc = &work->disc;
     for (uint32_t k = 0; k < disc->count; k++) {
-        struct hit hit = {0, disc->depth[k], disc->u[k], disc->v[k], disc->r[k], fibrad_work_sphere(work, k)};
+        struct cast_hit hit = {0, disc->depth[k], disc->u[k], disc->v[k], disc->r[k], fibrad_work_sphere(work, k)};
         double v = hit.v + ray->sine, square = hit.r * hit.r - (hit.u * hit.u + v * v);
         if (!(square > 0)) continue;
         hit.distance = fibrad_max(0, hit.depth - ray->cosine - fibrad_sqrt(square));
-        if (before(&hit, first)) *first = hit;
+        if (cast_hit_before(&hit, first)) *first = hit;
     }
 }
 
-/* Follows one ray. Spheres not looked up so far are deeper than `known`. For spheres that do not overlap, that means
+/* Traces one ray. Spheres not listed so far are deeper than `known`. For spheres that do not overlap, that means
  * behind all that are less deep. If k is deeper than j and yet met first, the ray's whole stretch in j lies in the cap
  * of j that is inside k, whose height is at most the overlap h r_j; such a chord is inclined to the line of centres so
  * much that k is deeper by no more than (r_j + r_k) sqrt(2 h). False: too many discs for the memory. */
-static bool follow(fibrad_workspace *work, const struct ray *ray, struct hit *first) {
+static bool follow_cast_ray(fibrad_workspace *work, const struct cast_ray *ray, struct cast_hit *first) {
     const fibrad_scene_facts *facts = &work->scene->facts;
     double lead = fibrad_sqrt(2 * facts->overlap_max + 1e-12), largest = facts->radius_max * work->inverse;
     double known = -1, horizon = 0;
@@ -131,7 +131,7 @@ static bool follow(fibrad_workspace *work, const struct ray *ray, struct hit *fi
         work->disc.count = 0;
         if (shell == work->near.shells && fibrad_near_pays(&work->near)) LANED(fibrad_near_extend)(work);
         if (shell < work->near.shells) {
-            sieve(work, ray, shell);
+            cull_for_ray(work, ray, shell);
             known = work->near.limit[shell];
         } else {
             double to = known < 0 ? work->step : work->growth * known;
@@ -139,7 +139,7 @@ static bool follow(fibrad_workspace *work, const struct ray *ray, struct hit *fi
             known = to;
         }
         if (work->disc.count > work->disc.capacity) return false;
-        meet(work, ray, first);
+        intersect_discs(work, ray, first);
         if (first->distance < __builtin_inf() && first->depth + (first->r + largest) * lead <= known) break;
         if (shell == 0) horizon = fibrad_near_horizon(work, ray->frame + 6);
     }
@@ -147,7 +147,7 @@ static bool follow(fibrad_workspace *work, const struct ray *ray, struct hit *fi
 }
 
 /* Angle whose tangent is y/x, both >= 0: an eighth of it has a tangent below 0.2, for which a short series does. */
-static double angle(double y, double x) {
+static double angle_of_tangent(double y, double x) {
     double t = y / (x + fibrad_sqrt(x * x + y * y));
     t = t / (1 + fibrad_sqrt(1 + t * t));
     t = t / (1 + fibrad_sqrt(1 + t * t));
@@ -157,7 +157,7 @@ static double angle(double y, double x) {
 }
 
 /* Counts a ray that meets no sphere: by the wall through which it leaves. */
-static void leave(fibrad_workspace *work, const struct ray *ray) {
+static void count_exit(fibrad_workspace *work, const struct cast_ray *ray) {
     double origin[3], distance;
     for (int axis = 0; axis < 3; axis++)
         origin[axis] =
@@ -167,15 +167,16 @@ static void leave(fibrad_workspace *work, const struct ray *ray) {
 }
 
 /* Counts a hit. */
-static void note(fibrad_workspace *work, const struct hit *first, uint32_t k, bool means) {
+static void count_hit(fibrad_workspace *work, const struct cast_hit *first, uint32_t k, bool means) {
     uint32_t entry = fibrad_entries_of(&work->entries, first->sphere);
     fibrad_entries_add(&work->entries, entry, k, 1);
     if (!means || entry == FIBRAD_NONE) return;
     work->entries.lengths[entry] += first->distance * work->unit;
-    work->entries.angles[entry] += angle(fibrad_sqrt(first->u * first->u + first->v * first->v), first->depth);
+    work->entries.angles[entry] +=
+        angle_of_tangent(fibrad_sqrt(first->u * first->u + first->v * first->v), first->depth);
 }
 
-static void write_means(const fibrad_workspace *work, const fibrad_row *row, const fibrad_cast_means *means) {
+static void write_cast_means(const fibrad_workspace *work, const fibrad_row *row, const fibrad_cast_means *means) {
     const fibrad_entries *entries = &work->entries;
     for (uint32_t k = 0; k < row->length; k++) {
         uint32_t entry = fibrad_entries_find(entries, work->scene->place[row->col[k]]);
@@ -190,27 +191,27 @@ int LANED(fibrad_cast_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
                              const fibrad_cast_task *task, fibrad_row *row) {
     const fibrad_cast_rule *rule = &task->rule;
     const fibrad_cast_means *means = task->means;
-    struct rays rays;
+    struct cast_batch rays;
     fibrad_random stream = {fibrad_mix(fibrad_random_ahead((fibrad_random){rule->seed}, fibrad_scene_id(scene, i)))};
-    fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, SHELLS);
+    fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, CAST_STRIDE);
     for (uint32_t k = 0; k < rule->rays; k++) {
-        uint32_t b = k % BATCH;
+        uint32_t b = k % CAST_BATCH;
         if (b == 0) {
-            fill(&rays, rule, stream, k);
-            aim(&rays);
+            fill_batch(&rays, rule, stream, k);
+            aim_batch(&rays);
         }
-        struct ray ray = {.sine = rays.sine[b], .cosine = rays.cosine[b]};
+        struct cast_ray ray = {.sine = rays.sine[b], .cosine = rays.cosine[b]};
         for (int axis = 0; axis < 3; axis++) {
             ray.frame[axis] = rays.u[axis][b];
             ray.frame[3 + axis] = rays.v[axis][b];
             ray.frame[6 + axis] = rays.w[axis][b];
         }
-        struct hit first = {.distance = __builtin_inf()};
-        if (!follow(work, &ray, &first)) return fibrad_work_discs_missed(work);
+        struct cast_hit first = {.distance = __builtin_inf()};
+        if (!follow_cast_ray(work, &ray, &first)) return fibrad_work_discs_missed(work);
         if (first.distance < __builtin_inf())
-            note(work, &first, k, means != NULL);
+            count_hit(work, &first, k, means != NULL);
         else
-            leave(work, &ray);
+            count_exit(work, &ray);
     }
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     int status = fibrad_entries_row(&work->entries, scene, 1.0 / rule->rays, row);
@@ -222,6 +223,6 @@ int LANED(fibrad_cast_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     row->symmetric = 0;
     /* row->error stays: each half is a sample of half as many rays, its error sqrt 2 times as large, and they differ by
      * twice that of their mean; 0.65 to 1.9 times that was measured with quasi-random rays */
-    if (means != NULL) write_means(work, row, means);
+    if (means != NULL) write_cast_means(work, row, means);
     return FIBRAD_OK;
 }

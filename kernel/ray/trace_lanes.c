@@ -1,17 +1,17 @@
 /* trace_lanes.c - a ray to the first sphere. Compiled once per instruction set. SPDX-License-Identifier: MIT
  *
- * The list of near spheres goes through a sieve in floats, in lanes; distances to the few that pass are found in
+ * The list of near spheres is culled in floats, in lanes; distances to the few spheres that pass are computed in
  * doubles. */
 #include FIBRAD_LANES_HEADER
 #include "ray/tracer.h"
 #include "row/work.h"
 #include "scene/grid_walk.h"
 
-/* A ray sees no farther than this many periods along any periodic axis. */
-#define PERIODS 100.0
+/* A ray ends after this many periods along any periodic axis. */
+#define TRACE_PERIODS 100.0
 
-/* A ray, places relative to `base` and lengths in units of `unit`. */
-struct ray {
+/* A ray: positions relative to `base`, lengths in units of `unit`. */
+struct trace_ray {
     const fibrad_scene *scene;
     const double *o, *w;
     double base[3], unit, inverse; /* [L] */
@@ -19,7 +19,7 @@ struct ray {
 };
 
 /* The first sphere so far. */
-struct first {
+struct trace_first {
     double distance, depth; /* distance infinity: none */
     double c[3], across[3]; /* its centre, and that across the ray */
     double root;            /* half the chord */
@@ -27,14 +27,14 @@ struct first {
 };
 
 /* Of equal distances, as inside two spheres at once, the lesser depth counts. */
-static bool before(double distance, double depth, uint32_t sphere, const struct first *first) {
+static bool trace_before(double distance, double depth, uint32_t sphere, const struct trace_first *first) {
     if (distance != first->distance) return distance < first->distance;
     if (depth != first->depth) return depth < first->depth;
     return sphere < first->sphere;
 }
 
 /* Compares sphere j, at c, with the first so far. */
-static void meet(const struct ray *ray, uint32_t j, const double c[3], struct first *first) {
+static void intersect_sphere(const struct trace_ray *ray, uint32_t j, const double c[3], struct trace_first *first) {
     const double *w = ray->w;
     double r = ray->scene->r[j] * ray->inverse, e[3] = {c[0] - ray->o[0], c[1] - ray->o[1], c[2] - ray->o[2]};
     double depth = c[0] * w[0] + c[1] * w[1] + c[2] * w[2], along = e[0] * w[0] + e[1] * w[1] + e[2] * w[2];
@@ -43,42 +43,42 @@ static void meet(const struct ray *ray, uint32_t j, const double c[3], struct fi
     if (!(square > 0)) return;
     double root = fibrad_sqrt(square), distance = fibrad_max(0, along - root);
     bool ahead = ray->place != FIBRAD_NONE ? depth > 0 : along + root > 0;
-    if (!ahead || !before(distance, depth, j, first)) return;
-    *first = (struct first){distance, depth, {c[0], c[1], c[2]}, {across[0], across[1], across[2]}, root, j};
+    if (!ahead || !trace_before(distance, depth, j, first)) return;
+    *first = (struct trace_first){distance, depth, {c[0], c[1], c[2]}, {across[0], across[1], across[2]}, root, j};
 }
 
-/* One group of the list. */
-static void meet_group(const struct ray *ray, const fibrad_nearby *list, uint32_t group, const vf sieve[8],
-                       struct first *first) {
+/* Compares one group of the list. cull: the ray in floats, as below. */
+static void intersect_group(const struct trace_ray *ray, const fibrad_nearby *list, uint32_t group, const vf cull[8],
+                            struct trace_first *first) {
     const fibrad_scene *scene = ray->scene;
     for (uint32_t k = group * FIBRAD_GROUP; k < (group + 1) * FIBRAD_GROUP; k += VF_LANES) {
         vf x = vf_load(list->x + k), y = vf_load(list->y + k), z = vf_load(list->z + k);
-        vf depth = vf_add(vf_add(vf_mul(sieve[0], x), vf_mul(sieve[1], y)), vf_mul(sieve[2], z));
-        vf twice = vf_add(vf_add(vf_mul(sieve[3], x), vf_mul(sieve[4], y)), vf_mul(sieve[5], z));
-        vf from = vf_sub(depth, sieve[6]);
-        uint32_t bits = vf_lt_bits(vf_sub(vf_load(list->q + k), twice), vf_mul(from, from));
-        bits &= vf_lt_bits(sieve[7], depth);
+        vf depth = cull[0] * x + cull[1] * y + cull[2] * z;
+        vf twice = cull[3] * x + cull[4] * y + cull[5] * z;
+        vf from = depth - cull[6];
+        uint32_t bits = vf_lt_bits(vf_load(list->q + k) - twice, from * from);
+        bits &= vf_lt_bits(cull[7], depth);
         for (; bits != 0; bits &= bits - 1) {
             uint32_t at = k + (uint32_t)__builtin_ctz(bits), j = list->sphere[at];
             const int8_t *periods = list->periods[at];
             double c[3] = {(scene->x[j] - ray->base[0] + periods[0] * scene->period[0]) * ray->inverse,
                            (scene->y[j] - ray->base[1] + periods[1] * scene->period[1]) * ray->inverse,
                            (scene->z[j] - ray->base[2] + periods[2] * scene->period[2]) * ray->inverse};
-            meet(ray, j, c, first);
+            intersect_sphere(ray, j, c, first);
         }
     }
 }
 
 /* Where the ray enters and leaves, from length `from` on, the box of the grid (0: that of all centres), widened by the
- * largest radius; along periodic axes it ends after PERIODS. */
-static void cross(const struct ray *ray, bool grid, double *enter, double *leave) {
+ * largest radius; along periodic axes it ends after TRACE_PERIODS. */
+static void cross_box(const struct trace_ray *ray, bool grid, double *enter, double *leave) {
     const fibrad_scene *scene = ray->scene;
     double wide = scene->facts.radius_max * (1 + 1e-9);
     *leave = __builtin_inf();
     for (int axis = 0; axis < 3; axis++) {
         double w = ray->w[axis];
         if (scene->period[axis] > 0) {
-            if (w != 0) *leave = fibrad_min(*leave, PERIODS * scene->period[axis] * ray->inverse / fibrad_abs(w));
+            if (w != 0) *leave = fibrad_min(*leave, TRACE_PERIODS * scene->period[axis] * ray->inverse / fibrad_abs(w));
             continue;
         }
         double low = (grid ? scene->box_low : scene->low)[axis] - wide - ray->base[axis];
@@ -94,7 +94,7 @@ static void cross(const struct ray *ray, bool grid, double *enter, double *leave
 }
 
 /* Compares all spheres that the ray meets between the lengths `from` and `to`; it may meet others. */
-static void meet_stretch(const struct ray *ray, double from, double to, struct first *first) {
+static void intersect_stretch(const struct trace_ray *ray, double from, double to, struct trace_first *first) {
     const fibrad_scene *scene = ray->scene;
     for (uint32_t l = 0; l < scene->levels; l++) {
         double low[3], high[3], wide = scene->level[l].radius_max * (1 + 1e-9);
@@ -112,18 +112,18 @@ static void meet_stretch(const struct ray *ray, double from, double to, struct f
                 double c[3] = {(scene->x[j] - ray->base[0] + walk.shift[0]) * ray->inverse,
                                (scene->y[j] - ray->base[1] + walk.shift[1]) * ray->inverse,
                                (scene->z[j] - ray->base[2] + walk.shift[2]) * ray->inverse};
-                if (j != ray->place || image) meet(ray, j, c, first);
+                if (j != ray->place || image) intersect_sphere(ray, j, c, first);
             }
         }
     }
 }
 
-/* Goes on through the grid from length `from`, spacing by spacing; outside the box of the grid, where only stray
+/* Continues through the grid from length `from`, spacing by spacing; outside the box of the grid, where only stray
  * spheres can be, in strides that grow. */
-static void march(const struct ray *ray, double from, struct first *first) {
+static void march_ray(const struct trace_ray *ray, double from, struct trace_first *first) {
     double step = ray->scene->spacing * ray->inverse, enter = fibrad_min(from, 0), leave, begin = enter, end;
-    cross(ray, true, &enter, &leave);
-    cross(ray, false, &begin, &end);
+    cross_box(ray, true, &enter, &leave);
+    cross_box(ray, false, &begin, &end);
     from = fibrad_max(from, begin);
     for (double stride = step; from < end && !(first->distance <= from);) {
         double to = from + stride, bound = end;
@@ -134,12 +134,12 @@ static void march(const struct ray *ray, double from, struct first *first) {
         stride = from >= enter && from < leave ? step : 1.5 * stride;
         to = fibrad_min(to, bound);
         if (!(to > from)) to = end; /* rounding */
-        meet_stretch(ray, from, to, first);
+        intersect_stretch(ray, from, to, first);
         from = to;
     }
 }
 
-static void tell(const struct ray *ray, const struct first *first, fibrad_hit *hit) {
+static void write_hit(const struct trace_ray *ray, const struct trace_first *first, fibrad_hit *hit) {
     hit->sphere = FIBRAD_NONE;
     if (!(first->distance < __builtin_inf())) return;
     hit->sphere = first->sphere;
@@ -155,30 +155,32 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
     const fibrad_scene *scene = tracer->scene;
     const fibrad_nearby *list = fibrad_tracer_nearby(tracer, place);
     double unit = scene->r[place];
-    struct ray ray = {scene, n, w, {scene->x[place], scene->y[place], scene->z[place]}, unit, 1 / unit, place};
-    struct first first = {.distance = __builtin_inf()};
-    vf sieve[8] = {vf_set1((float)w[0]),
-                   vf_set1((float)w[1]),
-                   vf_set1((float)w[2]),
-                   vf_set1((float)(2 * n[0])),
-                   vf_set1((float)(2 * n[1])),
-                   vf_set1((float)(2 * n[2])),
-                   vf_set1((float)(n[0] * w[0] + n[1] * w[1] + n[2] * w[2])),
-                   vf_set1(-list->behind)};
+    struct trace_ray ray = {scene, n, w, {scene->x[place], scene->y[place], scene->z[place]}, unit, 1 / unit, place};
+    struct trace_first first = {.distance = __builtin_inf()};
+    vf cull[8] = {vf_set1((float)w[0]),
+                  vf_set1((float)w[1]),
+                  vf_set1((float)w[2]),
+                  vf_set1((float)(2 * n[0])),
+                  vf_set1((float)(2 * n[1])),
+                  vf_set1((float)(2 * n[2])),
+                  vf_set1((float)(n[0] * w[0] + n[1] * w[1] + n[2] * w[2])),
+                  vf_set1(-list->behind)};
     for (uint32_t group = 0; group < list->groups && !(first.distance < list->clear[group]); group++)
-        meet_group(&ray, list, group, sieve, &first);
+        intersect_group(&ray, list, group, cull, &first);
     double known = list->clear[list->groups];
     /* spheres that overlap this one count even behind the start, if their centres are ahead */
     double from = known >= 0 ? known : -(n[0] * w[0] + n[1] * w[1] + n[2] * w[2]);
-    if (!(first.distance < known)) march(&ray, from, &first);
-    tell(&ray, &first, hit);
+    if (!(first.distance < known)) march_ray(&ray, from, &first);
+    write_hit(&ray, &first, hit);
 }
 
 void LANED(fibrad_trace_point)(const fibrad_scene *scene, const double point[3], const double w[3], fibrad_hit *hit) {
     static const double origin[3] = {0, 0, 0};
-    struct ray ray = {scene,      origin, w, {point[0], point[1], point[2]}, scene->spacing, 1 / scene->spacing,
-                      FIBRAD_NONE};
-    struct first first = {.distance = __builtin_inf()};
-    march(&ray, 0, &first);
-    tell(&ray, &first, hit);
+    hit->sphere = FIBRAD_NONE;
+    if (scene->facts.spheres == 0) return;
+    struct trace_ray ray = {scene,      origin, w, {point[0], point[1], point[2]}, scene->spacing, 1 / scene->spacing,
+                            FIBRAD_NONE};
+    struct trace_first first = {.distance = __builtin_inf()};
+    march_ray(&ray, 0, &first);
+    write_hit(&ray, &first, hit);
 }

@@ -2,10 +2,9 @@
  */
 #include "row/beam.h"
 #include "row/beam_lanes.h"
-#include "sample/direction.h"
 
-#define DIRECTIONS 233u
-#define PILOT      100u /* directions to begin with, if there is a tolerance */
+#define BEAM_DIRECTIONS 233u
+#define BEAM_PILOT      100u /* directions to begin with, if there is a tolerance */
 
 /* In steps of an eighth, each of which takes a sixth off the error, to a little less than is wanted; a fifth more in
  * any case, for rows whose error falls more slowly. */
@@ -15,23 +14,10 @@ uint32_t fibrad_directions_for(uint32_t directions, double error, double toleran
     return n < FIBRAD_DIRECTIONS_MAX ? (uint32_t)n : FIBRAD_DIRECTIONS_MAX;
 }
 
-/* Windows of points are turned by five golden angles each, so that the points of one do not lie as those of its
- * neighbours: of what was tried the error is least, half of that without, at 2000 directions of 256 points. */
-void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]) {
-    fibrad_polar d = fibrad_direction_polar(k, directions);
-    double across[2][3] = {{-d.sin, d.cos, 0}, {-d.z * d.cos, -d.z * d.sin, d.ring}}, cos = 1, sin = 0;
-    if (points > 0) fibrad_azimuth(5 * k % FIBRAD_DIRECTIONS_MAX, &cos, &sin);
-    for (int axis = 0; axis < 3; axis++) {
-        double u = across[0][axis], v = across[1][axis];
-        frame[axis] = cos * u + sin * v, frame[3 + axis] = cos * v - sin * u;
-    }
-    frame[6] = d.ring * d.cos, frame[7] = d.ring * d.sin, frame[8] = d.z;
-}
-
 int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) {
     *rule = given != NULL ? *given : (fibrad_beam_rule){0};
     if (!(rule->tolerance >= 0 && fibrad_finite(rule->tolerance))) return FIBRAD_E_ARGUMENT;
-    if (rule->directions == 0) rule->directions = rule->tolerance > 0 ? PILOT : DIRECTIONS;
+    if (rule->directions == 0) rule->directions = rule->tolerance > 0 ? BEAM_PILOT : BEAM_DIRECTIONS;
     if (rule->directions < FIBRAD_DIRECTIONS_MIN || rule->directions > FIBRAD_DIRECTIONS_MAX) return FIBRAD_E_ARGUMENT;
     return rule->cutoff >= 0 && fibrad_finite(rule->cutoff) ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }

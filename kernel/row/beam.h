@@ -1,12 +1,8 @@
-/* beam.h - the windows of a beam rule. SPDX-License-Identifier: MIT */
+/* beam.h - beam rows for other methods. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_ROW_BEAM_H
 #define FIBRAD_ROW_BEAM_H
 
 #include "row/row.h"
-
-/* The axes of window k of a rule: two unit vectors across its direction, and the direction. points: 0 for exact areas.
- */
-void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]);
 
 /* Completes and checks a rule; NULL is all defaults. Errors: _ARGUMENT. */
 int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule);

@@ -2,16 +2,11 @@
  * MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
-#include "row/beam.h"
+#include "sample/direction.h"
 #include "row/beam_lanes.h"
 #include "row/wall_share_lanes.h"
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
-
-/* In a packed bed the first shell has 275 spheres, and two shells fit into the default memory. Of the pairs tried, from
- * (2.4, 1.25) to (5.5, 1.2), this was the fastest at 100 directions, with (4.2, 1.4); by 8 % over (3, 1.4) in points.
- */
-#define SHELLS ((fibrad_stride){3.9, 1.5})
 
 int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
                              const fibrad_beam_rule *rule, fibrad_row *row) {
@@ -23,7 +18,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     }
     work->areas.overflow = false;
     work->areas.fallbacks = 0;
-    fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, SHELLS);
+    fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
     double open[2] = {0, 0};
     for (uint32_t k = 0; k < directions; k++) {
         double frame[9];

@@ -1,56 +1,57 @@
-/* neighbours_lanes.c - shells of spheres near the one in hand, and marches along one direction. Compiled once per
+/* neighbours_lanes.c - shells of spheres near that of the row, and marches along one direction. Compiled once per
  * instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
 #include "row/neighbours_lanes.h"
 #include "scene/grid_walk.h"
 
-/* What the sieves compare, for spheres [from, to) of the list. They are in floats and may let a sphere pass that the
- * exact test then refuses, but not the other way round: three products and two sums err by less than 4 ulp of the
- * distance, squares of them by less than 40 of its square. Beyond the range of floats they let all pass. */
-static void floats(fibrad_near *near, uint32_t from, uint32_t to) {
+/* The floats of the culls, for spheres [from, to) of the list. A cull may pass a sphere that the exact test then
+ * rejects, but not the other way round: the errors of three products and two sums are less than 4 ulp of the distance,
+ * those of their squares less than 40 ulp of its square. Beyond the range of floats a cull passes all. */
+static void prepare_culls(fibrad_near *near, uint32_t from, uint32_t to) {
     const vd one = vd_set1(1), zero = vd_set1(0);
     for (uint32_t k = from; k < to; k += VD_LANES) {
         vd x = vd_load(near->x + k), y = vd_load(near->y + k), z = vd_load(near->z + k), r = vd_load(near->r + k);
-        vd square = vd_add(vd_add(vd_mul(x, x), vd_mul(y, y)), vd_mul(z, z)), wide = vd_add(one, r);
-        vd size = vd_add(vd_add(vd_abs(x), vd_abs(y)), vd_abs(z)); /* at least the distance */
-        vd e = vd_sqrt(vd_max(vd_sub(square, vd_mul(wide, wide)), zero)), about = vd_add(one, size);
-        vd q = vd_sub(vd_add(square, one), vd_mul(r, r));
+        vd square = x * x + y * y + z * z, wide = one + r;
+        vd size = vd_abs(x) + vd_abs(y) + vd_abs(z); /* at least the distance */
+        vd e = vd_sqrt(vd_max(square - wide * wide, zero)), about = one + size;
+        vd q = square + one - r * r;
         vm small = vd_lt(size, vd_set1(1e18));
         vd_store_float(near->fx + k, vd_select(small, x, zero));
         vd_store_float(near->fy + k, vd_select(small, y, zero));
         vd_store_float(near->fz + k, vd_select(small, z, zero));
-        vd_store_float(near->fe + k, vd_select(small, vd_sub(e, vd_mul(vd_set1(1e-6), size)), vd_set1(-1)));
-        q = vd_sub(q, vd_mul(vd_set1(4e-6), vd_mul(about, about)));
+        vd_store_float(near->fe + k, vd_select(small, e - 1e-6 * size, vd_set1(-1)));
+        q -= 4e-6 * (about * about);
         vd_store_float(near->fq + k, vd_select(small, q, vd_set1(-FLT_MAX)));
     }
 }
 
-/* Thickness of the layers of a march: thinner ones hug the beam more closely, but there are more of them. */
+/* Thickness of the layers of a march: thinner ones enclose the beam more closely, but there are more of them. */
 #define LAYER_CELLS 1.5
 
 /* Coordinates of spheres of the run in hand, relative to the centre and in units of the radius. */
-static inline vd placed(const fibrad_workspace *work, const fibrad_walk *walk, int axis, const double *coordinate) {
-    vd c = vd_sub(vd_loadu(coordinate), vd_set1(work->centre[axis]));
-    return vd_mul(vd_add(c, vd_set1(walk->shift[axis])), vd_set1(work->inverse));
+static inline vd relative_to_centre(const fibrad_workspace *work, const fibrad_walk *walk, int axis,
+                                    const double *coordinate) {
+    vd c = vd_loadu(coordinate) - work->centre[axis];
+    return (c + walk->shift[axis]) * work->inverse;
 }
 
-/* Appends those of the spheres on a walk whose squared emergence lies in (from, to]. False: no room. */
-static bool collect(fibrad_workspace *work, fibrad_walk *walk, double from, double to, uint32_t *count) {
+/* Appends those of the spheres on a walk whose squared minimum depth lies in (from, to]. False: no room. */
+static bool collect_near(fibrad_workspace *work, fibrad_walk *walk, double from, double to, uint32_t *count) {
     const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
     const fibrad_scene scene = *work->scene;
-    const vd inverse = vd_set1(work->inverse), reach = vd_set1(work->reach * work->reach), zero = vd_set1(0);
+    const vd inverse = vd_set1(work->inverse), cutoff2 = vd_set1(work->reach * work->reach), zero = vd_set1(0);
     uint32_t n = *count;
     while (fibrad_walk_next(walk))
         for (uint32_t j = walk->begin; j < walk->end; j += VD_LANES) {
-            vd x = placed(work, walk, 0, scene.x + j), y = placed(work, walk, 1, scene.y + j);
-            vd z = placed(work, walk, 2, scene.z + j);
-            vd r = vd_mul(vd_loadu(scene.r + j), inverse), wide = vd_add(vd_set1(1), r);
-            vd square = vd_add(vd_add(vd_mul(x, x), vd_mul(y, y)), vd_mul(z, z));
-            vd e = vd_sub(square, vd_mul(wide, wide));
-            vm other = vm_and(vd_lt(zero, square), vd_le(square, reach)); /* than the sphere itself */
-            vm emerges = vm_and(vd_lt(vd_set1(from), e), vd_le(e, vd_set1(to)));
-            uint32_t bits = vm_bits(vm_and(emerges, other)) & vd_lanes_below(walk->end - j);
+            vd x = relative_to_centre(work, walk, 0, scene.x + j), y = relative_to_centre(work, walk, 1, scene.y + j);
+            vd z = relative_to_centre(work, walk, 2, scene.z + j);
+            vd r = vd_loadu(scene.r + j) * inverse, wide = 1 + r;
+            vd square = x * x + y * y + z * z;
+            vd e = square - wide * wide;
+            vm other = vd_lt(zero, square) & vd_le(square, cutoff2); /* than the sphere itself */
+            vm in_range = vd_lt(vd_set1(from), e) & vd_le(e, vd_set1(to));
+            uint32_t bits = vm_bits(in_range & other) & vd_lanes_below(walk->end - j);
             if (n + VD_LANES > near.capacity) return false;
             vd_compress(near.x + n, bits, x);
             vd_compress(near.y + n, bits, y);
@@ -76,22 +77,22 @@ void LANED(fibrad_near_extend)(fibrad_workspace *work) {
             low[axis] = work->centre[axis] - ball, high[axis] = work->centre[axis] + ball;
         fibrad_walk walk;
         fibrad_walk_begin(&walk, scene, &scene->level[l], low, high);
-        near->full = !collect(work, &walk, shell > 0 ? from * from : -__builtin_inf(), to * to, &count);
+        near->full = !collect_near(work, &walk, shell > 0 ? from * from : -__builtin_inf(), to * to, &count);
     }
     if (near->full) return;
     for (; count % 16 != 0; count++) { /* the capacity is a multiple of 16 */
         near->x[count] = near->y[count] = near->z[count] = near->r[count] = 0;
         near->sphere[count] = 0;
     }
-    floats(near, begin, count);
+    prepare_culls(near, begin, count);
     for (uint32_t k = begin; k < count; k++) near->entry[k] = FIBRAD_NONE;
     near->end[shell] = count;
     near->limit[shell] = to;
     near->shells++;
 }
 
-/* Leaves out the discs from number `from` on that do not overlap the window or do not lie ahead. */
-static void leave_out(fibrad_workspace *work, uint32_t from) {
+/* Removes the discs from number `from` on that do not overlap the window or do not lie ahead. */
+static void remove_not_ahead(fibrad_workspace *work, uint32_t from) {
     const fibrad_discs disc = work->disc;
     uint32_t to = from, own = work->near.capacity;
     for (uint32_t k = from; k < disc.count; k++) {
@@ -104,9 +105,7 @@ static void leave_out(fibrad_workspace *work, uint32_t from) {
     work->disc.count = to;
 }
 
-static inline vd along(const double a[3], vd x, vd y, vd z) {
-    return vd_add(vd_add(vd_mul(vd_set1(a[0]), x), vd_mul(vd_set1(a[1]), y)), vd_mul(vd_set1(a[2]), z));
-}
+static inline vd component(const double a[3], vd x, vd y, vd z) { return a[0] * x + a[1] * y + a[2] * z; }
 
 void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uint32_t found) {
     const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
@@ -116,56 +115,57 @@ void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uin
         work->disc.count = end;
         return;
     }
-    fibrad_zero(disc.near + end, VD_LANES * sizeof *disc.near); /* looked up, too, in the last vector */
-    uint32_t outside = 0;                                       /* of the window, or not surely ahead */
+    fibrad_zero(disc.near + end, VD_LANES * sizeof *disc.near); /* read, too, in the last vector */
+    uint32_t outside = 0;                                       /* the window, or not certainly ahead */
     for (uint32_t k = from; k < end; k += VD_LANES) {
         const uint32_t *place = disc.near + k;
         vd x = vd_gather(near.x, place), y = vd_gather(near.y, place), z = vd_gather(near.z, place);
-        vd u = along(frame, x, y, z), v = along(frame + 3, x, y, z), depth = along(frame + 6, x, y, z);
-        vd r = vd_gather(near.r, place), wide = vd_add(vd_set1(1), r);
-        vm overlaps = vd_lt(vd_add(vd_mul(u, u), vd_mul(v, v)), vd_mul(wide, wide));
+        vd u = component(frame, x, y, z), v = component(frame + 3, x, y, z), depth = component(frame + 6, x, y, z);
+        vd r = vd_gather(near.r, place), wide = 1 + r;
+        vm overlaps = vd_lt(u * u + v * v, wide * wide);
         vm ahead = vd_lt(vd_set1(0), depth);
         vd_storeu(disc.u + k, u);
         vd_storeu(disc.v + k, v);
         vd_storeu(disc.r + k, r);
         vd_storeu(disc.depth + k, depth);
-        outside |= ~vm_bits(vm_and(overlaps, ahead)) & vd_lanes_below(end - k);
+        outside |= ~vm_bits(overlaps & ahead) & vd_lanes_below(end - k);
     }
     work->disc.count = end;
-    if (outside != 0) leave_out(work, from);
+    if (outside != 0) remove_not_ahead(work, from);
 }
 
-/* The part of a march in hand: spheres whose squared emergence lies in (from, to], and whose place along an axis, in
- * the sense of the beam, in [edge, end). */
-typedef struct fibrad_layer {
+/* A part of a march: spheres whose squared minimum depth lies in (from, to], and whose coordinate along an axis, in the
+ * sense of the beam, in [edge, end). */
+typedef struct march_layer {
     int along;
     double sense, edge, end, from, to;
-} fibrad_layer;
+} march_layer;
 
-/* Appends the discs of the spheres on a walk, of which those at depth 0 may turn out not to lie ahead. */
-static void add_discs(fibrad_workspace *work, const double frame[9], fibrad_walk *walk, const fibrad_layer *layer) {
+/* Appends the discs of the spheres on a walk. Those at depth 0 may turn out not to lie ahead. */
+static void append_discs(fibrad_workspace *work, const double frame[9], fibrad_walk *walk, const march_layer *layer) {
     const fibrad_scene scene = *work->scene; /* copies: what is stored cannot change their pointers */
     const fibrad_discs disc = work->disc;
-    const vd inverse = vd_set1(work->inverse), reach = vd_set1(work->reach * work->reach), zero = vd_set1(0);
+    const vd inverse = vd_set1(work->inverse), cutoff2 = vd_set1(work->reach * work->reach), zero = vd_set1(0);
     uint32_t *sphere = work->near.sphere + work->near.capacity, n = disc.count;
     while (fibrad_walk_next(walk))
         for (uint32_t j = walk->begin; j < walk->end; j += VD_LANES) {
-            const vd c[3] = {placed(work, walk, 0, scene.x + j), placed(work, walk, 1, scene.y + j),
-                             placed(work, walk, 2, scene.z + j)};
-            vd r = vd_mul(vd_loadu(scene.r + j), inverse), wide = vd_add(vd_set1(1), r);
-            vd square = vd_add(vd_add(vd_mul(c[0], c[0]), vd_mul(c[1], c[1])), vd_mul(c[2], c[2]));
-            vd depth = along(frame + 6, c[0], c[1], c[2]), place = vd_mul(vd_set1(layer->sense), c[layer->along]);
-            wide = vd_mul(wide, wide);
-            vd e = vd_sub(square, wide);
-            vm in_layer = vm_and(vd_le(vd_set1(layer->edge), place), vd_lt(place, vd_set1(layer->end)));
-            vm emerges = vm_and(vd_lt(vd_set1(layer->from), e), vd_le(e, vd_set1(layer->to)));
-            vm other = vm_and(vd_lt(zero, square), vd_le(square, reach)); /* than the sphere itself */
-            vm ahead = vm_and(vd_le(zero, depth), vd_le(e, vd_mul(vd_mul(depth, depth), vd_set1(1 + 1e-12))));
-            uint32_t bits = vm_bits(vm_and(vm_and(in_layer, emerges), vm_and(other, ahead)));
+            const vd c[3] = {relative_to_centre(work, walk, 0, scene.x + j),
+                             relative_to_centre(work, walk, 1, scene.y + j),
+                             relative_to_centre(work, walk, 2, scene.z + j)};
+            vd r = vd_loadu(scene.r + j) * inverse, wide = 1 + r;
+            vd square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+            vd depth = component(frame + 6, c[0], c[1], c[2]), place = layer->sense * c[layer->along];
+            wide *= wide;
+            vd e = square - wide;
+            vm in_layer = vd_le(vd_set1(layer->edge), place) & vd_lt(place, vd_set1(layer->end));
+            vm in_range = vd_lt(vd_set1(layer->from), e) & vd_le(e, vd_set1(layer->to));
+            vm other = vd_lt(zero, square) & vd_le(square, cutoff2); /* than the sphere itself */
+            vm ahead = vd_le(zero, depth) & vd_le(e, depth * depth * (1 + 1e-12));
+            uint32_t bits = vm_bits(in_layer & in_range & other & ahead);
             bits &= vd_lanes_below(walk->end - j);
             if (bits == 0) continue;
-            vd u = along(frame, c[0], c[1], c[2]), v = along(frame + 3, c[0], c[1], c[2]);
-            bits &= vm_bits(vd_lt(vd_add(vd_mul(u, u), vd_mul(v, v)), wide));
+            vd u = component(frame, c[0], c[1], c[2]), v = component(frame + 3, c[0], c[1], c[2]);
+            bits &= vm_bits(vd_lt(u * u + v * v, wide));
             if (n <= disc.capacity) {
                 vd_compress(disc.depth + n, bits, depth);
                 vd_compress(disc.u + n, bits, u);
@@ -178,9 +178,9 @@ static void add_discs(fibrad_workspace *work, const double frame[9], fibrad_walk
     work->disc.count = n;
 }
 
-/* How far it is from `edge`, a place along an axis, to where the grid begins, or, beyond the grid, for ever: only stray
- * spheres are there. 0 within the grid and on a periodic axis. */
-static double outside(const fibrad_workspace *work, int axis, double sense, double edge) {
+/* The distance from `edge`, a coordinate along an axis, to where the grid begins, or, beyond the grid, infinity: only
+ * stray spheres are there. 0 within the grid and on a periodic axis. */
+static double distance_to_grid(const fibrad_workspace *work, int axis, double sense, double edge) {
     const fibrad_scene *scene = work->scene;
     if (scene->period[axis] > 0) return 0;
     const double low = (scene->box_low[axis] - work->centre[axis]) * sense * work->inverse;
@@ -189,15 +189,16 @@ static double outside(const fibrad_workspace *work, int axis, double sense, doub
     return fibrad_max(0, fibrad_min(low, high) - edge);
 }
 
-/* Spheres of one level, emerging in (from, to], lie in a stretch of the tube of radius 1 + r about the beam, or of
- * radius r about a ray of it. It is cut into layers across the axis the beam is most nearly along, so that the boxes
- * walked hug the tube. Outside the grid layers grow, up to where the tube passes one period of another axis. */
+/* Spheres of one level, of minimum depth in (from, to], lie in a stretch of the tube of radius 1 + r about the beam, or
+ * of radius r about a ray of it. It is cut into layers across the axis the beam is most nearly along, so that the boxes
+ * walked enclose the tube closely. Outside the grid layers grow, up to where the tube passes one period of another
+ * axis. */
 static void march_level(fibrad_workspace *work, const fibrad_level *level, const double frame[9],
                         const fibrad_tube *tube, double from, double to) {
     const fibrad_scene *scene = work->scene;
     const double *w = frame + 6, radius = level->radius_max * work->inverse;
     const double wide = tube->radius + radius, deepest = fibrad_sqrt(to * to + (1 + radius) * (1 + radius));
-    double middle[3], lateral[3]; /* the tube's cross-section: place and reach */
+    double middle[3], lateral[3]; /* the tube's cross-section: centre and half extents */
     int a = 0;
     for (int axis = 0; axis < 3; axis++) {
         middle[axis] = tube->u * frame[axis] + tube->v * frame[3 + axis];
@@ -216,12 +217,12 @@ static void march_level(fibrad_workspace *work, const fibrad_level *level, const
         double stop = sense > 0 ? scene->high[a] - work->centre[a] : work->centre[a] - scene->low[a];
         first = fibrad_max(first, start * work->inverse), last = fibrad_min(last, stop * work->inverse);
     }
-    /* layers [edge, edge + thick) along that axis, in radii from the centre; they need not match the cells, but then a
-     * sphere could be met twice: its own place along the axis decides which layer it belongs to */
+    /* layers [edge, edge + thick) along that axis, in radii from the centre. They need not match the cells, and then a
+     * sphere could be met twice: its own coordinate along the axis decides which layer it belongs to */
     const double least = fibrad_min(stride, LAYER_CELLS * level->cell[a] * work->inverse);
     double thick = least;
     for (double edge = first; edge <= last; edge += thick) {
-        double clear = outside(work, a, sense, edge);
+        double clear = distance_to_grid(work, a, sense, edge);
         thick = clear > least ? fibrad_min(fibrad_min(2 * thick, stride), clear) : least;
         double height = edge - sense * middle[a], low[3], high[3];
         double near_depth = fibrad_max((height - side) / slope, begin);
@@ -236,10 +237,10 @@ static void march_level(fibrad_workspace *work, const fibrad_level *level, const
             low[axis] = work->centre[axis] + low[axis] * work->unit;
             high[axis] = work->centre[axis] + high[axis] * work->unit;
         }
-        const fibrad_layer layer = {a, sense, edge, edge + thick, from < 0 ? -__builtin_inf() : from * from, to * to};
+        const march_layer layer = {a, sense, edge, edge + thick, from < 0 ? -__builtin_inf() : from * from, to * to};
         fibrad_walk walk;
         fibrad_walk_begin(&walk, scene, level, low, high);
-        add_discs(work, frame, &walk, &layer);
+        append_discs(work, frame, &walk, &layer);
     }
 }
 
@@ -254,5 +255,5 @@ void LANED(fibrad_near_march)(fibrad_workspace *work, const double frame[9], con
         work->near.entry[own + k] = FIBRAD_NONE;
         ahead = ahead && work->disc.depth[k] > 0;
     }
-    if (!ahead) leave_out(work, first);
+    if (!ahead) remove_not_ahead(work, first);
 }

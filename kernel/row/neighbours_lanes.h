@@ -10,16 +10,16 @@
 void LANED(fibrad_near_extend)(fibrad_workspace *work);
 
 /* Appends the discs of `found` near spheres to work->disc, where their places are listed already, if they overlap the
- * window and lie ahead. Beyond its capacity they are only counted, all of them. */
+ * window and lie ahead. Beyond its capacity all of them are counted, and no more. */
 void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uint32_t found);
 
-/* The part of a beam that is asked for: all of it (0, 0, 1), or the ray at place (u, v) of its window (u, v, 0). */
+/* A part of a beam: all of it (0, 0, 1), or the ray at (u, v) of its window (u, v, 0). */
 typedef struct fibrad_tube {
     double u, v, radius;
 } fibrad_tube;
 
-/* Appends to work->disc those before the window of direction w whose emergence lies in (from, to]; from < 0: those
- * in contact too. Discs that do not reach the tube may be left out. frame: two unit vectors across w, and w. */
+/* Appends to work->disc those before the window of direction w whose minimum depth lies in (from, to]; from < 0: those
+ * in contact too. Discs that do not overlap the tube may be missing. frame: two unit vectors across w, and w. */
 void LANED(fibrad_near_march)(fibrad_workspace *work, const double frame[9], const fibrad_tube *tube, double from,
                               double to);
 

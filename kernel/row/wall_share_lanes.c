@@ -3,30 +3,28 @@
  *
  * A window has one direction, but stands for all that are nearer to its own than to others. Far walls are told apart by
  * direction alone: with one direction their factors would jump, and err as n^-0.75. Therefore each open point of the
- * window is followed in a direction of its own, from a disc about that of the window; such discs cover the sphere about
- * once. Where spheres hide part of a window, its neighbours are hidden in part too, and the disc is taken smaller, or
- * walls would be seen that are not. How much is open is not touched by this. docs/methods.md section 9. */
+ * window is traced in a direction of its own, from a disc about that of the window; such discs cover the sphere about
+ * once. Where spheres hide part of a window, its neighbours are hidden in part too, and the disc is smaller, or walls
+ * would be visible that are hidden. The open area does not depend on this. docs/methods.md section 9. */
 #include FIBRAD_LANES_HEADER
+#include "base/constants.h"
 #include "row/wall_share_lanes.h"
 #include "sample/direction.h"
 #include "scene/walls.h"
+#include "window/points_lanes.h"
 
-#define PI 3.14159265358979323846
-
-#define POINTS  128u
-#define PAIRING 45u /* the direction of point p is number PAIRING p + SHIFT k of the same set, for window k */
-#define SHIFT   21u
+#define WALL_POINTS 128u
 
 /* Radius of the disc of directions, times sqrt n, if the window is open; for discs as large as the share of a direction
  * in the sphere it would be 2. */
-#define SPREAD 2.25
+#define WALL_SPREAD 2.25
 
 /* Half width of the band, likewise. F to a plane across x or y then errs by 4e-4 at n = 233. */
-#define BAND 4.0
+#define WALL_BAND 4.0
 
-/* Walls across one axis only, seen by a window that stands for a band of directions of some half width: what share of
- * it rises along the axis, the weights over the band being (1 - x^2)^2. */
-static double rising(double slope, double width) {
+/* Walls across one axis only, and a window that stands for a band of directions of some half width: the share of the
+ * band that rises along the axis, with weights (1 - x^2)^2 over it. */
+static double rising_share(double slope, double width) {
     if (!(fibrad_abs(slope) < width)) return slope > 0 ? 1 : slope < 0 ? 0 : 0.5;
     double x = slope / width, square = x * x;
     return 0.5 + 15.0 / 16 * x * (1 - square * (2.0 / 3 - square / 5));
@@ -40,35 +38,35 @@ static int only_axis(const fibrad_container *c) {
     return axes == 1 ? only : 3;
 }
 
-/* Turns the axes u, v of a frame; places in it turn the other way. */
-static void turn(double frame[9], double cos, double sin) {
+/* Rotates the axes u, v of a frame; coordinates in it rotate the other way. */
+static void rotate_frame(double frame[9], double cos, double sin) {
     for (int axis = 0; axis < 3; axis++) {
         double u = frame[axis], v = frame[3 + axis];
         frame[axis] = cos * u + sin * v, frame[3 + axis] = cos * v - sin * u;
     }
 }
 
-/* The points of the window that no disc in hand covers; all of them if there is none. */
-static fibrad_points open_points(const fibrad_workspace *work, double cos, double sin) {
-    fibrad_points points = {.count = POINTS, .open = POINTS, .seen = {UINT64_MAX, UINT64_MAX}};
-    (void)fibrad_disc_points_get(POINTS, &points.set);
+/* The points of the window that no disc of `work` covers; all of them if there is none. */
+static fibrad_points open_points_of(const fibrad_workspace *work, double cos, double sin) {
+    fibrad_points points = {.count = WALL_POINTS, .open = WALL_POINTS, .seen = {UINT64_MAX, UINT64_MAX}};
+    (void)fibrad_disc_points_get(WALL_POINTS, &points.set);
     const fibrad_discs *disc = &work->disc;
     for (uint32_t k = 0; k < disc->count && points.open > 0; k++) {
         double u = disc->u[k], v = disc->v[k];
         LANED(fibrad_points_disc)(&points, cos * u + sin * v, cos * v - sin * u, disc->r[k]);
     }
-    if (points.open == 0) points.open = POINTS, points.seen[0] = points.seen[1] = UINT64_MAX;
+    if (points.open == 0) points.open = WALL_POINTS, points.seen[0] = points.seen[1] = UINT64_MAX;
     return points;
 }
 
-/* The walls as sphere i sees them: in units of its radius, from its centre. */
-struct view {
+/* The walls in the frame of sphere i: in units of its radius, from its centre. */
+typedef struct wall_view {
     double low[3], high[3], axis[2], radius;
-};
+} wall_view;
 
-static struct view view_of(const fibrad_workspace *work) {
+static wall_view wall_view_of(const fibrad_workspace *work) {
     const fibrad_container *c = &work->scene->container;
-    struct view view = {.radius = c->radius * work->inverse};
+    wall_view view = {.radius = c->radius * work->inverse};
     for (int axis = 0; axis < 3; axis++) {
         view.low[axis] = (c->low[axis] - work->centre[axis]) * work->inverse;
         view.high[axis] = (c->high[axis] - work->centre[axis]) * work->inverse;
@@ -77,37 +75,37 @@ static struct view view_of(const fibrad_workspace *work) {
     return view;
 }
 
-/* The walls through which lines leave, as fibrad_walls_exit tells for one. */
-static vd exits(const struct view *view, const vd origin[3], const vd w[3]) {
+/* The walls through which lines leave, as fibrad_walls_exit has it for one. */
+static vd exit_walls(const wall_view *view, const vd origin[3], const vd w[3]) {
     const vd zero = vd_set1(0), one = vd_set1(1);
     vd least = vd_set1(__builtin_inf()), wall = vd_set1(FIBRAD_WALLS);
     for (int axis = 0; axis < 3; axis++) {
         vm down = vd_lt(w[axis], zero), level = vd_le(vd_abs(w[axis]), zero);
         vd at = vd_select(down, vd_set1(view->low[axis]), vd_set1(view->high[axis]));
-        vd t = vd_div(vd_sub(at, origin[axis]), vd_select(level, one, w[axis]));
+        vd t = (at - origin[axis]) / vd_select(level, one, w[axis]);
         vm nearer = vd_lt(vd_select(level, vd_set1(__builtin_inf()), t), least);
         vd number = vd_select(down, vd_set1(2 * axis), vd_set1(2 * axis + 1));
         least = vd_select(nearer, t, least), wall = vd_select(nearer, number, wall);
     }
     if (!(view->radius < __builtin_inf())) return wall;
-    vd x = vd_sub(origin[0], vd_set1(view->axis[0])), y = vd_sub(origin[1], vd_set1(view->axis[1]));
-    vd across = vd_add(vd_mul(w[0], w[0]), vd_mul(w[1], w[1])), along = vd_add(vd_mul(x, w[0]), vd_mul(y, w[1]));
-    vd inside = vd_sub(vd_set1(view->radius * view->radius), vd_add(vd_mul(x, x), vd_mul(y, y)));
-    vd root = vd_sqrt(vd_max(vd_add(vd_mul(along, along), vd_mul(across, inside)), zero));
+    vd x = origin[0] - view->axis[0], y = origin[1] - view->axis[1];
+    vd across = w[0] * w[0] + w[1] * w[1], along = x * w[0] + y * w[1];
+    vd inside = view->radius * view->radius - (x * x + y * y);
+    vd root = vd_sqrt(vd_max(along * along + across * inside, zero));
     vm away = vd_lt(zero, along), level = vd_le(across, zero);
-    vd t = vd_div(vd_select(away, inside, vd_sub(root, along)), vd_select(away, vd_add(along, root), across));
+    vd t = vd_select(away, inside, root - along) / vd_select(away, along + root, across);
     vm nearer = vd_lt(vd_select(level, vd_set1(__builtin_inf()), t), least);
     return vd_select(nearer, vd_set1(FIBRAD_CYLINDER), wall);
 }
 
-/* Follows the open points of window k, in directions from a disc of radius `spread`, and counts what they meet. */
-static void follow(const fibrad_points *points, const struct view *view, const double frame[9], double spread,
-                   uint32_t k, uint32_t count[FIBRAD_WALLS + 1]) {
+/* Traces the open points of window k, in directions from a disc of radius `spread`, and counts the walls they meet. */
+static void follow_wall_points(const fibrad_points *points, const wall_view *view, const double frame[9], double spread,
+                               uint32_t k, uint32_t count[FIBRAD_WALLS + 1]) {
     for (uint32_t word = 0; word < points->count / 64; word++) {
         if (points->seen[word] == 0) continue;
         _Alignas(64) float a[64], b[64];
         for (uint32_t lane = 0; lane < 64; lane++) {
-            const uint32_t q = (PAIRING * (64 * word + lane) + SHIFT * k) & (points->count - 1);
+            const uint32_t q = fibrad_points_partner(points->count, 64 * word + lane, k);
             a[lane] = points->set.x[q], b[lane] = points->set.y[q];
         }
         uint64_t packed = 0; /* eight counts of at most 64 */
@@ -115,15 +113,15 @@ static void follow(const fibrad_points *points, const struct view *view, const d
             uint32_t p = 64 * word + lane, bits = (uint32_t)(points->seen[word] >> lane) & ((1u << VD_LANES) - 1);
             if (bits == 0) continue;
             vd u = vd_load_float(points->set.x + p), v = vd_load_float(points->set.y + p), origin[3], w[3];
-            vd du = vd_mul(vd_load_float(a + lane), vd_set1(spread));
-            vd dv = vd_mul(vd_load_float(b + lane), vd_set1(spread));
+            vd du = vd_load_float(a + lane) * spread;
+            vd dv = vd_load_float(b + lane) * spread;
             for (int axis = 0; axis < 3; axis++) {
                 vd along_u = vd_set1(frame[axis]), along_v = vd_set1(frame[3 + axis]);
-                origin[axis] = vd_add(vd_mul(u, along_u), vd_mul(v, along_v));
-                w[axis] = vd_add(vd_set1(frame[6 + axis]), vd_add(vd_mul(du, along_u), vd_mul(dv, along_v)));
+                origin[axis] = u * along_u + v * along_v;
+                w[axis] = frame[6 + axis] + (du * along_u + dv * along_v);
             }
             _Alignas(64) double wall[VD_LANES];
-            vd_store(wall, exits(view, origin, w));
+            vd_store(wall, exit_walls(view, origin, w));
             for (; bits != 0; bits &= bits - 1) packed += UINT64_C(1) << 8 * (int)wall[__builtin_ctz(bits)];
         }
         for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) count[wall] += (uint32_t)(packed >> 8 * wall & 255);
@@ -134,11 +132,11 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
                                uint32_t n, double rest) {
     if (rest == 0) return;
     const fibrad_container *container = &work->scene->container;
-    const double open = rest / (points->count > 0 ? points->count : PI), step = open / fibrad_sqrt(n);
+    const double open = rest / (points->count > 0 ? points->count : FIBRAD_PI), step = open / fibrad_sqrt(n);
     const int only = only_axis(container);
     if (only < 3) {
         /* across z no band is needed: directions pair off, but for the one that lies level */
-        const double up = rest * rising(frame[6 + only], only == 2 ? 0 : BAND * step), down = rest - up;
+        const double up = rest * rising_share(frame[6 + only], only == 2 ? 0 : WALL_BAND * step), down = rest - up;
         work->wall[container->high[only] < __builtin_inf() ? 2 * only + 1 : FIBRAD_WALLS] += up;
         work->wall[container->low[only] > -__builtin_inf() ? 2 * only : FIBRAD_WALLS] += down;
         return;
@@ -148,11 +146,11 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
     fibrad_points own = *points;
     if (points->count == 0) {
         fibrad_azimuth(5 * k % FIBRAD_DIRECTIONS_MAX, &cos, &sin);
-        turn(turned, cos, sin);
-        own = open_points(work, cos, sin);
+        rotate_frame(turned, cos, sin);
+        own = open_points_of(work, cos, sin);
     }
-    const struct view view = view_of(work);
+    const wall_view view = wall_view_of(work);
     uint32_t count[FIBRAD_WALLS + 1] = {0};
-    follow(&own, &view, turned, SPREAD * step, k, count);
+    follow_wall_points(&own, &view, turned, WALL_SPREAD * step, k, count);
     for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) work->wall[wall] += rest * count[wall] / own.open;
 }

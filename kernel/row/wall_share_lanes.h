@@ -4,10 +4,10 @@
 
 #include "base/lanes/laned.h"
 #include "row/work.h"
-#include "window/points_lanes.h"
+#include "window/points.h"
 
-/* Adds `rest`, what is open of window k of n and thus meets no sphere, to work->wall by the walls it meets. points: as
- * the window has left them; count 0: areas are exact, and the discs in hand tell what is open. */
+/* Adds `rest`, the open part of window k of n, which meets no sphere, to work->wall by the walls it meets. points: as
+ * fibrad_beam_window has left them; count 0: areas are exact, and the discs of `work` decide what is open. */
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
                                uint32_t n, double rest);
 

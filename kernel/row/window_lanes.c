@@ -1,33 +1,34 @@
-/* window_lanes.c - what one window of a beam sees. Compiled once per instruction set. SPDX-License-Identifier: MIT
+/* window_lanes.c - resolves one window of a beam. Compiled once per instruction set. SPDX-License-Identifier: MIT
  *
  * Per direction, the window is the shadow disc of sphere i; the spheres ahead throw discs on it, nearest first. They
- * are looked up shell by shell: after a shell everything is known down to some depth, the discs up to there are settled
- * in the order of their depth, and most windows are covered before a second shell is asked for. */
+ * are found shell by shell: after a shell all discs down to some depth are known, and these are resolved in the order
+ * of their depth. Most windows are covered before a second shell is needed. */
 #include FIBRAD_LANES_HEADER
 #include "base/sort.h"
 #include "row/neighbours_lanes.h"
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
+#include "window/points_lanes.h"
 
-/* Appends the discs of one shell that come before the window. That the places are listed before they are used spares
- * one mispredicted branch for most vectors. */
-static void sieve(fibrad_workspace *work, const double frame[9], uint32_t shell) {
+/* Appends the discs of one shell that come before the window, after a cull in floats. That their places are listed
+ * before they are used saves one mispredicted branch for most vectors. */
+static void cull_for_window(fibrad_workspace *work, const double frame[9], uint32_t shell) {
     const fibrad_near *near = &work->near;
     const float *x = near->fx, *y = near->fy, *z = near->fz, *e = near->fe;
     uint32_t *from = work->disc.near + work->disc.count, *to = from;
     vf wx = vf_set1((float)frame[6]), wy = vf_set1((float)frame[7]), wz = vf_set1((float)frame[8]);
     size_t end = near->end[shell];
     for (size_t j = shell == 0 ? 0 : near->end[shell - 1]; j < end; j += VF_LANES) {
-        vf depth = vf_add(vf_add(vf_mul(wx, vf_load(x + j)), vf_mul(wy, vf_load(y + j))), vf_mul(wz, vf_load(z + j)));
+        vf depth = wx * vf_load(x + j) + wy * vf_load(y + j) + wz * vf_load(z + j);
         uint32_t bits = vf_lt_bits(vf_load(e + j), depth);
         to += vf_compress_places(to, bits, (uint32_t)j);
     }
     LANED(fibrad_near_discs)(work, frame, (uint32_t)(to - from));
 }
 
-/* Front to back. At equal depths discs of spheres that do not interpenetrate do not overlap; a fixed order all the
- * same, since they may touch. Settled ones stay in front. */
-static bool before(const fibrad_workspace *work, uint32_t k, uint32_t other) {
+/* Front to back. At equal depths discs of spheres that do not interpenetrate do not overlap, but they may touch; so
+ * their order is fixed, too. Resolved ones stay in front. */
+static bool disc_before(const fibrad_workspace *work, uint32_t k, uint32_t other) {
     const fibrad_discs *disc = &work->disc;
     if (disc->depth[k] != disc->depth[other]) return disc->depth[k] < disc->depth[other];
     uint32_t sphere = fibrad_work_sphere(work, k), second = fibrad_work_sphere(work, other);
@@ -35,30 +36,30 @@ static bool before(const fibrad_workspace *work, uint32_t k, uint32_t other) {
     return disc->u[k] != disc->u[other] ? disc->u[k] < disc->u[other] : disc->v[k] < disc->v[other];
 }
 
-static void sort_by_insertion(fibrad_workspace *work) {
+static void sort_discs_by_insertion(fibrad_workspace *work) {
     uint32_t *order = work->disc.order, count = work->disc.count;
     for (uint32_t k = 0; k < count; k++) order[k] = k;
     for (uint64_t gap = fibrad_sort_first_gap(count); gap > 0; gap = fibrad_sort_next_gap(gap))
         for (uint64_t k = gap; k < count; k++) {
             uint32_t moving = order[k];
             uint64_t to = k;
-            for (; to >= gap && before(work, moving, order[to - gap]); to -= gap) order[to] = order[to - gap];
+            for (; to >= gap && disc_before(work, moving, order[to - gap]); to -= gap) order[to] = order[to - gap];
             order[to] = moving;
         }
 }
 
-/* Lists all but the settled discs in order. Up to RANKED discs are sorted by counting, in lanes, how many lie before
- * each, which no branch depends on; insertion mispredicted 38 branches a window. Depths that floats do not tell apart
- * share a rank, and the ranks add up to less than they should. What makes the list whole eights, so that the number of
- * rounds can be predicted, is deeper than all. */
-#define RANKED 64
-static void sort(fibrad_workspace *work, uint32_t settled) {
-    _Alignas(64) float key[RANKED + FIBRAD_LANES_MAX];
-    _Alignas(64) uint32_t rank[RANKED + FIBRAD_LANES_MAX];
+/* Lists all but the resolved discs in order. Up to DISCS_RANKED of them are sorted by counting, in lanes, how many lie
+ * before each, which no branch depends on; insertion mispredicted 38 branches a window. Depths that are equal in floats
+ * share a rank, and the ranks then add up to less than they should. The list is padded to whole eights, so that the
+ * number of rounds can be predicted, with depths beyond all others. */
+#define DISCS_RANKED 64
+static void sort_discs(fibrad_workspace *work, uint32_t resolved) {
+    _Alignas(64) float key[DISCS_RANKED + FIBRAD_LANES_MAX];
+    _Alignas(64) uint32_t rank[DISCS_RANKED + FIBRAD_LANES_MAX];
     const double *depth = work->disc.depth;
     uint32_t count = work->disc.count, eights = (count + 7) / 8 * 8, *order = work->disc.order;
-    if (settled == count) return;
-    if (count <= RANKED) {
+    if (resolved == count) return;
+    if (count <= DISCS_RANKED) {
         for (uint32_t k = 0; k < count; k += VD_LANES) vd_store_float(key + k, vd_load(depth + k));
         for (uint32_t k = 0; k < 8; k++) key[count + k] = __builtin_inff();
         for (uint32_t k = 0; k < eights; k += VF_LANES) {
@@ -76,14 +77,15 @@ static void sort(fibrad_workspace *work, uint32_t settled) {
                 order[rank[k + l]] = k + l;
                 sum += rank[k + l];
             }
-        if (sum == (count * (count - 1) - settled * (settled - 1)) / 2 + (eights - count) * count) return;
+        if (sum == (count * (count - 1) - resolved * (resolved - 1)) / 2 + (eights - count) * count) return;
     }
-    sort_by_insertion(work);
+    sort_discs_by_insertion(work);
 }
 
-/* Settles discs [from, return) of the window, the ones down to `depth`. False in *open once the window is covered. */
-static uint32_t settle(fibrad_workspace *work, fibrad_points *points, uint32_t window, uint32_t from, double depth,
-                       bool *open) {
+/* Resolves discs [from, return) of the window, the ones down to `depth`: hides from the window what they cover. *open
+ * is false once the window is covered. */
+static uint32_t resolve_discs(fibrad_workspace *work, fibrad_points *points, uint32_t window, uint32_t from,
+                              double depth, bool *open) {
     const fibrad_discs disc = work->disc;
     uint32_t to = from;
     if (points->count == 0) {
@@ -91,14 +93,15 @@ static uint32_t settle(fibrad_workspace *work, fibrad_points *points, uint32_t w
         to = from + LANED(fibrad_areas_discs)(&work->areas, 0, disc.order + from, to - from, disc.u, disc.v, disc.r);
         *open = work->areas.open;
     } else {
-        to = LANED(fibrad_points_take)(points, &work->disc, from, depth);
+        to = LANED(fibrad_points_discs)(points, &work->disc, from, depth);
         *open = points->open > 0;
-        uint32_t *end = disc.taker; /* beyond `to` there are no hits */
-        for (uint32_t d = from; d < to; d += VF_LANES) end += vf_compress_places(end, vn_some_bits(disc.hits + d), d);
-        for (const uint32_t *taker = disc.taker; taker < end; taker++) {
-            uint32_t k = disc.order[*taker];
-            fibrad_work_see(work, k, window, (int32_t)disc.hits[*taker]);
-            points->taker[points->takers++] = k;
+        uint32_t *end = disc.occluder; /* beyond `to` no disc hides any */
+        for (uint32_t d = from; d < to; d += VF_LANES)
+            end += vf_compress_places(end, vn_some_bits(disc.hidden_points + d), d);
+        for (const uint32_t *rank = disc.occluder; rank < end; rank++) {
+            uint32_t k = disc.order[*rank];
+            fibrad_work_accumulate(work, k, window, (int32_t)disc.hidden_points[*rank]);
+            points->occluder[points->occluders++] = k;
         }
     }
     if (*open)
@@ -106,21 +109,20 @@ static uint32_t settle(fibrad_workspace *work, fibrad_points *points, uint32_t w
     return to;
 }
 
-/* One window: adds what it sees to the entries and returns what stays open, an area or a number of points. */
-static double look(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k) {
+double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k) {
     work->disc.count = 0;
     if (points->count == 0) LANED(fibrad_areas_begin)(&work->areas);
     points->open = points->count;
-    points->takers = 0;
+    points->occluders = 0;
     for (uint32_t word = 0; word < points->count / 64; word++) points->seen[word] = UINT64_MAX;
 
     bool open = true;
-    uint32_t settled = 0;
-    double known = -1, horizon = __builtin_inf(); /* all that emerges down to `known` has been looked up */
+    uint32_t resolved = 0;
+    double known = -1, horizon = __builtin_inf(); /* all spheres of minimum depth <= known are listed */
     for (uint32_t shell = 0; open && known < horizon; shell++) {
         if (shell == work->near.shells && fibrad_near_pays(&work->near)) LANED(fibrad_near_extend)(work);
         if (shell < work->near.shells) {
-            sieve(work, frame, shell);
+            cull_for_window(work, frame, shell);
             known = work->near.limit[shell];
         } else {
             double to = known < 0 ? work->step : work->growth * known;
@@ -129,16 +131,12 @@ static double look(fibrad_workspace *work, const double frame[9], fibrad_points 
         }
         if (work->disc.count > work->disc.capacity) break;
         if (known >= work->clear) horizon = fibrad_near_horizon(work, frame + 6);
-        sort(work, settled);
-        settled = settle(work, points, k, settled, known < horizon ? known : __builtin_inf(), &open);
+        sort_discs(work, resolved);
+        resolved = resolve_discs(work, points, k, resolved, known < horizon ? known : __builtin_inf(), &open);
     }
     if (points->count > 0) return points->open;
     double rest = LANED(fibrad_areas_end)(&work->areas);
     for (uint32_t c = 1; c < work->areas.circles; c++)
-        if (work->areas.area[c] > 0) fibrad_work_see(work, work->areas.whose[c], k, work->areas.area[c]);
+        if (work->areas.area[c] > 0) fibrad_work_accumulate(work, work->areas.whose[c], k, work->areas.area[c]);
     return rest;
-}
-
-double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k) {
-    return look(work, frame, points, k);
 }

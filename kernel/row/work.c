@@ -8,9 +8,11 @@
 #include "base/random.h"
 
 /* What a packed bed takes. */
-#define USUAL_NEAR    1024u
-#define USUAL_DISCS   256u
-#define USUAL_ENTRIES 1024u
+#define USUAL_NEAR     1024u
+#define USUAL_DISCS    256u
+#define USUAL_ENTRIES  1024u
+#define ENOUGH_DISCS   64u
+#define ENOUGH_ENTRIES 256u
 /* The least there may be of each. */
 #define LEAST_NEAR  16u
 #define LEAST_COUNT 4u
@@ -47,8 +49,8 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     disc->square = fibrad_arena_take(arena, discs, sizeof(float));
     disc->near = fibrad_arena_take(arena, discs + near->capacity, sizeof(uint32_t));
     disc->order = fibrad_arena_take(arena, discs, sizeof(uint32_t));
-    disc->hits = fibrad_arena_take(arena, discs, sizeof(uint32_t));
-    disc->taker = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    disc->hidden_points = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    disc->occluder = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     fibrad_areas_layout(&work->areas, arena, plan->discs);
 
     fibrad_entries *entries = &work->entries;
@@ -112,10 +114,10 @@ static uint32_t less_of(uint32_t count, uint32_t least) {
 static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t size) {
     while (bytes_of(plan) > size) {
         const bool entries_first = (size_t)plan->entries * 96 > (size_t)plan->discs * 768;
-        if (plan->near > least->near)
-            plan->near = less_of(plan->near, least->near);
-        else if (plan->extra > least->extra)
+        if (plan->extra > least->extra && (plan->extra > (size_t)plan->near * 64 || plan->near == least->near))
             plan->extra = plan->extra / 2 > least->extra ? plan->extra / 2 : least->extra;
+        else if (plan->near > least->near)
+            plan->near = less_of(plan->near, least->near);
         else if (plan->entries > least->entries && (entries_first || plan->discs == least->discs))
             plan->entries = less_of(plan->entries, least->entries);
         else if (plan->discs > least->discs)
@@ -129,6 +131,7 @@ static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t
 /* Lays out a plan in the block, in a larger one, or as much of it as there is room for, but no less than `least`. */
 static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan *least, fibrad_workspace **space) {
     fibrad_memory *memory = &work->memory;
+    const fibrad_work_plan wanted = {least->near, plan.discs, plan.entries, least->extra};
     size_t bytes = bytes_of(&plan);
     if (bytes == 0) return FIBRAD_E_ARGUMENT;
     work->inside = NULL;
@@ -139,11 +142,7 @@ static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan 
         memory->block = block;
         memory->size = bytes;
     } else if (memory->block == NULL || !shrink(&plan, least, memory->size)) {
-        /* at once what a next call would ask for, too */
-        fibrad_work_plan wanted = plan;
-        wanted.near = least->near;
         memory->needed = bytes_of(&wanted);
-        if (memory->needed < bytes_of(least)) memory->needed = bytes_of(least);
         return FIBRAD_E_WORK;
     }
     *space = lay_out_work(work, &plan);
@@ -166,6 +165,10 @@ int fibrad_work_open(fibrad_work *work, size_t extra_min, size_t extra_best, fib
     }
     const int status = fit(work, plan, &least, space);
     if (status == FIBRAD_OK) (*space)->least = least;
+    if (status == FIBRAD_E_WORK) { /* what most rows of a packed bed take, not what is fastest */
+        const fibrad_work_plan enough = {LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min};
+        work->memory.needed = bytes_of(&enough);
+    }
     return status;
 }
 

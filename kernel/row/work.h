@@ -18,16 +18,16 @@
  * known after s + 1 shells. Each shell begins on a whole vector; the gaps are filled with points at the centre, which
  * never lie ahead. */
 typedef struct fibrad_near {
-    float *fx, *fy, *fz, *fe; /* [capacity] centre and, a little less than, e: for the first sieve, ... */
+    float *fx, *fy, *fz, *fe; /* [capacity] centre and, a little less than, e: for the first cull, ... */
     float *fq;                /* ... and, a little less than, d^2 + 1 - r^2: for that of rays */
     double *x, *y, *z, *r;    /* [capacity] */
-    /* Place capacity + k is for disc k of a window that has looked it up on its own. */
+    /* Place capacity + k is for disc k of a window that has found it in the grid. */
     uint32_t *sphere; /* [capacity + discs + FIBRAD_LANES_MAX] place in the scene */
     uint32_t *entry;  /* [same] its entry in the row; FIBRAD_NONE: not seen so far */
     uint32_t capacity, shells;
     uint32_t end[FIBRAD_SHELLS]; /* where each shell ends */
     double limit[FIBRAD_SHELLS]; /* down to which depth windows are known with it */
-    bool full;                   /* no room for a further shell: windows look farther each on its own */
+    bool full;                   /* no room for a further shell: windows walk the grid instead */
     uint32_t asked;              /* how many windows have asked for one more than there are */
 } fibrad_near;
 
@@ -62,7 +62,7 @@ typedef struct fibrad_workspace {
     double unit, inverse;          /* its radius [L], and 1/radius */
     double centre[3];              /* [L] */
     double reach;                  /* the cutoff; infinity if there is none */
-    double step, growth;           /* how far the first shell looks, and how much farther each next one */
+    double step, growth;           /* depth of the first shell, and the ratio of each next one to it */
     double farthest;               /* no sphere is farther from i; infinity with periodic axes */
     double clear;                  /* no window has its horizon nearer than this */
     double wall[FIBRAD_WALLS + 1]; /* what meets each wall, and what meets none: areas, points or rays, then factors */
@@ -82,8 +82,8 @@ int fibrad_work_entries_missed(fibrad_workspace *space);
 /* Notes that more discs are needed, by what the window in hand has met, and returns FIBRAD_E_WORK. */
 int fibrad_work_discs_missed(fibrad_workspace *space);
 
-/* How far the shells look: the first one `first` mean spacings, the spacing being the cube root of the volume per
- * sphere, each next one `growth` times as far. A matter of speed alone. */
+/* Depth of the shells: the first one `first` mean spacings, the spacing being the cube root of the volume per
+ * sphere, each next one `growth` times as deep. A matter of speed alone. */
 typedef struct fibrad_stride {
     double first, growth;
 } fibrad_stride;
@@ -92,8 +92,8 @@ typedef struct fibrad_stride {
 void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32_t place, double cutoff,
                        fibrad_stride stride);
 
-/* Whether a window that looks farther than all shells makes a further one for the next ones, too, or had better look on
- * its own. The first shell is for all; the others have many spheres each, for the few windows that stay open. */
+/* Whether a window that needs spheres beyond all shells makes a further shell, which the next windows use too, or walks
+ * the grid alone. The first shell is for all; the others have many spheres each, for the few windows that stay open. */
 #define FIBRAD_ASKED 8
 static inline bool fibrad_near_pays(fibrad_near *near) {
     if (near->full || (near->shells > 0 && near->asked++ < FIBRAD_ASKED)) return false;
@@ -118,7 +118,7 @@ static inline uint32_t fibrad_work_sphere(const fibrad_workspace *work, uint32_t
 }
 
 /* Adds what window k sees of a disc. */
-static inline void fibrad_work_see(fibrad_workspace *work, uint32_t disc, uint32_t k, double area) {
+static inline void fibrad_work_accumulate(fibrad_workspace *work, uint32_t disc, uint32_t k, double area) {
     uint32_t *entry = &work->near.entry[work->disc.near[disc]];
     if (*entry == FIBRAD_NONE) *entry = fibrad_entries_of(&work->entries, fibrad_work_sphere(work, disc));
     fibrad_entries_add(&work->entries, *entry, k, area);

@@ -37,4 +37,8 @@ static inline fibrad_polar fibrad_direction_polar(uint32_t k, uint32_t n) {
     return p;
 }
 
+/* The axes of window k of a rule: two unit vectors across its direction, and the direction. points: 0 for exact areas.
+ */
+void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]);
+
 #endif

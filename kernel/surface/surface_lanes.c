@@ -3,28 +3,20 @@
  * Eight partial sums whatever the width of a vector, so that no bit depends on it. What is left out to save time is
  * left out with a margin above rounding: it could not have changed a bit of the sums either. */
 #include FIBRAD_LANES_HEADER
+#include "base/lanes/below.h"
 #include "base/lanes/laned.h"
 #include "surface/surface_lanes.h"
 
-#define GROUP  8
-#define STEPS  (GROUP / VD_LANES)
-#define MARGIN 1e-12
+#define PARTIAL_SUMS   8
+#define SURFACE_STEPS  (PARTIAL_SUMS / VD_LANES) /* vectors of partial sums */
+#define SURFACE_MARGIN 1e-12
 
-static vd dot(vd ax, vd ay, vd az, vd bx, vd by, vd bz) {
-    return vd_add(vd_add(vd_mul(ax, bx), vd_mul(ay, by)), vd_mul(az, bz));
-}
+static vd dot(vd ax, vd ay, vd az, vd bx, vd by, vd bz) { return ax * bx + ay * by + az * bz; }
 
-static vd rotated(const double row[3], vd x, vd y, vd z) {
-    return dot(vd_set1(row[0]), vd_set1(row[1]), vd_set1(row[2]), x, y, z);
-}
+static vd dot_row(const double row[3], vd x, vd y, vd z) { return row[0] * x + row[1] * y + row[2] * z; }
 
-/* The lanes of a vector at position k that are among the first n. */
-static uint32_t lanes_below(uint32_t n, uint32_t k) {
-    return n - k < VD_LANES ? (1u << (n - k)) - 1 : (1u << VD_LANES) - 1;
-}
-
-static void append(fibrad_obstacles *list, uint32_t lanes, vd x, vd y, vd z, vd r) {
-    _Alignas(64) double copy[4][GROUP];
+static void append_obstacles(fibrad_obstacles *list, uint32_t lanes, vd x, vd y, vd z, vd r) {
+    _Alignas(64) double copy[4][VD_LANES];
     vd_store(copy[0], x);
     vd_store(copy[1], y);
     vd_store(copy[2], z);
@@ -39,9 +31,9 @@ static void append(fibrad_obstacles *list, uint32_t lanes, vd x, vd y, vd z, vd 
     }
 }
 
-/* The two spheres touch a common cone, whose normals rise by asin(slope) above the planes z = const. Rays between
- * points that face each other run inside the cone, between its two circles of contact: an obstacle that reaches into
- * this body is kept. An obstacle that covers the cross-section of the cone in the plane of its own centre, with the
+/* The two spheres touch a common cone, whose normals are inclined by asin(slope) to the planes z = const. Rays between
+ * points that face each other are inside the cone, between its two circles of contact: an obstacle that overlaps this
+ * body is kept. An obstacle that covers the cross-section of the cone in the plane of its own centre, with the
  * spheres on either side of that plane, hides the pair. */
 bool LANED(fibrad_surface_filter)(fibrad_surface_task *task, const fibrad_surface_frame *frame,
                                   const fibrad_obstacles *all, uint32_t self) {
@@ -51,61 +43,59 @@ bool LANED(fibrad_surface_filter)(fibrad_surface_task *task, const fibrad_surfac
     bool hidden = false;
     task->obstacles.n = 0;
     for (uint32_t k = 0; k < all->n; k += VD_LANES) {
-        const vd cx = vd_sub(vd_load(all->x + k), vd_set1(frame->origin[0]));
-        const vd cy = vd_sub(vd_load(all->y + k), vd_set1(frame->origin[1]));
-        const vd cz = vd_sub(vd_load(all->z + k), vd_set1(frame->origin[2]));
-        const vd x = rotated(frame->x, cx, cy, cz), y = rotated(frame->y, cx, cy, cz);
-        const vd z = rotated(frame->z, cx, cy, cz), r = vd_mul(vd_load(all->r + k), vd_set1(frame->scale));
-        const vd aside = vd_sqrt(vd_add(vd_mul(x, x), vd_mul(y, y)));
-        const vd slack = vd_mul(vd_set1(MARGIN), vd_add(vd_add(aside, vd_abs(z)), vd_add(high, r)));
-        const vd wide = vd_add(r, slack), depth = vd_sub(one, vd_mul(z, sine)); /* from axis to cone */
-        const vm in_cone = vd_lt(vd_sub(vd_mul(aside, cosine), depth), wide);
-        const vm between = vm_and(vd_lt(low, vd_add(z, wide)), vd_lt(vd_sub(z, wide), high));
-        const vm covers = vm_and(vd_le(vd_add(vd_mul(vd_add(aside, slack), cosine), depth), vd_mul(r, cosine)),
-                                 vm_and(vd_le(one, z), vd_le(z, vd_set1(task->d - task->r2))));
-        uint32_t valid = lanes_below(all->n, k);
+        const vd cx = vd_load(all->x + k) - frame->origin[0];
+        const vd cy = vd_load(all->y + k) - frame->origin[1];
+        const vd cz = vd_load(all->z + k) - frame->origin[2];
+        const vd x = dot_row(frame->x, cx, cy, cz), y = dot_row(frame->y, cx, cy, cz);
+        const vd z = dot_row(frame->z, cx, cy, cz), r = vd_load(all->r + k) * frame->scale;
+        const vd aside = vd_sqrt(x * x + y * y);
+        const vd slack = SURFACE_MARGIN * (aside + vd_abs(z) + (high + r));
+        const vd wide = r + slack, depth = one - z * sine; /* from axis to cone */
+        const vm in_cone = vd_lt(aside * cosine - depth, wide);
+        const vm between = vd_lt(low, z + wide) & vd_lt(z - wide, high);
+        const vm covers =
+            vd_le((aside + slack) * cosine + depth, r * cosine) & vd_le(one, z) & vd_le(z, vd_set1(task->d - task->r2));
+        uint32_t valid = vd_lanes_below(all->n - k);
         if (self - k < VD_LANES) valid &= ~(1u << (self - k));
         if ((vm_bits(covers) & valid) != 0) hidden = true;
-        uint32_t keep = task->flags & FIBRAD_SURFACE_NO_REGION ? valid : valid & vm_bits(vm_and(in_cone, between));
-        if (keep != 0) append(&task->obstacles, keep, x, y, z, r);
+        uint32_t keep = task->flags & FIBRAD_SURFACE_NO_REGION ? valid : valid & vm_bits(in_cone & between);
+        if (keep != 0) append_obstacles(&task->obstacles, keep, x, y, z, r);
     }
     return hidden;
 }
 
 /* Fills `list` with the obstacles that can hide some of sphere 2 from the node (x, y, z) of sphere 1, relative to the
- * node and with its power |c|^2 - r^2 in place of the radius; true if all of sphere 2 is hidden. From the node, sphere
- * 2 and an obstacle are two cones; whether they are apart, or one within the other, shows in the scalar product of
- * their axes. An obstacle is also out of the way below the horizon of the node, or beyond the farthest points of
- * sphere 2 that the node can see, which are a tangent's length away. A node inside an obstacle sees nothing. */
+ * node and with their power |c|^2 - r^2 in place of the radius; true if all of sphere 2 is hidden. From the node,
+ * sphere 2 and an obstacle are two cones; the scalar product of their axes decides whether they are apart, or one
+ * within the other. Obstacles below the horizon of the node do not count either, nor those beyond the farthest visible
+ * points of sphere 2, which are a tangent's length away. From a node inside an obstacle nothing is visible. */
 static bool obstacles_of_node(const fibrad_surface_task *task, double x, double y, double z, fibrad_obstacles *list) {
     const fibrad_obstacles *all = &task->obstacles;
     const double axis_z = task->d - z, far2 = x * x + y * y + axis_z * axis_z;
     const double tangent2 = fibrad_max(0, far2 - task->r2 * task->r2), tangent = fibrad_sqrt(tangent2);
     const double front = fibrad_sqrt(far2) - task->r2;
     const vd px = vd_set1(x), py = vd_set1(y), pz = vd_set1(z), zero = vd_set1(0), far = vd_set1(far2);
-    const vd ax = vd_sub(zero, px), ay = vd_sub(zero, py), az = vd_set1(axis_z);
+    const vd ax = zero - px, ay = zero - py, az = vd_set1(axis_z);
     const vd tt = vd_set1(tangent2), r2 = vd_set1(task->r2);
     list->n = 0;
     for (uint32_t k = 0; k < all->n; k += VD_LANES) {
-        const vd cx = vd_sub(vd_load(all->x + k), px), cy = vd_sub(vd_load(all->y + k), py);
-        const vd cz = vd_sub(vd_load(all->z + k), pz), r = vd_load(all->r + k), rr = vd_mul(r, r);
-        const vd cc = dot(cx, cy, cz, cx, cy, cz), power = vd_sub(cc, rr);
-        const vd slack = vd_mul(vd_set1(MARGIN), vd_add(cc, far));
+        const vd cx = vd_load(all->x + k) - px, cy = vd_load(all->y + k) - py;
+        const vd cz = vd_load(all->z + k) - pz, r = vd_load(all->r + k), rr = r * r;
+        const vd cc = dot(cx, cy, cz, cx, cy, cz), power = cc - rr;
+        const vd slack = SURFACE_MARGIN * (cc + far);
         const vd axes = dot(cx, cy, cz, ax, ay, az), height = dot(cx, cy, cz, px, py, pz);
-        const vd cosines = vd_sqrt(vd_mul(vd_max(power, zero), tt)), sines = vd_mul(r, r2);
-        const vd reach = vd_add(tt, vd_mul(vd_set1(2 * tangent), r));
+        const vd cosines = vd_sqrt(vd_max(power, zero) * tt), sines = r * r2;
+        const vd extent = tt + 2 * tangent * r;
         const vm inside = vd_lt(power, zero);
         const vm apart =
-            vm_or(vd_lt(vd_add(vd_add(axes, sines), slack), cosines),
-                  vm_or(vd_lt(vd_add(reach, slack), power), vd_lt(vd_add(vd_add(height, r), slack), zero)));
-        const vm covers = vm_and(vd_lt(vd_add(cosines, slack), vd_sub(axes, sines)),
-                                 vm_and(vd_lt(vd_mul(vd_mul(r2, r2), cc), vd_mul(rr, far)),
-                                        vd_lt(vd_add(cc, slack), vd_set1(front * front))));
-        uint32_t valid = lanes_below(all->n, k), keep = valid;
+            vd_lt(axes + sines + slack, cosines) | vd_lt(extent + slack, power) | vd_lt(height + r + slack, zero);
+        const vm covers = vd_lt(cosines + slack, axes - sines) & vd_lt(r2 * r2 * cc, rr * far) &
+                          vd_lt(cc + slack, vd_set1(front * front));
+        uint32_t valid = vd_lanes_below(all->n - k), keep = valid;
         if ((vm_bits(inside) & valid) != 0) return true;
         if ((vm_bits(covers) & valid) != 0 && (task->flags & FIBRAD_SURFACE_NO_HIDDEN) == 0) return true;
         if ((task->flags & FIBRAD_SURFACE_NO_REGION) == 0) keep &= ~vm_bits(apart);
-        if (keep != 0) append(list, keep, cx, cy, cz, power);
+        if (keep != 0) append_obstacles(list, keep, cx, cy, cz, power);
     }
     return false;
 }
@@ -113,17 +103,44 @@ static bool obstacles_of_node(const fibrad_surface_task *task, double x, double 
 /* The lanes whose ray e meets obstacle o before it ends. With p > 0 the power of its beginning, c the centre and
  * b = c.e, the line meets the sphere if b^2 > p e^2; ahead of the beginning if b > 0; and before the end of e if either
  * e^2 > p or the end is inside the sphere, p + e^2 < 2 b: in one, 2 max(b, e^2) > p + e^2. */
-static vm meets(const fibrad_obstacles *list, uint32_t o, vd ex, vd ey, vd ez, vd ee, vd half_ee) {
+static vm meets_obstacle(const fibrad_obstacles *list, uint32_t o, vd ex, vd ey, vd ez, vd ee, vd half_ee) {
     const vd p = vd_set1(list->r[o]), half_p = vd_set1(0.5 * list->r[o]);
-    const vd b = rotated((double[3]){list->x[o], list->y[o], list->z[o]}, ex, ey, ez);
-    return vm_and(vm_and(vd_lt(vd_set1(0), b), vd_lt(vd_mul(p, ee), vd_mul(b, b))),
-                  vd_lt(half_p, vd_sub(vd_max(b, ee), half_ee)));
+    const vd b = dot_row((double[3]){list->x[o], list->y[o], list->z[o]}, ex, ey, ez);
+    return vd_lt(vd_set1(0), b) & vd_lt(p * ee, b * b) & vd_lt(half_p, vd_max(b, ee) - half_ee);
 }
 
-static double total(const vd part[STEPS]) {
-    _Alignas(64) double s[GROUP];
-    for (uint32_t step = 0; step < STEPS; step++) vd_store(s + step * VD_LANES, part[step]);
+static double sum_of_parts(const vd part[SURFACE_STEPS]) {
+    _Alignas(64) double s[PARTIAL_SUMS];
+    for (uint32_t step = 0; step < SURFACE_STEPS; step++) vd_store(s + step * VD_LANES, part[step]);
     return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+}
+
+/* A node of sphere 1 in all lanes: its position, its normal times its weight, and what hides parts of sphere 2. */
+typedef struct surface_origin {
+    vd px, py, nx, ny, nz;
+    bool hidden; /* all of sphere 2 is */
+    const fibrad_obstacles *near;
+} surface_origin;
+
+/* Adds to the partial sums *open and *seen the rays from a node to the nodes u of sphere 2, relative to its centre. ez:
+ * their height above the node. */
+FIBRAD_INLINE void add_rays(const surface_origin *from, vd ux, vd uy, vd uz, vd ez, vd weight, vd *open, vd *seen,
+                            fibrad_surface_sums *sums) {
+    const vd zero = vd_set1(0), ex = ux - from->px, ey = uy - from->py;
+    const vd cos1 = dot(from->nx, from->ny, from->nz, ex, ey, ez), cos2 = zero - dot(ux, uy, uz, ex, ey, ez);
+    const vm facing = vd_lt(zero, cos1) & vd_lt(zero, cos2);
+    if (vm_bits(facing) == 0) return;
+    sums->rays += VD_LANES;
+    const vd ee = dot(ex, ey, ez, ex, ey, ez), half_ee = 0.5 * ee;
+    const vd g = vd_select(facing, cos1 * cos2 * weight / (ee * ee), zero);
+    *open += g;
+    if (from->hidden) return;
+    vm clear = facing;
+    for (uint32_t o = 0; o < from->near->n && vm_bits(clear) != 0; o++) {
+        clear &= vm_not(meets_obstacle(from->near, o, ex, ey, ez, ee, half_ee));
+        sums->tests += VD_LANES;
+    }
+    *seen += vd_select(clear, g, zero);
 }
 
 /* Node by node of sphere 1, over the nodes of sphere 2 and these turned by pi about the line of centres. The nodes of
@@ -134,51 +151,34 @@ void LANED(fibrad_surface_sum)(const fibrad_surface_task *task, fibrad_surface_s
     const double horizon = (1 - task->r2) / task->d;
     uint32_t first = 0, end = nodes->n;
     if ((task->flags & FIBRAD_SURFACE_NO_HORIZON) == 0) {
-        while (first < nodes->n && nodes->z[first] < horizon - MARGIN) first++;
-        while (end > 0 && nodes->z[end - 1] > horizon + MARGIN) end--;
+        while (first < nodes->n && nodes->z[first] < horizon - SURFACE_MARGIN) first++;
+        while (end > 0 && nodes->z[end - 1] > horizon + SURFACE_MARGIN) end--;
     }
     fibrad_obstacles near = task->of_node;
     const vd zero = vd_set1(0);
-    vd open[2][STEPS], seen[2][STEPS];
-    for (uint32_t step = 0; step < STEPS; step++) open[0][step] = open[1][step] = seen[0][step] = seen[1][step] = zero;
+    vd open[2][SURFACE_STEPS], seen[2][SURFACE_STEPS];
+    for (uint32_t step = 0; step < SURFACE_STEPS; step++)
+        open[0][step] = open[1][step] = seen[0][step] = seen[1][step] = zero;
     sums->rays = sums->tests = 0;
 
     for (uint32_t k = first; k < nodes->n; k++) {
         const double x = nodes->ring[k] * nodes->cos[k], y = nodes->ring[k] * nodes->sin[k], z = nodes->z[k];
-        const bool hidden = obstacles_of_node(task, x, y, z, &near);
         const vd px = vd_set1(x), py = vd_set1(y), weight1 = vd_set1(nodes->weight[k]);
-        const vd nx = vd_mul(weight1, px), ny = vd_mul(weight1, py), nz = vd_mul(weight1, vd_set1(z));
-        for (uint32_t group = 0; group < end; group += GROUP)
-            for (uint32_t step = 0; step < STEPS; step++) {
+        const bool hidden = obstacles_of_node(task, x, y, z, &near);
+        const surface_origin from = {px, py, weight1 * px, weight1 * py, weight1 * z, hidden, &near};
+        for (uint32_t group = 0; group < end; group += PARTIAL_SUMS)
+            for (uint32_t step = 0; step < SURFACE_STEPS; step++) {
                 const uint32_t l = group + step * VD_LANES;
-                const vd ring = vd_mul(vd_set1(task->r2), vd_load(nodes->ring + l));
-                const vd x2 = vd_mul(ring, vd_load(nodes->cos + l)), y2 = vd_mul(ring, vd_load(nodes->sin + l));
-                const vd uz = vd_mul(vd_set1(task->r2), vd_load(nodes->z + l));
-                const vd ez = vd_add(uz, vd_set1(task->d - z)), weight2 = vd_load(nodes->weight + l);
-                for (uint32_t turn = 0; turn < 2; turn++) {
-                    const vd ux = turn == 0 ? x2 : vd_sub(zero, x2), uy = turn == 0 ? y2 : vd_sub(zero, y2);
-                    const vd ex = vd_sub(ux, px), ey = vd_sub(uy, py);
-                    const vd cos1 = dot(nx, ny, nz, ex, ey, ez), cos2 = vd_sub(zero, dot(ux, uy, uz, ex, ey, ez));
-                    const vm facing = vm_and(vd_lt(zero, cos1), vd_lt(zero, cos2));
-                    if (vm_bits(facing) == 0) continue;
-                    sums->rays += VD_LANES;
-                    const vd ee = dot(ex, ey, ez, ex, ey, ez), half_ee = vd_mul(vd_set1(0.5), ee);
-                    const vd quotient = vd_div(vd_mul(vd_mul(cos1, cos2), weight2), vd_mul(ee, ee));
-                    const vd g = vd_select(facing, quotient, zero);
-                    open[turn][step] = vd_add(open[turn][step], g);
-                    if (hidden) continue;
-                    vm clear = facing;
-                    for (uint32_t o = 0; o < near.n && vm_bits(clear) != 0; o++) {
-                        clear = vm_and(clear, vm_not(meets(&near, o, ex, ey, ez, ee, half_ee)));
-                        sums->tests += VD_LANES;
-                    }
-                    seen[turn][step] = vd_add(seen[turn][step], vd_select(clear, g, zero));
-                }
+                const vd ring = task->r2 * vd_load(nodes->ring + l), weight2 = vd_load(nodes->weight + l);
+                const vd uz = task->r2 * vd_load(nodes->z + l), ez = uz + (task->d - z);
+                vd ux = ring * vd_load(nodes->cos + l), uy = ring * vd_load(nodes->sin + l);
+                for (uint32_t turn = 0; turn < 2; turn++, ux = zero - ux, uy = zero - uy)
+                    add_rays(&from, ux, uy, uz, ez, weight2, &open[turn][step], &seen[turn][step], sums);
             }
     }
     for (uint32_t turn = 0; turn < 2; turn++) {
-        sums->open[turn] = total(open[turn]);
-        sums->seen[turn] = total(seen[turn]);
+        sums->open[turn] = sum_of_parts(open[turn]);
+        sums->seen[turn] = sum_of_parts(seen[turn]);
     }
 #if VD_LANES >= 4
     /* gcc 12 does not do this after calls of static functions, and then SSE code of the caller runs at a third of its

@@ -1,9 +1,9 @@
 /* areas.h - exact visible areas of discs in a window, front to back. SPDX-License-Identifier: MIT
  *
- * The window is the unit disc about the origin. Its open region is what no disc covers so far; discs are handed over
- * front to back and take their visible areas from it. Two methods know how: clipping (clip_lanes.c), fast, which tells
- * when it is in doubt; and accounts (arrangement_lanes.c), which no arrangement disturbs, and which does the window
- * again then. docs/methods.md section 4 explains both. */
+ * The window is the unit disc about the origin. Its open region is what no disc covers so far. Discs are handed over
+ * front to back, and each hides its part of the open region. There are two methods: clipping (clip_lanes.c), fast,
+ * which detects degenerate windows; and the arrangement of circles (arrangement_lanes.c), which no configuration
+ * disturbs and which resolves those windows again. docs/methods.md section 4 explains both. */
 #ifndef FIBRAD_WINDOW_AREAS_H
 #define FIBRAD_WINDOW_AREAS_H
 
@@ -12,13 +12,13 @@
 
 #define FIBRAD_PIECES 48 /* pieces summed at a time, about */
 
-/* Pieces of the open region's boundary that discs have taken: the area each contributes by Green's theorem, to the disc
- * that took it, and less of it to the disc of its circle. Room for a vector more. */
+/* Pieces of the open region's boundary that discs have hidden. By Green's theorem each adds its area to its occluder,
+ * the disc that has hidden it, and takes the same area from the disc of its circle. Room for a vector more. */
 typedef struct fibrad_pieces {
     _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_PIECES + 8], py[FIBRAD_PIECES + 8];
     double qx[FIBRAD_PIECES + 8], qy[FIBRAD_PIECES + 8];
     double cx[FIBRAD_PIECES + 8], cy[FIBRAD_PIECES + 8], r[FIBRAD_PIECES + 8];
-    double circle[FIBRAD_PIECES + 8], taker[FIBRAD_PIECES + 8]; /* numbers */
+    double circle[FIBRAD_PIECES + 8], occluder[FIBRAD_PIECES + 8]; /* numbers */
     uint32_t count;
 } fibrad_pieces;
 
@@ -35,45 +35,45 @@ typedef struct fibrad_boundary {
     uint64_t alive, window;                                  /* bit k: slot k holds an arc; it is one of the window's */
 } fibrad_boundary;
 
-/* Arcs of the accounts, each counter-clockwise from p to q on a circle (its number) and at most half of it; a and b
- * tell the places of p and q on it. */
+/* Arcs of the arrangement, each counter-clockwise from p to q on a circle (its number) and at most half of it; a and b
+ * are the pseudo-angles of p and q on it. */
 typedef struct fibrad_arcs {
     double *a, *b, *px, *py, *qx, *qy, *circle;
     uint32_t count;
 } fibrad_arcs;
 
-/* Intervals of the new disc's circle that are out of sight, and the circles on account of which they are. */
+/* Intervals of the new disc's circle that are hidden, and the circles that bound what hides them. */
 typedef struct fibrad_intervals {
-    double *from, *to, *circle;
+    double *from, *to, *circle; /* pseudo-angles; number */
     uint32_t count;
-    bool all; /* nothing is in sight */
+    bool all; /* the whole circle is hidden */
 } fibrad_intervals;
 
-typedef struct fibrad_accounts {
+typedef struct fibrad_arrangement {
     uint32_t arcs;             /* capacities: arcs that bound the open region, ... */
     uint32_t seconds;          /* ... second parts at a time */
     double *inverse;           /* [discs + 2] 1/r of each circle */
-    double *from, *to;         /* [discs + 2] what the new disc covers of each circle, ... */
+    double *from, *to;         /* [discs + 2] what the new disc covers of each circle, as pseudo-angles, ... */
     double *sx, *sy, *ex, *ey; /* ... and the points where that begins and ends */
     fibrad_intervals hidden;   /* [discs + 1] */
-    fibrad_arcs open, left;    /* [arcs] the boundary of the open region; what is left when a disc has taken its */
-    fibrad_arcs second[2];     /* [seconds] second parts, that stay or go, of arcs cut in three: for a moment */
-} fibrad_accounts;
+    fibrad_arcs open, left;    /* [arcs] the boundary of the open region; what remains of it outside a new disc */
+    fibrad_arcs second[2];     /* [seconds] second parts of arcs cut in three, that stay or go: temporary */
+} fibrad_arrangement;
 
 typedef struct fibrad_areas {
-    uint32_t discs;    /* capacity: discs that a window may meet */
+    uint32_t discs;    /* capacity: discs of a window */
     uint32_t circles;  /* the window, and the discs whose circles may bound the open region */
     double *x, *y, *r; /* [discs + 2] circle 0 is the window */
-    double *area;      /* [discs + 2] what is seen of each; of the window: -pi */
+    double *area;      /* [discs + 2] visible area of each; of the window: -pi */
     uint32_t *whose;   /* [discs + 2] the caller's number of each */
     fibrad_pieces *pieces;
     fibrad_boundary *boundary;
-    fibrad_accounts accounts;
+    fibrad_arrangement arrangement;
     double widest;      /* the largest radius so far */
     bool open;          /* something of the window is */
-    bool doubtful;      /* the window in hand is done by accounts */
+    bool degenerate;    /* the window in hand is resolved by the arrangement */
     bool overflow;      /* too many arcs for the memory: start again with more discs */
-    uint32_t fallbacks; /* doubtful windows since the caller set this to 0 */
+    uint32_t fallbacks; /* degenerate windows since the caller set this to 0 */
 } fibrad_areas;
 
 void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t discs);

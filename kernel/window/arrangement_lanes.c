@@ -1,198 +1,234 @@
-/* arrangement_lanes.c - exact visible areas of discs in a window by accounts of circles. Compiled once per instruction
- * set. SPDX-License-Identifier: MIT
+/* arrangement_lanes.c - exact visible areas of discs in a window by the arrangement of their circles. Compiled once per
+ * instruction set. SPDX-License-Identifier: MIT
  *
- * The open region - what no disc covers so far - is known by its boundary: arcs of the window's circle and of the
- * circles of discs. A new disc k, seen against circle m (in lanes over all m), covers of that circle nothing, all, or
- * the arc between the two points where the circles meet; and disc m covers of circle k the rest of a like kind, between
- * the same two points. From this follow
- *   - what is seen of circle k: all of it less what the older discs and the outside of the window hide;
- *   - what disc k takes of each arc that bounds the open region.
- * The former join the boundary of the open region, the latter leave it. An arc on its way out has been seen of its own
- * disc up to here and bounds the visible part of disc k from now on, so it is integrated then, once for both.
+ * The open region - what no disc covers so far - is represented by its boundary: arcs of the window's circle and of the
+ * circles of discs. A new disc k, compared with circle m (in lanes over all m), covers of that circle nothing, all, or
+ * the arc between the two points where the circles meet; and disc m covers of circle k the corresponding remainder,
+ * between the same two points. From this follow
+ *   - the visible part of circle k: all of it less what the older discs and the outside of the window hide;
+ *   - the part of each arc on the boundary of the open region that disc k hides.
+ * The former join the boundary of the open region, the latter leave it. An arc that leaves has bounded the visible part
+ * of its own disc and bounds that of disc k from then on, so it is integrated then, once for both.
  *
- * Each circle keeps its own account, and two circles share nothing but the two points where they meet. A wrong decision
- * about an arc as short as rounding costs an area as small as rounding, and nothing further: there is no chain of arcs
- * that could break, and multiple points, tangent and identical circles need no special care.
+ * Each circle has its own list of intervals, and two circles share nothing but the two points where they meet. A wrong
+ * decision about an arc as short as rounding costs an area as small as rounding, and nothing further: there is no chain
+ * of arcs that could break, and multiple points, tangent and identical circles need no special treatment.
  *
- * The place of a direction (x, y) of unit length on its circle is told by y on the right quarter, and by -x, -y, x on
- * the top, left and bottom quarters with what makes it continuous: it rises counter-clockwise by about the angle, and
- * jumps back at the lower right diagonal, from END to BEGIN. Arcs are cut there and opposite, at MIDDLE, so that none
- * is longer than half a circle and none passes the jump. */
+ * The position of a direction (x, y) of unit length on its circle is given by a pseudo-angle: y on the right quarter,
+ * and -x, -y, x on the top, left and bottom quarters with the constants that make it continuous. It rises
+ * counter-clockwise by about the angle, and jumps back at the lower right diagonal, from ANGLE_END to ANGLE_BEGIN. Arcs
+ * are cut there and opposite, at ANGLE_MIDDLE, so that none is longer than half a circle and none passes the jump. */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
 #include "window/arc_lanes.h"
 #include "window/arrangement_lanes.h"
 
-#define DIAGONAL 0.70710678118654752
-#define BEGIN    (-DIAGONAL)
-#define MIDDLE   (3 * DIAGONAL)
-#define END      (7 * DIAGONAL)
-#define AROUND   (8 * DIAGONAL)
+#define DIAGONAL     0.70710678118654752
+#define ANGLE_BEGIN  (-DIAGONAL)
+#define ANGLE_MIDDLE (3 * DIAGONAL)
+#define ANGLE_END    (7 * DIAGONAL)
+#define ANGLE_TURN   (8 * DIAGONAL)
 
 /* As `from` of an interval, and minus it as `to`: the whole circle, or nothing of it. */
-#define ALL     -16.0
-#define NOTHING 16.0
+#define INTERVAL_ALL  -16.0
+#define INTERVAL_NONE 16.0
 
-/* Arcs this short are given up: they stem from rounding, and would keep windows open for nothing. */
-#define SHORT 1e-15
+/* Arcs this short are dropped: they stem from rounding, and would keep windows open for nothing. */
+#define ARC_SHORTEST 1e-15
 
 static _Alignas(FIBRAD_ALIGNMENT) const double lane_number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
 
-static inline vd place(vd x, vd y) {
+static inline vd pseudo_angle(vd x, vd y) {
     vd zero = vd_set1(0);
-    vd sides = vd_select(vd_lt(x, zero), vd_sub(vd_set1(4 * DIAGONAL), y), y);
-    vd ends = vd_select(vd_lt(y, zero), vd_add(vd_set1(6 * DIAGONAL), x), vd_sub(vd_set1(2 * DIAGONAL), x));
+    vd sides = vd_select(vd_lt(x, zero), 4 * DIAGONAL - y, y);
+    vd ends = vd_select(vd_lt(y, zero), 6 * DIAGONAL + x, 2 * DIAGONAL - x);
     return vd_select(vd_lt(vd_abs(x), vd_abs(y)), ends, sides);
 }
 
-/* The length of an interval shows if rounding has turned it round: less than half a circle (and not a little more than
- * none) where the cosine of its half-width is positive, more than half where it is negative. Writes ALL or NOTHING
- * then.
- */
-static inline void set_right(vd cosine, vd *from, vd *to) {
-    vd zero = vd_set1(0), length = vd_sub(*to, *from);
-    length = vd_select(vd_lt(length, zero), vd_add(length, vd_set1(AROUND)), length);
-    vm narrow = vd_lt(zero, cosine), nothing = vm_and(narrow, vd_lt(vd_set1(0.75 * AROUND), length));
-    vm all = vm_and(vm_not(narrow), vd_lt(length, vd_set1(0.25 * AROUND)));
-    *from = vd_select(nothing, vd_set1(NOTHING), vd_select(all, vd_set1(ALL), *from));
-    *to = vd_select(nothing, vd_set1(-NOTHING), vd_select(all, vd_set1(-ALL), *to));
+/* Pseudo-angles between which disc and circle overlap. */
+typedef struct interval_lanes {
+    vd from, to;
+} interval_lanes;
+
+/* The interval from (px, py) to (qx, qy). Its length shows whether rounding has reversed it: it is less than half a
+ * circle (and not a little more than none) where the cosine of its half-width is positive, more than half where that is
+ * negative. A reversed interval is INTERVAL_ALL or INTERVAL_NONE. */
+static inline interval_lanes interval_of(vd cosine, vd px, vd py, vd qx, vd qy) {
+    vd from = pseudo_angle(px, py), to = pseudo_angle(qx, qy), zero = vd_set1(0), length = to - from;
+    length = vd_select(vd_lt(length, zero), length + ANGLE_TURN, length);
+    vm narrow = vd_lt(zero, cosine), none = narrow & vd_lt(vd_set1(0.75 * ANGLE_TURN), length);
+    vm all = vm_not(narrow) & vd_lt(length, vd_set1(0.25 * ANGLE_TURN));
+    from = vd_select(none, vd_set1(INTERVAL_NONE), vd_select(all, vd_set1(INTERVAL_ALL), from));
+    to = vd_select(none, vd_set1(-INTERVAL_NONE), vd_select(all, vd_set1(-INTERVAL_ALL), to));
+    return (interval_lanes){from, to};
 }
 
-/* What circle k, about (x, y) with radius r, does to all circles so far and they to it. Two circles at distance d meet
- * at c_m + f d -+ h d', d' being d turned left; f = (d^2 + r_m^2 - r^2)/(2 d^2), and h from the product of sum and
- * difference, without cancellation where they are nearly tangent. Returns false if an older disc contains disc k. */
-static bool meet(fibrad_areas *areas, double x, double y, double r, double inverse) {
-    vd r_k = vd_set1(r), inverse_k = vd_set1(inverse), half = vd_set1(0.5), zero = vd_set1(0);
-    fibrad_intervals *hidden = &areas->accounts.hidden;
+/* Circle k against circles m, in lanes over m. Two circles at distance d meet at c_m + f d -+ h d', d' being d turned
+ * left; f = (d^2 + r_m^2 - r^2)/(2 d^2), g = 1 - f, and h from the product of sum and difference, without cancellation
+ * where they are nearly tangent. */
+typedef struct circle_pairs {
+    vd x, y, difference; /* circles m; r_m - r */
+    vd f, g, fx, fy, gx, gy, hx, hy;
+    vm nested, whole; /* one within the other; that or apart */
+} circle_pairs;
+
+FIBRAD_INLINE circle_pairs pairs_of(const fibrad_areas *areas, uint32_t m, vd x, vd y, vd r) {
+    circle_pairs p;
+    p.x = vd_load(areas->x + m), p.y = vd_load(areas->y + m);
+    vd r_m = vd_load(areas->r + m), zero = vd_set1(0);
+    vd dx = x - p.x, dy = y - p.y, square = dx * dx + dy * dy;
+    vd sum = r_m + r;
+    p.difference = r_m - r;
+    vd outer = sum * sum - square, inner = square - p.difference * p.difference;
+    p.nested = vd_le(inner, zero), p.whole = vd_le(outer, zero) | p.nested;
+    vd scale = 0.5 / square, power = sum * p.difference; /* r_m^2 - r^2 */
+    p.f = (square + power) * scale, p.g = (square - power) * scale;
+    vd h = vd_sqrt(vd_max(outer, zero) * vd_max(inner, zero)) * scale;
+    p.fx = p.f * dx, p.fy = p.f * dy, p.gx = p.g * dx, p.gy = p.g * dy, p.hx = h * dx, p.hy = h * dy;
+    return p;
+}
+
+/* Writes what disc k covers of circles m, and the points where that begins and ends. */
+FIBRAD_INLINE void write_covered(fibrad_arrangement *a, uint32_t m, const circle_pairs *p) {
+    vd sx = p->fx + p->hy, sy = p->fy - p->hx, ex = p->fx - p->hy, ey = p->fy + p->hx;
+    vd_store(a->sx + m, p->x + sx);
+    vd_store(a->sy + m, p->y + sy);
+    vd_store(a->ex + m, p->x + ex);
+    vd_store(a->ey + m, p->y + ey);
+    vd inverse = vd_load(a->inverse + m);
+    interval_lanes covered = interval_of(p->f, sx * inverse, sy * inverse, ex * inverse, ey * inverse);
+    vm m_inside = p->nested & vd_le(p->difference, vd_set1(0));
+    vd from = vd_select(p->whole, vd_set1(INTERVAL_NONE), covered.from);
+    vd to = vd_select(p->whole, vd_set1(-INTERVAL_NONE), covered.to);
+    vd_store(a->from + m, vd_select(m_inside, vd_set1(INTERVAL_ALL), from));
+    vd_store(a->to + m, vd_select(m_inside, vd_set1(-INTERVAL_ALL), to));
+}
+
+/* Appends the intervals of circle k that discs m hide. Of the window, it is the outside that hides. */
+FIBRAD_INLINE void append_hidden(fibrad_intervals *hidden, uint32_t m, uint32_t lanes, const circle_pairs *p,
+                                 vd inverse) {
+    vd zero = vd_set1(0), number = vd_load(lane_number);
+    interval_lanes own = interval_of(p->g, (zero - (p->gx + p->hy)) * inverse, (p->hx - p->gy) * inverse,
+                                     (p->hy - p->gx) * inverse, (zero - (p->gy + p->hx)) * inverse);
+    if (m == 0) {
+        vm window = vd_lt(number, vd_set1(0.5));
+        vd swap = own.from;
+        own.from = vd_select(window, own.to, own.from);
+        own.to = vd_select(window, swap, own.to);
+    }
+    uint32_t crossing = lanes & ~vm_bits(p->whole);
+    if ((vm_bits(vd_lt(own.from, vd_set1(ANGLE_BEGIN - 1))) & crossing) != 0) hidden->all = true;
+    vm empty = (vd_le(own.from, own.to) & vd_le(own.to, own.from)) | vd_lt(vd_set1(ANGLE_END + 1), own.from);
+    uint32_t some = crossing & ~vm_bits(empty), count = hidden->count;
+    vd_compress(hidden->from + count, some, own.from);
+    vd_compress(hidden->to + count, some, own.to);
+    vd_compress(hidden->circle + count, some, number + m);
+    hidden->count = count + fibrad_count_bits(some);
+}
+
+/* What disc k, about (x, y) with radius r, covers of all circles so far and their discs of its circle. Returns false if
+ * an older disc contains disc k. */
+static bool intersect_circles(fibrad_areas *areas, double x, double y, double r, double inverse) {
+    fibrad_intervals *hidden = &areas->arrangement.hidden;
     hidden->count = 0;
     hidden->all = false;
     for (uint32_t m = 0; m < areas->circles; m += VD_LANES) {
-        vd c_x = vd_load(areas->x + m), c_y = vd_load(areas->y + m), r_m = vd_load(areas->r + m);
-        vd dx = vd_sub(vd_set1(x), c_x), dy = vd_sub(vd_set1(y), c_y);
-        vd sum = vd_add(r_m, r_k), difference = vd_sub(r_m, r_k);
-        vd square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
-        vd outer = vd_sub(vd_mul(sum, sum), square), inner = vd_sub(square, vd_mul(difference, difference));
-        vm apart = vd_le(outer, zero), nested = vd_le(inner, zero), whole = vm_or(apart, nested);
+        const circle_pairs p = pairs_of(areas, m, vd_set1(x), vd_set1(y), vd_set1(r));
         uint32_t lanes = vd_lanes_below(areas->circles - m);
-        uint32_t containing = vm_bits(vm_and(nested, vd_le(zero, difference))) & lanes;
-        if (containing & (m == 0 ? ~1u : ~0u)) return false; /* to lie within the window hides nothing */
-
-        vd scale = vd_div(half, square), power = vd_mul(sum, difference); /* r_m^2 - r^2 */
-        vd f = vd_mul(vd_add(square, power), scale), g = vd_mul(vd_sub(square, power), scale);
-        vd h = vd_mul(vd_sqrt(vd_mul(vd_max(outer, zero), vd_max(inner, zero))), scale);
-        vd hx = vd_mul(h, dx), hy = vd_mul(h, dy), fx = vd_mul(f, dx), fy = vd_mul(f, dy);
-        vd gx = vd_mul(g, dx), gy = vd_mul(g, dy), inverse_m = vd_load(areas->accounts.inverse + m);
-        vd sx = vd_add(fx, hy), sy = vd_sub(fy, hx), ex = vd_sub(fx, hy), ey = vd_add(fy, hx);
-        vd_store(areas->accounts.sx + m, vd_add(c_x, sx));
-        vd_store(areas->accounts.sy + m, vd_add(c_y, sy));
-        vd_store(areas->accounts.ex + m, vd_add(c_x, ex));
-        vd_store(areas->accounts.ey + m, vd_add(c_y, ey));
-
-        vd from = place(vd_mul(sx, inverse_m), vd_mul(sy, inverse_m));
-        vd to = place(vd_mul(ex, inverse_m), vd_mul(ey, inverse_m));
-        set_right(f, &from, &to);
-        vm m_inside = vm_and(nested, vd_le(difference, zero));
-        from = vd_select(m_inside, vd_set1(ALL), vd_select(whole, vd_set1(NOTHING), from));
-        to = vd_select(m_inside, vd_set1(-ALL), vd_select(whole, vd_set1(-NOTHING), to));
-        vd_store(areas->accounts.from + m, from);
-        vd_store(areas->accounts.to + m, to);
-
-        vd own_from = place(vd_mul(vd_sub(zero, vd_add(gx, hy)), inverse_k), vd_mul(vd_sub(hx, gy), inverse_k));
-        vd own_to = place(vd_mul(vd_sub(hy, gx), inverse_k), vd_mul(vd_sub(zero, vd_add(gy, hx)), inverse_k));
-        set_right(g, &own_from, &own_to);
-        if (m == 0) { /* the window hides what lies without */
-            vm first = vd_lt(vd_load(lane_number), half);
-            vd swap = own_from;
-            own_from = vd_select(first, own_to, own_from);
-            own_to = vd_select(first, swap, own_to);
-        }
-        uint32_t crossing = lanes & ~vm_bits(whole), all = vm_bits(vd_lt(own_from, vd_set1(BEGIN - 1))) & crossing;
-        if (all != 0) hidden->all = true;
-        vm empty = vm_or(vm_and(vd_le(own_from, own_to), vd_le(own_to, own_from)), vd_lt(vd_set1(END + 1), own_from));
-        uint32_t some = crossing & ~vm_bits(empty), count = hidden->count;
-        vd_compress(hidden->from + count, some, own_from);
-        vd_compress(hidden->to + count, some, own_to);
-        vd_compress(hidden->circle + count, some, vd_add(vd_load(lane_number), vd_set1(m)));
-        hidden->count = count + fibrad_count_bits(some);
+        uint32_t containing = vm_bits(p.nested & vd_le(vd_set1(0), p.difference)) & lanes;
+        if (containing & (m == 0 ? ~1u : ~0u)) return false; /* the window contains disc k without hiding it */
+        write_covered(&areas->arrangement, m, &p);
+        append_hidden(hidden, m, lanes, &p, vd_set1(inverse));
     }
     return true;
 }
 
-/* Appends an arc, in two pieces if it passes MIDDLE, the point (mx, my). */
-static void add(fibrad_arcs *arcs, double a, double b, double px, double py, double qx, double qy, double circle,
-                double mx, double my) {
-    if (b - a <= SHORT) return;
-    bool cut = a < MIDDLE && MIDDLE < b;
+/* Appends an arc, in two pieces if it passes ANGLE_MIDDLE, the point (mx, my). */
+static void append_open(fibrad_arcs *arcs, double a, double b, double px, double py, double qx, double qy,
+                        double circle, double mx, double my) {
+    if (b - a <= ARC_SHORTEST) return;
+    bool cut = a < ANGLE_MIDDLE && ANGLE_MIDDLE < b;
     uint32_t k = arcs->count, n = k + 1;
     arcs->a[k] = a, arcs->px[k] = px, arcs->py[k] = py, arcs->circle[k] = circle;
-    arcs->b[k] = cut ? MIDDLE : b, arcs->qx[k] = cut ? mx : qx, arcs->qy[k] = cut ? my : qy;
-    arcs->a[n] = MIDDLE, arcs->px[n] = mx, arcs->py[n] = my, arcs->circle[n] = circle;
+    arcs->b[k] = cut ? ANGLE_MIDDLE : b, arcs->qx[k] = cut ? mx : qx, arcs->qy[k] = cut ? my : qy;
+    arcs->a[n] = ANGLE_MIDDLE, arcs->px[n] = mx, arcs->py[n] = my, arcs->circle[n] = circle;
     arcs->b[n] = b, arcs->qx[n] = qx, arcs->qy[n] = qy;
     arcs->count = n + cut;
 }
 
-/* Adds what is seen of the new circle to the boundary of the open region: each visible arc begins where one hidden
- * interval ends and no other goes on, and ends where the next one begins. These are exact statements about the numbers
- * at hand; rounding cannot make them contradict each other. Returns false if nothing is seen. */
-static bool see(fibrad_areas *areas, double x, double y, double r) {
-    const fibrad_intervals *h = &areas->accounts.hidden;
-    fibrad_arcs *open = &areas->accounts.open;
-    uint32_t intervals = h->count, before = open->count;
+/* Which of the intervals i, i + 1 ... in lanes end inside another one. An interval holds its own end for later ones
+ * only, so that the first of equal ends remains. */
+static inline uint32_t ends_hidden(const fibrad_intervals *h, uint32_t i) {
+    vd to = vd_load(h->to + i);
+    uint32_t hidden = 0;
+    for (uint32_t j = 0; j < h->count; j++) {
+        vd f = vd_set1(h->from[j]), t = vd_set1(h->to[j]);
+        uint32_t not_later = j < i ? 0 : vd_lanes_below(j - i + 1);
+        uint32_t after = vm_bits(vd_le(f, to));
+        uint32_t before_end = vm_bits(vd_lt(to, t)) | (vm_bits(vd_le(to, t)) & ~not_later);
+        uint32_t passes_jump = 0u - (h->to[j] < h->from[j]);
+        hidden |= (after & before_end) | ((after | before_end) & passes_jump);
+    }
+    return hidden;
+}
+
+/* The interval that begins next, counter-clockwise from pseudo-angle a. */
+static inline uint32_t next_interval(const fibrad_intervals *h, double a) {
+    uint32_t next = 0;
+    double nearest = 2 * ANGLE_TURN;
+    for (uint32_t j = 0; j < h->count; j++) {
+        double ahead = h->from[j] - a;
+        ahead = ahead < 0 ? ahead + ANGLE_TURN : ahead;
+        next = ahead < nearest ? j : next;
+        nearest = fibrad_min(ahead, nearest);
+    }
+    return next;
+}
+
+/* Adds the visible part of the new circle to the boundary of the open region. Each visible arc begins where one hidden
+ * interval ends inside no other, and ends where the next one begins. These are exact statements about the numbers at
+ * hand; rounding cannot make them contradict each other. Returns false if nothing is visible. */
+static bool add_visible(fibrad_areas *areas, double x, double y, double r) {
+    const fibrad_arrangement *a = &areas->arrangement;
+    const fibrad_intervals *h = &a->hidden;
+    fibrad_arcs *open = &areas->arrangement.open;
+    uint32_t before = open->count;
     if (h->all) return false;
     double k = areas->circles, d = r * DIAGONAL, jx = x + d, jy = y - d, mx = x - d, my = y + d;
-    if (intervals == 0) add(open, BEGIN, END, jx, jy, jx, jy, k, mx, my);
-    for (uint32_t i = 0; i < intervals; i += VD_LANES) {
-        vd to = vd_load(h->to + i);
-        uint32_t hidden = 0;
-        for (uint32_t j = 0; j < intervals; j++) {
-            /* does interval j hold the ends of others? Its own end for later ones only, so that the first of equal ends
-             * remains */
-            vd f = vd_set1(h->from[j]), t = vd_set1(h->to[j]);
-            uint32_t not_later = j < i ? 0 : vd_lanes_below(j - i + 1);
-            uint32_t after = vm_bits(vd_le(f, to)),
-                     before_end = vm_bits(vd_lt(to, t)) | (vm_bits(vd_le(to, t)) & ~not_later);
-            uint32_t passes_jump = 0u - (h->to[j] < h->from[j]);
-            hidden |= (after & before_end) | ((after | before_end) & passes_jump);
-        }
-        for (uint32_t bits = vd_lanes_below(intervals - i) & ~hidden; bits != 0; bits &= bits - 1) {
-            uint32_t begin = i + (uint32_t)__builtin_ctz(bits), end = 0;
-            double a = h->to[begin], nearest = 2 * AROUND;
-            for (uint32_t j = 0; j < intervals; j++) {
-                double ahead = h->from[j] - a;
-                ahead = ahead < 0 ? ahead + AROUND : ahead;
-                end = ahead < nearest ? j : end;
-                nearest = fibrad_min(ahead, nearest);
-            }
-            /* what disc m hides runs from the end of what is covered of its circle to the beginning; window: reverse */
+    if (h->count == 0) append_open(open, ANGLE_BEGIN, ANGLE_END, jx, jy, jx, jy, k, mx, my);
+    for (uint32_t i = 0; i < h->count; i += VD_LANES)
+        for (uint32_t bits = vd_lanes_below(h->count - i) & ~ends_hidden(h, i); bits != 0; bits &= bits - 1) {
+            uint32_t begin = i + (uint32_t)__builtin_ctz(bits);
+            double from = h->to[begin];
+            uint32_t end = next_interval(h, from);
+            /* disc m hides from the end of what is covered of its circle to the beginning; the window the reverse */
             uint32_t m = (uint32_t)h->circle[begin], n = (uint32_t)h->circle[end];
-            double b = h->from[end], px = m == 0 ? areas->accounts.ex[m] : areas->accounts.sx[m],
-                   py = m == 0 ? areas->accounts.ey[m] : areas->accounts.sy[m];
-            double qx = n == 0 ? areas->accounts.sx[n] : areas->accounts.ex[n],
-                   qy = n == 0 ? areas->accounts.sy[n] : areas->accounts.ey[n];
-            if (open->count + 4 > areas->accounts.arcs) {
+            double to = h->from[end];
+            double px = m == 0 ? a->ex[m] : a->sx[m], py = m == 0 ? a->ey[m] : a->sy[m];
+            double qx = n == 0 ? a->sx[n] : a->ex[n], qy = n == 0 ? a->sy[n] : a->ey[n];
+            if (open->count + 4 > a->arcs) {
                 areas->overflow = true;
                 return false;
             }
-            add(open, a, b < a ? END : b, px, py, b < a ? jx : qx, b < a ? jy : qy, k, mx, my);
-            if (b < a) add(open, BEGIN, b, jx, jy, qx, qy, k, mx, my);
+            bool jump = to < from;
+            append_open(open, from, jump ? ANGLE_END : to, px, py, jump ? jx : qx, jump ? jy : qy, k, mx, my);
+            if (jump) append_open(open, ANGLE_BEGIN, to, jx, jy, qx, qy, k, mx, my);
         }
-    }
     return open->count > before;
 }
 
 /* Arcs in lanes. */
-typedef struct arcs_in_lanes {
+typedef struct arc_vector {
     vd a, b, px, py, qx, qy, circle;
-} arcs_in_lanes;
+} arc_vector;
 
-static inline arcs_in_lanes load(const fibrad_arcs *arcs, uint32_t k) {
-    return (arcs_in_lanes){vd_load(arcs->a + k),     vd_load(arcs->b + k),  vd_load(arcs->px + k),
-                           vd_load(arcs->py + k),    vd_load(arcs->qx + k), vd_load(arcs->qy + k),
-                           vd_load(arcs->circle + k)};
+static inline arc_vector load_arcs(const fibrad_arcs *arcs, uint32_t k) {
+    return (arc_vector){vd_load(arcs->a + k),  vd_load(arcs->b + k),  vd_load(arcs->px + k),    vd_load(arcs->py + k),
+                        vd_load(arcs->qx + k), vd_load(arcs->qy + k), vd_load(arcs->circle + k)};
 }
 
-/* Appends the lanes named by bits. */
-static inline void append(fibrad_arcs *arcs, uint32_t bits, const arcs_in_lanes *s) {
+/* Appends the lanes given by bits. */
+static inline void append_arcs(fibrad_arcs *arcs, uint32_t bits, const arc_vector *s) {
     uint32_t k = arcs->count;
     vd_compress(arcs->a + k, bits, s->a);
     vd_compress(arcs->b + k, bits, s->b);
@@ -204,140 +240,148 @@ static inline void append(fibrad_arcs *arcs, uint32_t bits, const arcs_in_lanes 
     arcs->count = k + fibrad_count_bits(bits);
 }
 
-static inline arcs_in_lanes select(vm m, const arcs_in_lanes *s, const arcs_in_lanes *t) {
-    return (arcs_in_lanes){vd_select(m, s->a, t->a),
-                           vd_select(m, s->b, t->b),
-                           vd_select(m, s->px, t->px),
-                           vd_select(m, s->py, t->py),
-                           vd_select(m, s->qx, t->qx),
-                           vd_select(m, s->qy, t->qy),
-                           s->circle};
+static inline arc_vector select_arcs(vm m, const arc_vector *s, const arc_vector *t) {
+    return (arc_vector){vd_select(m, s->a, t->a),
+                        vd_select(m, s->b, t->b),
+                        vd_select(m, s->px, t->px),
+                        vd_select(m, s->py, t->py),
+                        vd_select(m, s->qx, t->qx),
+                        vd_select(m, s->qy, t->qy),
+                        s->circle};
 }
 
-static inline uint32_t rising(const arcs_in_lanes *s) { return vm_bits(vd_lt(s->a, s->b)); }
+static inline uint32_t nonempty_arcs(const arc_vector *s) { return vm_bits(vd_lt(s->a, s->b)); }
 
-/* Gives the lanes named by bits to circle k. */
-static void give(fibrad_areas *areas, uint32_t bits, const arcs_in_lanes *s, uint32_t k) {
+/* Appends the lanes given by bits to the pieces of circle k. */
+static void hide_arcs(fibrad_areas *areas, uint32_t bits, const arc_vector *s, uint32_t k) {
     uint32_t size = areas->circles + 1; /* the new one, or the rest */
     vd x = vd_lookup(areas->x, size, s->circle), y = vd_lookup(areas->y, size, s->circle);
-    fibrad_arc_lanes piece = {vd_sub(s->px, x),
-                              vd_sub(s->py, y),
-                              vd_sub(s->qx, x),
-                              vd_sub(s->qy, y),
-                              x,
-                              y,
-                              vd_lookup(areas->r, size, s->circle),
-                              s->circle};
-    LANED(fibrad_arcs_give)(areas, bits, &piece, k);
+    fibrad_arc_lanes piece = {.px = s->px - x,
+                              .py = s->py - y,
+                              .qx = s->qx - x,
+                              .qy = s->qy - y,
+                              .cx = x,
+                              .cy = y,
+                              .r = vd_lookup(areas->r, size, s->circle),
+                              .circle = s->circle};
+    LANED(fibrad_arcs_add)(areas, bits, &piece, k);
 }
 
-/* Gives a whole list to circle k. */
-static void give_all(fibrad_areas *areas, fibrad_arcs *list, uint32_t k) {
+/* Moves a whole list to the pieces of circle k. */
+static void hide_list(fibrad_areas *areas, fibrad_arcs *list, uint32_t k) {
     for (uint32_t o = 0; o < list->count; o += VD_LANES) {
-        arcs_in_lanes s = load(list, o);
-        give(areas, vd_lanes_below(list->count - o), &s, k);
+        arc_vector s = load_arcs(list, o);
+        hide_arcs(areas, vd_lanes_below(list->count - o), &s, k);
     }
     list->count = 0;
 }
 
-/* Takes from the boundary what lies in disc k. In order, an arc has a part below the bounds of the interval covered of
- * its circle, one between and one above; any may be missing. Covered is the one between, or, if the interval passes the
- * jump, are the two others. First parts and second ones are listed in turn, in the order of the arcs, whatever the
- * number of lanes. Returns whether there was anything to take. */
-static bool take(fibrad_areas *areas, uint32_t k) {
-    const fibrad_arcs open = areas->accounts.open;
-    fibrad_arcs *left = &areas->accounts.left, *second = areas->accounts.second;
-    uint32_t size = areas->circles, any = 0;
-    if (2 * open.count > areas->accounts.arcs) {
-        areas->overflow = true;
-        return true;
-    }
-    vd tiny = vd_set1(SHORT);
+/* The parts of arcs: below the bounds of the interval covered of their circle, between them and above. Covered is
+ * `between`, or, in the lanes of `round`, where the interval passes the jump, are the two others. */
+typedef struct arc_parts {
+    arc_vector below, between, above;
+    vm round;
+} arc_parts;
+
+FIBRAD_INLINE arc_parts cut_at_interval(const fibrad_areas *areas, const arc_vector *s) {
+    const fibrad_arrangement *a = &areas->arrangement;
+    uint32_t size = areas->circles;
+    vd from = vd_lookup(a->from, size, s->circle), to = vd_lookup(a->to, size, s->circle);
+    vd sx = vd_lookup(a->sx, size, s->circle), sy = vd_lookup(a->sy, size, s->circle);
+    vd ex = vd_lookup(a->ex, size, s->circle), ey = vd_lookup(a->ey, size, s->circle);
+    vm round = vd_lt(to, from);
+    vd low = vd_min(from, to), high = vd_max(from, to), tiny = vd_set1(ARC_SHORTEST);
+    vd lx = vd_select(round, ex, sx), ly = vd_select(round, ey, sy);
+    vd hx = vd_select(round, sx, ex), hy = vd_select(round, sy, ey);
+    /* a bound that does not cut moves to the end of the arc; if nothing is between them, all of the arc is below */
+    vm low_below = vd_le(low - s->a, tiny), high_above = vd_le(s->b - high, tiny);
+    vm none = vd_le(high - s->a, tiny) | vd_le(high - low, tiny) | vd_le(s->b - low, tiny);
+    high_above |= none;
+    low = vd_select(none, s->b, vd_select(low_below, s->a, low));
+    lx = vd_select(none, s->qx, vd_select(low_below, s->px, lx));
+    ly = vd_select(none, s->qy, vd_select(low_below, s->py, ly));
+    high = vd_select(high_above, s->b, high);
+    hx = vd_select(high_above, s->qx, hx);
+    hy = vd_select(high_above, s->qy, hy);
+    return (arc_parts){{s->a, low, s->px, s->py, lx, ly, s->circle},
+                       {low, high, lx, ly, hx, hy, s->circle},
+                       {high, s->b, hx, hy, s->qx, s->qy, s->circle},
+                       round};
+}
+
+/* Removes from the boundary what lies in disc k. Any of the parts of an arc may be missing. First parts and second ones
+ * are listed in turn, in the order of the arcs, whatever the number of lanes. Returns whether there was anything to
+ * remove. */
+static bool remove_covered(fibrad_areas *areas, uint32_t k) {
+    const fibrad_arcs open = areas->arrangement.open;
+    fibrad_arcs *left = &areas->arrangement.left, *second = areas->arrangement.second;
+    const uint32_t room = areas->arrangement.seconds;
+    uint32_t any = 0;
+    areas->overflow = areas->overflow || 2 * open.count > areas->arrangement.arcs;
+    if (areas->overflow) return true;
     left->count = second[0].count = second[1].count = 0;
     for (uint32_t o = 0; o < open.count; o += VD_LANES) {
-        arcs_in_lanes s = load(&open, o);
-        vd from = vd_lookup(areas->accounts.from, size, s.circle), to = vd_lookup(areas->accounts.to, size, s.circle);
-        vd sx = vd_lookup(areas->accounts.sx, size, s.circle), sy = vd_lookup(areas->accounts.sy, size, s.circle);
-        vd ex = vd_lookup(areas->accounts.ex, size, s.circle), ey = vd_lookup(areas->accounts.ey, size, s.circle);
-        vm round = vd_lt(to, from);
-        vd low = vd_min(from, to), high = vd_max(from, to);
-        vd lx = vd_select(round, ex, sx), ly = vd_select(round, ey, sy);
-        vd hx = vd_select(round, sx, ex), hy = vd_select(round, sy, ey);
-        /* a bound that does not cut goes to the end of the arc; if nothing is between them, all of the arc is below */
-        vm low_below = vd_le(vd_sub(low, s.a), tiny), high_above = vd_le(vd_sub(s.b, high), tiny);
-        vm none = vm_or(vd_le(vd_sub(high, s.a), tiny), vd_le(vd_sub(high, low), tiny));
-        none = vm_or(none, vd_le(vd_sub(s.b, low), tiny));
-        high_above = vm_or(high_above, none);
-        low = vd_select(none, s.b, vd_select(low_below, s.a, low));
-        lx = vd_select(none, s.qx, vd_select(low_below, s.px, lx));
-        ly = vd_select(none, s.qy, vd_select(low_below, s.py, ly));
-        high = vd_select(high_above, s.b, high);
-        hx = vd_select(high_above, s.qx, hx);
-        hy = vd_select(high_above, s.qy, hy);
-
-        arcs_in_lanes below = {s.a, low, s.px, s.py, lx, ly, s.circle};
-        arcs_in_lanes between = {low, high, lx, ly, hx, hy, s.circle};
-        arcs_in_lanes above = {high, s.b, hx, hy, s.qx, s.qy, s.circle};
-        arcs_in_lanes stays = select(round, &between, &below), goes = select(round, &below, &between);
-        uint32_t lanes = vd_lanes_below(open.count - o), rounds = vm_bits(round), seconds = rising(&above) & lanes;
-        uint32_t going = rising(&goes) & lanes;
-        append(left, rising(&stays) & lanes, &stays);
+        const arc_vector s = load_arcs(&open, o);
+        const arc_parts part = cut_at_interval(areas, &s);
+        const arc_vector stays = select_arcs(part.round, &part.between, &part.below);
+        const arc_vector goes = select_arcs(part.round, &part.below, &part.between);
+        uint32_t lanes = vd_lanes_below(open.count - o), rounds = vm_bits(part.round);
+        uint32_t going = nonempty_arcs(&goes) & lanes, seconds = nonempty_arcs(&part.above) & lanes;
+        append_arcs(left, nonempty_arcs(&stays) & lanes, &stays);
         any |= going | (seconds & rounds);
-        if (going != 0) give(areas, going, &goes, k);
+        if (going != 0) hide_arcs(areas, going, &goes, k);
         if (seconds == 0) continue;
-        append(&second[0], seconds & ~rounds, &above);
-        append(&second[1], seconds & rounds, &above);
-        if (second[0].count > areas->accounts.seconds || second[1].count > areas->accounts.seconds) {
-            areas->overflow = true;
-            return true;
-        }
+        append_arcs(&second[0], seconds & ~rounds, &part.above);
+        append_arcs(&second[1], seconds & rounds, &part.above);
+        areas->overflow = second[0].count > room || second[1].count > room;
+        if (areas->overflow) return true;
     }
     if (any == 0) return false;
-    give_all(areas, &second[1], k);
+    hide_list(areas, &second[1], k);
     for (uint32_t o = 0; o < second[0].count; o += VD_LANES) {
-        arcs_in_lanes s = load(&second[0], o);
-        append(left, vd_lanes_below(second[0].count - o), &s);
+        arc_vector s = load_arcs(&second[0], o);
+        append_arcs(left, vd_lanes_below(second[0].count - o), &s);
     }
-    areas->accounts.open = *left;
+    areas->arrangement.open = *left;
     *left = open;
     return true;
 }
 
-void LANED(fibrad_accounts_begin)(fibrad_areas *areas) {
+void LANED(fibrad_arrangement_begin)(fibrad_areas *areas) {
     areas->circles = 0;
-    areas->accounts.open.count = areas->pieces->count = 0;
+    areas->arrangement.open.count = areas->pieces->count = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
-    areas->accounts.inverse[0] = 1;
+    areas->arrangement.inverse[0] = 1;
     areas->circles = 1;
     double d = DIAGONAL;
-    add(&areas->accounts.open, BEGIN, END, d, -d, d, -d, 0, -d, d);
+    append_open(&areas->arrangement.open, ANGLE_BEGIN, ANGLE_END, d, -d, d, -d, 0, -d, d);
 }
 
-bool LANED(fibrad_accounts_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+bool LANED(fibrad_arrangement_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
     double sum = 1 + r, inverse = 1 / r;
-    if (areas->accounts.open.count == 0) return false;
-    if (sum * sum - (x * x + y * y) <= 0 || !meet(areas, x, y, r, inverse)) return true;
+    if (areas->arrangement.open.count == 0) return false;
+    if (sum * sum - (x * x + y * y) <= 0 || !intersect_circles(areas, x, y, r, inverse)) return true;
 
     uint32_t k = areas->circles;
     fibrad_areas_add_circle(areas, whose, x, y, r);
-    areas->accounts.inverse[k] = inverse;
+    areas->arrangement.inverse[k] = inverse;
     bool any;
-    if (areas->accounts.from[0] == ALL) { /* the window lies within the disc */
-        give_all(areas, &areas->accounts.open, k);
+    if (areas->arrangement.from[0] == INTERVAL_ALL) { /* the window lies within the disc */
+        hide_list(areas, &areas->arrangement.open, k);
         any = true;
     } else {
-        any = take(areas, k);
-        if (!areas->overflow && see(areas, x, y, r)) any = true;
+        any = remove_covered(areas, k);
+        if (!areas->overflow && add_visible(areas, x, y, r)) any = true;
     }
     if (any) areas->circles++;
-    if (areas->overflow) areas->accounts.open.count = 0;
-    return areas->accounts.open.count > 0;
+    if (areas->overflow) areas->arrangement.open.count = 0;
+    return areas->arrangement.open.count > 0;
 }
 
-double LANED(fibrad_accounts_end)(fibrad_areas *areas) {
+double LANED(fibrad_arrangement_end)(fibrad_areas *areas) {
     uint32_t rest = areas->circles;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
-    give_all(areas, &areas->accounts.open, rest);
+    hide_list(areas, &areas->arrangement.open, rest);
     LANED(fibrad_areas_integrate)(areas);
     return areas->area[rest];
 }

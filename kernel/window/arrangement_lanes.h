@@ -1,4 +1,4 @@
-/* arrangement_lanes.h - visible areas by accounts of circles, in lanes: no arrangement of discs disturbs them.
+/* arrangement_lanes.h - visible areas by the arrangement of circles, in lanes: no configuration of discs disturbs it.
  * SPDX-License-Identifier: MIT
  *
  * The three functions are those of clip_lanes.h. */
@@ -8,8 +8,8 @@
 #include "base/lanes/laned.h"
 #include "window/areas.h"
 
-void LANED(fibrad_accounts_begin)(fibrad_areas *areas);
-bool LANED(fibrad_accounts_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
-double LANED(fibrad_accounts_end)(fibrad_areas *areas);
+void LANED(fibrad_arrangement_begin)(fibrad_areas *areas);
+bool LANED(fibrad_arrangement_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
+double LANED(fibrad_arrangement_end)(fibrad_areas *areas);
 
 #endif

@@ -1,46 +1,46 @@
 /* clip_lanes.c - exact visible areas of discs in a window by clipping its open region. Compiled once per instruction
  * set. SPDX-License-Identifier: MIT
  *
- * The open region - what no disc covers so far - is known by its boundary: arcs of the window's circle and of the
- * circles of discs. A new disc cuts them, in lanes over the arcs: the parts inside it leave the boundary, and are
- * pieces of the boundary of what is seen of it. Walk along the boundary, the open region on the left: where the walk
- * enters the disc, the boundary now goes on along the disc's circle, clockwise, to the next point where it leaves.
+ * The open region - what no disc covers so far - is represented by its boundary: arcs of the window's circle and of the
+ * circles of discs. A new disc cuts them, in lanes over the arcs. The parts inside it leave the boundary; they also
+ * bound what is visible of the disc. Walk along the boundary, the open region on the left: where the walk enters the
+ * disc, the new boundary follows the disc's circle, clockwise, to the next point where the old one leaves the disc.
  *
  * An arc is cut once if one of its ends is inside the disc. If both are outside it may be cut twice, about the
- * direction in which the disc lies; if both are inside, about the opposite one. So divisions and roots say where an arc
- * is cut, but never whether.
+ * direction in which the disc lies; if both are inside, about the opposite one. So divisions and roots decide where an
+ * arc is cut, but never whether.
  *
- * This breaks where rounding decides. All decisions therefore have a margin, far above rounding; a window in which one
- * of them is too close is done again by accounts. */
+ * This breaks down where rounding decides. All decisions therefore have a margin, far above rounding. A window in which
+ * one of them falls within its margin is degenerate and is resolved again by the arrangement of circles. */
 #include FIBRAD_LANES_HEADER
+#include "base/constants.h"
 #include "base/lanes/below.h"
 #include "window/arc_lanes.h"
 #include "window/arrangement_lanes.h"
 #include "window/clip_lanes.h"
 
-#define PI       3.14159265358979323846
-#define SQRT_3_4 0.86602540378443865
-#define CLOSURE  1e-12
+#define SQRT_3_4     0.86602540378443865
+#define CLIP_CLOSURE 1e-12 /* errors of areas above this show that they are wrong */
 
-/* Decisions closer than this are in doubt: distances of points and circles, relative to the radii for tangent ones.
- * ROUNDING: the same for what rounds with the square of a large radius. */
-#define MARGIN   1e-10
-#define ROUNDING 1e-14
-/* Discs of larger radius round too much. */
-#define LARGEST 1000.0
+/* Decisions closer than this are degenerate: distances of points and circles, relative to the radii for tangent ones.
+ * CLIP_ROUNDING: the same for what rounds with the square of a large radius. */
+#define CLIP_MARGIN   1e-10
+#define CLIP_ROUNDING 1e-14
+/* The rounding errors of discs of larger radius are too large. */
+#define CLIP_RADIUS_MAX 1000.0
 
-static inline void put(double *array, uint32_t slot, double value) {
+static inline void put_lane(double *array, uint32_t slot, double value) {
     double *vector = array + slot / VD_LANES * VD_LANES;
     vd_store(vector, vd_replace(vd_load(vector), slot % VD_LANES, value));
 }
 
 /* Puts an arc into a free slot. False if there is none. */
-static inline bool add(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy, double r,
-                       double circle) {
+static inline bool add_arc(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy,
+                           double r, double circle) {
     uint32_t slot = (uint32_t)__builtin_ctzll(~b->alive);
     if (slot == FIBRAD_BOUNDARY) return false;
-    put(b->px, slot, px), put(b->py, slot, py), put(b->qx, slot, qx), put(b->qy, slot, qy);
-    put(b->cx, slot, cx), put(b->cy, slot, cy), put(b->r, slot, r), put(b->circle, slot, circle);
+    put_lane(b->px, slot, px), put_lane(b->py, slot, py), put_lane(b->qx, slot, qx), put_lane(b->qy, slot, qy);
+    put_lane(b->cx, slot, cx), put_lane(b->cy, slot, cy), put_lane(b->r, slot, r), put_lane(b->circle, slot, circle);
     uint64_t bit = UINT64_C(1) << slot;
     b->alive |= bit;
     b->window = circle < 1 ? b->window | bit : b->window & ~bit;
@@ -48,19 +48,19 @@ static inline bool add(fibrad_boundary *b, double px, double py, double qx, doub
 }
 
 /* Moves arcs to lower slots if they fit into eight slots fewer. */
-static inline void close_up(fibrad_boundary *b) {
+static inline void close_up_slots(fibrad_boundary *b) {
     uint32_t last = (63 - (uint32_t)__builtin_clzll(b->alive)) / 8 * 8;
     if (fibrad_count_bits(b->alive) > last) return;
     for (uint64_t bits = b->alive >> last << last; bits != 0; bits &= bits - 1) {
         uint32_t k = (uint32_t)__builtin_ctzll(bits);
         b->alive &= ~(UINT64_C(1) << k);
-        add(b, b->px[k], b->py[k], b->qx[k], b->qy[k], b->cx[k], b->cy[k], b->r[k], b->circle[k]);
+        add_arc(b, b->px[k], b->py[k], b->qx[k], b->qy[k], b->cx[k], b->cy[k], b->r[k], b->circle[k]);
     }
 }
 
 /* Adds an arc of half a circle or more in four parts. */
-static bool add_parts(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy, double r,
-                      double circle) {
+static bool add_large_arc(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy,
+                          double r, double circle) {
     double point[5][2] = {{px, py}, {0, 0}, {0, 0}, {0, 0}, {qx, qy}};
     for (int step = 4; step > 1; step /= 2)
         for (int from = 0; from < 4; from += step) {
@@ -70,37 +70,37 @@ static bool add_parts(fibrad_boundary *b, double px, double py, double qx, doubl
         }
     bool done = true;
     for (int n = 0; n < 4 && done; n++)
-        done = add(b, point[n][0], point[n][1], point[n + 1][0], point[n + 1][1], cx, cy, r, circle);
+        done = add_arc(b, point[n][0], point[n][1], point[n + 1][0], point[n + 1][1], cx, cy, r, circle);
     return done;
 }
 
 /* Which of the slots `enters` has the next point counter-clockwise from (px, py) on the circle of disc k, which is as
- * far from its centre; NONE if one is too close to tell. */
-#define NONE FIBRAD_BOUNDARY
-static uint32_t next(const fibrad_boundary *b, uint64_t enters, uint64_t window, double px, double py, double r) {
-    double least = 4, margin = MARGIN + MARGIN / r;
-    uint32_t nearest = NONE;
+ * far from its centre; NO_SLOT if one is degenerate. */
+#define NO_SLOT FIBRAD_BOUNDARY
+static uint32_t next_entry(const fibrad_boundary *b, uint64_t enters, uint64_t window, double px, double py, double r) {
+    double least = 4, margin = CLIP_MARGIN + CLIP_MARGIN / r;
+    uint32_t nearest = NO_SLOT;
     for (uint64_t bits = enters; bits != 0; bits &= bits - 1) {
         uint32_t k = (uint32_t)__builtin_ctzll(bits), at = ~window >> k & 1;
-        double qx = b->cut[at][0][k], qy = b->cut[at][1][k], turn = px * qy - py * qx, level = px * qx + py * qy;
-        double sum = fibrad_abs(turn) + fibrad_abs(level);
-        double ahead = turn >= 0 ? 1 - level / sum : 3 + level / sum; /* rises with the angle, 0 to 4 */
-        if (!(ahead > margin && ahead < 4 - margin)) return NONE;
+        double qx = b->cut[at][0][k], qy = b->cut[at][1][k], cross = px * qy - py * qx, dot = px * qx + py * qy;
+        double sum = fibrad_abs(cross) + fibrad_abs(dot);
+        double ahead = cross >= 0 ? 1 - dot / sum : 3 + dot / sum; /* pseudo-angle, 0 to 4 */
+        if (!(ahead > margin && ahead < 4 - margin)) return NO_SLOT;
         if (ahead < least) least = ahead, nearest = k;
     }
     return nearest;
 }
 
 /* Adds to the boundary the arc of disc k from where slot p leaves the disc counter-clockwise to where slot q enters it.
- * False if these are too close to tell a short arc from a whole circle, or there are no slots. */
-static inline bool join(fibrad_boundary *b, uint64_t window, uint32_t p, uint32_t q, double x, double y, double r,
-                        double k) {
+ * False if the points are too close to distinguish a short arc from a whole circle, or there are no slots. */
+static inline bool join_slots(fibrad_boundary *b, uint64_t window, uint32_t p, uint32_t q, double x, double y, double r,
+                              double k) {
     uint32_t at_p = window >> p & 1, at_q = ~window >> q & 1; /* cut[1]: where the arc itself leaves the disc */
     double px = b->cut[at_p][0][p], py = b->cut[at_p][1][p], qx = b->cut[at_q][0][q], qy = b->cut[at_q][1][q];
-    double turn = px * qy - py * qx, level = px * qx + py * qy, near = MARGIN * r;
-    if (turn > near) return add(b, px, py, qx, qy, x, y, r, k);
-    if (level > 0 && turn >= -near) return false;
-    return add_parts(b, px, py, qx, qy, x, y, r, k);
+    double cross = px * qy - py * qx, dot = px * qx + py * qy, near = CLIP_MARGIN * r;
+    if (cross > near) return add_arc(b, px, py, qx, qy, x, y, r, k);
+    if (dot > 0 && cross >= -near) return false;
+    return add_large_arc(b, px, py, qx, qy, x, y, r, k);
 }
 
 /* Joins several points where the boundary leaves the disc each with the next one where it enters it. False if they do
@@ -110,8 +110,8 @@ static bool join_several(fibrad_boundary *b, uint64_t leaves, uint64_t enters, d
     uint64_t left = enters;
     for (uint64_t bits = leaves; bits != 0; bits &= bits - 1) {
         uint32_t p = (uint32_t)__builtin_ctzll(bits), at = window >> p & 1;
-        uint32_t q = next(b, enters, window, b->cut[at][0][p], b->cut[at][1][p], r);
-        if (q == NONE || (left >> q & 1) == 0 || !join(b, window, p, q, x, y, r, k)) return false;
+        uint32_t q = next_entry(b, enters, window, b->cut[at][0][p], b->cut[at][1][p], r);
+        if (q == NO_SLOT || (left >> q & 1) == 0 || !join_slots(b, window, p, q, x, y, r, k)) return false;
         left &= ~(UINT64_C(1) << q);
     }
     return left == 0;
@@ -121,130 +121,169 @@ static bool join_several(fibrad_boundary *b, uint64_t leaves, uint64_t enters, d
 static bool is_open(const fibrad_areas *areas, uint32_t k, double x, double y) {
     uint32_t inside = 0;
     for (uint32_t m = 0; m < k; m += VD_LANES) {
-        vd r = vd_load(areas->r + m), dx = vd_sub(vd_set1(x), vd_load(areas->x + m));
-        vd dy = vd_sub(vd_set1(y), vd_load(areas->y + m));
-        vm in = vd_lt(vd_add(vd_mul(dx, dx), vd_mul(dy, dy)), vd_mul(r, r));
+        vd r = vd_load(areas->r + m), dx = x - vd_load(areas->x + m), dy = y - vd_load(areas->y + m);
+        vm in = vd_lt(dx * dx + dy * dy, r * r);
         inside |= vm_bits(in) & vd_lanes_below(k - m) & (m == 0 ? ~1u : ~0u);
     }
     return inside == 0;
 }
 
-/* Lets disc k, whose circle has been added, take its part of the open region. False: in doubt. */
-FIBRAD_INLINE bool clip(fibrad_areas *areas, uint32_t k, double x, double y, double r) {
+/* The new disc in all lanes, with the margins of its decisions. */
+typedef struct clip_disc {
+    vd x, y, r, near, tangent;
+} clip_disc;
+
+static inline clip_disc disc_in_lanes(double x, double y, double r, double widest) {
+    const double square = widest * widest;
+    return (clip_disc){vd_set1(x), vd_set1(y), vd_set1(r), vd_set1(CLIP_MARGIN * r + CLIP_ROUNDING * square),
+                       vd_set1(CLIP_MARGIN * square)};
+}
+
+/* A vector of arcs against the new disc. */
+typedef struct clip_case {
+    vd px, py, qx, qy, cx, cy, r;       /* the arcs */
+    vd dx, dy, square, sum, difference; /* from centre to centre, and its square; of the radii */
+    vd middle;                          /* p.d of the two points where the circles meet */
+    vm p_in, q_in, any_in, cut_twice;   /* ends inside the disc; both cuts are on the arc */
+    vm degenerate;                      /* within a margin; of the ends p only, as each q is the p of another arc */
+} clip_case;
+
+/* An end p is inside if p.d > middle; the circles meet if the distance middle/d is less than the radius. */
+FIBRAD_INLINE clip_case classify_arcs(const fibrad_boundary *b, uint32_t o, const clip_disc *disc) {
+    clip_case c;
+    c.px = vd_load(b->px + o), c.py = vd_load(b->py + o), c.qx = vd_load(b->qx + o), c.qy = vd_load(b->qy + o);
+    c.cx = vd_load(b->cx + o), c.cy = vd_load(b->cy + o), c.r = vd_load(b->r + o);
+    const vd zero = vd_set1(0);
+    c.dx = disc->x - c.cx, c.dy = disc->y - c.cy, c.square = c.dx * c.dx + c.dy * c.dy;
+    c.sum = c.r + disc->r, c.difference = c.r - disc->r;
+    c.middle = 0.5 * (c.square + c.sum * c.difference);
+    vd p_along = c.px * c.dx + c.py * c.dy, p_across = c.px * c.dy - c.py * c.dx;
+    vd q_along = c.qx * c.dx + c.qy * c.dy, q_across = c.qx * c.dy - c.qy * c.dx;
+    vd meeting = c.r * c.r * c.square - c.middle * c.middle;
+    c.p_in = vd_lt(c.middle, p_along), c.q_in = vd_lt(c.middle, q_along), c.any_in = c.p_in | c.q_in;
+    vm meet = vd_lt(zero, meeting), p_before = vd_lt(zero, p_across), q_after = vd_lt(q_across, zero);
+    vm towards = p_before & q_after, away = vm_not(p_before | q_after);
+    c.cut_twice = meet & ((c.p_in & c.q_in & away) | (vm_not(c.any_in) & towards));
+    c.degenerate = vd_le(vd_abs(p_along - c.middle), disc->near) | vd_le(vd_abs(meeting), disc->tangent * c.square);
+    return c;
+}
+
+/* Cuts a vector of arcs. What remains stays in the slots, but for the second parts of arcs cut twice; what is inside
+ * the disc, or the first part of it, goes to the pieces of disc k. */
+FIBRAD_INLINE void cut_arcs(fibrad_areas *areas, uint32_t o, const clip_case *c, uint32_t touching, uint32_t k) {
+    fibrad_boundary *b = areas->boundary;
+    /* the points s, where the circle enters the disc counter-clockwise, and e, where it leaves */
+    vd outer = c->sum * c->sum - c->square, inner = c->square - c->difference * c->difference;
+    vd scale = 0.5 / c->square, f = (c->middle + c->middle) * scale;
+    vd h = vd_sqrt(vd_max(outer * inner, vd_set1(0))) * scale;
+    vd fx = f * c->dx, fy = f * c->dy, hx = h * c->dx, hy = h * c->dy;
+    vd sx = fx + hy, sy = fy - hx, ex = fx - hy, ey = fy + hx;
+    vd_store(b->cut[0][0] + o, sx - c->dx);
+    vd_store(b->cut[0][1] + o, sy - c->dy);
+    vd_store(b->cut[1][0] + o, ex - c->dx);
+    vd_store(b->cut[1][1] + o, ey - c->dy);
+    vd_store(b->old_qx + o, c->qx);
+    vd_store(b->old_qy + o, c->qy);
+    vm q_cut = c->q_in | c->cut_twice, q_hidden = c->q_in & vm_not(c->cut_twice);
+    vd_store(b->px + o, vd_select(c->p_in, ex, c->px));
+    vd_store(b->py + o, vd_select(c->p_in, ey, c->py));
+    vd_store(b->qx + o, vd_select(q_cut, sx, c->qx));
+    vd_store(b->qy + o, vd_select(q_cut, sy, c->qy));
+    fibrad_arc_lanes piece = {.px = vd_select(c->p_in, c->px, sx),
+                              .py = vd_select(c->p_in, c->py, sy),
+                              .qx = vd_select(q_hidden, c->qx, ex),
+                              .qy = vd_select(q_hidden, c->qy, ey),
+                              .cx = c->cx,
+                              .cy = c->cy,
+                              .r = c->r,
+                              .circle = vd_load(b->circle + o)};
+    fibrad_arcs_append(areas, touching, &piece, k);
+}
+
+/* Adds the second part of arc a, beyond the cut in the middle: to the pieces of disc k if the arc begins inside the
+ * disc, about (x, y), else to the boundary. False if there is no slot. */
+FIBRAD_INLINE bool add_second_part(fibrad_areas *areas, uint32_t a, bool p_inside, double x, double y, uint32_t k) {
+    fibrad_boundary *b = areas->boundary;
+    double dx = x - b->cx[a], dy = y - b->cy[a];
+    if (!p_inside)
+        return add_arc(b, b->cut[1][0][a] + dx, b->cut[1][1][a] + dy, b->old_qx[a], b->old_qy[a], b->cx[a], b->cy[a],
+                       b->r[a], b->circle[a]);
+    fibrad_arc_lanes piece = {.px = vd_set1(b->cut[0][0][a] + dx),
+                              .py = vd_set1(b->cut[0][1][a] + dy),
+                              .qx = vd_set1(b->old_qx[a]),
+                              .qy = vd_set1(b->old_qy[a]),
+                              .cx = vd_set1(b->cx[a]),
+                              .cy = vd_set1(b->cy[a]),
+                              .r = vd_set1(b->r[a]),
+                              .circle = vd_set1(b->circle[a])};
+    LANED(fibrad_arcs_add)(areas, 1, &piece, k);
+    return true;
+}
+
+/* Ends the step of a disc that cuts no arc: its circle is all hidden or all open. Then it is an island, and its circle
+ * joins the boundary in three arcs. False if there is no slot. */
+FIBRAD_INLINE bool add_island(fibrad_areas *areas, bool changed, uint32_t k, double x, double y, double r) {
+    static const double corner[4][2] = {{1, 0}, {-0.5, SQRT_3_4}, {-0.5, -SQRT_3_4}, {1, 0}};
+    bool island = r < 1 && x * x + y * y < (1 - r) * (1 - r) && is_open(areas, k, x + r, y);
+    bool done = true;
+    for (int n = 0; n < 3 && island; n++) {
+        const double *p = corner[n], *q = corner[n + 1];
+        done = done && add_arc(areas->boundary, r * p[0], r * p[1], r * q[0], r * q[1], x, y, r, k);
+    }
+    areas->circles += island || changed;
+    return done;
+}
+
+static inline bool is_single(uint64_t bits) { return bits != 0 && (bits & (bits - 1)) == 0; }
+
+/* Removes from the open region its part inside disc k, whose circle has been added. False: degenerate. */
+FIBRAD_INLINE bool clip_disc_out(fibrad_areas *areas, uint32_t k, double x, double y, double r) {
     fibrad_boundary *b = areas->boundary;
     const uint64_t alive = b->alive;
     const uint32_t slots = 64 - (uint32_t)__builtin_clzll(alive);
-    uint64_t p_inside = 0, q_inside = 0, twice = 0, doubt = 0;
+    uint64_t p_inside = 0, q_inside = 0, twice = 0, degenerate = 0;
     if (r > areas->widest) areas->widest = r;
-    const vd u = vd_set1(x), v = vd_set1(y), radius = vd_set1(r);
-    const double widest = areas->widest * areas->widest;
-    const vd near = vd_set1(MARGIN * r + ROUNDING * widest), tangent = vd_set1(MARGIN * widest), zero = vd_set1(0),
-             half = vd_set1(0.5);
+    const clip_disc disc = disc_in_lanes(x, y, r, areas->widest);
     for (uint32_t o = 0; o < slots; o += VD_LANES) {
-        vd px = vd_load(b->px + o), py = vd_load(b->py + o), qx = vd_load(b->qx + o), qy = vd_load(b->qy + o);
-        vd cx = vd_load(b->cx + o), cy = vd_load(b->cy + o), c_r = vd_load(b->r + o);
-        /* an end p is inside if p.d > middle; both circles meet if the distance middle/d is less than the radius */
-        vd dx = vd_sub(u, cx), dy = vd_sub(v, cy), square = vd_add(vd_mul(dx, dx), vd_mul(dy, dy));
-        vd sum = vd_add(c_r, radius), difference = vd_sub(c_r, radius);
-        vd middle = vd_mul(half, vd_add(square, vd_mul(sum, difference)));
-        vd p_along = vd_add(vd_mul(px, dx), vd_mul(py, dy)), q_along = vd_add(vd_mul(qx, dx), vd_mul(qy, dy));
-        vd p_across = vd_sub(vd_mul(px, dy), vd_mul(py, dx)), q_across = vd_sub(vd_mul(qx, dy), vd_mul(qy, dx));
-        vd meeting = vd_sub(vd_mul(vd_mul(c_r, c_r), square), vd_mul(middle, middle));
-        vm p_in = vd_lt(middle, p_along), q_in = vd_lt(middle, q_along), meet = vd_lt(zero, meeting);
-        vm p_before = vd_lt(zero, p_across), q_after = vd_lt(q_across, zero);
-        vm towards = vm_and(p_before, q_after), away = vm_not(vm_or(p_before, q_after));
-        vm any_in = vm_or(p_in, q_in), both_in = vm_and(p_in, q_in);
-        vm cut_twice = vm_and(meet, vm_or(vm_and(both_in, away), vm_and(vm_not(any_in), towards)));
-        vm close = vm_or(vd_le(vd_abs(vd_sub(p_along, middle)), near), vd_le(vd_abs(meeting), vd_mul(tangent, square)));
+        const clip_case c = classify_arcs(b, o, &disc);
         uint32_t lanes = (uint32_t)(alive >> o) & vd_lanes_below(VD_LANES);
-        uint32_t touching = vm_bits(vm_or(any_in, cut_twice)) & lanes;
-        doubt |= vm_bits(close) & lanes;
+        uint32_t touching = vm_bits(c.any_in | c.cut_twice) & lanes;
+        degenerate |= vm_bits(c.degenerate) & lanes;
         if (touching == 0) continue;
-
-        /* the points s, where the circle enters the disc counter-clockwise, and e, where it leaves */
-        vd outer = vd_sub(vd_mul(sum, sum), square), inner = vd_sub(square, vd_mul(difference, difference));
-        vd scale = vd_div(half, square), f = vd_mul(vd_add(middle, middle), scale);
-        vd h = vd_mul(vd_sqrt(vd_max(vd_mul(outer, inner), zero)), scale);
-        vd fx = vd_mul(f, dx), fy = vd_mul(f, dy), hx = vd_mul(h, dx), hy = vd_mul(h, dy);
-        vd sx = vd_add(fx, hy), sy = vd_sub(fy, hx), ex = vd_sub(fx, hy), ey = vd_add(fy, hx);
-        vd_store(b->cut[0][0] + o, vd_sub(sx, dx));
-        vd_store(b->cut[0][1] + o, vd_sub(sy, dy));
-        vd_store(b->cut[1][0] + o, vd_sub(ex, dx));
-        vd_store(b->cut[1][1] + o, vd_sub(ey, dy));
-        vd_store(b->old_qx + o, qx);
-        vd_store(b->old_qy + o, qy);
-        vm ends_early = vm_or(q_in, cut_twice), goes_on = vm_and(q_in, vm_not(cut_twice));
-        vd_store(b->px + o, vd_select(p_in, ex, px));
-        vd_store(b->py + o, vd_select(p_in, ey, py));
-        vd_store(b->qx + o, vd_select(ends_early, sx, qx));
-        vd_store(b->qy + o, vd_select(ends_early, sy, qy));
-        fibrad_arc_lanes piece = {.px = vd_select(p_in, px, sx),
-                                  .py = vd_select(p_in, py, sy),
-                                  .qx = vd_select(goes_on, qx, ex),
-                                  .qy = vd_select(goes_on, qy, ey),
-                                  .cx = cx,
-                                  .cy = cy,
-                                  .r = c_r,
-                                  .circle = vd_load(b->circle + o)};
-        fibrad_arcs_append(areas, touching, &piece, k);
-        p_inside |= (uint64_t)(vm_bits(p_in) & lanes) << o;
-        q_inside |= (uint64_t)(vm_bits(q_in) & lanes) << o;
-        twice |= (uint64_t)(vm_bits(cut_twice) & lanes) << o;
+        cut_arcs(areas, o, &c, touching, k);
+        p_inside |= (uint64_t)(vm_bits(c.p_in) & lanes) << o;
+        q_inside |= (uint64_t)(vm_bits(c.q_in) & lanes) << o;
+        twice |= (uint64_t)(vm_bits(c.cut_twice) & lanes) << o;
     }
-    if (doubt != 0) return false;
+    if (degenerate != 0) return false;
     const uint64_t starts = (q_inside & ~p_inside) | twice, ends = (p_inside & ~q_inside) | twice;
     b->alive = alive & ~(p_inside & q_inside & ~twice);
-    if ((starts | ends) == 0) { /* the disc's circle is all hidden or all open */
-        bool island = r < 1 && x * x + y * y < (1 - r) * (1 - r) && is_open(areas, k, x + r, y);
-        bool done = true;
-        for (int n = 0; n < 3 && island; n++) {
-            static const double corner[4][2] = {{1, 0}, {-0.5, SQRT_3_4}, {-0.5, -SQRT_3_4}, {1, 0}};
-            const double *p = corner[n], *q = corner[n + 1];
-            done = done && add(b, r * p[0], r * p[1], r * q[0], r * q[1], x, y, r, k);
-        }
-        areas->circles += island || b->alive != alive;
-        return done;
-    }
+    if ((starts | ends) == 0) return add_island(areas, b->alive != alive, k, x, y, r);
 
     areas->circles++;
-    for (uint64_t bits = twice; bits != 0; bits &= bits - 1) { /* what is beyond the cut in the middle */
+    for (uint64_t bits = twice; bits != 0; bits &= bits - 1) {
         uint32_t a = (uint32_t)__builtin_ctzll(bits);
-        double dx = x - b->cx[a], dy = y - b->cy[a];
-        if (p_inside >> a & 1) {
-            fibrad_arc_lanes piece = {vd_set1(b->cut[0][0][a] + dx),
-                                      vd_set1(b->cut[0][1][a] + dy),
-                                      vd_set1(b->old_qx[a]),
-                                      vd_set1(b->old_qy[a]),
-                                      vd_set1(b->cx[a]),
-                                      vd_set1(b->cy[a]),
-                                      vd_set1(b->r[a]),
-                                      vd_set1(b->circle[a])};
-            LANED(fibrad_arcs_give)(areas, 1, &piece, k);
-        } else if (!add(b, b->cut[1][0][a] + dx, b->cut[1][1][a] + dy, b->old_qx[a], b->old_qy[a], b->cx[a], b->cy[a],
-                        b->r[a], b->circle[a])) {
-            return false;
-        }
+        if (!add_second_part(areas, a, p_inside >> a & 1, x, y, k)) return false;
     }
     const uint64_t leaves = (starts & ~b->window) | (ends & b->window);
     const uint64_t enters = (starts & b->window) | (ends & ~b->window);
-    bool one = leaves != 0 && (leaves & (leaves - 1)) == 0 && enters != 0 && (enters & (enters - 1)) == 0;
-    if (!one) return join_several(b, leaves, enters, x, y, r, k);
-    return join(b, b->window, (uint32_t)__builtin_ctzll(leaves), (uint32_t)__builtin_ctzll(enters), x, y, r, k);
+    if (!is_single(leaves) || !is_single(enters)) return join_several(b, leaves, enters, x, y, r, k);
+    return join_slots(b, b->window, (uint32_t)__builtin_ctzll(leaves), (uint32_t)__builtin_ctzll(enters), x, y, r, k);
 }
 
-/* Does the window again, up to its first `circles` circles, by accounts. */
-static bool redo(fibrad_areas *areas, uint32_t circles) {
+/* Resolves the window again, up to its first `circles` circles, by the arrangement. */
+static bool resolve_again(fibrad_areas *areas, uint32_t circles) {
     bool open = true;
-    areas->doubtful = true;
+    areas->degenerate = true;
     areas->fallbacks++;
-    LANED(fibrad_accounts_begin)(areas);
+    LANED(fibrad_arrangement_begin)(areas);
     for (uint32_t k = 1; k < circles && open; k++) /* which keeps no more circles than have been read */
-        open = LANED(fibrad_accounts_disc)(areas, areas->whose[k], areas->x[k], areas->y[k], areas->r[k]);
+        open = LANED(fibrad_arrangement_disc)(areas, areas->whose[k], areas->x[k], areas->y[k], areas->r[k]);
     return open;
 }
 
 void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
-    /* three arcs, that begin where no symmetry of a bed does */
+    /* three arcs, whose ends are not on any symmetry of a bed */
     static _Alignas(FIBRAD_ALIGNMENT)
         const double start_x[8] = {0x1.e921dd42f09bap-1, -0x1.7799ed83d9d3ap-1, -0x1.c61fbefc5b202p-3};
     static _Alignas(FIBRAD_ALIGNMENT)
@@ -269,30 +308,30 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
     areas->widest = 1;
     areas->pieces->count = 0;
     areas->open = true;
-    areas->doubtful = areas->overflow = false;
+    areas->degenerate = areas->overflow = false;
     areas->circles = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     areas->circles = 1;
 }
 
-/* Lets one disc take its part. False once nothing is open. */
-FIBRAD_INLINE bool take(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
-    if (areas->doubtful) return LANED(fibrad_accounts_disc)(areas, whose, x, y, r);
+/* Hides what one disc covers. False once nothing is open. */
+FIBRAD_INLINE bool hide_disc(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+    if (areas->degenerate) return LANED(fibrad_arrangement_disc)(areas, whose, x, y, r);
     uint32_t k = areas->circles;
     fibrad_areas_add_circle(areas, whose, x, y, r);
-    if (r > LARGEST || !clip(areas, k, x, y, r)) return redo(areas, k + 1);
+    if (r > CLIP_RADIUS_MAX || !clip_disc_out(areas, k, x, y, r)) return resolve_again(areas, k + 1);
     if (areas->boundary->alive == 0) return false;
-    close_up(areas->boundary);
+    close_up_slots(areas->boundary);
     return true;
 }
 
-/* A loop in here, since a call for each disc takes a twentieth of the instructions. */
+/* The loop is in here because a call for each disc takes a twentieth of the instructions. */
 uint32_t LANED(fibrad_areas_discs)(fibrad_areas *areas, uint32_t first, const uint32_t *which, uint32_t count,
                                    const double *x, const double *y, const double *r) {
     uint32_t n = 0;
     for (; n < count && areas->open; n++) {
         uint32_t k = which[n];
-        areas->open = take(areas, first + k, x[k], y[k], r[k]);
+        areas->open = hide_disc(areas, first + k, x[k], y[k], r[k]);
     }
     return n;
 }
@@ -302,26 +341,26 @@ bool LANED(fibrad_areas_disc)(fibrad_areas *areas, uint32_t whose, double x, dou
     return areas->open;
 }
 
-/* What is still open, as the area of the last circle; false if the areas cannot be right. */
-static bool complete(fibrad_areas *areas) {
+/* Adds what is still open, as the area of a last circle. False if the areas cannot be right. */
+static bool complete_areas(fibrad_areas *areas) {
     fibrad_boundary *b = areas->boundary;
     uint32_t rest = areas->circles;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     for (uint32_t o = 0; b->alive >> o != 0; o += VD_LANES) {
         fibrad_arc_lanes piece = {vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
                                   vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
-        LANED(fibrad_arcs_give)(areas, (uint32_t)(b->alive >> o) & vd_lanes_below(VD_LANES), &piece, rest);
+        LANED(fibrad_arcs_add)(areas, (uint32_t)(b->alive >> o) & vd_lanes_below(VD_LANES), &piece, rest);
     }
     LANED(fibrad_areas_integrate)(areas);
-    bool right = fibrad_abs(areas->area[0] + PI) < CLOSURE;
-    for (uint32_t k = 1; k <= rest; k++) right = right & (areas->area[k] > -CLOSURE);
+    bool right = fibrad_abs(areas->area[0] + FIBRAD_PI) < CLIP_CLOSURE;
+    for (uint32_t k = 1; k <= rest; k++) right = right & (areas->area[k] > -CLIP_CLOSURE);
     return right;
 }
 
 double LANED(fibrad_areas_end)(fibrad_areas *areas) {
-    if (!areas->doubtful) {
-        if (complete(areas)) return areas->area[areas->circles];
-        redo(areas, areas->circles);
+    if (!areas->degenerate) {
+        if (complete_areas(areas)) return areas->area[areas->circles];
+        resolve_again(areas, areas->circles);
     }
-    return LANED(fibrad_accounts_end)(areas);
+    return LANED(fibrad_arrangement_end)(areas);
 }

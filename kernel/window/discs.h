@@ -8,14 +8,14 @@
 
 /* Discs before the window in hand: the shadows of spheres, u and v being their centres across the direction. */
 typedef struct fibrad_discs {
-    double *depth, *u, *v, *r; /* [capacity + FIBRAD_LANES_MAX]; the depth is -1 once a disc is settled */
-    float *fu, *fv, *square;   /* [same] place and r^2 for points */
-    uint32_t *near;            /* [same, and room for all near spheres] place in the near list */
+    double *depth, *u, *v, *r; /* [capacity + FIBRAD_LANES_MAX]; the depth is -1 once a disc is resolved */
+    float *fu, *fv, *square;   /* [same] position and r^2 for points */
+    uint32_t *near;            /* [same, and room for all near spheres] position in the near list */
     uint32_t *order;           /* [same] which is the first, the second ... from front to back */
-    uint32_t *hits;            /* [same] points that the first, the second ... takes */
-    uint32_t *taker;           /* [same] which of them take any */
+    uint32_t *hidden_points;   /* [same] number of points that the first, the second ... hides */
+    uint32_t *occluder;        /* [same] which of them hide any */
     uint32_t capacity;
-    uint32_t count; /* may go on beyond the capacity */
+    uint32_t count; /* may exceed the capacity */
 } fibrad_discs;
 
 #endif

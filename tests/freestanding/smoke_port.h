@@ -9,17 +9,14 @@
 #include <stddef.h>
 
 double smoke_sqrt(double x);
-float smoke_sqrtf(float x);
 void *memcpy(void *restrict to, const void *restrict from, size_t bytes);
 void *memmove(void *to, const void *from, size_t bytes);
 void *memset(void *to, int byte, size_t bytes);
 
 #if defined(__ARM_FP) && (__ARM_FP & 8) || defined(__riscv_fdiv)
 static inline double fibrad_sqrt(double x) { return __builtin_sqrt(x); }
-static inline float fibrad_sqrtf(float x) { return __builtin_sqrtf(x); }
 #else
 static inline double fibrad_sqrt(double x) { return smoke_sqrt(x); }
-static inline float fibrad_sqrtf(float x) { return smoke_sqrtf(x); }
 #endif
 static inline void fibrad_copy(void *to, const void *from, size_t bytes) { memcpy(to, from, bytes); }
 static inline void fibrad_zero(void *to, size_t bytes) { memset(to, 0, bytes); }

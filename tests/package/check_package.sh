@@ -1,26 +1,51 @@
 #!/bin/sh
-# check_package.sh - programs in C99 and C++17 build and run against the installed library, found by pkg-config.
+# check_package.sh - programs in C99 and C++17 build and run against the installed libraries, static ones found by
+# pkg-config and the shared one, which exports the functions of the public headers and nothing else.
 # SPDX-License-Identifier: MIT
 set -eu
 : "${BUILD:=build}" "${CC:=cc}" "${CXX:=c++}" "${MAKE:=make}"
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 
-"$MAKE" --no-print-directory install-lib BUILD="$BUILD" CC="$CC" PREFIX=/usr DESTDIR="$tree"
+"$MAKE" -s --no-print-directory install-lib BUILD="$BUILD" CC="$CC" PREFIX=/usr DESTDIR="$tree"
 export PKG_CONFIG_LIBDIR="$tree/usr/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$tree"
 export PKG_CONFIG_ALLOW_SYSTEM_CFLAGS=1 PKG_CONFIG_ALLOW_SYSTEM_LIBS=1
 version=$(sed -n 's/^#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel/fibrad.h)
 test "$(pkg-config --modversion fibrad)" = "$version"
-flags=$(pkg-config --cflags --libs fibrad)
+test "$(pkg-config --modversion fibrad_host)" = "$version"
+strict="-pedantic-errors -Wall -Wextra -Werror"
+shared="-I$tree/usr/include -L$tree/usr/lib -lfibrad"
 
-# shellcheck disable=SC2086  # a list of flags
-"$CC" -std=c99 -pedantic-errors -Wall -Wextra -Werror tests/package/row.c $flags -lm -o "$tree/row_c"
-"$tree/row_c"
+# build COMPILER SOURCE PROGRAM FLAGS: builds and runs it
+build() {
+    # shellcheck disable=SC2086  # lists of flags
+    "$1" $strict $4 "tests/package/$2" $5 -lm -o "$tree/$3"
+    LD_LIBRARY_PATH="$tree/usr/lib" "$tree/$3" >"$tree/$3.out"
+}
+
+build "$CC" row.c row_c -std=c99 "$(pkg-config --cflags --libs fibrad)"
+build "$CC" bed.c bed_static -std=c99 "$(pkg-config --cflags --libs fibrad_host)"
+build "$CC" bed.c bed_shared -std=c99 "$shared"
+cmp "$tree/bed_static.out" "$tree/bed_shared.out"
+if ldd "$tree/row_c" "$tree/bed_static" | grep libfibrad; then exit 1; fi
 
 if command -v "$CXX" >/dev/null; then
-    # shellcheck disable=SC2086
-    "$CXX" -std=c++17 -pedantic-errors -Wall -Wextra -Werror tests/package/row.cpp $flags -o "$tree/row_cpp"
-    "$tree/row_cpp"
+    build "$CXX" row.cpp row_cpp -std=c++17 "$(pkg-config --cflags --libs fibrad_host)"
 else
     echo "SKIP package in C++: no $CXX on this machine"
 fi
+
+# every structure that the headers define
+enums=$(sed -n 's/^typedef enum \(fibrad_[a-z_]*\) {.*/\1/p' "$tree/usr/include/fibrad.h" "$tree/usr/include/fibrad_surface.h")
+sed -n 's/^} \(fibrad_[a-z_]*\);.*/\1/p; s/^struct \(fibrad_[a-z_]*\) {.*/typedef struct \1 \1/p' "$tree/usr/include/fibrad.h" \
+    "$tree/usr/include/fibrad_surface.h" "$tree/usr/include/fibrad_host.h" | sed 's/.* //' |
+    grep -vx "$enums" | sed 's/.*/CHECK(&);/' >"$tree/structures.inc"
+test "$(wc -l <"$tree/structures.inc")" -gt 20
+build "$CC" sizes.c sizes "-std=c99 -I$tree" "$shared"
+
+library=$tree/usr/lib/libfibrad.so
+name=$(readelf -d "$library" | sed -n 's/.*soname: \[\(.*\)\]/\1/p')
+test -e "$tree/usr/lib/$name" && test "$(readlink "$library")" = "$name"
+sed -n '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1/p' "$tree"/usr/include/*.h | sort >"$tree/declared"
+nm -D --defined-only "$library" | awk '$2 != "A" {sub(/@.*/, "", $3); print $3}' | sort >"$tree/exported"
+diff "$tree/declared" "$tree/exported"

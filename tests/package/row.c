@@ -10,10 +10,7 @@ enum { N = 7 };
 static const double x[N] = {0, 2, -2, 0, 0, 0, 0}, y[N] = {0, 0, 0, 2, -2, 0, 0}, z[N] = {0, 0, 0, 0, 0, 2, -2},
                     r[N] = {1, 1, 1, 1, 1, 1, 1};
 
-static unsigned char scene_block[FIBRAD_SCENE_BYTES(N) + 64], work_block[FIBRAD_WORK_BYTES(64, 64, N) + 64];
-
-/* C99 cannot ask for an alignment. */
-static void *aligned(unsigned char *block) { return block + (64 - (uintptr_t)block % 64) % 64; }
+static unsigned char scene_block[FIBRAD_SCENE_BYTES(N)], work_block[FIBRAD_WORK_BYTES(64, N)];
 
 static int report(const char *call, int status) {
     if (status != FIBRAD_OK) fprintf(stderr, "%s: %s\n", call, fibrad_status_text(status));
@@ -21,21 +18,17 @@ static int report(const char *call, int status) {
 }
 
 int main(void) {
-    fibrad_spheres spheres = {x, y, z, r, N};
-    fibrad_scene_config scene_config = {.spheres = N};
-    fibrad_work_config work_config = {.near = 64, .discs = 64, .entries = N};
+    fibrad_spheres spheres = {.x = x, .y = y, .z = z, .r = r, .n = N};
+    fibrad_work work = {.memory = {.block = work_block, .size = sizeof work_block}};
     fibrad_beam_rule rule = {.directions = 233};
     fibrad_scene *scene;
-    fibrad_work *work;
     uint32_t col[N], k;
     double f[N], pair, sum = 0;
     fibrad_row row = {.col = col, .f = f, .capacity = N};
 
     if (report("pair", fibrad_pair_exact(1, 1, 0, &pair)) ||
-        report("scene",
-               fibrad_scene_init(&scene, aligned(scene_block), FIBRAD_SCENE_BYTES(N), &scene_config, &spheres, NULL)) ||
-        report("work", fibrad_work_init(&work, aligned(work_block), FIBRAD_WORK_BYTES(64, 64, N), &work_config)) ||
-        report("row", fibrad_beam_row(scene, work, 0, &rule, &row)))
+        report("scene", fibrad_scene_init(&scene, scene_block, sizeof scene_block, NULL, &spheres, NULL)) ||
+        report("row", fibrad_beam_row(scene, &work, 0, &rule, &row)))
         return 1;
 
     printf("fibrad %s\n", fibrad_version());

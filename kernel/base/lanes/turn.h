@@ -8,17 +8,17 @@
 static inline vd vd_sine_quarter(vd t) {
     static const double ratio[] = {1. / (18 * 19), 1. / (16 * 17), 1. / (14 * 15), 1. / (12 * 13), 1. / (10 * 11),
                                    1. / (8 * 9),   1. / (6 * 7),   1. / (4 * 5),   1. / (2 * 3)};
-    vd x = vd_mul(vd_set1(FIBRAD_TWO_PI), t), square = vd_mul(x, x), sum = vd_set1(1);
-    for (int k = 0; k < 9; k++) sum = vd_sub(vd_set1(1), vd_mul(vd_mul(square, vd_set1(ratio[k])), sum));
-    return vd_mul(x, sum);
+    vd x = FIBRAD_TWO_PI * t, square = x * x, sum = vd_set1(1);
+    for (int k = 0; k < 9; k++) sum = 1 - square * ratio[k] * sum;
+    return x * sum;
 }
 
 /* A turn of t in [0, 1): its cosine and sine up to the same half turn for all t. */
 static inline void vd_turn(vd t, vd *cosine, vd *sine) {
-    vd y = vd_sub(t, vd_set1(.5)), size = vd_abs(y);
-    *cosine = vd_sine_quarter(vd_sub(vd_set1(.25), size));
-    vd folded = vd_sine_quarter(vd_min(size, vd_sub(vd_set1(.5), size)));
-    *sine = vd_select(vd_lt(y, vd_set1(0)), vd_sub(vd_set1(0), folded), folded);
+    vd y = t - .5, size = vd_abs(y);
+    *cosine = vd_sine_quarter(.25 - size);
+    vd folded = vd_sine_quarter(vd_min(size, .5 - size));
+    *sine = vd_select(vd_lt(y, vd_set1(0)), 0 - folded, folded);
 }
 
 #endif

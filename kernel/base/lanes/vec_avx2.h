@@ -10,7 +10,7 @@
 #define VF_LANES 8
 
 typedef __m256d vd;
-typedef __m256d vm;
+typedef __m256i vm; /* integers have & and | */
 typedef __m256 vf;
 typedef __m256i vn;
 
@@ -59,27 +59,18 @@ static inline void vd_store(double *p, vd a) { _mm256_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm256_storeu_pd(p, a); }
 static inline vd vd_load_float(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
 static inline void vd_store_float(float *p, vd a) { _mm_store_ps(p, _mm256_cvtpd_ps(a)); }
-static inline vd vd_add(vd a, vd b) { return _mm256_add_pd(a, b); }
-static inline vd vd_sub(vd a, vd b) { return _mm256_sub_pd(a, b); }
-static inline vd vd_mul(vd a, vd b) { return _mm256_mul_pd(a, b); }
-static inline vd vd_div(vd a, vd b) { return _mm256_div_pd(a, b); }
 static inline vd vd_sqrt(vd a) { return _mm256_sqrt_pd(a); }
 static inline vd vd_min(vd a, vd b) { return _mm256_min_pd(a, b); }
 static inline vd vd_max(vd a, vd b) { return _mm256_max_pd(a, b); }
 static inline vd vd_abs(vd a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
-static inline vm vd_lt(vd a, vd b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
-static inline vm vd_le(vd a, vd b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
-static inline vd vd_select(vm m, vd a, vd b) { return _mm256_blendv_pd(b, a, m); }
-static inline vm vm_and(vm a, vm b) { return _mm256_and_pd(a, b); }
-static inline vm vm_or(vm a, vm b) { return _mm256_or_pd(a, b); }
-static inline vm vm_not(vm a) { return _mm256_xor_pd(a, _mm256_castsi256_pd(_mm256_set1_epi32(-1))); }
-static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_pd(a); }
+static inline vm vd_lt(vd a, vd b) { return _mm256_castpd_si256(_mm256_cmp_pd(a, b, _CMP_LT_OQ)); }
+static inline vm vd_le(vd a, vd b) { return _mm256_castpd_si256(_mm256_cmp_pd(a, b, _CMP_LE_OQ)); }
+static inline vd vd_select(vm m, vd a, vd b) { return _mm256_blendv_pd(b, a, _mm256_castsi256_pd(m)); }
+static inline vm vm_not(vm a) { return ~a; }
+static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_pd(_mm256_castsi256_pd(a)); }
 
 static inline vf vf_set1(float a) { return _mm256_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm256_load_ps(p); }
-static inline vf vf_add(vf a, vf b) { return _mm256_add_ps(a, b); }
-static inline vf vf_sub(vf a, vf b) { return _mm256_sub_ps(a, b); }
-static inline vf vf_mul(vf a, vf b) { return _mm256_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
 static inline vn vn_zero(void) { return _mm256_setzero_si256(); }
 static inline void vn_store(uint32_t *p, vn n) { _mm256_store_si256((__m256i *)(void *)p, n); }

@@ -44,10 +44,6 @@ static inline void vd_store(double *p, vd a) { _mm512_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm512_storeu_pd(p, a); }
 static inline vd vd_load_float(const float *p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
 static inline void vd_store_float(float *p, vd a) { _mm256_store_ps(p, _mm512_cvtpd_ps(a)); }
-static inline vd vd_add(vd a, vd b) { return _mm512_add_pd(a, b); }
-static inline vd vd_sub(vd a, vd b) { return _mm512_sub_pd(a, b); }
-static inline vd vd_mul(vd a, vd b) { return _mm512_mul_pd(a, b); }
-static inline vd vd_div(vd a, vd b) { return _mm512_div_pd(a, b); }
 static inline vd vd_sqrt(vd a) { return _mm512_sqrt_pd(a); }
 static inline vd vd_min(vd a, vd b) { return _mm512_min_pd(a, b); }
 static inline vd vd_max(vd a, vd b) { return _mm512_max_pd(a, b); }
@@ -55,16 +51,11 @@ static inline vd vd_abs(vd a) { return _mm512_abs_pd(a); }
 static inline vm vd_lt(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
 static inline vm vd_le(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
 static inline vd vd_select(vm m, vd a, vd b) { return _mm512_mask_blend_pd(m, b, a); }
-static inline vm vm_and(vm a, vm b) { return (vm)(a & b); }
-static inline vm vm_or(vm a, vm b) { return (vm)(a | b); }
 static inline vm vm_not(vm a) { return (vm)~a; }
 static inline uint32_t vm_bits(vm a) { return a; }
 
 static inline vf vf_set1(float a) { return _mm512_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm512_load_ps(p); }
-static inline vf vf_add(vf a, vf b) { return _mm512_add_ps(a, b); }
-static inline vf vf_sub(vf a, vf b) { return _mm512_sub_ps(a, b); }
-static inline vf vf_mul(vf a, vf b) { return _mm512_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 static inline vn vn_zero(void) { return _mm512_setzero_si512(); }
 static inline void vn_store(uint32_t *p, vn n) { _mm512_store_si512((__m512i *)(void *)p, n); }

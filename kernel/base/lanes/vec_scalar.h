@@ -2,7 +2,8 @@
 /* vec_scalar.h - lanes of one: the portable version that all others must equal bit for bit. SPDX-License-Identifier: MIT
  *
  * The operations every vec_*.h offers, none of which mixes lanes, so that a result does not depend on their number:
- *   vd   VD_LANES doubles    vd_set1 vd_load vd_store vd_add vd_sub vd_mul vd_div vd_sqrt vd_min vd_max vd_abs
+ *   vd   VD_LANES doubles    + - * / (a number beside a vector stands for itself in every lane)
+ *                            vd_set1 vd_load vd_store vd_sqrt vd_min vd_max vd_abs
  *                            vd_loadu vd_storeu (any address), vd_load_float vd_store_float (rounded)
  *                            vd_lt vd_le (masks) vd_select(mask, if set, if clear)
  *                            vd_lookup(table, size, k): table[k] for lanes of whole numbers k < size (less than
@@ -11,12 +12,13 @@
  *                            vd_compress(p, bits, a): the lanes named by bits side by side at p, which has room for all
  *                            vd_replace(a, lane, x): a with x in one lane
  *                            vd_compress_places(p, bits, first): first + l for them; returns how many
- *   vm   a mask of vd lanes  vm_and vm_or vm_not vm_bits (bit l = lane l)
- *   vf   VF_LANES floats     vf_set1 vf_load vf_add vf_sub vf_mul vf_lt_bits (bit l = lane l)
+ *   vm   a mask of vd lanes  & | vm_not vm_bits (bit l = lane l)
+ *   vf   VF_LANES floats     + - * vf_set1 vf_load vf_lt_bits (bit l = lane l)
  *                            vf_compress_places(p, bits, first): as that of vd
  *   vn   VF_LANES numbers    vn_zero vn_store vn_count_lt(n, a, b): n, and one more where a < b
  *                            vn_some_bits(p): which of those at p, any address, are not 0
- * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them. */
+ * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them.
+ * 0 - a, not -a, where a sign turns: the zero it makes is positive. */
 /* clang-format on */
 #ifndef FIBRAD_VEC_SCALAR_H
 #define FIBRAD_VEC_SCALAR_H
@@ -49,10 +51,6 @@ static inline void vd_store(double *p, vd a) { *p = a; }
 static inline void vd_storeu(double *p, vd a) { *p = a; }
 static inline vd vd_load_float(const float *p) { return *p; }
 static inline void vd_store_float(float *p, vd a) { *p = (float)a; }
-static inline vd vd_add(vd a, vd b) { return a + b; }
-static inline vd vd_sub(vd a, vd b) { return a - b; }
-static inline vd vd_mul(vd a, vd b) { return a * b; }
-static inline vd vd_div(vd a, vd b) { return a / b; }
 static inline vd vd_sqrt(vd a) { return fibrad_sqrt(a); }
 static inline vd vd_min(vd a, vd b) { return a < b ? a : b; }
 static inline vd vd_max(vd a, vd b) { return a > b ? a : b; }
@@ -60,16 +58,11 @@ static inline vd vd_abs(vd a) { return __builtin_fabs(a); }
 static inline vm vd_lt(vd a, vd b) { return a < b; }
 static inline vm vd_le(vd a, vd b) { return a <= b; }
 static inline vd vd_select(vm m, vd a, vd b) { return m ? a : b; }
-static inline vm vm_and(vm a, vm b) { return a & b; }
-static inline vm vm_or(vm a, vm b) { return a | b; }
 static inline vm vm_not(vm a) { return !a; }
 static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
 
 static inline vf vf_set1(float a) { return a; }
 static inline vf vf_load(const float *p) { return *p; }
-static inline vf vf_add(vf a, vf b) { return a + b; }
-static inline vf vf_sub(vf a, vf b) { return a - b; }
-static inline vf vf_mul(vf a, vf b) { return a * b; }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return a < b; }
 static inline vn vn_zero(void) { return 0; }
 static inline void vn_store(uint32_t *p, vn n) { *p = n; }

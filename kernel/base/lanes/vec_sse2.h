@@ -10,7 +10,7 @@
 #define VF_LANES 4
 
 typedef __m128d vd;
-typedef __m128d vm;
+typedef __m128i vm; /* integers have & and | */
 typedef __m128 vf;
 typedef __m128i vn;
 
@@ -44,27 +44,21 @@ static inline vd vd_load_float(const float *p) {
     return _mm_cvtps_pd(_mm_castpd_ps(_mm_load_sd((const double *)(const void *)p)));
 }
 static inline void vd_store_float(float *p, vd a) { _mm_storel_pi((__m64 *)(void *)p, _mm_cvtpd_ps(a)); }
-static inline vd vd_add(vd a, vd b) { return _mm_add_pd(a, b); }
-static inline vd vd_sub(vd a, vd b) { return _mm_sub_pd(a, b); }
-static inline vd vd_mul(vd a, vd b) { return _mm_mul_pd(a, b); }
-static inline vd vd_div(vd a, vd b) { return _mm_div_pd(a, b); }
 static inline vd vd_sqrt(vd a) { return _mm_sqrt_pd(a); }
 static inline vd vd_min(vd a, vd b) { return _mm_min_pd(a, b); }
 static inline vd vd_max(vd a, vd b) { return _mm_max_pd(a, b); }
 static inline vd vd_abs(vd a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a); }
-static inline vm vd_lt(vd a, vd b) { return _mm_cmplt_pd(a, b); }
-static inline vm vd_le(vd a, vd b) { return _mm_cmple_pd(a, b); }
-static inline vd vd_select(vm m, vd a, vd b) { return _mm_or_pd(_mm_and_pd(m, a), _mm_andnot_pd(m, b)); }
-static inline vm vm_and(vm a, vm b) { return _mm_and_pd(a, b); }
-static inline vm vm_or(vm a, vm b) { return _mm_or_pd(a, b); }
-static inline vm vm_not(vm a) { return _mm_xor_pd(a, _mm_castsi128_pd(_mm_set1_epi32(-1))); }
-static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm_movemask_pd(a); }
+static inline vm vd_lt(vd a, vd b) { return _mm_castpd_si128(_mm_cmplt_pd(a, b)); }
+static inline vm vd_le(vd a, vd b) { return _mm_castpd_si128(_mm_cmple_pd(a, b)); }
+static inline vd vd_select(vm m, vd a, vd b) {
+    __m128d set = _mm_castsi128_pd(m);
+    return _mm_or_pd(_mm_and_pd(set, a), _mm_andnot_pd(set, b));
+}
+static inline vm vm_not(vm a) { return ~a; }
+static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm_movemask_pd(_mm_castsi128_pd(a)); }
 
 static inline vf vf_set1(float a) { return _mm_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm_load_ps(p); }
-static inline vf vf_add(vf a, vf b) { return _mm_add_ps(a, b); }
-static inline vf vf_sub(vf a, vf b) { return _mm_sub_ps(a, b); }
-static inline vf vf_mul(vf a, vf b) { return _mm_mul_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)); }
 static inline vn vn_zero(void) { return _mm_setzero_si128(); }
 static inline void vn_store(uint32_t *p, vn n) { _mm_store_si128((__m128i *)(void *)p, n); }

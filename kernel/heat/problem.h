@@ -1,10 +1,10 @@
-/* heat.h - what the files of the heat problem share. SPDX-License-Identifier: MIT
+/* problem.h - the inside of a heat problem. SPDX-License-Identifier: MIT
  *
  * Bodies are the spheres in the order of the scene's places, then the walls by number, then what lies beyond the
  * patches of unbounded walls, then the surroundings. Each body has patches [first[b], first[b + 1]): none if it is not
  * there, four at a time making up a patch of the coarser level, and one alone beyond the walls. */
-#ifndef FIBRAD_HEAT_HEAT_H
-#define FIBRAD_HEAT_HEAT_H
+#ifndef FIBRAD_HEAT_PROBLEM_H
+#define FIBRAD_HEAT_PROBLEM_H
 
 #include "row/work.h"
 #include "scene/scene.h"
@@ -93,23 +93,5 @@ static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall
     return heat->spheres + FIBRAD_WALLS + wall;
 }
 static inline uint32_t fibrad_heat_open(const fibrad_heat *heat) { return heat->patches - 1; }
-
-/* Makes the next sweep the first one of a solution. */
-void fibrad_heat_start(fibrad_heat *heat);
-
-/* Chooses the patches and rays of all walls: heat->wall and heat->rays. Needs heat->config and heat->scene. */
-void fibrad_heat_cut_walls(fibrad_heat *heat);
-
-/* The patch of a wall at a place on it [L]. */
-uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]);
-
-/* Rays per area that leave the wall of a patch; 0 if it belongs to none. */
-double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch);
-
-/* The patch that a ray meets which meets no sphere: of a wall, or the surroundings. */
-uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]);
-
-/* Origin [L] and direction of ray k of a wall. False: it starts outside the container. */
-bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, double origin[3], double w[3]);
 
 #endif

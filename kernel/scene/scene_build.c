@@ -1,4 +1,4 @@
-/* scene.c - copies spheres into a fixed-memory cell grid, and checks them. SPDX-License-Identifier: MIT */
+/* scene_build.c - copies spheres into a fixed-memory cell grid, and checks them. SPDX-License-Identifier: MIT */
 #include "scene/scene.h"
 #include "base/random.h"
 #include "base/arena.h"
@@ -116,7 +116,7 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
 
 /* Box of the centres and range of the radii. A centre on a periodic axis belongs into [low, low + period), low being
  * the least coordinate: a bed that fits its box keeps its coordinates to the bit. */
-static int measure(fibrad_scene *scene, const fibrad_spheres *s, fibrad_fault *fault) {
+static int measure_spheres(fibrad_scene *scene, const fibrad_spheres *s, fibrad_fault *fault) {
     scene->facts.radius_min = scene->facts.radius_max = s->n > 0 ? radius_of(s, 0) : 0;
     for (uint32_t i = 0; i < s->n; i++) {
         for (int axis = 0; axis < 3; axis++) {
@@ -328,7 +328,7 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
     scene->facts.isa = fibrad_isa_choose(config.isa);
     fibrad_copy(scene->period, config.period, sizeof scene->period);
     fibrad_walls_build(scene, config.body, config.bodies);
-    status = measure(scene, &s, fault);
+    status = measure_spheres(scene, &s, fault);
     if (status != FIBRAD_OK) return status;
     for (int axis = 0; axis < 3; axis++)
         if (scene->period[axis] > 0 && scene->period[axis] < scene->facts.radius_max)

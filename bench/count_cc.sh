@@ -1,0 +1,39 @@
+#!/bin/sh
+# count_cc.sh - a compiler whose objects count the instructions they execute. SPDX-License-Identifier: MIT
+#
+#     make CC="bench/count_cc.sh gcc" HOSTCC=gcc lib
+#
+# x86-64, one thread. The compiler's assembly is left as it is, but before each block, from a label or jump to the next,
+# the number of its instructions is added to instructions_counted, all registers and flags being kept. Repeated string
+# instructions count once; what is called in other libraries does not count. The caller defines
+# uint64_t instructions_counted[2], of which the second is scratch.
+set -eu
+case " $* " in
+*" -c "*" -o "*) ;;
+*) exec "$@" ;;
+esac
+compiler=$1 object=$(echo " $* " | sed 's/.* -o \([^ ]*\) .*/\1/')
+for argument; do
+    shift
+    test "$argument" != "$object" || argument=$object.plain
+    set -- "$@" "$argument"
+done
+"$@" -g0 -S -MF "${object%.o}.d" -MT "$object"
+awk '
+function flush(   k) {
+    if (count > 0) {
+        print "\tmovq %rax, 8+instructions_counted(%rip)\n\tlahf\n\tseto %al"
+        print "\taddq $" count ", instructions_counted(%rip)"
+        print "\taddb $127, %al\n\tsahf\n\tmovq 8+instructions_counted(%rip), %rax"
+    }
+    for (k = 0; k < held; k++) print line[k]
+    count = held = 0
+}
+/^[^\t #].*:/ {flush(); print; next}
+/^\t(\.section|\.text|\.data|\.bss)/ {flush(); print; next}
+/^[ \t]*([.#]|$)/ {line[held++] = $0; next}
+{line[held++] = $0; count++}
+/^\t(j|ret|notrack jmp)/ {flush()}
+END {flush()}' "$object.plain" >"$object.s"
+"$compiler" -c "$object.s" -o "$object"
+rm "$object.plain" "$object.s"

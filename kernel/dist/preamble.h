@@ -1,0 +1,29 @@
+/* What flags do in the Makefile of the library, pragmas do here: products and sums round one by one, and square roots
+ * are instructions, not calls that may set errno. */
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT OFF
+#elif defined(__GNUC__)
+#pragma GCC optimize("fp-contract=off")
+#endif
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#define FIBRAD_WITH_SSE2
+#define FIBRAD_WITH_AVX2
+#define FIBRAD_WITH_AVX512
+#endif
+
+#define FIBRAD_PORT_GIVEN
+#include <stddef.h>
+#if defined(__x86_64__)
+static inline double fibrad_sqrt(double x) { return _mm_cvtsd_f64(_mm_sqrt_pd(_mm_set_sd(x))); }
+#elif defined(__aarch64__)
+static inline double fibrad_sqrt(double x) {
+    __asm__("fsqrt %d0, %d1" : "=w"(x) : "w"(x));
+    return x;
+}
+#else
+static inline double fibrad_sqrt(double x) { return __builtin_sqrt(x); }
+#endif
+static inline void fibrad_copy(void *to, const void *from, size_t bytes) { __builtin_memcpy(to, from, bytes); }
+static inline void fibrad_zero(void *to, size_t bytes) { __builtin_memset(to, 0, bytes); }

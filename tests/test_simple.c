@@ -1,0 +1,372 @@
+/* test_simple.c - the simple layer: what it returns is what the kernel returns, for any number of threads; faults,
+ * cancelling, and beds that move. SPDX-License-Identifier: MIT */
+#include "scenes.h"
+#include "simple/fibrad_host.h"
+#include "suite.h"
+
+static const int threads[] = {1, 2, 5};
+
+static fibrad_scene_config box_of(const struct bed *bed) {
+    return (fibrad_scene_config){.period = {bed->period[0], bed->period[1], bed->period[2]}};
+}
+
+static bool same_factors(const fibrad_factors *a, const fibrad_factors *b) {
+    const size_t n = a->n, entries = a->start[n];
+    return a->n == b->n && a->bodies == b->bodies && memcmp(a->start, b->start, (n + 1) * sizeof *a->start) == 0 &&
+           memcmp(a->col, b->col, entries * sizeof *a->col) == 0 && memcmp(a->f, b->f, entries * sizeof *a->f) == 0 &&
+           memcmp(a->escaped, b->escaped, n * sizeof *a->escaped) == 0 &&
+           memcmp(a->error, b->error, n * sizeof *a->error) == 0 &&
+           (a->bodies == 0 || memcmp(a->body, b->body, n * a->bodies * sizeof *a->body) == 0);
+}
+
+/* The same by the kernel, rows in the order of the spheres. */
+static void *kernel_matrix(const struct bed *bed, const fibrad_scene_config *config, const fibrad_beam_rule *rule,
+                           fibrad_factors *factors) {
+    fibrad_scene *scene = scene_with(bed, config);
+    fibrad_work work = {.memory.resize = fibrad_heap_resize};
+    fibrad_rows rows = {.memory.resize = fibrad_heap_resize};
+    fibrad_row row = {.rows = &rows};
+    for (uint32_t i = 0; i < bed->n; i++) {
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &row), FIBRAD_OK);
+        double sum = row.escaped;
+        for (uint32_t k = 0; k < row.length; k++) sum += row.f[k];
+        for (uint32_t b = 0; b < (config ? config->bodies : 0); b++) sum += row.body[b];
+        ck_assert_double_eq_tol(sum, 1, 1e-12); /* the row is shown where it stands */
+    }
+    const size_t size = fibrad_matrix_size(scene, &rows, 1, NULL);
+    void *block = malloc(size);
+    fibrad_matrix *matrix;
+    ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, NULL, NULL), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_matrix_read(matrix, factors), FIBRAD_OK);
+    free(work.memory.block);
+    free(rows.memory.block);
+    free(scene);
+    return block;
+}
+
+START_TEST(view_factors_are_the_kernels) {
+    struct bed bed = packing(300, .8, 1.2, .5, 3, false);
+    const fibrad_body body[] = {plane_at(2, 0, -20), cylinder_at(10, 10, 60)};
+    const fibrad_scene_config config = {.body = body, .bodies = 2};
+    const fibrad_spheres spheres = spheres_of(&bed);
+    const fibrad_beam_rule rule = {.directions = 40};
+    fibrad_factors expected;
+    void *block = kernel_matrix(&bed, &config, &rule, &expected);
+    for (int t = 0; t < 3; t++) {
+        fibrad_run run = {.threads = threads[t]};
+        fibrad_bed_factors *factors;
+        ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &(fibrad_bed_options){.beam = &rule}, &run, &factors),
+                         FIBRAD_OK);
+        ck_assert(same_factors(&factors->matrix, &expected));
+        ck_assert_int_eq(factors->threads, threads[t]);
+        ck_assert_uint_eq(factors->directions, 40);
+        ck_assert_uint_eq(factors->facts.spheres, 300);
+        ck_assert_double_lt(factors->closure_error, 1e-12);
+        ck_assert_double_lt(factors->reciprocity_error, 1e-14);
+        ck_assert(isinf(factors->body_area[0]) == 0 && isinf(factors->body_area[1]));
+        fibrad_bed_free(factors);
+    }
+    free(block);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Every other method and option: the same for any number of threads. */
+START_TEST(nothing_depends_on_threads) {
+    struct bed bed = packing(200, .8, 1.2, .5, 3, true);
+    const fibrad_scene_config config = box_of(&bed);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    unsigned char wanted[200] = {0};
+    wanted[3] = wanted[199] = 1;
+    const fibrad_bed_options options[] = {
+        {.beam = &(fibrad_beam_rule){.directions = 21}, .raw = 1},
+        {.beam = &(fibrad_beam_rule){.tolerance = .02}},
+        {.beam = &(fibrad_beam_rule){.tolerance = .02}, .wanted = wanted},
+        {.beam = &(fibrad_beam_rule){.directions = 21}, .drop = 1e-3},
+        {.cast = &(fibrad_cast_rule){.rays = 300}},
+        {.surface = &(fibrad_surface_rule){.nodes = 13, .cutoff = 3}},
+    };
+    for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
+        fibrad_bed_factors *first = NULL, *next;
+        for (int t = 0; t < 3; t++) {
+            fibrad_run run = {.threads = threads[t]};
+            ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options[k], &run, &next), FIBRAD_OK);
+            if (first) {
+                ck_assert(same_factors(&first->matrix, &next->matrix));
+                fibrad_bed_free(next);
+            } else {
+                first = next;
+            }
+        }
+        const fibrad_factors *matrix = &first->matrix;
+        for (uint32_t i = 0; i < 200 && k == 1; i++) ck_assert_double_le(matrix->error[i], .02);
+        for (uint32_t i = 0; i < 200 && k == 2; i++)
+            ck_assert(wanted[i] ? matrix->error[i] <= .02 && matrix->start[i + 1] > matrix->start[i]
+                                : matrix->start[i + 1] == matrix->start[i] && matrix->escaped[i] == 0);
+        ck_assert_int_eq(isnan(first->reciprocity_error) != 0, options[k].wanted != NULL);
+        fibrad_bed_free(first);
+    }
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(exchange_does_not_depend_on_threads) {
+    struct bed bed = packing(150, .8, 1.2, .5, 3, true);
+    const fibrad_scene_config config = box_of(&bed);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    double emissivity[150];
+    fibrad_displacement moved[3][150];
+    for (int i = 0; i < 150; i++) emissivity[i] = .3 + i / 300.;
+    const fibrad_exchange_rule rule = {.emissivity = emissivity, .directions = 20, .paths = 50};
+    fibrad_bed_factors *first = NULL, *next;
+    memset(moved, 0, sizeof moved);
+    for (int t = 0; t < 3; t++) {
+        fibrad_run run = {.threads = threads[t]};
+        fibrad_scene_facts facts;
+        ck_assert_int_eq(fibrad_exchange_factors(&config, &spheres, &rule, NULL, &run, &next), FIBRAD_OK);
+        ck_assert_uint_gt(next->rays, 150 * 50);
+        if (first) ck_assert(same_factors(&first->matrix, &next->matrix) && first->rays == next->rays);
+        fibrad_bed_free(first);
+        first = next;
+        ck_assert_int_eq(fibrad_displacements(&config, &spheres, &rule, NULL, &run, moved[t], &facts), FIBRAD_OK);
+        ck_assert_int_eq(memcmp(moved[t], moved[0], sizeof moved[0]), 0);
+        ck_assert_uint_eq(facts.spheres, 150);
+    }
+    ck_assert_double_lt(first->reciprocity_error, 1e-12);
+    fibrad_bed_free(first);
+    bed_free(&bed);
+}
+END_TEST
+
+/* ---- errors ------------------------------------------------------------------------------------------------------ */
+
+START_TEST(faults_name_spheres) {
+    struct bed bed = packing(100, .8, 1.2, .5, 3, false);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    fibrad_bed_factors *factors = (void *)&bed;
+    fibrad_run run = {.threads = 2};
+    double emissivity[100];
+    for (int i = 0; i < 100; i++) emissivity[i] = .5;
+    emissivity[70] = emissivity[71] = emissivity[3] = NAN;
+    const fibrad_exchange_rule rule = {.emissivity = emissivity, .paths = 10};
+    uint32_t first = 0; /* of the three, along the cells */
+    fibrad_scene *scene = scene_with(&bed, NULL);
+    while (!isnan(emissivity[fibrad_scene_sphere(scene, first)])) first++;
+    first = fibrad_scene_sphere(scene, first);
+    for (int t = 0; t < 3; t++) {
+        run.threads = threads[t];
+        const fibrad_bed_options raw = {.raw = 1};
+        ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, &rule, &raw, &run, &factors), FIBRAD_E_ARGUMENT);
+        ck_assert(run.fault.first == first && run.fault.second == first && factors == NULL);
+    }
+    free(scene);
+    bed.x[5] = bed.x[60], bed.y[5] = bed.y[60], bed.z[5] = bed.z[60];
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, &run, &factors), FIBRAD_E_GEOMETRY);
+    ck_assert_uint_eq(run.fault.first + run.fault.second, 65);
+    bed.x[5] = NAN;
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, &run, &factors), FIBRAD_E_ARGUMENT);
+    ck_assert(run.fault.first == 5 && run.fault.second == 5);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, NULL, &factors), FIBRAD_E_ARGUMENT);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(arguments) {
+    struct bed bed = packing(10, .8, 1.2, .4, 3, false);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    fibrad_bed_factors *factors;
+    fibrad_radiation *radiation;
+    const fibrad_bed_options two = {.beam = &(fibrad_beam_rule){0}, .cast = &(fibrad_cast_rule){0}},
+                             drop = {.drop = -1}, nan = {.drop = NAN},
+                             points = {.beam = &(fibrad_beam_rule){.points = 3}};
+    fibrad_run run = {.threads = -1}, many = {.threads = 1025};
+    ck_assert_int_eq(fibrad_view_factors(NULL, NULL, NULL, NULL, &factors), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &two, NULL, &factors), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &drop, NULL, &factors), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &nan, NULL, &factors), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, &run, &factors), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, &many, &factors), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &points, NULL, &factors), FIBRAD_E_TABLE);
+    ck_assert_ptr_null(factors);
+    ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, NULL, NULL, NULL, &factors), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_displacements(NULL, &spheres, NULL, NULL, NULL, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_radiation_new(NULL, NULL, &spheres, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, NULL, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_ptr_null(radiation);
+    ck_assert_int_eq(fibrad_radiation_move(NULL, NULL, &spheres), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_radiation_solve(NULL, NULL, NULL), FIBRAD_E_ARGUMENT);
+    fibrad_radiation_describe(NULL, NULL, NULL);
+    fibrad_radiation_free(NULL);
+    fibrad_bed_free(NULL);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &(fibrad_spheres){0}, NULL, NULL, &factors), FIBRAD_OK);
+    ck_assert(factors->matrix.n == 0 && factors->matrix.start[0] == 0);
+    fibrad_bed_free(factors);
+    const fibrad_bed_options tolerance = {.beam = &(fibrad_beam_rule){.tolerance = .1}};
+    ck_assert_int_eq(fibrad_view_factors(NULL, &(fibrad_spheres){0}, &tolerance, NULL, &factors), FIBRAD_OK);
+    fibrad_bed_free(factors);
+    bed_free(&bed);
+}
+END_TEST
+
+/* ---- progress ---------------------------------------------------------------------------------------------------- */
+
+struct calls {
+    uint64_t count, done, total, stop_at; /* stop_at: the call that asks to stop */
+    int ends;
+};
+
+static int count_calls(void *context, const char *stage, uint64_t done, uint64_t total) {
+    struct calls *calls = context;
+    ck_assert_ptr_nonnull(stage);
+    if (done > 0 && total > 0) ck_assert_uint_ge(done, calls->done);
+    ck_assert(total == 0 || done <= total);
+    calls->done = done, calls->total = total;
+    calls->ends += total > 0 && done == total;
+    return ++calls->count == calls->stop_at;
+}
+
+START_TEST(progress_and_cancelling) {
+    struct bed bed = packing(200, .8, 1.2, .5, 3, false);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = 200}};
+    for (int t = 0; t < 3; t++) {
+        struct calls calls = {0};
+        fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
+        fibrad_bed_factors *factors;
+        ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_OK);
+        ck_assert(calls.ends == 1 && calls.total == 200 && calls.count >= 2);
+        fibrad_bed_free(factors);
+        const uint64_t all = calls.count;
+        for (uint64_t at = 1; at <= all && at <= 3; at++) {
+            calls = (struct calls){.stop_at = at};
+            ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_E_CANCELLED);
+            ck_assert_uint_eq(calls.count, at);
+            ck_assert_ptr_null(factors);
+        }
+    }
+    bed_free(&bed);
+}
+END_TEST
+
+/* ---- heat -------------------------------------------------------------------------------------------------------- */
+
+enum { N = 80 };
+
+static fibrad_heat_sources sources_of(const double *temperature, const double *emissivity) {
+    fibrad_heat_sources sources;
+    fibrad_heat_sources_init(&sources);
+    sources.temperature = temperature;
+    sources.emissivity = emissivity;
+    sources.surroundings = 300;
+    return sources;
+}
+
+static void powers(fibrad_radiation *radiation, const fibrad_heat_sources *sources, double power[N]) {
+    fibrad_heat_result result = {.power = power};
+    ck_assert_int_eq(fibrad_radiation_solve(radiation, sources, &result), FIBRAD_OK);
+}
+
+START_TEST(radiation_moves) {
+    struct bed bed = packing(N, .8, 1.2, .5, 3, false);
+    const fibrad_spheres spheres = spheres_of(&bed), fewer = {bed.x, bed.y, bed.z, bed.r, N - 1, 0, 0, NULL};
+    const fibrad_heat_config config = {.directions = 20, .patches = 24};
+    const fibrad_body wall = plane_at(0, 0, -5);
+    double temperature[N], emissivity[N], first[N], power[N], again[N], kept;
+    for (int i = 0; i < N; i++) temperature[i] = 300 + i, emissivity[i] = .6;
+    const fibrad_heat_sources sources = sources_of(temperature, emissivity);
+    for (int t = 0; t < 3; t++) {
+        struct calls calls = {0};
+        fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
+        fibrad_radiation *radiation;
+        fibrad_scene_facts facts;
+        fibrad_fault fault;
+        ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run), FIBRAD_OK);
+        powers(radiation, &sources, power);
+        if (t == 0) memcpy(first, power, sizeof power);
+        ck_assert_int_eq(memcmp(first, power, sizeof power), 0);
+
+        /* what is refused leaves the bed as it was */
+        ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &fewer), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_radiation_move(radiation, &(fibrad_scene_config){.body = &wall, .bodies = 1}, &spheres),
+                         FIBRAD_E_ARGUMENT);
+        kept = bed.x[7], bed.x[7] = NAN;
+        ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_E_ARGUMENT);
+        bed.x[7] = kept;
+        fibrad_radiation_describe(radiation, &facts, &fault);
+        ck_assert(facts.spheres == N && fault.first == 7 && fault.second == 7);
+        powers(radiation, &sources, again);
+        for (int i = 0; i < N; i++) ck_assert_double_eq_tol(again[i], power[i], 10);
+
+        /* another place, and back */
+        for (int i = 0; i < N; i++) bed.z[i] *= 1.1;
+        ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_OK);
+        powers(radiation, &sources, again);
+        ck_assert(memcmp(again, power, sizeof power) != 0);
+
+        /* a move that is cancelled while it traces */
+        calls = (struct calls){.stop_at = 1};
+        ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_E_CANCELLED);
+        ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &(fibrad_heat_result){.power = power}),
+                         FIBRAD_E_STATE);
+        calls.stop_at = 0;
+        ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_OK);
+        calls = (struct calls){.stop_at = 2};
+        ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &(fibrad_heat_result){.power = power}),
+                         FIBRAD_E_CANCELLED);
+        calls.stop_at = 0;
+        powers(radiation, &sources, power);
+        for (int i = 0; i < N; i++) ck_assert_double_eq_tol(power[i], again[i], 10);
+        for (int i = 0; i < N; i++) bed.z[i] /= 1.1;
+        fibrad_radiation_free(radiation);
+    }
+    bed_free(&bed);
+}
+END_TEST
+
+/* A wall that moves so far that its patches need more room. */
+START_TEST(radiation_with_walls) {
+    struct bed bed = packing(N, .8, 1.2, .5, 3, false);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    double temperature[N], emissivity[N], power[N], wall_power[6], wall_temperature[6], wall_emissivity[6];
+    for (int i = 0; i < N; i++) temperature[i] = 400, emissivity[i] = .6;
+    fibrad_heat_sources sources = sources_of(temperature, emissivity);
+    sources.body_temperature = wall_temperature, sources.body_emissivity = wall_emissivity;
+    fibrad_body walls[6];
+    fibrad_radiation *radiation;
+    for (int far = 0; far < 2; far++) {
+        const double edge = far ? 200 : 40;
+        for (int w = 0; w < 6; w++) {
+            walls[w] = plane_at(w / 2, w % 2, w % 2 ? edge : -edge);
+            wall_temperature[w] = 400, wall_emissivity[w] = 1;
+        }
+        const fibrad_scene_config config = {.body = walls, .bodies = 6};
+        const fibrad_heat_config heat = {.directions = 8, .patches = 24};
+        ck_assert_int_eq(far ? fibrad_radiation_move(radiation, &config, &spheres)
+                             : fibrad_radiation_new(&radiation, &config, &spheres, &heat, NULL),
+                         FIBRAD_OK);
+        ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources,
+                                                &(fibrad_heat_result){.power = power, .body_power = wall_power}),
+                         FIBRAD_OK);
+        for (int i = 0; i < N; i++) ck_assert_double_lt(fabs(power[i]), 1e-6); /* all at one temperature */
+    }
+    fibrad_radiation_free(radiation);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("simple");
+    TCase *factors = suite_case(suite, "factors"), *errors = suite_case(suite, "errors"),
+          *heat = suite_case(suite, "heat");
+    tcase_add_test(factors, view_factors_are_the_kernels);
+    tcase_add_test(factors, nothing_depends_on_threads);
+    tcase_add_test(factors, exchange_does_not_depend_on_threads);
+    tcase_add_test(errors, faults_name_spheres);
+    tcase_add_test(errors, arguments);
+    tcase_add_test(errors, progress_and_cancelling);
+    tcase_add_test(heat, radiation_moves);
+    tcase_add_test(heat, radiation_with_walls);
+    return suite_run(suite);
+}

@@ -1,0 +1,372 @@
+/* test_work.c - work memory: fixed and growing, of any alignment, for any scenes and functions in turn, without a trace
+ * in the results; and the blocks of heat problems. SPDX-License-Identifier: MIT */
+#include "fibrad_surface.h"
+#include "scenes.h"
+#include "suite.h"
+
+/* What needs work memory. */
+enum { BEAM, POINTS, CAST, MC, EXCHANGE, SURFACE, DISPLACEMENT, FUNCTIONS };
+
+static const char *const names[] = {"beam", "points", "cast", "mc", "exchange", "surface", "displacement"};
+
+/* What a function has written. */
+struct output {
+    fibrad_row row;
+    fibrad_displacement displacement;
+    uint64_t rays;
+};
+
+#define MOST 2048
+
+static struct output output_of(void) { return (struct output){.row = row_of(MOST)}; }
+
+static void output_free(struct output *out) { row_free(&out->row); }
+
+static int call(int function, const fibrad_scene *scene, fibrad_work *work, uint32_t i, struct output *out) {
+    static double grey[MOST];
+    for (uint32_t k = 0; k < MOST; k++) grey[k] = .6 + .001 * (k % 100);
+    const fibrad_exchange_rule exchange = {.emissivity = grey, .directions = 34, .paths = 100};
+    fibrad_row *row = &out->row;
+    switch (function) {
+    case BEAM:
+        return fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = 55}, row);
+    case POINTS:
+        return fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = 55, .points = 64}, row);
+    case CAST:
+        return fibrad_cast_row(scene, work, i, &(fibrad_cast_rule){.rays = 2000, .seed = 3}, row, NULL);
+    case MC:
+        return fibrad_cast_row(scene, work, i, &(fibrad_cast_rule){.rays = 2000, .random = 1}, row, NULL);
+    case EXCHANGE:
+        return fibrad_exchange_row(scene, work, i, &exchange, row, &out->rays);
+    case SURFACE:
+        return fibrad_surface_row(scene, work, i, &(fibrad_surface_rule){.nodes = 13, .cutoff = 5}, row);
+    default:
+        return fibrad_exchange_displacement(scene, work, i, &exchange, &out->displacement);
+    }
+}
+
+static bool same_output(int function, const struct output *a, const struct output *b) {
+    if (function == DISPLACEMENT) return memcmp(&a->displacement, &b->displacement, sizeof a->displacement) == 0;
+    return same_bits(&a->row, &b->row) && (function != EXCHANGE || a->rays == b->rays) &&
+           a->row.sphere == b->row.sphere && a->row.directions == b->row.directions &&
+           a->row.fallbacks == b->row.fallbacks && a->row.symmetric == b->row.symmetric;
+}
+
+/* Packed, periodic, of mixed sizes, and all but empty. */
+enum { SCENES = 4 };
+
+static struct bed bed_number(int k) {
+    return k == 0   ? packing(150, .8, 1.2, .55, 7, false)
+           : k == 1 ? packing(100, .5, 1.5, .5, 8, true)
+           : k == 2 ? strewn(200, 42)
+                    : bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1, 2, 3, 1}});
+}
+
+/* The output with memory that is new and plentiful. */
+static struct output expected(int function, const fibrad_scene *scene, uint32_t i) {
+    struct output out = output_of();
+    const size_t size = 64u << 20;
+    void *block = malloc(size);
+    ck_assert_ptr_nonnull(block);
+    fibrad_work work = work_fixed(block, size);
+    ck_assert_int_eq(call(function, scene, &work, i, &out), FIBRAD_OK);
+    free(block);
+    return out;
+}
+
+/* From none on, memory as the kernel asks for it: it asks for more each time, but not often, and for what it has asked
+ * last the same call goes through on other memory at once. */
+START_TEST(fixed_memory_step_by_step) {
+    struct bed bed = bed_number(_i / FUNCTIONS);
+    const int function = _i % FUNCTIONS;
+    fibrad_scene *scene = scene_of(&bed, 0);
+    for (uint32_t i = 0; i < bed.n; i += 49) {
+        struct output truth = expected(function, scene, i), out = output_of();
+        out.row.length = 77;
+        out.row.error = -5;
+        fibrad_work work = work_fixed(NULL, 0);
+        int tries = 0;
+        while (work_again(&work, call(function, scene, &work, i, &out))) {
+            ck_assert_msg(out.row.length == 77 && out.row.error == -5, "%s has written", names[function]);
+            ck_assert_msg(++tries < 12, "%s asks for ever more memory", names[function]);
+        }
+        ck_assert_int_ge(tries, 1);
+        ck_assert_int_eq(call(function, scene, &work, i, &out), FIBRAD_OK);
+        ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
+        const size_t size = work.memory.size;
+        work_free_fixed(&work);
+        void *block = malloc(size);
+        memset(block, 0xff, size);
+        work = work_fixed(block, size);
+        const int status = call(function, scene, &work, i, &out);
+        ck_assert_msg(status == FIBRAD_OK, "%s, %zu bytes: %s, %zu", names[function], size, fibrad_status_text(status),
+                      work.memory.needed);
+        ck_assert(same_output(function, &out, &truth));
+        free(block);
+        output_free(&truth), output_free(&out);
+    }
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* One growing work memory and one of each other kind for all scenes and functions in turn. */
+START_TEST(any_scenes_and_functions_in_turn) {
+    struct bed bed[SCENES];
+    fibrad_scene *scene[SCENES];
+    for (int k = 0; k < SCENES; k++) bed[k] = bed_number(k), scene[k] = scene_of(&bed[k], 0);
+    const size_t size = 8u << 20;
+    void *block = malloc(size);
+    memset(block, 0xff, size);
+    fibrad_work growing = work_growing(), fixed = work_fixed(block, size), little = work_fixed(NULL, 0);
+    struct output out = output_of();
+    uint32_t at = 0;
+    for (int round = 0; round < 300; round++) {
+        at = at * 1664525u + 1013904223u;
+        const int k = (int)(at >> 30), function = (int)((at >> 20) % FUNCTIONS);
+        const uint32_t i = (at >> 8) % bed[k].n;
+        struct output truth = expected(function, scene[k], i);
+        ck_assert_int_eq(call(function, scene[k], &growing, i, &out), FIBRAD_OK);
+        ck_assert_msg(same_output(function, &out, &truth), "growing, round %d: %s", round, names[function]);
+        ck_assert_int_eq(call(function, scene[k], &fixed, i, &out), FIBRAD_OK);
+        ck_assert_msg(same_output(function, &out, &truth), "fixed, round %d: %s", round, names[function]);
+        int tries = 0, status;
+        do {
+            status = call(function, scene[k], &little, i, &out);
+            ck_assert_int_lt(tries++, 12);
+        } while (work_again(&little, status));
+        ck_assert_int_eq(status, FIBRAD_OK);
+        ck_assert_msg(same_output(function, &out, &truth), "little, round %d: %s", round, names[function]);
+        output_free(&truth);
+    }
+    output_free(&out);
+    work_free(&growing), work_free_fixed(&little), free(block);
+    for (int k = 0; k < SCENES; k++) free(scene[k]), bed_free(&bed[k]);
+}
+END_TEST
+
+/* Scenes that are made anew in the place of others, between calls with the same work memory. */
+START_TEST(scenes_made_anew_in_the_same_place) {
+    const size_t size = fibrad_scene_size(150, 0);
+    void *block = block_of(size);
+    fibrad_work work = work_growing();
+    struct output out = output_of();
+    for (uint64_t seed = 0; seed < 6; seed++)
+        for (int function = 0; function < FUNCTIONS; function++) {
+            struct bed bed = packing(150, .8, 1.2, .5, seed, false);
+            const fibrad_spheres spheres = spheres_of(&bed);
+            fibrad_scene *scene = NULL;
+            ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &spheres, NULL), FIBRAD_OK);
+            struct output truth = expected(function, scene, 70);
+            ck_assert_int_eq(call(function, scene, &work, 70, &out), FIBRAD_OK);
+            ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
+            output_free(&truth);
+            bed_free(&bed);
+        }
+    output_free(&out);
+    work_free(&work);
+    free(block);
+}
+END_TEST
+
+/* The caller may hand over another block at any time, which holds anything. */
+START_TEST(other_blocks_at_any_time) {
+    struct bed bed = bed_number(0);
+    fibrad_scene *scene = scene_of(&bed, 0);
+    const size_t size = 4u << 20;
+    unsigned char *blocks[2] = {malloc(size), malloc(size)};
+    memset(blocks[0], 0xff, size), memset(blocks[1], 1, size);
+    for (int function = 0; function < FUNCTIONS; function++) {
+        struct output truth = expected(function, scene, 3), out = output_of();
+        fibrad_work work = work_fixed(blocks[0], size);
+        for (int round = 0; round < 8; round++) {
+            work.memory.block = blocks[round / 2 % 2] + (round & 4 ? 24 : 0);
+            work.memory.size = size - 64 - (round & 2 ? 1000 : 0);
+            ck_assert_int_eq(call(function, scene, &work, 3, &out), FIBRAD_OK);
+            ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
+        }
+        output_free(&truth), output_free(&out);
+    }
+    free(blocks[0]), free(blocks[1]), free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A fixed block at each of the 64 offsets, nothing written beside it. */
+START_TEST(blocks_of_any_alignment) {
+    struct bed bed = bed_number(1);
+    fibrad_scene *scene = scene_of(&bed, 0);
+    const int function = _i;
+    struct output truth = expected(function, scene, 5), out = output_of();
+    fibrad_work least = work_fixed(NULL, 0);
+    for (int tries = 0; work_again(&least, call(function, scene, &least, 5, &out)); tries++)
+        ck_assert_int_lt(tries, 12);
+    const size_t size = least.memory.size;
+    work_free_fixed(&least);
+    unsigned char *block = block_of(size + 128);
+    for (size_t offset = 0; offset < 64; offset++) {
+        memset(block, 0x5a, size + 128);
+        fibrad_work work = work_fixed(block + offset, size);
+        ck_assert_int_eq(call(function, scene, &work, 5, &out), FIBRAD_OK);
+        ck_assert_msg(same_output(function, &out, &truth), "%s at %zu", names[function], offset);
+        ck_assert(bytes_are(block, 0, offset, 0x5a));
+        ck_assert(bytes_are(block, offset + size, size + 128, 0x5a));
+    }
+    output_free(&truth), output_free(&out);
+    free(block), free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A source of memory that refuses once, and hands out full blocks at odd offsets. */
+struct source {
+    uint32_t calls, refuse_at; /* 0: never */
+    size_t size;
+    unsigned char *whole;
+};
+
+static void *odd_resize(void *context, void *block, size_t size) {
+    struct source *source = context;
+    if (++source->calls == source->refuse_at) return NULL;
+    unsigned char *whole = malloc(size + 64), *to = whole + source->calls * 13 % 64;
+    ck_assert_ptr_nonnull(whole);
+    memset(whole, 0xff, size + 64);
+    if (block != NULL) memcpy(to, block, source->size < size ? source->size : size);
+    free(source->whole);
+    source->whole = whole, source->size = size;
+    return to;
+}
+
+/* FIBRAD_E_MEMORY at each call of the resize function in turn: nothing is written, and the next call, which gets
+ * memory, has the right result. */
+START_TEST(memory_that_is_refused) {
+    struct bed bed = bed_number(2);
+    fibrad_scene *scene = scene_of(&bed, 0);
+    const int function = _i;
+    struct output truth = expected(function, scene, 5), out = output_of();
+    uint32_t calls = 1;
+    for (uint32_t refuse = 0; refuse <= calls; refuse++) {
+        struct source source = {.refuse_at = refuse};
+        fibrad_work work = {.memory = {.resize = odd_resize, .context = &source}};
+        out.row.length = 77;
+        int status = call(function, scene, &work, 5, &out);
+        if (refuse > 0) {
+            ck_assert_msg(status == FIBRAD_E_MEMORY, "%s, call %u of %u", names[function], refuse, calls);
+            ck_assert_uint_eq(out.row.length, 77);
+            status = call(function, scene, &work, 5, &out);
+        } else {
+            calls = source.calls;
+            ck_assert_uint_ge(calls, 1);
+        }
+        ck_assert_int_eq(status, FIBRAD_OK);
+        ck_assert_msg(same_output(function, &out, &truth), "%s", names[function]);
+        ck_assert(work.memory.size == source.size && (unsigned char *)work.memory.block >= source.whole);
+        free(source.whole);
+    }
+    output_free(&truth), output_free(&out);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* What FIBRAD_WORK_BYTES says is enough is enough, at any offset: for a packed bed, for a sphere that meets hundreds in
+ * a window, and for one that meets six. */
+START_TEST(bytes_that_are_enough) {
+    static unsigned char packed[FIBRAD_WORK_BYTES(64, 200) + 64], hundreds[FIBRAD_WORK_BYTES(1000, 1000) + 64],
+        six[FIBRAD_WORK_BYTES(6, 6) + 64];
+    struct bed bed = packing(600, .8, 1.2, .6, 7, true), around = bed_of(1, (const double[][4]){{0, 0, 0, 4}});
+    struct bed lone = lattice('p', 2);
+    for (uint32_t k = 0; k < 1000; k++) {
+        double w[3];
+        fibrad_direction(k, 1000, w);
+        add_sphere(&around, 5 * w[0], 5 * w[1], 5 * w[2], .2);
+    }
+    fibrad_scene *scenes[3] = {scene_of(&bed, 0), scene_of(&around, 0), scene_of(&lone, 0)};
+    struct output out = output_of();
+    for (size_t offset = 0; offset < 64; offset += 7) {
+        fibrad_work works[3] = {work_fixed(packed + offset, FIBRAD_WORK_BYTES(64, 200)),
+                                work_fixed(hundreds + offset, FIBRAD_WORK_BYTES(1000, 1000)),
+                                work_fixed(six + offset, FIBRAD_WORK_BYTES(6, 6))};
+        for (int function = BEAM; function <= POINTS; function++) {
+            for (uint32_t i = 0; i < bed.n; i += 7)
+                ck_assert_int_eq(call(function, scenes[0], &works[0], i, &out), FIBRAD_OK);
+            ck_assert_int_eq(call(function, scenes[1], &works[1], 0, &out), FIBRAD_OK);
+            for (uint32_t i = 0; i < lone.n; i++)
+                ck_assert_int_eq(call(function, scenes[2], &works[2], i, &out), FIBRAD_OK);
+        }
+    }
+    ck_assert_uint_eq(out.row.length, 1 + 4);
+    output_free(&out);
+    for (int k = 0; k < 3; k++) free(scenes[k]);
+    bed_free(&bed), bed_free(&around), bed_free(&lone);
+}
+END_TEST
+
+/* The powers of a bed before a floor, in a heat problem that begins `offset` bytes into `block`. */
+static void powers_in(unsigned char *block, size_t size, size_t offset, const fibrad_scene *scene, uint32_t n,
+                      double power[]) {
+    const fibrad_heat_config config = {.directions = 21, .patches = 24, .parts = 3};
+    fibrad_heat *heat = NULL;
+    ck_assert_int_eq(fibrad_heat_init(&heat, block + offset, size - 1, &config, scene), FIBRAD_E_SIZE);
+    ck_assert_int_eq(fibrad_heat_init(&heat, block + offset, 0, &config, scene), FIBRAD_E_SIZE);
+    ck_assert_ptr_null(heat);
+    ck_assert_int_eq(fibrad_heat_init(&heat, block + offset, size, &config, scene), FIBRAD_OK);
+    fibrad_work work = work_growing();
+    for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
+        ck_assert_int_eq(fibrad_heat_trace(heat, &work, task), FIBRAD_OK);
+    double temperature[64], emissivity[64], floor_temperature = 900, floor_emissivity = .3;
+    for (uint32_t i = 0; i < n; i++) temperature[i] = 300 + 10 * i, emissivity[i] = .5 + .007 * i;
+    fibrad_heat_sources sources;
+    fibrad_heat_sources_init(&sources);
+    sources.temperature = temperature, sources.emissivity = emissivity;
+    sources.body_temperature = &floor_temperature, sources.body_emissivity = &floor_emissivity;
+    sources.surroundings = 500;
+    ck_assert_int_eq(fibrad_heat_begin(heat, &sources), FIBRAD_OK);
+    for (int solved = 0; !solved;) {
+        for (uint32_t part = 0; part < fibrad_heat_parts(heat); part++)
+            ck_assert_int_eq(fibrad_heat_sweep(heat, part), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_heat_step(heat, &solved), FIBRAD_OK);
+    }
+    fibrad_heat_result result = {.power = power, .body_power = power + n};
+    ck_assert_int_eq(fibrad_heat_read(heat, &result), FIBRAD_OK);
+    power[n + 1] = result.surroundings_power;
+    power[n + 2] = result.error_patches, power[n + 3] = result.error_beams, power[n + 4] = result.residual;
+    work_free(&work);
+}
+
+/* A heat problem at each of the 64 offsets: the same bits, nothing written beside it, and a byte less is too little. */
+START_TEST(heat_blocks_of_any_alignment) {
+    struct bed bed = packing(20, .8, 1.2, .5, 7, false);
+    const fibrad_body floor_plane = plane_at(2, 0, -3);
+    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    const size_t size = fibrad_heat_size(&(fibrad_heat_config){.directions = 21, .patches = 24, .parts = 3}, scene);
+    ck_assert_uint_gt(size, 0);
+    unsigned char *block = block_of(size + 128);
+    double first[64], power[64];
+    powers_in(block, size, 0, scene, bed.n, first);
+    for (size_t offset = 0; offset < 64; offset++) {
+        memset(block, 0xa5, size + 128);
+        powers_in(block, size, offset, scene, bed.n, power);
+        ck_assert_mem_eq(power, first, (bed.n + 5) * sizeof *power);
+        ck_assert(bytes_are(block, 0, offset, 0xa5));
+        ck_assert(bytes_are(block, offset + size, size + 128, 0xa5));
+    }
+    ck_assert(first[0] != 0 && isfinite(first[0]));
+    free(block), free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("work");
+    TCase *tcase = suite_case(suite, "work");
+    tcase_add_loop_test(tcase, fixed_memory_step_by_step, 0, SCENES * FUNCTIONS);
+    tcase_add_test(tcase, any_scenes_and_functions_in_turn);
+    tcase_add_test(tcase, scenes_made_anew_in_the_same_place);
+    tcase_add_test(tcase, other_blocks_at_any_time);
+    tcase_add_loop_test(tcase, blocks_of_any_alignment, 0, FUNCTIONS);
+    tcase_add_loop_test(tcase, memory_that_is_refused, 0, FUNCTIONS);
+    tcase_add_test(tcase, bytes_that_are_enough);
+    tcase_add_test(tcase, heat_blocks_of_any_alignment);
+    return suite_run(suite);
+}
