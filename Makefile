@@ -253,7 +253,7 @@ COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfi
 COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib lib-host dist demo reproduce test run-programs programs check symbols lists format bench bench-quick \
+.PHONY: all lib lib-host dist demo reproduce test run-programs programs check symbols lists format house bench bench-quick \
     bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
 
 ## all: build/fibrad and the libraries (the default)
@@ -386,7 +386,7 @@ run-programs: programs
 programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 
 ## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
-check: symbols lists format
+check: symbols lists format house
 
 LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
 FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c)) \
@@ -395,6 +395,11 @@ FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.
 lists:
 	@test -z "$(filter-out $(LISTED),$(FOUND))" || \
 	    { echo "not in the lists of the Makefile: $(filter-out $(LISTED),$(FOUND))" >&2; exit 1; }
+
+## house: folders, includes, names and words, and the map of docs/design.md
+house:
+	tests/check_house.sh
+	tests/check_map.sh
 
 ## symbols: libfibrad.a defines only fibrad_*, asks for nothing but memory copying, holds no variables; what others export
 symbols: lib lib-host

@@ -18,7 +18,7 @@ static inline fibrad_scene_config bench_config(const struct bed *bed, int isa) {
     return (fibrad_scene_config){.isa = isa, .period = {bed->period[0], bed->period[1], bed->period[2]}};
 }
 
-/* The scene of a bed in *block, which is to be freed. NULL: this library lacks the instruction set. */
+/* The scene of a bed in *block, which is to be freed. NULL: no such instruction set in this library. */
 static inline fibrad_scene *bench_scene(const struct bed *bed, int isa, void **block) {
     const fibrad_spheres spheres = bench_spheres(bed);
     const fibrad_scene_config config = bench_config(bed, isa);

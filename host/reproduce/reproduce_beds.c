@@ -19,10 +19,9 @@ static const char *const names[METHODS] = {"surface", "beam", "reference"};
 static int lattice_row_sum(struct rows *rows, int method, double distance, double *sum) {
     const fibrad_surface_rule surface = {.cutoff = distance};
     const fibrad_beam_rule beam = {.directions = method == 1 ? 0 : 8192, .cutoff = distance};
-    const fibrad_bed_options which =
-        method == 0 ? (fibrad_bed_options){.surface = &surface} : (fibrad_bed_options){.beam = &beam};
+    const fibrad_bed_options methods[2] = {{.surface = &surface}, {.beam = &beam}};
     fibrad_row row;
-    const int status = rows_row(rows, &which, 0, &row);
+    const int status = rows_row(rows, &methods[method > 0], 0, &row);
     *sum = 0;
     for (uint32_t k = 0; k < row.length && !status; ++k) *sum += rows->f[k];
     return status;

@@ -233,12 +233,9 @@ uint32_t fibrad_heat_tasks(const fibrad_heat *heat) { return heat != NULL ? task
 
 uint32_t fibrad_heat_parts(const fibrad_heat *heat) { return heat != NULL ? heat->config.parts : 0; }
 
-/* Whether the scene is the one the heat problem was made for. */
-static bool scene_kept(const fibrad_heat *heat) { return heat->scene->hash == heat->hash; }
-
 int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task) {
     if (heat == NULL || work == NULL || task >= fibrad_heat_tasks(heat)) return FIBRAD_E_ARGUMENT;
-    if (!scene_kept(heat) || heat->traced[task]) return FIBRAD_E_STATE;
+    if (!fibrad_heat_scene_kept(heat) || heat->traced[task]) return FIBRAD_E_STATE;
     fibrad_workspace *space;
     int status = fibrad_work_open(work, 0, 0, &space);
     while (status == FIBRAD_OK) {
@@ -305,7 +302,7 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b
 
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     if (heat == NULL || sources == NULL || !sources_valid(heat, sources)) return FIBRAD_E_ARGUMENT;
-    if (!scene_kept(heat)) return FIBRAD_E_STATE;
+    if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
         if (!heat->traced[task]) return FIBRAD_E_STATE;
     fibrad_zero(heat->wall_emissivity, sizeof heat->wall_emissivity);
@@ -328,7 +325,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
     if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
-    if (heat->phase != FIBRAD_HEAT_DONE || !scene_kept(heat)) return FIBRAD_E_STATE;
+    if (heat->phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const uint32_t spheres = heat->spheres, open = heat->bodies - 1;
     double patches = 0, beams = 0, square = 0, reflected = 0;
     for (uint32_t b = 0; b < spheres; b++) {

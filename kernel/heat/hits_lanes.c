@@ -82,7 +82,7 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
     }
 }
 
-/* A window stands for all directions nearer to its own than to others. So that far walls are told apart, the beam of
+/* A window stands for all directions nearer to its own than to others. To distinguish far walls, the beam of
  * each open point has a direction of its own, from a disc about that of the window whose density falls towards its rim;
  * another point of the set chooses it. Without that the view factor of a plane errs by up to 1 % at 168 directions;
  * with it the error is 0.06 %. */

@@ -94,4 +94,7 @@ static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall
 }
 static inline uint32_t fibrad_heat_open(const fibrad_heat *heat) { return heat->patches - 1; }
 
+/* Whether the scene is still the one the beams were followed in. */
+static inline bool fibrad_heat_scene_kept(const fibrad_heat *heat) { return heat->scene->hash == heat->hash; }
+
 #endif

@@ -283,6 +283,7 @@ static void end_sweep(fibrad_heat *heat) {
 int fibrad_heat_step(fibrad_heat *heat, int *solved) {
     if (heat == NULL || solved == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->phase == FIBRAD_HEAT_IDLE || heat->phase == FIBRAD_HEAT_DONE) return FIBRAD_E_STATE;
+    if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     for (uint32_t part = 0; part < heat->config.parts; part++)
         if (!heat->swept[part]) return FIBRAD_E_STATE;
     end_sweep(heat);

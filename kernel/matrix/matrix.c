@@ -46,8 +46,8 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     fibrad_matrix *place = fibrad_arena_take(arena, 1, sizeof *place);
     const size_t n = m->result.n;
     m->result.start = fibrad_arena_take(arena, n + 1, sizeof *m->result.start);
-    m->result.col = fibrad_arena_take(arena, m->result.capacity, sizeof *m->result.col);
-    m->result.f = fibrad_arena_take(arena, m->result.capacity, sizeof *m->result.f);
+    m->result.col = fibrad_arena_take(arena, (size_t)m->result.capacity, sizeof *m->result.col);
+    m->result.f = fibrad_arena_take(arena, (size_t)m->result.capacity, sizeof *m->result.f);
     m->row = fibrad_arena_take(arena, n, sizeof *m->row);
     m->escaped = fibrad_arena_take(arena, n, sizeof *m->escaped);
     m->beyond = fibrad_arena_take(arena, n, sizeof *m->beyond);
@@ -63,7 +63,7 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
 /* The numbers that follow from the arguments; false if these are not valid. */
 static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                              const fibrad_matrix_rule *rule) {
-    if (scene == NULL || (rows == NULL && count > 0) || !matrix_rule_valid(scene, rule)) return false;
+    if ((rows == NULL && count > 0) || !matrix_rule_valid(scene, rule)) return false;
     const uint64_t entries = entries_of(scene, rows, count);
     *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule)};
     m->raw = rule != NULL && rule->raw;
@@ -71,14 +71,14 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     m->drop = rule != NULL ? rule->drop : 0;
     m->result.n = scene->facts.spheres;
     m->result.capacity = m->raw ? entries : 2 * entries + (m->drop > 0 ? m->result.n : 0);
-    return entries < UINT64_MAX / 4;
+    return entries < UINT64_MAX / 4 && m->result.capacity <= SIZE_MAX;
 }
 
 size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                           const fibrad_matrix_rule *rule) {
     fibrad_matrix fields;
     fibrad_arena arena = {0};
-    if (!matrix_dimension(&fields, scene, rows, count, rule)) return 0;
+    if (!fibrad_scene_ready(scene) || !matrix_dimension(&fields, scene, rows, count, rule)) return 0;
     matrix_layout(&arena, &fields);
     return fibrad_arena_total(&arena);
 }
@@ -161,7 +161,9 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
                        const fibrad_rows *rows, uint32_t count, const fibrad_matrix_rule *rule, uint32_t *sphere) {
     fibrad_matrix fields;
     fibrad_arena arena;
-    if (out == NULL || !matrix_dimension(&fields, scene, rows, count, rule)) return FIBRAD_E_ARGUMENT;
+    if (out == NULL || scene == NULL) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
+    if (!matrix_dimension(&fields, scene, rows, count, rule)) return FIBRAD_E_ARGUMENT;
     int status = fibrad_arena_open(&arena, memory, size, fibrad_matrix_size(scene, rows, count, rule));
     if (status != FIBRAD_OK) return status;
     fibrad_matrix *m = matrix_layout(&arena, &fields);
@@ -194,7 +196,7 @@ static void gather_parts(fibrad_matrix *m) {
     uint64_t to = 0;
     for (uint32_t p = 0; p < m->tasks; p++) {
         const fibrad_matrix_part *part = &m->part[p];
-        const uint64_t length = part->filled - part->first;
+        const size_t length = (size_t)(part->filled - part->first);
         __builtin_memmove(rows->col + to, rows->col + part->first, length * sizeof *rows->col);
         __builtin_memmove(rows->f + to, rows->f + part->first, length * sizeof *rows->f);
         for (uint32_t i = part->begin; i < part->end; i++) rows->start[i] -= part->first - to;

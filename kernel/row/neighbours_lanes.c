@@ -29,7 +29,7 @@ static void prepare_culls(fibrad_near *near, uint32_t from, uint32_t to) {
 /* Thickness of the layers of a march: thinner ones enclose the beam more closely, but there are more of them. */
 #define LAYER_CELLS 1.5
 
-/* Coordinates of spheres of the run in hand, relative to the centre and in units of the radius. */
+/* Coordinates of spheres of the current run, relative to the centre and in units of the radius. */
 static inline vd relative_to_centre(const fibrad_workspace *work, const fibrad_walk *walk, int axis,
                                     const double *coordinate) {
     vd c = vd_loadu(coordinate) - work->centre[axis];
@@ -189,6 +189,57 @@ static double distance_to_grid(const fibrad_workspace *work, int axis, double se
     return fibrad_max(0, fibrad_min(low, high) - edge);
 }
 
+/* The stretch of a tube about the line along w, in radii from the centre, and the axis across which it is cut. */
+typedef struct march_stretch {
+    const double *w;
+    double middle[3], lateral[3]; /* the tube's cross-section: centre and half extents */
+    double begin, end;            /* depths */
+    int axis;                     /* the one that w is most nearly along */
+    double slope, sense;          /* of w along it: size and sign */
+} march_stretch;
+
+static march_stretch stretch_of(const double frame[9], const fibrad_tube *tube, double radius, double from, double to) {
+    march_stretch s = {.w = frame + 6, .begin = fibrad_max(from, 0)};
+    s.end = fibrad_sqrt(to * to + (1 + radius) * (1 + radius));
+    for (int axis = 0; axis < 3; axis++) {
+        s.middle[axis] = tube->u * frame[axis] + tube->v * frame[3 + axis];
+        s.lateral[axis] = (tube->radius + radius) * fibrad_sqrt(fibrad_max(0, 1 - s.w[axis] * s.w[axis]));
+        if (fibrad_abs(s.w[axis]) > fibrad_abs(s.w[s.axis])) s.axis = axis;
+    }
+    s.slope = fibrad_abs(s.w[s.axis]), s.sense = s.w[s.axis] < 0 ? -1 : 1;
+    return s;
+}
+
+/* The thickest layer: the stretch itself, or what passes one period of another axis; not less than a cell. */
+static double thickest_layer(const fibrad_workspace *work, const fibrad_level *level, const march_stretch *s,
+                             double length) {
+    const double *period = work->scene->period;
+    for (int axis = 0; axis < 3; axis++)
+        if (axis != s->axis && period[axis] > 0 && s->w[axis] != 0)
+            length = fibrad_min(length, period[axis] * work->inverse * fibrad_abs(s->w[s->axis] / s->w[axis]));
+    return fibrad_max(length, level->cell[s->axis] * work->inverse);
+}
+
+/* The box [L] about the part of the stretch whose coordinate along the axis, in the sense of w, is in
+ * [edge, edge + thick). */
+static void box_of_layer(const fibrad_workspace *work, const march_stretch *s, double edge, double thick, double low[3],
+                         double high[3]) {
+    const int a = s->axis;
+    const double height = edge - s->sense * s->middle[a], side = s->lateral[a];
+    const double near_depth = fibrad_max((height - side) / s->slope, s->begin);
+    const double far_depth = fibrad_min((height + thick + side) / s->slope, s->end);
+    for (int axis = 0; axis < 3; axis++) {
+        double p = near_depth * s->w[axis], q = far_depth * s->w[axis];
+        low[axis] = s->middle[axis] + fibrad_min(p, q) - s->lateral[axis];
+        high[axis] = s->middle[axis] + fibrad_max(p, q) + s->lateral[axis];
+    }
+    low[a] = s->sense > 0 ? edge : -edge - thick, high[a] = s->sense > 0 ? edge + thick : -edge;
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = work->centre[axis] + low[axis] * work->unit;
+        high[axis] = work->centre[axis] + high[axis] * work->unit;
+    }
+}
+
 /* Spheres of one level, of minimum depth in (from, to], lie in a stretch of the tube of radius 1 + r about the beam, or
  * of radius r about a ray of it. It is cut into layers across the axis the beam is most nearly along, so that the boxes
  * walked enclose the tube closely. Outside the grid layers grow, up to where the tube passes one period of another
@@ -196,22 +247,11 @@ static double distance_to_grid(const fibrad_workspace *work, int axis, double se
 static void march_level(fibrad_workspace *work, const fibrad_level *level, const double frame[9],
                         const fibrad_tube *tube, double from, double to) {
     const fibrad_scene *scene = work->scene;
-    const double *w = frame + 6, radius = level->radius_max * work->inverse;
-    const double wide = tube->radius + radius, deepest = fibrad_sqrt(to * to + (1 + radius) * (1 + radius));
-    double middle[3], lateral[3]; /* the tube's cross-section: centre and half extents */
-    int a = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        middle[axis] = tube->u * frame[axis] + tube->v * frame[3 + axis];
-        lateral[axis] = wide * fibrad_sqrt(fibrad_max(0, 1 - w[axis] * w[axis]));
-        if (fibrad_abs(w[axis]) > fibrad_abs(w[a])) a = axis;
-    }
-    const double slope = fibrad_abs(w[a]), side = lateral[a], sense = w[a] < 0 ? -1 : 1, begin = fibrad_max(from, 0);
-    double first = begin * slope - side + sense * middle[a], last = deepest * slope + side + sense * middle[a];
-    double stride = last - first;
-    for (int axis = 0; axis < 3; axis++)
-        if (axis != a && scene->period[axis] > 0 && w[axis] != 0)
-            stride = fibrad_min(stride, scene->period[axis] * work->inverse * fibrad_abs(w[a] / w[axis]));
-    stride = fibrad_max(stride, level->cell[a] * work->inverse);
+    const march_stretch s = stretch_of(frame, tube, level->radius_max * work->inverse, from, to);
+    const int a = s.axis;
+    const double side = s.lateral[a], sense = s.sense;
+    double first = s.begin * s.slope - side + sense * s.middle[a], last = s.end * s.slope + side + sense * s.middle[a];
+    const double stride = thickest_layer(work, level, &s, last - first);
     if (scene->period[a] == 0) { /* nothing beyond the box */
         double start = sense > 0 ? scene->low[a] - work->centre[a] : work->centre[a] - scene->high[a];
         double stop = sense > 0 ? scene->high[a] - work->centre[a] : work->centre[a] - scene->low[a];
@@ -222,21 +262,9 @@ static void march_level(fibrad_workspace *work, const fibrad_level *level, const
     const double least = fibrad_min(stride, LAYER_CELLS * level->cell[a] * work->inverse);
     double thick = least;
     for (double edge = first; edge <= last; edge += thick) {
-        double clear = distance_to_grid(work, a, sense, edge);
+        double clear = distance_to_grid(work, a, sense, edge), low[3], high[3];
         thick = clear > least ? fibrad_min(fibrad_min(2 * thick, stride), clear) : least;
-        double height = edge - sense * middle[a], low[3], high[3];
-        double near_depth = fibrad_max((height - side) / slope, begin);
-        double far_depth = fibrad_min((height + thick + side) / slope, deepest);
-        for (int axis = 0; axis < 3; axis++) {
-            double p = near_depth * w[axis], q = far_depth * w[axis];
-            low[axis] = middle[axis] + fibrad_min(p, q) - lateral[axis];
-            high[axis] = middle[axis] + fibrad_max(p, q) + lateral[axis];
-        }
-        low[a] = sense > 0 ? edge : -edge - thick, high[a] = sense > 0 ? edge + thick : -edge;
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = work->centre[axis] + low[axis] * work->unit;
-            high[axis] = work->centre[axis] + high[axis] * work->unit;
-        }
+        box_of_layer(work, &s, edge, thick, low, high);
         const march_layer layer = {a, sense, edge, edge + thick, from < 0 ? -__builtin_inf() : from * from, to * to};
         fibrad_walk walk;
         fibrad_walk_begin(&walk, scene, level, low, high);

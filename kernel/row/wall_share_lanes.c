@@ -1,7 +1,7 @@
 /* wall_share_lanes.c - which walls the open part of a window meets. Compiled once per instruction set.
  * SPDX-License-Identifier: MIT
  *
- * A window has one direction, but stands for all that are nearer to its own than to others. Far walls are told apart by
+ * A window has one direction, but stands for all that are nearer to its own than to others. Far walls differ by
  * direction alone: with one direction their factors would jump, and err as n^-0.75. Therefore each open point of the
  * window is traced in a direction of its own, from a disc about that of the window; such discs cover the sphere about
  * once. Where spheres hide part of a window, its neighbours are hidden in part too, and the disc is smaller, or walls

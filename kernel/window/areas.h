@@ -13,7 +13,7 @@
 #define FIBRAD_PIECES 48 /* pieces summed at a time, about */
 
 /* Pieces of the open region's boundary that discs have hidden. By Green's theorem each adds its area to its occluder,
- * the disc that has hidden it, and takes the same area from the disc of its circle. Room for a vector more. */
+ * the disc that has hidden it, and subtracts it from the disc of its circle. Room for a vector more. */
 typedef struct fibrad_pieces {
     _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_PIECES + 8], py[FIBRAD_PIECES + 8];
     double qx[FIBRAD_PIECES + 8], qy[FIBRAD_PIECES + 8];
@@ -71,7 +71,7 @@ typedef struct fibrad_areas {
     fibrad_arrangement arrangement;
     double widest;      /* the largest radius so far */
     bool open;          /* something of the window is */
-    bool degenerate;    /* the window in hand is resolved by the arrangement */
+    bool degenerate;    /* the current window is resolved by the arrangement */
     bool overflow;      /* too many arcs for the memory: start again with more discs */
     uint32_t fallbacks; /* degenerate windows since the caller set this to 0 */
 } fibrad_areas;

@@ -6,7 +6,7 @@
 
 #define FIBRAD_LANES_MAX 16 /* whole vectors are written at the end of a list */
 
-/* Discs before the window in hand: the shadows of spheres, u and v being their centres across the direction. */
+/* Discs before the current window: the shadows of spheres, u and v being their centres across the direction. */
 typedef struct fibrad_discs {
     double *depth, *u, *v, *r; /* [capacity + FIBRAD_LANES_MAX]; the depth is -1 once a disc is resolved */
     float *fu, *fv, *square;   /* [same] position and r^2 for points */

@@ -48,5 +48,3 @@ double smoke_sqrt(double x) {
     view.bits = ((uint64_t)(exponent / 2 - scale + 1022) << 52) + root; /* the leading bit of the root adds one */
     return view.value;
 }
-
-float smoke_sqrtf(float x) { return (float)smoke_sqrt((double)x); } /* rounding twice is harmless for square roots */

@@ -1,4 +1,5 @@
-/* places.h - which of four lanes a mask names, for instruction sets that cannot compress. SPDX-License-Identifier: MIT
+/* places.h - the lanes that a mask selects out of four, for instruction sets that cannot compress.
+ * SPDX-License-Identifier: MIT
  */
 #ifndef FIBRAD_PLACES_H
 #define FIBRAD_PLACES_H
@@ -7,8 +8,8 @@
 #include <stdint.h>
 #include "base/port.h"
 
-/* first + l for the lanes l < 4 named by bits, side by side at p, which has room for all; returns how many. A loop over
- * the bits would be mispredicted at nearly every end. */
+/* first + l for the lanes l < 4 given by bits, side by side at p, which has room for all; returns how many. The branch
+ * at the end of a loop over the bits would nearly always be mispredicted. */
 static inline uint32_t fibrad_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     static const _Alignas(16)
         uint32_t lane[16][4] = {{0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},

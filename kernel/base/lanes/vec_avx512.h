@@ -25,7 +25,7 @@ static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
     _mm512_storeu_pd(p, _mm512_maskz_compress_pd((__mmask8)bits, a));
 }
-/* Without the empty statement a load, this and a store become a masked store, which the next load waits for long. */
+/* Without the empty statement a load, this and a store become a masked store, which delays the next load. */
 static inline vd vd_replace(vd a, uint32_t lane, double x) {
     a = _mm512_mask_mov_pd(a, (__mmask8)(1u << lane), _mm512_set1_pd(x));
     __asm__("" : "+v"(a));

@@ -6,10 +6,10 @@
  *                            vd_set1 vd_load vd_store vd_sqrt vd_min vd_max vd_abs
  *                            vd_loadu vd_storeu (any address), vd_load_float vd_store_float (rounded)
  *                            vd_lt vd_le (masks) vd_select(mask, if set, if clear)
- *                            vd_lookup(table, size, k): table[k] for lanes of whole numbers k < size (less than
- *                            the table's length where nobody looks); the table is a whole number of vectors long
+ *                            vd_lookup(table, size, k): table[k] for lanes of whole numbers k < size (< the table's
+ *                            length in lanes whose result is not used); the table is a whole number of vectors long
  *                            vd_gather(table, k): table[k[l]] for lane l
- *                            vd_compress(p, bits, a): the lanes named by bits side by side at p, which has room for all
+ *                            vd_compress(p, bits, a): the lanes given by bits side by side at p, which has room for all
  *                            vd_replace(a, lane, x): a with x in one lane
  *                            vd_compress_places(p, bits, first): first + l for them; returns how many
  *   vm   a mask of vd lanes  & | vm_not vm_bits (bit l = lane l)
