@@ -303,6 +303,35 @@ START_TEST(view_factors_between_the_walls_of_a_cylinder) {
 }
 END_TEST
 
+/* Walls without spheres: a box anywhere, and walls without end, whose patches must lie on the inner side of the others
+ * although there is no bed to tell where. */
+START_TEST(walls_alone) {
+    struct problem p = problem_of(bed_of(0, NULL), 0, 1);
+    p.walls = (struct walls){.planes = 63, .at = {49, 50, -20, -19, 7, 8}};
+    p.wall_temperature[4] = 1;
+    trace_and_solve(&p);
+    assert_near(p.wall_power[5], 0.1998249, 5e-3);
+    for (int k = 0; k < 4; k++) assert_near(p.wall_power[k], 0.2000438, 5e-3);
+    free_heat(&p);
+    for (uint32_t planes = 1; planes < 63; planes++) {
+        double largest;
+        p.walls = (struct walls){.planes = planes, .at = {-300, -200, 100, 250, -220, 4}};
+        for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 1 + .1 * k, p.wall_emissivity[k] = .5;
+        p.sources.surroundings = .5, p.config.directions = 8;
+        trace_and_solve(&p);
+        ck_assert(isfinite(p.result.surroundings_power));
+        ck_assert_double_le(fabs(sum_of_powers(&p, &largest)), 1e-12 * largest);
+        for (uint32_t k = 0; k < 6; k++) {
+            ck_assert(isfinite(p.wall_power[k]));
+            if ((planes >> k & 1) == 0) ck_assert_double_eq(p.wall_power[k], 0);
+        }
+        free_heat(&p);
+    }
+    p.scene = NULL, p.heat = NULL;
+    free_problem(&p);
+}
+END_TEST
+
 START_TEST(two_black_spheres_in_contact) {
     struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1.2, 1.6, 0, 1}}), 1, 1);
     p.temperature[1] = 0;
@@ -922,6 +951,7 @@ int main(void) {
     tcase_add_test(closed, white_walls_take_nothing);
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cube);
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cylinder);
+    tcase_add_test(closed, walls_alone);
     tcase_add_test(closed, two_black_spheres_in_contact);
     tcase_add_test(closed, one_radiosity_per_sphere);
     tcase_add_test(closed, two_radiosities);

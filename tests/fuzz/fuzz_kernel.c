@@ -170,7 +170,8 @@ struct session {
 };
 
 static struct contents any_contents(bool walled) {
-    struct contents c = {.n = number() % SPHERES, .ids = byte() % 4 == 1, .config.isa = byte() % 6};
+    struct contents c = {.n = number() % SPHERES};
+    c.ids = byte() % 4 == 1, c.config.isa = byte() % 6;
     plain = tame = true;
     shortest = INFINITY;
     for (int axis = 0; axis < 3; axis++) {
@@ -557,7 +558,10 @@ static void begin_heat(struct session *s) {
     if (byte() == 1) s->heat_config.parts = number();
     if (byte() == 1) s->heat_config.cutoff = coordinate();
     const size_t size = fibrad_heat_size(&s->heat_config, s->scene);
-    if (size == 0 || size > 4 << 20 || !plain || s->heat_config.parts > 16) return;
+    if (size == 0 || size > 8 << 20 || !plain || s->heat_config.parts > 16) return;
+    /* the rays of walls take a second */
+    static int walled;
+    if (s->contents.config.bodies > 0 && walled++ >= 40) return;
     const uint8_t fault = byte();
     void *memory = memory_of(size - (fault == 1), fault % 64, &s->heat_block);
     const int status = fibrad_heat_init(&s->heat, memory, size - (fault == 1), &s->heat_config, s->scene);
