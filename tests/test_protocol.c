@@ -947,6 +947,57 @@ START_TEST(refused_rows_are_not_appended) {
 }
 END_TEST
 
+/* A row that was appended to a collection and is then given its own arrays no more: its capacity says so. */
+START_TEST(row_reused_after_appending) {
+    struct bed bed = packing(60, .8, 1.2, .5, 3, false);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_work work = work_growing();
+    fibrad_rows rows = {.memory = work_growing().memory};
+    uint32_t col[60];
+    double f[60];
+    fibrad_row row = {.col = col, .f = f, .capacity = 60, .rows = &rows};
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_OK);
+    const double first = row.f[0];
+    row.rows = NULL;
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, NULL, &row), FIBRAD_E_CAPACITY);
+    ck_assert_double_eq(row.f[0], first);
+    work_free(&work);
+    free(rows.memory.block);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Rows of another scene, rows that change while their matrix is made, and a matrix that failed in place. */
+START_TEST(matrix_of_changing_rows) {
+    struct bed bed = packing(60, .8, 1.2, .5, 3, false), other = packing(60, .8, 1.2, .5, 4, false);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST), *another = scene_of(&other, FIBRAD_ISA_BEST);
+    fibrad_rows rows = rows_from(scene, 0, 60), more = rows_from(scene, 0, 1), fewer = rows_from(scene, 1, 60);
+    fibrad_matrix *matrix;
+    uint32_t sphere = 99;
+    const size_t size = fibrad_matrix_size(scene, &rows, 1, NULL);
+    void *block = malloc(size);
+    ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, another, &rows, 1, NULL, &sphere), FIBRAD_E_STATE);
+    ck_assert_uint_eq(sphere, 0);
+    ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, scene, &rows, 1, NULL, NULL), FIBRAD_OK);
+    fibrad_rows_clear(&rows);
+    ck_assert_int_eq(fibrad_matrix_average(matrix, 0), FIBRAD_E_STATE);
+    ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_E_STATE);
+    fibrad_matrix *again = NULL;
+    ck_assert_int_eq(fibrad_matrix_init(&again, block, size, scene, &fewer, 1, NULL, &sphere), FIBRAD_E_STATE);
+    ck_assert(again == NULL && sphere == 0);
+    ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_E_STATE);
+    ck_assert_int_eq(fibrad_matrix_average(matrix, 0), FIBRAD_E_STATE);
+    const fibrad_rows both[] = {more, fewer};
+    ck_assert_int_eq(fibrad_matrix_init(&matrix, block, size, scene, both, 2, NULL, NULL), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_matrix_close(matrix), FIBRAD_OK);
+    free(block);
+    free(rows.memory.block), free(more.memory.block), free(fewer.memory.block);
+    free(scene), free(another);
+    bed_free(&bed), bed_free(&other);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("protocol");
     TCase *tasks = suite_case(suite, "tasks"), *sweeps = suite_case(suite, "sweeps");
@@ -977,5 +1028,7 @@ int main(void) {
     tcase_add_test(matrices, matrix_calls_out_of_order);
     tcase_add_test(matrices, matrix_of_wrong_rows);
     tcase_add_test(matrices, refused_rows_are_not_appended);
+    tcase_add_test(matrices, row_reused_after_appending);
+    tcase_add_test(matrices, matrix_of_changing_rows);
     return suite_run(suite);
 }

@@ -13,6 +13,17 @@
 #define RAYS_PER_PATCH 8.0
 #define RAYS_MIN       262144.0
 
+/* The longest finite edge of the container; 1 if there is none. */
+static double container_size(const fibrad_scene *scene) {
+    double longest = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double length = scene->container.high[axis] - scene->container.low[axis];
+        longest = fibrad_max(longest, fibrad_max(scene->period[axis], fibrad_finite(length) ? length : 0));
+    }
+    if (fibrad_finite(scene->container.radius)) longest = fibrad_max(longest, scene->container.radius);
+    return longest > 0 ? longest : 1;
+}
+
 /* What of a wall is cut, along one axis: all of it, or where it goes on for ever, the bed and as much on either side.
  */
 static bool stretch(const fibrad_scene *scene, uint32_t axis, double *low, double *size) {
@@ -25,8 +36,13 @@ static bool stretch(const fibrad_scene *scene, uint32_t axis, double *low, doubl
         from = scene->low[axis], to = scene->low[axis] + scene->period[axis];
     else if (c->radius < __builtin_inf() && axis < 2)
         from = c->axis[axis] - c->radius, to = c->axis[axis] + c->radius;
-    *low = fibrad_finite(from) ? from : scene->box_low[axis] - wide;
-    *size = (fibrad_finite(to) ? to : scene->box_high[axis] + wide) - *low;
+    double begin = scene->box_low[axis], end = scene->box_high[axis];
+    if (scene->facts.spheres == 0) { /* no bed, but walls that may be anywhere */
+        wide = container_size(scene);
+        begin = end = fibrad_finite(from) ? from : fibrad_finite(to) ? to : 0;
+    }
+    *low = fibrad_finite(from) ? from : begin - wide;
+    *size = (fibrad_finite(to) ? to : end + wide) - *low;
     return !fibrad_finite(from) || !fibrad_finite(to);
 }
 
