@@ -736,6 +736,36 @@ START_TEST(an_earlier_solution_saves_sweeps_and_changes_little) {
 }
 END_TEST
 
+/* A periodic bed as a whole, by a third of the box: the same bed, but its spheres come in another order along the
+ * cells. What is carried over goes with the spheres, so that next to nothing is left to do. */
+START_TEST(an_earlier_solution_goes_with_the_spheres) {
+    struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .3);
+    p.config.directions = 40, p.sources.tolerance = 1e-6;
+    for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
+    trace_and_solve(&p);
+    const uint32_t cold = p.result.sweeps;
+    fibrad_scene *const before = p.scene;
+    double power[100], largest = 0;
+    memcpy(power, p.result.power, sizeof power);
+    for (uint32_t i = 0; i < p.bed.n; i++) {
+        p.bed.x[i] = fmod(p.bed.x[i] + p.bed.period[0] / 3, p.bed.period[0]);
+        p.bed.z[i] = fmod(p.bed.z[i] + p.bed.period[2] / 3, p.bed.period[2]);
+        worst_of(&largest, fabs(power[i]));
+    }
+    build_scene(&p);
+    uint32_t others = 0;
+    for (uint32_t k = 0; k < p.bed.n; k++) others += fibrad_scene_sphere(before, k) != fibrad_scene_sphere(p.scene, k);
+    ck_assert_uint_gt(others, 50);
+    ck_assert_int_eq(fibrad_heat_move(p.heat, p.scene), FIBRAD_OK);
+    trace_beams(&p);
+    solve(&p);
+    for (uint32_t i = 0; i < p.bed.n; i++) ck_assert_double_eq_tol(power[i], p.result.power[i], 1e-5 * largest);
+    ck_assert_uint_lt(p.result.sweeps, cold / 2);
+    free(before);
+    free_problem(&p);
+}
+END_TEST
+
 START_TEST(the_error_is_as_estimated) {
     double truth[100], *power = NULL;
     for (int k = 0; k < 3; k++) {
@@ -969,6 +999,7 @@ int main(void) {
     tcase_add_test(bits, the_order_of_bodies_changes_but_roundings);
     tcase_add_test(bits, instruction_sets_change_no_bit);
     tcase_add_test(bits, an_earlier_solution_saves_sweeps_and_changes_little);
+    tcase_add_test(bits, an_earlier_solution_goes_with_the_spheres);
     tcase_add_test(bits, the_error_is_as_estimated);
     TCase *arguments = suite_case(suite, "arguments");
     tcase_add_test(arguments, arguments_are_checked);
