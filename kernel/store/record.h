@@ -20,7 +20,7 @@ static inline const double *fibrad_record_f(const fibrad_record *record) {
     return fibrad_record_body(record) + record->bodies;
 }
 static inline const uint32_t *fibrad_record_col(const fibrad_record *record) {
-    return (const uint32_t *)(fibrad_record_f(record) + record->length);
+    return (const uint32_t *)(const void *)(fibrad_record_f(record) + record->length);
 }
 
 /* Bytes of a record. */

@@ -67,7 +67,8 @@ static fibrad_obstacles list_of(double *scratch, uint32_t n, uint32_t which) {
 
 int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *obstacles,
                         const fibrad_surface_rule *given, double *scratch, double *f12, fibrad_surface_facts *facts) {
-    const fibrad_surface_rule rule = given == NULL ? (fibrad_surface_rule){0} : *given;
+    fibrad_surface_rule rule = {0};
+    if (given != NULL) rule = *given;
     const uint32_t n = obstacles == NULL ? 0 : obstacles->n;
     if (f12 == NULL || n > FIBRAD_SPHERES_MAX) return FIBRAD_E_ARGUMENT;
     if (n > 0 && (scratch == NULL || obstacles->x == NULL || obstacles->y == NULL || obstacles->z == NULL ||
