@@ -48,7 +48,7 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     m->result.start = fibrad_arena_take(arena, n + 1, sizeof *m->result.start);
     m->result.col = fibrad_arena_take(arena, (size_t)m->result.capacity, sizeof *m->result.col);
     m->result.f = fibrad_arena_take(arena, (size_t)m->result.capacity, sizeof *m->result.f);
-    m->row = fibrad_arena_take(arena, n, sizeof *m->row);
+    m->row = fibrad_arena_take(arena, n, sizeof(void *));
     m->escaped = fibrad_arena_take(arena, n, sizeof *m->escaped);
     m->beyond = fibrad_arena_take(arena, n, sizeof *m->beyond);
     m->error = fibrad_arena_take(arena, n, sizeof *m->error);
