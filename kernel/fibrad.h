@@ -16,7 +16,7 @@
  *   exchange   absorbed after reflections (grey)        fibrad_exchange_row, _displacement
  *   heat       net powers for given temperatures        fibrad_heat_size, _init, _move, _tasks, _parts, _trace,
  *                                                       _sources_init, _begin, _sweep, _step, _read
- * fibrad_surface.h has the method of Bao, Gao and Tan, fibrad_furnace.h a box with a participating medium.
+ * fibrad_part.h has parts of beds, fibrad_surface.h the method of Bao, Gao and Tan, fibrad_furnace.h a furnace.
  *
  * One row   fibrad_scene_init, fibrad_beam_row. All rows: per thread a fibrad_work and a fibrad_rows; fibrad_beam_row
  *           for every sphere; fibrad_matrix_init, _close, _read. Heat: fibrad_heat_init; _trace every task; _begin;
@@ -148,8 +148,8 @@ typedef struct fibrad_scene_config {
     double period[3];        /* [L] of the periodic box along each axis; 0: the axis is open */
     const fibrad_body *body; /* [bodies] copied */
     uint32_t bodies;         /* [0, 7], else FIBRAD_E_UNSUPPORTED */
-    double known_low[3];     /* [L] region outside of which spheres are not known; */
-    double known_high[3];    /* not zeroed: FIBRAD_E_UNSUPPORTED */
+    double known_low[3], known_high[3]; /* [L] spheres beyond may be missing; equal (zeroed): none are, along the axis */
+    const struct fibrad_occupancy *occupancy; /* fibrad_part.h: where such spheres may be; NULL: not told; not copied */
 } fibrad_scene_config;
 
 typedef struct fibrad_scene fibrad_scene; /* spheres copied in the order of cells of a grid; immutable once made */
@@ -216,7 +216,7 @@ typedef struct fibrad_row {
     uint32_t sphere;   /* out: i */
     uint32_t length;   /* out: entries; after FIBRAD_E_CAPACITY: the entries there would be */
     double escaped;    /* out: the fraction that meets no sphere and no body, measured */
-    double beyond;     /* out: the fraction that leaves the known region; 0 */
+    double beyond;     /* out: the fraction that leaves what is known: fibrad_part.h */
     double error;      /* out: Euclidean error of f, estimated: on the median twice the true one, seldom less than it */
     uint32_t directions; /* out, beams only: how many were taken */
     uint32_t fallbacks;  /* out, beams only: windows whose exact areas the fast method left to the robust one */
