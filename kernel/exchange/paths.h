@@ -14,6 +14,7 @@
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
     uint32_t place;                /* of the sphere they leave */
+    double inverse;                /* 1/its radius */
     double cutoff;                 /* of their ends from its centre, in its radii; infinity: none */
     const double *emissivity;      /* [spheres], in the caller's order */
     const double *wall_emissivity; /* [FIBRAD_WALLS] by slot */

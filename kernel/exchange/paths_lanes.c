@@ -79,38 +79,55 @@ static void draw_direction(const fibrad_paths *paths, struct grey_path *path, do
     for (int axis = 0; axis < 3; axis++) w[axis] *= inverse;
 }
 
-/* How far a ray from where the path is goes until it leaves what is known [L]; below 0: it begins outside. */
-static double known_length(const fibrad_paths *paths, const struct grey_path *path, const double point[3],
-                           const double w[3], double *ball) {
+/* Where the path is [L], in the scene's coordinates. */
+static void point_of(const fibrad_scene *scene, const struct grey_path *path, double point[3]) {
+    const double *const centre[3] = {scene->x, scene->y, scene->z};
+    for (int axis = 0; axis < 3; axis++)
+        point[axis] = path->place != FIBRAD_NONE ? centre[axis][path->place] + scene->r[path->place] * path->n[axis]
+                                                 : path->point[axis];
+}
+
+/* Whether what a path meets lies within what is known: the cutoff about the emitter's centre, and the region. */
+static bool hit_is_known(const fibrad_paths *paths, const struct grey_path *path, const fibrad_hit *hit) {
     const fibrad_scene *scene = paths->tracer->scene;
-    const double unit = scene->r[paths->place], inverse = 1 / unit;
+    const double *const centre[3] = {scene->x, scene->y, scene->z}, r = scene->r[hit->sphere];
+    double square = 0;
+    bool inside = true;
+    for (int axis = 0; axis < 3; axis++) {
+        const double at = path->place != FIBRAD_NONE ? 0 : path->point[axis];
+        const double to = hit->centre[axis] + r * hit->normal[axis];
+        const double from_emitter = (path->centre[axis] + at + to) * paths->inverse;
+        square += from_emitter * from_emitter;
+        if (!scene->region) continue;
+        const double place = (path->place != FIBRAD_NONE ? centre[axis][path->place] : at) + to;
+        inside = inside && place >= scene->known_low[axis] && place <= scene->known_high[axis];
+    }
+    return inside && square <= paths->cutoff * paths->cutoff;
+}
+
+/* The length at which a ray that meets no sphere leaves the ball about the emitter [L]. */
+static double ball_length(const fibrad_paths *paths, const struct grey_path *path, const double w[3]) {
+    const fibrad_scene *scene = paths->tracer->scene;
     double start[3];
     for (int axis = 0; axis < 3; axis++) {
-        const double from_centre = path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : point[axis];
-        start[axis] = (path->centre[axis] + from_centre) * inverse;
+        const double from_centre =
+            path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : path->point[axis];
+        start[axis] = (path->centre[axis] + from_centre) * paths->inverse;
     }
-    *ball = fibrad_ball_exit(start, w, paths->cutoff) * unit;
-    return fibrad_min(*ball, fibrad_region_exit(scene, point, w));
+    return fibrad_ball_exit(start, w, paths->cutoff) * scene->r[paths->place];
 }
 
 /* Traces one ray, to a sphere or to a wall, whose slot is returned; FIBRAD_ESCAPED, FIBRAD_BEYOND: it meets neither. */
 static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3]) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
-    double point[3], ball, distance;
+    double point[3], distance;
     paths->rays++;
     if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
     else
         LANED(fibrad_trace_point)(scene, path->point, w, &hit);
-    fibrad_copy(point, path->point, sizeof point);
-    if (path->place != FIBRAD_NONE) {
-        const double *const centre[3] = {scene->x, scene->y, scene->z};
-        for (int axis = 0; axis < 3; axis++)
-            point[axis] = centre[axis][path->place] + scene->r[path->place] * path->n[axis];
-    }
-    const double known = known_length(paths, path, point, w, &ball);
-    if (hit.sphere != FIBRAD_NONE && hit.distance <= known) {
+    if (hit.sphere != FIBRAD_NONE && hit_is_known(paths, path, &hit)) {
         for (int axis = 0; axis < 3; axis++) {
             if (path->place == FIBRAD_NONE) path->centre[axis] += path->point[axis];
             path->centre[axis] += hit.centre[axis];
@@ -119,7 +136,8 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
         path->place = hit.sphere;
         return FIBRAD_NONE;
     }
-    const uint32_t met = fibrad_surroundings_met(scene, point, w, ball, &distance);
+    point_of(scene, path, point);
+    const uint32_t met = fibrad_surroundings_met(scene, point, w, ball_length(paths, path, w), &distance);
     if (met >= FIBRAD_WALLS) return met;
     for (int axis = 0; axis < 3; axis++) {
         const double *const centre[3] = {scene->x, scene->y, scene->z};
