@@ -79,69 +79,72 @@ static void draw_direction(const fibrad_paths *paths, struct grey_path *path, do
     for (int axis = 0; axis < 3; axis++) w[axis] *= inverse;
 }
 
-/* Where the path is [L], in the scene's coordinates. */
-static void point_of(const fibrad_scene *scene, const struct grey_path *path, double point[3]) {
-    const double *const centre[3] = {scene->x, scene->y, scene->z};
-    for (int axis = 0; axis < 3; axis++)
-        point[axis] = path->place != FIBRAD_NONE ? centre[axis][path->place] + scene->r[path->place] * path->n[axis]
-                                                 : path->point[axis];
-}
-
-/* Whether what a path meets lies within what is known: the cutoff about the emitter's centre, and the region. */
-static bool hit_is_known(const fibrad_paths *paths, const struct grey_path *path, const fibrad_hit *hit) {
-    const fibrad_scene *scene = paths->tracer->scene;
-    const double *const centre[3] = {scene->x, scene->y, scene->z}, r = scene->r[hit->sphere];
-    double square = 0;
-    bool inside = true;
+/* Where a path is in the scene [L]: at a wall, or on a sphere, whose centre is told, too. */
+static void find_point(const fibrad_scene *scene, const struct grey_path *path, double centre[3], double point[3]) {
+    const double *const of_axis[3] = {scene->x, scene->y, scene->z};
     for (int axis = 0; axis < 3; axis++) {
-        const double at = path->place != FIBRAD_NONE ? 0 : path->point[axis];
-        const double to = hit->centre[axis] + r * hit->normal[axis];
-        const double from_emitter = (path->centre[axis] + at + to) * paths->inverse;
-        square += from_emitter * from_emitter;
-        if (!scene->region) continue;
-        const double place = (path->place != FIBRAD_NONE ? centre[axis][path->place] : at) + to;
-        inside = inside && place >= scene->known_low[axis] && place <= scene->known_high[axis];
+        centre[axis] = path->place != FIBRAD_NONE ? of_axis[axis][path->place] : 0;
+        point[axis] =
+            path->place != FIBRAD_NONE ? centre[axis] + scene->r[path->place] * path->n[axis] : path->point[axis];
     }
-    return inside && square <= paths->cutoff * paths->cutoff;
 }
 
-/* The length at which a ray that meets no sphere leaves the ball about the emitter [L]. */
-static double ball_length(const fibrad_paths *paths, const struct grey_path *path, const double w[3]) {
+/* Where a path is, from the centre of the sphere left first and in its radii. */
+static void find_start(const fibrad_paths *paths, const struct grey_path *path, double start[3]) {
     const fibrad_scene *scene = paths->tracer->scene;
-    double start[3];
     for (int axis = 0; axis < 3; axis++) {
         const double from_centre =
             path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : path->point[axis];
         start[axis] = (path->centre[axis] + from_centre) * paths->inverse;
     }
-    return fibrad_ball_exit(start, w, paths->cutoff) * scene->r[paths->place];
 }
 
-/* Traces one ray, to a sphere or to a wall, whose slot is returned; FIBRAD_ESCAPED, FIBRAD_BEYOND: it meets neither. */
+/* How far a ray goes until it leaves the ball about the sphere left first [L]; below 0: it begins outside. */
+static double ball_length(const fibrad_paths *paths, const struct grey_path *path, const double w[3]) {
+    double start[3];
+    find_start(paths, path, start);
+    return fibrad_ball_exit(start, w, paths->cutoff) * paths->tracer->scene->r[paths->place];
+}
+
+/* Whether a ray is within what is known up to some length. Most are by the triangle inequality. */
+static bool is_known(const fibrad_paths *paths, const struct grey_path *path, const double w[3], double length) {
+    const fibrad_scene *scene = paths->tracer->scene;
+    double start[3], centre[3], point[3], rest = paths->cutoff - length * paths->inverse;
+    if (!paths->cut) return true;
+    find_start(paths, path, start);
+    const double square = start[0] * start[0] + start[1] * start[1] + start[2] * start[2];
+    if (!(rest > 0 && square < rest * rest * (1 - 1e-9)) && length > ball_length(paths, path, w)) return false;
+    if (!scene->region) return true;
+    find_point(scene, path, centre, point);
+    return length <= fibrad_region_exit(scene, point, w);
+}
+
+/* Traces one ray, to a sphere (FIBRAD_NONE) or to a wall, whose slot is returned; FIBRAD_ESCAPED, FIBRAD_BEYOND: it
+ * meets neither. */
 static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3]) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
-    double point[3], distance;
+    double centre[3], point[3], distance;
     paths->rays++;
     if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
     else
         LANED(fibrad_trace_point)(scene, path->point, w, &hit);
-    if (hit.sphere != FIBRAD_NONE && hit_is_known(paths, path, &hit)) {
+    if (hit.sphere != FIBRAD_NONE && is_known(paths, path, w, hit.distance)) {
+        for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
         for (int axis = 0; axis < 3; axis++) {
-            if (path->place == FIBRAD_NONE) path->centre[axis] += path->point[axis];
             path->centre[axis] += hit.centre[axis];
             path->n[axis] = hit.normal[axis];
         }
         path->place = hit.sphere;
         return FIBRAD_NONE;
     }
-    point_of(scene, path, point);
-    const uint32_t met = fibrad_surroundings_met(scene, point, w, ball_length(paths, path, w), &distance);
+    find_point(scene, path, centre, point);
+    const double ball = paths->cut ? ball_length(paths, path, w) : __builtin_inf();
+    const uint32_t met = fibrad_surroundings_met(scene, point, w, ball, &distance);
     if (met >= FIBRAD_WALLS) return met;
     for (int axis = 0; axis < 3; axis++) {
-        const double *const centre[3] = {scene->x, scene->y, scene->z};
-        if (path->place != FIBRAD_NONE) path->centre[axis] -= centre[axis][path->place];
+        path->centre[axis] -= centre[axis];
         path->point[axis] = point[axis] + distance * w[axis];
         if (scene->period[axis] == 0) continue;
         /* into a box that does not depend on the spheres */
