@@ -1,6 +1,8 @@
 /* heap.c - the kernel's blocks on the heap, and the sizes of its structures. SPDX-License-Identifier: MIT */
 #include "simple/heap.h"
 
+#include "fibrad_part.h"
+
 #include <stdlib.h>
 #include <string.h>
 
