@@ -224,6 +224,7 @@ BENCHES = \
     bench/bench_cast.c \
     bench/bench_error.c \
     bench/bench_estimate.c \
+    bench/bench_cutoff.c \
     bench/bench_exchange.c \
     bench/bench_furnace.c \
     bench/bench_heat.c \
