@@ -357,6 +357,8 @@ $(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) $(HOST_OBJECTS) $(BUILD)/host/main.o $(TEST_
 
 -include $(KERNEL_OBJECTS:.o=.d) $(SIMPLE_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(ALL_BENCHES:=.d) $(BUILD)/host/main.d
 
+include host/couple/couple.mk
+
 # ---- what one does with them ----------------------------------------------------------------------------------------
 DEMO_BED = tests/data/mono2000.dump
 
@@ -380,7 +382,8 @@ $(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*
 test: deps
 	@echo "Building the tests"
 	@$(MAKE) -s --no-print-directory programs all
-	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" tests/run.sh $(TEST_PROGRAMS) $(SCRIPTS)
+	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" \
+	    tests/run.sh $(TEST_PROGRAMS) $(SCRIPTS) $(COUPLE_SCRIPTS)
 
 ## run-programs: build and run the test programs without the scripts
 run-programs: programs
@@ -392,7 +395,7 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
 check: symbols lists format house
 
-LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
+LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c $(COUPLE) $(COUPLE_PROGRAMS) $(COUPLE_TESTS) $(COUPLE_SCRIPTS) kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
 FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c)) \
          $(wildcard tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
 
@@ -409,7 +412,7 @@ house:
 symbols: lib lib-host
 	BUILD=$(BUILD) tests/check_symbols.sh
 
-FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
+FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/*/*.cpp tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
 
 ## format: every source is formatted by .clang-format (to repair: clang-format -i FILE)
 format:
@@ -521,6 +524,10 @@ lint:
 	printf '%s\n' $(KERNEL) $(LANED) | xargs -I{} -P 2 clang-tidy --quiet {} -- -std=c11 $(LINT_FLAGS) $(LINT_SCALAR)
 	printf '%s\n' $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c | xargs -I{} -P 2 \
 	    clang-tidy --quiet --checks=-clang-analyzer-core.* {} -- -std=c11 -fopenmp $(LINT_FLAGS)
+	@if command -v $(MPICC) >/dev/null; then printf '%s\n' $(COUPLE) $(COUPLE_PROGRAMS) | xargs -I{} -P 2 \
+	    clang-tidy --quiet --checks=-clang-analyzer-core.*,-clang-analyzer-optin.mpi.* {} -- -std=c11 -fopenmp \
+	    $(LINT_FLAGS) $$($(MPICC) -show | tr ' ' '\n' | grep '^-I'); \
+	else echo "No MPI: couplings are not checked"; fi
 
 ## reproduce: the numbers of the papers beside ours, and their plots into docs/figures
 reproduce: $(BUILD)/fibrad
@@ -559,5 +566,5 @@ clean:
 
 ## help: this list
 help:
-	@sed -n 's/^## \([^:]*\): /  \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16
+	@sed -n 's/^## \([^:]*\): /  \1\t/p' Makefile $(wildcard host/*/*.mk) | expand -t 16
 	@echo "  Settable: CC AR CFLAGS LDFLAGS PREFIX DESTDIR BUILD ISAS TABLES PIC WERROR"

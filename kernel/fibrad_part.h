@@ -1,14 +1,14 @@
 /* fibrad_part.h - beds divided over machines: scenes that know a part of a bed, and powers from the rows of a part.
  *
- * Index: fibrad_occupancy, fibrad_flow, fibrad_rows_flow. Conventions are those of fibrad.h.
+ * Index: fibrad_occupancy, fibrad_flow, fibrad_rows_flow, fibrad_rows_read. Conventions are those of fibrad.h.
  *
  * Beyond   A row with a cutoff knows spheres up to there from its sphere's centre; a scene may have a known region.
  *          What leaves either before it meets a sphere or a body is `beyond`: there may be spheres on its way that the
  *          scene does not have or that the cutoff leaves out. It goes on to a body or escapes if there are none: where
  *          the occupancy says so, or, without one and without a known region, where the box of all spheres ends. Beams
  *          and rays of view factors see spheres of the scene outside a known region as usual; reflections do not.
- * Parts    The row of a sphere depends on spheres with centres within cutoff + 1.5 largest radii of its own (1 where none
- *          overlap), on the bodies, on the occupancy and on ids; not on other spheres, nor on their order: not a bit.
+ * Parts    The row of a sphere depends on spheres with centres within cutoff + 1.5 largest radii of its own (1 where
+ * none overlap), on the bodies, on the occupancy and on ids; not on other spheres, nor on their order: not a bit.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_PART_H
@@ -48,6 +48,11 @@ typedef struct fibrad_flow {
  * pointer, a column or a row beyond `spheres`, rows of another number of bodies, values that are not finite; _STATE:
  * the block was moved to another alignment. Cost: 2 ns per entry. */
 int fibrad_rows_flow(const fibrad_rows *rows, uint32_t spheres, uint32_t bodies, fibrad_flow *flow);
+
+/* Rows one after the other: 1 and the row that begins at *at (0 at first, moved behind it), or 0 behind the last. Its
+ * arrays are those of the collection, valid until a row is appended; row->rows is NULL. Columns may be written, as long
+ * as they ascend: to number the spheres anew. No errors. */
+int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 #ifdef __cplusplus
 }
