@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "fibrad.h"
+#include "simple/fibrad_host.h"
 
 /* Processor time of this thread, which others on the machine disturb least [s]. */
 static inline double bench_thread_seconds(void) {
@@ -30,15 +30,10 @@ static inline void *bench_array(size_t count, size_t size) {
     return array;
 }
 
-static inline void *bench_resize(void *context, void *block, size_t size) {
-    (void)context;
-    return realloc(block, size);
-}
-
 /* Empty work memory or rows that grow on the heap; memory.block is to be freed. */
 #define BENCH_GROWING                                                                                                  \
     {                                                                                                                  \
-        .memory = {.resize = bench_resize }                                                                            \
+        .memory = {.resize = fibrad_heap_resize }                                                                      \
     }
 
 /* One line `# key: value` each. `make bench` hands commit and flags over in the environment. */

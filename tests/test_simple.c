@@ -156,6 +156,12 @@ START_TEST(faults_name_spheres) {
         const fibrad_bed_options raw = {.raw = 1};
         ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, &rule, &raw, &run, &factors), FIBRAD_E_ARGUMENT);
         ck_assert(run.fault.first == first && run.fault.second == first && factors == NULL);
+        /* a displacement of spheres whose paths may not meet those of no emissivity is refused, too */
+        static fibrad_displacement moved[100];
+        unsigned char wanted[100] = {[50] = 1};
+        run.fault = (fibrad_fault){0, 0};
+        ck_assert_int_eq(fibrad_displacements(NULL, &spheres, &rule, wanted, &run, moved, NULL), FIBRAD_E_ARGUMENT);
+        ck_assert(run.fault.first == first && run.fault.second == first);
     }
     bed.x[5] = bed.x[60], bed.y[5] = bed.y[60], bed.z[5] = bed.z[60];
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, &run, &factors), FIBRAD_E_GEOMETRY);

@@ -121,7 +121,8 @@ int fibrad_displacements(const fibrad_scene_config *config, const fibrad_spheres
     fibrad_job_report report;
     const struct displacement_rule how = {rule, displacement};
     int status = fibrad_job_open(&job, config, spheres, run);
-    if (!status && (!rule || !displacement)) status = FIBRAD_E_ARGUMENT;
+    if (!status && !displacement) status = FIBRAD_E_ARGUMENT;
+    if (!status) status = check_emissivities(&job, rule);
     if (!status) status = fibrad_job_rows(&job, displacement_of, &how, wanted, NULL, &report);
     if (!status && facts) *facts = job.facts;
     fibrad_job_close(&job);
