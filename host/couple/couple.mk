@@ -48,6 +48,8 @@ need-mpi:
 	@command -v $(MPICC) >/dev/null || { echo "Couplings need MPI: run 'make deps-couple' (Debian: openmpi-bin," \
 	    "libopenmpi-dev)." >&2; exit 1; }
 
+include host/lammps/lammps.mk
+
 $(COUPLE_OBJECTS) $(COUPLE_PRODUCTS): Makefile host/couple/couple.mk
 
 -include $(COUPLE_OBJECTS:.o=.d) $(BUILD)/couple/example.d $(BUILD)/couple/test_couple.d
