@@ -26,6 +26,8 @@ COUPLE_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(PIC)
 # what `make couple` builds
 COUPLE_PRODUCTS = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/couple/example
 
+include host/lammps/lammps.mk
+
 ## couple: libfibrad_couple.a and what couples it with other codes, into build/couple (needs MPI: make deps-couple)
 couple: $(COUPLE_PRODUCTS)
 
@@ -47,8 +49,6 @@ $(BUILD)/couple/test_couple: tests/couple/test_couple.c $(COUPLE_LIBS)
 need-mpi:
 	@command -v $(MPICC) >/dev/null || { echo "Couplings need MPI: run 'make deps-couple' (Debian: openmpi-bin," \
 	    "libopenmpi-dev)." >&2; exit 1; }
-
-include host/lammps/lammps.mk
 
 $(COUPLE_OBJECTS) $(COUPLE_PRODUCTS): Makefile host/couple/couple.mk
 

@@ -52,8 +52,8 @@ as_data() {
 
 # near A B BOUND WHAT: the largest difference of temperatures, and whether it is below BOUND
 near() {
-    found=$(awk 'NF == 2 && $1 + 0 == $1 && NR == FNR { t[$1] = $2; n++; next }
-        NF == 2 && $1 + 0 == $1 { d = $2 - t[$1]; if (d < 0) d = -d; if (!($1 in t) || !(d <= worst)) worst = d; m++ }
+    found=$(awk 'NF == 2 && /^[0-9]+ / && NR == FNR { t[$1] = $2; n++; next }
+        NF == 2 && /^[0-9]+ / { d = $2 - t[$1]; if (d < 0) d = -d; if (!($1 in t) || !(d <= worst)) worst = d; m++ }
         END { printf "%.2g", n && n == m ? worst + 0 : 1/0 }' "$1" "$2" 2>/dev/null || echo inf)
     awk -v d="${found:-inf}" -v bound="$3" 'BEGIN { exit !(d + 0 == d && d < bound) }'
     verdict "$4 ($found K)" $?
@@ -91,15 +91,16 @@ same restarted "restart in the middle, from np 2 to np 4"
 # bytes NAME: the rows that a run left
 bytes() { "$BUILD/tests/couple/sorted_rows" "$work/$1.0" | sha256sum; }
 for bed in poly2000 monoper2000; do
-    as_data tests/data/$bed.dump >"$work/$bed.data"
-    as_data tests/data/$bed.dump 1 >"$work/reversed.data"
+    as_data tests/data/$bed.dump | sed '/^Temperatures/,$d' >"$work/$bed.data"
+    as_data tests/data/$bed.dump 1 | sed '/^Temperatures/,$d' >"$work/reversed.data"
     box="f f f"
     if test $bed = monoper2000; then box="p p f"; fi
     for np in 1 2 4; do
         data=$work/$bed.data
         if test "$np" -eq 4; then data=$work/reversed.data; fi
         run $np $bed$np rows.lmp data "$data" boundary "$box" rows "$work/$bed$np"
-        test "$np" -eq 1 || { test -s "$work/$bed$np.0.0.rows" && test "$(bytes "$bed$np")" = "$(bytes ${bed}1)"; }
+        test "$np" -eq 1 && bytes "$bed$np" >"$work/bytes" && continue
+        test -s "$work/$bed$np.0.0.rows" && test "$(bytes "$bed$np")" = "$(cat "$work/bytes")"
         verdict "rows of $bed, np $np: the same bytes" $?
     done
 done
@@ -110,12 +111,13 @@ awk '/^[0-9]/ { if (seen++) sum += $3; else first = $2; last = $2 }
     END { error = (last - first + sum*20*1e-3)/last; if (error < 0) error = -error
           printf "change %.3g, error %.2g of the total", (last - first)/last, error
           exit !(seen > 1000 && error < 1e-12 && (last - first)/last > 1e-3) }' "$work/moving.out.balance" >"$work/balance"
-verdict "energy of moving particles: $(cat "$work/balance")" $?
-awk '/TIMESTEP/ { frame++ } NF == 2 && /^[0-9]/ { if (frame == 1) rank[$1] = $2; else if (frame == 3 && rank[$1] != $2) moved++ }
+status=$?
+verdict "energy of moving particles: $(cat "$work/balance")" $status
+awk '/TIMESTEP/ { frame++ } NF == 2 && /^[0-9]+ / { if (frame == 1) rank[$1] = $2; else if (frame == 3 && rank[$1] != $2) moved++ }
     END { exit !(moved > 20) }' "$work/moving.out.rank"
 verdict "particles changed ranks" $?
 run 4 equal moving.lmp hot 300 steps 2000
-awk 'NF == 2 && $1 + 0 == $1 { n++; if ($2 != 300) bad++ } END { exit !(n && !bad) }' "$work/equal.out"
+awk 'NF == 2 && /^[0-9]+ / { n++; if ($2 != 300) bad++ } END { exit !(n && !bad) }' "$work/equal.out"
 verdict "equal temperatures stay equal to the bit" $?
 
 # ---- failures ---------------------------------------------------------------------------------------------------------
@@ -129,9 +131,9 @@ fails() {
     test $status -ne 0 && test $status -ne 124 && test "$count" -eq 1
     verdict "$what" $? "status $status, $count messages: $(grep -h ERROR "$work/failure.err" "$work/failure.log" | head -n 1)"
 }
-fails "atom 17 .*not set" "unset temperature" also "set atom 17 d_T 0"
+fails "atom 10 .*not set" "unset temperature" also "set atom 10 d_T 0"
 fails "NEVERY must be at most" "steps of heat too long" also "timestep 400" heat 20
-fails "particle.* 17" "a centre inside another particle" also "set atom 17 diameter 2.5"
+fails "particle.* 10 " "a centre inside another particle" also "set atom 10 diameter 2.5"
 fails "emissivity" "emissivity out of range" also "fix bad all fibrad 1 1 emissivity 1.5 surroundings 300 cp 1"
 fails "property/atom d_none" "temperatures that are not there" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 temperature d_none"
@@ -146,7 +148,7 @@ until grep -q '^ *Step' "$work/killed.log" 2>/dev/null || ! kill -0 $runner; do 
 kill -KILL "$(cat "$work/pid.1")"
 wait $runner
 status=$?
-test $status -ne 0 && test $status -ne 124 && ! kill -0 "$(cat "$work/pid.0")" 2>/dev/null && grep -q 'signal 9' "$work/killed.err"
+test $status -ne 0 && test $status -ne 124 && timeout 10 tail --pid="$(cat "$work/pid.0")" -f /dev/null && grep -q 'signal 9' "$work/killed.err"
 verdict "a killed rank" $? "status $status"
 
 exit $faults
