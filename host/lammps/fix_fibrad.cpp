@@ -123,6 +123,7 @@ FixFibrad::FixFibrad(LAMMPS *lmp, int narg, char **arg)
     create_attribute = 1;
     nevery = heat_every ? heat_every : rows_every;
     scalar_flag = vector_flag = peratom_flag = 1;
+    size_peratom_cols = 0;
     size_vector = 5 + (int)walls.size();
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
@@ -436,7 +437,12 @@ void FixFibrad::grow_arrays(int nmax) {
 }
 
 void FixFibrad::copy_arrays(int i, int j, int) { q[j] = q[i]; }
-void FixFibrad::set_arrays(int i) { q[i] = 0; }
+
+// a new atom, whose place in the vectors may have been another's
+void FixFibrad::set_arrays(int i) {
+    q[i] = 0;
+    if (double *t = temperature.empty() ? nullptr : vector(temperature)) t[i] = initial;
+}
 
 int FixFibrad::pack_exchange(int i, double *buffer) {
     buffer[0] = q[i];
