@@ -411,7 +411,7 @@ house:
 symbols: lib lib-host
 	BUILD=$(BUILD) tests/check_symbols.sh
 
-FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
+FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/*/*.cpp tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
 
 ## format: every source is formatted by .clang-format (to repair: clang-format -i FILE)
 format:
@@ -561,5 +561,5 @@ clean:
 
 ## help: this list
 help:
-	@sed -n 's/^## \([^:]*\): /  \1\t/p' Makefile host/couple/couple.mk | expand -t 16
+	@sed -n 's/^## \([^:]*\): /  \1\t/p' Makefile host/couple/couple.mk host/lammps/lammps.mk | expand -t 16
 	@echo "  Settable: CC AR CFLAGS LDFLAGS PREFIX DESTDIR BUILD ISAS TABLES PIC WERROR"

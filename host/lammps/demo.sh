@@ -2,13 +2,13 @@
 # demo.sh - runs pour.lmp on 2 ranks, prints the energy balance, leaves tables and pictures in build/demo/lammps.
 # SPDX-License-Identifier: MIT
 set -eu
-: "${BUILD:=build}" "${LMP:=lmp}" "${MPIRUN:=mpirun}" "${LOAD:=$BUILD/couple/fibrad.lmp}"
+: "${BUILD:=build}" "${LMP:=lmp}" "${LOAD:=$BUILD/couple/fibrad.lmp}"
 out=$BUILD/demo/lammps
 rm -rf "$out"
 mkdir -p "$out"
 
-OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMP_NUM_THREADS=1 \
-    "$MPIRUN" -np 2 "$LMP" -in host/lammps/pour.lmp -log "$out/log" -var load "$LOAD" -var out "$out"
+. tests/couple/mpi.sh
+run_mpi 2 "$LMP" -in host/lammps/pour.lmp -log "$out/log" -var load "$LOAD" -var out "$out"
 
 # T against time, and the balance: columns step, time, heat, powers of sky and floor, mean and largest T; a step of heat
 # takes 50 time steps
@@ -18,7 +18,7 @@ awk -v csv="$out/temperature.csv" '
         if (last != "") integral -= ($4 + $5)*($2 - last)
         last = $2
         heat = $3
-        print $2 "," $6 "," $7 >csv
+        if ($6 > 0) print $2 "," $6 "," $7 >csv
     }
     END {
         error = (heat - integral)/heat
@@ -62,13 +62,15 @@ awk -v out="$out" '
 awk '/^ITEM: TIMESTEP/ { n = 0 } NF == 7 && /^[0-9]/ { line[++n] = $2 " " $3 " " $4 " " $5 " " $6 }
     END { for (i = 1; i <= n; i++) print line[i] }' "$out/frames.dump" | sort -g -k 2,2r >"$out/last.txt"
 gnuplot -e "
-    set terminal pngcairo size 1200, 500; set output '$out/bed.png';
-    set multiplot layout 1, 2;
-    set size ratio -1; set xlabel 'x [mm]'; set ylabel 'z [mm]'; set cblabel 'T [K]'; set cbrange [300:*];
-    plot '$out/last.txt' using (\$1*1e3):(\$3*1e3):(\$4*1e3):5 with circles fill solid linecolor palette notitle;
-    set size noratio; set xlabel 'time [s]'; set ylabel 'T [K]'; set datafile separator ','; set key left;
-    plot '$out/temperature.csv' using 1:3 every ::1 with lines title 'hottest pebble',
-         '$out/temperature.csv' using 1:2 every ::1 with lines title 'mean';
+    set terminal pngcairo size 1200, 450; set output '$out/bed.png'; set multiplot;
+    set origin 0, 0; set size 0.5, 1; set size ratio -1; set xrange [-1:21]; set yrange [0:14];
+    set palette defined (0 '#203080', 0.5 '#e06030', 1 '#fff0a0'); set cblabel 'T [K]'; set cbrange [300:*];
+    set xlabel 'x [mm]'; set ylabel 'z [mm]';
+    plot '$out/last.txt' using (\$1*1e3):(\$3*1e3):(\$4*1e3):5 with circles fill solid border linecolor 'black' linecolor palette notitle;
+    set origin 0.5, 0; set size 0.5, 1; set size noratio; set xrange [0:*]; set yrange [300:*];
+    set xlabel 'time [s]'; set ylabel 'T [K]'; set key left; set datafile separator ',';
+    plot '$out/temperature.csv' using 1:3 every ::1 with lines linewidth 2 title 'hottest pebble',
+         '$out/temperature.csv' using 1:2 every ::1 with lines linewidth 2 title 'mean';
     unset multiplot"
 echo
 echo "Temperatures against time:  $out/temperature.csv"

@@ -28,6 +28,8 @@ $(BUILD)/couple/fibrad_plugin.so: $(FIX) host/lammps/fibrad_plugin.cpp $(COUPLE_
 
 -include $(BUILD)/couple/fix_fibrad.d $(BUILD)/couple/fibrad_plugin.d
 
+COUPLE_SCRIPTS += tests/couple/check_lammps.sh
+
 # programs that check_lammps.sh compares with
 LAMMPS_CHECKS = $(BUILD)/tests/couple/serial_bed $(BUILD)/tests/couple/sorted_rows
 
@@ -35,7 +37,9 @@ $(LAMMPS_CHECKS): $(BUILD)/%: %.c $(BUILD)/libfibrad.a
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(COMMON) -Ihost/couple $(LDFLAGS) $< $(BUILD)/libfibrad.a -lm -o $@
 
+.PHONY: demo-lammps
+
 ## demo-lammps: pebbles poured onto a hot floor in LAMMPS on 2 ranks: energy balance, T against time, picture, ParaView
 demo-lammps: deps deps-couple
 	@$(MAKE) -s --no-print-directory couple
-	host/lammps/demo.sh
+	@BUILD=$(BUILD) MPIRUN=$(MPIRUN) host/lammps/demo.sh

@@ -2,12 +2,17 @@
 # check_lammps.sh - fix fibrad in LAMMPS on 1, 2 and 4 ranks: the same temperatures as on one scene without ranks, the same
 # bytes of rows, energy in moving beds, and failures that end all ranks. SPDX-License-Identifier: MIT
 #
-# LMP and LOAD may name another LAMMPS and the script that loads the fix: host/lammps/newer.sh does.
+# LMP and LOAD may name another LAMMPS and a script that loads the fix into it: host/lammps/newer.sh does.
 set -u
-: "${BUILD:=build}" "${LMP:=lmp}" "${LOAD:=$BUILD/couple/fibrad.lmp}"
-for program in "$LMP" mpirun; do
-    command -v "$program" >/dev/null || { echo "SKIP fix fibrad: no $program on this machine" && exit; }
+: "${BUILD:=build}" "${MAKE:=make}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}" "${LMP:=lmp}"
+for program in "$MPICC" "$MPIRUN" "$LMP"; do
+    command -v "$program" >/dev/null || { echo "SKIP fix fibrad: no $program on this machine (make deps-couple)" && exit; }
 done
+test -n "${LOAD:-}" || test -e /usr/include/lammps/fix.h || { echo "SKIP fix fibrad: no liblammps-dev (make deps-couple)" && exit; }
+. tests/couple/mpi.sh
+
+$MAKE -s --no-print-directory "$BUILD/tests/couple/serial_bed" "$BUILD/tests/couple/sorted_rows" || exit 1
+test -n "${LOAD:-}" || { LOAD=$BUILD/couple/fibrad.lmp && $MAKE -s --no-print-directory "$LOAD" || exit 1; }
 work=$BUILD/couple/check_lammps
 rm -rf "$work"
 mkdir -p "$work"
@@ -21,8 +26,7 @@ verdict() {
 ranks() {
     local np=$1
     shift
-    OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMP_NUM_THREADS=1 \
-        timeout 120 mpirun -np "$np" "$@"
+    timeout 120 "$MPIRUN" -np "$np" "$@"
 }
 
 # run NP NAME SCRIPT [NAME VALUE]...: runs a script, whose output is NAME.out, with values of its variables
