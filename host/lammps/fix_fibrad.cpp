@@ -62,6 +62,7 @@ FixFibrad::FixFibrad(LAMMPS *lmp, int narg, char **arg)
       warned(false), begun(0), before(), rows_made(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg, 3);
+    config.seed = 1; // 0 would leave the directions of step 0 as they are, whose errors add up
     heat_every = words.count("NEVERY", 0);
     rows_every = words.count("NROWS", 1);
     if (heat_every && rows_every % heat_every)

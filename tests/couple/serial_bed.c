@@ -55,7 +55,7 @@ int main(int count, char **argument) {
         if (step % every == 0) {
             const fibrad_exchange_rule rule = {.emissivity = emissivity,
                                                .body_emissivity = &floor_emissivity,
-                                               .seed = (uint64_t)step * 0x9e3779b97f4a7c15u,
+                                               .seed = 1 + (uint64_t)step * 0x9e3779b97f4a7c15u,
                                                .cutoff = cutoff};
             fibrad_rows_clear(&rows);
             for (uint32_t i = 0; i < n; i++) {
