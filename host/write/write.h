@@ -31,8 +31,8 @@ write_function *write_find(const char *path, const char **endings);
 
 /* What the rows that were computed have in common. */
 struct summary {
-    double row_sum_min, row_sum_max, escaped_mean;
-    double closure_max; /* largest |row sum + escaped + walls - 1| */
+    double row_sum_min, row_sum_max, escaped_mean, beyond_mean;
+    double closure_max; /* largest |row sum + escaped + beyond + walls - 1| */
     double error_max, error_rms;
     double wall_mean[WALLS_MAX];
 };

@@ -174,8 +174,7 @@ static void follow_wall_points(const fibrad_points *points, const wall_view *vie
             vd_store(wall, exit_walls(view, origin, w, &distance));
             if (view->cut) {
                 const uint32_t cut = bits & vm_bits(vd_lt(exit_known(view, origin, w), distance));
-                if (cut != 0 && count[FIBRAD_BEYOND] == 0)
-                    *first_cut = line_of_lane(origin, w, __builtin_ctz(cut));
+                if (cut != 0 && count[FIBRAD_BEYOND] == 0) *first_cut = line_of_lane(origin, w, __builtin_ctz(cut));
                 count[FIBRAD_BEYOND] += fibrad_count_bits(cut);
                 bits &= ~cut;
             }
