@@ -6,7 +6,8 @@ MPICXX        = mpicxx
 LAMMPS_SOURCE =
 LAMMPS_SIZES  = -DLAMMPS_SMALLBIG
 
-LAMMPS_FLAGS  = -O2 -g -Wall -Wextra -fPIC -DOMPI_SKIP_MPICXX $(LAMMPS_SIZES) -Ikernel -Ihost/couple -MMD -MP $(WERROR)
+LAMMPS_FLAGS  = $(CFLAGS) -pedantic -Wall -Wextra -Wshadow $(WERROR) -fPIC -DOMPI_SKIP_MPICXX $(LAMMPS_SIZES) \
+    -Ikernel -Ihost/couple -MMD -MP
 LAMMPS_LINK   = -shared -fopenmp -Wl,--exclude-libs,ALL
 LAMMPS_HERE   = $(wildcard /usr/include/lammps/fix.h)
 FIX           = host/lammps/fix_fibrad.cpp
@@ -25,6 +26,8 @@ $(BUILD)/couple/fibrad.lmp: host/lammps/fibrad.lmp.in $(BUILD)/couple/fix_fibrad
 $(BUILD)/couple/fibrad_plugin.so: $(FIX) host/lammps/fibrad_plugin.cpp $(COUPLE_LIBS)
 	$(MPICXX) -std=c++17 $(LAMMPS_FLAGS) -isystem $(LAMMPS_SOURCE)/src $(LAMMPS_LINK) \
 	    $(FIX) host/lammps/fibrad_plugin.cpp $(COUPLE_LIBS) -o $@
+
+$(BUILD)/couple/fix_fibrad.so $(BUILD)/couple/fibrad_plugin.so: Makefile host/lammps/lammps.mk
 
 -include $(BUILD)/couple/fix_fibrad.d $(BUILD)/couple/fibrad_plugin.d
 
