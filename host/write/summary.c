@@ -11,7 +11,7 @@ double summary_row(const fibrad_factors *matrix, uint32_t i) {
 
 static void add_summary(struct summary *summary, const fibrad_factors *matrix, uint32_t i, double rows) {
     const double sum = summary_row(matrix, i), *wall = matrix->body + (size_t)i * matrix->bodies;
-    double all = sum + matrix->escaped[i];
+    double all = sum + matrix->escaped[i] + matrix->beyond[i];
     for (uint32_t k = 0; k < matrix->bodies; ++k) {
         summary->wall_mean[k] += wall[k] / rows;
         all += wall[k];
@@ -22,6 +22,7 @@ static void add_summary(struct summary *summary, const fibrad_factors *matrix, u
     summary->error_max = fmax(summary->error_max, matrix->error[i]);
     summary->error_rms += matrix->error[i] * matrix->error[i] / rows;
     summary->escaped_mean += matrix->escaped[i];
+    summary->beyond_mean += matrix->beyond[i];
 }
 
 void summary_make(struct summary *summary, const struct contents *what) {
@@ -32,6 +33,7 @@ void summary_make(struct summary *summary, const struct contents *what) {
     for (uint32_t i = 0; i < matrix->n; ++i)
         if (!what->wanted || what->wanted[i]) add_summary(summary, matrix, i, rows);
     summary->escaped_mean /= rows;
+    summary->beyond_mean /= rows;
     summary->error_rms = sqrt(summary->error_rms);
 }
 

@@ -9,6 +9,15 @@
 #include "bed/wall_option.h"
 #include "simple/fibrad_host.h"
 
+/* A further array of a .npz. */
+struct array {
+    const char *name, *type; /* "x.npy"; kind and bytes as NumPy has them: "f8" */
+    const void *data;
+    uint64_t length, columns; /* columns 0: one dimension */
+};
+
+enum { ARRAYS_MAX = 16 };
+
 /* What is written. */
 struct contents {
     const struct bed *bed;
@@ -18,6 +27,8 @@ struct contents {
     const struct walls *walls;        /* NULL: neither walls nor surroundings are written; none in it: no walls, and
                                          surroundings only with exchange factors */
     const fibrad_exchange_rule *grey; /* NULL: view factors; else exchange factors by this rule */
+    const struct array *array;        /* [arrays] that a .npz has besides the matrix, at most ARRAYS_MAX */
+    size_t arrays;
 };
 
 /* Writes to the file; a failing file is noticed by the caller. Status 0 or that of a signal. */
@@ -31,8 +42,8 @@ write_function *write_find(const char *path, const char **endings);
 
 /* What the rows that were computed have in common. */
 struct summary {
-    double row_sum_min, row_sum_max, escaped_mean;
-    double closure_max; /* largest |row sum + escaped + walls - 1| */
+    double row_sum_min, row_sum_max, escaped_mean, beyond_mean;
+    double closure_max; /* largest |row sum + escaped + beyond + walls - 1| */
     double error_max, error_rms;
     double wall_mean[WALLS_MAX];
 };
