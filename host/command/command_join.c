@@ -90,7 +90,7 @@ static int join_parse(struct join_request *request, int argc, char **argv) {
 }
 
 /* A body below or above all spheres. */
-static fibrad_body side_of(const struct joined *joined, int axis, int upper) {
+static fibrad_body wall_beside(const struct joined *joined, int axis, int upper) {
     double at = 0;
     for (uint32_t i = 0; i < joined->n; ++i) {
         const double x = joined->x[3 * (size_t)i + (size_t)axis], r = joined->radius[i];
@@ -104,7 +104,7 @@ static int join_scene(const struct joined *joined, fibrad_scene **scene, void **
     const double *x = joined->x;
     const fibrad_spheres spheres = {x, x + 1, x + 2, joined->radius, joined->n, .stride = 3};
     fibrad_body body[6];
-    for (uint32_t k = 0; k < joined->bodies && joined->n > 0; ++k) body[k] = side_of(joined, (int)k / 2, (int)k % 2);
+    for (uint32_t k = 0; k < joined->bodies && joined->n > 0; ++k) body[k] = wall_beside(joined, (int)k / 2, (int)k % 2);
     const fibrad_scene_config config = {.body = body, .bodies = joined->n > 0 ? joined->bodies : 0};
     fibrad_fault fault = {joined->n, joined->n};
     const int status = fibrad_heap_scene(scene, block, &config, &spheres, &fault);
