@@ -355,6 +355,8 @@ $(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) $(HOST_OBJECTS) $(BUILD)/host/main.o $(TEST_
 
 -include $(KERNEL_OBJECTS:.o=.d) $(SIMPLE_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(ALL_BENCHES:=.d) $(BUILD)/host/main.d
 
+include host/couple/couple.mk
+
 # ---- what one does with them ----------------------------------------------------------------------------------------
 DEMO_BED = tests/data/mono2000.dump
 
@@ -390,7 +392,7 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
 check: symbols lists format house
 
-LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
+LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c $(COUPLE) $(COUPLE_PROGRAMS) kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
 FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c)) \
          $(wildcard tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
 
@@ -557,5 +559,5 @@ clean:
 
 ## help: this list
 help:
-	@sed -n 's/^## \([^:]*\): /  \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16
+	@sed -n 's/^## \([^:]*\): /  \1\t/p' Makefile host/couple/couple.mk | expand -t 16
 	@echo "  Settable: CC AR CFLAGS LDFLAGS PREFIX DESTDIR BUILD ISAS TABLES PIC WERROR"

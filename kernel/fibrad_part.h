@@ -1,6 +1,6 @@
 /* fibrad_part.h - beds divided over machines: scenes that know a part of a bed, and powers from the rows of a part.
  *
- * Index: fibrad_occupancy, fibrad_flow, fibrad_rows_flow. Conventions are those of fibrad.h.
+ * Index: fibrad_occupancy, fibrad_flow, fibrad_rows_flow, fibrad_rows_read. Conventions are those of fibrad.h.
  *
  * Beyond   With a cutoff a row knows spheres up to there from its sphere's centre; a scene may have a known region, too.
  *          What leaves either before it meets a sphere or a body is `beyond`: there may be spheres on its way that the
@@ -46,6 +46,11 @@ typedef struct fibrad_flow {
  * between equal emissions. Rows in the order of the collection. Errors: FIBRAD_E_ARGUMENT: a null pointer, a column or a
  * row beyond `spheres`, rows of another number of bodies, values that are not finite. Cost: 2 ns per entry. */
 int fibrad_rows_flow(const fibrad_rows *rows, uint32_t spheres, uint32_t bodies, fibrad_flow *flow);
+
+/* Rows one after the other: 1 and the row that begins at *at (0 at first, moved behind it), or 0 behind the last. Its
+ * arrays are those of the collection, valid until a row is appended; row->rows is NULL. Columns may be written, as long
+ * as they ascend: to number the spheres anew. No errors. */
+int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 #ifdef __cplusplus
 }

@@ -94,14 +94,14 @@ typedef struct fibrad_insitu_totals {
 /* What the last rows were, over all ranks. */
 typedef struct fibrad_insitu_facts {
     uint64_t particles, entries;
-    double cutoff;           /* [L] in use */
-    double beyond;           /* mean fraction of what particles emit that was cut off; given back to the rows */
-    double error;            /* root mean square of the rows' estimated errors */
-    double seconds_rows;     /* of the slowest rank, in all calls of fibrad_insitu_rows so far */
-    double seconds_powers;   /* likewise, of fibrad_insitu_powers */
-    uint64_t step;           /* of the rows */
-    size_t halo;             /* particles of others that this rank was sent */
-    size_t bytes;            /* memory of this rank */
+    double cutoff;         /* [L] in use */
+    double beyond;         /* mean fraction of what particles emit that was cut off; given back to the rows */
+    double error;          /* root mean square of the rows' estimated errors */
+    double seconds_rows;   /* of the slowest rank, in all calls of fibrad_insitu_rows so far */
+    double seconds_powers; /* likewise, of fibrad_insitu_powers */
+    uint64_t step;         /* of the rows */
+    size_t halo;           /* particles of others that this rank was sent */
+    size_t bytes;          /* memory of this rank */
 } fibrad_insitu_facts;
 
 /* Begins. comm is duplicated. config: NULL is all defaults. Errors: FIBRAD_E_ARGUMENT, _MEMORY. */

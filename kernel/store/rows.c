@@ -1,4 +1,5 @@
 /* rows.c - a collection of rows in one block, fixed or growing. SPDX-License-Identifier: MIT */
+#include "fibrad_part.h"
 #include "store/record.h"
 
 /* Bytes before the first record. */
@@ -77,6 +78,21 @@ const fibrad_record *fibrad_rows_next(const fibrad_rows *rows, size_t *at) {
     const fibrad_record *record = (const fibrad_record *)(const void *)(first + *at);
     *at += fibrad_record_size(record->length, record->bodies);
     return record;
+}
+
+int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row) {
+    const fibrad_record *record = rows != NULL && at != NULL && row != NULL ? fibrad_rows_next(rows, at) : NULL;
+    if (record == NULL) return 0;
+    *row = (fibrad_row){.body = (double *)(uintptr_t)fibrad_record_body(record),
+                        .f = (double *)(uintptr_t)fibrad_record_f(record),
+                        .col = (uint32_t *)(uintptr_t)fibrad_record_col(record),
+                        .sphere = record->sphere,
+                        .length = record->length,
+                        .escaped = record->escaped,
+                        .beyond = record->beyond,
+                        .error = record->error,
+                        .symmetric = record->symmetric != 0};
+    return 1;
 }
 
 static bool row_valid(const fibrad_row *row, uint32_t bodies) {

@@ -1,0 +1,30 @@
+/* block.h - memory that grows and is used again. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_COUPLE_BLOCK_H
+#define FIBRAD_COUPLE_BLOCK_H
+
+#include <stdlib.h>
+
+#include "fibrad.h"
+
+/* Memory on the heap, to be freed. Zeroed: none. */
+typedef struct fibrad_block {
+    void *at;
+    size_t size; /* bytes */
+} fibrad_block;
+
+/* Makes room for `count` things of `size` bytes, contents kept. FIBRAD_OK or _E_MEMORY, the block then as it was. */
+static inline int fibrad_block_fit(fibrad_block *block, size_t count, size_t size) {
+    const size_t needed = (count + 1) * size; /* never NULL */
+    if (needed <= block->size) return FIBRAD_OK;
+    void *at = realloc(block->at, needed + needed / 4);
+    if (!at) return FIBRAD_E_MEMORY;
+    *block = (fibrad_block){at, needed + needed / 4};
+    return FIBRAD_OK;
+}
+
+static inline void fibrad_block_free(fibrad_block *block) {
+    free(block->at);
+    *block = (fibrad_block){0};
+}
+
+#endif

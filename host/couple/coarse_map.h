@@ -1,0 +1,14 @@
+/* coarse_map.h - where the whole bed has particles, in coarse cells. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_COUPLE_COARSE_MAP_H
+#define FIBRAD_COUPLE_COARSE_MAP_H
+
+#include "couple/halo.h"
+#include "fibrad_part.h"
+
+/* Collective. Makes the occupancy of the bed in a box (low, high, periodic, set before, the same on all ranks) of cells
+ * about `width` wide, 2^24 at most: marks those that particle[own] may touch, on all ranks. mark: its memory. Errors,
+ * on all ranks: _MEMORY. */
+int fibrad_coarse_map(MPI_Comm comm, double width, const fibrad_particle *particle, size_t own, fibrad_block *mark,
+                      fibrad_occupancy *map);
+
+#endif

@@ -1,0 +1,66 @@
+/* collective.c - errors agreed by all ranks, and things dealt out to them. SPDX-License-Identifier: MIT */
+#include "couple/collective.h"
+
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+int fibrad_refuse(char *message, int status, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    vsnprintf(message, FIBRAD_MESSAGE, format, list);
+    va_end(list);
+    return status;
+}
+
+int fibrad_agree(MPI_Comm comm, int status, char *message) {
+    int rank, ranks, lowest;
+    MPI_Comm_rank(comm, &rank);
+    MPI_Comm_size(comm, &ranks);
+    lowest = status ? rank : ranks;
+    MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT, MPI_MIN, comm);
+    if (lowest == ranks) return FIBRAD_OK;
+    MPI_Bcast(&status, 1, MPI_INT, lowest, comm);
+    if (!message) return status;
+    if (rank == lowest && !message[0]) fibrad_refuse(message, status, "rank %d: %s", rank, fibrad_status_text(status));
+    MPI_Bcast(message, FIBRAD_MESSAGE, MPI_CHAR, lowest, comm);
+    return status;
+}
+
+size_t fibrad_count_sum(const int *count, int ranks) {
+    size_t sum = 0;
+    for (int q = 0; q < ranks; ++q) sum += (size_t)count[q];
+    return sum;
+}
+
+/* Where the things of each rank begin. */
+static void add_up(const int *count, int ranks, int *start) {
+    int sum = 0;
+    for (int q = 0; q < ranks; ++q) start[q] = sum, sum += count[q];
+}
+
+int fibrad_deal(MPI_Comm comm, int status, const void *send, const int *count, size_t size, fibrad_block *to, size_t at,
+                int *got) {
+    int ranks;
+    MPI_Datatype thing;
+    MPI_Comm_size(comm, &ranks);
+    int *start = malloc(2 * (size_t)ranks * sizeof *start);
+    if (!status && (!start || fibrad_count_sum(count, ranks) > INT_MAX)) status = FIBRAD_E_MEMORY;
+    status = fibrad_agree(comm, status, NULL);
+    if (!status) {
+        MPI_Alltoall(count, 1, MPI_INT, got, 1, MPI_INT, comm);
+        const size_t sum = fibrad_count_sum(got, ranks);
+        status = sum > INT_MAX ? FIBRAD_E_MEMORY : fibrad_block_fit(to, at + sum, size);
+        status = fibrad_agree(comm, status, NULL);
+    }
+    if (!status) {
+        add_up(count, ranks, start);
+        add_up(got, ranks, start + ranks);
+        MPI_Type_contiguous((int)size, MPI_BYTE, &thing);
+        MPI_Type_commit(&thing);
+        MPI_Alltoallv(send, count, start, thing, (char *)to->at + at * size, got, start + ranks, thing, comm);
+        MPI_Type_free(&thing);
+    }
+    free(start);
+    return status;
+}

@@ -1,0 +1,61 @@
+# couple.mk - couplings with codes that divide particles over MPI ranks; included by Makefile. SPDX-License-Identifier: MIT
+#
+# Open MPI's wrappers know the flags; whatever is missing is named when it is needed.
+
+MPICC  = mpicc
+MPIRUN = mpirun
+
+COUPLE = \
+    host/couple/coarse_map.c \
+    host/couple/collective.c \
+    host/couple/halo.c \
+    host/couple/insitu.c \
+    host/couple/link.c \
+    host/couple/powers.c \
+    host/couple/write_rows.c
+
+# programs of one file each, with their own main
+COUPLE_PROGRAMS = host/couple/example.c
+
+COUPLE_TESTS = tests/couple/test_couple.c
+
+COUPLE_OBJECTS = $(COUPLE:%.c=$(BUILD)/%.o)
+COUPLE_LIBS    = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/libfibrad.a
+COUPLE_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(PIC)
+
+# what `make couple` builds
+COUPLE_PRODUCTS = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/couple/example
+
+## couple: libfibrad_couple.a and what couples it with other codes, into build/couple (needs MPI: make deps-couple)
+couple: $(COUPLE_PRODUCTS)
+
+$(BUILD)/couple/libfibrad_couple.a: $(COUPLE_OBJECTS)
+	@mkdir -p $(@D)
+	rm -f $@
+	$(AR) rcs $@ $(COUPLE_OBJECTS)
+
+$(COUPLE_OBJECTS): $(BUILD)/%.o: %.c | need-mpi
+	@mkdir -p $(@D)
+	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) -c $< -o $@
+
+$(BUILD)/couple/example: host/couple/example.c $(COUPLE_LIBS)
+	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
+
+$(BUILD)/couple/test_couple: tests/couple/test_couple.c $(COUPLE_LIBS)
+	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
+
+need-mpi:
+	@command -v $(MPICC) >/dev/null || { echo "Couplings need MPI: run 'make deps-couple' (Debian: openmpi-bin," \
+	    "libopenmpi-dev)." >&2; exit 1; }
+
+$(COUPLE_OBJECTS) $(COUPLE_PRODUCTS): Makefile host/couple/couple.mk
+
+-include $(COUPLE_OBJECTS:.o=.d) $(BUILD)/couple/example.d $(BUILD)/couple/test_couple.d
+
+## test-couple: build and run the tests of the couplings; skips them, with a word, where packages are missing
+test-couple:
+	@BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/run.sh tests/couple/check_couple.sh
+
+## deps-couple: install the Debian packages of the couplings: MPI, LAMMPS, LIGGGHTS
+deps-couple:
+	@.ci/deps openmpi-bin libopenmpi-dev lammps liblammps-dev liggghts libliggghts-dev

@@ -1,0 +1,66 @@
+/* example.c - radiation in a code of your own over MPI: a bed between a hot and a cold wall. SPDX-License-Identifier:
+ * MIT
+ *
+ * mpirun -np 2 build/couple/example */
+#include <math.h>
+#include <stdio.h>
+
+#include "couple/fibrad_couple.h"
+
+enum { SIDE = 12, ALL = SIDE * SIDE * SIDE, STEPS = 50 };
+
+static uint64_t id[ALL]; /* what this rank owns */
+static double x[ALL][3], radius[ALL], emissivity[ALL], temperature[ALL], power[ALL];
+
+/* Layers of the lattice k, k + step, ...: particles of 1 mm, moved a little off their places. */
+static size_t make_particles(int k, int step) {
+    size_t n = 0;
+    for (; k < SIDE; k += step)
+        for (int i = 0; i < SIDE * SIDE; ++i, ++n) {
+            const int place[3] = {i % SIDE, i / SIDE, k};
+            id[n] = (uint64_t)(k * SIDE * SIDE + i) + 1;
+            for (int a = 0; a < 3; ++a) x[n][a] = 2e-3 * (place[a] + 0.5 + 0.05 * sin((double)id[n] * (a + 1)));
+            radius[n] = 1e-3, emissivity[n] = 0.8, temperature[n] = 300;
+        }
+    return n;
+}
+
+int main(int argc, char **argv) {
+    const double high = 2e-3 * SIDE, body_emissivity[] = {0.9, 0.9}, body_temperature[] = {1000, 300};
+    const fibrad_body wall[] = {{.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .upper = 0, .at = 0}},
+                                {.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .upper = 1, .at = high}}};
+    const double dt = 0.5, capacity = 4.19e-9 * 7800 * 500; /* [s], [J/K] of one particle */
+    double stored = 0, from_walls = 0;
+    int rank, ranks;
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    const size_t n = make_particles(rank, ranks);
+    const fibrad_insitu_bed bed = {.high = {high, high, high},
+                                   .periodic = {1, 1, 0},
+                                   .body = wall,
+                                   .body_emissivity = body_emissivity,
+                                   .bodies = 2,
+                                   .n = n,
+                                   .id = id,
+                                   .x = x[0],
+                                   .radius = radius,
+                                   .emissivity = emissivity};
+    const fibrad_insitu_state state = {
+        .body_temperature = body_temperature, .n = n, .id = id, .temperature = temperature};
+    fibrad_insitu *radiation;
+    fibrad_insitu_totals totals;
+    int status = fibrad_insitu_new(&radiation, MPI_COMM_WORLD, NULL);
+    if (status) MPI_Abort(MPI_COMM_WORLD, 1);
+    for (uint64_t step = 0; step < STEPS && !status; ++step) {
+        if (step % 25 == 0) status = fibrad_insitu_rows(radiation, &bed, step); /* here particles would have moved */
+        if (!status) status = fibrad_insitu_powers(radiation, &state, power, &totals);
+        for (size_t i = 0; i < n && !status; ++i) temperature[i] += power[i] * dt / capacity;
+        stored += totals.particles * dt, from_walls -= (totals.body[0] + totals.body[1]) * dt;
+    }
+    if (status && rank == 0) fprintf(stderr, "%s\n", fibrad_insitu_message(radiation));
+    if (!status && rank == 0) printf("%.9g J stored, %.9g J from the walls\n", stored, from_walls);
+    fibrad_insitu_free(radiation);
+    MPI_Finalize();
+    return status != 0;
+}

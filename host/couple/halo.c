@@ -1,0 +1,112 @@
+/* halo.c - particles of other ranks, and images, near those of this rank. SPDX-License-Identifier: MIT
+ *
+ * All ranks know the boxes of all others' particles. Each sends what lies within reach of a box, moved by all multiples
+ * of the periods for which it does: the receiver needs neither periods nor a second look. */
+#include "couple/halo.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+struct range_box {
+    double low[3], high[3]; /* without particles low is above high */
+};
+
+/* Multiples of the periods by which something is moved, [first, last] along each axis. */
+struct shift_range {
+    int first[3], last[3];
+};
+
+static struct range_box box_of_centres(const fibrad_particle *particle, size_t n) {
+    struct range_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t i = 0; i < n; ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+            box.low[axis] = fmin(box.low[axis], particle[i].x[axis]);
+            box.high[axis] = fmax(box.high[axis], particle[i].x[axis]);
+        }
+    return box;
+}
+
+/* The shifts that bring some point of `from` into `to` widened by `reach`, along each axis; false: there are none. */
+static bool find_shifts(const struct range_box *from, const struct range_box *to, const double period[3], double reach,
+                        struct shift_range *shifts) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double least = to->low[axis] - reach - from->high[axis], most = to->high[axis] + reach - from->low[axis];
+        if (!(least <= most)) return false; /* nothing there */
+        if (period[axis] > 0) {
+            shifts->first[axis] = (int)ceil(least / period[axis]);
+            shifts->last[axis] = (int)floor(most / period[axis]);
+            if (shifts->first[axis] > shifts->last[axis]) return false;
+        } else {
+            shifts->first[axis] = shifts->last[axis] = 0;
+            if (least > 0 || most < 0) return false;
+        }
+    }
+    return true;
+}
+
+static bool within_reach(const double x[3], const struct range_box *box, double reach) {
+    double square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double d = fmax(0, fmax(box->low[axis] - x[axis], x[axis] - box->high[axis]));
+        square += d * d;
+    }
+    return square <= reach * reach;
+}
+
+/* Appends the images of a particle that lie within reach of a box. itself: the one that is not moved is left out. */
+static int add_images(const fibrad_particle *particle, const struct range_box *box, const double period[3],
+                      double reach, bool itself, fibrad_block *sent, size_t *count) {
+    const struct range_box point = {{particle->x[0], particle->x[1], particle->x[2]},
+                                    {particle->x[0], particle->x[1], particle->x[2]}};
+    struct shift_range s;
+    if (!find_shifts(&point, box, period, reach, &s)) return FIBRAD_OK;
+    for (int i = s.first[0]; i <= s.last[0]; ++i)
+        for (int j = s.first[1]; j <= s.last[1]; ++j)
+            for (int k = s.first[2]; k <= s.last[2]; ++k) {
+                fibrad_particle image = *particle;
+                image.x[0] += i * period[0];
+                image.x[1] += j * period[1];
+                image.x[2] += k * period[2];
+                if ((itself && !i && !j && !k) || !within_reach(image.x, box, reach)) continue;
+                if (fibrad_block_fit(sent, *count + 1, sizeof image)) return FIBRAD_E_MEMORY;
+                ((fibrad_particle *)sent->at)[(*count)++] = image;
+            }
+    return FIBRAD_OK;
+}
+
+/* What goes to each rank. */
+static int choose_particles(const struct range_box *box, int rank, int ranks, const double period[3], double reach,
+                            const fibrad_particle *particle, size_t own, fibrad_block *sent, int *count) {
+    size_t sum = 0;
+    for (int q = 0; q < ranks; ++q) {
+        const size_t before = sum;
+        struct shift_range any;
+        if (find_shifts(&box[rank], &box[q], period, reach, &any))
+            for (size_t i = 0; i < own; ++i)
+                if (add_images(&particle[i], &box[q], period, reach, q == rank, sent, &sum)) return FIBRAD_E_MEMORY;
+        if (sum > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
+        count[q] = (int)(sum - before);
+    }
+    return FIBRAD_OK;
+}
+
+int fibrad_halo(MPI_Comm comm, const double period[3], double reach, fibrad_block *particle, size_t own,
+                fibrad_block *sent, size_t *halo) {
+    int rank, ranks;
+    MPI_Comm_rank(comm, &rank);
+    MPI_Comm_size(comm, &ranks);
+    const struct range_box mine = box_of_centres(particle->at, own);
+    struct range_box *box = malloc((size_t)ranks * sizeof *box);
+    int *count = calloc(2 * (size_t)ranks, sizeof *count);
+    int status = fibrad_agree(comm, box && count ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    reach *= 1 + 1e-9; /* what lies on the edge comes along, however it rounds */
+    if (!status) {
+        MPI_Allgather(&mine, 6, MPI_DOUBLE, box, 6, MPI_DOUBLE, comm);
+        status = choose_particles(box, rank, ranks, period, reach, particle->at, own, sent, count);
+        status = fibrad_deal(comm, status, sent->at, count, sizeof(fibrad_particle), particle, own, count + ranks);
+    }
+    if (!status) *halo = fibrad_count_sum(count + ranks, ranks);
+    free(box);
+    free(count);
+    return status;
+}

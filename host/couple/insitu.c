@@ -1,0 +1,416 @@
+/* insitu.c - rows of a bed whose particles are divided over ranks. SPDX-License-Identifier: MIT */
+#include "couple/insitu.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <omp.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "couple/coarse_map.h"
+
+#define THREADS_MAX    1024
+#define CUTOFF_RADII   10 /* mean radii: 1.7e-4 of what is emitted gets farther at emissivity 0.8, docs/coupling.md */
+#define CUTOFF_DARK    12 /* the same where reflections carry it on */
+#define DARK_BELOW     0.4
+#define CELLS_A_CUTOFF 4   /* of the coarse map */
+#define PERIODS_MAX    100 /* as far as the kernel's beams go */
+
+/* ---- begin and end ---- */
+
+static void *resize_on_heap(void *context, void *block, size_t size) {
+    (void)context;
+    return realloc(block, size);
+}
+
+static bool config_valid(const fibrad_insitu_config *c) {
+    const bool directions =
+        !c->directions || (c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX);
+    return c->cutoff >= 0 && isfinite(c->cutoff) && directions && c->paths <= FIBRAD_PATHS_MAX && c->tolerance >= 0 &&
+           isfinite(c->tolerance) && c->threads >= 0 && c->threads <= THREADS_MAX;
+}
+
+static int open_set(fibrad_insitu_set *set, int threads) {
+    set->rows = calloc((size_t)threads, sizeof *set->rows);
+    for (int t = 0; t < threads && set->rows; ++t) set->rows[t].memory.resize = resize_on_heap;
+    return set->rows ? FIBRAD_OK : FIBRAD_E_MEMORY;
+}
+
+static void close_set(fibrad_insitu_set *set, int threads) {
+    for (int t = 0; t < threads && set->rows; ++t) free(set->rows[t].memory.block);
+    free(set->rows);
+    fibrad_link_free(set->seen);
+    fibrad_link_free(set->present);
+    fibrad_block *const blocks[] = {&set->particle, &set->id, &set->weight, &set->emission, &set->power, &set->now};
+    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k) fibrad_block_free(blocks[k]);
+}
+
+int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu_config *config) {
+    fibrad_insitu *s = calloc(1, sizeof *s);
+    int status = s ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    if (s) {
+        if (config) s->config = *config;
+        if (!insitu || !config_valid(&s->config)) status = FIBRAD_E_ARGUMENT;
+        if (!s->config.threads) s->config.threads = 1;
+    }
+    if (!status) status = open_set(&s->set, s->config.threads);
+    if (!status) status = open_set(&s->next, s->config.threads);
+    if (!status) s->work = calloc((size_t)s->config.threads, sizeof *s->work);
+    if (!status && !s->work) status = FIBRAD_E_MEMORY;
+    status = fibrad_agree(comm, status, NULL);
+    if (insitu) *insitu = status ? NULL : s;
+    if (status && s) {
+        if (s->set.rows) close_set(&s->set, s->config.threads);
+        if (s->next.rows) close_set(&s->next, s->config.threads);
+        free(s->work);
+        free(s);
+    }
+    if (status) return status;
+    for (int t = 0; t < s->config.threads; ++t) s->work[t].memory.resize = resize_on_heap;
+    MPI_Comm_dup(comm, &s->comm);
+    MPI_Comm_rank(s->comm, &s->rank);
+    MPI_Comm_size(s->comm, &s->ranks);
+    return FIBRAD_OK;
+}
+
+void fibrad_insitu_free(fibrad_insitu *s) {
+    if (!s) return;
+    close_set(&s->set, s->config.threads);
+    close_set(&s->next, s->config.threads);
+    for (int t = 0; t < s->config.threads; ++t) free(s->work[t].memory.block);
+    free(s->work);
+    fibrad_block *const blocks[] = {&s->scene, &s->order, &s->emissivity, &s->mark, &s->sent, &s->value};
+    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k) fibrad_block_free(blocks[k]);
+    MPI_Comm_free(&s->comm);
+    free(s);
+}
+
+const char *fibrad_insitu_message(const fibrad_insitu *s) { return s ? s->message : ""; }
+
+static size_t bytes_of(const fibrad_insitu_set *set, int threads) {
+    size_t sum = set->particle.size + set->id.size + set->weight.size + set->emission.size + set->power.size;
+    for (int t = 0; t < threads; ++t) sum += set->rows[t].memory.size;
+    return sum + set->now.size;
+}
+
+void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts) {
+    if (!s || !facts) return;
+    *facts = s->set.facts;
+    facts->seconds_rows = s->seconds_rows;
+    facts->seconds_powers = s->seconds_powers;
+    facts->bytes = bytes_of(&s->set, s->config.threads) + bytes_of(&s->next, s->config.threads) + s->scene.size +
+                   s->order.size + s->emissivity.size + s->mark.size + s->sent.size + s->value.size;
+    for (int t = 0; t < s->config.threads; ++t) facts->bytes += s->work[t].memory.size;
+}
+
+/* ---- the bed ---- */
+
+/* Rows being made. */
+struct insitu_build {
+    fibrad_insitu *s;
+    fibrad_insitu_set *to;
+    const fibrad_insitu_bed *bed;
+    uint64_t step;
+    double period[3], cutoff, radius_max;
+    size_t halo;
+    fibrad_occupancy map;
+    fibrad_scene *scene;
+};
+
+/* What is the same on all ranks. */
+static int check_bed(struct insitu_build *b) {
+    const fibrad_insitu_bed *bed = b->bed;
+    char *message = b->s->message;
+    unsigned char block[FIBRAD_SCENE_BYTES(0)];
+    fibrad_scene *empty;
+    if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
+        (bed->bodies && !(bed->body && bed->body_emissivity)))
+        return FIBRAD_E_ARGUMENT;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!bed->periodic[axis]) continue;
+        b->period[axis] = bed->high[axis] - bed->low[axis];
+        if (!(b->period[axis] > 0 && isfinite(b->period[axis])))
+            return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "the periodic box has no extent along %c", "xyz"[axis]);
+    }
+    const fibrad_scene_config config = {
+        .period = {b->period[0], b->period[1], b->period[2]}, .body = bed->body, .bodies = bed->bodies};
+    const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
+    if (status) return fibrad_refuse(message, status, "the walls do not bound a box or a cylinder");
+    for (uint32_t k = 0; k < bed->bodies; ++k)
+        if (!(bed->body_emissivity[k] >= 0 && bed->body_emissivity[k] <= 1))
+            return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "wall %" PRIu32 ": its emissivity is not between 0 and 1",
+                                 k + 1);
+    return FIBRAD_OK;
+}
+
+static int refuse_particle(char *message, uint64_t id, const char *fault) {
+    return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "particle %" PRIu64 ": %s", id, fault);
+}
+
+/* Particles, moved into the periodic box. */
+static int take_particles(struct insitu_build *b) {
+    const fibrad_insitu_bed *bed = b->bed;
+    char *message = b->s->message;
+    if (fibrad_block_fit(&b->to->particle, bed->n, sizeof(fibrad_particle))) return FIBRAD_E_MEMORY;
+    fibrad_particle *particle = b->to->particle.at;
+    for (size_t i = 0; i < bed->n; ++i) {
+        fibrad_particle p = {.id = bed->id[i], .radius = bed->radius[i], .emissivity = bed->emissivity[i]};
+        for (int axis = 0; axis < 3; ++axis) {
+            const double x = bed->x[3 * i + (size_t)axis], period = b->period[axis];
+            if (!isfinite(x)) return refuse_particle(message, p.id, "a coordinate is not finite");
+            p.x[axis] = period > 0 ? x - period * floor((x - bed->low[axis]) / period) : x;
+        }
+        if (!(p.radius > 0 && isfinite(p.radius))) return refuse_particle(message, p.id, "its radius is not above 0");
+        if (!(p.emissivity > 0 && p.emissivity <= 1))
+            return refuse_particle(message, p.id, "its emissivity is not above 0 and at most 1");
+        particle[i] = p;
+    }
+    b->to->own = bed->n;
+    return FIBRAD_OK;
+}
+
+static int begin_bed(struct insitu_build *b) {
+    int status = check_bed(b);
+    if (!status) status = take_particles(b);
+    return fibrad_agree(b->s->comm, status, b->s->message);
+}
+
+/* Extents, radii, the cutoff: the same to the bit whoever owns what, so the mean radius is a sum of whole numbers. */
+static int measure_bed(struct insitu_build *b) {
+    const fibrad_particle *particle = b->to->particle.at;
+    const fibrad_insitu_config *config = &b->s->config;
+    double most[8] = {0, -1}; /* radius, -emissivity, high, -low */
+    uint64_t sum[2] = {b->to->own, 0};
+    int status = FIBRAD_OK;
+    for (int k = 2; k < 8; ++k) most[k] = -INFINITY;
+    for (size_t i = 0; i < b->to->own; ++i) {
+        most[0] = fmax(most[0], particle[i].radius);
+        most[1] = fmax(most[1], -particle[i].emissivity);
+        for (int axis = 0; axis < 3; ++axis) {
+            most[2 + axis] = fmax(most[2 + axis], particle[i].x[axis]);
+            most[5 + axis] = fmax(most[5 + axis], -particle[i].x[axis]);
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, most, 8, MPI_DOUBLE, MPI_MAX, b->s->comm);
+    for (size_t i = 0; i < b->to->own; ++i) sum[1] += (uint64_t)llround(particle[i].radius / most[0] * 0x1p32);
+    MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_UINT64_T, MPI_SUM, b->s->comm);
+    b->to->facts = (fibrad_insitu_facts){.particles = sum[0], .step = b->step};
+    b->radius_max = most[0];
+    b->cutoff = config->cutoff;
+    if (!(b->cutoff > 0) && sum[0])
+        b->cutoff =
+            (-most[1] < DARK_BELOW ? CUTOFF_DARK : CUTOFF_RADII) * ((double)sum[1] / (double)sum[0] / 0x1p32 * most[0]);
+    b->to->facts.cutoff = b->cutoff;
+    b->to->emissive = -most[1] < 1;
+    for (uint32_t k = 0; k < b->bed->bodies; ++k) b->to->emissive |= b->bed->body_emissivity[k] < 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool periodic = b->period[axis] > 0;
+        b->map.periodic[axis] = periodic;
+        b->map.low[axis] = periodic ? b->bed->low[axis] : -most[5 + axis] - b->radius_max;
+        b->map.high[axis] = periodic ? b->bed->high[axis] : most[2 + axis] + b->radius_max;
+        if (periodic && !(b->cutoff + b->radius_max < PERIODS_MAX * b->period[axis]))
+            status = fibrad_refuse(b->s->message, FIBRAD_E_ARGUMENT, "the cutoff is more than %d periods along %c",
+                                   PERIODS_MAX, "xyz"[axis]);
+    }
+    return status;
+}
+
+/* Links the particles to themselves at home, where they now are; finds ids that are there twice. */
+static int link_present(struct insitu_build *b) {
+    fibrad_insitu_set *to = b->to;
+    const fibrad_particle *particle = to->particle.at;
+    uint64_t culprit;
+    int status = fibrad_block_fit(&to->now, 2 * to->own, sizeof(uint64_t));
+    status = fibrad_agree(b->s->comm, status, b->s->message);
+    if (status) return status;
+    uint64_t *id = to->now.at;
+    for (size_t i = 0; i < to->own; ++i) id[i] = id[to->own + i] = particle[i].id;
+    to->now_n = to->own;
+    fibrad_link_free(to->present);
+    status = fibrad_link_new(&to->present, b->s->comm, id, to->own, 2 * to->own, &culprit);
+    if (status == FIBRAD_E_ARGUMENT) refuse_particle(b->s->message, culprit, "this id is there twice");
+    return status;
+}
+
+/* ---- rows ---- */
+
+static int name_scene_fault(const struct insitu_build *b, int status, const uint64_t *id, size_t n,
+                            fibrad_fault fault) {
+    char *message = b->s->message;
+    if (fault.first >= n || fault.second >= n) return status;
+    const uint64_t first = id[fault.first], second = id[fault.second];
+    if (fault.first == fault.second)
+        return refuse_particle(message, first,
+                               "its centre lies beyond a wall, or too far from the origin for its size");
+    if (first == second)
+        return fibrad_refuse(message, status, "particle %" PRIu64 ": the centre of its periodic image lies inside it",
+                             first);
+    return fibrad_refuse(message, status,
+                         "particles %" PRIu64 " and %" PRIu64 ": the centre of one lies inside the other",
+                         first < second ? first : second, first < second ? second : first);
+}
+
+/* A scene of the particles of this rank and of those around them; images are spheres of their own. */
+static int make_scene(struct insitu_build *b) {
+    fibrad_insitu *s = b->s;
+    const size_t n = b->to->own + b->halo;
+    const fibrad_particle *p = b->to->particle.at;
+    if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
+    const size_t size = fibrad_scene_size((uint32_t)n, 1);
+    if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&b->to->id, n, sizeof(uint64_t)) ||
+        fibrad_block_fit(&s->emissivity, n, sizeof(double)))
+        return FIBRAD_E_MEMORY;
+    uint64_t *id = b->to->id.at;
+    double *emissivity = s->emissivity.at;
+    for (size_t i = 0; i < n; ++i) id[i] = p[i].id, emissivity[i] = p[i].emissivity;
+    const fibrad_scene_config config = {
+        .body = b->bed->body, .bodies = b->bed->bodies, .occupancy = n ? &b->map : NULL};
+    const uint32_t stride = sizeof *p / sizeof(double);
+    const fibrad_spheres spheres = {&p->x[0], &p->x[1], &p->x[2], &p->radius, (uint32_t)n, stride, stride, id};
+    fibrad_fault fault;
+    const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);
+    return status ? name_scene_fault(b, status, id, n, fault) : FIBRAD_OK;
+}
+
+/* The particles of this rank in the order of the cells. */
+static int list_own(struct insitu_build *b) {
+    const size_t n = b->to->own + b->halo;
+    if (fibrad_block_fit(&b->s->order, n, sizeof(uint32_t))) return FIBRAD_E_MEMORY;
+    uint32_t *order = b->s->order.at, count = 0;
+    for (uint32_t k = 0; k < n; ++k) {
+        const uint32_t i = fibrad_scene_sphere(b->scene, k);
+        if (i < b->to->own) order[count++] = i;
+    }
+    return FIBRAD_OK;
+}
+
+/* Each thread takes the next equal part of the list, so that rows lie in its order whatever the threads. */
+static int compute_rows(struct insitu_build *b) {
+    fibrad_insitu *s = b->s;
+    const fibrad_exchange_rule rule = {.emissivity = s->emissivity.at,
+                                       .body_emissivity = b->bed->body_emissivity,
+                                       .directions = s->config.directions,
+                                       .paths = s->config.paths,
+                                       .seed = s->config.seed + b->step * 0x9e3779b97f4a7c15u,
+                                       .cutoff = b->cutoff,
+                                       .tolerance = s->config.tolerance};
+    const uint32_t *order = s->order.at;
+    const int64_t own = (int64_t)b->to->own;
+    int status = FIBRAD_OK;
+    for (int t = 0; t < s->config.threads; ++t) fibrad_rows_clear(&b->to->rows[t]);
+#pragma omp parallel for schedule(static) num_threads(s->config.threads)
+    for (int64_t k = 0; k < own; ++k) {
+        const int thread = omp_get_thread_num();
+        fibrad_row row = {.rows = &b->to->rows[thread]};
+        int before;
+#pragma omp atomic read
+        before = status;
+        if (before) continue;
+        const int result = fibrad_exchange_row(b->scene, &s->work[thread], order[k], &rule, &row, NULL);
+        if (!result) continue;
+#pragma omp critical
+        if (!status) {
+            status = result;
+            fibrad_refuse(s->message, result, "particle %" PRIu64 ": %s", ((uint64_t *)b->to->id.at)[order[k]],
+                          fibrad_status_text(result));
+        }
+    }
+    return status;
+}
+
+/* Leaves out the particles of others that no row sees, and numbers columns anew. */
+static int number_columns(struct insitu_build *b) {
+    fibrad_insitu_set *to = b->to;
+    const size_t n = to->own + b->halo;
+    const int threads = b->s->config.threads;
+    fibrad_row row;
+    if (fibrad_block_fit(&b->s->order, n, sizeof(uint32_t))) return FIBRAD_E_MEMORY;
+    uint32_t *number = b->s->order.at;
+    uint64_t *id = to->id.at;
+    memset(number, 0, n * sizeof *number);
+    for (int t = 0; t < threads; ++t)
+        for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);)
+            for (uint32_t k = 0; k < row.length; ++k) number[row.col[k]] = 1;
+    uint32_t columns = 0;
+    for (size_t i = 0; i < n; ++i)
+        if (i < to->own || number[i]) {
+            id[columns] = id[i];
+            number[i] = columns++;
+        }
+    to->columns = columns;
+    for (int t = 0; t < threads; ++t)
+        for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);)
+            for (uint32_t k = 0; k < row.length; ++k) row.col[k] = number[row.col[k]];
+    if (fibrad_block_fit(&to->weight, columns, sizeof(double)) ||
+        fibrad_block_fit(&to->emission, columns, sizeof(double)) ||
+        fibrad_block_fit(&to->power, columns, sizeof(double)) ||
+        fibrad_block_fit(&b->s->value, 2 * to->own, sizeof(double)))
+        return FIBRAD_E_MEMORY;
+    const fibrad_particle *p = to->particle.at;
+    double *weight = to->weight.at;
+    memset(weight, 0, columns * sizeof *weight);
+    for (size_t i = 0; i < to->own; ++i) weight[i] = 4 * acos(-1) * p[i].radius * p[i].radius * p[i].emissivity;
+    return FIBRAD_OK;
+}
+
+static int make_rows(struct insitu_build *b) {
+    int status = make_scene(b);
+    if (!status) status = list_own(b);
+    if (!status) status = compute_rows(b);
+    if (!status) status = number_columns(b);
+    return fibrad_agree(b->s->comm, status, b->s->message);
+}
+
+/* What the rows are, over all ranks. */
+static void sum_facts(struct insitu_build *b) {
+    fibrad_insitu_set *to = b->to;
+    const double *weight = to->weight.at;
+    fibrad_row row;
+    double sum[4] = {0}; /* emitted, beyond, squares of errors, entries */
+    for (int t = 0; t < b->s->config.threads; ++t) {
+        for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
+            sum[0] += weight[row.sphere];
+            sum[1] += weight[row.sphere] * row.beyond;
+            sum[2] += row.error * row.error;
+        }
+        sum[3] += (double)to->rows[t].entries;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPI_DOUBLE, MPI_SUM, b->s->comm);
+    to->facts.beyond = sum[0] > 0 ? sum[1] / sum[0] : 0;
+    to->facts.error = to->facts.particles ? sqrt(sum[2] / (double)to->facts.particles) : 0;
+    to->facts.entries = (uint64_t)sum[3];
+    to->facts.halo = b->halo;
+}
+
+int fibrad_insitu_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t step) {
+    if (!s) return FIBRAD_E_ARGUMENT;
+    struct insitu_build b = {.s = s, .to = &s->next, .bed = bed, .step = step};
+    s->message[0] = 0;
+    int status = begin_bed(&b);
+    const double begun = MPI_Wtime();
+    if (!status) status = measure_bed(&b);
+    if (!status) status = link_present(&b);
+    if (!status && b.to->facts.particles) {
+        fibrad_insitu_set *to = b.to;
+        status = fibrad_coarse_map(s->comm, b.cutoff / CELLS_A_CUTOFF, to->particle.at, to->own, &s->mark, &b.map);
+        if (!status)
+            status = fibrad_halo(s->comm, b.period, b.cutoff + b.radius_max, &to->particle, to->own, &s->sent, &b.halo);
+    }
+    if (!status) status = make_rows(&b);
+    if (!status) {
+        fibrad_link_free(b.to->seen);
+        status = fibrad_link_new(&b.to->seen, s->comm, b.to->id.at, b.to->own, b.to->columns, NULL);
+    }
+    if (status) {
+        if (!s->message[0]) fibrad_refuse(s->message, status, "%s", fibrad_status_text(status));
+        return status;
+    }
+    sum_facts(&b);
+    b.to->bodies = bed->bodies;
+    const fibrad_insitu_set made = s->next;
+    s->next = s->set;
+    s->set = made;
+    s->ready = 1;
+    s->seconds_rows += MPI_Wtime() - begun;
+    return FIBRAD_OK;
+}

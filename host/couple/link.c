@@ -1,0 +1,314 @@
+/* link.c - values of particles that other ranks own. SPDX-License-Identifier: MIT
+ *
+ * Each id has a rank that keeps its entry in the directory, found from the id alone. Owners enter their ids there,
+ * users ask there who owns theirs, each id once, and then ask the owners. From then on only ranks that share particles
+ * exchange messages, of one value per particle, between buffers that stay in place. */
+#include <stdbool.h>
+#include <string.h>
+
+#include "couple/collective.h"
+#include "couple/fibrad_couple.h"
+
+#define LINK_TAG 12012
+
+struct fibrad_link {
+    size_t own, used;
+    size_t sent, got;         /* values that others, or this rank itself, use of its own; that it uses, each id once */
+    uint32_t *source;         /* [sent] the own values, by rank that uses them */
+    uint32_t *slot;           /* [used] where in `in` a value is found */
+    double *out, *in;         /* [sent], [got] messages of _forward, by rank; _reverse sends `in` and receives `out` */
+    size_t self_out, self_in; /* where in them the values are that the rank has for itself */
+    size_t self;              /* how many */
+    MPI_Request *request;     /* [2][requests] persistent, of _forward, of _reverse */
+    int requests;
+};
+
+/* ---- ids to numbers ---- */
+
+/* A hash table of ids with open addressing, at most half full. */
+struct id_table {
+    uint64_t *id;
+    uint32_t *number; /* UINT32_MAX: free */
+    size_t mask;
+};
+
+static uint64_t hash_id(uint64_t id) {
+    id = (id ^ id >> 30) * 0xbf58476d1ce4e5b9u;
+    id = (id ^ id >> 27) * 0x94d049bb133111ebu;
+    return id ^ id >> 31;
+}
+
+static int open_table(struct id_table *table, size_t count) {
+    size_t size = 2;
+    while (size < 2 * count) size *= 2;
+    *table = (struct id_table){malloc(size * sizeof *table->id), malloc(size * sizeof *table->number), size - 1};
+    if (!table->id || !table->number) return FIBRAD_E_MEMORY;
+    memset(table->number, 0xff, size * sizeof *table->number);
+    return FIBRAD_OK;
+}
+
+static void close_table(struct id_table *table) {
+    free(table->id);
+    free(table->number);
+}
+
+/* Where the number of an id is, or goes. The high bits choose: the low ones have chosen the rank of the directory. */
+static uint32_t *find_id(const struct id_table *table, uint64_t id) {
+    size_t k = hash_id(id) >> 20 & table->mask;
+    while (table->number[k] != UINT32_MAX && table->id[k] != id) k = (k + 1) & table->mask;
+    table->id[k] = id;
+    return &table->number[k];
+}
+
+/* ---- making a link ---- */
+
+/* Who owns an id, and where there; rank UINT32_MAX: nobody. */
+struct owner {
+    uint64_t id;
+    uint32_t rank, index;
+};
+
+/* A link being made. */
+struct making {
+    MPI_Comm comm;
+    int rank, ranks;
+    int *count, *got;   /* [ranks] */
+    int *answers;       /* [ranks] */
+    const uint64_t *id; /* [own + used] */
+    uint64_t *asked;    /* [unique] ids used, each once, in order of their directory's rank */
+    size_t unique;
+    uint32_t *number;    /* [unique] ... which of them */
+    struct owner *owner; /* [own] or [unique] things to send */
+    struct id_table table;
+    fibrad_block directory, questions, replies, wanted;
+    uint64_t culprit;
+    bool fault;
+};
+
+static void blame(struct making *m, uint64_t id) {
+    if (!m->fault || id < m->culprit) m->culprit = id;
+    m->fault = true;
+}
+
+static int directory_of(const struct making *m, uint64_t id) { return (int)(hash_id(id) % (uint64_t)m->ranks); }
+
+/* Turns counts into the places where the things of each rank begin, in got. */
+static void begin_places(struct making *m) {
+    int sum = 0;
+    for (int q = 0; q < m->ranks; ++q) m->got[q] = sum, sum += m->count[q];
+}
+
+/* Enters the ids owned in the directory. */
+static int enter_owned(struct making *m, size_t own) {
+    memset(m->count, 0, (size_t)m->ranks * sizeof *m->count);
+    for (size_t i = 0; i < own; ++i) m->count[directory_of(m, m->id[i])]++;
+    begin_places(m);
+    for (size_t i = 0; i < own; ++i)
+        m->owner[m->got[directory_of(m, m->id[i])]++] = (struct owner){m->id[i], (uint32_t)m->rank, (uint32_t)i};
+    const int status = fibrad_deal(m->comm, FIBRAD_OK, m->owner, m->count, sizeof *m->owner, &m->directory, 0, m->got);
+    return status;
+}
+
+/* Asks the directory for the ids used, each once. slot[used]: which of the questions. */
+static int ask_directory(struct making *m, size_t own, size_t used, uint32_t *slot) {
+    struct id_table seen;
+    int status = open_table(&seen, used);
+    memset(m->count, 0, (size_t)m->ranks * sizeof *m->count);
+    for (size_t k = 0; k < used && !status; ++k) {
+        uint32_t *number = find_id(&seen, m->id[own + k]);
+        if (*number == UINT32_MAX) {
+            *number = (uint32_t)m->unique++;
+            m->count[directory_of(m, m->id[own + k])]++;
+        }
+        slot[k] = *number;
+    }
+    begin_places(m);
+    for (size_t k = 0, next = 0; k < used && !status; ++k)
+        if (slot[k] == next) { /* the first time */
+            const int at = m->got[directory_of(m, m->id[own + k])]++;
+            m->asked[at] = m->id[own + k];
+            m->number[next++] = (uint32_t)at;
+        }
+    for (size_t k = 0; k < used && !status; ++k) slot[k] = m->number[slot[k]];
+    close_table(&seen);
+    return fibrad_deal(m->comm, status, m->asked, m->count, sizeof *m->asked, &m->questions, 0, m->got);
+}
+
+/* Answers all questions; the answers come back in the order of the questions. */
+static int answer(struct making *m, size_t entries) {
+    const struct owner *entry = m->directory.at;
+    const uint64_t *question = m->questions.at;
+    const size_t questions = fibrad_count_sum(m->got, m->ranks);
+    struct owner *reply = malloc((questions + 1) * sizeof *reply);
+    int status = open_table(&m->table, entries);
+    if (!reply) status = FIBRAD_E_MEMORY;
+    for (size_t k = 0; k < entries && !status; ++k) {
+        uint32_t *number = find_id(&m->table, entry[k].id);
+        if (*number != UINT32_MAX) blame(m, entry[k].id);
+        *number = (uint32_t)k;
+    }
+    for (size_t k = 0; k < questions && !status; ++k) {
+        const uint32_t number = *find_id(&m->table, question[k]);
+        if (number == UINT32_MAX) blame(m, question[k]);
+        reply[k] = number == UINT32_MAX ? (struct owner){question[k], 0, 0} : entry[number];
+    }
+    status = fibrad_deal(m->comm, status, reply, m->got, sizeof *reply, &m->replies, 0, m->answers);
+    free(reply);
+    return status;
+}
+
+/* The same fault on all ranks: the one of the least id. */
+static int agree_on_fault(struct making *m, uint64_t *culprit) {
+    uint64_t least[2] = {!m->fault, m->fault ? m->culprit : UINT64_MAX};
+    MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_UINT64_T, MPI_MIN, m->comm);
+    if (least[0]) return FIBRAD_OK;
+    if (culprit) *culprit = least[1];
+    return FIBRAD_E_ARGUMENT;
+}
+
+/* Asks the owners for the values, by rank; slots become places in that order. */
+static int ask_owners(struct making *m, fibrad_link *link) {
+    const struct owner *reply = m->replies.at;
+    uint32_t *wanted = malloc((m->unique + 1) * sizeof *wanted);
+    memset(m->count, 0, (size_t)m->ranks * sizeof *m->count);
+    for (size_t u = 0; u < m->unique; ++u) m->count[reply[u].rank]++;
+    begin_places(m);
+    for (size_t u = 0; u < m->unique && wanted; ++u) {
+        const int at = m->got[reply[u].rank]++;
+        wanted[at] = reply[u].index;
+        m->number[u] = (uint32_t)at;
+    }
+    for (size_t k = 0; k < link->used; ++k) link->slot[k] = m->number[link->slot[k]];
+    const int status = fibrad_deal(m->comm, wanted ? FIBRAD_OK : FIBRAD_E_MEMORY, wanted, m->count, sizeof *wanted,
+                                   &m->wanted, 0, m->got);
+    free(wanted);
+    return status;
+}
+
+/* Buffers and persistent requests. count: values to get from each rank; got: values to send to each. */
+static int lay_out(struct making *m, fibrad_link *link) {
+    int peers = 0;
+    for (int q = 0; q < m->ranks; ++q) peers += q != m->rank ? (m->count[q] > 0) + (m->got[q] > 0) : 0;
+    link->got = m->unique;
+    link->sent = fibrad_count_sum(m->got, m->ranks);
+    link->source = m->wanted.at;
+    m->wanted.at = NULL;
+    link->out = malloc((link->sent + 1) * sizeof *link->out);
+    link->in = malloc((link->got + 1) * sizeof *link->in);
+    link->request = malloc((2 * (size_t)peers + 1) * sizeof(MPI_Request));
+    const int status = fibrad_agree(m->comm, link->out && link->in && link->request ? 0 : FIBRAD_E_MEMORY, NULL);
+    if (status) return status;
+    MPI_Request *forward = link->request, *reverse = link->request + peers;
+    double *in = link->in, *out = link->out;
+    link->requests = peers;
+    for (int q = 0; q < m->ranks; in += m->count[q], out += m->got[q], ++q) {
+        if (q == m->rank) {
+            link->self = (size_t)m->count[q];
+            link->self_in = (size_t)(in - link->in);
+            link->self_out = (size_t)(out - link->out);
+            continue;
+        }
+        if (m->count[q]) {
+            MPI_Recv_init(in, m->count[q], MPI_DOUBLE, q, LINK_TAG, m->comm, forward++);
+            MPI_Send_init(in, m->count[q], MPI_DOUBLE, q, LINK_TAG, m->comm, reverse++);
+        }
+        if (m->got[q]) {
+            MPI_Send_init(out, m->got[q], MPI_DOUBLE, q, LINK_TAG, m->comm, forward++);
+            MPI_Recv_init(out, m->got[q], MPI_DOUBLE, q, LINK_TAG, m->comm, reverse++);
+        }
+    }
+    return FIBRAD_OK;
+}
+
+static int make_link(struct making *m, fibrad_link *link, uint64_t *culprit) {
+    int status = enter_owned(m, link->own);
+    const size_t entries = status ? 0 : fibrad_count_sum(m->got, m->ranks);
+    if (!status) status = ask_directory(m, link->own, link->used, link->slot);
+    if (!status) status = answer(m, entries);
+    if (!status) status = agree_on_fault(m, culprit);
+    if (!status) status = ask_owners(m, link);
+    return status ? status : lay_out(m, link);
+}
+
+int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_t own, size_t all, uint64_t *culprit) {
+    struct making m = {.comm = comm, .id = id};
+    MPI_Comm_rank(comm, &m.rank);
+    MPI_Comm_size(comm, &m.ranks);
+    int status = link && all >= own && (id || all == 0) ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
+    const size_t used = status ? 0 : all - own, ranks = (size_t)m.ranks;
+    fibrad_link *made = calloc(1, sizeof *made);
+    uint32_t *slot = malloc((used + 1) * sizeof *slot);
+    m.count = malloc(ranks * sizeof *m.count);
+    m.got = malloc(ranks * sizeof *m.got);
+    m.answers = malloc(ranks * sizeof *m.answers);
+    m.asked = malloc((used + 1) * sizeof *m.asked);
+    m.number = malloc((used + 1) * sizeof *m.number);
+    m.owner = malloc((own + 1) * sizeof *m.owner);
+    if (!status && !(made && slot && m.count && m.got && m.answers && m.asked && m.number && m.owner))
+        status = FIBRAD_E_MEMORY;
+    if (made) made->own = own, made->used = used, made->slot = slot;
+    status = fibrad_agree(comm, status, NULL);
+    if (!status) status = make_link(&m, made, culprit);
+    free(m.count);
+    free(m.got);
+    free(m.answers);
+    free(m.asked);
+    free(m.number);
+    free(m.owner);
+    close_table(&m.table);
+    fibrad_block_free(&m.directory);
+    fibrad_block_free(&m.questions);
+    fibrad_block_free(&m.replies);
+    fibrad_block_free(&m.wanted);
+    if (status) {
+        if (!made) free(slot);
+        fibrad_link_free(made);
+        made = NULL;
+    }
+    if (link) *link = made;
+    return status;
+}
+
+/* ---- using it ---- */
+
+static void exchange_messages(const fibrad_link *link, MPI_Request *request) {
+    MPI_Startall(link->requests, request);
+    MPI_Waitall(link->requests, request, MPI_STATUSES_IGNORE);
+}
+
+void fibrad_link_forward(fibrad_link *link, double *value, int width) {
+    const size_t w = (size_t)width;
+    double *used = value + link->own * w;
+    for (size_t c = 0; c < w; ++c) {
+        for (size_t k = 0; k < link->sent; ++k) link->out[k] = value[link->source[k] * w + c];
+        memcpy(link->in + link->self_in, link->out + link->self_out, link->self * sizeof *link->in);
+        exchange_messages(link, link->request);
+        for (size_t k = 0; k < link->used; ++k) used[k * w + c] = link->in[link->slot[k]];
+    }
+}
+
+void fibrad_link_reverse(fibrad_link *link, double *value, int width) {
+    const size_t w = (size_t)width;
+    double *used = value + link->own * w;
+    for (size_t c = 0; c < w; ++c) {
+        memset(link->in, 0, link->got * sizeof *link->in);
+        for (size_t k = 0; k < link->used; ++k) {
+            link->in[link->slot[k]] += used[k * w + c];
+            used[k * w + c] = 0;
+        }
+        memcpy(link->out + link->self_out, link->in + link->self_in, link->self * sizeof *link->in);
+        exchange_messages(link, link->request + link->requests);
+        for (size_t k = 0; k < link->sent; ++k) value[link->source[k] * w + c] += link->out[k];
+    }
+}
+
+void fibrad_link_free(fibrad_link *link) {
+    if (!link) return;
+    for (int k = 0; k < 2 * link->requests; ++k) MPI_Request_free(&link->request[k]);
+    free(link->request);
+    free(link->source);
+    free(link->slot);
+    free(link->out);
+    free(link->in);
+    free(link);
+}
