@@ -53,7 +53,7 @@ CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
 CHECK_LIBS   = $(shell $(PKG_CONFIG) --libs check)
 
 # the public headers, and sed that finds their functions
-HEADERS   = kernel/fibrad.h kernel/fibrad_surface.h kernel/fibrad_furnace.h host/simple/fibrad_host.h
+HEADERS   = kernel/fibrad.h kernel/fibrad_part.h kernel/fibrad_surface.h kernel/fibrad_furnace.h host/simple/fibrad_host.h
 FUNCTIONS = '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1;/p'
 
 # ---- sources --------------------------------------------------------------------------------------------------------
@@ -66,6 +66,7 @@ KERNEL = \
     kernel/scene/drift.c \
     kernel/scene/grid_walk.c \
     kernel/scene/scene_build.c \
+    kernel/scene/surroundings.c \
     kernel/scene/walls.c \
     kernel/store/rows.c \
     kernel/window/areas.c \
@@ -81,6 +82,7 @@ KERNEL = \
     kernel/ray/cast.c \
     kernel/ray/tracer.c \
     kernel/exchange/exchange.c \
+    kernel/exchange/flow.c \
     kernel/heat/heat.c \
     kernel/heat/solve.c \
     kernel/heat/wall_patch.c \

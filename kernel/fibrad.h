@@ -229,6 +229,7 @@ typedef struct fibrad_beam_rule {
     uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
     double cutoff;       /* [L] spheres with centres farther than this (1 + 1e-12) neither receive nor block; 0: none */
     double tolerance;    /* more directions, `directions` (0: 100) up to the most, until error <= this; 0: none */
+    uint64_t turn;       /* turns all directions together, by a random rotation that it decides; 0: not turned */
 } fibrad_beam_rule;
 
 /* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + sum of body +

@@ -23,7 +23,7 @@ typedef struct exchange_task {
     uint64_t rays;
 } exchange_task;
 
-/* Checks a rule and begins a task. FIBRAD_E_ARGUMENT, _UNSUPPORTED, _STATE. */
+/* Checks a rule and begins a task. FIBRAD_E_ARGUMENT, _STATE. */
 static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32_t i,
                           const fibrad_exchange_rule *rule) {
     if (scene == NULL || rule == NULL || rule->emissivity == NULL) return FIBRAD_E_ARGUMENT;
@@ -38,14 +38,17 @@ static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32
         if (!(emissivity >= 0 && emissivity <= 1)) return FIBRAD_E_ARGUMENT;
         task->wall_emissivity[scene->slot[b]] = emissivity;
     }
-    if (!(rule->tolerance >= 0 && fibrad_finite(rule->tolerance)) || !(rule->cutoff >= 0)) return FIBRAD_E_ARGUMENT;
-    return rule->cutoff > 0 ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+    const bool valid = rule->tolerance >= 0 && fibrad_finite(rule->tolerance) && rule->cutoff >= 0 &&
+                       fibrad_finite(rule->cutoff);
+    return valid ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
 
 static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space, const fibrad_scene *scene,
                              uint32_t i) {
+    const uint32_t place = scene->place[i];
     return (fibrad_paths){.tracer = fibrad_tracer_of(space, scene),
-                          .place = scene->place[i],
+                          .place = place,
+                          .cutoff = task->rule->cutoff > 0 ? task->rule->cutoff / scene->r[place] : __builtin_inf(),
                           .emissivity = task->rule->emissivity,
                           .wall_emissivity = task->wall_emissivity,
                           .stream = fibrad_random_start(task->rule->seed, fibrad_scene_id(scene, i))};
@@ -54,7 +57,9 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
 /* The first leg: a beam row, and the error of what it makes spheres absorb. */
 static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_exchange_rule *rule,
                      fibrad_row *row, double *error) {
-    fibrad_beam_rule beam = {.directions = rule->directions > 0 ? rule->directions : FIRST_DIRECTIONS};
+    fibrad_beam_rule beam = {.directions = rule->directions > 0 ? rule->directions : FIRST_DIRECTIONS,
+                             .cutoff = rule->cutoff,
+                             .turn = rule->seed};
     int status = fibrad_beam_complete(&beam, &beam);
     for (;;) {
         beam.points = beam.directions <= BY_POINTS ? 256 : 0;
@@ -69,17 +74,23 @@ static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_
     }
 }
 
-/* How much of the first leg is reflected; wall: factors by slot. */
+/* How much of the first leg is reflected; wall: factors by slot. NaN: an emissivity is not valid. What spheres reflect
+ * is summed in whole numbers, so that the order of columns, the caller's, plays no part. */
 static double reflected_of(const exchange_task *task, const fibrad_row *row, const double wall[FIBRAD_WALLS]) {
-    double sum = 0;
-    for (uint32_t k = 0; k < row->length; k++) sum += row->f[k] * (1 - task->rule->emissivity[row->col[k]]);
+    uint64_t units = 0;
+    for (uint32_t k = 0; k < row->length; k++) {
+        const double part = row->f[k] * (1 - task->rule->emissivity[row->col[k]]);
+        if (!(part >= 0 && part <= 2)) return __builtin_nan("");
+        units += (uint64_t)(part * 0x1p60);
+    }
+    double sum = (double)units * 0x1p-60;
     for (int slot = 0; slot < FIBRAD_WALLS; slot++) sum += wall[slot] * (1 - task->wall_emissivity[slot]);
     return sum;
 }
 
 /* All that the paths have put down. */
 static double sum_of_paths(const fibrad_paths *paths) {
-    double sum = paths->absorbed + paths->escaped;
+    double sum = paths->absorbed + paths->escaped + paths->beyond;
     for (int wall = 0; wall < FIBRAD_WALLS; wall++) sum += paths->wall[wall];
     return sum;
 }
@@ -138,21 +149,25 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     const double carried = reflected_of(task, row, wall);
     fibrad_paths paths = paths_of(task, space, scene, i);
     paths.entries = &space->entries;
-    fibrad_work_begin(space, scene, paths.place, 0, (fibrad_stride){0});
-    if (carried > 0) { /* what no path has found counts as escaped, and as an error */
+    fibrad_work_begin(space, scene, paths.place, rule->cutoff, (fibrad_stride){0});
+    if (!fibrad_finite(carried)) return FIBRAD_E_ARGUMENT;
+    if (carried > 0) { /* what no path has found counts as escaped or, with a cutoff, beyond, and as an error */
         double left = rule->tolerance * rule->tolerance - beam_error * beam_error, least = 0.5 * rule->tolerance;
         follow_paths(&paths, rule, carried, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
         double sum = sum_of_paths(&paths);
         scale = sum > 0 ? carried / sum : 0;
-        if (sum == 0) paths.escaped = carried, scale = 1, beam_error += carried;
+        if (sum == 0) *(space->cut ? &paths.beyond : &paths.escaped) = carried, scale = 1, beam_error += carried;
     }
+    /* the first leg adds the same to all parts: it would leave nothing but rounding */
+    const double paths_error = scale * distance_of_halves(&space->entries);
     add_first_leg(space, rule, row, scale);
     if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
     status = fibrad_entries_row(&space->entries, scene, 1, row);
     if (status != FIBRAD_OK) return status;
-    row->error = fibrad_sqrt(row->error * row->error + beam_error * beam_error);
+    row->error = fibrad_sqrt(paths_error * paths_error + beam_error * beam_error);
     if (!fibrad_finite(row->error + scale)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
     row->escaped += paths.escaped * scale;
+    row->beyond += paths.beyond * scale;
     for (int slot = 0; slot < FIBRAD_WALLS; slot++)
         wall[slot] = wall[slot] * task->wall_emissivity[slot] + paths.wall[slot] * scale;
     fibrad_row_bodies(scene, wall, row);

@@ -14,13 +14,15 @@
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
     uint32_t place;                /* of the sphere they leave */
+    double cutoff;                 /* of their ends from its centre, in its radii; infinity: none */
     const double *emissivity;      /* [spheres], in the caller's order */
     const double *wall_emissivity; /* [FIBRAD_WALLS] by slot */
     fibrad_random stream;          /* all numbers of path k come from it and k */
     bool first;                    /* whether what the first surface absorbs counts */
     fibrad_entries *entries;       /* out: what each sphere absorbs, path k in part k mod 4; NULL: not asked for */
     double wall[FIBRAD_WALLS];     /* out: what each wall absorbs */
-    double escaped, absorbed;      /* out: what leaves, and what all spheres absorb */
+    double escaped, beyond;        /* out: what leaves, for good or beyond cutoff or known region */
+    double absorbed;               /* out: what all spheres absorb */
     double square[FIBRAD_DISPLACEMENT_PARTS]
                  [3]; /* out: sum over what spheres absorb times the squares of their centre's
  distance along each axis [L^2] from that of the sphere left, path k in part k mod that */

@@ -4,6 +4,7 @@
 #include "base/lanes/turn.h"
 #include "exchange/paths.h"
 #include "scene/walls.h"
+#include "scene/surroundings.h"
 
 /* Points of the unit sphere are made this many at a time. */
 #define PATH_BATCH 8
@@ -78,43 +79,61 @@ static void draw_direction(const fibrad_paths *paths, struct grey_path *path, do
     for (int axis = 0; axis < 3; axis++) w[axis] *= inverse;
 }
 
-/* Traces one ray. False: it meets neither sphere nor wall. */
-static bool trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3], uint32_t *wall) {
+/* How far a ray from where the path is goes until it leaves what is known [L]; below 0: it begins outside. */
+static double known_length(const fibrad_paths *paths, const struct grey_path *path, const double point[3],
+                           const double w[3], double *ball) {
+    const fibrad_scene *scene = paths->tracer->scene;
+    const double unit = scene->r[paths->place], inverse = 1 / unit;
+    double start[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const double from_centre = path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : point[axis];
+        start[axis] = (path->centre[axis] + from_centre) * inverse;
+    }
+    *ball = fibrad_ball_exit(start, w, paths->cutoff) * unit;
+    return fibrad_min(*ball, fibrad_region_exit(scene, point, w));
+}
+
+/* Traces one ray, to a sphere or to a wall, whose slot is returned; FIBRAD_ESCAPED, FIBRAD_BEYOND: it meets neither. */
+static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3]) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
+    double point[3], ball, distance;
     paths->rays++;
     if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
     else
         LANED(fibrad_trace_point)(scene, path->point, w, &hit);
-    if (hit.sphere != FIBRAD_NONE) {
-        for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
+    fibrad_copy(point, path->point, sizeof point);
+    if (path->place != FIBRAD_NONE) {
+        const double *const centre[3] = {scene->x, scene->y, scene->z};
+        for (int axis = 0; axis < 3; axis++)
+            point[axis] = centre[axis][path->place] + scene->r[path->place] * path->n[axis];
+    }
+    const double known = known_length(paths, path, point, w, &ball);
+    if (hit.sphere != FIBRAD_NONE && hit.distance <= known) {
         for (int axis = 0; axis < 3; axis++) {
+            if (path->place == FIBRAD_NONE) path->centre[axis] += path->point[axis];
             path->centre[axis] += hit.centre[axis];
             path->n[axis] = hit.normal[axis];
         }
         path->place = hit.sphere;
-        return *wall = FIBRAD_NONE, true;
+        return FIBRAD_NONE;
     }
-    double distance;
-    if (path->place != FIBRAD_NONE)
-        for (int axis = 0; axis < 3; axis++) {
-            double c[3] = {scene->x[path->place], scene->y[path->place], scene->z[path->place]};
-            path->point[axis] = c[axis] + scene->r[path->place] * path->n[axis];
-            path->centre[axis] -= c[axis];
-        }
-    *wall = fibrad_walls_exit(scene, path->point, w, &distance);
-    if (*wall == FIBRAD_NONE) return false;
+    const uint32_t met = fibrad_surroundings_met(scene, point, w, ball, &distance);
+    if (met >= FIBRAD_WALLS) return met;
     for (int axis = 0; axis < 3; axis++) {
-        path->point[axis] += distance * w[axis];
+        const double *const centre[3] = {scene->x, scene->y, scene->z};
+        if (path->place != FIBRAD_NONE) path->centre[axis] -= centre[axis][path->place];
+        path->point[axis] = point[axis] + distance * w[axis];
         if (scene->period[axis] == 0) continue;
-        double whole = scene->period[axis] * fibrad_floor((path->point[axis] - scene->low[axis]) / scene->period[axis]);
+        /* into a box that does not depend on the spheres */
+        double whole = scene->period[axis] * fibrad_floor(path->point[axis] / scene->period[axis]);
         path->point[axis] -= whole;
         path->centre[axis] += whole;
     }
-    fibrad_wall_normal(scene, *wall, path->point, path->n);
+    fibrad_wall_normal(scene, met, path->point, path->n);
     path->place = FIBRAD_NONE;
-    return true;
+    return met;
 }
 
 /* Subtracts from the path what the surface met absorbs, and adds that to the surface if it counts. */
@@ -143,14 +162,15 @@ static void follow_path(fibrad_paths *paths, uint64_t k) {
         .k = k, .own = {fibrad_random_ahead(paths->stream, 8 + k)}, .weight = 1, .place = paths->place};
     next_sphere_point(paths, &path, path.n);
     for (uint32_t leg = 0; leg < PATH_LEGS && path.weight > 0; leg++) {
+        const bool counts = leg > 0 || paths->first;
         double w[3];
-        uint32_t wall;
         draw_direction(paths, &path, w);
-        if (!trace_leg(paths, &path, w, &wall)) {
-            if (leg > 0 || paths->first) paths->escaped += path.weight;
+        const uint32_t met = trace_leg(paths, &path, w);
+        if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) {
+            if (counts) *(met == FIBRAD_ESCAPED ? &paths->escaped : &paths->beyond) += path.weight;
             return;
         }
-        absorb_at_surface(paths, &path, wall, leg > 0 || paths->first);
+        absorb_at_surface(paths, &path, met, counts);
         if (path.weight < ROULETTE_WEIGHT) {
             double draw = fibrad_fraction(fibrad_random_ahead(path.own, UINT64_C(1) << 32 | leg));
             if (draw * ROULETTE_WEIGHT >= path.weight) return;

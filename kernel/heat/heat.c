@@ -46,7 +46,7 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
                        c->cutoff >= 0 &&
                        (scene->facts.spheres == 0 ||
                         (scene->facts.radius_min >= HEAT_RADIUS_MIN && scene->facts.radius_max <= 1 / HEAT_RADIUS_MIN));
-    return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+    return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 || scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
 }
 
 /* The numbers that follow from a valid configuration and a scene. */
@@ -221,6 +221,7 @@ int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
     if (heat == NULL || scene == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     if (scene->facts.spheres != heat->spheres || scene->facts.bodies != heat->given_bodies) return FIBRAD_E_ARGUMENT;
+    if (scene->region) return FIBRAD_E_UNSUPPORTED;
     for (uint32_t b = 0; b < heat->given_bodies; b++)
         if (scene->slot[b] != heat->slot[b]) return FIBRAD_E_ARGUMENT;
     fibrad_heat next = *heat;

@@ -9,7 +9,6 @@
 #include "base/random.h"
 #include "ray/cast_lanes.h"
 #include "row/neighbours_lanes.h"
-#include "scene/walls.h"
 
 #define CAST_BATCH  (8 * VD_LANES) /* rays: 64 in AVX-512; fewer take less stack where there are no lanes */
 #define CAST_STRIDE ((fibrad_stride){3.0, 1.4}) /* shorter than that of windows: a ray ends sooner */
@@ -101,10 +100,14 @@ static void cull_for_ray(fibrad_workspace *work, const struct cast_ray *ray, uin
     LANED(fibrad_near_discs)(work, ray->frame, (uint32_t)(to - work->disc.near));
 }
 
-/* Of equal distances, as inside two spheres at once, the lesser depth counts. */
-static bool cast_hit_before(const struct cast_hit *a, const struct cast_hit *b) {
+/* Of equal distances, as inside two spheres at once, the lesser depth counts, then the lower id; of images of one
+ * sphere, where they are. */
+static bool cast_hit_before(const fibrad_scene *scene, const struct cast_hit *a, const struct cast_hit *b) {
     if (a->distance != b->distance) return a->distance < b->distance;
-    return a->depth != b->depth ? a->depth < b->depth : a->sphere < b->sphere;
+    if (a->depth != b->depth) return a->depth < b->depth;
+    const uint64_t rank = fibrad_scene_rank(scene, a->sphere), second = fibrad_scene_rank(scene, b->sphere);
+    if (rank != second) return rank < second;
+    return a->u != b->u ? a->u < b->u : a->v < b->v;
 }
 
 /* Compares the discs of `work` with the first sphere so far. */
@@ -115,7 +118,7 @@ static void intersect_discs(const fibrad_workspace *work, const struct cast_ray 
         double v = hit.v + ray->sine, square = hit.r * hit.r - (hit.u * hit.u + v * v);
         if (!(square > 0)) continue;
         hit.distance = fibrad_max(0, hit.depth - ray->cosine - fibrad_sqrt(square));
-        if (cast_hit_before(&hit, first)) *first = hit;
+        if (cast_hit_before(work->scene, &hit, first)) *first = hit;
     }
 }
 
@@ -156,14 +159,16 @@ static double angle_of_tangent(double y, double x) {
     return 8 * t * sum;
 }
 
-/* Counts a ray that meets no sphere: by the wall through which it leaves. */
+/* Counts a ray that meets no sphere: by where it leaves. */
 static void count_exit(fibrad_workspace *work, const struct cast_ray *ray) {
-    double origin[3], distance;
-    for (int axis = 0; axis < 3; axis++)
-        origin[axis] =
-            work->centre[axis] + work->unit * (ray->cosine * ray->frame[6 + axis] - ray->sine * ray->frame[3 + axis]);
-    uint32_t wall = fibrad_walls_exit(work->scene, origin, ray->frame + 6, &distance);
-    work->wall[wall == FIBRAD_NONE ? FIBRAD_WALLS : wall]++;
+    const double *w = ray->frame + 6;
+    double start[3], origin[3], distance;
+    for (int axis = 0; axis < 3; axis++) {
+        start[axis] = ray->cosine * w[axis] - ray->sine * ray->frame[3 + axis];
+        origin[axis] = work->centre[axis] + work->unit * start[axis];
+    }
+    const double ball = fibrad_ball_exit(start, w, work->reach) * work->unit;
+    work->wall[fibrad_surroundings_met(work->scene, origin, w, ball, &distance)]++;
 }
 
 /* Counts a hit. */
@@ -216,7 +221,8 @@ int LANED(fibrad_cast_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     int status = fibrad_entries_row(&work->entries, scene, 1.0 / rule->rays, row);
     if (status != FIBRAD_OK) return status;
-    row->escaped = work->wall[FIBRAD_WALLS] * (1.0 / rule->rays);
+    row->escaped = work->wall[FIBRAD_ESCAPED] * (1.0 / rule->rays);
+    row->beyond = work->wall[FIBRAD_BEYOND] * (1.0 / rule->rays);
     for (int wall = 0; wall < FIBRAD_WALLS; wall++) work->wall[wall] *= 1.0 / rule->rays;
     fibrad_row_bodies(scene, work->wall, row);
     row->directions = row->fallbacks = 0;

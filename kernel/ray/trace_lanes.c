@@ -7,9 +7,6 @@
 #include "row/work.h"
 #include "scene/grid_walk.h"
 
-/* A ray ends after this many periods along any periodic axis. */
-#define TRACE_PERIODS 100.0
-
 /* A ray: positions relative to `base`, lengths in units of `unit`. */
 struct trace_ray {
     const fibrad_scene *scene;
@@ -26,11 +23,16 @@ struct trace_first {
     uint32_t sphere;
 };
 
-/* Of equal distances, as inside two spheres at once, the lesser depth counts. */
-static bool trace_before(double distance, double depth, uint32_t sphere, const struct trace_first *first) {
+/* Whether the sphere at place j, centre c, is met before the first so far. Of equal distances, as inside two spheres at
+ * once, the lesser depth counts, then the lower id; of images of one sphere, where they are. */
+static bool trace_before(const fibrad_scene *scene, double distance, double depth, uint32_t j, const double c[3],
+                         const struct trace_first *first) {
     if (distance != first->distance) return distance < first->distance;
     if (depth != first->depth) return depth < first->depth;
-    return sphere < first->sphere;
+    const uint64_t rank = fibrad_scene_rank(scene, j), second = fibrad_scene_rank(scene, first->sphere);
+    if (rank != second) return rank < second;
+    if (c[0] != first->c[0]) return c[0] < first->c[0];
+    return c[1] != first->c[1] ? c[1] < first->c[1] : c[2] < first->c[2];
 }
 
 /* Compares sphere j, at c, with the first so far. */
@@ -43,7 +45,7 @@ static void intersect_sphere(const struct trace_ray *ray, uint32_t j, const doub
     if (!(square > 0)) return;
     double root = fibrad_sqrt(square), distance = fibrad_max(0, along - root);
     bool ahead = ray->place != FIBRAD_NONE ? depth > 0 : along + root > 0;
-    if (!ahead || !trace_before(distance, depth, j, first)) return;
+    if (!ahead || !trace_before(ray->scene, distance, depth, j, c, first)) return;
     *first = (struct trace_first){distance, depth, {c[0], c[1], c[2]}, {across[0], across[1], across[2]}, root, j};
 }
 
@@ -70,7 +72,7 @@ static void intersect_group(const struct trace_ray *ray, const fibrad_nearby *li
 }
 
 /* Where the ray enters and leaves, from length `from` on, the box of the grid (0: that of all centres), widened by the
- * largest radius; along periodic axes it ends after TRACE_PERIODS. */
+ * largest radius; along periodic axes it ends after FIBRAD_PERIODS. */
 static void cross_box(const struct trace_ray *ray, bool grid, double *enter, double *leave) {
     const fibrad_scene *scene = ray->scene;
     double wide = scene->facts.radius_max * (1 + 1e-9);
@@ -78,7 +80,7 @@ static void cross_box(const struct trace_ray *ray, bool grid, double *enter, dou
     for (int axis = 0; axis < 3; axis++) {
         double w = ray->w[axis];
         if (scene->period[axis] > 0) {
-            if (w != 0) *leave = fibrad_min(*leave, TRACE_PERIODS * scene->period[axis] * ray->inverse / fibrad_abs(w));
+            if (w != 0) *leave = fibrad_min(*leave, FIBRAD_PERIODS * scene->period[axis] * ray->inverse / fibrad_abs(w));
             continue;
         }
         double low = (grid ? scene->box_low : scene->low)[axis] - wide - ray->base[axis];
@@ -174,12 +176,22 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
     write_hit(&ray, &first, hit);
 }
 
+/* The largest power of two not above x, which is normal. */
+static double power_of_two_below(double x) {
+    uint64_t bits;
+    fibrad_copy(&bits, &x, sizeof bits);
+    bits &= UINT64_C(0x7ff) << 52;
+    fibrad_copy(&x, &bits, sizeof x);
+    return x;
+}
+
 void LANED(fibrad_trace_point)(const fibrad_scene *scene, const double point[3], const double w[3], fibrad_hit *hit) {
     static const double origin[3] = {0, 0, 0};
     hit->sphere = FIBRAD_NONE;
     if (scene->facts.spheres == 0) return;
-    struct trace_ray ray = {scene,      origin, w, {point[0], point[1], point[2]}, scene->spacing, 1 / scene->spacing,
-                            FIBRAD_NONE};
+    /* a power of two, which rounds nothing: the same bits whatever other spheres there are */
+    const double unit = power_of_two_below(scene->spacing);
+    struct trace_ray ray = {scene, origin, w, {point[0], point[1], point[2]}, unit, 1 / unit, FIBRAD_NONE};
     struct trace_first first = {.distance = __builtin_inf()};
     march_ray(&ray, 0, &first);
     write_hit(&ray, &first, hit);

@@ -19,15 +19,19 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     work->areas.overflow = false;
     work->areas.fallbacks = 0;
     fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
-    double open[2] = {0, 0};
+    double open[2] = {0, 0}, turn[9];
+    if (rule->turn != 0) fibrad_rotation(rule->turn, turn);
     for (uint32_t k = 0; k < directions; k++) {
         double frame[9];
         fibrad_beam_frame(k, directions, points, frame);
+        if (rule->turn != 0) fibrad_rotate_axes(turn, frame);
         work->entries.end = k == 0 || k == directions - 1;
         double rest = LANED(fibrad_beam_window)(work, frame, &window, k);
         if (work->disc.count > work->disc.capacity || work->areas.overflow) return fibrad_work_discs_missed(work);
         if (scene->container.walls)
-            LANED(fibrad_walls_share)(work, frame, &window, k, directions, rest);
+            LANED(fibrad_walls_share)(work, frame, &window, k, directions, rule->turn != 0, rest);
+        else if (work->cut && rest != 0 && fibrad_work_met(work, frame + 6) == FIBRAD_BEYOND)
+            work->wall[FIBRAD_BEYOND] += rest;
         else
             open[k % 2] += rest;
     }
@@ -35,7 +39,8 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     double scale = points > 0 ? 1.0 / ((double)directions * points) : 1 / (directions * FIBRAD_PI);
     int status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
-    row->escaped = (open[0] + open[1] + work->wall[FIBRAD_WALLS]) * scale;
+    row->escaped = (open[0] + open[1] + work->wall[FIBRAD_ESCAPED]) * scale;
+    row->beyond = work->wall[FIBRAD_BEYOND] * scale;
     for (int wall = 0; wall < FIBRAD_WALLS; wall++) work->wall[wall] = fibrad_max(0, work->wall[wall]) * scale;
     fibrad_row_bodies(scene, work->wall, row);
     row->error *= fibrad_entries_gain(&work->entries);

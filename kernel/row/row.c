@@ -34,6 +34,7 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
     fibrad_rows *rows = row->rows;
     fibrad_row own = *row;
     fibrad_workspace *space;
+    own.beyond = 0;
     int status = fibrad_work_open(work, method->extra_min, method->extra_best, &space);
     while (status == FIBRAD_OK) {
         status = attempt(scene, space, i, method, rows, &own);
@@ -46,7 +47,6 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
     if (status == FIBRAD_E_CAPACITY && rows == NULL) row->length = own.length;
     if (status != FIBRAD_OK) return status;
     own.sphere = i;
-    own.beyond = 0;
     if (rows != NULL) fibrad_rows_commit(rows, scene->hash, scene->facts.bodies, &own);
     own.rows = rows;
     if (rows != NULL) own.col = (uint32_t *)(void *)(own.f + own.length), own.capacity = 0; /* not the caller's */

@@ -59,34 +59,46 @@ static fibrad_points open_points_of(const fibrad_workspace *work, double cos, do
     return points;
 }
 
-/* The walls in the frame of sphere i: in units of its radius, from its centre. */
+/* The walls, and where lines are cut, in the frame of sphere i: in units of its radius, from its centre. */
 typedef struct wall_view {
     double low[3], high[3], axis[2], radius;
+    bool cut;
+    double known_low[3], known_high[3], ball; /* the radius of the latter */
 } wall_view;
 
 static wall_view wall_view_of(const fibrad_workspace *work) {
-    const fibrad_container *c = &work->scene->container;
-    wall_view view = {.radius = c->radius * work->inverse};
+    const fibrad_scene *scene = work->scene;
+    const fibrad_container *c = &scene->container;
+    wall_view view = {.radius = c->radius * work->inverse, .cut = work->cut, .ball = work->reach};
     for (int axis = 0; axis < 3; axis++) {
         view.low[axis] = (c->low[axis] - work->centre[axis]) * work->inverse;
         view.high[axis] = (c->high[axis] - work->centre[axis]) * work->inverse;
+        view.known_low[axis] = (scene->known_low[axis] - work->centre[axis]) * work->inverse;
+        view.known_high[axis] = (scene->known_high[axis] - work->centre[axis]) * work->inverse;
     }
     for (int axis = 0; axis < 2; axis++) view.axis[axis] = (c->axis[axis] - work->centre[axis]) * work->inverse;
     return view;
 }
 
-/* The walls through which lines leave, as fibrad_walls_exit has it for one. */
-static vd exit_walls(const wall_view *view, const vd origin[3], const vd w[3]) {
-    const vd zero = vd_set1(0), one = vd_set1(1);
+/* How far lines go along an axis until they leave [low, high]. */
+static vd exit_slab(double low, double high, vd origin, vd w) {
+    const vd zero = vd_set1(0);
+    vm level = vd_le(vd_abs(w), zero);
+    vd at = vd_select(vd_lt(w, zero), vd_set1(low), vd_set1(high));
+    return vd_select(level, vd_set1(__builtin_inf()), (at - origin) / vd_select(level, vd_set1(1), w));
+}
+
+/* The walls through which lines leave, as fibrad_walls_exit has it for one, and how far it is to them. */
+static vd exit_walls(const wall_view *view, const vd origin[3], const vd w[3], vd *distance) {
+    const vd zero = vd_set1(0);
     vd least = vd_set1(__builtin_inf()), wall = vd_set1(FIBRAD_WALLS);
     for (int axis = 0; axis < 3; axis++) {
-        vm down = vd_lt(w[axis], zero), level = vd_le(vd_abs(w[axis]), zero);
-        vd at = vd_select(down, vd_set1(view->low[axis]), vd_set1(view->high[axis]));
-        vd t = (at - origin[axis]) / vd_select(level, one, w[axis]);
-        vm nearer = vd_lt(vd_select(level, vd_set1(__builtin_inf()), t), least);
-        vd number = vd_select(down, vd_set1(2 * axis), vd_set1(2 * axis + 1));
+        vd t = exit_slab(view->low[axis], view->high[axis], origin[axis], w[axis]);
+        vm nearer = vd_lt(t, least);
+        vd number = vd_select(vd_lt(w[axis], zero), vd_set1(2 * axis), vd_set1(2 * axis + 1));
         least = vd_select(nearer, t, least), wall = vd_select(nearer, number, wall);
     }
+    *distance = least;
     if (!(view->radius < __builtin_inf())) return wall;
     vd x = origin[0] - view->axis[0], y = origin[1] - view->axis[1];
     vd across = w[0] * w[0] + w[1] * w[1], along = x * w[0] + y * w[1];
@@ -95,12 +107,31 @@ static vd exit_walls(const wall_view *view, const vd origin[3], const vd w[3]) {
     vm away = vd_lt(zero, along), level = vd_le(across, zero);
     vd t = vd_select(away, inside, root - along) / vd_select(away, along + root, across);
     vm nearer = vd_lt(vd_select(level, vd_set1(__builtin_inf()), t), least);
+    *distance = vd_select(nearer, t, least);
     return vd_select(nearer, vd_set1(FIBRAD_CYLINDER), wall);
 }
 
-/* Traces the open points of window k, in directions from a disc of radius `spread`, and counts the walls they meet. */
+/* How far it is to where lines leave the ball and the known region. */
+static vd exit_known(const wall_view *view, const vd origin[3], const vd w[3]) {
+    const vd zero = vd_set1(0);
+    vd least = vd_set1(__builtin_inf());
+    if (view->ball < __builtin_inf()) {
+        vd along = origin[0] * w[0] + origin[1] * w[1] + origin[2] * w[2];
+        vd square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
+        vd inside = view->ball * view->ball - (origin[0] * origin[0] + origin[1] * origin[1] + origin[2] * origin[2]);
+        least = (vd_sqrt(vd_max(along * along + square * inside, zero)) - along) / square;
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        vd t = exit_slab(view->known_low[axis], view->known_high[axis], origin[axis], w[axis]);
+        least = vd_select(vd_lt(t, least), t, least);
+    }
+    return vd_max(least, zero);
+}
+
+/* Traces the open points of window k, in directions from a disc of radius `spread`, and counts the walls they meet;
+ * as FIBRAD_BEYOND those that are cut before. */
 static void follow_wall_points(const fibrad_points *points, const wall_view *view, const double frame[9], double spread,
-                               uint32_t k, uint32_t count[FIBRAD_WALLS + 1]) {
+                               uint32_t k, uint32_t count[FIBRAD_EXITS]) {
     for (uint32_t word = 0; word < points->count / 64; word++) {
         if (points->seen[word] == 0) continue;
         _Alignas(64) float a[64], b[64];
@@ -121,7 +152,13 @@ static void follow_wall_points(const fibrad_points *points, const wall_view *vie
                 w[axis] = frame[6 + axis] + (du * along_u + dv * along_v);
             }
             _Alignas(64) double wall[VD_LANES];
-            vd_store(wall, exit_walls(view, origin, w));
+            vd distance;
+            vd_store(wall, exit_walls(view, origin, w, &distance));
+            if (view->cut) {
+                const uint32_t cut = bits & vm_bits(vd_lt(exit_known(view, origin, w), distance));
+                count[FIBRAD_BEYOND] += fibrad_count_bits(cut);
+                bits &= ~cut;
+            }
             for (; bits != 0; bits &= bits - 1) packed += UINT64_C(1) << 8 * (int)wall[__builtin_ctz(bits)];
         }
         for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) count[wall] += (uint32_t)(packed >> 8 * wall & 255);
@@ -129,28 +166,30 @@ static void follow_wall_points(const fibrad_points *points, const wall_view *vie
 }
 
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
-                               uint32_t n, double rest) {
+                               uint32_t n, bool turned, double rest) {
     if (rest == 0) return;
     const fibrad_container *container = &work->scene->container;
     const double open = rest / (points->count > 0 ? points->count : FIBRAD_PI), step = open / fibrad_sqrt(n);
-    const int only = only_axis(container);
+    const int only = work->cut ? 3 : only_axis(container);
     if (only < 3) {
-        /* across z no band is needed: directions pair off, but for the one that lies level */
-        const double up = rest * rising_share(frame[6 + only], only == 2 ? 0 : WALL_BAND * step), down = rest - up;
+        /* across z no band is needed: directions pair off, but for the one that lies level, if they are not turned */
+        const double band = only == 2 && !turned ? 0 : WALL_BAND * step;
+        const double up = rest * rising_share(frame[6 + only], band), down = rest - up;
         work->wall[container->high[only] < __builtin_inf() ? 2 * only + 1 : FIBRAD_WALLS] += up;
         work->wall[container->low[only] > -__builtin_inf() ? 2 * only : FIBRAD_WALLS] += down;
         return;
     }
-    double turned[9], cos, sin;
-    fibrad_copy(turned, frame, sizeof turned);
+    double axes[9], cos, sin;
+    fibrad_copy(axes, frame, sizeof axes);
     fibrad_points own = *points;
     if (points->count == 0) {
         fibrad_azimuth(5 * k % FIBRAD_DIRECTIONS_MAX, &cos, &sin);
-        rotate_frame(turned, cos, sin);
+        rotate_frame(axes, cos, sin);
         own = open_points_of(work, cos, sin);
     }
     const wall_view view = wall_view_of(work);
-    uint32_t count[FIBRAD_WALLS + 1] = {0};
-    follow_wall_points(&own, &view, turned, WALL_SPREAD * step, k, count);
+    uint32_t count[FIBRAD_EXITS] = {0};
+    follow_wall_points(&own, &view, axes, WALL_SPREAD * step, k, count);
     for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) work->wall[wall] += rest * count[wall] / own.open;
+    if (count[FIBRAD_BEYOND] > 0) work->wall[fibrad_work_met(work, frame + 6)] += rest * count[FIBRAD_BEYOND] / own.open;
 }

@@ -31,8 +31,9 @@ static void cull_for_window(fibrad_workspace *work, const double frame[9], uint3
 static bool disc_before(const fibrad_workspace *work, uint32_t k, uint32_t other) {
     const fibrad_discs *disc = &work->disc;
     if (disc->depth[k] != disc->depth[other]) return disc->depth[k] < disc->depth[other];
-    uint32_t sphere = fibrad_work_sphere(work, k), second = fibrad_work_sphere(work, other);
-    if (sphere != second) return work->scene->order[sphere] < work->scene->order[second];
+    const uint64_t rank = fibrad_scene_rank(work->scene, fibrad_work_sphere(work, k));
+    const uint64_t second = fibrad_scene_rank(work->scene, fibrad_work_sphere(work, other));
+    if (rank != second) return rank < second;
     return disc->u[k] != disc->u[other] ? disc->u[k] < disc->u[other] : disc->v[k] < disc->v[other];
 }
 

@@ -221,6 +221,7 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->inverse = 1 / work->unit;
     work->centre[0] = scene->x[place], work->centre[1] = scene->y[place], work->centre[2] = scene->z[place];
     work->reach = cutoff > 0 ? cutoff * (1 + 1e-12) * work->inverse : __builtin_inf();
+    work->cut = cutoff > 0 || scene->region;
     work->step = stride.first * scene->spacing * work->inverse;
     work->growth = stride.growth;
 
@@ -238,6 +239,11 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->near.shells = 0;
     work->near.full = false;
     work->near.asked = 0;
+}
+
+uint32_t fibrad_work_met(const fibrad_workspace *work, const double w[3]) {
+    double distance;
+    return fibrad_surroundings_met(work->scene, work->centre, w, work->reach * work->unit, &distance);
 }
 
 double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]) {

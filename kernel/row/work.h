@@ -7,7 +7,7 @@
 #define FIBRAD_ROW_WORK_H
 
 #include "row/row_sum.h"
-#include "scene/scene.h"
+#include "scene/surroundings.h"
 #include "window/areas.h"
 #include "window/discs.h"
 
@@ -32,9 +32,6 @@ typedef struct fibrad_near {
 } fibrad_near;
 
 #define FIBRAD_WORK_MAX (1u << 28)
-
-/* A row sees no farther than this many periods along any periodic axis. */
-#define FIBRAD_PERIODS 100.0
 
 /* What work memory is laid out for, or is asked for. */
 typedef struct fibrad_work_plan {
@@ -65,7 +62,8 @@ typedef struct fibrad_workspace {
     double step, growth;           /* depth of the first shell, and the ratio of each next one to it */
     double farthest;               /* no sphere is farther from i; infinity with periodic axes */
     double clear;                  /* no window has its horizon nearer than this */
-    double wall[FIBRAD_WALLS + 1]; /* what meets each wall, and what meets none: areas, points or rays, then factors */
+    bool cut;                      /* whether lines are cut: there is a cutoff, or a known region */
+    double wall[FIBRAD_EXITS];     /* what meets each wall, escapes, or is beyond: areas, points or rays, then factors */
 } fibrad_workspace;
 
 /* Lays work memory out, or finds it laid out, with `extra_min` extra bytes at least and `extra_best` at best.
@@ -101,16 +99,19 @@ static inline bool fibrad_near_pays(fibrad_near *near) {
     return true;
 }
 
+/* What the line from the centre along w meets, if it meets no sphere: of FIBRAD_EXITS. */
+uint32_t fibrad_work_met(const fibrad_workspace *work, const double w[3]);
+
 /* No sphere comes before the window of direction w deeper than this. */
 double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]);
 
-/* Whether a sphere comes before the window. At equal depth the lower index is in front, as among discs: of spheres that
+/* Whether a sphere comes before the window. At equal depth the lower id is in front, as among discs: of spheres that
  * overlap each other only one is seen by what lies behind, so that no sphere receives more than its own disc. */
 static inline bool fibrad_work_ahead(const fibrad_workspace *work, double depth, double u, double v, uint32_t sphere) {
     if (depth != 0) return depth > 0;
-    const uint32_t *order = work->scene->order;
-    if (sphere != work->place) return order[sphere] > order[work->place];
-    return u != 0 ? u > 0 : v > 0;
+    const uint64_t rank = fibrad_scene_rank(work->scene, sphere), own = fibrad_scene_rank(work->scene, work->place);
+    if (rank != own) return rank > own;
+    return u != 0 ? u > 0 : v > 0; /* images of one sphere */
 }
 
 static inline uint32_t fibrad_work_sphere(const fibrad_workspace *work, uint32_t disc) {

@@ -41,4 +41,8 @@ static inline fibrad_polar fibrad_direction_polar(uint32_t k, uint32_t n) {
  */
 void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]);
 
+/* A rotation that depends on a seed, uniform over all; applied to the three axes of a frame. */
+void fibrad_rotation(uint64_t seed, double rotation[9]);
+void fibrad_rotate_axes(const double rotation[9], double frame[9]);
+
 #endif

@@ -3,7 +3,7 @@
 #define FIBRAD_SCENE_SCENE_H
 
 #include "base/port.h"
-#include "fibrad.h"
+#include "fibrad_part.h"
 
 #define FIBRAD_NONE UINT32_MAX
 
@@ -15,6 +15,9 @@
 /* Spheres whose radii differ by less than a factor two share a level, a grid of its own with cells to their measure:
  * a small sphere among large ones does not search cells as wide as the large ones need. */
 #define FIBRAD_LEVELS 32
+
+/* Nothing is looked for farther than this many periods along any periodic axis. */
+#define FIBRAD_PERIODS 100.0
 
 typedef struct fibrad_level {
     double radius_max;
@@ -36,6 +39,9 @@ struct fibrad_scene {
     double period[3], low[3], high[3]; /* box of the centres; on a periodic axis high = low + period */
     double box_low[3], box_high[3];    /* box of the grid: the same without stray spheres */
     fibrad_container container;
+    bool region;                          /* whether a known region was given */
+    double known_low[3], known_high[3];   /* [L] infinite where it is open */
+    fibrad_occupancy occupancy;           /* the caller's, or one cell */
     uint32_t slot[FIBRAD_WALLS];    /* [facts.bodies] of each body */
     double wall_area[FIBRAD_WALLS]; /* [L^2] by slot, as fibrad_scene_body_area; 0: no such wall */
     uint64_t hash;                  /* of all that was handed over; 0: the scene is not complete */
@@ -55,6 +61,11 @@ static inline bool fibrad_scene_ready(const fibrad_scene *scene) { return scene 
 /* The number of the random paths of the caller's sphere i. */
 static inline uint64_t fibrad_scene_id(const fibrad_scene *scene, uint32_t i) {
     return scene->id != NULL ? scene->id[i] : i;
+}
+
+/* That of the sphere at a place. It decides among equals, so that the order of spheres does not. */
+static inline uint64_t fibrad_scene_rank(const fibrad_scene *scene, uint32_t place) {
+    return fibrad_scene_id(scene, scene->order[place]);
 }
 
 #endif

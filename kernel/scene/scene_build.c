@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "base/dispatch.h"
 #include "scene/grid_walk.h"
+#include "scene/surroundings.h"
 #include "scene/walls.h"
 
 /* Cells on average hold this many spheres of their level. */
@@ -30,10 +31,9 @@ static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids) {
 static int check_config(const fibrad_scene_config *config) {
     for (int axis = 0; axis < 3; axis++)
         if (!(config->period[axis] >= 0 && fibrad_finite(config->period[axis]))) return FIBRAD_E_ARGUMENT;
-    const int status = fibrad_walls_check(config);
+    int status = fibrad_walls_check(config);
+    if (status == FIBRAD_OK) status = fibrad_surroundings_check(config);
     if (status != FIBRAD_OK) return status;
-    for (int axis = 0; axis < 3; axis++)
-        if (config->known_low[axis] != 0 || config->known_high[axis] != 0) return FIBRAD_E_UNSUPPORTED;
     const int isa = fibrad_isa_choose(config->isa);
     return isa == -2 ? FIBRAD_E_ARGUMENT : isa == -1 ? FIBRAD_E_ISA : FIBRAD_OK;
 }
@@ -89,13 +89,21 @@ static void trim(const fibrad_spheres *s, int axis, double *low, double *high) {
 /* A hash of all that a scene is made from: two scenes that differ have the same one in one case of 2^64. Never 0. */
 static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
     const fibrad_container *c = &scene->container;
-    const double fixed[] = {scene->period[0], scene->period[1], scene->period[2], c->low[0],  c->low[1],  c->low[2],
-                            c->high[0],       c->high[1],       c->high[2],       c->axis[0], c->axis[1], c->radius};
-    uint64_t hash = fibrad_mix(s->n), word;
-    for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) {
-        fibrad_copy(&word, &fixed[k], sizeof word);
-        hash = fibrad_mix(hash ^ word);
+    const fibrad_occupancy *o = &scene->occupancy;
+    uint64_t hash = fibrad_mix(s->n), word, cells = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        const double fixed[] = {scene->period[axis],     c->low[axis], c->high[axis], scene->known_low[axis],
+                                scene->known_high[axis], o->low[axis], o->high[axis], axis < 2 ? c->axis[axis] : c->radius};
+        for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) {
+            fibrad_copy(&word, &fixed[k], sizeof word);
+            hash = fibrad_mix(hash ^ word);
+        }
+        hash = fibrad_mix(hash ^ (2 * (uint64_t)o->cells[axis] + (uint64_t)o->periodic[axis]));
+        cells *= o->cells[axis];
     }
+    for (uint64_t k = 0; o->mark != NULL && k < (cells + 63) / 64; k++)
+        hash = (hash ^ o->mark[k]) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
+    hash = fibrad_mix(hash ^ (o->mark != NULL));
     for (uint32_t b = 0; b < scene->facts.bodies; b++) hash = fibrad_mix(hash ^ scene->slot[b]);
     for (uint32_t i = 0; i < s->n; i++) {
         const double sphere[] = {coordinate_of(s, 0, i), coordinate_of(s, 1, i), coordinate_of(s, 2, i),
@@ -343,6 +351,7 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
         status = check_overlaps(scene, fault);
         if (status != FIBRAD_OK) return status;
     }
+    fibrad_surroundings_build(scene, &config);
     scene->hash = hash_of(scene, &s);
     *out = scene;
     return FIBRAD_OK;
