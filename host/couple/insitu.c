@@ -208,7 +208,7 @@ static int measure_bed(struct insitu_build *b) {
         b->map.periodic[axis] = periodic;
         b->map.low[axis] = periodic ? b->bed->low[axis] : -most[5 + axis] - b->radius_max;
         b->map.high[axis] = periodic ? b->bed->high[axis] : most[2 + axis] + b->radius_max;
-        if (periodic && !(b->cutoff + b->radius_max < PERIODS_MAX * b->period[axis]))
+        if (periodic && !status && !(b->cutoff + b->radius_max < PERIODS_MAX * b->period[axis]))
             status = fibrad_refuse(b->s->message, FIBRAD_E_ARGUMENT, "the cutoff is more than %d periods along %c",
                                    PERIODS_MAX, "xyz"[axis]);
     }

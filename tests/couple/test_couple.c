@@ -1,0 +1,646 @@
+/* test_couple.c - links, rows and powers over MPI against one rank, and against the kernel alone. Any number of ranks.
+ * SPDX-License-Identifier: MIT
+ *
+ * test_couple FOLDER: where files of rows are written. Rank 0 alone makes the rows of whole beds on MPI_COMM_SELF, the
+ * same whatever the ranks, so that runs of other numbers of ranks have the same reference. */
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "couple/fibrad_couple.h"
+#include "couple/rows_file.h"
+
+static int rank, ranks, checks, failures;
+static const char *folder;
+
+#define CHECK(holds)                                                                                                   \
+    do {                                                                                                               \
+        ++checks;                                                                                                      \
+        if (!(holds)) ++failures, fprintf(stderr, "rank %d, line %d: %s\n", rank, __LINE__, #holds);                   \
+    } while (0)
+
+static uint64_t hash_of(uint64_t a, uint64_t b) {
+    uint64_t z = (a * 0x9e3779b97f4a7c15u) ^ (b + 0x632be59bd9b4e019u);
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+}
+
+static double random_of(uint64_t a, uint64_t b) { return (double)(hash_of(a, b) >> 11) * 0x1p-53; }
+
+static void *memory_of(size_t count, size_t size) {
+    void *block = calloc(count + 1, size);
+    if (!block) MPI_Abort(MPI_COMM_WORLD, 1);
+    return block;
+}
+
+/* ---- link ------------------------------------------------------------------------------------------------------ */
+
+enum { OWNED = 150, USED = 400, WIDTH = 3 };
+
+/* Id k of a rank, of all 64 bits, 0 and the largest among them; what a rank uses k-th; what it adds to that. */
+static uint64_t owned_id(int owner, int k) {
+    if (owner == 0 && k == 0) return 0;
+    return owner == 0 && k == 1 ? UINT64_MAX : hash_of((uint64_t)owner, (uint64_t)k);
+}
+static int owned_by(int owner) { return owner == 1 ? 0 : OWNED; }
+static uint64_t used_id(int user, int k) {
+    const int owner = (int)(hash_of((uint64_t)user, 7 + (uint64_t)k) % (uint64_t)ranks);
+    return owned_id(owned_by(owner) ? owner : 0, (int)(hash_of((uint64_t)k, (uint64_t)user) % OWNED));
+}
+static double value_of(uint64_t id, int c) { return (double)(id % 1000003) * (c + 1); }
+static double added_by(int user, int k, int c) { return user * 1000 + k + 7 * c; }
+
+static void links(void) {
+    const int own = owned_by(rank);
+    uint64_t *id = memory_of(OWNED + USED, sizeof *id), culprit = 0;
+    double(*value)[WIDTH] = memory_of(OWNED + USED, sizeof *value);
+    fibrad_link *link;
+    for (int k = 0; k < own; ++k) id[k] = owned_id(rank, k);
+    for (int k = 0; k < USED; ++k) id[own + k] = used_id(rank, k);
+    const size_t all = (size_t)own + USED;
+    CHECK(fibrad_link_new(&link, MPI_COMM_WORLD, id, (size_t)own, all, &culprit) == FIBRAD_OK);
+    for (int again = 0; again < 2; ++again) {
+        for (int k = 0; k < own; ++k)
+            for (int c = 0; c < WIDTH; ++c) value[k][c] = value_of(id[k], c);
+        fibrad_link_forward(link, value[0], WIDTH);
+        bool same = true;
+        for (size_t k = 0; k < all; ++k)
+            for (int c = 0; c < WIDTH; ++c) same = same && value[k][c] == value_of(id[k], c);
+        CHECK(same);
+        for (int k = 0; k < USED; ++k)
+            for (int c = 0; c < WIDTH; ++c) value[own + k][c] = added_by(rank, k, c);
+        fibrad_link_reverse(link, value[0], WIDTH);
+        for (int k = 0; k < USED; ++k) same = same && value[own + k][0] == 0 && value[own + k][WIDTH - 1] == 0;
+        for (int k = 0; k < own; ++k)
+            for (int c = 0; c < WIDTH; ++c) {
+                double sum = value_of(id[k], c); /* whole numbers: exact in any order */
+                for (int user = 0; user < ranks; ++user)
+                    for (int u = 0; u < USED; ++u)
+                        if (used_id(user, u) == id[k]) sum += added_by(user, u, c);
+                same = same && value[k][c] == sum;
+            }
+        CHECK(same);
+    }
+    fibrad_link_free(link);
+
+    if (rank == ranks - 1) id[all - 1] = 77, id[all - 2] = 55; /* two that nobody owns */
+    CHECK(fibrad_link_new(&link, MPI_COMM_WORLD, id, (size_t)own, all, &culprit) == FIBRAD_E_ARGUMENT && !link);
+    CHECK(culprit == 55);
+    if (own) id[own - 1] = id[0], culprit = 1; /* twice on each rank: the least is 0, of rank 0 */
+    CHECK(fibrad_link_new(&link, MPI_COMM_WORLD, id, (size_t)own, (size_t)own, &culprit) == FIBRAD_E_ARGUMENT && !link);
+    CHECK(culprit == 0);
+    CHECK(fibrad_link_new(&link, MPI_COMM_WORLD, NULL, 0, 0, NULL) == FIBRAD_OK);
+    fibrad_link_forward(link, NULL, 1);
+    fibrad_link_free(link);
+    free(id);
+    free(value);
+}
+
+/* ---- beds ------------------------------------------------------------------------------------------------------ */
+
+#define PITCH 2.1
+
+/* Particles, all or those of a rank; what else the bed has. */
+struct pile {
+    fibrad_insitu_bed bed;
+    uint64_t *id;
+    double *x, *radius, *emissivity, *temperature, *power;
+    fibrad_body *body;
+    double *body_emissivity;
+};
+
+static void open_pile(struct pile *p, size_t n) {
+    p->id = memory_of(n, sizeof *p->id);
+    p->x = memory_of(3 * n, sizeof *p->x);
+    p->radius = memory_of(n, sizeof *p->radius);
+    p->emissivity = memory_of(n, sizeof *p->emissivity);
+    p->temperature = memory_of(n, sizeof *p->temperature);
+    p->power = memory_of(n, sizeof *p->power);
+    p->body = memory_of(2, sizeof *p->body);
+    p->body_emissivity = memory_of(2, sizeof *p->body_emissivity);
+    p->bed.id = p->id, p->bed.x = p->x, p->bed.radius = p->radius, p->bed.emissivity = p->emissivity;
+    p->bed.body = p->body, p->bed.body_emissivity = p->body_emissivity;
+}
+
+static void close_pile(struct pile *p) {
+    free(p->id);
+    free(p->x);
+    free(p->radius);
+    free(p->emissivity);
+    free(p->temperature);
+    free(p->power);
+    free(p->body);
+    free(p->body_emissivity);
+}
+
+enum walls { OPEN, FLOORS, TUBE };
+
+/* What a bed of side^3 particles is like. */
+struct kind {
+    const char *name;
+    int side, periodic[3];
+    enum walls walls;
+    double emissivity[2]; /* of every other particle */
+    double cutoff;
+    int threads, spread;
+};
+
+/* A lattice moved about by up to a tenth of its pitch, in a box that begins at -1; some centres in the next box. */
+static struct pile pile_of(const struct kind *kind) {
+    const int side = kind->side;
+    const double box = PITCH * side;
+    struct pile p = {.bed = {.low = {-1, -1, -1}, .high = {box - 1, box - 1, box - 1}}};
+    open_pile(&p, (size_t)(side * side * side));
+    memcpy(p.bed.periodic, kind->periodic, sizeof p.bed.periodic);
+    for (int i = 0; i < side * side * side; ++i) {
+        const int place[3] = {i % side, i / side % side, i / side / side};
+        const uint64_t id = hash_of((uint64_t)i, 1);
+        double x[3];
+        for (int axis = 0; axis < 3; ++axis)
+            x[axis] = PITCH * (place[axis] + .5 + .2 * (random_of(id, (uint64_t)axis) - .5)) - 1 +
+                      (p.bed.periodic[axis] && i % 5 == axis ? box : 0);
+        if (kind->walls == TUBE && hypot(x[0] - box / 2 + 1, x[1] - box / 2 + 1) > box / 2) continue;
+        const size_t n = p.bed.n++;
+        p.id[n] = id;
+        memcpy(p.x + 3 * n, x, sizeof x);
+        p.radius[n] = .75 + .25 * random_of(id, 3);
+        p.emissivity[n] = kind->emissivity[i % 2];
+        p.temperature[n] = 600 + 800 * random_of(id, 4);
+    }
+    if (kind->walls == FLOORS)
+        for (int k = 0; k < 2; ++k)
+            p.body[p.bed.bodies++] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {2, k, k ? box - 1 : -1}};
+    if (kind->walls == TUBE)
+        p.body[p.bed.bodies++] =
+            (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {box / 2 - 1, box / 2 - 1, box / 2}};
+    p.body_emissivity[0] = kind->emissivity[0], p.body_emissivity[1] = .5;
+    return p;
+}
+
+/* Who owns a particle: by chance, by height, the last rank all, all but rank 0. */
+enum { SPREADS = 4 };
+static int owner_of(const struct pile *p, size_t i, int spread) {
+    const int chance = (int)(hash_of(p->id[i], 5) % (uint64_t)ranks);
+    switch (spread) {
+    case 0:
+        return chance;
+    case 1:
+        return (int)fmin(ranks - 1, fmax(0, floor((p->x[3 * i + 2] + 1) / (p->bed.high[2] + 1) * ranks)));
+    case 2:
+        return ranks - 1;
+    default:
+        return chance ? chance : ranks - 1;
+    }
+}
+
+/* What this rank owns of a pile, in another order. */
+static struct pile part_of(const struct pile *all, int spread) {
+    struct pile p = *all;
+    open_pile(&p, all->bed.n);
+    memcpy(p.body, all->body, 2 * sizeof *p.body);
+    memcpy(p.body_emissivity, all->body_emissivity, 2 * sizeof *p.body_emissivity);
+    p.bed.n = 0;
+    for (size_t k = all->bed.n; k-- > 0;) {
+        const size_t i = all->bed.n % 7 ? 7 * k % all->bed.n : k; /* all once */
+        if (owner_of(all, i, spread) != rank) continue;
+        const size_t n = p.bed.n++;
+        p.id[n] = all->id[i];
+        memcpy(p.x + 3 * n, all->x + 3 * i, 3 * sizeof *p.x);
+        p.radius[n] = all->radius[i];
+        p.emissivity[n] = all->emissivity[i];
+        p.temperature[n] = all->temperature[i];
+    }
+    return p;
+}
+
+/* ---- files ----------------------------------------------------------------------------------------------------- */
+
+/* A file of rows. */
+struct rows_file {
+    fibrad_rows_head head;
+    uint64_t *word, *id, *start, *col;
+    double *f, *body, *escaped, *beyond, *error, *radius, *emissivity, *x;
+};
+
+static const char *path_of(const char *name) {
+    static char path[4096];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+static struct rows_file read_rows(const char *name, int of) {
+    struct rows_file r = {0};
+    char path[4200];
+    snprintf(path, sizeof path, "%s.%d.rows", path_of(name), of);
+    FILE *file = fopen(path, "rb");
+    CHECK(file);
+    if (!file) return r;
+    CHECK(fread(&r.head, sizeof r.head, 1, file) == 1 && memcmp(r.head.magic, FIBRAD_ROWS_MAGIC, 8) == 0);
+    const size_t n = r.head.rows, entries = r.head.entries;
+    const size_t words = 2 * n + 1 + 2 * entries + n * (8 + r.head.bodies);
+    r.word = memory_of(words + 1, sizeof *r.word);
+    CHECK(fread(r.word, sizeof *r.word, words + 1, file) == words);
+    fclose(file);
+    remove(path);
+    r.id = r.word, r.start = r.id + n, r.col = r.start + n + 1;
+    r.f = (double *)(r.col + entries), r.body = r.f + entries, r.escaped = r.body + n * r.head.bodies;
+    r.beyond = r.escaped + n, r.error = r.beyond + n, r.radius = r.error + n, r.emissivity = r.radius + n;
+    r.x = r.emissivity + n;
+    return r;
+}
+
+static bool equal_words(const void *a, const void *b, size_t words) { return memcmp(a, b, words * 8) == 0; }
+
+/* Whether row i of one file is row k of another, to the bit; and closed, with ascending columns. */
+static bool same_row(const struct rows_file *a, size_t i, const struct rows_file *b, size_t k) {
+    const uint64_t length = a->start[i + 1] - a->start[i], bodies = a->head.bodies;
+    if (length != b->start[k + 1] - b->start[k]) return false;
+    const uint64_t *col = a->col + a->start[i];
+    const double *f = a->f + a->start[i];
+    double sum = a->escaped[i] + a->beyond[i];
+    for (uint64_t m = 0; m < length; ++m) {
+        if (m && col[m] <= col[m - 1]) return false;
+        sum += f[m];
+    }
+    for (uint64_t m = 0; m < bodies; ++m) sum += a->body[i * bodies + m];
+    return fabs(sum - 1) < 1e-12 && equal_words(col, b->col + b->start[k], length) &&
+           equal_words(f, b->f + b->start[k], length) &&
+           equal_words(a->body + i * bodies, b->body + k * bodies, bodies) &&
+           equal_words(&a->escaped[i], &b->escaped[k], 1) && equal_words(&a->beyond[i], &b->beyond[k], 1) &&
+           equal_words(&a->error[i], &b->error[k], 1) && equal_words(&a->radius[i], &b->radius[k], 1) &&
+           equal_words(&a->emissivity[i], &b->emissivity[k], 1) && equal_words(a->x + 3 * i, b->x + 3 * k, 3);
+}
+
+static size_t place_of(const struct rows_file *r, uint64_t id) {
+    size_t k = 0;
+    while (k < r->head.rows && r->id[k] != id) ++k;
+    return k;
+}
+
+/* The rows of all ranks in the files `part` are those of the one file `whole`. */
+static void compare_files(const char *part, const char *whole) {
+    if (rank) return;
+    struct rows_file b = read_rows(whole, 0);
+    uint64_t rows = 0, same = 0;
+    for (int q = 0; q < ranks; ++q) {
+        struct rows_file a = read_rows(part, q);
+        CHECK(a.head.rank == (uint64_t)q && a.head.ranks == (uint64_t)ranks && a.head.step == b.head.step);
+        CHECK(a.head.bodies == b.head.bodies && a.head.emissive == b.head.emissive && a.head.cutoff == b.head.cutoff);
+        for (size_t i = 0; i < a.head.rows; ++i, ++rows) {
+            const size_t k = place_of(&b, a.id[i]);
+            same += k < b.head.rows && (i == 0 || a.id[i] > a.id[i - 1]) && same_row(&a, i, &b, k);
+        }
+        free(a.word);
+    }
+    CHECK(rows == b.head.rows);
+    CHECK(same == rows);
+    if (same != rows) fprintf(stderr, "%llu of %llu rows\n", (unsigned long long)same, (unsigned long long)rows);
+    free(b.word);
+}
+
+/* ---- rows ------------------------------------------------------------------------------------------------------ */
+
+static const struct kind kinds[] = {
+    {"defaults", 6, {0, 0, 0}, OPEN, {.8, .8}, 0, 1, 0}, {"near", 6, {0, 0, 0}, OPEN, {.3, .8}, 4, 2, 1},
+    {"black", 6, {0, 0, 0}, FLOORS, {1, 1}, 5, 1, 3},    {"floors", 5, {1, 1, 0}, FLOORS, {.3, .8}, 5, 1, 1},
+    {"small", 3, {1, 1, 1}, OPEN, {1, .8}, 8, 2, 0},     {"tube", 6, {0, 0, 1}, TUBE, {.8, 1}, 0, 1, 2},
+    {"far", 5, {0, 0, 0}, OPEN, {.3, .8}, 1000, 1, 0},
+};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static fibrad_insitu *insitu_of(MPI_Comm comm, const struct kind *kind, int threads) {
+    const fibrad_insitu_config config = {.cutoff = kind->cutoff, .paths = 100, .seed = 3, .threads = threads};
+    fibrad_insitu *s;
+    CHECK(fibrad_insitu_new(&s, comm, &config) == FIBRAD_OK);
+    return s;
+}
+
+static void make_rows(fibrad_insitu *s, const struct pile *p, uint64_t step) {
+    const int status = fibrad_insitu_rows(s, &p->bed, step);
+    CHECK(status == FIBRAD_OK);
+    if (status) fprintf(stderr, "%s\n", fibrad_insitu_message(s));
+}
+
+/* The rows of all ranks, whoever owns what, are those of one rank that owns all. */
+static void rows_are_those_of_one_rank(const struct kind *kind) {
+    struct pile all = pile_of(kind);
+    if (rank == 0) {
+        fibrad_insitu *self = insitu_of(MPI_COMM_SELF, kind, 1);
+        make_rows(self, &all, 7);
+        CHECK(fibrad_insitu_write(self, path_of("whole")) == FIBRAD_OK);
+        fibrad_insitu_free(self);
+    }
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, kind->threads);
+    for (int again = 0; again < 2; ++again) { /* first others, so that the memory holds something */
+        struct pile part = part_of(&all, again ? kind->spread : (kind->spread + 1) % SPREADS);
+        make_rows(s, &part, again ? 7 : 6);
+        close_pile(&part);
+    }
+    CHECK(fibrad_insitu_write(s, path_of("part")) == FIBRAD_OK);
+    MPI_Barrier(MPI_COMM_WORLD);
+    compare_files("part", "whole");
+    fibrad_insitu_facts facts;
+    fibrad_insitu_facts_get(s, &facts);
+    CHECK(facts.particles == all.bed.n && facts.step == 7 && facts.entries > 0 && facts.bytes > 0);
+    CHECK(facts.error > 0 && facts.error < .1 && facts.beyond >= 0 && facts.beyond < .2);
+    fibrad_insitu_free(s);
+    close_pile(&all);
+}
+
+/* ---- powers ---------------------------------------------------------------------------------------------------- */
+
+static const double body_temperature[2] = {1500, 400};
+
+static fibrad_insitu_state state_of(const struct pile *p) {
+    return (fibrad_insitu_state){.surroundings = 500,
+                                 .body_temperature = body_temperature,
+                                 .n = p->bed.n,
+                                 .id = p->id,
+                                 .temperature = p->temperature};
+}
+
+/* What goes in comes out, and nothing flows between equal temperatures, to the bit. */
+static void powers_keep_energy(const struct kind *kind) {
+    struct pile all = pile_of(kind), part = part_of(&all, kind->spread);
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 1);
+    fibrad_insitu_totals totals;
+    make_rows(s, &part, 0);
+    fibrad_insitu_state state = state_of(&part);
+    CHECK(fibrad_insitu_powers(s, &state, part.power, &totals) == FIBRAD_OK);
+    double sum = 0, emitted = 0, largest = 0, here = 0;
+    for (size_t i = 0; i < part.bed.n; ++i) here += part.power[i], largest = fmax(largest, fabs(part.power[i]));
+    for (size_t i = 0; i < all.bed.n; ++i)
+        emitted += 4 * acos(-1) * all.radius[i] * all.radius[i] * all.emissivity[i] * FIBRAD_STEFAN_BOLTZMANN *
+                   pow(all.temperature[i], 4);
+    MPI_Allreduce(&here, &sum, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    double left = totals.particles + totals.surroundings;
+    for (uint32_t k = 0; k < all.bed.bodies; ++k) left += totals.body[k];
+    CHECK(fabs(left) < 1e-14 * emitted);
+    CHECK(fabs(sum - totals.particles) < 1e-14 * emitted);
+    CHECK(largest > 0 || part.bed.n == 0);
+
+    const double same[2] = {777, 777};
+    for (size_t i = 0; i < part.bed.n; ++i) part.temperature[i] = 777;
+    state.surroundings = 777, state.body_temperature = same;
+    CHECK(fibrad_insitu_powers(s, &state, part.power, &totals) == FIBRAD_OK);
+    bool zero = totals.particles == 0 && totals.surroundings == 0 && totals.body[0] == 0 && totals.body[1] == 0;
+    for (size_t i = 0; i < part.bed.n; ++i) zero = zero && part.power[i] == 0;
+    CHECK(zero);
+    fibrad_insitu_free(s);
+    close_pile(&all);
+    close_pile(&part);
+}
+
+/* ---- a serial reference ---------------------------------------------------------------------------------------- */
+
+enum { STEPS = 50 };
+static const double heat_capacity = 3e4; /* over the time step: temperatures change by some hundred K */
+
+static void *grow(void *context, void *block, size_t size) {
+    (void)context;
+    return realloc(block, size);
+}
+
+/* Temperatures after all steps by the kernel's rows in one scene, and sums written down as they are meant. */
+static void step_by_kernel(struct pile *p) {
+    const uint32_t n = (uint32_t)p->bed.n, bodies = p->bed.bodies;
+    const fibrad_scene_config config = {.body = p->body, .bodies = bodies};
+    const fibrad_spheres spheres = {p->x, p->x + 1, p->x + 2, p->radius, n, 3, 1, p->id};
+    const size_t size = fibrad_scene_size(n, 1);
+    void *block = memory_of(size, 1);
+    fibrad_scene *scene = NULL;
+    fibrad_work work = {.memory.resize = grow};
+    CHECK(fibrad_scene_init(&scene, block, size, &config, &spheres, NULL) == FIBRAD_OK);
+    const fibrad_exchange_rule rule = {
+        .emissivity = p->emissivity, .body_emissivity = p->body_emissivity, .paths = 100, .seed = 3};
+    uint32_t *col = memory_of((size_t)n * n, sizeof *col);
+    double *f = memory_of((size_t)n * n, sizeof *f), *emission = memory_of(n, sizeof *emission);
+    fibrad_row *row = memory_of(n, sizeof *row);
+    double(*body)[2] = memory_of(n, sizeof *body);
+    for (uint32_t i = 0; i < n; ++i) {
+        row[i] = (fibrad_row){.col = col + (size_t)i * n, .f = f + (size_t)i * n, .body = body[i], .capacity = n};
+        CHECK(fibrad_exchange_row(scene, &work, i, &rule, &row[i], NULL) == FIBRAD_OK);
+    }
+    for (int step = 0; step < STEPS; ++step) {
+        for (uint32_t i = 0; i < n; ++i) emission[i] = FIBRAD_STEFAN_BOLTZMANN * pow(p->temperature[i], 4);
+        memset(p->power, 0, n * sizeof *p->power);
+        for (uint32_t i = 0; i < n; ++i) {
+            const double weight = 4 * acos(-1) * p->radius[i] * p->radius[i] * p->emissivity[i];
+            for (uint32_t k = 0; k < row[i].length; ++k) {
+                const double half = weight * row[i].f[k] * (emission[row[i].col[k]] - emission[i]) / 2;
+                p->power[i] += half, p->power[row[i].col[k]] -= half;
+            }
+            for (uint32_t b = 0; b < bodies; ++b)
+                p->power[i] +=
+                    weight * body[i][b] * (FIBRAD_STEFAN_BOLTZMANN * pow(body_temperature[b], 4) - emission[i]);
+            p->power[i] += weight * row[i].escaped * (FIBRAD_STEFAN_BOLTZMANN * pow(500, 4) - emission[i]);
+        }
+        for (uint32_t i = 0; i < n; ++i) p->temperature[i] += p->power[i] / heat_capacity;
+    }
+    free(work.memory.block);
+    free(block);
+    free(col);
+    free(f);
+    free(emission);
+    free(row);
+    free(body);
+}
+
+/* Particles change ranks and places at every third step; the rows stay where they were made. */
+static void temperatures_are_those_of_the_kernel(void) {
+    const struct kind kind = {"reference", 6, {0, 0, 0}, FLOORS, {.3, .8}, 1000, 1, 0};
+    struct pile all = pile_of(&kind), expected = pile_of(&kind);
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &kind, 1);
+    struct pile part = part_of(&all, 0);
+    make_rows(s, &part, 0);
+    for (int step = 0; step < STEPS; ++step) {
+        const fibrad_insitu_state state = state_of(&part);
+        CHECK(fibrad_insitu_powers(s, &state, part.power, NULL) == FIBRAD_OK);
+        double *now = memory_of(all.bed.n, sizeof *now);
+        for (size_t i = 0; i < part.bed.n; ++i)
+            for (size_t k = 0; k < all.bed.n; ++k)
+                if (all.id[k] == part.id[i]) now[k] = part.temperature[i] + part.power[i] / heat_capacity;
+        MPI_Allreduce(now, all.temperature, (int)all.bed.n, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+        free(now);
+        close_pile(&part);
+        part = part_of(&all, step / 3 % SPREADS);
+    }
+    if (rank == 0) {
+        double worst = 0, change = 0;
+        step_by_kernel(&expected);
+        struct pile begin = pile_of(&kind);
+        for (size_t i = 0; i < all.bed.n; ++i) {
+            worst = fmax(worst, fabs(all.temperature[i] - expected.temperature[i]));
+            change = fmax(change, fabs(all.temperature[i] - begin.temperature[i]));
+        }
+        close_pile(&begin);
+        CHECK(worst < 1e-10);
+        CHECK(change > 100 && change < 2000);
+    }
+    fibrad_insitu_free(s);
+    close_pile(&all);
+    close_pile(&expected);
+    close_pile(&part);
+}
+
+/* ---- refusals -------------------------------------------------------------------------------------------------- */
+
+/* The same status and the same message on all ranks, which has the words. */
+static void check_refused(const fibrad_insitu *s, int status, int expected, const char *words) {
+    char message[2][256] = {{0}};
+    int first = status;
+    snprintf(message[0], sizeof message[0], "%s", fibrad_insitu_message(s));
+    memcpy(message[1], message[0], sizeof message[0]);
+    MPI_Bcast(message[1], sizeof message[1], MPI_CHAR, 0, MPI_COMM_WORLD);
+    MPI_Bcast(&first, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    CHECK(status == expected && first == status);
+    CHECK(strcmp(message[0], message[1]) == 0);
+    CHECK(strstr(message[0], words));
+    if (!strstr(message[0], words)) fprintf(stderr, "    %s: %s\n", words, message[0]);
+}
+
+static const struct kind small = {"refused", 4, {1, 1, 0}, FLOORS, {.8, .8}, 4, 2, 0};
+
+/* A bed with one fault. */
+enum fault { TWICE, INSIDE, BAD_X, BAD_RADIUS, BAD_EMISSIVITY, BEYOND, NO_BOX, NO_WALL, FAULTS };
+
+static void spoil(struct pile *p, enum fault fault) {
+    switch (fault) {
+    case TWICE:
+        p->id[9] = p->id[3];
+        break;
+    case INSIDE:
+        memcpy(p->x + 27, p->x + 9, 3 * sizeof *p->x), p->x[27] += .1;
+        break;
+    case BAD_X:
+        p->x[10] = NAN;
+        break;
+    case BAD_RADIUS:
+        p->radius[3] = -1;
+        break;
+    case BAD_EMISSIVITY:
+        p->emissivity[3] = 0;
+        break;
+    case BEYOND:
+        p->x[11] = -1.5;
+        break;
+    case NO_BOX:
+        p->bed.high[0] = p->bed.low[0];
+        break;
+    default:
+        p->body_emissivity[1] = 2;
+        break;
+    }
+}
+
+static void rows_are_refused(fibrad_insitu *s) {
+    static const int status[FAULTS] = {FIBRAD_E_ARGUMENT, FIBRAD_E_GEOMETRY, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT,
+                                       FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT};
+    static const char *const words[FAULTS] = {"twice",          "inside", "coordinate",        "radius",
+                                              "its emissivity", "a wall", "no extent along x", "wall 2"};
+    for (int fault = 0; fault < FAULTS; ++fault) {
+        struct pile all = pile_of(&small);
+        char named[64];
+        spoil(&all, (enum fault)fault);
+        struct pile part = part_of(&all, 0);
+        check_refused(s, fibrad_insitu_rows(s, &part.bed, 0), status[fault], words[fault]);
+        snprintf(named, sizeof named, "%llu", (unsigned long long)all.id[3]);
+        if (fault <= BEYOND) CHECK(strstr(fibrad_insitu_message(s), named));
+        close_pile(&all);
+        close_pile(&part);
+    }
+}
+
+static void powers_are_refused(fibrad_insitu *s, const struct pile *good) {
+    struct pile part = part_of(good, 0);
+    char named[64] = "";
+    fibrad_insitu_state state = state_of(&part);
+    if (rank == ranks - 1) part.temperature[1] = 0;
+    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_ARGUMENT, "is not above 0");
+    snprintf(named, sizeof named, "%llu", (unsigned long long)part.id[1]);
+    if (rank == ranks - 1) CHECK(strstr(fibrad_insitu_message(s), named));
+    if (rank == ranks - 1) part.temperature[1] = NAN;
+    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_ARGUMENT, "is not above 0");
+    part.temperature[1] = 300;
+    if (rank == ranks - 1) --state.n;
+    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_STATE, "63 particles, but rows of 64");
+    state.n = part.bed.n;
+    if (rank == ranks - 1) part.id[1] = 5;
+    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_STATE, "make rows anew");
+    part.id[1] = part.id[0];
+    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_STATE, "make rows anew");
+    state.surroundings = -1;
+    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_ARGUMENT, "surroundings");
+    close_pile(&part);
+}
+
+/* One rank cannot write its file: none is left. */
+static void files_are_refused(fibrad_insitu *s) {
+    char name[4200];
+    snprintf(name, sizeof name, "%s.%d.rows.tmp", path_of("refused"), ranks - 1);
+    if (rank == 0) CHECK(mkdir(name, 0700) == 0);
+    MPI_Barrier(MPI_COMM_WORLD);
+    check_refused(s, fibrad_insitu_write(s, path_of("refused")), FIBRAD_E_ARGUMENT, name);
+    MPI_Barrier(MPI_COMM_WORLD);
+    remove(name);
+    snprintf(name, sizeof name, "%s.%d.rows", path_of("refused"), rank);
+    CHECK(remove(name) != 0);
+    check_refused(s, fibrad_insitu_write(s, NULL), FIBRAD_E_ARGUMENT, "no name");
+}
+
+/* After all refusals the object is as it was. */
+static void refusals(void) {
+    fibrad_insitu *s = NULL;
+    CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.cutoff = -1}) == FIBRAD_E_ARGUMENT && !s);
+    CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.threads = rank == 0 ? -1 : 1}) ==
+              FIBRAD_E_ARGUMENT &&
+          !s);
+    CHECK(strcmp(fibrad_insitu_message(NULL), "") == 0);
+    s = insitu_of(MPI_COMM_WORLD, &small, 2);
+    struct pile all = pile_of(&small), part = part_of(&all, 0);
+    const fibrad_insitu_state state = state_of(&part);
+    double *before = memory_of(part.bed.n, sizeof *before);
+    check_refused(s, fibrad_insitu_powers(s, &state, before, NULL), FIBRAD_E_STATE, "before there are rows");
+    check_refused(s, fibrad_insitu_write(s, path_of("refused")), FIBRAD_E_STATE, "no rows");
+    make_rows(s, &part, 3);
+    CHECK(fibrad_insitu_powers(s, &state, before, NULL) == FIBRAD_OK);
+    rows_are_refused(s);
+    powers_are_refused(s, &all);
+    files_are_refused(s);
+    CHECK(fibrad_insitu_powers(s, &state, part.power, NULL) == FIBRAD_OK);
+    CHECK(memcmp(before, part.power, part.bed.n * sizeof *before) == 0);
+    fibrad_insitu_free(s);
+
+    s = insitu_of(MPI_COMM_WORLD, &(struct kind){.cutoff = 1000}, 1);
+    check_refused(s, fibrad_insitu_rows(s, &part.bed, 0), FIBRAD_E_ARGUMENT, "more than 100 periods along x");
+    part.bed.n = 0; /* a bed without particles */
+    const fibrad_insitu_state none = state_of(&part);
+    fibrad_insitu_totals totals = {.particles = 1};
+    CHECK(fibrad_insitu_rows(s, &(fibrad_insitu_bed){0}, 0) == FIBRAD_OK);
+    CHECK(fibrad_insitu_powers(s, &none, NULL, &totals) == FIBRAD_OK && totals.particles == 0);
+    fibrad_insitu_free(s);
+    free(before);
+    close_pile(&all);
+    close_pile(&part);
+}
+
+int main(int argc, char **argv) {
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    folder = argc > 1 ? argv[1] : ".";
+    links();
+    for (int k = 0; k < KINDS; ++k) rows_are_those_of_one_rank(&kinds[k]);
+    for (int k = 0; k < KINDS; ++k) powers_keep_energy(&kinds[k]);
+    temperatures_are_those_of_the_kernel();
+    refusals();
+    int sum[2] = {checks, failures};
+    MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    if (rank == 0) printf("%d ranks: %d checks, %d failures\n", ranks, sum[0], sum[1]);
+    MPI_Finalize();
+    return sum[1] != 0;
+}
