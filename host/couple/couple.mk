@@ -26,6 +26,8 @@ COUPLE_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(PIC)
 # what `make couple` builds
 COUPLE_PRODUCTS = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/couple/example
 
+include host/liggghts/liggghts.mk
+
 ## couple: libfibrad_couple.a and what couples it with other codes, into build/couple (needs MPI: make deps-couple)
 couple: $(COUPLE_PRODUCTS)
 
