@@ -382,7 +382,8 @@ $(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*
 test: deps
 	@echo "Building the tests"
 	@$(MAKE) -s --no-print-directory programs all
-	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" tests/run.sh $(TEST_PROGRAMS) $(SCRIPTS)
+	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" \
+	    tests/run.sh $(TEST_PROGRAMS) $(SCRIPTS) $(COUPLE_SCRIPTS)
 
 ## run-programs: build and run the test programs without the scripts
 run-programs: programs
@@ -394,7 +395,7 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
 check: symbols lists format house
 
-LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c $(COUPLE) $(COUPLE_PROGRAMS) kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
+LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c $(COUPLE) $(COUPLE_PROGRAMS) $(COUPLE_TESTS) $(COUPLE_SCRIPTS) kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
 FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c)) \
          $(wildcard tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
 

@@ -17,7 +17,8 @@ COUPLE = \
 # programs of one file each, with their own main
 COUPLE_PROGRAMS = host/couple/example.c
 
-COUPLE_TESTS = tests/couple/test_couple.c
+COUPLE_TESTS   = tests/couple/test_couple.c
+COUPLE_SCRIPTS = tests/couple/check_couple.sh
 
 COUPLE_OBJECTS = $(COUPLE:%.c=$(BUILD)/%.o)
 COUPLE_LIBS    = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/libfibrad.a
@@ -56,7 +57,7 @@ $(COUPLE_OBJECTS) $(COUPLE_PRODUCTS): Makefile host/couple/couple.mk
 
 ## test-couple: build and run the tests of the couplings; skips them, with a word, where packages are missing
 test-couple:
-	@BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/run.sh tests/couple/check_couple.sh
+	@BUILD=$(BUILD) MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/run.sh $(COUPLE_SCRIPTS)
 
 ## deps-couple: install the Debian packages of the couplings: MPI, LAMMPS, LIGGGHTS
 deps-couple:

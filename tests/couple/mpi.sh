@@ -1,0 +1,13 @@
+# mpi.sh - how tests start ranks; read by other scripts. SPDX-License-Identifier: MIT
+# shellcheck shell=sh
+
+# Containers: more ranks than processors, as root, and without the copying between processes that they forbid.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1
+export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}"
+
+run_mpi() { # RANKS PROGRAM...
+    ranks_run=$1
+    shift
+    "${MPIRUN:-mpirun}" -np "$ranks_run" "$@" 2>&1
+}
