@@ -7,6 +7,7 @@ LIGGGHTS_OBJECTS = $(BUILD)/couple/fibrad_liggghts.o $(BUILD)/couple/liggghts_op
 LIGGGHTS_FLAGS   = -std=c++14 -pedantic -Wall -Wextra -Wshadow $(WERROR) -DOMPI_SKIP_MPICXX -Ikernel -Ihost \
     -isystem /usr/include/liggghts -MMD -MP
 
+COUPLE_SCRIPTS  += tests/couple/check_liggghts.sh
 COUPLE_PRODUCTS += $(if $(LIGGGHTS_HERE),$(BUILD)/couple/fibrad_liggghts)
 
 $(LIGGGHTS_OBJECTS): $(BUILD)/couple/%.o: host/liggghts/%.cpp | need-mpi
@@ -19,3 +20,8 @@ $(BUILD)/couple/fibrad_liggghts: $(LIGGGHTS_OBJECTS) $(COUPLE_LIBS)
 $(LIGGGHTS_OBJECTS): Makefile host/liggghts/liggghts.mk
 
 -include $(LIGGGHTS_OBJECTS:.o=.d)
+
+## demo-liggghts: a bed on a hot floor in LIGGGHTS on 2 ranks, by conduction alone and with radiation beside it
+demo-liggghts: deps deps-couple
+	@$(MAKE) -s --no-print-directory $(BUILD)/couple/fibrad_liggghts
+	BUILD=$(BUILD) host/liggghts/demo_liggghts.sh

@@ -124,7 +124,7 @@ static int compare_owners(const void *a, const void *b) {
     return (left > right) - (left < right);
 }
 
-static int compare_ids(const void *a, const void *b) {
+static int compare_joined(const void *a, const void *b) {
     const uint64_t left = *(const uint64_t *)a, right = *(const uint64_t *)b;
     return (left > right) - (left < right);
 }
@@ -178,7 +178,7 @@ static int join_ids(const struct part *part, struct joined *joined) {
 
 /* The number of the sphere of an id, joined->n if there is none. */
 static uint32_t sphere_of(const struct joined *joined, uint64_t id) {
-    const uint64_t *at = joined->n > 0 ? bsearch(&id, joined->id, joined->n, sizeof id, compare_ids) : NULL;
+    const uint64_t *at = joined->n > 0 ? bsearch(&id, joined->id, joined->n, sizeof id, compare_joined) : NULL;
     return at ? (uint32_t)(at - joined->id) : joined->n;
 }
 
