@@ -187,6 +187,7 @@ TESTS = \
     tests/test_furnace.c \
     tests/test_heat.c \
     tests/test_matrix.c \
+    tests/test_part.c \
     tests/test_protocol.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \

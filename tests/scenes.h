@@ -157,6 +157,26 @@ static inline void *test_resize(void *context, void *block, size_t size) {
     return realloc(block, size);
 }
 
+/* A source of memory that refuses once, and moves its block to another odd offset each time. */
+struct source {
+    uint32_t calls, refuse_at; /* 0: never */
+    size_t size;
+    unsigned char *whole;
+};
+
+static inline void *source_resize(void *context, void *block, size_t size) {
+    struct source *source = context;
+    if (++source->calls == source->refuse_at) return NULL;
+    unsigned char *whole = malloc(size + 64), *to = whole + source->calls * 13 % 64;
+    ck_assert_ptr_nonnull(whole);
+    memset(whole, 0xff, size + 64);
+    if (block != NULL) memcpy(to, block, source->size < size ? source->size : size);
+    if (source->whole != NULL) memset(source->whole, 0xee, source->size); /* of no further use */
+    free(source->whole);
+    source->whole = whole, source->size = size;
+    return to;
+}
+
 static inline fibrad_memory memory_growing(void) { return (fibrad_memory){.resize = test_resize}; }
 
 static inline fibrad_work work_growing(void) { return (fibrad_work){.memory = {.resize = test_resize}}; }

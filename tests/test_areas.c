@@ -23,6 +23,8 @@ static void put(struct window *w, double u, double v, double r) {
 
 typedef void begin_function(fibrad_areas *areas);
 typedef bool disc_function(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
+typedef uint32_t discs_function(fibrad_areas *areas, uint32_t first, const uint32_t *which, uint32_t count,
+                                const double *x, const double *y, const double *r);
 typedef double end_function(fibrad_areas *areas);
 
 struct method {
@@ -31,7 +33,13 @@ struct method {
     end_function *end;
 };
 
-static const struct method both = {fibrad_areas_begin_scalar, fibrad_areas_disc_scalar, fibrad_areas_end_scalar};
+/* One disc as a list of one. */
+static bool disc_scalar(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+    fibrad_areas_discs_scalar(areas, whose, &(uint32_t){0}, 1, &x, &y, &r);
+    return areas->open;
+}
+
+static const struct method both = {fibrad_areas_begin_scalar, disc_scalar, fibrad_areas_end_scalar};
 static const struct method arrangement = {fibrad_arrangement_begin_scalar, fibrad_arrangement_disc_scalar,
                                           fibrad_arrangement_end_scalar};
 
@@ -266,9 +274,13 @@ END_TEST
 
 #define WIDER(isa)                                                                                                     \
     begin_function fibrad_areas_begin_##isa;                                                                           \
-    disc_function fibrad_areas_disc_##isa;                                                                             \
+    discs_function fibrad_areas_discs_##isa;                                                                           \
     end_function fibrad_areas_end_##isa;                                                                               \
-    static const struct method isa = {fibrad_areas_begin_##isa, fibrad_areas_disc_##isa, fibrad_areas_end_##isa};
+    static bool disc_##isa(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {                        \
+        fibrad_areas_discs_##isa(areas, whose, &(uint32_t){0}, 1, &x, &y, &r);                                         \
+        return areas->open;                                                                                            \
+    }                                                                                                                  \
+    static const struct method isa = {fibrad_areas_begin_##isa, disc_##isa, fibrad_areas_end_##isa};
 #ifdef FIBRAD_WITH_SSE2
 WIDER(sse2)
 #endif

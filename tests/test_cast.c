@@ -321,7 +321,7 @@ START_TEST(cutoff) {
     ck_assert_uint_eq(near.length, 1);
     ck_assert_double_eq(near.f[0], all.f[0]);
     ck_assert_uint_eq(none.length, 0);
-    ck_assert_double_eq(none.escaped, 1);
+    ck_assert_double_eq(none.beyond, 1); /* where the other sphere is */
     row_free(&all);
     row_free(&near);
     row_free(&none);

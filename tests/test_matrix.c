@@ -829,26 +829,6 @@ START_TEST(collections_in_fixed_memory) {
 }
 END_TEST
 
-/* A source of memory that refuses now and then, and moves its block to another offset each time. */
-struct source {
-    uint32_t calls, refuse_at; /* 0: never */
-    size_t size;
-    unsigned char *whole;
-};
-
-static void *moving_resize(void *context, void *block, size_t size) {
-    struct source *source = context;
-    if (++source->calls == source->refuse_at) return NULL;
-    unsigned char *whole = malloc(size + 64), *to = whole + source->calls * 13 % 64;
-    ck_assert_ptr_nonnull(whole);
-    memset(whole, 0xff, size + 64);
-    if (block != NULL) memcpy(to, block, source->size < size ? source->size : size);
-    if (source->whole != NULL) memset(source->whole, 0xee, source->size);
-    free(source->whole);
-    source->whole = whole, source->size = size;
-    return to;
-}
-
 START_TEST(collections_that_grow) {
     struct bed bed = packing(60, .5, 1.5, .4, 3, false);
     fibrad_scene *scene = scene_of(&bed, 0);
@@ -857,7 +837,7 @@ START_TEST(collections_that_grow) {
     struct matrix expected = matrix_of(scene, &plenty, 1, NULL);
     for (uint32_t refuse = 0; refuse < 5; refuse++) {
         struct source source = {.refuse_at = refuse};
-        fibrad_rows rows = {.memory = {.resize = moving_resize, .context = &source}};
+        fibrad_rows rows = {.memory = {.resize = source_resize, .context = &source}};
         fibrad_work work = work_growing();
         uint32_t refused = 0;
         for (uint32_t i = 0; i < bed.n; i++) {

@@ -251,8 +251,9 @@ START_TEST(degenerate_windows) {
             if (nudge > .9) u[k] += pow(10, random_in(3, -16, -5));
         }
         fibrad_areas_begin_scalar(&areas);
-        bool more = true;
-        for (uint32_t k = 0; k < n && more; k++) more = fibrad_areas_disc_scalar(&areas, k, u[k], v[k], r[k]);
+        uint32_t order[DISCS];
+        for (uint32_t k = 0; k < n; k++) order[k] = k;
+        fibrad_areas_discs_scalar(&areas, 0, order, n, u, v, r);
         double rest = fibrad_areas_end_scalar(&areas), total = rest;
         ck_assert(!areas.overflow);
         for (uint32_t c = 1; c < areas.circles; c++) mine[areas.whose[c]] = areas.area[c];

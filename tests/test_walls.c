@@ -215,9 +215,6 @@ START_TEST(what_is_not_supported) {
     ck_assert_int_eq(init(&scene, &bed, 1, &mesh, &fault), FIBRAD_E_UNSUPPORTED);
     bodies[5] = mesh;
     ck_assert_int_eq(init(&scene, &bed, 6, bodies, &fault), FIBRAD_E_UNSUPPORTED);
-    const fibrad_scene_config regions[] = {
-        {.known_high = {10, 10, 10}}, {.known_low = {0, -1, 0}}, {.known_low = {1, 1, 1}, .known_high = {9, 9, 9}}};
-    for (int k = 0; k < 3; k++) ck_assert_int_eq(scene_try(&scene, &bed, &regions[k], &fault), FIBRAD_E_UNSUPPORTED);
     ck_assert_ptr_null(scene);
     bed_free(&bed);
 }

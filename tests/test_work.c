@@ -218,25 +218,6 @@ START_TEST(blocks_of_any_alignment) {
 }
 END_TEST
 
-/* A source of memory that refuses once, and hands out full blocks at odd offsets. */
-struct source {
-    uint32_t calls, refuse_at; /* 0: never */
-    size_t size;
-    unsigned char *whole;
-};
-
-static void *odd_resize(void *context, void *block, size_t size) {
-    struct source *source = context;
-    if (++source->calls == source->refuse_at) return NULL;
-    unsigned char *whole = malloc(size + 64), *to = whole + source->calls * 13 % 64;
-    ck_assert_ptr_nonnull(whole);
-    memset(whole, 0xff, size + 64);
-    if (block != NULL) memcpy(to, block, source->size < size ? source->size : size);
-    free(source->whole);
-    source->whole = whole, source->size = size;
-    return to;
-}
-
 /* FIBRAD_E_MEMORY at each call of the resize function in turn: nothing is written, and the next call, which gets
  * memory, has the right result. */
 START_TEST(memory_that_is_refused) {
@@ -247,7 +228,7 @@ START_TEST(memory_that_is_refused) {
     uint32_t calls = 1;
     for (uint32_t refuse = 0; refuse <= calls; refuse++) {
         struct source source = {.refuse_at = refuse};
-        fibrad_work work = {.memory = {.resize = odd_resize, .context = &source}};
+        fibrad_work work = {.memory = {.resize = source_resize, .context = &source}};
         out.row.length = 77;
         int status = call(function, scene, &work, 5, &out);
         if (refuse > 0) {

@@ -9,16 +9,14 @@
 #define MARGIN    1e-6 /* cells, far above rounding */
 
 /* Cells of a width, wider ones if they were too many. */
-static void choose_cells(double width, fibrad_occupancy *map) {
-    for (;; width *= 1.25) {
-        double product = 1, most = 0;
+static void choose_widths(double width, fibrad_occupancy *map) {
+    for (int axis = 0; axis < 3; ++axis) width = fmax(width, (map->high[axis] - map->low[axis]) / AXIS_MAX);
+    for (double product = 2 * CELLS_MAX; product > CELLS_MAX; width *= 1.25) {
+        product = 1;
         for (int axis = 0; axis < 3; ++axis) {
-            const double cells = fmax(1, ceil((map->high[axis] - map->low[axis]) / width));
-            map->cells[axis] = (uint32_t)fmin(cells, AXIS_MAX);
-            most = fmax(most, cells);
-            product *= cells;
+            map->cells[axis] = (uint32_t)fmax(1, fmin(AXIS_MAX, ceil((map->high[axis] - map->low[axis]) / width)));
+            product *= map->cells[axis];
         }
-        if (product <= CELLS_MAX && most <= AXIS_MAX) return;
     }
 }
 
@@ -47,7 +45,7 @@ static void mark_sphere(const fibrad_occupancy *map, const fibrad_particle *p, u
 
 int fibrad_coarse_map(MPI_Comm comm, double width, const fibrad_particle *particle, size_t own, fibrad_block *mark,
                       fibrad_occupancy *map) {
-    choose_cells(width, map);
+    choose_widths(width, map);
     const size_t words = ((size_t)map->cells[0] * map->cells[1] * map->cells[2] + 63) / 64;
     const int status = fibrad_agree(comm, fibrad_block_fit(mark, words, sizeof(uint64_t)), NULL);
     if (status) return status;

@@ -1,7 +1,5 @@
-/* example.c - radiation in a code of your own over MPI: a bed between a hot and a cold wall. SPDX-License-Identifier:
- * MIT
- *
- * mpirun -np 2 build/couple/example */
+/* example.c - radiation in a code of your own over MPI: a bed between a hot and a cold wall. For mpirun -np 2.
+ * SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdio.h>
 
@@ -31,27 +29,19 @@ int main(int argc, char **argv) {
                                 {.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .upper = 1, .at = high}}};
     const double dt = 0.5, capacity = 4.19e-9 * 7800 * 500; /* [s], [J/K] of one particle */
     double stored = 0, from_walls = 0;
-    int rank, ranks;
+    int rank, ranks, status;
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     const size_t n = make_particles(rank, ranks);
-    const fibrad_insitu_bed bed = {.high = {high, high, high},
-                                   .periodic = {1, 1, 0},
-                                   .body = wall,
-                                   .body_emissivity = body_emissivity,
-                                   .bodies = 2,
-                                   .n = n,
-                                   .id = id,
-                                   .x = x[0],
-                                   .radius = radius,
-                                   .emissivity = emissivity};
+    fibrad_insitu_bed bed = {.high = {high, high, high}, .periodic = {1, 1, 0}, .body = wall, .bodies = 2};
+    bed.body_emissivity = body_emissivity;
+    bed.n = n, bed.id = id, bed.x = x[0], bed.radius = radius, bed.emissivity = emissivity;
     const fibrad_insitu_state state = {
         .body_temperature = body_temperature, .n = n, .id = id, .temperature = temperature};
     fibrad_insitu *radiation;
     fibrad_insitu_totals totals;
-    int status = fibrad_insitu_new(&radiation, MPI_COMM_WORLD, NULL);
-    if (status) MPI_Abort(MPI_COMM_WORLD, 1);
+    status = fibrad_insitu_new(&radiation, MPI_COMM_WORLD, NULL);
     for (uint64_t step = 0; step < STEPS && !status; ++step) {
         if (step % 25 == 0) status = fibrad_insitu_rows(radiation, &bed, step); /* here particles would have moved */
         if (!status) status = fibrad_insitu_powers(radiation, &state, power, &totals);

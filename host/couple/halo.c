@@ -68,7 +68,8 @@ static int add_images(const fibrad_particle *particle, const struct range_box *b
                 image.x[1] += j * period[1];
                 image.x[2] += k * period[2];
                 if ((itself && !i && !j && !k) || !within_reach(image.x, box, reach)) continue;
-                if (fibrad_block_fit(sent, *count + 1, sizeof image)) return FIBRAD_E_MEMORY;
+                if (*count == FIBRAD_SPHERES_MAX || fibrad_block_fit(sent, *count + 1, sizeof image))
+                    return FIBRAD_E_MEMORY;
                 ((fibrad_particle *)sent->at)[(*count)++] = image;
             }
     return FIBRAD_OK;
@@ -84,7 +85,6 @@ static int choose_particles(const struct range_box *box, int rank, int ranks, co
         if (find_shifts(&box[rank], &box[q], period, reach, &any))
             for (size_t i = 0; i < own; ++i)
                 if (add_images(&particle[i], &box[q], period, reach, q == rank, sent, &sum)) return FIBRAD_E_MEMORY;
-        if (sum > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
         count[q] = (int)(sum - before);
     }
     return FIBRAD_OK;

@@ -10,7 +10,7 @@
 #include "couple/coarse_map.h"
 
 #define THREADS_MAX    1024
-#define CUTOFF_RADII   10 /* mean radii: 1.7e-4 of what is emitted gets farther at emissivity 0.8, docs/coupling.md */
+#define CUTOFF_RADII   10 /* mean radii: 1.7e-4 of what is emitted leaves it at emissivity 0.8, docs/coupling.md */
 #define CUTOFF_DARK    12 /* the same where reflections carry it on */
 #define DARK_BELOW     0.4
 #define CELLS_A_CUTOFF 4   /* of the coarse map */
@@ -87,7 +87,7 @@ void fibrad_insitu_free(fibrad_insitu *s) {
 
 const char *fibrad_insitu_message(const fibrad_insitu *s) { return s ? s->message : ""; }
 
-static size_t bytes_of(const fibrad_insitu_set *set, int threads) {
+static size_t set_bytes(const fibrad_insitu_set *set, int threads) {
     size_t sum = set->particle.size + set->id.size + set->weight.size + set->emission.size + set->power.size;
     for (int t = 0; t < threads; ++t) sum += set->rows[t].memory.size;
     return sum + set->now.size;
@@ -98,7 +98,7 @@ void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts)
     *facts = s->set.facts;
     facts->seconds_rows = s->seconds_rows;
     facts->seconds_powers = s->seconds_powers;
-    facts->bytes = bytes_of(&s->set, s->config.threads) + bytes_of(&s->next, s->config.threads) + s->scene.size +
+    facts->bytes = set_bytes(&s->set, s->config.threads) + set_bytes(&s->next, s->config.threads) + s->scene.size +
                    s->order.size + s->emissivity.size + s->mark.size + s->sent.size + s->value.size;
     for (int t = 0; t < s->config.threads; ++t) facts->bytes += s->work[t].memory.size;
 }
@@ -310,6 +310,7 @@ static int compute_rows(struct insitu_build *b) {
         if (!result) continue;
 #pragma omp critical
         if (!status) {
+#pragma omp atomic write
             status = result;
             fibrad_refuse(s->message, result, "particle %" PRIu64 ": %s", ((uint64_t *)b->to->id.at)[order[k]],
                           fibrad_status_text(result));

@@ -3,6 +3,7 @@
  * Each id has a rank that keeps its entry in the directory, found from the id alone. Owners enter their ids there,
  * users ask there who owns theirs, each id once, and then ask the owners. From then on only ranks that share particles
  * exchange messages, of one value per particle, between buffers that stay in place. */
+#include <limits.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -105,8 +106,7 @@ static int enter_owned(struct making *m, size_t own) {
     begin_places(m);
     for (size_t i = 0; i < own; ++i)
         m->owner[m->got[directory_of(m, m->id[i])]++] = (struct owner){m->id[i], (uint32_t)m->rank, (uint32_t)i};
-    const int status = fibrad_deal(m->comm, FIBRAD_OK, m->owner, m->count, sizeof *m->owner, &m->directory, 0, m->got);
-    return status;
+    return fibrad_deal(m->comm, FIBRAD_OK, m->owner, m->count, sizeof *m->owner, &m->directory, 0, m->got);
 }
 
 /* Asks the directory for the ids used, each once. slot[used]: which of the questions. */
@@ -235,6 +235,7 @@ int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_
     MPI_Comm_rank(comm, &m.rank);
     MPI_Comm_size(comm, &m.ranks);
     int status = link && all >= own && (id || all == 0) ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
+    if (all > INT_MAX) status = FIBRAD_E_MEMORY; /* MPI counts by int */
     const size_t used = status ? 0 : all - own, ranks = (size_t)m.ranks;
     fibrad_link *made = calloc(1, sizeof *made);
     uint32_t *slot = malloc((used + 1) * sizeof *slot);
@@ -243,7 +244,7 @@ int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_
     m.answers = malloc(ranks * sizeof *m.answers);
     m.asked = malloc((used + 1) * sizeof *m.asked);
     m.number = malloc((used + 1) * sizeof *m.number);
-    m.owner = malloc((own + 1) * sizeof *m.owner);
+    m.owner = malloc(((status ? 0 : own) + 1) * sizeof *m.owner);
     if (!status && !(made && slot && m.count && m.got && m.answers && m.asked && m.number && m.owner))
         status = FIBRAD_E_MEMORY;
     if (made) made->own = own, made->used = used, made->slot = slot;

@@ -198,6 +198,7 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     const uint32_t count = rule->paths > 0 ? rule->paths : FIRST_PATHS;
     paths.first = true;
     FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa)(&paths, 0, count);
+    if (!fibrad_finite(paths.absorbed)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
     for (int axis = 0; axis < 3; axis++) {
         double sum = 0, square = 0;
         for (int part = 0; part < FIBRAD_DISPLACEMENT_PARTS; part++) sum += paths.square[part][axis];

@@ -102,15 +102,20 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     return place;
 }
 
+/* The bytes that a problem of these numbers takes. */
+static size_t heat_bytes(fibrad_heat fields) {
+    fibrad_arena arena = {0};
+    heat_layout(&arena, &fields);
+    return fibrad_arena_total(&arena);
+}
+
 size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene) {
     const fibrad_heat_config c = heat_config_of(config);
     if (heat_check(&c, scene) != FIBRAD_OK) return 0;
-    fibrad_arena arena = {0};
     fibrad_heat fields = {0};
     dimension(&fields, &c, scene);
     add_room(&fields);
-    heat_layout(&arena, &fields);
-    return fibrad_arena_total(&arena);
+    return heat_bytes(fields);
 }
 
 /* Numbers the patches through and tells each how many beams leave its surface per area. */
@@ -163,12 +168,13 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     if (out == NULL) return FIBRAD_E_ARGUMENT;
     const fibrad_heat_config c = heat_config_of(config);
     fibrad_arena arena;
-    int status = heat_check(&c, scene);
-    if (status == FIBRAD_OK) status = fibrad_arena_open(&arena, memory, size, fibrad_heat_size(config, scene));
-    if (status != FIBRAD_OK) return status;
     fibrad_heat fields = {0};
+    int status = heat_check(&c, scene);
+    if (status != FIBRAD_OK) return status;
     dimension(&fields, &c, scene);
     add_room(&fields);
+    status = fibrad_arena_open(&arena, memory, size, heat_bytes(fields));
+    if (status != FIBRAD_OK) return status;
     fibrad_heat *heat = heat_layout(&arena, &fields);
     *heat = fields;
     find_origins(heat);

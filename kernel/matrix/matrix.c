@@ -74,13 +74,18 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     return entries < UINT64_MAX / 4 && m->result.capacity <= SIZE_MAX;
 }
 
+/* The bytes that a matrix of these numbers takes. */
+static size_t matrix_bytes(fibrad_matrix fields) {
+    fibrad_arena arena = {0};
+    matrix_layout(&arena, &fields);
+    return fibrad_arena_total(&arena);
+}
+
 size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                           const fibrad_matrix_rule *rule) {
     fibrad_matrix fields;
-    fibrad_arena arena = {0};
-    if (!fibrad_scene_ready(scene) || !matrix_dimension(&fields, scene, rows, count, rule)) return 0;
-    matrix_layout(&arena, &fields);
-    return fibrad_arena_total(&arena);
+    const bool valid = fibrad_scene_ready(scene) && matrix_dimension(&fields, scene, rows, count, rule);
+    return valid ? matrix_bytes(fields) : 0;
 }
 
 /* All changes of the collections so far. */
@@ -179,7 +184,7 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
     for (uint32_t c = 0; c < count && rows != NULL; c++)
         if (!fibrad_rows_settled(&rows[c])) return FIBRAD_E_STATE;
     if (!matrix_dimension(&fields, scene, rows, count, rule)) return FIBRAD_E_ARGUMENT;
-    int status = fibrad_arena_open(&arena, memory, size, fibrad_matrix_size(scene, rows, count, rule));
+    int status = fibrad_arena_open(&arena, memory, size, matrix_bytes(fields));
     if (status != FIBRAD_OK) return status;
     fibrad_matrix *m = matrix_layout(&arena, &fields);
     *m = fields;

@@ -162,13 +162,9 @@ static double angle_of_tangent(double y, double x) {
 /* Counts a ray that meets no sphere: by where it leaves. */
 static void count_exit(fibrad_workspace *work, const struct cast_ray *ray) {
     const double *w = ray->frame + 6;
-    double start[3], origin[3], distance;
-    for (int axis = 0; axis < 3; axis++) {
-        start[axis] = ray->cosine * w[axis] - ray->sine * ray->frame[3 + axis];
-        origin[axis] = work->centre[axis] + work->unit * start[axis];
-    }
-    const double ball = fibrad_ball_exit(start, w, work->reach) * work->unit;
-    work->wall[fibrad_surroundings_met(work->scene, origin, w, ball, &distance)]++;
+    double from[3];
+    for (int axis = 0; axis < 3; axis++) from[axis] = ray->cosine * w[axis] - ray->sine * ray->frame[3 + axis];
+    work->wall[fibrad_work_met(work, from, w)]++;
 }
 
 /* Counts a hit. */

@@ -10,6 +10,7 @@
 
 int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
                              const fibrad_beam_rule *rule, fibrad_row *row) {
+    static const double centre[3] = {0, 0, 0};
     const uint32_t directions = rule->directions, points = rule->points;
     fibrad_points window = {.count = points};
     if (points > 0) {
@@ -30,7 +31,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         if (work->disc.count > work->disc.capacity || work->areas.overflow) return fibrad_work_discs_missed(work);
         if (scene->container.walls)
             LANED(fibrad_walls_share)(work, frame, &window, k, directions, rule->turn != 0, rest);
-        else if (work->cut && rest != 0 && fibrad_work_met(work, frame + 6) == FIBRAD_BEYOND)
+        else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6) == FIBRAD_BEYOND)
             work->wall[FIBRAD_BEYOND] += rest;
         else
             open[k % 2] += rest;

@@ -75,6 +75,7 @@ static wall_view wall_view_of(const fibrad_workspace *work) {
         view.high[axis] = (c->high[axis] - work->centre[axis]) * work->inverse;
         view.known_low[axis] = (scene->known_low[axis] - work->centre[axis]) * work->inverse;
         view.known_high[axis] = (scene->known_high[axis] - work->centre[axis]) * work->inverse;
+        if (!(view.known_low[axis] <= 0 && view.known_high[axis] >= 0)) view.ball = 0; /* i lies outside itself */
     }
     for (int axis = 0; axis < 2; axis++) view.axis[axis] = (c->axis[axis] - work->centre[axis]) * work->inverse;
     return view;
@@ -128,10 +129,27 @@ static vd exit_known(const wall_view *view, const vd origin[3], const vd w[3]) {
     return vd_max(least, zero);
 }
 
-/* Traces the open points of window k, in directions from a disc of radius `spread`, and counts the walls they meet;
- * as FIBRAD_BEYOND those that are cut before. */
+/* A line in the frame of sphere i. */
+typedef struct wall_line {
+    double origin[3], w[3];
+} wall_line;
+
+/* One of the lines in lanes. */
+static wall_line line_of_lane(const vd origin[3], const vd w[3], int lane) {
+    _Alignas(64) double at[VD_LANES], along[VD_LANES];
+    wall_line line;
+    for (int axis = 0; axis < 3; axis++) {
+        vd_store(at, origin[axis]);
+        vd_store(along, w[axis]);
+        line.origin[axis] = at[lane], line.w[axis] = along[lane];
+    }
+    return line;
+}
+
+/* Traces the open points of window k, in directions from a disc of radius `spread`, and counts the walls they meet; as
+ * FIBRAD_BEYOND those that are cut before, the first of which is *first_cut. */
 static void follow_wall_points(const fibrad_points *points, const wall_view *view, const double frame[9], double spread,
-                               uint32_t k, uint32_t count[FIBRAD_EXITS]) {
+                               uint32_t k, uint32_t count[FIBRAD_EXITS], wall_line *first_cut) {
     for (uint32_t word = 0; word < points->count / 64; word++) {
         if (points->seen[word] == 0) continue;
         _Alignas(64) float a[64], b[64];
@@ -156,6 +174,8 @@ static void follow_wall_points(const fibrad_points *points, const wall_view *vie
             vd_store(wall, exit_walls(view, origin, w, &distance));
             if (view->cut) {
                 const uint32_t cut = bits & vm_bits(vd_lt(exit_known(view, origin, w), distance));
+                if (cut != 0 && count[FIBRAD_BEYOND] == 0)
+                    *first_cut = line_of_lane(origin, w, __builtin_ctz(cut));
                 count[FIBRAD_BEYOND] += fibrad_count_bits(cut);
                 bits &= ~cut;
             }
@@ -189,7 +209,9 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
     }
     const wall_view view = wall_view_of(work);
     uint32_t count[FIBRAD_EXITS] = {0};
-    follow_wall_points(&own, &view, axes, WALL_SPREAD * step, k, count);
+    wall_line cut;
+    follow_wall_points(&own, &view, axes, WALL_SPREAD * step, k, count, &cut);
     for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) work->wall[wall] += rest * count[wall] / own.open;
-    if (count[FIBRAD_BEYOND] > 0) work->wall[fibrad_work_met(work, frame + 6)] += rest * count[FIBRAD_BEYOND] / own.open;
+    if (count[FIBRAD_BEYOND] > 0) /* the way of one decides for all */
+        work->wall[fibrad_work_met(work, cut.origin, cut.w)] += rest * count[FIBRAD_BEYOND] / own.open;
 }

@@ -99,8 +99,8 @@ static inline bool fibrad_near_pays(fibrad_near *near) {
     return true;
 }
 
-/* What the line from the centre along w meets, if it meets no sphere: of FIBRAD_EXITS. */
-uint32_t fibrad_work_met(const fibrad_workspace *work, const double w[3]);
+/* What the line from a place along w meets, if it meets no sphere: of FIBRAD_EXITS. */
+uint32_t fibrad_work_met(const fibrad_workspace *work, const double from[3], const double w[3]);
 
 /* No sphere comes before the window of direction w deeper than this. */
 double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]);

@@ -336,11 +336,6 @@ uint32_t LANED(fibrad_areas_discs)(fibrad_areas *areas, uint32_t first, const ui
     return n;
 }
 
-bool LANED(fibrad_areas_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
-    LANED(fibrad_areas_discs)(areas, whose, &(uint32_t){0}, 1, &x, &y, &r);
-    return areas->open;
-}
-
 /* Adds what is still open, as the area of a last circle. False if the areas cannot be right. */
 static bool complete_areas(fibrad_areas *areas) {
     fibrad_boundary *b = areas->boundary;

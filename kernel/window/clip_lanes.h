@@ -14,9 +14,6 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas);
 uint32_t LANED(fibrad_areas_discs)(fibrad_areas *areas, uint32_t first, const uint32_t *which, uint32_t count,
                                    const double *x, const double *y, const double *r);
 
-/* The same for a single one, with a number of the caller's. False once nothing is open. */
-bool LANED(fibrad_areas_disc)(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
-
 /* Completes areas->area[c] for circles c = 1 ... areas->circles - 1, the visible area of disc areas->whose[c]; other
  * discs are hidden. Returns the area that is still open. */
 double LANED(fibrad_areas_end)(fibrad_areas *areas);
