@@ -118,7 +118,7 @@ typedef struct fibrad_spheres {
     const double *x, *y, *z, *r; /* may be NULL if n = 0 */
     uint32_t n;                  /* [0, FIBRAD_SPHERES_MAX] */
     uint32_t stride, stride_r;   /* in doubles; 0: 1 */
-    const uint64_t *id;          /* [n] seeds of each sphere's random paths; NULL: the index */
+    const uint64_t *id;          /* [n] seeds of random paths, order among equals; NULL: the index */
 } fibrad_spheres;
 #define FIBRAD_SPHERES_MAX 100000000u
 
@@ -144,11 +144,11 @@ typedef struct fibrad_body {
 
 /* What a scene is made for. Zeroed: open on all sides, no bodies but spheres, the best instruction set. */
 typedef struct fibrad_scene_config {
-    int isa;                 /* a fibrad_isa */
-    double period[3];        /* [L] of the periodic box along each axis; 0: the axis is open */
-    const fibrad_body *body; /* [bodies] copied */
-    uint32_t bodies;         /* [0, 7], else FIBRAD_E_UNSUPPORTED */
-    double known_low[3], known_high[3]; /* [L] spheres beyond may be missing; equal (zeroed): none are, along the axis */
+    int isa;                            /* a fibrad_isa */
+    double period[3];                   /* [L] of the periodic box along each axis; 0: the axis is open */
+    const fibrad_body *body;            /* [bodies] copied */
+    uint32_t bodies;                    /* [0, 7], else FIBRAD_E_UNSUPPORTED */
+    double known_low[3], known_high[3]; /* [L] spheres beyond may be missing; equal (zeroed): none, along the axis */
     const struct fibrad_occupancy *occupancy; /* fibrad_part.h: where such spheres may be; NULL: not told; not copied */
 } fibrad_scene_config;
 
@@ -216,7 +216,7 @@ typedef struct fibrad_row {
     uint32_t sphere;   /* out: i */
     uint32_t length;   /* out: entries; after FIBRAD_E_CAPACITY: the entries there would be */
     double escaped;    /* out: the fraction that meets no sphere and no body, measured */
-    double beyond;     /* out: the fraction that leaves what is known: fibrad_part.h */
+    double beyond;     /* out: the fraction that leaves what is known, cutoff or region: fibrad_part.h */
     double error;      /* out: Euclidean error of f, estimated: on the median twice the true one, seldom less than it */
     uint32_t directions; /* out, beams only: how many were taken */
     uint32_t fallbacks;  /* out, beams only: windows whose exact areas the fast method left to the robust one */
@@ -229,7 +229,7 @@ typedef struct fibrad_beam_rule {
     uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
     double cutoff;       /* [L] spheres with centres farther than this (1 + 1e-12) neither receive nor block; 0: none */
     double tolerance;    /* more directions, `directions` (0: 100) up to the most, until error <= this; 0: none */
-    uint64_t turn;       /* turns all directions together, by a random rotation that it decides; 0: not turned */
+    uint64_t turn;       /* turns all directions together, by a random rotation made from it; 0: not turned */
 } fibrad_beam_rule;
 
 /* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + sum of body +
@@ -331,9 +331,8 @@ int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
 /* ---- drift ----------------------------------------------------------------------------------------------------- */
 /* How far row i, right for the scene `before`, is off for `now`, the same spheres in boxes of the same periods:
  * Euclidean error, estimated as 2 root(sum over the spheres seen, j = col[length], of (F delta/w)^2). delta [L]: change
- * of the vector from i to j; F = r_j^2/(4 d^2), d the lesser of their distances then and now; w the lesser of r_j and
- * max(d - r_j, r_i). Estimates of successive steps add up. Bodies and spheres that come into sight are not counted:
- * fibrad_drift_partners. Errors: _ARGUMENT. Cost: about 10 ns per entry. Source: docs/methods.md section 10. */
+ * of the vector from i to j; F, w: docs/methods.md section 10. Estimates of successive steps add up. Bodies and spheres
+ * that come into sight are not counted: fibrad_drift_partners. Errors: _ARGUMENT. Cost: about 10 ns per entry. */
 int fibrad_drift_row(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const uint32_t *col,
                      uint32_t length, double *error);
 
@@ -350,18 +349,18 @@ typedef struct fibrad_exchange_rule {
     const double *body_emissivity; /* [bodies] [0, 1]; 0 reflects all. NULL if there are none */
     uint32_t directions;           /* of the first leg, a beam row by 256 points up to 144, by areas above; 0: 50 */
     uint32_t paths;                /* [1, FIBRAD_PATHS_MAX] for the reflections; 0: 400 */
-    uint64_t seed;                 /* random numbers come from it and the sphere's id */
-    double cutoff;                 /* 0: none; else FIBRAD_E_UNSUPPORTED */
+    uint64_t seed;                 /* of random numbers, with the sphere's id; and `turn` of the first leg */
+    double cutoff;                 /* of the first leg; reflections end as far from the centre of sphere i; 0: none */
     double tolerance;              /* more directions and paths until row->error is not above this; 0: none */
 } fibrad_exchange_rule;
 #define FIBRAD_PATHS_MAX (1u << 28)
 
 /* Row i of the exchange factors of a scene: D_ij, in f, is the fraction of what sphere i emits that sphere j absorbs,
- * directly or after any number of diffuse reflections; body and escaped likewise; the sum is 1 to rounding. The first
- * leg is that of fibrad_beam_row; reflections are followed from point to point. The error falls as directions^-1.5 and
+ * directly or after any number of diffuse reflections; body, escaped and beyond likewise; the sum is 1 to rounding. The
+ * first leg is that of fibrad_beam_row; reflections go from point to point. The error falls as directions^-1.5 and
  * paths^-0.5 do. rays (may be NULL): how many were traced. Errors: as fibrad_beam_row (of emissivities, those of sphere
- * i and of bodies are checked), _UNSUPPORTED. Cost: the beam row, and 0.1 to 0.2 microseconds a ray; a path has some 2
- * rays at emissivity 0.8, 14 at 0.2. Work memory: up to 6 MB more, for speed. Source: docs/heat.md. */
+ * i and of bodies are checked). Cost: the beam row, and 0.1 to 0.2 microseconds a ray; a path has some 2 rays at
+ * emissivity 0.8, 14 at 0.2. Work memory: up to 6 MB more, for speed. Source: docs/heat.md. */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);
 
@@ -373,7 +372,7 @@ typedef struct fibrad_displacement {
 } fibrad_displacement;
 
 /* How far what sphere i emits is carried, by rule->paths paths, from its centre to that of the sphere that absorbs,
- * periods counted; what bodies absorb and what escapes counts as 0. Errors and cost: as fibrad_exchange_row. */
+ * periods counted; what bodies absorb, escapes or is beyond counts as 0. Errors and cost: as fibrad_exchange_row. */
 int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
                                  const fibrad_exchange_rule *rule, fibrad_displacement *displacement);
 
@@ -389,7 +388,7 @@ typedef struct fibrad_heat_config {
     uint32_t points;     /* per direction: 64, 128 or 256; 0: 64 */
     uint32_t patches;    /* of a sphere: 24, 96 or 384; 0: 96 */
     uint32_t parts;      /* [1, 1024] of a sweep, for as many threads; last bits depend on it; 0: 8 */
-    double cutoff;       /* 0: none; else FIBRAD_E_UNSUPPORTED */
+    double cutoff;       /* 0: none; else, as with a known region, FIBRAD_E_UNSUPPORTED */
 } fibrad_heat_config;
 
 typedef struct fibrad_heat fibrad_heat; /* beams, patches and radiosities of a scene */

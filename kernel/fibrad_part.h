@@ -2,10 +2,11 @@
  *
  * Index: fibrad_occupancy, fibrad_flow, fibrad_rows_flow, fibrad_rows_read. Conventions are those of fibrad.h.
  *
- * Beyond   With a cutoff a row knows spheres up to there from its sphere's centre; a scene may have a known region, too.
+ * Beyond   A row with a cutoff knows spheres up to there from its sphere's centre; a scene may have a known region.
  *          What leaves either before it meets a sphere or a body is `beyond`: there may be spheres on its way that the
  *          scene does not have or that the cutoff leaves out. It goes on to a body or escapes if there are none: where
- *          the occupancy says so, or, without one and without a known region, where the box of all spheres ends.
+ *          the occupancy says so, or, without one and without a known region, where the box of all spheres ends. Beams
+ *          and rays of view factors see spheres of the scene outside a known region as usual; reflections do not.
  * Parts    The row of a sphere depends on what is nearer to its centre than cutoff + the largest radius, on the bodies,
  *          on the occupancy and on ids; not on other spheres, nor on the order of spheres: not a bit.
  *
@@ -19,32 +20,33 @@
 extern "C" {
 #endif
 
-/* Where a bed has spheres: cells of a box. In cells that are not marked, and outside of the box, there is no part of any
- * sphere. It stays in place while the scene is used. */
+/* Where a bed has spheres: cells of a box. In cells that are not marked, and outside of the box, there is no part of
+ * any sphere. It stays in place while the scene is used. */
 typedef struct fibrad_occupancy {
     double low[3], high[3]; /* [L] the box, low below high */
     uint32_t cells[3];      /* along each axis, [1, 2^20] */
     int periodic[3];        /* 1: it repeats along the axis without end */
-    const uint64_t *mark;   /* [(cells + 63)/64] cell x + cells[0] (y + cells[1] z) is bit .%64 of word ./64; NULL: all */
+    const uint64_t *mark; /* [(cells + 63)/64] cell x + cells[0] (y + cells[1] z) is bit .%64 of word ./64; NULL: all */
 } fibrad_occupancy;
 
 /* Emission and powers of a part. Power is in the unit of emission L^2, > 0 where heat is gained. */
 typedef struct fibrad_flow {
-    const double *weight;          /* [spheres] A eps [L^2] = 4 pi r^2 eps, of those whose rows there are */
-    const double *emission;        /* [spheres] sigma T^4 */
-    const double *body_emission;   /* [bodies] */
-    double surroundings_emission;  /* of what is met where rows say `escaped` */
-    double *power;                 /* [spheres] added to */
-    double *body_power;            /* [bodies] added to */
-    double surroundings_power;     /* added to */
+    const double *weight;         /* [spheres] A eps [L^2] = 4 pi r^2 eps, of those whose rows there are */
+    const double *emission;       /* [spheres] sigma T^4 */
+    const double *body_emission;  /* [bodies] */
+    double surroundings_emission; /* of what is met where rows say `escaped` */
+    double *power;                /* [spheres] added to */
+    double *body_power;           /* [bodies] added to */
+    double surroundings_power;    /* added to */
 } fibrad_flow;
 
-/* Adds the powers that follow from rows of exchange factors as they are, which need not be square: an entry carries half
- * of what its pair exchanges, f = 1/2 A_i eps_i D_ij (E_j - E_i) from j to i; the other half comes from row j, on the
- * same machine or on another. Bodies and surroundings have no rows, so their entries count in full. What is `beyond` is
- * given back to the row, times 1/(1 - beyond). What i gains j loses, to the bit before they are summed; nothing flows
- * between equal emissions. Rows in the order of the collection. Errors: FIBRAD_E_ARGUMENT: a null pointer, a column or a
- * row beyond `spheres`, rows of another number of bodies, values that are not finite. Cost: 2 ns per entry. */
+/* Adds the powers that follow from rows of exchange factors as they are, which need not be square: an entry carries
+ * half of what its pair exchanges, f = 1/2 A_i eps_i D_ij (E_j - E_i) from j to i; the other half comes from row j, on
+ * the same machine or on another. Bodies and surroundings have no rows, so their entries count in full. What is
+ * `beyond` is given back to the row, times 1/(1 - beyond). What i gains j loses, to the bit before they are summed;
+ * nothing flows between equal emissions. Rows in the order of the collection. Errors: FIBRAD_E_ARGUMENT: a null
+ * pointer, a column or a row beyond `spheres`, rows of another number of bodies, values that are not finite; _STATE:
+ * the block was moved to another alignment. Cost: 2 ns per entry. */
 int fibrad_rows_flow(const fibrad_rows *rows, uint32_t spheres, uint32_t bodies, fibrad_flow *flow);
 
 /* Rows one after the other: 1 and the row that begins at *at (0 at first, moved behind it), or 0 behind the last. Its

@@ -1,5 +1,6 @@
 /* test_matrix.c - collections of rows, and the matrices made of them: averaged, limited, balanced, closed, dropped.
  * SPDX-License-Identifier: MIT */
+#include "fibrad_part.h"
 #include "scenes.h"
 #include "suite.h"
 
@@ -864,6 +865,47 @@ START_TEST(collections_that_grow) {
 }
 END_TEST
 
+/* Rows come back as they went in, also empty ones, with columns that may be written. */
+START_TEST(rows_read_one_by_one) {
+    uint32_t col[] = {3, 5, 9};
+    double f[] = {.25, .125, .0625}, body[] = {.5};
+    const fibrad_row in = {.col = col,
+                           .f = f,
+                           .body = body,
+                           .length = 3,
+                           .escaped = .03125,
+                           .beyond = .03125,
+                           .error = .01,
+                           .symmetric = 1};
+    fibrad_rows rows = {.memory = memory_growing()};
+    fibrad_row out;
+    size_t at = 0;
+    ck_assert_int_eq(fibrad_rows_read(&rows, &at, &out), 0);
+    for (uint32_t i = 0; i < 40; i++) {
+        fibrad_row row = in;
+        row.sphere = i, row.length = i % 4;
+        ck_assert_int_eq(fibrad_rows_add(&rows, &row, 1), FIBRAD_OK);
+    }
+    for (uint32_t again = 0; again < 2; again++) {
+        at = 0;
+        for (uint32_t i = 0; i < 40; i++) {
+            ck_assert_int_eq(fibrad_rows_read(&rows, &at, &out), 1);
+            ck_assert(out.sphere == i && out.length == i % 4 && out.body[0] == .5 && out.symmetric == 1);
+            ck_assert(out.escaped == .03125 && out.beyond == .03125 && out.error == .01 && out.rows == NULL);
+            for (uint32_t k = 0; k < out.length; k++) {
+                ck_assert(out.col[k] == col[k] + again * 100 && out.f[k] == f[k]);
+                out.col[k] += 100;
+            }
+        }
+        ck_assert_int_eq(fibrad_rows_read(&rows, &at, &out), 0);
+    }
+    ck_assert_int_eq(fibrad_rows_read(NULL, &at, &out), 0);
+    ck_assert_int_eq(fibrad_rows_read(&rows, NULL, &out), 0);
+    ck_assert_int_eq(fibrad_rows_read(&rows, &at, NULL), 0);
+    rows_free(&rows);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("matrix");
     TCase *tcase = suite_case(suite, "matrix");
@@ -889,5 +931,6 @@ int main(void) {
     tcase_add_test(tcase, rows_added_are_rows_computed);
     tcase_add_test(tcase, collections_in_fixed_memory);
     tcase_add_test(tcase, collections_that_grow);
+    tcase_add_test(tcase, rows_read_one_by_one);
     return suite_run(suite);
 }

@@ -145,7 +145,9 @@ static struct named_row row_by(const struct part *p, const fibrad_scene *scene, 
     double *e = emissivities_of(p);
     fibrad_work work = work_growing();
     const fibrad_beam_rule beam = {.directions = method == 2 ? 34 : 55,
-                                   .points = method == 0 ? 0 : method == 1 ? 64 : 256,
+                                   .points = method == 0   ? 0
+                                             : method == 1 ? 64
+                                                           : 256,
                                    .cutoff = cutoff,
                                    .turn = method == 2 ? 99 : 0};
     const fibrad_cast_rule cast = {.rays = 600, .seed = 4, .cutoff = cutoff};
@@ -177,7 +179,8 @@ static bool same_double(double a, double b) { return memcmp(&a, &b, sizeof a) ==
 
 static void expect_same_named(const struct named_row *a, const struct named_row *b, uint32_t ids, const char *what) {
     for (uint32_t id = 0; id < ids; id++)
-        ck_assert_msg(same_double(a->by_id[id], b->by_id[id]), "%s: id %u: %a, %a", what, id, a->by_id[id], b->by_id[id]);
+        ck_assert_msg(same_double(a->by_id[id], b->by_id[id]), "%s: id %u: %a, %a", what, id, a->by_id[id],
+                      b->by_id[id]);
     for (int body = 0; body < BODIES_MOST; body++)
         ck_assert_msg(same_double(a->row.body[body], b->row.body[body]), "%s: body %d", what, body);
     ck_assert_msg(same_double(a->row.escaped, b->row.escaped), "%s: escaped", what);
@@ -193,9 +196,9 @@ struct kind {
     bool across, z; /* periodic across z, along z */
     int walls;      /* 1: planes where an axis is open, 2: a cylinder and planes across z */
 };
-static const struct kind kinds[] = {{"open", 0, false, false, 0},    {"box", 0, false, false, 1},
-                                    {"can", 0, false, false, 2},     {"slab", 0, true, false, 1},
-                                    {"periodic", 0, true, true, 0},  {"lattice", 'p', false, false, 0},
+static const struct kind kinds[] = {{"open", 0, false, false, 0},          {"box", 0, false, false, 1},
+                                    {"can", 0, false, false, 2},           {"slab", 0, true, false, 1},
+                                    {"periodic", 0, true, true, 0},        {"lattice", 'p', false, false, 0},
                                     {"close-packed", 'f', false, false, 1}};
 enum { KINDS = sizeof kinds / sizeof *kinds, BODIES = 7 };
 
@@ -336,8 +339,7 @@ START_TEST(images_are_spheres_of_the_same_id) {
             const double count = method == 1 ? 55 * 64 : method == 2 ? 34 * 256 : 600;
             for (uint32_t id = 0; id < p->ids; id++) {
                 ck_assert_double_eq_tol(expected.by_id[id], found.by_id[id], 2e-15);
-                if (method < 4)
-                    ck_assert(llround(expected.by_id[id] * count) == llround(found.by_id[id] * count));
+                if (method < 4) ck_assert(llround(expected.by_id[id] * count) == llround(found.by_id[id] * count));
             }
             ck_assert(fabs(expected.row.escaped - found.row.escaped) <= (method < 4 ? 0 : 2e-15));
             ck_assert(fabs(expected.row.beyond - found.row.beyond) <= (method < 4 ? 0 : 2e-15));
@@ -535,8 +537,8 @@ END_TEST
 START_TEST(a_known_region_ends_in_a_can) {
     const fibrad_body body[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 35, 1}});
-    struct part p = part_of(&bed, (fibrad_scene_config){
-                                      .body = body, .bodies = 3, .known_low = {0, 0, -1000}, .known_high = {0, 0, 20}});
+    struct part p = part_of(
+        &bed, (fibrad_scene_config){.body = body, .bodies = 3, .known_low = {0, 0, -1000}, .known_high = {0, 0, 20}});
     fibrad_scene *scene = part_scene(&p);
     const double share = .5 * (1 - 20 / sqrt(500)), below = .5 * (1 - 40 / sqrt(1700));
     for (int method = 0; method < METHODS; method++) {
@@ -544,7 +546,8 @@ START_TEST(a_known_region_ends_in_a_can) {
         const double tolerance = method < 3 ? 6e-3 : method == 3 ? .02 : 1; /* of exchange: sums alone */
         ck_assert_double_eq_tol(row.row.beyond, share, tolerance);
         ck_assert_double_eq_tol(row.row.body[0], below, tolerance);
-        ck_assert_double_eq(row.row.body[1], 0); /* the wall and the sphere above cannot be told from what may be there */
+        ck_assert_double_eq(row.row.body[1],
+                            0); /* the wall and the sphere above cannot be told from what may be there */
         ck_assert_double_gt(row.row.beyond, share / 2);
         ck_assert_double_eq(row.row.escaped, 0);
         named_free(&row);
@@ -680,9 +683,9 @@ START_TEST(what_one_gains_others_lose) {
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 2});
     double e[60];
     for (int i = 0; i < 60; i++) e[i] = .4 + .01 * i;
-    fibrad_rows rows =
-        exchange_rows(scene, bed.n, &(fibrad_exchange_rule){
-                                        .emissivity = e, .body_emissivity = wall_emissivity, .seed = 5, .cutoff = 3});
+    fibrad_rows rows = exchange_rows(
+        scene, bed.n,
+        &(fibrad_exchange_rule){.emissivity = e, .body_emissivity = wall_emissivity, .seed = 5, .cutoff = 3});
     struct powers p = powers_of(&bed, e);
     powers_point(&p);
     ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 2, &p.flow), FIBRAD_OK);
@@ -744,7 +747,8 @@ START_TEST(powers_are_those_of_the_averaged_matrix) {
         double power = 0;
         for (uint32_t k = 0; k < row.length; k++)
             power += p.weight[i] * row.f[k] * (p.emission[row.col[k]] - p.emission[i]);
-        ck_assert_double_eq_tol(p.power[i], power, .02 * largest); /* the matrix brings sums to those of raw rows, too */
+        ck_assert_double_eq_tol(p.power[i], power,
+                                .02 * largest); /* the matrix brings sums to those of raw rows, too */
     }
     free((void *)(uintptr_t)m.matrix);
     powers_free(&p);

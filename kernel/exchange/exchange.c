@@ -38,8 +38,8 @@ static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32
         if (!(emissivity >= 0 && emissivity <= 1)) return FIBRAD_E_ARGUMENT;
         task->wall_emissivity[scene->slot[b]] = emissivity;
     }
-    const bool valid = rule->tolerance >= 0 && fibrad_finite(rule->tolerance) && rule->cutoff >= 0 &&
-                       fibrad_finite(rule->cutoff);
+    const bool valid =
+        rule->tolerance >= 0 && fibrad_finite(rule->tolerance) && rule->cutoff >= 0 && fibrad_finite(rule->cutoff);
     return valid ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
 

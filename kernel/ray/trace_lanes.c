@@ -80,7 +80,8 @@ static void cross_box(const struct trace_ray *ray, bool grid, double *enter, dou
     for (int axis = 0; axis < 3; axis++) {
         double w = ray->w[axis];
         if (scene->period[axis] > 0) {
-            if (w != 0) *leave = fibrad_min(*leave, FIBRAD_PERIODS * scene->period[axis] * ray->inverse / fibrad_abs(w));
+            if (w != 0)
+                *leave = fibrad_min(*leave, FIBRAD_PERIODS * scene->period[axis] * ray->inverse / fibrad_abs(w));
             continue;
         }
         double low = (grid ? scene->box_low : scene->low)[axis] - wide - ray->base[axis];

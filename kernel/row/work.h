@@ -55,15 +55,15 @@ typedef struct fibrad_workspace {
     uint64_t extra_owner; /* whose contents `extra` has, 0: nobody's; methods have numbers of their own */
     /* the row in hand */
     const fibrad_scene *scene;
-    uint32_t place;                /* of sphere i in the scene */
-    double unit, inverse;          /* its radius [L], and 1/radius */
-    double centre[3];              /* [L] */
-    double reach;                  /* the cutoff; infinity if there is none */
-    double step, growth;           /* depth of the first shell, and the ratio of each next one to it */
-    double farthest;               /* no sphere is farther from i; infinity with periodic axes */
-    double clear;                  /* no window has its horizon nearer than this */
-    bool cut;                      /* whether lines are cut: there is a cutoff, or a known region */
-    double wall[FIBRAD_EXITS];     /* what meets each wall, escapes, or is beyond: areas, points or rays, then factors */
+    uint32_t place;            /* of sphere i in the scene */
+    double unit, inverse;      /* its radius [L], and 1/radius */
+    double centre[3];          /* [L] */
+    double reach;              /* the cutoff; infinity if there is none */
+    double step, growth;       /* depth of the first shell, and the ratio of each next one to it */
+    double farthest;           /* no sphere is farther from i; infinity with periodic axes */
+    double clear;              /* no window has its horizon nearer than this */
+    bool cut;                  /* whether lines are cut: there is a cutoff, or a known region */
+    double wall[FIBRAD_EXITS]; /* what meets each wall, escapes, or is beyond: areas, points or rays, then factors */
 } fibrad_workspace;
 
 /* Lays work memory out, or finds it laid out, with `extra_min` extra bytes at least and `extra_best` at best.

@@ -39,13 +39,13 @@ struct fibrad_scene {
     double period[3], low[3], high[3]; /* box of the centres; on a periodic axis high = low + period */
     double box_low[3], box_high[3];    /* box of the grid: the same without stray spheres */
     fibrad_container container;
-    bool region;                          /* whether a known region was given */
-    double known_low[3], known_high[3];   /* [L] infinite where it is open */
-    fibrad_occupancy occupancy;           /* the caller's, or one cell */
-    uint32_t slot[FIBRAD_WALLS];    /* [facts.bodies] of each body */
-    double wall_area[FIBRAD_WALLS]; /* [L^2] by slot, as fibrad_scene_body_area; 0: no such wall */
-    uint64_t hash;                  /* of all that was handed over; 0: the scene is not complete */
-    double spacing;                 /* cube root of the volume per sphere [L] */
+    bool region;                        /* whether a known region was given */
+    double known_low[3], known_high[3]; /* [L] infinite where it is open */
+    fibrad_occupancy occupancy;         /* the caller's, or one cell */
+    uint32_t slot[FIBRAD_WALLS];        /* [facts.bodies] of each body */
+    double wall_area[FIBRAD_WALLS];     /* [L^2] by slot, as fibrad_scene_body_area; 0: no such wall */
+    uint64_t hash;                      /* of all that was handed over; 0: the scene is not complete */
+    double spacing;                     /* cube root of the volume per sphere [L] */
     uint32_t levels;
     fibrad_level level[FIBRAD_LEVELS]; /* by ascending radius; empty ones left out */
     double *x, *y, *z, *r;             /* [n] in cell order */

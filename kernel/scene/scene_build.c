@@ -92,8 +92,9 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
     const fibrad_occupancy *o = &scene->occupancy;
     uint64_t hash = fibrad_mix(s->n), word, cells = 1;
     for (int axis = 0; axis < 3; axis++) {
-        const double fixed[] = {scene->period[axis],     c->low[axis], c->high[axis], scene->known_low[axis],
-                                scene->known_high[axis], o->low[axis], o->high[axis], axis < 2 ? c->axis[axis] : c->radius};
+        const double fixed[] = {
+            scene->period[axis],     c->low[axis], c->high[axis], scene->known_low[axis],
+            scene->known_high[axis], o->low[axis], o->high[axis], axis < 2 ? c->axis[axis] : c->radius};
         for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) {
             fibrad_copy(&word, &fixed[k], sizeof word);
             hash = fibrad_mix(hash ^ word);
