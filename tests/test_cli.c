@@ -680,6 +680,8 @@ START_TEST(points_and_cutoff) {
     SUCCEED("bed", POLY, "--directions", "34", "--areas", "points", "--cutoff", "1.5");
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
     ck_assert_double_lt(value_of("nonzeros"), entries / 2);
+    ck_assert_double_gt(value_of("beyond_mean"), .1); /* other spheres, for the most part */
+    ck_assert_double_lt(value_of("closure_max"), 1e-12);
 }
 END_TEST
 

@@ -65,7 +65,8 @@ static int bed_help(void) {
          "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... in the order given and the\n"
          "surroundings j = -1, so that rows add up to 1; i = -2, -3 ... from walls of finite area to spheres; in .vtp "
          "an\n"
-         "array for each wall. .mtx and .npz hold spheres only.\n\n"
+         "array for each wall. .mtx and .npz hold spheres only. What leaves a --cutoff is beyond: after the walls in\n"
+         ".csv, `beyond_mean` in the summary.\n\n"
          "Standard output ends with a summary, one `key value` a line; `wall_NAME`: mean F from a sphere, area.\n\n"
          "Examples:\n"
          "  fibrad bed packing.dump -o F.mtx --plot bed.png\n"
@@ -194,6 +195,7 @@ static void bed_print(const struct bed_request *request, const struct contents *
     printf("row_sum_min %.17g\n", summary->row_sum_min);
     printf("row_sum_max %.17g\n", summary->row_sum_max);
     printf("escaped_mean %.17g\n", summary->escaped_mean);
+    if (request->cutoff > 0) printf("beyond_mean %.17g\n", summary->beyond_mean);
     printf("closure_max %.17g\n", factors->closure_error);
     printf("reciprocity_max %.17g\n", factors->reciprocity_error);
     printf("error_estimate %.17g\n", summary->error_max);

@@ -28,7 +28,7 @@ static const struct option conductivity_table[] = {
     {OPTION_EMISSIVITY},
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [as many as --error takes]"},
     {KEY_ERROR, "error", "E", "as many as bring the estimated standard errors to E of F_E, 1e-4 to 1 [0.003]"},
-    {KEY_SEED, "seed", "S", "another number, other paths [0]"},
+    {KEY_SEED, "seed", "S", "another number, other paths and directions [0]"},
     {OPTION_PERIODIC},
     {OPTION_FRAME},
     {OPTION_THREADS},

@@ -24,7 +24,7 @@ static const struct option exchange_table[] = {
     {OPTION_WALL_EMISSIVITY},
     {KEY_RAW, "raw", NULL, "do not average D_ij and D_ji [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
     {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},
-    {KEY_SEED, "seed", "S", "another number, other paths [0]"},
+    {KEY_SEED, "seed", "S", "another number, other paths and directions [0]"},
     {OPTION_PERIODIC},
     {OPTION_FRAME},
     {OPTION_THREADS},

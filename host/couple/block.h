@@ -15,10 +15,12 @@ typedef struct fibrad_block {
 /* Makes room for `count` things of `size` bytes, contents kept. FIBRAD_OK or _E_MEMORY, the block then as it was. */
 static inline int fibrad_block_fit(fibrad_block *block, size_t count, size_t size) {
     const size_t needed = (count + 1) * size; /* never NULL */
-    if (needed <= block->size) return FIBRAD_OK;
-    void *at = realloc(block->at, needed + needed / 4);
-    if (!at) return FIBRAD_E_MEMORY;
-    *block = (fibrad_block){at, needed + needed / 4};
+    if (needed > block->size) {
+        void *at = realloc(block->at, needed + needed / 4);
+        if (!at) return FIBRAD_E_MEMORY;
+        block->at = at;
+        block->size = needed + needed / 4;
+    }
     return FIBRAD_OK;
 }
 

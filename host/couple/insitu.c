@@ -36,13 +36,19 @@ static int open_set(fibrad_insitu_set *set, int threads) {
     return set->rows ? FIBRAD_OK : FIBRAD_E_MEMORY;
 }
 
+/* Up to a NULL. */
+static void free_blocks(fibrad_block *const *block) {
+    for (; *block; ++block) fibrad_block_free(*block);
+}
+
 static void close_set(fibrad_insitu_set *set, int threads) {
     for (int t = 0; t < threads && set->rows; ++t) free(set->rows[t].memory.block);
     free(set->rows);
     fibrad_link_free(set->seen);
     fibrad_link_free(set->present);
-    fibrad_block *const blocks[] = {&set->particle, &set->id, &set->weight, &set->emission, &set->power, &set->now};
-    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k) fibrad_block_free(blocks[k]);
+    fibrad_block *const blocks[] = {&set->particle, &set->id,  &set->weight, &set->emission,
+                                    &set->power,    &set->now, NULL};
+    free_blocks(blocks);
 }
 
 int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu_config *config) {
@@ -79,8 +85,8 @@ void fibrad_insitu_free(fibrad_insitu *s) {
     close_set(&s->next, s->config.threads);
     for (int t = 0; t < s->config.threads; ++t) free(s->work[t].memory.block);
     free(s->work);
-    fibrad_block *const blocks[] = {&s->scene, &s->order, &s->emissivity, &s->mark, &s->sent, &s->value};
-    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k) fibrad_block_free(blocks[k]);
+    fibrad_block *const blocks[] = {&s->scene, &s->order, &s->emissivity, &s->mark, &s->sent, &s->value, NULL};
+    free_blocks(blocks);
     MPI_Comm_free(&s->comm);
     free(s);
 }

@@ -63,25 +63,27 @@ static uint32_t *find_id(const struct id_table *table, uint64_t id) {
 
 /* ---- making a link ---- */
 
-/* Who owns an id, and where there; rank UINT32_MAX: nobody. */
+/* Who owns an id, and where there. */
 struct owner {
     uint64_t id;
     uint32_t rank, index;
 };
 
+enum { DIRECTORY, QUESTIONS, REPLIES, WANTED, ARRIVALS };
+
 /* A link being made. */
 struct making {
     MPI_Comm comm;
     int rank, ranks;
-    int *count, *got;   /* [ranks] */
-    int *answers;       /* [ranks] */
+    int *count, *got;   /* [ranks] things to send, and that come; got is scratch before they do */
+    int *answers;       /* [ranks] that come from each rank of the directory */
     const uint64_t *id; /* [own + used] */
     uint64_t *asked;    /* [unique] ids used, each once, in order of their directory's rank */
     size_t unique;
-    uint32_t *number;    /* [unique] ... which of them */
-    struct owner *owner; /* [own] or [unique] things to send */
+    uint32_t *number;    /* [unique] where among them each id used is; then where its value arrives */
+    struct owner *owner; /* [own] by their directory's rank */
     struct id_table table;
-    fibrad_block directory, questions, replies, wanted;
+    fibrad_block *arrived; /* [ARRIVALS] what others have sent */
     uint64_t culprit;
     bool fault;
 };
@@ -106,7 +108,7 @@ static int enter_owned(struct making *m, size_t own) {
     begin_places(m);
     for (size_t i = 0; i < own; ++i)
         m->owner[m->got[directory_of(m, m->id[i])]++] = (struct owner){m->id[i], (uint32_t)m->rank, (uint32_t)i};
-    return fibrad_deal(m->comm, FIBRAD_OK, m->owner, m->count, sizeof *m->owner, &m->directory, 0, m->got);
+    return fibrad_deal(m->comm, FIBRAD_OK, m->owner, m->count, sizeof *m->owner, &m->arrived[DIRECTORY], 0, m->got);
 }
 
 /* Asks the directory for the ids used, each once. slot[used]: which of the questions. */
@@ -131,13 +133,13 @@ static int ask_directory(struct making *m, size_t own, size_t used, uint32_t *sl
         }
     for (size_t k = 0; k < used && !status; ++k) slot[k] = m->number[slot[k]];
     close_table(&seen);
-    return fibrad_deal(m->comm, status, m->asked, m->count, sizeof *m->asked, &m->questions, 0, m->got);
+    return fibrad_deal(m->comm, status, m->asked, m->count, sizeof *m->asked, &m->arrived[QUESTIONS], 0, m->got);
 }
 
 /* Answers all questions; the answers come back in the order of the questions. */
 static int answer(struct making *m, size_t entries) {
-    const struct owner *entry = m->directory.at;
-    const uint64_t *question = m->questions.at;
+    const struct owner *entry = m->arrived[DIRECTORY].at;
+    const uint64_t *question = m->arrived[QUESTIONS].at;
     const size_t questions = fibrad_count_sum(m->got, m->ranks);
     struct owner *reply = malloc((questions + 1) * sizeof *reply);
     int status = open_table(&m->table, entries);
@@ -152,7 +154,7 @@ static int answer(struct making *m, size_t entries) {
         if (number == UINT32_MAX) blame(m, question[k]);
         reply[k] = number == UINT32_MAX ? (struct owner){question[k], 0, 0} : entry[number];
     }
-    status = fibrad_deal(m->comm, status, reply, m->got, sizeof *reply, &m->replies, 0, m->answers);
+    status = fibrad_deal(m->comm, status, reply, m->got, sizeof *reply, &m->arrived[REPLIES], 0, m->answers);
     free(reply);
     return status;
 }
@@ -168,7 +170,7 @@ static int agree_on_fault(struct making *m, uint64_t *culprit) {
 
 /* Asks the owners for the values, by rank; slots become places in that order. */
 static int ask_owners(struct making *m, fibrad_link *link) {
-    const struct owner *reply = m->replies.at;
+    const struct owner *reply = m->arrived[REPLIES].at;
     uint32_t *wanted = malloc((m->unique + 1) * sizeof *wanted);
     memset(m->count, 0, (size_t)m->ranks * sizeof *m->count);
     for (size_t u = 0; u < m->unique; ++u) m->count[reply[u].rank]++;
@@ -180,7 +182,7 @@ static int ask_owners(struct making *m, fibrad_link *link) {
     }
     for (size_t k = 0; k < link->used; ++k) link->slot[k] = m->number[link->slot[k]];
     const int status = fibrad_deal(m->comm, wanted ? FIBRAD_OK : FIBRAD_E_MEMORY, wanted, m->count, sizeof *wanted,
-                                   &m->wanted, 0, m->got);
+                                   &m->arrived[WANTED], 0, m->got);
     free(wanted);
     return status;
 }
@@ -191,8 +193,8 @@ static int lay_out(struct making *m, fibrad_link *link) {
     for (int q = 0; q < m->ranks; ++q) peers += q != m->rank ? (m->count[q] > 0) + (m->got[q] > 0) : 0;
     link->got = m->unique;
     link->sent = fibrad_count_sum(m->got, m->ranks);
-    link->source = m->wanted.at;
-    m->wanted.at = NULL;
+    link->source = m->arrived[WANTED].at;
+    m->arrived[WANTED].at = NULL;
     link->out = malloc((link->sent + 1) * sizeof *link->out);
     link->in = malloc((link->got + 1) * sizeof *link->in);
     link->request = malloc((2 * (size_t)peers + 1) * sizeof(MPI_Request));
@@ -230,39 +232,54 @@ static int make_link(struct making *m, fibrad_link *link, uint64_t *culprit) {
     return status ? status : lay_out(m, link);
 }
 
+/* Memory for own and used ids; close it also after an error. FIBRAD_OK or _E_MEMORY. */
+static int open_making(struct making *m, size_t own, size_t used) {
+    const size_t ranks = (size_t)m->ranks;
+    m->count = malloc(ranks * sizeof *m->count);
+    m->got = malloc(ranks * sizeof *m->got);
+    m->answers = malloc(ranks * sizeof *m->answers);
+    m->asked = malloc((used + 1) * sizeof *m->asked);
+    m->number = malloc((used + 1) * sizeof *m->number);
+    m->owner = malloc((own + 1) * sizeof *m->owner);
+    return m->count && m->got && m->answers && m->asked && m->number && m->owner ? FIBRAD_OK : FIBRAD_E_MEMORY;
+}
+
+static void close_making(struct making *m) {
+    free(m->count);
+    free(m->got);
+    free(m->answers);
+    free(m->asked);
+    free(m->number);
+    free(m->owner);
+    close_table(&m->table);
+    for (int k = 0; k < ARRIVALS; ++k) fibrad_block_free(&m->arrived[k]);
+}
+
+/* A link without messages yet; NULL: no memory. */
+static fibrad_link *open_link(size_t own, size_t used) {
+    fibrad_link *link = calloc(1, sizeof *link);
+    if (!link) return NULL;
+    link->own = own;
+    link->used = used;
+    link->slot = malloc((used + 1) * sizeof *link->slot);
+    if (link->slot) return link;
+    free(link);
+    return NULL;
+}
+
 int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_t own, size_t all, uint64_t *culprit) {
-    struct making m = {.comm = comm, .id = id};
+    fibrad_block arrived[ARRIVALS] = {{0}};
+    struct making m = {.comm = comm, .id = id, .arrived = arrived};
     MPI_Comm_rank(comm, &m.rank);
     MPI_Comm_size(comm, &m.ranks);
     int status = link && all >= own && (id || all == 0) ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
-    if (all > INT_MAX) status = FIBRAD_E_MEMORY; /* MPI counts by int */
-    const size_t used = status ? 0 : all - own, ranks = (size_t)m.ranks;
-    fibrad_link *made = calloc(1, sizeof *made);
-    uint32_t *slot = malloc((used + 1) * sizeof *slot);
-    m.count = malloc(ranks * sizeof *m.count);
-    m.got = malloc(ranks * sizeof *m.got);
-    m.answers = malloc(ranks * sizeof *m.answers);
-    m.asked = malloc((used + 1) * sizeof *m.asked);
-    m.number = malloc((used + 1) * sizeof *m.number);
-    m.owner = malloc(((status ? 0 : own) + 1) * sizeof *m.owner);
-    if (!status && !(made && slot && m.count && m.got && m.answers && m.asked && m.number && m.owner))
-        status = FIBRAD_E_MEMORY;
-    if (made) made->own = own, made->used = used, made->slot = slot;
+    if (!status && all > INT_MAX) status = FIBRAD_E_MEMORY; /* MPI counts by int */
+    fibrad_link *made = status ? NULL : open_link(own, all - own);
+    if (!status) status = made ? open_making(&m, own, all - own) : FIBRAD_E_MEMORY;
     status = fibrad_agree(comm, status, NULL);
     if (!status) status = make_link(&m, made, culprit);
-    free(m.count);
-    free(m.got);
-    free(m.answers);
-    free(m.asked);
-    free(m.number);
-    free(m.owner);
-    close_table(&m.table);
-    fibrad_block_free(&m.directory);
-    fibrad_block_free(&m.questions);
-    fibrad_block_free(&m.replies);
-    fibrad_block_free(&m.wanted);
+    close_making(&m);
     if (status) {
-        if (!made) free(slot);
         fibrad_link_free(made);
         made = NULL;
     }

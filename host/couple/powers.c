@@ -8,7 +8,7 @@
 
 #define TEMPERATURE_MAX 1e20 /* its fourth power is far from overflow */
 
-/* Whether something radiates soundly. low: 0 for walls, above 0 for particles. */
+/* zero: whether it may be 0. */
 static int temperature_valid(double t, int zero) { return (zero ? t >= 0 : t > 0) && t <= TEMPERATURE_MAX; }
 
 static double sigma_of(const fibrad_insitu_state *state) {
@@ -40,7 +40,8 @@ static int check_state(fibrad_insitu *s, const fibrad_insitu_state *state, const
 static int follow_particles(fibrad_insitu *s, const fibrad_insitu_state *state) {
     fibrad_insitu_set *set = &s->set;
     const size_t n = state->n, all = n + set->own;
-    uint64_t culprit, sum[2] = {n, n != set->now_n || (n && memcmp(set->now.at, state->id, n * sizeof *state->id))};
+    uint64_t culprit, sum[2] = {n, n != set->now_n}; /* particles; ranks where they have moved */
+    if (n && !sum[1]) sum[1] = memcmp(set->now.at, state->id, n * sizeof *state->id) != 0;
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_UINT64_T, MPI_SUM, s->comm);
     if (!sum[1]) return FIBRAD_OK;
     if (sum[0] != set->facts.particles)

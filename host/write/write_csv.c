@@ -17,11 +17,13 @@ static double wall_factor(const struct contents *what, uint32_t i, uint32_t wall
     return what->factors->matrix.body[(size_t)i * what->walls->count + wall];
 }
 
-/* From sphere i to the surroundings, j = -1, and to the walls, j = -2, -3 ... in the order given. */
+/* From sphere i to the surroundings, j = -1, to the walls, j = -2, -3 ... in the order given, and beyond a cutoff, the
+ * next j. */
 static void write_outside(FILE *file, const struct contents *what, uint32_t i) {
     write_entry(file, csv_name(what, i), -1, what->factors->matrix.escaped[i]);
     for (uint32_t k = 0; k < what->walls->count; ++k)
         write_entry(file, csv_name(what, i), -2 - (int64_t)k, wall_factor(what, i, k));
+    write_entry(file, csv_name(what, i), -2 - (int64_t)what->walls->count, what->factors->matrix.beyond[i]);
 }
 
 /* From the walls of finite area to the spheres, by reciprocity. */

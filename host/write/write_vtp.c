@@ -34,6 +34,7 @@ int write_vtp(FILE *file, const struct contents *what) {
         vtp_begin(file, bed, "row_sum");
         vtp_row_sums(file, what, values);
         vtp_doubles(file, "escaped", matrix->escaped, bed->n, what->wanted);
+        vtp_doubles(file, "beyond", matrix->beyond, bed->n, what->wanted);
         vtp_walls(file, what, values);
         vtp_counts(file, "neighbours", count, bed->n);
         vtp_end(file, bed);

@@ -48,6 +48,7 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
     const uint32_t place = scene->place[i];
     return (fibrad_paths){.tracer = fibrad_tracer_of(space, scene),
                           .place = place,
+                          .cut = task->rule->cutoff > 0 || scene->region,
                           .cutoff = task->rule->cutoff > 0 ? task->rule->cutoff / scene->r[place] : __builtin_inf(),
                           .emissivity = task->rule->emissivity,
                           .wall_emissivity = task->wall_emissivity,
@@ -156,7 +157,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
         follow_paths(&paths, rule, carried, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
         double sum = sum_of_paths(&paths);
         scale = sum > 0 ? carried / sum : 0;
-        if (sum == 0) *(space->cut ? &paths.beyond : &paths.escaped) = carried, scale = 1, beam_error += carried;
+        if (sum == 0) *(paths.cut ? &paths.beyond : &paths.escaped) = carried, scale = 1, beam_error += carried;
     }
     /* the first leg adds the same to all parts: it would leave nothing but rounding */
     const double paths_error = scale * distance_of_halves(&space->entries);

@@ -14,7 +14,8 @@
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
     uint32_t place;                /* of the sphere they leave */
-    double cutoff;                 /* of their ends from its centre, in its radii; infinity: none */
+    bool cut;                      /* whether they end beyond a cutoff or a known region */
+    double cutoff;                 /* from its centre, in its radii; infinity: none */
     const double *emissivity;      /* [spheres], in the caller's order */
     const double *wall_emissivity; /* [FIBRAD_WALLS] by slot */
     fibrad_random stream;          /* all numbers of path k come from it and k */

@@ -79,40 +79,49 @@ static void draw_direction(const fibrad_paths *paths, struct grey_path *path, do
     for (int axis = 0; axis < 3; axis++) w[axis] *= inverse;
 }
 
-/* How far a ray from where the path is goes until it leaves what is known [L]; below 0: it begins outside. */
-static double known_length(const fibrad_paths *paths, const struct grey_path *path, const double point[3],
-                           const double w[3], double *ball) {
-    const fibrad_scene *scene = paths->tracer->scene;
-    const double unit = scene->r[paths->place], inverse = 1 / unit;
-    double start[3];
+/* Where a path is in the scene [L]: at a wall, or on a sphere, whose centre is told, too. */
+static void find_point(const fibrad_scene *scene, const struct grey_path *path, double centre[3], double point[3]) {
+    const double *const of_axis[3] = {scene->x, scene->y, scene->z};
     for (int axis = 0; axis < 3; axis++) {
-        const double from_centre = path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : point[axis];
-        start[axis] = (path->centre[axis] + from_centre) * inverse;
+        centre[axis] = path->place != FIBRAD_NONE ? of_axis[axis][path->place] : 0;
+        point[axis] =
+            path->place != FIBRAD_NONE ? centre[axis] + scene->r[path->place] * path->n[axis] : path->point[axis];
     }
-    *ball = fibrad_ball_exit(start, w, paths->cutoff) * unit;
-    return fibrad_min(*ball, fibrad_region_exit(scene, point, w));
 }
 
-/* Traces one ray, to a sphere or to a wall, whose slot is returned; FIBRAD_ESCAPED, FIBRAD_BEYOND: it meets neither. */
+/* How far a ray from a point, where the path is, goes until it leaves the ball about the sphere left first [L]; below
+ * 0: it begins outside. */
+static double ball_length(const fibrad_paths *paths, const struct grey_path *path, const double point[3],
+                          const double w[3]) {
+    const fibrad_scene *scene = paths->tracer->scene;
+    const double unit = scene->r[paths->place], inverse = 1 / unit;
+    double from[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const double from_centre = path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : point[axis];
+        from[axis] = (path->centre[axis] + from_centre) * inverse;
+    }
+    return fibrad_ball_exit(from, w, paths->cutoff) * unit;
+}
+
+/* Traces one ray, to a sphere (FIBRAD_NONE) or to a wall, whose slot is returned; FIBRAD_ESCAPED, FIBRAD_BEYOND: it
+ * meets neither. */
 static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3]) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
-    double point[3], ball, distance;
+    double centre[3], point[3], ball = __builtin_inf(), known = ball, distance;
     paths->rays++;
     if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
     else
         LANED(fibrad_trace_point)(scene, path->point, w, &hit);
-    fibrad_copy(point, path->point, sizeof point);
-    if (path->place != FIBRAD_NONE) {
-        const double *const centre[3] = {scene->x, scene->y, scene->z};
-        for (int axis = 0; axis < 3; axis++)
-            point[axis] = centre[axis][path->place] + scene->r[path->place] * path->n[axis];
+    if (paths->cut || hit.sphere == FIBRAD_NONE) find_point(scene, path, centre, point);
+    if (paths->cut) {
+        ball = ball_length(paths, path, point, w);
+        known = fibrad_min(ball, fibrad_region_exit(scene, point, w));
     }
-    const double known = known_length(paths, path, point, w, &ball);
     if (hit.sphere != FIBRAD_NONE && hit.distance <= known) {
+        for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
         for (int axis = 0; axis < 3; axis++) {
-            if (path->place == FIBRAD_NONE) path->centre[axis] += path->point[axis];
             path->centre[axis] += hit.centre[axis];
             path->n[axis] = hit.normal[axis];
         }
@@ -122,8 +131,7 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
     const uint32_t met = fibrad_surroundings_met(scene, point, w, ball, &distance);
     if (met >= FIBRAD_WALLS) return met;
     for (int axis = 0; axis < 3; axis++) {
-        const double *const centre[3] = {scene->x, scene->y, scene->z};
-        if (path->place != FIBRAD_NONE) path->centre[axis] -= centre[axis][path->place];
+        path->centre[axis] -= centre[axis];
         path->point[axis] = point[axis] + distance * w[axis];
         if (scene->period[axis] == 0) continue;
         /* into a box that does not depend on the spheres */

@@ -9,6 +9,7 @@
 
 #include "fibrad.h"
 #include "fibrad_furnace.h"
+#include "fibrad_part.h"
 #include "fibrad_surface.h"
 
 #define SPHERES 300
@@ -144,8 +145,9 @@ static void add_body(fibrad_body *body, uint32_t wall, fibrad_body fields) {
     body[bodies++] = fields;
 }
 
-/* Makes the scene; its bodies are in the order of wall_of. */
-static int scene_at(void *memory, size_t size, const struct scene *s, int isa, fibrad_scene **scene) {
+/* Makes the scene; its bodies are in the order of wall_of. part: NULL, or known region, occupancy and ids. */
+static int scene_part(void *memory, size_t size, const struct scene *s, int isa, const fibrad_scene_config *part,
+                      const uint64_t *id, fibrad_scene **scene) {
     const double low = -.95, high = s->spacing * (s->side - 1) - low, middle = (low + high) / 2;
     const double period = s->spacing * s->side, across = s->bounds == PERIODIC || s->bounds == SLAB ? period : 0;
     const uint32_t planes = s->bounds < BOX ? 0 : s->bounds == BOX ? 63 : s->bounds == FLOOR ? 16 : 48;
@@ -158,10 +160,15 @@ static int scene_at(void *memory, size_t size, const struct scene *s, int isa, f
     if (s->bounds == CAN)
         add_body(body, 6,
                  (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {middle, middle, .75 * (high - low)}});
-    const fibrad_scene_config config = {
-        .isa = isa, .period = {across, across, s->bounds == PERIODIC ? period : 0}, .body = body, .bodies = bodies};
-    const fibrad_spheres spheres = {.x = x, .y = y, .z = z, .r = r, .n = s->n};
+    fibrad_scene_config config = part != NULL ? *part : (fibrad_scene_config){0};
+    config.isa = isa, config.body = body, config.bodies = bodies;
+    config.period[0] = config.period[1] = across, config.period[2] = s->bounds == PERIODIC ? period : 0;
+    const fibrad_spheres spheres = {.x = x, .y = y, .z = z, .r = r, .n = s->n, .id = id};
     return fibrad_scene_init(scene, memory, size, &config, &spheres, NULL) != FIBRAD_OK;
+}
+
+static int scene_at(void *memory, size_t size, const struct scene *s, int isa, fibrad_scene **scene) {
+    return scene_part(memory, size, s, isa, NULL, NULL, scene);
 }
 
 static int set_up(const struct scene *s, int isa, fibrad_scene **scene) {
@@ -384,6 +391,62 @@ static int hash_exchange(const struct scene *s, int isa) {
     return 0;
 }
 
+/* Rows of a part of a bed: beams by areas and by points, turned ones, cast and exchange, with a cutoff, a known region
+ * and an occupancy, and the powers that follow. */
+static int hash_part(const struct scene *s, int isa) {
+    static const char *const names[] = {"cut", "region", "part"};
+    static const uint64_t mark[] = {UINT64_C(0x0f3c55aa00ff9981)};
+    static uint64_t id[SPHERES];
+    const fibrad_occupancy occupancy = {
+        .low = {-2, -2, -2}, .high = {7, 8, 9}, .cells = {4, 4, 4}, .periodic = {1, 0, 1}, .mark = mark};
+    for (uint32_t i = 0; i < s->n; i++) id[i] = (uint64_t)(s->n - i) << 40;
+    (void)sources_of(s, 9, .2, 1);
+    for (int which = s->bounds == PERIODIC ? 2 : 0; which < 3; which++) {
+        fibrad_scene_config config = {.occupancy = which == 2 ? &occupancy : NULL};
+        if (which == 1) config.known_low[2] = -1, config.known_high[2] = 3;
+        fibrad_scene *scene;
+        if (scene_part(scene_memory, sizeof scene_memory, s, isa, &config, id, &scene)) return 1;
+        for (uint32_t b = 0; b < bodies; b++) body_emissivity[b] = wall_emissivity[wall_of[b]];
+        const double cutoff = which == 1 ? 0 : 3.1;
+        hash_begin();
+        fibrad_rows_clear(&rows);
+        for (uint32_t i = 0; i < s->n; i++) {
+            const fibrad_beam_rule beam = {
+                .directions = 34, .points = i % 2 ? 64 : 0, .cutoff = cutoff, .turn = i % 3 ? i : 0};
+            const fibrad_cast_rule cast = {.rays = 200, .cutoff = cutoff};
+            const fibrad_exchange_rule exchange = {.emissivity = emissivity,
+                                                   .body_emissivity = body_emissivity,
+                                                   .paths = 50,
+                                                   .seed = i % 2 ? 77 : 0,
+                                                   .cutoff = cutoff};
+            for (int method = 0; method < 3; method++) {
+                fibrad_row row = row_here();
+                const int status = method == 0   ? fibrad_beam_row(scene, &work, i, &beam, &row)
+                                   : method == 1 ? fibrad_cast_row(scene, &work, i, &cast, &row, NULL)
+                                                 : fibrad_exchange_row(scene, &work, i, &exchange, &row, NULL);
+                if (status != FIBRAD_OK) return 1;
+                hash_row(&row);
+                hash_number(row.beyond);
+                if (method == 2 && fibrad_rows_add(&rows, &row, bodies) != FIBRAD_OK) return 1;
+            }
+        }
+        for (uint32_t i = 0; i < s->n; i++) power[i] = 0;
+        for (uint32_t b = 0; b < bodies; b++) body_power[b] = 0, body_temperature[b] = wall_temperature[wall_of[b]];
+        fibrad_flow flow = {.weight = r,
+                            .emission = temperature,
+                            .body_emission = body_temperature,
+                            .surroundings_emission = 1,
+                            .power = power,
+                            .body_power = body_power};
+        if (fibrad_rows_flow(&rows, s->n, bodies, &flow) != FIBRAD_OK) return 1;
+        for (uint32_t i = 0; i < s->n; i++) hash_number(power[i]);
+        hash_walls(body_power);
+        hash_number(flow.surroundings_power);
+        tell(s->name, names[which]);
+    }
+    return 0;
+}
+
 /* What rows say of a bed in which a few spheres have moved: some a little, some so far that others come into sight. */
 static int hash_moved(const struct scene *s, int isa) {
     static unsigned char now_memory[FIBRAD_SCENE_BYTES(SPHERES)];
@@ -547,6 +610,7 @@ int main(int argc, char **argv) {
     for (size_t k = 0; k < sizeof small / sizeof *small; k++) {
         make(&small[k]);
         failed |= hash_small(&small[k], isa);
+        failed |= hash_part(&small[k], isa);
     }
     make(&small[0]);
     failed |= hash_heat_settings(&small[0], isa);
