@@ -853,7 +853,7 @@ START_TEST(joined) {
     ck_assert_double_eq_tol(value_of("reciprocity_max"), (.75 * .375 - .5 * .25) / .75, 1e-15);
     char *text = read_file(csv);
     ck_assert_str_eq(text, "i,j,D\n0,1,0.25\n0,2,0.125\n0,-1,0.125\n0,-2,0.5\n1,0,0.375\n1,-1,0.125\n1,-2,0.5\n"
-                           "2,0,0.0625\n2,-1,0.125\n2,-2,0.75\n");
+                           "2,0,0.0625\n2,-1,0.125\n2,-2,0.75\n2,-3,0.0625\n");
     free(text);
     SUCCEED("join", zero, one, "--raw", "--ids", "-o", csv);
     text = read_file(csv);

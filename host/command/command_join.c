@@ -38,7 +38,7 @@ static int join_help(void) {
     options_print(join_table);
     puts("\nThe .csv is that of fibrad exchange: spheres by position in the order of ids, the surroundings j = -1, "
          "walls\n"
-         "j = -2, -3 ... The .npz has besides the matrix: ids, escaped, beyond (what met nothing up to the cutoff), "
+         "j = -2, -3 ..., then what is beyond the cutoff. The .npz has besides the matrix: ids, escaped, beyond, "
          "error,\n"
          "radius, emissivity [n], body [n][walls], x [n][3].\n"
          "Memory: 24 bytes an entry with --raw, 36 without. Standard output ends with a summary, one `key value` a "
@@ -104,7 +104,8 @@ static int join_scene(const struct joined *joined, fibrad_scene **scene, void **
     const double *x = joined->x;
     const fibrad_spheres spheres = {x, x + 1, x + 2, joined->radius, joined->n, .stride = 3};
     fibrad_body body[6];
-    for (uint32_t k = 0; k < joined->bodies && joined->n > 0; ++k) body[k] = wall_beside(joined, (int)k / 2, (int)k % 2);
+    for (uint32_t k = 0; k < joined->bodies && joined->n > 0; ++k)
+        body[k] = wall_beside(joined, (int)k / 2, (int)k % 2);
     const fibrad_scene_config config = {.body = body, .bodies = joined->n > 0 ? joined->bodies : 0};
     fibrad_fault fault = {joined->n, joined->n};
     const int status = fibrad_heap_scene(scene, block, &config, &spheres, &fault);
