@@ -226,6 +226,7 @@ BENCHES = \
     bench/bench_cast.c \
     bench/bench_error.c \
     bench/bench_estimate.c \
+    bench/bench_cutoff.c \
     bench/bench_exchange.c \
     bench/bench_furnace.c \
     bench/bench_heat.c \
@@ -525,6 +526,10 @@ lint:
 	printf '%s\n' $(KERNEL) $(LANED) | xargs -I{} -P 2 clang-tidy --quiet {} -- -std=c11 $(LINT_FLAGS) $(LINT_SCALAR)
 	printf '%s\n' $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c | xargs -I{} -P 2 \
 	    clang-tidy --quiet --checks=-clang-analyzer-core.* {} -- -std=c11 -fopenmp $(LINT_FLAGS)
+	@if command -v $(MPICC) >/dev/null; then printf '%s\n' $(COUPLE) $(COUPLE_PROGRAMS) | xargs -I{} -P 2 \
+	    clang-tidy --quiet --checks=-clang-analyzer-core.*,-clang-analyzer-optin.mpi.* {} -- -std=c11 -fopenmp \
+	    $(LINT_FLAGS) $$($(MPICC) -show | tr ' ' '\n' | grep '^-I'); \
+	else echo "No MPI: couplings are not checked"; fi
 
 ## reproduce: the numbers of the papers beside ours, and their plots into docs/figures
 reproduce: $(BUILD)/fibrad
@@ -563,5 +568,5 @@ clean:
 
 ## help: this list
 help:
-	@sed -n 's/^## \([^:]*\): /  \1\t/p' Makefile host/couple/couple.mk | expand -t 16
+	@sed -n 's/^## \([^:]*\): /  \1\t/p' Makefile $(wildcard host/*/*.mk) | expand -t 16
 	@echo "  Settable: CC AR CFLAGS LDFLAGS PREFIX DESTDIR BUILD ISAS TABLES PIC WERROR"

@@ -7,7 +7,7 @@
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
 export BUILD MAKE CC
-tests="base pair_exact surface matrix scene direction drift areas furnace surface_row work beam cast walls trace exchange protocol heat stress"
+tests="base pair_exact surface matrix scene direction drift areas furnace surface_row work beam cast walls trace exchange protocol part heat stress"
 whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-60}"
 
@@ -28,12 +28,13 @@ LINE
     file=${file% } tree=$BUILD/mutate/$1 by=UNNOTICED why="" ran=""
     rm -rf "$tree" && cp -Rp "$whole" "$tree" || exit 1
     case $file in # what is most likely to notice comes first
-    kernel/exchange/*) tests="exchange protocol $tests" ;;
+    kernel/exchange/flow.c | kernel/scene/surroundings.c) tests="part $tests" ;;
+    kernel/exchange/*) tests="exchange protocol part $tests" ;;
     kernel/heat/*) tests="protocol heat $tests" ;;
     */points_*) tests="beam cast $tests" ;;
     kernel/window/*) tests="areas beam $tests" ;;
     */surface_row*) tests="surface_row $tests" ;;
-    */walls.* | */wall_share*) tests="walls $tests" ;;
+    */walls.* | */wall_share*) tests="walls part $tests" ;;
     kernel/surface/*) tests="surface $tests" ;;
     */work.*) tests="work beam cast $tests" ;;
     kernel/row/*) tests="beam cast protocol $tests" ;;

@@ -31,6 +31,9 @@ static void find_cells(const fibrad_occupancy *map, const fibrad_particle *p, in
     *last = (int64_t)high;
 }
 
+/* The cell in the box. */
+static int64_t wrap_cell(int64_t cell, int64_t cells) { return (cell % cells + cells) % cells; }
+
 static void mark_sphere(const fibrad_occupancy *map, const fibrad_particle *p, uint64_t *mark) {
     int64_t first[3], last[3];
     const int64_t n[3] = {map->cells[0], map->cells[1], map->cells[2]};
@@ -38,7 +41,7 @@ static void mark_sphere(const fibrad_occupancy *map, const fibrad_particle *p, u
     for (int64_t k = first[2]; k <= last[2]; ++k)
         for (int64_t j = first[1]; j <= last[1]; ++j)
             for (int64_t i = first[0]; i <= last[0]; ++i) {
-                const int64_t cell = (i + n[0]) % n[0] + n[0] * ((j + n[1]) % n[1] + n[1] * ((k + n[2]) % n[2]));
+                const int64_t cell = wrap_cell(i, n[0]) + n[0] * (wrap_cell(j, n[1]) + n[1] * wrap_cell(k, n[2]));
                 mark[cell / 64] |= (uint64_t)1 << cell % 64;
             }
 }

@@ -27,7 +27,8 @@ COUPLE_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(PIC)
 # what `make couple` builds
 COUPLE_PRODUCTS = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/couple/example
 
-include host/liggghts/liggghts.mk
+# couplings with other codes add to these lists
+include $(wildcard host/lammps/*.mk host/liggghts/*.mk)
 
 # what docs/scale.md rests on: mpirun -np 2 build/couple/ranks tests/data/monoper2000.dump 2 0.8
 $(BUILD)/couple/ranks: bench/ranks.c $(COUPLE_LIBS)

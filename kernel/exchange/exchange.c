@@ -48,6 +48,7 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
     const uint32_t place = scene->place[i];
     return (fibrad_paths){.tracer = fibrad_tracer_of(space, scene),
                           .place = place,
+                          .inverse = 1 / scene->r[place],
                           .cut = task->rule->cutoff > 0 || scene->region,
                           .cutoff = task->rule->cutoff > 0 ? task->rule->cutoff / scene->r[place] : __builtin_inf(),
                           .emissivity = task->rule->emissivity,

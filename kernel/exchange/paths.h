@@ -14,6 +14,7 @@
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
     uint32_t place;                /* of the sphere they leave */
+    double inverse;                /* 1/its radius */
     bool cut;                      /* whether they end beyond a cutoff or a known region */
     double cutoff;                 /* from its centre, in its radii; infinity: none */
     const double *emissivity;      /* [spheres], in the caller's order */

@@ -89,18 +89,34 @@ static void find_point(const fibrad_scene *scene, const struct grey_path *path, 
     }
 }
 
-/* How far a ray from a point, where the path is, goes until it leaves the ball about the sphere left first [L]; below
- * 0: it begins outside. */
-static double ball_length(const fibrad_paths *paths, const struct grey_path *path, const double point[3],
-                          const double w[3]) {
+/* Where a path is, from the centre of the sphere left first and in its radii. */
+static void find_start(const fibrad_paths *paths, const struct grey_path *path, double start[3]) {
     const fibrad_scene *scene = paths->tracer->scene;
-    const double unit = scene->r[paths->place], inverse = 1 / unit;
-    double from[3];
     for (int axis = 0; axis < 3; axis++) {
-        const double from_centre = path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : point[axis];
-        from[axis] = (path->centre[axis] + from_centre) * inverse;
+        const double from_centre =
+            path->place != FIBRAD_NONE ? scene->r[path->place] * path->n[axis] : path->point[axis];
+        start[axis] = (path->centre[axis] + from_centre) * paths->inverse;
     }
-    return fibrad_ball_exit(from, w, paths->cutoff) * unit;
+}
+
+/* How far a ray goes until it leaves the ball about the sphere left first [L]; below 0: it begins outside. */
+static double ball_length(const fibrad_paths *paths, const struct grey_path *path, const double w[3]) {
+    double start[3];
+    find_start(paths, path, start);
+    return fibrad_ball_exit(start, w, paths->cutoff) * paths->tracer->scene->r[paths->place];
+}
+
+/* Whether a ray is within what is known up to some length. Most are by the triangle inequality. */
+static bool is_known(const fibrad_paths *paths, const struct grey_path *path, const double w[3], double length) {
+    const fibrad_scene *scene = paths->tracer->scene;
+    double start[3], centre[3], point[3], rest = paths->cutoff - length * paths->inverse;
+    if (!paths->cut) return true;
+    find_start(paths, path, start);
+    const double square = start[0] * start[0] + start[1] * start[1] + start[2] * start[2];
+    if (!(rest > 0 && square < rest * rest * (1 - 1e-9)) && length > ball_length(paths, path, w)) return false;
+    if (!scene->region) return true;
+    find_point(scene, path, centre, point);
+    return length <= fibrad_region_exit(scene, point, w);
 }
 
 /* Traces one ray, to a sphere (FIBRAD_NONE) or to a wall, whose slot is returned; FIBRAD_ESCAPED, FIBRAD_BEYOND: it
@@ -108,18 +124,13 @@ static double ball_length(const fibrad_paths *paths, const struct grey_path *pat
 static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3]) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
-    double centre[3], point[3], ball = __builtin_inf(), known = ball, distance;
+    double centre[3], point[3], distance;
     paths->rays++;
     if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
     else
         LANED(fibrad_trace_point)(scene, path->point, w, &hit);
-    if (paths->cut || hit.sphere == FIBRAD_NONE) find_point(scene, path, centre, point);
-    if (paths->cut) {
-        ball = ball_length(paths, path, point, w);
-        known = fibrad_min(ball, fibrad_region_exit(scene, point, w));
-    }
-    if (hit.sphere != FIBRAD_NONE && hit.distance <= known) {
+    if (hit.sphere != FIBRAD_NONE && is_known(paths, path, w, hit.distance)) {
         for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
         for (int axis = 0; axis < 3; axis++) {
             path->centre[axis] += hit.centre[axis];
@@ -128,6 +139,8 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
         path->place = hit.sphere;
         return FIBRAD_NONE;
     }
+    find_point(scene, path, centre, point);
+    const double ball = paths->cut ? ball_length(paths, path, w) : __builtin_inf();
     const uint32_t met = fibrad_surroundings_met(scene, point, w, ball, &distance);
     if (met >= FIBRAD_WALLS) return met;
     for (int axis = 0; axis < 3; axis++) {

@@ -2,8 +2,10 @@
 # check_couple.sh - links, rows and powers over MPI by 1, 2, 3 and 4 ranks, and the example. SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}"
-command -v "$MPICC" >/dev/null && command -v "$MPIRUN" >/dev/null ||
-    { echo "SKIP couplings: no MPI (Debian: openmpi-bin, libopenmpi-dev; make deps-couple)" && exit 0; }
+if ! command -v "$MPICC" >/dev/null || ! command -v "$MPIRUN" >/dev/null; then
+    echo "SKIP couplings: no MPI (Debian: openmpi-bin, libopenmpi-dev; make deps-couple)"
+    exit 0
+fi
 . tests/couple/mpi.sh
 
 $MAKE -s --no-print-directory "$BUILD/couple/test_couple" "$BUILD/couple/example" || exit 1

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "couple/coarse_map.h"
 #include "couple/fibrad_couple.h"
 #include "couple/rows_file.h"
 
@@ -102,7 +103,7 @@ static void links(void) {
 
 /* ---- beds ------------------------------------------------------------------------------------------------------ */
 
-#define PITCH 2.1
+#define PITCH 2.125 /* with all coordinates a multiple of 2^-20, so that moving by a period is exact */
 
 /* Particles, all or those of a rank; what else the bed has. */
 struct pile {
@@ -149,7 +150,7 @@ struct kind {
     int threads, spread;
 };
 
-/* A lattice moved about by up to a tenth of its pitch, in a box that begins at -1; some centres in the next box. */
+/* A lattice moved about by up to a tenth of its pitch, in a box that begins at -1. */
 static struct pile pile_of(const struct kind *kind) {
     const int side = kind->side;
     const double box = PITCH * side;
@@ -161,8 +162,8 @@ static struct pile pile_of(const struct kind *kind) {
         const uint64_t id = hash_of((uint64_t)i, 1);
         double x[3];
         for (int axis = 0; axis < 3; ++axis)
-            x[axis] = PITCH * (place[axis] + .5 + .2 * (random_of(id, (uint64_t)axis) - .5)) - 1 +
-                      (p.bed.periodic[axis] && i % 5 == axis ? box : 0);
+            x[axis] =
+                round((PITCH * (place[axis] + .5 + .2 * (random_of(id, (uint64_t)axis) - .5)) - 1) * 0x1p20) / 0x1p20;
         if (kind->walls == TUBE && hypot(x[0] - box / 2 + 1, x[1] - box / 2 + 1) > box / 2) continue;
         const size_t n = p.bed.n++;
         p.id[n] = id;
@@ -197,7 +198,7 @@ static int owner_of(const struct pile *p, size_t i, int spread) {
     }
 }
 
-/* What this rank owns of a pile, in another order. */
+/* What this rank owns of a pile, in another order, some of it in other periods. */
 static struct pile part_of(const struct pile *all, int spread) {
     struct pile p = *all;
     open_pile(&p, all->bed.n);
@@ -209,7 +210,9 @@ static struct pile part_of(const struct pile *all, int spread) {
         if (owner_of(all, i, spread) != rank) continue;
         const size_t n = p.bed.n++;
         p.id[n] = all->id[i];
-        memcpy(p.x + 3 * n, all->x + 3 * i, 3 * sizeof *p.x);
+        for (size_t axis = 0; axis < 3; ++axis)
+            p.x[3 * n + axis] =
+                all->x[3 * i + axis] + (p.bed.periodic[axis] ? ((int)(p.id[n] % 5) - 2) * (p.bed.high[0] + 1) : 0);
         p.radius[n] = all->radius[i];
         p.emissivity[n] = all->emissivity[i];
         p.temperature[n] = all->temperature[i];
@@ -393,6 +396,86 @@ static void powers_keep_energy(const struct kind *kind) {
     fibrad_insitu_free(s);
     close_pile(&all);
     close_pile(&part);
+}
+
+/* Rows of another step have another noise; those of the same step are the same. */
+static void steps_change_noise(void) {
+    const struct kind *kind = &kinds[1];
+    struct pile all = pile_of(kind), part = part_of(&all, 0);
+    const size_t n = part.bed.n;
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 1);
+    const fibrad_insitu_state state = state_of(&part);
+    double *power = memory_of(3 * n, sizeof *power);
+    for (uint64_t k = 0; k < 3; ++k) {
+        make_rows(s, &part, 4 + k % 2);
+        CHECK(fibrad_insitu_powers(s, &state, power + k * n, NULL) == FIBRAD_OK);
+    }
+    CHECK(memcmp(power, power + 2 * n, n * sizeof *power) == 0);
+    size_t same = 0;
+    for (size_t i = 0; i < n; ++i) same += power[i] == power[n + i];
+    CHECK(same < n / 10 + 1);
+    fibrad_insitu_free(s);
+    free(power);
+    close_pile(&all);
+    close_pile(&part);
+}
+
+/* All points of all particles lie in marked cells, and not all cells are marked. */
+static void the_map_has_all(const struct kind *kind) {
+    struct pile all = pile_of(kind), part = part_of(&all, kind->spread);
+    fibrad_particle *own = memory_of(part.bed.n, sizeof *own);
+    fibrad_occupancy map = {.mark = NULL};
+    fibrad_block mark = {0};
+    for (size_t i = 0; i < part.bed.n; ++i) {
+        memcpy(own[i].x, part.x + 3 * i, sizeof own[i].x);
+        own[i].radius = part.radius[i];
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        map.periodic[axis] = kind->periodic[axis];
+        map.low[axis] = all.bed.low[axis] - (kind->periodic[axis] ? 0 : 5);
+        map.high[axis] = all.bed.high[axis] + (kind->periodic[axis] ? 0 : 5);
+    }
+    CHECK(fibrad_coarse_map(MPI_COMM_WORLD, .4, own, part.bed.n, &mark, &map) == FIBRAD_OK);
+    size_t marked = 0, cells = (size_t)map.cells[0] * map.cells[1] * map.cells[2];
+    for (size_t c = 0; c < cells; ++c) marked += map.mark[c / 64] >> c % 64 & 1;
+    bool there = true;
+    for (size_t i = 0; i < all.bed.n; ++i)
+        for (uint64_t k = 0; k < 60; ++k) {
+            const double z = 2 * random_of(all.id[i], 20 + k) - 1, turn = 7 * random_of(all.id[i], 90 + k);
+            const double d[3] = {sqrt(1 - z * z) * cos(turn), sqrt(1 - z * z) * sin(turn), z};
+            size_t cell[3];
+            for (int axis = 0; axis < 3; ++axis) {
+                const double extent = map.high[axis] - map.low[axis];
+                const double x = all.x[3 * i + (size_t)axis] + all.radius[i] * d[axis] - map.low[axis];
+                cell[axis] = (size_t)((x - extent * floor(x / extent)) / extent * map.cells[axis]) % map.cells[axis];
+            }
+            const size_t c = cell[0] + map.cells[0] * (cell[1] + map.cells[1] * cell[2]);
+            there = there && map.mark[c / 64] >> c % 64 & 1;
+        }
+    CHECK(there);
+    CHECK(100 * marked < 97 * cells);
+    fibrad_block_free(&mark);
+    free(own);
+    close_pile(&all);
+    close_pile(&part);
+}
+
+/* One particle far above the bed takes nothing of its surface's sky but what it hides. */
+static void the_sky_stays_open(void) {
+    const struct kind kind = {"sky", 5, {1, 1, 0}, OPEN, {.8, .8}, 5, 1, 0};
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &kind, 1);
+    fibrad_insitu_facts facts[2];
+    for (int high = 0; high < 2; ++high) {
+        struct pile all = pile_of(&kind);
+        if (high) all.x[3 * (all.bed.n - 1) + 2] += 100;
+        struct pile part = part_of(&all, 0);
+        make_rows(s, &part, 0);
+        fibrad_insitu_facts_get(s, &facts[high]);
+        close_pile(&all);
+        close_pile(&part);
+    }
+    CHECK(facts[0].beyond > 0 && facts[1].beyond < 1.1 * facts[0].beyond);
+    fibrad_insitu_free(s);
 }
 
 /* ---- a serial reference ---------------------------------------------------------------------------------------- */
@@ -636,6 +719,10 @@ int main(int argc, char **argv) {
     links();
     for (int k = 0; k < KINDS; ++k) rows_are_those_of_one_rank(&kinds[k]);
     for (int k = 0; k < KINDS; ++k) powers_keep_energy(&kinds[k]);
+    steps_change_noise();
+    the_map_has_all(&kinds[0]);
+    the_map_has_all(&kinds[4]);
+    the_sky_stays_open();
     temperatures_are_those_of_the_kernel(OPEN, 0); /* no cutoff: larger than the bed */
     temperatures_are_those_of_the_kernel(FLOORS, 1000);
     refusals();
