@@ -1,0 +1,465 @@
+/* fix_fibrad.cpp - thermal radiation in LAMMPS: reads the command, hands particles to fibrad_insitu, takes powers back.
+ * SPDX-License-Identifier: MIT. LAMMPS is GPL-2: so are binaries made with its headers. */
+#include "fix_fibrad.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+// as printf writes it: the format library of LAMMPS' headers differs from version to version
+static std::string text(const char *format, ...) {
+    char buffer[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(buffer, sizeof buffer, format, arguments);
+    va_end(arguments);
+    return buffer;
+}
+
+// ---- the command ------------------------------------------------------------------------------------------------
+
+// the words of the command, one after the other
+class FixFibrad::Words {
+  public:
+    Words(LAMMPS *lammps, int count, char **word, int first) : lmp(lammps), words(word + first, word + count) {}
+    bool more() const { return at < words.size(); }
+    bool next_is(const char *word) const { return more() && words[at] == word; }
+    std::string next() {
+        if (!more()) lmp->error->all(FLERR, "fix fibrad: a word is missing after `" + words.back() + "`");
+        return words[at++];
+    }
+    // a number of [low, high]
+    double number(const char *what, double low, double high) {
+        const double value = utils::numeric(FLERR, next().c_str(), false, lmp);
+        if (!(value >= low && value <= high))
+            lmp->error->all(FLERR, text("fix fibrad: %s must be in [%g, %g], not %g", what, low, high, value));
+        return value;
+    }
+    int count(const char *what, int low) {
+        const int value = utils::inumeric(FLERR, next().c_str(), false, lmp);
+        if (value < low) lmp->error->all(FLERR, text("fix fibrad: %s must be at least %d, not %d", what, low, value));
+        return value;
+    }
+
+  private:
+    LAMMPS *lmp;
+    std::vector<std::string> words;
+    size_t at = 0;
+};
+
+FixFibrad::FixFibrad(LAMMPS *lmp, int narg, char **arg)
+    : Fix(lmp, narg, arg), temperature(), surroundings(-1), sigma(0), initial(0), config(), insitu(nullptr), totals(),
+      warned(false), begun(0), before(), rows_made(0), powers_found(0) {
+    const double huge = 1e300;
+    Words words(lmp, narg, arg, 3);
+    config.seed = 1; // 0 would leave the directions of step 0 as they are, whose errors add up
+    heat_every = words.count("NEVERY", 0);
+    rows_every = words.count("NROWS", 1);
+    if (heat_every && rows_every % heat_every)
+        error->all(FLERR, std::string("fix fibrad: NROWS must be a multiple of NEVERY"));
+
+    while (words.more()) {
+        const std::string key = words.next();
+        if (key == "emissivity")
+            emissivity = read_property(words);
+        else if (key == "cp")
+            cp = read_property(words);
+        else if (key == "surroundings")
+            surroundings = words.number("the temperature of the surroundings", 0, huge);
+        else if (key == "wall")
+            read_wall(words);
+        else if (key == "temperature")
+            temperature = words.next();
+        else if (key == "initial")
+            initial = words.number("the initial temperature", 0, huge);
+        else if (key == "cutoff")
+            config.cutoff = words.number("the cutoff", 0, huge);
+        else if (key == "tolerance")
+            config.tolerance = words.number("the tolerance", 0, 1);
+        else if (key == "directions")
+            config.directions = words.count("directions", FIBRAD_DIRECTIONS_MIN);
+        else if (key == "paths")
+            config.paths = words.count("paths", 1);
+        else if (key == "seed")
+            config.seed = utils::bnumeric(FLERR, words.next().c_str(), false, lmp);
+        else if (key == "threads")
+            config.threads = words.count("threads", 1);
+        else if (key == "sigma")
+            sigma = words.number("sigma", 0, huge);
+        else if (key == "rows")
+            rows_file = words.next();
+        else
+            error->all(FLERR, "fix fibrad: there is no keyword `" + key + "`");
+    }
+    if (!emissivity.given()) error->all(FLERR, std::string("fix fibrad: `emissivity` is missing"));
+    for (double e : emissivity.of_type)
+        if (!(e > 0 && e <= 1))
+            error->all(FLERR, text("fix fibrad: emissivity must be above 0 and at most 1, not %g", e));
+    for (double c : cp.of_type)
+        if (!(c > 0)) error->all(FLERR, text("fix fibrad: cp must be above 0, not %g", c));
+    if (heat_every && surroundings < 0)
+        error->all(FLERR,
+                   std::string("fix fibrad: `surroundings T` is missing: what is seen where there is no particle"));
+    if (sigma == 0) {
+        if (!strcmp(update->unit_style, "si"))
+            sigma = FIBRAD_STEFAN_BOLTZMANN;
+        else if (!strcmp(update->unit_style, "cgs"))
+            sigma = 1e3 * FIBRAD_STEFAN_BOLTZMANN;
+        else if (heat_every)
+            error->all(FLERR, std::string("fix fibrad: units ") + update->unit_style +
+                                  " need `sigma S`, the Stefan-Boltzmann constant in energy/(time length^2 K^4)");
+    }
+
+    dynamic_group_allow = 1;
+    create_attribute = 1;
+    nevery = heat_every ? heat_every : rows_every;
+    scalar_flag = vector_flag = peratom_flag = 1;
+    size_peratom_cols = 0;
+    size_vector = 5 + (int)walls.size();
+    global_freq = peratom_freq = 1;
+    extscalar = extvector = 0;
+    maxexchange = 1;
+    grow_arrays(atom->nmax);
+    atom->add_callback(Atom::GROW);
+
+    if (fibrad_insitu_new(&insitu, world, &config) != FIBRAD_OK)
+        error->all(FLERR,
+                   std::string("fix fibrad: no memory, or cutoff, tolerance, directions or paths beyond their range"));
+}
+
+FixFibrad::~FixFibrad() {
+    atom->delete_callback(id, Atom::GROW);
+    fibrad_insitu_free(insitu);
+}
+
+// wall FACE T e [at POS] | wall zcylinder R T e [at X Y]
+void FixFibrad::read_wall(Words &words) {
+    static const char *const faces[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "zcylinder"};
+    const std::string name = words.next();
+    const int face = (int)(std::find(faces, faces + 7, name) - faces);
+    if (face == 7)
+        error->all(FLERR, "fix fibrad: a wall is one of xlo xhi ylo yhi zlo zhi zcylinder, not `" + name + "`");
+    if (walls.size() == 7) error->all(FLERR, std::string("fix fibrad: there are at most 7 walls"));
+
+    const double huge = 1e300;
+    fibrad_body body = {};
+    if (face == 6) {
+        body.kind = FIBRAD_BODY_CYLINDER;
+        body.cylinder.radius = words.number("the cylinder's radius", 0, huge);
+    } else {
+        body.kind = FIBRAD_BODY_PLANE;
+        body.plane.axis = face / 2;
+        body.plane.upper = face % 2;
+    }
+    wall_temperature.push_back(words.number("a wall's temperature", 0, huge));
+    wall_emissivity.push_back(words.number("a wall's emissivity", 0, 1));
+    const bool at = words.next_is("at");
+    if (at) {
+        words.next();
+        if (face == 6) {
+            body.cylinder.x = words.number("x of the cylinder", -huge, huge);
+            body.cylinder.y = words.number("y of the cylinder", -huge, huge);
+        } else {
+            body.plane.at = words.number("the place of a wall", -huge, huge);
+        }
+    }
+    walls.push_back(body);
+    wall_face.push_back(at || face == 6 ? -1 : face);
+}
+
+// a number | type V1 V2 ... | d_NAME
+FixFibrad::Property FixFibrad::read_property(Words &words) {
+    Property property;
+    const double huge = 1e300;
+    if (words.next_is("type")) {
+        words.next();
+        property.of_type.push_back(1); // types count from 1
+        for (int type = 1; type <= atom->ntypes; type++)
+            property.of_type.push_back(words.number("a value per type", 0, huge));
+        return property;
+    }
+    const std::string word = words.next();
+    if (word.compare(0, 2, "d_") == 0)
+        property.of_atom = word;
+    else
+        property.of_type.assign(atom->ntypes + 1, utils::numeric(FLERR, word.c_str(), false, lmp));
+    return property;
+}
+
+// ---- before and after a run ---------------------------------------------------------------------------------------
+
+int FixFibrad::setmask() { return FixConst::POST_FORCE | FixConst::END_OF_STEP | FixConst::POST_RUN; }
+
+void FixFibrad::init() {
+    if (!atom->radius) error->all(FLERR, std::string("fix fibrad: particles need radii (atom_style sphere)"));
+    if (!atom->tag_enable) error->all(FLERR, std::string("fix fibrad: atoms need ids"));
+    if (domain->triclinic) error->all(FLERR, std::string("fix fibrad: the box must not be triclinic"));
+    if (strstr(update->integrate_style, "respa"))
+        error->all(FLERR, std::string("fix fibrad: run_style must be verlet"));
+    for (int face : wall_face) {
+        if (face < 0) continue;
+        const std::string name = {"xyz"[face / 2], face % 2 ? 'h' : 'l', face % 2 ? 'i' : 'o'};
+        if (domain->periodicity[face / 2]) error->all(FLERR, "fix fibrad: wall " + name + " is on a periodic axis");
+        if (domain->boundary[face / 2][face % 2] != 1) // fixed
+            error->all(FLERR,
+                       "fix fibrad: wall " + name + " is on a face that moves with the particles: say where (at POS)");
+    }
+    if (!emissivity.of_atom.empty()) need(emissivity.of_atom);
+    if (!heat_every) return;
+
+    if (temperature.empty())
+        temperature = atom->extract("temperature") && atom->extract("heatflow") ? "temperature" : "d_T";
+    need(temperature);
+    if (temperature != "temperature") {
+        if (!cp.given()) error->all(FLERR, std::string("fix fibrad: `cp C`, heat per mass and kelvin, is missing"));
+        if (!cp.of_atom.empty()) need(cp.of_atom);
+        return;
+    }
+    bool stepped = false;
+    for (int i = 0; i < modify->nfix; i++) stepped = stepped || !strcmp(modify->fix[i]->style, "heat/flow");
+    if (!stepped)
+        error->all(FLERR, std::string("fix fibrad: nothing steps the temperatures: fix ID all heat/flow constant CP"));
+    if (!cp.given()) say("fix fibrad: without `cp` the time step is not checked");
+}
+
+// rows depend on positions and the number of the last multiple of NROWS, so that a restarted run has the same ones
+void FixFibrad::setup(int) {
+    begun = MPI_Wtime();
+    fibrad_insitu_facts_get(insitu, &before);
+    make_rows();
+    if (heat_every) find_powers();
+
+    fibrad_insitu_facts facts;
+    fibrad_insitu_facts_get(insitu, &facts);
+    double bytes = (double)facts.bytes;
+    MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_DOUBLE, MPI_MAX, world);
+    say(text("fix fibrad: %.0f particles, cutoff %g, %.0f entries, at most %.1f MB a rank, rows in %.2g s",
+             (double)facts.particles, facts.cutoff, (double)facts.entries, bytes / 1e6,
+             facts.seconds_rows - before.seconds_rows));
+}
+
+void FixFibrad::post_run() {
+    fibrad_insitu_facts facts;
+    fibrad_insitu_facts_get(insitu, &facts);
+    const double rows = facts.seconds_rows - before.seconds_rows, powers = facts.seconds_powers - before.seconds_powers;
+    say(text("fix fibrad: rows made %d times in %.3g s, powers %d times in %.3g s, %.0f %% of the run", rows_made, rows,
+             powers_found, powers, 100 * (rows + powers) / std::max(MPI_Wtime() - begun, 1e-9)));
+    begun = MPI_Wtime();
+    before = facts;
+    rows_made = powers_found = 0;
+}
+
+void FixFibrad::say(const std::string &sentence) {
+    if (comm->me == 0) utils::logmesg(lmp, sentence + "\n");
+}
+
+// ---- in a run -----------------------------------------------------------------------------------------------------
+
+// Temperatures of the atom's own: fix heat/flow clears heatflow before the forces and steps temperatures after them.
+void FixFibrad::post_force(int) {
+    if (!heat_every || temperature != "temperature") return;
+    double *heatflow = vector("heatflow");
+    for (int i = 0; i < atom->nlocal; i++)
+        if (atom->mask[i] & groupbit) heatflow[i] += q[i];
+}
+
+void FixFibrad::end_of_step() {
+    if (update->ntimestep % rows_every == 0) make_rows();
+    if (!heat_every) return;
+    find_powers();
+    if (temperature == "temperature") return;
+    double *t = vector(temperature);
+    const std::vector<double> capacity = values(cp);
+    for (size_t k = 0; k < member.size(); k++) {
+        const int i = member[k];
+        t[i] += q[i] * update->dt * heat_every / (mass(i) * capacity[k]);
+    }
+}
+
+void FixFibrad::select() {
+    member.clear();
+    tags.clear();
+    for (int i = 0; i < atom->nlocal; i++)
+        if (atom->mask[i] & groupbit) {
+            member.push_back(i);
+            tags.push_back((uint64_t)atom->tag[i]);
+        }
+}
+
+void FixFibrad::make_rows() {
+    select();
+    std::vector<double> x, radius;
+    for (int i : member) {
+        x.insert(x.end(), atom->x[i], atom->x[i] + 3);
+        radius.push_back(atom->radius[i]);
+    }
+    const std::vector<double> e = values(emissivity);
+    for (size_t w = 0; w < walls.size(); w++)
+        if (wall_face[w] >= 0) walls[w].plane.at = (wall_face[w] % 2 ? domain->boxhi : domain->boxlo)[wall_face[w] / 2];
+
+    fibrad_insitu_bed bed = {};
+    std::copy_n(domain->boxlo, 3, bed.low);
+    std::copy_n(domain->boxhi, 3, bed.high);
+    std::copy_n(domain->periodicity, 3, bed.periodic);
+    bed.body = walls.data();
+    bed.body_emissivity = wall_emissivity.data();
+    bed.bodies = (uint32_t)walls.size();
+    bed.n = member.size();
+    bed.id = tags.data();
+    bed.x = x.data();
+    bed.radius = radius.data();
+    bed.emissivity = e.data();
+    const bigint number = update->ntimestep / rows_every * rows_every;
+    check(fibrad_insitu_rows(insitu, &bed, (uint64_t)number));
+    rows_made++;
+    if (!rows_file.empty()) check(fibrad_insitu_write(insitu, (rows_file + "." + std::to_string(number)).c_str()));
+}
+
+void FixFibrad::find_powers() {
+    select();
+    double *of_atom = vector(temperature);
+    std::vector<double> t, power(member.size());
+    for (int i : member) {
+        if (of_atom[i] == 0) of_atom[i] = initial;
+        t.push_back(of_atom[i]);
+    }
+    check_step(t);
+
+    fibrad_insitu_state state = {};
+    state.sigma = sigma;
+    state.surroundings = surroundings;
+    state.body_temperature = wall_temperature.data();
+    state.n = member.size();
+    state.id = tags.data();
+    state.temperature = t.data();
+    int status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
+    if (status == FIBRAD_E_STATE) { // particles have come or gone since the rows were made
+        make_rows();
+        status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
+    }
+    check(status);
+    powers_found++;
+    std::fill(q.begin(), q.end(), 0.0);
+    for (size_t k = 0; k < member.size(); k++) q[member[k]] = power[k];
+}
+
+// An explicit step of temperatures is stable if 4 sigma T^3 A e dt < m cp: then no particle overshoots its
+// surroundings.
+void FixFibrad::check_step(const std::vector<double> &t) {
+    const std::vector<double> e = values(emissivity), capacity = values(cp);
+    struct {
+        double ratio;
+        int rank;
+    } worst = {0, comm->me};
+    tagint tag = 0;
+    for (size_t k = 0; k < member.size(); k++) {
+        const int i = member[k];
+        const double area = 16 * std::atan(1) * atom->radius[i] * atom->radius[i];
+        double ratio = HUGE_VAL;
+        if (t[k] > 0 && t[k] < HUGE_VAL)
+            ratio = cp.given() ? 4 * sigma * t[k] * t[k] * t[k] * area * e[k] * update->dt * heat_every /
+                                     (mass(i) * capacity[k])
+                               : 0;
+        if (ratio > worst.ratio) worst.ratio = ratio, tag = atom->tag[i];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+    if (worst.ratio < 0.5 || (worst.ratio < 1 && warned)) return;
+
+    MPI_Bcast(&tag, 1, MPI_LMP_TAGINT, worst.rank, world);
+    const std::string name = "atom " + std::to_string(tag);
+    if (worst.ratio == HUGE_VAL) error->all(FLERR, "fix fibrad: the temperature of " + name + " is not set");
+    const int most = (int)(heat_every / worst.ratio * (1 - 1e-9));
+    if (worst.ratio >= 1)
+        error->all(FLERR, "fix fibrad: steps of heat are too long for " + name +
+                              (most ? ": NEVERY must be at most " + std::to_string(most) : ": the time step is, too"));
+    warned = true;
+    if (comm->me == 0)
+        error->warning(FLERR, "fix fibrad: steps of heat are long for " + name +
+                                  text(": %.2g of what is stable", worst.ratio));
+}
+
+void FixFibrad::check(int status) {
+    if (status != FIBRAD_OK) error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu));
+}
+
+// ---- values of atoms ------------------------------------------------------------------------------------------------
+
+// LAMMPS' own vector, or one of fix property/atom; it moves when atoms come. NULL is the vector of no atoms, too.
+double *FixFibrad::vector(const std::string &name) { return (double *)atom->extract(name.c_str()); }
+
+void FixFibrad::need(const std::string &name) {
+    int there = vector(name) || !atom->nlocal;
+    MPI_Allreduce(MPI_IN_PLACE, &there, 1, MPI_INT, MPI_MIN, world);
+    if (!there)
+        error->all(FLERR, "fix fibrad: atoms have no " + name + ": say fix ID all property/atom " + name + " before");
+}
+
+// of the members
+std::vector<double> FixFibrad::values(const Property &property) {
+    std::vector<double> value;
+    if (!property.given()) return value;
+    const double *of_atom = property.of_atom.empty() ? nullptr : vector(property.of_atom);
+    for (int i : member) value.push_back(of_atom ? of_atom[i] : property.of_type[atom->type[i]]);
+    return value;
+}
+
+double FixFibrad::mass(int i) const { return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]]; }
+
+// ---- output, and powers that move with their atoms ------------------------------------------------------------------
+
+double FixFibrad::compute_scalar() { return totals.particles; }
+
+double FixFibrad::compute_vector(int n) {
+    fibrad_insitu_facts facts;
+    fibrad_insitu_facts_get(insitu, &facts);
+    const double first[] = {totals.surroundings, facts.beyond, facts.error, facts.seconds_rows, facts.seconds_powers};
+    return n < 5 ? first[n] : totals.body[n - 5];
+}
+
+double FixFibrad::memory_usage() {
+    fibrad_insitu_facts facts;
+    fibrad_insitu_facts_get(insitu, &facts);
+    return (double)facts.bytes + (double)(q.capacity() * sizeof(double));
+}
+
+void FixFibrad::grow_arrays(int nmax) {
+    q.resize(nmax);
+    vector_atom = q.data();
+}
+
+void FixFibrad::copy_arrays(int i, int j, int) { q[j] = q[i]; }
+
+// a new atom, whose place in the vectors may have been another's
+void FixFibrad::set_arrays(int i) {
+    q[i] = 0;
+    if (double *t = temperature.empty() ? nullptr : vector(temperature)) t[i] = initial;
+}
+
+int FixFibrad::pack_exchange(int i, double *buffer) {
+    buffer[0] = q[i];
+    return 1;
+}
+
+int FixFibrad::unpack_exchange(int i, double *buffer) {
+    q[i] = buffer[0];
+    return 1;
+}
+
+// ---- loading --------------------------------------------------------------------------------------------------------
+
+void *FixFibrad::create(void *lmp, int narg, char **arg) { return new FixFibrad((LAMMPS *)lmp, narg, arg); }
+
+// makes the fix known to a LAMMPS without `plugin load`; fibrad.lmp calls it
+extern "C" void fibrad_register(LAMMPS *lmp) {
+    (*lmp->modify->fix_map)["fibrad"] = (Modify::FixCreator)&FixFibrad::create;
+}

@@ -1,0 +1,177 @@
+#!/bin/bash
+# check_lammps.sh - fix fibrad in LAMMPS on 1, 2 and 4 ranks: the same temperatures as on one scene without ranks, the same
+# bytes of rows, energy in moving beds, and failures that end all ranks. SPDX-License-Identifier: MIT
+#
+# LMP and LOAD may name another LAMMPS and a script that loads the fix into it: host/lammps/newer.sh does.
+set -u
+: "${BUILD:=build}" "${MAKE:=make}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}" "${LMP:=lmp}"
+for program in "$MPICC" "$MPIRUN" "$LMP"; do
+    command -v "$program" >/dev/null || { echo "SKIP fix fibrad: no $program on this machine (make deps-couple)" && exit; }
+done
+test -n "${LOAD:-}" || test -e /usr/include/lammps/fix.h || { echo "SKIP fix fibrad: no liblammps-dev (make deps-couple)" && exit; }
+. tests/couple/mpi.sh
+
+$MAKE -s --no-print-directory "$BUILD/tests/couple/serial_bed" "$BUILD/tests/couple/sorted_rows" || exit 1
+test -n "${LOAD:-}" || { LOAD=$BUILD/couple/fibrad.lmp && $MAKE -s --no-print-directory "$LOAD" || exit 1; }
+work=$BUILD/couple/check_lammps
+rm -rf "$work"
+mkdir -p "$work"
+faults=0
+
+# verdict WHAT STATUS [WHY]
+verdict() {
+    if test "$2" -eq 0; then echo "ok      $1"; else echo "FAILED  $1${3:+: $3}" && faults=1; fi
+}
+
+ranks() {
+    local np=$1
+    shift
+    timeout 120 "$MPIRUN" -np "$np" "$@"
+}
+
+# run NP NAME SCRIPT [NAME VALUE]...: runs a script, whose output is NAME.out, with values of its variables
+run() {
+    local np=$1 name=$2 script=$3 words=()
+    shift 3
+
+    while test $# -gt 0; do words+=(-var "$1" "$2") && shift 2; done
+    # shellcheck disable=SC2086  # a variable may be several words
+    ranks "$np" "$LMP" -in "tests/couple/$script" -log "$work/$name.log" -screen none \
+        -var load "$LOAD" -var out "$work/$name.out" "${words[@]}" >"$work/$name.err" 2>&1
+}
+
+# as_data DUMP [REVERSED]: a bed of tests/data as a data file of LAMMPS; odd ids are of type 1, even ones of type 2
+as_data() {
+    awk -v reversed="${2:-0}" '
+        /BOX BOUNDS/ { side = 1; next }
+        side && side < 4 { box[side++] = $1 " " $2; next }
+        NF == 8 && !/ITEM/ { n++; sphere[n] = $1 " " 2 - $1%2 " " 2*$6 " 2500 " $3 " " $4 " " $5; t[n] = $1 " " $7 }
+        END {
+            print "bed\n\n" n " atoms\n2 atom types\n" box[1] " xlo xhi\n" box[2] " ylo yhi\n" box[3] " zlo zhi\n\nAtoms # sphere\n"
+            for (i = 1; i <= n; i++) print sphere[reversed ? n + 1 - i : i]
+            print "\nTemperatures\n"
+            for (i = 1; i <= n; i++) print t[i]
+        }' CONVFMT=%.17g OFMT=%.17g "$1"
+}
+
+# near A B BOUND WHAT: the largest difference of temperatures, and whether it is below BOUND
+near() {
+    found=$(awk 'NF == 2 && /^[0-9]+ / && NR == FNR { t[$1] = $2; n++; next }
+        NF == 2 && /^[0-9]+ / { d = $2 - t[$1]; if (d < 0) d = -d; if (!($1 in t) || !(d <= worst)) worst = d; m++ }
+        END { printf "%.2g", n && n == m ? worst + 0 : 1/0 }' "$1" "$2" 2>/dev/null || echo inf)
+    awk -v d="${found:-inf}" -v bound="$3" 'BEGIN { exit !(d + 0 == d && d < bound) }'
+    verdict "$4 ($found K)" $?
+}
+
+# balance NAME DT BEFORE CHANGE RECORDS WHAT: energy against what walls and surroundings have gained since, by powers of the
+# same record, or with BEFORE of the one before it; the energy has changed by more than CHANGE of it
+balance() {
+    found=$(awk -v dt="$2" -v before="$3" -v change="$4" -v records="$5" '
+        /^[0-9]/ { if (n++) gained += (before ? power : $3)*dt; else first = $2; last = $2; power = $3 }
+        END {
+            moved = (last - first)/last; error = moved + gained/last
+            printf "error %.2g of the total", error
+            exit !(n > records && error*error < 1e-24 && moved*moved > change*change)
+        }' "$work/$1.out.balance")
+    verdict "$6 ($found)" $?
+}
+
+# ---- frozen beds ------------------------------------------------------------------------------------------------------
+# a quarter of a bed of 2,000, all of which every particle sees
+awk '/^[0-9]+ 1 / && ($3 >= 6 || $4 >= 6) { next } { print }' tests/data/mono2000.dump >"$work/quarter.dump"
+as_data "$work/quarter.dump" >"$work/quarter.data"
+awk '/^[0-9]+ 1 / { print $1, $3, $4, $5, $6, $7 }' "$work/quarter.dump" |
+    tee "$work/quarter" | "$BUILD/tests/couple/serial_bed" 50 20 40 100 >"$work/serial.out"
+whole=(data "$work/quarter.data" cutoff 40)
+
+for np in 1 2 4; do
+    run $np frozen$np frozen.lmp "${whole[@]}"
+    near "$work/serial.out" "$work/frozen$np.out" 1e-10 "frozen bed against one scene without ranks, np $np"
+done
+same() { near "$work/frozen1.out" "$work/$1.out" 1e-10 "$2"; }
+
+run 2 newton frozen.lmp "${whole[@]}" newton off
+same newton "newton off"
+for grid in "4 1 1" "1 4 1" "2 1 2"; do
+    run 4 grid frozen.lmp "${whole[@]}" grid "$grid"
+    same grid "processors $grid"
+done
+run 4 empty frozen.lmp "${whole[@]}" grid "1 1 4"
+same empty "ranks without particles"
+run 4 balance frozen.lmp "${whole[@]}" grid "1 1 4" also "fix b all balance 10 1.0 shift z 10 1.01"
+same balance "balance during the run"
+run 2 first frozen.lmp "${whole[@]}" steps 25 also "restart 25 $work/at.*"
+run 4 restarted frozen.lmp data "$work/at.25" cutoff 40 restarted yes steps 25
+same restarted "restart in the middle, from np 2 to np 4"
+
+# ---- rows -------------------------------------------------------------------------------------------------------------
+# bytes NAME: the rows that a run left
+bytes() { "$BUILD/tests/couple/sorted_rows" "$work/$1.0" | sha256sum; }
+for bed in poly2000 monoper2000; do
+    as_data tests/data/$bed.dump | sed '/^Temperatures/,$d' >"$work/$bed.data"
+    as_data tests/data/$bed.dump 1 | sed '/^Temperatures/,$d' >"$work/reversed.data"
+    box="f f f"
+    if test $bed = monoper2000; then box="p p f"; fi
+    for np in 1 2 4; do
+        data=$work/$bed.data
+        if test "$np" -eq 4; then data=$work/reversed.data; fi
+        run $np $bed$np rows.lmp data "$data" boundary "$box" rows "$work/$bed$np"
+        test "$np" -eq 1 && bytes "$bed$np" >"$work/bytes" && continue
+        test -s "$work/$bed$np.0.0.rows" && test "$(bytes "$bed$np")" = "$(cat "$work/bytes")"
+        verdict "rows of $bed, np $np: the same bytes" $?
+    done
+done
+
+# ---- moving particles -------------------------------------------------------------------------------------------------
+run 2 moving moving.lmp hot 1000
+balance moving 20e-3 0 1e-3 1000 "energy of moving particles"
+awk '/^[0-9]/ { n++; d = $2 - $3; if (d*d > 1e-24*$3*$3) bad++ } END { exit !(n > 500 && !bad) }' "$work/moving.out.power"
+verdict "powers move with their particles" $?
+awk '/TIMESTEP/ { frame++ } NF == 2 && /^[0-9]+ / { if (frame == 1) rank[$1] = $2; else if (frame == 3 && rank[$1] != $2) moved++ }
+    END { exit !(moved > 20) }' "$work/moving.out.rank"
+verdict "particles changed ranks" $?
+run 4 equal moving.lmp hot 300 steps 2000
+awk 'NF == 2 && /^[0-9]+ / { n++; if ($2 != 300) bad++ } END { exit !(n && !bad) }' "$work/equal.out"
+verdict "equal temperatures stay equal to the bit" $?
+
+# ---- temperatures that LAMMPS steps -------------------------------------------------------------------------------------
+if "$LMP" -h | grep -q 'heat/flow'; then
+    "$BUILD/tests/couple/serial_bed" 50 1000 40 100 <"$work/quarter" >"$work/serial.out"
+    run 2 heatflow heatflow.lmp data "$work/quarter.data"
+    near "$work/serial.out" "$work/heatflow.out" 1e-10 "frozen bed by fix heat/flow against one scene"
+    run 2 falls heatflow.lmp data "$work/quarter.data" boundary "p p f" falls yes conducts 2e5 steps 2000 heat 10
+    balance falls 10e-3 1 1e-6 200 "energy of a falling bed with conduction"
+fi
+
+# ---- failures ---------------------------------------------------------------------------------------------------------
+# fails MESSAGE WHAT [NAME VALUE]...: all ranks end, with one message
+fails() {
+    message=$1 what=$2
+    shift 2
+    run 4 failure frozen.lmp data "$work/quarter.data" "$@"
+    status=$?
+    count=$(cat "$work/failure.err" "$work/failure.log" | grep -c "^ERROR.*$message")
+    test $status -ne 0 && test $status -ne 124 && test "$count" -eq 1
+    verdict "$what" $? "status $status, $count messages: $(grep -h ERROR "$work/failure.err" "$work/failure.log" | head -n 1)"
+}
+fails "atom 10 .*not set" "unset temperature" also "set atom 10 d_T 0"
+fails "NEVERY must be at most" "steps of heat too long" also "timestep 400" heat 20
+fails "particle.* 10 " "a centre inside another particle" also "set atom 10 diameter 2.5"
+fails "emissivity" "emissivity out of range" also "fix bad all fibrad 1 1 emissivity 1.5 surroundings 300 cp 1"
+fails "property/atom d_none" "temperatures that are not there" \
+    also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 temperature d_none"
+
+# a killed rank; each rank leaves its process id behind
+# shellcheck disable=SC2016  # for the ranks' own shell
+ranks 2 sh -c 'echo $$ >"$0.$OMPI_COMM_WORLD_RANK" && exec "$@"' "$work/pid" "$LMP" -in tests/couple/frozen.lmp -screen none \
+    -log "$work/killed.log" -var load "$LOAD" -var out "$work/killed.out" -var data "$work/quarter.data" -var steps 100000000 \
+    >"$work/killed.err" 2>&1 &
+runner=$!
+until grep -q '^ *Step' "$work/killed.log" 2>/dev/null || ! kill -0 $runner; do sleep 0.1; done
+kill -KILL "$(cat "$work/pid.1")"
+wait $runner
+status=$?
+test $status -ne 0 && test $status -ne 124 && timeout 10 tail --pid="$(cat "$work/pid.0")" -f /dev/null && grep -q 'signal 9' "$work/killed.err"
+verdict "a killed rank" $? "status $status"
+
+exit $faults
