@@ -75,6 +75,13 @@ paste end1 end2 | awk 'NF == 6 && $1 + 0 == $1 { off = $2 - $5; off *= off; if (
 cmp rows1.csv rows2.csv || complain "rows depend on ranks"
 test "$(value joined2 spheres)" = 294 || complain "294 spheres, not $(value joined2 spheres)"
 
+# What the floor takes, without a cutoff and ranks
+{ echo x,y,z,r && awk '{ print $4 "," $5 "," $6 ",.003" }' atoms; } >bed.csv
+"$fibrad" exchange bed.csv --emissivity 0.8 --wall zmin=0 --wall-emissivity 0.9 --raw >serial 2>/dev/null || complain "no serial factors"
+echo "$(value joined2 wall_1_mean) $(value serial wall_zmin)" |
+    awk '{ printf "the floor takes %.5f, %.5f in one scene\n", $1, $2; off = $1 / $2 - 1; exit !(off * off < 1e-4) }' ||
+    complain "the floor takes something else"
+
 # A source of the script's own stays: 1 W in each of 294 particles for 200 steps of 2e-5 s
 { cat bed && echo 'run 0' && echo 'set group all property/atom heatSource 1'; } >source
 run own 2 'setforce 0 0 0' 200 -in source
