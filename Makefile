@@ -137,6 +137,7 @@ HOST = \
     host/read/read_dump.c \
     host/read/read_furnace.c \
     host/read/read_lines.c \
+    host/read/read_rows.c \
     host/read/read_yade.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
@@ -167,6 +168,7 @@ HOST = \
     host/command/command_exchange.c \
     host/command/command_furnace.c \
     host/command/command_heat.c \
+    host/command/command_join.c \
     host/command/command_pair.c \
     host/command/command_reproduce.c
 

@@ -17,6 +17,7 @@ static const struct {
     {"exchange", "exchange factors of grey spheres", command_exchange},
     {"furnace", "temperatures in a box with a medium that absorbs, emits and scatters", command_furnace},
     {"heat", "net radiative powers of grey spheres and walls", command_heat},
+    {"join", "rows that the ranks of a simulation wrote, as one matrix", command_join},
     {"pair", "view factor between two spheres, with or without others in between", command_pair},
     {"reproduce", "the numbers of the papers beside ours", command_reproduce},
 };

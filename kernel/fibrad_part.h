@@ -7,8 +7,8 @@
  *          scene does not have or that the cutoff leaves out. It goes on to a body or escapes if there are none: where
  *          the occupancy says so, or, without one and without a known region, where the box of all spheres ends. Beams
  *          and rays of view factors see spheres of the scene outside a known region as usual; reflections do not.
- * Parts    The row of a sphere depends on spheres with centres within cutoff + 1.5 largest radii of its own (1 where none
- *          overlap), on the bodies, on the occupancy and on ids; not on other spheres, nor on their order: not a bit.
+ * Parts    The row of a sphere depends on spheres with centres within cutoff + 1.5 largest radii of its own (1 where
+ * none overlap), on the bodies, on the occupancy and on ids; not on other spheres, nor on their order: not a bit.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_PART_H

@@ -54,3 +54,31 @@ for i, j, f, entry in zip(matrix.row, matrix.col, matrix.data, entries):
     assert (i, j, f) == (int(entry['i']), int(entry['j']), float(entry['F']))
 END
 done
+
+# what `fibrad join` adds to it
+if command -v python3 >/dev/null; then
+    python3 - "$work/D.0.rows" <<'END'
+import struct, sys
+head = struct.pack('<8s7Qd', b'FIBROWS1', 0, 1, 5, 2, 1, 1, 1, 8.)
+whole = struct.pack('<6Q', 7, 1 << 63, 0, 1, 1, 1 << 63)
+real = struct.pack('<17d', .5, .25, 1, .125, 0, .125, 0, .1, 0, 1, 2, .5, 1, 0, 0, 0, 4)
+open(sys.argv[1], 'wb').write(head + whole + real + struct.pack('<2d', 0, 0))
+END
+    "$BUILD/fibrad" join "$work/D.0.rows" --raw -o "$work/D.npz" >"$work/summary"
+    "$work/read_npz" "$work/D.npz" >"$work/read.csv"
+    grep -qx '0,1,0.5' "$work/read.csv"
+    python3 - "$work/D.npz" <<'END'
+import struct, sys, zipfile
+archive = zipfile.ZipFile(sys.argv[1])
+assert archive.testzip() is None
+def array(name):
+    member = archive.read(name + '.npy')
+    head, data = eval(member[10:128]), member[128:]
+    return head['shape'], struct.unpack('<%d%s' % (len(data) // 8, 'Q' if 'u' in head['descr'] else 'd'), data)
+assert array('ids') == ((2,), (7, 1 << 63))
+assert array('x') == ((2, 3), (0, 0, 0, 4, 0, 0))
+assert array('body') == ((2, 1), (.25, 1))
+assert array('escaped') == ((2,), (.125, 0)) and array('beyond') == ((2,), (.125, 0))
+assert array('error') == ((2,), (.1, 0)) and array('radius') == ((2,), (1, 2)) and array('emissivity') == ((2,), (.5, 1))
+END
+fi

@@ -218,6 +218,9 @@ static const struct {
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "-o", "q.mtx"}, "unknown ending; there are .csv and .vtp"},
     {{"conductivity", MONO}, "which --emissivity"},
     {{"conductivity", "--emissivity", ".5"}, "which FILE"},
+    {{"join"}, "which FILEs"},
+    {{"join", MONO, "-o", "D.vtp"}, "unknown ending; there are .csv, .mtx and .npz"},
+    {{"join", MONO, "-o", "D.npz", "--ids"}, "--ids is for -o OUT.csv only"},
     {{"bed", MONO, "--directions", "7"}, "'7' is not a whole number from 8 to 65536"},
     {{"bed", MONO, "--error", "0"}, "--error: 0 is not within 1e-07 and 1"},
     {{"bed", MONO, "--error", "1e-8"}, "--error: 1e-8 is not within 1e-07 and 1"},
@@ -750,6 +753,193 @@ START_TEST(bad_input) {
 }
 END_TEST
 
+/* ---- rows of ranks ---------------------------------------------------------------------------------------------- */
+
+union word {
+    uint64_t whole;
+    double real;
+};
+#define W(n)                                                                                                           \
+    { .whole = (n) }
+#define R(x)                                                                                                           \
+    { .real = (x) }
+#define FAR 1099511627781u /* an id of more than 32 bits */
+
+/* The rows of three grey spheres with a wall, 10 and FAR of rank 0, 30 of rank 1. */
+enum { RANKS = 2, WORDS = 42 };
+static const union word rank_rows[RANKS][WORDS] = {{W(0x3153574f52424946),
+                                                    W(0),
+                                                    W(2),
+                                                    W(700),
+                                                    W(2),
+                                                    W(3),
+                                                    W(1),
+                                                    W(1),
+                                                    R(10), /* head; "FIBROWS1" */
+                                                    W(10),
+                                                    W(FAR),
+                                                    W(0),
+                                                    W(2),
+                                                    W(3),
+                                                    W(30),
+                                                    W(FAR),
+                                                    W(10), /* id, start, col */
+                                                    R(.25),
+                                                    R(.125),
+                                                    R(.0625),
+                                                    R(.5),
+                                                    R(.75),
+                                                    R(.125),
+                                                    R(.125), /* f, body, escaped */
+                                                    R(0),
+                                                    R(.0625),
+                                                    R(.01),
+                                                    R(.02),
+                                                    R(1),
+                                                    R(.5),
+                                                    R(.5),
+                                                    R(.5), /* beyond, error, radius, emissivity */
+                                                    R(0),
+                                                    R(0),
+                                                    R(0),
+                                                    R(3),
+                                                    R(0),
+                                                    R(0)},
+                                                   {W(0x3153574f52424946),
+                                                    W(1),
+                                                    W(2),
+                                                    W(700),
+                                                    W(1),
+                                                    W(1),
+                                                    W(1),
+                                                    W(1),
+                                                    R(10),
+                                                    W(30),
+                                                    W(0),
+                                                    W(1),
+                                                    W(10),
+                                                    R(.375),
+                                                    R(.5),
+                                                    R(.125),
+                                                    R(0),
+                                                    R(.01),
+                                                    R(1),
+                                                    R(.75),
+                                                    R(0),
+                                                    R(2.5),
+                                                    R(0)}};
+static const size_t rank_words[RANKS] = {38, 23};
+static const char *const rank_names[RANKS] = {"a.0.rows", "a.1.rows"};
+
+static const char *write_words(const char *name, const union word *words, size_t bytes) {
+    const char *path = in_folder(name);
+    FILE *file = fopen(path, "wb");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_uint_eq(fwrite(words, 1, bytes, file), bytes);
+    ck_assert_int_eq(fclose(file), 0);
+    return path;
+}
+
+START_TEST(joined) {
+    const char *zero = write_words(rank_names[0], rank_rows[0], 8 * rank_words[0]);
+    const char *one = write_words(rank_names[1], rank_rows[1], 8 * rank_words[1]);
+    const char *csv = in_folder("D.csv"), *mtx = in_folder("D.mtx");
+    SUCCEED("join", one, zero, "--raw", "-o", csv);
+    ck_assert_double_eq(value_of("spheres"), 3);
+    ck_assert_double_eq(value_of("nonzeros"), 4);
+    ck_assert_double_eq_tol(value_of("beyond_mean"), .0625 / 3, 1e-16);
+    ck_assert_double_eq_tol(value_of("wall_1_mean"), 1.75 / 3, 1e-15);
+    ck_assert_double_eq(value_of("closure_max"), 0);
+    ck_assert_double_eq_tol(value_of("reciprocity_max"), (.75 * .375 - .5 * .25) / .75, 1e-15);
+    char *text = read_file(csv);
+    ck_assert_str_eq(text, "i,j,D\n0,1,0.25\n0,2,0.125\n0,-1,0.125\n0,-2,0.5\n1,0,0.375\n1,-1,0.125\n1,-2,0.5\n"
+                           "2,0,0.0625\n2,-1,0.125\n2,-2,0.75\n2,-3,0.0625\n");
+    free(text);
+    SUCCEED("join", zero, one, "--raw", "--ids", "-o", csv);
+    text = read_file(csv);
+    ck_assert_ptr_nonnull(strstr(text, "\n10,1099511627781,0.125\n10,-1,0.125\n"));
+    free(text);
+    SUCCEED("join", zero, one, "-o", mtx);
+    ck_assert_double_lt(value_of("closure_max"), 1e-14);
+    ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
+    text = read_file(mtx);
+    ck_assert_ptr_nonnull(strstr(text, "\n3 3 4\n1 2 "));
+    free(text);
+    ck_assert_int_eq(RUN("join", one, "-o", one), 2);
+    expect_message(one, "unknown ending");
+    ck_assert_int_eq(RUN("join", zero, csv, "-o", csv), 2);
+    expect_message(csv, "is one of the files");
+    remove_files(0);
+}
+END_TEST
+
+/* One word of one rank's file changed. */
+static const struct {
+    int rank, word;
+    union word value;
+    const char *reason;
+} damaged_rows[] = {
+    {0, 0, W(7), "is no file of rows"},
+    {1, 1, W(0), "is of rank 0, as is"},
+    {1, 2, W(3), "has another number of ranks than"},
+    {1, 3, W(701), "has another step than"},
+    {1, 4, W(2), "ends too early, after 184 of 272 bytes"},
+    {0, 4, W(1), "has 88 bytes too many"},
+    {0, 4, W(UINT64_MAX / 2), "ends too early"},
+    {0, 5, W(UINT64_MAX / 2), "ends too early"},
+    {0, 6, W(UINT64_MAX / 2), "its head is damaged"},
+    {1, 7, W(0), "has another kind of factors than"},
+    {1, 8, R(9), "has another cutoff than"},
+    {1, 8, R(NAN), "its head is damaged"},
+    {1, 9, W(10), "id 10 is there twice, also in"},
+    {0, 12, W(1), "id 1099511627781: a factor of its row is not within"}, /* FAR, then 10 */
+    {0, 12, W(4), "the starts of its rows are damaged"},
+    {0, 11, W(1), "the starts of its rows are damaged"},
+    {0, 15, W(99), "id 10 has an entry for id 99, which has no row"},
+    {0, 17, R(NAN), "id 10: a factor"},
+    {0, 20, R(-1), "id 10: a factor"},
+    {1, 15, R(INFINITY), "id 30: a factor"},
+    {0, 26, R(INFINITY), "id 10: its error is not finite"},
+    {0, 28, R(0), "id 10: its radius"},
+    {0, 31, R(1.5), "id 1099511627781: its emissivity"},
+    {0, 35, R(NAN), "id 1099511627781: its centre"},
+};
+
+START_TEST(bad_rows) {
+    const char *files[RANKS];
+    for (int k = 0; k < RANKS; ++k) {
+        union word words[WORDS];
+        memcpy(words, rank_rows[k], sizeof words);
+        if (k == damaged_rows[_i].rank) words[damaged_rows[_i].word] = damaged_rows[_i].value;
+        files[k] = write_words(rank_names[k], words, 8 * rank_words[k]);
+    }
+    ck_assert_int_eq(RUN("join", files[0], files[1], "-o", in_folder("D.csv")), 3);
+    expect_message(files[damaged_rows[_i].rank], damaged_rows[_i].reason);
+    ck_assert_str_eq(printed, "");
+    ck_assert_int_eq(remove_files(0), RANKS); /* no D.csv */
+}
+END_TEST
+
+START_TEST(missing_rows) {
+    const char *zero = write_words(rank_names[0], rank_rows[0], 8 * rank_words[0]);
+    const char *one = write_words(rank_names[1], rank_rows[1], 8 * rank_words[1]);
+    ck_assert_int_eq(RUN("join", zero), 3);
+    expect_message(zero, "is of 2 ranks; the file of rank 1 is missing");
+    ck_assert_int_eq(RUN("join", one), 3);
+    expect_message(one, "the file of rank 0 is missing");
+    ck_assert_int_eq(RUN("join", zero, one, zero), 3);
+    expect_message(zero, "is of rank 0, as is");
+    ck_assert_int_eq(RUN("join", zero, "no/such.rows"), 4);
+    expect_message("no/such.rows: ", "No such file");
+    union word near[WORDS];
+    memcpy(near, rank_rows[1], sizeof near);
+    near[21].real = .5; /* 30 inside 10 */
+    ck_assert_int_eq(RUN("join", zero, write_words(rank_names[1], near, 8 * rank_words[1])), 3);
+    expect_message("", "ids 10 and 30: ");
+    remove_files(0);
+}
+END_TEST
+
 START_TEST(file_trouble) {
     const char *bed = write_file("a.csv", "x,y,z,r\n0,0,0,1\n3,0,0,1\n");
     ck_assert_int_eq(RUN("bed", "no/such.dump"), 4);
@@ -832,6 +1022,9 @@ int main(void) {
     tcase_add_test(beds, picture_without_gnuplot);
     tcase_add_test(beds, progress_when_asked);
     tcase_add_loop_test(trouble, bad_input, 0, (int)(sizeof bad_beds / sizeof *bad_beds));
+    tcase_add_test(beds, joined);
+    tcase_add_loop_test(trouble, bad_rows, 0, (int)(sizeof damaged_rows / sizeof *damaged_rows));
+    tcase_add_test(trouble, missing_rows);
     tcase_add_test(trouble, file_trouble);
     tcase_add_test(trouble, full_disc);
     tcase_add_loop_test(trouble, interrupted, 0, 2);

@@ -10,5 +10,6 @@ int command_exchange(int argc, char **argv);
 int command_reproduce(int argc, char **argv);
 int command_furnace(int argc, char **argv);
 int command_heat(int argc, char **argv);
+int command_join(int argc, char **argv);
 
 #endif

@@ -30,6 +30,10 @@ COUPLE_PRODUCTS = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/couple/example
 # couplings with other codes add to these lists
 include $(wildcard host/lammps/*.mk host/liggghts/*.mk)
 
+# what docs/scale.md rests on: mpirun -np 2 build/couple/ranks tests/data/monoper2000.dump 2 0.8
+$(BUILD)/couple/ranks: bench/ranks.c $(COUPLE_LIBS)
+	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
+
 ## couple: libfibrad_couple.a and what couples it with other codes, into build/couple (needs MPI: make deps-couple)
 couple: $(COUPLE_PRODUCTS)
 

@@ -14,6 +14,7 @@
 #define CUTOFF_DARK    12 /* the same where reflections carry it on */
 #define DARK_BELOW     0.4
 #define CELLS_A_CUTOFF 4   /* of the coarse map */
+#define REACH_RADII    1.5 /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad_part.h */
 #define PERIODS_MAX    100 /* as far as the kernel's beams go */
 
 /* ---- begin and end ---- */
@@ -117,7 +118,7 @@ struct insitu_build {
     fibrad_insitu_set *to;
     const fibrad_insitu_bed *bed;
     uint64_t step;
-    double period[3], cutoff, radius_max;
+    double period[3], cutoff, radius_max, reach;
     size_t halo;
     fibrad_occupancy map;
     fibrad_scene *scene;
@@ -207,6 +208,7 @@ static int measure_bed(struct insitu_build *b) {
         b->cutoff =
             (-most[1] < DARK_BELOW ? CUTOFF_DARK : CUTOFF_RADII) * ((double)sum[1] / (double)sum[0] / 0x1p32 * most[0]);
     b->to->facts.cutoff = b->cutoff;
+    b->reach = b->cutoff + REACH_RADII * b->radius_max;
     b->to->emissive = -most[1] < 1;
     for (uint32_t k = 0; k < b->bed->bodies; ++k) b->to->emissive |= b->bed->body_emissivity[k] < 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -214,7 +216,7 @@ static int measure_bed(struct insitu_build *b) {
         b->map.periodic[axis] = periodic;
         b->map.low[axis] = periodic ? b->bed->low[axis] : -most[5 + axis] - b->radius_max;
         b->map.high[axis] = periodic ? b->bed->high[axis] : most[2 + axis] + b->radius_max;
-        if (periodic && !status && !(b->cutoff + b->radius_max < PERIODS_MAX * b->period[axis]))
+        if (periodic && !status && !(b->reach < PERIODS_MAX * b->period[axis]))
             status = fibrad_refuse(b->s->message, FIBRAD_E_ARGUMENT, "the cutoff is more than %d periods along %c",
                                    PERIODS_MAX, "xyz"[axis]);
     }
@@ -400,8 +402,7 @@ int fibrad_insitu_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t 
     if (!status && b.to->facts.particles) {
         fibrad_insitu_set *to = b.to;
         status = fibrad_coarse_map(s->comm, b.cutoff / CELLS_A_CUTOFF, to->particle.at, to->own, &s->mark, &b.map);
-        if (!status)
-            status = fibrad_halo(s->comm, b.period, b.cutoff + b.radius_max, &to->particle, to->own, &s->sent, &b.halo);
+        if (!status) status = fibrad_halo(s->comm, b.period, b.reach, &to->particle, to->own, &s->sent, &b.halo);
     }
     if (!status) status = make_rows(&b);
     if (!status) {

@@ -82,7 +82,7 @@ static int write_file(const char *name, const fibrad_rows_head *head, const stru
     return fclose(file) == 0 && whole;
 }
 
-/* Rows by ascending id. Their places are the caller's. */
+/* place[own]: the rows by ascending id. Returns the length of the longest. */
 static uint32_t list_rows(fibrad_insitu *s, struct row_place *place) {
     fibrad_row row;
     size_t count = 0;
@@ -97,35 +97,56 @@ static uint32_t list_rows(fibrad_insitu *s, struct row_place *place) {
     return longest;
 }
 
-static int write_rows(fibrad_insitu *s, const char *name) {
+/* Memory of a file's arrays for rows in all. FIBRAD_OK or _E_MEMORY. */
+static int open_arrays(const fibrad_insitu_set *set, uint64_t entries, struct rows_arrays *a) {
+    const size_t n = set->own;
+    a->id = malloc((2 * n + 1 + entries) * sizeof *a->id);
+    a->f = malloc((n * (8 + set->bodies) + entries + 1) * sizeof *a->f);
+    if (!a->id || !a->f) return FIBRAD_E_MEMORY;
+    a->start = a->id + n;
+    a->col = a->start + n + 1;
+    a->body = a->f + entries;
+    a->escaped = a->body + n * set->bodies;
+    a->beyond = a->escaped + n;
+    a->error = a->beyond + n;
+    a->radius = a->error + n;
+    a->emissivity = a->radius + n;
+    a->x = a->emissivity + n;
+    return FIBRAD_OK;
+}
+
+/* The rows in the order of their ids. FIBRAD_OK or _E_MEMORY. */
+static int gather_rows(fibrad_insitu *s, struct rows_arrays *a) {
+    const size_t n = s->set.own;
+    struct row_place *place = malloc((n + 1) * sizeof *place);
+    if (!place) return FIBRAD_E_MEMORY;
+    struct entry_of_id *entry = malloc(((size_t)list_rows(s, place) + 1) * sizeof *entry);
+    a->start[0] = 0;
+    for (size_t i = 0; i < n && entry; ++i) {
+        fibrad_row row;
+        size_t at = place[i].at;
+        fibrad_rows_read(&s->set.rows[place[i].thread], &at, &row);
+        put_row(&s->set, &row, i, entry, a);
+    }
+    const int status = entry ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    free(place);
+    free(entry);
+    return status;
+}
+
+static int write_draft(fibrad_insitu *s, const char *name) {
     const fibrad_insitu_set *set = &s->set;
-    const size_t n = set->own, width = 8 + set->bodies;
+    struct rows_arrays a = {0};
     uint64_t entries = 0;
     for (int t = 0; t < s->config.threads; ++t) entries += set->rows[t].entries;
-    struct row_place *place = malloc((n + 1) * sizeof *place);
-    double *reals = malloc((n * width + entries + 1) * sizeof *reals);
-    uint64_t *whole = malloc((2 * n + 1 + entries) * sizeof *whole);
-    struct entry_of_id *entry = NULL;
-    const uint32_t longest = place ? list_rows(s, place) : 0;
-    entry = malloc(((size_t)longest + 1) * sizeof *entry);
-    int status = place && reals && whole && entry ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    int status = open_arrays(set, entries, &a);
+    if (!status) status = gather_rows(s, &a);
     if (!status) {
-        struct rows_arrays a = {.id = whole, .start = whole + n, .col = whole + 2 * n + 1, .f = reals};
-        double **const arrays[] = {&a.escaped, &a.beyond, &a.error, &a.radius, &a.emissivity, &a.x, &a.body};
-        for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
-            *arrays[k] = reals + entries + k * n + (k == 6 ? 2 * n : 0);
-        a.start[0] = 0;
-        for (size_t i = 0; i < n; ++i) {
-            fibrad_row row;
-            size_t at = place[i].at;
-            fibrad_rows_read(&s->set.rows[place[i].thread], &at, &row);
-            put_row(set, &row, i, entry, &a);
-        }
         fibrad_rows_head head = {.rank = (uint64_t)s->rank,
                                  .ranks = (uint64_t)s->ranks,
                                  .step = set->facts.step,
-                                 .rows = n,
-                                 .entries = a.start[n],
+                                 .rows = set->own,
+                                 .entries = a.start[set->own],
                                  .bodies = set->bodies,
                                  .emissive = (uint64_t)set->emissive,
                                  .cutoff = set->facts.cutoff};
@@ -133,10 +154,8 @@ static int write_rows(fibrad_insitu *s, const char *name) {
         if (!write_file(name, &head, &a))
             status = fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "cannot write %s", name);
     }
-    free(place);
-    free(reals);
-    free(whole);
-    free(entry);
+    free(a.id);
+    free(a.f);
     return status;
 }
 
@@ -151,7 +170,7 @@ int fibrad_insitu_write(fibrad_insitu *s, const char *path) {
     if (status) return status;
     snprintf(name, sizeof name, "%.4000s.%d.rows", path, s->rank);
     snprintf(draft, sizeof draft, "%.4000s.%d.rows.tmp", path, s->rank);
-    status = fibrad_agree(s->comm, write_rows(s, draft), s->message);
+    status = fibrad_agree(s->comm, write_draft(s, draft), s->message);
     if (!status && rename(draft, name))
         status = fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "cannot rename to %.200s", name);
     status = fibrad_agree(s->comm, status, s->message);

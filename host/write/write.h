@@ -9,6 +9,15 @@
 #include "bed/wall_option.h"
 #include "simple/fibrad_host.h"
 
+/* A further array of a .npz. */
+struct array {
+    const char *name, *type; /* "x.npy"; kind and bytes as NumPy has them: "f8" */
+    const void *data;
+    uint64_t length, columns; /* columns 0: one dimension */
+};
+
+enum { ARRAYS_MAX = 16 };
+
 /* What is written. */
 struct contents {
     const struct bed *bed;
@@ -18,6 +27,8 @@ struct contents {
     const struct walls *walls;        /* NULL: neither walls nor surroundings are written; none in it: no walls, and
                                          surroundings only with exchange factors */
     const fibrad_exchange_rule *grey; /* NULL: view factors; else exchange factors by this rule */
+    const struct array *array;        /* [arrays] that a .npz has besides the matrix, at most ARRAYS_MAX */
+    size_t arrays;
 };
 
 /* Writes to the file; a failing file is noticed by the caller. Status 0 or that of a signal. */

@@ -4,6 +4,7 @@
  * names type and shape, then the array as it stands in memory. All members carry 64-bit sizes (ZIP64), so that small
  * and large files go one way. The checksum stands before the data and is computed first. */
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/interrupt.h"
@@ -15,10 +16,9 @@ enum { HEADER = 128, BLOCK = 1 << 20 };
 #define SCALAR UINT64_MAX /* length of an array without dimensions */
 
 struct member {
-    const char *name, *type; /* type: kind and bytes as NumPy has them */
-    const void *data;
-    uint64_t length, bytes; /* elements, or SCALAR; bytes of data */
-    uint64_t offset;        /* where in the file the member begins */
+    struct array array; /* of length SCALAR, or not */
+    uint64_t bytes;     /* of data */
+    uint64_t offset;    /* where in the file the member begins */
     uint32_t crc;
 };
 
@@ -46,12 +46,16 @@ static void make_header(const struct member *member, unsigned char header[HEADER
     static const char magic[] = "\x93NUMPY\1";
     const uint16_t one = 1;
     const bool little = *(const unsigned char *)&one == 1;
-    const char order = member->type[0] == 'S' ? '|' : little ? '<' : '>';
+    const char order = member->array.type[0] == 'S' ? '|' : little ? '<' : '>';
     char text[HEADER];
-    char shape[32] = "";
-    if (member->length != SCALAR) snprintf(shape, sizeof shape, "%" PRIu64 ",", member->length);
+    char shape[48] = "";
+    const struct array *array = &member->array;
+    if (array->length != SCALAR && array->columns > 0)
+        snprintf(shape, sizeof shape, "%" PRIu64 ", %" PRIu64, array->length, array->columns);
+    else if (array->length != SCALAR)
+        snprintf(shape, sizeof shape, "%" PRIu64 ",", array->length);
     const int used = snprintf(text, sizeof text, "{'descr': '%c%s', 'fortran_order': False, 'shape': (%s), }", order,
-                              member->type, shape);
+                              member->array.type, shape);
     memset(header, ' ', HEADER);
     memcpy(header, magic, sizeof magic);
     header[8] = HEADER - 10;
@@ -69,7 +73,7 @@ static void put_common(FILE *file, const struct member *member) {
     put_number(file, member->crc, 4);
     put_number(file, UINT32_MAX, 4); /* both sizes stand in the ZIP64 field */
     put_number(file, UINT32_MAX, 4);
-    put_number(file, strlen(member->name), 2);
+    put_number(file, strlen(member->array.name), 2);
 }
 
 static void put_sizes(FILE *file, const struct member *member, uint64_t field) {
@@ -83,7 +87,7 @@ static int write_member(FILE *file, struct member *member) {
     unsigned char header[HEADER];
     make_header(member, header);
     uint32_t crc = crc_add(UINT32_MAX, header, HEADER);
-    const unsigned char *data = member->data;
+    const unsigned char *data = member->array.data;
     for (uint64_t done = 0; done < member->bytes; done += BLOCK) {
         if (interrupt_status()) return interrupt_status();
         const uint64_t left = member->bytes - done;
@@ -93,7 +97,7 @@ static int write_member(FILE *file, struct member *member) {
     put_number(file, 0x04034b50, 4);
     put_common(file, member);
     put_number(file, 20, 2);
-    fputs(member->name, file);
+    fputs(member->array.name, file);
     put_sizes(file, member, 16);
     fwrite(header, 1, HEADER, file);
     for (uint64_t done = 0; done < member->bytes; done += BLOCK) {
@@ -106,10 +110,10 @@ static int write_member(FILE *file, struct member *member) {
 
 /* Bytes of a member in the file, and of its entry in the directory at the end. */
 static uint64_t member_size(const struct member *member) {
-    return 30 + strlen(member->name) + 20 + HEADER + member->bytes;
+    return 30 + strlen(member->array.name) + 20 + HEADER + member->bytes;
 }
 
-static uint64_t entry_size(const struct member *member) { return 46 + strlen(member->name) + 28; }
+static uint64_t entry_size(const struct member *member) { return 46 + strlen(member->array.name) + 28; }
 
 static void put_entry(FILE *file, const struct member *member) {
     put_number(file, 0x02014b50, 4);
@@ -121,7 +125,7 @@ static void put_entry(FILE *file, const struct member *member) {
     put_number(file, 0, 2);          /* internal attributes */
     put_number(file, 0, 4);          /* external attributes */
     put_number(file, UINT32_MAX, 4); /* the offset stands in the ZIP64 field too */
-    fputs(member->name, file);
+    fputs(member->array.name, file);
     put_sizes(file, member, 24);
     put_number(file, member->offset, 8);
 }
@@ -152,19 +156,26 @@ static void put_end(FILE *file, uint64_t members, uint64_t offset, uint64_t size
     put_number(file, 0, 2); /* comment */
 }
 
+static struct member make_member(const struct array *array) {
+    const uint64_t each = strtoull(array->type + 1, NULL, 10), columns = array->columns > 0 ? array->columns : 1;
+    return (struct member){.array = *array, .bytes = array->length == SCALAR ? each : each * array->length * columns};
+}
+
 int write_npz(FILE *file, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
     const uint64_t n = matrix->n, entries = matrix->start[n];
     const int64_t shape[2] = {matrix->n, matrix->n};
-    struct member members[] = {{.name = "indices.npy", .type = "i4", .data = matrix->col, entries, 4 * entries},
-                               {.name = "indptr.npy", .type = "i8", .data = matrix->start, n + 1, 8 * (n + 1)},
-                               {.name = "format.npy", .type = "S3", .data = "csr", SCALAR, 3},
-                               {.name = "shape.npy", .type = "i8", .data = shape, 2, 16},
-                               {.name = "data.npy", .type = "f8", .data = matrix->f, entries, 8 * entries}};
-    const size_t count = sizeof members / sizeof *members;
+    const struct array arrays[] = {{"indices.npy", "i4", matrix->col, entries, 0},
+                                   {"indptr.npy", "i8", matrix->start, n + 1, 0},
+                                   {"format.npy", "S3", "csr", SCALAR, 0},
+                                   {"shape.npy", "i8", shape, 2, 0},
+                                   {"data.npy", "f8", matrix->f, entries, 0}};
+    const size_t own = sizeof arrays / sizeof *arrays, count = own + what->arrays;
+    struct member members[sizeof arrays / sizeof *arrays + ARRAYS_MAX];
     uint64_t offset = 0, directory = 0;
     make_crc_table();
     for (size_t k = 0; k < count; ++k) {
+        members[k] = make_member(k < own ? &arrays[k] : &what->array[k - own]);
         members[k].offset = offset;
         const int status = write_member(file, &members[k]);
         if (status) return status;

@@ -146,10 +146,15 @@ static wall_line line_of_lane(const vd origin[3], const vd w[3], int lane) {
     return line;
 }
 
-/* Traces the open points of window k, in directions from a disc of radius `spread`, and counts the walls they meet; as
- * FIBRAD_BEYOND those that are cut before, the first of which is *first_cut. */
+/* Lines that are cut before they meet a wall, by the wall they would meet: how many, and the first of them. */
+typedef struct cut_lines {
+    uint32_t count[FIBRAD_WALLS + 1];
+    wall_line first[FIBRAD_WALLS + 1];
+} cut_lines;
+
+/* Traces the open points of window k, in directions from a disc of radius `spread`, and counts the walls they meet. */
 static void follow_wall_points(const fibrad_points *points, const wall_view *view, const double frame[9], double spread,
-                               uint32_t k, uint32_t count[FIBRAD_EXITS], wall_line *first_cut) {
+                               uint32_t k, uint32_t count[FIBRAD_WALLS + 1], cut_lines *cuts) {
     for (uint32_t word = 0; word < points->count / 64; word++) {
         if (points->seen[word] == 0) continue;
         _Alignas(64) float a[64], b[64];
@@ -173,10 +178,12 @@ static void follow_wall_points(const fibrad_points *points, const wall_view *vie
             vd distance;
             vd_store(wall, exit_walls(view, origin, w, &distance));
             if (view->cut) {
-                const uint32_t cut = bits & vm_bits(vd_lt(exit_known(view, origin, w), distance));
-                if (cut != 0 && count[FIBRAD_BEYOND] == 0) *first_cut = line_of_lane(origin, w, __builtin_ctz(cut));
-                count[FIBRAD_BEYOND] += fibrad_count_bits(cut);
+                uint32_t cut = bits & vm_bits(vd_lt(exit_known(view, origin, w), distance));
                 bits &= ~cut;
+                for (; cut != 0; cut &= cut - 1) {
+                    const int at = __builtin_ctz(cut), number = (int)wall[at];
+                    if (cuts->count[number]++ == 0) cuts->first[number] = line_of_lane(origin, w, at);
+                }
             }
             for (; bits != 0; bits &= bits - 1) packed += UINT64_C(1) << 8 * (int)wall[__builtin_ctz(bits)];
         }
@@ -207,10 +214,14 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         own = open_points_of(work, cos, sin);
     }
     const wall_view view = wall_view_of(work);
-    uint32_t count[FIBRAD_EXITS] = {0};
-    wall_line cut;
-    follow_wall_points(&own, &view, axes, WALL_SPREAD * step, k, count, &cut);
-    for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) work->wall[wall] += rest * count[wall] / own.open;
-    if (count[FIBRAD_BEYOND] > 0) /* the way of one decides for all */
-        work->wall[fibrad_work_met(work, cut.origin, cut.w)] += rest * count[FIBRAD_BEYOND] / own.open;
+    uint32_t count[FIBRAD_WALLS + 1] = {0};
+    cut_lines cuts;
+    for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) cuts.count[wall] = 0;
+    follow_wall_points(&own, &view, axes, WALL_SPREAD * step, k, count, &cuts);
+    for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) {
+        work->wall[wall] += rest * count[wall] / own.open;
+        if (cuts.count[wall] == 0) continue; /* the way of one decides for all that would meet the same wall */
+        const wall_line *first = &cuts.first[wall];
+        work->wall[fibrad_work_met(work, first->origin, first->w)] += rest * cuts.count[wall] / own.open;
+    }
 }

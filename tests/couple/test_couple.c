@@ -453,7 +453,7 @@ static void the_map_has_all(const struct kind *kind) {
             there = there && map.mark[c / 64] >> c % 64 & 1;
         }
     CHECK(there);
-    CHECK(marked < .97 * (double)cells);
+    CHECK(100 * marked < 97 * cells);
     fibrad_block_free(&mark);
     free(own);
     close_pile(&all);

@@ -1,0 +1,120 @@
+/* ranks.c - rows and powers over ranks: seconds, entries, halos and memory, for docs/scale.md. SPDX-License-Identifier:
+ * MIT
+ *
+ * mpirun -np P build/couple/ranks DUMP COPIES EMISSIVITY: the bed of a LAMMPS dump (columns id type x y z radius),
+ * repeated COPIES times along each axis that is periodic, divided into bricks. One line of CSV after the header. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "couple/fibrad_couple.h"
+
+enum { HEATS = 20 };
+
+struct brick_bed {
+    fibrad_insitu_bed bed;
+    uint64_t *id;
+    double *x, *radius, *emissivity, *temperature, *power;
+};
+
+static void fail(const char *what) {
+    fprintf(stderr, "ranks: %s\n", what);
+    MPI_Abort(MPI_COMM_WORLD, 1);
+}
+
+/* Whether this rank owns a place of the box. */
+static int own_place(const fibrad_insitu_bed *bed, const double x[3]) {
+    int ranks, rank, dims[3] = {0, 0, 0}, owner = 0;
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Dims_create(ranks, 3, dims);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double part = (x[axis] - bed->low[axis]) / (bed->high[axis] - bed->low[axis]);
+        owner = owner * dims[axis] + (int)fmax(0, fmin(dims[axis] - 1, floor(part * dims[axis])));
+    }
+    return owner == rank;
+}
+
+static void add_copies(struct brick_bed *b, const double at[3], double radius, int copies, uint64_t *next,
+                       double emissivity) {
+    fibrad_insitu_bed *bed = &b->bed;
+    double period[3];
+    int count[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        count[axis] = bed->periodic[axis] ? copies : 1;
+        period[axis] = (bed->high[axis] - bed->low[axis]) / count[axis];
+    }
+    for (int i = 0; i < count[0]; ++i)
+        for (int j = 0; j < count[1]; ++j)
+            for (int k = 0; k < count[2]; ++k) {
+                const double x[3] = {at[0] + i * period[0], at[1] + j * period[1], at[2] + k * period[2]};
+                const uint64_t id = ++*next;
+                if (!own_place(bed, x)) continue;
+                memcpy(b->x + 3 * bed->n, x, sizeof x);
+                b->id[bed->n] = id, b->radius[bed->n] = radius, b->emissivity[bed->n] = emissivity;
+                b->temperature[bed->n] = 1000 + (double)(id % 100);
+                ++bed->n;
+            }
+}
+
+static void read_bed_of(struct brick_bed *b, const char *path, int copies, double emissivity) {
+    fibrad_insitu_bed *bed = &b->bed;
+    char line[500], ends[3][8];
+    size_t n = 0;
+    uint64_t next = 0;
+    FILE *file = fopen(path, "r");
+    if (!file) fail("no such file");
+    for (int k = 0; k < 4 && fgets(line, sizeof line, file); ++k)
+        if (k == 3) n = (size_t)(strtod(line, NULL) * pow(copies, 3));
+    if (fscanf(file, "ITEM: BOX BOUNDS %7s %7s %7s", ends[0], ends[1], ends[2]) != 3) fail("no box");
+    for (int axis = 0; axis < 3; ++axis) {
+        if (fscanf(file, "%lf %lf", &bed->low[axis], &bed->high[axis]) != 2) fail("no box");
+        bed->periodic[axis] = ends[axis][0] == 'p';
+        if (bed->periodic[axis]) bed->high[axis] += (copies - 1) * (bed->high[axis] - bed->low[axis]);
+    }
+    b->id = malloc(n * sizeof *b->id);
+    b->x = malloc(7 * n * sizeof *b->x);
+    if (!b->id || !b->x) fail("out of memory");
+    b->radius = b->x + 3 * n, b->emissivity = b->radius + n, b->temperature = b->emissivity + n;
+    b->power = b->temperature + n;
+    while (fgets(line, sizeof line, file)) {
+        double x[3], radius;
+        if (sscanf(line, "%*s %*s %lf %lf %lf %lf", &x[0], &x[1], &x[2], &radius) == 4)
+            add_copies(b, x, radius, copies, &next, emissivity);
+    }
+    fclose(file);
+    bed->id = b->id, bed->x = b->x, bed->radius = b->radius, bed->emissivity = b->emissivity;
+}
+
+int main(int argc, char **argv) {
+    struct brick_bed b = {0};
+    fibrad_insitu *radiation;
+    fibrad_insitu_facts facts;
+    int rank, ranks;
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    if (argc != 4) fail("DUMP COPIES EMISSIVITY");
+    read_bed_of(&b, argv[1], atoi(argv[2]), atof(argv[3]));
+    const fibrad_insitu_state state = {.surroundings = 300, .n = b.bed.n, .id = b.id, .temperature = b.temperature};
+    if (fibrad_insitu_new(&radiation, MPI_COMM_WORLD, NULL)) fail("out of memory");
+    if (fibrad_insitu_rows(radiation, &b.bed, 1)) fail(fibrad_insitu_message(radiation));
+    if (fibrad_insitu_rows(radiation, &b.bed, 2)) fail(fibrad_insitu_message(radiation)); /* memory of both sets */
+    for (int k = 0; k < HEATS; ++k)
+        if (fibrad_insitu_powers(radiation, &state, b.power, NULL)) fail(fibrad_insitu_message(radiation));
+    fibrad_insitu_facts_get(radiation, &facts);
+    double most[3] = {(double)b.bed.n, (double)facts.halo, (double)facts.bytes};
+    MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    if (rank == 0)
+        printf("ranks,particles,emissivity,own,halo,entries_a_row,beyond,bytes,seconds_rows,seconds_powers\n"
+               "%d,%llu,%s,%.0f,%.0f,%.1f,%.2e,%.0f,%.4f,%.6f\n",
+               ranks, (unsigned long long)facts.particles, argv[3], most[0], most[1],
+               (double)facts.entries / (double)facts.particles, facts.beyond, most[2], facts.seconds_rows / 2,
+               facts.seconds_powers / HEATS);
+    fibrad_insitu_free(radiation);
+    free(b.id);
+    free(b.x);
+    MPI_Finalize();
+    return 0;
+}

@@ -1,0 +1,38 @@
+# scale_ranks.awk - the table of docs/scale.md, from what build/couple/ranks measured: awk -f bench/scale_ranks.awk
+# SPDX-License-Identifier: MIT
+# Lengths in radii. A rank has a cube of the bed; messages cost latency and bytes over bandwidth.
+function ceil(x) { return x == int(x) ? x : int(x) + 1 }
+function short(x) { return x >= 100 ? sprintf("%.0f", x) : sprintf("%.2g", x) }
+function row(all, ranks,    n, side, halo, near, lists, map, deals, bytes, messages, reductions, rebuild, heat, link) {
+    n = all / ranks
+    side = (n * volume) ^ (1 / 3)
+    halo = ranks == 1 ? 0 : (6 * side ^ 2 * reach + 3 * pi * side * reach ^ 2 + 4 / 3 * pi * reach ^ 3) / volume
+    if (halo > all - n) halo = all - n
+    near = (2 * ceil(reach / side) + 1) ^ 3 - 1
+    if (near > ranks - 1) near = ranks - 1
+    map = all * volume / (cutoff / 4) ^ 3 / 8
+    if (map > 2 ^ 21) map = 2 ^ 21
+    logs = log(ranks) / log(2)
+    # a rebuild: 9 deals, each an Alltoall and an Alltoallv of all ranks; some 35 small reductions; boxes; the map
+    messages = ranks == 1 ? 0 : 18 * (ranks - 1) + (2 * 35 + 3) * logs
+    bytes = ranks == 1 ? 0 : 48 * halo + 48 * ranks + 9 * 4 * ranks + 60 * n + 28 * (n + halo) + 2 * map
+    rebuild = messages * latency + bytes / bandwidth
+    # a heat step: values of the halo there and powers back; 3 reductions
+    heat_messages = 2 * near + 6 * logs
+    heat_bytes = 16 * halo
+    heat = heat_messages * latency + heat_bytes / bandwidth
+    # ... the first one after particles have changed ranks: 4 deals more
+    link = ranks == 1 ? 0 : 8 * (ranks - 1) * latency + 44 * n / bandwidth
+    printf "| 1e%d | %d | %d | %d | %d", int(log(all) / log(10) + .5), ranks, n, halo, near
+    printf " | %s | %s", short((fixed + particle * n + other * halo) / 1e9), short(bytes / 1e6)
+    printf " | %s | %s", short(seconds_row * n), short(rebuild)
+    printf " | %s | %s", short(heat_bytes / 1e6), short(seconds_heat * n * 1e3)
+    printf " | %s | %s |\n", short(heat * 1e3), short(link * 1e3)
+}
+BEGIN {
+    pi = atan2(0, -1); volume = 4 / 3 * pi / .588; cutoff = 10; reach = cutoff + 1
+    latency = 2e-6; bandwidth = 1e9                    # [s], [bytes/s] of a rank: stated
+    seconds_row = 3.7e-4; seconds_heat = 5e-7          # of a particle at emissivity 0.8: measured
+    fixed = 7e6; particle = 4000; other = 1200         # bytes of a rank: measured
+    row(1e6, 1); row(1e6, 100); row(1e6, 1e4); row(1e7, 1e4); row(1e8, 100); row(1e8, 1e4); row(1e9, 1e4); row(1e10, 1e4)
+}

@@ -1,0 +1,183 @@
+/* liggghts_options.cpp - what the driver of LIGGGHTS is asked. SPDX-License-Identifier: MIT */
+#include "liggghts/liggghts_options.h"
+
+#include <getopt.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+const struct option names[] = {{"in", required_argument, nullptr, 'i'},
+                               {"emissivity", required_argument, nullptr, 'e'},
+                               {"surroundings", required_argument, nullptr, 'T'},
+                               {"wall", required_argument, nullptr, 'w'},
+                               {"steps", required_argument, nullptr, 's'},
+                               {"every", required_argument, nullptr, 'E'},
+                               {"rows", required_argument, nullptr, 'R'},
+                               {"cutoff", required_argument, nullptr, 'c'},
+                               {"tolerance", required_argument, nullptr, 't'},
+                               {"seed", required_argument, nullptr, 'S'},
+                               {"write", required_argument, nullptr, 'W'},
+                               {"help", no_argument, nullptr, 'h'},
+                               {nullptr, 0, nullptr, 0}};
+
+/* Numbers parted by commas, all of them in [low, high]. */
+bool numbers(const char *text, double low, double high, std::vector<double> *values) {
+    values->clear();
+    for (const char *at = text;; ++at) {
+        char *end;
+        const double value = std::strtod(at, &end);
+        if (end == at || !(value >= low && value <= high)) return false;
+        values->push_back(value);
+        if (*end == 0) return true;
+        if (*end != ',') return false;
+        at = end;
+    }
+}
+
+bool number(const char *text, double low, double high, double *value) {
+    std::vector<double> values;
+    if (!numbers(text, low, high, &values) || values.size() != 1) return false;
+    *value = values[0];
+    return true;
+}
+
+bool whole(const char *text, long low, long *value) {
+    char *end;
+    errno = 0;
+    *value = std::strtol(text, &end, 10);
+    return end != text && *end == 0 && errno == 0 && *value >= low;
+}
+
+bool whole(const char *text, uint64_t *value) {
+    char *end;
+    errno = 0;
+    *value = std::strtoull(text, &end, 10);
+    return *text >= '0' && *text <= '9' && *end == 0 && errno == 0;
+}
+
+/* SIDE=T,E[,AT] or cylinder=T,E,X,Y,R. */
+bool wall(const char *text, radiant_wall *wall) {
+    static const char sides[6][4] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+    const char *equals = std::strchr(text, '=');
+    std::vector<double> values;
+    if (equals == nullptr || !numbers(equals + 1, -1e150, 1e150, &values) || values.size() < 2) return false;
+    wall->name.assign(text, equals);
+    wall->temperature = values[0];
+    wall->emissivity = values[1];
+    wall->placed = values.size() > 2;
+    wall->body = fibrad_body{};
+    if (!(wall->temperature >= 0 && wall->emissivity >= 0 && wall->emissivity <= 1)) return false;
+    if (wall->name == "cylinder") {
+        if (values.size() != 5 || !(values[4] > 0)) return false;
+        wall->body.kind = FIBRAD_BODY_CYLINDER;
+        wall->body.cylinder = {values[2], values[3], values[4]};
+        return true;
+    }
+    for (int side = 0; side < 6; ++side)
+        if (wall->name == sides[side]) {
+            wall->body.kind = FIBRAD_BODY_PLANE;
+            wall->body.plane = {side / 2, side % 2, wall->placed ? values[2] : 0};
+            return values.size() < 4;
+        }
+    return false;
+}
+
+/* What was wrong with an option's argument; NULL: nothing. */
+const char *take(int key, const char *text, liggghts_options *options) {
+    radiant_wall one;
+    switch (key) {
+    case 'i':
+        options->script = text;
+        return nullptr;
+    case 'W':
+        options->rows_file = text;
+        return nullptr;
+    case 'e':
+        if (!numbers(text, 0, 1, &options->emissivity)) return "is no number above 0 up to 1, nor one for each type";
+        for (double e : options->emissivity)
+            if (!(e > 0)) return "is not above 0";
+        return nullptr;
+    case 'T':
+        return number(text, 0, 1e9, &options->surroundings) ? nullptr : "is no temperature";
+    case 'w':
+        if (!wall(text, &one)) return "is neither SIDE=T,E[,AT], SIDE one of xlo ... zhi, nor cylinder=T,E,X,Y,R";
+        options->walls.push_back(one);
+        return nullptr;
+    case 's':
+        return whole(text, 0, &options->steps) ? nullptr : "is no number of steps";
+    case 'E':
+        return whole(text, 1, &options->every) ? nullptr : "is no number of steps above 0";
+    case 'R':
+        return whole(text, 1, &options->rows) ? nullptr : "is no number of steps above 0";
+    case 'c':
+        return number(text, 1e-150, 1e150, &options->config.cutoff) ? nullptr : "is no length above 0";
+    case 't':
+        return number(text, 1e-5, 1, &options->config.tolerance) ? nullptr : "is not within 1e-5 and 1";
+    default:
+        return whole(text, &options->config.seed) ? nullptr : "is no whole number";
+    }
+}
+
+/* What is missing, or does not go together; NULL: nothing. */
+const char *check(const liggghts_options *options) {
+    if (options->script == nullptr) return "which script? -in FILE";
+    if (options->emissivity.empty()) return "which --emissivity? one for all types, or E1,E2... for each";
+    if (options->surroundings < 0) return "which temperature have the --surroundings?";
+    if (options->steps < 0) return "how many --steps are to be run with radiation?";
+    if (options->rows % options->every != 0) return "--rows is not a multiple of --every";
+    return nullptr;
+}
+
+} // namespace
+
+int liggghts_options_parse(int argc, char **argv, liggghts_options *options, int *rest, std::string *wrong) {
+    int key, index = 0;
+    opterr = 0;
+    while ((key = getopt_long_only(argc, argv, "+:", names, &index)) != -1) {
+        if (key == 'h') return OPTIONS_HELP;
+        if (key == '?' || key == ':') {
+            *wrong = std::string(key == ':' ? "an argument is missing: " : "unknown option: ") + argv[optind - 1];
+            return OPTIONS_WRONG;
+        }
+        const char *fault = take(key, optarg, options);
+        if (fault == nullptr) continue;
+        *wrong = std::string("--") + names[index].name + ": '" + optarg + "' " + fault;
+        return OPTIONS_WRONG;
+    }
+    if (optind < argc && std::strcmp(argv[optind - 1], "--") != 0) {
+        *wrong = std::string("unknown argument: ") + argv[optind];
+        return OPTIONS_WRONG;
+    }
+    *rest = optind;
+    const char *fault = check(options);
+    if (fault != nullptr) *wrong = fault;
+    return fault != nullptr ? OPTIONS_WRONG : OPTIONS_GO;
+}
+
+void liggghts_options_help() {
+    std::puts(
+        "mpirun -np N fibrad_liggghts -in SCRIPT --emissivity E --surroundings T --steps N [options] [-- OPTIONS OF "
+        "LIGGGHTS]\n\n"
+        "Runs a script of LIGGGHTS that has a fix heat/gran/conduction; then N further steps with radiation between "
+        "all\n"
+        "particles, walls and surroundings beside the conduction. Units si or cgs; docs/liggghts.md has an example.\n\n"
+        "  -in SCRIPT               the script, which need not have a run; one it has is without radiation\n"
+        "  --steps N                steps to run with radiation\n"
+        "  --emissivity E[,E...]    of all particles, above 0 up to 1, or of each type\n"
+        "  --surroundings T         temperature [K] of what is seen where there is neither particle nor wall\n"
+        "  --wall SIDE=T,E[,AT]     a plane wall that radiates: xlo ... zhi, temperature [K], emissivity, place [fixed "
+        "end of the box]\n"
+        "  --wall cylinder=T,E,X,Y,R  a wall about the axis along z through X,Y\n"
+        "  --every N                powers anew every N steps [20]\n"
+        "  --rows N                 exchange factors anew every N steps, a multiple of --every [1000]\n"
+        "  --cutoff R               particles farther than R from another do not see it [10 mean radii; 12 below "
+        "emissivity 0.4]\n"
+        "  --tolerance E            estimated error of each row, 1e-5 to 1 [none]\n"
+        "  --seed S                 another number, other paths [0]\n"
+        "  --write NAME             the last rows to NAME.RANK.rows, for fibrad join\n");
+}

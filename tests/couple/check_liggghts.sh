@@ -1,0 +1,110 @@
+#!/bin/sh
+# check_liggghts.sh - LIGGGHTS with radiation beside conduction by 1 and 2 ranks: energy, temperatures, a source of the
+# script's own, rows for fibrad join, messages. SPDX-License-Identifier: MIT
+set -u
+: "${BUILD:=build}" "${MAKE:=make}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}"
+if ! test -f /usr/include/liggghts/library.h || ! command -v "$MPICC" >/dev/null; then
+    echo "SKIP LIGGGHTS: not there (Debian: libliggghts-dev, openmpi-bin, libopenmpi-dev; make deps-couple)"
+    exit 0
+fi
+. tests/couple/mpi.sh
+
+$MAKE -s --no-print-directory "$BUILD/couple/fibrad_liggghts" "$BUILD/fibrad" || exit 1
+driver=$(pwd)/$BUILD/couple/fibrad_liggghts fibrad=$(pwd)/$BUILD/fibrad example=$(pwd)/host/liggghts/hot_floor.liggghts
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
+cd "$work" || exit 1
+faults=0
+complain() {
+    echo "$@"
+    faults=1
+}
+
+# create_atoms gives ids by ranks, on which rows depend: here each particle is made by itself, a little off its place
+awk 'BEGIN {
+    for (k = 0; k < 6; k++) for (j = 0; j < 7; j++) for (i = 0; i < 7; i++) {
+        n++
+        printf "create_atoms 1 single %.7f %.7f %.7f units box\n", .006 + .00597 * i + 1e-4 * sin(1.3 * n),
+            .006 + .00597 * j + 1e-4 * sin(2.1 * n), .00299 + .00597 * k + 5e-5 * sin(3.7 * n)
+    } }' >atoms
+sed 's/^create_atoms.*/include atoms/' "$example" >bed
+dump='dump end all custom 500 END id f_Temp f_heatSource'
+format='dump_modify end sort id format "%d %.17g %.17g"'
+radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+
+# run NAME RANKS MOVE STEPS OPTIONS...: the driver, its output in NAME
+run() {
+    name=$1 ranks=$2 move=$3 steps=$4
+    shift 4
+    # shellcheck disable=SC2086  # options
+    run_mpi "$ranks" "$driver" $radiation --steps "$steps" "$@" -- -log none -var move "$move" -var every 100 >"$name" ||
+        complain "$name: $(grep -v '^[- ]' "$name" | tail -5)"
+}
+
+value() { sed -n "s/^$2 //p" "$1"; } # FILE KEY
+
+# Heat that particles gain is what comes by radiation and, mean times steps (and step 0) times 2e-5 s, by conduction.
+energy() { # NAME STEPS
+    mean=$(awk -v step="$2" '$1 == step { mean = $4 } END { print mean }' "$1")
+    echo "$(value "$1" heat_before) $(value "$1" heat_after) $(value "$1" radiation_particles) $mean \
+        $(value "$1" radiation_zlo) $(value "$1" radiation_surroundings)" | awk -v name="$1" -v steps="$2" '{
+        off = ($2 - $1 - $3 - $4 * (steps + 1) * 2e-5) / ($2 - $1)
+        lost = ($3 + $5 + $6) / $3
+        printf "%s: gained %.3f J, %.3f J by radiation; energy off by %.1e, radiation by %.1e\n", name, $2 - $1, $3, off, lost
+        exit !(NF == 6 && $3 > 1 && off * off < 1e-22 && lost * lost < 1e-22) }' || complain "$1: energy is not kept"
+}
+
+# Moving beds: energy alone, since LIGGGHTS parts from itself as soon as contacts differ
+for ranks in 1 2; do
+    run moving$ranks $ranks nve/sphere 3000 -in bed --rows 1000
+    energy "moving$ranks" 3000
+done
+
+# A bed at rest: temperatures for 1 and 2 ranks
+for ranks in 1 2; do
+    { cat bed && echo "$dump" | sed "s/END/end$ranks/" && echo "$format"; } >bed$ranks
+    run still$ranks $ranks 'setforce 0 0 0' 1000 -in bed$ranks --rows 500 --write rows$ranks
+    energy "still$ranks" 1000
+done
+paste end1 end2 | awk 'NF == 6 && $1 + 0 == $1 { off = $2 - $5; off *= off; if (off > most) most = off; n++ }
+    END { printf "largest difference between 1 and 2 ranks %.1e K\n", sqrt(most); exit !(n == 3 * 294 && most < 1e-20) }' ||
+    complain "temperatures depend on ranks"
+
+# Their rows, bit for bit
+"$fibrad" join rows1.0.rows --raw --ids -o rows1.csv >joined1 || complain "1 rank: no rows"
+"$fibrad" join rows2.0.rows rows2.1.rows --raw --ids -o rows2.csv >joined2 || complain "2 ranks: no rows"
+cmp rows1.csv rows2.csv || complain "rows depend on ranks"
+test "$(value joined2 spheres)" = 294 || complain "294 spheres, not $(value joined2 spheres)"
+
+# A source of the script's own stays: 1 W in each of 294 particles for 200 steps of 2e-5 s
+{ cat bed && echo 'run 0' && echo 'set group all property/atom heatSource 1'; } >source
+run own 2 'setforce 0 0 0' 200 -in source
+run none 2 'setforce 0 0 0' 200 -in bed
+echo "$(value own conduction_and_sources) $(value none conduction_and_sources)" |
+    awk '{ printf "a source of 1.176 J brings %.4f J\n", $1 - $2; exit !($1 - $2 > 1.1 && $1 - $2 < 1.18) }' || complain "the own source is lost"
+
+# Messages: exit status, words; one line of the driver's, whatever the number of ranks
+refuse() { # RANKS STATUS WORDS OPTIONS...
+    ranks=$1 wanted=$2 words=$3
+    shift 3
+    run_mpi "$ranks" "$driver" "$@" -- -log none -var every 100 >out
+    status=$?
+    test $status -eq "$wanted" || complain "exit status $status instead of $wanted: $words"
+    test "$(grep -c '^fibrad_liggghts: ' out)" = 1 || complain "not one message: $(grep ^fibrad out)"
+    grep -q "^fibrad_liggghts: .*$words" out || complain "no message '$words': $(grep ^fibrad out)"
+}
+refuse 2 2 "which --emissivity" -in bed --surroundings 300 --steps 1
+refuse 1 2 "which temperature" -in bed --emissivity 0.8 --steps 1
+refuse 1 2 "which script" --emissivity 0.8 --surroundings 300 --steps 1
+refuse 1 2 "unknown option: --bad" -in bed --bad 3
+refuse 1 2 "'1.2' is no number above 0" -in bed --emissivity 1.2
+refuse 1 2 "neither SIDE=T,E" -in bed --wall floor=300,1
+refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
+refuse 2 3 "2 emissivities for 1 types" -in bed --emissivity .5,.6 --surroundings 300 --steps 1
+# shellcheck disable=SC2086
+refuse 2 3 "cools down in" -in bed $radiation --steps 1 --every 1000000 --rows 1000000
+# shellcheck disable=SC2086
+refuse 2 3 "step 0: .*wall" -in bed $radiation --wall zhi=300,1,0.02 --steps 1
+grep -v '^fix heat\|f_\|c_' bed >cold
+# shellcheck disable=SC2086
+refuse 2 3 "no fix heat/gran/conduction" -in cold $radiation --steps 1
+exit $faults
