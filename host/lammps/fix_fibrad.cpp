@@ -17,7 +17,7 @@
 using namespace LAMMPS_NS;
 
 // as printf writes it: the format library of LAMMPS' headers differs from version to version
-static std::string text(const char *format, ...) {
+__attribute__((format(printf, 1, 2))) static std::string text(const char *format, ...) {
     char buffer[1024];
     va_list arguments;
     va_start(arguments, format);
@@ -28,10 +28,10 @@ static std::string text(const char *format, ...) {
 
 // ---- the command ------------------------------------------------------------------------------------------------
 
-// the words of the command, one after the other
+// the words of the command after the style, one after the other
 class FixFibrad::Words {
   public:
-    Words(LAMMPS *lammps, int count, char **word, int first) : lmp(lammps), words(word + first, word + count) {}
+    Words(LAMMPS *lammps, int count, char **word) : lmp(lammps), words(word + 2, word + count) {}
     bool more() const { return at < words.size(); }
     bool next_is(const char *word) const { return more() && words[at] == word; }
     std::string next() {
@@ -54,14 +54,14 @@ class FixFibrad::Words {
   private:
     LAMMPS *lmp;
     std::vector<std::string> words;
-    size_t at = 0;
+    size_t at = 1;
 };
 
-FixFibrad::FixFibrad(LAMMPS *lmp, int narg, char **arg)
-    : Fix(lmp, narg, arg), temperature(), surroundings(-1), sigma(0), initial(0), config(), insitu(nullptr), totals(),
-      warned(false), begun(0), before(), rows_made(0), powers_found(0) {
+FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
+    : Fix(lammps, narg, arg), temperature(), surroundings(-1), sigma(0), initial(0), config(), insitu(nullptr),
+      totals(), warned(false), begun(0), before(), rows_made(0), powers_found(0) {
     const double huge = 1e300;
-    Words words(lmp, narg, arg, 3);
+    Words words(lmp, narg, arg);
     config.seed = 1; // 0 would leave the directions of step 0 as they are, whose errors add up
     heat_every = words.count("NEVERY", 0);
     rows_every = words.count("NROWS", 1);
@@ -377,7 +377,9 @@ void FixFibrad::check_step(const std::vector<double> &t) {
 
     MPI_Bcast(&tag, 1, MPI_LMP_TAGINT, worst.rank, world);
     const std::string name = "atom " + std::to_string(tag);
-    if (worst.ratio == HUGE_VAL) error->all(FLERR, "fix fibrad: the temperature of " + name + " is not set");
+    if (worst.ratio == HUGE_VAL)
+        error->all(FLERR, std::string("fix fibrad: the temperature ") + (cp.of_atom.empty() ? "" : "or cp ") + "of " +
+                              name + " is not set");
     const int most = (int)(heat_every / worst.ratio * (1 - 1e-9));
     if (worst.ratio >= 1)
         error->all(FLERR, "fix fibrad: steps of heat are too long for " + name +
