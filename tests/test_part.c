@@ -525,7 +525,10 @@ START_TEST(cells_are_walked_one_by_one) {
         for (int k = 0; k < 20; k++) {
             double from[3], w[3], distance;
             draw_even(&random, w);
-            for (int axis = 0; axis < 3; axis++) from[axis] = 30 * (fibrad_random_next(&random) - .5);
+            for (int axis = 0; axis < 3; axis++) {
+                from[axis] = 30 * (fibrad_random_next(&random) - .5);
+                if (o.periodic[axis] && k % 4 == 0) from[axis] += 1024 * (o.high[axis] - o.low[axis]);
+            }
             const double begin = 10 * fibrad_random_next(&random);
             /* it is cut at the ball */
             const uint32_t met = fibrad_surroundings_met(scene, from, w, begin, &distance);
