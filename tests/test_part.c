@@ -2,6 +2,7 @@
  * powers from rows. SPDX-License-Identifier: MIT */
 #include "base/random.h"
 #include "fibrad_part.h"
+#include "scene/surroundings.h"
 #include "fibrad_surface.h"
 #include "scenes.h"
 #include "suite.h"
@@ -281,7 +282,8 @@ START_TEST(displacements_depend_on_what_is_near) {
     fibrad_scene *whole = part_scene(&m.part);
     double *e = emissivities_of(&m.part), cutoff = 4;
     fibrad_work work = work_growing();
-    for (uint32_t i = 5; i < m.part.n; i += 100) {
+    for (uint32_t i = 0; i < m.part.n; i++) {
+        if (m.part.z[i] > 1.2) continue; /* paths go to and fro between spheres and the wall */
         uint32_t own = UINT32_MAX;
         struct part near = part_near(&m.part, i, cutoff + radius_most(&m.part) + 1e-6, &own);
         fibrad_scene *little = part_scene(&near);
@@ -369,7 +371,7 @@ START_TEST(ids_decide_among_equals) {
         for (int method = 0; method < METHODS; method++) {
             struct named_row expected = row_by(&p, scene, i, method, 0);
             struct named_row found = row_by(&shuffled, other, own, method, 0);
-            expect_same_named(&expected, &found, p.ids, bed.n > 0 ? "lattice" : "");
+            expect_same_named(&expected, &found, p.ids, "lattice");
             named_free(&expected), named_free(&found);
         }
         free(other);
@@ -416,8 +418,9 @@ END_TEST
 
 /* Whether the way along w from some length on is clear of marked cells: in steps so small that they miss corners
  * alone. */
-static bool clear_by_steps(const fibrad_occupancy *o, const double from[3], const double w[3], double begin) {
-    for (double t = begin; t < begin + 80; t += .02) {
+static bool clear_by_steps(const fibrad_occupancy *o, const double from[3], const double w[3], double begin,
+                           double step) {
+    for (double t = begin; t < begin + 700; t += step) {
         uint64_t cell = 0;
         bool inside = true;
         for (int axis = 3; axis-- > 0;) {
@@ -425,6 +428,7 @@ static bool clear_by_steps(const fibrad_occupancy *o, const double from[3], cons
             const int64_t cells = o->cells[axis];
             const int64_t at = (int64_t)floor((from[axis] + t * w[axis] - o->low[axis]) / size);
             inside = inside && (o->periodic[axis] || (at >= 0 && at < cells));
+            if (!o->periodic[axis] && (w[axis] > 0 ? at >= cells : at < 0)) return true; /* gone */
             cell = cell * (uint64_t)cells + (uint64_t)((at % cells + cells) % cells);
         }
         if (inside && (o->mark[cell / 64] >> cell % 64 & 1) != 0) return false;
@@ -481,7 +485,7 @@ START_TEST(beyond_is_what_rays_say) {
             }
             if (hit) continue;
             const double ball = -along + sqrt(along * along + cutoff * cutoff - p->r[i] * p->r[i]);
-            const bool clear = clear_by_steps(&m.occupancy, from, w, ball);
+            const bool clear = clear_by_steps(&m.occupancy, from, w, ball, .02);
             beyond += !clear, escaped += clear;
         }
         const double expected = beyond / (double)RAYS, sky = escaped / (double)RAYS;
@@ -498,6 +502,94 @@ START_TEST(beyond_is_what_rays_say) {
     if (_i == 0) ck_assert_double_gt(largest, .02); /* some rows have both */
     free(scene);
     free_made(&m);
+}
+END_TEST
+
+/* The walk through the cells against small steps, which miss nothing but corners: boxes with few marks, periodic or
+ * not, rays from anywhere. */
+START_TEST(cells_are_walked_one_by_one) {
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, .1}});
+    struct part p = part_of(&bed, (fibrad_scene_config){0});
+    fibrad_random random = fibrad_random_start(6, 1);
+    int missed = 0, clear = 0, rays = 0;
+    for (int round = 0; round < 150; round++) {
+        const uint64_t mark[2] = {UINT64_C(1) << round % 64 | UINT64_C(1) << (round * 37 + 11) % 64,
+                                  UINT64_C(1) << round * 5 % 56};
+        const fibrad_occupancy o = {.low = {-1, 2, -3},
+                                    .high = {3, 4.5, 3},
+                                    .cells = {4, 5, 6},
+                                    .periodic = {round & 1, round >> 1 & 1, round >> 2 & 1},
+                                    .mark = mark};
+        p.config.occupancy = &o;
+        fibrad_scene *scene = part_scene(&p);
+        for (int k = 0; k < 20; k++) {
+            double from[3], w[3], distance;
+            draw_even(&random, w);
+            for (int axis = 0; axis < 3; axis++) {
+                from[axis] = 30 * (fibrad_random_next(&random) - .5);
+                if (o.periodic[axis] && k % 4 == 0) from[axis] += 1024 * (o.high[axis] - o.low[axis]);
+            }
+            const double begin = 10 * fibrad_random_next(&random);
+            /* it is cut at the ball */
+            const uint32_t met = fibrad_surroundings_met(scene, from, w, begin, &distance);
+            const bool expected = clear_by_steps(&o, from, w, begin, .003);
+            ck_assert(met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND);
+            if (!expected) ck_assert_uint_eq(met, FIBRAD_BEYOND);
+            missed += expected && met == FIBRAD_BEYOND; /* corners */
+            clear += expected, rays++;
+        }
+        free(scene);
+    }
+    ck_assert_int_lt(missed, rays / 50);
+    ck_assert_int_gt(clear, rays / 4);
+    ck_assert_int_lt(clear, 9 * rays / 10);
+    /* without any mark: clear where the box ends, not looked at all along where it never does */
+    for (int which = 0; which < 8; which++) {
+        const fibrad_occupancy none = {.high = {1, 1, 1},
+                                       .cells = {2, 2, 2},
+                                       .periodic = {which & 1, which >> 1 & 1, which >> 2 & 1},
+                                       .mark = (const uint64_t[]){0}};
+        p.config.occupancy = &none;
+        fibrad_scene *scene = part_scene(&p);
+        double distance;
+        for (int axis = 0; axis < 3; axis++) {
+            const double w[3] = {axis == 0, axis == 1 ? -1 : 0, axis == 2}, from[3] = {.3, .3, .3};
+            const uint32_t met = fibrad_surroundings_met(scene, from, w, 0, &distance);
+            ck_assert_uint_eq(met, none.periodic[axis] ? FIBRAD_BEYOND : FIBRAD_ESCAPED);
+        }
+        free(scene);
+    }
+    part_free(&p);
+    bed_free(&bed);
+}
+END_TEST
+
+/* What is reflected towards a sphere outside the known region is beyond. Beams see it. */
+START_TEST(reflections_end_at_the_known_region) {
+    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2.5, 1}, {2.2, 0, 1.25, 1}});
+    struct part p = part_of(&bed, (fibrad_scene_config){.known_low = {-2, 0, 0}, .known_high = {1.1, 0, 0}});
+    fibrad_scene *scene = part_scene(&p);
+    const fibrad_occupancy none = {.high = {1, 1, 1}, .cells = {1, 1, 1}, .mark = (const uint64_t[]){0}};
+    p.config.occupancy = &none;
+    fibrad_scene *told = part_scene(&p);
+    const double e[] = {.5, 1e-3, .9}; /* the third absorbs what it receives, and receives from the second */
+    fibrad_work work = work_growing();
+    fibrad_row beam = row_of(3), row = row_of(3), clear = row_of(3);
+    const fibrad_exchange_rule rule = {.emissivity = e, .paths = 4000};
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 50, .points = 256}, &beam),
+                     FIBRAD_OK);
+    ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_exchange_row(told, &work, 0, &rule, &clear, NULL), FIBRAD_OK);
+    ck_assert_double_gt(row_factor(&beam, 2), .04);
+    ck_assert_double_eq(row_factor(&row, 2), .9 * row_factor(&beam, 2)); /* the first leg alone */
+    ck_assert_double_eq(row_factor(&clear, 2), row_factor(&row, 2));
+    ck_assert_double_gt(row.beyond, .3);
+    ck_assert_double_eq(clear.beyond, 0);
+    row_free(&beam), row_free(&row), row_free(&clear);
+    work_free(&work);
+    free(scene), free(told);
+    part_free(&p);
+    bed_free(&bed);
 }
 END_TEST
 
@@ -895,6 +987,8 @@ int main(void) {
     tcase_add_test(near, images_are_spheres_of_the_same_id);
     tcase_add_loop_test(near, ids_decide_among_equals, 0, 3);
     tcase_add_loop_test(beyond, nothing_is_beyond_what_holds_all, 0, 2);
+    tcase_add_test(beyond, cells_are_walked_one_by_one);
+    tcase_add_test(beyond, reflections_end_at_the_known_region);
     tcase_add_test(beyond, a_flying_sphere_leaves_the_sky);
     tcase_add_loop_test(beyond, beyond_is_what_rays_say, 0, 1);
     tcase_add_test(beyond, a_known_region_ends_in_a_can);

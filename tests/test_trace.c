@@ -346,6 +346,34 @@ START_TEST(memory) {
 }
 END_TEST
 
+/* Two spheres that overlap, met at the same length and depth: the lower id is met first, whatever the order. Of images,
+ * that is of spheres of one id, the one at the lower coordinate. */
+START_TEST(ids_decide_what_is_met_first) {
+    const double x[] = {3, 3, 0}, y[] = {.5, -.5, 0}, z[] = {0, 0, 0}, r[] = {1, 1, .25}, w[] = {1, 0, 0};
+    for (int order = 0; order < 2; order++)
+        for (uint64_t lower = 0; lower < 3; lower++) { /* the upper sphere's id, the lower one's, neither is less */
+            const double by_order[] = {y[order], y[1 - order], 0};
+            const uint64_t of_upper = lower == 1 ? 9 : 4, of_lower = lower == 0 ? 9 : 4;
+            const uint64_t id[] = {order ? of_lower : of_upper, order ? of_upper : of_lower, 1};
+            fibrad_scene *scene;
+            const size_t size = fibrad_scene_size(3, 1);
+            void *block = block_of(size);
+            const fibrad_spheres spheres = {.x = x, .y = by_order, .z = z, .r = r, .n = 3, .id = id};
+            ck_assert_int_eq(fibrad_scene_init(&scene, block, size, NULL, &spheres, NULL), FIBRAD_OK);
+            fibrad_work work;
+            fibrad_tracer *tracer = tracer_of(scene, EACH, &work);
+            const double first = lower == 0 ? .5 : -.5;
+            fibrad_hit hit;
+            fibrad_trace_scalar(tracer, scene->place[2], w, w, &hit);
+            ck_assert_double_eq(hit.centre[1], first);
+            fibrad_trace_point_scalar(scene, (const double[3]){1, 0, 0}, w, &hit);
+            ck_assert_double_eq(hit.centre[1], first);
+            work_free(&work);
+            free(block);
+        }
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("trace");
     TCase *cases = suite_case(suite, "trace");
@@ -356,6 +384,7 @@ int main(void) {
     tcase_add_test(cases, studded_sphere);
     tcase_add_test(cases, one_sphere_and_its_images);
     tcase_add_test(cases, stray);
+    tcase_add_test(cases, ids_decide_what_is_met_first);
     tcase_add_test(cases, from_points);
     tcase_add_test(cases, same_bits_everywhere);
     tcase_add_test(cases, lists_belong_to_contents);
