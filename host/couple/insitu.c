@@ -314,7 +314,10 @@ static int compute_rows(struct insitu_build *b) {
 #pragma omp atomic read
         before = status;
         if (before) continue;
-        const int result = fibrad_exchange_row(b->scene, &s->work[thread], order[k], &rule, &row, NULL);
+        fibrad_exchange_rule turned =
+            rule; /* each row by itself, so that powers of walls average out errors of directions */
+        turned.seed += ((uint64_t *)b->to->id.at)[order[k]] * 0xd1342543de82ef95u;
+        const int result = fibrad_exchange_row(b->scene, &s->work[thread], order[k], &turned, &row, NULL);
         if (!result) continue;
 #pragma omp critical
         if (!status) {

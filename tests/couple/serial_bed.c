@@ -53,13 +53,12 @@ int main(int count, char **argument) {
 
     for (long step = 0; step <= steps; step++) {
         if (step % every == 0) {
-            const fibrad_exchange_rule rule = {.emissivity = emissivity,
-                                               .body_emissivity = &floor_emissivity,
-                                               .seed = 1 + (uint64_t)step * 0x9e3779b97f4a7c15u,
-                                               .cutoff = cutoff};
+            fibrad_exchange_rule rule = {
+                .emissivity = emissivity, .body_emissivity = &floor_emissivity, .cutoff = cutoff};
             fibrad_rows_clear(&rows);
             for (uint32_t i = 0; i < n; i++) {
                 double body;
+                rule.seed = 1 + (uint64_t)step * 0x9e3779b97f4a7c15u + id[i] * 0xd1342543de82ef95u;
                 fibrad_row row = {.body = &body, .rows = &rows};
                 stop_unless(fibrad_exchange_row(scene, &work, i, &rule, &row, NULL));
             }

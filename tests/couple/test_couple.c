@@ -498,14 +498,15 @@ static void step_by_kernel(struct pile *p, double cutoff) {
     fibrad_scene *scene = NULL;
     fibrad_work work = {.memory.resize = grow};
     CHECK(fibrad_scene_init(&scene, block, size, &config, &spheres, NULL) == FIBRAD_OK);
-    const fibrad_exchange_rule rule = {
-        .emissivity = p->emissivity, .body_emissivity = p->body_emissivity, .paths = 100, .seed = 3, .cutoff = cutoff};
+    fibrad_exchange_rule rule = {
+        .emissivity = p->emissivity, .body_emissivity = p->body_emissivity, .paths = 100, .cutoff = cutoff};
     uint32_t *col = memory_of((size_t)n * n, sizeof *col);
     double *f = memory_of((size_t)n * n, sizeof *f), *emission = memory_of(n, sizeof *emission);
     fibrad_row *row = memory_of(n, sizeof *row);
     double(*body)[2] = memory_of(n, sizeof *body);
     for (uint32_t i = 0; i < n; ++i) {
         row[i] = (fibrad_row){.col = col + (size_t)i * n, .f = f + (size_t)i * n, .body = body[i], .capacity = n};
+        rule.seed = 3 + p->id[i] * 0xd1342543de82ef95u;
         CHECK(fibrad_exchange_row(scene, &work, i, &rule, &row[i], NULL) == FIBRAD_OK);
     }
     for (int step = 0; step < STEPS; ++step) {
