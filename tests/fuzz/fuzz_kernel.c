@@ -654,14 +654,14 @@ static void begin_solution(struct session *s) {
     if (byte() == 1) sources.tolerance = coordinate();
     for (uint32_t i = 0; i < s->contents.n; i++) {
         temperature[i] = byte() < 250 ? byte() / 16. : coordinate(), emissivity[i] = share();
-        valid = valid && temperature[i] >= 0 && isfinite(temperature[i]) && emissivity[i] >= 0 && emissivity[i] <= 1;
+        valid = valid && temperature[i] >= 0 && temperature[i] <= 1e20 && emissivity[i] >= 0 && emissivity[i] <= 1;
     }
     for (uint32_t b = 0; b < s->contents.config.bodies; b++) {
         body_temperature[b] = byte() / 16., body_emissivity[b] = share();
         valid = valid && body_emissivity[b] >= 0 && body_emissivity[b] <= 1;
     }
-    valid = valid && sources.surroundings >= 0 && isfinite(sources.surroundings) && sources.sigma > 0 &&
-            isfinite(sources.sigma) && sources.tolerance >= 0 && sources.tolerance < 1;
+    valid = valid && sources.surroundings >= 0 && sources.surroundings <= 1e20 && sources.sigma >= 1e-30 &&
+            sources.sigma <= 1e30 && sources.tolerance >= 0 && sources.tolerance < 1;
     for (uint32_t k = 0; k < s->tasks; k++) all = all && s->traced[k];
     const int status = fibrad_heat_begin(s->heat, &sources);
     REQUIRE(status == (!valid ? FIBRAD_E_ARGUMENT : !kept(s) || !all ? FIBRAD_E_STATE : FIBRAD_OK));
