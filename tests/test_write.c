@@ -35,7 +35,7 @@ static const struct walls *order; /* NULL: no walls */
 static void write_text(write_function *write, bool ids) {
     FILE *file = tmpfile();
     ck_assert_ptr_nonnull(file);
-    ck_assert_int_eq(write(file, &(struct contents){&bed, &factors, wanted, ids, order, NULL}), 0);
+    ck_assert_int_eq(write(file, &(struct contents){&bed, &factors, wanted, ids, order, NULL, NULL, 0}), 0);
     rewind(file);
     text[fread(text, 1, sizeof text - 1, file)] = 0;
     fclose(file);

@@ -2,33 +2,69 @@
 #include "couple/coarse_map.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #define CELLS_MAX 0x1p24
 #define AXIS_MAX  0x1p20
 #define MARGIN    1e-6 /* cells, far above rounding */
 
-/* Cells of a width, wider ones if they were too many. */
-static void choose_widths(double width, fibrad_occupancy *map) {
-    for (int axis = 0; axis < 3; ++axis) width = fmax(width, (map->high[axis] - map->low[axis]) / AXIS_MAX);
-    for (double product = 2 * CELLS_MAX; product > CELLS_MAX; width *= 1.25) {
-        product = 1;
+#define TRIM_ROUNDS 16
+#define TRIM_UNITS  0x1p16 /* of a side: squares of 2^31 places fit into a sum */
+
+/* Divides the box into cells of a width, as far as an axis may have so many; how many there are. */
+static double divide(double width, fibrad_occupancy *map) {
+    double product = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        map->cells[axis] = (uint32_t)fmax(1, fmin(AXIS_MAX, ceil((map->high[axis] - map->low[axis]) / width)));
+        product *= map->cells[axis];
+    }
+    return product;
+}
+
+/* Narrows open axes to where the bulk of the centres lies, mean and four standard deviations, again and again while
+ * that leaves some out: particles lost far away must not make the cells wide. Sums are of whole numbers, the same
+ * whoever owns what. */
+static void leave_out_strays(MPI_Comm comm, const fibrad_particle *particle, size_t own, double radius,
+                             fibrad_occupancy *map) {
+    bool less = true;
+    for (int round = 0; round < TRIM_ROUNDS && less; ++round) {
+        uint64_t sum[3][3] = {{0}}; /* by axis: centres, their places in the box, squares of these */
+        for (size_t i = 0; i < own; ++i)
+            for (int axis = 0; axis < 3; ++axis) {
+                const double at = (particle[i].x[axis] - map->low[axis]) / (map->high[axis] - map->low[axis]);
+                if (!(at >= 0 && at <= 1)) continue;
+                const uint64_t place = (uint64_t)(at * TRIM_UNITS);
+                sum[axis][0]++, sum[axis][1] += place, sum[axis][2] += place * place;
+            }
+        MPI_Allreduce(MPI_IN_PLACE, sum, 9, MPI_UINT64_T, MPI_SUM, comm);
+        less = false;
         for (int axis = 0; axis < 3; ++axis) {
-            map->cells[axis] = (uint32_t)fmax(1, fmin(AXIS_MAX, ceil((map->high[axis] - map->low[axis]) / width)));
-            product *= map->cells[axis];
+            const double count = (double)sum[axis][0], side = map->high[axis] - map->low[axis];
+            if (map->periodic[axis] || !(count > 0)) continue;
+            const double mean = (double)sum[axis][1] / count;
+            const double square = fmax(0, (double)sum[axis][2] / count - mean * mean);
+            const double from = (mean - 4 * sqrt(square) - 1) / TRIM_UNITS * side - radius;
+            const double to = (mean + 4 * sqrt(square) + 1) / TRIM_UNITS * side + radius;
+            less = less || from > 0 || to < side;
+            map->high[axis] = map->low[axis] + fmin(to, side);
+            map->low[axis] += fmax(from, 0);
         }
     }
 }
 
-/* The cells [first, last] that a sphere may touch along an axis; on periodic axes they may lie beyond the box. */
-static void find_cells(const fibrad_occupancy *map, const fibrad_particle *p, int axis, int64_t *first, int64_t *last) {
+/* Whether a sphere touches the box along an axis, and the cells [first, last] there; on periodic axes they may lie
+ * beyond the box. */
+static bool find_cells(const fibrad_occupancy *map, const fibrad_particle *p, int axis, int64_t *first, int64_t *last) {
     const double cells = map->cells[axis], scale = cells / (map->high[axis] - map->low[axis]);
     double low = floor((p->x[axis] - p->radius - map->low[axis]) * scale - MARGIN);
     double high = floor((p->x[axis] + p->radius - map->low[axis]) * scale + MARGIN);
     if (map->periodic[axis] && high - low + 1 >= cells) low = 0, high = cells - 1;
+    const bool touches = map->periodic[axis] || (high >= 0 && low <= cells - 1);
     if (!map->periodic[axis]) low = fmax(0, fmin(low, cells - 1)), high = fmax(0, fmin(high, cells - 1));
     *first = (int64_t)low;
     *last = (int64_t)high;
+    return touches;
 }
 
 /* The cell in the box. */
@@ -37,7 +73,8 @@ static int64_t wrap_cell(int64_t cell, int64_t cells) { return (cell % cells + c
 static void mark_sphere(const fibrad_occupancy *map, const fibrad_particle *p, uint64_t *mark) {
     int64_t first[3], last[3];
     const int64_t n[3] = {map->cells[0], map->cells[1], map->cells[2]};
-    for (int axis = 0; axis < 3; ++axis) find_cells(map, p, axis, &first[axis], &last[axis]);
+    for (int axis = 0; axis < 3; ++axis)
+        if (!find_cells(map, p, axis, &first[axis], &last[axis])) return;
     for (int64_t k = first[2]; k <= last[2]; ++k)
         for (int64_t j = first[1]; j <= last[1]; ++j)
             for (int64_t i = first[0]; i <= last[0]; ++i) {
@@ -46,9 +83,10 @@ static void mark_sphere(const fibrad_occupancy *map, const fibrad_particle *p, u
             }
 }
 
-int fibrad_coarse_map(MPI_Comm comm, double width, const fibrad_particle *particle, size_t own, fibrad_block *mark,
-                      fibrad_occupancy *map) {
-    choose_widths(width, map);
+int fibrad_coarse_map(MPI_Comm comm, double width, double radius, const fibrad_particle *particle, size_t own,
+                      fibrad_block *mark, fibrad_occupancy *map) {
+    if (divide(width, map) > CELLS_MAX) leave_out_strays(comm, particle, own, radius, map);
+    while (divide(width, map) > CELLS_MAX) width *= 1.25;
     const size_t words = ((size_t)map->cells[0] * map->cells[1] * map->cells[2] + 63) / 64;
     const int status = fibrad_agree(comm, fibrad_block_fit(mark, words, sizeof(uint64_t)), NULL);
     if (status) return status;

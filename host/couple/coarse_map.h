@@ -6,9 +6,10 @@
 #include "fibrad_part.h"
 
 /* Collective. Makes the occupancy of the bed in a box (low, high, periodic, set before, the same on all ranks) of cells
- * about `width` wide, 2^24 at most: marks those that particle[own] may touch, on all ranks. mark: its memory. Errors,
- * on all ranks: _MEMORY. */
-int fibrad_coarse_map(MPI_Comm comm, double width, const fibrad_particle *particle, size_t own, fibrad_block *mark,
-                      fibrad_occupancy *map);
+ * about `width` wide, 2^24 at most: marks those that particle[own] may touch, on all ranks; radius: the largest. Where
+ * there would be more cells, the box is first made smaller by particles far from all others, which are then in nobody's
+ * way; then cells wider. mark: its memory. Errors, on all ranks: _MEMORY. */
+int fibrad_coarse_map(MPI_Comm comm, double width, double radius, const fibrad_particle *particle, size_t own,
+                      fibrad_block *mark, fibrad_occupancy *map);
 
 #endif

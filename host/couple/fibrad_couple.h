@@ -53,8 +53,8 @@ typedef struct fibrad_insitu fibrad_insitu;
 
 /* How rows are made; the same on all ranks. Zeroed: all defaults. */
 typedef struct fibrad_insitu_config {
-    double cutoff;       /* [L] from a particle's centre, beyond which it sees nothing; 0: 10 mean radii, 12 if some
-                            emissivity is below 0.4 */
+    double cutoff;       /* [L] from a particle's centre, beyond which it sees nothing; 0: 8 mean radii (10 if some
+                            emissivity is below 0.4) + the largest diameter, which is the least */
     uint32_t directions; /* of the first leg, as in fibrad_exchange_rule; 0: its default */
     uint32_t paths;      /* likewise, for reflections; 0: its default */
     double tolerance;    /* of each row, likewise; 0: none */

@@ -10,12 +10,13 @@
 #include "couple/coarse_map.h"
 
 #define THREADS_MAX    1024
-#define CUTOFF_RADII   10 /* mean radii: 1.7e-4 of what is emitted leaves it at emissivity 0.8, docs/coupling.md */
-#define CUTOFF_DARK    12 /* the same where reflections carry it on */
+#define CUTOFF_RADII   8  /* mean radii and a largest diameter: 1.7e-4 of what equal spheres emit leaves it at 0.8 */
+#define CUTOFF_DARK    10 /* the same where reflections carry it on */
 #define DARK_BELOW     0.4
-#define CELLS_A_CUTOFF 4   /* of the coarse map */
-#define REACH_RADII    1.5 /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad_part.h */
-#define PERIODS_MAX    100 /* as far as the kernel's beams go */
+#define CELLS_A_CUTOFF 8     /* of the coarse map */
+#define REACH_RADII    1.5   /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad_part.h */
+#define LENGTH_MAX     1e150 /* the kernel's */
+#define PERIODS_MAX    100   /* as far as the kernel's beams go */
 
 /* ---- begin and end ---- */
 
@@ -164,10 +165,11 @@ static int take_particles(struct insitu_build *b) {
         fibrad_particle p = {.id = bed->id[i], .radius = bed->radius[i], .emissivity = bed->emissivity[i]};
         for (int axis = 0; axis < 3; ++axis) {
             const double x = bed->x[3 * i + (size_t)axis], period = b->period[axis];
-            if (!isfinite(x)) return refuse_particle(message, p.id, "a coordinate is not finite");
+            if (!(fabs(x) <= LENGTH_MAX)) return refuse_particle(message, p.id, "a coordinate is not finite");
             p.x[axis] = period > 0 ? x - period * floor((x - bed->low[axis]) / period) : x;
         }
-        if (!(p.radius > 0 && isfinite(p.radius))) return refuse_particle(message, p.id, "its radius is not above 0");
+        if (!(p.radius > 0 && p.radius <= LENGTH_MAX))
+            return refuse_particle(message, p.id, "its radius is not above 0");
         if (!(p.emissivity > 0 && p.emissivity <= 1))
             return refuse_particle(message, p.id, "its emissivity is not above 0 and at most 1");
         particle[i] = p;
@@ -205,8 +207,12 @@ static int measure_bed(struct insitu_build *b) {
     b->radius_max = most[0];
     b->cutoff = config->cutoff;
     if (!(b->cutoff > 0) && sum[0])
-        b->cutoff =
-            (-most[1] < DARK_BELOW ? CUTOFF_DARK : CUTOFF_RADII) * ((double)sum[1] / (double)sum[0] / 0x1p32 * most[0]);
+        b->cutoff = 2 * b->radius_max + (-most[1] < DARK_BELOW ? CUTOFF_DARK : CUTOFF_RADII) *
+                                            ((double)sum[1] / (double)sum[0] / 0x1p32 * b->radius_max);
+    if (b->cutoff < 2 * b->radius_max)
+        status = fibrad_refuse(b->s->message, FIBRAD_E_ARGUMENT,
+                               "the cutoff %g is less than the diameter of the largest particle, %g", b->cutoff,
+                               2 * b->radius_max);
     b->to->facts.cutoff = b->cutoff;
     b->reach = b->cutoff + REACH_RADII * b->radius_max;
     b->to->emissive = -most[1] < 1;
@@ -404,7 +410,8 @@ int fibrad_insitu_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t 
     if (!status) status = link_present(&b);
     if (!status && b.to->facts.particles) {
         fibrad_insitu_set *to = b.to;
-        status = fibrad_coarse_map(s->comm, b.cutoff / CELLS_A_CUTOFF, to->particle.at, to->own, &s->mark, &b.map);
+        status = fibrad_coarse_map(s->comm, b.cutoff / CELLS_A_CUTOFF, b.radius_max, to->particle.at, to->own, &s->mark,
+                                   &b.map);
         if (!status) status = fibrad_halo(s->comm, b.period, b.reach, &to->particle, to->own, &s->sent, &b.halo);
     }
     if (!status) status = make_rows(&b);

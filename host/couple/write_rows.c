@@ -1,4 +1,5 @@
 /* write_rows.c - the rows of each rank in a file. SPDX-License-Identifier: MIT */
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -171,12 +172,12 @@ int fibrad_insitu_write(fibrad_insitu *s, const char *path) {
     snprintf(name, sizeof name, "%.4000s.%d.rows", path, s->rank);
     snprintf(draft, sizeof draft, "%.4000s.%d.rows.tmp", path, s->rank);
     status = fibrad_agree(s->comm, write_draft(s, draft), s->message);
-    if (!status && rename(draft, name))
-        status = fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "cannot rename to %.200s", name);
+    const bool renamed = !status && rename(draft, name) == 0;
+    if (!status && !renamed) status = fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "cannot rename to %.200s", name);
     status = fibrad_agree(s->comm, status, s->message);
     if (status) {
         remove(draft);
-        remove(name);
+        if (renamed) remove(name);
     }
     return status;
 }

@@ -59,7 +59,7 @@ class FixFibrad::Words {
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), temperature(), surroundings(-1), sigma(0), initial(0), config(), insitu(nullptr),
-      totals(), warned(false), begun(0), before(), rows_made(0), powers_found(0) {
+      totals(), warned(false), cut_warned(false), begun(0), before(), rows_made(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // 0 would leave the directions of step 0 as they are, whose errors add up
@@ -79,7 +79,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
         else if (key == "wall")
             read_wall(words);
         else if (key == "temperature")
-            temperature = words.next();
+            read_temperature(words);
         else if (key == "initial")
             initial = words.number("the initial temperature", 0, huge);
         else if (key == "cutoff")
@@ -140,6 +140,13 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
 FixFibrad::~FixFibrad() {
     atom->delete_callback(id, Atom::GROW);
     fibrad_insitu_free(insitu);
+}
+
+// d_NAME, or LAMMPS' own: other words may name what is no vector of numbers
+void FixFibrad::read_temperature(Words &words) {
+    temperature = words.next();
+    if (temperature != "temperature" && temperature.compare(0, 2, "d_") != 0)
+        error->all(FLERR, "fix fibrad: `temperature` is followed by d_NAME, not `" + temperature + "`");
 }
 
 // wall FACE T e [at POS] | wall zcylinder R T e [at X Y]
@@ -203,6 +210,7 @@ int FixFibrad::setmask() { return FixConst::POST_FORCE | FixConst::END_OF_STEP |
 void FixFibrad::init() {
     if (!atom->radius) error->all(FLERR, std::string("fix fibrad: particles need radii (atom_style sphere)"));
     if (!atom->tag_enable) error->all(FLERR, std::string("fix fibrad: atoms need ids"));
+    if (domain->dimension != 3) error->all(FLERR, std::string("fix fibrad: the dimension must be 3"));
     if (domain->triclinic) error->all(FLERR, std::string("fix fibrad: the box must not be triclinic"));
     if (strstr(update->integrate_style, "respa"))
         error->all(FLERR, std::string("fix fibrad: run_style must be verlet"));
@@ -217,8 +225,7 @@ void FixFibrad::init() {
     if (!emissivity.of_atom.empty()) need(emissivity.of_atom);
     if (!heat_every) return;
 
-    if (temperature.empty())
-        temperature = atom->extract("temperature") && atom->extract("heatflow") ? "temperature" : "d_T";
+    if (temperature.empty()) temperature = has("temperature") && has("heatflow") ? "temperature" : "d_T";
     need(temperature);
     if (temperature != "temperature") {
         if (!cp.given()) error->all(FLERR, std::string("fix fibrad: `cp C`, heat per mass and kelvin, is missing"));
@@ -322,7 +329,14 @@ void FixFibrad::make_rows() {
     const bigint number = update->ntimestep / rows_every * rows_every;
     check(fibrad_insitu_rows(insitu, &bed, (uint64_t)number));
     rows_made++;
-    if (!rows_file.empty()) check(fibrad_insitu_write(insitu, (rows_file + "." + std::to_string(number)).c_str()));
+    fibrad_insitu_facts facts;
+    fibrad_insitu_facts_get(insitu, &facts);
+    if (facts.beyond > 0.01 && !cut_warned && comm->me == 0)
+        error->warning(FLERR, text("fix fibrad: %.2g %% of what particles emit is cut off: `cutoff` should be larger",
+                                   100 * facts.beyond));
+    cut_warned = cut_warned || facts.beyond > 0.01;
+    if (!rows_file.empty())
+        check(fibrad_insitu_write(insitu, (rows_file + "." + std::to_string(update->ntimestep)).c_str()));
 }
 
 void FixFibrad::find_powers() {
@@ -366,7 +380,7 @@ void FixFibrad::check_step(const std::vector<double> &t) {
         const int i = member[k];
         const double area = 16 * std::atan(1) * atom->radius[i] * atom->radius[i];
         double ratio = HUGE_VAL;
-        if (t[k] > 0 && t[k] < HUGE_VAL)
+        if (t[k] > 0 && t[k] < HUGE_VAL && (capacity.empty() || capacity[k] > 0))
             ratio = cp.given() ? 4 * sigma * t[k] * t[k] * t[k] * area * e[k] * update->dt * heat_every /
                                      (mass(i) * capacity[k])
                                : 0;
@@ -379,7 +393,7 @@ void FixFibrad::check_step(const std::vector<double> &t) {
     const std::string name = "atom " + std::to_string(tag);
     if (worst.ratio == HUGE_VAL)
         error->all(FLERR, std::string("fix fibrad: the temperature ") + (cp.of_atom.empty() ? "" : "or cp ") + "of " +
-                              name + " is not set");
+                              name + " is not set, or not above 0");
     const int most = (int)(heat_every / worst.ratio * (1 - 1e-9));
     if (worst.ratio >= 1)
         error->all(FLERR, "fix fibrad: steps of heat are too long for " + name +
@@ -399,10 +413,15 @@ void FixFibrad::check(int status) {
 // LAMMPS' own vector, or one of fix property/atom; it moves when atoms come. NULL is the vector of no atoms, too.
 double *FixFibrad::vector(const std::string &name) { return (double *)atom->extract(name.c_str()); }
 
-void FixFibrad::need(const std::string &name) {
+// whether all ranks that have atoms have it
+bool FixFibrad::has(const std::string &name) {
     int there = vector(name) || !atom->nlocal;
     MPI_Allreduce(MPI_IN_PLACE, &there, 1, MPI_INT, MPI_MIN, world);
-    if (!there)
+    return there;
+}
+
+void FixFibrad::need(const std::string &name) {
+    if (!has(name))
         error->all(FLERR, "fix fibrad: atoms have no " + name + ": say fix ID all property/atom " + name + " before");
 }
 
@@ -444,6 +463,7 @@ void FixFibrad::copy_arrays(int i, int j, int) { q[j] = q[i]; }
 // a new atom, whose place in the vectors may have been another's
 void FixFibrad::set_arrays(int i) {
     q[i] = 0;
+    if (!(atom->mask[i] & groupbit)) return;
     if (double *t = temperature.empty() ? nullptr : vector(temperature)) t[i] = initial;
 }
 

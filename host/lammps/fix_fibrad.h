@@ -47,8 +47,10 @@ class FixFibrad : public Fix {
 
     class Words;
     void read_wall(Words &);
+    void read_temperature(Words &);
     Property read_property(Words &);
     double *vector(const std::string &name);
+    bool has(const std::string &name);
     void need(const std::string &name);
     std::vector<double> values(const Property &);
     double mass(int i) const;
@@ -73,7 +75,7 @@ class FixFibrad : public Fix {
     std::vector<double> q;      // [nmax] power of each atom
     std::vector<int> member;    // atoms of the group that this rank owns
     std::vector<uint64_t> tags; // [member]
-    bool warned;
+    bool warned, cut_warned;
 
     // since the run began
     double begun;

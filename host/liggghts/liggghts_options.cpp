@@ -175,8 +175,8 @@ void liggghts_options_help() {
         "  --wall cylinder=T,E,X,Y,R  a wall about the axis along z through X,Y\n"
         "  --every N                powers anew every N steps [20]\n"
         "  --rows N                 exchange factors anew every N steps, a multiple of --every [1000]\n"
-        "  --cutoff R               particles farther than R from another do not see it [10 mean radii; 12 below "
-        "emissivity 0.4]\n"
+        "  --cutoff R               particles farther than R from another do not see it [8 mean radii, 10 below "
+        "emissivity 0.4, and the largest diameter]\n"
         "  --tolerance E            estimated error of each row, 1e-5 to 1 [none]\n"
         "  --seed S                 another number, other paths [0]\n"
         "  --write NAME             the last rows to NAME.RANK.rows, for fibrad join\n");

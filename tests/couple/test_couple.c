@@ -435,7 +435,7 @@ static void the_map_has_all(const struct kind *kind) {
         map.low[axis] = all.bed.low[axis] - (kind->periodic[axis] ? 0 : 5);
         map.high[axis] = all.bed.high[axis] + (kind->periodic[axis] ? 0 : 5);
     }
-    CHECK(fibrad_coarse_map(MPI_COMM_WORLD, .4, own, part.bed.n, &mark, &map) == FIBRAD_OK);
+    CHECK(fibrad_coarse_map(MPI_COMM_WORLD, .4, .5, own, part.bed.n, &mark, &map) == FIBRAD_OK);
     size_t marked = 0, cells = (size_t)map.cells[0] * map.cells[1] * map.cells[2];
     for (size_t c = 0; c < cells; ++c) marked += map.mark[c / 64] >> c % 64 & 1;
     bool there = true;
@@ -460,22 +460,51 @@ static void the_map_has_all(const struct kind *kind) {
     close_pile(&part);
 }
 
-/* One particle far above the bed takes nothing of its surface's sky but what it hides. */
+/* One particle far above the bed, or lost so far away that its box would have too wide cells, takes nothing of the sky
+ * of the others but what it hides. */
 static void the_sky_stays_open(void) {
-    const struct kind kind = {"sky", 5, {1, 1, 0}, OPEN, {.8, .8}, 5, 1, 0};
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &kind, 1);
-    fibrad_insitu_facts facts[2];
-    for (int high = 0; high < 2; ++high) {
-        struct pile all = pile_of(&kind);
-        if (high) all.x[3 * (all.bed.n - 1) + 2] += 100;
-        struct pile part = part_of(&all, 0);
-        make_rows(s, &part, 0);
-        fibrad_insitu_facts_get(s, &facts[high]);
-        close_pile(&all);
-        close_pile(&part);
+    const struct kind kinds_of_sky[] = {{"sky", 5, {1, 1, 0}, OPEN, {.8, .8}, 5, 1, 0},
+                                        {"lost", 5, {0, 0, 0}, OPEN, {.8, .8}, 5, 1, 0}};
+    const double away[2][3] = {{0, 0, 100}, {1e5, 1e5, 1e5}};
+    for (int k = 0; k < 2; ++k) {
+        const struct kind *kind = &kinds_of_sky[k];
+        fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 1);
+        fibrad_insitu_facts facts[2];
+        for (int high = 0; high < 2; ++high) {
+            struct pile all = pile_of(kind);
+            for (int axis = 0; high && axis < 3; ++axis) all.x[3 * (all.bed.n - 1) + (size_t)axis] += away[k][axis];
+            struct pile part = part_of(&all, 0);
+            make_rows(s, &part, 0);
+            fibrad_insitu_facts_get(s, &facts[high]);
+            close_pile(&all);
+            close_pile(&part);
+        }
+        CHECK(facts[0].beyond > 0 && facts[1].beyond < 1.1 * facts[0].beyond);
+        fibrad_insitu_free(s);
     }
-    CHECK(facts[0].beyond > 0 && facts[1].beyond < 1.1 * facts[0].beyond);
+}
+
+/* A particle larger than all others together sees them, and they it: the default cutoff has its diameter. */
+static void large_particles_are_seen(void) {
+    const struct kind kind = {"large", 4, {0, 0, 0}, OPEN, {.8, .8}, 0, 1, 0};
+    struct pile all = pile_of(&kind);
+    const size_t last = all.bed.n - 1;
+    const double large = 15;
+    all.radius[last] = large;
+    all.x[3 * last + 2] += 1.5 * large;
+    struct pile part = part_of(&all, 0);
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &kind, 1);
+    fibrad_insitu_facts facts;
+    make_rows(s, &part, 0);
+    fibrad_insitu_facts_get(s, &facts);
+    CHECK(facts.cutoff > 2 * large && facts.beyond < .01);
     fibrad_insitu_free(s);
+    const fibrad_insitu_config config = {.cutoff = 1.9 * large};
+    CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &config) == FIBRAD_OK);
+    CHECK(fibrad_insitu_rows(s, &part.bed, 0) == FIBRAD_E_ARGUMENT && strstr(fibrad_insitu_message(s), "the cutoff"));
+    fibrad_insitu_free(s);
+    close_pile(&all);
+    close_pile(&part);
 }
 
 /* ---- a serial reference ---------------------------------------------------------------------------------------- */
@@ -724,6 +753,7 @@ int main(int argc, char **argv) {
     the_map_has_all(&kinds[0]);
     the_map_has_all(&kinds[4]);
     the_sky_stays_open();
+    large_particles_are_seen();
     temperatures_are_those_of_the_kernel(OPEN, 0); /* no cutoff: larger than the bed */
     temperatures_are_those_of_the_kernel(FLOORS, 1000);
     refusals();
