@@ -13,7 +13,7 @@
 #define TRIM_UNITS  0x1p16 /* of a side: squares of 2^31 places fit into a sum */
 
 /* Divides the box into cells of a width, as far as an axis may have so many; how many there are. */
-static double divide(double width, fibrad_occupancy *map) {
+static double divide_box(double width, fibrad_occupancy *map) {
     double product = 1;
     for (int axis = 0; axis < 3; ++axis) {
         map->cells[axis] = (uint32_t)fmax(1, fmin(AXIS_MAX, ceil((map->high[axis] - map->low[axis]) / width)));
@@ -85,8 +85,8 @@ static void mark_sphere(const fibrad_occupancy *map, const fibrad_particle *p, u
 
 int fibrad_coarse_map(MPI_Comm comm, double width, double radius, const fibrad_particle *particle, size_t own,
                       fibrad_block *mark, fibrad_occupancy *map) {
-    if (divide(width, map) > CELLS_MAX) leave_out_strays(comm, particle, own, radius, map);
-    while (divide(width, map) > CELLS_MAX) width *= 1.25;
+    if (divide_box(width, map) > CELLS_MAX) leave_out_strays(comm, particle, own, radius, map);
+    while (divide_box(width, map) > CELLS_MAX) width *= 1.25;
     const size_t words = ((size_t)map->cells[0] * map->cells[1] * map->cells[2] + 63) / 64;
     const int status = fibrad_agree(comm, fibrad_block_fit(mark, words, sizeof(uint64_t)), NULL);
     if (status) return status;
