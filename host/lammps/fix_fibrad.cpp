@@ -225,7 +225,7 @@ void FixFibrad::init() {
     if (!emissivity.of_atom.empty()) need(emissivity.of_atom);
     if (!heat_every) return;
 
-    if (temperature.empty()) temperature = has("temperature") && has("heatflow") ? "temperature" : "d_T";
+    if (temperature.empty()) temperature = known("temperature") && known("heatflow") ? "temperature" : "d_T";
     need(temperature);
     if (temperature != "temperature") {
         if (!cp.given()) error->all(FLERR, std::string("fix fibrad: `cp C`, heat per mass and kelvin, is missing"));
@@ -413,15 +413,17 @@ void FixFibrad::check(int status) {
 // LAMMPS' own vector, or one of fix property/atom; it moves when atoms come. NULL is the vector of no atoms, too.
 double *FixFibrad::vector(const std::string &name) { return (double *)atom->extract(name.c_str()); }
 
-// whether all ranks that have atoms have it
-bool FixFibrad::has(const std::string &name) {
-    int there = vector(name) || !atom->nlocal;
-    MPI_Allreduce(MPI_IN_PLACE, &there, 1, MPI_INT, MPI_MIN, world);
+// whether some rank has it
+bool FixFibrad::known(const std::string &name) {
+    int there = vector(name) != nullptr;
+    MPI_Allreduce(MPI_IN_PLACE, &there, 1, MPI_INT, MPI_MAX, world);
     return there;
 }
 
 void FixFibrad::need(const std::string &name) {
-    if (!has(name))
+    int there = vector(name) || !atom->nlocal;
+    MPI_Allreduce(MPI_IN_PLACE, &there, 1, MPI_INT, MPI_MIN, world);
+    if (!there)
         error->all(FLERR, "fix fibrad: atoms have no " + name + ": say fix ID all property/atom " + name + " before");
 }
 

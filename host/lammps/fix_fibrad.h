@@ -50,7 +50,7 @@ class FixFibrad : public Fix {
     void read_temperature(Words &);
     Property read_property(Words &);
     double *vector(const std::string &name);
-    bool has(const std::string &name);
+    bool known(const std::string &name);
     void need(const std::string &name);
     std::vector<double> values(const Property &);
     double mass(int i) const;
