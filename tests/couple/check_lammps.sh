@@ -144,6 +144,10 @@ if "$LMP" -h | grep -q 'heat/flow'; then
     balance falls 10e-3 1 1e-6 200 "energy of a falling bed with conduction"
 fi
 
+# ---- a box that is empty at first --------------------------------------------------------------------------------------
+run 2 empty empty.lmp && awk '/^[12] / && $2 < 399 && $2 > 390 { n++ } END { exit n != 2 }' "$work/empty.out"
+verdict "a box that is empty at first" $?
+
 # ---- failures ---------------------------------------------------------------------------------------------------------
 # fails MESSAGE WHAT [NAME VALUE]...: all ranks end, with one message
 fails() {
