@@ -129,7 +129,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
     maxexchange = 1;
-    grow_arrays(atom->nmax);
+    FixFibrad::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
 
     if (fibrad_insitu_new(&insitu, world, &config) != FIBRAD_OK)

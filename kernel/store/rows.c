@@ -81,11 +81,15 @@ const fibrad_record *fibrad_rows_next(const fibrad_rows *rows, size_t *at) {
 }
 
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row) {
-    const fibrad_record *record = rows != NULL && at != NULL && row != NULL ? fibrad_rows_next(rows, at) : NULL;
+    if (rows == NULL || at == NULL || row == NULL) return 0;
+    const size_t begin = *at;
+    const fibrad_record *record = fibrad_rows_next(rows, at);
     if (record == NULL) return 0;
-    *row = (fibrad_row){.body = (double *)(uintptr_t)fibrad_record_body(record),
-                        .f = (double *)(uintptr_t)fibrad_record_f(record),
-                        .col = (uint32_t *)(uintptr_t)fibrad_record_col(record),
+    unsigned char *own = (unsigned char *)rows->memory.block + lead_of(rows) + begin; /* the record, to be written */
+    double *body = (double *)(void *)(own + sizeof *record), *f = body + record->bodies;
+    *row = (fibrad_row){.body = body,
+                        .f = f,
+                        .col = (uint32_t *)(void *)(f + record->length),
                         .sphere = record->sphere,
                         .length = record->length,
                         .escaped = record->escaped,
