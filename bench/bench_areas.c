@@ -22,6 +22,8 @@ struct window {
 
 typedef void begin_function(fibrad_areas *areas);
 typedef bool disc_function(fibrad_areas *areas, uint32_t whose, double x, double y, double r);
+typedef uint32_t discs_function(fibrad_areas *areas, uint32_t first, const uint32_t *which, uint32_t count,
+                                const double *x, const double *y, const double *r);
 typedef double end_function(fibrad_areas *areas);
 
 struct method {
@@ -37,26 +39,28 @@ static void add(struct method *method, const char *name, const char *isa, begin_
     *method = (struct method){name, isa, begin, disc, end, INFINITY, 0};
 }
 
-#define DECLARE(by, isa)                                                                                               \
-    begin_function fibrad_##by##_begin_##isa;                                                                          \
-    disc_function fibrad_##by##_disc_##isa;                                                                            \
-    end_function fibrad_##by##_end_##isa;
+/* The two methods of an instruction set; clipping takes discs in one call, which is given one. */
+#define DECLARE(isa)                                                                                                   \
+    begin_function fibrad_areas_begin_##isa, fibrad_arrangement_begin_##isa;                                           \
+    disc_function fibrad_arrangement_disc_##isa;                                                                       \
+    discs_function fibrad_areas_discs_##isa;                                                                           \
+    end_function fibrad_areas_end_##isa, fibrad_arrangement_end_##isa;                                                 \
+    static bool fibrad_areas_disc_##isa(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {           \
+        fibrad_areas_discs_##isa(areas, whose, &(uint32_t){0}, 1, &x, &y, &r);                                         \
+        return areas->open;                                                                                            \
+    }
 #define METHOD(by, isa)                                                                                                \
     add(&methods[n++], #by, #isa, fibrad_##by##_begin_##isa, fibrad_##by##_disc_##isa, fibrad_##by##_end_##isa)
 
-DECLARE(areas, scalar)
-DECLARE(arrangement, scalar)
+DECLARE(scalar)
 #ifdef FIBRAD_WITH_SSE2
-DECLARE(areas, sse2)
-DECLARE(arrangement, sse2)
+DECLARE(sse2)
 #endif
 #ifdef FIBRAD_WITH_AVX2
-DECLARE(areas, avx2)
-DECLARE(arrangement, avx2)
+DECLARE(avx2)
 #endif
 #ifdef FIBRAD_WITH_AVX512
-DECLARE(areas, avx512)
-DECLARE(arrangement, avx512)
+DECLARE(avx512)
 #endif
 
 /* Those of this machine; the scalar arrangement comes first. */
