@@ -33,8 +33,7 @@ size_t fibrad_count_sum(const int *count, int ranks) {
     return sum;
 }
 
-/* Where the things of each rank begin. */
-static void add_up(const int *count, int ranks, int *start) {
+void fibrad_count_starts(const int *count, int ranks, int *start) {
     int sum = 0;
     for (int q = 0; q < ranks; ++q) start[q] = sum, sum += count[q];
 }
@@ -54,8 +53,8 @@ int fibrad_deal(MPI_Comm comm, int status, const void *send, const int *count, s
         status = fibrad_agree(comm, status, NULL);
     }
     if (!status) {
-        add_up(count, ranks, start);
-        add_up(got, ranks, start + ranks);
+        fibrad_count_starts(count, ranks, start);
+        fibrad_count_starts(got, ranks, start + ranks);
         MPI_Type_contiguous((int)size, MPI_BYTE, &thing);
         MPI_Type_commit(&thing);
         MPI_Alltoallv(send, count, start, thing, (char *)to->at + at * size, got, start + ranks, thing, comm);

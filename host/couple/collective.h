@@ -21,7 +21,8 @@ int fibrad_agree(MPI_Comm comm, int status, char *message);
 int fibrad_deal(MPI_Comm comm, int status, const void *send, const int *count, size_t size, fibrad_block *to, size_t at,
                 int *got);
 
-/* Sum of counts. */
+/* Sum of counts; start[ranks]: where the things of each rank begin. */
 size_t fibrad_count_sum(const int *count, int ranks);
+void fibrad_count_starts(const int *count, int ranks, int *start);
 
 #endif

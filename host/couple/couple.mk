@@ -3,6 +3,7 @@
 # Open MPI's wrappers know the flags; whatever is missing is named when it is needed.
 
 MPICC  = mpicc
+MPICXX = mpicxx
 MPIRUN = mpirun
 
 COUPLE = \
@@ -22,6 +23,7 @@ COUPLE_SCRIPTS = tests/couple/check_couple.sh
 
 COUPLE_OBJECTS = $(COUPLE:%.c=$(BUILD)/%.o)
 COUPLE_LIBS    = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/libfibrad.a
+COUPLE_CXX     = $(CFLAGS) -pedantic -Wall -Wextra -Wshadow $(WERROR) -DOMPI_SKIP_MPICXX -Ikernel -Ihost -MMD -MP
 COUPLE_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(PIC)
 
 # what `make couple` builds

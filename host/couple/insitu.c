@@ -10,7 +10,7 @@
 #include "couple/coarse_map.h"
 
 #define THREADS_MAX    1024
-#define CUTOFF_RADII   8  /* mean radii and a largest diameter: 1.7e-4 of what equal spheres emit leaves it at 0.8 */
+#define CUTOFF_RADII   8  /* mean radii and a largest diameter: 1.4e-4 of what equal spheres emit leaves it at 0.8 */
 #define CUTOFF_DARK    10 /* the same where reflections carry it on */
 #define DARK_BELOW     0.4
 #define CELLS_A_CUTOFF 8     /* of the coarse map */

@@ -95,17 +95,11 @@ static void blame(struct making *m, uint64_t id) {
 
 static int directory_of(const struct making *m, uint64_t id) { return (int)(hash_id(id) % (uint64_t)m->ranks); }
 
-/* Turns counts into the places where the things of each rank begin, in got. */
-static void begin_places(struct making *m) {
-    int sum = 0;
-    for (int q = 0; q < m->ranks; ++q) m->got[q] = sum, sum += m->count[q];
-}
-
 /* Enters the ids owned in the directory. */
 static int enter_owned(struct making *m, size_t own) {
     memset(m->count, 0, (size_t)m->ranks * sizeof *m->count);
     for (size_t i = 0; i < own; ++i) m->count[directory_of(m, m->id[i])]++;
-    begin_places(m);
+    fibrad_count_starts(m->count, m->ranks, m->got);
     for (size_t i = 0; i < own; ++i)
         m->owner[m->got[directory_of(m, m->id[i])]++] = (struct owner){m->id[i], (uint32_t)m->rank, (uint32_t)i};
     return fibrad_deal(m->comm, FIBRAD_OK, m->owner, m->count, sizeof *m->owner, &m->arrived[DIRECTORY], 0, m->got);
@@ -124,7 +118,7 @@ static int ask_directory(struct making *m, size_t own, size_t used, uint32_t *sl
         }
         slot[k] = *number;
     }
-    begin_places(m);
+    fibrad_count_starts(m->count, m->ranks, m->got);
     for (size_t k = 0, next = 0; k < used && !status; ++k)
         if (slot[k] == next) { /* the first time */
             const int at = m->got[directory_of(m, m->id[own + k])]++;
@@ -174,7 +168,7 @@ static int ask_owners(struct making *m, fibrad_link *link) {
     uint32_t *wanted = malloc((m->unique + 1) * sizeof *wanted);
     memset(m->count, 0, (size_t)m->ranks * sizeof *m->count);
     for (size_t u = 0; u < m->unique; ++u) m->count[reply[u].rank]++;
-    begin_places(m);
+    fibrad_count_starts(m->count, m->ranks, m->got);
     for (size_t u = 0; u < m->unique && wanted; ++u) {
         const int at = m->got[reply[u].rank]++;
         wanted[at] = reply[u].index;

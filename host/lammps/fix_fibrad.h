@@ -10,7 +10,7 @@
 
 #include "fix.h"
 
-#include "fibrad_couple.h"
+#include "couple/fibrad_couple.h"
 
 #include <string>
 #include <vector>

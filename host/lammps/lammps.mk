@@ -2,12 +2,10 @@
 #
 # For Debian's LAMMPS as it is installed; for a newer one with the PLUGIN package: make LAMMPS_SOURCE=TREE couple.
 
-MPICXX        = mpicxx
 LAMMPS_SOURCE =
 LAMMPS_SIZES  = -DLAMMPS_SMALLBIG
 
-LAMMPS_FLAGS  = $(CFLAGS) -pedantic -Wall -Wextra -Wshadow $(WERROR) -fPIC -DOMPI_SKIP_MPICXX $(LAMMPS_SIZES) \
-    -Ikernel -Ihost/couple -MMD -MP
+LAMMPS_FLAGS  = $(COUPLE_CXX) -fPIC $(LAMMPS_SIZES)
 LAMMPS_LINK   = -shared -fopenmp -Wl,--exclude-libs,ALL
 LAMMPS_HERE   = $(wildcard /usr/include/lammps/fix.h)
 FIX           = host/lammps/fix_fibrad.cpp

@@ -1,18 +1,15 @@
 # liggghts.mk - the driver of LIGGGHTS; included by host/couple/couple.mk. SPDX-License-Identifier: MIT
 
-MPICXX = mpicxx
-
 LIGGGHTS_HERE    = $(wildcard /usr/include/liggghts/library.h)
 LIGGGHTS_OBJECTS = $(BUILD)/couple/fibrad_liggghts.o $(BUILD)/couple/liggghts_options.o
-LIGGGHTS_FLAGS   = -std=c++14 -pedantic -Wall -Wextra -Wshadow $(WERROR) -DOMPI_SKIP_MPICXX -Ikernel -Ihost \
-    -isystem /usr/include/liggghts -MMD -MP
+LIGGGHTS_FLAGS   = -std=c++14 $(COUPLE_CXX) -isystem /usr/include/liggghts
 
 COUPLE_SCRIPTS  += tests/couple/check_liggghts.sh
 COUPLE_PRODUCTS += $(if $(LIGGGHTS_HERE),$(BUILD)/couple/fibrad_liggghts)
 
 $(LIGGGHTS_OBJECTS): $(BUILD)/couple/%.o: host/liggghts/%.cpp | need-mpi
 	@mkdir -p $(@D)
-	$(MPICXX) $(CFLAGS) $(LIGGGHTS_FLAGS) -c $< -o $@
+	$(MPICXX) $(LIGGGHTS_FLAGS) -c $< -o $@
 
 $(BUILD)/couple/fibrad_liggghts: $(LIGGGHTS_OBJECTS) $(COUPLE_LIBS)
 	$(MPICXX) $(LDFLAGS) -fopenmp $(LIGGGHTS_OBJECTS) $(COUPLE_LIBS) -lliggghts -o $@

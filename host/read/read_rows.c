@@ -119,11 +119,7 @@ static int order_parts(struct part *part, size_t count) {
 
 /* ---- ids -------------------------------------------------------------------------------------------------------- */
 
-static int compare_owners(const void *a, const void *b) {
-    const uint64_t left = ((const struct owner *)a)->id, right = ((const struct owner *)b)->id;
-    return (left > right) - (left < right);
-}
-
+/* Of ids, or of what begins with one. */
 static int compare_joined(const void *a, const void *b) {
     const uint64_t left = *(const uint64_t *)a, right = *(const uint64_t *)b;
     return (left > right) - (left < right);
@@ -146,7 +142,7 @@ static int order_ids(const struct part *part, struct owner *owner, struct joined
         const int status = own_ids(&part[k], k, owner + n, joined->id);
         if (status) return status;
     }
-    qsort(owner, n, sizeof *owner, compare_owners);
+    qsort(owner, n, sizeof *owner, compare_joined);
     for (size_t k = 0; k < n; ++k) {
         joined->id[k] = owner[k].id;
         if (k > 0 && owner[k].id == owner[k - 1].id)

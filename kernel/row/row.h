@@ -6,8 +6,7 @@
 #include "row/work.h"
 
 /* Computes row i into the arrays of `row`: length, escaped, error, body and what else it fills in; beyond is 0 before
- * it. Errors: _CAPACITY
- * (row->length), _WORK (space->needed), others. */
+ * it. Errors: _CAPACITY (row->length), _WORK (space->needed), others. */
 typedef int fibrad_row_function(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *rule,
                                 fibrad_row *row);
 
