@@ -17,6 +17,8 @@ static double x[] = {0, 3, 1.0 / 3}, y[] = {0, 0.1, -7}, z[] = {1e-300, 2, 5}, r
 static int64_t id[] = {70, -5, 123456789012};
 static const struct bed bed = {.n = 3, .x = x, .y = y, .z = z, .r = r, .ids = true, .id = id};
 
+static const struct bed plain = {.n = 3, .x = x, .y = y, .z = z, .r = r};
+
 static uint64_t start[] = {0, 2, 2, 4};
 static uint32_t col[] = {1, 2, 0, 2};
 static double f[] = {0.1, 1.0 / 3, 5e-324, 0.75586818421612400e-1};
@@ -35,7 +37,7 @@ static const struct walls *order; /* NULL: no walls */
 static void write_text(write_function *write, bool ids) {
     FILE *file = tmpfile();
     ck_assert_ptr_nonnull(file);
-    ck_assert_int_eq(write(file, &(struct contents){&bed, &factors, wanted, ids, order, NULL, NULL, 0}), 0);
+    ck_assert_int_eq(write(file, &(struct contents){ids ? &bed : &plain, &factors, wanted, order, NULL, NULL, 0}), 0);
     rewind(file);
     text[fread(text, 1, sizeof text - 1, file)] = 0;
     fclose(file);

@@ -75,7 +75,10 @@ int bed_options_status(struct bed_options *asked, const struct bed *bed, int sta
 }
 
 int bed_options_read(const struct bed_options *asked, struct bed *bed) {
-    const struct read_options read = {asked->frame, asked->ids, asked->column, asked->columns};
+    const struct read_options read = {.frames = {.end = asked->frame + 1},
+                                      .positions = !asked->ids,
+                                      .extra = asked->column,
+                                      .extras = asked->columns};
     const int status = read_bed(asked->file, &read, bed);
     if (!status && asked->periodic) memcpy(bed->period, asked->period, sizeof bed->period);
     return status;

@@ -250,7 +250,7 @@ static int bed_run(struct bed_request *request, struct bed *bed, fibrad_bed_fact
         status = marks ? targets_mark(request->targets, bed->n, marks) : message_memory();
     }
     request->options.wanted = marks;
-    struct contents what = {.bed = bed, .wanted = marks, .ids = request->bed.ids, .walls = &request->walls};
+    struct contents what = {.bed = bed, .wanted = marks, .walls = &request->walls};
     if (!status) status = bed_write(request, &what, factors);
     free(marks);
     return status;

@@ -150,8 +150,7 @@ static int exchange_write(struct exchange_request *request, const struct bed *be
     fibrad_bed_factors *factors = NULL;
     int status = output_open(&out, request->bed.out);
     if (!status) status = exchange_solve(request, bed, &factors);
-    const struct contents what = {
-        .bed = bed, .factors = factors, .ids = request->bed.ids, .walls = &request->walls, .grey = &request->rule};
+    const struct contents what = {.bed = bed, .factors = factors, .walls = &request->walls, .grey = &request->rule};
     if (!status && request->bed.out) status = request->write(out.file, &what);
     status = output_close(&out, status);
     if (!status) exchange_print(request, &what);

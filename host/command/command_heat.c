@@ -241,7 +241,7 @@ static int heat_write(struct heat_request *request, const struct bed *bed, struc
     if (!status && request->error > 0 && report->error_estimate > request->error)
         fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g\n", request->bed.name,
                 report->error_estimate);
-    const struct heat_contents contents = {bed, &request->walls, &request->sources, &report->result, request->bed.ids};
+    const struct heat_contents contents = {bed, &request->walls, &request->sources, &report->result};
     if (!status && request->bed.out) status = request->write(out.file, &contents);
     status = output_close(&out, status);
     if (!status) heat_print(request, bed, report);

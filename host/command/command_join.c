@@ -167,14 +167,13 @@ static int join_write(const struct join_request *request, const struct joined *j
         {"beyond.npy", "f8", matrix->beyond, n, 0}, {"error.npy", "f8", matrix->error, n, 0},
         {"radius.npy", "f8", joined->radius, n, 0}, {"emissivity.npy", "f8", joined->emissivity, n, 0},
         {"x.npy", "f8", joined->x, n, 3},           {"body.npy", "f8", matrix->body, n, matrix->bodies}};
-    const struct bed bed = {.n = joined->n, .r = joined->radius, .id = (int64_t *)joined->id};
+    const struct bed bed = {.n = joined->n, .ids = request->ids, .r = joined->radius, .id = (int64_t *)joined->id};
     const struct walls walls = {.count = joined->bodies};
     const fibrad_exchange_rule grey = {.emissivity = joined->emissivity, .body_emissivity = unbounded};
     fibrad_bed_factors with_areas = *factors;
     with_areas.body_area = unbounded; /* not known, so that there are no rows of walls */
     const struct contents what = {.bed = &bed,
                                   .factors = &with_areas,
-                                  .ids = request->ids,
                                   .walls = &walls,
                                   .grey = joined->emissive ? &grey : NULL,
                                   .array = arrays,

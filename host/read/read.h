@@ -9,16 +9,35 @@
 #include "bed/bed.h"
 #include "read/read_lines.h"
 
+/* Which frames of a file are wanted, counted from 0: begin, begin + step ... below end. Zeroed: the last one alone. */
+struct frames {
+    int64_t begin, end, step;
+};
+
 struct read_options {
-    int64_t frame;            /* which frame of a dump, from 0; -1: the last */
-    bool ids;                 /* the column id is wanted */
+    struct frames frames;
+    bool positions;           /* ids are left alone: spheres stand in the order of the file */
+    bool no_radius;           /* no radius is looked for; bed->r is NaN */
     const char *const *extra; /* [extras] names of further columns wanted, numbers all */
     size_t extras;
 };
 
-/* Reads a bed from a file or, for "-", from standard input; what is in it tells the format. Memory stays within a small
- * multiple of the file. Free the bed also after an error.
- * Status 0, STATUS_INPUT naming the line, STATUS_FILE, STATUS_MEMORY or that of a signal. */
+/* A file that is read frame by frame. */
+struct reader;
+
+/* Opens a file or, for "-", standard input; what is in it tells the format. Close it also after an error. Status 0,
+ * STATUS_INPUT, STATUS_FILE or STATUS_MEMORY. */
+int reader_open(struct reader **reader, const char *path, const struct read_options *options);
+
+/* Reads the next frame that is wanted into a bed, whose former contents are lost; spheres with ids come in their order.
+ * *more false: there are no further ones. Memory stays within a small multiple of a frame. Status 0, STATUS_INPUT
+ * naming the line, STATUS_FILE, STATUS_MEMORY or that of a signal. */
+int reader_next(struct reader *reader, struct bed *bed, bool *more);
+
+/* Closes it. NULL: nothing. */
+void reader_close(struct reader *reader);
+
+/* Reads the first frame wanted. Free the bed also after an error. Status as reader_next. */
 int read_bed(const char *path, const struct read_options *options, struct bed *bed);
 
 /* The readers by format; the first line is held. */

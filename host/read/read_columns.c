@@ -43,10 +43,8 @@ int columns_find(struct columns *columns, const struct lines *lines, const struc
     int status = find_any(&columns->radius, &which, lines, names, radius);
     if (status) return status;
     columns->radius_unit = which == 2 ? 0.5 : 1;
-    if (options->ids) {
-        status = find_any(&columns->id, &which, lines, names, (const char *const[]){"id", NULL});
-        if (status) return status;
-    }
+    status = find(&columns->id, lines, names, "id");
+    if (status) return status;
     if (options->extras == 0) return STATUS_OK;
     size_t *extra = realloc(columns->extra, options->extras * sizeof *extra);
     if (!extra) return message_memory();
@@ -76,7 +74,8 @@ int columns_add(const struct columns *columns, const struct lines *lines, const 
     sphere.r *= columns->radius_unit;
     if (!(sphere.r > 0))
         return message_at(STATUS_INPUT, lines->name, lines->number, "the radius is %g; it must be above 0", sphere.r);
-    if (options->ids) {
+    bed->ids = columns->id < columns->width && !options->positions;
+    if (bed->ids) {
         status = lines_whole(lines, "the id", row->at[columns->id], &sphere.id);
         if (status) return status;
     }

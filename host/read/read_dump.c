@@ -142,7 +142,7 @@ static int read_section(struct dump *dump) {
 }
 
 static int read_frames(struct dump *dump) {
-    const int64_t wanted = dump->options->frame;
+    const int64_t wanted = dump->options->frames.end - 1;
     bool more;
     int status;
     while ((status = lines_next(dump->lines, &more)) == STATUS_OK && more) {

@@ -23,7 +23,6 @@ struct contents {
     const struct bed *bed;
     const fibrad_bed_factors *factors;
     const unsigned char *wanted;      /* [n] not 0: this row was computed; NULL: all were */
-    bool ids;                         /* the file's ids instead of positions */
     const struct walls *walls;        /* NULL: neither walls nor surroundings are written; none in it: no walls, and
                                          surroundings only with exchange factors */
     const fibrad_exchange_rule *grey; /* NULL: view factors; else exchange factors by this rule */

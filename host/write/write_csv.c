@@ -7,7 +7,7 @@
 #include "cli/message.h"
 #include "write/write.h"
 
-static int64_t csv_name(const struct contents *what, uint32_t i) { return what->ids ? what->bed->id[i] : i; }
+static int64_t csv_name(const struct contents *what, uint32_t i) { return bed_name(what->bed, i); }
 
 static void write_entry(FILE *file, int64_t i, int64_t j, double f) {
     if (f > 0) fprintf(file, "%" PRId64 ",%" PRId64 ",%.17g\n", i, j, f);

@@ -17,7 +17,7 @@ int write_heat_csv(FILE *file, const struct heat_contents *what) {
     fputs("i,T,q\n", file);
     for (uint32_t i = 0; i < what->bed->n; ++i) {
         if (interrupt_status()) return interrupt_status();
-        write_power(file, what->ids ? what->bed->id[i] : (int64_t)i, sources->temperature[i], result->power[i]);
+        write_power(file, bed_name(what->bed, i), sources->temperature[i], result->power[i]);
     }
     write_power(file, -1, sources->surroundings, result->surroundings_power);
     for (uint32_t k = 0; k < what->walls->count; ++k)

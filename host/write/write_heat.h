@@ -14,7 +14,6 @@ struct heat_contents {
     const struct walls *walls;
     const fibrad_heat_sources *sources;
     const fibrad_heat_result *result;
-    bool ids; /* the file's ids instead of positions */
 };
 
 /* Writes to the file; a failing file is noticed by the caller. Status 0 or that of a signal. */

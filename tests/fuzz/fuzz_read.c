@@ -24,8 +24,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     snprintf(path, sizeof path, "/proc/self/fd/%d", file);
 
     static const char *const extra[] = {"T", "mass"};
-    struct read_options options = {
-        .frame = data[0] % 4 - 1, .ids = (data[0] & 4) != 0, .extra = extra, .extras = data[0] >> 3 & 1 ? 2 : 0};
+    struct read_options options = {.frames = {.end = data[0] % 4},
+                                   .positions = (data[0] & 4) != 0,
+                                   .extra = extra,
+                                   .extras = data[0] >> 3 & 1 ? 2 : 0};
     struct bed bed;
     if (read_bed(path, &options, &bed) == 0) {
         if (bed.n == 0 || bed.n > size) abort();
