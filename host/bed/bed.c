@@ -73,10 +73,13 @@ static int check_names(const struct bed *bed, const char *file, const struct nam
         const long long id = name[k].id;
         if (id < 0)
             return message_at(STATUS_INPUT, file, line, "the id %lld is negative; --positions leaves ids alone", id);
-        if (k > 0 && name[k - 1].id == id)
-            return message_at(STATUS_INPUT, file, line,
-                              "the id %lld is that of line %llu, too; --positions leaves ids alone", id,
-                              (unsigned long long)bed->line[name[k - 1].at]);
+        if (k == 0 || name[k - 1].id != id) continue;
+        const uint64_t other = bed->line[name[k - 1].at];
+        if (other == 0)
+            return message_at(STATUS_INPUT, file, 0, "the id %lld is there twice; --positions leaves ids alone", id);
+        return message_at(STATUS_INPUT, file, line,
+                          "the id %lld is that of line %llu, too; --positions leaves ids alone", id,
+                          (unsigned long long)other);
     }
     return STATUS_OK;
 }

@@ -23,8 +23,8 @@ struct reader {
 };
 
 int reader_open(struct reader **reader, const char *path, const struct read_options *options) {
-    static const struct format *const formats[] = {&format_dump, &format_xyz,     &format_data,
-                                                  &format_mercury, &format_table};
+    static const struct format *const formats[] = {&format_dump,    &format_xyz,     &format_data, &format_vtk,
+                                                   &format_vtk_xml, &format_mercury, &format_table};
     struct reader *r = *reader = calloc(1, sizeof *r);
     if (!r) return message_memory();
     r->source.options = *options;
@@ -32,7 +32,7 @@ int reader_open(struct reader **reader, const char *path, const struct read_opti
     if (status) return status;
     for (size_t k = 0; k < sizeof formats / sizeof *formats && !r->format; ++k)
         if (formats[k]->is(&r->source)) r->format = formats[k];
-    return STATUS_OK;
+    return r->format == &format_table ? source_foreign(&r->source) : STATUS_OK;
 }
 
 void reader_close(struct reader *reader) {

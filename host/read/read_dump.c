@@ -9,11 +9,7 @@
 #include "cli/message.h"
 #include "read/read_format.h"
 
-static bool is_dump(const struct source *source) {
-    size_t size;
-    const char *text = source_begin(source, &size);
-    return size >= 5 && memcmp(text, "ITEM:", 5) == 0;
-}
+static bool is_dump(const struct source *source) { return source_begins(source, "ITEM:"); }
 
 /* The rest of an ITEM line if it is the one named, else NULL. */
 static char *item(const struct source *source, const char *name) {
@@ -24,8 +20,7 @@ static char *item(const struct source *source, const char *name) {
 static int section_line(struct source *source, bool *more) {
     const int status = lines_next(&source->lines, more);
     if (status || !*more) return status;
-    if (item(source, "ITEM:"))
-        return source_fail(source, "a section begins where lines of the one before are missing");
+    if (item(source, "ITEM:")) return source_fail(source, "a section begins where lines of the one before are missing");
     return STATUS_OK;
 }
 

@@ -13,6 +13,12 @@ const char *source_begin(const struct source *source, size_t *size) {
     return source->lines.buffer + source->lines.next;
 }
 
+bool source_begins(const struct source *source, const char *text) {
+    size_t size;
+    const char *begin = source_begin(source, &size);
+    return size >= strlen(text) && memcmp(begin, text, strlen(text)) == 0;
+}
+
 int source_fail(const struct source *source, const char *what) {
     return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "%s", what);
 }

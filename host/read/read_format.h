@@ -26,8 +26,8 @@ enum found {
 struct format {
     bool (*is)(const struct source *source); /* by the first bytes of the file, as lines_open has left them */
 
-    /* Passes over a frame and checks that all lines of it are there, without cutting any; tells in LACK_MAX bytes what a
-     * part lacks. NULL: the file is one frame. */
+    /* Passes over a frame and checks that all lines of it are there, without cutting any; tells in LACK_MAX bytes what
+     * a part lacks. NULL: the file is one frame. */
     int (*skip)(struct source *source, enum found *found, char *lack);
 
     /* Reads a frame into an empty bed. */
@@ -36,10 +36,17 @@ struct format {
 
 enum { LACK_MAX = 100 };
 
-/* The first bytes of the file. */
+/* The first bytes of the file, before any line has been read. */
 const char *source_begin(const struct source *source, size_t *size);
 
-extern const struct format format_data, format_dump, format_mercury, format_table, format_xyz;
+/* Does the file begin with a text? */
+bool source_begins(const struct source *source, const char *text);
+
+extern const struct format format_data, format_dump, format_mercury, format_table, format_vtk, format_vtk_xml,
+    format_xyz;
+
+/* Refuses a file that is known to have no spheres, and says what it is. Status 0 or STATUS_INPUT. */
+int source_foreign(const struct source *source);
 
 /* The error `what`, in the current line. Status STATUS_INPUT. */
 int source_fail(const struct source *source, const char *what);
