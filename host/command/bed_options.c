@@ -5,7 +5,6 @@
 
 #include "bed/bed_scene.h"
 #include "cli/message.h"
-#include "cli/output.h"
 #include "read/read.h"
 
 static int take_period(const char *text, double period[3]) {
@@ -45,8 +44,9 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
         asked->progress.forced = true;
         return STATUS_OK;
     case 'o':
-        asked->out = value;
-        return STATUS_OK;
+        return outputs_add(&asked->outputs, value);
+    case KEY_FORMAT:
+        return outputs_format(&asked->outputs, value);
     default:
         return STATUS_USAGE; /* OPTIONS_BAD: the message is out */
     }
@@ -57,12 +57,8 @@ size_t bed_options_column(struct bed_options *asked, const char *name) {
     return name ? asked->columns++ : 0;
 }
 
-int bed_options_output(const struct bed_options *asked, bool known, const char *endings) {
-    if (asked->out && !known) return message_at(STATUS_USAGE, asked->out, 0, "unknown ending; there are %s", endings);
-    if (asked->out && output_same(asked->file, asked->out))
-        return message_at(STATUS_USAGE, asked->out, 0, "is the bed itself; it would be replaced");
-    if (asked->ids && !output_ends(asked->out, ".csv")) return message(STATUS_USAGE, "--ids is for -o OUT.csv only");
-    return STATUS_OK;
+int bed_options_output(struct bed_options *asked, enum content content) {
+    return outputs_check(&asked->outputs, content, &asked->file, 1, false);
 }
 
 fibrad_run bed_options_run(struct bed_options *asked) {

@@ -11,6 +11,7 @@
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "simple/fibrad_host.h"
+#include "write/outputs.h"
 
 /* Rows of a table of options, without braces, besides those of options.h and wall_option.h. */
 #define OPTION_PERIODIC                                                                                                \
@@ -23,7 +24,7 @@
 struct bed_options {
     const char *file; /* "-": standard input */
     const char *name; /* of the file, in messages */
-    const char *out;  /* NULL: no output but the summary */
+    struct outputs outputs;
     bool periodic;    /* --periodic was given */
     double period[3];
     int64_t frame;         /* -1: the last */
@@ -42,9 +43,8 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
 /* Asks for a column of the file; returns its place in bed->extra. NULL: none. */
 size_t bed_options_column(struct bed_options *asked, const char *name);
 
-/* Is there something wrong with -o or --ids? `known`: there is a writer for its ending, of those that `endings` lists.
- * Status 0 or STATUS_USAGE. */
-int bed_options_output(const struct bed_options *asked, bool known, const char *endings);
+/* Is there something wrong with the outputs? Status 0 or STATUS_USAGE. */
+int bed_options_output(struct bed_options *asked, enum content content);
 
 /* How the library is to be run: threads, and a bar that is kept in `asked`. */
 fibrad_run bed_options_run(struct bed_options *asked);

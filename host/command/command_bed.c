@@ -44,7 +44,6 @@ static const struct option bed_table[] = {
 struct bed_request {
     struct bed_options bed;
     const char *plot, *targets;
-    write_function *write;
     enum method method;
     struct beam_options beam;
     fibrad_beam_rule beam_rule;
@@ -151,10 +150,8 @@ static int bed_choose(struct bed_request *request) {
 
 /* What can be found wrong before any work is done. */
 static int bed_check(struct bed_request *request) {
-    const char *endings;
     if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad bed --help");
-    request->write = write_find(request->bed.out, &endings);
-    const int status = bed_options_output(&request->bed, request->write, endings);
+    const int status = bed_options_output(&request->bed, CONTENT_MATRIX);
     if (status) return status;
     if (request->plot && !plot_ending(request->plot))
         return message_at(STATUS_USAGE, request->plot, 0, "unknown ending; there are .svg and .png");
@@ -213,9 +210,10 @@ static int bed_compute(struct bed_request *request, const struct bed *bed, fibra
 
 /* Opens the outputs before the work, so that a path that cannot be written costs no time. */
 static int bed_write(struct bed_request *request, struct contents *what, fibrad_bed_factors **factors) {
-    struct output out = {0}, plot = {0};
+    struct outputs *out = &request->bed.outputs;
+    struct output plot = {0};
     struct summary summary = {0};
-    int status = output_open(&out, request->bed.out);
+    int status = outputs_open(out);
     if (!status) status = output_open(&plot, request->plot);
     if (!status) status = bed_compute(request, what->bed, factors);
     if (!status) {
@@ -226,9 +224,9 @@ static int bed_write(struct bed_request *request, struct contents *what, fibrad_
     if (!status && request->error > 0 && summary.error_max > request->error)
         fprintf(stderr, "fibrad: %s: warning: %d directions were not enough for --error %g\n", request->bed.name,
                 FIBRAD_DIRECTIONS_MAX, request->error);
-    if (!status && request->bed.out) status = request->write(out.file, what);
+    if (!status) status = outputs_write(out, what, what->bed->frame);
     if (!status && request->plot) status = plot_bed(&plot, request->bed.file, what);
-    status = output_close(&out, status);
+    status = outputs_close(out, status);
     status = output_close(&plot, status);
     if (!status) bed_print(request, what, &summary);
     return status;

@@ -37,7 +37,6 @@ static const struct option exchange_table[] = {
 struct exchange_request {
     struct bed_options bed;
     const char *wall_emissivity;
-    write_function *write;
     struct quantity emissivity;
     struct walls walls;
     fibrad_exchange_rule rule;
@@ -100,9 +99,7 @@ static int exchange_check(struct exchange_request *request) {
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
-    request->write = write_find(request->bed.out, NULL);
-    const bool known = request->write && request->write != write_vtp;
-    return bed_options_output(&request->bed, known, ".csv, .mtx and .npz");
+    return bed_options_output(&request->bed, CONTENT_MATRIX);
 }
 
 static int exchange_parse(struct exchange_request *request, int argc, char **argv) {
@@ -146,13 +143,13 @@ static int exchange_solve(struct exchange_request *request, const struct bed *be
 }
 
 static int exchange_write(struct exchange_request *request, const struct bed *bed) {
-    struct output out = {0};
+    struct outputs *out = &request->bed.outputs;
     fibrad_bed_factors *factors = NULL;
-    int status = output_open(&out, request->bed.out);
+    int status = outputs_open(out);
     if (!status) status = exchange_solve(request, bed, &factors);
     const struct contents what = {.bed = bed, .factors = factors, .walls = &request->walls, .grey = &request->rule};
-    if (!status && request->bed.out) status = request->write(out.file, &what);
-    status = output_close(&out, status);
+    if (!status) status = outputs_write(out, &what, bed->frame);
+    status = outputs_close(out, status);
     if (!status) exchange_print(request, &what);
     fibrad_bed_free(factors);
     return status;

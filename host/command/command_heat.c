@@ -12,7 +12,7 @@
 #include "cli/output.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
-#include "write/write_heat.h"
+#include "write/outputs.h"
 
 enum { KEY_TEMPERATURE = KEY_OWN, KEY_AMBIENT, KEY_WALL_TEMPERATURE, KEY_MODEL, KEY_PATCHES };
 
@@ -45,7 +45,6 @@ static const struct option heat_table[] = {
 struct heat_request {
     struct bed_options bed;
     const char *wall_temperature, *wall_emissivity;
-    write_heat_function *write;
     struct quantity emissivity, temperature;
     struct walls walls;
     bool counted;              /* --directions, --points or --patches was given */
@@ -128,10 +127,7 @@ static int heat_check_request(struct heat_request *request) {
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
     request->temperature.place = bed_options_column(&request->bed, request->temperature.column);
-    request->write = output_ends(request->bed.out, ".csv")   ? write_heat_csv
-                     : output_ends(request->bed.out, ".vtp") ? write_heat_vtp
-                                                             : NULL;
-    return bed_options_output(&request->bed, request->write, ".csv and .vtp");
+    return bed_options_output(&request->bed, CONTENT_HEAT);
 }
 
 static int heat_parse(struct heat_request *request, int argc, char **argv) {
@@ -235,15 +231,16 @@ static void heat_print(const struct heat_request *request, const struct bed *bed
 }
 
 static int heat_write(struct heat_request *request, const struct bed *bed, struct heat_report *report) {
-    struct output out = {0};
-    int status = output_open(&out, request->bed.out);
+    struct outputs *out = &request->bed.outputs;
+    int status = outputs_open(out);
     if (!status) status = heat_compute(request, bed, report);
     if (!status && request->error > 0 && report->error_estimate > request->error)
         fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g\n", request->bed.name,
                 report->error_estimate);
-    const struct heat_contents contents = {bed, &request->walls, &request->sources, &report->result};
-    if (!status && request->bed.out) status = request->write(out.file, &contents);
-    status = output_close(&out, status);
+    const struct contents contents = {
+        .bed = bed, .walls = &request->walls, .sources = &request->sources, .result = &report->result};
+    if (!status) status = outputs_write(out, &contents, bed->frame);
+    status = outputs_close(out, status);
     if (!status) heat_print(request, bed, report);
     return status;
 }
