@@ -87,6 +87,7 @@ int output_open(struct output *output, const char *path) {
     if (!path) return STATUS_OK;
     if (output_stdout(path)) {
         output->file = stdout;
+        output->path = "standard output";
         return STATUS_OK;
     }
     const bool exists = stat(path, &there) == 0;

@@ -35,6 +35,7 @@ static const struct option bed_table[] = {
     {OPTION_FRAME},
     {OPTION_THREADS},
     {'o', "output", "OUT", "the matrix: .csv, .mtx, .npz (SciPy); the spheres: .vtp [summary only]"},
+    {OPTION_FORMAT},
     {OPTION_IDS},
     {KEY_PLOT, "plot", "OUT", "a picture, .svg or .png, by gnuplot [none]"},
     {OPTION_PROGRESS},

@@ -29,6 +29,7 @@ static const struct option exchange_table[] = {
     {OPTION_FRAME},
     {OPTION_THREADS},
     {'o', "output", "OUT", "the factors: .csv, .mtx, .npz (SciPy) [summary only]"},
+    {OPTION_FORMAT},
     {OPTION_IDS},
     {OPTION_PROGRESS},
     {OPTION_HELP},

@@ -37,6 +37,7 @@ static const struct option heat_table[] = {
     {OPTION_FRAME},
     {OPTION_THREADS},
     {'o', "output", "OUT", "powers: .csv (i,T,q) or .vtp (ParaView) [summary only]"},
+    {OPTION_FORMAT},
     {OPTION_IDS},
     {OPTION_PROGRESS},
     {OPTION_HELP},

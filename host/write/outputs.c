@@ -59,21 +59,21 @@ int outputs_format(struct outputs *outputs, const char *name) {
 }
 
 /* The format of an output is settled; can it hold what is to come? */
-static int check_format(struct outputs *outputs, size_t k, bool series, bool *asked) {
+static int check_format(struct outputs *outputs, size_t k, bool series) {
     const char *path = outputs->to[k].path;
-    const struct format **format = &outputs->to[k].format;
+    const struct format *format = outputs->to[k].format ? outputs->to[k].format : outputs->format;
     char list[100];
-    if (!*format) {
-        *format = outputs->format;
-        *asked = true;
-    }
-    if (!*format && strcmp(path, "-") == 0)
+    if (!format && strcmp(path, "-") == 0)
         return message(STATUS_USAGE, "-o - needs a --format: %s", list_formats(outputs->content, "", list));
-    if (!*format || !(*format)->write[outputs->content])
+    if (!format || (outputs->to[k].format && !format->write[outputs->content]))
         return message_at(STATUS_USAGE, path, 0, "unknown ending; there are %s",
                           list_formats(outputs->content, ".", list));
-    if (series && !(*format)->frames && !outputs->to[k].star)
-        return message_at(STATUS_USAGE, path, 0, "%s holds one frame; put * into its name", (*format)->name);
+    if (!format->write[outputs->content])
+        return message(STATUS_USAGE, "--format: %s cannot hold this; there are %s", format->name,
+                       list_formats(outputs->content, "", list));
+    if (series && !format->frames && !outputs->to[k].star)
+        return message_at(STATUS_USAGE, path, 0, "%s holds one frame; put * into its name", format->name);
+    outputs->to[k].format = format;
     return STATUS_OK;
 }
 
@@ -97,19 +97,19 @@ static int check_others(const struct outputs *outputs, size_t k) {
 
 int outputs_check(struct outputs *outputs, enum content content, const char *const *inputs, size_t input_count,
                   bool series) {
-    bool asked = false;
+    bool wanted = outputs->format == NULL;
     int status = STATUS_OK;
     outputs->content = content;
     outputs->inputs = inputs;
     outputs->input_count = input_count;
     for (size_t k = 0; k < outputs->count && !status; ++k) {
-        status = check_format(outputs, k, series, &asked);
+        if (!outputs->to[k].format) wanted = true;
+        status = check_format(outputs, k, series);
         if (!status) status = check_inputs(outputs, outputs->to[k].path);
         if (!status) status = check_others(outputs, k);
     }
-    if (!status && outputs->format && !asked)
-        return message(STATUS_USAGE, "--format %s: no -o needs it", outputs->format->name);
-    return status;
+    if (status || wanted) return status;
+    return message(STATUS_USAGE, "--format %s: no -o needs it", outputs->format->name);
 }
 
 int outputs_open(struct outputs *outputs) {
