@@ -120,16 +120,19 @@ SIMPLE = \
 # the program, besides main.c
 HOST = \
     host/cli/interrupt.c \
+    host/cli/memory.c \
     host/cli/message.c \
     host/cli/options.c \
     host/cli/output.c \
     host/cli/progress.c \
+    host/cli/report.c \
     host/cli/targets.c \
     host/bed/bed.c \
     host/bed/bed_scene.c \
     host/bed/moving_rows.c \
     host/bed/packing.c \
     host/bed/property_option.c \
+    host/bed/units.c \
     host/bed/wall_option.c \
     host/read/read.c \
     host/read/read_columns.c \
@@ -182,6 +185,7 @@ TESTS = \
     tests/test_cli.c \
     tests/test_direction.c \
     tests/test_drift.c \
+    tests/test_files.c \
     tests/test_estimate.c \
     tests/test_exchange.c \
     tests/test_furnace.c \

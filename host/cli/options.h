@@ -37,6 +37,12 @@ enum {
     KEY_FRAME,
     KEY_THREADS,
     KEY_IDS,
+    KEY_POSITIONS,
+    KEY_RADIUS,
+    KEY_LENGTH_UNIT,
+    KEY_JSON,
+    KEY_QUIET,
+    KEY_FORMAT,
     KEY_PLOT,
     KEY_PROGRESS,
     KEY_OWN
