@@ -32,7 +32,7 @@ COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
 # tables of addresses would be data in position independent code
 KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
 SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp $(PIC)
-HOST_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(GSL_CFLAGS)
+HOST_FLAGS   = $(COMMON) -D_XOPEN_SOURCE=700 -fopenmp -Ihost $(GSL_CFLAGS)
 TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 
 WITH_sse2   = -DFIBRAD_WITH_SSE2
@@ -125,7 +125,6 @@ HOST = \
     host/cli/options.c \
     host/cli/output.c \
     host/cli/progress.c \
-    host/cli/report.c \
     host/cli/targets.c \
     host/bed/bed.c \
     host/bed/bed_scene.c \
@@ -144,12 +143,15 @@ HOST = \
     host/read/read_yade.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
+    host/report/report.c \
+    host/report/text.c \
+    host/write/outputs.c \
     host/write/summary.c \
-    host/write/vtp.c \
     host/write/write.c \
     host/write/write_csv.c \
+    host/write/write_dump.c \
     host/write/write_furnace.c \
-    host/write/write_heat.c \
+    host/write/write_json.c \
     host/write/write_mtx.c \
     host/write/write_npz.c \
     host/write/write_vtp.c \
@@ -520,7 +522,7 @@ threads:
 	    $(BUILD)/threads/fibrad bed $(DEMO_BED) --directions 21 --threads $$t -o $(BUILD)/threads/F.mtx || exit 1; \
 	done
 
-LINT_FLAGS   = -Ikernel -Ihost -D_POSIX_C_SOURCE=200809L
+LINT_FLAGS   = -Ikernel -Ihost -D_XOPEN_SOURCE=700
 LINT_SCALAR  = -DFIBRAD_LANES_HEADER='"base/lanes/vec_scalar.h"' -DFIBRAD_ISA_SUFFIX=_scalar
 
 ## lint: cppcheck and clang-tidy, with the exceptions that .cppcheck and .clang-tidy give reasons for

@@ -37,7 +37,11 @@ static const struct walls *order; /* NULL: no walls */
 static void write_text(write_function *write, bool ids) {
     FILE *file = tmpfile();
     ck_assert_ptr_nonnull(file);
-    ck_assert_int_eq(write(file, &(struct contents){ids ? &bed : &plain, &factors, wanted, order, NULL, NULL, 0}), 0);
+    ck_assert_int_eq(
+        write(file,
+              &(struct contents){.bed = ids ? &bed : &plain, .factors = &factors, .wanted = wanted, .walls = order},
+              true),
+        0);
     rewind(file);
     text[fread(text, 1, sizeof text - 1, file)] = 0;
     fclose(file);

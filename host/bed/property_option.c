@@ -96,14 +96,15 @@ int wall_values(const char *option, const char *text, double otherwise, double l
     if (text && walls->count == 0) return message(STATUS_USAGE, "%s: there are no walls", option);
     while (text && *text) {
         int wall;
-        double value;
+        double value = 0;
         const int status = take_wall_value(option, &text, walls, &wall, &value);
         if (status) return status;
         if (!(value >= low && value <= high))
             return message(STATUS_USAGE, "%s: %g is not within %g and %g", option, value, low, high);
         if (wall < 0 ? bare : named[wall])
-            return message(STATUS_USAGE, wall < 0 ? "%s: one number for all others; name the walls, such as %s=%g"
-                                                  : "%s: %s has two values, the second %g",
+            return message(STATUS_USAGE,
+                           wall < 0 ? "%s: one number for all others; name the walls, such as %s=%g"
+                                    : "%s: %s has two values, the second %g",
                            option, wall_name(&walls->body[wall < 0 ? 0 : wall]), value);
         if (wall < 0) {
             bare = true;

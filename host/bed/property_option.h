@@ -7,7 +7,7 @@
 
 #include "bed/bed.h"
 #include "bed/wall_option.h"
-#include "cli/report.h"
+#include "report/report.h"
 #include "fibrad.h"
 
 /* The hottest there may be [K]. */
@@ -24,9 +24,9 @@ enum { QUANTITY_TYPES_MAX = 64 };
 struct quantity {
     bool given;
     double value;
-    const char *column; /* NULL: value */
-    size_t place;       /* of the column in bed->extra */
-    int types;          /* not 0: the column is that of types, from 1 on, */
+    const char *column;                                           /* NULL: value */
+    size_t place;                                                 /* of the column in bed->extra */
+    int types;                                                    /* not 0: the column is that of types, from 1 on, */
     double type[QUANTITY_TYPES_MAX], of_type[QUANTITY_TYPES_MAX]; /* [types] and these are the values of these */
 };
 

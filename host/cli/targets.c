@@ -37,8 +37,9 @@ static int mark_range(const int64_t *id, uint32_t n, unsigned long long first, u
                       unsigned char *marks) {
     const uint32_t begin = first_from(id, n, first), end = first_from(id, n, last + 1);
     if (begin == end || (!id && last >= n))
-        return message(STATUS_USAGE, "--targets: there is no sphere %llu; they are %lld to %lld", begin == end ? first : last,
-                       id && n ? (long long)id[0] : 0, id && n ? (long long)id[n - 1] : (long long)n - 1);
+        return message(STATUS_USAGE, "--targets: there is no sphere %llu; they are %lld to %lld",
+                       begin == end ? first : last, id && n ? (long long)id[0] : 0,
+                       id && n ? (long long)id[n - 1] : (long long)n - 1);
     memset(marks + begin, 1, end - begin);
     return STATUS_OK;
 }

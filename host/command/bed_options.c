@@ -166,8 +166,10 @@ int bed_options_frames(struct bed_options *asked, const char *command, bed_optio
     bed_init(&bed);
     int status = output_open(&json, asked->json);
     if (!status) status = outputs_open(&asked->outputs);
-    asked->report = (struct report){
-        .text = asked->quiet ? NULL : outputs_stdout(&asked->outputs) ? stderr : stdout, .json = json.file};
+    asked->report = (struct report){.text = asked->quiet                      ? NULL
+                                            : outputs_stdout(&asked->outputs) ? stderr
+                                                                              : stdout,
+                                    .json = json.file};
     if (!status) report_open(&asked->report, command);
     for (size_t k = 0; k < asked->files && !status; ++k) status = run_file(asked, asked->file[k], &bed, frame, request);
     if (!status) report_close(&asked->report);
@@ -190,7 +192,8 @@ int bed_options_status(struct bed_options *asked, const struct bed *bed, int sta
     return bed_status(bed, asked->name, status, fault);
 }
 
-int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute, void *request) {
+int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute,
+                       void *request) {
     enum { SAMPLE = 16, ENTRIES_MANY = 2000, ENTRY_BYTES = 48 }; /* the last while rows are averaged */
     fibrad_bed_factors *factors = NULL;
     if (options->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < memory_left()) return STATUS_OK;
@@ -231,8 +234,8 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
     if (unit && !unit_of_length(unit, metres))
         return message_at(STATUS_USAGE, asked->name, 0, "unknown units '%.20s'", unit);
     if (unit && asked->length_unit && unit_of_length(asked->length_unit, &other) && other != *metres)
-        return message_at(STATUS_USAGE, asked->name, 0, "its units are %.20s; --length-unit is for files that name none",
-                          unit);
+        return message_at(STATUS_USAGE, asked->name, 0,
+                          "its units are %.20s; --length-unit is for files that name none", unit);
     if (!unit && mean_radius(bed) > RADIUS_LARGE && !asked->warned) {
         fprintf(stderr, "fibrad: %s: warning: radii of %g are taken as metres; --length-unit mm, or m\n", asked->name,
                 mean_radius(bed));

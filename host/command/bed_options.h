@@ -1,5 +1,5 @@
-/* bed_options.h - what all commands about beds are asked: files and how to read them, threads, where results go; and the
- * run over all frames of all files. SPDX-License-Identifier: MIT */
+/* bed_options.h - what all commands about beds are asked: files and how to read them, threads, where results go; and
+ * the run over all frames of all files. SPDX-License-Identifier: MIT */
 #ifndef BED_OPTIONS_H
 #define BED_OPTIONS_H
 
@@ -13,7 +13,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
-#include "cli/report.h"
+#include "report/report.h"
 #include "read/read.h"
 #include "simple/fibrad_host.h"
 #include "write/outputs.h"
@@ -23,13 +23,15 @@
     {KEY_RADIUS, "radius", "R", "of all spheres; or TYPE:R,... [the file's column]"},                                  \
         {KEY_LENGTH_UNIT, "length-unit", "UNIT", "of files that name none: " UNITS_LENGTH " [m]"},                     \
         {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},         \
-        {KEY_FRAME, "frame", "K", "frame of a file, from 0; all; A:B or A:B:STEP, B excluded; -1: the last [-1]"},     \
-        {KEY_POSITIONS, "positions", NULL, "name spheres by their positions in the file, from 0 [by its ids]"}
+        {KEY_FRAME, "frame", "K", "frame of a file, from 0; all; A:B or A:B:STEP, B excluded; -1: the last [-1]"}, {   \
+        KEY_POSITIONS, "positions", NULL, "name spheres by their positions in the file, from 0 [by its ids]"           \
+    }
 #define OPTIONS_RUN                                                                                                    \
     {OPTION_THREADS}, {KEY_JSON, "json", "OUT", "the summary as JSON, all digits of it [none]"},                       \
         {KEY_QUIET, "quiet", NULL, "neither summary nor progress"},                                                    \
-        {KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"}, {OPTION_HELP}
-#define OPTION_FORMAT KEY_FORMAT, "format", "NAME", "of the outputs, whatever their names end in [as they end]"
+        {KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"}, {             \
+        OPTION_HELP                                                                                                    \
+    }
 
 /* What --help says below of the files. */
 #define FILES_MORE                                                                                                     \
@@ -49,7 +51,7 @@ struct bed_options {
     double period[3];
     bool positions;
     struct quantity radius;
-    const char *length_unit; /* NULL: not given */
+    const char *length_unit;             /* NULL: not given */
     const char *column[BED_COLUMNS_MAX]; /* [columns] read besides */
     size_t columns;
     struct wall_options walls;
@@ -59,9 +61,9 @@ struct bed_options {
     bool quiet;
     struct progress progress;
     /* of the run */
-    const char *name;     /* of the file in hand, in messages */
+    const char *name; /* of the file in hand, in messages */
     int64_t frames_done;
-    bool warned;          /* of radii that look like another unit's */
+    bool warned; /* of radii that look like another unit's */
     struct report report;
 };
 

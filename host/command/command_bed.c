@@ -58,10 +58,11 @@ static int bed_help(void) {
     puts("fibrad bed FILE... [options]\n\n"
          "View factors between all spheres of FILE.\n");
     options_print(bed_table);
-    puts("\n" FILES_MORE "\n" WALLS_MORE
-         "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... and the surroundings j = -1, with\n"
+    puts("\n" FILES_MORE "\n" WALLS_MORE "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... "
+                                         "and the surroundings j = -1, with\n"
          "their names in the column `body`, so that rows add up to 1; i = -2, -3 ... from walls of finite area to\n"
-         "spheres; in .vtp an array for each wall. .mtx and .npz hold spheres only. What leaves a --cutoff is beyond.\n\n"
+         "spheres; in .vtp an array for each wall. .mtx and .npz hold spheres only. What leaves a --cutoff is "
+         "beyond.\n\n"
          "Several frames go into one .csv or .json, with their numbers, or into one file each where OUT has a *.\n"
          "Standard output ends with a summary of each, one `key value` a line; `wall_NAME_F`: mean from a sphere.\n\n"
          "Examples:\n"

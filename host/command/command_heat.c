@@ -16,12 +16,14 @@ enum { KEY_TEMPERATURE = KEY_OWN, KEY_AMBIENT, KEY_WALL_TEMPERATURE, KEY_TEMPERA
 static const struct option heat_table[] = {
     {OPTION_EMISSIVITY},
     {KEY_TEMPERATURE, "temperature", "T", "of all spheres; or TYPE:T,... ; or the file's column of that name"},
-    {KEY_AMBIENT, "ambient", "T", "of the surroundings, which are black; needed unless walls and periods close the bed"},
+    {KEY_AMBIENT, "ambient", "T",
+     "of the surroundings, which are black; needed unless walls and periods close the bed"},
     {OPTION_WALL},
     {KEY_WALL_TEMPERATURE, "wall-temperature", "LIST",
      "of the walls: zmin=1200,300: one number for all others; every wall needs one"},
     {OPTION_WALL_EMISSIVITY},
-    {KEY_TEMPERATURE_UNIT, "temperature-unit", "UNIT", "of all temperatures given: K or C; those written are kelvins [K]"},
+    {KEY_TEMPERATURE_UNIT, "temperature-unit", "UNIT",
+     "of all temperatures given: K or C; those written are kelvins [K]"},
     {KEY_MODEL, "model", "NAME",
      "patches: reflected light goes from point to point; spheres: one radiosity each, for emissivities near 1 "
      "[patches]"},
@@ -53,14 +55,16 @@ struct heat_request {
 
 static int heat_help(void) {
     puts("fibrad heat FILE... --emissivity E --temperature T --ambient T [options]\n\n"
-         "Net radiative power of every sphere of FILE, of walls and of the surroundings, all grey and diffuse, in watts;\n"
+         "Net radiative power of every sphere of FILE, of walls and of the surroundings, all grey and diffuse, in "
+         "watts;\n"
          "positive where heat is gained. Temperatures in kelvins, lengths in the unit of the file.\n");
     options_print(heat_table);
-    puts("\n" FILES_MORE "\n" WALLS_MORE
-         "The .csv holds i,T_K,q_W,body: spheres by name, the surroundings i = -1, walls i = -2, -3 ... with their names "
+    puts("\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,T_K,q_W,body: spheres by name, the surroundings i = -1, "
+                                         "walls i = -2, -3 ... with their names "
          "in\n"
          "the column `body`. All q add up to zero. Spheres of emissivity 0 reflect all and gain nothing.\n"
-         "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a *.\n"
+         "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a "
+         "*.\n"
          "Standard output ends with a summary of each, one `key value` a line. In it balance and error are relative to "
          "what\n"
          "the spheres emit, or to what they absorb where that is more.\n\n"
@@ -204,8 +208,8 @@ static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sou
     report->emitted = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double power = result->power[i];
-        const double emitted = sources->emissivity[i] * FIBRAD_STEFAN_BOLTZMANN * pow(sources->temperature[i], 4) *
-                               4 * M_PI * bed->r[i] * bed->r[i] * square_metres;
+        const double emitted = sources->emissivity[i] * FIBRAD_STEFAN_BOLTZMANN * pow(sources->temperature[i], 4) * 4 *
+                               M_PI * bed->r[i] * bed->r[i] * square_metres;
         const double through = fmax(emitted, emitted + power);
         report->emitted += emitted;
         report->balance += power;

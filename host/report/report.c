@@ -1,29 +1,15 @@
 /* report.c - what a command says at its end: lines `key value`, and the same as JSON. SPDX-License-Identifier: MIT */
-#include "cli/report.h"
+#include "report/report.h"
 
 #include <inttypes.h>
 #include <math.h>
 
 #include "fibrad.h"
-
-/* A string of JSON; bytes above 127 go as they are. */
-static void put_string(FILE *file, const char *text) {
-    putc('"', file);
-    for (; *text; ++text)
-        if (*text == '"' || *text == '\\')
-            fprintf(file, "\\%c", *text);
-        else if ((unsigned char)*text < ' ')
-            fprintf(file, "\\u%04x", (unsigned)*text);
-        else
-            putc(*text, file);
-    putc('"', file);
-}
+#include "report/text.h"
 
 static void put_number(FILE *file, double value) {
-    if (isfinite(value))
-        fprintf(file, "%.17g", value);
-    else
-        fputs("null", file);
+    char text[TEXT_NUMBER];
+    fwrite(text, 1, (size_t)(text_json_real(text, value) - text), file);
 }
 
 void report_open(struct report *report, const char *command) {
@@ -60,7 +46,7 @@ static void end_entry(const struct report *report) {
 
 void report_text(struct report *report, const char *key, const char *text) {
     begin_entry(report, key);
-    if (report->json) put_string(report->json, text);
+    if (report->json) text_json(report->json, text);
     for (const char *c = text; report->text && *c; ++c)
         putc((unsigned char)*c < ' ' || *c == 127 ? '?' : *c, report->text);
     end_entry(report);
