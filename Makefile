@@ -120,17 +120,18 @@ SIMPLE = \
 # the program, besides main.c
 HOST = \
     host/cli/interrupt.c \
+    host/cli/memory.c \
     host/cli/message.c \
     host/cli/options.c \
     host/cli/output.c \
     host/cli/progress.c \
     host/cli/targets.c \
-    host/cli/text.c \
     host/bed/bed.c \
     host/bed/bed_scene.c \
     host/bed/moving_rows.c \
     host/bed/packing.c \
     host/bed/property_option.c \
+    host/bed/units.c \
     host/bed/wall_option.c \
     host/read/read.c \
     host/read/read_columns.c \
@@ -142,6 +143,8 @@ HOST = \
     host/read/read_yade.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
+    host/report/report.c \
+    host/report/text.c \
     host/write/outputs.c \
     host/write/summary.c \
     host/write/write.c \
@@ -184,6 +187,7 @@ TESTS = \
     tests/test_cli.c \
     tests/test_direction.c \
     tests/test_drift.c \
+    tests/test_files.c \
     tests/test_estimate.c \
     tests/test_exchange.c \
     tests/test_furnace.c \

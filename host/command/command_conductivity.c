@@ -29,11 +29,8 @@ static const struct option conductivity_table[] = {
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [as many as --error takes]"},
     {KEY_ERROR, "error", "E", "as many as bring the estimated standard errors to E of F_E, 1e-4 to 1 [0.003]"},
     {KEY_SEED, "seed", "S", "another number, other paths and directions [0]"},
-    {OPTION_PERIODIC},
-    {OPTION_FRAME},
-    {OPTION_THREADS},
-    {OPTION_PROGRESS},
-    {OPTION_HELP},
+    OPTIONS_INPUT,
+    OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
 struct conductivity_request {
@@ -77,7 +74,7 @@ static int conductivity_take(struct conductivity_request *request, const struct 
     const char *value = options->value;
     switch (key) {
     case KEY_EMISSIVITY:
-        return emissivity_option(value, &request->emissivity);
+        return quantity_option("--emissivity", value, 0, 1, &request->emissivity);
     case KEY_RAYS:
         return options_count("--rays", value, 1, FIBRAD_PATHS_MAX, &request->rule.paths);
     case KEY_ERROR:
@@ -91,12 +88,13 @@ static int conductivity_take(struct conductivity_request *request, const struct 
 
 static int conductivity_parse(struct conductivity_request *request, int argc, char **argv) {
     struct options options = {.command = "conductivity", .table = conductivity_table, .argc = argc, .argv = argv};
-    *request = (struct conductivity_request){.bed.frame = -1};
+    *request = (struct conductivity_request){0};
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
         status = conductivity_take(request, &options, key);
     if (status) return status;
-    if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad conductivity --help");
+    status = bed_options_check(&request->bed, "conductivity", CONTENT_MATRIX);
+    if (status) return status;
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");
     if (request->error > 0 && request->rule.paths > 0)
         return message(STATUS_USAGE, "--error finds the rays itself; leave out --rays");
@@ -245,16 +243,16 @@ static void conductivity_print(const struct conductivity_request *request, const
     for (int axis = 0; axis < 3; ++axis) printf("F_E_%c_error %.17g\n", axes[axis], result->error[axis]);
 }
 
-static int conductivity_run(struct conductivity_request *request, struct bed *bed) {
+static int conductivity_frame(void *conductivity_request, struct bed *bed) {
+    struct conductivity_request *request = conductivity_request;
     struct conductivity result = {0};
     const char *file = request->bed.name;
-    int status = bed_options_read(&request->bed, bed);
-    if (status) return status;
+    int status = STATUS_OK;
     double *emissivity = NULL;
     unsigned char *emits = calloc(bed->n, 1);
     fibrad_displacement *moved = calloc(bed->n, sizeof *moved);
     if (!emits || !moved) status = message_memory();
-    if (!status) status = emissivity_of(&request->emissivity, bed, file, &emissivity);
+    if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     request->rule.emissivity = emissivity;
     if (!status) status = choose_emitters(bed, file, &result, emits);
     if (!status) status = conductivity_compute(request, bed, emits, moved, &result);
@@ -270,10 +268,11 @@ static int conductivity_run(struct conductivity_request *request, struct bed *be
 
 int command_conductivity(int argc, char **argv) {
     struct conductivity_request request;
-    struct bed bed = {0};
     int status = conductivity_parse(&request, argc, argv);
-    if (status) return status == STATUS_HELP ? conductivity_help() : status;
-    status = conductivity_run(&request, &bed);
-    bed_free(&bed);
+    if (status == STATUS_HELP)
+        status = conductivity_help();
+    else if (!status)
+        status = bed_options_frames(&request.bed, "conductivity", conductivity_frame, &request);
+    bed_options_free(&request.bed);
     return status;
 }

@@ -7,6 +7,7 @@
 
 #include "bed/bed.h"
 #include "bed/wall_option.h"
+#include "report/report.h"
 #include "simple/fibrad_host.h"
 
 /* A further array of a .npz; one of a name that it has anyway takes its place. */
@@ -64,7 +65,7 @@ double summary_row(const fibrad_factors *matrix, uint32_t i);
 
 void summary_make(struct summary *summary, const struct contents *what);
 
-/* Prints a line `wall_NAME mean-F area` for each wall. */
-void summary_print_walls(const struct summary *summary, const struct contents *what);
+/* Reports the mean F to each wall, `wall_NAME_F`, and its area. */
+void summary_report_walls(const struct summary *summary, const struct contents *what, struct report *report);
 
 #endif

@@ -9,7 +9,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
-#include "cli/text.h"
+#include "report/text.h"
 #include "write/write.h"
 
 enum { SURROUNDINGS = -1, FIRST_WALL = -2 };

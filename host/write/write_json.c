@@ -7,7 +7,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
-#include "cli/text.h"
+#include "report/text.h"
 #include "write/write.h"
 
 static void json_real(FILE *file, double value) {

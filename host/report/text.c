@@ -1,5 +1,5 @@
 /* text.c - numbers and strings as text. SPDX-License-Identifier: MIT */
-#include "cli/text.h"
+#include "report/text.h"
 
 #include <math.h>
 #include <stdbool.h>
