@@ -221,7 +221,8 @@ static int follow_round(const struct bed *bed, const unsigned char *emits, const
 double conduction_worst(const struct conduction_rule *rule, const struct conduction *result) {
     double worst = 0;
     for (int axis = 0; axis < 3; ++axis)
-        if (result->factor[axis] > 0 && (rule->axis < 0 || rule->axis == axis))
+        if (result->factor[axis] > 0 && (rule->axis < 0 || rule->axis == axis) &&
+            conduction_flights(result, axis) != FLIGHTS_ENDLESS)
             worst = fmax(worst, result->error[axis] / result->factor[axis]);
     return worst;
 }
@@ -275,8 +276,9 @@ int conduction_follow(const struct bed *bed, const unsigned char *emits, const s
     return status;
 }
 
-bool conduction_settled(const struct conduction *result, int axis) {
-    return result->concentration[axis] <= SETTLED && result->growth[axis] <= result->error[axis];
+enum conduction_flights conduction_flights(const struct conduction *result, int axis) {
+    if (result->growth[axis] > result->error[axis]) return FLIGHTS_ENDLESS;
+    return result->concentration[axis] > SETTLED ? FLIGHTS_RARE : FLIGHTS_SETTLED;
 }
 
 void conduction_at(struct conduction *result, double temperature, double metre) {

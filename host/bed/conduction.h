@@ -45,11 +45,15 @@ int conduction_emitters(const struct bed *bed, const char *file, unsigned char *
 int conduction_follow(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
                       fibrad_run *run, struct conduction *result);
 
-/* Whether the standard error along an axis is an error at all. Not so where a slab without spheres leaves flights
- * without a mean square, or where the variance rests on a few flights. */
-bool conduction_settled(const struct conduction *result, int axis);
+/* What flights along an axis leave of F_E there and its standard error. */
+enum conduction_flights {
+    FLIGHTS_SETTLED = 1,
+    FLIGHTS_ENDLESS = 2, /* a slab without spheres: no mean square, and so no F_E; it is of flights of 100 periods */
+    FLIGHTS_RARE = 4     /* the variance rests on a few flights, as along channels: the error cannot be relied on */
+};
+enum conduction_flights conduction_flights(const struct conduction *result, int axis);
 
-/* The largest standard error over F_E of the axes that count. */
+/* The largest standard error over F_E of the axes that count and have one. */
 double conduction_worst(const struct conduction_rule *rule, const struct conduction *result);
 
 /* Sets k at a temperature [K], the bed's unit of length being so many metres. */

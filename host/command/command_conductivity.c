@@ -128,11 +128,12 @@ static bool is_wanted(const struct conductivity_request *request, int axis) {
     return request->rule.axis < 0 || request->rule.axis == axis;
 }
 
-/* The axes whose errors are not to be relied on, such as "xz"; how many there are. */
-static int unsettled_axes(const struct conductivity_request *request, const struct conduction *result, char axes[4]) {
+/* The axes with some of these kinds of flights, such as "xz"; how many there are. */
+static int axes_with(const struct conductivity_request *request, const struct conduction *result, unsigned kinds,
+                     char axes[4]) {
     int count = 0;
     for (int axis = 0; axis < 3; ++axis)
-        if (is_wanted(request, axis) && !conduction_settled(result, axis)) axes[count++] = (char)('x' + axis);
+        if (is_wanted(request, axis) && conduction_flights(result, axis) & kinds) axes[count++] = (char)('x' + axis);
     axes[count] = 0;
     return count;
 }
@@ -156,7 +157,8 @@ static void conductivity_print(const struct conductivity_request *request, const
     printf("rays %" PRIu64 "\n", result->rays);
     printf("seconds %.17g\n", result->seconds);
     printf("escaped %.17g\n", result->escaped);
-    printf("unreliable %s\n", unsettled_axes(request, result, unreliable) ? unreliable : "none");
+    axes_with(request, result, FLIGHTS_ENDLESS | FLIGHTS_RARE, unreliable);
+    printf("unreliable %s\n", *unreliable ? unreliable : "none");
     if (request->temperature > 0) {
         printf("temperature %.17g\n", request->temperature);
         print_axes(request, "k_", "", result->k);
@@ -168,15 +170,20 @@ static void conductivity_print(const struct conductivity_request *request, const
 
 static void conductivity_warn(const struct conductivity_request *request, const struct conduction *result) {
     const char *file = request->bed.name;
-    char unreliable[4];
+    char axes[4];
     if (result->escaped > 1e-3)
         fprintf(stderr, "fibrad: %s: warning: %.2g of what the core emits leaves the bed; F_E is too low\n", file,
                 result->escaped);
-    if (unsettled_axes(request, result, unreliable))
+    if (axes_with(request, result, FLIGHTS_ENDLESS, axes))
         fprintf(stderr,
-                "fibrad: %s: warning: the variance of F_E along %s does not settle: a few flights, through gaps or "
-                "channels, make up most of it; the standard error is not reliable\n",
-                file, unreliable);
+                "fibrad: %s: warning: F_E along %s does not exist: flights through a gap across the whole bed have no "
+                "mean square length; it is given for flights of up to 100 periods, its standard error is unreliable\n",
+                file, axes);
+    if (axes_with(request, result, FLIGHTS_RARE, axes))
+        fprintf(stderr,
+                "fibrad: %s: warning: F_E along %s rests on a few long flights, as through a channel without spheres; "
+                "its standard error is unreliable\n",
+                file, axes);
     if (result->stopped)
         fprintf(stderr, "fibrad: %s: warning: stopped at --max-rays %g with a standard error of %.2g of F_E, not %g\n",
                 file, (double)request->rule.max_rays, conduction_worst(&request->rule, result), request->rule.error);
@@ -204,7 +211,7 @@ static void write_json_axes(FILE *file, const struct conductivity_request *reque
         if (!is_wanted(request, axis)) continue;
         fprintf(file, "%s\n  {\"axis\": \"%c\", \"F_E\": %.17g, \"F_E_error\": %.17g, \"error_reliable\": %s", comma,
                 'x' + axis, result->factor[axis], result->error[axis],
-                conduction_settled(result, axis) ? "true" : "false");
+                conduction_flights(result, axis) == FLIGHTS_SETTLED ? "true" : "false");
         if (request->temperature > 0)
             fprintf(file, ", \"k_W_mK\": %.17g, \"k_error\": %.17g", result->k[axis], result->k_error[axis]);
         fputc('}', file);
