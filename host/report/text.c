@@ -99,8 +99,10 @@ void text_json(FILE *file, const char *text) {
     putc('"', file);
 }
 
-char *text_json_real(char *to, double value) {
-    if (isfinite(value)) return text_real(to, value);
-    memcpy(to, "null", 4);
-    return to + 4;
+void text_json_real(FILE *file, double value) {
+    char text[TEXT_NUMBER];
+    if (isfinite(value))
+        fwrite(text, 1, (size_t)(text_real(text, value) - text), file);
+    else
+        fputs("null", file);
 }
