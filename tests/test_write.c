@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "cli/message.h"
-#include "cli/text.h"
+#include "report/text.h"
 #include "read/read.h"
 #include "suite.h"
 #include "write/outputs.h"
