@@ -159,6 +159,8 @@ static int heat_check_request(struct heat_request *request) {
     if (status) return status;
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (!request->temperature.given) return message(STATUS_USAGE, "which --temperature? see fibrad heat --help");
+    if (request->temperature.value < -request->zero)
+        return message(STATUS_USAGE, "--temperature: %g is below absolute zero", request->temperature.value);
     if (request->error > 0 && request->counted)
         return message(STATUS_USAGE,
                        "--error finds directions and patches itself; leave out --directions, --points and --patches");
