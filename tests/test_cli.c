@@ -728,13 +728,14 @@ START_TEST(joined) {
     const char *zero = write_words(rank_names[0], rank_rows[0], 8 * rank_words[0]);
     const char *one = write_words(rank_names[1], rank_rows[1], 8 * rank_words[1]);
     const char *csv = in_folder("D.csv"), *mtx = in_folder("D.mtx");
-    SUCCEED("join", one, zero, "--raw", "--positions", "-o", csv);
+    const char *json = in_folder("D.json");
+    SUCCEED("join", one, zero, "--raw", "--positions", "-o", csv, "--json", json);
     ck_assert_double_eq(value_of("spheres"), 3);
     ck_assert_double_eq(value_of("nonzeros"), 4);
-    ck_assert_double_eq_tol(value_of("beyond_mean"), .0625 / 3, 1e-16);
-    ck_assert_double_eq_tol(value_of("wall_1_mean"), 1.75 / 3, 1e-15);
+    ck_assert_double_eq_tol(json_of(json, "beyond_mean"), .0625 / 3, 1e-16);
+    ck_assert_double_eq_tol(json_of(json, "wall_1_F"), 1.75 / 3, 1e-15);
     ck_assert_double_eq(value_of("closure_max"), 0);
-    ck_assert_double_eq_tol(value_of("reciprocity_max"), (.75 * .375 - .5 * .25) / .75, 1e-15);
+    ck_assert_double_eq_tol(json_of(json, "reciprocity_max"), (.75 * .375 - .5 * .25) / .75, 1e-15);
     char *text = read_file(csv);
     ck_assert_str_eq(text, "i,j,D,body\n0,1,0.25,\n0,2,0.125,\n0,-1,0.125,surroundings\n0,-2,0.5,wall_1\n1,0,0.375,\n"
                            "1,-1,0.125,surroundings\n1,-2,0.5,wall_1\n2,0,0.0625,\n2,-1,0.125,surroundings\n"
@@ -748,8 +749,18 @@ START_TEST(joined) {
     ck_assert_double_lt(value_of("closure_max"), 1e-14);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
     text = read_file(mtx);
-    ck_assert_ptr_nonnull(strstr(text, "\n3 3 4\n1 2 "));
+    ck_assert_ptr_nonnull(strstr(text, "\n% ids: 10 30 1099511627781\n3 3 4\n1 2 "));
     free(text);
+    SUCCEED("join", zero, one, "--raw", "-o", in_folder("D.vtp"), "-o", "-", "--format", "csv");
+    text = read_file(csv);
+    ck_assert_str_eq(printed, text);
+    ck_assert_ptr_nonnull(strstr(said, "spheres 3\n"));
+    free(text);
+    text = read_file(in_folder("D.vtp"));
+    ck_assert(strstr(text, "Name=\"wall_1\"") && strstr(text, "Name=\"id\""));
+    free(text);
+    SUCCEED("join", zero, one, "--quiet");
+    ck_assert_str_eq(printed, "");
     ck_assert_int_eq(RUN("join", one, "-o", one), 2);
     expect_message(one, "unknown ending");
     ck_assert_int_eq(RUN("join", zero, csv, "-o", csv), 2);

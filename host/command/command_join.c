@@ -18,6 +18,7 @@ static const struct option join_table[] = {
     {'o', "output", "OUT", "the factors: .csv, .mtx, .npz (SciPy), .json; the spheres: .vtp; - [summary only]"},
     {OPTION_FORMAT},
     {KEY_POSITIONS, "positions", NULL, "name spheres by positions from 0 in the order of ids [by their ids]"},
+    {KEY_JSON, "json", "OUT", "the summary as JSON, all digits of it [none]"},
     {KEY_QUIET, "quiet", NULL, "no summary"},
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
@@ -26,7 +27,9 @@ struct join_request {
     const char **files; /* [count] */
     size_t count;
     struct outputs outputs;
+    const char *json; /* NULL: none */
     bool raw, positions, quiet;
+    struct report report;
 };
 
 static int join_help(void) {
@@ -62,6 +65,9 @@ static int join_take(struct join_request *request, const struct options *options
         return STATUS_OK;
     case KEY_POSITIONS:
         request->positions = true;
+        return STATUS_OK;
+    case KEY_JSON:
+        request->json = options->value;
         return STATUS_OK;
     case KEY_QUIET:
         request->quiet = true;
@@ -128,28 +134,36 @@ static int join_matrix(const struct join_request *request, const struct joined *
     return status ? message(STATUS_INPUT, "these rows cannot be joined: %s", fibrad_status_text(status)) : STATUS_OK;
 }
 
-static void join_print(FILE *to, const struct join_request *request, const struct joined *joined,
-                       const struct contents *what) {
+static void join_report(struct join_request *request, const struct joined *joined, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
+    struct report *report = &request->report;
     struct summary summary;
-    char name[BODY_NAME];
     summary_make(&summary, what);
-    fprintf(to, "%" PRIu64 " ranks, step %" PRIu64 ": radii %g to %g, %s rows of %s factors\n", joined->ranks,
-            joined->step, what->factors->facts.radius_min, what->factors->facts.radius_max,
-            request->raw ? "raw" : "reciprocal", joined->emissive ? "exchange" : "view");
-    fprintf(to, "spheres %" PRIu32 "\n", matrix->n);
-    fprintf(to, "nonzeros %" PRIu64 "\n", matrix->start[matrix->n]);
-    fprintf(to, "cutoff %.17g\n", joined->cutoff);
-    fprintf(to, "row_sum_min %.17g\n", summary.row_sum_min);
-    fprintf(to, "row_sum_max %.17g\n", summary.row_sum_max);
-    fprintf(to, "escaped_mean %.17g\n", summary.escaped_mean);
-    fprintf(to, "beyond_mean %.17g\n", summary.beyond_mean);
-    for (uint32_t k = 0; k < matrix->bodies; ++k)
-        fprintf(to, "%s_mean %.17g\n", contents_body(what, k, name), summary.wall_mean[k]);
-    fprintf(to, "closure_max %.17g\n", summary.closure_max);
-    fprintf(to, "reciprocity_max %.17g\n", what->factors->reciprocity_error);
-    fprintf(to, "error_rms %.17g\n", summary.error_rms);
-    fprintf(to, "error_estimate %.17g\n", summary.error_max);
+    report_begin(report);
+    report_text(report, "factors", joined->emissive ? "exchange" : "view");
+    report_text(report, "rows", request->raw ? "raw" : "reciprocal");
+    report_count(report, "ranks", joined->ranks);
+    report_count(report, "step", joined->step);
+    report_count(report, "spheres", matrix->n);
+    report_text(report, "named_by", request->positions ? "positions" : "ids");
+    report_value(report, "radius_min", what->factors->facts.radius_min, 6);
+    report_value(report, "radius_max", what->factors->facts.radius_max, 6);
+    report_value(report, "cutoff", joined->cutoff, 6);
+    report_count(report, "nonzeros", matrix->start[matrix->n]);
+    report_measured(report, "row_sum_min", summary.row_sum_min, summary.error_max);
+    report_measured(report, "row_sum_max", summary.row_sum_max, summary.error_max);
+    report_measured(report, "escaped_mean", summary.escaped_mean, summary.error_rms);
+    report_measured(report, "beyond_mean", summary.beyond_mean, summary.error_rms);
+    for (uint32_t k = 0; k < matrix->bodies; ++k) {
+        char name[BODY_NAME], key[BODY_NAME + 8];
+        snprintf(key, sizeof key, "%s_F", contents_body(what, k, name));
+        report_measured(report, key, summary.wall_mean[k], summary.error_rms);
+    }
+    report_value(report, "closure_max", summary.closure_max, 2);
+    report_value(report, "reciprocity_max", what->factors->reciprocity_error, 2);
+    report_value(report, "error_rms", summary.error_rms, 2);
+    report_value(report, "error_max", summary.error_max, 2);
+    report_end(report);
 }
 
 /* Writes the matrix and what is known of it. x: [3][n]. */
@@ -177,11 +191,8 @@ static int join_write(struct join_request *request, const struct joined *joined,
                                   .grey = joined->emissive ? &grey : NULL,
                                   .array = &ids,
                                   .arrays = 1};
-    struct outputs *outputs = &request->outputs;
-    int status = outputs_open(outputs);
-    if (!status) status = outputs_write(outputs, &what, bed.timestep);
-    status = outputs_close(outputs, status);
-    if (!status && !request->quiet) join_print(outputs_stdout(outputs) ? stderr : stdout, request, joined, &what);
+    const int status = outputs_write(&request->outputs, &what, bed.timestep);
+    if (!status) join_report(request, joined, &what);
     return status;
 }
 
@@ -207,19 +218,29 @@ static int join_names(const struct join_request *request, const struct joined *j
                    joined->id[joined->n - 1]);
 }
 
+/* Everything between the options and the end; outputs are opened before the work. */
+static int join_run(struct join_request *request) {
+    struct joined joined = {0};
+    struct output json;
+    FILE *text = outputs_stdout(&request->outputs) ? stderr : stdout;
+    int status = output_open(&json, request->json);
+    if (!status) status = outputs_open(&request->outputs);
+    request->report = (struct report){.text = request->quiet ? NULL : text, .json = json.file};
+    if (!status) report_open(&request->report, "join");
+    if (!status) status = read_rows(request->files, request->count, &joined);
+    if (!status) status = join_names(request, &joined);
+    if (!status) status = join_solve(request, &joined);
+    if (!status) report_close(&request->report);
+    status = outputs_close(&request->outputs, status);
+    joined_free(&joined);
+    return output_close(&json, status);
+}
+
 int command_join(int argc, char **argv) {
     struct join_request request = {.files = calloc((size_t)argc + 1, sizeof *request.files)};
-    struct joined joined = {0};
     if (!request.files) return message_memory();
-    int status = join_parse(&request, argc, argv);
-    if (status == STATUS_HELP)
-        status = join_help();
-    else if (!status) {
-        status = read_rows(request.files, request.count, &joined);
-        if (!status) status = join_names(&request, &joined);
-        if (!status) status = join_solve(&request, &joined);
-        joined_free(&joined);
-    }
+    const int status = join_parse(&request, argc, argv);
+    const int ended = status == STATUS_HELP ? join_help() : status ? status : join_run(&request);
     free(request.files);
-    return status;
+    return ended;
 }
