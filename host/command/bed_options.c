@@ -64,7 +64,7 @@ static int take_frames(const char *text, struct bed_options *asked) {
     return STATUS_OK;
 }
 
-static int take_unit(const char *text, struct bed_options *asked) {
+static int take_length_unit(const char *text, struct bed_options *asked) {
     double metres;
     if (!unit_of_length(text, &metres) || metres == 0)
         return message(STATUS_USAGE, "--length-unit: '%.40s' is none of " UNITS_LENGTH, text);
@@ -94,7 +94,7 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
     case KEY_RADIUS:
         return quantity_option("--radius", value, 1e-150, 1e150, &asked->radius);
     case KEY_LENGTH_UNIT:
-        return take_unit(value, asked);
+        return take_length_unit(value, asked);
     case KEY_JSON:
         asked->json = value;
         return STATUS_OK;
