@@ -27,7 +27,7 @@ struct csv {
 static char *put_text(char *to, const char *text) {
     const bool quoted = strpbrk(text, ",\"\r\n");
     if (quoted) *to++ = '"';
-    for (int k = 0; text[k] && k < PATH_MAX; ++k) {
+    for (int k = 0; k < PATH_MAX && text[k]; ++k) {
         if (text[k] == '"') *to++ = '"';
         *to++ = text[k];
     }
