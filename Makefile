@@ -128,6 +128,7 @@ HOST = \
     host/cli/targets.c \
     host/bed/bed.c \
     host/bed/bed_scene.c \
+    host/bed/conduction.c \
     host/bed/moving_rows.c \
     host/bed/packing.c \
     host/bed/property_option.c \

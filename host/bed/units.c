@@ -1,8 +1,10 @@
-/* units.c - units of length by name. SPDX-License-Identifier: MIT */
+/* units.c - units of length and temperature by name. SPDX-License-Identifier: MIT */
 #include "bed/units.h"
 
 #include <stddef.h>
 #include <string.h>
+
+#include "cli/message.h"
 
 static const struct {
     const char *name;
@@ -29,4 +31,11 @@ bool unit_of_length(const char *name, double *metres) {
             return true;
         }
     return false;
+}
+
+int temperature_unit_option(const char *text, double *zero) {
+    if (strcmp(text, "K") != 0 && strcmp(text, "C") != 0)
+        return message(STATUS_USAGE, "--temperature-unit: '%.40s' is neither K nor C", text);
+    *zero = *text == 'C' ? KELVIN_OF_0_CELSIUS : 0;
+    return STATUS_OK;
 }

@@ -13,4 +13,11 @@ bool unit_of_length(const char *name, double *metres);
 
 #define KELVIN_OF_0_CELSIUS 273.15
 
+/* A row of a table of options, without braces. */
+#define OPTION_TEMPERATURE_UNIT                                                                                        \
+    KEY_TEMPERATURE_UNIT, "temperature-unit", "UNIT", "of all temperatures given: K or C; those written are kelvins [K]"
+
+/* Takes the argument of --temperature-unit: 0 of that unit in kelvins. Status 0 or STATUS_USAGE. */
+int temperature_unit_option(const char *text, double *zero);
+
 #endif

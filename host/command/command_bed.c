@@ -59,7 +59,7 @@ static int bed_help(void) {
          "View factors between all spheres of FILE.\n");
     options_print(bed_table);
     puts("\n" FILES_MORE "\n" WALLS_MORE "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... "
-                                         "and the surroundings j = -1, with\n"
+         "and the surroundings j = -1, with\n"
          "their names in the column `body`, so that rows add up to 1; i = -2, -3 ... from walls of finite area to\n"
          "spheres; in .vtp an array for each wall. .mtx and .npz hold spheres only. What leaves a --cutoff is "
          "beyond.\n\n"

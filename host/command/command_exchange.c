@@ -46,7 +46,7 @@ static int exchange_help(void) {
          "emits that sphere j absorbs, directly or after any number of reflections.\n");
     options_print(exchange_table);
     puts("\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,j,D,body: spheres by name, the surroundings j = -1, walls j "
-                                         "= -2, -3 ... with their names in\n"
+         "= -2, -3 ... with their names in\n"
          "the column `body`; then from walls of finite area to spheres, i = -2, -3 ... .mtx and .npz hold spheres "
          "only.\n"
          "Net power to i is sum over j of A_i e_i D_ij sigma (T_j^4 - T_i^4), A_i = 4 pi r_i^2 in square metres and T "

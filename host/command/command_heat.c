@@ -11,7 +11,7 @@
 #include "command/bed_options.h"
 #include "command/commands.h"
 
-enum { KEY_TEMPERATURE = KEY_OWN, KEY_AMBIENT, KEY_WALL_TEMPERATURE, KEY_TEMPERATURE_UNIT, KEY_MODEL, KEY_PATCHES };
+enum { KEY_TEMPERATURE = KEY_OWN, KEY_AMBIENT, KEY_WALL_TEMPERATURE, KEY_MODEL, KEY_PATCHES };
 
 static const struct option heat_table[] = {
     {OPTION_EMISSIVITY},
@@ -22,8 +22,7 @@ static const struct option heat_table[] = {
     {KEY_WALL_TEMPERATURE, "wall-temperature", "LIST",
      "of the walls: zmin=1200,300: one number for all others; every wall needs one"},
     {OPTION_WALL_EMISSIVITY},
-    {KEY_TEMPERATURE_UNIT, "temperature-unit", "UNIT",
-     "of all temperatures given: K or C; those written are kelvins [K]"},
+    {OPTION_TEMPERATURE_UNIT},
     {KEY_MODEL, "model", "NAME",
      "patches: reflected light goes from point to point; spheres: one radiosity each, for emissivities near 1 "
      "[patches]"},
@@ -60,7 +59,7 @@ static int heat_help(void) {
          "positive where heat is gained. Temperatures in kelvins, lengths in the unit of the file.\n");
     options_print(heat_table);
     puts("\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,T_K,q_W,body: spheres by name, the surroundings i = -1, "
-                                         "walls i = -2, -3 ... with their names "
+         "walls i = -2, -3 ... with their names "
          "in\n"
          "the column `body`. All q add up to zero. Spheres of emissivity 0 reflect all and gain nothing.\n"
          "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a "
@@ -86,13 +85,6 @@ static int take_patches(const char *text, uint32_t *patches) {
     return status;
 }
 
-static int take_unit_of_temperature(const char *text, double *zero) {
-    if (strcmp(text, "K") != 0 && strcmp(text, "C") != 0)
-        return message(STATUS_USAGE, "--temperature-unit: '%.40s' is neither K nor C", text);
-    *zero = *text == 'C' ? KELVIN_OF_0_CELSIUS : 0;
-    return STATUS_OK;
-}
-
 static int take_model(const char *text, int *uniform) {
     *uniform = strcmp(text, "spheres") == 0;
     if (*uniform || strcmp(text, "patches") == 0) return STATUS_OK;
@@ -116,7 +108,7 @@ static int heat_take(struct heat_request *request, const struct options *options
     case KEY_TEMPERATURE: /* its unit is not known yet */
         return quantity_option("--temperature", value, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, &request->temperature);
     case KEY_TEMPERATURE_UNIT:
-        return take_unit_of_temperature(value, &request->zero);
+        return temperature_unit_option(value, &request->zero);
     case KEY_AMBIENT:
         request->ambient = value;
         return STATUS_OK;

@@ -7,11 +7,6 @@
 #include "fibrad.h"
 #include "report/text.h"
 
-static void put_number(FILE *file, double value) {
-    char text[TEXT_NUMBER];
-    fwrite(text, 1, (size_t)(text_json_real(text, value) - text), file);
-}
-
 void report_open(struct report *report, const char *command) {
     if (!report->json) return;
     fprintf(report->json, "{\"fibrad\": \"%s\", \"command\": \"%s\", \"runs\": [", fibrad_version(), command);
@@ -68,7 +63,7 @@ void report_count(struct report *report, const char *key, uint64_t count) {
 
 void report_value(struct report *report, const char *key, double value, int digits) {
     begin_entry(report, key);
-    if (report->json) put_number(report->json, value);
+    if (report->json) text_json_real(report->json, value);
     if (report->text) fprintf(report->text, "%.*g", digits, value);
     end_entry(report);
 }
@@ -81,7 +76,7 @@ void report_measured(struct report *report, const char *key, double value, doubl
 void report_vector(struct report *report, const char *key, const double value[3]) {
     begin_entry(report, key);
     for (int axis = 0; axis < 3; ++axis) {
-        if (report->json) fputs(axis == 0 ? "[" : ", ", report->json), put_number(report->json, value[axis]);
+        if (report->json) fputs(axis == 0 ? "[" : ", ", report->json), text_json_real(report->json, value[axis]);
         if (report->text) fprintf(report->text, axis == 0 ? "%.9g" : " %.9g", value[axis]);
     }
     if (report->json) putc(']', report->json);

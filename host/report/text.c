@@ -99,8 +99,8 @@ void text_json(FILE *file, const char *text) {
     putc('"', file);
 }
 
-char *text_json_real(char *to, double value) {
-    if (isfinite(value)) return text_real(to, value);
-    memcpy(to, "null", 4);
-    return to + 4;
+void text_json_real(FILE *file, double value) {
+    char text[TEXT_NUMBER] = "null";
+    const char *end = isfinite(value) ? text_real(text, value) : text + 4;
+    fwrite(text, 1, (size_t)(end - text), file);
 }

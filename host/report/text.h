@@ -16,7 +16,7 @@ char *text_whole(char *to, int64_t value);
 /* A string of JSON; bytes above 127 go as they are. */
 void text_json(FILE *file, const char *text);
 
-/* A number of JSON, null where it is not finite. As text_real. */
-char *text_json_real(char *to, double value);
+/* A number of JSON, null where it is not finite. */
+void text_json_real(FILE *file, double value);
 
 #endif

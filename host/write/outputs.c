@@ -7,11 +7,11 @@
 
 #include "cli/message.h"
 
-static const struct format formats[] = {{"csv", {write_csv, write_heat_csv}, true},
-                                        {"mtx", {write_mtx, NULL}, false},
-                                        {"npz", {write_npz, NULL}, false},
+static const struct format formats[] = {{"csv", {write_csv, write_heat_csv, write_conduction_csv}, true},
+                                        {"mtx", {write_mtx}, false},
+                                        {"npz", {write_npz}, false},
                                         {"vtp", {write_vtp, write_heat_vtp}, false},
-                                        {"json", {write_json, write_heat_json}, true},
+                                        {"json", {write_json, write_heat_json, write_conduction_json}, true},
                                         {"dump", {NULL, write_heat_dump}, true},
                                         {"lammpstrj", {NULL, write_heat_dump}, true}};
 enum { FORMATS = sizeof formats / sizeof *formats };

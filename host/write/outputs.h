@@ -9,7 +9,7 @@
 #include "cli/output.h"
 #include "write/write.h"
 
-enum content { CONTENT_MATRIX, CONTENT_HEAT, CONTENTS };
+enum content { CONTENT_MATRIX, CONTENT_HEAT, CONTENT_CONDUCTION, CONTENTS };
 
 /* A format by its name, which is the ending of its files, too. */
 struct format {

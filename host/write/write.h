@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "bed/bed.h"
+#include "bed/conduction.h"
 #include "bed/wall_option.h"
 #include "report/report.h"
 #include "simple/fibrad_host.h"
@@ -19,7 +20,7 @@ struct array {
 
 enum { ARRAYS_MAX = 16 };
 
-/* The results of one frame: a matrix, or, factors being NULL, heat. */
+/* The results of one frame: a matrix, or heat, or conduction; what belongs to the others is 0. */
 struct contents {
     const struct bed *bed;
     const struct walls *walls; /* NULL: neither walls nor surroundings are written; none in it: no walls, and
@@ -36,6 +37,8 @@ struct contents {
 
     const fibrad_heat_sources *sources; /* kelvins; surroundings NaN: there are none, the geometry is closed */
     const fibrad_heat_result *result;   /* watts */
+
+    const struct conduction *conduction;
 };
 
 /* Writes one frame; first: the file is empty yet. A failing file is noticed by the caller. Status 0, STATUS_MEMORY or
@@ -43,6 +46,7 @@ struct contents {
 typedef int write_function(FILE *file, const struct contents *what, bool first);
 
 write_function write_csv, write_mtx, write_npz, write_vtp, write_json;
+write_function write_conduction_csv, write_conduction_json;
 write_function write_heat_csv, write_heat_vtp, write_heat_json, write_heat_dump;
 
 /* Whether walls and surroundings of a matrix are written. */

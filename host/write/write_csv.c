@@ -1,4 +1,5 @@
-/* write_csv.c - comma-separated values: i,j,F or i,j,D of a matrix, i,T_K,q_W of heat. SPDX-License-Identifier: MIT
+/* write_csv.c - comma-separated values: i,j,F or i,j,D of a matrix, i,T_K,q_W of heat, F_E and k of conduction.
+ * SPDX-License-Identifier: MIT
  *
  * What is no sphere has negative numbers, and its name in the column body: the surroundings -1, walls -2, -3 ..., then
  * what is beyond a cutoff. */
@@ -143,5 +144,26 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
     for (uint32_t k = 0; k < what->walls->count; ++k)
         write_power(&csv, FIRST_WALL - (int64_t)k, sources->body_temperature[k], result->body_power[k],
                     contents_body(what, k, name));
+    return STATUS_OK;
+}
+
+int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
+    const struct conduction *conduction = what->conduction;
+    struct csv csv = {0};
+    begin_csv(&csv, file, what, "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable", first);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!conduction_wants(conduction, axis)) continue;
+        char *at = csv.line + csv.columns;
+        *at++ = (char)('x' + axis);
+        at = text_real(put_comma(at), conduction->factor[axis]);
+        at = text_real(put_comma(at), conduction->error[axis]);
+        at = put_comma(at);
+        if (conduction->temperature > 0) at = text_real(at, conduction->k[axis]);
+        at = put_comma(at);
+        if (conduction->temperature > 0) at = text_real(at, conduction->k_error[axis]);
+        at = put_comma(at);
+        *at++ = conduction_flights(conduction, axis) == FLIGHTS_SETTLED ? '1' : '0';
+        end_line(&csv, at, "");
+    }
     return STATUS_OK;
 }

@@ -10,10 +10,10 @@
 #include "report/text.h"
 #include "write/write.h"
 
-static void json_real(FILE *file, double value) {
-    char text[TEXT_NUMBER];
-    const char *end = text_json_real(text, value);
-    fwrite(text, 1, (size_t)(end - text), file);
+/* A further entry of an object. */
+static void json_entry(FILE *file, const char *name, double value) {
+    fprintf(file, ",\"%s\":", name);
+    text_json_real(file, value);
 }
 
 static void json_whole(FILE *file, int64_t value) {
@@ -29,13 +29,13 @@ static void json_reals(FILE *file, const char *comma, const char *name, const do
     fprintf(file, "%s\"%s\":[", comma, name);
     for (uint64_t i = 0; i < n && !interrupt_status(); ++i) {
         if (i > 0) putc(',', file);
-        json_real(file, !valid || valid[i] ? values[i * stride] : NAN);
+        text_json_real(file, !valid || valid[i] ? values[i * stride] : NAN);
     }
     putc(']', file);
 }
 
-/* What the frame is, and the names of its spheres. */
-static void json_begin(FILE *file, const struct contents *what, const char *kind) {
+/* What the frame is. */
+static void json_frame(FILE *file, const struct contents *what, const char *kind) {
     const struct bed *bed = what->bed;
     fprintf(file, "{\"kind\":\"%s\"", kind);
     if (what->file) {
@@ -47,6 +47,12 @@ static void json_begin(FILE *file, const struct contents *what, const char *kind
         fputs("null", file);
     else
         json_whole(file, bed->timestep);
+}
+
+/* The same, and the names of its spheres. */
+static void json_begin(FILE *file, const struct contents *what, const char *kind) {
+    const struct bed *bed = what->bed;
+    json_frame(file, what, kind);
     fputs(",\"id\":[", file);
     for (uint32_t i = 0; i < bed->n; ++i) {
         if (i > 0) putc(',', file);
@@ -84,9 +90,9 @@ int write_json(FILE *file, const struct contents *what, bool first) {
 
 static void json_power(FILE *file, const char *comma, const char *name, double temperature, double power) {
     fprintf(file, "%s\"%s\":{\"T_K\":", comma, name);
-    json_real(file, temperature);
+    text_json_real(file, temperature);
     fputs(",\"q_W\":", file);
-    json_real(file, power);
+    text_json_real(file, power);
     putc('}', file);
 }
 
@@ -106,4 +112,27 @@ int write_heat_json(FILE *file, const struct contents *what, bool first) {
                    result->body_power[k]);
     fputs(walls > 0 ? "}}\n" : "}\n", file);
     return interrupt_status();
+}
+
+int write_conduction_json(FILE *file, const struct contents *what, bool first) {
+    const struct conduction *conduction = what->conduction;
+    const char *comma = "";
+    (void)first;
+    json_frame(file, what, "conduction");
+    fputs(",\"axes\":[", file);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!conduction_wants(conduction, axis)) continue;
+        const bool reliable = conduction_flights(conduction, axis) == FLIGHTS_SETTLED;
+        fprintf(file, "%s{\"axis\":\"%c\",\"reliable\":%s", comma, 'x' + axis, reliable ? "true" : "false");
+        json_entry(file, "F_E", conduction->factor[axis]);
+        json_entry(file, "F_E_error", conduction->error[axis]);
+        comma = ",";
+        if (conduction->temperature > 0) {
+            json_entry(file, "k_W_mK", conduction->k[axis]);
+            json_entry(file, "k_W_mK_error", conduction->k_error[axis]);
+        }
+        putc('}', file);
+    }
+    fputs("]}\n", file);
+    return STATUS_OK;
 }
