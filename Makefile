@@ -220,6 +220,7 @@ SCRIPTS = \
     tests/check_dist.sh \
     tests/check_examples.sh \
     tests/check_faults.sh \
+    tests/check_formats.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
     tests/check_house.sh \
