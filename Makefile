@@ -32,7 +32,7 @@ COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
 # tables of addresses would be data in position independent code
 KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
 SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp $(PIC)
-HOST_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(GSL_CFLAGS)
+HOST_FLAGS   = $(COMMON) -D_XOPEN_SOURCE=700 -fopenmp -Ihost $(GSL_CFLAGS) $(ZLIB_CFLAGS)
 TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 
 WITH_sse2   = -DFIBRAD_WITH_SSE2
@@ -49,6 +49,8 @@ FLAGS_avx512 = -mavx512f -mavx512dq -mavx512bw -mavx512vl -mpopcnt
 # asked for when used, since `make deps` may just have installed them
 GSL_CFLAGS   = $(shell $(PKG_CONFIG) --cflags gsl)
 GSL_LIBS     = $(shell $(PKG_CONFIG) --libs gsl)
+ZLIB_CFLAGS  = $(shell $(PKG_CONFIG) --cflags zlib)
+ZLIB_LIBS    = $(shell $(PKG_CONFIG) --libs zlib)
 CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
 CHECK_LIBS   = $(shell $(PKG_CONFIG) --libs check)
 
@@ -120,6 +122,7 @@ SIMPLE = \
 # the program, besides main.c
 HOST = \
     host/cli/interrupt.c \
+    host/cli/memory.c \
     host/cli/message.c \
     host/cli/options.c \
     host/cli/output.c \
@@ -127,26 +130,31 @@ HOST = \
     host/cli/targets.c \
     host/bed/bed.c \
     host/bed/bed_scene.c \
+    host/bed/conduction.c \
     host/bed/moving_rows.c \
     host/bed/packing.c \
     host/bed/property_option.c \
+    host/bed/units.c \
     host/bed/wall_option.c \
+    host/text/read_lines.c \
+    host/text/read_number.c \
+    host/text/text.c \
     host/read/read.c \
     host/read/read_columns.c \
-    host/read/read_csv.c \
     host/read/read_dump.c \
-    host/read/read_furnace.c \
-    host/read/read_lines.c \
     host/read/read_rows.c \
-    host/read/read_yade.c \
+    host/read/read_table.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
+    host/boxes/read_furnace.c \
+    host/report/report.c \
+    host/write/outputs.c \
     host/write/summary.c \
-    host/write/vtp.c \
     host/write/write.c \
     host/write/write_csv.c \
+    host/write/write_dump.c \
     host/write/write_furnace.c \
-    host/write/write_heat.c \
+    host/write/write_json.c \
     host/write/write_mtx.c \
     host/write/write_npz.c \
     host/write/write_vtp.c \
@@ -184,6 +192,7 @@ TESTS = \
     tests/test_cli.c \
     tests/test_direction.c \
     tests/test_drift.c \
+    tests/test_files.c \
     tests/test_estimate.c \
     tests/test_exchange.c \
     tests/test_furnace.c \
@@ -263,7 +272,7 @@ COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
 .PHONY: all lib lib-host dist demo reproduce test run-programs programs check symbols lists format house bench bench-quick \
-    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
+    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
 all: $(BUILD)/fibrad lib lib-host
@@ -323,35 +332,35 @@ $(BUILD)/libfibrad.so: $(SHARED)
 	ln -sf $(<F) $@
 
 $(BUILD)/fibrad: $(BUILD)/host/main.o $(LIBRARIES)
-	$(CC) $(LDFLAGS) -fopenmp $^ $(GSL_LIBS) -lm -o $@
+	$(CC) $(LDFLAGS) -fopenmp $^ $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
 # all of the host but main, for tests and benches to link
 $(BUILD)/libhost.a: $(HOST_OBJECTS)
 	rm -f $@
 	$(AR) rcs $@ $^
 
-$(BUILD)/host/main.o $(HOST_OBJECTS): $(BUILD)/%.o: %.c | need-gsl
+$(BUILD)/host/main.o $(HOST_OBJECTS): $(BUILD)/%.o: %.c | need-libraries
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(HOST_FLAGS) -c $< -o $@
 
-$(TEST_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-gsl need-check
+$(TEST_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-libraries need-check
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(TEST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) $(CHECK_LIBS) $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) $(TEST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) $(CHECK_LIBS) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
-$(BENCH_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-gsl
+$(BENCH_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-libraries
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(HOST_FLAGS) $(WITH_ISAS) $(LDFLAGS) $< $(LIBRARIES) $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) $(HOST_FLAGS) $(WITH_ISAS) $(LDFLAGS) $< $(LIBRARIES) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
-$(PEER_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-gsl
+$(PEER_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-libraries
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -O3 $(HOST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) -lembree3 $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) -O3 $(HOST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) -lembree3 $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
-$(COUNT_PROGRAMS): $(BUILD)/%: %.c $(COUNTING) | need-gsl
+$(COUNT_PROGRAMS): $(BUILD)/%: %.c $(COUNTING) | need-libraries
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(HOST_FLAGS) $(LDFLAGS) $< $(COUNTING) $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) $(HOST_FLAGS) $(LDFLAGS) $< $(COUNTING) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
-need-gsl:
-	@$(PKG_CONFIG) --exists gsl || { echo "The program fibrad needs GSL: run 'make deps' (Debian: pkg-config, libgsl-dev)." \
+need-libraries:
+	@$(PKG_CONFIG) --exists gsl zlib || { echo "The program fibrad needs GSL and zlib: run 'make deps' (Debian: pkg-config, libgsl-dev, zlib1g-dev)." \
 	    "'make lib' builds libfibrad.a without it." >&2; exit 1; }
 
 need-check:
@@ -484,12 +493,12 @@ FUZZ         = $(BUILD)/fuzz
 FUZZ_FLAGS   = -timeout=300 -rss_limit_mb=4096 -malloc_limit_mb=64 -close_fd_mask=2 -print_final_stats=1
 SANITIZE     = address,undefined -fno-sanitize-recover=undefined
 
-fuzz-programs: need-gsl
+fuzz-programs: need-libraries
 	@$(MAKE) -s --no-print-directory BUILD=$(FUZZ) CC=$(FUZZ_CC) CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE)" \
 	    $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%)
 	@set -e; for target in read kernel; do \
 	    $(FUZZ_CC) -O1 -g -fsanitize=fuzzer,$(SANITIZE) $(HOST_FLAGS) tests/fuzz/fuzz_$$target.c \
-	        $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%) $(GSL_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
+	        $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
 	done
 
 ## fuzz: hostile input for the readers and the kernel, FUZZ_SECONDS=60 in all
@@ -519,7 +528,7 @@ threads:
 	    $(BUILD)/threads/fibrad bed $(DEMO_BED) --directions 21 --threads $$t -o $(BUILD)/threads/F.mtx || exit 1; \
 	done
 
-LINT_FLAGS   = -Ikernel -Ihost -D_POSIX_C_SOURCE=200809L
+LINT_FLAGS   = -Ikernel -Ihost -D_XOPEN_SOURCE=700
 LINT_SCALAR  = -DFIBRAD_LANES_HEADER='"base/lanes/vec_scalar.h"' -DFIBRAD_ISA_SUFFIX=_scalar
 
 ## lint: cppcheck and clang-tidy, with the exceptions that .cppcheck and .clang-tidy give reasons for
@@ -540,7 +549,7 @@ reproduce: $(BUILD)/fibrad
 
 ## deps: install the Debian packages that build, demo and tests need; does nothing when nothing is missing
 deps:
-	@.ci/deps libc6-dev pkg-config libgsl-dev check gnuplot-nox
+	@.ci/deps libc6-dev pkg-config libgsl-dev zlib1g-dev check gnuplot-nox
 
 ## deps-ci: install what .ci/run needs besides
 deps-ci:

@@ -62,7 +62,7 @@ static int bench_bed(fibrad_work *work, uint32_t n, bool quick) {
     fibrad_row truth[ROWS];
     struct bed bed;
     void *block;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     const int status = bed_make_packing(&bed, n, .8, 1.2, .55, 1);
     if (status) return status;
     const fibrad_scene *scene = bench_scene(&bed, FIBRAD_ISA_BEST, &block);

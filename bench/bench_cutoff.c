@@ -44,7 +44,7 @@ int main(int argc, char **argv) {
     fibrad_work work = BENCH_GROWING;
     struct bed bed;
     void *block;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     const int status = bed_make_packing(&bed, quick ? 640 : 6400, 1, 1, .588, 1);
     if (status) return status;
     const fibrad_scene *scene = bench_scene(&bed, FIBRAD_ISA_BEST, &block);

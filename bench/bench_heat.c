@@ -48,7 +48,7 @@ int main(int argc, char **argv) {
     static const double emissivities[] = {.3, .8};
     const bool quick = argc > 1 && strcmp(argv[1], "quick") == 0;
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     if (bed_make_packing(&bed, quick ? 100 : 500, 1, 1, .58, 1) != 0) return 1;
     void *block;
     const fibrad_scene *scene = bench_scene(&bed, FIBRAD_ISA_BEST, &block);

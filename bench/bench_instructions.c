@@ -38,7 +38,7 @@ int main(int argc, char **argv) {
     static const uint32_t points[] = {0, 64, 128, 256};
     bench_preamble("bench_instructions: rows of a periodic random bed, solid fraction 0.58", 1);
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     const int status = bed_make_packing(&bed, n, 1, 1, 0.58, 1);
     if (status) return status;
     printf("# spheres: %u, rows: %u, directions: %d\nisa,points,instructions_per_window\n", n, rows, DIRECTIONS);

@@ -80,7 +80,7 @@ static void print_errors(const struct moving *moving, const struct moving *anew)
 static int bench(const char *name, const struct bed *bed, enum motion motion, double amplitude, int steps,
                  double allowed) {
     struct bed now;
-    bed_init(&now, false, 0);
+    bed_init(&now);
     int status = bed_make_copies(&now, bed, (const uint32_t[3]){1, 1, 1});
     struct moving moving = {0}, anew = {0};
     const fibrad_beam_rule rule = {.directions = DIRECTIONS};
@@ -129,13 +129,13 @@ int main(int argc, char **argv) {
     struct bed bed;
     int status = 0;
     if (quick || argc == 1) {
-        bed_init(&bed, false, 0);
+        bed_init(&bed);
         status = bed_make_packing(&bed, quick ? 200 : 2000, 0.8, 1.2, 0.55, 1);
         if (!status) status = bench_bed("random", &bed, quick);
         bed_free(&bed);
     }
     for (int k = 1; k < argc && !quick && !status; ++k) {
-        status = read_bed(argv[k], &(struct read_options){.frame = -1}, &bed);
+        status = read_bed(argv[k], &(struct read_options){0}, &bed);
         if (!status) status = bench_bed(argv[k], &bed, false);
         bed_free(&bed);
     }

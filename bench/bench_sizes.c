@@ -36,7 +36,7 @@ static void print(double ratio, const char *size, const struct cost *cost, doubl
 /* Large spheres come first in the bed. Of the small ones, every `skip`th is enough. */
 static int bench(double ratio, uint32_t large, uint32_t skip, double *equal) {
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     const int status =
         ratio > 1 ? bed_make_two_sizes(&bed, large, ratio, 0.55, 1) : bed_make_packing(&bed, large, 1, 1, 0.55, 1);
     if (status) return status;

@@ -68,7 +68,7 @@ int main(int argc, char **argv) {
     puts("what,isa,microseconds,rays_or_entries,tests,tests_per_second,error");
     for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)fibrad_isa_best(); ++isa) bench_pairs(isa, quick ? 10 : 500);
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     if (bed_make_packing(&bed, quick ? 200 : 1000, .8, 1.2, .55, 1) != 0) return 1;
     memset(bed.period, 0, sizeof bed.period);
     for (int isa = FIBRAD_ISA_SCALAR; isa <= (int)fibrad_isa_best(); ++isa) bench_bed(&bed, isa, 6, 0);

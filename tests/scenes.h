@@ -33,7 +33,7 @@ static inline void add_sphere(struct bed *bed, double x, double y, double z, dou
 /* A bed of the spheres listed, (x, y, z, r) each. */
 static inline struct bed bed_of(uint32_t n, const double spheres[][4]) {
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     for (uint32_t i = 0; i < n; i++) add_sphere(&bed, spheres[i][0], spheres[i][1], spheres[i][2], spheres[i][3]);
     return bed;
 }
@@ -45,7 +45,7 @@ static inline struct bed lattice(char kind, double reach) {
     double side = kind == 'p' ? 2 : kind == 'i' ? 4 / sqrt(3) : 2 * sqrt(2);
     int sites = kind == 'p' ? 1 : kind == 'i' ? 2 : 4, span = (int)(reach / side) + 1;
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     add_sphere(&bed, 0, 0, 0, 1);
     for (int i = -span; i <= span; i++)
         for (int j = -span; j <= span; j++)
@@ -62,7 +62,7 @@ static inline struct bed lattice(char kind, double reach) {
 /* A random bed of n spheres, radii in [low, high], solid fraction given; open, or periodic as made. */
 static inline struct bed packing(uint32_t n, double low, double high, double fraction, uint64_t seed, bool periodic) {
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     ck_assert_int_eq(bed_make_packing(&bed, n, low, high, fraction, seed), 0);
     for (int axis = 0; axis < 3 && !periodic; axis++) bed.period[axis] = 0;
     return bed;

@@ -27,8 +27,8 @@ START_TEST(packing) {
     static const uint32_t sizes[] = {1, 10, 100, 700};
     for (int k = 0; k < 4; k++) {
         struct bed bed, again;
-        bed_init(&bed, false, 0);
-        bed_init(&again, false, 0);
+        bed_init(&bed);
+        bed_init(&again);
         ck_assert_int_eq(bed_make_packing(&bed, sizes[k], .8, 1.2, .55, 7), 0);
         ck_assert_uint_eq(bed.n, sizes[k]);
         ck_assert_double_ge(least_gap(&bed), 0);
@@ -49,8 +49,8 @@ END_TEST
 
 START_TEST(copies) {
     struct bed tile, bed;
-    bed_init(&tile, false, 0);
-    bed_init(&bed, false, 0);
+    bed_init(&tile);
+    bed_init(&bed);
     ck_assert_int_eq(bed_make_packing(&tile, 60, .8, 1.2, .55, 7), 0);
     ck_assert_int_eq(bed_make_copies(&bed, &tile, (const uint32_t[]){3, 1, 2}), 0);
     ck_assert_uint_eq(bed.n, 360);
@@ -66,7 +66,7 @@ END_TEST
 
 START_TEST(fcc) {
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     ck_assert_int_eq(bed_make_fcc(&bed, 1, 4, 0), 0);
     ck_assert_uint_eq(bed.n, 1 + 12 + 6 + 24 + 12); /* shells at 2, 2.83, 3.46, 4 */
     ck_assert_double_eq_tol(least_gap(&bed), 0, 1e-14);

@@ -6,7 +6,7 @@
 
 static struct bed copy_of(const struct bed *bed) {
     struct bed to;
-    bed_init(&to, false, 0);
+    bed_init(&to);
     for (uint32_t i = 0; i < bed->n; i++) add_sphere(&to, bed->x[i], bed->y[i], bed->z[i], bed->r[i]);
     memcpy(to.period, bed->period, sizeof to.period);
     return to;

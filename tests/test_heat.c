@@ -590,7 +590,7 @@ static struct bed column(char kind, int cells) {
     const double side = kind == 'p' ? 2 : kind == 'i' ? 4 / sqrt(3) : 2 * sqrt(2);
     const int sites = kind == 'p' ? 1 : kind == 'i' ? 2 : 4;
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     for (int cell = 0; cell < 4 * cells; cell++)
         for (int s = 0; s < sites; s++) {
             const double *b = kind == 'i' && s == 1 ? centre : basis[s];
@@ -621,7 +621,7 @@ END_TEST
 START_TEST(conduction_of_a_random_bed) {
     static const double known[][2] = {{.2, .276}, {.4, .433}, {.6, .610}, {.8, .815}};
     struct bed one = packing(120, 1, 1, .586, 2, true), bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     ck_assert_int_eq(bed_make_copies(&bed, &one, (uint32_t[]){1, 1, 3}), 0);
     bed_free(&one);
     struct problem p = problem_of(bed, 1, 1);

@@ -7,7 +7,7 @@
 /* Spheres of these radii, too far apart to see each other: rows are made by hand. */
 static fibrad_scene *apart(uint32_t n, const double *r) {
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     for (uint32_t i = 0; i < n; i++) add_sphere(&bed, 1000. * (i + 1), 0, 0, r[i]);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     bed_free(&bed);

@@ -45,7 +45,7 @@ static int try_options(const char *text, size_t size, const struct read_options 
     return status;
 }
 
-static int try(const char *text) { return try_options(text, strlen(text), &(struct read_options){.frame = -1}); }
+static int try(const char *text) { return try_options(text, strlen(text), &(struct read_options){0}); }
 
 static void expect_sphere(uint32_t i, double x, double y, double z, double r, uint64_t line) {
     ck_assert_uint_lt(i, bed.n);
@@ -91,7 +91,7 @@ END_TEST
 START_TEST(further_columns_by_name) {
     const char *const names[] = {"emissivity", "T"};
     const char text[] = "T,x,y,z,r,emissivity,id\n300,0,0,0,1,0.8,17\n400,3,0,0,1,0.9,-4\n";
-    const struct read_options options = {.frame = -1, .ids = true, .extra = names, .extras = 2};
+    const struct read_options options = {.extra = names, .extras = 2};
     ck_assert_int_eq(try_options(text, sizeof text - 1, &options), 0);
     ck_assert_double_eq(bed.extra[0], 0.8);
     ck_assert_double_eq(bed.extra[1], 300);
@@ -176,7 +176,7 @@ START_TEST(settled_beds) {
     for (size_t k = 0; k < 3; ++k) {
         const char *const names[] = {"v_T"};
         bed_free(&bed);
-        ck_assert_int_eq(read_bed(beds[k].file, &(struct read_options){-1, true, names, 1}, &bed), 0);
+        ck_assert_int_eq(read_bed(beds[k].file, &(struct read_options){.extra = names, .extras = 1}, &bed), 0);
         ck_assert_uint_eq(bed.n, 2000);
         ck_assert(bed.period[0] == beds[k].period && bed.period[1] == beds[k].period && bed.period[2] == 0);
         for (uint32_t i = 0; i < bed.n; ++i) {
@@ -195,7 +195,7 @@ START_TEST(growth) {
     ck_assert_ptr_nonnull(text);
     end += sprintf(end, "x,y,z,r,id\n");
     for (int i = 0; i < N; ++i) end += sprintf(end, "%d,%d,%d,1,%d\n", i, 2 * i, 3 * i, N - i);
-    ck_assert_int_eq(try_options(text, (size_t)(end - text), &(struct read_options){.frame = -1, .ids = true}), 0);
+    ck_assert_int_eq(try_options(text, (size_t)(end - text), &(struct read_options){0}), 0);
     free(text);
     ck_assert_uint_eq(bed.n, N);
     for (uint32_t i = 0; i < N; ++i) {
@@ -270,19 +270,19 @@ static const struct {
 };
 
 START_TEST(faults) {
-    expect_refusal(refused[_i].text, strlen(refused[_i].text), &(struct read_options){.frame = -1}, refused[_i].line,
+    expect_refusal(refused[_i].text, strlen(refused[_i].text), &(struct read_options){0}, refused[_i].line,
                    refused[_i].reason);
 }
 END_TEST
 
 START_TEST(binary_data) {
     const char zeros[] = "x,y,z,r\n0,0,0,\0001\n";
-    expect_refusal(zeros, sizeof zeros - 1, &(struct read_options){.frame = -1}, 2, "binary data");
-    expect_refusal("\x1f\x8b\x08 gzip", 8, &(struct read_options){.frame = -1}, 0, "compressed");
+    expect_refusal(zeros, sizeof zeros - 1, &(struct read_options){0}, 2, "binary data");
+    expect_refusal("\x1f\x8b\x08 gzip", 8, &(struct read_options){0}, 0, "compressed");
     char *endless = malloc(3 << 20);
     ck_assert_ptr_nonnull(endless);
     memset(endless, '1', 3 << 20);
-    expect_refusal(endless, 3 << 20, &(struct read_options){.frame = -1}, 1, "the line has no end");
+    expect_refusal(endless, 3 << 20, &(struct read_options){0}, 1, "the line has no end");
     free(endless);
 }
 END_TEST
@@ -291,7 +291,7 @@ START_TEST(unreadable) {
     static const char *const paths[] = {"no/such/file.csv", "tests"};
     for (size_t k = 0; k < 2; ++k) {
         bed_free(&bed);
-        ck_assert_int_eq(read_bed(paths[k], &(struct read_options){.frame = -1}, &bed), STATUS_FILE);
+        ck_assert_int_eq(read_bed(paths[k], &(struct read_options){0}, &bed), STATUS_FILE);
     }
 }
 END_TEST

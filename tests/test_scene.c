@@ -383,7 +383,7 @@ START_TEST(cells_follow_the_spheres) {
     static const double spans[][3] = {{1, 1, 1}, {1000, 1, 1}, {1, 1e6, 1e6}, {1e-3, 1, 1e3}};
     for (size_t s = 0; s < sizeof spans / sizeof *spans; s++) {
         struct bed bed;
-        bed_init(&bed, false, 0);
+        bed_init(&bed);
         for (uint64_t i = 0; i < 4000; i++)
             add_sphere(&bed, spans[s][0] * bed_make_random(5, 3 * i), spans[s][1] * bed_make_random(5, 3 * i + 1),
                        spans[s][2] * bed_make_random(5, 3 * i + 2), 1e-7);

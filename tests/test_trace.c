@@ -156,7 +156,7 @@ END_TEST
 /* One large sphere with thousands of small ones about it: more than a list holds. */
 START_TEST(large_among_small) {
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     add_sphere(&bed, 0, 0, 0, 1);
     for (uint32_t k = 0; k < 1500; k++) {
         double w[3], d = 1.03 + .07 * (k % 4);
@@ -171,7 +171,7 @@ END_TEST
 /* More small spheres that overlap a large one than there is room for: no list at all. */
 START_TEST(studded_sphere) {
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     add_sphere(&bed, 0, 0, 0, 1);
     for (uint32_t k = 0; k < 700; k++) {
         double w[3];

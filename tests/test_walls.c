@@ -551,8 +551,8 @@ END_TEST
 START_TEST(order_scale_and_axes) {
     const struct container box = {.planes = 63, .at = {-2, 14, -3, 16, -4, 15}};
     struct bed bed = packing(50, .8, 1.2, .2, 4, false), other, turned;
-    bed_init(&other, false, 0);
-    bed_init(&turned, false, 0);
+    bed_init(&other);
+    bed_init(&turned);
     struct container scaled = box, cyclic = box;
     for (int k = 0; k < 6; k++) scaled.at[k] *= 4, cyclic.at[(k + 2) % 6] = box.at[k];
     for (uint32_t i = 0; i < bed.n; i++) {

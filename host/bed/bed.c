@@ -2,11 +2,12 @@
 #include "bed/bed.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/message.h"
 #include "fibrad.h"
 
-void bed_init(struct bed *bed, bool ids, size_t extras) { *bed = (struct bed){.ids = ids, .extras = extras}; }
+void bed_init(struct bed *bed) { *bed = (struct bed){.timestep = -1}; }
 
 static void *resized(void *array, size_t bytes, bool *good) {
     void *moved = realloc(array, bytes);
@@ -23,7 +24,7 @@ static int grow(struct bed *bed) {
     bed->z = resized(bed->z, capacity * sizeof *bed->z, &good);
     bed->r = resized(bed->r, capacity * sizeof *bed->r, &good);
     bed->line = resized(bed->line, capacity * sizeof *bed->line, &good);
-    if (bed->ids) bed->id = resized(bed->id, capacity * sizeof *bed->id, &good);
+    bed->id = resized(bed->id, capacity * sizeof *bed->id, &good);
     if (bed->extras) bed->extra = resized(bed->extra, capacity * bed->extras * sizeof *bed->extra, &good);
     if (!good) return message_memory();
     bed->capacity = (uint32_t)capacity;
@@ -46,8 +47,72 @@ int bed_add(struct bed *bed, const struct bed_sphere *sphere) {
     return STATUS_OK;
 }
 
+int64_t bed_name(const struct bed *bed, uint32_t i) { return bed->ids ? bed->id[i] : (int64_t)i; }
+
+/* A sphere's id and where the sphere stands. */
+struct named {
+    int64_t id;
+    uint32_t at;
+};
+
+static int compare_named(const void *a, const void *b) {
+    const struct named *left = a, *right = b;
+    if (left->id != right->id) return left->id < right->id ? -1 : 1;
+    return (left->at > right->at) - (left->at < right->at);
+}
+
+static bool is_sorted(const struct bed *bed) {
+    for (uint32_t i = 1; i < bed->n; ++i)
+        if (!(bed->id[i - 1] < bed->id[i])) return false;
+    return bed->n == 0 || bed->id[0] >= 0;
+}
+
+static int check_names(const struct bed *bed, const char *file, const struct named *name) {
+    for (uint32_t k = 0; k < bed->n; ++k) {
+        const uint64_t line = bed->line[name[k].at];
+        const long long id = name[k].id;
+        if (id < 0)
+            return message_at(STATUS_INPUT, file, line, "the id %lld is negative; --positions leaves ids alone", id);
+        if (k > 0 && name[k - 1].id == id)
+            return message_at(STATUS_INPUT, file, line,
+                              "the id %lld is that of line %llu, too; --positions leaves ids alone", id,
+                              (unsigned long long)bed->line[name[k - 1].at]);
+    }
+    return STATUS_OK;
+}
+
+/* Moves what stands in an array of n things of so many bytes to the places that the names give. */
+static void rearrange(void *array, size_t size, const struct named *name, uint32_t n, void *room) {
+    if (size == 0) return;
+    for (uint32_t k = 0; k < n; ++k) memcpy((char *)room + k * size, (char *)array + name[k].at * size, size);
+    memcpy(array, room, n * size);
+}
+
+int bed_sort(struct bed *bed, const char *file) {
+    if (!bed->ids || is_sorted(bed)) return STATUS_OK;
+    const size_t widest = sizeof(double) * (bed->extras > 1 ? bed->extras : 1);
+    struct named *name = malloc(bed->n * sizeof *name);
+    void *room = malloc(bed->n * widest);
+    int status = name && room ? STATUS_OK : message_memory();
+    for (uint32_t i = 0; i < bed->n && !status; ++i) name[i] = (struct named){bed->id[i], i};
+    if (!status) qsort(name, bed->n, sizeof *name, compare_named);
+    if (!status) status = check_names(bed, file, name);
+    if (!status) {
+        double *const part[] = {bed->x, bed->y, bed->z, bed->r};
+        for (int k = 0; k < 4; ++k) rearrange(part[k], sizeof(double), name, bed->n, room);
+        rearrange(bed->line, sizeof *bed->line, name, bed->n, room);
+        rearrange(bed->id, sizeof *bed->id, name, bed->n, room);
+        rearrange(bed->extra, bed->extras * sizeof(double), name, bed->n, room);
+    }
+    free(name);
+    free(room);
+    return status;
+}
+
 void bed_clear(struct bed *bed) {
     bed->n = 0;
+    bed->units[0] = 0;
+    bed->timestep = -1;
     for (int axis = 0; axis < 3; ++axis) bed->low[axis] = bed->high[axis] = bed->period[axis] = 0;
 }
 

@@ -8,14 +8,17 @@
 
 struct bed {
     uint32_t n, capacity;
-    double *x, *y, *z, *r; /* [n] file units */
+    double *x, *y, *z, *r; /* [n] units of the file */
     uint64_t *line;        /* [n] where in the file each sphere stands, from 1 */
-    bool ids;
-    int64_t *id;   /* [n] the file's ids, if asked for */
-    double *extra; /* [n][extras] further columns asked for by name */
+    bool ids;              /* spheres have ids; else their positions name them */
+    int64_t *id;           /* [n] ascending, from 0 on, no two alike */
+    double *extra;         /* [n][extras] further columns asked for by name */
     size_t extras;
     double low[3], high[3]; /* the file's box; all 0 if it has none */
     double period[3];       /* length of the periodic box per axis; 0: the axis is open */
+    char units[16];         /* as the file calls them, such as "cgs"; "": it says nothing */
+    int64_t frame;          /* which one of the file, from 0 */
+    int64_t timestep;       /* as the file says; -1: it says nothing */
 };
 
 /* One sphere to be added. */
@@ -25,13 +28,20 @@ struct bed_sphere {
     int64_t id;
 };
 
-/* Makes an empty bed with room for ids if they are wanted. */
-void bed_init(struct bed *bed, bool ids, size_t extras);
+/* Makes an empty bed. What has ids or extras says so before the first sphere. */
+void bed_init(struct bed *bed);
 
 /* Adds a sphere; its extra columns are for the caller to fill in. Status 0 or STATUS_MEMORY. */
 int bed_add(struct bed *bed, const struct bed_sphere *sphere);
 
-/* Forgets the spheres and the box, keeps the memory. */
+/* The name of a sphere: its id, or its position from 0 on. */
+int64_t bed_name(const struct bed *bed, uint32_t i);
+
+/* Puts the spheres in the order of their ids, if they have any. Status 0; STATUS_INPUT naming the line of an id that is
+ * negative or there twice; STATUS_MEMORY. `file` is the bed's name in messages. */
+int bed_sort(struct bed *bed, const char *file);
+
+/* Forgets the spheres, the box and what the file says of the frame, keeps the memory. */
 void bed_clear(struct bed *bed);
 
 void bed_free(struct bed *bed);

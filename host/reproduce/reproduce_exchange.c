@@ -64,7 +64,7 @@ static int conductivities(struct bed beds[1 + LATTICES], double factor[1 + LATTI
     static const double site[4][3] = {{0, 0, 0}, {.5, .5, 0}, {0, .5, .5}, {.5, 0, .5}},
                         body[2][3] = {{0}, {.5, .5, .5}};
     static const uint32_t paths[1 + LATTICES] = {300, 400000, 200000, 100000};
-    for (int k = 0; k <= LATTICES; ++k) bed_init(&beds[k], false, 0);
+    for (int k = 0; k <= LATTICES; ++k) bed_init(&beds[k]);
     int status = bed_make_packing(&beds[0], 2000, 1, 1, .586, 1);
     if (!status) status = lattice_cell(&beds[1], 2, 1, site);
     if (!status) status = lattice_cell(&beds[2], 4 / sqrt(3), 2, body);
@@ -152,7 +152,7 @@ static int measure_curve(double fraction, double emissivity, struct curve *curve
     fibrad_run run = one_thread(&bar);
     fibrad_bed_factors *factors = NULL;
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     int status = bed_make_jammed(&bed, 1500, fraction, 1000, 1);
     double *e = constant(1500, emissivity);
     if (!status && !e) status = message_memory();

@@ -186,7 +186,7 @@ int reproduce_pebble_bed(struct reproduce *reproduce) {
         struct bed bed;
         struct rows rows = {0};
         struct within within = {0};
-        bed_init(&bed, false, 0);
+        bed_init(&bed);
         int status = bed_make_packing(&bed, PEBBLES, 1, 1, fractions[k], 1);
         if (!status) status = rows_open(&rows, &bed, true);
         if (!status) status = collect_within(&within, &bed, &rows);

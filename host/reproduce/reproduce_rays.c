@@ -37,7 +37,7 @@ static int cast_pair(double h, fibrad_cast_rule rule, struct pair_rays *means) {
     for (uint32_t k = 0; k < ORIENTATIONS && !status; ++k) {
         struct bed bed;
         struct rows rows = {0};
-        bed_init(&bed, false, 0);
+        bed_init(&bed);
         fibrad_direction(k, ORIENTATIONS, w);
         rule.seed = k;
         status = bed_add(&bed, &(struct bed_sphere){.r = 1});

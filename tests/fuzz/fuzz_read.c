@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "read/read.h"
-#include "read/read_furnace.h"
+#include "boxes/read_furnace.h"
 #include "cli/targets.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -24,8 +24,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     snprintf(path, sizeof path, "/proc/self/fd/%d", file);
 
     static const char *const extra[] = {"T", "mass"};
-    struct read_options options = {
-        .frame = data[0] % 4 - 1, .ids = (data[0] & 4) != 0, .extra = extra, .extras = data[0] >> 3 & 1 ? 2 : 0};
+    struct read_options options = {.frames = {.end = data[0] % 4},
+                                   .positions = (data[0] & 4) != 0,
+                                   .extra = extra,
+                                   .extras = data[0] >> 3 & 1 ? 2 : 0};
     struct bed bed;
     if (read_bed(path, &options, &bed) == 0) {
         if (bed.n == 0 || bed.n > size) abort();
@@ -47,7 +49,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char *text = strndup((const char *)data + 1, size - 1); /* the same as a list of targets */
     unsigned char marks[64] = {0};
     if (text == NULL) abort();
-    (void)targets_mark(text, data[0] & 1 ? 64 : 0, marks);
+    (void)targets_mark(text, NULL, data[0] & 1 ? 64 : 0, marks);
     free(text);
     return 0;
 }
