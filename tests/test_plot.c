@@ -105,7 +105,7 @@ START_TEST(where_heat_goes) {
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
     const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
     const struct walls walls = {2, {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
-    struct heat_shown what = {&bed, &walls, temperature, power, wall_temperature, wall_power, 293, -.125};
+    struct heat_shown what = {&bed, &walls, 1, temperature, power, wall_temperature, wall_power, 293, -.125};
     char *svg = drawn(draw_heat, &what);
     assert_texts_inside(svg);
     static const char *const told[] = {"bed's.dump",
@@ -125,6 +125,11 @@ START_TEST(where_heat_goes) {
                                        ">293 K<",
                                        ">-0.125<"};
     for (size_t k = 0; k < sizeof told / sizeof *told; ++k) assert_tells(svg, told[k]);
+    free(svg);
+    what.metres = 1e-3; /* the same lengths, of a file in millimetres */
+    svg = drawn(draw_heat, &what);
+    assert_tells(svg, "layers of 2 ");
+    assert_tells(svg, "x [\302\265m]");
     free(svg);
 
     /* neither walls nor surroundings; nothing flows */

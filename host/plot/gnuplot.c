@@ -43,6 +43,7 @@ int gnuplot_start(struct gnuplot *gnuplot, const struct output *picture) {
 void gnuplot_style(FILE *script, const char *path, int width, int height) {
     const bool png = output_ends(path, ".png");
     fprintf(script,
+            "set encoding utf8\n"
             "set terminal %s size %d,%d font 'DejaVu Sans,%d' background '#ffffff'\n"
             "set border 3 lc '#555555'\n"
             "set tics nomirror out scale 0.6 tc '#333333'\n"

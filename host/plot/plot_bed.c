@@ -50,7 +50,7 @@ static int print_slice(FILE *script, const struct contents *what) {
         away[i] = matrix->escaped[i];
         for (uint32_t k = 0; k < matrix->bodies; ++k) away[i] += matrix->body[(size_t)i * matrix->bodies + k];
     }
-    plot_slice_of(&slice, what->bed, what->walls, NULL);
+    plot_slice_of(&slice, what->bed, what->walls, 0);
     fprintf(script, "set title '%s, slice at y = %s'; set cbrange [0:*]\n",
             matrix->bodies > 0 ? "Fraction to walls and out of the bed" : "Escaped fraction", slice.place);
     plot_slice_draw(script, &slice, away, what->wanted, NULL);

@@ -163,7 +163,7 @@ int plot_heat(const struct output *output, const char *name, const struct heat_s
     struct plot_slice slice;
     int status = gnuplot_start(&gnuplot, output);
     if (status) return status;
-    plot_slice_of(&slice, what->bed, what->walls, "m");
+    plot_slice_of(&slice, what->bed, what->walls, what->metres);
     print_head(gnuplot.script, output, name, what);
     print_temperatures(gnuplot.script, &slice, what);
     status = print_powers(gnuplot.script, &slice, what);

@@ -6,10 +6,11 @@
 #include "bed/wall_option.h"
 #include "cli/output.h"
 
-/* What is shown, in SI units: lengths of the bed in m, temperatures in K, powers in W, > 0 where heat is gained. */
+/* What is shown: temperatures in K, powers in W, > 0 where heat is gained. */
 struct heat_shown {
     const struct bed *bed;
     const struct walls *walls;                           /* none in it: no walls */
+    double metres;                                       /* of the unit of the bed's lengths; 0: not known */
     const double *temperature, *power;                   /* [bed->n] */
     const double *wall_temperature, *wall_power;         /* [walls->count]; NULL if there are none */
     double surroundings_temperature, surroundings_power; /* NaN: there are none */

@@ -50,27 +50,27 @@ static void include_walls(struct plot_slice *slice) {
 }
 
 /* Numbers of millimetres and the like stay short: a thousandth, a thousand, ... where the largest asks for it. */
-static void choose_scale(struct plot_slice *slice, const char *unit) {
-    static const char *const prefix[] = {"n", "{/Symbol m}", "m", "", "k"};
+static void choose_scale(struct plot_slice *slice, double metres) {
+    static const char *const prefix[] = {"n", "\302\265", "m", "", "k"};
+    const bool known = metres > 0;
     double largest = 0;
     for (int axis = 0; axis < 3; axis += 2)
-        largest = fmax(largest, fmax(fabs(slice->low[axis]), fabs(slice->high[axis])));
+        largest = fmax(largest, fmax(fabs(slice->low[axis]), fabs(slice->high[axis])) * (known ? metres : 1));
     const bool short_already = !(largest > 0 && (largest < 0.1 || largest >= 1e4));
     const int thousands = short_already ? 0 : (int)floor(log10(largest) / 3);
-    slice->scale = pow(1000, thousands);
-    slice->unit[0] = 0;
-    if (unit && thousands >= -3 && thousands <= 1)
-        snprintf(slice->unit, sizeof slice->unit, "%s%s", prefix[3 + thousands], unit);
+    slice->scale = pow(1000, thousands) / (known ? metres : 1);
+    if (known && thousands >= -3 && thousands <= 1)
+        snprintf(slice->unit, sizeof slice->unit, "%sm", prefix[3 + thousands]);
     else if (thousands)
-        snprintf(slice->unit, sizeof slice->unit, "10^{%d}%s%s", 3 * thousands, unit ? " " : "", unit ? unit : "");
+        snprintf(slice->unit, sizeof slice->unit, "10^{%d}%s", 3 * thousands, known ? " m" : "");
     snprintf(slice->place, sizeof slice->place, "%.4g%s%s", slice->y / slice->scale,
-             unit        ? " "
+             known       ? " "
              : thousands ? " x "
                          : "",
              slice->unit);
 }
 
-void plot_slice_of(struct plot_slice *slice, const struct bed *bed, const struct walls *walls, const char *unit) {
+void plot_slice_of(struct plot_slice *slice, const struct bed *bed, const struct walls *walls, double metres) {
     const double *const centre[] = {bed->x, bed->y, bed->z};
     *slice = (struct plot_slice){.bed = bed, .walls = walls, .y = NAN};
     for (int axis = 0; axis < 3; ++axis) bounds(centre[axis], bed->r, bed->n, &slice->low[axis], &slice->high[axis]);
@@ -78,7 +78,7 @@ void plot_slice_of(struct plot_slice *slice, const struct bed *bed, const struct
     for (uint32_t i = 0; i < bed->n; ++i)
         if (!(fabs(bed->y[i] - middle) >= fabs(slice->y - middle))) slice->y = bed->y[i];
     include_walls(slice);
-    choose_scale(slice, unit);
+    choose_scale(slice, metres);
 }
 
 /* Lines of the walls: their ends and a value, parted by empty lines. */

@@ -15,13 +15,13 @@ struct plot_slice {
     const struct walls *walls; /* NULL: none */
     double y;                  /* of the plane: that through the centre nearest the middle of the bed */
     double low[3], high[3];    /* the bed, and walls not far from it */
-    double scale;              /* coordinates are shown as multiples of it, a power of a thousand */
+    double scale;              /* coordinates are shown as multiples of it */
     char unit[32];             /* of the lengths shown; empty: not known */
     char place[64];            /* y, as shown */
 };
 
-/* unit: of lengths, or NULL: not known. */
-void plot_slice_of(struct plot_slice *slice, const struct bed *bed, const struct walls *walls, const char *unit);
+/* metres: of the unit of the bed's lengths; 0: not known. */
+void plot_slice_of(struct plot_slice *slice, const struct bed *bed, const struct walls *walls, double metres);
 
 /* Draws the circles in which the spheres cut the plane, coloured by value [n] with the palette in force; those marked
  * 0 in wanted [n] are left out (NULL: none). Walls that meet the plane are lines, coloured by wall_value [walls], or
