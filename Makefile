@@ -162,6 +162,8 @@ HOST = \
     host/plot/plot_bed.c \
     host/plot/plot_data.c \
     host/plot/plot_furnace.c \
+    host/plot/plot_heat.c \
+    host/plot/plot_slice.c \
     host/reference/exact_gsl.c \
     host/reference/reference.c \
     host/reproduce/reproduce_beds.c \
@@ -197,6 +199,7 @@ TESTS = \
     tests/test_heat.c \
     tests/test_matrix.c \
     tests/test_part.c \
+    tests/test_plot.c \
     tests/test_protocol.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
