@@ -27,10 +27,11 @@
 /* Concentration above which a standard error is not relied on: its square root is the relative standard error of the
  * variance. Where the variances of groups have a tail of index a < 1 it tends to 1 - a however many groups there are,
  * 1/4 for flights along channels, 1/2 for those in slabs (docs/heat.md); without such a tail, to zero. */
-#define SETTLED 0.03
+#define SETTLED 0.05
 
-/* Growth of F_E over itself from which it is told, whatever the standard error: as much as most ask for. */
-#define ENDLESS 0.003
+/* Growth of F_E over itself from which it is told whatever the standard error: flights of 100 periods are about e^10
+ * times a gap, which makes as much of F_E as most ask for. */
+#define ENDLESS 0.0003
 
 /* The part of the bed that emits, a box; infinite along periodic axes. */
 struct core {
