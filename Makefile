@@ -190,6 +190,7 @@ TESTS = \
     tests/test_beam.c \
     tests/test_cast.c \
     tests/test_cli.c \
+    tests/test_conductivity.c \
     tests/test_direction.c \
     tests/test_drift.c \
     tests/test_files.c \
