@@ -17,6 +17,8 @@ from ._values import marks, per_sphere, real, refuse, whole
 _DIRECTIONS = (8, 65536)
 _SEED = (0, 2**64 - 1)
 _FAR = (0.0, 1e150)
+_OVERLAP = 0.05
+"""Above it, spheres are hardly what was meant."""
 _METHODS = {"beam": {"directions", "points", "tolerance"}, "surface": {"nodes"}, "cast": {"rays", "seed"},
             "mc": {"rays", "seed"}}
 
@@ -158,6 +160,8 @@ class _Job:
         owner = _Owner()
         self.call(function, *arguments, self.run, ctypes.byref(owner.factors))
         factors = _factors(owner, self.container.names, self.packing.ids)
+        if factors.overlap > _OVERLAP:
+            warnings.warn(f"two spheres overlap by {factors.overlap:.3g} of a radius", stacklevel=3)
         if tolerance is not None and factors.error.max(initial=0) > tolerance:
             warnings.warn(f"the estimated error is {factors.error.max():.3g}, above the tolerance of {tolerance:g}: "
                           "no more directions or paths are possible", stacklevel=3)

@@ -147,13 +147,13 @@ class Heat:
         InputError
             Also another number of spheres or other walls. The bed of before then stays.
         """
+        if np.shape(x)[:1] != (self.n,):
+            raise refuse(f"x has the shape {np.shape(x)}; this Heat has {self.n} spheres")
         packing = Packing(x, self._packing.r if r is None else r, self._packing.ids)
         container = Container(self._container.period if box is None else box,
                               self._container.walls if walls is None else walls)
-        if packing.n != self.n:
-            raise refuse(f"x has {packing.n} spheres; this Heat has {self.n}")
         if container.names != self._container.names:
-            raise refuse(f"the walls are {', '.join(container.names)}; they were {', '.join(self._container.names)}")
+            raise refuse(f"the walls are {', '.join(container.names) or 'none'}; they were {', '.join(self._container.names) or 'none'}")
         self._use(library.fibrad_radiation_move, packing, container.config, packing.spheres)
         self._packing, self._container = packing, container
 
