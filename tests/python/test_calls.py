@@ -1,4 +1,4 @@
-# test_calls.py - what a long call lets others do: progress, signals, other threads; and memory. SPDX-License-Identifier: MIT
+# test_calls.py - a long call and others: progress, signals, threads, memory. SPDX-License-Identifier: MIT
 import os
 import signal
 import threading

@@ -23,7 +23,8 @@ class UnsupportedOperation(Exception):
 def _version():
     header = TREE / "kernel" / "fibrad.h"
     if not header.exists():
-        raise SystemExit(f"fibrad: {HERE} is not in the source tree of fibrad: pip install TREE/host/python (pip 21.3 or newer)")
+        raise SystemExit(f"fibrad: {HERE} is not in the source tree of fibrad: "
+                         "pip install TREE/host/python (pip 21.3 or newer)")
     return re.search(r'^#define FIBRAD_VERSION "(.*)"', header.read_text(encoding="utf-8"), re.MULTILINE)[1]
 
 
@@ -32,8 +33,8 @@ def _build_library():
     compiler = os.environ.get("CC", "cc")
     missing = [tool for tool in ("make", compiler.split()[0]) if not shutil.which(tool)]
     if missing and not LIBRARY.exists():
-        raise SystemExit(f"fibrad: no {' and no '.join(missing)}: building libfibrad.so needs make and a C compiler with "
-                         f"OpenMP (Debian: make gcc libc6-dev), or {LIBRARY} built before")
+        raise SystemExit(f"fibrad: no {' and no '.join(missing)}: building libfibrad.so needs make and a C compiler "
+                         f"with OpenMP (Debian: make gcc libc6-dev), or {LIBRARY} built before")
     if not missing:
         command = ["make", "-s", f"-j{os.cpu_count()}", "-C", str(TREE), f"BUILD={BUILD}", f"CC={compiler}", "lib-host"]
         if subprocess.run(command, check=False).returncode:

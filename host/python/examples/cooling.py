@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-# cooling.py - a bed of hot spheres cools on a cold floor: explicit steps that keep the energy. SPDX-License-Identifier: MIT
+# cooling.py - a bed of hot spheres cools on a floor: explicit steps that keep the energy. SPDX-License-Identifier: MIT
 """Usage: cooling.py [STEPS]. Each step needs the net powers alone: m c dT/dt = power."""
 import sys
 

@@ -1,4 +1,4 @@
-# ovito_modifier.py - a modifier function for OVITO: what each particle sees, and its power. SPDX-License-Identifier: MIT
+# ovito_modifier.py - a modifier function for OVITO: what particles see, their powers. SPDX-License-Identifier: MIT
 """In OVITO: Add modification > Python script, and paste this file; or in a script: pipeline.modifiers.append(modify).
 
 Particles need radii. Each gets `Escaped`, the fraction of its view that leaves the bed, and `Seen`, the number of

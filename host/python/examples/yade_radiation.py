@@ -1,4 +1,4 @@
-# yade_radiation.py - spheres of YADE that fall onto a hot floor and are heated by radiation. SPDX-License-Identifier: MIT
+# yade_radiation.py - spheres of YADE on a hot floor are heated by radiation. SPDX-License-Identifier: MIT
 """Run it as `yade -n -x yade_radiation.py`; YADE's Python has to find fibrad. PyRunner calls radiate() now and then:
 positions are taken from O.bodies, the net powers change the temperatures, which are kept here by the bodies' ids."""
 import numpy as np

@@ -47,7 +47,7 @@ _KINDS = {MEMORY: OutOfMemory, CANCELLED: Cancelled, ARGUMENT: InputError, TABLE
 
 
 def status_text(status: int) -> str:
-    return library.fibrad_status_text(status).decode()
+    return str(library.fibrad_status_text(status).decode())
 
 
 def error_of(status: int, text: str, spheres: tuple[int, ...] = ()) -> Error:

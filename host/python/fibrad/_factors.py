@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._call import Call, Progress
-from ._library import (BeamRule, BedFactors, BedOptions, CastRule, Displacement, ExchangeRule, SurfaceRule, library)
+from ._library import BeamRule, BedFactors, BedOptions, CastRule, Displacement, ExchangeRule, SurfaceRule, library
 from ._scene import Container, Packing, Walls, pointer
 from ._values import marks, per_sphere, real, refuse, whole
 
@@ -27,10 +27,10 @@ class _Owner:
     """Factors of the library, freed when the last array that refers to them is gone."""
 
     def __init__(self) -> None:
-        self.factors = ctypes.POINTER(BedFactors)()
+        self.factors: Any = ctypes.POINTER(BedFactors)()
 
-    def __del__(self) -> None:
-        library.fibrad_bed_free(self.factors)
+    def __del__(self, free: Any = library.fibrad_bed_free) -> None:  # bound: at exit the module may be gone
+        free(self.factors)
 
 
 class _Memory:
@@ -304,7 +304,7 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
     return job.factors(library.fibrad_exchange_factors, tolerance, rule, options)
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Displacements:
     """How far what each sphere emits is carried, from its centre to that of the sphere that absorbs."""
 
@@ -344,6 +344,6 @@ def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Opt
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
     rule = job.exchange_rule(emissivity, wall_emissivity, paths=whole("paths", paths, 1, 2**28),
                              seed=whole("seed", seed, *_SEED), cutoff=real("cutoff", cutoff, *_FAR))
-    found = np.zeros(job.packing.n, Displacement)
+    found: NDArray[Any] = np.zeros(job.packing.n, Displacement)
     job.call(library.fibrad_displacements, rule, job.wanted, job.run, found.ctypes.data, None)
-    return Displacements(*(np.ascontiguousarray(found[name]) for name in found.dtype.names))
+    return Displacements(*(np.ascontiguousarray(found[name]) for name in ("square", "error", "absorbed", "rays")))

@@ -23,7 +23,7 @@ STEFAN_BOLTZMANN = 5.670374419e-8
 _HOTTEST = 1e20
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Powers:
     """Net powers [W], positive where heat is gained. All of them add up to 0."""
 
@@ -153,7 +153,8 @@ class Heat:
         container = Container(self._container.period if box is None else box,
                               self._container.walls if walls is None else walls)
         if container.names != self._container.names:
-            raise refuse(f"the walls are {', '.join(container.names) or 'none'}; they were {', '.join(self._container.names) or 'none'}")
+            now, before = (", ".join(names) or "none" for names in (container.names, self._container.names))
+            raise refuse(f"the walls are {now}; they were {before}")
         self._use(library.fibrad_radiation_move, packing, container.config, packing.spheres)
         self._packing, self._container = packing, container
 

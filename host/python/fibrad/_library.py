@@ -6,20 +6,32 @@ import importlib.metadata
 import os
 import pathlib
 from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_ubyte, c_uint32, c_uint64, c_void_p
+from typing import Any
 
 DOUBLES = POINTER(c_double)
-PROGRESS = ctypes.CFUNCTYPE(c_int, c_void_p, c_char_p, c_uint64, c_uint64)
+PROGRESS: Any = ctypes.CFUNCTYPE(c_int, c_void_p, c_char_p, c_uint64, c_uint64)
 
 
-def _structure(name: str, *fields) -> type:
+_structures: list[Any] = []
+
+
+class _Plane(ctypes.Structure):
+    _fields_ = [("axis", c_int), ("upper", c_int), ("at", c_double)]
+
+
+class _Cylinder(ctypes.Structure):
+    _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double)]
+
+
+def _structure(name: str, *fields: tuple[str, Any]) -> Any:
     """The structure fibrad_NAME. fields: names, several with blanks between, and their type."""
-    return type(f"fibrad_{name}", (ctypes.Structure,),
-                {"_fields_": [(one, kind) for names, kind in fields for one in names.split()]})
+    structure = type(f"fibrad_{name}", (ctypes.Structure,),
+                     {"_fields_": [(one, kind) for names, kind in fields for one in names.split()]})
+    _structures.append(structure)
+    return structure
 
 
 Spheres = _structure("spheres", ("x y z r", DOUBLES), ("n stride stride_r", c_uint32), ("id", POINTER(c_uint64)))
-_Plane = _structure("plane", ("axis upper", c_int), ("at", c_double))
-_Cylinder = _structure("cylinder", ("x y radius", c_double))
 Body = _structure("body", ("kind", c_int), ("plane", _Plane), ("cylinder", _Cylinder))
 SceneConfig = _structure("scene_config", ("isa", c_int), ("period", c_double * 3), ("body", POINTER(Body)),
                          ("bodies", c_uint32), ("known_low known_high", c_double * 3), ("occupancy", c_void_p))
@@ -49,7 +61,7 @@ HeatResult = _structure("heat_result", ("power body_power", DOUBLES),
 
 def _declare(library: ctypes.CDLL) -> None:
     """Types of what is called, so that no pointer is cut to an int."""
-    bed = [POINTER(SceneConfig), POINTER(Spheres)]
+    bed: list[Any] = [POINTER(SceneConfig), POINTER(Spheres)]
     library.fibrad_version.restype = library.fibrad_status_text.restype = c_char_p
     library.fibrad_host_sizeof.argtypes, library.fibrad_host_sizeof.restype = [c_char_p], c_size_t
     library.fibrad_view_factors.argtypes = [*bed, POINTER(BedOptions), POINTER(Run), POINTER(POINTER(BedFactors))]
@@ -88,8 +100,7 @@ def _check(library: ctypes.CDLL) -> None:
         wanted = found  # used from the source tree
     if found != wanted:
         raise ImportError(f"fibrad: {library._name} is of version {found}, this package of {wanted}")
-    for kind in (Spheres, Body, SceneConfig, Fault, SceneFacts, Run, BeamRule, SurfaceRule, CastRule, BedOptions, Matrix,
-                 BedFactors, ExchangeRule, Displacement, HeatConfig, HeatSources, HeatResult):
+    for kind in _structures:
         size = library.fibrad_host_sizeof(kind.__name__.encode())
         if size != ctypes.sizeof(kind):
             raise ImportError(f"fibrad: {library._name}: {kind.__name__} has {size} bytes, "

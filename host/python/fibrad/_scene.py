@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import ARGUMENT, GEOMETRY, Error, error_of, status_text
-from ._library import DOUBLES, Body, Fault, SceneConfig, Spheres
+from ._library import DOUBLES, Body, SceneConfig, Spheres
 from ._values import Names, doubles, real, refuse
 
 _AXES = "xyz"
@@ -28,10 +28,12 @@ def pointer(array: Optional[NDArray[Any]], kind: Any = DOUBLES) -> Any:
 
 def _stride(array: NDArray[np.float64]) -> int:
     """Doubles between the elements along the first axis; 0: not as the library takes it."""
+    if not array.flags.aligned:
+        return 0
     if len(array) < 2:
         return 1
-    doubles_apart, rest = divmod(array.strides[0], array.itemsize)
-    return doubles_apart if rest == 0 and 0 < doubles_apart <= _STRIDE_MAX and array.flags.aligned else 0
+    apart, rest = divmod(array.strides[0], array.itemsize)
+    return apart if rest == 0 and 0 < apart <= _STRIDE_MAX else 0
 
 
 def _strided(array: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -68,7 +70,7 @@ class Packing:
             raise refuse(f"two spheres have the id {values[counts > 1][0]}")
         return np.ascontiguousarray(array, np.uint64)
 
-    def error(self, status: int, fault: Fault) -> Error:
+    def error(self, status: int, fault: Any) -> Error:
         """What a call has returned, in words, with the spheres concerned."""
         concerned = tuple(dict.fromkeys(i for i in (fault.first, fault.second) if i < self.n))
         text = status_text(status)
@@ -80,7 +82,7 @@ class Packing:
         return error_of(status, f"{text}: {places}" if places else text, concerned)
 
 
-def _body(name: str, value: Any) -> Body:
+def _body(name: str, value: Any) -> Any:
     if name in _PLANES:
         axis, upper = _PLANES[name]
         return Body(kind=_PLANE, plane=(axis, upper, real(f"wall {name}", value, -_LENGTH_MAX, _LENGTH_MAX)))
@@ -121,7 +123,8 @@ class Container:
             value = dict.fromkeys(self.names, value)
         wrong = set(value) - set(self.names)
         if wrong:
-            raise refuse(f"{name}: there is no wall {', '.join(map(repr, sorted(wrong)))}; there are {', '.join(self.names)}")
+            raise refuse(f"{name}: there is no wall {', '.join(map(repr, sorted(wrong)))}; "
+                         f"there are {', '.join(self.names)}")
         missing = [wall for wall in self.names if value.get(wall) is None]
         if missing:
             raise refuse(f"{name} of {', '.join(missing)} is missing")

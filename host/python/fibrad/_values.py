@@ -39,7 +39,7 @@ def real(name: str, value: Optional[float], low: float, high: float) -> float:
 
 def doubles(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """An array of float64, the given one if it is such; what has no plain number is refused."""
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
         raise refuse(f"{name} has masked elements")
     array = np.asarray(value)
     try:
