@@ -225,10 +225,12 @@ SCRIPTS = \
     tests/check_examples.sh \
     tests/check_faults.sh \
     tests/check_formats.sh \
+    tests/check_fortran.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
     tests/check_house.sh \
     tests/check_map.sh \
+    tests/check_python.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
     tests/freestanding/check_freestanding.sh \
@@ -557,7 +559,8 @@ deps:
 deps-ci:
 	@.ci/deps g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
 	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
-	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-scipy
+	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-numpy python3-scipy python3-pytest \
+	    python3-venv python3-pip gfortran
 
 ## install: the program, the libraries, their headers and .pc files, to DESTDIR and PREFIX
 install: install-lib $(BUILD)/fibrad
