@@ -141,9 +141,13 @@ HOST = \
     host/text/text.c \
     host/read/read.c \
     host/read/read_columns.c \
+    host/read/read_data.c \
     host/read/read_dump.c \
+    host/read/read_format.c \
+    host/read/read_mercury.c \
     host/read/read_rows.c \
     host/read/read_table.c \
+    host/read/read_xyz.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
     host/boxes/read_furnace.c \
