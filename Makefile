@@ -228,7 +228,6 @@ SCRIPTS = \
     tests/check_dist.sh \
     tests/check_examples.sh \
     tests/check_faults.sh \
-    tests/check_formats.sh \
     tests/check_fortran.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
@@ -237,6 +236,7 @@ SCRIPTS = \
     tests/check_python.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
+    tests/check_written.sh \
     tests/freestanding/check_freestanding.sh \
     tests/package/check_package.sh
 
