@@ -32,7 +32,7 @@ COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
 # tables of addresses would be data in position independent code
 KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
 SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp $(PIC)
-HOST_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(GSL_CFLAGS) $(ZLIB_CFLAGS)
+HOST_FLAGS   = $(COMMON) -D_XOPEN_SOURCE=700 -fopenmp -Ihost $(GSL_CFLAGS) $(ZLIB_CFLAGS)
 TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 
 WITH_sse2   = -DFIBRAD_WITH_SSE2
@@ -122,6 +122,7 @@ SIMPLE = \
 # the program, besides main.c
 HOST = \
     host/cli/interrupt.c \
+    host/cli/memory.c \
     host/cli/message.c \
     host/cli/options.c \
     host/cli/output.c \
@@ -129,12 +130,15 @@ HOST = \
     host/cli/targets.c \
     host/bed/bed.c \
     host/bed/bed_scene.c \
+    host/bed/conduction.c \
     host/bed/moving_rows.c \
     host/bed/packing.c \
     host/bed/property_option.c \
+    host/bed/units.c \
     host/bed/wall_option.c \
     host/text/read_lines.c \
     host/text/read_number.c \
+    host/text/text.c \
     host/vtk/vtk_grid.c \
     host/vtk/vtk_legacy.c \
     host/vtk/vtk_xml.c \
@@ -152,12 +156,14 @@ HOST = \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
     host/boxes/read_furnace.c \
+    host/report/report.c \
+    host/write/outputs.c \
     host/write/summary.c \
-    host/write/vtp.c \
     host/write/write.c \
     host/write/write_csv.c \
+    host/write/write_dump.c \
     host/write/write_furnace.c \
-    host/write/write_heat.c \
+    host/write/write_json.c \
     host/write/write_mtx.c \
     host/write/write_npz.c \
     host/write/write_vtp.c \
@@ -165,6 +171,8 @@ HOST = \
     host/plot/plot_bed.c \
     host/plot/plot_data.c \
     host/plot/plot_furnace.c \
+    host/plot/plot_heat.c \
+    host/plot/plot_slice.c \
     host/reference/exact_gsl.c \
     host/reference/reference.c \
     host/reproduce/reproduce_beds.c \
@@ -191,14 +199,17 @@ TESTS = \
     tests/test_beam.c \
     tests/test_cast.c \
     tests/test_cli.c \
+    tests/test_conductivity.c \
     tests/test_direction.c \
     tests/test_drift.c \
+    tests/test_files.c \
     tests/test_estimate.c \
     tests/test_exchange.c \
     tests/test_furnace.c \
     tests/test_heat.c \
     tests/test_matrix.c \
     tests/test_part.c \
+    tests/test_plot.c \
     tests/test_protocol.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
@@ -222,12 +233,15 @@ SCRIPTS = \
     tests/check_dist.sh \
     tests/check_examples.sh \
     tests/check_faults.sh \
+    tests/check_fortran.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
     tests/check_house.sh \
     tests/check_map.sh \
+    tests/check_python.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
+    tests/check_written.sh \
     tests/freestanding/check_freestanding.sh \
     tests/package/check_package.sh
 
@@ -527,7 +541,7 @@ threads:
 	    $(BUILD)/threads/fibrad bed $(DEMO_BED) --directions 21 --threads $$t -o $(BUILD)/threads/F.mtx || exit 1; \
 	done
 
-LINT_FLAGS   = -Ikernel -Ihost -D_POSIX_C_SOURCE=200809L
+LINT_FLAGS   = -Ikernel -Ihost -D_XOPEN_SOURCE=700
 LINT_SCALAR  = -DFIBRAD_LANES_HEADER='"base/lanes/vec_scalar.h"' -DFIBRAD_ISA_SUFFIX=_scalar
 
 ## lint: cppcheck and clang-tidy, with the exceptions that .cppcheck and .clang-tidy give reasons for
@@ -554,7 +568,8 @@ deps:
 deps-ci:
 	@.ci/deps g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
 	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
-	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-scipy
+	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-numpy python3-scipy python3-pytest \
+	    python3-venv python3-pip gfortran
 
 ## install: the program, the libraries, their headers and .pc files, to DESTDIR and PREFIX
 install: install-lib $(BUILD)/fibrad

@@ -27,7 +27,8 @@ static int main_help(void) {
     for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
         printf("  %-12s %s\n", commands[k].name, commands[k].purpose);
     puts("\nfibrad COMMAND --help   options of a command, with defaults and examples\n"
-         "fibrad --version        version and instruction set in use\n\n"
+         "fibrad help COMMAND     the same\n"
+         "fibrad -V, --version    version and instruction set in use\n\n"
          "Exit status: 0; 2 bad usage; 3 bad input; 4 trouble with a file; 5 out of memory; 128 + signal.");
     return STATUS_OK;
 }
@@ -40,7 +41,12 @@ static int main_version(void) {
 static int main_choose(int argc, char **argv) {
     const char *name = argc > 1 ? argv[1] : "";
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return main_help();
-    if (strcmp(name, "--version") == 0) return main_version();
+    if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) return main_version();
+    if (strcmp(name, "help") == 0 && argc == 2) return main_help();
+    if (strcmp(name, "help") == 0) { /* `help COMMAND` is `COMMAND --help` */
+        char help[] = "--help";
+        return main_choose(3, (char *[]){argv[0], argv[2], help, NULL});
+    }
     for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
         if (strcmp(name, commands[k].name) == 0) {
             interrupt_catch();

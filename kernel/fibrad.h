@@ -284,7 +284,7 @@ void fibrad_rows_clear(fibrad_rows *rows);
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
 /* What becomes of the rows. Zeroed: view factors, reciprocal and closed. */
 typedef struct fibrad_matrix_rule {
-    const double *emissivity; /* [spheres] (0, 1]: the rows are exchange factors; NULL: view factors */
+    const double *emissivity; /* [spheres] [0, 1]: the rows are exchange factors; NULL: view factors */
     int raw;                  /* 1: rows as they are, in order; a missing one is empty */
     double drop;              /* [0, 1] what entries below this carry goes to the others, or to F_ii; 0: none */
     uint32_t tasks;           /* [1, 1024] for as many threads, 0: 1; no bit depends on it */
@@ -305,8 +305,8 @@ typedef struct fibrad_factors {
 typedef struct fibrad_matrix fibrad_matrix; /* rows put together into one matrix */
 
 /* Begins a matrix in memory[size] from all rows of a scene, found in rows[count], which stay until fibrad_matrix_close.
- * rule: NULL is all defaults. Bytes: 24 per entry of the rows, 80 + 8 bodies per sphere; raw: 12, 48 + 8 bodies.
- * Errors: _ARGUMENT, _SIZE, _STATE: a row is missing or there twice (*sphere, unless NULL). Cost: O(n + entries). */
+ * rule: NULL: defaults. Bytes: 24 per entry of the rows, 80 + 8 bodies per sphere; raw: 12, 48 + 8 bodies. Errors:
+ * _ARGUMENT (entries of emissivity 0), _SIZE, _STATE: row missing or twice (*sphere or NULL). Cost: O(n + entries). */
 size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                           const fibrad_matrix_rule *rule);
 int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const fibrad_scene *scene,
@@ -320,7 +320,7 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
 /* Ends the matrix. View factors: row sums above 1 are brought down to 1 symmetrically. Exchange factors: row sums are
  * brought to those of the raw rows by D_ij u_i u_j. Then bodies, escaped and beyond are scaled to what the row sums
  * leave of 1; a row that met none of them takes the shares of all spheres together. A_i F_ij = A_j F_ji to the last
- * bits, all sums are 1 to rounding. Errors: _STATE. Cost: O(entries), 40 times for exchange and for `drop`. */
+ * bits, sums are 1 to rounding but for empty rows. Errors: _STATE. Cost: O(entries), 40 times for exchange, `drop`. */
 int fibrad_matrix_close(fibrad_matrix *matrix);
 
 /* The matrix, once closed; the largest |A_i F_ij - A_j F_ji| / max(A_i, A_j) over all entries, absent partners taken as
@@ -345,7 +345,7 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
 /* ---- exchange -------------------------------------------------------------------------------------------------- */
 /* How the exchange of grey diffuse spheres and bodies is followed. */
 typedef struct fibrad_exchange_rule {
-    const double *emissivity;      /* [spheres] (0, 1] */
+    const double *emissivity;      /* [spheres] [0, 1]; 0 reflects all: its row and its column are empty */
     const double *body_emissivity; /* [bodies] [0, 1]; 0 reflects all. NULL if there are none */
     uint32_t directions;           /* of the first leg, a beam row by 256 points up to 144, by areas above; 0: 50 */
     uint32_t paths;                /* [1, FIBRAD_PATHS_MAX] for the reflections; 0: 400 */
@@ -356,11 +356,11 @@ typedef struct fibrad_exchange_rule {
 #define FIBRAD_PATHS_MAX (1u << 28)
 
 /* Row i of the exchange factors of a scene: D_ij, in f, is the fraction of what sphere i emits that sphere j absorbs,
- * directly or after any number of diffuse reflections; body, escaped and beyond likewise; the sum is 1 to rounding. The
- * first leg is that of fibrad_beam_row; reflections go from point to point. The error falls as directions^-1.5 and
- * paths^-0.5 do. rays (may be NULL): how many were traced. Errors: as fibrad_beam_row (of emissivities, those of sphere
- * i and of bodies are checked). Cost: the beam row, and 0.1 to 0.2 microseconds a ray; a path has some 2 rays at
- * emissivity 0.8, 14 at 0.2. Work memory: up to 6 MB more, for speed. Source: docs/heat.md. */
+ * directly or after any number of diffuse reflections; body, escaped and beyond likewise; the sum is 1 to rounding, or
+ * 0 of emissivity 0. The first leg is that of fibrad_beam_row; reflections go from point to point. Errors fall as
+ * directions^-1.5 and paths^-0.5 do. rays (may be NULL): how many were traced. Errors: as fibrad_beam_row (emissivities
+ * of sphere i and of bodies are checked). Cost: the beam row, and 0.1 to 0.2 microseconds a ray; a path has some 2 rays
+ * at emissivity 0.8, 14 at 0.2. Work memory: up to 6 MB more, for speed. Source: docs/heat.md. */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);
 
@@ -414,7 +414,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * surroundings, NaN, which is refused: set it. */
 typedef struct fibrad_heat_sources {
     const double *temperature;      /* [spheres] 0 to 1e20 */
-    const double *emissivity;       /* [spheres] [0, 1] */
+    const double *emissivity;       /* [spheres] [0, 1]; 0: power 0, whatever the temperature */
     const double *body_temperature; /* [bodies] 0 to 1e20; NULL if there are none */
     const double *body_emissivity;  /* [bodies] [0, 1]; NULL if there are none */
     double surroundings;            /* temperature of what beams meet that escape; black */

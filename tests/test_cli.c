@@ -1,158 +1,7 @@
-/* test_cli.c - the program as its users meet it: exit statuses, messages, files. SPDX-License-Identifier: MIT
- *
- * Runs $BUILD/fibrad (default: build/fibrad) from the project's root. */
-#include <dirent.h>
-#include <fcntl.h>
-#include <math.h>
-#include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
+/* test_cli.c - the program as its users meet it: exit statuses, messages, files. SPDX-License-Identifier: MIT */
 #include <time.h>
-#include <unistd.h>
 
-#include "suite.h"
-
-#define MONO     "tests/data/mono2000.dump"
-#define POLY     "tests/data/poly2000.dump"
-#define PERIODIC "tests/data/monoper2000.dump"
-
-static const char *build; /* folder of the program */
-static char folder[200];  /* for the files of a test */
-static char stdout_path[220], stderr_path[220];
-static char said[8192], printed[65536];
-
-static void make_folder(void) {
-    build = getenv("BUILD") ? getenv("BUILD") : "build";
-    snprintf(folder, sizeof folder, "%.100s/tests/cli_XXXXXX", build);
-    ck_assert_ptr_nonnull(mkdtemp(folder));
-    snprintf(stdout_path, sizeof stdout_path, "%s/stdout", folder);
-    snprintf(stderr_path, sizeof stderr_path, "%s/stderr", folder);
-}
-
-/* The place of a file in the test's folder; four may be in use at once. */
-static const char *in_folder(const char *name) {
-    static char paths[4][300];
-    static int next;
-    next = (next + 1) % 4;
-    snprintf(paths[next], sizeof paths[next], "%s/%s", folder, name);
-    return paths[next];
-}
-
-/* Removes all files of the folder but those called stdout and stderr, or those too; returns how many were removed. */
-static int remove_files(int outputs_too) {
-    int count = 0;
-    DIR *list = opendir(folder);
-    ck_assert_ptr_nonnull(list);
-    for (struct dirent *entry; (entry = readdir(list));) {
-        const int output = strncmp(entry->d_name, "std", 3) == 0;
-        if (entry->d_name[0] == '.' || (output && !outputs_too)) continue;
-        char path[500];
-        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        ck_assert_int_eq(unlink(path), 0);
-        ++count;
-    }
-    closedir(list);
-    return count;
-}
-
-static void remove_folder(void) {
-    remove_files(1);
-    ck_assert_int_eq(rmdir(folder), 0);
-}
-
-static const char *write_file(const char *name, const char *text) {
-    const char *path = in_folder(name);
-    FILE *file = fopen(path, "w");
-    ck_assert_ptr_nonnull(file);
-    ck_assert_int_ge(fputs(text, file), 0);
-    ck_assert_int_eq(fclose(file), 0);
-    return path;
-}
-
-/* A whole file as a string on the heap. */
-static char *read_file(const char *path) {
-    struct stat there;
-    FILE *file = fopen(path, "r");
-    ck_assert_msg(file && stat(path, &there) == 0, "%s is not there", path);
-    char *text = calloc(1, (size_t)there.st_size + 1);
-    ck_assert_ptr_nonnull(text);
-    ck_assert_uint_eq(fread(text, 1, (size_t)there.st_size, file), (size_t)there.st_size);
-    fclose(file);
-    return text;
-}
-
-static void open_as(int number, const char *path, int flags) {
-    const int file = open(path, flags, 0666);
-    if (file < 0 || dup2(file, number) < 0) _exit(99);
-}
-
-static const char *input = "/dev/null", *output; /* of the program; output NULL: kept in `printed` */
-
-static pid_t start(const char *const *arguments) {
-    char program[300];
-    const char *argv[40] = {program};
-    snprintf(program, sizeof program, "%s/fibrad", build);
-    for (int k = 0; k < 38 && arguments[k]; ++k) argv[k + 1] = arguments[k];
-    const char *out = output ? output : stdout_path;
-    const pid_t process = fork();
-    if (process != 0) return process;
-    open_as(0, input, O_RDONLY);
-    open_as(1, out, O_WRONLY | O_CREAT | O_TRUNC);
-    open_as(2, stderr_path, O_WRONLY | O_CREAT | O_TRUNC);
-    execv(program, (char *const *)argv);
-    _exit(98);
-}
-
-static void keep(const char *path, char *text, size_t size) {
-    FILE *file = fopen(path, "r");
-    text[0] = 0;
-    if (!file) return;
-    text[fread(text, 1, size - 1, file)] = 0;
-    fclose(file);
-}
-
-/* The exit status, or 256 + the signal that killed the program. */
-static int finish(pid_t process) {
-    int end;
-    ck_assert_int_eq(waitpid(process, &end, 0), process);
-    keep(stdout_path, printed, sizeof printed);
-    keep(stderr_path, said, sizeof said);
-    return WIFEXITED(end) ? WEXITSTATUS(end) : 256 + WTERMSIG(end);
-}
-
-#define LIST(...) ((const char *const[]){__VA_ARGS__, NULL})
-#define RUN(...)  finish(start(LIST(__VA_ARGS__)))
-#define SUCCEED(...)                                                                                                   \
-    do {                                                                                                               \
-        const int status_ = RUN(__VA_ARGS__);                                                                          \
-        ck_assert_msg(status_ == 0, "exit status %d: %s", status_, said);                                              \
-    } while (0)
-
-/* The value of the last line `key value` with that key. */
-static double value_of(const char *key) {
-    double value = NAN;
-    int found = 0;
-    for (const char *line = printed; line && *line; line = strchr(line, '\n'), line += line != NULL)
-        if (strncmp(line, key, strlen(key)) == 0 && line[strlen(key)] == ' ') {
-            value = strtod(line + strlen(key), NULL);
-            found = 1;
-        }
-    ck_assert_msg(found, "no line '%s' in: %s", key, printed);
-    return value;
-}
-
-/* One line on standard error, beginning with `fibrad: ` and then the place, holding the reason. */
-static void expect_message(const char *place, const char *reason) {
-    char begin[400];
-    snprintf(begin, sizeof begin, "fibrad: %s", place);
-    ck_assert_msg(strncmp(said, begin, strlen(begin)) == 0, "'%s' does not begin with '%s'", said, begin);
-    ck_assert_msg(strstr(said, reason) != NULL, "'%s' does not give as reason '%s'", said, reason);
-    ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
-}
+#include "program.h"
 
 /* ---- usage ------------------------------------------------------------------------------------------------------ */
 
@@ -163,7 +12,7 @@ START_TEST(help_and_version) {
     ck_assert_int_eq(strncmp(printed, "fibrad ", 7), 0);
     SUCCEED("bed", "--help");
     static const char *const options[] = {"--method",  "--directions", "--areas",    "--points", "--cutoff",
-                                          "--targets", "--threads",    "--periodic", "--frame",  "--ids",
+                                          "--targets", "--threads",    "--periodic", "--frame",  "--positions",
                                           "--raw",     "--plot",       "-o",         "[233]",    "Example"};
     for (size_t k = 0; k < sizeof options / sizeof *options; ++k) ck_assert(strstr(printed, options[k]) != NULL);
     ck_assert(strstr(printed, "--nf") && strstr(printed, "--rays"));
@@ -180,7 +29,6 @@ static const struct {
     {{"bad"}, "unknown command bad; see fibrad --help"},
     {{"--bad"}, "unknown option --bad; see fibrad --help"},
     {{"bed"}, "which FILE"},
-    {{"bed", "a.csv", "b.csv"}, "one FILE only, not also 'b.csv'"},
     {{"bed", MONO, "--bad=3"}, "unknown option --bad; see fibrad bed --help"},
     {{"bed", MONO, "-x"}, "unknown option -x; see fibrad bed --help"},
     {{"pair", "1", "1", "0", "--raw"}, "unknown option --raw; see fibrad pair --help"},
@@ -190,9 +38,18 @@ static const struct {
     {{"bed", MONO, "--wall", "auto", "--method", "surface"}, "--wall is for the methods beam, cast and mc"},
     {{"bed", PERIODIC, "--wall", "box"}, "stands across a periodic axis"},
     {{"bed", MONO, "--raw=yes"}, "--raw takes no argument"},
-    {{"bed", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz and .vtp"},
+    {{"bed", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz, .vtp and .json"},
     {{"bed", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
-    {{"bed", MONO, "-o", "out.mtx", "--ids"}, "--ids is for -o OUT.csv only"},
+    {{"bed", MONO, "--frame", "2:1"}, "--frame: '2:1' is none of K, all, A:B, A:B:STEP, -1"},
+    {{"bed", MONO, "--frame", "-2"}, "--frame: '-2' is none of"},
+    {{"bed", MONO, "--frame", "0:9:0"}, "--frame: '0:9:0' is none of"},
+    {{"bed", MONO, "--frame=all", "--plot", "bed.svg"}, "--plot shows one frame"},
+    {{"bed", MONO, "--length-unit", "furlong"}, "--length-unit: 'furlong' is none of m, cm, mm"},
+    {{"bed", MONO, "--length-unit", "lj"}, "--length-unit: 'lj' is none of"},
+    {{"bed", MONO, "--radius", "0"}, "--radius: 0 is not within"},
+    {{"bed", MONO, "--radius", "1:2,1:3"}, "--radius: type 1 is named twice"},
+    {{"bed", MONO, "--radius", "1:2,x"}, "is no list such as 1:0.5,2:0.8"},
+    {{"bed", MONO, "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
     {{"bed", MONO, "--method", "surface", "--nf", "56"}, "--nf: 56 is not built in; 8, 13, 21"},
     {{"bed", MONO, "--nf", "55"}, "are for --method surface"},
     {{"bed", MONO, "--method", "magic"}, "'magic' is no method"},
@@ -202,25 +59,40 @@ static const struct {
     {{"bed", MONO, "--method=mc", "--seed", "-1"}, "--seed: '-1'"},
     {{"bed", MONO, "--method=cast", "--directions", "100"}, "are for --method beam"},
     {{"exchange", MONO}, "which --emissivity"},
-    {{"exchange", MONO, "--emissivity", "0"}, "'0' is neither a number above 0"},
+    {{"exchange", MONO, "--emissivity", "-1"}, "--emissivity: -1 is not within"},
+    {{"exchange", MONO, "--emissivity", "1:2"}, "--emissivity: 2 is not within"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=.5,.6"},
+     "name the walls, such as zmin=0.6"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmax=.5"}, "there is no wall zmax"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmin=1.5"}, "1.5 is not within"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmin"},
+     "neither NAME=NUMBER nor a number"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall-emissivity=.5"}, "--wall-emissivity: there are no walls"},
     {{"exchange", MONO, "--emissivity", "1.5"}, "--emissivity: 1.5 is not within 0 and 1"},
     {{"exchange", MONO, "--emissivity=.5", "--error=.1", "--rays=9"}, "leave out --rays"},
     {{"exchange", MONO, "--emissivity=.5", "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
-    {{"exchange", MONO, "--emissivity=.5", "-o", "D.vtp"}, "unknown ending; there are .csv, .mtx and .npz"},
+    {{"exchange", MONO, "--emissivity=.5", "-o", "D.dump"}, "unknown ending; there are .csv, .mtx, .npz"},
     {{"heat", "--emissivity=.5"}, "which FILE"},
     {{"heat", MONO, "--temperature", "v_T"}, "which --emissivity"},
     {{"heat", MONO, "--emissivity", ".5"}, "which --temperature"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature", "-3"}, "--temperature: -3 is not within"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature", "-3"}, "--temperature: -3 is below absolute zero"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--patches=100"}, "--patches: 100 is not built in"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--model=fine"}, "'fine' is neither patches nor spheres"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--error=.1", "--points=64"}, "leave out --directions"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall-temperature=3,4"}, "2 for 0 walls"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "-o", "q.mtx"}, "unknown ending; there are .csv and .vtp"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall-temperature=3,4"}, "there are no walls"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--temperature-unit=F"}, "'F' is neither K nor C"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=-1"}, "--ambient: -1 is not within"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9"}, "which --ambient? the bed is open"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=auto", "--wall-temperature=300,400"},
+     "one number for all others; name the walls, such as xmin=400"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=zmin"},
+     "--wall-temperature: none for zmin; give zmin=NUMBER"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "-o", "q.mtx"},
+     "unknown ending; there are .csv, .vtp, .json, .dump"},
     {{"conductivity", MONO}, "which --emissivity"},
     {{"conductivity", "--emissivity", ".5"}, "which FILE"},
     {{"join"}, "which FILEs"},
-    {{"join", MONO, "-o", "D.vtp"}, "unknown ending; there are .csv, .mtx and .npz"},
-    {{"join", MONO, "-o", "D.npz", "--ids"}, "--ids is for -o OUT.csv only"},
+    {{"join", MONO, "-o", "D.dump"}, "unknown ending; there are .csv, .mtx, .npz"},
     {{"bed", MONO, "--directions", "7"}, "'7' is not a whole number from 8 to 65536"},
     {{"bed", MONO, "--error", "0"}, "--error: 0 is not within 1e-07 and 1"},
     {{"bed", MONO, "--error", "1e-8"}, "--error: 1e-8 is not within 1e-07 and 1"},
@@ -239,7 +111,6 @@ static const struct {
     {{"bed", MONO, "--cutoff", "0"}, "--cutoff: 0 is not within"},
     {{"bed", MONO, "--cutoff", "nan"}, "--cutoff: 'nan' is not a number"},
     {{"bed", MONO, "--threads", "0"}, "--threads: '0'"},
-    {{"bed", MONO, "--frame", "-1"}, "--frame: '-1'"},
     {{"bed", MONO, "--periodic", "1,2"}, "three lengths LX,LY,LZ"},
     {{"bed", MONO, "--periodic", "1,2,-3"}, "three lengths LX,LY,LZ"},
     {{"bed", MONO, "--periodic", "1,2,3,4"}, "more than 3 numbers"},
@@ -249,8 +120,9 @@ static const struct {
     {{"bed", MONO, "--targets", "5-3"}, "is no list such as"},
     {{"bed", MONO, "--targets", "3-"}, "is no list such as"},
     {{"bed", MONO, "--targets", "99999999999999999999"}, "is no list such as"},
-    {{"bed", MONO, "--targets", "0-2000"}, "there is no sphere 2000; the last is 1999"},
-    {{"bed", MONO, "--targets", "5000000000"}, "there is no sphere 5000000000"},
+    {{"bed", MONO, "--targets", "0"}, "there is no sphere 0; they are 1 to 2000"},
+    {{"bed", MONO, "--targets", "1-2000", "--targets=7,5000000000"}, "there is no sphere 5000000000"},
+    {{"bed", MONO, "--positions", "--targets", "0-2000"}, "there is no sphere 2000; they are 0 to 1999"},
     {{"pair", "1", "1"}, "R1, R2 and GAP are needed"},
     {{"pair", "1", "1", "0", "0"}, "three lengths only, not also '0'"},
     {{"pair", "1", "-1", "0"}, "R2: -1 is not within"},
@@ -352,7 +224,7 @@ END_TEST
 START_TEST(surface_method) {
     SUCCEED("bed", POLY, "--method", "surface", "--cutoff", "3");
     ck_assert_double_eq(value_of("nf"), 55);
-    const double sum = value_of("row_sum_max"), error = value_of("error_estimate");
+    const double sum = value_of("row_sum_max"), error = value_of("error_max");
     SUCCEED("bed", POLY, "--cutoff", "3");
     ck_assert_double_eq_tol(value_of("row_sum_max"), sum, 3 * error);
 }
@@ -360,25 +232,25 @@ END_TEST
 
 START_TEST(tolerance) {
     SUCCEED("bed", POLY, "--error", "0.01");
-    ck_assert_double_le(value_of("error_estimate"), .01);
-    ck_assert_double_gt(value_of("error_estimate"), .002);
+    ck_assert_double_le(value_of("error_max"), .01);
+    ck_assert_double_gt(value_of("error_max"), .002);
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
     const double all = value_of("directions");
     SUCCEED("bed", POLY, "--error", "0.001", "--targets", "3,7,1000-1009");
-    ck_assert_double_le(value_of("error_estimate"), .001);
+    ck_assert_double_le(value_of("error_max"), .001);
     ck_assert_double_gt(value_of("directions"), all);
     SUCCEED("bed", POLY, "--error", "1e-7", "--targets", "3", "--cutoff", "1.1", "--points", "64");
     ck_assert_double_eq(value_of("directions"), 65536);
-    ck_assert_double_gt(value_of("error_estimate"), 1e-7);
+    ck_assert_double_gt(value_of("error_max"), 1e-7);
     ck_assert(strstr(said, "65536 directions were not enough for --error 1e-07") != NULL);
 }
 END_TEST
 
 START_TEST(summary) {
     SUCCEED("bed", POLY, "--directions", "34");
-    static const char *const keys[] = {"spheres",     "nonzeros",        "directions",     "threads",
-                                       "seconds",     "row_sum_min",     "row_sum_max",    "escaped_mean",
-                                       "closure_max", "reciprocity_max", "error_estimate", "fallbacks"};
+    static const char *const keys[] = {"spheres",     "directions",      "threads",     "seconds",
+                                       "nonzeros",    "row_sum_min",     "row_sum_max", "escaped_mean",
+                                       "closure_max", "reciprocity_max", "error_max",   "fallbacks"};
     const char *at = printed;
     for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k) {
         ck_assert_msg((at = strstr(at, keys[k])) != NULL, "%s is missing or out of order", keys[k]);
@@ -389,7 +261,8 @@ START_TEST(summary) {
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
-    expect_message(POLY ": ", "largest overlap");
+    ck_assert_double_gt(value_of("overlap_max"), 0);
+    ck_assert_str_eq(said, "");
 }
 END_TEST
 
@@ -419,7 +292,8 @@ START_TEST(walls) {
     char *first = NULL;
     for (int k = 0; k < 2; ++k) {
         const char *out = in_folder("F.csv");
-        SUCCEED("bed", MONO, "--directions", "50", "--wall", "auto", "--threads", k == 0 ? "1" : "3", "-o", out);
+        SUCCEED("bed", MONO, "--positions", "--directions", "50", "--wall", "auto", "--threads", k == 0 ? "1" : "3",
+                "-o", out, "--json", in_folder("F.json"));
         char *text = read_file(out);
         if (k == 1) ck_assert_str_eq(text, first);
         free(first);
@@ -428,7 +302,7 @@ START_TEST(walls) {
     ck_assert(value_of("escaped_mean") == 0);
     ck_assert_double_lt(value_of("closure_max"), 1e-13);
     int back = 0;
-    for (char *line = strchr(first, '\n') + 1; *line; ++line) {
+    for (char *line = strchr(first, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
         const long i = strtol(line, &line, 10), j = strtol(line + 1, &line, 10);
         const double f = strtod(line + 1, &line);
         ck_assert(i < SPHERES && j < SPHERES && i >= -1 - WALLS && j >= -1 - WALLS && f > 0);
@@ -446,13 +320,13 @@ START_TEST(walls) {
         ck_assert_double_eq_tol(sum[i], 1, 1e-13);
         mean += to[i][4] / SPHERES;
     }
-    ck_assert_double_eq_tol(value_of("wall_zmin"), mean, 1e-13);
+    ck_assert_double_eq_tol(json_of(in_folder("F.json"), "wall_zmin_F"), mean, 1e-13);
     free(first);
     SUCCEED("bed", PERIODIC, "--directions", "50", "--wall", "auto"); /* deep beds see all of a wall that has no end */
-    ck_assert_double_eq_tol(value_of("wall_zmin") * SPHERES * acos(-1), 12 * 12, .02);
-    ck_assert_double_eq_tol(value_of("wall_zmax") * SPHERES * acos(-1), 12 * 12, .02);
+    ck_assert_double_eq_tol(value_of("wall_zmin_F") * SPHERES * acos(-1), 12 * 12, .02);
+    ck_assert_double_eq_tol(value_of("wall_zmax_F") * SPHERES * acos(-1), 12 * 12, .02);
     SUCCEED("bed", MONO, "--directions", "13", "--wall", "cylinder:6,6,9,zmin", "--targets", "0-9");
-    ck_assert_double_gt(value_of("wall_cylinder"), 0);
+    ck_assert_double_gt(value_of("wall_cylinder_F"), 0);
     ck_assert_int_eq(RUN("bed", MONO, "--wall", "zmin=2"), 3);
     expect_message(MONO ":", "lies beyond the wall zmin");
 }
@@ -483,10 +357,10 @@ END_TEST
 
 START_TEST(targets_and_formats) {
     const char *all = in_folder("all.csv"), *some = in_folder("some.csv"), *matrix = in_folder("all.mtx");
-    SUCCEED("bed", PERIODIC, "--directions", "21", "--raw", "-o", all);
+    SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", all);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
-    SUCCEED("bed", PERIODIC, "--directions", "21", "--raw", "-o", matrix);
-    SUCCEED("bed", PERIODIC, "--directions", "21", "--targets", "1999,0,7-9,8", "-o", some);
+    SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", matrix);
+    SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--targets", "1999,0,7-9,8", "-o", some);
     ck_assert(isnan(value_of("reciprocity_max")));
     char *all_text = read_file(all), *some_text = read_file(some), *matrix_text = read_file(matrix);
     char *row = strchr(some_text, '\n') + 1, *entry = matrix_text;
@@ -516,8 +390,8 @@ END_TEST
 
 /* Two spheres seen through periodic faces, in the open, from a CSV file and from standard input. */
 START_TEST(frames_periods_and_ids) {
-    const char *dump = write_file("two.dump", FRAME("0", "ff ff ff", "1 1 4 4 70\n1 7 4 4 -5\n")
-                                                  FRAME("1", "pp ff ff", "1 1 4 4 70\n1 7 4 4 -5\n"));
+    const char *dump = write_file("two.dump", FRAME("0", "ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n")
+                                                  FRAME("1", "pp ff ff", "1 1 4 4 70\n1 7 4 4 5\n"));
     SUCCEED("bed", dump, "--frame", "0");
     ck_assert_double_eq_tol(value_of("row_sum_min"), 0.00704, 1e-3);
     ck_assert_double_eq(value_of("nonzeros"), 2);
@@ -526,10 +400,10 @@ START_TEST(frames_periods_and_ids) {
     ck_assert_double_eq_tol(across, 0.0755868 + 0.0070444, 1e-3); /* across the face, and within the box */
     SUCCEED("bed", dump, "--frame", "0", "--periodic", "8,0,0");
     ck_assert_double_eq(value_of("row_sum_min"), across);
-    SUCCEED("bed", dump, "--periodic", "none", "--targets", "0", "--ids", "-o", in_folder("ids.csv"));
+    SUCCEED("bed", dump, "--periodic", "none", "--targets", "70", "-o", in_folder("ids.csv"));
     ck_assert_double_lt(value_of("row_sum_min"), 0.01);
     char *text = read_file(in_folder("ids.csv"));
-    ck_assert_int_eq(strncmp(text, "i,j,F\n70,-5,", 12), 0);
+    ck_assert_int_eq(strncmp(text, "i,j,F\n70,5,", 11), 0);
     free(text);
     input = dump;
     SUCCEED("bed", "-");
@@ -538,12 +412,12 @@ START_TEST(frames_periods_and_ids) {
 }
 END_TEST
 
-/* The lines i,T,q of a file: how many, their sum and the largest q, and one of them. */
+/* The lines i,T_K,q_W of a file: how many, their sum and the largest q, and one of them. */
 static int read_powers(const char *path, double *sum, double *largest, long wanted, double *temperature,
                        double *power) {
     char *text = read_file(path), *line = strchr(text, '\n');
     int count = 0;
-    ck_assert_int_eq(strncmp(text, "i,T,q\n", 6), 0);
+    ck_assert_int_eq(strncmp(text, "i,T_K,q_W,body\n", 15), 0);
     for (*sum = *largest = 0; line && line[1]; line = strchr(line + 1, '\n'), count++) {
         long i;
         double t, q;
@@ -565,40 +439,51 @@ START_TEST(powers) {
     ck_assert_double_eq(t, 600);
     ck_assert_double_lt(q, 0);
     ck_assert_double_le(fabs(sum), 1e-12 * largest);
-    ck_assert_double_le(fabs(value_of("balance")), 1e-12);
+    ck_assert_double_le(fabs(value_of("balance_of_emission")), 1e-12);
     ck_assert_double_eq(value_of("spheres"), 3);
 
     /* walls are -2, -3 in the order given; the bytes are the same for any threads */
-    SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--wall", "zmax=3,zmin=-1,cylinder:0,0,5",
-            "--wall-temperature", "700,400", "--wall-emissivity", ".5,1", "--threads", "1", "-o", out);
-    char *one = read_file(out);
-    ck_assert_int_eq(read_powers(out, &sum, &largest, -2, &t, &q), 7);
+    char *text[2];
+    for (int k = 0; k < 2; ++k) {
+        SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--wall", "zmax=3,zmin=-1,cylinder:0,0,5",
+                "--wall-temperature", "zmin=400,zmax=700,500", "--wall-emissivity", "zmax=.5", "--threads",
+                k == 0 ? "1" : "3", "-o", out, "--json", in_folder("q.json"));
+        text[k] = read_file(out);
+    }
+    ck_assert_str_eq(text[0], text[1]);
+    ck_assert_ptr_null(strstr(text[0], "surroundings")); /* closed: nothing gets there */
+    ck_assert_ptr_nonnull(strstr(text[0], ",cylinder\n"));
+    ck_assert_int_eq(read_powers(out, &sum, &largest, -2, &t, &q), 6);
     ck_assert_double_eq(t, 700);
-    ck_assert_double_eq(q, value_of("wall_zmax"));
+    ck_assert_double_eq(q, json_of(in_folder("q.json"), "wall_zmax_W"));
     ck_assert_double_le(fabs(sum), 1e-12 * largest);
-    ck_assert_double_eq(value_of("surroundings"), 0);
-    SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "T", "--wall", "zmax=3,zmin=-1,cylinder:0,0,5",
-            "--wall-temperature", "700,400", "--wall-emissivity", ".5,1", "--threads", "3", "-o", out);
-    char *three = read_file(out);
-    ck_assert_str_eq(one, three);
-    free(one), free(three);
+    read_powers(out, &sum, &largest, -4, &t, &q);
+    ck_assert_double_eq(t, 500);
+    free(text[0]), free(text[1]);
 
-    /* all at one temperature */
+    /* all at one temperature: figures are relative to what is emitted */
     SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box", "--wall-temperature", "500",
             "--wall-emissivity", ".2", "-o", out);
     read_powers(out, &sum, &largest, 0, &t, &q);
     ck_assert_double_le(largest, 1e-10 * 5.67e-8 * 500. * 500. * 500. * 500.);
+    ck_assert_double_le(fabs(value_of("balance_of_emission")), 1e-12);
+    ck_assert_double_le(value_of("error_of_emission"), 1e-9);
+    ck_assert_double_eq_tol(value_of("emitted_W"), .3 * 5.670374419e-8 * pow(500, 4) * 4 * acos(-1) * 2.49, 1);
+    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "500", "--wall", "box", "--wall-temperature", "500",
+            "--error", ".01", "--length-unit", "m"); /* which powers of nothing but noise do reach */
+    ck_assert_str_eq(said, "");
 
-    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--error", "0.01", "-o", in_folder("q.vtp"));
-    ck_assert_double_le(value_of("error_estimate"), .01);
+    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--ambient", "0", "--error", "0.01", "-o",
+            in_folder("q.vtp"));
+    ck_assert_double_le(value_of("error_rms_W") / value_of("power_rms_W"), .01);
     char *vtp = read_file(in_folder("q.vtp"));
-    ck_assert(strstr(vtp, "Name=\"power\"") && strstr(vtp, "Name=\"temperature\"") && strstr(vtp, "</VTKFile>"));
+    ck_assert(strstr(vtp, "Name=\"power_W\"") && strstr(vtp, "Name=\"temperature_K\"") && strstr(vtp, "</VTKFile>"));
     free(vtp);
-    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--model", "spheres");
-    ck_assert_int_eq(RUN("heat", file, "--emissivity", "eps", "--temperature", "missing"), 3);
+    SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--ambient", "0", "--model", "spheres");
+    ck_assert_int_eq(RUN("heat", file, "--emissivity", "eps", "--temperature", "missing", "--ambient", "0"), 3);
     const char *cold = write_file("cold.csv", "x,y,z,r,T\n0,0,0,1,-1\n");
-    ck_assert_int_eq(RUN("heat", cold, "--emissivity", "1", "--temperature", "T"), 3);
-    expect_message(cold, "the temperature is -1 K");
+    ck_assert_int_eq(RUN("heat", cold, "--emissivity", "1", "--temperature", "T", "--ambient", "0"), 3);
+    expect_message(cold, "the temperature in kelvins is -1; it must be within 0 and 1e+09");
 }
 END_TEST
 
@@ -616,15 +501,15 @@ START_TEST(exchange_factors) {
     }
     const char *file = write_file("bed.csv", bed), *out = in_folder("D.csv"), *other = in_folder("E.csv");
     SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
-            "0.5,0", "--threads", "1", "-o", out);
+            "zmin=0.5,zmax=0", "--threads", "1", "-o", out);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-12);
-    ck_assert_double_lt(value_of("error_estimate"), .1);
+    ck_assert_double_lt(value_of("error_max"), .1);
     SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
-            "0.5,0", "--threads", "3", "-o", other);
+            "zmin=0.5,zmax=0", "--threads", "3", "-o", other);
     char *text = read_file(out), *again = read_file(other);
     ck_assert_str_eq(text, again);
-    ck_assert_int_eq(strncmp(text, "i,j,D\n", 6), 0);
+    ck_assert_int_eq(strncmp(text, "i,j,D,body\n", 11), 0);
     for (char *line = strchr(text, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
         int i, j;
         double factor;
@@ -641,10 +526,10 @@ START_TEST(exchange_factors) {
     free(text);
     free(again);
     SUCCEED("exchange", file, "--emissivity", "0.6", "--error", "0.02", "--drop", "0.001", "--threads", "2");
-    ck_assert_double_lt(value_of("error_estimate"), .04);
+    ck_assert_double_lt(value_of("error_max"), .04);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
     ck_assert_int_eq(RUN("exchange", file, "--emissivity", "x"), 3);
-    expect_message(file, "the emissivity x is 0; it must be above 0, up to 1");
+    expect_message(file, "the emissivity is 2; it must be within 0 and 1");
     ck_assert_int_eq(RUN("exchange", file, "--emissivity", "missing"), 3);
     ck_assert_int_eq(RUN("exchange", file, "--emissivity", "e", "--wall-emissivity", "0.5"), 2);
     remove_files(0);
@@ -738,8 +623,8 @@ static const struct {
     {"x,y,z,r\n0,0,0,1\n5,0,0,1\n\n0,0,0,1\n", ":5: ", "sphere 2 has the same centre as sphere 0 of line 2"},
     {"x,y,z,r\n0,0,0,1\n5,0,0,1\n4.5,0,0,2\n", ":4: ", "the centre of one lies inside the other"},
     {"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n9\nITEM: ATOMS x y z radius\n0 0 0 1\n", ":6: ", "9 were declared"},
-    {FRAME("0", "xy xz yz ff ff ff", "1 1 4 4 70\n1 7 4 4 -5\n"), ":5: ", "triclinic"},
-    {FRAME("0", "ff pp ff", "1 4 0 4 70\n1 4 8 4 -5\n"), ":11: ", "line 10"}, /* the same place in the box */
+    {FRAME("0", "xy xz yz ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n"), ":6: ", "bounds"},
+    {FRAME("0", "ff pp ff", "1 4 0 4 70\n1 4 8 4 5\n"), ":11: ", "line 10"}, /* the same place in the box */
 };
 
 START_TEST(bad_input) {
@@ -844,27 +729,39 @@ START_TEST(joined) {
     const char *zero = write_words(rank_names[0], rank_rows[0], 8 * rank_words[0]);
     const char *one = write_words(rank_names[1], rank_rows[1], 8 * rank_words[1]);
     const char *csv = in_folder("D.csv"), *mtx = in_folder("D.mtx");
-    SUCCEED("join", one, zero, "--raw", "-o", csv);
+    const char *json = in_folder("D.json");
+    SUCCEED("join", one, zero, "--raw", "--positions", "-o", csv, "--json", json);
     ck_assert_double_eq(value_of("spheres"), 3);
     ck_assert_double_eq(value_of("nonzeros"), 4);
-    ck_assert_double_eq_tol(value_of("beyond_mean"), .0625 / 3, 1e-16);
-    ck_assert_double_eq_tol(value_of("wall_1_mean"), 1.75 / 3, 1e-15);
+    ck_assert_double_eq_tol(json_of(json, "beyond_mean"), .0625 / 3, 1e-16);
+    ck_assert_double_eq_tol(json_of(json, "wall_1_F"), 1.75 / 3, 1e-15);
     ck_assert_double_eq(value_of("closure_max"), 0);
-    ck_assert_double_eq_tol(value_of("reciprocity_max"), (.75 * .375 - .5 * .25) / .75, 1e-15);
+    ck_assert_double_eq_tol(json_of(json, "reciprocity_max"), (.75 * .375 - .5 * .25) / .75, 1e-15);
     char *text = read_file(csv);
-    ck_assert_str_eq(text, "i,j,D\n0,1,0.25\n0,2,0.125\n0,-1,0.125\n0,-2,0.5\n1,0,0.375\n1,-1,0.125\n1,-2,0.5\n"
-                           "2,0,0.0625\n2,-1,0.125\n2,-2,0.75\n2,-3,0.0625\n");
+    ck_assert_str_eq(text, "i,j,D,body\n0,1,0.25,\n0,2,0.125,\n0,-1,0.125,surroundings\n0,-2,0.5,wall_1\n1,0,0.375,\n"
+                           "1,-1,0.125,surroundings\n1,-2,0.5,wall_1\n2,0,0.0625,\n2,-1,0.125,surroundings\n"
+                           "2,-2,0.75,wall_1\n2,-3,0.0625,beyond\n");
     free(text);
-    SUCCEED("join", zero, one, "--raw", "--ids", "-o", csv);
+    SUCCEED("join", zero, one, "--raw", "-o", csv);
     text = read_file(csv);
-    ck_assert_ptr_nonnull(strstr(text, "\n10,1099511627781,0.125\n10,-1,0.125\n"));
+    ck_assert_ptr_nonnull(strstr(text, "\n10,1099511627781,0.125,\n10,-1,0.125,surroundings\n"));
     free(text);
     SUCCEED("join", zero, one, "-o", mtx);
     ck_assert_double_lt(value_of("closure_max"), 1e-14);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
     text = read_file(mtx);
-    ck_assert_ptr_nonnull(strstr(text, "\n3 3 4\n1 2 "));
+    ck_assert_ptr_nonnull(strstr(text, "\n% ids: 10 30 1099511627781\n3 3 4\n1 2 "));
     free(text);
+    SUCCEED("join", zero, one, "--raw", "-o", in_folder("D.vtp"), "-o", "-", "--format", "csv");
+    text = read_file(csv);
+    ck_assert_str_eq(printed, text);
+    ck_assert_ptr_nonnull(strstr(said, "spheres 3\n"));
+    free(text);
+    text = read_file(in_folder("D.vtp"));
+    ck_assert(strstr(text, "Name=\"wall_1\"") && strstr(text, "Name=\"id\""));
+    free(text);
+    SUCCEED("join", zero, one, "--quiet");
+    ck_assert_str_eq(printed, "");
     ck_assert_int_eq(RUN("join", one, "-o", one), 2);
     expect_message(one, "unknown ending");
     ck_assert_int_eq(RUN("join", zero, csv, "-o", csv), 2);

@@ -122,7 +122,7 @@ END_TEST
 /* Paths by other means: absorbed as a whole where a random number says so, ray by ray in the bed itself. */
 static void plain(const struct bed *bed, const double *e, uint32_t i, uint32_t paths, double *d) {
     fibrad_scene *scene = scene_of(bed, FIBRAD_ISA_SCALAR);
-    fibrad_random random = fibrad_random_start(99, i);
+    fibrad_random random = fibrad_random_start(1, i);
     for (uint32_t k = 0; k < paths; k++) {
         double o[3] = {bed->x[i], bed->y[i], bed->z[i]}, n[3], w[3], cosine, sine;
         double z = 1 - 2 * fibrad_random_next(&random), ring = sqrt(1 - z * z), radius = bed->r[i];
@@ -155,17 +155,19 @@ static void plain(const struct bed *bed, const double *e, uint32_t i, uint32_t p
     free(scene);
 }
 
-/* Unequal spheres of unequal emissivities against plain paths: entry by entry within the noise of these. */
+/* Unequal spheres of unequal emissivities, some of them 0, against plain paths: entry by entry within the noise of
+ * these. */
 START_TEST(against_plain_paths) {
     enum { PATHS = 200000 };
-    struct bed bed = packing(60, .4, 1, .45, 8, _i == 0);
+    struct bed bed = packing(60, .4, 1, .45, 8, _i % 2 == 0);
     double *e = calloc(bed.n, sizeof *e), *d = calloc(bed.n, sizeof *d);
-    for (uint32_t i = 0; i < bed.n; i++) e[i] = .1 + .85 * bed_make_random(4, i);
+    for (uint32_t i = 0; i < bed.n; i++) e[i] = _i / 2 && i % 3 == 0 ? 0 : .1 + .85 * bed_make_random(4, i);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_row row =
         exchange_in(scene, bed.n, 5, &(fibrad_exchange_rule){.emissivity = e, .directions = 2000, .paths = PATHS});
     plain(&bed, e, 5, PATHS, d);
     double square = 0, noise = 0;
+    for (uint32_t k = 0; k < row.length; k++) ck_assert(e[row.col[k]] > 0 && row.f[k] > 0);
     for (uint32_t j = 0; j < bed.n; j++) {
         double sigma = sqrt(d[j] / PATHS + 1e-9);
         ck_assert_double_lt(fabs(row_factor(&row, j) - d[j]), 5 * sigma);
@@ -178,6 +180,86 @@ START_TEST(against_plain_paths) {
     free(scene);
     free(e);
     free(d);
+    bed_free(&bed);
+}
+END_TEST
+
+static void assert_empty(const fibrad_row *row, uint32_t bodies) {
+    ck_assert(row->length == 0 && row->escaped == 0 && row->beyond == 0 && row->error == 0);
+    for (uint32_t b = 0; b < bodies; b++) ck_assert_double_eq(row->body[b], 0);
+}
+
+/* The row and the displacement of a sphere of emissivity 0 are empty, and no other row has a factor to it; the other
+ * rows are those of emissivity 1e-6, but for what that absorbs. */
+START_TEST(reflectors_have_empty_rows) {
+    struct bed bed = packing(80, .5, 1, .5, 6, false);
+    const fibrad_body walls[] = {plane_at(0, 0, bed.x[0] - 50), plane_at(0, 1, bed.x[0] + 50)};
+    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
+    double *e = calloc(bed.n, sizeof *e), *nearly = calloc(bed.n, sizeof *e);
+    for (uint32_t i = 0; i < bed.n; i++) {
+        e[i] = i % 4 == 0 ? 0 : .2 + .8 * bed_make_random(1, i);
+        nearly[i] = i % 4 == 0 ? 1e-6 : e[i];
+    }
+    fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = (double[]){.5, 0}};
+    fibrad_rows rows = {.memory = memory_growing()};
+    fibrad_work work = work_growing();
+    for (uint32_t i = 0; i < bed.n; i++) {
+        uint64_t rays = 77;
+        fibrad_row row = row_of(bed.n), same = row_of(bed.n), kept = {.rows = &rows};
+        fibrad_displacement d, of_nearly;
+        row.body[0] = row.body[1] = row.error = row.escaped = 7; /* to be written over */
+        rule.emissivity = e;
+        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &row, &rays), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &kept, NULL), FIBRAD_OK);
+        ck_assert(same_bits_with(&row, &kept, 2));
+        ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, i, &rule, &d), FIBRAD_OK);
+        rule.emissivity = nearly;
+        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &same, NULL), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, i, &rule, &of_nearly), FIBRAD_OK);
+        for (uint32_t k = 0; k < row.length; k++) ck_assert(row.f[k] > 0 && row.col[k] % 4 != 0);
+        if (i % 4 == 0) {
+            assert_empty(&row, 2);
+            ck_assert(rays == 0 && d.absorbed == 0 && d.rays == 0);
+            for (int axis = 0; axis < 3; axis++) ck_assert(d.square[axis] == 0 && d.error[axis] == 0);
+        } else {
+            ck_assert_double_eq_tol(whole(&row), 1, 1e-12);
+            ck_assert_double_eq(row.body[1], 0);
+            ck_assert_double_lt(row_distance(&row, &same), 1e-4);
+            ck_assert_double_eq_tol(d.absorbed, of_nearly.absorbed, 1e-4);
+        }
+        row_free(&row), row_free(&same);
+    }
+    ck_assert_uint_eq(rows.count, bed.n);
+    rule.emissivity = memset(e, 0, bed.n * sizeof *e); /* all of them */
+    for (uint32_t i = 0; i < bed.n; i += 7) {
+        fibrad_row row = row_of(bed.n);
+        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &row, NULL), FIBRAD_OK);
+        assert_empty(&row, 2);
+        row_free(&row);
+    }
+    rows_free(&rows), work_free(&work);
+    free(e), free(nearly), free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* In a closed bed where all others reflect, a sphere gets back all that it emits, two share it. */
+START_TEST(all_light_comes_back) {
+    struct bed bed = packing(40, .5, 1, .5, 6, true);
+    double *e = calloc(bed.n, sizeof *e);
+    e[11] = .7;
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    const fibrad_exchange_rule rule = {.emissivity = e};
+    fibrad_row row = exchange_in(scene, bed.n, 11, &rule);
+    ck_assert_uint_eq(row.length, 1);
+    ck_assert_double_eq_tol(row_factor(&row, 11), 1, 1e-12);
+    row_free(&row);
+    e[30] = .2;
+    row = exchange_in(scene, bed.n, 11, &rule);
+    ck_assert_uint_eq(row.length, 2);
+    ck_assert_double_eq_tol(row_factor(&row, 11) + row_factor(&row, 30), 1, 1e-12);
+    row_free(&row);
+    free(e), free(scene);
     bed_free(&bed);
 }
 END_TEST
@@ -359,7 +441,7 @@ START_TEST(rows_keep_the_books) {
     }
     fibrad_matrix *none = NULL;
     unsigned char memory[1];
-    static const double bad[] = {0, -1, 1.1, NAN};
+    static const double bad[] = {0, -1, 1.1, NAN}; /* 0: row and column 3 are not empty */
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         const double good = e[3];
         e[3] = bad[k];
@@ -423,7 +505,7 @@ START_TEST(bad_arguments) {
     fibrad_scene *walled = scene_with(&bed, &(fibrad_scene_config){.body = &wall, .bodies = 1});
     fibrad_work work = work_growing();
     fibrad_row row = row_of(2), none = {0}, bare = {.col = row.col, .f = row.f, .capacity = 2};
-    const double good[2] = {.5, .5}, bad[][2] = {{0, 1}, {1.1, 1}, {NAN, 1}, {-.1, 1}};
+    const double good[2] = {.5, .5}, bad[][2] = {{1.1, 1}, {NAN, 1}, {-.1, 1}};
     const double bad_wall[] = {1.5, -.1, NAN, INFINITY};
     const fibrad_exchange_rule fine = {.emissivity = good};
     fibrad_exchange_rule rule = fine;
@@ -495,7 +577,9 @@ int main(void) {
     tcase_add_test(cases, one_and_two_spheres);
     tcase_add_test(cases, hardly_seen);
     tcase_add_test(cases, sphere_in_a_grey_box);
-    tcase_add_loop_test(cases, against_plain_paths, 0, 2);
+    tcase_add_loop_test(cases, against_plain_paths, 0, 4);
+    tcase_add_test(cases, reflectors_have_empty_rows);
+    tcase_add_test(cases, all_light_comes_back);
     tcase_add_test(cases, error_and_its_estimate);
     tcase_add_test(cases, same_bits_always);
     tcase_add_test(cases, conductivity_of_lattices);

@@ -296,6 +296,74 @@ START_TEST(exchange_by_hand) {
 }
 END_TEST
 
+/* Spheres of emissivity 0 between two others: their rows stay empty, the others are to the bit what they are without
+ * them; also where little entries are dropped, and as raw rows. */
+START_TEST(empty_rows_stay_empty) {
+    const double r[] = {1, 2}, emissivity[] = {.9, .3}, f[] = {.2, .5, .2, .25};
+    const double r_all[] = {5, 1, .3, 2}, emissivity_all[] = {0, .9, 0, .3};
+    for (int raw = 0; raw <= 1; raw++)
+        for (int drop = 0; drop <= 1; drop++) {
+            fibrad_matrix_rule rule = {.emissivity = emissivity, .raw = raw, .drop = drop * .22};
+            struct matrix two = matrix_by_hand(2, r, (uint64_t[]){0, 2, 4}, (uint32_t[]){0, 1, 0, 1}, f, &rule);
+            rule.emissivity = emissivity_all;
+            struct matrix four =
+                matrix_by_hand(4, r_all, (uint64_t[]){0, 0, 2, 2, 4}, (uint32_t[]){1, 3, 1, 3}, f, &rule);
+            ck_assert_uint_eq(two.factors.start[2], four.factors.start[4]);
+            ck_assert_mem_eq(two.factors.f, four.factors.f, two.factors.start[2] * sizeof(double));
+            ck_assert_double_eq(reciprocity(&two), reciprocity(&four));
+            for (uint32_t i = 0; i < 4; i++) {
+                const bool emits = i % 2 == 1;
+                ck_assert_double_eq(four.factors.escaped[i], emits ? two.factors.escaped[i / 2] : 0);
+                ck_assert_double_eq(four.factors.error[i], emits ? two.factors.error[i / 2] : 0);
+                if (!raw) ck_assert_double_eq_tol(matrix_total(&four.factors, i), emits, 1e-13);
+                if (!emits) ck_assert_double_eq(matrix_total(&four.factors, i), 0);
+            }
+            matrix_free(&two), matrix_free(&four);
+        }
+}
+END_TEST
+
+/* All reflect: a matrix of empty rows. */
+START_TEST(all_rows_empty) {
+    const double r[] = {1, 2}, emissivity[] = {0, 0};
+    struct matrix m = matrix_by_hand(2, r, (uint64_t[]){0, 0, 0}, (uint32_t[]){0}, (double[]){0},
+                                     &(fibrad_matrix_rule){.emissivity = emissivity, .drop = .1});
+    for (uint32_t i = 0; i < 2; i++) ck_assert_double_eq(matrix_total(&m.factors, i) + m.factors.error[i], 0);
+    ck_assert(m.factors.start[2] == 0 && reciprocity(&m) == 0);
+    matrix_free(&m);
+}
+END_TEST
+
+/* Rows of a walled bed with reflectors, made reciprocal and closed. */
+START_TEST(reflectors_in_a_walled_bed) {
+    struct bed bed = packing(120, .5, 1.5, .45, 3, false);
+    const fibrad_body floor_plane = plane_at(2, 0, -100);
+    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor_plane, .bodies = 1});
+    double *emissivity = calloc(bed.n, sizeof *emissivity);
+    for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = i % 3 == 1 ? 0 : .2 + .8 * bed_make_random(5, i);
+    fibrad_rows rows = {.memory = memory_growing()};
+    fibrad_work work = work_growing();
+    const fibrad_exchange_rule rule = {.emissivity = emissivity, .body_emissivity = (double[]){.4}};
+    for (uint32_t i = 0; i < bed.n; i++)
+        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
+    for (int drop = 0; drop <= 1; drop++) {
+        struct matrix m = matrix_of(scene, &rows, 1,
+                                    &(fibrad_matrix_rule){.emissivity = emissivity, .drop = drop * 1e-3, .tasks = 3});
+        ck_assert_double_le(reciprocity(&m), 1e-14);
+        ascending(&m.factors);
+        for (uint32_t i = 0; i < bed.n; i++) {
+            const double expected = i % 3 == 1 ? 0 : 1;
+            ck_assert_double_le(fabs(matrix_total(&m.factors, i) - expected), 1e-13 * expected);
+            ck_assert_double_eq(matrix_factor(&m.factors, i, 1), 0);
+        }
+        matrix_free(&m);
+    }
+    free(emissivity), free(scene);
+    rows_free(&rows), work_free(&work);
+    bed_free(&bed);
+}
+END_TEST
+
 /* ---- dropping --------------------------------------------------------------------------------------------------- */
 
 START_TEST(dropping_keeps_the_books) {
@@ -917,6 +985,9 @@ int main(void) {
     tcase_add_test(tcase, limiting_keeps_reciprocity);
     tcase_add_test(tcase, exchange_factors_are_balanced);
     tcase_add_test(tcase, exchange_by_hand);
+    tcase_add_test(tcase, empty_rows_stay_empty);
+    tcase_add_test(tcase, all_rows_empty);
+    tcase_add_test(tcase, reflectors_in_a_walled_bed);
     tcase_add_test(tcase, dropping_keeps_the_books);
     tcase_add_test(tcase, dropping_at_the_threshold);
     tcase_add_test(tcase, dropping_where_no_scaling_exists);

@@ -139,6 +139,34 @@ START_TEST(exchange_does_not_depend_on_threads) {
 }
 END_TEST
 
+/* Spheres that reflect all have empty rows, which are no fault of closure; a bed of nothing else is empty. */
+START_TEST(reflectors_have_empty_rows) {
+    struct bed bed = packing(150, .8, 1.2, .5, 3, true);
+    const fibrad_scene_config config = box_of(&bed);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    double emissivity[150];
+    fibrad_displacement moved[150];
+    const fibrad_exchange_rule rule = {.emissivity = emissivity, .directions = 20, .paths = 50};
+    for (int all = 0; all <= 1; all++)
+        for (int raw = 0; raw <= 1; raw++) {
+            fibrad_bed_factors *factors;
+            for (int i = 0; i < 150; i++) emissivity[i] = all || i % 5 == 0 ? 0 : .3;
+            ck_assert_int_eq(
+                fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.raw = raw}, NULL, &factors),
+                FIBRAD_OK);
+            ck_assert_double_le(factors->closure_error, 1e-12);
+            if (!raw) ck_assert_double_le(factors->reciprocity_error, 1e-14);
+            ck_assert(factors->reciprocity_error >= 0 && (factors->rays > 0) == !all);
+            for (uint32_t i = 0; i < 150; i++)
+                ck_assert_double_le(fabs(matrix_total(&factors->matrix, i) - (emissivity[i] > 0)), 1e-12);
+            fibrad_bed_free(factors);
+            ck_assert_int_eq(fibrad_displacements(&config, &spheres, &rule, NULL, NULL, moved, NULL), FIBRAD_OK);
+            for (uint32_t i = 0; i < 150; i++) ck_assert((moved[i].square[0] > 0) == (emissivity[i] > 0));
+        }
+    bed_free(&bed);
+}
+END_TEST
+
 /* ---- errors ------------------------------------------------------------------------------------------------------ */
 
 START_TEST(faults_name_spheres) {
@@ -364,6 +392,7 @@ int main(void) {
     tcase_add_test(factors, view_factors_are_the_kernels);
     tcase_add_test(factors, nothing_depends_on_threads);
     tcase_add_test(factors, exchange_does_not_depend_on_threads);
+    tcase_add_test(factors, reflectors_have_empty_rows);
     tcase_add_test(errors, faults_name_spheres);
     tcase_add_test(errors, arguments);
     tcase_add_test(errors, progress_and_cancelling);

@@ -1,5 +1,7 @@
 /* test_write.c - writers, read back; files that are complete or not there. SPDX-License-Identifier: MIT */
 #include <dirent.h>
+#include <fcntl.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,16 +10,17 @@
 #include <unistd.h>
 
 #include "cli/message.h"
-#include "cli/output.h"
+#include "text/text.h"
+#include "read/read.h"
 #include "suite.h"
-#include "write/write.h"
+#include "write/outputs.h"
 
 /* Three spheres; row 1 was not computed. */
 static double x[] = {0, 3, 1.0 / 3}, y[] = {0, 0.1, -7}, z[] = {1e-300, 2, 5}, r[] = {1, 0.5, 2};
-static int64_t id[] = {70, -5, 123456789012};
-static const struct bed bed = {.n = 3, .x = x, .y = y, .z = z, .r = r, .ids = true, .id = id};
+static int64_t id[] = {0, 70, 123456789012};
+static const struct bed bed = {.n = 3, .x = x, .y = y, .z = z, .r = r, .ids = true, .id = id, .timestep = 1200};
 
-static const struct bed plain = {.n = 3, .x = x, .y = y, .z = z, .r = r};
+static const struct bed plain = {.n = 3, .x = x, .y = y, .z = z, .r = r, .frame = 7, .timestep = -1};
 
 static uint64_t start[] = {0, 2, 2, 4};
 static uint32_t col[] = {1, 2, 0, 2};
@@ -32,21 +35,80 @@ static const struct walls walls = {
 
 static char text[20000]; /* what a writer wrote */
 
-static const struct walls *order; /* NULL: no walls */
+static double kelvins[] = {600, 1.0 / 3, 1e-300}, watts[] = {-1e-3, 2.5, 1e300}, wall_kelvins[] = {900, 77},
+              wall_watts[] = {-0.1, 1e17};
+static fibrad_heat_sources sources = {
+    .temperature = kelvins, .emissivity = r, .body_temperature = wall_kelvins, .surroundings = 300};
+static fibrad_heat_result result = {.power = watts, .body_power = wall_watts, .surroundings_power = 0.1};
 
-static void write_text(write_function *write, bool ids) {
+static void write_text(write_function *write, const struct contents *what, bool first) {
     FILE *file = tmpfile();
     ck_assert_ptr_nonnull(file);
-    ck_assert_int_eq(write(file, &(struct contents){ids ? &bed : &plain, &factors, wanted, order, NULL, NULL, 0}), 0);
+    ck_assert_int_eq(write(file, what, first), 0);
     rewind(file);
     text[fread(text, 1, sizeof text - 1, file)] = 0;
     fclose(file);
 }
 
+static void expect_begin(const char *with) { ck_assert_mem_eq(text, with, strlen(with)); }
+
+static void write_matrix(write_function *write, bool ids, const struct walls *walls_or_none) {
+    const struct contents what = {
+        .bed = ids ? &bed : &plain, .factors = &factors, .wanted = wanted, .walls = walls_or_none};
+    write_text(write, &what, true);
+}
+
+static void write_heat(write_function *write, const struct contents *more) {
+    struct contents what = *more;
+    what.sources = &sources;
+    what.result = &result;
+    write_text(write, &what, true);
+}
+
+/* Numbers as printf has them, to the last digit: of all sizes, and those that are hard to round. */
+START_TEST(numbers) {
+    uint64_t state = 88172645463325252u;
+    char ours[2 * TEXT_NUMBER], theirs[2 * TEXT_NUMBER];
+    for (int k = 0; k < 500000; ++k) {
+        state ^= state << 13, state ^= state >> 7, state ^= state << 17;
+        double value;
+        uint64_t bits = state;
+        if (k % 5 == 0) bits = (bits & 0x800fffffffffffff) | (963 + (bits >> 52) % 120) << 52; /* 1e-18 to 1e18 */
+        memcpy(&value, &bits, sizeof value);
+        if (k % 5 == 1) value = (double)(state % 1000000) / 1e6;
+        if (k % 5 == 2) value = (double)(state >> 11) * 0x1p-53;
+        if (k % 5 == 3)
+            value = (1 + (double)(state >> 60) * 0x1p-52) / pow(10, (double)(state % 17)); /* at powers of 10 */
+        if (k % 5 == 4) value = (double)(state % 4096 * 2 + 1) / 64;                       /* ends in 5 */
+        *text_real(ours, value) = 0;
+        snprintf(theirs, sizeof theirs, "%.17g", value);
+        ck_assert_str_eq(ours, theirs);
+        *text_whole(ours, (int64_t)(bits >> state % 64)) = 0;
+        snprintf(theirs, sizeof theirs, "%" PRId64, (int64_t)(bits >> state % 64));
+        ck_assert_str_eq(ours, theirs);
+    }
+    static const double special[] = {0, -0.0, INFINITY, -INFINITY, 5e-324, 1e17, 1e16, 1e15, 0.1, 1, -1, 1e-4, 1e-5};
+    for (size_t k = 0; k < sizeof special / sizeof *special; ++k) {
+        *text_real(ours, special[k]) = 0;
+        snprintf(theirs, sizeof theirs, "%.17g", special[k]);
+        ck_assert_str_eq(ours, theirs);
+    }
+    *text_whole(ours, INT64_MIN) = 0;
+    ck_assert_str_eq(ours, "-9223372036854775808");
+    FILE *file = tmpfile();
+    ck_assert_ptr_nonnull(file);
+    text_json_real(file, NAN);
+    text_json_real(file, .5);
+    rewind(file);
+    ck_assert_str_eq(fgets(ours, sizeof ours, file), "null0.5");
+    fclose(file);
+}
+END_TEST
+
 START_TEST(csv) {
     for (int ids = 0; ids < 2; ++ids) {
-        write_text(write_csv, ids);
-        ck_assert_int_eq(strncmp(text, "i,j,F\n", 6), 0);
+        write_matrix(write_csv, ids, NULL);
+        expect_begin("i,j,F\n");
         char *line = text + 6;
         for (uint32_t i = 0; i < 3; ++i)
             for (uint64_t k = start[i]; k < start[i + 1]; ++k) {
@@ -62,37 +124,101 @@ START_TEST(csv) {
 }
 END_TEST
 
-/* After each sphere's row the surroundings, -1, and the walls from -2 on; then the rows of walls of finite area. */
+/* After each sphere's row the surroundings, -1, and the walls from -2 on; then the rows of walls of finite area. The
+ * column body says what they are. */
 START_TEST(csv_of_walls) {
-    order = &walls;
-    write_text(write_csv, true);
-    order = NULL;
-    double back = 4 * acos(-1) * r[0] * r[0] * 0.0625 / 100, found[4] = {0};
-    const char *const lines[4] = {"%lld,-1,", "%lld,-2,", "%lld,-3,", "-2,%lld,"};
-    for (int k = 0; k < 4; ++k) {
-        char begin[40] = "\n";
-        snprintf(begin + 1, sizeof begin - 1, lines[k], (long long)id[0]);
-        const char *at = strstr(text, begin);
-        ck_assert_msg(at != NULL, "no line %s", begin + 1);
-        found[k] = strtod(at + strlen(begin), NULL);
+    char all[1000];
+    write_matrix(write_csv, true, &walls);
+    snprintf(all, sizeof all,
+             "i,j,F,body\n0,70,%.17g,\n0,123456789012,%.17g,\n0,-1,0.5,surroundings\n0,-2,0.0625,cylinder\n"
+             "0,-3,0.25,zmin\n70,-3,0.125,zmin\n123456789012,0,%.17g,\n123456789012,123456789012,%.17g,\n"
+             "123456789012,-1,0.25,surroundings\n-2,0,%.17g,cylinder\n",
+             f[0], f[1], f[2], f[3], 4 * acos(-1) * r[0] * r[0] * 0.0625 / 100);
+    ck_assert_str_eq(text, all);
+    write_matrix(write_csv, true, &(struct walls){0}); /* of view factors nothing is said of surroundings alone */
+    expect_begin("i,j,F\n0,70,");
+
+    /* walls that nothing is known of, and a cutoff */
+    const double beyond[] = {0.125, 0, 0}, none[] = {INFINITY, INFINITY}, emissivity[] = {1, 1, 1};
+    fibrad_bed_factors cut = factors;
+    cut.matrix.beyond = beyond;
+    cut.body_area = none;
+    const fibrad_exchange_rule grey = {.emissivity = emissivity, .body_emissivity = none};
+    struct walls nameless = {.count = 2};
+    write_text(write_csv, &(struct contents){.bed = &bed, .factors = &cut, .walls = &nameless, .grey = &grey}, true);
+    expect_begin("i,j,D,body\n");
+    ck_assert_ptr_nonnull(strstr(text, "\n0,-2,0.0625,wall_1\n0,-3,0.25,wall_2\n0,-4,0.125,beyond\n"));
+    ck_assert_ptr_null(strstr(text, "\n-2,"));
+    nameless.count = 0; /* of exchange factors it is */
+    write_text(write_csv, &(struct contents){.bed = &bed, .factors = &cut, .walls = &nameless, .grey = &grey}, true);
+    ck_assert_ptr_nonnull(strstr(text, "\n0,-1,0.5,surroundings\n0,-2,0.125,beyond\n"));
+}
+END_TEST
+
+/* Frames and files are columns; a header comes once. */
+START_TEST(series) {
+    struct contents what = {.bed = &bed, .factors = &factors, .series = true};
+    write_text(write_csv, &what, true);
+    expect_begin("frame,timestep,i,j,F\n0,1200,0,70,");
+    what.bed = &plain;
+    what.file = "a \"b\", c.dump";
+    write_text(write_csv, &what, false);
+    expect_begin("\"a \"\"b\"\", c.dump\",7,,0,1,");
+    write_text(write_csv, &what, true);
+    expect_begin("file,frame,timestep,i,j,F\n");
+    write_heat(write_heat_csv, &(struct contents){.bed = &bed, .series = true});
+    expect_begin("frame,timestep,i,T_K,q_W,body\n0,1200,0,600,");
+}
+END_TEST
+
+/* Surroundings at no temperature are not there. */
+START_TEST(heat) {
+    char all[1000];
+    for (int closed = 0; closed < 2; ++closed) {
+        sources.surroundings = closed ? NAN : 300;
+        write_heat(write_heat_csv, &(struct contents){.bed = &bed, .walls = &walls});
+        snprintf(all, sizeof all,
+                 "i,T_K,q_W,body\n0,600,-0.001,\n70,%.17g,2.5,\n123456789012,%.17g,1.0000000000000001e+300,\n%s"
+                 "-2,900,-0.10000000000000001,cylinder\n-3,77,1e+17,zmin\n",
+                 kelvins[1], kelvins[2], closed ? "" : "-1,300,0.10000000000000001,surroundings\n");
+        ck_assert_str_eq(text, all);
+        write_heat(write_heat_json, &(struct contents){.bed = &bed, .walls = &walls});
+        ck_assert((strstr(text, "surroundings") == NULL) == closed);
     }
-    ck_assert(found[0] == 0.5 && found[1] == 0.0625 && found[2] == 0.25);
-    ck_assert_double_eq_tol(found[3], back, 1e-15 * back);
-    ck_assert_ptr_null(strstr(text, "\n-3,"));
-    write_text(write_vtp, false);
-    ck_assert_ptr_null(strstr(text, "wall_"));
-    order = &walls;
-    write_text(write_vtp, false);
-    order = NULL;
-    ck_assert_ptr_nonnull(strstr(text, "Name=\"wall_cylinder\""));
-    ck_assert_ptr_nonnull(strstr(text, "Name=\"wall_zmin\""));
+    sources.surroundings = 300;
+    write_heat(write_heat_csv, &(struct contents){.bed = &plain});
+    ck_assert_ptr_null(strstr(text, "\n-1,"));
+}
+END_TEST
+
+/* As JSON, bare of NaN and of control characters; tests/check_formats.sh has Python read it. */
+START_TEST(json) {
+    struct contents what = {
+        .bed = &bed, .factors = &factors, .wanted = wanted, .walls = &walls, .file = "a\n\"b\\.csv"};
+    char all[1000];
+    write_text(write_json, &what, true);
+    snprintf(all, sizeof all,
+             "{\"kind\":\"view factors\",\"file\":\"a\\u000a\\\"b\\\\.csv\",\"frame\":0,\"timestep\":1200,"
+             "\"id\":[0,70,123456789012],\"indptr\":[0,2,2,4],\"indices\":[1,2,0,2],"
+             "\"data\":[%.17g,%.17g,%.17g,%.17g],\"escaped\":[0.5,null,0.25],\"beyond\":[0,null,0],"
+             "\"error\":[%.17g,null,%.17g],\"walls\":{\"cylinder\":[0.0625,null,0],\"zmin\":[0.25,null,0]}}\n",
+             f[0], f[1], f[2], f[3], error[0], error[2]);
+    ck_assert_str_eq(text, all);
+    write_heat(write_heat_json, &(struct contents){.bed = &plain});
+    snprintf(all, sizeof all,
+             "{\"kind\":\"heat\",\"frame\":7,\"timestep\":null,\"id\":[0,1,2],\"T_K\":[600,%.17g,%.17g],"
+             "\"q_W\":[-0.001,2.5,1.0000000000000001e+300]}\n",
+             kelvins[1], kelvins[2]);
+    ck_assert_str_eq(text, all);
 }
 END_TEST
 
 START_TEST(matrix_market) {
-    write_text(write_mtx, false);
+    write_matrix(write_mtx, _i == 1, NULL);
     const char banner[] = "%%MatrixMarket matrix coordinate real general\n";
     ck_assert_int_eq(strncmp(text, banner, strlen(banner)), 0);
+    ck_assert_ptr_nonnull(strstr(text, "\n% View factors F_ij from"));
+    ck_assert((strstr(text, "\n% ids: 0 70 123456789012\n3 3 4\n") != NULL) == _i);
     char *line = text;
     while (*line == '%') line = strchr(line, '\n') + 1;
     ck_assert_int_eq(strtol(line, &line, 10), 3);
@@ -139,7 +265,7 @@ static size_t array(const char *name, void *values, size_t capacity) {
 START_TEST(paraview) {
     double values[9];
     int64_t whole[3];
-    write_text(write_vtp, false);
+    write_matrix(write_vtp, false, NULL);
     ck_assert_ptr_nonnull(strstr(text, "NumberOfPoints=\"3\" NumberOfVerts=\"3\""));
     ck_assert_uint_eq(array("Points", values, 9), 9);
     for (int i = 0; i < 3; ++i)
@@ -159,6 +285,25 @@ START_TEST(paraview) {
     const char *end = strstr(text, "</VTKFile>\n");
     ck_assert_ptr_nonnull(end);
     ck_assert_uint_eq(strlen(end), 11);
+    ck_assert_ptr_null(strstr(text, "Name=\"id\""));
+    ck_assert_ptr_null(strstr(text, "Name=\"wall_"));
+
+    write_matrix(write_vtp, true, &walls);
+    ck_assert_uint_eq(array("id", whole, 3), 3);
+    ck_assert_int_eq(memcmp(whole, id, sizeof id), 0);
+    ck_assert_uint_eq(array("wall_cylinder", values, 3), 3);
+    ck_assert(values[0] == 0.0625 && isnan(values[1]) && values[2] == 0);
+    ck_assert_uint_eq(array("wall_zmin", values, 3), 3);
+    ck_assert(values[0] == 0.25);
+
+    write_heat(write_heat_vtp, &(struct contents){.bed = &bed, .walls = &walls});
+    ck_assert_uint_eq(array("id", whole, 3), 3);
+    ck_assert_uint_eq(array("temperature_K", values, 3), 3);
+    ck_assert_int_eq(memcmp(values, kelvins, sizeof kelvins), 0);
+    ck_assert_uint_eq(array("power_W", values, 3), 3);
+    ck_assert_int_eq(memcmp(values, watts, sizeof watts), 0);
+    ck_assert_uint_eq(array("emissivity", values, 3), 3);
+    ck_assert_int_eq(memcmp(values, r, sizeof r), 0);
 }
 END_TEST
 
@@ -177,18 +322,40 @@ static const char *next_member(const char *at, const char *name, uint64_t bytes)
 /* tests/check_npz.sh has Python and SciPy open such files. */
 START_TEST(numpy) {
     const int64_t shape[] = {3, 3};
-    write_text(write_npz, false);
-    const char *at = next_member(text, "indices.npy", sizeof col);
-    ck_assert_mem_eq(at, col, sizeof col);
-    at = next_member(at + sizeof col, "indptr.npy", sizeof start);
-    ck_assert_mem_eq(at, start, sizeof start);
-    at = next_member(at + sizeof start, "format.npy", 3);
-    ck_assert_mem_eq(at, "csr", 3);
-    at = next_member(at + 3, "shape.npy", sizeof shape);
-    ck_assert_mem_eq(at, shape, sizeof shape);
-    at = next_member(at + sizeof shape, "data.npy", sizeof f);
-    ck_assert_mem_eq(at, f, sizeof f);
-    ck_assert_mem_eq(at + sizeof f, "PK\1\2", 4);
+    const uint64_t large[] = {1, 2, UINT64_MAX}; /* in place of the ids */
+    const struct array ids = {"ids.npy", "u8", large, 3, 0};
+    struct contents what = {.bed = &bed, .factors = &factors, .wanted = wanted, .walls = &walls};
+    for (int own = 0; own < 2; ++own) {
+        what.array = &ids;
+        what.arrays = (size_t)own;
+        write_text(write_npz, &what, true);
+        const struct {
+            const char *name;
+            uint64_t bytes;
+            const void *data;
+        } members[] = {
+            {"indices.npy", sizeof col, col},
+            {"indptr.npy", sizeof start, start},
+            {"format.npy", 3, "csr"},
+            {"shape.npy", sizeof shape, shape},
+            {"data.npy", sizeof f, f},
+            {"ids.npy", sizeof id, own ? large : (const void *)id},
+            {"x.npy", sizeof x + sizeof y + sizeof z, (double[]){x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]}},
+            {"radius.npy", sizeof r, r},
+            {"escaped.npy", sizeof escaped, escaped},
+            {"beyond.npy", 3 * sizeof(double), (double[3]){0}},
+            {"error.npy", sizeof error, error},
+            {"computed.npy", sizeof wanted, wanted},
+            {"body.npy", sizeof wall, wall},
+            {"wall_names.npy", 16, "cylinderzmin\0\0\0"}};
+        const char *at = text;
+        for (size_t k = 0; k < sizeof members / sizeof *members; ++k) {
+            at = next_member(at, members[k].name, members[k].bytes);
+            ck_assert_msg(memcmp(at, members[k].data, members[k].bytes) == 0, "%s", members[k].name);
+            at += members[k].bytes;
+        }
+        ck_assert_mem_eq(at, "PK\1\2", 4);
+    }
 }
 END_TEST
 
@@ -204,16 +371,6 @@ START_TEST(summaries) {
     ck_assert_double_eq(summary.error_max, 0.04);
     ck_assert_double_eq_tol(summary.error_rms, sqrt(0.00125), 1e-17);
     ck_assert_double_eq_tol(summary.closure_max, 1 - 0.25 - row_sum[2], 1e-15);
-}
-END_TEST
-
-START_TEST(endings) {
-    ck_assert(write_find("a.csv", NULL) == write_csv);
-    ck_assert(write_find("b/c.d.mtx", NULL) == write_mtx);
-    ck_assert(write_find("x.vtp", NULL) == write_vtp);
-    ck_assert(write_find("x.npz", NULL) == write_npz);
-    static const char *const none[] = {"", "a", ".csv", "a.csv.gz", "acsv", "a.CSV"};
-    for (size_t k = 0; k < sizeof none / sizeof *none; ++k) ck_assert(write_find(none[k], NULL) == NULL);
 }
 END_TEST
 
@@ -279,6 +436,71 @@ START_TEST(complete_or_not_at_all) {
 }
 END_TEST
 
+/* A link stays and leads to what was written, which keeps its permissions; it may lead nowhere yet, but not in a
+ * circle. */
+START_TEST(links) {
+    char link_to[220], other[220];
+    struct output output;
+    struct stat there;
+    snprintf(link_to, sizeof link_to, "%s/link.csv", folder);
+    snprintf(other, sizeof other, "%s/next.csv", folder);
+    ck_assert_int_eq(symlink("next.csv", link_to), 0);
+    ck_assert_int_eq(symlink("out.csv", other), 0);
+    umask(022);
+    for (int k = 0; k < 2; ++k) { /* out.csv is there the second time */
+        ck_assert_int_eq(output_open(&output, link_to), 0);
+        fputs(k ? "second" : "first", output.file);
+        ck_assert_int_eq(output_close(&output, STATUS_OK), STATUS_OK);
+        expect_file(k ? "second" : "first");
+        ck_assert(lstat(link_to, &there) == 0 && S_ISLNK(there.st_mode));
+        ck_assert(stat(path, &there) == 0 && (there.st_mode & 0777) == (k ? 0604 : 0644));
+        ck_assert_int_eq(chmod(path, 0604), 0);
+    }
+    ck_assert(output_same(link_to, path) && !output_same(link_to, folder));
+    unlink(path);
+    ck_assert(output_same(link_to, path) && output_same(other, link_to));
+    unlink(other);
+    ck_assert_int_eq(symlink("link.csv", other), 0);
+    ck_assert_int_eq(output_open(&output, link_to), STATUS_FILE); /* each leads to the other */
+    ck_assert_int_eq(output_close(&output, STATUS_FILE), STATUS_FILE);
+    unlink(other);
+    unlink(link_to);
+}
+END_TEST
+
+/* What cannot be replaced is written to as it is: standard output by any of its names, pipes, devices. */
+START_TEST(written_at_once) {
+    struct output output;
+    FILE *file = tmpfile();
+    const int before = dup(STDOUT_FILENO);
+    ck_assert_ptr_nonnull(file);
+    ck_assert(!output_stdout(path) && output_stdout("-"));
+    fflush(stdout);
+    ck_assert_int_ge(dup2(fileno(file), STDOUT_FILENO), 0);
+    for (int k = 0; k < 2; ++k) {
+        ck_assert_int_eq(output_open(&output, k ? "/dev/stdout" : "-"), 0);
+        fputs("x", output.file);
+        ck_assert_int_eq(output_close(&output, STATUS_OK), STATUS_OK);
+    }
+    ck_assert_int_ge(dup2(before, STDOUT_FILENO), 0); /* standard output is still open */
+    rewind(file);
+    ck_assert_uint_eq(fread(text, 1, 10, file), 2);
+    fclose(file);
+
+    ck_assert_int_eq(mkfifo(path, 0600), 0);
+    const int end = open(path, O_RDONLY | O_NONBLOCK);
+    ck_assert_int_eq(output_open(&output, path), 0);
+    fputs("pipe", output.file);
+    ck_assert_int_eq(output_close(&output, STATUS_OK), STATUS_OK);
+    ck_assert_int_eq(read(end, text, 10), 4);
+    close(end);
+    ck_assert_int_eq(output_open(&output, "/dev/full"), 0);
+    fputs("device", output.file);
+    ck_assert_int_eq(output_flush(&output), STATUS_FILE);
+    ck_assert_int_eq(output_close(&output, STATUS_FILE), STATUS_FILE);
+}
+END_TEST
+
 START_TEST(unwritable) {
     struct output output;
     ck_assert_int_eq(output_open(&output, folder), STATUS_FILE);
@@ -288,18 +510,185 @@ START_TEST(unwritable) {
 }
 END_TEST
 
+/* ---- outputs ---------------------------------------------------------------------------------------------------- */
+
+static char place[5][240]; /* paths in the folder */
+
+static const char *in_place(int k, const char *name) {
+    snprintf(place[k], sizeof place[k], "%s/%s", folder, name);
+    return place[k];
+}
+
+/* -o and --format, in the order given, and what comes of them. */
+static const struct {
+    const char *word[4];
+    enum content content;
+    bool series;
+    int status;
+} asked[] = {{{"a.csv", "b.mtx", "c.npz", "d.vtp"}, CONTENT_MATRIX, false, 0},
+             {{"a.json", "--format=csv", "-"}, CONTENT_MATRIX, false, 0},
+             {{"--format=npz", "c", "a.b.csv"}, CONTENT_MATRIX, false, 0},
+             {{"a.dump", "b.lammpstrj", "c.json", "d.csv"}, CONTENT_HEAT, true, 0},
+             {{"a.*.vtp", "*.csv"}, CONTENT_HEAT, true, 0},
+             {{"a.txt"}, CONTENT_MATRIX, false, 2},
+             {{"a.CSV"}, CONTENT_MATRIX, false, 2},
+             {{".csv"}, CONTENT_MATRIX, false, 2},
+             {{"a.csv.gz"}, CONTENT_MATRIX, false, 2},
+             {{"a.dump"}, CONTENT_MATRIX, false, 2},
+             {{"a.mtx"}, CONTENT_HEAT, false, 2},
+             {{"a.npz"}, CONTENT_HEAT, false, 2},
+             {{"-"}, CONTENT_HEAT, false, 2},
+             {{"--format=mtx", "-"}, CONTENT_HEAT, false, 2},
+             {{"--format=txt"}, CONTENT_HEAT, false, 2},
+             {{"--format=csv", "a.csv"}, CONTENT_HEAT, false, 2},
+             {{"--format=csv", "--format=json", "-"}, CONTENT_HEAT, false, 2},
+             {{"--format=csv", "-", "-"}, CONTENT_HEAT, false, 2},
+             {{"a.csv", "./a.csv"}, CONTENT_HEAT, false, 2},
+             {{"a.*.csv", "a.*.csv"}, CONTENT_HEAT, false, 2},
+             {{"*.*.csv"}, CONTENT_HEAT, false, 2},
+             {{"a.npz"}, CONTENT_MATRIX, true, 2},
+             {{"--format=vtp", "-"}, CONTENT_HEAT, true, 2},
+             {{"in.csv"}, CONTENT_HEAT, false, 2}};
+
+START_TEST(outputs_asked) {
+    struct outputs outputs = {0};
+    const char *const inputs[] = {"-", in_place(4, "in.csv")};
+    fclose(fopen(inputs[1], "w"));
+    int status = 0;
+    for (int k = 0; k < 4 && asked[_i].word[k] && !status; ++k) {
+        const char *word = asked[_i].word[k];
+        if (strncmp(word, "--format=", 9) == 0)
+            status = outputs_format(&outputs, word + 9);
+        else
+            status =
+                outputs_add(&outputs, strcmp(word, "-") == 0 || strcmp(word, ".csv") == 0 ? word : in_place(k, word));
+    }
+    if (!status) status = outputs_check(&outputs, asked[_i].content, inputs, 2, asked[_i].series);
+    ck_assert_int_eq(status, asked[_i].status);
+    unlink(inputs[1]);
+}
+END_TEST
+
+static struct contents frame_of(const struct bed *of) {
+    return (struct contents){.bed = of, .sources = &sources, .result = &result, .series = true};
+}
+
+/* Three frames into files of their own, which stay whatever comes later, and into one, which must be whole. */
+START_TEST(outputs_written) {
+    const struct contents frames[] = {frame_of(&bed), frame_of(&plain)};
+    for (int failed = 0; failed < 2; ++failed) {
+        struct outputs outputs = {0};
+        const char *const input = in_place(0, "q.8.csv");
+        ck_assert_int_eq(outputs_add(&outputs, in_place(1, "q.*.csv")), 0);
+        ck_assert_int_eq(outputs_add(&outputs, path), 0);
+        ck_assert_int_eq(outputs_check(&outputs, CONTENT_HEAT, &input, 1, true), 0);
+        ck_assert(!outputs_stdout(&outputs));
+        ck_assert_int_eq(outputs_open(&outputs), 0);
+        ck_assert_int_eq(count_files(), 1); /* a temporary one */
+        ck_assert_int_eq(outputs_write(&outputs, &frames[0], -2), 0);
+        ck_assert_int_eq(outputs_write(&outputs, &frames[1], 10), 0);
+        fclose(fopen(input, "w"));
+        int status = failed ? outputs_write(&outputs, &frames[1], 8) : 0; /* the input */
+        ck_assert_int_eq(status, failed ? STATUS_USAGE : 0);
+        ck_assert_int_eq(outputs_close(&outputs, status), status);
+        ck_assert_int_eq(count_files(), failed ? 3 : 4);
+        write_heat(write_heat_csv, &frames[1]);
+        char *alone = strdup(text), *body = strchr(alone, '\n') + 1;
+        char *joined = malloc(2 * sizeof text);
+        write_heat(write_heat_csv, &frames[0]);
+        snprintf(joined, 2 * sizeof text, "%s%s", text, body);
+        if (!failed) expect_file(joined);
+        unlink(path);
+        snprintf(path, sizeof path, "%s/q.10.csv", folder);
+        expect_file(alone);
+        unlink(path);
+        unlink(in_place(2, "q.-2.csv"));
+        unlink(input);
+        snprintf(path, sizeof path, "%s/out.csv", folder);
+        free(alone);
+        free(joined);
+        ck_assert_int_eq(count_files(), 0);
+    }
+}
+END_TEST
+
+/* Places where nothing can be written are found before the work, those of frames, too. */
+START_TEST(outputs_unwritable) {
+    static const char *const names[] = {"no/such.csv", "no/*.csv"};
+    for (int k = 0; k < 2; ++k) {
+        struct outputs outputs = {0};
+        ck_assert_int_eq(outputs_add(&outputs, path), 0);
+        ck_assert_int_eq(outputs_add(&outputs, in_place(0, names[k])), 0);
+        ck_assert_int_eq(outputs_check(&outputs, CONTENT_HEAT, NULL, 0, false), 0);
+        ck_assert_int_eq(outputs_open(&outputs), STATUS_FILE);
+        ck_assert_int_eq(outputs_close(&outputs, STATUS_FILE), STATUS_FILE);
+        ck_assert_int_eq(count_files(), 0);
+    }
+}
+END_TEST
+
+/* A dump, read back by our own reader, two frames of it; boxes of files, of periods, and of spheres. */
+START_TEST(dump_read_back) {
+    static const char *const columns[] = {"T_K", "q_W"};
+    struct bed first = bed, second = bed;
+    memcpy(first.units, "cgs", 4);
+    first.low[2] = -10, first.high[2] = 1.0 / 3;
+    first.period[1] = first.high[1] = 9, first.low[1] = 0;
+    second.timestep = 1300;
+    second.period[0] = 11;
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    struct contents what = frame_of(&first);
+    ck_assert_int_eq(write_heat_dump(file, &what, true), 0);
+    what.bed = &second;
+    ck_assert_int_eq(write_heat_dump(file, &what, false), 0);
+    fclose(file);
+    write_heat(write_heat_dump, &(struct contents){.bed = &first});
+    expect_begin("ITEM: UNITS\ncgs\nITEM: TIMESTEP\n1200\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS ff pp ff\n");
+    write_heat(write_heat_dump, &(struct contents){.bed = &plain});
+    expect_begin("ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS ff ff ff\n");
+    for (int k = 0; k < 2; ++k) {
+        struct bed back;
+        const struct read_options options = {.frames = {k, k + 1, 1}, .extra = columns, .extras = 2};
+        ck_assert_int_eq(read_bed(path, &options, &back), 0);
+        ck_assert(back.n == 3 && back.ids);
+        for (uint32_t i = 0; i < 3; ++i) {
+            ck_assert(back.x[i] == x[i] && back.y[i] == y[i] && back.z[i] == z[i] && back.r[i] == r[i]);
+            ck_assert(back.id[i] == id[i] && back.extra[2 * i] == kelvins[i] && back.extra[2 * i + 1] == watts[i]);
+        }
+        if (k == 0) {
+            ck_assert(back.period[0] == 0 && back.period[1] == 9 && back.period[2] == 0);
+            ck_assert(back.low[0] == -5.0 / 3 && back.high[0] == 3.5 && back.low[2] == -10 && back.high[2] == 1.0 / 3);
+        } else {
+            ck_assert_double_eq_tol(back.period[0], 11, 1e-14);
+            ck_assert(back.low[0] == -5.0 / 3 && back.period[1] == 0);
+        }
+        bed_free(&back);
+    }
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("write");
     TCase *formats = suite_case(suite, "formats"), *files = suite_case(suite, "files");
     tcase_add_test(formats, csv);
     tcase_add_test(formats, csv_of_walls);
-    tcase_add_test(formats, matrix_market);
+    tcase_add_test(formats, numbers);
+    tcase_add_test(formats, series);
+    tcase_add_test(formats, heat);
+    tcase_add_test(formats, json);
+    tcase_add_loop_test(formats, matrix_market, 0, 2);
     tcase_add_test(formats, summaries);
     tcase_add_test(formats, paraview);
     tcase_add_test(formats, numpy);
-    tcase_add_test(formats, endings);
     tcase_add_checked_fixture(files, make_folder, remove_folder);
     tcase_add_test(files, complete_or_not_at_all);
     tcase_add_test(files, unwritable);
+    tcase_add_test(files, links);
+    tcase_add_test(files, written_at_once);
+    tcase_add_loop_test(files, outputs_asked, 0, sizeof asked / sizeof *asked);
+    tcase_add_test(files, outputs_written);
+    tcase_add_test(files, outputs_unwritable);
+    tcase_add_test(files, dump_read_back);
     return suite_run(suite);
 }

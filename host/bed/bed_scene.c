@@ -20,14 +20,15 @@ static int bed_overlap(const struct bed *bed, const char *file, uint32_t first, 
     const uint32_t later = bed->line[first] < bed->line[second] ? second : first;
     const uint32_t other = later == first ? second : first;
     if (later == other)
-        return message_at(STATUS_INPUT, file, bed->line[later], "sphere %u reaches its own image in the periodic box",
-                          later);
+        return message_at(STATUS_INPUT, file, bed->line[later], "sphere %lld reaches its own image in the periodic box",
+                          (long long)bed_name(bed, later));
     const bool equal =
         bed->x[first] == bed->x[second] && bed->y[first] == bed->y[second] && bed->z[first] == bed->z[second];
     return message_at(STATUS_INPUT, file, bed->line[later],
-                      equal ? "sphere %u has the same centre as sphere %u of line %llu"
-                            : "sphere %u and sphere %u of line %llu: the centre of one lies inside the other",
-                      later, other, (unsigned long long)bed->line[other]);
+                      equal ? "sphere %lld has the same centre as sphere %lld of line %llu"
+                            : "sphere %lld and sphere %lld of line %llu: the centre of one lies inside the other",
+                      (long long)bed_name(bed, later), (long long)bed_name(bed, other),
+                      (unsigned long long)bed->line[other]);
 }
 
 int bed_status(const struct bed *bed, const char *file, int status, const fibrad_fault *fault) {
@@ -41,5 +42,6 @@ int bed_status(const struct bed *bed, const char *file, int status, const fibrad
         return message_at(STATUS_INPUT, file, 0, "the periodic box is smaller than a sphere's radius");
     if (!known)
         return message_at(STATUS_INPUT, file, 0, "this bed and box cannot be computed: %s", fibrad_status_text(status));
-    return message_at(STATUS_INPUT, file, bed->line[first], "sphere %u: %s", first, fibrad_status_text(status));
+    return message_at(STATUS_INPUT, file, bed->line[first], "sphere %lld: %s", (long long)bed_name(bed, first),
+                      fibrad_status_text(status));
 }

@@ -1,80 +1,150 @@
-/* property_option.c - emissivities and temperatures of spheres and walls, from options and columns of the file.
+/* property_option.c - radii, emissivities and temperatures of spheres and walls, from options and columns of the file.
  * SPDX-License-Identifier: MIT */
 #include "bed/property_option.h"
 
 #include <ctype.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/message.h"
 #include "cli/options.h"
 
-static int take_quantity(const char *what, const char *text, double most, struct quantity *quantity) {
+/* TYPE:VALUE,TYPE:VALUE ... */
+static int take_types(const char *what, const char *text, double low, double high, struct quantity *quantity) {
+    quantity->column = "type";
+    for (;;) {
+        const int k = quantity->types++;
+        char *end;
+        if (k == QUANTITY_TYPES_MAX) return message(STATUS_USAGE, "%s: more than %d types", what, QUANTITY_TYPES_MAX);
+        quantity->type[k] = strtod(text, &end);
+        bool good = end != text && *end == ':';
+        if (good) {
+            text = end + 1;
+            quantity->of_type[k] = strtod(text, &end);
+            good = end != text && (*end == 0 || *end == ',');
+        }
+        if (!good) return message(STATUS_USAGE, "%s: '%.60s' is no list such as 1:0.5,2:0.8", what, text);
+        if (!(quantity->of_type[k] >= low && quantity->of_type[k] <= high))
+            return message(STATUS_USAGE, "%s: %g is not within %g and %g", what, quantity->of_type[k], low, high);
+        for (int j = 0; j < k; ++j)
+            if (quantity->type[j] == quantity->type[k])
+                return message(STATUS_USAGE, "%s: type %g is named twice", what, quantity->type[k]);
+        if (*end == 0) return STATUS_OK;
+        text = end + 1;
+    }
+}
+
+int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity) {
     *quantity = (struct quantity){.given = true};
-    if (!isalpha((unsigned char)*text) && *text != '_') return options_number(what, text, 0, most, &quantity->value);
+    if (strchr(text, ':')) return take_types(what, text, low, high, quantity);
+    if (!isalpha((unsigned char)*text) && *text != '_') return options_number(what, text, low, high, &quantity->value);
     quantity->column = text;
     return STATUS_OK;
 }
 
-int emissivity_option(const char *text, struct quantity *emissivity) {
-    const int status = take_quantity("--emissivity", text, 1, emissivity);
-    if (!status && !emissivity->column && !(emissivity->value > 0))
-        return message(STATUS_USAGE, "--emissivity: '%.60s' is neither a number above 0 up to 1 nor a column", text);
-    return status;
+/* The value of sphere i; NaN: its type has none. */
+static double value_of_sphere(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
+    if (!quantity->column) return quantity->value;
+    const double found = bed->extra[i * bed->extras + quantity->place];
+    if (!quantity->types) return found;
+    for (int k = 0; k < quantity->types; ++k)
+        if (quantity->type[k] == found) return quantity->of_type[k];
+    return NAN;
 }
 
-int temperature_option(const char *text, struct quantity *temperature) {
-    return take_quantity("--temperature", text, TEMPERATURE_MAX, temperature);
-}
-
-static double *spread_spheres(const struct quantity *quantity, const struct bed *bed) {
-    double *values = malloc(bed->n * sizeof *values);
-    for (uint32_t i = 0; values && i < bed->n; ++i)
-        values[i] = quantity->column ? bed->extra[i * bed->extras + quantity->place] : quantity->value;
-    return values;
-}
-
-int emissivity_of(const struct quantity *quantity, const struct bed *bed, const char *file, double **emissivity) {
-    const double *e = *emissivity = spread_spheres(quantity, bed);
-    if (!e) return message_memory();
-    for (uint32_t i = 0; i < bed->n; ++i)
-        if (!(e[i] > 0 && e[i] <= 1))
-            return message_at(STATUS_INPUT, file, bed->line[i],
-                              "the emissivity %.40s is %g; it must be above 0, up to 1", quantity->column, e[i]);
+int quantity_values(const struct quantity *quantity, const struct bed *bed, const char *file, const char *what,
+                    double offset, double low, double high, double **values) {
+    double *v = *values = malloc(bed->n * sizeof *v);
+    if (!v) return message_memory();
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        v[i] = value_of_sphere(quantity, bed, i) + offset;
+        if (v[i] >= low && v[i] <= high) continue;
+        if (quantity->types && isnan(v[i]))
+            return message_at(STATUS_INPUT, file, bed->line[i], "the list of the %s has no type %g", what,
+                              bed->extra[i * bed->extras + quantity->place]);
+        return message_at(STATUS_INPUT, file, bed->line[i], "the %s is %g; it must be within %g and %g", what, v[i],
+                          low, high);
+    }
     return STATUS_OK;
 }
 
-int temperature_of(const struct quantity *quantity, const struct bed *bed, const char *file, double **temperature) {
-    const double *t = *temperature = spread_spheres(quantity, bed);
-    if (!t) return message_memory();
-    for (uint32_t i = 0; i < bed->n; ++i)
-        if (!(t[i] >= 0 && t[i] <= TEMPERATURE_MAX))
-            return message_at(STATUS_INPUT, file, bed->line[i], "the temperature is %g K", t[i]);
+/* One item of a list: NAME=VALUE or VALUE; `wall`: the number of the wall named, or -1. *text moves behind it. */
+static int take_wall_value(const char *option, const char **text, const struct walls *walls, int *wall, double *value) {
+    const size_t length = strcspn(*text, "=,");
+    const bool named = (*text)[length] == '=';
+    char *end;
+    *wall = -1;
+    for (uint32_t k = 0; k < walls->count && named; ++k) {
+        const char *name = wall_name(&walls->body[k]);
+        if (strlen(name) == length && strncmp(name, *text, length) == 0) *wall = (int)k;
+    }
+    if (named && *wall < 0)
+        return message(STATUS_USAGE, "%s: there is no wall %.*s", option, length > 40 ? 40 : (int)length, *text);
+    const char *number = named ? *text + length + 1 : *text;
+    *value = strtod(number, &end);
+    if (end == number || (*end && *end != ','))
+        return message(STATUS_USAGE, "%s: '%.40s' is neither NAME=NUMBER nor a number", option, *text);
+    *text = *end ? end + 1 : end;
     return STATUS_OK;
 }
 
-/* The list over the walls, its last number for all further ones; `otherwise` if there is no list. */
-static int spread_walls(const char *what, const char *text, double otherwise, uint32_t walls,
-                        double values[WALLS_MAX]) {
-    int count = 1;
-    values[0] = otherwise;
-    const int status = text ? options_numbers(what, text, WALLS_MAX, values, &count) : STATUS_OK;
-    if (!status && text && (uint32_t)count > walls)
-        return message(STATUS_USAGE, "%s: %d for %u walls", what, count, walls);
-    for (int k = count; k < WALLS_MAX && !status; ++k) values[k] = values[count - 1];
-    return status;
+int wall_values(const char *option, const char *text, double otherwise, double low, double high,
+                const struct walls *walls, double values[WALLS_MAX]) {
+    bool named[WALLS_MAX] = {false}, bare = false;
+    if (text && walls->count == 0) return message(STATUS_USAGE, "%s: there are no walls", option);
+    while (text && *text) {
+        int wall;
+        double value = 0;
+        const int status = take_wall_value(option, &text, walls, &wall, &value);
+        if (status) return status;
+        if (!(value >= low && value <= high))
+            return message(STATUS_USAGE, "%s: %g is not within %g and %g", option, value, low, high);
+        if (wall < 0 ? bare : named[wall])
+            return message(STATUS_USAGE,
+                           wall < 0 ? "%s: one number for all others; name the walls, such as %s=%g"
+                                    : "%s: %s has two values, the second %g",
+                           option, wall_name(&walls->body[wall < 0 ? 0 : wall]), value);
+        if (wall < 0) {
+            bare = true;
+            otherwise = value;
+        } else {
+            named[wall] = true;
+            values[wall] = value;
+        }
+    }
+    for (uint32_t k = 0; k < walls->count; ++k) {
+        if (!named[k]) values[k] = otherwise;
+        if (isnan(values[k]))
+            return message(STATUS_USAGE, "%s: none for %s; give %s=NUMBER, or one number for all", option,
+                           wall_name(&walls->body[k]), wall_name(&walls->body[k]));
+    }
+    return STATUS_OK;
 }
 
-int emissivity_walls(const char *text, uint32_t walls, double e[WALLS_MAX]) {
-    const int status = spread_walls("--wall-emissivity", text, 1, walls, e);
-    for (uint32_t k = 0; k < walls && !status; ++k)
-        if (!(e[k] >= 0 && e[k] <= 1)) return message(STATUS_USAGE, "--wall-emissivity: %g is not in 0 to 1", e[k]);
-    return status;
+void quantity_report(const struct quantity *quantity, const char *key, struct report *report) {
+    char of_type[60];
+    if (!quantity->column) report_value(report, key, quantity->value, 6);
+    if (quantity->column && !quantity->types) {
+        snprintf(of_type, sizeof of_type, "column %.40s", quantity->column);
+        report_text(report, key, of_type);
+    }
+    for (int k = 0; k < quantity->types; ++k) {
+        snprintf(of_type, sizeof of_type, "%.40s_type_%g", key, quantity->type[k]);
+        report_value(report, of_type, quantity->of_type[k], 6);
+    }
 }
 
-int temperature_walls(const char *text, uint32_t walls, double surroundings, double t[WALLS_MAX]) {
-    const int status = spread_walls("--wall-temperature", text, surroundings, walls, t);
-    for (uint32_t k = 0; k < walls && !status; ++k)
-        if (!(t[k] >= 0 && t[k] <= TEMPERATURE_MAX))
-            return message(STATUS_USAGE, "--wall-temperature: %g is no temperature", t[k]);
-    return status;
+void wall_values_report(const struct walls *walls, const double *values, const char *ending, int digits,
+                        struct report *report) {
+    for (uint32_t k = 0; k < walls->count; ++k) {
+        char key[60];
+        snprintf(key, sizeof key, "wall_%s%.30s", wall_name(&walls->body[k]), ending);
+        report_value(report, key, values[k], digits);
+    }
+}
+
+int wall_emissivities(const char *text, const struct walls *walls, double emissivity[WALLS_MAX]) {
+    return wall_values("--wall-emissivity", text, 1, 0, 1, walls, emissivity);
 }

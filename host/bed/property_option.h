@@ -1,4 +1,4 @@
-/* property_option.h - emissivities and temperatures of spheres and walls, from options and columns of the file.
+/* property_option.h - radii, emissivities and temperatures of spheres and walls, from options and columns of the file.
  * SPDX-License-Identifier: MIT */
 #ifndef PROPERTY_OPTION_H
 #define PROPERTY_OPTION_H
@@ -7,38 +7,51 @@
 
 #include "bed/bed.h"
 #include "bed/wall_option.h"
+#include "report/report.h"
 #include "fibrad.h"
 
 /* The hottest there may be [K]. */
 #define TEMPERATURE_MAX 1e9
 
-/* Rows of a table of options, without braces. */
+/* Rows of tables of options, without braces. */
 #define OPTION_EMISSIVITY                                                                                              \
-    KEY_EMISSIVITY, "emissivity", "E|COLUMN", "of all spheres, above 0 up to 1, or the file's column of that name"
+    KEY_EMISSIVITY, "emissivity", "E", "of all spheres, 0 to 1; or TYPE:E,... ; or the file's column of that name"
 #define OPTION_WALL_EMISSIVITY                                                                                         \
-    KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST",                                                                    \
-        "emissivities of the walls in the order given, 0 to 1; the last one is that of all further [1]"
+    KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST", "of the walls, 0 to 1: zmin=0.3,0.9: one number for all others [1]"
 
-/* What an option says of the spheres: a number for all of them, or the name of a column. */
+/* What an option says of the spheres: a number for all of them, numbers by type, or the name of a column. */
+enum { QUANTITY_TYPES_MAX = 64 };
 struct quantity {
     bool given;
     double value;
-    const char *column; /* NULL: value */
-    size_t place;       /* of the column in bed->extra */
+    const char *column;                                           /* NULL: value */
+    size_t place;                                                 /* of the column in bed->extra */
+    int types;                                                    /* not 0: the column is that of types, from 1 on, */
+    double type[QUANTITY_TYPES_MAX], of_type[QUANTITY_TYPES_MAX]; /* [types] and these are the values of these */
 };
 
-/* Take the argument of --emissivity (above 0 up to 1) and --temperature. Status 0 or STATUS_USAGE. */
-int emissivity_option(const char *text, struct quantity *emissivity);
-int temperature_option(const char *text, struct quantity *temperature);
+/* Takes the argument of an option whose values are in [low, high]. Status 0 or STATUS_USAGE. */
+int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity);
 
-/* The values of all spheres [n], to be freed also after an error; `file` is the bed's name in messages. Status 0,
- * STATUS_INPUT naming the line of one that is out of range, or STATUS_MEMORY. */
-int emissivity_of(const struct quantity *quantity, const struct bed *bed, const char *file, double **emissivity);
-int temperature_of(const struct quantity *quantity, const struct bed *bed, const char *file, double **temperature);
+/* The values of all spheres [n], to be freed also after an error; `file` is the bed's name and `what` that of the
+ * quantity in messages. offset is added. Status 0, STATUS_INPUT naming the line of one that is not in [low, high], or
+ * STATUS_MEMORY. */
+int quantity_values(const struct quantity *quantity, const struct bed *bed, const char *file, const char *what,
+                    double offset, double low, double high, double **values);
 
-/* Spread the list of --wall-emissivity or --wall-temperature over so many walls. NULL: it was not given, and walls are
- * black, or as hot as the surroundings. Status 0 or STATUS_USAGE. */
-int emissivity_walls(const char *text, uint32_t walls, double emissivity[WALLS_MAX]);
-int temperature_walls(const char *text, uint32_t walls, double surroundings, double temperature[WALLS_MAX]);
+/* Spreads a list such as zmin=1200,300 over the walls: by name, a bare number for all others, `otherwise` if there is
+ * none; values are in [low, high]. text NULL: no list. Status 0, or STATUS_USAGE naming the wall that is not there or
+ * has no value, `otherwise` being NaN. */
+int wall_values(const char *option, const char *text, double otherwise, double low, double high,
+                const struct walls *walls, double values[WALLS_MAX]);
+
+/* Reports a quantity of spheres: its number, its types' numbers or its column; values of walls, each under the key
+ * wall_NAME and this ending. */
+void quantity_report(const struct quantity *quantity, const char *key, struct report *report);
+void wall_values_report(const struct walls *walls, const double *values, const char *ending, int digits,
+                        struct report *report);
+
+/* Emissivities of walls; text NULL: black. */
+int wall_emissivities(const char *text, const struct walls *walls, double emissivity[WALLS_MAX]);
 
 #endif

@@ -131,6 +131,14 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
     return STATUS_OK;
 }
 
+bool walls_closed(const struct walls *walls, const struct bed *bed) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool both = wall_named(walls, plane_names[2 * axis]) && wall_named(walls, plane_names[2 * axis + 1]);
+        if (!(bed->period[axis] > 0) && !both && !(axis < 2 && wall_named(walls, "cylinder"))) return false;
+    }
+    return true;
+}
+
 static bool is_beyond(const fibrad_body *wall, const double centre[3]) {
     if (is_cylinder(wall))
         return hypot(centre[0] - wall->cylinder.x, centre[1] - wall->cylinder.y) > wall->cylinder.radius;
@@ -142,8 +150,8 @@ static int check_centres(const struct walls *walls, const struct bed *bed, const
     for (uint32_t i = 0; i < bed->n; ++i)
         for (uint32_t k = 0; k < walls->count; ++k)
             if (is_beyond(&walls->body[k], (const double[]){bed->x[i], bed->y[i], bed->z[i]}))
-                return message_at(STATUS_INPUT, file, bed->line[i], "the centre of sphere %u lies beyond the wall %s",
-                                  i, wall_name(&walls->body[k]));
+                return message_at(STATUS_INPUT, file, bed->line[i], "the centre of sphere %lld lies beyond the wall %s",
+                                  (long long)bed_name(bed, i), wall_name(&walls->body[k]));
     return STATUS_OK;
 }
 

@@ -31,7 +31,7 @@ struct wall_options {
 #define WALLS_MORE                                                                                                     \
     "Walls: a LIST parted by commas. A side is xmin=VALUE, or without =VALUE the end of the file's box, or else of "   \
     "the\n"                                                                                                            \
-    "spheres. Sides named besides auto or box come first, and stand where they say.\n"
+    "spheres. Sides named besides auto or box stand where they say.\n"
 
 /* "xmin" ... "zmax", "cylinder". */
 const char *wall_name(const fibrad_body *wall);
@@ -42,5 +42,8 @@ int walls_option(const char *text, struct wall_options *options);
 /* Places the walls about a bed whose periods are settled; `file` is its name in messages. Status 0, STATUS_USAGE if
  * walls and periodic axes do not agree, STATUS_INPUT naming the line if a centre lies beyond a wall. */
 int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, struct walls *walls);
+
+/* Whether nothing can escape: each axis is periodic or has both planes, or the cylinder stands about it. */
+bool walls_closed(const struct walls *walls, const struct bed *bed);
 
 #endif

@@ -9,7 +9,7 @@
 
 #define GRACE 2 /* seconds */
 
-enum { FILES = 4 };
+enum { FILES = 16 };
 
 static volatile sig_atomic_t caught;
 static const char *volatile temporary[FILES];

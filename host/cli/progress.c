@@ -25,9 +25,14 @@ void progress_begin(struct progress *progress, bool forced, const char *what, ui
 
 static void draw_bar(const struct progress *progress, uint64_t done, double now) {
     enum { WIDTH = 30 };
-    const double part = progress->total ? (double)done / (double)progress->total : 1;
     const double passed = now - progress->begun;
     const double rate = passed > 0 ? (double)done / passed : 0;
+    if (progress->total == 0) {
+        fprintf(stderr, "\r%llu %s, %.0f/s ", (unsigned long long)done, progress->what, rate);
+        fflush(stderr);
+        return;
+    }
+    const double part = (double)done / (double)progress->total;
     const double left = rate > 0 ? (double)(progress->total - done) / rate : 0;
     char bar[WIDTH + 1] = "";
     for (int k = 0; k < WIDTH; ++k) bar[k] = k < part * WIDTH ? '#' : '.';
@@ -59,10 +64,14 @@ void progress_end(struct progress *progress, uint64_t done) {
 
 int progress_stage(void *context, const char *stage, uint64_t done, uint64_t total) {
     struct progress *progress = context;
-    if (total > 0 && done == 0) progress_begin(progress, progress->forced, stage, total);
+    if (progress->quiet) return interrupt_status() != 0;
+    if (done == 0) {
+        progress_stop(progress);
+        progress_begin(progress, progress->forced, stage, total);
+    }
     if (total > 0 && done == total)
         progress_end(progress, done);
-    else if (total > 0)
+    else
         progress_show(progress, done);
     return interrupt_status() != 0;
 }

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/message.h"
 
@@ -18,7 +19,32 @@ static bool position(const char **text, unsigned long long *value) {
     return errno == 0;
 }
 
-int targets_mark(const char *list, uint32_t n, unsigned char *marks) {
+/* The first sphere whose name is not below this one; n: there is none. */
+static uint32_t first_from(const int64_t *id, uint32_t n, unsigned long long name) {
+    uint32_t low = 0, high = n;
+    if (!id) return name < n ? (uint32_t)name : n;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if ((unsigned long long)id[middle] < name)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static int mark_range(const int64_t *id, uint32_t n, unsigned long long first, unsigned long long last,
+                      unsigned char *marks) {
+    const uint32_t begin = first_from(id, n, first), end = first_from(id, n, last + 1);
+    if (begin == end || (!id && last >= n))
+        return message(STATUS_USAGE, "--targets: there is no sphere %llu; they are %lld to %lld",
+                       begin == end ? first : last, id && n ? (long long)id[0] : 0,
+                       id && n ? (long long)id[n - 1] : (long long)n - 1);
+    memset(marks + begin, 1, end - begin);
+    return STATUS_OK;
+}
+
+int targets_mark(const char *list, const int64_t *id, uint32_t n, unsigned char *marks) {
     for (const char *text = list;; ++text) {
         unsigned long long first, last;
         bool good = position(&text, &first);
@@ -27,11 +53,9 @@ int targets_mark(const char *list, uint32_t n, unsigned char *marks) {
             ++text;
             good = position(&text, &last) && first <= last;
         }
-        if (!good || (*text && *text != ','))
+        if (!good || last > INT64_MAX - 1 || (*text && *text != ','))
             return message(STATUS_USAGE, "--targets: '%.60s' is no list such as 3,7,10-19", list);
-        if (marks && last >= n)
-            return message(STATUS_USAGE, "--targets: there is no sphere %llu; the last is %u", last, n - 1);
-        for (; marks && first <= last; ++first) marks[first] = 1;
-        if (*text == 0) return STATUS_OK;
+        const int status = marks ? mark_range(id, n, first, last, marks) : STATUS_OK;
+        if (status || *text == 0) return status;
     }
 }

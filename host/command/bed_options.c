@@ -1,12 +1,21 @@
-/* bed_options.c - what all commands about a bed are asked. SPDX-License-Identifier: MIT */
+/* bed_options.c - what all commands about beds are asked. SPDX-License-Identifier: MIT */
 #include "command/bed_options.h"
 
+#include <glob.h>
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "bed/bed_scene.h"
+#include "cli/memory.h"
 #include "cli/message.h"
-#include "cli/output.h"
-#include "read/read.h"
+
+/* A mean radius above this is hardly one of a particle in metres. */
+#define RADIUS_LARGE 0.1
+
+/* Overlap over the smaller radius that is worth a word. */
+#define OVERLAP_LARGE 0.05
 
 static int take_period(const char *text, double period[3]) {
     int count = 3;
@@ -17,36 +26,91 @@ static int take_period(const char *text, double period[3]) {
     return STATUS_OK;
 }
 
+static int add_file(struct bed_options *asked, const char *name) {
+    char **file = realloc(asked->file, (asked->files + 1) * sizeof *file);
+    if (!file) return message_memory();
+    asked->file = file;
+    file[asked->files] = strdup(name);
+    return file[asked->files++] ? STATUS_OK : message_memory();
+}
+
+/* A name, or all files that a pattern of the shell stands for, which the shell has left alone. */
+static int take_file(struct bed_options *asked, const char *name) {
+    struct stat there;
+    glob_t found;
+    if (!strpbrk(name, "*?[") || stat(name, &there) == 0) return add_file(asked, name);
+    if (glob(name, 0, NULL, &found) != 0) return message_at(STATUS_FILE, name, 0, "there are no such files");
+    int status = STATUS_OK;
+    for (size_t k = 0; k < found.gl_pathc && !status; ++k) status = add_file(asked, found.gl_pathv[k]);
+    globfree(&found);
+    return status;
+}
+
+/* K, all, A:B, A:B:STEP, -1. */
+static int take_frames(const char *text, struct bed_options *asked) {
+    struct frames frames = {0, INT64_MAX, 1};
+    char *end = (char *)text;
+    const char *digits = "0123456789";
+    asked->range = strcmp(text, "all") == 0 || strchr(text, ':');
+    if (strcmp(text, "-1") == 0 || strcmp(text, "all") == 0) {
+        asked->frames = asked->range ? frames : (struct frames){0};
+        return STATUS_OK;
+    }
+    if (strspn(text, digits) > 0) frames.begin = strtoll(text, &end, 10);
+    bool good = (*end == 0 && end != text) || *end == ':';
+    if (*end == 0) frames.end = frames.begin + 1;
+    if (*end == ':' && strspn(++end, digits) > 0) frames.end = strtoll(end, &end, 10);
+    if (*end == ':' && strspn(++end, digits) > 0) frames.step = strtoll(end, &end, 10);
+    good = good && *end == 0 && frames.begin < frames.end && frames.begin < INT64_MAX && frames.step > 0;
+    if (!good) return message(STATUS_USAGE, "--frame: '%.40s' is none of K, all, A:B, A:B:STEP, -1", text);
+    asked->frames = frames;
+    return STATUS_OK;
+}
+
+static int take_length_unit(const char *text, struct bed_options *asked) {
+    double metres;
+    if (!unit_of_length(text, &metres) || metres == 0)
+        return message(STATUS_USAGE, "--length-unit: '%.40s' is none of " UNITS_LENGTH, text);
+    asked->length_unit = text;
+    return STATUS_OK;
+}
+
 int bed_options_take(struct bed_options *asked, const struct options *options, int key) {
     const char *value = options->value;
-    uint64_t frame = 0;
-    int status = STATUS_OK;
     switch (key) {
     case OPTIONS_POSITIONAL:
-        asked->name = lines_name(value);
-        return options_file(value, &asked->file);
+        return take_file(asked, value);
     case KEY_HELP:
         return STATUS_HELP;
     case KEY_PERIODIC:
         asked->periodic = true;
         return take_period(value, asked->period);
     case KEY_FRAME:
-        status = options_whole("--frame", value, 0, INT64_MAX, &frame);
-        asked->frame = (int64_t)frame;
-        return status;
+        return take_frames(value, asked);
     case KEY_WALL:
         return walls_option(value, &asked->walls);
     case KEY_THREADS:
         return options_threads(value, &asked->threads);
-    case KEY_IDS:
-        asked->ids = true;
+    case KEY_POSITIONS:
+        asked->positions = true;
+        return STATUS_OK;
+    case KEY_RADIUS:
+        return quantity_option("--radius", value, 1e-150, 1e150, &asked->radius);
+    case KEY_LENGTH_UNIT:
+        return take_length_unit(value, asked);
+    case KEY_JSON:
+        asked->json = value;
+        return STATUS_OK;
+    case KEY_QUIET:
+        asked->quiet = asked->progress.quiet = true;
         return STATUS_OK;
     case KEY_PROGRESS:
         asked->progress.forced = true;
         return STATUS_OK;
+    case KEY_FORMAT:
+        return outputs_format(&asked->outputs, value);
     case 'o':
-        asked->out = value;
-        return STATUS_OK;
+        return outputs_add(&asked->outputs, value);
     default:
         return STATUS_USAGE; /* OPTIONS_BAD: the message is out */
     }
@@ -57,12 +121,69 @@ size_t bed_options_column(struct bed_options *asked, const char *name) {
     return name ? asked->columns++ : 0;
 }
 
-int bed_options_output(const struct bed_options *asked, bool known, const char *endings) {
-    if (asked->out && !known) return message_at(STATUS_USAGE, asked->out, 0, "unknown ending; there are %s", endings);
-    if (asked->out && output_same(asked->file, asked->out))
-        return message_at(STATUS_USAGE, asked->out, 0, "is the bed itself; it would be replaced");
-    if (asked->ids && !output_ends(asked->out, ".csv")) return message(STATUS_USAGE, "--ids is for -o OUT.csv only");
-    return STATUS_OK;
+bool bed_options_series(const struct bed_options *asked) { return asked->range || asked->files > 1; }
+
+int bed_options_check(struct bed_options *asked, const char *command, enum content content) {
+    if (asked->files == 0) return message(STATUS_USAGE, "which FILE? see fibrad %s --help", command);
+    asked->radius.place = bed_options_column(asked, asked->radius.column);
+    for (size_t k = 0; asked->json && k < asked->files; ++k)
+        if (output_same(asked->file[k], asked->json))
+            return message_at(STATUS_USAGE, asked->json, 0, "is the bed itself; it would be replaced");
+    return outputs_check(&asked->outputs, content, (const char *const *)asked->file, asked->files,
+                         bed_options_series(asked));
+}
+
+/* What the options say of a bed that was read. */
+static int complete_bed(struct bed_options *asked, struct bed *bed) {
+    if (asked->periodic) memcpy(bed->period, asked->period, sizeof bed->period);
+    if (!asked->radius.given) return STATUS_OK;
+    free(bed->r);
+    return quantity_values(&asked->radius, bed, asked->name, "radius", 0, 1e-150, 1e150, &bed->r);
+}
+
+static int run_file(struct bed_options *asked, const char *path, struct bed *bed, bed_options_frame *frame,
+                    void *request) {
+    const struct read_options read = {.frames = asked->frames,
+                                      .positions = asked->positions,
+                                      .no_radius = asked->radius.given,
+                                      .extra = asked->column,
+                                      .extras = asked->columns};
+    struct reader *reader;
+    bool more = true;
+    asked->name = lines_name(path);
+    int status = reader_open(&reader, path, &read);
+    while (!status) {
+        status = reader_next(reader, bed, &more);
+        if (status || !more) break;
+        status = complete_bed(asked, bed);
+        if (!status) status = frame(request, bed);
+        ++asked->frames_done;
+    }
+    reader_close(reader);
+    return status;
+}
+
+int bed_options_frames(struct bed_options *asked, const char *command, bed_options_frame *frame, void *request) {
+    struct output json;
+    struct bed bed;
+    bed_init(&bed);
+    int status = output_open(&json, asked->json);
+    if (!status) status = outputs_open(&asked->outputs);
+    asked->report = (struct report){.text = asked->quiet                      ? NULL
+                                            : outputs_stdout(&asked->outputs) ? stderr
+                                                                              : stdout,
+                                    .json = json.file};
+    if (!status) report_open(&asked->report, command);
+    for (size_t k = 0; k < asked->files && !status; ++k) status = run_file(asked, asked->file[k], &bed, frame, request);
+    if (!status) report_close(&asked->report);
+    status = outputs_close(&asked->outputs, status);
+    bed_free(&bed);
+    return output_close(&json, status);
+}
+
+void bed_options_free(struct bed_options *asked) {
+    for (size_t k = 0; k < asked->files; ++k) free(asked->file[k]);
+    free(asked->file);
 }
 
 fibrad_run bed_options_run(struct bed_options *asked) {
@@ -74,12 +195,106 @@ int bed_options_status(struct bed_options *asked, const struct bed *bed, int sta
     return bed_status(bed, asked->name, status, fault);
 }
 
-int bed_options_read(const struct bed_options *asked, struct bed *bed) {
-    const struct read_options read = {.frames = {.end = asked->frame + 1},
-                                      .positions = !asked->ids,
-                                      .extra = asked->column,
-                                      .extras = asked->columns};
-    const int status = read_bed(asked->file, &read, bed);
-    if (!status && asked->periodic) memcpy(bed->period, asked->period, sizeof bed->period);
+int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute,
+                       void *request) {
+    enum { SAMPLE = 16, ENTRIES_MANY = 2000, ENTRY_BYTES = 48 }; /* the last while rows are averaged */
+    fibrad_bed_factors *factors = NULL;
+    if (options->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < memory_left()) return STATUS_OK;
+    unsigned char *marks = calloc(bed->n, 1);
+    if (!marks) return message_memory();
+    for (uint32_t k = 0; k < SAMPLE; ++k) marks[(uint64_t)bed->n * k / SAMPLE] = 1;
+    options->wanted = marks;
+    int status = compute(request, bed, &factors);
+    options->wanted = NULL;
+    if (!status)
+        status = memory_check((double)factors->matrix.start[bed->n] / SAMPLE * bed->n * ENTRY_BYTES,
+                              "--cutoff, fewer directions or rays, or --targets take less");
+    fibrad_bed_free(factors);
+    free(marks);
     return status;
+}
+
+/* The unit of a bed: the file's, or else that of the option; NULL: neither says. */
+static const char *unit_of(const struct bed_options *asked, const struct bed *bed) {
+    double metres = 0;
+    const bool by_file = bed->units[0] && (!unit_of_length(bed->units, &metres) || metres > 0);
+    return by_file ? bed->units : asked->length_unit;
+}
+
+static double mean_radius(const struct bed *bed) {
+    double sum = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) sum += bed->r[i];
+    return sum / bed->n;
+}
+
+int bed_options_metres(struct bed_options *asked, const struct bed *bed, double *metres) {
+    const char *unit = unit_of(asked, bed);
+    double other;
+    *metres = 1;
+    if (!unit && bed->units[0])
+        return message_at(STATUS_USAGE, asked->name, 0, "units %.20s have no metres; --length-unit gives them",
+                          bed->units);
+    if (unit && !unit_of_length(unit, metres))
+        return message_at(STATUS_USAGE, asked->name, 0, "unknown units '%.20s'", unit);
+    if (unit && asked->length_unit && unit_of_length(asked->length_unit, &other) && other != *metres)
+        return message_at(STATUS_USAGE, asked->name, 0,
+                          "its units are %.20s; --length-unit is for files that name none", unit);
+    if (!unit && mean_radius(bed) > RADIUS_LARGE && !asked->warned) {
+        fprintf(stderr, "fibrad: %s: warning: radii of %g are taken as metres; --length-unit mm, or m\n", asked->name,
+                mean_radius(bed));
+        asked->warned = true;
+    }
+    return STATUS_OK;
+}
+
+int bed_options_write(struct bed_options *asked, const struct bed *bed, struct contents *what) {
+    what->bed = bed;
+    what->file = asked->files > 1 ? asked->name : NULL;
+    what->series = bed_options_series(asked);
+    return outputs_write(&asked->outputs, what, asked->files > 1 ? asked->frames_done : bed->frame);
+}
+
+static void report_wall(struct report *report, const fibrad_body *wall) {
+    const char *name = wall_name(wall);
+    char key[40];
+    snprintf(key, sizeof key, "wall_%s_at", name);
+    if (wall->kind == FIBRAD_BODY_CYLINDER)
+        report_vector(report, key, (const double[]){wall->cylinder.x, wall->cylinder.y, wall->cylinder.radius});
+    else
+        report_value(report, key, wall->plane.at, 9);
+}
+
+/* Overlaps are common in DEM; large ones are not, and make factors mean little. */
+static void report_overlap(struct bed_options *asked, const struct bed *bed, const fibrad_scene_facts *facts) {
+    const uint32_t first = facts->overlap_pair[0], second = facts->overlap_pair[1];
+    if (facts->overlap_max == 0) return;
+    report_value(&asked->report, "overlap_max", facts->overlap_max, 3);
+    if (facts->overlap_max > OVERLAP_LARGE)
+        fprintf(stderr,
+                "fibrad: %s: warning: spheres %lld and %lld of lines %llu and %llu overlap by %.3g of a radius\n",
+                asked->name, (long long)bed_name(bed, first), (long long)bed_name(bed, second),
+                (unsigned long long)bed->line[first], (unsigned long long)bed->line[second], facts->overlap_max);
+}
+
+void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,
+                        const fibrad_scene_facts *facts) {
+    struct report *report = &asked->report;
+    const char *unit = unit_of(asked, bed);
+    report_begin(report);
+    report_text(report, "file", asked->name);
+    report_whole(report, "frame", bed->frame);
+    if (bed->timestep >= 0) report_whole(report, "timestep", bed->timestep);
+    report_count(report, "spheres", bed->n);
+    report_text(report, "named_by", bed->ids ? "ids" : "positions");
+    report_text(report, "length_unit", unit ? unit : bed->units[0] ? bed->units : "not said");
+    if (facts) report_value(report, "radius_min", facts->radius_min, 6);
+    if (facts) report_value(report, "radius_max", facts->radius_max, 6);
+    if (facts) report_overlap(asked, bed, facts);
+    if (bed->low[0] < bed->high[0]) {
+        report_vector(report, "box_low", bed->low);
+        report_vector(report, "box_high", bed->high);
+    }
+    report_vector(report, "periods", bed->period);
+    for (uint32_t k = 0; k < walls->count; ++k) report_wall(report, &walls->body[k]);
+    if (facts) report_text(report, "instruction_set", fibrad_isa_name(facts->isa));
 }

@@ -1,5 +1,5 @@
-/* bed_options.h - what all commands about a bed are asked: its file, how to read it, what to compute with, where the
- * result goes. SPDX-License-Identifier: MIT */
+/* bed_options.h - what all commands about beds are asked: files and how to read them, threads, where results go; and
+ * the run over all frames of all files. SPDX-License-Identifier: MIT */
 #ifndef BED_OPTIONS_H
 #define BED_OPTIONS_H
 
@@ -7,44 +7,88 @@
 #include <stdint.h>
 
 #include "bed/bed.h"
+#include "bed/property_option.h"
+#include "bed/units.h"
 #include "bed/wall_option.h"
 #include "cli/options.h"
+#include "cli/output.h"
 #include "cli/progress.h"
+#include "report/report.h"
+#include "read/read.h"
 #include "simple/fibrad_host.h"
+#include "write/outputs.h"
 
-/* Rows of a table of options, without braces, besides those of options.h and wall_option.h. */
-#define OPTION_PERIODIC                                                                                                \
-    KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"
-#define OPTION_FRAME    KEY_FRAME, "frame", "K", "frame of a dump, from 0 [the last]"
-#define OPTION_IDS      KEY_IDS, "ids", NULL, "in .csv, name spheres by the file's ids [by positions from 0]"
-#define OPTION_PROGRESS KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"
+/* Rows of a table of options, without the outermost braces: what is read, and what is left of it. */
+#define OPTIONS_INPUT                                                                                                  \
+    {KEY_RADIUS, "radius", "R", "of all spheres; or TYPE:R,... [the file's column]"},                                  \
+        {KEY_LENGTH_UNIT, "length-unit", "UNIT", "of files that name none: " UNITS_LENGTH " [m]"},                     \
+        {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},         \
+        {KEY_FRAME, "frame", "K", "frame of a file, from 0; all; A:B or A:B:STEP, B excluded; -1: the last [-1]"}, {   \
+        KEY_POSITIONS, "positions", NULL, "name spheres by their positions in the file, from 0 [by its ids]"           \
+    }
+#define OPTIONS_RUN                                                                                                    \
+    {OPTION_THREADS}, {KEY_JSON, "json", "OUT", "the summary as JSON, all digits of it [none]"},                       \
+        {KEY_QUIET, "quiet", NULL, "neither summary nor progress"},                                                    \
+        {KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"}, {             \
+        OPTION_HELP                                                                                                    \
+    }
 
-/* What was asked; zeroed to begin with, but for the frame. */
+/* What --help says below of the files. */
+#define FILES_MORE                                                                                                     \
+    "FILE: LAMMPS and LIGGGHTS dumps and data files, CSV with a header, extended XYZ, VTK (.vtp, .vtk), YADE and\n"    \
+    "MercuryDPM text, all of them also compressed by gzip; - for standard input. Several files, and 'bed.*.dump',\n"   \
+    "are one series. Spheres go by the ids of the file, or by positions from 0 if it has none. docs/files.md\n"
+
+enum { BED_COLUMNS_MAX = 4 };
+
+/* What was asked; zeroed to begin with. To be freed with bed_options_free. */
 struct bed_options {
-    const char *file; /* "-": standard input */
-    const char *name; /* of the file, in messages */
-    const char *out;  /* NULL: no output but the summary */
-    bool periodic;    /* --periodic was given */
+    char **file; /* [files] "-": standard input */
+    size_t files;
+    struct frames frames;
+    bool range;    /* of frames: there may be several in a file */
+    bool periodic; /* --periodic was given */
     double period[3];
-    int64_t frame;         /* -1: the last */
-    const char *column[2]; /* [columns] read besides */
+    bool positions;
+    struct quantity radius;
+    const char *length_unit;             /* NULL: not given */
+    const char *column[BED_COLUMNS_MAX]; /* [columns] read besides */
     size_t columns;
     struct wall_options walls;
     int threads; /* 0: all cores */
-    bool ids;
+    struct outputs outputs;
+    const char *json;
+    bool quiet;
     struct progress progress;
+    /* of the run */
+    const char *name; /* of the file in hand, in messages */
+    int64_t frames_done;
+    bool warned; /* of radii that look like another unit's */
+    struct report report;
 };
 
-/* Takes FILE, -o, --wall and all options of this header and of OPTION_THREADS and OPTION_HELP; a key that it does not
- * know is OPTIONS_BAD. Status 0, STATUS_HELP or STATUS_USAGE. */
+/* Takes FILE, -o, --wall and all options of this header; a key that it does not know is OPTIONS_BAD. Status 0,
+ * STATUS_HELP, STATUS_USAGE or STATUS_MEMORY. */
 int bed_options_take(struct bed_options *asked, const struct options *options, int key);
 
 /* Asks for a column of the file; returns its place in bed->extra. NULL: none. */
 size_t bed_options_column(struct bed_options *asked, const char *name);
 
-/* Is there something wrong with -o or --ids? `known`: there is a writer for its ending, of those that `endings` lists.
- * Status 0 or STATUS_USAGE. */
-int bed_options_output(const struct bed_options *asked, bool known, const char *endings);
+/* Is a file missing, or is there something wrong with the outputs of this content? Status 0 or STATUS_USAGE. */
+int bed_options_check(struct bed_options *asked, const char *command, enum content content);
+
+/* Computes, writes and reports one frame. Returns its status. */
+typedef int bed_options_frame(void *request, struct bed *bed);
+
+/* Opens the outputs, reads all frames of all files, hands them one after the other to `frame`, and closes the outputs,
+ * which get their names only if all went well. Status as read_bed, or that of a frame. */
+int bed_options_frames(struct bed_options *asked, const char *command, bed_options_frame *frame, void *request);
+
+/* Frees what the options have taken. */
+void bed_options_free(struct bed_options *asked);
+
+/* Several frames go into one output. */
+bool bed_options_series(const struct bed_options *asked);
 
 /* How the library is to be run: threads, and a bar that is kept in `asked`. */
 fibrad_run bed_options_run(struct bed_options *asked);
@@ -52,7 +96,22 @@ fibrad_run bed_options_run(struct bed_options *asked);
 /* The exit status for a status of the library run so, after a message; the bar is ended. As bed_status. */
 int bed_options_status(struct bed_options *asked, const struct bed *bed, int status, const fibrad_fault *fault);
 
-/* Reads the bed, with the box that was asked for. Free it also after an error. Status as read_bed. */
-int bed_options_read(const struct bed_options *asked, struct bed *bed);
+/* Computes the factors of a bed as a request says. Returns a status, a message being out. */
+typedef int bed_options_compute(void *request, const struct bed *bed, fibrad_bed_factors **factors);
+
+/* Whether all rows will fit into memory, judged by a few, which `compute` makes with options->wanted. Status 0;
+ * STATUS_MEMORY; that of compute. Small beds and lists of targets are not asked. */
+int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute, void *request);
+
+/* Metres of the bed's unit of length, for what comes in watts, with a word where it is assumed and looks wrong. Status
+ * 0; STATUS_USAGE if there is none, as in lj. */
+int bed_options_metres(struct bed_options *asked, const struct bed *bed, double *metres);
+
+/* Writes the frame in hand to all outputs. what: all but bed, file and series. */
+int bed_options_write(struct bed_options *asked, const struct bed *bed, struct contents *what);
+
+/* Begins the report of a frame: file, frame, box, radii, units, walls. facts NULL: none. */
+void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,
+                        const fibrad_scene_facts *facts);
 
 #endif

@@ -13,7 +13,7 @@
 #include "plot/plot_bed.h"
 #include "write/write.h"
 
-enum { KEY_CUTOFF = KEY_OWN, KEY_TARGETS };
+enum { KEY_CUTOFF = KEY_OWN, KEY_TARGETS, KEY_DROP };
 
 static const struct option bed_table[] = {
     {KEY_METHOD, "method", "NAME",
@@ -30,21 +30,18 @@ static const struct option bed_table[] = {
     {KEY_CUTOFF, "cutoff", "D", "spheres with centres farther apart than D do not see each other [none]"},
     {KEY_TARGETS, "targets", "LIST", "rows wanted, such as 3,7,10-19, or all; a list implies --raw [all]"},
     {KEY_RAW, "raw", NULL, "do not average F_ij and F_ji [averaged: A_i F_ij = A_j F_ji]"},
-    {OPTION_PERIODIC},
+    {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},
     {OPTION_WALL},
-    {OPTION_FRAME},
-    {OPTION_THREADS},
-    {'o', "output", "OUT", "the matrix: .csv, .mtx, .npz (SciPy); the spheres: .vtp [summary only]"},
-    {OPTION_IDS},
+    OPTIONS_INPUT,
+    {'o', "output", "OUT", "the matrix: .csv .mtx .npz (SciPy) .json; the spheres: .vtp; - [summary only]"},
+    {OPTION_FORMAT},
     {KEY_PLOT, "plot", "OUT", "a picture, .svg or .png, by gnuplot [none]"},
-    {OPTION_PROGRESS},
-    {OPTION_HELP},
+    OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
 struct bed_request {
     struct bed_options bed;
     const char *plot, *targets;
-    write_function *write;
     enum method method;
     struct beam_options beam;
     fibrad_beam_rule beam_rule;
@@ -54,29 +51,29 @@ struct bed_request {
     bool beam_given, surface_given, cast_given;
     struct walls walls;
     fibrad_bed_options options;
+    struct output picture;
 };
 
 static int bed_help(void) {
-    puts("fibrad bed FILE [options]\n\n"
-         "View factors between all spheres of FILE: .csv with a header x,y,z,r, a LAMMPS or LIGGGHTS text dump,\n"
-         "YADE text (#format x_y_z_r), or - for standard input. Positions count from 0 in the order of the file.\n");
+    puts("fibrad bed FILE... [options]\n\n"
+         "View factors between all spheres of FILE.\n");
     options_print(bed_table);
-    puts("\n" WALLS_MORE
-         "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... in the order given and the\n"
-         "surroundings j = -1, so that rows add up to 1; i = -2, -3 ... from walls of finite area to spheres; in .vtp "
-         "an\n"
-         "array for each wall. .mtx and .npz hold spheres only. What leaves a --cutoff is beyond: after the walls in\n"
-         ".csv, `beyond_mean` in the summary.\n\n"
-         "Standard output ends with a summary, one `key value` a line; `wall_NAME`: mean F from a sphere, area.\n\n"
+    puts("\n" FILES_MORE "\n" WALLS_MORE "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... "
+         "and the surroundings j = -1, with\n"
+         "their names in the column `body`, so that rows add up to 1; i = -2, -3 ... from walls of finite area to\n"
+         "spheres; in .vtp an array for each wall. .mtx and .npz hold spheres only. What leaves a --cutoff is "
+         "beyond.\n\n"
+         "Several frames go into one .csv or .json, with their numbers, or into one file each where OUT has a *.\n"
+         "Standard output ends with a summary of each, one `key value` a line; `wall_NAME_F`: mean from a sphere.\n\n"
          "Examples:\n"
          "  fibrad bed packing.dump -o F.mtx --plot bed.png\n"
-         "  fibrad bed packing.dump --error 0.001 -o F.mtx\n"
+         "  fibrad bed packing.dump --error 0.001 -o F.mtx -o F.csv --json F.json\n"
          "  fibrad bed spheres.csv --directions 987 --periodic 12,12,0 -o F.csv\n"
          "  fibrad bed packing.dump --wall auto -o F.csv\n"
          "  fibrad bed spheres.csv --wall cylinder:0,0,25,zmin=0 -o F.csv\n"
          "  fibrad bed packing.dump --method cast --rays 200000 -o F.csv\n"
-         "  fibrad bed packing.dump --frame 3 --targets 0,7,100-199 -o rows.csv\n"
-         "  zcat packing.dump.gz | fibrad bed - --points 128 -o bed.vtp");
+         "  fibrad bed packing.dump --frame 3 --targets 1,7,100-199 -o rows.csv\n"
+         "  fibrad bed packing.dump.gz --frame all -o 'F.*.npz'");
     return STATUS_OK;
 }
 
@@ -108,11 +105,13 @@ static int bed_take(struct bed_request *request, const struct options *options, 
         return options_number("--error", value, 1e-7, 1, &request->error);
     case KEY_TARGETS:
         request->targets = strcmp(value, "all") == 0 ? NULL : value;
-        if (request->targets) status = targets_mark(value, 0, NULL);
+        if (request->targets) status = targets_mark(value, NULL, 0, NULL);
         break;
     case KEY_RAW:
         request->options.raw = 1;
         break;
+    case KEY_DROP:
+        return options_number("--drop", value, 0, 1, &request->options.drop);
     case KEY_PLOT:
         request->plot = value;
         break;
@@ -151,59 +150,60 @@ static int bed_choose(struct bed_request *request) {
 
 /* What can be found wrong before any work is done. */
 static int bed_check(struct bed_request *request) {
-    const char *endings;
-    if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad bed --help");
-    request->write = write_find(request->bed.out, &endings);
-    const int status = bed_options_output(&request->bed, request->write, endings);
+    int status = bed_options_check(&request->bed, "bed", CONTENT_MATRIX);
     if (status) return status;
     if (request->plot && !plot_ending(request->plot))
         return message_at(STATUS_USAGE, request->plot, 0, "unknown ending; there are .svg and .png");
+    if (request->plot && bed_options_series(&request->bed))
+        return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
     if (request->targets) request->options.raw = 1;
+    if (request->options.drop > 0 && request->options.raw)
+        return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw or --targets");
     return bed_choose(request);
 }
 
 static int bed_parse(struct bed_request *request, int argc, char **argv) {
     struct options options = {.command = "bed", .table = bed_table, .argc = argc, .argv = argv};
-    *request = (struct bed_request){.method = METHOD_BEAM, .surface.nodes = 55, .cast.rays = 20000, .bed.frame = -1};
+    *request = (struct bed_request){.method = METHOD_BEAM, .surface.nodes = 55, .cast.rays = 20000};
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = bed_take(request, &options, key);
     return status ? status : bed_check(request);
 }
 
-static void warn_of_overlap(const char *file, const struct bed *bed, const fibrad_scene_facts *facts) {
-    if (facts->overlap_max == 0) return;
-    const uint64_t line[2] = {bed->line[facts->overlap_pair[0]], bed->line[facts->overlap_pair[1]]};
-    fprintf(stderr, "fibrad: %s: largest overlap %.3g of a radius, lines %" PRIu64 " and %" PRIu64 "%s\n", file,
-            facts->overlap_max, line[0], line[1], facts->overlap_max > 0.05 ? ": warning: above 5 %" : "");
-}
-
-static void bed_print(const struct bed_request *request, const struct contents *what, const struct summary *summary) {
+static void bed_report(struct bed_request *request, const struct contents *what, const struct summary *summary) {
+    static const char *const methods[] = {"exact", "beam", "surface", "cast", "mc"};
     const fibrad_bed_factors *factors = what->factors;
-    const fibrad_scene_facts *facts = &factors->facts;
-    printf("%s: radii %g to %g, %s rows, %s\n", request->bed.name, facts->radius_min, facts->radius_max,
-           request->options.raw ? "raw" : "reciprocal", fibrad_isa_name(facts->isa));
-    printf("spheres %" PRIu32 "\n", facts->spheres);
-    printf("nonzeros %" PRIu64 "\n", factors->matrix.start[facts->spheres]);
+    struct report *report = &request->bed.report;
+    bed_options_report(&request->bed, what->bed, what->walls, &factors->facts);
+    report_text(report, "method", methods[request->method]);
     if (request->method == METHOD_BEAM)
-        printf("directions %" PRIu32 "\n", factors->directions);
+        report_count(report, "directions", factors->directions);
     else if (request->method == METHOD_SURFACE)
-        printf("nf %" PRIu32 "\n", request->surface.nodes);
+        report_count(report, "nf", request->surface.nodes);
     else
-        printf("rays %" PRIu32 "\n", request->cast.rays);
-    printf("threads %d\n", factors->threads);
-    printf("seconds %.17g\n", factors->seconds);
-    printf("row_sum_min %.17g\n", summary->row_sum_min);
-    printf("row_sum_max %.17g\n", summary->row_sum_max);
-    printf("escaped_mean %.17g\n", summary->escaped_mean);
-    if (request->cutoff > 0) printf("beyond_mean %.17g\n", summary->beyond_mean);
-    printf("closure_max %.17g\n", factors->closure_error);
-    printf("reciprocity_max %.17g\n", factors->reciprocity_error);
-    printf("error_estimate %.17g\n", summary->error_max);
-    summary_print_walls(summary, what);
-    printf("fallbacks %" PRIu64 "\n", factors->fallbacks);
+        report_count(report, "rays", request->cast.rays);
+    if (request->beam_rule.points > 0) report_count(report, "points", request->beam_rule.points);
+    if (request->cutoff > 0) report_value(report, "cutoff", request->cutoff, 9);
+    if (request->error > 0) report_value(report, "error_wanted", request->error, 6);
+    report_text(report, "rows", request->options.raw ? "raw" : "reciprocal");
+    report_count(report, "threads", (uint64_t)factors->threads);
+    report_value(report, "seconds", factors->seconds, 3);
+    report_count(report, "nonzeros", factors->matrix.start[factors->facts.spheres]);
+    report_measured(report, "row_sum_min", summary->row_sum_min, summary->error_max);
+    report_measured(report, "row_sum_max", summary->row_sum_max, summary->error_max);
+    report_measured(report, "escaped_mean", summary->escaped_mean, summary->error_rms);
+    if (request->cutoff > 0) report_measured(report, "beyond_mean", summary->beyond_mean, summary->error_rms);
+    summary_report_walls(summary, what, report);
+    report_value(report, "closure_max", factors->closure_error, 2);
+    report_value(report, "reciprocity_max", factors->reciprocity_error, 2);
+    report_value(report, "error_rms", summary->error_rms, 2);
+    report_value(report, "error_max", summary->error_max, 2);
+    if (request->method == METHOD_BEAM) report_count(report, "fallbacks", factors->fallbacks);
+    report_end(report);
 }
 
-static int bed_compute(struct bed_request *request, const struct bed *bed, fibrad_bed_factors **factors) {
+static int bed_compute(void *bed_request, const struct bed *bed, fibrad_bed_factors **factors) {
+    struct bed_request *request = bed_request;
     const fibrad_scene_config scene = bed_scene(bed, &request->walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     fibrad_run run = bed_options_run(&request->bed);
@@ -211,59 +211,56 @@ static int bed_compute(struct bed_request *request, const struct bed *bed, fibra
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
-/* Opens the outputs before the work, so that a path that cannot be written costs no time. */
-static int bed_write(struct bed_request *request, struct contents *what, fibrad_bed_factors **factors) {
-    struct output out = {0}, plot = {0};
-    struct summary summary = {0};
-    int status = output_open(&out, request->bed.out);
-    if (!status) status = output_open(&plot, request->plot);
-    if (!status) status = bed_compute(request, what->bed, factors);
-    if (!status) {
-        what->factors = *factors;
-        summary_make(&summary, what);
-        warn_of_overlap(request->bed.name, what->bed, &what->factors->facts);
-    }
-    if (!status && request->error > 0 && summary.error_max > request->error)
+/* The matrix of one frame into all outputs. */
+static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_factors **factors) {
+    struct contents what = {.wanted = request->options.wanted, .walls = &request->walls};
+    struct summary summary;
+    int status = bed_options_memory(bed, &request->options, bed_compute, request);
+    if (!status) status = bed_compute(request, bed, factors);
+    if (status) return status;
+    what.factors = *factors;
+    summary_make(&summary, &what);
+    if (request->error > 0 && summary.error_max > request->error)
         fprintf(stderr, "fibrad: %s: warning: %d directions were not enough for --error %g\n", request->bed.name,
                 FIBRAD_DIRECTIONS_MAX, request->error);
-    if (!status && request->bed.out) status = request->write(out.file, what);
-    if (!status && request->plot) status = plot_bed(&plot, request->bed.file, what);
-    status = output_close(&out, status);
-    status = output_close(&plot, status);
-    if (!status) bed_print(request, what, &summary);
+    status = bed_options_write(&request->bed, bed, &what);
+    if (!status && request->plot) status = plot_bed(&request->picture, request->bed.name, &what);
+    if (!status) bed_report(request, &what, &summary);
     return status;
 }
 
-static int bed_run(struct bed_request *request, struct bed *bed, fibrad_bed_factors **factors) {
-    int status = bed_options_read(&request->bed, bed);
-    if (status) return status;
-    if (request->method == METHOD_SURFACE && request->cutoff == 0 &&
-        (bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0))
+static int bed_frame(void *bed_request, struct bed *bed) {
+    struct bed_request *request = bed_request;
+    fibrad_bed_factors *factors = NULL;
+    const bool periodic = bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0;
+    if (request->method == METHOD_SURFACE && request->cutoff == 0 && periodic)
         return message(STATUS_USAGE, "--method surface needs a --cutoff in a periodic box");
-    status = walls_of(&request->bed.walls, bed, request->bed.name, &request->walls);
+    int status = walls_of(&request->bed.walls, bed, request->bed.name, &request->walls);
     if (status) return status;
     if (request->method == METHOD_SURFACE && request->walls.count > 0)
         return message(STATUS_USAGE, "--wall is for the methods beam, cast and mc");
     unsigned char *marks = NULL;
     if (request->targets) {
         marks = calloc(bed->n, 1);
-        status = marks ? targets_mark(request->targets, bed->n, marks) : message_memory();
+        status = marks ? targets_mark(request->targets, bed->ids ? bed->id : NULL, bed->n, marks) : message_memory();
     }
     request->options.wanted = marks;
-    struct contents what = {.bed = bed, .wanted = marks, .walls = &request->walls};
-    if (!status) status = bed_write(request, &what, factors);
+    if (!status) status = bed_matrix(request, bed, &factors);
+    fibrad_bed_free(factors);
     free(marks);
     return status;
 }
 
 int command_bed(int argc, char **argv) {
     struct bed_request request;
-    struct bed bed = {0};
-    fibrad_bed_factors *factors = NULL;
     int status = bed_parse(&request, argc, argv);
-    if (status) return status == STATUS_HELP ? bed_help() : status;
-    status = bed_run(&request, &bed, &factors);
-    fibrad_bed_free(factors);
-    bed_free(&bed);
+    if (status == STATUS_HELP) {
+        status = bed_help();
+    } else if (!status) {
+        status = output_open(&request.picture, request.plot);
+        if (!status) status = bed_options_frames(&request.bed, "bed", bed_frame, &request);
+        status = output_close(&request.picture, status);
+    }
+    bed_options_free(&request.bed);
     return status;
 }

@@ -1,89 +1,103 @@
 /* command_conductivity.c - `fibrad conductivity`: effective radiative conductivity of a bed of grey spheres.
- * SPDX-License-Identifier: MIT
- *
- * In a linear field of temperature with gradient g the spheres of a volume V, each at the temperature of its centre,
- * carry the flux g/(2 V) sum over i, j of 4 sigma T^3 A_i e_i D_ij dz_ij^2 along the gradient, which is k g. */
-#include <inttypes.h>
+ * SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "bed/bed_scene.h"
-#include "bed/property_option.h"
+#include "bed/conduction.h"
 #include "cli/message.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
 
-#define PI 3.14159265358979323846
-
-/* On open axes only spheres emit whose centres are so many mean diameters inside all, and so many there have to be. */
-#define MARGIN   4.0
-#define EMITTERS 40u
-
-/* What --error asks for is first estimated with so many paths in all; and the most there may be per sphere. */
-#define PILOT   50000.0
-#define PER_MAX 100000000.0
+enum { KEY_AXIS = KEY_OWN, KEY_CONDUCTIVITY_TEMPERATURE, KEY_MAX_RAYS };
 
 static const struct option conductivity_table[] = {
     {OPTION_EMISSIVITY},
+    {KEY_CONDUCTIVITY_TEMPERATURE, "temperature", "T", "mean temperature, for k [none: F_E alone]"},
+    {OPTION_TEMPERATURE_UNIT},
+    {KEY_AXIS, "axis", "x|y|z", "F_E along this axis alone, and --error for it alone [all three]"},
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [as many as --error takes]"},
     {KEY_ERROR, "error", "E", "as many as bring the estimated standard errors to E of F_E, 1e-4 to 1 [0.003]"},
+    {KEY_MAX_RAYS, "max-rays", "N", "no more rays in all than about so many for --error [5e7]"},
     {KEY_SEED, "seed", "S", "another number, other paths and directions [0]"},
-    {OPTION_PERIODIC},
-    {OPTION_FRAME},
-    {OPTION_THREADS},
-    {OPTION_PROGRESS},
-    {OPTION_HELP},
+    OPTIONS_INPUT,
+    {'o', "output", "OUT", "F_E and k per axis: .csv .json; - [summary only]"},
+    {OPTION_FORMAT},
+    OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
 struct conductivity_request {
     struct bed_options bed;
     struct quantity emissivity;
-    fibrad_exchange_rule rule;
-    double error;
-};
-
-/* The part of the bed that emits, and what comes of it. */
-struct conductivity {
-    double volume, diameter; /* [L^3] that belongs to them; [L] mean of all spheres */
-    uint32_t emitters;
-    double factor[3], error[3]; /* F_E per axis and its standard error */
-    double escaped;             /* fraction of the emission that no sphere absorbs */
-    uint64_t rays;
-    double seconds;
+    const char *at;     /* --temperature; NULL: not given */
+    double zero;        /* 0 of the unit of temperature [K] */
+    double temperature; /* [K]; 0: not given */
+    struct conduction_rule rule;
 };
 
 static int conductivity_help(void) {
-    puts("fibrad conductivity FILE --emissivity E|COLUMN [options]\n\n"
+    puts("fibrad conductivity FILE... --emissivity E [options]\n\n"
          "Exchange factor F_E = k/(4 sigma T^3 d) along each axis, k being the radiative conductivity [W/(m K)] of a "
          "bed of\n"
          "grey diffuse spheres, each of one temperature (their own conductivity is large), and d the mean diameter "
-         "[m].\n"
-         "FILE as for fibrad bed.\n");
+         "[m].\n");
     options_print(conductivity_table);
-    printf("\nThe result is that of a linear field of temperature. With open axes only spheres at least %g mean "
-           "diameters inside\n"
-           "the outermost centres emit; all absorb.\n",
-           MARGIN);
-    puts("Standard output ends with lines `key value`, the last six F_E_x, F_E_y, F_E_z, F_E_x_error, F_E_y_error,\n"
-         "F_E_z_error (standard errors, estimated).\n\n"
+    printf(
+        "\n" FILES_MORE
+        "\nThe result is that of a linear field of temperature. With open axes only spheres at least %g mean "
+        "diameters inside\n"
+        "the outermost centres emit; all absorb. Where a periodic bed has gaps, flights may be so long that F_E along "
+        "them\n"
+        "does not exist or its standard error cannot be estimated: a warning says so.\n",
+        CONDUCTION_MARGIN);
+    puts("Standard output ends with lines `key value`, the last of them F_E_x, F_E_y, F_E_z, F_E_x_error, "
+         "F_E_y_error,\n"
+         "F_E_z_error (standard errors, estimated); `unreliable`: the axes whose errors are not to be relied on. With\n"
+         "--temperature k_x_W_mK ... k_z_W_mK_error come before.\n\n"
          "Examples:\n"
          "  fibrad conductivity packing.dump --emissivity 0.8\n"
+         "  fibrad conductivity packing.dump --emissivity 0.8 --axis z --temperature 1200 -o k.csv\n"
          "  fibrad conductivity cell.csv --periodic 2,2,2 --emissivity 0.4 --error 0.001");
     return STATUS_OK;
 }
 
+static int take_axis(const char *text, int *axis) {
+    if (strcmp(text, "x") != 0 && strcmp(text, "y") != 0 && strcmp(text, "z") != 0)
+        return message(STATUS_USAGE, "--axis: '%.40s' is none of x, y and z", text);
+    *axis = text[0] - 'x';
+    return STATUS_OK;
+}
+
+/* Whole numbers, also those such as 2e8. */
+static int take_rays(const char *text, uint64_t *rays) {
+    double value;
+    const int status = options_number("--max-rays", text, 1, 1e15, &value);
+    *rays = (uint64_t)value;
+    return status;
+}
+
 static int conductivity_take(struct conductivity_request *request, const struct options *options, int key) {
     const char *value = options->value;
+    struct conduction_rule *rule = &request->rule;
     switch (key) {
     case KEY_EMISSIVITY:
-        return emissivity_option(value, &request->emissivity);
+        return quantity_option("--emissivity", value, 0, 1, &request->emissivity);
+    case KEY_CONDUCTIVITY_TEMPERATURE:
+        request->at = value;
+        return STATUS_OK;
+    case KEY_TEMPERATURE_UNIT:
+        return temperature_unit_option(value, &request->zero);
+    case KEY_AXIS:
+        return take_axis(value, &rule->axis);
     case KEY_RAYS:
-        return options_count("--rays", value, 1, FIBRAD_PATHS_MAX, &request->rule.paths);
+        return options_whole("--rays", value, 1, FIBRAD_PATHS_MAX, &rule->paths);
     case KEY_ERROR:
-        return options_number("--error", value, 1e-4, 1, &request->error);
+        return options_number("--error", value, 1e-4, 1, &rule->error);
+    case KEY_MAX_RAYS:
+        return take_rays(value, &rule->max_rays);
     case KEY_SEED:
-        return options_whole("--seed", value, 0, UINT64_MAX, &request->rule.seed);
+        return options_whole("--seed", value, 0, UINT64_MAX, &rule->seed);
     default:
         return bed_options_take(&request->bed, options, key);
     }
@@ -91,189 +105,143 @@ static int conductivity_take(struct conductivity_request *request, const struct 
 
 static int conductivity_parse(struct conductivity_request *request, int argc, char **argv) {
     struct options options = {.command = "conductivity", .table = conductivity_table, .argc = argc, .argv = argv};
-    *request = (struct conductivity_request){.bed.frame = -1};
+    *request = (struct conductivity_request){.rule.axis = -1};
+    struct conduction_rule *rule = &request->rule;
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
         status = conductivity_take(request, &options, key);
     if (status) return status;
-    if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad conductivity --help");
+    if (request->at)
+        status = options_number("--temperature", request->at, -request->zero, TEMPERATURE_MAX, &request->temperature);
+    if (status) return status;
+    if (request->at) request->temperature += request->zero;
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");
-    if (request->error > 0 && request->rule.paths > 0)
+    if (rule->error > 0 && rule->paths > 0)
         return message(STATUS_USAGE, "--error finds the rays itself; leave out --rays");
-    if (request->error == 0) request->error = 0.003;
+    if (rule->max_rays > 0 && rule->paths > 0)
+        return message(STATUS_USAGE, "--max-rays is for --error; leave out --rays");
+    if (rule->error == 0) rule->error = 0.003;
+    if (rule->max_rays == 0) rule->max_rays = 50000000;
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
-    return STATUS_OK;
+    return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION);
 }
 
-/* The part of the bed that emits, a box; infinite along periodic axes. */
-struct core {
-    double low[3], high[3], volume;
-};
+/* The axes with some of these kinds of flights, such as "xz"; how many there are. */
+static int axes_with(const struct conduction *result, unsigned kinds, char axes[4]) {
+    int count = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        if (conduction_wants(result, axis) && conduction_flights(result, axis) & kinds)
+            axes[count++] = (char)('x' + axis);
+    axes[count] = 0;
+    return count;
+}
 
-static int find_core(const struct bed *bed, const char *file, double diameter, struct core *core) {
-    const double *at[3] = {bed->x, bed->y, bed->z};
-    core->volume = 1;
+/* Figures of the axes that are wanted, and their errors under keys that end with _error. */
+static void report_axes(struct report *report, const struct conduction *result, const char *key, const double value[3],
+                        const double error[3]) {
+    char text[40];
     for (int axis = 0; axis < 3; ++axis) {
-        core->low[axis] = -INFINITY;
-        core->high[axis] = INFINITY;
-        if (bed->period[axis] > 0) {
-            core->volume *= bed->period[axis];
-            continue;
-        }
-        double low = INFINITY, high = -INFINITY;
-        for (uint32_t i = 0; i < bed->n; ++i) {
-            low = fmin(low, at[axis][i]);
-            high = fmax(high, at[axis][i]);
-        }
-        core->low[axis] = low + MARGIN * diameter;
-        core->high[axis] = high - MARGIN * diameter;
-        if (!(core->high[axis] > core->low[axis]))
-            return message_at(STATUS_INPUT, file, 0, "too thin along %c, an open axis: %g mean diameters at the least",
-                              'x' + axis, 2 * MARGIN);
-        core->volume *= core->high[axis] - core->low[axis];
+        snprintf(text, sizeof text, key, 'x' + axis, "");
+        if (conduction_wants(result, axis)) report_measured(report, text, value[axis], error[axis]);
     }
-    return STATUS_OK;
-}
-
-static bool is_inside(const struct core *core, const double at[3]) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (!(at[axis] >= core->low[axis] && at[axis] < core->high[axis])) return false;
-    return true;
-}
-
-/* The fraction of a sphere that lies inside, by points: counting centres alone would be as rough as a small core is
- * small. */
-static double part_inside(const struct bed *bed, uint32_t i, const struct core *core) {
-    enum { POINTS = 256 };
-    uint32_t count = 0;
-    for (uint32_t k = 0; k < POINTS; ++k) {
-        double w[3];
-        fibrad_direction(k, POINTS, w);
-        const double depth =
-            bed->r[i] * cbrt(fmod((k + .5) * .7548776662466927, 1)); /* even in the cube of the radius */
-        const double at[3] = {bed->x[i] + depth * w[0], bed->y[i] + depth * w[1], bed->z[i] + depth * w[2]};
-        count += is_inside(core, at);
+    for (int axis = 0; axis < 3; ++axis) {
+        snprintf(text, sizeof text, key, 'x' + axis, "_error");
+        if (conduction_wants(result, axis)) report_value(report, text, error[axis], 2);
     }
-    return count / (double)POINTS;
 }
 
-/* Marks the spheres that emit, and measures the volume that belongs to them: that of the spheres themselves over the
- * solid fraction of the core. */
-static int choose_emitters(const struct bed *bed, const char *file, struct conductivity *result, unsigned char *emits) {
-    struct core core;
-    double solid = 0, emitting = 0;
-    for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
-    const int status = find_core(bed, file, result->diameter, &core);
-    if (status) return status;
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const double volume = 4 * PI / 3 * pow(bed->r[i], 3);
-        emits[i] = is_inside(&core, (const double[]){bed->x[i], bed->y[i], bed->z[i]});
-        emitting += emits[i] * volume;
-        solid += part_inside(bed, i, &core) * volume;
-        result->emitters += emits[i];
+static void conductivity_report(struct conductivity_request *request, const struct bed *bed,
+                                const struct conduction *result) {
+    static const struct walls none;
+    struct report *report = &request->bed.report;
+    char unreliable[4];
+    bed_options_report(&request->bed, bed, &none, NULL);
+    quantity_report(&request->emissivity, "emissivity", report);
+    report_count(report, "emitters", result->emitters);
+    report_value(report, "diameter", result->diameter, 6);
+    report_value(report, "solid_fraction", result->solid_fraction, 4);
+    report_count(report, "seed", request->rule.seed);
+    report_count(report, "paths", result->paths);
+    report_count(report, "rays", result->rays);
+    report_value(report, "seconds", result->seconds, 3);
+    report_value(report, "escaped", result->escaped, 2);
+    axes_with(result, FLIGHTS_ENDLESS | FLIGHTS_RARE, unreliable);
+    report_text(report, "unreliable", *unreliable ? unreliable : "none");
+    if (result->temperature > 0) {
+        report_value(report, "temperature_K", result->temperature, 6);
+        report_axes(report, result, "k_%c_W_mK%s", result->k, result->k_error);
     }
-    result->volume = core.volume * emitting / solid;
-    const bool open = bed->period[0] == 0 || bed->period[1] == 0 || bed->period[2] == 0;
-    if (open && result->emitters < EMITTERS)
-        return message_at(STATUS_INPUT, file, 0, "only %u spheres are %g mean diameters inside the bed, %u are needed",
-                          result->emitters, MARGIN, EMITTERS);
-    return STATUS_OK;
+    report_axes(report, result, "F_E_%c%s", result->factor, result->error);
+    report_end(report);
 }
 
-/* Adds up what the emitters have told. Summed in order, whatever the threads did. */
-static void add_emitters(const struct bed *bed, const double *emissivity, const unsigned char *emits,
-                         const fibrad_displacement *moved, struct conductivity *result) {
-    double square[3] = {0}, lost = 0, all = 0;
-    for (int axis = 0; axis < 3; ++axis) result->factor[axis] = 0;
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        if (!emits[i]) continue;
-        const double emission = 4 * PI * bed->r[i] * bed->r[i] * emissivity[i];
-        const double weight = emission / (2 * result->volume * result->diameter);
-        for (int axis = 0; axis < 3; ++axis) {
-            result->factor[axis] += weight * moved[i].square[axis];
-            square[axis] += pow(weight * moved[i].error[axis], 2);
-        }
-        lost += emission * (1 - moved[i].absorbed);
-        all += emission;
-        result->rays += moved[i].rays;
-    }
-    for (int axis = 0; axis < 3; ++axis) result->error[axis] = sqrt(square[axis]);
-    result->escaped = fmax(0, lost / all);
-}
-
-/* The paths per sphere that bring the error of the worst axis down to what is asked for, a tenth to spare. */
-static double paths_for(const struct conductivity_request *request, const struct conductivity *result) {
-    double worst = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        if (result->factor[axis] > 0) worst = fmax(worst, result->error[axis] / result->factor[axis]);
-    return request->rule.paths * fmax(1, 1.1 * pow(worst / request->error, 2));
-}
-
-static int conductivity_compute(struct conductivity_request *request, const struct bed *bed, const unsigned char *emits,
-                                fibrad_displacement *moved, struct conductivity *result) {
-    const fibrad_scene_config scene = bed_scene(bed, NULL);
-    const fibrad_spheres spheres = bed_spheres(bed);
-    const bool search = request->rule.paths == 0;
-    const double begun = progress_clock();
-    if (search) request->rule.paths = (uint32_t)fmin(PER_MAX, fmax(16, ceil(PILOT / result->emitters)));
-    for (int round = 0; round < 3; ++round) {
-        fibrad_run run = bed_options_run(&request->bed);
-        int status = fibrad_displacements(&scene, &spheres, &request->rule, emits, &run, moved, NULL);
-        status = bed_options_status(&request->bed, bed, status, &run.fault);
-        if (status) return status;
-        add_emitters(bed, request->rule.emissivity, emits, moved, result);
-        const double paths = paths_for(request, result);
-        if (!search || paths <= request->rule.paths) break;
-        request->rule.paths = (uint32_t)fmin(PER_MAX, paths);
-    }
-    result->seconds = progress_clock() - begun;
-    return STATUS_OK;
-}
-
-static void conductivity_print(const struct conductivity_request *request, const struct bed *bed,
-                               const struct conductivity *result) {
-    static const char axes[] = "xyz";
-    printf("%s: paths of grey diffuse radiation in a linear field of temperature\n", request->bed.name);
-    printf("spheres %" PRIu32 "\n", bed->n);
-    printf("emitters %" PRIu32 "\n", result->emitters);
-    printf("diameter %.17g\n", result->diameter);
-    printf("paths %" PRIu32 "\n", request->rule.paths);
-    printf("rays %" PRIu64 "\n", result->rays);
-    printf("seconds %.17g\n", result->seconds);
-    printf("escaped %.17g\n", result->escaped);
-    for (int axis = 0; axis < 3; ++axis) printf("F_E_%c %.17g\n", axes[axis], result->factor[axis]);
-    for (int axis = 0; axis < 3; ++axis) printf("F_E_%c_error %.17g\n", axes[axis], result->error[axis]);
-}
-
-static int conductivity_run(struct conductivity_request *request, struct bed *bed) {
-    struct conductivity result = {0};
+static void conductivity_warn(const struct conductivity_request *request, const struct conduction *result) {
     const char *file = request->bed.name;
-    int status = bed_options_read(&request->bed, bed);
-    if (status) return status;
-    double *emissivity = NULL;
-    unsigned char *emits = calloc(bed->n, 1);
-    fibrad_displacement *moved = calloc(bed->n, sizeof *moved);
-    if (!emits || !moved) status = message_memory();
-    if (!status) status = emissivity_of(&request->emissivity, bed, file, &emissivity);
-    request->rule.emissivity = emissivity;
-    if (!status) status = choose_emitters(bed, file, &result, emits);
-    if (!status) status = conductivity_compute(request, bed, emits, moved, &result);
-    if (!status && result.escaped > 1e-3)
+    char axes[4];
+    if (result->escaped > 1e-3)
         fprintf(stderr, "fibrad: %s: warning: %.2g of what the core emits leaves the bed; F_E is too low\n", file,
-                result.escaped);
-    if (!status) conductivity_print(request, bed, &result);
+                result->escaped);
+    if (axes_with(result, FLIGHTS_ENDLESS, axes))
+        fprintf(stderr,
+                "fibrad: %s: warning: F_E along %s does not exist: flights through a gap across the whole bed have no "
+                "mean square length; it is given for flights of up to 100 periods, its standard error is unreliable\n",
+                file, axes);
+    if (axes_with(result, FLIGHTS_RARE, axes))
+        fprintf(stderr,
+                "fibrad: %s: warning: F_E along %s rests on a few long flights, as through a channel without spheres; "
+                "its standard error is unreliable\n",
+                file, axes);
+    if (result->stopped)
+        fprintf(stderr, "fibrad: %s: warning: stopped at --max-rays %g with a standard error of %.2g of F_E, not %g\n",
+                file, (double)request->rule.max_rays, conduction_worst(&request->rule, result), request->rule.error);
+}
+
+/* Follows the paths of a bed in which something is emitted. */
+static int conductivity_follow(struct conductivity_request *request, const struct bed *bed, const unsigned char *emits,
+                               struct conduction *result) {
+    fibrad_run run = bed_options_run(&request->bed);
+    bool emitting = false;
+    for (uint32_t i = 0; i < bed->n; ++i) emitting |= emits[i] && request->rule.emissivity[i] > 0;
+    if (!emitting) return message_at(STATUS_INPUT, request->bed.name, 0, "the emissivities are all 0: nothing flows");
+    const int status = conduction_follow(bed, emits, &request->rule, &run, result);
+    return bed_options_status(&request->bed, bed, status, &run.fault);
+}
+
+static int conductivity_compute(struct conductivity_request *request, struct bed *bed, struct conduction *result) {
+    const char *file = request->bed.name;
+    double *emissivity = NULL, metres;
+    unsigned char *emits = calloc(bed->n, 1);
+    int status = emits ? STATUS_OK : message_memory();
+    if (!status && request->at) status = bed_options_metres(&request->bed, bed, &metres);
+    if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
+    request->rule.emissivity = emissivity;
+    if (!status) status = conduction_emitters(bed, file, emits, result);
+    if (!status) status = conductivity_follow(request, bed, emits, result);
+    if (!status && request->at) conduction_at(result, request->temperature, metres);
     free(emits);
-    free(moved);
     free(emissivity);
     return status;
 }
 
+static int conductivity_frame(void *conductivity_request, struct bed *bed) {
+    struct conductivity_request *request = conductivity_request;
+    struct conduction result;
+    struct contents what = {.conduction = &result};
+    int status = conductivity_compute(request, bed, &result);
+    if (!status) status = bed_options_write(&request->bed, bed, &what);
+    if (status) return status;
+    conductivity_warn(request, &result);
+    conductivity_report(request, bed, &result);
+    return STATUS_OK;
+}
+
 int command_conductivity(int argc, char **argv) {
     struct conductivity_request request;
-    struct bed bed = {0};
     int status = conductivity_parse(&request, argc, argv);
-    if (status) return status == STATUS_HELP ? conductivity_help() : status;
-    status = conductivity_run(&request, &bed);
-    bed_free(&bed);
+    if (status == STATUS_HELP)
+        status = conductivity_help();
+    else if (!status)
+        status = bed_options_frames(&request.bed, "conductivity", conductivity_frame, &request);
+    bed_options_free(&request.bed);
     return status;
 }

@@ -4,9 +4,7 @@
 #include <stdlib.h>
 
 #include "bed/bed_scene.h"
-#include "bed/property_option.h"
 #include "cli/message.h"
-#include "cli/output.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
 #include "write/write.h"
@@ -25,19 +23,15 @@ static const struct option exchange_table[] = {
     {KEY_RAW, "raw", NULL, "do not average D_ij and D_ji [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
     {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},
     {KEY_SEED, "seed", "S", "another number, other paths and directions [0]"},
-    {OPTION_PERIODIC},
-    {OPTION_FRAME},
-    {OPTION_THREADS},
-    {'o', "output", "OUT", "the factors: .csv, .mtx, .npz (SciPy) [summary only]"},
-    {OPTION_IDS},
-    {OPTION_PROGRESS},
-    {OPTION_HELP},
+    OPTIONS_INPUT,
+    {'o', "output", "OUT", "the factors: .csv .mtx .npz (SciPy) .json; - [summary only]"},
+    {OPTION_FORMAT},
+    OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
 struct exchange_request {
     struct bed_options bed;
     const char *wall_emissivity;
-    write_function *write;
     struct quantity emissivity;
     struct walls walls;
     fibrad_exchange_rule rule;
@@ -46,20 +40,24 @@ struct exchange_request {
 };
 
 static int exchange_help(void) {
-    puts("fibrad exchange FILE --emissivity E|COLUMN [options]\n\n"
+    puts("fibrad exchange FILE... --emissivity E [options]\n\n"
          "Exchange factors between all spheres of FILE, which are grey and diffuse: D_ij is the fraction of what "
          "sphere i\n"
-         "emits that sphere j absorbs, directly or after any number of reflections. FILE as for fibrad bed.\n");
+         "emits that sphere j absorbs, directly or after any number of reflections.\n");
     options_print(exchange_table);
-    puts("\nThe .csv holds i,j,D: spheres by position from 0, the surroundings j = -1, walls j = -2, -3 ... in the "
-         "order\n"
-         "given; then from walls of finite area to spheres, i = -2, -3 ... .mtx and .npz hold spheres only. Net power "
-         "to i\n"
-         "is sum over j of A_i e_i D_ij sigma (T_j^4 - T_i^4), A_i = 4 pi r_i^2 in metres and T in kelvins.\n"
-         "Standard output ends with a summary, one `key value` a line.\n\n"
+    puts("\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,j,D,body: spheres by name, the surroundings j = -1, walls j "
+         "= -2, -3 ... with their names in\n"
+         "the column `body`; then from walls of finite area to spheres, i = -2, -3 ... .mtx and .npz hold spheres "
+         "only.\n"
+         "Net power to i is sum over j of A_i e_i D_ij sigma (T_j^4 - T_i^4), A_i = 4 pi r_i^2 in square metres and T "
+         "in\n"
+         "kelvins. Spheres of emissivity 0 reflect all: no row, and nothing in their column.\n"
+         "Several frames go into one .csv or .json, with their numbers, or into one file each where OUT has a *.\n"
+         "Standard output ends with a summary of each, one `key value` a line.\n\n"
          "Examples:\n"
          "  fibrad exchange packing.dump --emissivity 0.8 --error 0.01 -o D.csv\n"
-         "  fibrad exchange packing.csv --emissivity e --wall box --wall-emissivity 0.3 --rays 2000 -o D.npz");
+         "  fibrad exchange packing.dump --emissivity 1:0.8,2:0.3 --frame all -o 'D.*.npz'\n"
+         "  fibrad exchange packing.csv --emissivity e --wall box --wall-emissivity zmin=0.3,0.9 --rays 2000 -o D.npz");
     return STATUS_OK;
 }
 
@@ -67,7 +65,7 @@ static int exchange_take(struct exchange_request *request, const struct options 
     const char *value = options->value;
     switch (key) {
     case KEY_EMISSIVITY:
-        return emissivity_option(value, &request->emissivity);
+        return quantity_option("--emissivity", value, 0, 1, &request->emissivity);
     case KEY_RAYS:
         request->counted = true;
         return options_count("--rays", value, 1, FIBRAD_PATHS_MAX, &request->rule.paths);
@@ -93,51 +91,53 @@ static int exchange_take(struct exchange_request *request, const struct options 
 }
 
 static int exchange_check(struct exchange_request *request) {
-    if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad exchange --help");
-    if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad exchange --help");
+    if (!request->emissivity.given && request->bed.files > 0)
+        return message(STATUS_USAGE, "which --emissivity? see fibrad exchange --help");
     if (request->rule.tolerance > 0 && request->counted)
         return message(STATUS_USAGE, "--error finds rays and directions itself; leave out --rays and --directions");
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
-    request->write = write_find(request->bed.out, NULL);
-    const bool known = request->write && request->write != write_vtp;
-    return bed_options_output(&request->bed, known, ".csv, .mtx and .npz");
+    return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX);
 }
 
 static int exchange_parse(struct exchange_request *request, int argc, char **argv) {
     struct options options = {.command = "exchange", .table = exchange_table, .argc = argc, .argv = argv};
-    *request = (struct exchange_request){.bed.frame = -1};
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
         status = exchange_take(request, &options, key);
     return status ? status : exchange_check(request);
 }
 
-static void exchange_print(const struct exchange_request *request, const struct contents *what) {
+static void exchange_report(struct exchange_request *request, const struct contents *what) {
     const fibrad_bed_factors *factors = what->factors;
-    const fibrad_scene_facts *facts = &factors->facts;
+    struct report *report = &request->bed.report;
     struct summary summary;
     summary_make(&summary, what);
-    printf("%s: radii %g to %g, %s rows, %s\n", request->bed.name, facts->radius_min, facts->radius_max,
-           request->options.raw ? "raw" : "reciprocal", fibrad_isa_name(facts->isa));
-    printf("spheres %" PRIu32 "\n", facts->spheres);
-    printf("nonzeros %" PRIu64 "\n", factors->matrix.start[facts->spheres]);
-    printf("directions %" PRIu32 "\n", factors->directions);
-    printf("rays %" PRIu64 "\n", factors->rays);
-    printf("threads %d\n", factors->threads);
-    printf("seconds %.17g\n", factors->seconds);
-    printf("row_sum_min %.17g\n", summary.row_sum_min);
-    printf("row_sum_max %.17g\n", summary.row_sum_max);
-    printf("escaped_mean %.17g\n", summary.escaped_mean);
-    summary_print_walls(&summary, what);
-    printf("closure_max %.17g\n", summary.closure_max);
-    printf("reciprocity_max %.17g\n", factors->reciprocity_error);
-    printf("error_rms %.17g\n", summary.error_rms);
-    printf("error_estimate %.17g\n", summary.error_max);
+    bed_options_report(&request->bed, what->bed, what->walls, &factors->facts);
+    quantity_report(&request->emissivity, "emissivity", report);
+    wall_values_report(what->walls, request->rule.body_emissivity, "_emissivity", 6, report);
+    report_count(report, "directions", factors->directions);
+    report_count(report, "rays", factors->rays);
+    if (request->rule.tolerance > 0) report_value(report, "error_wanted", request->rule.tolerance, 6);
+    report_count(report, "seed", request->rule.seed);
+    report_text(report, "rows", request->options.raw ? "raw" : "reciprocal");
+    report_count(report, "threads", (uint64_t)factors->threads);
+    report_value(report, "seconds", factors->seconds, 3);
+    report_count(report, "nonzeros", factors->matrix.start[factors->facts.spheres]);
+    report_measured(report, "row_sum_min", summary.row_sum_min, summary.error_max);
+    report_measured(report, "row_sum_max", summary.row_sum_max, summary.error_max);
+    report_measured(report, "escaped_mean", summary.escaped_mean, summary.error_rms);
+    summary_report_walls(&summary, what, report);
+    report_value(report, "closure_max", summary.closure_max, 2);
+    report_value(report, "reciprocity_max", factors->reciprocity_error, 2);
+    report_value(report, "error_rms", summary.error_rms, 2);
+    report_value(report, "error_max", summary.error_max, 2);
+    report_end(report);
 }
 
-static int exchange_solve(struct exchange_request *request, const struct bed *bed, fibrad_bed_factors **factors) {
+static int exchange_solve(void *exchange_request, const struct bed *bed, fibrad_bed_factors **factors) {
+    struct exchange_request *request = exchange_request;
     const fibrad_scene_config scene = bed_scene(bed, &request->walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     fibrad_run run = bed_options_run(&request->bed);
@@ -145,38 +145,39 @@ static int exchange_solve(struct exchange_request *request, const struct bed *be
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
-static int exchange_write(struct exchange_request *request, const struct bed *bed) {
-    struct output out = {0};
+/* The factors of one frame into all outputs. */
+static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
     fibrad_bed_factors *factors = NULL;
-    int status = output_open(&out, request->bed.out);
+    int status = bed_options_memory(bed, &request->options, exchange_solve, request);
     if (!status) status = exchange_solve(request, bed, &factors);
-    const struct contents what = {.bed = bed, .factors = factors, .walls = &request->walls, .grey = &request->rule};
-    if (!status && request->bed.out) status = request->write(out.file, &what);
-    status = output_close(&out, status);
-    if (!status) exchange_print(request, &what);
+    struct contents what = {.factors = factors, .walls = &request->walls, .grey = &request->rule};
+    if (!status) status = bed_options_write(&request->bed, bed, &what);
+    if (!status) exchange_report(request, &what);
     fibrad_bed_free(factors);
     return status;
 }
 
-static int exchange_run(struct exchange_request *request) {
-    struct bed bed = {0};
+static int exchange_frame(void *exchange_request, struct bed *bed) {
+    struct exchange_request *request = exchange_request;
     double *emissivity = NULL, wall_emissivity[WALLS_MAX];
     const char *file = request->bed.name;
-    int status = bed_options_read(&request->bed, &bed);
-    if (!status) status = walls_of(&request->bed.walls, &bed, file, &request->walls);
-    if (!status) status = emissivity_walls(request->wall_emissivity, request->walls.count, wall_emissivity);
-    if (!status) status = emissivity_of(&request->emissivity, &bed, file, &emissivity);
+    int status = walls_of(&request->bed.walls, bed, file, &request->walls);
+    if (!status) status = wall_emissivities(request->wall_emissivity, &request->walls, wall_emissivity);
+    if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     request->rule.emissivity = emissivity;
     request->rule.body_emissivity = wall_emissivity;
-    if (!status) status = exchange_write(request, &bed);
+    if (!status) status = exchange_matrix(request, bed);
     free(emissivity);
-    bed_free(&bed);
     return status;
 }
 
 int command_exchange(int argc, char **argv) {
-    struct exchange_request request;
-    const int status = exchange_parse(&request, argc, argv);
-    if (status) return status == STATUS_HELP ? exchange_help() : status;
-    return exchange_run(&request);
+    struct exchange_request request = {0};
+    int status = exchange_parse(&request, argc, argv);
+    if (status == STATUS_HELP)
+        status = exchange_help();
+    else if (!status)
+        status = bed_options_frames(&request.bed, "exchange", exchange_frame, &request);
+    bed_options_free(&request.bed);
+    return status;
 }

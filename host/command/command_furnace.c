@@ -16,7 +16,7 @@
 #include "boxes/read_furnace.h"
 #include "write/write_furnace.h"
 
-enum { KEY_CASE = KEY_OWN, KEY_THETA, KEY_SCATTER, KEY_CELLS, KEY_BUNDLES, KEY_TOLERANCE, KEY_OUTERS, KEY_QUIET };
+enum { KEY_CASE = KEY_OWN, KEY_THETA, KEY_SCATTER, KEY_CELLS, KEY_BUNDLES, KEY_TOLERANCE, KEY_OUTERS };
 
 static const struct option table[] = {
     {KEY_CASE, "case", "1|2", "the published furnace, without or with scattering, instead of FILE"},

@@ -1,29 +1,28 @@
 /* command_heat.c - `fibrad heat`: net radiative powers of grey spheres and walls. SPDX-License-Identifier: MIT */
-#include <inttypes.h>
-#include <math.h>
+#include <gsl/gsl_math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bed/bed_scene.h"
-#include "bed/property_option.h"
+#include "cli/memory.h"
 #include "cli/message.h"
-#include "cli/output.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
-#include "write/write_heat.h"
 
 enum { KEY_TEMPERATURE = KEY_OWN, KEY_AMBIENT, KEY_WALL_TEMPERATURE, KEY_MODEL, KEY_PATCHES };
 
 static const struct option heat_table[] = {
     {OPTION_EMISSIVITY},
-    {KEY_TEMPERATURE, "temperature", "T|COLUMN", "of all spheres [K], or the file's column of that name"},
-    {KEY_AMBIENT, "ambient", "T", "temperature of the surroundings, which are black [0 K]"},
+    {KEY_TEMPERATURE, "temperature", "T", "of all spheres; or TYPE:T,... ; or the file's column of that name"},
+    {KEY_AMBIENT, "ambient", "T",
+     "of the surroundings, which are black; needed unless walls and periods close the bed"},
     {OPTION_WALL},
     {KEY_WALL_TEMPERATURE, "wall-temperature", "LIST",
-     "temperatures of the walls in the order given; the last one is that of all further [K; as the surroundings]"},
+     "of the walls: zmin=1200,300: one number for all others; every wall needs one"},
     {OPTION_WALL_EMISSIVITY},
+    {OPTION_TEMPERATURE_UNIT},
     {KEY_MODEL, "model", "NAME",
      "patches: reflected light goes from point to point; spheres: one radiosity each, for emissivities near 1 "
      "[patches]"},
@@ -32,40 +31,50 @@ static const struct option heat_table[] = {
     {KEY_POINTS, "points", "M", "beams per direction: 64, 128 or 256 [64]"},
     {KEY_ERROR, "error", "E",
      "as many directions and patches as bring the estimated error of the powers to E times their root mean square or "
-     "less, 1e-5 to 1 [none]"},
-    {OPTION_PERIODIC},
-    {OPTION_FRAME},
-    {OPTION_THREADS},
-    {'o', "output", "OUT", "powers: .csv (i,T,q) or .vtp (ParaView) [summary only]"},
-    {OPTION_IDS},
-    {OPTION_PROGRESS},
-    {OPTION_HELP},
+     "less, 1e-5 to 1; at the least to 1e-3 E of what is emitted [none]"},
+    OPTIONS_INPUT,
+    {'o', "output", "OUT", "powers: .csv .dump (OVITO) .vtp (ParaView) .json; - [summary only]"},
+    {OPTION_FORMAT},
+    OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
 struct heat_request {
     struct bed_options bed;
-    const char *wall_temperature, *wall_emissivity;
-    write_heat_function *write;
+    const char *plot, *wall_temperature, *wall_emissivity;
     struct quantity emissivity, temperature;
+    double zero;         /* 0 of the unit of temperature [K] */
+    const char *ambient; /* NULL: not given */
     struct walls walls;
     bool counted;              /* --directions, --points or --patches was given */
     fibrad_heat_config config; /* with --error, where to begin */
     fibrad_heat_sources sources;
     double error; /* wanted of the powers, over their root mean square; 0: config as it is */
+    struct output picture;
 };
 
 static int heat_help(void) {
-    puts("fibrad heat FILE --emissivity E --temperature T [options]\n\n"
-         "Net radiative power of every sphere of FILE, of walls and of the surroundings, all grey and diffuse.\n"
-         "SI units: metres, kelvins, watts; q is positive where heat is gained.\n");
+    puts("fibrad heat FILE... --emissivity E --temperature T --ambient T [options]\n\n"
+         "Net radiative power of every sphere of FILE, of walls and of the surroundings, all grey and diffuse, in "
+         "watts;\n"
+         "positive where heat is gained. Temperatures in kelvins, lengths in the unit of the file.\n");
     options_print(heat_table);
-    puts("\nIn .csv the surroundings are i = -1 and the walls -2, -3 ... in the order given. All q add up to zero.\n"
-         "Standard output ends with a summary, one `key value` a line; `wall_NAME`: power and temperature.\n\n"
+    puts("\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,T_K,q_W,body: spheres by name, the surroundings i = -1, "
+         "walls i = -2, -3 ... with their names "
+         "in\n"
+         "the column `body`. All q add up to zero. Spheres of emissivity 0 reflect all and gain nothing.\n"
+         "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a "
+         "*.\n"
+         "Standard output ends with a summary of each, one `key value` a line. In it balance and error are relative to "
+         "what\n"
+         "the spheres emit, or to what they absorb where that is more.\n\n"
          "Examples:\n"
          "  fibrad heat packing.dump --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
-         "  fibrad heat spheres.csv --emissivity eps --temperature T --wall auto --wall-temperature 900 -o q.csv\n"
-         "  fibrad heat packing.dump --emissivity 0.3 --temperature v_T --wall zmin,cylinder:0,0,0.48 \\\n"
-         "      --wall-temperature 1200,600 --wall-emissivity 0.9,0.4 --error 0.005 -o q.vtp");
+         "  fibrad heat 'bed.*.dump.gz' --frame all --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
+         "  fibrad heat spheres.csv --length-unit mm --emissivity eps --temperature T --temperature-unit C \\\n"
+         "      --wall box --wall-temperature zmin=900,20 -o q.csv\n"
+         "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --wall zmin,cylinder:0,0,0.48 \\\n"
+         "      --wall-temperature zmin=1200,cylinder=600 --wall-emissivity cylinder=0.4 --ambient 300 --error 0.005 "
+         "-o q.vtp");
     return STATUS_OK;
 }
 
@@ -76,115 +85,171 @@ static int take_patches(const char *text, uint32_t *patches) {
     return status;
 }
 
+static int take_model(const char *text, int *uniform) {
+    *uniform = strcmp(text, "spheres") == 0;
+    if (*uniform || strcmp(text, "patches") == 0) return STATUS_OK;
+    return message(STATUS_USAGE, "--model: '%.40s' is neither patches nor spheres", text);
+}
+
+static int take_beams(struct heat_request *request, const char *text, int key) {
+    struct beam_options beam = {0};
+    const int status = options_beam(key, text, &beam);
+    request->counted = true;
+    if (key == KEY_DIRECTIONS) request->config.directions = beam.directions;
+    if (key == KEY_POINTS) request->config.points = beam.points;
+    return status;
+}
+
 static int heat_take(struct heat_request *request, const struct options *options, int key) {
     const char *value = options->value;
-    int status = STATUS_OK;
-    struct beam_options beam = {0};
     switch (key) {
     case KEY_EMISSIVITY:
-        return emissivity_option(value, &request->emissivity);
-    case KEY_TEMPERATURE:
-        return temperature_option(value, &request->temperature);
+        return quantity_option("--emissivity", value, 0, 1, &request->emissivity);
+    case KEY_TEMPERATURE: /* its unit is not known yet */
+        return quantity_option("--temperature", value, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, &request->temperature);
+    case KEY_TEMPERATURE_UNIT:
+        return temperature_unit_option(value, &request->zero);
     case KEY_AMBIENT:
-        return options_number("--ambient", value, 0, TEMPERATURE_MAX, &request->sources.surroundings);
+        request->ambient = value;
+        return STATUS_OK;
     case KEY_WALL_TEMPERATURE:
         request->wall_temperature = value;
-        break;
+        return STATUS_OK;
     case KEY_WALL_EMISSIVITY:
         request->wall_emissivity = value;
-        break;
+        return STATUS_OK;
     case KEY_MODEL:
-        request->sources.uniform = strcmp(value, "spheres") == 0;
-        if (!request->sources.uniform && strcmp(value, "patches") != 0)
-            status = message(STATUS_USAGE, "--model: '%.40s' is neither patches nor spheres", value);
-        break;
+        return take_model(value, &request->sources.uniform);
     case KEY_PATCHES:
         request->counted = true;
         return take_patches(value, &request->config.patches);
     case KEY_DIRECTIONS:
     case KEY_POINTS:
-        request->counted = true;
-        status = options_beam(key, value, &beam);
-        if (key == KEY_DIRECTIONS) request->config.directions = beam.directions;
-        if (key == KEY_POINTS) request->config.points = beam.points;
-        break;
+        return take_beams(request, value, key);
     case KEY_ERROR:
         return options_number("--error", value, 1e-5, 1, &request->error);
+    case KEY_PLOT:
+        request->plot = value;
+        return STATUS_OK;
     default:
         return bed_options_take(&request->bed, options, key);
     }
+}
+
+/* The temperature of the surroundings, if it was given; else NaN. */
+static int take_ambient(struct heat_request *request) {
+    double *ambient = &request->sources.surroundings;
+    *ambient = NAN;
+    if (!request->ambient) return STATUS_OK;
+    const int status = options_number("--ambient", request->ambient, -request->zero, TEMPERATURE_MAX, ambient);
+    *ambient += request->zero;
     return status;
 }
 
 static int heat_check_request(struct heat_request *request) {
-    if (!request->bed.file) return message(STATUS_USAGE, "which FILE? see fibrad heat --help");
+    const int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT);
+    if (status) return status;
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (!request->temperature.given) return message(STATUS_USAGE, "which --temperature? see fibrad heat --help");
+    if (request->temperature.value < -request->zero)
+        return message(STATUS_USAGE, "--temperature: %g is below absolute zero", request->temperature.value);
     if (request->error > 0 && request->counted)
         return message(STATUS_USAGE,
                        "--error finds directions and patches itself; leave out --directions, --points and --patches");
     if (request->error > 0 && request->sources.uniform)
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
+    if (request->plot && bed_options_series(&request->bed))
+        return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
     request->temperature.place = bed_options_column(&request->bed, request->temperature.column);
-    request->write = output_ends(request->bed.out, ".csv")   ? write_heat_csv
-                     : output_ends(request->bed.out, ".vtp") ? write_heat_vtp
-                                                             : NULL;
-    return bed_options_output(&request->bed, request->write, ".csv and .vtp");
+    if (request->error > 0) request->config.directions = 72;
+    return take_ambient(request);
 }
 
 static int heat_parse(struct heat_request *request, int argc, char **argv) {
     struct options options = {.command = "heat", .table = heat_table, .argc = argc, .argv = argv};
-    *request = (struct heat_request){.bed.frame = -1, .config = {.directions = 168, .points = 64, .patches = 96}};
+    *request = (struct heat_request){.config = {.directions = 168, .points = 64, .patches = 96}};
     fibrad_heat_sources_init(&request->sources);
-    request->sources.surroundings = 0;
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = heat_take(request, &options, key);
-    if (request->error > 0 && !request->counted) request->config.directions = 72;
     return status ? status : heat_check_request(request);
 }
 
 /* Powers, and what is said of them. */
 struct heat_report {
-    fibrad_heat_result result;
+    fibrad_heat_result result; /* [W] */
     fibrad_heat_config config; /* as used in the end */
     fibrad_scene_facts facts;
-    double seconds;              /* computing, without reading and writing */
-    double mean_square, largest; /* of the spheres: root mean square [W]; of all: largest [W] */
-    double balance;              /* sum of all powers over the largest */
-    double error_estimate;       /* of the powers, over their root mean square */
+    double seconds;             /* computing, without reading and writing */
+    double power_rms, largest;  /* of the spheres: root mean square; of all: largest [W] */
+    double emitted;             /* by the spheres [W] */
+    double throughput;          /* root mean square of what a sphere emits, or absorbs where that is more [W] */
+    double balance, error;      /* sum of all powers; root mean square error of a sphere's [W] */
+    double balance_of_emission; /* over the sum of what the spheres emit or absorb */
 };
 
-static void heat_summarise(const struct bed *bed, const struct walls *walls, struct heat_report *report) {
+static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sources, double square_metres,
+                           uint32_t walls, struct heat_report *report) {
     const fibrad_heat_result *result = &report->result;
-    double square = 0, sum = result->surroundings_power;
-    report->largest = fabs(sum);
-    for (uint32_t k = 0; k < walls->count; ++k) {
-        sum += result->body_power[k];
+    double square = 0, squares = 0, throughput = 0;
+    report->balance = result->surroundings_power;
+    report->largest = fabs(result->surroundings_power);
+    for (uint32_t k = 0; k < walls; ++k) {
+        report->balance += result->body_power[k];
         report->largest = fmax(report->largest, fabs(result->body_power[k]));
     }
+    report->emitted = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        sum += result->power[i];
-        square += result->power[i] * result->power[i];
-        report->largest = fmax(report->largest, fabs(result->power[i]));
+        const double power = result->power[i];
+        const double emitted = sources->emissivity[i] * FIBRAD_STEFAN_BOLTZMANN * pow(sources->temperature[i], 4) * 4 *
+                               M_PI * bed->r[i] * bed->r[i] * square_metres;
+        const double through = fmax(emitted, emitted + power);
+        report->emitted += emitted;
+        report->balance += power;
+        square += power * power;
+        squares += through * through;
+        throughput += through;
+        report->largest = fmax(report->largest, fabs(power));
     }
-    report->mean_square = sqrt(square / bed->n);
-    report->balance = report->largest > 0 ? sum / report->largest : 0;
-    const double error = hypot(result->error_patches, result->error_beams);
-    report->error_estimate = report->mean_square > 0 ? error / report->mean_square : 0;
+    report->power_rms = sqrt(square / bed->n);
+    report->throughput = sqrt(squares / bed->n);
+    report->balance_of_emission = throughput > 0 ? report->balance / throughput : 0;
+    report->error = hypot(result->error_patches, result->error_beams);
 }
 
-static int heat_once(struct heat_request *request, const struct bed *bed, struct heat_report *report) {
+/* Powers in square metres instead of the file's unit. */
+static void heat_scale(const struct bed *bed, uint32_t walls, double square_metres, fibrad_heat_result *result) {
+    if (square_metres == 1) return;
+    for (uint32_t i = 0; i < bed->n; ++i) result->power[i] *= square_metres;
+    for (uint32_t k = 0; k < walls; ++k) result->body_power[k] *= square_metres;
+    result->surroundings_power *= square_metres;
+    result->error_patches *= square_metres;
+    result->error_beams *= square_metres;
+}
+
+/* Whether a problem of this kind will fit into memory. Source: fibrad_heat_size. */
+static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) {
+    const double beams = 4. * config->directions * config->points, patches = 8. * config->patches * (8 + 16);
+    return memory_check(bed->n * (beams + patches), "fewer --directions, --points or --patches take less");
+}
+
+static int heat_once(struct heat_request *request, const struct bed *bed, double square_metres,
+                     struct heat_report *report) {
     const fibrad_scene_config scene = bed_scene(bed, &request->walls);
     const fibrad_spheres spheres = bed_spheres(bed);
+    fibrad_heat_sources sources = request->sources;
     fibrad_run run = bed_options_run(&request->bed);
     fibrad_radiation *radiation;
-    int status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
-    if (!status) status = fibrad_radiation_solve(radiation, &request->sources, &report->result);
+    if (isnan(sources.surroundings)) sources.surroundings = 0; /* closed: nothing gets there */
+    int status = heat_memory(bed, &report->config);
+    if (status) return status;
+    status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
+    if (!status) status = fibrad_radiation_solve(radiation, &sources, &report->result);
     fibrad_radiation_describe(radiation, &report->facts, &run.fault);
     fibrad_radiation_free(radiation);
-    if (!status) heat_summarise(bed, &request->walls, report);
+    heat_scale(bed, request->walls.count, square_metres, &report->result);
+    if (!status) heat_summarise(bed, &sources, square_metres, request->walls.count, report);
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
@@ -201,83 +266,109 @@ static bool heat_refine(struct heat_report *report) {
     return true;
 }
 
-static int heat_compute(struct heat_request *request, const struct bed *bed, struct heat_report *report) {
+/* The error that --error allows [W]; powers that nearly cancel need not be known to E of themselves. */
+static double heat_allowed(const struct heat_request *request, const struct heat_report *report) {
+    return request->error * fmax(report->power_rms, 1e-3 * report->throughput);
+}
+
+static int heat_compute(struct heat_request *request, struct bed *bed, struct heat_report *report) {
     const double begun = progress_clock();
+    double metres;
     report->config = request->config;
-    int status = heat_once(request, bed, report);
-    while (!status && request->error > 0 && report->error_estimate > request->error && heat_refine(report))
-        status = heat_once(request, bed, report);
+    int status = bed_options_metres(&request->bed, bed, &metres);
+    if (!status) status = heat_once(request, bed, metres * metres, report);
+    while (!status && request->error > 0 && report->error > heat_allowed(request, report) && heat_refine(report))
+        status = heat_once(request, bed, metres * metres, report);
     report->seconds = progress_clock() - begun;
+    if (!status && request->error > 0 && report->error > heat_allowed(request, report))
+        fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g of the powers\n", request->bed.name,
+                report->error / report->power_rms);
     return status;
 }
 
-static void heat_print(const struct heat_request *request, const struct bed *bed, const struct heat_report *report) {
-    const fibrad_heat_result *result = &report->result;
-    printf("%s: radii %g to %g, %s\n", request->bed.name, report->facts.radius_min, report->facts.radius_max,
-           fibrad_isa_name(report->facts.isa));
-    printf("spheres %" PRIu32 "\n", bed->n);
-    printf("model %s\n", request->sources.uniform ? "spheres" : "patches");
-    printf("patches %" PRIu32 "\n", report->config.patches);
-    printf("directions %" PRIu32 "\n", report->config.directions);
-    printf("points %" PRIu32 "\n", report->config.points);
-    printf("threads %d\n", request->bed.threads ? request->bed.threads : omp_get_max_threads());
-    printf("seconds %.17g\n", report->seconds);
-    printf("sweeps %" PRIu32 "\n", result->sweeps);
-    printf("residual %.17g\n", result->residual);
-    printf("power_rms %.17g\n", report->mean_square);
-    printf("power_largest %.17g\n", report->largest);
-    printf("surroundings %.17g %.17g\n", result->surroundings_power, request->sources.surroundings);
-    for (uint32_t k = 0; k < request->walls.count; ++k)
-        printf("wall_%s %.17g %.17g\n", wall_name(&request->walls.body[k]), result->body_power[k],
-               request->sources.body_temperature[k]);
-    printf("balance %.17g\n", report->balance);
-    printf("error_estimate %.17g\n", report->error_estimate);
+static void heat_print(struct heat_request *request, const struct bed *bed, const struct heat_report *heat) {
+    const fibrad_heat_result *result = &heat->result;
+    const fibrad_heat_sources *sources = &request->sources;
+    struct report *report = &request->bed.report;
+    bed_options_report(&request->bed, bed, &request->walls, &heat->facts);
+    report_text(report, "model", sources->uniform ? "spheres" : "patches");
+    quantity_report(&request->emissivity, "emissivity", report);
+    quantity_report(&request->temperature, request->zero > 0 ? "temperature_C" : "temperature_K", report);
+    if (request->ambient) report_value(report, "surroundings_K", sources->surroundings, 6);
+    wall_values_report(&request->walls, sources->body_temperature, "_K", 6, report);
+    wall_values_report(&request->walls, sources->body_emissivity, "_emissivity", 6, report);
+    report_count(report, "patches", heat->config.patches);
+    report_count(report, "directions", heat->config.directions);
+    report_count(report, "points", heat->config.points);
+    report_count(report, "threads", (uint64_t)(request->bed.threads ? request->bed.threads : omp_get_max_threads()));
+    report_value(report, "seconds", heat->seconds, 3);
+    report_count(report, "sweeps", result->sweeps);
+    report_value(report, "residual", result->residual, 2);
+    report_value(report, "emitted_W", heat->emitted, 6);
+    report_measured(report, "power_rms_W", heat->power_rms, heat->error);
+    report_measured(report, "power_largest_W", heat->largest, heat->error);
+    if (request->ambient) report_measured(report, "surroundings_W", result->surroundings_power, heat->error);
+    wall_values_report(&request->walls, result->body_power, "_W", 6, report);
+    report_value(report, "balance_of_emission", heat->balance_of_emission, 2);
+    report_value(report, "error_of_emission", heat->throughput > 0 ? heat->error / heat->throughput : 0, 2);
+    report_value(report, "error_rms_W", heat->error, 2);
+    report_end(report);
 }
 
-static int heat_write(struct heat_request *request, const struct bed *bed, struct heat_report *report) {
-    struct output out = {0};
-    int status = output_open(&out, request->bed.out);
-    if (!status) status = heat_compute(request, bed, report);
-    if (!status && request->error > 0 && report->error_estimate > request->error)
-        fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g\n", request->bed.name,
-                report->error_estimate);
-    const struct heat_contents contents = {bed, &request->walls, &request->sources, &report->result};
-    if (!status && request->bed.out) status = request->write(out.file, &contents);
-    status = output_close(&out, status);
+static int heat_solve(struct heat_request *request, struct bed *bed, struct heat_report *report) {
+    int status = heat_compute(request, bed, report);
+    struct contents what = {.walls = &request->walls, .sources = &request->sources, .result = &report->result};
+    if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status) heat_print(request, bed, report);
     return status;
 }
 
-static int heat_run(struct heat_request *request) {
-    struct bed bed = {0};
+/* Every wall needs a temperature, and so do the surroundings if something can get there. */
+static int heat_temperatures(struct heat_request *request, const struct bed *bed, double *wall_temperature) {
+    const int status = wall_values("--wall-temperature", request->wall_temperature, NAN, -request->zero,
+                                   TEMPERATURE_MAX, &request->walls, wall_temperature);
+    for (uint32_t k = 0; k < request->walls.count && !status; ++k) wall_temperature[k] += request->zero;
+    if (!status && !request->ambient && !walls_closed(&request->walls, bed))
+        return message(STATUS_USAGE, "which --ambient? the bed is open: its surroundings need a temperature");
+    return status;
+}
+
+static int heat_frame(void *heat_request, struct bed *bed) {
+    struct heat_request *request = heat_request;
     struct heat_report report = {0};
     fibrad_heat_sources *sources = &request->sources;
     double *emissivity = NULL, *temperature = NULL, *power = NULL;
     double wall_temperature[WALLS_MAX], wall_emissivity[WALLS_MAX], wall_power[WALLS_MAX];
     const char *file = request->bed.name;
-    int status = bed_options_read(&request->bed, &bed);
-    if (!status) status = walls_of(&request->bed.walls, &bed, file, &request->walls);
-    const uint32_t walls = request->walls.count;
-    if (!status) status = temperature_walls(request->wall_temperature, walls, sources->surroundings, wall_temperature);
-    if (!status) status = emissivity_walls(request->wall_emissivity, walls, wall_emissivity);
-    if (!status) status = emissivity_of(&request->emissivity, &bed, file, &emissivity);
-    if (!status) status = temperature_of(&request->temperature, &bed, file, &temperature);
-    if (!status) power = malloc(bed.n * sizeof *power);
+    int status = walls_of(&request->bed.walls, bed, file, &request->walls);
+    if (!status) status = heat_temperatures(request, bed, wall_temperature);
+    if (!status) status = wall_emissivities(request->wall_emissivity, &request->walls, wall_emissivity);
+    if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
+    if (!status)
+        status = quantity_values(&request->temperature, bed, file, "temperature in kelvins", request->zero, 0,
+                                 TEMPERATURE_MAX, &temperature);
+    if (!status) power = malloc(bed->n * sizeof *power);
     if (!status && !power) status = message_memory();
     sources->emissivity = emissivity, sources->temperature = temperature;
     sources->body_emissivity = wall_emissivity, sources->body_temperature = wall_temperature;
     report.result = (fibrad_heat_result){.power = power, .body_power = wall_power};
-    if (!status) status = heat_write(request, &bed, &report);
+    if (!status) status = heat_solve(request, bed, &report);
     free(emissivity);
     free(temperature);
     free(power);
-    bed_free(&bed);
     return status;
 }
 
 int command_heat(int argc, char **argv) {
     struct heat_request request;
-    const int status = heat_parse(&request, argc, argv);
-    if (status) return status == STATUS_HELP ? heat_help() : status;
-    return heat_run(&request);
+    int status = heat_parse(&request, argc, argv);
+    if (status == STATUS_HELP) {
+        status = heat_help();
+    } else if (!status) {
+        status = output_open(&request.picture, request.plot);
+        if (!status) status = bed_options_frames(&request.bed, "heat", heat_frame, &request);
+        status = output_close(&request.picture, status);
+    }
+    bed_options_free(&request.bed);
+    return status;
 }

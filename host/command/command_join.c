@@ -8,25 +8,28 @@
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/options.h"
-#include "cli/output.h"
 #include "command/commands.h"
 #include "read/read_rows.h"
 #include "simple/heap.h"
-#include "write/write.h"
+#include "write/outputs.h"
 
 static const struct option join_table[] = {
     {KEY_RAW, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
-    {'o', "output", "OUT", "the factors: .csv, .mtx, .npz (SciPy) [summary only]"},
-    {KEY_IDS, "ids", NULL, "in .csv the ids of the simulation [positions from 0 in the order of ids]"},
+    {'o', "output", "OUT", "the factors: .csv, .mtx, .npz (SciPy), .json; the spheres: .vtp; - [summary only]"},
+    {OPTION_FORMAT},
+    {KEY_POSITIONS, "positions", NULL, "name spheres by positions from 0 in the order of ids [by their ids]"},
+    {KEY_JSON, "json", "OUT", "the summary as JSON, all digits of it [none]"},
+    {KEY_QUIET, "quiet", NULL, "no summary"},
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
 struct join_request {
     const char **files; /* [count] */
     size_t count;
-    const char *out;
-    write_function *write;
-    bool raw, ids;
+    struct outputs outputs;
+    const char *json; /* NULL: none */
+    bool raw, positions, quiet;
+    struct report report;
 };
 
 static int join_help(void) {
@@ -36,17 +39,17 @@ static int join_help(void) {
         "...),\n"
         "put together into one matrix: exchange factors, or view factors where all emissivities are 1.\n");
     options_print(join_table);
-    puts("\nThe .csv is that of fibrad exchange: spheres by position in the order of ids, the surroundings j = -1, "
-         "walls\n"
-         "j = -2, -3 ..., then what is beyond the cutoff. The .npz has besides the matrix: ids, escaped, beyond, "
-         "error,\n"
-         "radius, emissivity [n], body [n][walls], x [n][3]. What is beyond may be given back: entries times 1/(1 - "
-         "beyond).\n"
-         "Memory: 24 bytes an entry with --raw, 36 without. Standard output ends with a summary, one `key value` a "
-         "line.\n\n"
-         "Examples:\n"
-         "  fibrad join bed.*.rows -o D.npz\n"
-         "  fibrad join bed.*.rows --raw --ids -o D.csv");
+    puts(
+        "\nFiles are those of fibrad exchange: in .csv the surroundings are j = -1, walls j = -2, -3 ..., then what is "
+        "beyond\n"
+        "the cutoff. What is beyond may be given back: entries times 1/(1 - beyond). Rows are in the order of ids, "
+        "which\n"
+        ".npz has in any case.\n"
+        "Memory: 24 bytes an entry with --raw, 36 without. Standard output ends with a summary, one `key value` a "
+        "line.\n\n"
+        "Examples:\n"
+        "  fibrad join bed.*.rows -o D.npz\n"
+        "  fibrad join bed.*.rows --raw -o D.csv -o D.vtp");
     return STATUS_OK;
 }
 
@@ -60,34 +63,30 @@ static int join_take(struct join_request *request, const struct options *options
     case KEY_RAW:
         request->raw = true;
         return STATUS_OK;
-    case KEY_IDS:
-        request->ids = true;
+    case KEY_POSITIONS:
+        request->positions = true;
         return STATUS_OK;
+    case KEY_JSON:
+        request->json = options->value;
+        return STATUS_OK;
+    case KEY_QUIET:
+        request->quiet = true;
+        return STATUS_OK;
+    case KEY_FORMAT:
+        return outputs_format(&request->outputs, options->value);
     case 'o':
-        request->out = options->value;
-        return STATUS_OK;
+        return outputs_add(&request->outputs, options->value);
     default:
         return STATUS_USAGE; /* OPTIONS_BAD: the message is out */
     }
-}
-
-static int join_check(struct join_request *request) {
-    request->write = write_find(request->out, NULL);
-    if (request->count == 0) return message(STATUS_USAGE, "which FILEs? see fibrad join --help");
-    if (request->out && (!request->write || request->write == write_vtp))
-        return message_at(STATUS_USAGE, request->out, 0, "unknown ending; there are .csv, .mtx and .npz");
-    if (request->ids && request->write != write_csv) return message(STATUS_USAGE, "--ids is for -o OUT.csv only");
-    for (size_t k = 0; request->out && k < request->count; ++k)
-        if (output_same(request->files[k], request->out))
-            return message_at(STATUS_USAGE, request->out, 0, "is one of the files; it would be replaced");
-    return STATUS_OK;
 }
 
 static int join_parse(struct join_request *request, int argc, char **argv) {
     struct options options = {.command = "join", .table = join_table, .argc = argc, .argv = argv};
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = join_take(request, &options, key);
-    return status ? status : join_check(request);
+    if (!status && request->count == 0) status = message(STATUS_USAGE, "which FILEs? see fibrad join --help");
+    return status ? status : outputs_check(&request->outputs, CONTENT_MATRIX, request->files, request->count, false);
 }
 
 /* A body below or above all spheres. */
@@ -135,39 +134,53 @@ static int join_matrix(const struct join_request *request, const struct joined *
     return status ? message(STATUS_INPUT, "these rows cannot be joined: %s", fibrad_status_text(status)) : STATUS_OK;
 }
 
-static void join_print(const struct join_request *request, const struct joined *joined, const struct contents *what) {
+static void join_report(struct join_request *request, const struct joined *joined, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
+    struct report *report = &request->report;
     struct summary summary;
     summary_make(&summary, what);
-    printf("%" PRIu64 " ranks, step %" PRIu64 ": radii %g to %g, %s rows of %s factors\n", joined->ranks, joined->step,
-           what->factors->facts.radius_min, what->factors->facts.radius_max, request->raw ? "raw" : "reciprocal",
-           joined->emissive ? "exchange" : "view");
-    printf("spheres %" PRIu32 "\n", matrix->n);
-    printf("nonzeros %" PRIu64 "\n", matrix->start[matrix->n]);
-    printf("cutoff %.17g\n", joined->cutoff);
-    printf("row_sum_min %.17g\n", summary.row_sum_min);
-    printf("row_sum_max %.17g\n", summary.row_sum_max);
-    printf("escaped_mean %.17g\n", summary.escaped_mean);
-    printf("beyond_mean %.17g\n", summary.beyond_mean);
-    for (uint32_t k = 0; k < matrix->bodies; ++k) printf("wall_%" PRIu32 "_mean %.17g\n", k + 1, summary.wall_mean[k]);
-    printf("closure_max %.17g\n", summary.closure_max);
-    printf("reciprocity_max %.17g\n", what->factors->reciprocity_error);
-    printf("error_rms %.17g\n", summary.error_rms);
-    printf("error_estimate %.17g\n", summary.error_max);
+    report_begin(report);
+    report_text(report, "factors", joined->emissive ? "exchange" : "view");
+    report_text(report, "rows", request->raw ? "raw" : "reciprocal");
+    report_count(report, "ranks", joined->ranks);
+    report_count(report, "step", joined->step);
+    report_count(report, "spheres", matrix->n);
+    report_text(report, "named_by", request->positions ? "positions" : "ids");
+    report_value(report, "radius_min", what->factors->facts.radius_min, 6);
+    report_value(report, "radius_max", what->factors->facts.radius_max, 6);
+    report_value(report, "cutoff", joined->cutoff, 6);
+    report_count(report, "nonzeros", matrix->start[matrix->n]);
+    report_measured(report, "row_sum_min", summary.row_sum_min, summary.error_max);
+    report_measured(report, "row_sum_max", summary.row_sum_max, summary.error_max);
+    report_measured(report, "escaped_mean", summary.escaped_mean, summary.error_rms);
+    report_measured(report, "beyond_mean", summary.beyond_mean, summary.error_rms);
+    for (uint32_t k = 0; k < matrix->bodies; ++k) {
+        char name[BODY_NAME], key[BODY_NAME + 8];
+        snprintf(key, sizeof key, "%s_F", contents_body(what, k, name));
+        report_measured(report, key, summary.wall_mean[k], summary.error_rms);
+    }
+    report_value(report, "closure_max", summary.closure_max, 2);
+    report_value(report, "reciprocity_max", what->factors->reciprocity_error, 2);
+    report_value(report, "error_rms", summary.error_rms, 2);
+    report_value(report, "error_max", summary.error_max, 2);
+    report_end(report);
 }
 
-/* Writes the matrix and what is known of it. */
-static int join_write(const struct join_request *request, const struct joined *joined,
+/* Writes the matrix and what is known of it. x: [3][n]. */
+static int join_write(struct join_request *request, const struct joined *joined, double *x,
                       const fibrad_bed_factors *factors) {
     static const double unbounded[] = {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
-    const uint64_t n = joined->n;
-    const fibrad_factors *matrix = &factors->matrix;
-    const struct array arrays[] = {
-        {"ids.npy", "u8", joined->id, n, 0},        {"escaped.npy", "f8", matrix->escaped, n, 0},
-        {"beyond.npy", "f8", matrix->beyond, n, 0}, {"error.npy", "f8", matrix->error, n, 0},
-        {"radius.npy", "f8", joined->radius, n, 0}, {"emissivity.npy", "f8", joined->emissivity, n, 0},
-        {"x.npy", "f8", joined->x, n, 3},           {"body.npy", "f8", matrix->body, n, matrix->bodies}};
-    const struct bed bed = {.n = joined->n, .ids = request->ids, .r = joined->radius, .id = (int64_t *)joined->id};
+    const size_t n = joined->n;
+    for (size_t k = 0; k < 3 * n; ++k) x[k % 3 * n + k / 3] = joined->x[k];
+    const struct array ids = {"ids.npy", "u8", joined->id, n, 0};
+    const struct bed bed = {.n = joined->n,
+                            .ids = !request->positions,
+                            .x = x,
+                            .y = x + n,
+                            .z = x + 2 * n,
+                            .r = joined->radius,
+                            .id = (int64_t *)joined->id,
+                            .timestep = (int64_t)joined->step};
     const struct walls walls = {.count = joined->bodies};
     const fibrad_exchange_rule grey = {.emissivity = joined->emissivity, .body_emissivity = unbounded};
     fibrad_bed_factors with_areas = *factors;
@@ -176,43 +189,58 @@ static int join_write(const struct join_request *request, const struct joined *j
                                   .factors = &with_areas,
                                   .walls = &walls,
                                   .grey = joined->emissive ? &grey : NULL,
-                                  .array = arrays,
-                                  .arrays = sizeof arrays / sizeof *arrays - (matrix->bodies == 0)};
-    struct output out = {0};
-    int status = output_open(&out, request->out);
-    if (!status && request->out) status = request->write(out.file, &what);
-    status = output_close(&out, status);
-    if (!status) join_print(request, joined, &what);
+                                  .array = &ids,
+                                  .arrays = 1};
+    const int status = outputs_write(&request->outputs, &what, bed.timestep);
+    if (!status) join_report(request, joined, &what);
     return status;
 }
 
-static int join_solve(const struct join_request *request, const struct joined *joined) {
+static int join_solve(struct join_request *request, const struct joined *joined) {
     fibrad_scene *scene = NULL;
     void *scene_block = NULL, *matrix_block = NULL;
+    double *x = malloc(3 * sizeof *x * joined->n + 1);
     fibrad_bed_factors factors = {0};
-    int status = join_scene(joined, &scene, &scene_block);
+    int status = x ? join_scene(joined, &scene, &scene_block) : message_memory();
     if (!status) status = join_matrix(request, joined, scene, &factors, &matrix_block);
     if (!status) status = interrupt_status();
-    if (!status) status = join_write(request, joined, &factors);
+    if (!status) status = join_write(request, joined, x, &factors);
     free(scene_block);
     free(matrix_block);
+    free(x);
     return status;
+}
+
+/* Ids name the spheres, unless they are too large for it. */
+static int join_names(const struct join_request *request, const struct joined *joined) {
+    if (request->positions || joined->n == 0 || joined->id[joined->n - 1] <= INT64_MAX) return STATUS_OK;
+    return message(STATUS_INPUT, "id %" PRIu64 " is too large for a name; --positions names spheres by positions",
+                   joined->id[joined->n - 1]);
+}
+
+/* Everything between the options and the end; outputs are opened before the work. */
+static int join_run(struct join_request *request) {
+    struct joined joined = {0};
+    struct output json;
+    FILE *text = outputs_stdout(&request->outputs) ? stderr : stdout;
+    int status = output_open(&json, request->json);
+    if (!status) status = outputs_open(&request->outputs);
+    request->report = (struct report){.text = request->quiet ? NULL : text, .json = json.file};
+    if (!status) report_open(&request->report, "join");
+    if (!status) status = read_rows(request->files, request->count, &joined);
+    if (!status) status = join_names(request, &joined);
+    if (!status) status = join_solve(request, &joined);
+    if (!status) report_close(&request->report);
+    status = outputs_close(&request->outputs, status);
+    joined_free(&joined);
+    return output_close(&json, status);
 }
 
 int command_join(int argc, char **argv) {
     struct join_request request = {.files = calloc((size_t)argc + 1, sizeof *request.files)};
-    struct joined joined = {0};
     if (!request.files) return message_memory();
-    int status = join_parse(&request, argc, argv);
-    if (status == STATUS_HELP)
-        status = join_help();
-    else if (!status) {
-        status = read_rows(request.files, request.count, &joined);
-        if (!status && request.ids && joined.n > 0 && joined.id[joined.n - 1] > INT64_MAX)
-            status = message(STATUS_INPUT, "--ids: id %" PRIu64 " is too large for it", joined.id[joined.n - 1]);
-        if (!status) status = join_solve(&request, &joined);
-        joined_free(&joined);
-    }
+    const int status = join_parse(&request, argc, argv);
+    const int ended = status == STATUS_HELP ? join_help() : status ? status : join_run(&request);
     free(request.files);
-    return status;
+    return ended;
 }

@@ -73,7 +73,7 @@ typedef struct fibrad_insitu_bed {
     const uint64_t *id;       /* [n] */
     const double *x;          /* [n][3] [L] */
     const double *radius;     /* [n] [L] */
-    const double *emissivity; /* [n] (0, 1] */
+    const double *emissivity; /* [n] [0, 1]; 0 reflects all */
 } fibrad_insitu_bed;
 
 /* What radiates when powers are asked for. */

@@ -170,8 +170,8 @@ static int take_particles(struct insitu_build *b) {
         }
         if (!(p.radius > 0 && p.radius <= LENGTH_MAX))
             return refuse_particle(message, p.id, "its radius is not above 0");
-        if (!(p.emissivity > 0 && p.emissivity <= 1))
-            return refuse_particle(message, p.id, "its emissivity is not above 0 and at most 1");
+        if (!(p.emissivity >= 0 && p.emissivity <= 1))
+            return refuse_particle(message, p.id, "its emissivity is not between 0 and 1");
         particle[i] = p;
     }
     b->to->own = bed->n;
@@ -384,18 +384,19 @@ static void sum_facts(struct insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const double *weight = to->weight.at;
     fibrad_row row;
-    double sum[4] = {0}; /* emitted, beyond, squares of errors, entries */
+    double sum[5] = {0}; /* emitted, beyond, squares of errors, entries, rows that are not empty for emissivity 0 */
     for (int t = 0; t < b->s->config.threads; ++t) {
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
             sum[0] += weight[row.sphere];
             sum[1] += weight[row.sphere] * row.beyond;
             sum[2] += row.error * row.error;
+            sum[4] += weight[row.sphere] > 0;
         }
         sum[3] += (double)to->rows[t].entries;
     }
-    MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPI_DOUBLE, MPI_SUM, b->s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, sum, 5, MPI_DOUBLE, MPI_SUM, b->s->comm);
     to->facts.beyond = sum[0] > 0 ? sum[1] / sum[0] : 0;
-    to->facts.error = to->facts.particles ? sqrt(sum[2] / (double)to->facts.particles) : 0;
+    to->facts.error = sum[4] > 0 ? sqrt(sum[2] / sum[4]) : 0;
     to->facts.entries = (uint64_t)sum[3];
     to->facts.halo = b->halo;
 }

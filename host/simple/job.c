@@ -63,8 +63,9 @@ static int run_row(void *tasks, int thread, uint32_t task) {
     report->directions = row.directions > report->directions ? row.directions : report->directions;
     report->fallbacks += row.fallbacks;
     report->rays += rays;
-    if (row.rows) /* else there is none */
-        report->closure_error = larger_of(report->closure_error, fabs(sum_of_row(&row, job->facts.bodies) - 1));
+    const double sum = row.rows ? sum_of_row(&row, job->facts.bodies) : 0;
+    if (sum != 0) /* else there is no row, or that of a sphere that emits nothing */
+        report->closure_error = larger_of(report->closure_error, fabs(sum - 1));
     return FIBRAD_OK;
 }
 

@@ -1,6 +1,7 @@
 /* summary.c - what the rows of a matrix have in common. SPDX-License-Identifier: MIT */
 #include <math.h>
 
+#include "bed/property_option.h"
 #include "write/write.h"
 
 double summary_row(const fibrad_factors *matrix, uint32_t i) {
@@ -37,8 +38,7 @@ void summary_make(struct summary *summary, const struct contents *what) {
     summary->error_rms = sqrt(summary->error_rms);
 }
 
-void summary_print_walls(const struct summary *summary, const struct contents *what) {
-    for (uint32_t k = 0; k < what->walls->count; ++k)
-        printf("wall_%s %.17g %.17g\n", wall_name(&what->walls->body[k]), summary->wall_mean[k],
-               what->factors->body_area[k]);
+void summary_report_walls(const struct summary *summary, const struct contents *what, struct report *report) {
+    wall_values_report(what->walls, summary->wall_mean, "_F", 6, report);
+    wall_values_report(what->walls, what->factors->body_area, "_area", 6, report);
 }

@@ -1,15 +1,11 @@
-/* write.c - finds the writer of a matrix for the ending of a file. SPDX-License-Identifier: MIT */
+/* write.c - what all writers ask of the contents. SPDX-License-Identifier: MIT */
 #include "write/write.h"
 
-#include "cli/output.h"
+bool contents_outside(const struct contents *what) { return what->walls && (what->walls->count > 0 || what->grey); }
 
-write_function *write_find(const char *path, const char **endings) {
-    static const struct {
-        const char *ending;
-        write_function *write;
-    } writers[] = {{".csv", write_csv}, {".mtx", write_mtx}, {".npz", write_npz}, {".vtp", write_vtp}};
-    if (endings) *endings = ".csv, .mtx, .npz and .vtp";
-    for (size_t k = 0; k < sizeof writers / sizeof *writers; ++k)
-        if (output_ends(path, writers[k].ending)) return writers[k].write;
-    return NULL;
+const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]) {
+    const fibrad_body *body = &what->walls->body[k];
+    if (body->kind) return wall_name(body);
+    snprintf(name, BODY_NAME, "wall_%u", k + 1);
+    return name;
 }

@@ -1,4 +1,4 @@
-/* write.h - matrices to files, and what is said of them. SPDX-License-Identifier: MIT */
+/* write.h - results of a bed to files, one frame at a time, and what is said of them. SPDX-License-Identifier: MIT */
 #ifndef WRITE_H
 #define WRITE_H
 
@@ -6,10 +6,12 @@
 #include <stdio.h>
 
 #include "bed/bed.h"
+#include "bed/conduction.h"
 #include "bed/wall_option.h"
+#include "report/report.h"
 #include "simple/fibrad_host.h"
 
-/* A further array of a .npz. */
+/* A further array of a .npz; one of a name that it has anyway takes its place. */
 struct array {
     const char *name, *type; /* "x.npy"; kind and bytes as NumPy has them: "f8" */
     const void *data;
@@ -18,26 +20,41 @@ struct array {
 
 enum { ARRAYS_MAX = 16 };
 
-/* What is written. */
+/* The results of one frame: a matrix, or heat, or conduction; what belongs to the others is 0. */
 struct contents {
     const struct bed *bed;
+    const struct walls *walls; /* NULL: neither walls nor surroundings are written; none in it: no walls, and
+                                  surroundings only with exchange factors and heat. A body of kind 0: only that there
+                                  is one is known */
+    const char *file;          /* the bed's, a column where several files go into one output; NULL: there is one */
+    bool series;               /* several frames may go into one output: columns frame and timestep */
+
     const fibrad_bed_factors *factors;
     const unsigned char *wanted;      /* [n] not 0: this row was computed; NULL: all were */
-    const struct walls *walls;        /* NULL: neither walls nor surroundings are written; none in it: no walls, and
-                                         surroundings only with exchange factors */
     const fibrad_exchange_rule *grey; /* NULL: view factors; else exchange factors by this rule */
-    const struct array *array;        /* [arrays] that a .npz has besides the matrix, at most ARRAYS_MAX */
+    const struct array *array;        /* [arrays] that a .npz has besides its own, at most ARRAYS_MAX */
     size_t arrays;
+
+    const fibrad_heat_sources *sources; /* kelvins; surroundings NaN: there are none, the geometry is closed */
+    const fibrad_heat_result *result;   /* watts */
+
+    const struct conduction *conduction;
 };
 
-/* Writes to the file; a failing file is noticed by the caller. Status 0 or that of a signal. */
-typedef int write_function(FILE *file, const struct contents *what);
+/* Writes one frame; first: the file is empty yet. A failing file is noticed by the caller. Status 0, STATUS_MEMORY or
+ * that of a signal. */
+typedef int write_function(FILE *file, const struct contents *what, bool first);
 
-write_function write_csv, write_mtx, write_npz, write_vtp;
+write_function write_csv, write_mtx, write_npz, write_vtp, write_json;
+write_function write_conduction_csv, write_conduction_json;
+write_function write_heat_csv, write_heat_vtp, write_heat_json, write_heat_dump;
 
-/* The writer for the ending of a path, NULL if there is none or no path. `endings`, unless NULL, gets the list of those
- * known. */
-write_function *write_find(const char *path, const char **endings);
+/* Whether walls and surroundings of a matrix are written. */
+bool contents_outside(const struct contents *what);
+
+/* What a body is called: "zmin" and the like, "wall_1" and the like if its place is not known. */
+enum { BODY_NAME = 16 };
+const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]);
 
 /* What the rows that were computed have in common. */
 struct summary {
@@ -52,7 +69,7 @@ double summary_row(const fibrad_factors *matrix, uint32_t i);
 
 void summary_make(struct summary *summary, const struct contents *what);
 
-/* Prints a line `wall_NAME mean-F area` for each wall. */
-void summary_print_walls(const struct summary *summary, const struct contents *what);
+/* Reports the mean F to each wall, `wall_NAME_F`, and its area. */
+void summary_report_walls(const struct summary *summary, const struct contents *what, struct report *report);
 
 #endif

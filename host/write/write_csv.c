@@ -1,55 +1,169 @@
-/* write_csv.c - view factors as comma-separated values i,j,F, or exchange factors i,j,D. SPDX-License-Identifier: MIT
- */
+/* write_csv.c - comma-separated values: i,j,F or i,j,D of a matrix, i,T_K,q_W of heat, F_E and k of conduction.
+ * SPDX-License-Identifier: MIT
+ *
+ * What is no sphere has negative numbers, and its name in the column body: the surroundings -1, walls -2, -3 ..., then
+ * what is beyond a cutoff. */
 #include <gsl/gsl_math.h>
-#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
+#include "text/text.h"
 #include "write/write.h"
 
-static int64_t csv_name(const struct contents *what, uint32_t i) { return bed_name(what->bed, i); }
+enum { SURROUNDINGS = -1, FIRST_WALL = -2 };
 
-static void write_entry(FILE *file, int64_t i, int64_t j, double f) {
-    if (f > 0) fprintf(file, "%" PRId64 ",%" PRId64 ",%.17g\n", i, j, f);
+/* A line in the making. */
+struct csv {
+    FILE *file;
+    const struct contents *what;
+    bool named;     /* there is a column body */
+    size_t columns; /* how long the columns are that all lines begin with */
+    char line[2 * PATH_MAX + 8 * TEXT_NUMBER];
+};
+
+/* A text; in quotes if it has commas or quotes itself. */
+static char *put_text(char *to, const char *text) {
+    const bool quoted = strpbrk(text, ",\"\r\n");
+    if (quoted) *to++ = '"';
+    for (int k = 0; k < PATH_MAX && text[k]; ++k) {
+        if (text[k] == '"') *to++ = '"';
+        *to++ = text[k];
+    }
+    if (quoted) *to++ = '"';
+    return to;
+}
+
+static char *put_comma(char *to) {
+    *to = ',';
+    return to + 1;
+}
+
+/* Writes the header, too, if the file is empty; `names` are those of the columns. */
+static void begin_csv(struct csv *csv, FILE *file, const struct contents *what, const char *names, bool first) {
+    const struct bed *bed = what->bed;
+    char *at = csv->line;
+    csv->file = file;
+    csv->what = what;
+    if (first)
+        fprintf(file, "%s%s%s%s\n", what->file ? "file," : "", what->series ? "frame,timestep," : "", names,
+                csv->named ? ",body" : "");
+    if (what->file) at = put_comma(put_text(at, what->file));
+    if (what->series) {
+        at = put_comma(text_whole(at, bed->frame));
+        at = put_comma(bed->timestep < 0 ? at : text_whole(at, bed->timestep));
+    }
+    csv->columns = (size_t)(at - csv->line);
+}
+
+static void end_line(struct csv *csv, char *at, const char *body) {
+    const size_t length = strlen(body);
+    if (csv->named) {
+        at = put_comma(at);
+        memcpy(at, body, length);
+        at += length;
+    }
+    *at++ = '\n';
+    fwrite(csv->line, 1, (size_t)(at - csv->line), csv->file);
+}
+
+static void write_entry(struct csv *csv, int64_t i, int64_t j, double f, const char *body) {
+    if (!(f > 0)) return;
+    char *at = put_comma(text_whole(csv->line + csv->columns, i));
+    at = put_comma(text_whole(at, j));
+    end_line(csv, text_real(at, f), body);
 }
 
 static double wall_factor(const struct contents *what, uint32_t i, uint32_t wall) {
     return what->factors->matrix.body[(size_t)i * what->walls->count + wall];
 }
 
-/* From sphere i to the surroundings, j = -1, to the walls, j = -2, -3 ... in the order given, and beyond a cutoff, the
- * next j. */
-static void write_outside(FILE *file, const struct contents *what, uint32_t i) {
-    write_entry(file, csv_name(what, i), -1, what->factors->matrix.escaped[i]);
-    for (uint32_t k = 0; k < what->walls->count; ++k)
-        write_entry(file, csv_name(what, i), -2 - (int64_t)k, wall_factor(what, i, k));
-    write_entry(file, csv_name(what, i), -2 - (int64_t)what->walls->count, what->factors->matrix.beyond[i]);
+static void write_outside(struct csv *csv, uint32_t i) {
+    const struct contents *what = csv->what;
+    const uint32_t walls = what->walls->count;
+    const int64_t row = bed_name(what->bed, i);
+    char name[BODY_NAME];
+    write_entry(csv, row, SURROUNDINGS, what->factors->matrix.escaped[i], "surroundings");
+    for (uint32_t k = 0; k < walls; ++k)
+        write_entry(csv, row, FIRST_WALL - (int64_t)k, wall_factor(what, i, k), contents_body(what, k, name));
+    write_entry(csv, row, FIRST_WALL - (int64_t)walls, what->factors->matrix.beyond[i], "beyond");
 }
 
 /* From the walls of finite area to the spheres, by reciprocity. */
-static int write_walls(FILE *file, const struct contents *what) {
+static int write_walls(struct csv *csv) {
+    const struct contents *what = csv->what;
     const struct bed *bed = what->bed;
+    char name[BODY_NAME];
     for (uint32_t k = 0; k < what->walls->count; ++k) {
         if (interrupt_status()) return interrupt_status();
         const double weight = what->factors->body_area[k] * (what->grey ? what->grey->body_emissivity[k] : 1);
         if (!(weight > 0 && weight < INFINITY)) continue;
         for (uint32_t j = 0; j < bed->n; ++j)
-            write_entry(file, -2 - (int64_t)k, csv_name(what, j),
+            write_entry(csv, FIRST_WALL - (int64_t)k, bed_name(bed, j),
                         4 * M_PI * bed->r[j] * bed->r[j] * (what->grey ? what->grey->emissivity[j] : 1) *
-                            wall_factor(what, j, k) / weight);
+                            wall_factor(what, j, k) / weight,
+                        contents_body(what, k, name));
     }
     return STATUS_OK;
 }
 
-int write_csv(FILE *file, const struct contents *what) {
+int write_csv(FILE *file, const struct contents *what, bool first) {
     const fibrad_factors *matrix = &what->factors->matrix;
-    const bool walls = what->walls && (what->walls->count > 0 || what->grey);
-    fputs(what->grey ? "i,j,D\n" : "i,j,F\n", file);
+    struct csv csv = {.named = contents_outside(what)};
+    begin_csv(&csv, file, what, what->grey ? "i,j,D" : "i,j,F", first);
     for (uint32_t i = 0; i < matrix->n; ++i) {
         if (interrupt_status()) return interrupt_status();
         for (uint64_t k = matrix->start[i]; k < matrix->start[i + 1]; ++k)
-            write_entry(file, csv_name(what, i), csv_name(what, matrix->col[k]), matrix->f[k]);
-        if (walls) write_outside(file, what, i);
+            write_entry(&csv, bed_name(what->bed, i), bed_name(what->bed, matrix->col[k]), matrix->f[k], "");
+        if (csv.named) write_outside(&csv, i);
     }
-    return walls ? write_walls(file, what) : STATUS_OK;
+    return csv.named ? write_walls(&csv) : STATUS_OK;
+}
+
+static void write_power(struct csv *csv, int64_t name, double temperature, double power, const char *body) {
+    char *at = put_comma(text_whole(csv->line + csv->columns, name));
+    at = put_comma(text_real(at, temperature));
+    end_line(csv, text_real(at, power), body);
+}
+
+int write_heat_csv(FILE *file, const struct contents *what, bool first) {
+    const fibrad_heat_sources *sources = what->sources;
+    const fibrad_heat_result *result = what->result;
+    struct csv csv = {.named = true};
+    char name[BODY_NAME];
+    begin_csv(&csv, file, what, "i,T_K,q_W", first);
+    for (uint32_t i = 0; i < what->bed->n; ++i) {
+        if (interrupt_status()) return interrupt_status();
+        write_power(&csv, bed_name(what->bed, i), sources->temperature[i], result->power[i], "");
+    }
+    if (!what->walls) return STATUS_OK;
+    if (!isnan(sources->surroundings))
+        write_power(&csv, SURROUNDINGS, sources->surroundings, result->surroundings_power, "surroundings");
+    for (uint32_t k = 0; k < what->walls->count; ++k)
+        write_power(&csv, FIRST_WALL - (int64_t)k, sources->body_temperature[k], result->body_power[k],
+                    contents_body(what, k, name));
+    return STATUS_OK;
+}
+
+int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
+    const struct conduction *conduction = what->conduction;
+    struct csv csv = {0};
+    begin_csv(&csv, file, what, "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable", first);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!conduction_wants(conduction, axis)) continue;
+        char *at = csv.line + csv.columns;
+        *at++ = (char)('x' + axis);
+        at = text_real(put_comma(at), conduction->factor[axis]);
+        at = text_real(put_comma(at), conduction->error[axis]);
+        at = put_comma(at);
+        if (conduction->temperature > 0) at = text_real(at, conduction->k[axis]);
+        at = put_comma(at);
+        if (conduction->temperature > 0) at = text_real(at, conduction->k_error[axis]);
+        at = put_comma(at);
+        *at++ = conduction_flights(conduction, axis) == FLIGHTS_SETTLED ? '1' : '0';
+        end_line(&csv, at, "");
+    }
+    return STATUS_OK;
 }

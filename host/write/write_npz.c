@@ -1,4 +1,4 @@
-/* write_npz.c - view factors as a NumPy archive that scipy.sparse.load_npz opens. SPDX-License-Identifier: MIT
+/* write_npz.c - a matrix as a NumPy archive that scipy.sparse.load_npz opens. SPDX-License-Identifier: MIT
  *
  * A ZIP archive without compression, one member per array of the matrix in compressed rows: a header of 128 bytes that
  * names type and shape, then the array as it stands in memory. All members carry 64-bit sizes (ZIP64), so that small
@@ -38,7 +38,7 @@ static uint32_t crc_add(uint32_t crc, const unsigned char *data, size_t bytes) {
 }
 
 /* Writes `bytes` bytes of a number, the lowest first. */
-static void put_number(FILE *file, uint64_t value, int bytes) {
+static void put_little(FILE *file, uint64_t value, int bytes) {
     for (; bytes > 0; --bytes, value >>= 8) putc((int)(value & 255), file);
 }
 
@@ -46,7 +46,8 @@ static void make_header(const struct member *member, unsigned char header[HEADER
     static const char magic[] = "\x93NUMPY\1";
     const uint16_t one = 1;
     const bool little = *(const unsigned char *)&one == 1;
-    const char order = member->array.type[0] == 'S' ? '|' : little ? '<' : '>';
+    const bool bytes = member->array.type[0] == 'S' || member->array.type[1] == '1';
+    const char order = bytes ? '|' : little ? '<' : '>';
     char text[HEADER];
     char shape[48] = "";
     const struct array *array = &member->array;
@@ -66,21 +67,21 @@ static void make_header(const struct member *member, unsigned char header[HEADER
 
 /* What local and central header have in common, from the version to the length of the name. */
 static void put_common(FILE *file, const struct member *member) {
-    put_number(file, 45, 2);         /* version that reads ZIP64 */
-    put_number(file, 0, 2);          /* flags */
-    put_number(file, 0, 2);          /* stored */
-    put_number(file, 0x00210000, 4); /* time and date: 1 January 1980, so that equal matrices make equal files */
-    put_number(file, member->crc, 4);
-    put_number(file, UINT32_MAX, 4); /* both sizes stand in the ZIP64 field */
-    put_number(file, UINT32_MAX, 4);
-    put_number(file, strlen(member->array.name), 2);
+    put_little(file, 45, 2);         /* version that reads ZIP64 */
+    put_little(file, 0, 2);          /* flags */
+    put_little(file, 0, 2);          /* stored */
+    put_little(file, 0x00210000, 4); /* time and date: 1 January 1980, so that equal matrices make equal files */
+    put_little(file, member->crc, 4);
+    put_little(file, UINT32_MAX, 4); /* both sizes stand in the ZIP64 field */
+    put_little(file, UINT32_MAX, 4);
+    put_little(file, strlen(member->array.name), 2);
 }
 
 static void put_sizes(FILE *file, const struct member *member, uint64_t field) {
-    put_number(file, 1, 2); /* the ZIP64 field */
-    put_number(file, field, 2);
-    put_number(file, HEADER + member->bytes, 8);
-    put_number(file, HEADER + member->bytes, 8);
+    put_little(file, 1, 2); /* the ZIP64 field */
+    put_little(file, field, 2);
+    put_little(file, HEADER + member->bytes, 8);
+    put_little(file, HEADER + member->bytes, 8);
 }
 
 static int write_member(FILE *file, struct member *member) {
@@ -94,9 +95,9 @@ static int write_member(FILE *file, struct member *member) {
         crc = crc_add(crc, data + done, left < BLOCK ? left : BLOCK);
     }
     member->crc = ~crc;
-    put_number(file, 0x04034b50, 4);
+    put_little(file, 0x04034b50, 4);
     put_common(file, member);
-    put_number(file, 20, 2);
+    put_little(file, 20, 2);
     fputs(member->array.name, file);
     put_sizes(file, member, 16);
     fwrite(header, 1, HEADER, file);
@@ -116,44 +117,44 @@ static uint64_t member_size(const struct member *member) {
 static uint64_t entry_size(const struct member *member) { return 46 + strlen(member->array.name) + 28; }
 
 static void put_entry(FILE *file, const struct member *member) {
-    put_number(file, 0x02014b50, 4);
-    put_number(file, 45, 2);
+    put_little(file, 0x02014b50, 4);
+    put_little(file, 45, 2);
     put_common(file, member);
-    put_number(file, 28, 2);
-    put_number(file, 0, 2);          /* comment */
-    put_number(file, 0, 2);          /* disk */
-    put_number(file, 0, 2);          /* internal attributes */
-    put_number(file, 0, 4);          /* external attributes */
-    put_number(file, UINT32_MAX, 4); /* the offset stands in the ZIP64 field too */
+    put_little(file, 28, 2);
+    put_little(file, 0, 2);          /* comment */
+    put_little(file, 0, 2);          /* disk */
+    put_little(file, 0, 2);          /* internal attributes */
+    put_little(file, 0, 4);          /* external attributes */
+    put_little(file, UINT32_MAX, 4); /* the offset stands in the ZIP64 field too */
     fputs(member->array.name, file);
     put_sizes(file, member, 24);
-    put_number(file, member->offset, 8);
+    put_little(file, member->offset, 8);
 }
 
 /* The end of the directory, in ZIP64 and, with nothing but all bits set, as of old. */
 static void put_end(FILE *file, uint64_t members, uint64_t offset, uint64_t size) {
-    put_number(file, 0x06064b50, 4);
-    put_number(file, 44, 8);
-    put_number(file, 45, 2);
-    put_number(file, 45, 2);
-    put_number(file, 0, 8); /* disks */
-    put_number(file, members, 8);
-    put_number(file, members, 8);
-    put_number(file, size, 8);
-    put_number(file, offset, 8);
+    put_little(file, 0x06064b50, 4);
+    put_little(file, 44, 8);
+    put_little(file, 45, 2);
+    put_little(file, 45, 2);
+    put_little(file, 0, 8); /* disks */
+    put_little(file, members, 8);
+    put_little(file, members, 8);
+    put_little(file, size, 8);
+    put_little(file, offset, 8);
 
-    put_number(file, 0x07064b50, 4);
-    put_number(file, 0, 4);
-    put_number(file, offset + size, 8);
-    put_number(file, 1, 4); /* disks in all */
+    put_little(file, 0x07064b50, 4);
+    put_little(file, 0, 4);
+    put_little(file, offset + size, 8);
+    put_little(file, 1, 4); /* disks in all */
 
-    put_number(file, 0x06054b50, 4);
-    put_number(file, 0, 4); /* disks */
-    put_number(file, members, 2);
-    put_number(file, members, 2);
-    put_number(file, UINT32_MAX, 4);
-    put_number(file, UINT32_MAX, 4);
-    put_number(file, 0, 2); /* comment */
+    put_little(file, 0x06054b50, 4);
+    put_little(file, 0, 4); /* disks */
+    put_little(file, members, 2);
+    put_little(file, members, 2);
+    put_little(file, UINT32_MAX, 4);
+    put_little(file, UINT32_MAX, 4);
+    put_little(file, 0, 2); /* comment */
 }
 
 static struct member make_member(const struct array *array) {
@@ -161,30 +162,89 @@ static struct member make_member(const struct array *array) {
     return (struct member){.array = *array, .bytes = array->length == SCALAR ? each : each * array->length * columns};
 }
 
-int write_npz(FILE *file, const struct contents *what) {
+/* The arrays of an archive in the making, and those made for it. */
+struct arrays {
+    struct array list[ARRAYS_MAX];
+    size_t count;
+    int64_t *position;
+    double (*x)[3];
+};
+
+/* Adds an array, unless there is one of its name or there are no data. */
+static void add_array(struct arrays *arrays, struct array array) {
+    for (size_t k = 0; k < arrays->count; ++k)
+        if (strcmp(arrays->list[k].name, array.name) == 0) return;
+    if (array.data && arrays->count < ARRAYS_MAX) arrays->list[arrays->count++] = array;
+}
+
+static int add_spheres(struct arrays *arrays, const struct bed *bed) {
+    const uint64_t n = bed->n;
+    arrays->position = malloc(n * sizeof *arrays->position + 1);
+    arrays->x = malloc(n * sizeof *arrays->x + 1);
+    if (!arrays->position || !arrays->x) return message_memory();
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        arrays->position[i] = bed_name(bed, i);
+        arrays->x[i][0] = bed->x[i], arrays->x[i][1] = bed->y[i], arrays->x[i][2] = bed->z[i];
+    }
+    add_array(arrays, (struct array){"ids.npy", "i8", arrays->position, n, 0});
+    add_array(arrays, (struct array){"x.npy", "f8", arrays->x, n, 3});
+    add_array(arrays, (struct array){"radius.npy", "f8", bed->r, n, 0});
+    return STATUS_OK;
+}
+
+/* What is known of the rows besides the matrix. */
+static void add_rows(struct arrays *arrays, const struct contents *what, char wall[WALLS_MAX][8]) {
     const fibrad_factors *matrix = &what->factors->matrix;
-    const uint64_t n = matrix->n, entries = matrix->start[n];
-    const int64_t shape[2] = {matrix->n, matrix->n};
-    const struct array arrays[] = {{"indices.npy", "i4", matrix->col, entries, 0},
-                                   {"indptr.npy", "i8", matrix->start, n + 1, 0},
-                                   {"format.npy", "S3", "csr", SCALAR, 0},
-                                   {"shape.npy", "i8", shape, 2, 0},
-                                   {"data.npy", "f8", matrix->f, entries, 0}};
-    const size_t own = sizeof arrays / sizeof *arrays, count = own + what->arrays;
-    struct member members[sizeof arrays / sizeof *arrays + ARRAYS_MAX];
+    const uint64_t n = matrix->n;
+    const uint32_t walls = what->walls ? what->walls->count : 0;
+    char name[BODY_NAME];
+    add_array(arrays, (struct array){"escaped.npy", "f8", matrix->escaped, n, 0});
+    add_array(arrays, (struct array){"beyond.npy", "f8", matrix->beyond, n, 0});
+    add_array(arrays, (struct array){"error.npy", "f8", matrix->error, n, 0});
+    add_array(arrays, (struct array){"computed.npy", "u1", what->wanted, n, 0});
+    if (what->grey) add_array(arrays, (struct array){"emissivity.npy", "f8", what->grey->emissivity, n, 0});
+    if (walls == 0) return;
+    for (uint32_t k = 0; k < walls; ++k) strncpy(wall[k], contents_body(what, k, name), 8);
+    add_array(arrays, (struct array){"body.npy", "f8", matrix->body, n, walls});
+    add_array(arrays, (struct array){"wall_names.npy", "S8", wall, walls, 0});
+}
+
+static int write_archive(FILE *file, const struct arrays *arrays) {
+    struct member members[ARRAYS_MAX];
     uint64_t offset = 0, directory = 0;
     make_crc_table();
-    for (size_t k = 0; k < count; ++k) {
-        members[k] = make_member(k < own ? &arrays[k] : &what->array[k - own]);
+    for (size_t k = 0; k < arrays->count; ++k) {
+        members[k] = make_member(&arrays->list[k]);
         members[k].offset = offset;
         const int status = write_member(file, &members[k]);
         if (status) return status;
         offset += member_size(&members[k]);
     }
-    for (size_t k = 0; k < count; ++k) {
+    for (size_t k = 0; k < arrays->count; ++k) {
         put_entry(file, &members[k]);
         directory += entry_size(&members[k]);
     }
-    put_end(file, count, offset, directory);
+    put_end(file, arrays->count, offset, directory);
     return STATUS_OK;
+}
+
+int write_npz(FILE *file, const struct contents *what, bool first) {
+    const fibrad_factors *matrix = &what->factors->matrix;
+    const uint64_t n = matrix->n, entries = matrix->start[n];
+    const int64_t shape[2] = {matrix->n, matrix->n};
+    struct arrays arrays = {.list = {{"indices.npy", "i4", matrix->col, entries, 0},
+                                     {"indptr.npy", "i8", matrix->start, n + 1, 0},
+                                     {"format.npy", "S3", "csr", SCALAR, 0},
+                                     {"shape.npy", "i8", shape, 2, 0},
+                                     {"data.npy", "f8", matrix->f, entries, 0}},
+                            .count = 5};
+    char wall[WALLS_MAX][8];
+    (void)first;
+    for (size_t k = 0; k < what->arrays; ++k) add_array(&arrays, what->array[k]);
+    int status = add_spheres(&arrays, what->bed);
+    if (!status) add_rows(&arrays, what, wall);
+    if (!status) status = write_archive(file, &arrays);
+    free(arrays.position);
+    free(arrays.x);
+    return status;
 }

@@ -30,7 +30,7 @@ static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     const uint32_t bodies = scene->facts.bodies;
     if (i >= scene->facts.spheres || (bodies > 0 && rule->body_emissivity == NULL)) return FIBRAD_E_ARGUMENT;
-    if (!(rule->emissivity[i] > 0 && rule->emissivity[i] <= 1) || rule->paths > FIBRAD_PATHS_MAX)
+    if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1) || rule->paths > FIBRAD_PATHS_MAX)
         return FIBRAD_E_ARGUMENT;
     *task = (exchange_task){.rule = rule};
     for (uint32_t b = 0; b < bodies; b++) {
@@ -133,10 +133,21 @@ static void add_first_leg(fibrad_workspace *work, const fibrad_exchange_rule *ru
     fibrad_entries *entries = &work->entries;
     for (uint32_t k = 0; k < entries->length; k++)
         for (int part = 0; part < 4; part++) entries->part[k][part] *= scale;
-    for (uint32_t k = 0; k < row->length; k++)
-        for (uint32_t part = 0; part < 4; part++)
+    for (uint32_t k = 0; k < row->length; k++) {
+        const double emissivity = rule->emissivity[row->col[k]];
+        for (uint32_t part = 0; part < 4 && emissivity > 0; part++)
             fibrad_entries_add(entries, fibrad_entries_of(entries, work->scene->place[row->col[k]]), part,
-                               0.25 * row->f[k] * rule->emissivity[row->col[k]]);
+                               0.25 * row->f[k] * emissivity);
+    }
+}
+
+/* The row of a sphere that emits nothing. */
+static int empty_row(const fibrad_scene *scene, fibrad_row *row) {
+    row->length = row->directions = row->fallbacks = 0;
+    row->symmetric = 0;
+    row->escaped = row->error = 0;
+    for (uint32_t b = 0; b < scene->facts.bodies; b++) row->body[b] = 0;
+    return FIBRAD_OK;
 }
 
 static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *of,
@@ -144,6 +155,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     exchange_task *task = *(exchange_task *const *)of;
     const fibrad_exchange_rule *rule = task->rule;
     double beam_error, wall[FIBRAD_WALLS], scale = 0;
+    if (rule->emissivity[i] == 0) return empty_row(scene, row);
     int status = first_leg(scene, space, i, rule, row, &beam_error);
     if (status != FIBRAD_OK) return status;
 
@@ -196,6 +208,10 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     if (status == FIBRAD_OK && (work == NULL || displacement == NULL)) status = FIBRAD_E_ARGUMENT;
     if (status == FIBRAD_OK) status = fibrad_work_open(work, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
     if (status != FIBRAD_OK) return status;
+    if (rule->emissivity[i] == 0) {
+        *displacement = (fibrad_displacement){0};
+        return FIBRAD_OK;
+    }
     fibrad_paths paths = paths_of(&task, space, scene, i);
     const uint32_t count = rule->paths > 0 ? rule->paths : FIRST_PATHS;
     paths.first = true;

@@ -164,7 +164,7 @@ static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint3
         wall != FIBRAD_NONE ? paths->wall_emissivity[wall] : paths->emissivity[scene->order[path->place]];
     double absorbed = path->weight * emissivity;
     path->weight -= absorbed;
-    if (!counts) return;
+    if (!counts || emissivity == 0) return; /* no entry of what absorbs nothing */
     if (wall != FIBRAD_NONE) {
         paths->wall[wall] += absorbed;
         return;

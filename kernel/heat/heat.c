@@ -285,9 +285,26 @@ static double emission_of(const fibrad_heat_sources *s, double t) {
     return s->sigma * (t * t + t0 * t0) * (t + t0) * (t - t0);
 }
 
-/* Emissivity and emission of a body. What lies beyond the patches of a wall receives no more than the surroundings
- * send, its area being infinite; so it is like a black body of that radiosity. */
-static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
+/* Widens a range of emissions by that of a body, if it emits. */
+static void widen_range(double range[2], double eps, double emission) {
+    if (eps > 0) range[0] = fibrad_min(range[0], emission), range[1] = fibrad_max(range[1], emission);
+}
+
+/* The middle of what spheres and walls emit, where the radiosities of those that reflect all begin: so nothing flows
+ * where all that emit do so alike. 0: none of them emits. */
+static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources *s) {
+    double range[2] = {__builtin_inf(), -__builtin_inf()};
+    for (uint32_t i = 0; i < heat->spheres; i++)
+        widen_range(range, s->emissivity[i], emission_of(s, s->temperature[i]));
+    for (uint32_t b = 0; b < heat->given_bodies; b++)
+        widen_range(range, s->body_emissivity[b], emission_of(s, s->body_temperature[b]));
+    return range[0] <= range[1] ? range[0] + 0.5 * (range[1] - range[0]) : 0;
+}
+
+/* Emissivity and emission of a body; `middle` for one that reflects all, whose own plays no part. What lies beyond the
+ * patches of a wall receives no more than the surroundings send, its area being infinite; so it is like a black body of
+ * that radiosity. */
+static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b) {
     const uint32_t spheres = heat->spheres;
     double eps = 1, emission = 0;
     if (b < spheres) {
@@ -301,6 +318,7 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b
         else
             emission = wall_eps * wall_emission;
     }
+    if (eps == 0) emission = middle;
     /* an earlier solution goes up or down with the emission; the coarser level begins with what it had of it */
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
         if (heat->warm && !s->uniform && eps < 1)
@@ -322,7 +340,8 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
         heat->wall_emissivity[heat->slot[b]] = sources->body_emissivity[b];
         heat->wall_emission[heat->slot[b]] = emission_of(sources, sources->body_temperature[b]);
     }
-    for (uint32_t b = 0; b < heat->bodies; b++) set_body(heat, sources, b);
+    const double middle = middle_emission(heat, sources);
+    for (uint32_t b = 0; b < heat->bodies; b++) set_body(heat, sources, middle, b);
     heat->group = sources->uniform ? UINT32_MAX : 4;
     heat->tolerance = sources->tolerance > 0 ? sources->tolerance : HEAT_TOLERANCE;
     heat->limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;

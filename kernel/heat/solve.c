@@ -135,20 +135,28 @@ static double find_residual(fibrad_heat *heat) {
     return slope;
 }
 
-/* Net powers of the bodies. */
-static void find_powers(const fibrad_heat *heat, double *power) {
-    for (uint32_t b = 0; b < heat->bodies; b++) {
-        power[b] = 0;
-        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) power[b] += heat->net[a];
-    }
-}
-
 /* Emissivity times area of a body. */
 static double emitting(const fibrad_heat *heat, uint32_t body) {
     double area = 0;
     for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++) area += heat->area[a];
     return heat->emissivity[body] * area;
 }
+
+/* Net powers of the bodies. Those that reflect all have none: what residuals leave of theirs goes to the others, by
+ * emissivity times area. */
+static void find_powers(const fibrad_heat *heat, double *power) {
+    double left = 0, weights = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        power[b] = 0;
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) power[b] += heat->net[a];
+        if (heat->emissivity[b] == 0) left += power[b], power[b] = 0;
+    }
+    for (uint32_t b = 0; b < heat->bodies && left != 0; b++) weights += emitting(heat, b);
+    for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) power[b] += left * (emitting(heat, b) / weights);
+}
+
+/* What is nothing but rounding in a sum of squares. */
+#define ROUNDING 1e-28
 
 /* What residuals are compared with: how much emission differs from its mean, and, for rounding, emission itself. */
 static void find_scale(fibrad_heat *heat) {
@@ -158,7 +166,7 @@ static void find_scale(fibrad_heat *heat) {
         weights += area, sum += area * emission, largest += area * emission * emission;
     }
     heat->scale = 0;
-    heat->smallest = 1e-28 * largest;
+    heat->smallest = ROUNDING * largest;
     for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) {
         const double difference = heat->emission[b] - sum / weights;
         heat->scale += emitting(heat, b) * difference * difference;
@@ -224,6 +232,7 @@ static void refine_patches(fibrad_heat *heat) {
 static void search_on(fibrad_heat *heat, bool restart) {
     const double last = heat->slope;
     heat->slope = find_residual(heat);
+    if (restart) heat->smallest = fibrad_max(heat->smallest, ROUNDING * heat->slope);
     if (level_solved(heat)) {
         if (heat->group == 4)
             refine_patches(heat);

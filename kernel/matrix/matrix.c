@@ -23,12 +23,22 @@ static bool matrix_rule_valid(const fibrad_scene *scene, const fibrad_matrix_rul
     if (rule == NULL) return true;
     if (rule->tasks > TASKS_MAX || !(rule->drop >= 0 && rule->drop <= 1)) return false;
     for (uint32_t i = 0; i < scene->facts.spheres && rule->emissivity != NULL; i++)
-        if (!(rule->emissivity[i] > 0 && rule->emissivity[i] <= 1)) return false;
+        if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1)) return false;
     return true;
 }
 
-/* All entries of the collections; UINT64_MAX if their rows are of other bodies than the scene's. */
-static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count) {
+/* Whether all entries of a row are between spheres that emit. */
+static bool entries_emit(const fibrad_record *row, const double *emissivity) {
+    const uint32_t *col = fibrad_record_col(row);
+    bool emit = row->length == 0 || emissivity[row->sphere] > 0;
+    for (uint32_t k = 0; k < row->length && emit; k++) emit = emissivity[col[k]] > 0;
+    return emit;
+}
+
+/* All entries of the collections; UINT64_MAX if their rows are of other bodies than the scene's, or have entries that
+ * the emissivities (NULL: none) rule out. */
+static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
+                           const double *emissivity) {
     uint64_t entries = 0;
     for (uint32_t c = 0; c < count; c++) {
         size_t at = 0;
@@ -36,6 +46,7 @@ static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, u
             const uint32_t *col = fibrad_record_col(row);
             if (row->sphere >= scene->facts.spheres || row->bodies != scene->facts.bodies) return UINT64_MAX;
             if (row->length > 0 && col[row->length - 1] >= scene->facts.spheres) return UINT64_MAX;
+            if (emissivity != NULL && !entries_emit(row, emissivity)) return UINT64_MAX;
         }
     }
     return entries;
@@ -64,7 +75,7 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
 static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                              const fibrad_matrix_rule *rule) {
     if ((rows == NULL && count > 0) || !matrix_rule_valid(scene, rule)) return false;
-    const uint64_t entries = entries_of(scene, rows, count);
+    const uint64_t entries = entries_of(scene, rows, count, rule != NULL ? rule->emissivity : NULL);
     *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule)};
     m->raw = rule != NULL && rule->raw;
     m->exchange = rule != NULL && rule->emissivity != NULL;
@@ -252,17 +263,18 @@ static void share_out(fibrad_matrix *m, uint32_t i, double rest, const double al
 }
 
 /* Brings what rows meet besides spheres up to what the row sums leave of 1. What a row is short of 1 is as good a
- * measure of it, from the opposite directions, as the raw row's. */
+ * measure of it, from the opposite directions, as the raw row's. Rows of spheres that reflect all stay empty. */
 static void close_rows(fibrad_matrix *m) {
     double all[FIBRAD_WALLS + 2] = {0}, largest = 0;
     const uint32_t n = m->result.n, bodies = m->bodies;
     for (uint32_t i = 0; i < n; i++) largest = fibrad_max(largest, m->r[i]);
-    for (uint32_t i = 0; i < n; i++) {
+    for (uint32_t i = 0; i < n && largest > 0; i++) {
         const double area = m->r[i] / largest * (m->r[i] / largest);
         for (uint32_t b = 0; b < bodies; b++) all[b] += area * m->body[(size_t)i * bodies + b];
         all[bodies] += area * m->escaped[i], all[bodies + 1] += area * m->beyond[i];
     }
-    for (uint32_t i = 0; i < n; i++) share_out(m, i, fibrad_max(0, 1 - fibrad_sparse_sum(&m->result, i)), all);
+    for (uint32_t i = 0; i < n; i++)
+        if (m->r[i] > 0) share_out(m, i, fibrad_max(0, 1 - fibrad_sparse_sum(&m->result, i)), all);
 }
 
 /* The error of each row, from how far its mean is off the raw row, whose columns are among those of the mean. */

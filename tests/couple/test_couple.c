@@ -258,7 +258,8 @@ static struct rows_file read_rows(const char *name, int of) {
 
 static bool equal_words(const void *a, const void *b, size_t words) { return memcmp(a, b, words * 8) == 0; }
 
-/* Whether row i of one file is row k of another, to the bit; and closed, with ascending columns. */
+/* Whether row i of one file is row k of another, to the bit; and closed, or empty at
+ * emissivity 0, with ascending columns. */
 static bool same_row(const struct rows_file *a, size_t i, const struct rows_file *b, size_t k) {
     const uint64_t length = a->start[i + 1] - a->start[i], bodies = a->head.bodies;
     if (length != b->start[k + 1] - b->start[k]) return false;
@@ -270,7 +271,7 @@ static bool same_row(const struct rows_file *a, size_t i, const struct rows_file
         sum += f[m];
     }
     for (uint64_t m = 0; m < bodies; ++m) sum += a->body[i * bodies + m];
-    return fabs(sum - 1) < 1e-12 && equal_words(col, b->col + b->start[k], length) &&
+    return fabs(sum - (a->emissivity[i] > 0)) < 1e-12 && equal_words(col, b->col + b->start[k], length) &&
            equal_words(f, b->f + b->start[k], length) &&
            equal_words(a->body + i * bodies, b->body + k * bodies, bodies) &&
            equal_words(&a->escaped[i], &b->escaped[k], 1) && equal_words(&a->beyond[i], &b->beyond[k], 1) &&
@@ -311,7 +312,7 @@ static const struct kind kinds[] = {
     {"defaults", 6, {0, 0, 0}, OPEN, {.8, .8}, 0, 1, 0}, {"near", 6, {0, 0, 0}, OPEN, {.3, .8}, 4, 2, 1},
     {"black", 6, {0, 0, 0}, FLOORS, {1, 1}, 5, 1, 3},    {"floors", 5, {1, 1, 0}, FLOORS, {.3, .8}, 5, 1, 1},
     {"small", 3, {1, 1, 1}, OPEN, {1, .8}, 8, 2, 0},     {"tube", 6, {0, 0, 1}, TUBE, {.8, 1}, 0, 1, 2},
-    {"far", 5, {0, 0, 0}, OPEN, {.3, .8}, 1000, 1, 0},
+    {"far", 5, {0, 0, 0}, OPEN, {.3, .8}, 1000, 1, 0},   {"mirrors", 6, {0, 0, 0}, FLOORS, {0, .8}, 6, 2, 1},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
@@ -376,6 +377,7 @@ static void powers_keep_energy(const struct kind *kind) {
     CHECK(fibrad_insitu_powers(s, &state, part.power, &totals) == FIBRAD_OK);
     double sum = 0, emitted = 0, largest = 0, here = 0;
     for (size_t i = 0; i < part.bed.n; ++i) here += part.power[i], largest = fmax(largest, fabs(part.power[i]));
+    for (size_t i = 0; i < part.bed.n; ++i) CHECK(part.emissivity[i] > 0 || part.power[i] == 0);
     for (size_t i = 0; i < all.bed.n; ++i)
         emitted += 4 * acos(-1) * all.radius[i] * all.radius[i] * all.emissivity[i] * FIBRAD_STEFAN_BOLTZMANN *
                    pow(all.temperature[i], 4);
@@ -636,7 +638,7 @@ static void spoil(struct pile *p, enum fault fault) {
         p->radius[3] = -1;
         break;
     case BAD_EMISSIVITY:
-        p->emissivity[3] = 0;
+        p->emissivity[3] = -.1;
         break;
     case BEYOND:
         p->x[11] = -1.5;

@@ -295,7 +295,10 @@ static void any_method(struct method *m) {
     if (which == 106) m->exchange.paths = FIBRAD_PATHS_MAX + number() % 2;
     /* that of the sphere whose row it is is checked: all the same if it is none */
     const double bad = coordinate();
-    for (uint32_t i = 0; i < SPHERES; i++) m->emissivity[i] = which == 109 ? bad : .05 + .037 * (byte() % 26);
+    for (uint32_t i = 0; i < SPHERES; i++) {
+        const uint8_t k = byte() % 32;
+        m->emissivity[i] = which == 109 ? bad : k < 26 ? .05 + .037 * k : 0;
+    }
     /* where little is absorbed paths go on for long */
     for (uint32_t b = 0; b < BODIES; b++) m->body_emissivity[b] = .2 + .8 * share();
     if (which == 107) m->body_emissivity[byte() % BODIES] = coordinate() + .2;
@@ -352,6 +355,9 @@ static void try_row(struct session *s) {
         if (m.kind == SURFACE) {
             REQUIRE(append || row.length <= capacity);
             for (uint32_t k = 0; k < row.length; k++) REQUIRE(row.f[k] >= 0 && (k == 0 || row.col[k] > row.col[k - 1]));
+        } else if (m.kind == EXCHANGE && m.emissivity[i] == 0) {
+            REQUIRE(row.length == 0 && row.escaped == 0 && row.beyond == 0 && row.error == 0);
+            for (uint32_t b = 0; b < bodies; b++) REQUIRE(row.body[b] == 0);
         } else {
             check_row(&row, s->scene, i, m.kind == BEAM ? m.beam.points : m.kind != EXCHANGE);
             check_unmoved(s->scene, s->contents.n, &row);
@@ -376,7 +382,8 @@ static void try_displacement(struct session *s) {
     const int status = fibrad_exchange_displacement(s->scene, &s->work, i, &m.exchange, &d);
     if (status != FIBRAD_OK) return;
     /* few paths may absorb more than they carried: some go on for others that ended */
-    REQUIRE(d.absorbed >= 0 && isfinite(d.absorbed) && d.rays >= m.exchange.paths);
+    REQUIRE(d.absorbed >= 0 && isfinite(d.absorbed));
+    REQUIRE(m.emissivity[i] > 0 ? d.rays >= m.exchange.paths : d.rays == 0 && d.absorbed == 0);
     for (int axis = 0; axis < 3; axis++) REQUIRE(d.square[axis] >= 0 && d.error[axis] >= 0 && isfinite(d.square[axis]));
 }
 
@@ -475,17 +482,22 @@ static void check_matrix(const fibrad_matrix *matrix, const fibrad_matrix_rule *
             REQUIRE(m.body[(size_t)i * m.bodies + b] >= 0);
             sum += m.body[(size_t)i * m.bodies + b];
         }
-        if (plain && !rule->raw && (modest || rule->emissivity == NULL)) REQUIRE(fabs(sum - 1) < 1e-9);
+        if (rule->emissivity != NULL && rule->emissivity[i] == 0)
+            REQUIRE(m.start[i + 1] == m.start[i]);
+        else if (plain && !rule->raw && (modest || rule->emissivity == NULL))
+            REQUIRE(fabs(sum - 1) < 1e-9);
     }
 }
 
-/* A matrix of collections: `expected` is the status, or FIBRAD_E_ARGUMENT if anything may come. */
-static void try_matrix(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count, uint32_t n, int expected) {
+/* A matrix of collections: `expected` is the status, or FIBRAD_E_ARGUMENT if anything may come. of_rows: emissivities
+ * of exchange rows, or NULL. */
+static void try_matrix(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count, uint32_t n, int expected,
+                       const double *of_rows) {
     double emissivity[SPHERES];
     fibrad_matrix_rule rule = {.raw = byte() % 4 == 0, .drop = byte() % 2 ? 0 : share(), .tasks = byte() % 9};
     if (byte() == 1) rule.tasks = number();
-    for (uint32_t i = 0; i < n; i++) emissivity[i] = .04 + share();
-    if (byte() % 4 == 0) rule.emissivity = emissivity;
+    for (uint32_t i = 0; i < n; i++) emissivity[i] = of_rows == NULL ? share() : of_rows[i] > 0 ? .04 + share() : 0;
+    if (of_rows != NULL || byte() % 4 == 0) rule.emissivity = emissivity;
     const size_t size = fibrad_matrix_size(scene, rows, count, &rule);
     if (size == 0) return;
     const uint8_t fault = byte();
@@ -552,7 +564,7 @@ static void try_bed(struct session *s) {
         REQUIRE(rows[0].count + rows[1].count == n - (missing < n) + (twice < n && twice != missing));
         const bool wrong = missing < n || twice < n;
         modest = m.kind != SURFACE;
-        try_matrix(s->scene, rows, 2, n, wrong ? FIBRAD_E_STATE : FIBRAD_OK);
+        try_matrix(s->scene, rows, 2, n, wrong ? FIBRAD_E_STATE : FIBRAD_OK, m.kind == EXCHANGE ? m.emissivity : NULL);
     }
     free(supply[0].block), free(supply[1].block);
 }
@@ -588,7 +600,7 @@ static void try_rows(void) {
             if (status == FIBRAD_E_CAPACITY) REQUIRE(rows.memory.needed > rows.memory.size);
             all = all && status == FIBRAD_OK && row.sphere == i && bodies == 0;
         }
-        try_matrix(scene, &rows, 1, c.n, all ? FIBRAD_OK : FIBRAD_E_ARGUMENT);
+        try_matrix(scene, &rows, 1, c.n, all ? FIBRAD_OK : FIBRAD_E_ARGUMENT, NULL);
     }
     free(scene_block), free(supply.block);
 }
@@ -799,7 +811,7 @@ static void try_scene(bool walled) {
             break;
         case 9:
             modest = false; /* rows by all methods */
-            try_matrix(s.scene, &s.rows, 1, s.contents.n, FIBRAD_E_ARGUMENT);
+            try_matrix(s.scene, &s.rows, 1, s.contents.n, FIBRAD_E_ARGUMENT, NULL);
             try_flow(&s);
             break;
         default:

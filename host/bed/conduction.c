@@ -1,0 +1,298 @@
+/* conduction.c - effective radiative conductivity of a bed of grey spheres. SPDX-License-Identifier: MIT
+ *
+ * Each batch of paths has a seed of its own, and the paths of one sphere in one batch are a group. A group's standard
+ * error comes from the kernel; groups are independent, so that variances add up. */
+#include "bed/conduction.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "bed/bed_scene.h"
+#include "cli/message.h"
+#include "cli/progress.h"
+
+#define PI 3.14159265358979323846
+
+/* So many emitters there have to be where an axis is open. */
+#define EMITTERS 40u
+
+/* A search begins with so many paths in all, in so many groups, each of a multiple of so many paths, which the kernel
+ * compares in as many parts. It goes on to at most so many times what there is. */
+#define PILOT      50000.0
+#define GROUPS     1024.0
+#define PARTS      16u
+#define GROWTH     8.0
+#define BATCH_MOST (FIBRAD_PATHS_MAX / PARTS * PARTS)
+
+/* Concentration above which a standard error is not relied on: its square root is the relative standard error of the
+ * variance. Where the variances of groups have a tail of index a < 1 it tends to 1 - a however many groups there are,
+ * 1/4 for flights along channels, 1/2 for those in slabs (docs/heat.md); without such a tail, to zero. */
+#define SETTLED 0.05
+
+/* Growth of F_E over itself from which it is told whatever the standard error: flights of 100 periods are about e^10
+ * times a gap, which makes as much of F_E as most ask for. */
+#define ENDLESS 0.0003
+
+/* The part of the bed that emits, a box; infinite along periodic axes. */
+struct core {
+    double low[3], high[3], volume;
+};
+
+static int find_core(const struct bed *bed, const char *file, double diameter, struct core *core) {
+    const double *at[3] = {bed->x, bed->y, bed->z};
+    core->volume = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        core->low[axis] = -INFINITY;
+        core->high[axis] = INFINITY;
+        if (bed->period[axis] > 0) {
+            core->volume *= bed->period[axis];
+            continue;
+        }
+        double low = INFINITY, high = -INFINITY;
+        for (uint32_t i = 0; i < bed->n; ++i) {
+            low = fmin(low, at[axis][i]);
+            high = fmax(high, at[axis][i]);
+        }
+        core->low[axis] = low + CONDUCTION_MARGIN * diameter;
+        core->high[axis] = high - CONDUCTION_MARGIN * diameter;
+        if (!(core->high[axis] > core->low[axis]))
+            return message_at(STATUS_INPUT, file, 0, "too thin along %c, an open axis: %g mean diameters at the least",
+                              'x' + axis, 2 * CONDUCTION_MARGIN);
+        core->volume *= core->high[axis] - core->low[axis];
+    }
+    return STATUS_OK;
+}
+
+static bool is_inside(const struct core *core, const double at[3]) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(at[axis] >= core->low[axis] && at[axis] < core->high[axis])) return false;
+    return true;
+}
+
+/* The fraction of a sphere that lies inside, by points: counting centres alone would be as rough as a small core is
+ * small. */
+static double part_inside(const struct bed *bed, uint32_t i, const struct core *core) {
+    enum { POINTS = 256 };
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < POINTS; ++k) {
+        double w[3];
+        fibrad_direction(k, POINTS, w);
+        const double depth =
+            bed->r[i] * cbrt(fmod((k + .5) * .7548776662466927, 1)); /* even in the cube of the radius */
+        const double at[3] = {bed->x[i] + depth * w[0], bed->y[i] + depth * w[1], bed->z[i] + depth * w[2]};
+        count += is_inside(core, at);
+    }
+    return count / (double)POINTS;
+}
+
+struct extent {
+    double low, high;
+};
+
+static int compare_extents(const void *a, const void *b) {
+    const double x = ((const struct extent *)a)->low, y = ((const struct extent *)b)->low;
+    return (x > y) - (x < y);
+}
+
+/* The sum of squares of the widths of all gaps across a periodic axis, through which planes run that meet no sphere. */
+static double square_gaps(const struct bed *bed, int axis, struct extent *extents) {
+    const double *at = (const double *[]){bed->x, bed->y, bed->z}[axis], period = bed->period[axis];
+    double reach = -INFINITY, sum = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double low = at[i] - bed->r[i], inside = low - period * floor(low / period);
+        extents[i] = (struct extent){inside, inside + 2 * bed->r[i]};
+        reach = fmax(reach, extents[i].high - period);
+    }
+    qsort(extents, bed->n, sizeof *extents, compare_extents);
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        if (extents[i].low > reach) sum += pow(extents[i].low - reach, 2);
+        reach = fmax(reach, extents[i].high);
+    }
+    return sum;
+}
+
+/* A slab of width h across an axis of period P adds h^2/(P d) ln(L/h) to F_E along the other two, L being the longest
+ * flight (docs/heat.md). */
+static int find_growth(const struct bed *bed, struct conduction *result) {
+    if (bed->period[0] == 0 || bed->period[1] == 0 || bed->period[2] == 0) return STATUS_OK;
+    struct extent *extents = malloc(bed->n * sizeof *extents);
+    if (!extents) return message_memory();
+    for (int across = 0; across < 3; ++across) {
+        const double growth = square_gaps(bed, across, extents) / (bed->period[across] * result->diameter);
+        for (int axis = 0; axis < 3; ++axis)
+            if (axis != across) result->growth[axis] += growth;
+    }
+    free(extents);
+    return STATUS_OK;
+}
+
+/* The volume that belongs to the emitters is that of the spheres themselves over the solid fraction of the core. */
+int conduction_emitters(const struct bed *bed, const char *file, unsigned char *emits, struct conduction *result) {
+    struct core core;
+    double solid = 0, emitting = 0;
+    *result = (struct conduction){0};
+    for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
+    const int status = find_core(bed, file, result->diameter, &core);
+    if (status) return status;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double volume = 4 * PI / 3 * pow(bed->r[i], 3);
+        emits[i] = is_inside(&core, (const double[]){bed->x[i], bed->y[i], bed->z[i]});
+        emitting += emits[i] * volume;
+        solid += part_inside(bed, i, &core) * volume;
+        result->emitters += emits[i];
+    }
+    result->solid_fraction = solid / core.volume;
+    result->volume = emitting / result->solid_fraction;
+    const bool open = bed->period[0] == 0 || bed->period[1] == 0 || bed->period[2] == 0;
+    if (open && result->emitters < EMITTERS)
+        return message_at(STATUS_INPUT, file, 0, "only %u spheres are %g mean diameters inside the bed, %u are needed",
+                          result->emitters, CONDUCTION_MARGIN, EMITTERS);
+    return find_growth(bed, result);
+}
+
+/* Batches so far, and sums over their groups, of what they say times the paths of the group. */
+struct tally {
+    uint64_t batches, paths; /* per emitter */
+    double factor[3], variance[3], fourth[3], lost, all;
+    fibrad_displacement *moved; /* [n] of the last batch */
+};
+
+/* Adds a batch of so many paths from each emitter. Summed in order, whatever the threads did. */
+static void add_batch(struct tally *tally, const struct bed *bed, const unsigned char *emits, const double *emissivity,
+                      uint32_t paths, struct conduction *result) {
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        if (!emits[i]) continue;
+        const fibrad_displacement *moved = &tally->moved[i];
+        const double emission = 4 * PI * bed->r[i] * bed->r[i] * emissivity[i] * paths;
+        const double weight = emission / (2 * result->volume * result->diameter);
+        for (int axis = 0; axis < 3; ++axis) {
+            const double variance = pow(weight * moved->error[axis], 2);
+            tally->factor[axis] += weight * moved->square[axis];
+            tally->variance[axis] += variance;
+            tally->fourth[axis] += variance * variance;
+        }
+        tally->lost += emission * (1 - moved->absorbed);
+        tally->all += emission;
+        result->rays += moved->rays;
+    }
+    tally->batches++;
+    tally->paths += paths;
+}
+
+static void read_tally(const struct tally *tally, struct conduction *result) {
+    result->paths = tally->paths;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double variance = tally->variance[axis];
+        result->factor[axis] = tally->factor[axis] / (double)tally->paths;
+        result->error[axis] = sqrt(variance) / (double)tally->paths;
+        result->concentration[axis] = variance > 0 ? tally->fourth[axis] / (variance * variance) : 0;
+    }
+    result->escaped = fmax(0, tally->lost / tally->all);
+}
+
+/* One bar for the batches of a round. */
+struct round_progress {
+    const fibrad_run *run;
+    uint32_t batch, batches;
+};
+
+static int round_stage(void *context, const char *stage, uint64_t done, uint64_t total) {
+    const struct round_progress *round = context;
+    return round->run->progress(round->run->context, stage, round->batch * total + done, round->batches * total);
+}
+
+/* Follows `paths` more from each emitter, shared out among batches. */
+static int follow_round(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
+                        fibrad_run *run, uint32_t batches, uint64_t paths, struct tally *tally,
+                        struct conduction *result) {
+    const fibrad_scene_config scene = bed_scene(bed, NULL);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    struct round_progress round = {.run = run, .batches = batches};
+    for (; round.batch < batches; ++round.batch) {
+        const uint32_t share = (uint32_t)(paths / batches + (round.batch < paths % batches));
+        const fibrad_exchange_rule how = {
+            .emissivity = rule->emissivity, .paths = share, .seed = rule->seed + tally->batches * 0x9e3779b97f4a7c15u};
+        fibrad_run own = {.threads = run->threads, .progress = run->progress ? round_stage : NULL, .context = &round};
+        const int status = fibrad_displacements(&scene, &spheres, &how, emits, &own, tally->moved, NULL);
+        run->fault = own.fault;
+        if (status) return status;
+        add_batch(tally, bed, emits, rule->emissivity, share, result);
+    }
+    read_tally(tally, result);
+    return FIBRAD_OK;
+}
+
+double conduction_worst(const struct conduction_rule *rule, const struct conduction *result) {
+    double worst = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        if (result->factor[axis] > 0 && (rule->axis < 0 || rule->axis == axis) &&
+            conduction_flights(result, axis) != FLIGHTS_ENDLESS)
+            worst = fmax(worst, result->error[axis] / result->factor[axis]);
+    return worst;
+}
+
+/* The paths per emitter that bring the worst error down to what is asked for, a tenth to spare; 0: it is there. */
+static double paths_for(const struct conduction_rule *rule, const struct conduction *result) {
+    const double over = conduction_worst(rule, result) / rule->error;
+    return over > 1 ? 1.1 * over * over * (double)result->paths : 0;
+}
+
+/* Rounds of more and more paths until the error is reached or the rays are used up. */
+static int search(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
+                  fibrad_run *run, uint32_t batches, struct tally *tally, struct conduction *result) {
+    const uint32_t step = PARTS * batches;
+    double more = PILOT / result->emitters;
+    while (!result->stopped && more > 0) {
+        const uint64_t steps = (uint64_t)fmin(BATCH_MOST / PARTS, ceil(more / step));
+        const int status = follow_round(bed, emits, rule, run, batches, steps * step, tally, result);
+        if (status) return status;
+        const double paths = (double)result->paths, left = (double)rule->max_rays - (double)result->rays;
+        const double affordable = floor(paths * left / (double)result->rays / step) * step;
+        more = fmin(paths_for(rule, result), GROWTH * paths) - paths;
+        if (more > affordable) result->stopped = affordable < step, more = affordable;
+    }
+    return FIBRAD_OK;
+}
+
+/* As many emitters as would share the variance alike: the largest of a mixture have most of it. */
+static double effective_emitters(const struct bed *bed, const unsigned char *emits, const double *emissivity) {
+    double sum = 0, squares = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double variance = emits[i] * pow(emissivity[i], 2) * pow(bed->r[i], 8);
+        sum += variance;
+        squares += variance * variance;
+    }
+    return sum * sum / squares;
+}
+
+int conduction_follow(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
+                      fibrad_run *run, struct conduction *result) {
+    struct tally tally = {.moved = calloc(bed->n, sizeof *tally.moved)};
+    if (!tally.moved) return FIBRAD_E_MEMORY;
+    const uint32_t batches = (uint32_t)ceil(GROUPS / effective_emitters(bed, emits, rule->emissivity));
+    const double begun = progress_clock();
+    result->axis = rule->axis;
+    const int status = rule->paths > 0 ? follow_round(bed, emits, rule, run,
+                                                      (uint32_t)fmax(1, fmin(batches, (double)rule->paths / PARTS)),
+                                                      rule->paths, &tally, result)
+                                       : search(bed, emits, rule, run, batches, &tally, result);
+    result->seconds = progress_clock() - begun;
+    free(tally.moved);
+    return status;
+}
+
+bool conduction_wants(const struct conduction *result, int axis) { return result->axis < 0 || result->axis == axis; }
+
+enum conduction_flights conduction_flights(const struct conduction *result, int axis) {
+    if (result->growth[axis] > fmin(result->error[axis], ENDLESS * result->factor[axis])) return FLIGHTS_ENDLESS;
+    return result->concentration[axis] > SETTLED ? FLIGHTS_RARE : FLIGHTS_SETTLED;
+}
+
+void conduction_at(struct conduction *result, double temperature, double metre) {
+    result->temperature = temperature;
+    const double scale = 4 * FIBRAD_STEFAN_BOLTZMANN * pow(temperature, 3) * result->diameter * metre;
+    for (int axis = 0; axis < 3; ++axis) {
+        result->k[axis] = result->factor[axis] * scale;
+        result->k_error[axis] = result->error[axis] * scale;
+    }
+}

@@ -1,0 +1,41 @@
+/* units.c - units of length and temperature by name. SPDX-License-Identifier: MIT */
+#include "bed/units.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "cli/message.h"
+
+static const struct {
+    const char *name;
+    double metres;
+} units[] = {{"m", 1},
+             {"si", 1},
+             {"cm", 1e-2},
+             {"cgs", 1e-2},
+             {"mm", 1e-3},
+             {"um", 1e-6},
+             {"micro", 1e-6},
+             {"nm", 1e-9},
+             {"nano", 1e-9},
+             {"angstrom", 1e-10},
+             {"real", 1e-10},
+             {"metal", 1e-10},
+             {"electron", 5.29177210903e-11},
+             {"lj", 0}};
+
+bool unit_of_length(const char *name, double *metres) {
+    for (size_t k = 0; k < sizeof units / sizeof *units; ++k)
+        if (strcmp(name, units[k].name) == 0) {
+            *metres = units[k].metres;
+            return true;
+        }
+    return false;
+}
+
+int temperature_unit_option(const char *text, double *zero) {
+    if (strcmp(text, "K") != 0 && strcmp(text, "C") != 0)
+        return message(STATUS_USAGE, "--temperature-unit: '%.40s' is neither K nor C", text);
+    *zero = *text == 'C' ? KELVIN_OF_0_CELSIUS : 0;
+    return STATUS_OK;
+}

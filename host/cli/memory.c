@@ -1,0 +1,33 @@
+/* memory.c - whether there is memory enough, before the work begins. SPDX-License-Identifier: MIT */
+#include "cli/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <sys/resource.h>
+
+#include "cli/message.h"
+
+/* The figure of a line `KEY: N kB` of a file of Linux's /proc, in bytes; `otherwise` if there is none. */
+static double proc_bytes(const char *path, const char *format, double otherwise) {
+    char line[256];
+    double kilobytes = 0;
+    FILE *file = fopen(path, "r");
+    while (file && fgets(line, sizeof line, file))
+        if (sscanf(line, format, &kilobytes) == 1) otherwise = 1024 * kilobytes;
+    if (file) fclose(file);
+    return otherwise;
+}
+
+double memory_left(void) {
+    struct rlimit limit;
+    const double left = proc_bytes("/proc/meminfo", "MemAvailable: %lf kB", INFINITY);
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return left;
+    return fmax(0, fmin(left, (double)limit.rlim_cur - proc_bytes("/proc/self/status", "VmSize: %lf kB", 0)));
+}
+
+int memory_check(double bytes, const char *what_would_help) {
+    const double left = memory_left();
+    if (bytes <= left) return STATUS_OK;
+    return message(STATUS_MEMORY, "out of memory: %.3g GB are wanted, %.3g GB are left; %s", bytes / 1e9, left / 1e9,
+                   what_would_help);
+}

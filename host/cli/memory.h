@@ -1,0 +1,12 @@
+/* memory.h - whether there is memory enough, before the work begins. SPDX-License-Identifier: MIT */
+#ifndef MEMORY_H
+#define MEMORY_H
+
+/* Bytes that this program may still take: what the system has left, within the limit on address space. Infinity where
+ * neither is known. */
+double memory_left(void);
+
+/* STATUS_OK, or STATUS_MEMORY after a message that says how much is wanted, how much is left, and what would help. */
+int memory_check(double bytes, const char *what_would_help);
+
+#endif

@@ -1,0 +1,84 @@
+/* report.c - what a command says at its end: lines `key value`, and the same as JSON. SPDX-License-Identifier: MIT */
+#include "report/report.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+#include "fibrad.h"
+#include "text/text.h"
+
+void report_open(struct report *report, const char *command) {
+    if (!report->json) return;
+    fprintf(report->json, "{\"fibrad\": \"%s\", \"command\": \"%s\", \"runs\": [", fibrad_version(), command);
+}
+
+void report_close(struct report *report) {
+    if (report->json) fputs("\n]}\n", report->json);
+}
+
+void report_begin(struct report *report) {
+    report->entries = 0;
+    if (report->json) fputs(report->runs > 0 ? ",\n{" : "\n{", report->json);
+    if (report->text && report->runs > 0) putc('\n', report->text);
+    ++report->runs;
+}
+
+void report_end(struct report *report) {
+    if (report->json) putc('}', report->json);
+    if (report->text) fflush(report->text);
+}
+
+/* Begins an entry of the JSON and a line of the text. */
+static void begin_entry(struct report *report, const char *key) {
+    if (report->json) fprintf(report->json, "%s\"%s\": ", report->entries > 0 ? ", " : "", key);
+    if (report->text) fprintf(report->text, "%s ", key);
+    ++report->entries;
+}
+
+static void end_entry(const struct report *report) {
+    if (report->text) putc('\n', report->text);
+}
+
+void report_text(struct report *report, const char *key, const char *text) {
+    begin_entry(report, key);
+    if (report->json) text_json(report->json, text);
+    for (const char *c = text; report->text && *c; ++c)
+        putc((unsigned char)*c < ' ' || *c == 127 ? '?' : *c, report->text);
+    end_entry(report);
+}
+
+void report_whole(struct report *report, const char *key, int64_t number) {
+    begin_entry(report, key);
+    if (report->json) fprintf(report->json, "%" PRId64, number);
+    if (report->text) fprintf(report->text, "%" PRId64, number);
+    end_entry(report);
+}
+
+void report_count(struct report *report, const char *key, uint64_t count) {
+    begin_entry(report, key);
+    if (report->json) fprintf(report->json, "%" PRIu64, count);
+    if (report->text) fprintf(report->text, "%" PRIu64, count);
+    end_entry(report);
+}
+
+void report_value(struct report *report, const char *key, double value, int digits) {
+    begin_entry(report, key);
+    if (report->json) text_json_real(report->json, value);
+    if (report->text) fprintf(report->text, "%.*g", digits, value);
+    end_entry(report);
+}
+
+void report_measured(struct report *report, const char *key, double value, double error) {
+    const double scale = log10(fabs(value) / error);
+    report_value(report, key, value, !isfinite(scale) ? 6 : scale > 14 ? 15 : scale < 0 ? 1 : 1 + (int)ceil(scale));
+}
+
+void report_vector(struct report *report, const char *key, const double value[3]) {
+    begin_entry(report, key);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (report->json) fputs(axis == 0 ? "[" : ", ", report->json), text_json_real(report->json, value[axis]);
+        if (report->text) fprintf(report->text, axis == 0 ? "%.9g" : " %.9g", value[axis]);
+    }
+    if (report->json) putc(']', report->json);
+    end_entry(report);
+}

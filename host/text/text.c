@@ -1,0 +1,106 @@
+/* text.c - numbers and strings as text. SPDX-License-Identifier: MIT */
+#include "text/text.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { DIGITS = 17 };
+
+#ifdef __SIZEOF_INT128__
+__extension__ typedef unsigned __int128 wide;
+
+static wide power_of_5(int exponent) {
+    wide power = 1;
+    for (wide base = 5; exponent > 0; exponent >>= 1, base *= base)
+        if (exponent & 1) power *= base;
+    return power;
+}
+
+/* m 2^e 10^k, rounded to even as printf does: m 5^k and a shift, all in whole numbers. */
+static uint64_t scaled(uint64_t m, int e, int k) {
+    const int shift = -(e + k);
+    const wide product = m * power_of_5(k), half = (wide)1 << (shift - 1), rest = product & (2 * half - 1);
+    const uint64_t below = (uint64_t)(product >> shift);
+    return below + (rest > half || (rest == half && below & 1));
+}
+
+/* The first 17 digits of a number above 0 and the power of ten of the first of them. False: out of reach, since m 5^k
+ * would have more than 128 bits, or no shift is left. */
+static bool digits_of(double value, uint64_t *digits, int *power) {
+    int e;
+    const uint64_t m = (uint64_t)ldexp(frexp(value, &e), 53);
+    if (e < -52 || e > 50) return false;
+    *power = (int)floor((e - 1) * 0.30102999566398120); /* or one more */
+    *digits = scaled(m, e - 53, DIGITS - 1 - *power);
+    if (*digits >= 100000000000000000) *digits = scaled(m, e - 53, DIGITS - 1 - ++*power);
+    return true;
+}
+#else
+static bool digits_of(double value, uint64_t *digits, int *power) {
+    return (void)value, *digits = 0, *power = 0, false;
+}
+#endif
+
+/* The digits of a number, most significant first, so many of them. */
+static char *put_digits(char *to, uint64_t number, int count) {
+    for (int k = count - 1; k >= 0; --k, number /= 10) to[k] = (char)('0' + number % 10);
+    return to + count;
+}
+
+char *text_whole(char *to, int64_t value) {
+    uint64_t size = value < 0 ? -(uint64_t)value : (uint64_t)value;
+    int count = 1;
+    for (uint64_t rest = size; rest >= 10; rest /= 10) ++count;
+    if (value < 0) *to++ = '-';
+    return put_digits(to, size, count);
+}
+
+/* Digits with the point behind the first `before` of them; zeros at the end are left out. */
+static char *put_point(char *to, const char *digits, int count, int before) {
+    while (count > before && digits[count - 1] == '0') --count;
+    memcpy(to, digits, (size_t)before);
+    to += before;
+    if (count == before) return to;
+    *to++ = '.';
+    memcpy(to, digits + before, (size_t)(count - before));
+    return to + count - before;
+}
+
+char *text_real(char *to, double value) {
+    enum { ZEROS = 4 }; /* that may stand before the digits; further down there is an exponent */
+    char text[ZEROS + DIGITS] = "0000";
+    uint64_t digits;
+    int power;
+    if (value < 0) {
+        *to++ = '-';
+        value = -value;
+    }
+    if (!(value > 0 && isfinite(value) && digits_of(value, &digits, &power)))
+        return to + snprintf(to, TEXT_NUMBER - 1, "%.17g", value);
+    put_digits(text + ZEROS, digits, DIGITS);
+    if (power >= 0) return put_point(to, text + ZEROS, DIGITS, power + 1);
+    if (power >= -ZEROS) return put_point(to, text + ZEROS + power, DIGITS - power, 1);
+    to = put_point(to, text + ZEROS, DIGITS, 1);
+    *to++ = 'e';
+    *to++ = '-';
+    return put_digits(to, (uint64_t)-power, 2);
+}
+
+void text_json(FILE *file, const char *text) {
+    putc('"', file);
+    for (; *text; ++text)
+        if (*text == '"' || *text == '\\')
+            fprintf(file, "\\%c", *text);
+        else if ((unsigned char)*text < ' ')
+            fprintf(file, "\\u%04x", (unsigned)*text);
+        else
+            putc(*text, file);
+    putc('"', file);
+}
+
+void text_json_real(FILE *file, double value) {
+    char text[TEXT_NUMBER] = "null";
+    const char *end = isfinite(value) ? text_real(text, value) : text + 4;
+    fwrite(text, 1, (size_t)(end - text), file);
+}

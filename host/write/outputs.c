@@ -1,0 +1,161 @@
+/* outputs.c - where the results of a run go: -o, several times, and --format. SPDX-License-Identifier: MIT */
+#include "write/outputs.h"
+
+#include <inttypes.h>
+#include <limits.h>
+#include <string.h>
+
+#include "cli/message.h"
+
+static const struct format formats[] = {{"csv", {write_csv, write_heat_csv, write_conduction_csv}, true},
+                                        {"mtx", {write_mtx}, false},
+                                        {"npz", {write_npz}, false},
+                                        {"vtp", {write_vtp, write_heat_vtp}, false},
+                                        {"json", {write_json, write_heat_json, write_conduction_json}, true},
+                                        {"dump", {NULL, write_heat_dump}, true},
+                                        {"lammpstrj", {NULL, write_heat_dump}, true}};
+enum { FORMATS = sizeof formats / sizeof *formats };
+
+/* ".csv, .mtx and .npz": formats that can hold such contents; `dot` stands before each. */
+static const char *list_formats(enum content content, const char *dot, char text[100]) {
+    int left = 0, used = 0;
+    for (int k = 0; k < FORMATS; ++k) left += formats[k].write[content] != NULL;
+    for (int k = 0; k < FORMATS; ++k) {
+        if (!formats[k].write[content]) continue;
+        --left;
+        used += snprintf(text + used, (size_t)(100 - used), "%s%s%s", dot, formats[k].name,
+                         left > 1    ? ", "
+                         : left == 1 ? " and "
+                                     : "");
+    }
+    return text;
+}
+
+static const struct format *format_of_ending(const char *path) {
+    for (int k = 0; k < FORMATS; ++k) {
+        char ending[16];
+        snprintf(ending, sizeof ending, ".%s", formats[k].name);
+        if (output_ends(path, ending)) return &formats[k];
+    }
+    return NULL;
+}
+
+int outputs_add(struct outputs *outputs, const char *path) {
+    const char *star = strchr(path, '*');
+    if (outputs->count == OUTPUTS_MAX) return message(STATUS_USAGE, "-o: %d are all there may be", OUTPUTS_MAX);
+    if (star && strchr(star + 1, '*')) return message_at(STATUS_USAGE, path, 0, "has more than one *");
+    outputs->to[outputs->count].path = path;
+    outputs->to[outputs->count].star = star;
+    outputs->to[outputs->count++].format = format_of_ending(path);
+    return STATUS_OK;
+}
+
+int outputs_format(struct outputs *outputs, const char *name) {
+    if (outputs->format) return message(STATUS_USAGE, "--format: there can be one only");
+    for (int k = 0; k < FORMATS; ++k)
+        if (strcmp(formats[k].name, name) == 0) outputs->format = &formats[k];
+    if (!outputs->format) return message(STATUS_USAGE, "--format: '%.40s' is no format", name);
+    return STATUS_OK;
+}
+
+/* The format of an output is settled; can it hold what is to come? */
+static int check_format(struct outputs *outputs, size_t k, bool series) {
+    const char *path = outputs->to[k].path;
+    const struct format *format = outputs->to[k].format ? outputs->to[k].format : outputs->format;
+    char list[100];
+    if (!format && strcmp(path, "-") == 0)
+        return message(STATUS_USAGE, "-o - needs a --format: %s", list_formats(outputs->content, "", list));
+    if (!format || (outputs->to[k].format && !format->write[outputs->content]))
+        return message_at(STATUS_USAGE, path, 0, "unknown ending; there are %s",
+                          list_formats(outputs->content, ".", list));
+    if (!format->write[outputs->content])
+        return message(STATUS_USAGE, "--format: %s cannot hold this; there are %s", format->name,
+                       list_formats(outputs->content, "", list));
+    if (series && !format->frames && !outputs->to[k].star)
+        return message_at(STATUS_USAGE, path, 0, "%s holds one frame; put * into its name", format->name);
+    outputs->to[k].format = format;
+    return STATUS_OK;
+}
+
+static int check_inputs(const struct outputs *outputs, const char *path) {
+    for (size_t k = 0; k < outputs->input_count; ++k)
+        if (output_same(outputs->inputs[k], path))
+            return message_at(STATUS_USAGE, path, 0, "is %s; it would be replaced",
+                              outputs->input_count > 1 ? "one of the files" : "the bed itself");
+    return STATUS_OK;
+}
+
+static int check_others(const struct outputs *outputs, size_t k) {
+    const char *path = outputs->to[k].path;
+    for (size_t other = 0; other < k; ++other) {
+        const char *before = outputs->to[other].path;
+        if ((output_stdout(path) && output_stdout(before)) || output_same(path, before))
+            return message_at(STATUS_USAGE, path, 0, "is there twice");
+    }
+    return STATUS_OK;
+}
+
+int outputs_check(struct outputs *outputs, enum content content, const char *const *inputs, size_t input_count,
+                  bool series) {
+    bool wanted = outputs->format == NULL;
+    int status = STATUS_OK;
+    outputs->content = content;
+    outputs->inputs = inputs;
+    outputs->input_count = input_count;
+    for (size_t k = 0; k < outputs->count && !status; ++k) {
+        if (!outputs->to[k].format) wanted = true;
+        status = check_format(outputs, k, series);
+        if (!status) status = check_inputs(outputs, outputs->to[k].path);
+        if (!status) status = check_others(outputs, k);
+    }
+    if (status || wanted) return status;
+    return message(STATUS_USAGE, "--format %s: no -o needs it", outputs->format->name);
+}
+
+int outputs_open(struct outputs *outputs) {
+    int status = STATUS_OK;
+    for (size_t k = 0; k < outputs->count && !status; ++k) {
+        status = output_open(&outputs->to[k].file, outputs->to[k].path);
+        if (!status && outputs->to[k].star) output_close(&outputs->to[k].file, STATUS_FILE);
+    }
+    return status;
+}
+
+/* A frame as a file of its own. */
+static int write_alone(const struct outputs *outputs, size_t k, const struct contents *what, int64_t number) {
+    const char *pattern = outputs->to[k].path, *star = outputs->to[k].star;
+    char path[PATH_MAX];
+    struct output file = {0};
+    const int used = snprintf(path, sizeof path, "%.*s%" PRId64 "%s", (int)(star - pattern), pattern, number, star + 1);
+    if (used >= (int)sizeof path) return message_at(STATUS_FILE, pattern, 0, "is too long a name");
+    int status = check_inputs(outputs, path);
+    if (!status) status = output_open(&file, path);
+    if (!status) status = outputs->to[k].format->write[outputs->content](file.file, what, true);
+    return output_close(&file, status);
+}
+
+int outputs_write(struct outputs *outputs, const struct contents *what, int64_t number) {
+    int status = STATUS_OK;
+    for (size_t k = 0; k < outputs->count && !status; ++k) {
+        if (outputs->to[k].star) {
+            status = write_alone(outputs, k, what, number);
+            continue;
+        }
+        struct output *file = &outputs->to[k].file;
+        status = outputs->to[k].format->write[outputs->content](file->file, what, !outputs->to[k].begun);
+        if (!status) status = output_flush(file);
+        outputs->to[k].begun = true;
+    }
+    return status;
+}
+
+int outputs_close(struct outputs *outputs, int status) {
+    for (size_t k = 0; k < outputs->count; ++k) status = output_close(&outputs->to[k].file, status);
+    return status;
+}
+
+bool outputs_stdout(const struct outputs *outputs) {
+    for (size_t k = 0; k < outputs->count; ++k)
+        if (output_stdout(outputs->to[k].path)) return true;
+    return false;
+}

@@ -1,0 +1,65 @@
+/* outputs.h - where the results of a run go: -o, several times, and --format. SPDX-License-Identifier: MIT */
+#ifndef OUTPUTS_H
+#define OUTPUTS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cli/output.h"
+#include "write/write.h"
+
+enum content { CONTENT_MATRIX, CONTENT_HEAT, CONTENT_CONDUCTION, CONTENTS };
+
+/* A format by its name, which is the ending of its files, too. */
+struct format {
+    const char *name;
+    write_function *write[CONTENTS]; /* NULL: it cannot hold that */
+    bool frames;                     /* it holds several frames, one after the other */
+};
+
+enum { OUTPUTS_MAX = 8 };
+
+/* Zeroed: none, and the summary only. */
+struct outputs {
+    size_t count;
+    struct {
+        const char *path; /* "-": standard output */
+        const char *star; /* in the path: one file a frame, with its number there; NULL: one for all */
+        const struct format *format;
+        struct output file; /* where there is no star */
+        bool begun;         /* a frame is in it */
+    } to[OUTPUTS_MAX];
+    const struct format *format; /* of --format; NULL: it was not given */
+    enum content content;
+    const char *const *inputs; /* [input_count] */
+    size_t input_count;
+};
+
+/* Rows of a table of options, without braces. */
+#define OPTION_FORMAT KEY_FORMAT, "format", "NAME", "of each -o whose ending tells none, such as -o - [by the ending]"
+
+/* Takes the argument of -o or --format. Status 0 or STATUS_USAGE. */
+int outputs_add(struct outputs *outputs, const char *path);
+int outputs_format(struct outputs *outputs, const char *name);
+
+/* Can all that be written? `inputs`, which are not to be replaced, stay the caller's until outputs_close; series:
+ * several frames may come. Status 0 or STATUS_USAGE. */
+int outputs_check(struct outputs *outputs, enum content content, const char *const *inputs, size_t input_count,
+                  bool series);
+
+/* Opens them before any work is done; those with `*` are tried. Status 0, STATUS_FILE or STATUS_MEMORY; then, as after
+ * all that follows, outputs_close. */
+int outputs_open(struct outputs *outputs);
+
+/* Writes a frame of this number into each; a file of its own is complete when this returns. Status 0, that of the
+ * writer, of outputs_open or of output_close. */
+int outputs_write(struct outputs *outputs, const struct contents *what, int64_t number);
+
+/* Gives the files their names, or removes those still open after any trouble; `status` as in output_close. */
+int outputs_close(struct outputs *outputs, int status);
+
+/* Whether results go to standard output, so that the summary goes to standard error. */
+bool outputs_stdout(const struct outputs *outputs);
+
+#endif

@@ -1,0 +1,56 @@
+/* write_dump.c - heat as a LAMMPS text dump, which OVITO and our own reader open, too. SPDX-License-Identifier: MIT */
+#include <inttypes.h>
+#include <math.h>
+
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "text/text.h"
+#include "write/write.h"
+
+/* The file's box; along an axis that has none, the length of its period, or as far as the spheres reach. */
+static void box_of(const struct bed *bed, int axis, double *low, double *high) {
+    const double *centre = axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z;
+    *low = bed->low[axis];
+    *high = bed->high[axis];
+    if (*low < *high) return;
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        *low = fmin(*low, centre[i] - bed->r[i]);
+        *high = fmax(*high, centre[i] + bed->r[i]);
+    }
+    if (bed->period[axis] > 0) *high = *low + bed->period[axis];
+}
+
+static void write_header(FILE *file, const struct bed *bed, bool first) {
+    if (first && bed->units[0]) fprintf(file, "ITEM: UNITS\n%s\n", bed->units);
+    fprintf(file, "ITEM: TIMESTEP\n%" PRId64 "\nITEM: NUMBER OF ATOMS\n%" PRIu32 "\nITEM: BOX BOUNDS",
+            bed->timestep < 0 ? bed->frame : bed->timestep, bed->n);
+    for (int axis = 0; axis < 3; ++axis) fputs(bed->period[axis] > 0 ? " pp" : " ff", file);
+    putc('\n', file);
+    for (int axis = 0; axis < 3; ++axis) {
+        double low, high;
+        box_of(bed, axis, &low, &high);
+        fprintf(file, "%.17g %.17g\n", low, high);
+    }
+    fputs("ITEM: ATOMS id x y z radius T_K q_W\n", file);
+}
+
+int write_heat_dump(FILE *file, const struct contents *what, bool first) {
+    const struct bed *bed = what->bed;
+    char line[8 * TEXT_NUMBER];
+    write_header(file, bed, first);
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        if (interrupt_status()) return interrupt_status();
+        const double values[] = {
+            bed->x[i], bed->y[i], bed->z[i], bed->r[i], what->sources->temperature[i], what->result->power[i]};
+        char *at = text_whole(line, bed_name(bed, i));
+        for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
+            *at++ = ' ';
+            at = text_real(at, values[k]);
+        }
+        *at++ = '\n';
+        fwrite(line, 1, (size_t)(at - line), file);
+    }
+    return STATUS_OK;
+}

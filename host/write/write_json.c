@@ -1,0 +1,138 @@
+/* write_json.c - a frame as one line, an object of JSON, so that several frames are JSON lines.
+ * SPDX-License-Identifier: MIT
+ *
+ * Numbers that are not finite are null. */
+#include <inttypes.h>
+#include <math.h>
+
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "text/text.h"
+#include "write/write.h"
+
+/* A further entry of an object. */
+static void json_entry(FILE *file, const char *name, double value) {
+    fprintf(file, ",\"%s\":", name);
+    text_json_real(file, value);
+}
+
+static void json_whole(FILE *file, int64_t value) {
+    char text[TEXT_NUMBER];
+    const char *end = text_whole(text, value);
+    fwrite(text, 1, (size_t)(end - text), file);
+}
+
+/* An entry of an object: every `stride`th value, n in all; valid, unless NULL, tells which are there. `comma` comes
+ * before it. */
+static void json_reals(FILE *file, const char *comma, const char *name, const double *values, uint64_t n, size_t stride,
+                       const unsigned char *valid) {
+    fprintf(file, "%s\"%s\":[", comma, name);
+    for (uint64_t i = 0; i < n && !interrupt_status(); ++i) {
+        if (i > 0) putc(',', file);
+        text_json_real(file, !valid || valid[i] ? values[i * stride] : NAN);
+    }
+    putc(']', file);
+}
+
+/* What the frame is. */
+static void json_frame(FILE *file, const struct contents *what, const char *kind) {
+    const struct bed *bed = what->bed;
+    fprintf(file, "{\"kind\":\"%s\"", kind);
+    if (what->file) {
+        fputs(",\"file\":", file);
+        text_json(file, what->file);
+    }
+    fprintf(file, ",\"frame\":%" PRId64 ",\"timestep\":", bed->frame);
+    if (bed->timestep < 0)
+        fputs("null", file);
+    else
+        json_whole(file, bed->timestep);
+}
+
+/* The same, and the names of its spheres. */
+static void json_begin(FILE *file, const struct contents *what, const char *kind) {
+    const struct bed *bed = what->bed;
+    json_frame(file, what, kind);
+    fputs(",\"id\":[", file);
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        if (i > 0) putc(',', file);
+        json_whole(file, bed_name(bed, i));
+    }
+    putc(']', file);
+}
+
+/* The matrix in compressed rows, as SciPy's csr_array((data, indices, indptr)) takes it. */
+int write_json(FILE *file, const struct contents *what, bool first) {
+    const fibrad_factors *matrix = &what->factors->matrix;
+    const uint64_t entries = matrix->start[matrix->n];
+    const uint32_t walls = what->walls ? what->walls->count : 0;
+    char name[BODY_NAME];
+    (void)first;
+    json_begin(file, what, what->grey ? "exchange factors" : "view factors");
+    fputs(",\"indptr\":[0", file);
+    for (uint32_t i = 1; i <= matrix->n; ++i) fprintf(file, ",%" PRIu64, matrix->start[i]);
+    fputs("],\"indices\":[", file);
+    for (uint64_t k = 0; k < entries && !interrupt_status(); ++k) {
+        if (k > 0) putc(',', file);
+        json_whole(file, matrix->col[k]);
+    }
+    putc(']', file);
+    json_reals(file, ",", "data", matrix->f, entries, 1, NULL);
+    json_reals(file, ",", "escaped", matrix->escaped, matrix->n, 1, what->wanted);
+    json_reals(file, ",", "beyond", matrix->beyond, matrix->n, 1, what->wanted);
+    json_reals(file, ",", "error", matrix->error, matrix->n, 1, what->wanted);
+    for (uint32_t k = 0; k < walls; ++k)
+        json_reals(file, k > 0 ? "," : ",\"walls\":{", contents_body(what, k, name), matrix->body + k, matrix->n, walls,
+                   what->wanted);
+    fputs(walls > 0 ? "}}\n" : "}\n", file);
+    return interrupt_status();
+}
+
+static void json_power(FILE *file, const char *comma, const char *name, double temperature, double power) {
+    fprintf(file, "%s\"%s\":{\"T_K\":", comma, name);
+    text_json_real(file, temperature);
+    fputs(",\"q_W\":", file);
+    text_json_real(file, power);
+    putc('}', file);
+}
+
+int write_heat_json(FILE *file, const struct contents *what, bool first) {
+    const fibrad_heat_sources *sources = what->sources;
+    const fibrad_heat_result *result = what->result;
+    const uint32_t walls = what->walls ? what->walls->count : 0;
+    char name[BODY_NAME];
+    (void)first;
+    json_begin(file, what, "heat");
+    json_reals(file, ",", "T_K", sources->temperature, what->bed->n, 1, NULL);
+    json_reals(file, ",", "q_W", result->power, what->bed->n, 1, NULL);
+    if (what->walls && !isnan(sources->surroundings))
+        json_power(file, ",", "surroundings", sources->surroundings, result->surroundings_power);
+    for (uint32_t k = 0; k < walls; ++k)
+        json_power(file, k > 0 ? "," : ",\"walls\":{", contents_body(what, k, name), sources->body_temperature[k],
+                   result->body_power[k]);
+    fputs(walls > 0 ? "}}\n" : "}\n", file);
+    return interrupt_status();
+}
+
+int write_conduction_json(FILE *file, const struct contents *what, bool first) {
+    const struct conduction *conduction = what->conduction;
+    const char *comma = "";
+    (void)first;
+    json_frame(file, what, "conduction");
+    fputs(",\"axes\":[", file);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!conduction_wants(conduction, axis)) continue;
+        const bool reliable = conduction_flights(conduction, axis) == FLIGHTS_SETTLED;
+        fprintf(file, "%s{\"axis\":\"%c\",\"reliable\":%s", comma, 'x' + axis, reliable ? "true" : "false");
+        json_entry(file, "F_E", conduction->factor[axis]);
+        json_entry(file, "F_E_error", conduction->error[axis]);
+        comma = ",";
+        if (conduction->temperature > 0) {
+            json_entry(file, "k_W_mK", conduction->k[axis]);
+            json_entry(file, "k_W_mK_error", conduction->k_error[axis]);
+        }
+        putc('}', file);
+    }
+    fputs("]}\n", file);
+    return STATUS_OK;
+}

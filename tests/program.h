@@ -1,0 +1,171 @@
+/* program.h - runs the program and keeps what it says: exit statuses, messages, files. SPDX-License-Identifier: MIT
+ *
+ * Runs $BUILD/fibrad (default: build/fibrad) from the project's root. One folder a test: make_folder, remove_folder. */
+#ifndef TEST_PROGRAM_H
+#define TEST_PROGRAM_H
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "suite.h"
+
+#define MONO     "tests/data/mono2000.dump"
+#define POLY     "tests/data/poly2000.dump"
+#define PERIODIC "tests/data/monoper2000.dump"
+
+static const char *build; /* folder of the program */
+static char folder[200];  /* for the files of a test */
+static char stdout_path[220], stderr_path[220];
+static char said[8192], printed[65536];
+
+static inline void make_folder(void) {
+    build = getenv("BUILD") ? getenv("BUILD") : "build";
+    snprintf(folder, sizeof folder, "%.100s/tests/cli_XXXXXX", build);
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(stdout_path, sizeof stdout_path, "%s/stdout", folder);
+    snprintf(stderr_path, sizeof stderr_path, "%s/stderr", folder);
+}
+
+/* The place of a file in the test's folder; 32 may be in use at once. */
+static inline const char *in_folder(const char *name) {
+    static char paths[32][300];
+    static int next;
+    next = (next + 1) % 32;
+    snprintf(paths[next], sizeof paths[next], "%s/%s", folder, name);
+    return paths[next];
+}
+
+/* Removes all files of the folder but those called stdout and stderr, or those too; returns how many were removed. */
+static inline int remove_files(int outputs_too) {
+    int count = 0;
+    DIR *list = opendir(folder);
+    ck_assert_ptr_nonnull(list);
+    for (struct dirent *entry; (entry = readdir(list));) {
+        const int output = strncmp(entry->d_name, "std", 3) == 0;
+        if (entry->d_name[0] == '.' || (output && !outputs_too)) continue;
+        char path[500];
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        ck_assert_int_eq(unlink(path), 0);
+        ++count;
+    }
+    closedir(list);
+    return count;
+}
+
+static inline void remove_folder(void) {
+    remove_files(1);
+    ck_assert_int_eq(rmdir(folder), 0);
+}
+
+static inline const char *write_file(const char *name, const char *text) {
+    const char *path = in_folder(name);
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_int_ge(fputs(text, file), 0);
+    ck_assert_int_eq(fclose(file), 0);
+    return path;
+}
+
+/* A whole file as a string on the heap. */
+static char *read_file(const char *path) {
+    struct stat there;
+    FILE *file = fopen(path, "r");
+    ck_assert_msg(file && stat(path, &there) == 0, "%s is not there", path);
+    char *text = calloc(1, (size_t)there.st_size + 1);
+    ck_assert_ptr_nonnull(text);
+    ck_assert_uint_eq(fread(text, 1, (size_t)there.st_size, file), (size_t)there.st_size);
+    fclose(file);
+    return text;
+}
+
+static inline void open_as(int number, const char *path, int flags) {
+    const int file = open(path, flags, 0666);
+    if (file < 0 || dup2(file, number) < 0) _exit(99);
+}
+
+static const char *input = "/dev/null", *output; /* of the program; output NULL: kept in `printed` */
+
+static inline pid_t start(const char *const *arguments) {
+    char program[300];
+    const char *argv[40] = {program};
+    snprintf(program, sizeof program, "%s/fibrad", build);
+    for (int k = 0; k < 38 && arguments[k]; ++k) argv[k + 1] = arguments[k];
+    const char *out = output ? output : stdout_path;
+    const pid_t process = fork();
+    if (process != 0) return process;
+    open_as(0, input, O_RDONLY);
+    open_as(1, out, O_WRONLY | O_CREAT | O_TRUNC);
+    open_as(2, stderr_path, O_WRONLY | O_CREAT | O_TRUNC);
+    execv(program, (char *const *)argv);
+    _exit(98);
+}
+
+static inline void keep(const char *path, char *text, size_t size) {
+    FILE *file = fopen(path, "r");
+    text[0] = 0;
+    if (!file) return;
+    text[fread(text, 1, size - 1, file)] = 0;
+    fclose(file);
+}
+
+/* The exit status, or 256 + the signal that killed the program. */
+static inline int finish(pid_t process) {
+    int end;
+    ck_assert_int_eq(waitpid(process, &end, 0), process);
+    keep(stdout_path, printed, sizeof printed);
+    keep(stderr_path, said, sizeof said);
+    return WIFEXITED(end) ? WEXITSTATUS(end) : 256 + WTERMSIG(end);
+}
+
+#define LIST(...) ((const char *const[]){__VA_ARGS__, NULL})
+#define RUN(...)  finish(start(LIST(__VA_ARGS__)))
+#define SUCCEED(...)                                                                                                   \
+    do {                                                                                                               \
+        const int status_ = RUN(__VA_ARGS__);                                                                          \
+        ck_assert_msg(status_ == 0, "exit status %d: %s", status_, said);                                              \
+    } while (0)
+
+/* The value of the last line `key value` with that key. */
+static inline double value_of(const char *key) {
+    double value = NAN;
+    int found = 0;
+    for (const char *line = printed; line && *line; line = strchr(line, '\n'), line += line != NULL)
+        if (strncmp(line, key, strlen(key)) == 0 && line[strlen(key)] == ' ') {
+            value = strtod(line + strlen(key), NULL);
+            found = 1;
+        }
+    ck_assert_msg(found, "no line '%s' in: %s", key, printed);
+    return value;
+}
+
+/* The figure of this key in a file that --json wrote, with all its digits; its last run's. */
+static inline double json_of(const char *path, const char *key) {
+    char *text = read_file(path), wanted[80];
+    const char *at = NULL;
+    snprintf(wanted, sizeof wanted, "\"%s\": ", key);
+    for (const char *next = text; (next = strstr(next, wanted)); at = next += strlen(wanted)) {}
+    ck_assert_msg(at != NULL, "no key '%s' in: %s", key, text);
+    const double value = strtod(at, NULL);
+    free(text);
+    return value;
+}
+
+/* One line on standard error, beginning with `fibrad: ` and then the place, holding the reason. */
+static inline void expect_message(const char *place, const char *reason) {
+    char begin[400];
+    snprintf(begin, sizeof begin, "fibrad: %s", place);
+    ck_assert_msg(strncmp(said, begin, strlen(begin)) == 0, "'%s' does not begin with '%s'", said, begin);
+    ck_assert_msg(strstr(said, reason) != NULL, "'%s' does not give as reason '%s'", said, reason);
+    ck_assert_ptr_eq(strchr(said, '\n'), said + strlen(said) - 1);
+}
+
+#endif

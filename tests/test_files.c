@@ -1,0 +1,393 @@
+/* test_files.c - what people bring and take away: units, ids, frames, walls by name, summaries.
+ * SPDX-License-Identifier: MIT
+ */
+#include "program.h"
+
+#define ATOMS "ITEM: ATOMS id type x y z radius T\n"
+
+/* Three spheres in the order of their ids, and out of it. */
+#define SORTED   "3 1 1 4 4 1 600\n7 2 3.5 4 4 1 300\n20 1 1 6.5 4 0.7 450\n"
+#define UNSORTED "20 1 1 6.5 4 0.7 450\n3 1 1 4 4 1 600\n7 2 3.5 4 4 1 300\n"
+
+static char text_of_frame[2000];
+
+/* A frame of a dump; units NULL: not said. */
+static const char *frame(const char *units, const char *step, const char *atoms, const char *rows) {
+    snprintf(text_of_frame, sizeof text_of_frame,
+             "%s%s%sITEM: TIMESTEP\n%s\nITEM: NUMBER OF ATOMS\n%s\nITEM: BOX BOUNDS ff ff ff\n0 8\n0 8\n0 8\n" ATOMS
+             "%s",
+             units ? "ITEM: UNITS\n" : "", units ? units : "", units ? "\n" : "", step, atoms, rows);
+    return text_of_frame;
+}
+
+#define HEAT "heat", "--emissivity", "0.6", "--temperature", "T", "--directions", "21", "--patches", "24"
+
+/* The power of a body or sphere in a .csv of heat, by the end of its line or its beginning. */
+static double power_of(const char *path, const char *begin, const char *end) {
+    char *text = read_file(path);
+    double t, q = NAN;
+    for (char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL) {
+        const size_t length = strcspn(line, "\n");
+        if (strncmp(line, begin, strlen(begin)) != 0 || strlen(end) > length) continue;
+        if (strncmp(line + length - strlen(end), end, strlen(end)) != 0) continue;
+        const char *number = line + strlen(begin);
+        if (*begin == 0) number = strchr(line, ',') + 1;
+        ck_assert_int_eq(sscanf(number, "%lf,%lf", &t, &q), 2);
+    }
+    ck_assert_msg(!isnan(q), "no line %s ... %s in %s", begin, end, text);
+    free(text);
+    return q;
+}
+
+/* ---- walls and surroundings ------------------------------------------------------------------------------------- */
+
+/* Temperatures go by the walls' names, whatever order they were named in. */
+START_TEST(wall_temperatures_by_name) {
+    const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)), *out = in_folder("q.csv");
+    static const char *const lists[] = {"zmin=1200,zmax=300,700", "700,zmax=300,zmin=1200"};
+    char *first = NULL;
+    for (int k = 0; k < 2; ++k) {
+        SUCCEED(HEAT, bed, "--wall", "auto,zmin=-0.001", "--wall-temperature", lists[k], "--wall-emissivity", "zmin=.5",
+                "-o", out);
+        ck_assert_double_eq(value_of("wall_zmin_K"), 1200);
+        ck_assert_double_eq(value_of("wall_zmax_K"), 300);
+        ck_assert_double_eq(value_of("wall_ymax_K"), 700);
+        ck_assert_double_eq(value_of("wall_zmin_at"), -.001);
+        ck_assert_double_eq(value_of("wall_zmin_emissivity"), .5);
+        ck_assert_double_eq(value_of("wall_xmin_emissivity"), 1);
+        char *text = read_file(out);
+        ck_assert_ptr_nonnull(strstr(text, "\n-2,1200,"));
+        ck_assert_double_lt(power_of(out, "-2,", ",zmin"), 0); /* the hottest */
+        if (first) ck_assert_str_eq(text, first);
+        free(first);
+        first = text;
+    }
+    free(first);
+}
+END_TEST
+
+/* No temperature is made up: that of the surroundings is asked for where something can get there. */
+START_TEST(surroundings_are_asked_for) {
+    const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
+    static const char *const open[] = {"zmin", "zmin,zmax", "cylinder:4,4,6", "cylinder:4,4,6,zmin"};
+    static const char *const closed[] = {"auto", "cylinder:4,4,6,zmin,zmax"};
+    for (int k = 0; k < 4; ++k) {
+        ck_assert_int_eq(RUN(HEAT, bed, "--wall", open[k], "--wall-temperature", "300"), 2);
+        expect_message("", "which --ambient? the bed is open");
+        SUCCEED(HEAT, bed, "--wall", open[k], "--wall-temperature", "300", "--ambient", "290");
+        ck_assert_double_eq(value_of("surroundings_K"), 290);
+    }
+    for (int k = 0; k < 2; ++k) SUCCEED(HEAT, bed, "--wall", closed[k], "--wall-temperature", "300");
+    SUCCEED(HEAT, bed, "--periodic", "8,8,0", "--wall", "zmin,zmax", "--wall-temperature", "300");
+    SUCCEED(HEAT, bed, "--periodic", "8,8,8");
+    ck_assert_int_eq(RUN(HEAT, bed, "--periodic", "8,8,0"), 2);
+    expect_message("", "which --ambient?");
+}
+END_TEST
+
+/* ---- units ------------------------------------------------------------------------------------------------------ */
+
+/* The same numbers in another unit of length: powers by its square; factors as they are. */
+START_TEST(units_of_length) {
+    static const struct {
+        const char *units, *option;
+        double metres;
+    } unit[] = {{"si", NULL, 1},        {"cgs", NULL, .01}, {"micro", NULL, 1e-6}, {"nano", NULL, 1e-9},
+                {"metal", NULL, 1e-10}, {NULL, "mm", 1e-3}, {NULL, "cm", .01},     {NULL, "cgs", .01},
+                {"lj", "mm", 1e-3},     {"cgs", "cm", .01}};
+    const char *out = in_folder("q.csv");
+    double metres = NAN;
+    char *factors = NULL;
+    for (size_t k = 0; k < sizeof unit / sizeof *unit; ++k) {
+        const char *bed = write_file("bed.dump", frame(unit[k].units, "0", "3", SORTED));
+        if (unit[k].option)
+            SUCCEED(HEAT, bed, "--ambient", "300", "-o", out, "--length-unit", unit[k].option);
+        else
+            SUCCEED(HEAT, bed, "--ambient", "300", "-o", out);
+        const double q = power_of(out, "3,", ","), square = unit[k].metres * unit[k].metres;
+        if (k == 0) metres = q;
+        ck_assert_double_eq_tol(q, metres * square, 1e-13 * fabs(metres) * square);
+        ck_assert_ptr_null(strstr(said, "taken as metres"));
+        SUCCEED("bed", bed, "--directions", "21", "-o", out);
+        char *text = read_file(out);
+        if (factors) ck_assert_str_eq(text, factors);
+        free(factors);
+        factors = text;
+    }
+    free(factors);
+    ck_assert_int_eq(RUN(HEAT, write_file("lj.dump", frame("lj", "0", "3", SORTED)), "--ambient", "300"), 2);
+    expect_message(in_folder("lj.dump"), "units lj have no metres; --length-unit gives them");
+    const char *cgs = write_file("cgs.dump", frame("cgs", "0", "3", SORTED));
+    ck_assert_int_eq(RUN(HEAT, cgs, "--ambient", "300", "--length-unit", "mm"), 2);
+    expect_message(cgs, "its units are cgs");
+    const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)); /* millimetres, by their looks */
+    SUCCEED(HEAT, bed, "--ambient", "300");
+    expect_message(bed, "warning: radii of 0.9 are taken as metres");
+}
+END_TEST
+
+START_TEST(degrees_celsius) {
+    const char *kelvins = write_file("k.csv", "x,y,z,r,T\n0,0,0,.01,600\n.03,0,0,.01,300\n");
+    const char *celsius = write_file("c.csv", "x,y,z,r,T\n0,0,0,.01,326.85\n.03,0,0,.01,26.85\n");
+    const char *one = in_folder("one.csv"), *two = in_folder("two.csv");
+    SUCCEED(HEAT, kelvins, "--ambient", "290", "--wall", "zmin", "--wall-temperature", "zmin=500", "-o", one);
+    SUCCEED(HEAT, celsius, "--ambient", "16.85", "--wall", "zmin", "--wall-temperature", "zmin=226.85",
+            "--temperature-unit", "C", "-o", two);
+    for (int k = 0; k < 4; ++k) {
+        static const char *const begin[] = {"0,", "1,", "-1,", "-2,"};
+        const double q = power_of(one, begin[k], "");
+        ck_assert_double_eq_tol(power_of(two, begin[k], ""), q, 1e-11 * fabs(q));
+    }
+}
+END_TEST
+
+/* ---- names ------------------------------------------------------------------------------------------------------ */
+
+/* The order of a file is no matter: spheres go by their ids. */
+START_TEST(ids_in_any_order) {
+    static const char *const rows[] = {SORTED, UNSORTED};
+    static const char *const endings[] = {"F.csv", "F.mtx", "F.npz", "F.vtp", "F.json"};
+    for (int format = 0; format < 5; ++format) {
+        char *first = NULL;
+        const char *out = in_folder(endings[format]);
+        for (int k = 0; k < 2; ++k) {
+            const char *bed = write_file("bed.dump", frame(NULL, "0", "3", rows[k]));
+            SUCCEED("bed", bed, "--directions", "21", "-o", out);
+            struct stat there;
+            ck_assert_int_eq(stat(out, &there), 0);
+            char *text = read_file(out);
+            if (first) ck_assert_int_eq(memcmp(text, first, (size_t)there.st_size), 0);
+            free(first);
+            first = text;
+        }
+        free(first);
+    }
+    const char *bed = write_file("bed.dump", frame(NULL, "0", "3", UNSORTED)), *out = in_folder("rows.csv");
+    SUCCEED("bed", bed, "--targets", "7-19", "-o", out);
+    char *text = read_file(out);
+    ck_assert_int_eq(strncmp(text, "i,j,F\n7,3,", 10), 0);
+    free(text);
+    SUCCEED("bed", bed, "--targets", "0", "--positions", "-o", out);
+    text = read_file(out);
+    ck_assert_int_eq(strncmp(text, "i,j,F\n0,1,", 10), 0);
+    free(text);
+    ck_assert_int_eq(RUN("bed", bed, "--targets", "8-19"), 2);
+    expect_message("", "there is no sphere 8; they are 3 to 20");
+}
+END_TEST
+
+START_TEST(ambiguous_ids) {
+    const char *bed = write_file("bed.dump", frame(NULL, "0", "2", "3 1 1 4 4 1 9\n3 1 4 4 4 1 9\n"));
+    ck_assert_int_eq(RUN("bed", bed), 3);
+    expect_message(bed, ":11: the id 3 is that of line 10, too");
+    SUCCEED("bed", bed, "--positions");
+    bed = write_file("bed.dump", frame(NULL, "0", "2", "3 1 1 4 4 1 9\n-1 1 4 4 4 1 9\n"));
+    ck_assert_int_eq(RUN("bed", bed), 3);
+    expect_message(bed, ":11: the id -1 is negative");
+    SUCCEED("bed", bed, "--positions");
+    bed = write_file("bed.dump", frame(NULL, "0", "2", "30 1 1 4 4 1 9\n7 1 1.5 4 4 1 9\n"));
+    ck_assert_int_eq(RUN("bed", bed), 3);
+    expect_message(bed, "sphere 7"); /* messages, too */
+}
+END_TEST
+
+START_TEST(values_by_type) {
+    const char *bed = write_file("bed.csv", "x,y,z,type,T\n0,0,0,1,600\n.03,0,0,2,300\n0,.03,0,1,300\n");
+    const char *same =
+        write_file("same.csv", "x,y,z,r,e,T\n0,0,0,.01,.3,600\n.03,0,0,.015,0,300\n0,.03,0,.01,.3,300\n");
+    const char *one = in_folder("one.csv"), *two = in_folder("two.csv");
+    SUCCEED("heat", bed, "--radius", "1:.01,2:.015", "--emissivity", "1:.3,2:0", "--temperature", "T", "--ambient",
+            "300", "-o", one);
+    SUCCEED("heat", same, "--emissivity", "e", "--temperature", "T", "--ambient", "300", "-o", two);
+    char *first = read_file(one), *second = read_file(two);
+    ck_assert_str_eq(first, second);
+    free(first), free(second);
+    ck_assert_double_le(fabs(power_of(one, "1,", "")), 1e-9 * fabs(power_of(one, "0,", ""))); /* reflects all */
+    ck_assert_int_eq(RUN("bed", bed, "--radius", "1:.01"), 3);
+    expect_message(bed, ":3: the list of the radius has no type 2");
+    SUCCEED("bed", bed, "--radius", ".01");
+    ck_assert_double_eq(value_of("radius_max"), .01);
+}
+END_TEST
+
+/* ---- frames ----------------------------------------------------------------------------------------------------- */
+
+static const char *write_frames(const char *name, int frames) {
+    static const char *const rows[] = {SORTED, "20 1 1 6.5 4 0.7 450\n3 1 1 4 4 1 900\n7 2 3.6 4 4 1 300\n",
+                                       "7 2 3.7 4 4 1 500\n20 1 1 6.5 4 0.7 250\n3 1 1 4 4 1 900\n"};
+    static const char *const steps[] = {"100", "250", "900"};
+    const char *path = in_folder(name);
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    for (int k = 0; k < frames; ++k) fputs(frame(NULL, steps[k], "3", rows[k]), file);
+    fclose(file);
+    return path;
+}
+
+/* All frames at once are those one by one, to the bit. */
+START_TEST(all_frames) {
+    const char *bed = write_frames("bed.dump", 3), *all = in_folder("all.csv");
+    static const char *const number[] = {"0", "1", "2"}, *const begin[] = {"0,100,", "1,250,", "2,900,"};
+    SUCCEED(HEAT, bed, "--frame", "all", "--ambient", "300", "-o", all, "-o", in_folder("q.*.vtp"), "-o",
+            in_folder("all.json"));
+    char *text = read_file(all), *at = strchr(text, '\n') + 1;
+    ck_assert_int_eq(strncmp(text, "frame,timestep,i,T_K,q_W,body\n", 30), 0);
+    for (int k = 0; k < 3; ++k) {
+        const char *one = in_folder("one.csv");
+        SUCCEED(HEAT, bed, "--frame", number[k], "--ambient", "300", "-o", one);
+        char *expected = read_file(one);
+        for (char *line = strchr(expected, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
+            ck_assert_int_eq(strncmp(at, begin[k], strlen(begin[k])), 0);
+            at += strlen(begin[k]);
+            const size_t length = strcspn(line, "\n") + 1;
+            ck_assert_int_eq(strncmp(at, line, length), 0);
+            at += length;
+        }
+        free(expected);
+    }
+    ck_assert_int_eq(*at, 0);
+    free(text);
+    for (int k = 0; k < 3; ++k) {
+        char name[20];
+        snprintf(name, sizeof name, "q.%d.vtp", k);
+        free(read_file(in_folder(name)));
+    }
+    ck_assert_int_eq(remove_files(0), 7);
+}
+END_TEST
+
+START_TEST(some_frames) {
+    const char *bed = write_frames("bed.dump", 3), *out = in_folder("F.csv");
+    SUCCEED("bed", bed, "--frame", "0:3:2", "--directions", "8", "-o", out);
+    char *text = read_file(out);
+    ck_assert_int_eq(strncmp(text, "frame,timestep,i,j,F\n0,100,3,", 29), 0);
+    ck_assert_ptr_nonnull(strstr(text, "\n2,900,3,"));
+    ck_assert_ptr_null(strstr(text, "\n1,"));
+    free(text);
+    SUCCEED("bed", bed, "--frame", "-1", "--directions", "8");
+    ck_assert_double_eq(value_of("frame"), 2);
+    ck_assert_double_eq(value_of("timestep"), 900);
+    SUCCEED("bed", bed, "--frame", ":2", "--directions", "8");
+    ck_assert_double_eq(value_of("frame"), 1);
+    ck_assert_int_eq(RUN("bed", bed, "--frame", "3"), 3);
+    expect_message(bed, "there is no frame 3; the last is 2");
+    ck_assert_int_eq(RUN("bed", bed, "--frame", "all", "-o", in_folder("F.npz")), 2);
+    expect_message(in_folder("F.npz"), "holds one frame");
+}
+END_TEST
+
+/* A series of files, by a pattern that the shell has left alone, is one run. */
+START_TEST(several_files) {
+    char names[300], expected[400];
+    const char *first = write_frames("bed.1.dump", 1), *out = in_folder("F.csv");
+    write_frames("bed.2.dump", 2);
+    snprintf(names, sizeof names, "%s/bed.*.dump", folder);
+    SUCCEED("bed", names, "--directions", "8", "-o", out, "-o", in_folder("F.*.mtx"));
+    char *text = read_file(out);
+    snprintf(expected, sizeof expected, "file,frame,timestep,i,j,F\n\"%s\",0,100,3,", first);
+    ck_assert_int_eq(strncmp(text, expected, strlen(expected)), 0);
+    ck_assert_ptr_nonnull(strstr(text, "bed.2.dump\",1,250,3,7,"));
+    free(text);
+    free(read_file(in_folder("F.1.mtx")));
+    snprintf(names, sizeof names, "%s/none.*.dump", folder);
+    ck_assert_int_eq(RUN("bed", names), 4);
+    expect_message(names, "there are no such files");
+}
+END_TEST
+
+/* What a simulation is still writing: the frames before are computed, with a word. */
+START_TEST(truncated_last_frame) {
+    const char *bed = write_frames("bed.dump", 3);
+    ck_assert_int_eq(truncate(bed, (off_t)(strlen(read_file(bed)) - 30)), 0);
+    SUCCEED("bed", bed, "--frame", "all", "--directions", "8");
+    expect_message(bed, "warning: ");
+    ck_assert_double_eq(value_of("frame"), 1);
+    ck_assert_int_eq(RUN("bed", bed, "--directions", "8"), 3);
+    expect_message(bed, "the last whole frame is 1");
+    ck_assert_int_eq(RUN("bed", bed, "--frame", "2", "--directions", "8"), 3);
+}
+END_TEST
+
+/* ---- what is said ----------------------------------------------------------------------------------------------- */
+
+START_TEST(summary_says_what_was_computed) {
+    const char *bed = write_file("bed.dump", frame("cgs", "700", "3", SORTED)), *json = in_folder("q.json");
+    static const char *const lines[] = {
+        "\nframe 0\n",          "\ntimestep 700\n",           "\nspheres 3\n",          "\nlength_unit cgs\n",
+        "\nradius_max 1\n",     "\nbox_high 8 8 8\n",         "\nperiods 0 0 0\n",      "\nmodel patches\n",
+        "\nemissivity 0.6\n",   "\ntemperature_K column T\n", "\nsurroundings_K 300\n", "\nwall_zmin_at 0\n",
+        "\nwall_zmin_K 1200\n", "\nwall_zmin_emissivity 1\n", "\nnamed_by ids\n"};
+    SUCCEED(HEAT, bed, "--ambient", "300", "--wall", "zmin", "--wall-temperature", "1200", "--json", json);
+    for (size_t k = 0; k < sizeof lines / sizeof *lines; ++k)
+        ck_assert_msg(strstr(printed, lines[k]) != NULL, "no line %s in %s", lines[k], printed);
+    ck_assert_int_eq(strncmp(printed, "file ", 5), 0);
+    ck_assert_double_eq(json_of(json, "wall_zmin_K"), 1200);
+    const double exact = json_of(json, "wall_zmin_W"), shown = value_of("wall_zmin_W");
+    ck_assert_double_eq_tol(shown, exact, 1e-5 * fabs(exact));
+    SUCCEED("bed", MONO, "--directions", "21");
+    for (const char *line = strtok(printed, "\n"); line; line = strtok(NULL, "\n")) /* no digits that mean nothing */
+        ck_assert_msg(strlen(line) < 60, "%s", line);
+}
+END_TEST
+
+START_TEST(quiet_and_streams) {
+    const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
+    SUCCEED("bed", bed, "--quiet", "--progress", "-o", in_folder("F.csv"));
+    ck_assert_str_eq(printed, "");
+    ck_assert_str_eq(said, "");
+    SUCCEED("bed", bed, "-o", "-", "--format", "csv");
+    char *text = read_file(in_folder("F.csv"));
+    ck_assert_str_eq(printed, text);
+    ck_assert_ptr_nonnull(strstr(said, "\nspheres 3\n"));
+    free(text);
+    SUCCEED("heat", bed, "--emissivity", ".5", "--temperature", "T", "--ambient", "300", "--length-unit", "mm",
+            "--progress");
+    ck_assert_ptr_nonnull(strstr(said, " sweeps, "));
+}
+END_TEST
+
+/* What does not fit is said before the work begins, with what would help. */
+START_TEST(too_little_memory) {
+    ck_assert_int_eq(RUN("heat", MONO, "--emissivity", ".5", "--temperature", "v_T", "--ambient", "300", "--directions",
+                         "65536", "--points", "256", "--patches", "384", "-o", in_folder("q.csv")),
+                     5);
+    ck_assert_ptr_nonnull(strstr(said, "out of memory: 134 GB are wanted, "));
+    ck_assert_ptr_nonnull(strstr(said, "fewer --directions"));
+    ck_assert_int_eq(remove_files(0), 0);
+}
+END_TEST
+
+START_TEST(versions_and_help) {
+    SUCCEED("-V");
+    ck_assert_int_eq(strncmp(printed, "fibrad ", 7), 0);
+    SUCCEED("help");
+    ck_assert_ptr_nonnull(strstr(printed, "Commands:"));
+    SUCCEED("help", "heat");
+    ck_assert_ptr_nonnull(strstr(printed, "--wall-temperature"));
+    ck_assert_int_eq(RUN("help", "nothing"), 2);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("files");
+    TCase *asked = suite_case(suite, "asked"), *named = suite_case(suite, "named"),
+          *frames = suite_case(suite, "frames"), *summaries = suite_case(suite, "said");
+    TCase *const cases[] = {asked, named, frames, summaries};
+    for (int k = 0; k < 4; ++k) tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
+    tcase_add_test(asked, wall_temperatures_by_name);
+    tcase_add_test(asked, surroundings_are_asked_for);
+    tcase_add_test(asked, units_of_length);
+    tcase_add_test(asked, degrees_celsius);
+    tcase_add_test(named, ids_in_any_order);
+    tcase_add_test(named, ambiguous_ids);
+    tcase_add_test(named, values_by_type);
+    tcase_add_test(frames, all_frames);
+    tcase_add_test(frames, some_frames);
+    tcase_add_test(frames, several_files);
+    tcase_add_test(frames, truncated_last_frame);
+    tcase_add_test(summaries, summary_says_what_was_computed);
+    tcase_add_test(summaries, quiet_and_streams);
+    tcase_add_test(summaries, too_little_memory);
+    tcase_add_test(summaries, versions_and_help);
+    return suite_run(suite);
+}
