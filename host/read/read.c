@@ -109,6 +109,7 @@ static int find_frame(struct reader *r, bool *more) {
 /* The only frame of a file that holds one. */
 static int find_only(struct reader *r, bool *more) {
     *more = r->frame == 0 && wants_frame(r);
+    r->frame += !*more && r->frame == 0;
     return *more || r->found ? STATUS_OK : say_end(r, FOUND_END, "");
 }
 

@@ -165,9 +165,9 @@ static int read_data(struct source *source, struct bed *bed) {
             lines_hold(&source->lines);
             break;
         }
-    if (status) return status;
-    source_warn_open(source);
-    return source_rows(source, atoms, more, bed);
+    if (!status) status = source_rows(source, atoms, more, bed);
+    if (!status) source_warn_open(source);
+    return status;
 }
 
 const struct format format_data = {is_data, NULL, read_data};

@@ -77,6 +77,7 @@ static int skip_dump(struct source *source, enum found *found, char *lack) {
             if (atoms < 0) return source_fail(source, "ITEM: ATOMS comes before ITEM: NUMBER OF ATOMS");
             status = skip_atoms(source, atoms, &more, lack);
             if (more) *found = FOUND_FRAME;
+            source_skip_end(source, found, lack);
             return status;
         }
         if (item(source, "ITEM: NUMBER OF ATOMS")) {

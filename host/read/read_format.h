@@ -14,6 +14,7 @@ struct source {
     struct fields fields;
     struct columns columns;
     char units[sizeof((struct bed *)0)->units]; /* as said once for all frames */
+    bool warned;                                /* that the file does not say what is periodic */
 };
 
 enum found {
@@ -61,11 +62,14 @@ int source_rows(struct source *source, int64_t rows, size_t more, struct bed *be
 /* Passes over so many lines; FOUND_PART: the file has fewer. */
 int source_skip(struct source *source, int64_t rows, enum found *found, char *lack);
 
+/* A frame whose last line has no end is but a part: a number may have been cut. For files that programs alone write. */
+void source_skip_end(const struct source *source, enum found *found, char *lack);
+
 /* The line, or its first word, as a number of atoms. */
 int source_count(const struct source *source, const char *text, int64_t *atoms);
 
-/* Warns that the file does not say which axes are periodic. */
-void source_warn_open(const struct source *source);
+/* Warns, once, that the file does not say which axes are periodic. */
+void source_warn_open(struct source *source);
 
 /* The line without the blanks about it, as much as there is room for. Returns `to`. */
 char *source_word(const struct source *source, char *to, size_t room);

@@ -118,7 +118,8 @@ int lines_next(struct lines *lines, bool *more) {
     }
     lines->text = lines->buffer + lines->next;
     lines->length = end - lines->next;
-    lines->next = end + (end < lines->end);
+    lines->ended = end < lines->end;
+    lines->next = end + lines->ended;
     if (lines->length && lines->text[lines->length - 1] == '\r') --lines->length;
     lines->behind = lines->text[lines->length];
     lines->text[lines->length] = 0;

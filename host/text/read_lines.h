@@ -14,6 +14,7 @@ struct lines {
     uint64_t number;  /* of the line in `text`, from 1 */
     char *text;       /* without its end */
     size_t length;
+    bool ended;     /* a line end is behind it, not the end of the file */
     bool truncated; /* the end of the file is that of a gzip file that was cut off */
 
     /* what has been read of the file: lines that are kept, the current line, bytes that are still to come */

@@ -16,15 +16,15 @@ enum { NAME = 80 };
 
 struct legacy {
     struct vtk_grid *grid;
-    const char *at;
-    bool binary, fifth; /* cells are of offsets and connectivity, as from version 5.0 on */
-    bool on_points;     /* arrays are on points */
-    uint64_t tuples;    /* of an array on points or cells */
-    uint64_t sizes[2];  /* of the last list of cells */
+    const char *at, *line; /* behind what has been read; the last line of words */
+    bool binary, fifth;    /* cells are of offsets and connectivity, as from version 5.0 on */
+    bool on_points;        /* arrays are on points */
+    uint64_t tuples;       /* of an array on points or cells */
+    uint64_t sizes[2];     /* of the last list of cells */
 };
 
 static int legacy_fail(const struct legacy *legacy, const char *what) {
-    return vtk_fail(legacy->grid, legacy->binary ? NULL : legacy->at, "%s", what);
+    return vtk_fail(legacy->grid, legacy->binary ? NULL : legacy->line, "%s", what);
 }
 
 /* Copies the next line and goes behind it. */
@@ -41,6 +41,7 @@ static void take_line(struct legacy *legacy, char *line, size_t room) {
 /* The next line that has something in it; false: the file ends. */
 static bool take_words(struct legacy *legacy, char *line, size_t room) {
     while (legacy->at < legacy->grid->end) {
+        legacy->line = legacy->at;
         take_line(legacy, line, room);
         if (line[strspn(line, " \t\r")]) return true;
     }
@@ -52,7 +53,7 @@ static int take_array(struct legacy *legacy, const char *type_name, uint64_t cou
     const struct vtk_type type = vtk_find_type(type_name);
     const uint64_t left = (uint64_t)(legacy->grid->end - legacy->at);
     if (strcmp(type_name, "bit") != 0 && type.size == 0)
-        return vtk_fail(legacy->grid, legacy->binary ? NULL : legacy->at, "arrays of type %.40s cannot be read",
+        return vtk_fail(legacy->grid, legacy->binary ? NULL : legacy->line, "arrays of type %.40s cannot be read",
                         type_name);
     const uint64_t size = type.size ? type.size : 1;
     if (count > left || (legacy->binary && count * size > left))
@@ -63,7 +64,7 @@ static int take_array(struct legacy *legacy, const char *type_name, uint64_t cou
     }
     if (!legacy->binary) {
         if (vtk_scan(&legacy->at, legacy->grid->end, count, values ? *values : NULL)) return STATUS_OK;
-        return legacy_fail(legacy, "a number is expected, or the file ends within an array");
+        return vtk_fail(legacy->grid, legacy->at, "a number is expected, or the file ends within an array");
     }
     if (values && type.size) vtk_convert(type, true, legacy->at, count, *values);
     legacy->at += type.size ? count * size : (count + 7) / 8;
@@ -162,7 +163,7 @@ static int take_keyword(struct legacy *legacy, const char *line) {
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
         if (strcmp(word, arrays[k].keyword) == 0)
             return take_data(legacy, first, second, arrays[k].components, legacy->tuples);
-    return vtk_fail(legacy->grid, legacy->binary ? NULL : legacy->at, "the keyword %.40s is not known", word);
+    return vtk_fail(legacy->grid, legacy->binary ? NULL : legacy->line, "the keyword %.40s is not known", word);
 }
 
 int vtk_read_legacy(struct vtk_grid *grid) {
