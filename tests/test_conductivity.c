@@ -59,12 +59,12 @@ START_TEST(slab_grows_with_the_logarithm) {
     ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){1, 1, sqrt(2), 1, 0, 0}), 0);
     bed_init(&four, false, 0);
     ck_assert_int_eq(bed_make_copies(&four, &bed, (const uint32_t[]){2, 2, 1}), 0);
-    narrow = follow(&bed, 1, (struct conduction_rule){.axis = -1, .paths = 400000});
-    wide = follow(&four, 1, (struct conduction_rule){.axis = -1, .paths = 100000});
+    narrow = follow(&bed, 1, (struct conduction_rule){.axis = -1, .paths = 200000});
+    wide = follow(&four, 1, (struct conduction_rule){.axis = -1, .paths = 50000});
     for (int axis = 0; axis < 2; ++axis) {
         const double error = hypot(narrow.error[axis], wide.error[axis]);
         ck_assert_double_eq_tol(narrow.growth[axis], growth, 1e-12 * growth);
-        ck_assert_double_lt(error, .3);
+        ck_assert_double_lt(error, .5);
         ck_assert_double_eq_tol(wide.factor[axis] - narrow.factor[axis], growth * log(2), 4 * error);
         ck_assert_int_eq(conduction_flights(&narrow, axis), FLIGHTS_ENDLESS);
     }
@@ -149,7 +149,7 @@ START_TEST(channel_is_told) {
         ck_assert_int_eq(conduction_flights(&result, 2), FLIGHTS_SETTLED);
     }
     bed_free(&bed);
-    ck_assert_int_ge(told, 4);
+    ck_assert_int_ge(told, 4); /* on the mean 6 */
 }
 END_TEST
 
@@ -157,7 +157,7 @@ END_TEST
 START_TEST(mixtures_are_settled) {
     struct bed bed;
     bed_init(&bed, false, 0);
-    ck_assert_int_eq(bed_make_two_sizes(&bed, 2, 6, .5, 1), 0);
+    ck_assert_int_eq(bed_make_two_sizes(&bed, 3, 5, .5, 1), 0);
     const struct conduction result =
         follow(&bed, .8, (struct conduction_rule){.axis = -1, .error = .02, .max_rays = 4000000});
     for (int axis = 0; axis < 3; ++axis) ck_assert_int_eq(conduction_flights(&result, axis), FLIGHTS_SETTLED);
