@@ -34,7 +34,7 @@ static const struct option conductivity_table[] = {
 struct conductivity_request {
     struct bed_options bed;
     struct quantity emissivity;
-    double temperature; /* [K]; 0: not given */
+    double temperature; /* [K]; below 0: not given */
     double metre;       /* of the file's unit of length */
     struct conduction_rule rule;
 };
@@ -105,7 +105,7 @@ static int conductivity_take(struct conductivity_request *request, const struct 
 
 static int conductivity_parse(struct conductivity_request *request, int argc, char **argv) {
     struct options options = {.command = "conductivity", .table = conductivity_table, .argc = argc, .argv = argv};
-    *request = (struct conductivity_request){.bed.frame = -1, .metre = 1, .rule.axis = -1};
+    *request = (struct conductivity_request){.bed.frame = -1, .temperature = -1, .metre = 1, .rule.axis = -1};
     struct conduction_rule *rule = &request->rule;
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;)
@@ -159,7 +159,7 @@ static void conductivity_print(const struct conductivity_request *request, const
     printf("escaped %.17g\n", result->escaped);
     axes_with(request, result, FLIGHTS_ENDLESS | FLIGHTS_RARE, unreliable);
     printf("unreliable %s\n", *unreliable ? unreliable : "none");
-    if (request->temperature > 0) {
+    if (request->temperature >= 0) {
         printf("temperature %.17g\n", request->temperature);
         print_axes(request, "k_", "", result->k);
         print_axes(request, "k_", "_error", result->k_error);
@@ -194,7 +194,7 @@ static void write_csv_axes(FILE *file, const struct conductivity_request *reques
     for (int axis = 0; axis < 3; ++axis) {
         if (!is_wanted(request, axis)) continue;
         fprintf(file, "%c,%.17g,%.17g,", 'x' + axis, result->factor[axis], result->error[axis]);
-        if (request->temperature > 0)
+        if (request->temperature >= 0)
             fprintf(file, "%.17g,%.17g\n", result->k[axis], result->k_error[axis]);
         else
             fputs(",\n", file);
@@ -212,7 +212,7 @@ static void write_json_axes(FILE *file, const struct conductivity_request *reque
         fprintf(file, "%s\n  {\"axis\": \"%c\", \"F_E\": %.17g, \"F_E_error\": %.17g, \"error_reliable\": %s", comma,
                 'x' + axis, result->factor[axis], result->error[axis],
                 conduction_flights(result, axis) == FLIGHTS_SETTLED ? "true" : "false");
-        if (request->temperature > 0)
+        if (request->temperature >= 0)
             fprintf(file, ", \"k_W_mK\": %.17g, \"k_error\": %.17g", result->k[axis], result->k_error[axis]);
         fputc('}', file);
         comma = ",";
@@ -242,7 +242,7 @@ static int conductivity_compute(struct conductivity_request *request, const stru
         status = conduction_follow(bed, emits, &request->rule, &run, result);
         status = bed_options_status(&request->bed, bed, status, &run.fault);
     }
-    if (!status && request->temperature > 0) conduction_at(result, request->temperature, request->metre);
+    if (!status && request->temperature >= 0) conduction_at(result, request->temperature, request->metre);
     free(emits);
     free(emissivity);
     return status;
