@@ -218,7 +218,9 @@ static int follow_round(const struct bed *bed, const unsigned char *emits, const
         const uint32_t share = (uint32_t)(paths / batches + (round.batch < paths % batches));
         const fibrad_exchange_rule how = {
             .emissivity = rule->emissivity, .paths = share, .seed = rule->seed + tally->batches * 0x9e3779b97f4a7c15u};
-        fibrad_run own = {.threads = run->threads, .progress = run->progress ? round_stage : NULL, .context = &round};
+        fibrad_run own = {.threads = result->emitters == 1 ? 1 : run->threads, /* short batches: no team to wake */
+                          .progress = run->progress ? round_stage : NULL,
+                          .context = &round};
         const int status = fibrad_displacements(&scene, &spheres, &how, emits, &own, tally->moved, NULL);
         run->fault = own.fault;
         if (status) return status;
