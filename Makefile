@@ -32,7 +32,7 @@ COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
 # tables of addresses would be data in position independent code
 KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
 SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp $(PIC)
-HOST_FLAGS   = $(COMMON) -D_XOPEN_SOURCE=700 -fopenmp -Ihost $(GSL_CFLAGS)
+HOST_FLAGS   = $(COMMON) -D_XOPEN_SOURCE=700 -fopenmp -Ihost $(GSL_CFLAGS) $(ZLIB_CFLAGS)
 TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 
 WITH_sse2   = -DFIBRAD_WITH_SSE2
@@ -49,6 +49,8 @@ FLAGS_avx512 = -mavx512f -mavx512dq -mavx512bw -mavx512vl -mpopcnt
 # asked for when used, since `make deps` may just have installed them
 GSL_CFLAGS   = $(shell $(PKG_CONFIG) --cflags gsl)
 GSL_LIBS     = $(shell $(PKG_CONFIG) --libs gsl)
+ZLIB_CFLAGS  = $(shell $(PKG_CONFIG) --cflags zlib)
+ZLIB_LIBS    = $(shell $(PKG_CONFIG) --libs zlib)
 CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
 CHECK_LIBS   = $(shell $(PKG_CONFIG) --libs check)
 
@@ -134,18 +136,22 @@ HOST = \
     host/bed/property_option.c \
     host/bed/units.c \
     host/bed/wall_option.c \
+    host/text/read_lines.c \
+    host/text/read_number.c \
+    host/text/text.c \
     host/read/read.c \
     host/read/read_columns.c \
-    host/read/read_csv.c \
+    host/read/read_data.c \
     host/read/read_dump.c \
-    host/read/read_furnace.c \
-    host/read/read_lines.c \
+    host/read/read_format.c \
+    host/read/read_mercury.c \
     host/read/read_rows.c \
-    host/read/read_yade.c \
+    host/read/read_table.c \
+    host/read/read_xyz.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
+    host/boxes/read_furnace.c \
     host/report/report.c \
-    host/report/text.c \
     host/write/outputs.c \
     host/write/summary.c \
     host/write/write.c \
@@ -160,6 +166,8 @@ HOST = \
     host/plot/plot_bed.c \
     host/plot/plot_data.c \
     host/plot/plot_furnace.c \
+    host/plot/plot_heat.c \
+    host/plot/plot_slice.c \
     host/reference/exact_gsl.c \
     host/reference/reference.c \
     host/reproduce/reproduce_beds.c \
@@ -186,6 +194,7 @@ TESTS = \
     tests/test_beam.c \
     tests/test_cast.c \
     tests/test_cli.c \
+    tests/test_conductivity.c \
     tests/test_direction.c \
     tests/test_drift.c \
     tests/test_files.c \
@@ -195,6 +204,7 @@ TESTS = \
     tests/test_heat.c \
     tests/test_matrix.c \
     tests/test_part.c \
+    tests/test_plot.c \
     tests/test_protocol.c \
     tests/test_read_furnace.c \
     tests/test_pair_exact.c \
@@ -218,13 +228,15 @@ SCRIPTS = \
     tests/check_dist.sh \
     tests/check_examples.sh \
     tests/check_faults.sh \
-    tests/check_formats.sh \
+    tests/check_fortran.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
     tests/check_house.sh \
     tests/check_map.sh \
+    tests/check_python.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
+    tests/check_written.sh \
     tests/freestanding/check_freestanding.sh \
     tests/package/check_package.sh
 
@@ -268,7 +280,7 @@ COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
 .PHONY: all lib lib-host dist demo reproduce test run-programs programs check symbols lists format house bench bench-quick \
-    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-gsl need-check
+    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
 all: $(BUILD)/fibrad lib lib-host
@@ -328,35 +340,35 @@ $(BUILD)/libfibrad.so: $(SHARED)
 	ln -sf $(<F) $@
 
 $(BUILD)/fibrad: $(BUILD)/host/main.o $(LIBRARIES)
-	$(CC) $(LDFLAGS) -fopenmp $^ $(GSL_LIBS) -lm -o $@
+	$(CC) $(LDFLAGS) -fopenmp $^ $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
 # all of the host but main, for tests and benches to link
 $(BUILD)/libhost.a: $(HOST_OBJECTS)
 	rm -f $@
 	$(AR) rcs $@ $^
 
-$(BUILD)/host/main.o $(HOST_OBJECTS): $(BUILD)/%.o: %.c | need-gsl
+$(BUILD)/host/main.o $(HOST_OBJECTS): $(BUILD)/%.o: %.c | need-libraries
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(HOST_FLAGS) -c $< -o $@
 
-$(TEST_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-gsl need-check
+$(TEST_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-libraries need-check
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(TEST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) $(CHECK_LIBS) $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) $(TEST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) $(CHECK_LIBS) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
-$(BENCH_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-gsl
+$(BENCH_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-libraries
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(HOST_FLAGS) $(WITH_ISAS) $(LDFLAGS) $< $(LIBRARIES) $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) $(HOST_FLAGS) $(WITH_ISAS) $(LDFLAGS) $< $(LIBRARIES) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
-$(PEER_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-gsl
+$(PEER_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-libraries
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -O3 $(HOST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) -lembree3 $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) -O3 $(HOST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) -lembree3 $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
-$(COUNT_PROGRAMS): $(BUILD)/%: %.c $(COUNTING) | need-gsl
+$(COUNT_PROGRAMS): $(BUILD)/%: %.c $(COUNTING) | need-libraries
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(HOST_FLAGS) $(LDFLAGS) $< $(COUNTING) $(GSL_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) $(HOST_FLAGS) $(LDFLAGS) $< $(COUNTING) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
-need-gsl:
-	@$(PKG_CONFIG) --exists gsl || { echo "The program fibrad needs GSL: run 'make deps' (Debian: pkg-config, libgsl-dev)." \
+need-libraries:
+	@$(PKG_CONFIG) --exists gsl zlib || { echo "The program fibrad needs GSL and zlib: run 'make deps' (Debian: pkg-config, libgsl-dev, zlib1g-dev)." \
 	    "'make lib' builds libfibrad.a without it." >&2; exit 1; }
 
 need-check:
@@ -489,12 +501,12 @@ FUZZ         = $(BUILD)/fuzz
 FUZZ_FLAGS   = -timeout=300 -rss_limit_mb=4096 -malloc_limit_mb=64 -close_fd_mask=2 -print_final_stats=1
 SANITIZE     = address,undefined -fno-sanitize-recover=undefined
 
-fuzz-programs: need-gsl
+fuzz-programs: need-libraries
 	@$(MAKE) -s --no-print-directory BUILD=$(FUZZ) CC=$(FUZZ_CC) CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE)" \
 	    $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%)
 	@set -e; for target in read kernel; do \
 	    $(FUZZ_CC) -O1 -g -fsanitize=fuzzer,$(SANITIZE) $(HOST_FLAGS) tests/fuzz/fuzz_$$target.c \
-	        $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%) $(GSL_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
+	        $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
 	done
 
 ## fuzz: hostile input for the readers and the kernel, FUZZ_SECONDS=60 in all
@@ -545,13 +557,14 @@ reproduce: $(BUILD)/fibrad
 
 ## deps: install the Debian packages that build, demo and tests need; does nothing when nothing is missing
 deps:
-	@.ci/deps libc6-dev pkg-config libgsl-dev check gnuplot-nox
+	@.ci/deps libc6-dev pkg-config libgsl-dev zlib1g-dev check gnuplot-nox
 
 ## deps-ci: install what .ci/run needs besides
 deps-ci:
 	@.ci/deps g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
 	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
-	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-scipy
+	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-numpy python3-scipy python3-pytest \
+	    python3-venv python3-pip gfortran
 
 ## install: the program, the libraries, their headers and .pc files, to DESTDIR and PREFIX
 install: install-lib $(BUILD)/fibrad

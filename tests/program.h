@@ -35,11 +35,11 @@ static inline void make_folder(void) {
     snprintf(stderr_path, sizeof stderr_path, "%s/stderr", folder);
 }
 
-/* The place of a file in the test's folder; eight may be in use at once. */
+/* The place of a file in the test's folder; 32 may be in use at once. */
 static inline const char *in_folder(const char *name) {
-    static char paths[8][300];
+    static char paths[32][300];
     static int next;
-    next = (next + 1) % 8;
+    next = (next + 1) % 32;
     snprintf(paths[next], sizeof paths[next], "%s/%s", folder, name);
     return paths[next];
 }

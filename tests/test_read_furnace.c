@@ -7,7 +7,7 @@
 
 #include "boxes/furnace_cases.h"
 #include "cli/message.h"
-#include "read/read_furnace.h"
+#include "boxes/read_furnace.h"
 #include "suite.h"
 #include "write/write_furnace.h"
 

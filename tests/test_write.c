@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "cli/message.h"
-#include "report/text.h"
+#include "text/text.h"
 #include "read/read.h"
 #include "suite.h"
 #include "write/outputs.h"
@@ -95,6 +95,13 @@ START_TEST(numbers) {
     }
     *text_whole(ours, INT64_MIN) = 0;
     ck_assert_str_eq(ours, "-9223372036854775808");
+    FILE *file = tmpfile();
+    ck_assert_ptr_nonnull(file);
+    text_json_real(file, NAN);
+    text_json_real(file, .5);
+    rewind(file);
+    ck_assert_str_eq(fgets(ours, sizeof ours, file), "null0.5");
+    fclose(file);
 }
 END_TEST
 

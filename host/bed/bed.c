@@ -24,7 +24,7 @@ static int grow(struct bed *bed) {
     bed->z = resized(bed->z, capacity * sizeof *bed->z, &good);
     bed->r = resized(bed->r, capacity * sizeof *bed->r, &good);
     bed->line = resized(bed->line, capacity * sizeof *bed->line, &good);
-    if (bed->ids) bed->id = resized(bed->id, capacity * sizeof *bed->id, &good);
+    bed->id = resized(bed->id, capacity * sizeof *bed->id, &good);
     if (bed->extras) bed->extra = resized(bed->extra, capacity * bed->extras * sizeof *bed->extra, &good);
     if (!good) return message_memory();
     bed->capacity = (uint32_t)capacity;

@@ -28,7 +28,7 @@ struct bed_sphere {
     int64_t id;
 };
 
-/* Makes an empty bed. What has room for ids or extras sets them before the first sphere. */
+/* Makes an empty bed. What has ids or extras says so before the first sphere. */
 void bed_init(struct bed *bed);
 
 /* Adds a sphere; its extra columns are for the caller to fill in. Status 0 or STATUS_MEMORY. */

@@ -136,7 +136,7 @@ static void exchange_report(struct exchange_request *request, const struct conte
     report_end(report);
 }
 
-static int exchange_compute(void *exchange_request, const struct bed *bed, fibrad_bed_factors **factors) {
+static int exchange_solve(void *exchange_request, const struct bed *bed, fibrad_bed_factors **factors) {
     struct exchange_request *request = exchange_request;
     const fibrad_scene_config scene = bed_scene(bed, &request->walls);
     const fibrad_spheres spheres = bed_spheres(bed);
@@ -148,8 +148,8 @@ static int exchange_compute(void *exchange_request, const struct bed *bed, fibra
 /* The factors of one frame into all outputs. */
 static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
     fibrad_bed_factors *factors = NULL;
-    int status = bed_options_memory(bed, &request->options, exchange_compute, request);
-    if (!status) status = exchange_compute(request, bed, &factors);
+    int status = bed_options_memory(bed, &request->options, exchange_solve, request);
+    if (!status) status = exchange_solve(request, bed, &factors);
     struct contents what = {.factors = factors, .walls = &request->walls, .grey = &request->rule};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status) exchange_report(request, &what);

@@ -40,6 +40,25 @@ int gnuplot_start(struct gnuplot *gnuplot, const struct output *picture) {
     return message(STATUS_FILE, "gnuplot: %s", strerror(error ? error : errno));
 }
 
+void gnuplot_style(FILE *script, const char *path, int width, int height) {
+    const bool png = output_ends(path, ".png");
+    fprintf(script,
+            "set encoding utf8\n"
+            "set terminal %s size %d,%d font 'DejaVu Sans,%d' background '#ffffff'\n"
+            "set border 3 lc '#555555'\n"
+            "set tics nomirror out scale 0.6 tc '#333333'\n"
+            "set grid lc '#e6e6e6' lw 1 lt 1\n",
+            png ? "pngcairo" : "svg", width, height, png ? 13 : 15);
+}
+
+void gnuplot_name(FILE *script, const char *path) {
+    const char *slash = strrchr(path, '/');
+    for (const char *c = slash ? slash + 1 : path; *c; ++c) {
+        if (*c == '\'') fputc('\'', script);
+        fputc((unsigned char)*c < ' ' ? '?' : *c, script);
+    }
+}
+
 /* gnuplot does not tell when the disc is full: has the picture got its end? */
 static bool picture_whole(int picture) {
     char tail[32];

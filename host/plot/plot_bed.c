@@ -4,82 +4,59 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "plot/gnuplot.h"
 #include "plot/plot_data.h"
+#include "plot/plot_slice.h"
 
 bool plot_ending(const char *path) { return output_ends(path, ".svg") || output_ends(path, ".png"); }
 
-/* The last part of a path as a gnuplot string. */
-static void print_name(FILE *script, const char *path) {
-    const char *slash = strrchr(path, '/');
-    for (const char *c = slash ? slash + 1 : path; *c; ++c) {
-        if (*c == '\'') fputc('\'', script);
-        fputc((unsigned char)*c < ' ' ? '?' : *c, script);
-    }
+/* What is said of where the radiation goes. */
+static void print_fate(FILE *script, const struct contents *what, const struct summary *summary) {
+    double walls = 0;
+    for (uint32_t k = 0; k < what->factors->matrix.bodies; ++k) walls += summary->wall_mean[k];
+    if (what->factors->matrix.bodies > 0)
+        fprintf(script, "%.2f %% of the radiation goes to walls, %.2f %% leaves the bed", 100 * walls,
+                100 * summary->escaped_mean);
+    else
+        fprintf(script, "%.2f %% of the radiation leaves the bed", 100 * summary->escaped_mean);
 }
 
 static void print_style(FILE *script, const struct output *output, const char *name, const struct contents *what) {
-    fputs(output_ends(output->path, ".png")
-              ? "set terminal pngcairo size 1500,1240 font 'DejaVu Sans,13' background '#ffffff'\n"
-              : "set terminal svg size 1500,1240 font 'DejaVu Sans,15' background '#ffffff'\n",
+    gnuplot_style(script, output->path, 1500, 1240);
+    fputs(GNUPLOT_PALETTE "set multiplot layout 2,2 margins 0.075,0.89,0.065,0.90 spacing 0.15,0.115\n"
+                          "set label 1 '",
           script);
-    fputs("set border 3 lc '#555555'\n"
-          "set tics nomirror out scale 0.6 tc '#333333'\n"
-          "set grid lc '#e6e6e6' lw 1 lt 1\n"
-          "set palette defined (0 '#440154', 1 '#46327e', 2 '#365c8d', 3 '#277f8e', 4 '#1fa187', 5 '#4ac16d', "
-          "6 '#a0da39', 7 '#fde725')\n"
-          "set multiplot layout 2,2 margins 0.06,0.89,0.065,0.90 spacing 0.14,0.115\n"
-          "set label 1 '",
-          script);
-    print_name(script, name);
+    gnuplot_name(script, name);
     struct summary summary;
     summary_make(&summary, what);
     fprintf(script,
             "' at screen 0.015,0.975 font ',19' tc '#111111' noenhanced\n"
-            "set label 2 '%u spheres, %llu view factors; row sums %.4f to %.4f, %.2f %% of the radiation leaves the "
-            "bed' at screen 0.015,0.945 tc '#444444'\n",
+            "set label 2 '%u spheres, %llu view factors; row sums %.4f to %.4f, ",
             what->bed->n, (unsigned long long)what->factors->matrix.start[what->bed->n], summary.row_sum_min,
-            summary.row_sum_max, 100 * summary.escaped_mean);
+            summary.row_sum_max);
+    print_fate(script, what, &summary);
+    fputs("' at screen 0.015,0.945 tc '#444444'\n", script);
 }
 
-/* The range that spheres take up along an axis. */
-static void bounds(const double *centre, const double *r, uint32_t n, double *low, double *high) {
-    *low = INFINITY;
-    *high = -INFINITY;
-    for (uint32_t i = 0; i < n; ++i) {
-        *low = fmin(*low, centre[i] - r[i]);
-        *high = fmax(*high, centre[i] + r[i]);
+/* The slice, coloured by what does not go to spheres: what escapes, and what walls receive. */
+static int print_slice(FILE *script, const struct contents *what) {
+    const fibrad_factors *matrix = &what->factors->matrix;
+    struct plot_slice slice;
+    double *away = malloc(matrix->n * sizeof *away);
+    if (!away) return message_memory();
+    for (uint32_t i = 0; i < matrix->n; ++i) {
+        away[i] = matrix->escaped[i];
+        for (uint32_t k = 0; k < matrix->bodies; ++k) away[i] += matrix->body[(size_t)i * matrix->bodies + k];
     }
-}
-
-/* Circles in which the spheres cut the plane y = middle of the bed, coloured by the escaped fraction. */
-static void print_slice(FILE *script, const struct contents *what) {
-    const struct bed *bed = what->bed;
-    double low[3], high[3];
-    bounds(bed->x, bed->r, bed->n, &low[0], &high[0]);
-    bounds(bed->y, bed->r, bed->n, &low[1], &high[1]);
-    bounds(bed->z, bed->r, bed->n, &low[2], &high[2]);
-    const double middle = low[1] + (high[1] - low[1]) / 2;
-    fputs("$slice << END\n", script);
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const double off = fabs(bed->y[i] - middle);
-        if (off >= bed->r[i] || (what->wanted && !what->wanted[i])) continue;
-        fprintf(script, "%.6g %.6g %.6g %.6g\n", bed->x[i], bed->z[i], sqrt(bed->r[i] * bed->r[i] - off * off),
-                what->factors->matrix.escaped[i]);
-    }
-    fprintf(script,
-            "END\n"
-            "set title 'Escaped fraction, slice at y = %.3f'\n"
-            "set xlabel 'x'; set ylabel 'z'\n"
-            "set size ratio -1; set xrange [%.9g:%.9g]; set yrange [%.9g:%.9g]\n"
-            "set cbrange [0:*]; set colorbox; unset key; unset grid\n"
-            "plot $slice using 1:2:3:4 with circles fillcolor palette fillstyle solid noborder\n"
-            "unset label 1; unset label 2; set size noratio; set size nosquare\n",
-            middle, low[0], high[0], low[2], high[2]);
+    plot_slice_of(&slice, what->bed, what->walls, 0);
+    fprintf(script, "set title '%s, slice at y = %s'; set cbrange [0:*]\n",
+            matrix->bodies > 0 ? "Fraction to walls and out of the bed" : "Escaped fraction", slice.place);
+    plot_slice_draw(script, &slice, away, what->wanted, NULL);
+    fputs("unset label 1; unset label 2\n", script);
+    free(away);
+    return STATUS_OK;
 }
 
 static void print_pairs(FILE *script, const struct plot_data *data) {
@@ -151,11 +128,12 @@ int plot_bed(const struct output *output, const char *name, const struct content
     if (!status) status = gnuplot_start(&gnuplot, output);
     if (!status) {
         print_style(gnuplot.script, output, name, what);
-        print_slice(gnuplot.script, what);
+        status = print_slice(gnuplot.script, what);
         print_pairs(gnuplot.script, data);
         print_within(gnuplot.script, data);
         print_factors(gnuplot.script, data);
-        status = gnuplot_end(&gnuplot);
+        const int drawn = gnuplot_end(&gnuplot);
+        if (!status) status = drawn;
     }
     free(data);
     return status;

@@ -56,15 +56,6 @@ static void furnace_print_map(FILE *script, const struct furnace_run *run, const
             low, high, map->title, first, map->contour, high);
 }
 
-/* The last part of a path, for a gnuplot string in single quotes. */
-static void furnace_print_name(FILE *script, const char *path) {
-    const char *slash = strrchr(path, '/');
-    for (const char *c = slash ? slash + 1 : path; *c; c++) {
-        if (*c == '\'') fputc('\'', script);
-        fputc((unsigned char)*c < ' ' ? '?' : *c, script);
-    }
-}
-
 /* A round number near half the range of T on the axis. */
 static double furnace_tic_interval(const struct furnace_run *run) {
     double low = furnace_axis_temperature(run, 0), high = low;
@@ -114,16 +105,14 @@ int furnace_plot(const struct output *output, const char *name, const struct fur
     FILE *script = gnuplot.script;
     fprintf(script,
             "set terminal %s size %zu,%.0f font 'DejaVu Sans,%d' background '#ffffff'\n"
-            "set border lc '#555555'; set tics nomirror out scale 0.6 tc '#333333'\n"
-            "set palette defined (0 '#440154', 1 '#46327e', 2 '#365c8d', 3 '#277f8e', 4 '#1fa187', 5 '#4ac16d', "
-            "6 '#a0da39', 7 '#fde725')\n"
+            "set border lc '#555555'; set tics nomirror out scale 0.6 tc '#333333'\n" GNUPLOT_PALETTE
             "set multiplot layout 1,%zu margins screen %g,0.985,0.12,0.86 spacing screen %g,0\n"
             "set xrange [0:%g]; set yrange [0:%g]; set size ratio -1\n"
             "set xlabel 'x [m]'; set ylabel 'z [m]' offset 1; set colorbox; set cbtics font ',9'\n",
             png ? "pngcairo" : "svg", 300 * (count + 1) + 60, 140 + 205 * fmin(c->size[2] / c->size[0], 6),
             png ? 11 : 13, count + 1, 0.2 / (double)(count + 1), 0.38 / (double)(count + 1), c->size[0], c->size[2]);
     fputs("set label 1 '", script);
-    furnace_print_name(script, name);
+    gnuplot_name(script, name);
     fprintf(script, ", plane y = %g m' at screen 0.012,0.968 font ',15' tc '#111111' noenhanced\n", c->size[1] / 2);
     for (size_t m = 0; m < count; m++) {
         furnace_print_map(script, run, &maps[m]);

@@ -1,76 +1,151 @@
-/* read.c - finds out the format of a file and reads it. SPDX-License-Identifier: MIT */
+/* read.c - finds out the format of a file and reads the frames that are wanted. SPDX-License-Identifier: MIT
+ *
+ * A frame is passed over first, and kept in memory, to see that all of it is there, and for the last one that none
+ * follows; then it is read. So all files can be read that cannot be gone back in, and what is wrong within a frame that
+ * is not wanted does not matter. */
 #include "read/read.h"
 
+#include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
-
-static bool begins(const char *text, const char *with) { return strncmp(text, with, strlen(with)) == 0; }
-
-/* Holds the first line that tells the format and returns the reader; NULL at the end of the file. */
-static int find_format(struct lines *lines, int (**reader)(struct lines *, const struct read_options *, struct bed *)) {
-    bool more;
-    int status;
-    *reader = NULL;
-    while ((status = lines_next(lines, &more)) == STATUS_OK && more) {
-        if (lines->number == 1 && begins(lines->text, "\x1f\x8b"))
-            return message_at(STATUS_INPUT, lines->name, 0, "compressed; try: zcat FILE | fibrad bed -");
-        if (begins(lines->text, "ITEM:"))
-            *reader = read_dump;
-        else if (begins(lines->text, "#format"))
-            *reader = read_yade;
-        else if (*lines->text != '#' && !lines_blank(lines))
-            *reader = read_csv;
-        if (*reader) {
-            lines_hold(lines);
-            return STATUS_OK;
-        }
-    }
-    return status;
-}
+#include "read/read_format.h"
 
 struct reader {
-    struct lines lines;
-    struct read_options options;
-    int (*read)(struct lines *, const struct read_options *, struct bed *);
+    struct source source;
+    const struct format *format;
+    int64_t frame; /* the next one in the file */
+    bool found;    /* a frame that is wanted was there */
+    bool given;    /* and had spheres */
     bool done;
 };
 
 int reader_open(struct reader **reader, const char *path, const struct read_options *options) {
+    static const struct format *const formats[] = {&format_dump, &format_xyz,     &format_data,
+                                                  &format_mercury, &format_table};
     struct reader *r = *reader = calloc(1, sizeof *r);
     if (!r) return message_memory();
-    r->options = *options;
-    int status = lines_open(&r->lines, path);
-    if (!status) status = find_format(&r->lines, &r->read);
-    if (!status && !r->read) status = message_at(STATUS_INPUT, r->lines.name, 0, "there are no spheres in it");
-    return status;
-}
-
-int reader_next(struct reader *r, struct bed *bed, bool *more) {
-    *more = !r->done;
-    if (r->done) return STATUS_OK;
-    r->done = true;
-    bed_clear(bed);
-    bed->extras = r->options.extras;
-    int status = r->read(&r->lines, &r->options, bed);
-    if (!status && bed->n == 0) status = message_at(STATUS_INPUT, r->lines.name, 0, "there are no spheres in it");
-    return status ? status : bed_sort(bed, r->lines.name);
+    r->source.options = *options;
+    const int status = lines_open(&r->source.lines, path);
+    if (status) return status;
+    for (size_t k = 0; k < sizeof formats / sizeof *formats && !r->format; ++k)
+        if (formats[k]->is(&r->source)) r->format = formats[k];
+    return STATUS_OK;
 }
 
 void reader_close(struct reader *reader) {
     if (!reader) return;
-    lines_close(&reader->lines);
+    lines_close(&reader->source.lines);
+    free(reader->source.fields.at);
+    free(reader->source.columns.extra);
     free(reader);
+}
+
+static bool wants_last(const struct reader *r) { return r->source.options.frames.end == 0; }
+
+static bool wants_frame(const struct reader *r) {
+    const struct frames *frames = &r->source.options.frames;
+    if (wants_last(r)) return true;
+    return r->frame >= frames->begin && r->frame < frames->end &&
+           (frames->step <= 1 || (r->frame - frames->begin) % frames->step == 0);
+}
+
+/* Is there nothing more in the file? That of a file that was cut off is unknown. */
+static int at_end(struct lines *lines, bool *end) {
+    bool more;
+    int status;
+    while ((status = lines_next(lines, &more)) == STATUS_OK && more && lines_blank(lines)) continue;
+    *end = !status && !more && !lines->truncated;
+    if (!status && more) lines_hold(lines);
+    return status;
+}
+
+/* What is to be said when the frames of the file end, all or the last one but in part. */
+static int say_end(const struct reader *r, enum found found, const char *lack) {
+    const struct source *source = &r->source;
+    const bool part = found == FOUND_PART || source->lines.truncated;
+    if (part && r->found) {
+        message_at(STATUS_OK, source->lines.name, 0, "warning: frame %" PRId64 " is left out: %s", r->frame,
+                   source->lines.truncated ? "the gzip file is cut off" : lack);
+        return STATUS_OK;
+    }
+    if (part && r->frame > 0) {
+        char what[LACK_MAX + 60];
+        snprintf(what, sizeof what, "%s; the last whole frame is %" PRId64,
+                 source->lines.truncated ? "the gzip file is cut off" : lack, r->frame - 1);
+        return source_fail(source, what);
+    }
+    if (part) return source_ends(source, lack);
+    if (r->found) return STATUS_OK;
+    return message_at(STATUS_INPUT, source->lines.name, 0, "there is no frame %" PRId64 "; the last is %" PRId64,
+                      source->options.frames.begin, r->frame - 1);
+}
+
+/* Goes to the beginning of the next frame that is wanted; *more false: there is none. */
+static int find_frame(struct reader *r, bool *more) {
+    struct source *source = &r->source;
+    for (*more = false; wants_last(r) || r->frame < source->options.frames.end; ++r->frame) {
+        enum found found;
+        char lack[LACK_MAX] = "";
+        bool end = true;
+        const bool wanted = wants_frame(r);
+        if (wanted) lines_keep(&source->lines);
+        int status = r->format->skip(source, &found, lack);
+        if (!status && found != FOUND_FRAME) return say_end(r, found, lack);
+        if (!status && wants_last(r)) status = at_end(&source->lines, &end);
+        if (status) return status;
+        if (wanted && end) {
+            lines_return(&source->lines);
+            lines_drop(&source->lines);
+            *more = true;
+            return STATUS_OK;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The only frame of a file that holds one. */
+static int find_only(struct reader *r, bool *more) {
+    *more = r->frame == 0 && wants_frame(r);
+    return *more || r->found ? STATUS_OK : say_end(r, FOUND_END, "");
+}
+
+static int read_frame(struct reader *r, struct bed *bed) {
+    struct source *source = &r->source;
+    bed_clear(bed);
+    bed->extras = source->options.extras;
+    bed->frame = r->frame++;
+    r->found = true;
+    int status = r->format->read(source, bed);
+    if (!status && !r->format->skip && source->lines.truncated) status = source_ends(source, "");
+    return status ? status : bed_sort(bed, source->lines.name);
+}
+
+int reader_next(struct reader *r, struct bed *bed, bool *more) {
+    const char *name = r->source.lines.name;
+    for (*more = false; !r->done; *more = false) {
+        int status = r->format->skip ? find_frame(r, more) : find_only(r, more);
+        r->done = !*more || wants_last(r);
+        if (!status && *more) status = read_frame(r, bed);
+        if (status) return status;
+        if (*more && bed->n > 0) {
+            r->given = true;
+            return STATUS_OK;
+        }
+        if (r->done && !r->given) return message_at(STATUS_INPUT, name, 0, "there are no spheres in it");
+        if (*more) message_at(STATUS_OK, name, 0, "warning: frame %" PRId64 " is left out: it is empty", bed->frame);
+    }
+    return STATUS_OK;
 }
 
 int read_bed(const char *path, const struct read_options *options, struct bed *bed) {
     struct reader *reader;
-    bool more = true;
+    bool more;
     bed_init(bed);
     int status = reader_open(&reader, path, options);
     if (!status) status = reader_next(reader, bed, &more);
-    if (!status && !more) status = message_at(STATUS_INPUT, path, 0, "there is no such frame");
     reader_close(reader);
     return status;
 }

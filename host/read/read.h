@@ -1,4 +1,4 @@
-/* read.h - beds from CSV, LAMMPS and LIGGGHTS text dumps, and YADE text. SPDX-License-Identifier: MIT */
+/* read.h - beds from files of all formats, frame by frame. SPDX-License-Identifier: MIT */
 #ifndef READ_H
 #define READ_H
 
@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "bed/bed.h"
-#include "read/read_lines.h"
+#include "text/read_lines.h"
 
 /* Which frames of a file are wanted, counted from 0: begin, begin + step ... below end. Zeroed: the last one alone. */
 struct frames {
@@ -30,7 +30,8 @@ struct reader;
 int reader_open(struct reader **reader, const char *path, const struct read_options *options);
 
 /* Reads the next frame that is wanted into a bed, whose former contents are lost; spheres with ids come in their order.
- * *more false: there are no further ones. Memory stays within a small multiple of a frame. Status 0, STATUS_INPUT
+ * *more false: there are no further ones. A frame at which the file ends is an error, behind others that were wanted a
+ * warning, and so are frames without spheres. Memory stays within a small multiple of a frame. Status 0, STATUS_INPUT
  * naming the line, STATUS_FILE, STATUS_MEMORY or that of a signal. */
 int reader_next(struct reader *reader, struct bed *bed, bool *more);
 
@@ -39,10 +40,5 @@ void reader_close(struct reader *reader);
 
 /* Reads the first frame wanted. Free the bed also after an error. Status as reader_next. */
 int read_bed(const char *path, const struct read_options *options, struct bed *bed);
-
-/* The readers by format; the first line is held. */
-int read_csv(struct lines *lines, const struct read_options *options, struct bed *bed);
-int read_dump(struct lines *lines, const struct read_options *options, struct bed *bed);
-int read_yade(struct lines *lines, const struct read_options *options, struct bed *bed);
 
 #endif

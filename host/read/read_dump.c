@@ -1,169 +1,187 @@
 /* read_dump.c - beds from LAMMPS and LIGGGHTS text dumps. SPDX-License-Identifier: MIT
  *
  * A dump is a sequence of frames; a frame is a sequence of sections, each begun by a line `ITEM: NAME ...`: TIMESTEP
- * first, ATOMS with the names of its columns last. Every frame up to the one wanted is read and has to be sound. */
+ * near its begin, ATOMS with the names of its columns at its end. UNITS stands before the first frame alone. */
 #include <inttypes.h>
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "cli/message.h"
-#include "read/read.h"
-#include "read/read_columns.h"
+#include "read/read_format.h"
 
-struct dump {
-    struct lines *lines;
-    const struct read_options *options;
-    struct bed *bed;
-    struct columns columns;
-    struct fields fields;
-    int64_t frame;  /* the current one; -1 before the first */
-    int64_t atoms;  /* as declared; -1 before that */
-    bool box, open; /* the box is known; atoms of the frame are missing */
-};
-
-static int fail(const struct dump *dump, const char *what) {
-    return message_at(STATUS_INPUT, dump->lines->name, dump->lines->number, "%s", what);
+static bool is_dump(const struct source *source) {
+    size_t size;
+    const char *text = source_begin(source, &size);
+    return size >= 5 && memcmp(text, "ITEM:", 5) == 0;
 }
 
 /* The rest of an ITEM line if it is the one named, else NULL. */
-static char *item(const struct dump *dump, const char *name) {
-    char *text = dump->lines->text;
-    const size_t length = strlen(name);
-    return strncmp(text, name, length) == 0 ? text + length : NULL;
+static char *item(const struct source *source, const char *name) {
+    return lines_begin(&source->lines, name) ? source->lines.text + strlen(name) : NULL;
 }
 
 /* The next line within a section. */
-static int section_line(struct dump *dump) {
-    bool more;
-    const int status = lines_next(dump->lines, &more);
-    if (status) return status;
-    if (!more) return fail(dump, "the file ends within a frame");
-    if (item(dump, "ITEM:")) return fail(dump, "a section begins where lines of the one before are missing");
+static int section_line(struct source *source, bool *more) {
+    const int status = lines_next(&source->lines, more);
+    if (status || !*more) return status;
+    if (item(source, "ITEM:"))
+        return source_fail(source, "a section begins where lines of the one before are missing");
     return STATUS_OK;
 }
 
-static int read_count(struct dump *dump) {
-    int status = section_line(dump);
-    if (!status) status = fields_split(&dump->fields, dump->lines->text, " \t");
-    if (status) return status;
-    if (dump->fields.n != 1) return fail(dump, "the number of atoms is expected");
-    status = lines_whole(dump->lines, "the number of atoms", dump->fields.at[0], &dump->atoms);
-    if (!status && dump->atoms < 0) status = fail(dump, "the number of atoms is negative");
+/* ---- passing over ----------------------------------------------------------------------------------------------- */
+
+static int skip_atoms(struct source *source, int64_t atoms, bool *more, char *lack) {
+    for (int64_t k = 0; k < atoms; ++k) {
+        const int status = lines_next(&source->lines, more);
+        if (status) return status;
+        const bool next = *more && item(source, "ITEM:");
+        if (*more && !next) continue;
+        snprintf(lack, LACK_MAX, "the frame ends after %" PRId64 " atoms; %" PRId64 " were declared", k, atoms);
+        return next ? source_fail(source, lack) : STATUS_OK;
+    }
+    return STATUS_OK;
+}
+
+static int skip_count(struct source *source, int64_t *atoms, bool *more) {
+    char word[32];
+    const int status = section_line(source, more);
+    if (status || !*more) return status;
+    return source_count(source, source_word(source, word, sizeof word), atoms);
+}
+
+static int skip_units(struct source *source, bool *more) {
+    const int status = section_line(source, more);
+    if (!status && *more) source_word(source, source->units, sizeof source->units);
     return status;
+}
+
+/* Goes to the next ITEM. */
+static int skip_section(struct source *source, bool *more) {
+    int status;
+    while ((status = lines_next(&source->lines, more)) == STATUS_OK && *more)
+        if (item(source, "ITEM:")) {
+            lines_hold(&source->lines);
+            break;
+        }
+    return status;
+}
+
+static int skip_dump(struct source *source, enum found *found, char *lack) {
+    int64_t atoms = -1;
+    bool more, begun = false;
+    int status;
+    *found = FOUND_END;
+    while ((status = lines_next(&source->lines, &more)) == STATUS_OK && more) {
+        if (lines_blank(&source->lines)) continue;
+        if (!item(source, "ITEM:"))
+            return source_fail(source, "more atoms than declared, or a line that belongs to no section");
+        *found = FOUND_PART;
+        snprintf(lack, LACK_MAX, "the file ends within a frame");
+        if (item(source, "ITEM: ATOMS")) {
+            if (atoms < 0) return source_fail(source, "ITEM: ATOMS comes before ITEM: NUMBER OF ATOMS");
+            status = skip_atoms(source, atoms, &more, lack);
+            if (more) *found = FOUND_FRAME;
+            return status;
+        }
+        if (item(source, "ITEM: NUMBER OF ATOMS")) {
+            status = skip_count(source, &atoms, &more);
+        } else if (item(source, "ITEM: UNITS")) {
+            status = skip_units(source, &more);
+        } else if (item(source, "ITEM: ENTRIES")) {
+            return source_fail(source, "this is a LAMMPS dump of local values: it has no atoms");
+        } else {
+            if (item(source, "ITEM: TIMESTEP") && begun)
+                return source_fail(source, "a frame begins where atoms of the one before are missing");
+            begun = begun || item(source, "ITEM: TIMESTEP");
+            status = skip_section(source, &more);
+        }
+        if (status) return status;
+    }
+    return status;
+}
+
+/* ---- reading, what skip_dump has found complete ----------------------------------------------------------------- */
+
+static int read_timestep(struct source *source, struct bed *bed) {
+    bool more;
+    char word[32];
+    const int status = section_line(source, &more);
+    if (status) return status;
+    return lines_whole(&source->lines, "the timestep", source_word(source, word, sizeof word), &bed->timestep);
+}
+
+/* The next line of a section as so many numbers. */
+static int read_numbers(struct source *source, size_t n, const char *const names[], double *value, const char *wanted) {
+    bool more;
+    int status = section_line(source, &more);
+    if (!status) status = fields_split_blanks(&source->fields, source->lines.text);
+    if (!status && source->fields.n != n) return source_fail(source, wanted);
+    for (size_t k = 0; k < n && !status; ++k)
+        status = lines_number(&source->lines, names[k], source->fields.at[k], &value[k]);
+    return status;
+}
+
+static int read_bounds(struct source *source, int axis, bool tilted, bool periodic, struct bed *bed) {
+    static const char *const names[] = {"the lower bound", "the upper bound", "the tilt"};
+    double bound[3] = {0, 0, 0};
+    const int status = read_numbers(source, tilted ? 3 : 2, names, bound, "the two bounds of the box are expected");
+    if (status) return status;
+    if (!(bound[0] < bound[1]))
+        return source_fail(source, "the box is empty: its upper bound must be above the lower one");
+    if (bound[2] != 0) return source_fail(source, "the box is tilted; only boxes with right angles can be read");
+    bed->low[axis] = bound[0];
+    bed->high[axis] = bound[1];
+    bed->period[axis] = periodic ? bound[1] - bound[0] : 0;
+    return STATUS_OK;
 }
 
 /* `ITEM: BOX BOUNDS pp ff ff`: pp marks a periodic axis, other pairs of f, s, m an open one; old files lack the marks.
- * Then `low high` for each axis. Triclinic boxes say `xy xz yz` or `abc origin` before the marks. */
-static int read_box(struct dump *dump, char *marks) {
-    int status = fields_split(&dump->fields, marks, " \t");
+ * Then `low high` for each axis. Triclinic boxes say `xy xz yz` before the marks and have a tilt behind each pair, and
+ * those of any direction say `abc origin`. */
+static int read_box(struct source *source, char *marks, struct bed *bed) {
+    int status = fields_split_blanks(&source->fields, marks);
     if (status) return status;
-    const size_t n = dump->fields.n;
-    if (n > 0 && (strcmp(dump->fields.at[0], "xy") == 0 || strcmp(dump->fields.at[0], "abc") == 0))
-        return fail(dump, "the box is triclinic; only boxes with right angles can be read");
-    if (n != 0 && n != 3) return fail(dump, "BOX BOUNDS needs three boundary marks, such as pp ff ff");
+    char **mark = source->fields.at;
+    size_t n = source->fields.n;
+    if (n > 0 && strcmp(mark[0], "abc") == 0)
+        return source_fail(source, "the box is triclinic; only boxes with right angles can be read");
+    const bool tilted = n >= 3 && strcmp(mark[0], "xy") == 0;
+    if (tilted) {
+        mark += 3;
+        n -= 3;
+    }
+    if (n != 0 && n != 3) return source_fail(source, "BOX BOUNDS needs three boundary marks, such as pp ff ff");
     bool periodic[3] = {false, false, false};
     for (size_t axis = 0; axis < n; ++axis) {
-        const char *mark = dump->fields.at[axis];
-        periodic[axis] = strcmp(mark, "pp") == 0;
-        if (!periodic[axis] && (strlen(mark) != 2 || strspn(mark, "fsm") != 2))
-            return message_at(STATUS_INPUT, dump->lines->name, dump->lines->number, "unknown boundary mark '%.40s'",
-                              mark);
+        periodic[axis] = strcmp(mark[axis], "pp") == 0;
+        if (!periodic[axis] && (strlen(mark[axis]) != 2 || strspn(mark[axis], "fsm") != 2))
+            return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "unknown boundary mark '%.40s'",
+                              mark[axis]);
     }
-    for (int axis = 0; axis < 3; ++axis) {
-        double *low = &dump->bed->low[axis], *high = &dump->bed->high[axis];
-        status = section_line(dump);
-        if (!status) status = fields_split(&dump->fields, dump->lines->text, " \t");
-        if (status) return status;
-        if (dump->fields.n != 2) return fail(dump, "the two bounds of the box are expected");
-        status = lines_number(dump->lines, "the lower bound", dump->fields.at[0], low);
-        if (!status) status = lines_number(dump->lines, "the upper bound", dump->fields.at[1], high);
-        if (status) return status;
-        if (!(*low < *high)) return fail(dump, "the box is empty: its upper bound must be above the lower one");
-        dump->bed->period[axis] = periodic[axis] ? *high - *low : 0;
-    }
-    dump->box = true;
-    return STATUS_OK;
-}
-
-static int read_atoms(struct dump *dump, char *names) {
-    if (dump->atoms < 0) return fail(dump, "ITEM: ATOMS comes before ITEM: NUMBER OF ATOMS");
-    int status = fields_split(&dump->fields, names, " \t");
-    if (!status) status = columns_find(&dump->columns, dump->lines, &dump->fields, dump->options);
-    if (status) return status;
-    const bool *scaled = dump->columns.scaled;
-    if (!dump->box && (scaled[0] || scaled[1] || scaled[2]))
-        return fail(dump, "scaled coordinates need ITEM: BOX BOUNDS before them");
-    for (int64_t k = 0; k < dump->atoms; ++k) {
-        bool more;
-        status = lines_next(dump->lines, &more);
-        if (status) return status;
-        if (!more || item(dump, "ITEM:"))
-            return message_at(STATUS_INPUT, dump->lines->name, dump->lines->number,
-                              "the frame ends after %" PRId64 " atoms; %" PRId64 " were declared", k, dump->atoms);
-        status = fields_split(&dump->fields, dump->lines->text, " \t");
-        if (!status) status = columns_add(&dump->columns, dump->lines, &dump->fields, dump->options, dump->bed);
-        if (status) return status;
-    }
-    dump->open = false;
-    return STATUS_OK;
-}
-
-/* Skips a section that is of no use here, such as TIME or UNITS. */
-static int skip_section(struct dump *dump) {
-    for (;;) {
-        bool more;
-        const int status = lines_next(dump->lines, &more);
-        if (status || !more) return status;
-        if (item(dump, "ITEM:")) {
-            lines_hold(dump->lines);
-            return STATUS_OK;
-        }
-    }
-}
-
-static int begin_frame(struct dump *dump) {
-    if (dump->open) return fail(dump, "a frame begins where atoms of the one before are missing");
-    ++dump->frame;
-    dump->atoms = -1;
-    dump->box = false;
-    dump->open = true;
-    bed_clear(dump->bed);
-    return section_line(dump);
-}
-
-static int read_section(struct dump *dump) {
-    char *rest;
-    if (item(dump, "ITEM: TIMESTEP")) return begin_frame(dump);
-    if (!item(dump, "ITEM:")) return fail(dump, "more atoms than declared, or a line that belongs to no section");
-    if (dump->open && item(dump, "ITEM: NUMBER OF ATOMS")) return read_count(dump);
-    if (dump->open && (rest = item(dump, "ITEM: BOX BOUNDS"))) return read_box(dump, rest);
-    if (dump->open && (rest = item(dump, "ITEM: ATOMS"))) return read_atoms(dump, rest);
-    return skip_section(dump);
-}
-
-static int read_frames(struct dump *dump) {
-    const int64_t wanted = dump->options->frames.end - 1;
-    bool more;
-    int status;
-    while ((status = lines_next(dump->lines, &more)) == STATUS_OK && more) {
-        if (lines_blank(dump->lines)) continue;
-        status = read_section(dump);
-        if (status) return status;
-        if (dump->frame == wanted && !dump->open && dump->frame >= 0) return STATUS_OK;
-    }
-    if (status) return status;
-    if (dump->open) return fail(dump, "the file ends within a frame");
-    if (dump->frame < 0) return message_at(STATUS_INPUT, dump->lines->name, 0, "there is no frame in this dump");
-    if (wanted > dump->frame)
-        return message_at(STATUS_INPUT, dump->lines->name, 0, "there is no frame %" PRId64 "; the last is %" PRId64,
-                          wanted, dump->frame);
-    return STATUS_OK;
-}
-
-int read_dump(struct lines *lines, const struct read_options *options, struct bed *bed) {
-    struct dump dump = {.lines = lines, .options = options, .bed = bed, .frame = -1};
-    const int status = read_frames(&dump);
-    free(dump.columns.extra);
-    free(dump.fields.at);
+    for (int axis = 0; axis < 3 && !status; ++axis) status = read_bounds(source, axis, tilted, periodic[axis], bed);
     return status;
 }
+
+static int read_atoms(struct source *source, int64_t atoms, const char *names, struct bed *bed) {
+    const int status = source_columns(source, names, bed);
+    return status ? status : source_rows(source, atoms, 0, bed);
+}
+
+static int read_dump(struct source *source, struct bed *bed) {
+    int64_t atoms = 0;
+    memcpy(bed->units, source->units, sizeof bed->units);
+    for (;;) {
+        bool more;
+        char *rest;
+        int status = lines_next(&source->lines, &more);
+        if (status) return status;
+        if ((rest = item(source, "ITEM: ATOMS"))) return read_atoms(source, atoms, rest, bed);
+        if (item(source, "ITEM: NUMBER OF ATOMS")) status = skip_count(source, &atoms, &more);
+        if (item(source, "ITEM: TIMESTEP")) status = read_timestep(source, bed);
+        if ((rest = item(source, "ITEM: BOX BOUNDS"))) status = read_box(source, rest, bed);
+        if (status) return status;
+    }
+}
+
+const struct format format_dump = {is_dump, skip_dump, read_dump};

@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "fibrad.h"
-#include "report/text.h"
+#include "text/text.h"
 
 void report_open(struct report *report, const char *command) {
     if (!report->json) return;

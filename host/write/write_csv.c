@@ -10,7 +10,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
-#include "report/text.h"
+#include "text/text.h"
 #include "write/write.h"
 
 enum { SURROUNDINGS = -1, FIRST_WALL = -2 };

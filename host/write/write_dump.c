@@ -4,7 +4,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
-#include "report/text.h"
+#include "text/text.h"
 #include "write/write.h"
 
 /* The file's box; along an axis that has none, the length of its period, or as far as the spheres reach. */

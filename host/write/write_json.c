@@ -7,7 +7,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
-#include "report/text.h"
+#include "text/text.h"
 #include "write/write.h"
 
 /* A further entry of an object. */

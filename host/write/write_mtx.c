@@ -3,7 +3,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
-#include "report/text.h"
+#include "text/text.h"
 #include "write/write.h"
 
 /* Ids in the order of the rows, in lines of comment. */

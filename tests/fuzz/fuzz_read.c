@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "read/read.h"
-#include "read/read_furnace.h"
+#include "boxes/read_furnace.h"
 #include "cli/targets.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

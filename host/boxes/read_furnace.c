@@ -1,12 +1,12 @@
 /* read_furnace.c - boxes from text files of keys and values. SPDX-License-Identifier: MIT */
-#include "read/read_furnace.h"
+#include "boxes/read_furnace.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
-#include "read/read_lines.h"
+#include "text/read_lines.h"
 
 enum key { KEY_SIZE, KEY_CELLS, KEY_ABSORPTION, KEY_SCATTERING, KEY_SOURCE, KEY_WALL, KEYS };
 

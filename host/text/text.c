@@ -1,5 +1,5 @@
 /* text.c - numbers and strings as text. SPDX-License-Identifier: MIT */
-#include "report/text.h"
+#include "text/text.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -27,7 +27,7 @@ static uint64_t scaled(uint64_t m, int e, int k) {
 
 /* The first 17 digits of a number above 0 and the power of ten of the first of them. False: out of reach, since m 5^k
  * would have more than 128 bits, or no shift is left. */
-static bool take_digits(double value, uint64_t *digits, int *power) {
+static bool digits_of(double value, uint64_t *digits, int *power) {
     int e;
     const uint64_t m = (uint64_t)ldexp(frexp(value, &e), 53);
     if (e < -52 || e > 50) return false;
@@ -37,7 +37,7 @@ static bool take_digits(double value, uint64_t *digits, int *power) {
     return true;
 }
 #else
-static bool take_digits(double value, uint64_t *digits, int *power) {
+static bool digits_of(double value, uint64_t *digits, int *power) {
     return (void)value, *digits = 0, *power = 0, false;
 }
 #endif
@@ -76,7 +76,7 @@ char *text_real(char *to, double value) {
         *to++ = '-';
         value = -value;
     }
-    if (!(value > 0 && isfinite(value) && take_digits(value, &digits, &power)))
+    if (!(value > 0 && isfinite(value) && digits_of(value, &digits, &power)))
         return to + snprintf(to, TEXT_NUMBER - 1, "%.17g", value);
     put_digits(text + ZEROS, digits, DIGITS);
     if (power >= 0) return put_point(to, text + ZEROS, DIGITS, power + 1);

@@ -1,5 +1,5 @@
 #!/bin/sh
-# check_formats.sh - powers and factors as others read them: Python's csv and json, VTK's reader, LAMMPS' own of dumps.
+# check_written.sh - powers and factors as others read them: Python's csv and json, VTK's reader, LAMMPS' own of dumps.
 # SPDX-License-Identifier: MIT
 #
 # All formats of one run hold the same numbers, to the bit, by the same ids, whatever the order of the file was.

@@ -1,0 +1,174 @@
+/* plot_heat.c - a picture of temperatures and net radiative powers, by gnuplot. SPDX-License-Identifier: MIT */
+#include "plot/plot_heat.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "cli/message.h"
+#include "plot/gnuplot.h"
+#include "plot/plot_slice.h"
+
+enum { LAYERS_MAX = 60 };
+
+/* Colours of what gains and what loses. */
+#define GAINED "c8553d"
+#define LOST   "3a6ea5"
+
+/* What the spheres gain and lose together. */
+struct turnover {
+    double gained, lost; /* [W] both >= 0 */
+};
+
+static struct turnover turnover_of(const struct heat_shown *what) {
+    struct turnover all = {0, 0};
+    for (uint32_t i = 0; i < what->bed->n; ++i) {
+        all.gained += fmax(what->power[i], 0);
+        all.lost += fmax(-what->power[i], 0);
+    }
+    return all;
+}
+
+static void print_head(FILE *script, const struct output *output, const char *name, const struct heat_shown *what) {
+    double low = INFINITY, high = -INFINITY;
+    for (uint32_t i = 0; i < what->bed->n; ++i) {
+        low = fmin(low, what->temperature[i]);
+        high = fmax(high, what->temperature[i]);
+    }
+    const struct turnover all = turnover_of(what);
+    gnuplot_style(script, output->path, 1500, 1240);
+    fputs("set multiplot layout 2,2 margins 0.075,0.89,0.065,0.90 spacing 0.16,0.115\n"
+          "set label 1 '",
+          script);
+    gnuplot_name(script, name);
+    fprintf(script,
+            "' at screen 0.015,0.975 font ',19' tc '#111111' noenhanced\n"
+            "set label 2 '%u spheres of %.5g to %.5g K %s %.4g W by radiation' at screen 0.015,0.945 tc '#444444'\n",
+            what->bed->n, low, high, all.gained >= all.lost ? "gain" : "lose", fabs(all.gained - all.lost));
+}
+
+/* The slice by temperature; walls by theirs. */
+static void print_temperatures(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
+    fprintf(script,
+            "set palette defined (0 '#000004', 1 '#3b0f70', 2 '#8c2981', 3 '#de4968', 4 '#fe9f6d', 5 '#fcfdbf')\n"
+            "set title 'Temperature [K], slice at y = %s'; set cbrange [*:*]\n",
+            slice->place);
+    plot_slice_draw(script, slice, what->temperature, NULL, what->wall_temperature);
+    fputs("unset label 1; unset label 2\n", script);
+}
+
+static int ascending_sizes(const void *a, const void *b) {
+    const double x = fabs(*(const double *)a), y = fabs(*(const double *)b);
+    return (x > y) - (x < y);
+}
+
+/* The power that one sphere of fifty exceeds, so that a few do not take all the colour; 0: out of memory. */
+static double power_shown(const struct heat_shown *what) {
+    const uint32_t n = what->bed->n;
+    double *power = malloc(n * sizeof *power);
+    if (!power) return 0;
+    for (uint32_t i = 0; i < n; ++i) power[i] = what->power[i];
+    qsort(power, n, sizeof *power, ascending_sizes);
+    double most = fabs(power[(n - 1) * (uint64_t)49 / 50]);
+    if (!(most > 0)) most = fabs(power[n - 1]);
+    free(power);
+    return most > 0 ? most : 1;
+}
+
+static int print_powers(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
+    const double most = power_shown(what);
+    if (!(most > 0)) return message_memory();
+    fprintf(script,
+            "set palette defined (0 '#" LOST "', 0.5 '#e9e9e9', 1 '#" GAINED "')\n"
+            "set title 'Net power [W], slice at y = %s'; set cbrange [%.3g:%.3g]; set format cb '%%.3g'\n",
+            slice->place, -most, most);
+    plot_slice_draw(script, slice, what->power, NULL, NULL);
+    fputs("set format cb '%h'\n", script);
+    return STATUS_OK;
+}
+
+/* Gains and losses in layers about a mean diameter thick, and their sums. */
+static void print_layers(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
+    const struct bed *bed = what->bed;
+    double diameter = 0, low = INFINITY, high = -INFINITY;
+    struct turnover layer[LAYERS_MAX] = {{0, 0}};
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        diameter += 2 * bed->r[i] / bed->n;
+        low = fmin(low, bed->z[i] - bed->r[i]);
+        high = fmax(high, bed->z[i] + bed->r[i]);
+    }
+    const int layers = (int)fmin(LAYERS_MAX, fmax(1, floor((high - low) / diameter)));
+    const double thick = (high - low) / layers;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const int k = (int)fmin(layers - 1, floor((bed->z[i] - low) / thick));
+        layer[k].gained += fmax(what->power[i], 0);
+        layer[k].lost += fmax(-what->power[i], 0);
+    }
+    fputs("$layers << END\n", script);
+    for (int k = 0; k < layers; ++k)
+        fprintf(script, "%.6g %.6g %.6g %.6g\n", (low + (k + 0.5) * thick) / slice->scale, layer[k].gained,
+                -layer[k].lost, layer[k].gained - layer[k].lost);
+    fprintf(script,
+            "END\n"
+            "set title 'Net power by height, layers of %.3g %s'\n"
+            "set xlabel 'power of a layer [W]: red gained, blue lost, line both'; set ylabel 'z%s%s%s'; unset "
+            "colorbox; set grid\n"
+            "set xrange [*:*]; set yrange [%.9g:%.9g]; set xtics auto; set yzeroaxis lt 1 lc '#555555'\n"
+            "unset key\n"
+            "half = %.9g\n"
+            "plot $layers using ($2/2):1:($2/2):(half) with boxxyerror fc '#" GAINED "' fs solid 0.8 noborder, "
+            "'' using ($3/2):1:($3/2):(half) with boxxyerror fc '#" LOST "' fs solid 0.8 noborder, "
+            "'' using 4:1 with linespoints lw 2 pt 7 ps 0.6 lc '#222222'\n",
+            thick / slice->scale, slice->unit, slice->unit[0] ? " [" : "", slice->unit, slice->unit[0] ? "]" : "",
+            low / slice->scale, high / slice->scale, 0.46 * thick / slice->scale);
+}
+
+/* A bar: what it is, the temperature (NaN: several) and the power. */
+static void print_bar(FILE *script, int at, const char *what, double temperature, double power) {
+    if (isnan(temperature))
+        fprintf(script, "%d %.6g \"%s\"\n", at, power, what);
+    else
+        fprintf(script, "%d %.6g \"%s\\n%.5g K\"\n", at, power, what, temperature);
+}
+
+/* Who gains and who loses. */
+static void print_bars(FILE *script, const struct heat_shown *what) {
+    const struct turnover all = turnover_of(what);
+    const bool open = !isnan(what->surroundings_power), many = what->walls->count + open > 4;
+    int bars = 0;
+    fputs("$bars << END\n", script);
+    print_bar(script, bars++, "spheres\\nthat gain", NAN, all.gained);
+    print_bar(script, bars++, "spheres\\nthat lose", NAN, -all.lost);
+    for (uint32_t k = 0; k < what->walls->count; ++k)
+        print_bar(script, bars++, wall_name(&what->walls->body[k]), what->wall_temperature[k], what->wall_power[k]);
+    if (open)
+        print_bar(script, bars++, many ? "surroun-\\ndings" : "surroundings", what->surroundings_temperature,
+                  what->surroundings_power);
+    fprintf(script,
+            "END\n"
+            "set title 'Where the heat goes: gained above, lost below [W]'\n"
+            "unset xlabel; set ylabel 'net power [W]'; unset yzeroaxis; set xtics scale 0 font ',%d'\n"
+            "set xrange [-0.6:%g]; set yrange [*:*]; set ytics auto; set offsets 0,0,graph 0.08,graph 0.08\n"
+            "set boxwidth 0.7; set xzeroaxis lt 1 lc '#555555'\n"
+            "plot $bars using 1:2:($2 < 0 ? 0x" LOST " : 0x" GAINED
+            "):xtic(3) with boxes fs solid 0.85 noborder lc rgb variable, "
+            "'' using 1:($2 < 0 ? NaN : $2):(sprintf('%%.3g', $2)) with labels offset 0,0.6 tc '#222222', "
+            "'' using 1:($2 < 0 ? $2 : NaN):(sprintf('%%.3g', $2)) with labels offset 0,-0.7 tc '#222222'\n"
+            "unset multiplot\n",
+            many ? 9 : 12, bars - 0.4);
+}
+
+int plot_heat(const struct output *output, const char *name, const struct heat_shown *what) {
+    struct gnuplot gnuplot;
+    struct plot_slice slice;
+    int status = gnuplot_start(&gnuplot, output);
+    if (status) return status;
+    plot_slice_of(&slice, what->bed, what->walls, what->metres);
+    print_head(gnuplot.script, output, name, what);
+    print_temperatures(gnuplot.script, &slice, what);
+    status = print_powers(gnuplot.script, &slice, what);
+    print_layers(gnuplot.script, &slice, what);
+    print_bars(gnuplot.script, what);
+    const int drawn = gnuplot_end(&gnuplot);
+    return status ? status : drawn;
+}

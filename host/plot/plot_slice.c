@@ -1,0 +1,132 @@
+/* plot_slice.c - a slice through a bed across y, its spheres and walls coloured, by gnuplot. SPDX-License-Identifier:
+ * MIT
+ */
+#include "plot/plot_slice.h"
+
+#include <math.h>
+
+/* Walls farther off than this part of the bed's extent are not shown: they would leave it little room. */
+#define FAR_WALL 0.3
+
+/* The range that spheres take up along an axis. */
+static void bounds(const double *centre, const double *r, uint32_t n, double *low, double *high) {
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (uint32_t i = 0; i < n; ++i) {
+        *low = fmin(*low, centre[i] - r[i]);
+        *high = fmax(*high, centre[i] + r[i]);
+    }
+}
+
+/* Along axis 0 or 2, the places where walls stand in the plane. Returns how many, at most 2. */
+static int wall_places(const struct plot_slice *slice, const fibrad_body *wall, int *axis, double place[2]) {
+    *axis = wall->kind == FIBRAD_BODY_PLANE ? wall->plane.axis : 0;
+    if (wall->kind == FIBRAD_BODY_PLANE) {
+        place[0] = wall->plane.at;
+        return *axis != 1;
+    }
+    const double off = slice->y - wall->cylinder.y, square = wall->cylinder.radius * wall->cylinder.radius - off * off;
+    place[0] = wall->cylinder.x - sqrt(fmax(square, 0));
+    place[1] = wall->cylinder.x + sqrt(fmax(square, 0));
+    return square > 0 ? 2 : 0;
+}
+
+static uint32_t walls_shown(const struct plot_slice *slice) { return slice->walls ? slice->walls->count : 0; }
+
+/* Widens the range shown to walls that are near. */
+static void include_walls(struct plot_slice *slice) {
+    const double low[] = {slice->low[0], 0, slice->low[2]}, high[] = {slice->high[0], 0, slice->high[2]};
+    for (uint32_t k = 0; k < walls_shown(slice); ++k) {
+        int axis;
+        double place[2];
+        const int places = wall_places(slice, &slice->walls->body[k], &axis, place);
+        for (int p = 0; p < places; ++p) {
+            const double away = FAR_WALL * (high[axis] - low[axis]);
+            if (place[p] < low[axis] - away || place[p] > high[axis] + away) continue;
+            slice->low[axis] = fmin(slice->low[axis], place[p]);
+            slice->high[axis] = fmax(slice->high[axis], place[p]);
+        }
+    }
+}
+
+/* Numbers of millimetres and the like stay short: a thousandth, a thousand, ... where the largest asks for it. */
+static void choose_scale(struct plot_slice *slice, double metres) {
+    static const char *const prefix[] = {"n", "\302\265", "m", "", "k"};
+    const bool known = metres > 0;
+    double largest = 0;
+    for (int axis = 0; axis < 3; axis += 2)
+        largest = fmax(largest, fmax(fabs(slice->low[axis]), fabs(slice->high[axis])) * (known ? metres : 1));
+    const bool short_already = !(largest > 0 && (largest < 0.1 || largest >= 1e4));
+    const int thousands = short_already ? 0 : (int)floor(log10(largest) / 3);
+    slice->scale = pow(1000, thousands) / (known ? metres : 1);
+    if (known && thousands >= -3 && thousands <= 1)
+        snprintf(slice->unit, sizeof slice->unit, "%sm", prefix[3 + thousands]);
+    else if (thousands)
+        snprintf(slice->unit, sizeof slice->unit, "10^{%d}%s", 3 * thousands, known ? " m" : "");
+    snprintf(slice->place, sizeof slice->place, "%.4g%s%s", slice->y / slice->scale,
+             known       ? " "
+             : thousands ? " x "
+                         : "",
+             slice->unit);
+}
+
+void plot_slice_of(struct plot_slice *slice, const struct bed *bed, const struct walls *walls, double metres) {
+    const double *const centre[] = {bed->x, bed->y, bed->z};
+    *slice = (struct plot_slice){.bed = bed, .walls = walls, .y = NAN};
+    for (int axis = 0; axis < 3; ++axis) bounds(centre[axis], bed->r, bed->n, &slice->low[axis], &slice->high[axis]);
+    const double middle = slice->low[1] + (slice->high[1] - slice->low[1]) / 2;
+    for (uint32_t i = 0; i < bed->n; ++i)
+        if (!(fabs(bed->y[i] - middle) >= fabs(slice->y - middle))) slice->y = bed->y[i];
+    include_walls(slice);
+    choose_scale(slice, metres);
+}
+
+/* Lines of the walls: their ends and a value, parted by empty lines. */
+static void print_walls(FILE *script, const struct plot_slice *slice, const double *wall_value) {
+    fputs("$walls << END\n", script);
+    for (uint32_t k = 0; k < walls_shown(slice); ++k) {
+        int axis;
+        double place[2];
+        const int places = wall_places(slice, &slice->walls->body[k], &axis, place);
+        for (int p = 0; p < places; ++p) {
+            for (int end = 0; end < 2; ++end) {
+                double at[3];
+                at[axis] = place[p];
+                at[2 - axis] = end ? slice->high[2 - axis] : slice->low[2 - axis];
+                fprintf(script, "%.9g %.9g %.6g\n", at[0] / slice->scale, at[2] / slice->scale,
+                        wall_value ? wall_value[k] : 0);
+            }
+            fputs("\n", script);
+        }
+    }
+    fputs("NaN NaN NaN\nEND\n", script); /* a block without a line is an error */
+}
+
+static void print_circles(FILE *script, const struct plot_slice *slice, const double *value,
+                          const unsigned char *wanted) {
+    const struct bed *bed = slice->bed;
+    fputs("$slice << END\n", script);
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double off = fabs(bed->y[i] - slice->y);
+        if (off >= bed->r[i] || (wanted && !wanted[i])) continue;
+        fprintf(script, "%.6g %.6g %.6g %.6g\n", bed->x[i] / slice->scale, bed->z[i] / slice->scale,
+                sqrt(bed->r[i] * bed->r[i] - off * off) / slice->scale, value[i]);
+    }
+    fputs("NaN NaN NaN NaN\nEND\n", script);
+}
+
+void plot_slice_draw(FILE *script, const struct plot_slice *slice, const double *value, const unsigned char *wanted,
+                     const double *wall_value) {
+    const double *low = slice->low, *high = slice->high, scale = slice->scale;
+    const char *begin = slice->unit[0] ? " [" : "", *end = slice->unit[0] ? "]" : "";
+    print_circles(script, slice, value, wanted);
+    print_walls(script, slice, wall_value);
+    fprintf(script,
+            "set xlabel 'x%s%s%s'; set ylabel 'z%s%s%s'; set xtics auto; set ytics auto\n"
+            "set size ratio -1; set xrange [%.9g:%.9g]; set yrange [%.9g:%.9g]\n"
+            "set colorbox; unset key; unset grid\n"
+            "plot $slice using 1:2:3:4 with circles fillcolor palette fillstyle solid noborder, $walls using 1:2%s\n"
+            "set size noratio; set size nosquare; unset cblabel\n",
+            begin, slice->unit, end, begin, slice->unit, end, low[0] / scale, high[0] / scale, low[2] / scale,
+            high[2] / scale, wall_value ? ":3 with lines lw 7 lc palette" : " with lines lw 7 lc '#8c8c8c'");
+}

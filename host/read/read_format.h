@@ -1,0 +1,69 @@
+/* read_format.h - what the readers of all formats have in common. SPDX-License-Identifier: MIT */
+#ifndef READ_FORMAT_H
+#define READ_FORMAT_H
+
+#include "bed/bed.h"
+#include "read/read.h"
+#include "read/read_columns.h"
+#include "text/read_lines.h"
+
+/* A file that is being read. */
+struct source {
+    struct lines lines;
+    struct read_options options;
+    struct fields fields;
+    struct columns columns;
+    char units[sizeof((struct bed *)0)->units]; /* as said once for all frames */
+};
+
+enum found {
+    FOUND_FRAME,
+    FOUND_END,
+    FOUND_PART /* the file ends within a frame */
+};
+
+/* How a format is read. Files are told by contents. */
+struct format {
+    bool (*is)(const struct source *source); /* by the first bytes of the file, as lines_open has left them */
+
+    /* Passes over a frame and checks that all lines of it are there, without cutting any; tells in LACK_MAX bytes what a
+     * part lacks. NULL: the file is one frame. */
+    int (*skip)(struct source *source, enum found *found, char *lack);
+
+    /* Reads a frame into an empty bed. */
+    int (*read)(struct source *source, struct bed *bed);
+};
+
+enum { LACK_MAX = 100 };
+
+/* The first bytes of the file. */
+const char *source_begin(const struct source *source, size_t *size);
+
+extern const struct format format_data, format_dump, format_mercury, format_table, format_xyz;
+
+/* The error `what`, in the current line. Status STATUS_INPUT. */
+int source_fail(const struct source *source, const char *what);
+
+/* Finds the columns by names in one text, parted by blanks. Status as columns_find. */
+int source_columns(struct source *source, const char *names, const struct bed *bed);
+
+/* Reads the next lines as so many spheres; rows may have up to `more` columns behind those that are known. Status as
+ * columns_add, and STATUS_INPUT where the file ends. */
+int source_rows(struct source *source, int64_t rows, size_t more, struct bed *bed);
+
+/* Passes over so many lines; FOUND_PART: the file has fewer. */
+int source_skip(struct source *source, int64_t rows, enum found *found, char *lack);
+
+/* The line, or its first word, as a number of atoms. */
+int source_count(const struct source *source, const char *text, int64_t *atoms);
+
+/* Warns that the file does not say which axes are periodic. */
+void source_warn_open(const struct source *source);
+
+/* The line without the blanks about it, as much as there is room for. Returns `to`. */
+char *source_word(const struct source *source, char *to, size_t room);
+
+/* The file ends too early, which is what `lack` says in more detail. Status STATUS_INPUT. */
+int source_ends(const struct source *source, const char *lack);
+
+#endif

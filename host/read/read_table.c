@@ -1,0 +1,174 @@
+/* read_table.c - beds from tables: values parted by commas, semicolons, tabs or blanks, and YADE's text export.
+ * SPDX-License-Identifier: MIT
+ *
+ * A header names the columns: the first line, or a comment before it where the first line has numbers alone, as `# x y
+ * z r` or YADE's `#format x_y_z_r`. Names may have units, as `x [mm]` or `r (m)`. Other lines that begin with # are
+ * skipped. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "read/read_format.h"
+
+/* The names of columns and their units, in a text of their own. */
+struct header {
+    char *text;
+    struct fields names;
+    char **unit; /* [names.n] "": it says none */
+    uint64_t line;
+};
+
+static bool is_table(const struct source *source) {
+    (void)source; /* what is no other format */
+    return true;
+}
+
+/* What parts the values of a line. */
+static char find_separator(const char *text) {
+    for (const char *c = ";\t,"; *c; ++c)
+        if (strchr(text, *c)) return *c;
+    return ' ';
+}
+
+static int split(struct fields *fields, const struct lines *lines, char *text, char separator) {
+    if (separator == ' ') return fields_split_blanks(fields, text);
+    return fields_split_at(fields, lines, text, separator);
+}
+
+/* Takes the unit off a name; "": it has none. */
+static char *take_unit(char *name) {
+    char *open = strpbrk(name, "[(");
+    char *end = name + strlen(name);
+    if (!open || !strchr("])", end[-1])) return end;
+    end[-1] = 0;
+    char *tail = open;
+    while (tail > name && strchr(" \t_", tail[-1])) --tail;
+    *tail = 0;
+    return open + 1;
+}
+
+/* Takes units off names; those that blanks part from their names were names of their own so far. */
+static int take_units(struct header *header) {
+    struct fields *names = &header->names;
+    size_t n = 0;
+    header->unit = calloc(names->n + 1, sizeof *header->unit);
+    if (!header->unit) return message_memory();
+    for (size_t k = 0; k < names->n; ++k) {
+        char *unit = take_unit(names->at[k]);
+        if (n > 0 && *unit && !*names->at[k]) {
+            header->unit[n - 1] = unit;
+        } else {
+            names->at[n] = names->at[k];
+            header->unit[n++] = unit;
+        }
+    }
+    names->n = n;
+    return STATUS_OK;
+}
+
+static void forget_header(struct header *header) {
+    free(header->text);
+    free(header->names.at);
+    free(header->unit);
+    *header = (struct header){0};
+}
+
+/* Takes a piece of the current line as a header. */
+static int take_header(struct header *header, const struct lines *lines, const char *text) {
+    static const char yade[] = "#format";
+    forget_header(header);
+    header->line = lines->number;
+    header->text = strdup(text);
+    if (!header->text) return message_memory();
+    char *names = header->text;
+    int status;
+    if (strncmp(names, yade, strlen(yade)) == 0) {
+        status = fields_split(&header->names, names + strlen(yade), "_ \t");
+    } else {
+        names += strspn(names, "# \t");
+        status = split(&header->names, lines, names, find_separator(names));
+    }
+    return status ? status : take_units(header);
+}
+
+/* A comment is taken for a header if it names x, y and z. */
+static int take_comment(struct header *header, const struct lines *lines) {
+    struct header comment = {0};
+    const int status = take_header(&comment, lines, lines->text);
+    const bool good = !status && columns_named(&comment.names);
+    forget_header(good ? header : &comment);
+    if (good) *header = comment;
+    return status;
+}
+
+static bool begins_with_number(const struct lines *lines) {
+    const char *text = lines->text + strspn(lines->text, " \t\"");
+    char *end;
+    strtod(text, &end);
+    return end != text;
+}
+
+/* Finds the header, and the separator of the rows, the first of which is the next line. */
+static int find_header(struct source *source, struct header *header, char *separator) {
+    struct lines *lines = &source->lines;
+    bool more;
+    int status;
+    while ((status = lines_next(lines, &more)) == STATUS_OK && more) {
+        if (*lines->text == '#') status = take_comment(header, lines);
+        if (status) return status;
+        if (*lines->text == '#' || lines_blank(lines)) continue;
+        *separator = find_separator(lines->text);
+        if (!begins_with_number(lines)) return take_header(header, lines, lines->text);
+        if (header->names.n == 0)
+            return source_fail(source, "numbers without a header that names their columns, such as x,y,z,r");
+        lines_hold(lines);
+        return STATUS_OK;
+    }
+    return status;
+}
+
+/* All lengths must have one unit. */
+static int find_unit(const struct source *source, const struct header *header, struct bed *bed) {
+    const struct columns *columns = &source->columns;
+    const char *unit = header->unit[columns->place[0]];
+    const size_t lengths[] = {columns->place[1], columns->place[2],
+                              source->options.no_radius ? columns->place[0] : columns->radius};
+    for (int k = 0; k < 3; ++k)
+        if (strcmp(header->unit[lengths[k]], unit) != 0)
+            return message_at(STATUS_INPUT, source->lines.name, header->line,
+                              "lengths of more than one unit: %.40s in [%.10s], %.40s in [%.10s]",
+                              header->names.at[columns->place[0]], unit, header->names.at[lengths[k]],
+                              header->unit[lengths[k]]);
+    snprintf(bed->units, sizeof bed->units, "%s", unit);
+    return STATUS_OK;
+}
+
+static int find_columns(struct source *source, const struct header *header, char separator, struct bed *bed) {
+    struct lines at = source->lines; /* for messages */
+    at.number = header->line;
+    const int status = columns_find(&source->columns, &at, &header->names, &source->options, bed);
+    source->columns.commas = separator != ',';
+    return status ? status : find_unit(source, header, bed);
+}
+
+static int read_row(struct source *source, char separator, struct bed *bed) {
+    const int status = split(&source->fields, &source->lines, source->lines.text, separator);
+    if (status) return status;
+    return columns_add(&source->columns, &source->lines, &source->fields, &source->options, bed);
+}
+
+static int read_table(struct source *source, struct bed *bed) {
+    struct lines *lines = &source->lines;
+    struct header header = {0};
+    char separator = ',';
+    bool more;
+    int status = find_header(source, &header, &separator);
+    if (!status && header.names.n > 0) status = find_columns(source, &header, separator, bed);
+    while (!status && (status = lines_next(lines, &more)) == STATUS_OK && more)
+        if (*lines->text != '#' && !lines_blank(lines)) status = read_row(source, separator, bed);
+    forget_header(&header);
+    return status;
+}
+
+const struct format format_table = {is_table, NULL, read_table};

@@ -1,0 +1,165 @@
+/* test_plot.c - pictures: all that is to be told is there, nothing lies outside. SPDX-License-Identifier: MIT */
+#include <unistd.h>
+
+#include "plot/plot_bed.h"
+#include "plot/plot_heat.h"
+#include "scenes.h"
+#include "suite.h"
+
+static char folder[] = "/tmp/fibrad_plot_XXXXXX", path[sizeof folder + 8];
+
+/* Draws by a function with its data, and returns the picture, to be freed. */
+typedef int draw_function(const struct output *output, const void *what);
+
+static char *drawn(draw_function *draw, const void *what) {
+    struct output output = {0};
+    ck_assert_int_eq(output_open(&output, path), 0);
+    ck_assert_int_eq(output_close(&output, draw(&output, what)), 0);
+    FILE *file = fopen(path, "rb");
+    ck_assert_ptr_nonnull(file);
+    fseek(file, 0, SEEK_END);
+    const long size = ftell(file);
+    char *text = calloc(1, (size_t)size + 1);
+    rewind(file);
+    ck_assert_uint_eq(fread(text, 1, (size_t)size, file), (size_t)size);
+    fclose(file);
+    return text;
+}
+
+/* All texts begin within the picture, and none at its very edge. */
+static void assert_texts_inside(const char *svg) {
+    int texts = 0;
+    for (const char *g = svg; (g = strstr(g, "<g transform=\"translate(")) != NULL; ++g) {
+        double x, y;
+        ck_assert_int_eq(sscanf(g, "<g transform=\"translate(%lf,%lf)", &x, &y), 2);
+        ck_assert_msg(x > 12 && x < 1488 && y > 12 && y < 1228, "%.90s", g);
+        ++texts;
+    }
+    ck_assert_int_gt(texts, 40);
+}
+
+static void assert_tells(const char *svg, const char *words) {
+    ck_assert_msg(strstr(svg, words) != NULL, "the picture does not tell '%s'", words);
+}
+
+static uint32_t count_of(const char *svg, const char *words) {
+    uint32_t count = 0;
+    for (const char *at = svg; (at = strstr(at, words)) != NULL; ++at) ++count;
+    return count;
+}
+
+/* ---- beds -------------------------------------------------------------------------------------------------------- */
+
+static int draw_bed(const struct output *output, const void *what) { return plot_bed(output, "folder/bed.csv", what); }
+
+/* A picture of a bed of this size, in walls or not. */
+static char *picture_of_bed(double size, bool walled) {
+    struct bed bed = packing(60, .4 * size, .6 * size, .4, 3, false);
+    struct walls walls = {.count = walled ? 1 : 0, .body = {plane_at(2, 0, -2 * size)}};
+    const fibrad_scene_config config = {.body = walls.body, .bodies = walls.count};
+    const fibrad_spheres spheres = spheres_of(&bed);
+    fibrad_bed_factors *factors;
+    ck_assert_int_eq(fibrad_view_factors(&config, &spheres, NULL, NULL, &factors), FIBRAD_OK);
+    const struct contents what = {.bed = &bed, .factors = factors, .walls = &walls};
+    char *svg = drawn(draw_bed, &what);
+    fibrad_bed_free(factors);
+    bed_free(&bed);
+    return svg;
+}
+
+/* Beds in metres with grains of any size have axes with short numbers and names. */
+START_TEST(small_and_large_beds) {
+    static const struct {
+        double size;
+        const char *power;
+    } cases[] = {{1, NULL}, {1e-3, "-3"}, {1e-5, "-6"}, {1e5, "3"}};
+    char *svg = picture_of_bed(cases[_i].size, false);
+    assert_texts_inside(svg);
+    assert_tells(svg, "bed.csv");
+    assert_tells(svg, "Escaped fraction");
+    ck_assert_ptr_null(strstr(svg, "folder"));
+    char word[40];
+    snprintf(word, sizeof word, ">%s</tspan>", cases[_i].power ? cases[_i].power : "none");
+    ck_assert_int_eq(strstr(svg, word) != NULL, cases[_i].power != NULL);
+    free(svg);
+}
+END_TEST
+
+START_TEST(a_bed_between_walls) {
+    char *svg = picture_of_bed(1, true);
+    assert_texts_inside(svg);
+    assert_tells(svg, "Fraction to walls and out of the bed");
+    assert_tells(svg, "goes to walls");
+    assert_tells(svg, "stroke='rgb(140, 140, 140)'"); /* the wall */
+    free(svg);
+}
+END_TEST
+
+/* ---- heat -------------------------------------------------------------------------------------------------------- */
+
+static int draw_heat(const struct output *output, const void *what) { return plot_heat(output, "bed's.dump", what); }
+
+/* Three spheres in millimetres: what gains, what loses, and who else. */
+START_TEST(where_heat_goes) {
+    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3}});
+    const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
+    const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
+    const struct walls walls = {2, {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
+    struct heat_shown what = {&bed, &walls, 1, temperature, power, wall_temperature, wall_power, 293, -.125};
+    char *svg = drawn(draw_heat, &what);
+    assert_texts_inside(svg);
+    static const char *const told[] = {"bed's.dump",
+                                       "3 spheres of 300 to 1200.5 K lose 2.5 W by radiation",
+                                       "Temperature [K], slice at y = 0 mm",
+                                       "x [mm]",
+                                       "Net power by height",
+                                       ">1.75<", /* gained */
+                                       ">-4.25<",
+                                       ">zmin<",
+                                       ">surroundings<",
+                                       ">412 K<",
+                                       ">3.12<",
+                                       ">cylinder<",
+                                       ">900 K<",
+                                       ">-0.5<",
+                                       ">293 K<",
+                                       ">-0.125<"};
+    for (size_t k = 0; k < sizeof told / sizeof *told; ++k) assert_tells(svg, told[k]);
+    free(svg);
+    what.metres = 1e-3; /* the same lengths, of a file in millimetres */
+    svg = drawn(draw_heat, &what);
+    assert_tells(svg, "layers of 2 ");
+    assert_tells(svg, "x [\302\265m]");
+    free(svg);
+
+    /* neither walls nor surroundings; nothing flows */
+    const double none[] = {0, 0, 0};
+    what = (struct heat_shown){.bed = &bed,
+                               .walls = &(struct walls){0},
+                               .temperature = temperature,
+                               .power = none,
+                               .surroundings_temperature = NAN,
+                               .surroundings_power = NAN};
+    svg = drawn(draw_heat, &what);
+    assert_texts_inside(svg);
+    assert_tells(svg, "gain 0 W");
+    ck_assert_ptr_null(strstr(svg, "surroundings"));
+    ck_assert_uint_eq(count_of(svg, "that gain"), 1);
+    free(svg);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    if (!mkdtemp(folder)) return 1;
+    snprintf(path, sizeof path, "%s/a.svg", folder);
+    Suite *suite = suite_create("plot");
+    TCase *cases = suite_case(suite, "plot");
+    tcase_add_loop_test(cases, small_and_large_beds, 0, 4);
+    tcase_add_test(cases, a_bed_between_walls);
+    tcase_add_test(cases, where_heat_goes);
+    const int status = suite_run(suite);
+    remove(path);
+    rmdir(folder);
+    return status;
+}
