@@ -141,9 +141,13 @@ HOST = \
     host/text/text.c \
     host/read/read.c \
     host/read/read_columns.c \
+    host/read/read_data.c \
     host/read/read_dump.c \
+    host/read/read_format.c \
+    host/read/read_mercury.c \
     host/read/read_rows.c \
     host/read/read_table.c \
+    host/read/read_xyz.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \
     host/boxes/read_furnace.c \
@@ -190,6 +194,7 @@ TESTS = \
     tests/test_beam.c \
     tests/test_cast.c \
     tests/test_cli.c \
+    tests/test_conductivity.c \
     tests/test_direction.c \
     tests/test_drift.c \
     tests/test_files.c \
@@ -223,13 +228,16 @@ SCRIPTS = \
     tests/check_dist.sh \
     tests/check_examples.sh \
     tests/check_faults.sh \
+    tests/check_fortran.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
     tests/check_house.sh \
     tests/check_man.sh \
     tests/check_map.sh \
+    tests/check_python.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
+    tests/check_written.sh \
     tests/freestanding/check_freestanding.sh \
     tests/package/check_package.sh
 
@@ -556,7 +564,8 @@ deps:
 deps-ci:
 	@.ci/deps g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
 	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
-	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-scipy
+	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-numpy python3-scipy python3-pytest \
+	    python3-venv python3-pip gfortran
 
 ## man: manual pages of the program and its commands, made from --help into build/man
 man: $(BUILD)/man/fibrad.1

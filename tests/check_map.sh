@@ -2,6 +2,7 @@
 # check_map.sh - the table of folders in docs/design.md is that of the tree, and has no circles. SPDX-License-Identifier: MIT
 #
 # Lines of the table are | FOLDER | what for | FILES without .c and .h | OTHER FOLDERS of the same tree it includes from |.
+# Folders of Python and Fortran are in it, too; they include nothing.
 set -u
 page=docs/design.md
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
@@ -21,8 +22,9 @@ awk -F ' *[|] *' '
     $2 ~ /^(kernel|host)(\/|$)/ { print $2 ": " sorted($4) "/ " sorted($5) }' "$page" | LC_ALL=C sort >"$work/page"
 
 # the same from the tree; the folder lanes belongs to its parent
-find kernel host -name '*.[ch]' | sed 's|/[^/]*$||' | LC_ALL=C sort -u | while read -r folder; do
-    files=$(find "$folder" -maxdepth 1 -name '*.[ch]' | sed 's|.*/||; s|\.[ch]$||' | LC_ALL=C sort -u | tr '\n' ' ')
+find kernel host -name '*.[ch]' -o -name '*.py' -o -name '*.f90' | sed 's|/[^/]*$||' | LC_ALL=C sort -u | while read -r folder; do
+    files=$(find "$folder" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.py' -o -maxdepth 1 -name '*.f90' |
+        sed 's|.*/||; s|\.[a-z0-9]*$||' | LC_ALL=C sort -u | tr '\n' ' ')
     room=${folder#*/}
     knows=$(find "$folder" -maxdepth 1 -name '*.[ch]' -exec sed -n 's/^#include "\([a-z_]*\)\/.*/\1/p' {} + |
         grep -vx "$room" | LC_ALL=C sort -u | tr '\n' ' ')

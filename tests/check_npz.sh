@@ -33,6 +33,12 @@ start = struct.unpack('<%dq' % arrays['indptr.npy'][0]['shape'], arrays['indptr.
 assert start[0] == 0 and arrays['data.npy'][0]['shape'] == arrays['indices.npy'][0]['shape'] == (start[-1],)
 assert struct.unpack('<2q', arrays['shape.npy'][1]) == (len(start) - 1, len(start) - 1)
 assert arrays['format.npy'] == ({'descr': '|S3', 'fortran_order': False, 'shape': ()}, b'csr')
+n = len(start) - 1
+further = [('ids', '<i8', (n,)), ('x', '<f8', (n, 3)), ('radius', '<f8', (n,)), ('escaped', '<f8', (n,)),
+           ('beyond', '<f8', (n,)), ('error', '<f8', (n,))]
+for name, kind, shape in further:
+    assert arrays.pop(name + '.npy')[0] == {'descr': kind, 'fortran_order': False, 'shape': shape}, name
+assert len(arrays) == 5, arrays.keys()
 END
     # Debian's own python3 may have SciPy where another in the path has not
     scipy=
@@ -44,18 +50,40 @@ END
         continue
     fi
     "$scipy" - "$work/F.npz" "$work/F.csv" <<'END'
-import csv, sys, scipy.sparse
+import csv, sys, numpy, scipy.sparse
+ids = numpy.load(sys.argv[1])['ids']
 matrix = scipy.sparse.load_npz(sys.argv[1])
 assert matrix.format == 'csr' and matrix.has_sorted_indices
 entries = list(csv.DictReader(open(sys.argv[2])))
 matrix = matrix.tocoo()
 assert matrix.nnz == len(entries)
 for i, j, f, entry in zip(matrix.row, matrix.col, matrix.data, entries):
-    assert (i, j, f) == (int(entry['i']), int(entry['j']), float(entry['F']))
+    assert (ids[i], ids[j], f) == (int(entry['i']), int(entry['j']), float(entry['F']))
 END
 done
 
-# what `fibrad join` adds to it
+# walls by their names, and which rows were computed
+if test -n "${scipy:-}"; then
+    "$BUILD/fibrad" bed tests/data/mono2000.dump --directions 21 --wall zmin,cylinder:6,6,9 --targets 1-99 --quiet \
+        -o "$work/W.npz" -o "$work/W.csv" 2>"$work/said"
+    "$scipy" - "$work/W.npz" "$work/W.csv" <<'END'
+import csv, sys, numpy
+a = numpy.load(sys.argv[1])
+names = [name.decode() for name in a['wall_names']]
+assert names == ['zmin', 'cylinder']
+row = {i: k for k, i in enumerate(a['ids'])}
+known = {name: {} for name in names + ['surroundings', '']}
+for entry in csv.DictReader(open(sys.argv[2])):
+    if int(entry['i']) >= 0: known[entry['body']][int(entry['i'])] = float(entry['F'])
+for k, name in enumerate(names):
+    assert known[name] and sum(a['body'][:, k] > 0) == len(known[name])
+    for i, f in known[name].items(): assert a['body'][row[i], k] == f
+for i, f in known['surroundings'].items(): assert a['escaped'][row[i]] == f
+assert a['computed'].sum() == 99 and a['computed'][row[7]] and not a['computed'][row[100]]
+END
+fi
+
+# rows of a simulation whose ids are as large as can be
 if command -v python3 >/dev/null; then
     python3 - "$work/D.0.rows" <<'END'
 import struct, sys
@@ -64,9 +92,13 @@ whole = struct.pack('<6Q', 7, 1 << 63, 0, 1, 1, 1 << 63)
 real = struct.pack('<17d', .5, .25, 1, .125, 0, .125, 0, .1, 0, 1, 2, .5, 1, 0, 0, 0, 4)
 open(sys.argv[1], 'wb').write(head + whole + real + struct.pack('<2d', 0, 0))
 END
-    "$BUILD/fibrad" join "$work/D.0.rows" --raw -o "$work/D.npz" >"$work/summary"
+    if "$BUILD/fibrad" join "$work/D.0.rows" --raw -o "$work/D.csv" 2>"$work/said"; then exit 1; fi
+    grep -q 'id 9223372036854775808 is too large for a name; --positions' "$work/said"
+    test ! -e "$work/D.csv"
+    "$BUILD/fibrad" join "$work/D.0.rows" --raw --positions -o "$work/D.npz" -o "$work/D.csv" >"$work/summary"
+    grep -qx '0,1,0.5,' "$work/D.csv"
     "$work/read_npz" "$work/D.npz" >"$work/read.csv"
-    grep -qx '0,1,0.5' "$work/read.csv"
+    grep -qx '7,9223372036854775808,0.5' "$work/read.csv"
     python3 - "$work/D.npz" <<'END'
 import struct, sys, zipfile
 archive = zipfile.ZipFile(sys.argv[1])

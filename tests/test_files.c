@@ -346,6 +346,17 @@ START_TEST(quiet_and_streams) {
 }
 END_TEST
 
+/* What does not fit is said before the work begins, with what would help. */
+START_TEST(too_little_memory) {
+    ck_assert_int_eq(RUN("heat", MONO, "--emissivity", ".5", "--temperature", "v_T", "--ambient", "300", "--directions",
+                         "65536", "--points", "256", "--patches", "384", "-o", in_folder("q.csv")),
+                     5);
+    ck_assert_ptr_nonnull(strstr(said, "out of memory: 134 GB are wanted, "));
+    ck_assert_ptr_nonnull(strstr(said, "fewer --directions"));
+    ck_assert_int_eq(remove_files(0), 0);
+}
+END_TEST
+
 START_TEST(versions_and_help) {
     SUCCEED("-V");
     ck_assert_int_eq(strncmp(printed, "fibrad ", 7), 0);
@@ -376,6 +387,7 @@ int main(void) {
     tcase_add_test(frames, truncated_last_frame);
     tcase_add_test(summaries, summary_says_what_was_computed);
     tcase_add_test(summaries, quiet_and_streams);
+    tcase_add_test(summaries, too_little_memory);
     tcase_add_test(summaries, versions_and_help);
     return suite_run(suite);
 }

@@ -24,10 +24,14 @@
 #define GROWTH     8.0
 #define BATCH_MOST (FIBRAD_PATHS_MAX / PARTS * PARTS)
 
-/* Concentration above which a variance has not settled. With variances of groups whose distribution has a tail of index
- * a < 1 it tends to 1 - a, however many groups there are: 1/4 for flights along channels, 1/2 along slabs
- * (docs/heat.md). Without such a tail it tends to zero. */
-#define SETTLED 0.02
+/* Concentration above which a standard error is not relied on: its square root is the relative standard error of the
+ * variance. Where the variances of groups have a tail of index a < 1 it tends to 1 - a however many groups there are,
+ * 1/4 for flights along channels, 1/2 for those in slabs (docs/heat.md); without such a tail, to zero. */
+#define SETTLED 0.05
+
+/* Growth of F_E over itself from which it is told whatever the standard error: flights of 100 periods are about e^10
+ * times a gap, which makes as much of F_E as most ask for. */
+#define ENDLESS 0.0003
 
 /* The part of the bed that emits, a box; infinite along periodic axes. */
 struct core {
@@ -280,7 +284,7 @@ int conduction_follow(const struct bed *bed, const unsigned char *emits, const s
 bool conduction_wants(const struct conduction *result, int axis) { return result->axis < 0 || result->axis == axis; }
 
 enum conduction_flights conduction_flights(const struct conduction *result, int axis) {
-    if (result->growth[axis] > result->error[axis]) return FLIGHTS_ENDLESS;
+    if (result->growth[axis] > fmin(result->error[axis], ENDLESS * result->factor[axis])) return FLIGHTS_ENDLESS;
     return result->concentration[axis] > SETTLED ? FLIGHTS_RARE : FLIGHTS_SETTLED;
 }
 

@@ -14,6 +14,9 @@
 /* A mean radius above this is hardly one of a particle in metres. */
 #define RADIUS_LARGE 0.1
 
+/* Overlap over the smaller radius that is worth a word. */
+#define OVERLAP_LARGE 0.05
+
 static int take_period(const char *text, double period[3]) {
     int count = 3;
     const int status = strcmp(text, "none") == 0 ? STATUS_OK : options_numbers("--periodic", text, 3, period, &count);
@@ -261,6 +264,18 @@ static void report_wall(struct report *report, const fibrad_body *wall) {
         report_value(report, key, wall->plane.at, 9);
 }
 
+/* Overlaps are common in DEM; large ones are not, and make factors mean little. */
+static void report_overlap(struct bed_options *asked, const struct bed *bed, const fibrad_scene_facts *facts) {
+    const uint32_t first = facts->overlap_pair[0], second = facts->overlap_pair[1];
+    if (facts->overlap_max == 0) return;
+    report_value(&asked->report, "overlap_max", facts->overlap_max, 3);
+    if (facts->overlap_max > OVERLAP_LARGE)
+        fprintf(stderr,
+                "fibrad: %s: warning: spheres %lld and %lld of lines %llu and %llu overlap by %.3g of a radius\n",
+                asked->name, (long long)bed_name(bed, first), (long long)bed_name(bed, second),
+                (unsigned long long)bed->line[first], (unsigned long long)bed->line[second], facts->overlap_max);
+}
+
 void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,
                         const fibrad_scene_facts *facts) {
     struct report *report = &asked->report;
@@ -274,6 +289,7 @@ void bed_options_report(struct bed_options *asked, const struct bed *bed, const 
     report_text(report, "length_unit", unit ? unit : bed->units[0] ? bed->units : "not said");
     if (facts) report_value(report, "radius_min", facts->radius_min, 6);
     if (facts) report_value(report, "radius_max", facts->radius_max, 6);
+    if (facts) report_overlap(asked, bed, facts);
     if (bed->low[0] < bed->high[0]) {
         report_vector(report, "box_low", bed->low);
         report_vector(report, "box_high", bed->high);

@@ -170,13 +170,6 @@ static int bed_parse(struct bed_request *request, int argc, char **argv) {
     return status ? status : bed_check(request);
 }
 
-static void warn_of_overlap(const char *file, const struct bed *bed, const fibrad_scene_facts *facts) {
-    if (facts->overlap_max == 0) return;
-    const uint64_t line[2] = {bed->line[facts->overlap_pair[0]], bed->line[facts->overlap_pair[1]]};
-    fprintf(stderr, "fibrad: %s: largest overlap %.3g of a radius, lines %" PRIu64 " and %" PRIu64 "%s\n", file,
-            facts->overlap_max, line[0], line[1], facts->overlap_max > 0.05 ? ": warning: above 5 %" : "");
-}
-
 static void bed_report(struct bed_request *request, const struct contents *what, const struct summary *summary) {
     static const char *const methods[] = {"exact", "beam", "surface", "cast", "mc"};
     const fibrad_bed_factors *factors = what->factors;
@@ -227,7 +220,6 @@ static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_f
     if (status) return status;
     what.factors = *factors;
     summary_make(&summary, &what);
-    warn_of_overlap(request->bed.name, bed, &what.factors->facts);
     if (request->error > 0 && summary.error_max > request->error)
         fprintf(stderr, "fibrad: %s: warning: %d directions were not enough for --error %g\n", request->bed.name,
                 FIBRAD_DIRECTIONS_MAX, request->error);

@@ -4,7 +4,8 @@
  *     build/fibrad bed packing.dump -o F.npz && ./read_npz F.npz
  *
  * Reads what `fibrad bed -o OUT.npz` writes, on a machine of the same byte order: uncompressed members one behind the
- * other, each a NumPy array. Member sizes are 64-bit numbers in an extra field. Checksums are not looked at. */
+ * other, each a NumPy array. Rows and columns go by the spheres' ids. Member sizes are 64-bit numbers in an extra
+ * field. Checksums are not looked at. */
 #include <inttypes.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -58,7 +59,8 @@ int main(int argc, char **argv) {
     int32_t *col = NULL;
     int64_t *start = NULL;
     double *f = NULL;
-    uint64_t rows = 0, entries = 0, factors = 0;
+    uint64_t *ids = NULL;
+    uint64_t rows = 0, entries = 0, factors = 0, names = 0;
     char name[256], type[8];
     void *data;
     for (uint64_t bytes; next_member(file, name, type, &data, &bytes);) {
@@ -68,19 +70,26 @@ int main(int argc, char **argv) {
             start = data, rows = bytes / sizeof *start - 1;
         else if (strcmp(name, "data.npy") == 0 && strcmp(type, "<f8") == 0)
             f = data, factors = bytes / sizeof *f;
+        else if (strcmp(name, "ids.npy") == 0 && (strcmp(type, "<i8") == 0 || strcmp(type, "<u8") == 0))
+            ids = data, names = bytes / sizeof *ids;
         else
             free(data);
     }
     fclose(file);
-    if (!col || !start || !f || entries != factors || (uint64_t)start[rows] != entries) refuse("not a matrix");
+    if (!col || !start || !f || !ids || names != rows || entries != factors || (uint64_t)start[rows] != entries)
+        refuse("not a matrix");
 
     puts("i,j,F");
     for (uint64_t i = 0; i < rows; ++i) {
         if (start[i] < 0 || start[i] > start[i + 1] || (uint64_t)start[i + 1] > entries) refuse("not a matrix");
-        for (int64_t k = start[i]; k < start[i + 1]; ++k) printf("%" PRIu64 ",%" PRId32 ",%.17g\n", i, col[k], f[k]);
+        for (int64_t k = start[i]; k < start[i + 1]; ++k) {
+            if (col[k] < 0 || (uint64_t)col[k] >= rows) refuse("not a matrix");
+            printf("%" PRIu64 ",%" PRIu64 ",%.17g\n", ids[i], ids[col[k]], f[k]);
+        }
     }
     free(col);
     free(start);
     free(f);
+    free(ids);
     return 0;
 }

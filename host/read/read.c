@@ -22,27 +22,9 @@ struct reader {
     bool done;
 };
 
-int source_fail(const struct source *source, const char *what) {
-    return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "%s", what);
-}
-
-char *source_word(const struct source *source, char *to, size_t room) {
-    static const char blanks[] = " \t\r\v\f";
-    const char *text = source->lines.text + strspn(source->lines.text, blanks);
-    size_t length = strlen(text);
-    while (length > 0 && strchr(blanks, text[length - 1])) --length;
-    if (length > room - 1) length = room - 1;
-    memcpy(to, text, length);
-    to[length] = 0;
-    return to;
-}
-
-int source_ends(const struct source *source, const char *lack) {
-    return source_fail(source, source->lines.truncated ? "the gzip file is cut off" : lack);
-}
-
 int reader_open(struct reader **reader, const char *path, const struct read_options *options) {
-    static const struct format *const formats[] = {&format_dump, &format_table};
+    static const struct format *const formats[] = {&format_dump, &format_xyz,     &format_data,
+                                                  &format_mercury, &format_table};
     struct reader *r = *reader = calloc(1, sizeof *r);
     if (!r) return message_memory();
     r->source.options = *options;

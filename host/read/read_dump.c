@@ -10,8 +10,9 @@
 #include "read/read_format.h"
 
 static bool is_dump(const struct source *source) {
-    const char *text = source->lines.buffer + source->lines.next;
-    return source->lines.end - source->lines.next >= 5 && memcmp(text, "ITEM:", 5) == 0;
+    size_t size;
+    const char *text = source_begin(source, &size);
+    return size >= 5 && memcmp(text, "ITEM:", 5) == 0;
 }
 
 /* The rest of an ITEM line if it is the one named, else NULL. */
@@ -44,11 +45,9 @@ static int skip_atoms(struct source *source, int64_t atoms, bool *more, char *la
 
 static int skip_count(struct source *source, int64_t *atoms, bool *more) {
     char word[32];
-    int status = section_line(source, more);
+    const int status = section_line(source, more);
     if (status || !*more) return status;
-    status = lines_whole(&source->lines, "the number of atoms", source_word(source, word, sizeof word), atoms);
-    if (!status && *atoms < 0) status = source_fail(source, "the number of atoms is negative");
-    return status;
+    return source_count(source, source_word(source, word, sizeof word), atoms);
 }
 
 static int skip_units(struct source *source, bool *more) {
@@ -164,16 +163,9 @@ static int read_box(struct source *source, char *marks, struct bed *bed) {
     return status;
 }
 
-static int read_atoms(struct source *source, int64_t atoms, char *names, struct bed *bed) {
-    int status = fields_split_blanks(&source->fields, names);
-    if (!status) status = columns_find(&source->columns, &source->lines, &source->fields, &source->options, bed);
-    for (int64_t k = 0; k < atoms && !status; ++k) {
-        bool more;
-        status = lines_next(&source->lines, &more);
-        if (!status) status = fields_split_blanks(&source->fields, source->lines.text);
-        if (!status) status = columns_add(&source->columns, &source->lines, &source->fields, &source->options, bed);
-    }
-    return status;
+static int read_atoms(struct source *source, int64_t atoms, const char *names, struct bed *bed) {
+    const int status = source_columns(source, names, bed);
+    return status ? status : source_rows(source, atoms, 0, bed);
 }
 
 static int read_dump(struct source *source, struct bed *bed) {

@@ -36,10 +36,29 @@ struct format {
 
 enum { LACK_MAX = 100 };
 
-extern const struct format format_dump, format_table;
+/* The first bytes of the file. */
+const char *source_begin(const struct source *source, size_t *size);
+
+extern const struct format format_data, format_dump, format_mercury, format_table, format_xyz;
 
 /* The error `what`, in the current line. Status STATUS_INPUT. */
 int source_fail(const struct source *source, const char *what);
+
+/* Finds the columns by names in one text, parted by blanks. Status as columns_find. */
+int source_columns(struct source *source, const char *names, const struct bed *bed);
+
+/* Reads the next lines as so many spheres; rows may have up to `more` columns behind those that are known. Status as
+ * columns_add, and STATUS_INPUT where the file ends. */
+int source_rows(struct source *source, int64_t rows, size_t more, struct bed *bed);
+
+/* Passes over so many lines; FOUND_PART: the file has fewer. */
+int source_skip(struct source *source, int64_t rows, enum found *found, char *lack);
+
+/* The line, or its first word, as a number of atoms. */
+int source_count(const struct source *source, const char *text, int64_t *atoms);
+
+/* Warns that the file does not say which axes are periodic. */
+void source_warn_open(const struct source *source);
 
 /* The line without the blanks about it, as much as there is room for. Returns `to`. */
 char *source_word(const struct source *source, char *to, size_t room);

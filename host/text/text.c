@@ -100,9 +100,7 @@ void text_json(FILE *file, const char *text) {
 }
 
 void text_json_real(FILE *file, double value) {
-    char text[TEXT_NUMBER];
-    if (isfinite(value))
-        fwrite(text, 1, (size_t)(text_real(text, value) - text), file);
-    else
-        fputs("null", file);
+    char text[TEXT_NUMBER] = "null";
+    const char *end = isfinite(value) ? text_real(text, value) : text + 4;
+    fwrite(text, 1, (size_t)(end - text), file);
 }

@@ -18,16 +18,16 @@ enum { FORMATS = sizeof formats / sizeof *formats };
 
 /* ".csv, .mtx and .npz": formats that can hold such contents; `dot` stands before each. */
 static const char *list_formats(enum content content, const char *dot, char text[100]) {
-    const char *names[FORMATS];
-    int count = 0, used = 0;
-    for (int k = 0; k < FORMATS; ++k)
-        if (formats[k].write[content]) names[count++] = formats[k].name;
-    for (int k = 0; k < count; ++k)
-        used += snprintf(text + used, (size_t)(100 - used), "%s%s%s",
-                         k == 0           ? ""
-                         : k == count - 1 ? " and "
-                                          : ", ",
-                         dot, names[k]);
+    int left = 0, used = 0;
+    for (int k = 0; k < FORMATS; ++k) left += formats[k].write[content] != NULL;
+    for (int k = 0; k < FORMATS; ++k) {
+        if (!formats[k].write[content]) continue;
+        --left;
+        used += snprintf(text + used, (size_t)(100 - used), "%s%s%s", dot, formats[k].name,
+                         left > 1    ? ", "
+                         : left == 1 ? " and "
+                                     : "");
+    }
     return text;
 }
 

@@ -24,14 +24,15 @@ struct csv {
     char line[2 * PATH_MAX + 8 * TEXT_NUMBER];
 };
 
-/* A text in quotes, since it may have commas. */
-static char *put_quoted(char *to, const char *text) {
-    *to++ = '"';
-    for (int k = 0; text[k] && k < PATH_MAX; ++k) {
+/* A text; in quotes if it has commas or quotes itself. */
+static char *put_text(char *to, const char *text) {
+    const bool quoted = strpbrk(text, ",\"\r\n");
+    if (quoted) *to++ = '"';
+    for (int k = 0; k < PATH_MAX && text[k]; ++k) {
         if (text[k] == '"') *to++ = '"';
         *to++ = text[k];
     }
-    *to++ = '"';
+    if (quoted) *to++ = '"';
     return to;
 }
 
@@ -49,7 +50,7 @@ static void begin_csv(struct csv *csv, FILE *file, const struct contents *what, 
     if (first)
         fprintf(file, "%s%s%s%s\n", what->file ? "file," : "", what->series ? "frame,timestep," : "", names,
                 csv->named ? ",body" : "");
-    if (what->file) at = put_comma(put_quoted(at, what->file));
+    if (what->file) at = put_comma(put_text(at, what->file));
     if (what->series) {
         at = put_comma(text_whole(at, bed->frame));
         at = put_comma(bed->timestep < 0 ? at : text_whole(at, bed->timestep));

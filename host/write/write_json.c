@@ -18,7 +18,8 @@ static void json_entry(FILE *file, const char *name, double value) {
 
 static void json_whole(FILE *file, int64_t value) {
     char text[TEXT_NUMBER];
-    fwrite(text, 1, (size_t)(text_whole(text, value) - text), file);
+    const char *end = text_whole(text, value);
+    fwrite(text, 1, (size_t)(end - text), file);
 }
 
 /* An entry of an object: every `stride`th value, n in all; valid, unless NULL, tells which are there. `comma` comes

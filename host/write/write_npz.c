@@ -38,7 +38,7 @@ static uint32_t crc_add(uint32_t crc, const unsigned char *data, size_t bytes) {
 }
 
 /* Writes `bytes` bytes of a number, the lowest first. */
-static void put_number(FILE *file, uint64_t value, int bytes) {
+static void put_little(FILE *file, uint64_t value, int bytes) {
     for (; bytes > 0; --bytes, value >>= 8) putc((int)(value & 255), file);
 }
 
@@ -67,21 +67,21 @@ static void make_header(const struct member *member, unsigned char header[HEADER
 
 /* What local and central header have in common, from the version to the length of the name. */
 static void put_common(FILE *file, const struct member *member) {
-    put_number(file, 45, 2);         /* version that reads ZIP64 */
-    put_number(file, 0, 2);          /* flags */
-    put_number(file, 0, 2);          /* stored */
-    put_number(file, 0x00210000, 4); /* time and date: 1 January 1980, so that equal matrices make equal files */
-    put_number(file, member->crc, 4);
-    put_number(file, UINT32_MAX, 4); /* both sizes stand in the ZIP64 field */
-    put_number(file, UINT32_MAX, 4);
-    put_number(file, strlen(member->array.name), 2);
+    put_little(file, 45, 2);         /* version that reads ZIP64 */
+    put_little(file, 0, 2);          /* flags */
+    put_little(file, 0, 2);          /* stored */
+    put_little(file, 0x00210000, 4); /* time and date: 1 January 1980, so that equal matrices make equal files */
+    put_little(file, member->crc, 4);
+    put_little(file, UINT32_MAX, 4); /* both sizes stand in the ZIP64 field */
+    put_little(file, UINT32_MAX, 4);
+    put_little(file, strlen(member->array.name), 2);
 }
 
 static void put_sizes(FILE *file, const struct member *member, uint64_t field) {
-    put_number(file, 1, 2); /* the ZIP64 field */
-    put_number(file, field, 2);
-    put_number(file, HEADER + member->bytes, 8);
-    put_number(file, HEADER + member->bytes, 8);
+    put_little(file, 1, 2); /* the ZIP64 field */
+    put_little(file, field, 2);
+    put_little(file, HEADER + member->bytes, 8);
+    put_little(file, HEADER + member->bytes, 8);
 }
 
 static int write_member(FILE *file, struct member *member) {
@@ -95,9 +95,9 @@ static int write_member(FILE *file, struct member *member) {
         crc = crc_add(crc, data + done, left < BLOCK ? left : BLOCK);
     }
     member->crc = ~crc;
-    put_number(file, 0x04034b50, 4);
+    put_little(file, 0x04034b50, 4);
     put_common(file, member);
-    put_number(file, 20, 2);
+    put_little(file, 20, 2);
     fputs(member->array.name, file);
     put_sizes(file, member, 16);
     fwrite(header, 1, HEADER, file);
@@ -117,44 +117,44 @@ static uint64_t member_size(const struct member *member) {
 static uint64_t entry_size(const struct member *member) { return 46 + strlen(member->array.name) + 28; }
 
 static void put_entry(FILE *file, const struct member *member) {
-    put_number(file, 0x02014b50, 4);
-    put_number(file, 45, 2);
+    put_little(file, 0x02014b50, 4);
+    put_little(file, 45, 2);
     put_common(file, member);
-    put_number(file, 28, 2);
-    put_number(file, 0, 2);          /* comment */
-    put_number(file, 0, 2);          /* disk */
-    put_number(file, 0, 2);          /* internal attributes */
-    put_number(file, 0, 4);          /* external attributes */
-    put_number(file, UINT32_MAX, 4); /* the offset stands in the ZIP64 field too */
+    put_little(file, 28, 2);
+    put_little(file, 0, 2);          /* comment */
+    put_little(file, 0, 2);          /* disk */
+    put_little(file, 0, 2);          /* internal attributes */
+    put_little(file, 0, 4);          /* external attributes */
+    put_little(file, UINT32_MAX, 4); /* the offset stands in the ZIP64 field too */
     fputs(member->array.name, file);
     put_sizes(file, member, 24);
-    put_number(file, member->offset, 8);
+    put_little(file, member->offset, 8);
 }
 
 /* The end of the directory, in ZIP64 and, with nothing but all bits set, as of old. */
 static void put_end(FILE *file, uint64_t members, uint64_t offset, uint64_t size) {
-    put_number(file, 0x06064b50, 4);
-    put_number(file, 44, 8);
-    put_number(file, 45, 2);
-    put_number(file, 45, 2);
-    put_number(file, 0, 8); /* disks */
-    put_number(file, members, 8);
-    put_number(file, members, 8);
-    put_number(file, size, 8);
-    put_number(file, offset, 8);
+    put_little(file, 0x06064b50, 4);
+    put_little(file, 44, 8);
+    put_little(file, 45, 2);
+    put_little(file, 45, 2);
+    put_little(file, 0, 8); /* disks */
+    put_little(file, members, 8);
+    put_little(file, members, 8);
+    put_little(file, size, 8);
+    put_little(file, offset, 8);
 
-    put_number(file, 0x07064b50, 4);
-    put_number(file, 0, 4);
-    put_number(file, offset + size, 8);
-    put_number(file, 1, 4); /* disks in all */
+    put_little(file, 0x07064b50, 4);
+    put_little(file, 0, 4);
+    put_little(file, offset + size, 8);
+    put_little(file, 1, 4); /* disks in all */
 
-    put_number(file, 0x06054b50, 4);
-    put_number(file, 0, 4); /* disks */
-    put_number(file, members, 2);
-    put_number(file, members, 2);
-    put_number(file, UINT32_MAX, 4);
-    put_number(file, UINT32_MAX, 4);
-    put_number(file, 0, 2); /* comment */
+    put_little(file, 0x06054b50, 4);
+    put_little(file, 0, 4); /* disks */
+    put_little(file, members, 2);
+    put_little(file, members, 2);
+    put_little(file, UINT32_MAX, 4);
+    put_little(file, UINT32_MAX, 4);
+    put_little(file, 0, 2); /* comment */
 }
 
 static struct member make_member(const struct array *array) {

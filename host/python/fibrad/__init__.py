@@ -1,0 +1,20 @@
+# __init__.py - fibrad in Python: thermal radiation between the spheres of packed beds. SPDX-License-Identifier: MIT
+"""View factors, exchange factors and radiative powers between the spheres of packed beds.
+
+>>> import fibrad
+>>> factors = fibrad.view_factors([[0, 0, 0], [0, 0, 3]], 1.0)
+>>> round(float(factors.data[0]), 3)
+0.03
+
+`view_factors`, `exchange_factors` and `displacements` compute whole beds; `Heat` gives net powers for given
+temperatures, step after step. Arrays of positions are (n, 3), of radii (n,). The GIL is released while the library
+computes; Ctrl-C stops it. Errors are subclasses of `Error`.
+"""
+from ._errors import Cancelled, Error, InputError, OutOfMemory, StateError
+from ._factors import Displacements, Factors, displacements, exchange_factors, view_factors
+from ._heat import STEFAN_BOLTZMANN, Heat, Powers
+from ._library import library as _library
+
+__version__ = _library.fibrad_version().decode()
+__all__ = ["Cancelled", "Displacements", "Error", "Factors", "Heat", "InputError", "OutOfMemory", "Powers",
+           "STEFAN_BOLTZMANN", "StateError", "displacements", "exchange_factors", "view_factors"]

@@ -1,0 +1,71 @@
+# _call.py - one call of the library: threads, progress, signals. SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import contextlib
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from typing import Any, Optional
+
+from ._errors import CANCELLED, Cancelled, status_text
+from ._library import PROGRESS, Run
+from ._values import whole
+
+Progress = Callable[[str, int, int], Any]
+
+
+@contextlib.contextmanager
+def _signals_caught(catch: Callable[[BaseException], None]) -> Iterator[None]:
+    """What signal handlers raise, such as KeyboardInterrupt, goes to `catch`: raised in a callback from C, of which
+    Python may not have run a line yet, it would be printed and lost. Handlers run in the main thread alone."""
+    handlers: dict[int, Any] = {}
+    if threading.current_thread() is threading.main_thread():
+        found = {number: signal.getsignal(number) for number in signal.valid_signals()}
+        handlers = {number: handler for number, handler in found.items() if callable(handler)}
+
+    def guarded(number: int, frame: Any) -> None:
+        try:
+            handlers[number](number, frame)
+        except BaseException as error:
+            catch(error)
+
+    for number in handlers:
+        signal.signal(number, guarded)
+    try:
+        yield
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+
+
+class Call:
+    """How the library is called; `run` is the fibrad_run of these calls. The GIL is released meanwhile, and taken up
+    to 20 times a second to look after signals and to report progress."""
+
+    def __init__(self, threads: Optional[int], progress: Optional[Progress]):
+        if progress is not None and not callable(progress):
+            raise TypeError("progress must be a function of stage, done and total")
+        self._progress = progress
+        self._raised: Optional[BaseException] = None
+        self.run = Run(threads=whole("threads", threads, 1, 1024), progress=PROGRESS(self._report))
+
+    def _catch(self, error: BaseException) -> None:
+        self._raised = self._raised or error
+
+    def _report(self, context: Any, stage: bytes, done: int, total: int) -> int:
+        try:
+            if self._progress and not self._raised and self._progress(stage.decode(), done, total):
+                self._raised = Cancelled(status_text(CANCELLED), CANCELLED)
+        except BaseException as error:
+            self._catch(error)
+        return self._raised is not None
+
+    def __call__(self, function: Callable[..., int], *arguments: Any) -> int:
+        """A status; raises what a signal handler or the progress function has raised."""
+        self._raised = None
+        with _signals_caught(self._catch):
+            status = function(*arguments)
+        raised, self._raised = self._raised, None
+        if raised is not None:
+            raise raised
+        return status

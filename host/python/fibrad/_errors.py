@@ -1,0 +1,54 @@
+# _errors.py - what can go wrong, as exceptions. SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+from ._library import library
+
+ARGUMENT, TABLE, GEOMETRY, UNSUPPORTED, MEMORY, CANCELLED = -1, -5, -6, -10, -11, -12
+
+
+class Error(Exception):
+    """Any error of fibrad.
+
+    Attributes
+    ----------
+    status : int
+        The number of the error in ``fibrad.h``, such as -6 for spheres that cannot both be there.
+    spheres : tuple of int
+        Positions of the spheres concerned, from 0: none, one or two.
+    """
+
+    status: int = 0
+    spheres: tuple[int, ...] = ()
+
+    def __init__(self, text: str, status: int = 0, spheres: tuple[int, ...] = ()):
+        super().__init__(text)
+        self.status = status
+        self.spheres = spheres
+
+
+class InputError(Error, ValueError):
+    """A value or a bed that cannot be computed."""
+
+
+class StateError(Error, RuntimeError):
+    """A call that comes too late or too early."""
+
+
+class Cancelled(Error, RuntimeError):
+    """A progress function asked to stop."""
+
+
+class OutOfMemory(Error, MemoryError):
+    """The library had no more memory."""
+
+
+_KINDS = {MEMORY: OutOfMemory, CANCELLED: Cancelled, ARGUMENT: InputError, TABLE: InputError, GEOMETRY: InputError,
+          UNSUPPORTED: InputError}
+
+
+def status_text(status: int) -> str:
+    return str(library.fibrad_status_text(status).decode())
+
+
+def error_of(status: int, text: str, spheres: tuple[int, ...] = ()) -> Error:
+    return _KINDS.get(status, StateError)(text, status, spheres)

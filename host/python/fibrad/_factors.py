@@ -1,0 +1,349 @@
+# _factors.py - view factors, exchange factors and displacements of whole beds. SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import ctypes
+import dataclasses
+import warnings
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._call import Call, Progress
+from ._library import BeamRule, BedFactors, BedOptions, CastRule, Displacement, ExchangeRule, SurfaceRule, library
+from ._scene import Container, Packing, Walls, pointer
+from ._values import marks, per_sphere, real, refuse, whole
+
+_DIRECTIONS = (8, 65536)
+_SEED = (0, 2**64 - 1)
+_FAR = (0.0, 1e150)
+_OVERLAP = 0.05
+"""Above it, spheres are hardly what was meant."""
+_METHODS = {"beam": {"directions", "points", "tolerance"}, "surface": {"nodes"}, "cast": {"rays", "seed"},
+            "mc": {"rays", "seed"}}
+
+
+class _Owner:
+    """Factors of the library, freed when the last array that refers to them is gone."""
+
+    def __init__(self) -> None:
+        self.factors: Any = ctypes.POINTER(BedFactors)()
+
+    def __del__(self, free: Any = library.fibrad_bed_free) -> None:  # bound: at exit the module may be gone
+        free(self.factors)
+
+
+class _Memory:
+    """What numpy needs to make an array of memory that belongs to another."""
+
+    def __init__(self, owner: _Owner, address: Any, shape: tuple[int, ...], kind: str):
+        self._owner = owner
+        self.__array_interface__ = {"data": (ctypes.cast(address, ctypes.c_void_p).value, False), "shape": shape,
+                                    "typestr": np.dtype(kind).str, "version": 3}
+
+
+def _array(owner: _Owner, address: Any, shape: tuple[int, ...], kind: str = "f8") -> NDArray[Any]:
+    return np.asarray(_Memory(owner, address, shape, kind)) if address and np.prod(shape) else np.zeros(shape, kind)
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class Factors:
+    """A matrix of factors in compressed rows (CSR), and what is known of it.
+
+    Row ``i`` is ``data[indptr[i]:indptr[i + 1]]`` in the columns ``indices[indptr[i]:indptr[i + 1]]``, ascending.
+    For each sphere ``data`` of its row + ``walls`` + ``escaped`` + ``beyond`` add up to 1.
+    """
+
+    indptr: NDArray[np.int64]
+    """(n + 1,) where rows begin."""
+    indices: NDArray[np.int32]
+    """(entries,) positions of the spheres that receive, from 0."""
+    data: NDArray[np.float64]
+    """(entries,) factors from the sphere of the row to that of the column."""
+    escaped: NDArray[np.float64]
+    """(n,) to the surroundings."""
+    beyond: NDArray[np.float64]
+    """(n,) beyond the cutoff."""
+    error: NDArray[np.float64]
+    """(n,) Euclidean error of each row, estimated."""
+    walls: NDArray[np.float64]
+    """(n, walls) to each wall."""
+    wall_names: tuple[str, ...]
+    """(walls,) in the order given."""
+    wall_area: NDArray[np.float64]
+    """(walls,) of the part inside all others, per period; infinite where there is no bound."""
+    ids: Optional[NDArray[np.uint64]]
+    """(n,) as given."""
+    closure_error: float
+    """Largest error of a sum of the raw rows, as they were computed."""
+    reciprocity_error: float
+    """Largest ``|A_i F_ij - A_j F_ji| / max(A_i, A_j)``; NaN where rows are missing."""
+    directions: int
+    """Most that a row took; 0: a method without."""
+    fallbacks: int
+    """Windows that the fast method left to the robust one."""
+    rays: int
+    """Traced, of exchange factors."""
+    overlap: float
+    """Largest overlap of two spheres over the smaller radius."""
+    threads: int
+    """Used."""
+    seconds: float
+    """Of computing."""
+
+    @property
+    def n(self) -> int:
+        """Spheres."""
+        return len(self.escaped)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return self.n, self.n
+
+    @property
+    def matrix(self) -> Any:
+        """The factors as a ``scipy.sparse.csr_matrix``, which shares their memory. Needs SciPy."""
+        from scipy.sparse import csr_matrix
+        return csr_matrix((self.data, self.indices, self.indptr), shape=self.shape)
+
+    def row(self, i: int) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """Columns and factors of row ``i``."""
+        part = slice(self.indptr[i], self.indptr[i + 1])
+        return self.indices[part], self.data[part]
+
+    def wall(self, name: str) -> NDArray[np.float64]:
+        """(n,) factors to the wall of that name."""
+        return self.walls[:, self.wall_names.index(name)]
+
+    def __repr__(self) -> str:
+        return (f"<fibrad.Factors: {self.n} spheres, {len(self.data)} entries, error {self.error.max(initial=0):.2g}, "
+                f"{self.seconds:.3g} s>")
+
+
+def _factors(owner: _Owner, wall_names: tuple[str, ...], ids: Optional[NDArray[np.uint64]]) -> Factors:
+    found = owner.factors.contents
+    matrix = found.matrix
+    n, walls = matrix.n, matrix.bodies
+    entries = matrix.start[n]
+    return Factors(
+        indptr=_array(owner, matrix.start, (n + 1,), "i8"), indices=_array(owner, matrix.col, (entries,), "i4"),
+        data=_array(owner, matrix.f, (entries,)), escaped=_array(owner, matrix.escaped, (n,)),
+        beyond=_array(owner, matrix.beyond, (n,)), error=_array(owner, matrix.error, (n,)),
+        walls=_array(owner, matrix.body, (n, walls)), wall_names=wall_names,
+        wall_area=_array(owner, found.body_area, (walls,)), ids=ids, closure_error=found.closure_error,
+        reciprocity_error=found.reciprocity_error, directions=found.directions, fallbacks=found.fallbacks,
+        rays=found.rays, overlap=found.facts.overlap_max, threads=found.threads, seconds=found.seconds)
+
+
+class _Job:
+    """Arguments that all functions of beds have in common."""
+
+    def __init__(self, x: ArrayLike, r: ArrayLike, box: Optional[ArrayLike], walls: Optional[Walls],
+                 ids: Optional[ArrayLike], wanted: Optional[ArrayLike], threads: Optional[int],
+                 progress: Optional[Progress]):
+        self.packing = Packing(x, r, ids)
+        self.container = Container(box, walls)
+        self.marks = marks(wanted, self.packing.n)
+        self.wanted = pointer(self.marks, ctypes.POINTER(ctypes.c_ubyte))
+        self._call = Call(threads, progress)
+
+    def call(self, function: Any, *arguments: Any) -> None:
+        status = self._call(function, self.container.config, self.packing.spheres, *arguments)
+        if status:
+            raise self.packing.error(status, self._call.run.fault)
+
+    @property
+    def run(self) -> Any:
+        return self._call.run
+
+    def factors(self, function: Any, tolerance: Optional[float], *arguments: Any) -> Factors:
+        owner = _Owner()
+        self.call(function, *arguments, self.run, ctypes.byref(owner.factors))
+        factors = _factors(owner, self.container.names, self.packing.ids)
+        if factors.overlap > _OVERLAP:
+            warnings.warn(f"two spheres overlap by {factors.overlap:.3g} of a radius", stacklevel=3)
+        if tolerance is not None and factors.error.max(initial=0) > tolerance:
+            warnings.warn(f"the estimated error is {factors.error.max():.3g}, above the tolerance of {tolerance:g}: "
+                          "no more directions or paths are possible", stacklevel=3)
+        return factors
+
+    def exchange_rule(self, emissivity: ArrayLike, wall_emissivity: Any, **values: Any) -> Any:
+        self._emissivity = per_sphere("emissivity", emissivity, self.packing.n, 0, 1, self.packing.names)
+        self._wall_emissivity = self.container.per_wall("wall_emissivity", wall_emissivity, 0, 1)
+        return ExchangeRule(emissivity=pointer(self._emissivity), body_emissivity=pointer(self._wall_emissivity),
+                            **values)
+
+
+def _beam_rule(values: dict[str, Any], cutoff: float) -> Any:
+    points = whole("points", values["points"], 0, 256)
+    if points not in (0, 64, 128, 256):
+        raise refuse(f"points = {points} is neither 64, 128 nor 256")
+    tolerance = real("tolerance", values["tolerance"], 0, 1)
+    directions = whole("directions", values["directions"], *_DIRECTIONS) or (0 if tolerance else 233)
+    return BeamRule(directions=directions, points=points, cutoff=cutoff, tolerance=tolerance)
+
+
+def _method_options(method: str, values: dict[str, Any], cutoff: Optional[float]) -> dict[str, Any]:
+    """The rule of the method, a field of fibrad_bed_options; values of other methods are refused."""
+    if method not in _METHODS:
+        raise refuse(f"there is no method {method!r}; there are {', '.join(_METHODS)}")
+    foreign = [name for name, value in values.items() if value is not None and name not in _METHODS[method]]
+    if foreign:
+        raise refuse(f"{', '.join(foreign)}: not of the method {method!r}")
+    far = real("cutoff", cutoff, *_FAR)
+    if method == "surface":
+        return {"surface": ctypes.pointer(SurfaceRule(nodes=whole("nodes", values["nodes"], 8, 987), cutoff=far))}
+    if method == "beam":
+        return {"beam": ctypes.pointer(_beam_rule(values, far))}
+    return {"cast": ctypes.pointer(CastRule(rays=whole("rays", values["rays"], 1, 2**32 - 1), random=method == "mc",
+                                            seed=whole("seed", values["seed"], *_SEED), cutoff=far))}
+
+
+def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None, walls: Optional[Walls] = None,
+                 tolerance: Optional[float] = None, directions: Optional[int] = None, points: Optional[int] = None,
+                 method: str = "beam", nodes: Optional[int] = None, rays: Optional[int] = None,
+                 seed: Optional[int] = None, cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None,
+                 raw: bool = False, drop: float = 0.0, ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
+                 progress: Optional[Progress] = None) -> Factors:
+    """View factors between all spheres of a bed.
+
+    Parameters
+    ----------
+    x : (n, 3) array
+        Centres, in any unit of length.
+    r : (n,) array or float
+        Radii, in the same unit. An array of float64 is taken as it lies in memory where its strides allow, others are
+        converted.
+    box : (3,) array, optional
+        Lengths of the periodic box; 0 stands for an open axis. Default: open.
+    walls : mapping or sequence of pairs, optional
+        Names and places: ``{"zmin": 0.0, "zmax": 1.0, "cylinder": (x, y, radius)}``; xmin to zmax, and a cylinder
+        along z.
+    tolerance : float, optional
+        As many directions as bring the estimated Euclidean error of every row down to this.
+    directions : int, optional
+        Of beams, 8 to 65536. Default: 233. The error falls as ``directions**-1.5``.
+    points : {64, 128, 256}, optional
+        Of each window of beams. Default: exact visible areas.
+    method : {"beam", "surface", "cast", "mc"}
+        Beams; nodes on surfaces, after Bao, Gao and Tan; quasi-random rays; random rays.
+    nodes : int, optional
+        Of the method "surface", a Fibonacci number from 8 to 987. Default: 55.
+    rays, seed : int, optional
+        Of the methods "cast" and "mc", rays from each sphere. Default: 20000, 0.
+    cutoff : float, optional
+        Spheres with centres farther apart do not see each other. Default: none.
+    wanted : (n,) bool array or positions, optional
+        Rows wanted; others are empty, and rows are raw. Default: all.
+    raw : bool
+        Leave rows as they were computed, not averaged for ``A_i F_ij = A_j F_ji``.
+    drop : float
+        What entries below this carry goes to the others.
+    ids : (n,) array of whole numbers, optional
+        Names of the spheres, for messages, for the seeds of random paths and the order among equals.
+    threads : int, optional
+        Default: all processors, or ``OMP_NUM_THREADS``. No bit depends on it.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)`` up to 20 times a second; if it returns something true, the call
+        ends with `Cancelled`.
+
+    Returns
+    -------
+    Factors
+
+    Raises
+    ------
+    InputError
+        A value out of its range, NaN; spheres that cannot both be there (a ValueError; attribute ``spheres``).
+    OutOfMemory
+        A MemoryError.
+    """
+    values = {"tolerance": tolerance, "directions": directions, "points": points, "nodes": nodes, "rays": rays,
+              "seed": seed}
+    rule = _method_options(method, values, cutoff)
+    job = _Job(x, r, box, walls, ids, wanted, threads, progress)
+    options = BedOptions(wanted=job.wanted, raw=bool(raw), drop=real("drop", drop, 0, 1), **rule)
+    return job.factors(library.fibrad_view_factors, tolerance, options)
+
+
+def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Optional[ArrayLike] = None,
+                     walls: Optional[Walls] = None, wall_emissivity: Any = None, tolerance: Optional[float] = None,
+                     directions: Optional[int] = None, paths: Optional[int] = None, seed: Optional[int] = None,
+                     cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None, raw: bool = False,
+                     drop: float = 0.0, ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
+                     progress: Optional[Progress] = None) -> Factors:
+    """Exchange factors of grey diffuse spheres: the fraction of what sphere i emits that sphere j absorbs, directly
+    or after reflections. The net power to i is ``sum_j A_i e_i D_ij sigma (T_j**4 - T_i**4)``.
+
+    Parameters
+    ----------
+    x, r, box, walls, cutoff, wanted, raw, drop, ids, threads, progress
+        As of `view_factors`.
+    emissivity : (n,) array or float
+        Of the spheres, 0 to 1.
+    wall_emissivity : mapping or float
+        Of the walls by their names, or of all, 0 to 1; needed where there are walls.
+    tolerance : float, optional
+        As many directions and paths as bring the estimated Euclidean error of rows down to this.
+    directions, paths, seed : int, optional
+        Of the first leg, of the reflections, of the random numbers. Default: 50, 400, 0.
+
+    Returns
+    -------
+    Factors
+
+    Raises
+    ------
+    InputError, OutOfMemory
+    """
+    job = _Job(x, r, box, walls, ids, wanted, threads, progress)
+    rule = job.exchange_rule(emissivity, wall_emissivity, directions=whole("directions", directions, *_DIRECTIONS),
+                             paths=whole("paths", paths, 1, 2**28), seed=whole("seed", seed, *_SEED),
+                             cutoff=real("cutoff", cutoff, *_FAR), tolerance=real("tolerance", tolerance, 0, 1))
+    options = BedOptions(wanted=job.wanted, raw=bool(raw), drop=real("drop", drop, 0, 1))
+    return job.factors(library.fibrad_exchange_factors, tolerance, rule, options)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Displacements:
+    """How far what each sphere emits is carried, from its centre to that of the sphere that absorbs."""
+
+    square: NDArray[np.float64]
+    """(n, 3) [L^2] mean square along each axis."""
+    error: NDArray[np.float64]
+    """(n, 3) [L^2] standard errors, estimated."""
+    absorbed: NDArray[np.float64]
+    """(n,) fraction that spheres absorb."""
+    rays: NDArray[np.uint64]
+    """(n,) traced."""
+
+
+def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Optional[ArrayLike] = None,
+                  walls: Optional[Walls] = None, wall_emissivity: Any = None, paths: Optional[int] = None,
+                  seed: Optional[int] = None, cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None,
+                  ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
+                  progress: Optional[Progress] = None) -> Displacements:
+    """Mean square displacements of radiation, from which the conductivity of a bed follows: for equal spheres of
+    diameter d and solid fraction phi in a periodic box ``k = 4 sigma T**3 * 3 phi e square.mean(axis=0) / d``.
+
+    Parameters
+    ----------
+    x, r, emissivity, box, walls, wall_emissivity, seed, cutoff, wanted, ids, threads, progress
+        As of `exchange_factors`; spheres not wanted have zeros.
+    paths : int, optional
+        From each sphere. Default: 400.
+
+    Returns
+    -------
+    Displacements
+
+    Raises
+    ------
+    InputError, OutOfMemory
+    """
+    job = _Job(x, r, box, walls, ids, wanted, threads, progress)
+    rule = job.exchange_rule(emissivity, wall_emissivity, paths=whole("paths", paths, 1, 2**28),
+                             seed=whole("seed", seed, *_SEED), cutoff=real("cutoff", cutoff, *_FAR))
+    found: NDArray[Any] = np.zeros(job.packing.n, Displacement)
+    job.call(library.fibrad_displacements, rule, job.wanted, job.run, found.ctypes.data, None)
+    return Displacements(*(np.ascontiguousarray(found[name]) for name in ("square", "error", "absorbed", "rays")))

@@ -1,0 +1,229 @@
+# _heat.py - net radiative powers of a bed, step after step. SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import ctypes
+import dataclasses
+import math
+import threading
+import weakref
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._call import Call, Progress
+from ._errors import StateError
+from ._library import Fault, HeatConfig, HeatResult, HeatSources, library
+from ._scene import Container, Packing, Walls, pointer
+from ._values import per_sphere, real, refuse, whole
+
+STEFAN_BOLTZMANN = 5.670374419e-8
+"""W/(m2 K4)"""
+
+_HOTTEST = 1e20
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Powers:
+    """Net powers [W], positive where heat is gained. All of them add up to 0."""
+
+    spheres: NDArray[np.float64]
+    """(n,) to each sphere."""
+    walls: dict[str, float]
+    """To each wall, by its name."""
+    surroundings: float
+    """To the surroundings."""
+    error: float
+    """Estimated error of the powers of spheres, root mean square."""
+    error_patches: float
+    """The part of the error that patches have."""
+    error_beams: float
+    """The part of the error that beams have."""
+    residual: float
+    """Of the radiosities, relative."""
+    sweeps: int
+    """Of the beams that the solution took."""
+
+    @property
+    def balance(self) -> float:
+        """Sum of all powers [W]: 0 but for rounding."""
+        return math.fsum([*self.spheres, *self.walls.values(), self.surroundings])
+
+
+def _choice(name: str, value: Optional[int], choices: tuple[int, ...]) -> int:
+    if value is not None and value not in choices:
+        raise refuse(f"{name} = {value} is none of {', '.join(map(str, choices))}")
+    return value or 0
+
+
+class Heat:
+    """Radiation between grey diffuse spheres, walls and surroundings of given temperatures.
+
+    The beams between all surfaces are traced once; `solve` gives the net powers for any temperatures and emissivities,
+    and starts from the last solution. Memory is freed by `close`, at the end of ``with``, or with the object. One
+    thread at a time may use it.
+
+    Parameters
+    ----------
+    x : (n, 3) array
+        Centres [m].
+    r : (n,) array or float
+        Radii [m].
+    box : (3,) array, optional
+        Lengths of the periodic box [m]; 0 stands for an open axis. Default: open.
+    walls : mapping or sequence of pairs, optional
+        As of `view_factors`: ``{"zmin": 0.0, "cylinder": (x, y, radius)}``.
+    directions : int, optional
+        Of the beams, 8 to 65536. Default: 168.
+    points : {64, 128, 256}, optional
+        Beams per direction and sphere. Default: 64.
+    patches : {24, 96, 384}, optional
+        That the surface of a sphere is divided into. Default: 96.
+    ids : (n,) array of whole numbers, optional
+        Names of the spheres, for messages and the order among equals.
+    threads, progress
+        As of `view_factors`, for this and later calls.
+
+    Examples
+    --------
+    >>> import fibrad
+    >>> with fibrad.Heat([[0, 0, 0], [0, 0, 3]], 1.0) as heat:
+    ...     powers = heat.solve([1000.0, 300.0], 0.8, surroundings=300.0)
+    >>> bool(powers.spheres[0] < 0 < powers.spheres[1])
+    True
+    """
+
+    def __init__(self, x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None, walls: Optional[Walls] = None,
+                 directions: Optional[int] = None, points: Optional[int] = None, patches: Optional[int] = None,
+                 ids: Optional[ArrayLike] = None, threads: Optional[int] = None, progress: Optional[Progress] = None):
+        self._packing = Packing(x, r, ids)
+        self._container = Container(box, walls)
+        config = HeatConfig(directions=whole("directions", directions, 8, 65536),
+                            points=_choice("points", points, (64, 128, 256)),
+                            patches=_choice("patches", patches, (24, 96, 384)))
+        self._call = Call(threads, progress)
+        self._busy = threading.Lock()
+        self._handle = ctypes.c_void_p()
+        self._free = weakref.finalize(self, _free, self._handle)
+        status = self._call(library.fibrad_radiation_new, self._handle, self._container.config, self._packing.spheres,
+                            config, self._call.run)
+        if status:
+            raise self._packing.error(status, self._call.run.fault)
+
+    @property
+    def n(self) -> int:
+        """Spheres."""
+        return self._packing.n
+
+    def _use(self, function: Any, packing: Packing, *arguments: Any) -> None:
+        if not self._busy.acquire(blocking=False):
+            raise StateError("this Heat is in use by another call; one thread at a time may use it")
+        try:
+            if not self._handle:
+                raise StateError("this Heat is closed")
+            status = self._call(function, self._handle, *arguments)
+            if status:
+                fault = Fault()
+                library.fibrad_radiation_describe(self._handle, None, fault)
+                raise packing.error(status, fault)
+        finally:
+            self._busy.release()
+
+    def move(self, x: ArrayLike, r: Optional[ArrayLike] = None, *, box: Optional[ArrayLike] = None,
+             walls: Optional[Walls] = None) -> None:
+        """Goes on to the same spheres and the same kinds of walls at other places.
+
+        Parameters
+        ----------
+        x : (n, 3) array
+            Centres [m].
+        r : (n,) array or float, optional
+            Radii [m]. Default: those there are.
+        box, walls : optional
+            As of `Heat`. Default: those there are.
+
+        Raises
+        ------
+        InputError
+            Also another number of spheres or other walls. The bed of before then stays.
+        """
+        if np.shape(x)[:1] != (self.n,):
+            raise refuse(f"x has the shape {np.shape(x)}; this Heat has {self.n} spheres")
+        packing = Packing(x, self._packing.r if r is None else r, self._packing.ids)
+        container = Container(self._container.period if box is None else box,
+                              self._container.walls if walls is None else walls)
+        if container.names != self._container.names:
+            now, before = (", ".join(names) or "none" for names in (container.names, self._container.names))
+            raise refuse(f"the walls are {now}; they were {before}")
+        self._use(library.fibrad_radiation_move, packing, container.config, packing.spheres)
+        self._packing, self._container = packing, container
+
+    def solve(self, temperature: ArrayLike, emissivity: ArrayLike, *, surroundings: Optional[float] = None,
+              wall_temperature: Any = None, wall_emissivity: Any = None, tolerance: Optional[float] = None,
+              uniform: bool = False, sigma: float = STEFAN_BOLTZMANN) -> Powers:
+        """Net powers.
+
+        Parameters
+        ----------
+        temperature : (n,) array or float
+            Of the spheres [K].
+        emissivity : (n,) array or float
+            Of the spheres, 0 to 1; 0 reflects all.
+        surroundings : float
+            Temperature of the surroundings [K]; may be left out only where walls and periods leave no way out.
+        wall_temperature : mapping or float
+            Temperatures of the walls [K] by their names, or of all; needed where there are walls.
+        wall_emissivity : mapping or float
+            Emissivities of the walls by their names, or of all, 0 to 1; needed where there are walls.
+        tolerance : float, optional
+            Residual at which to stop, relative to the differences of emission. Default: 1e-3.
+        uniform : bool
+            One radiosity for each sphere and wall; wrong but for emissivities near 1.
+        sigma : float
+            Emission is ``sigma T**4``; another value for other units.
+
+        Returns
+        -------
+        Powers
+
+        Raises
+        ------
+        InputError, StateError, OutOfMemory
+        """
+        container, names, n = self._container, self._packing.names, self.n
+        arrays = {"temperature": per_sphere("temperature", temperature, n, 0, _HOTTEST, names),
+                  "emissivity": per_sphere("emissivity", emissivity, n, 0, 1, names),
+                  "body_temperature": container.per_wall("wall_temperature", wall_temperature, 0, _HOTTEST),
+                  "body_emissivity": container.per_wall("wall_emissivity", wall_emissivity, 0, 1)}
+        if surroundings is None and not container.closed():
+            raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
+        sources = HeatSources(surroundings=real("surroundings", surroundings, 0, _HOTTEST),
+                              sigma=real("sigma", sigma, 1e-30, 1e30), tolerance=real("tolerance", tolerance, 0, 1),
+                              uniform=bool(uniform), **{name: pointer(array) for name, array in arrays.items()})
+        power, wall_power = np.zeros(n), np.zeros(len(container.names))
+        result = HeatResult(power=pointer(power), body_power=pointer(wall_power))
+        self._use(library.fibrad_radiation_solve, self._packing, sources, result)
+        if surroundings is None and result.surroundings_power != 0:
+            raise refuse(f"{result.surroundings_power} W leave the bed after 100 periods: surroundings is needed")
+        return Powers(spheres=power, walls=dict(zip(container.names, wall_power.tolist())),
+                      surroundings=result.surroundings_power,
+                      error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,
+                      error_beams=result.error_beams, residual=result.residual, sweeps=result.sweeps)
+
+    def close(self) -> None:
+        """Frees the memory; after that the object is of no use."""
+        if not self._busy.acquire(blocking=False):
+            raise StateError("this Heat is in use by another call")
+        self._free()
+        self._busy.release()
+
+    def __enter__(self) -> "Heat":
+        return self
+
+    def __exit__(self, *exception: Any) -> None:
+        self.close()
+
+
+def _free(handle: ctypes.c_void_p) -> None:
+    library.fibrad_radiation_free(handle)
+    handle.value = None

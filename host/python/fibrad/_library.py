@@ -1,0 +1,112 @@
+# _library.py - libfibrad.so by ctypes: its structures, checked against its own sizes. SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import ctypes
+import importlib.metadata
+import os
+import pathlib
+from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_ubyte, c_uint32, c_uint64, c_void_p
+from typing import Any
+
+DOUBLES = POINTER(c_double)
+PROGRESS: Any = ctypes.CFUNCTYPE(c_int, c_void_p, c_char_p, c_uint64, c_uint64)
+
+
+_structures: list[Any] = []
+
+
+class _Plane(ctypes.Structure):
+    _fields_ = [("axis", c_int), ("upper", c_int), ("at", c_double)]
+
+
+class _Cylinder(ctypes.Structure):
+    _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double)]
+
+
+def _structure(name: str, *fields: tuple[str, Any]) -> Any:
+    """The structure fibrad_NAME. fields: names, several with blanks between, and their type."""
+    structure = type(f"fibrad_{name}", (ctypes.Structure,),
+                     {"_fields_": [(one, kind) for names, kind in fields for one in names.split()]})
+    _structures.append(structure)
+    return structure
+
+
+Spheres = _structure("spheres", ("x y z r", DOUBLES), ("n stride stride_r", c_uint32), ("id", POINTER(c_uint64)))
+Body = _structure("body", ("kind", c_int), ("plane", _Plane), ("cylinder", _Cylinder))
+SceneConfig = _structure("scene_config", ("isa", c_int), ("period", c_double * 3), ("body", POINTER(Body)),
+                         ("bodies", c_uint32), ("known_low known_high", c_double * 3), ("occupancy", c_void_p))
+Fault = _structure("fault", ("first second", c_uint32))
+SceneFacts = _structure("scene_facts", ("spheres bodies", c_uint32), ("isa", c_int), ("cells", c_uint32),
+                        ("radius_min radius_max overlap_max", c_double), ("overlap_pair", c_uint32 * 2))
+Run = _structure("run", ("threads", c_int), ("progress", PROGRESS), ("context", c_void_p), ("fault", Fault))
+BeamRule = _structure("beam_rule", ("directions points", c_uint32), ("cutoff tolerance", c_double), ("turn", c_uint64))
+SurfaceRule = _structure("surface_rule", ("nodes flags", c_uint32), ("cutoff", c_double), ("isa", c_int))
+CastRule = _structure("cast_rule", ("rays", c_uint32), ("random", c_int), ("seed", c_uint64), ("cutoff", c_double))
+BedOptions = _structure("bed_options", ("beam", POINTER(BeamRule)), ("surface", POINTER(SurfaceRule)),
+                        ("cast", POINTER(CastRule)), ("wanted", POINTER(c_ubyte)), ("raw", c_int), ("drop", c_double))
+Matrix = _structure("factors", ("n bodies", c_uint32), ("start", POINTER(c_uint64)), ("col", POINTER(c_uint32)),
+                    ("f escaped beyond error body", DOUBLES))
+BedFactors = _structure("bed_factors", ("matrix", Matrix), ("facts", SceneFacts), ("body_area", DOUBLES),
+                        ("threads", c_int), ("directions", c_uint32), ("fallbacks rays", c_uint64),
+                        ("seconds closure_error reciprocity_error", c_double))
+ExchangeRule = _structure("exchange_rule", ("emissivity body_emissivity", DOUBLES), ("directions paths", c_uint32),
+                          ("seed", c_uint64), ("cutoff tolerance", c_double))
+Displacement = _structure("displacement", ("square error", c_double * 3), ("absorbed", c_double), ("rays", c_uint64))
+HeatConfig = _structure("heat_config", ("directions points patches parts", c_uint32), ("cutoff", c_double))
+HeatSources = _structure("heat_sources", ("temperature emissivity body_temperature body_emissivity", DOUBLES),
+                         ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int))
+HeatResult = _structure("heat_result", ("power body_power", DOUBLES),
+                        ("surroundings_power error_patches error_beams residual", c_double), ("sweeps", c_uint32))
+
+
+def _declare(library: ctypes.CDLL) -> None:
+    """Types of what is called, so that no pointer is cut to an int."""
+    bed: list[Any] = [POINTER(SceneConfig), POINTER(Spheres)]
+    library.fibrad_version.restype = library.fibrad_status_text.restype = c_char_p
+    library.fibrad_host_sizeof.argtypes, library.fibrad_host_sizeof.restype = [c_char_p], c_size_t
+    library.fibrad_view_factors.argtypes = [*bed, POINTER(BedOptions), POINTER(Run), POINTER(POINTER(BedFactors))]
+    library.fibrad_exchange_factors.argtypes = [*bed, POINTER(ExchangeRule), POINTER(BedOptions), POINTER(Run),
+                                                POINTER(POINTER(BedFactors))]
+    library.fibrad_displacements.argtypes = [*bed, POINTER(ExchangeRule), POINTER(c_ubyte), POINTER(Run),
+                                             c_void_p, c_void_p]
+    library.fibrad_radiation_new.argtypes = [POINTER(c_void_p), *bed, POINTER(HeatConfig), POINTER(Run)]
+    library.fibrad_radiation_move.argtypes = [c_void_p, *bed]
+    library.fibrad_radiation_solve.argtypes = [c_void_p, POINTER(HeatSources), POINTER(HeatResult)]
+    library.fibrad_radiation_describe.argtypes = [c_void_p, c_void_p, POINTER(Fault)]
+    library.fibrad_radiation_free.argtypes = [c_void_p]
+    library.fibrad_bed_free.argtypes = [POINTER(BedFactors)]
+    for name in ("radiation_describe", "radiation_free", "bed_free"):
+        getattr(library, f"fibrad_{name}").restype = None
+
+
+def _load() -> ctypes.CDLL:
+    """The library that FIBRAD_LIBRARY names, that of the package, that of the source tree, or that of the system."""
+    here = pathlib.Path(__file__).resolve().parent
+    named = os.environ.get("FIBRAD_LIBRARY")
+    places = [here / "libfibrad.so", here.parents[2] / os.environ.get("BUILD", "build") / "libfibrad.so"]
+    path = named or next((str(place) for place in places if place.exists()), "libfibrad.so.0")
+    try:
+        return ctypes.CDLL(path)
+    except OSError as error:
+        raise ImportError(f"fibrad: {path} cannot be loaded: {error}") from None
+
+
+def _check(library: ctypes.CDLL) -> None:
+    """The library must be that of this package: its version, and the sizes of its structures."""
+    found = library.fibrad_version().decode()
+    try:
+        wanted = importlib.metadata.version("fibrad")
+    except importlib.metadata.PackageNotFoundError:
+        wanted = found  # used from the source tree
+    if found != wanted:
+        raise ImportError(f"fibrad: {library._name} is of version {found}, this package of {wanted}")
+    for kind in _structures:
+        size = library.fibrad_host_sizeof(kind.__name__.encode())
+        if size != ctypes.sizeof(kind):
+            raise ImportError(f"fibrad: {library._name}: {kind.__name__} has {size} bytes, "
+                              f"this package has {ctypes.sizeof(kind)}")
+
+
+library = _load()
+_declare(library)
+_check(library)

@@ -1,0 +1,131 @@
+# _scene.py - spheres, box and walls as the library takes them. SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._errors import ARGUMENT, GEOMETRY, Error, error_of, status_text
+from ._library import DOUBLES, Body, SceneConfig, Spheres
+from ._values import Names, doubles, real, refuse
+
+_AXES = "xyz"
+_PLANES = {f"{axis}{end}": (k, upper) for k, axis in enumerate(_AXES) for upper, end in enumerate(("min", "max"))}
+_PLANE, _CYLINDER = 1, 2
+_STRIDE_MAX = 2**32 - 1
+_LENGTH_MAX = 1e150
+
+Walls = Union[Mapping[str, Any], Sequence[tuple[str, Any]]]
+
+
+def pointer(array: Optional[NDArray[Any]], kind: Any = DOUBLES) -> Any:
+    """None: NULL."""
+    return None if array is None else ctypes.cast(array.ctypes.data, kind)
+
+
+def _stride(array: NDArray[np.float64]) -> int:
+    """Doubles between the elements along the first axis; 0: not as the library takes it."""
+    if not array.flags.aligned:
+        return 0
+    if len(array) < 2:
+        return 1
+    apart, rest = divmod(array.strides[0], array.itemsize)
+    return apart if rest == 0 and 0 < apart <= _STRIDE_MAX else 0
+
+
+def _strided(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The array itself where its stride allows, else a copy."""
+    return array if _stride(array) else np.ascontiguousarray(array)
+
+
+class Packing:
+    """Spheres with their arrays, which stay as long as it does."""
+
+    def __init__(self, x: ArrayLike, r: ArrayLike, ids: Optional[ArrayLike] = None):
+        self.x = _strided(doubles("x", x))
+        if self.x.ndim != 2 or self.x.shape[1] != 3:
+            raise refuse(f"x has the shape {self.x.shape}; (n, 3) is wanted: the centres of n spheres")
+        self.n = len(self.x)
+        r = doubles("r", r)
+        if r.shape not in ((), (self.n,)):
+            raise refuse(f"r has the shape {r.shape}; a radius or {self.n} of them, one for each sphere, are wanted")
+        self.r = _strided(np.broadcast_to(r, (self.n,)))
+        self.ids = None if ids is None else self._take_ids(ids)
+        self.names = Names(self.ids)
+        columns = [pointer(self.x[:, k]) for k in range(3)] if self.n else [None] * 3
+        self.spheres = Spheres(*columns, pointer(self.r), self.n, _stride(self.x), _stride(self.r),
+                               pointer(self.ids, ctypes.POINTER(ctypes.c_uint64)))
+
+    def _take_ids(self, ids: ArrayLike) -> NDArray[np.uint64]:
+        array = np.asarray(ids)
+        if array.shape != (self.n,):
+            raise refuse(f"ids has the shape {array.shape}; {self.n} are wanted, one for each sphere")
+        if array.size and (array.dtype.kind not in "iu" or array.min() < 0):
+            raise refuse("ids must be whole numbers from 0")
+        values, counts = np.unique(array, return_counts=True)
+        if values.size < self.n:
+            raise refuse(f"two spheres have the id {values[counts > 1][0]}")
+        return np.ascontiguousarray(array, np.uint64)
+
+    def error(self, status: int, fault: Any) -> Error:
+        """What a call has returned, in words, with the spheres concerned."""
+        concerned = tuple(dict.fromkeys(i for i in (fault.first, fault.second) if i < self.n))
+        text = status_text(status)
+        if status == GEOMETRY and len(concerned) < 2:
+            text = "the box is smaller than a sphere's radius along a periodic axis"
+        elif status == ARGUMENT and not concerned:
+            text = f"this bed, box and walls cannot be computed: {text}"
+        places = ", ".join(f"{self.names(i)} at {self.x[i].tolist()}, radius {self.r[i]}" for i in concerned)
+        return error_of(status, f"{text}: {places}" if places else text, concerned)
+
+
+def _body(name: str, value: Any) -> Any:
+    if name in _PLANES:
+        axis, upper = _PLANES[name]
+        return Body(kind=_PLANE, plane=(axis, upper, real(f"wall {name}", value, -_LENGTH_MAX, _LENGTH_MAX)))
+    if name == "cylinder":
+        numbers = doubles("wall cylinder", value)
+        if numbers.shape != (3,) or not np.isfinite(numbers).all() or numbers[2] <= 0:
+            raise refuse("wall cylinder must be (x, y, radius), x and y of its axis along z")
+        return Body(kind=_CYLINDER, cylinder=tuple(numbers))
+    raise refuse(f"there is no wall {name!r}; there are {', '.join(_PLANES)} and cylinder")
+
+
+class Container:
+    """A box and walls."""
+
+    def __init__(self, box: Optional[ArrayLike], walls: Optional[Walls]):
+        self.period = np.zeros(3) if box is None else doubles("box", box)
+        if self.period.shape != (3,) or not (np.isfinite(self.period) & (self.period >= 0)).all():
+            raise refuse("box must be three lengths; 0 stands for an open axis")
+        self.walls = pairs = list(walls.items() if isinstance(walls, Mapping) else walls or ())
+        self.names = tuple(name for name, _ in pairs)
+        if len(set(self.names)) < len(pairs):
+            raise refuse("a wall is named twice")
+        self._bodies = (Body * len(pairs))(*(_body(name, value) for name, value in pairs))
+        self.config = SceneConfig(period=tuple(self.period), body=self._bodies, bodies=len(pairs))
+
+    def closed(self) -> bool:
+        """Whether nothing can leave: each axis periodic, between two planes or within the cylinder."""
+        def bounded(axis: int) -> bool:
+            ends = {f"{_AXES[axis]}min", f"{_AXES[axis]}max"}
+            return self.period[axis] > 0 or ends <= set(self.names) or (axis < 2 and "cylinder" in self.names)
+        return all(bounded(axis) for axis in range(3))
+
+    def per_wall(self, name: str, value: Any, low: float, high: float) -> NDArray[np.float64]:
+        """[walls] values [low, high] of a mapping by the walls' names; a number is for all walls."""
+        if not self.names and value is not None:
+            raise refuse(f"{name} is given, and there are no walls")
+        if not isinstance(value, Mapping):
+            value = dict.fromkeys(self.names, value)
+        wrong = set(value) - set(self.names)
+        if wrong:
+            raise refuse(f"{name}: there is no wall {', '.join(map(repr, sorted(wrong)))}; "
+                         f"there are {', '.join(self.names)}")
+        missing = [wall for wall in self.names if value.get(wall) is None]
+        if missing:
+            raise refuse(f"{name} of {', '.join(missing)} is missing")
+        return np.array([real(f"{name} of {wall}", value[wall], low, high) for wall in self.names])

@@ -1,0 +1,89 @@
+# _values.py - arguments as the library takes them, or a clear refusal. SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import operator
+from typing import Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._errors import ARGUMENT, InputError
+
+
+def refuse(text: str, *spheres: int) -> InputError:
+    return InputError(text, ARGUMENT, spheres)
+
+
+def whole(name: str, value: Optional[int], low: int, high: int) -> int:
+    """A whole number [low, high]; None: 0, the library's default."""
+    if value is None:
+        return 0
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be a whole number, not {value!r}") from None
+    if not low <= number <= high:
+        raise refuse(f"{name} = {number} is not in [{low}, {high}]")
+    return number
+
+
+def real(name: str, value: Optional[float], low: float, high: float) -> float:
+    """A number [low, high]; None: 0, the library's default."""
+    if value is None:
+        return 0.0
+    number = float(value)
+    if not low <= number <= high:
+        raise refuse(f"{name} = {number} is not in [{low:g}, {high:g}]")
+    return number
+
+
+def doubles(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """An array of float64, the given one if it is such; what has no plain number is refused."""
+    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
+        raise refuse(f"{name} has masked elements")
+    array = np.asarray(value)
+    try:
+        if array.dtype.kind in "fiubO":
+            return array.astype(np.float64, copy=False)
+    except (TypeError, ValueError):
+        pass  # objects that are no numbers
+    raise refuse(f"{name} must be numbers, not {array.dtype}")
+
+
+def per_sphere(name: str, value: ArrayLike, n: int, low: float, high: float, names: "Names") -> NDArray[np.float64]:
+    """[n] values [low, high], contiguous; a number is for all spheres."""
+    array = doubles(name, value)
+    if array.shape not in ((), (n,)):
+        raise refuse(f"{name} has the shape {array.shape}; a number or {n} of them, one for each sphere, are wanted")
+    array = np.ascontiguousarray(np.broadcast_to(array, (n,)))
+    wrong = np.flatnonzero(~((array >= low) & (array <= high)))
+    if wrong.size:
+        i = int(wrong[0])
+        raise refuse(f"{name} of {names(i)} is {array[i]}, not in [{low:g}, {high:g}]", i)
+    return array
+
+
+def marks(wanted: Optional[ArrayLike], n: int) -> Optional[NDArray[np.uint8]]:
+    """[n] 1 for the rows wanted, given as a mask or as positions."""
+    if wanted is None:
+        return None
+    array = np.asarray(wanted)
+    if array.dtype == bool:
+        if array.shape != (n,):
+            raise refuse(f"wanted has the shape {array.shape}; a mask has one element for each of {n} spheres")
+        return array.astype(np.uint8)
+    if array.size and (array.dtype.kind not in "iu" or array.min() < 0 or array.max() >= n):
+        raise refuse(f"wanted must be a mask or positions [0, {n})")
+    marked = np.zeros(n, np.uint8)
+    marked[array.astype(np.intp)] = 1
+    return marked
+
+
+class Names:
+    """What spheres are called in messages: by id where there are ids, else by position."""
+
+    def __init__(self, ids: Optional[NDArray[np.uint64]]):
+        self._ids = ids
+
+    def __call__(self, i: int) -> str:
+        return f"sphere {i}" if self._ids is None else f"sphere of id {self._ids[i]}"

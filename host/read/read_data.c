@@ -1,0 +1,175 @@
+/* read_data.c - beds from data files of LAMMPS and LIGGGHTS. SPDX-License-Identifier: MIT
+ *
+ * A comment, a header of lines such as `100 atoms` and `0 2 xlo xhi`, and sections, of which `Atoms # sphere` has the
+ * spheres. Positions are those within the box; image flags are left alone. */
+#include <ctype.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "read/read_format.h"
+#include "text/read_number.h"
+
+enum { IMAGE_FLAGS = 3, COLUMNS_MAX = 1000, WORD = 40 };
+
+/* The columns of the styles of atoms that are known. */
+static const struct {
+    const char *style, *columns;
+} styles[] = {
+    {"sphere", "id type diameter density x y z"},
+    {"granular", "id type diameter density x y z"},
+    {"hybrid sphere", "id type x y z diameter density"},
+    {"hybrid granular", "id type x y z diameter density"},
+    {"hybrid", "id type x y z"},
+    {"atomic", "id type x y z"},
+    {"charge", "id type q x y z"},
+    {"bond", "id molecule type x y z"},
+    {"angle", "id molecule type x y z"},
+    {"molecular", "id molecule type x y z"},
+    {"full", "id molecule type q x y z"},
+};
+
+/* Is a line among the first ones `100 atoms`? */
+static bool is_data(const struct source *source) {
+    size_t size;
+    const char *text = source_begin(source, &size), *last = text + size;
+    for (int line = 0; line < 100; ++line) {
+        const char *end = memchr(text, '\n', (size_t)(last - text));
+        char copy[WORD], word[WORD];
+        int64_t atoms;
+        if (!end) return false;
+        const size_t length = (size_t)(end - text) < sizeof copy - 1 ? (size_t)(end - text) : sizeof copy - 1;
+        memcpy(copy, text, length);
+        copy[length] = 0;
+        if (line > 0 && sscanf(copy, "%39s %39s", word, copy) == 2 && strcmp(copy, "atoms") == 0 &&
+            number_read_whole(word, &atoms))
+            return true;
+        text = end + 1;
+    }
+    return false;
+}
+
+/* ---- header ----------------------------------------------------------------------------------------------------- */
+
+/* `LAMMPS data file via write_data, version 2 Aug 2023, timestep = 3, units = si` */
+static void read_comment(const char *comment, struct bed *bed) {
+    char word[WORD];
+    const char *units = strstr(comment, ", units = "), *step = strstr(comment, ", timestep = ");
+    if (units) (void)sscanf(units, ", units = %15[a-z]", bed->units);
+    if (step && sscanf(step, ", timestep = %39[0-9]", word) == 1) (void)number_read_whole(word, &bed->timestep);
+}
+
+/* A line of the header, cut to pieces. */
+static int read_header_line(struct source *source, int64_t *atoms, struct bed *bed) {
+    static const char *const low[] = {"xlo", "ylo", "zlo"}, *const high[] = {"xhi", "yhi", "zhi"};
+    const struct fields *fields = &source->fields;
+    char **at = fields->at;
+    int status = STATUS_OK;
+    if (fields->n == 2 && strcmp(at[1], "atoms") == 0) return source_count(source, at[0], atoms);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (fields->n != 4 || strcmp(at[2], low[axis]) != 0 || strcmp(at[3], high[axis]) != 0) continue;
+        status = lines_number(&source->lines, low[axis], at[0], &bed->low[axis]);
+        if (!status) status = lines_number(&source->lines, high[axis], at[1], &bed->high[axis]);
+        if (!status && !(bed->low[axis] < bed->high[axis])) status = source_fail(source, "the box is empty");
+    }
+    const bool tilt = fields->n == 6 && strcmp(at[3], "xy") == 0;
+    for (int k = 0; k < 3 && tilt && !status; ++k) {
+        double value;
+        status = lines_number(&source->lines, at[3 + k], at[k], &value);
+        if (!status && value != 0)
+            return source_fail(source, "the box is tilted; only boxes with right angles can be read");
+    }
+    if (fields->n > 0 && strcmp(at[fields->n - 1], "avec") == 0)
+        return source_fail(source, "the box is triclinic; only boxes with right angles can be read");
+    return status;
+}
+
+/* Reads up to the section Atoms; *style is what its comment says, "" if it has none. */
+static int read_header(struct source *source, int64_t *atoms, char *style, struct bed *bed) {
+    struct lines *lines = &source->lines;
+    bool more, header = true;
+    int status = lines_next(lines, &more);
+    if (!status && more) read_comment(lines->text, bed);
+    while (!status && (status = lines_next(lines, &more)) == STATUS_OK && more) {
+        char word[WORD] = "";
+        char *comment = strchr(lines->text, '#');
+        if (comment) *comment++ = 0;
+        sscanf(lines->text, "%39s", word);
+        if (strcmp(word, "Atoms") == 0) {
+            style[0] = 0;
+            if (comment && sscanf(comment, " %79[^\r\n]", style) == 1)
+                for (size_t end = strlen(style); end > 0 && isspace((unsigned char)style[end - 1]); --end)
+                    style[end - 1] = 0;
+            return STATUS_OK;
+        }
+        header = header && !isupper((unsigned char)*word);
+        if (!header) continue; /* a section that is of no use here */
+        status = fields_split_blanks(&source->fields, lines->text);
+        if (!status) status = read_header_line(source, atoms, bed);
+    }
+    return status ? status : source_ends(source, "there is no section Atoms in this LAMMPS data file");
+}
+
+/* ---- atoms ------------------------------------------------------------------------------------------------------ */
+
+/* The style where the file does not say it: that of the rows by LIGGGHTS, or of five columns and image flags. */
+static int guess_style(struct source *source, bool granular, char *style) {
+    char line[200];
+    int n = 0, length;
+    bool more;
+    int status;
+    while ((status = lines_next(&source->lines, &more)) == STATUS_OK && more && lines_blank(&source->lines)) continue;
+    if (status || !more) return status;
+    snprintf(line, sizeof line, "%.*s", (int)strcspn(source->lines.text, "#"), source->lines.text);
+    for (const char *text = line; sscanf(text, "%*s%n", &length) != EOF; text += length) ++n;
+    if (!granular && n != 5 && n != 8)
+        return source_fail(source, "the style of the atoms is not said; write `Atoms # sphere` above them if their "
+                                   "columns are id type diameter density x y z");
+    strcpy(style, granular ? "granular" : "atomic");
+    lines_hold(&source->lines);
+    return STATUS_OK;
+}
+
+/* Finds the columns of a style; *more: how many may be behind them. */
+static int find_style(struct source *source, const char *style, size_t *more, const struct bed *bed) {
+    const struct lines *lines = &source->lines;
+    const bool hybrid = strncmp(style, "hybrid", 6) == 0;
+    size_t k = 0;
+    *more = hybrid ? COLUMNS_MAX : IMAGE_FLAGS;
+    while (k < sizeof styles / sizeof *styles && strcmp(styles[k].style, style) != 0) ++k;
+    if (k == sizeof styles / sizeof *styles)
+        return message_at(STATUS_INPUT, lines->name, lines->number,
+                          "this is a LAMMPS data file of style %.40s, whose columns are not known; sphere is", style);
+    if (source->options.no_radius || strstr(styles[k].columns, "diameter"))
+        return source_columns(source, styles[k].columns, bed);
+    if (hybrid)
+        return source_fail(source, "this is a LAMMPS data file of style hybrid, which does not say of what; write "
+                                   "`Atoms # hybrid sphere` if columns are id type x y z diameter density ...");
+    return message_at(STATUS_INPUT, lines->name, lines->number,
+                      "this is a LAMMPS data file of style %s: it has no radii; --radius gives them", style);
+}
+
+static int read_data(struct source *source, struct bed *bed) {
+    static const char liggghts[] = "LIGGGHTS data file via write_data";
+    size_t size, more;
+    const char *begin = source_begin(source, &size);
+    const bool granular = size > strlen(liggghts) && memcmp(begin, liggghts, strlen(liggghts)) == 0;
+    char style[80] = "";
+    int64_t atoms = 0;
+    bool there = true;
+    int status = read_header(source, &atoms, style, bed);
+    if (!status && !*style) status = guess_style(source, granular, style);
+    if (!status) status = find_style(source, style, &more, bed);
+    while (!status && (status = lines_next(&source->lines, &there)) == STATUS_OK && there)
+        if (!lines_blank(&source->lines)) {
+            lines_hold(&source->lines);
+            break;
+        }
+    if (status) return status;
+    source_warn_open(source);
+    return source_rows(source, atoms, more, bed);
+}
+
+const struct format format_data = {is_data, NULL, read_data};

@@ -1,0 +1,83 @@
+/* read_format.c - what the readers of all formats have in common. SPDX-License-Identifier: MIT */
+#include "read/read_format.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+
+const char *source_begin(const struct source *source, size_t *size) {
+    *size = source->lines.end - source->lines.next;
+    return source->lines.buffer + source->lines.next;
+}
+
+int source_fail(const struct source *source, const char *what) {
+    return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "%s", what);
+}
+
+char *source_word(const struct source *source, char *to, size_t room) {
+    static const char blanks[] = " \t\r\v\f";
+    const char *text = source->lines.text + strspn(source->lines.text, blanks);
+    size_t length = strlen(text);
+    while (length > 0 && strchr(blanks, text[length - 1])) --length;
+    if (length > room - 1) length = room - 1;
+    memcpy(to, text, length);
+    to[length] = 0;
+    return to;
+}
+
+int source_ends(const struct source *source, const char *lack) {
+    return source_fail(source, source->lines.truncated ? "the gzip file is cut off" : lack);
+}
+
+void source_warn_open(const struct source *source) {
+    message_at(STATUS_OK, source->lines.name, 0,
+               "warning: the file does not say which axes are periodic; all are open unless --periodic says otherwise");
+}
+
+int source_columns(struct source *source, const char *names, const struct bed *bed) {
+    struct fields fields = {0};
+    char *text = strdup(names);
+    int status = text ? fields_split_blanks(&fields, text) : message_memory();
+    if (!status) status = columns_find(&source->columns, &source->lines, &fields, &source->options, bed);
+    free(fields.at);
+    free(text);
+    return status;
+}
+
+int source_rows(struct source *source, int64_t rows, size_t more, struct bed *bed) {
+    struct fields *fields = &source->fields;
+    const size_t width = source->columns.width;
+    for (int64_t k = 0; k < rows; ++k) {
+        bool there;
+        int status = lines_next(&source->lines, &there);
+        if (!status && !there) return source_ends(source, "the file ends before the last of its spheres");
+        if (!status) status = fields_split_blanks(fields, source->lines.text);
+        if (fields->n > width && fields->n <= width + more) fields->n = width;
+        if (!status) status = columns_add(&source->columns, &source->lines, fields, &source->options, bed);
+        if (status) return status;
+    }
+    return STATUS_OK;
+}
+
+int source_skip(struct source *source, int64_t rows, enum found *found, char *lack) {
+    *found = FOUND_FRAME;
+    for (int64_t k = 0; k < rows; ++k) {
+        bool there;
+        const int status = lines_next(&source->lines, &there);
+        if (status) return status;
+        if (there) continue;
+        *found = FOUND_PART;
+        snprintf(lack, LACK_MAX, "the frame ends after %" PRId64 " spheres; %" PRId64 " were declared", k, rows);
+        return STATUS_OK;
+    }
+    return STATUS_OK;
+}
+
+int source_count(const struct source *source, const char *text, int64_t *atoms) {
+    const int status = lines_whole(&source->lines, "the number of atoms", text, atoms);
+    if (!status && *atoms < 0) return source_fail(source, "the number of atoms is negative");
+    return status;
+}

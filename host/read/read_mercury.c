@@ -1,0 +1,87 @@
+/* read_mercury.c - beds from the .data files of MercuryDPM. SPDX-License-Identifier: MIT
+ *
+ * A frame is a line `N time xmin ymin zmin xmax ymax zmax` and N lines of 14 numbers; in two dimensions, of 6 and of 8
+ * numbers. There are no ids, and which axes are periodic is not said. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "read/read_format.h"
+#include "text/read_number.h"
+
+/* How many numbers a line has; -1: it has other things, or 100 of them. */
+static int numbers_of(const char *text, const char *end) {
+    char line[2000], *word, *rest = line;
+    double value;
+    int n = 0;
+    const size_t size = (size_t)(end - text);
+    if (size >= sizeof line) return -1;
+    memcpy(line, text, size);
+    line[size] = 0;
+    while ((word = strtok_r(rest, " \t\r", &rest)))
+        if (++n == 100 || !number_read(word, &value)) return -1;
+    return n;
+}
+
+/* Are the first two lines of such lengths? */
+static bool is_mercury(const struct source *source) {
+    size_t size;
+    const char *text = source_begin(source, &size), *end = memchr(text, '\n', size);
+    if (!end) return false;
+    const int head = numbers_of(text, end);
+    const char *row = end + 1, *last = memchr(row, '\n', size - (size_t)(row - text));
+    if (!last) return false;
+    const int width = numbers_of(row, last);
+    return (head == 8 && width == 14) || (head == 6 && width == 8);
+}
+
+/* The number of spheres and the box, as the line that begins a frame says. */
+static int read_head(struct source *source, double head[8]) {
+    static const char *const names[] = {"the number of atoms", "the time", "xmin", "ymin", "zmin", "xmax", "ymax",
+                                        "zmax"};
+    int status = fields_split_blanks(&source->fields, source->lines.text);
+    if (!status && source->fields.n == 6)
+        return source_fail(source, "a MercuryDPM file in two dimensions: these are discs");
+    if (!status && source->fields.n != 8)
+        return source_fail(source, "a line `N time xmin ymin zmin xmax ymax zmax` is expected");
+    for (int k = 0; k < 8 && !status; ++k)
+        status = lines_number(&source->lines, names[k], source->fields.at[k], &head[k]);
+    return status;
+}
+
+/* The number of spheres; lines of blanks are skipped. */
+static int mercury_count(struct source *source, int64_t *spheres, bool *more) {
+    int status;
+    char word[32] = "";
+    while ((status = lines_next(&source->lines, more)) == STATUS_OK && *more && lines_blank(&source->lines)) continue;
+    if (status || !*more) return status;
+    sscanf(source->lines.text, "%31s", word);
+    return source_count(source, word, spheres);
+}
+
+static int skip_mercury(struct source *source, enum found *found, char *lack) {
+    bool more;
+    int64_t spheres;
+    *found = FOUND_END;
+    const int status = mercury_count(source, &spheres, &more);
+    return status || !more ? status : source_skip(source, spheres, found, lack);
+}
+
+static int read_mercury(struct source *source, struct bed *bed) {
+    bool more;
+    int64_t spheres;
+    double head[8] = {0};
+    int status = mercury_count(source, &spheres, &more);
+    if (!status) status = read_head(source, head);
+    for (int axis = 0; axis < 3 && !status; ++axis) {
+        bed->low[axis] = head[2 + axis];
+        bed->high[axis] = head[5 + axis];
+        if (!(bed->low[axis] < bed->high[axis])) status = source_fail(source, "the box is empty");
+    }
+    if (!status && bed->frame == 0) source_warn_open(source);
+    if (!status) status = source_columns(source, "x y z vx vy vz r a b c wx wy wz info", bed);
+    return status ? status : source_rows(source, spheres, 0, bed);
+}
+
+const struct format format_mercury = {is_mercury, skip_mercury, read_mercury};

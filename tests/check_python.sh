@@ -1,0 +1,30 @@
+#!/bin/sh
+# check_python.sh - the Python package, installed in a virtual environment without network, and its tests by pytest.
+# SPDX-License-Identifier: MIT
+set -eu
+: "${BUILD:=build}" "${CC:=cc}"
+tree=$PWD
+case $BUILD in /*) build=$BUILD ;; *) build=$tree/$BUILD ;; esac
+
+# Debian's own python3 may have what another in the path has not
+python=
+for candidate in python3 /usr/bin/python3; do
+    if "$candidate" -c 'import ensurepip, numpy, pytest, scipy.sparse, venv' 2>/dev/null; then python=$candidate; fi
+done
+if test -z "$python"; then
+    echo "SKIP: no Python with NumPy, SciPy, pytest and venv (Debian: python3-numpy python3-scipy python3-pytest python3-venv)"
+    exit 0
+fi
+
+work=$build/python
+rm -rf "$work"
+"$python" -m venv --system-site-packages "$work"
+BUILD=$build CC=$CC "$work/bin/pip" install -q --no-index --disable-pip-version-check ./host/python
+
+# elsewhere, so that only the installed package is found
+cd "$work"
+status=0
+BUILD=$build CC=$CC PYTHONDONTWRITEBYTECODE=1 bin/python -m pytest -q -rs -p no:cacheprovider -c /dev/null --rootdir "$tree" \
+    "$tree/tests/python" >log 2>&1 || status=$?
+sed 's/^SKIPPED/SKIP/' log
+exit $status

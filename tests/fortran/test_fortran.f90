@@ -1,0 +1,132 @@
+! test_fortran.f90 - the Fortran module against closed forms. SPDX-License-Identifier: MIT
+program test_fortran
+    use, intrinsic :: iso_c_binding, only: dp => c_double
+    use fibrad
+    implicit none
+    real(dp), parameter :: pi = acos(-1.0_dp), sigma = fibrad_stefan_boltzmann
+    real(dp), parameter :: touching = 7.5586818421612437949643298e-2_dp ! tests/data/pair_exact.csv
+    integer :: failures = 0
+    call factors_of_pairs()
+    call walls_and_boxes()
+    call exchange_of_pairs()
+    call powers()
+    call errors()
+    if (failures > 0) error stop 'failures'
+    print '(2a)', 'all is well with ', fibrad_version()
+
+contains
+    subroutine expect(good, what)
+        logical, intent(in) :: good
+        character(*), intent(in) :: what
+        if (good) return
+        print '(2a)', 'FAILED: ', what
+        failures = failures + 1
+    end subroutine expect
+
+    logical function near(value, expected, relative)
+        real(dp), intent(in) :: value, expected, relative
+        near = abs(value - expected) <= relative * abs(expected)
+    end function near
+
+    subroutine factors_of_pairs()
+        type(fibrad_factors) :: pair, other
+        real(dp) :: at(3, 2)
+        integer :: status
+        call expect(fibrad_layouts_agree(), 'layouts')
+        at = reshape([1.0_dp, 2.0_dp, 3.0_dp, 1.0_dp, 4.0_dp, 3.0_dp], [3, 2])
+        call fibrad_view_factors(at(1, :), at(2, :), at(3, :), [1.0_dp, 1.0_dp], pair, status, directions=10000, threads=2)
+        call expect(status == fibrad_ok, 'pair')
+        call expect(all(pair%start == [1, 2, 3]) .and. all(pair%col == [2, 1]), 'rows count from 1')
+        call expect(all(abs(pair%f - touching) < 1e-5_dp), 'touching spheres')
+        call expect(all(abs(pair%f + pair%escaped - 1) < 1e-13_dp), 'closure')
+        call expect(pair%directions == 10000 .and. pair%threads == 2 .and. pair%seconds > 0, 'facts')
+        call fibrad_view_factors(at(1, :), at(2, :), at(3, :), [1.0_dp, 1.0_dp], other, status, tolerance=1e-3_dp, raw=.true.)
+        call expect(other%directions < 10000 .and. all(other%error < 1e-3_dp), 'tolerance')
+        call fibrad_view_factors(at(1, :), at(2, :), at(3, :), [1.0_dp, 1.0_dp], other, status, cutoff=1.5_dp)
+        call expect(size(other%f) == 0 .and. all(other%beyond > 0), 'cutoff')
+        call fibrad_view_factors(at(1, :0), at(2, :0), at(3, :0), at(1, :0), other, status)
+        call expect(status == fibrad_ok .and. size(other%start) == 1 .and. size(other%f) == 0, 'no spheres')
+    end subroutine factors_of_pairs
+
+    subroutine walls_and_boxes()
+        type(fibrad_factors) :: found
+        integer :: status
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [3.0_dp], [1.0_dp], found, status, walls=[fibrad_plane('zmin', 0.0_dp)])
+        call expect(near(found%wall(1, 1), 0.5_dp, 1e-12_dp), 'half of what it sends goes to the floor')
+        call fibrad_view_factors([0.0_dp, 5.0_dp], [0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], [0.01_dp, 1.0_dp], found, status, &
+            walls=[fibrad_cylinder(0.0_dp, 0.0_dp, 20.0_dp), fibrad_plane('zmax', 20.0_dp), fibrad_plane('zmin', -20.0_dp)])
+        call expect(all(shape(found%wall) == [3, 2]) .and. near(found%wall_area(1), 1600 * pi, 1e-12_dp), 'tube')
+        call expect(abs(found%wall(2, 1) - (1 - sqrt(0.5_dp)) / 2) < 2e-3_dp, 'disc under 45 degrees')
+        call expect(abs(sum(found%wall(:, 2)) + sum(found%f(found%start(2):found%start(3) - 1)) - 1) < 1e-12_dp, 'closed')
+        call fibrad_view_factors([0.5_dp], [0.5_dp], [0.5_dp], [0.5_dp], found, status, box=[1.0_dp, 1.0_dp, 1.0_dp])
+        call expect(size(found%f) == 1 .and. abs(found%f(1) - 1) < 1e-2_dp, 'it sees its own images')
+    end subroutine walls_and_boxes
+
+    subroutine exchange_of_pairs()
+        type(fibrad_factors) :: found
+        real(dp) :: e(2) = [0.5_dp, 0.9_dp]
+        integer :: status
+        call fibrad_exchange_factors([0.0_dp, 2.0_dp], [0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp], [1.0_dp, 1.0_dp], e, found, &
+                                     status, directions=2000, paths=2000)
+        call expect(all(found%col == [1, 2, 1, 2]), 'each sees itself in the other')
+        call expect(near(e(1) * found%f(2), e(2) * found%f(3), 1e-14_dp), 'reciprocity of exchange')
+        call expect(abs(sum(found%f) + sum(found%escaped) - 2) < 1e-12_dp, 'closure of exchange')
+        call fibrad_exchange_factors([0.0_dp], [0.0_dp], [3.0_dp], [1.0_dp], [0.5_dp], found, status, &
+                                     walls=[fibrad_plane('zmin', 0.0_dp)], wall_emissivity=[1.0_dp])
+        call expect(near(found%wall(1, 1), 0.5_dp, 1e-12_dp), 'a black floor absorbs what it gets')
+    end subroutine exchange_of_pairs
+
+    subroutine powers()
+        type(fibrad_heat) :: heat
+        real(dp) :: power(1), none(0), plates(2), outside, error, expected
+        integer :: status
+        call heat%new([1.0_dp], [2.0_dp], [3.0_dp], [0.02_dp], status, threads=1)
+        call heat%solve([900.0_dp], [0.3_dp], 400.0_dp, power, status, surroundings_power=outside, error=error)
+        expected = 4 * pi * 0.02_dp**2 * 0.3_dp * sigma * (400.0_dp**4 - 900.0_dp**4)
+        call expect(near(power(1), expected, 1e-9_dp) .and. near(outside, -expected, 1e-9_dp), 'one sphere')
+        call expect(error >= 0 .and. error < 1e-3_dp * abs(expected), 'error')
+        call heat%move([1.0_dp], [2.0_dp], [5.0_dp], [0.04_dp], status)
+        call heat%solve([900.0_dp], [0.3_dp], 400.0_dp, power, status)
+        call expect(near(power(1), 4 * expected, 1e-9_dp), 'one sphere, larger')
+        call heat%new(none, none, none, none, status, box=[1.0_dp, 2.0_dp, 0.0_dp], &
+                      walls=[fibrad_plane('zmin', 0.0_dp), fibrad_plane('zmax', 1.0_dp)])
+        call heat%solve(none, none, 0.0_dp, none, status, wall_temperature=[1000.0_dp, 500.0_dp], &
+                        wall_emissivity=[0.8_dp, 0.5_dp], wall_power=plates)
+        expected = 2 * sigma * (1000.0_dp**4 - 500.0_dp**4) / (1 / 0.8_dp + 1 / 0.5_dp - 1)
+        call expect(near(plates(2), expected, 1e-5_dp) .and. near(plates(1), -expected, 1e-5_dp), 'parallel plates')
+        call heat%free()
+        call heat%free()
+        call heat%solve(none, none, 0.0_dp, none, status)
+        call expect(status == fibrad_e_argument, 'freed')
+    end subroutine powers
+
+    subroutine errors()
+        type(fibrad_factors) :: found
+        type(fibrad_heat) :: heat
+        real(dp) :: none(0), power(1)
+        integer :: status, fault(2)
+        call fibrad_view_factors([0.0_dp, 5.0_dp, 5.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp], &
+                                 [1.0_dp, 1.0_dp, 1.0_dp], found, status, fault=fault)
+        call expect(status == fibrad_e_geometry .and. all(fault == [2, 3]), 'two spheres in one place')
+        call expect(index(fibrad_status_text(status), 'same centre') > 0, 'text')
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], found, status, directions=7, fault=fault)
+        call expect(status == fibrad_e_argument, 'directions')
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [0.0_dp], none, found, status, fault=fault)
+        call expect(status == fibrad_e_argument .and. all(fault == 0), 'sizes')
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], found, status, walls=[fibrad_plane('floor', 0.0_dp)])
+        call expect(status /= fibrad_ok, 'no such wall')
+        call fibrad_exchange_factors([0.0_dp], [0.0_dp], [3.0_dp], [1.0_dp], [0.5_dp], found, status, &
+                                     walls=[fibrad_plane('zmin', 0.0_dp)])
+        call expect(status == fibrad_e_argument, 'the emissivity of a wall is missing')
+        call fibrad_exchange_factors([0.0_dp], [0.0_dp], [3.0_dp], [1.0_dp], [1.5_dp], found, status, fault=fault)
+        call expect(status == fibrad_e_argument .and. all(fault == 1), 'emissivity')
+        call heat%new([0.0_dp], [0.0_dp], [3.0_dp], [-1.0_dp], status, fault=fault)
+        call expect(status == fibrad_e_argument .and. all(fault == 1), 'radius')
+        call heat%new([0.0_dp], [0.0_dp], [3.0_dp], [1.0_dp], status, walls=[fibrad_plane('zmin', 0.0_dp)])
+        call heat%solve([300.0_dp], [1.0_dp], 300.0_dp, power, status)
+        call expect(status == fibrad_e_argument, 'the temperature of a wall is missing')
+        call heat%move([0.0_dp, 1.0_dp], [0.0_dp, 0.0_dp], [3.0_dp, 6.0_dp], [1.0_dp, 1.0_dp], status)
+        call expect(status == fibrad_e_argument, 'another number of spheres')
+        call heat%free()
+    end subroutine errors
+end program test_fortran

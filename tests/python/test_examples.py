@@ -1,0 +1,123 @@
+# test_examples.py - the examples, and all that docs/python.md shows, run. SPDX-License-Identifier: MIT
+import doctest
+import os
+import re
+import runpy
+import shutil
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import fibrad
+
+
+@pytest.fixture(name="examples")
+def fixture_examples(tree):
+    return tree / "host" / "python" / "examples"
+
+
+def test_docstrings():
+    for module in (fibrad, fibrad._heat):
+        found = doctest.testmod(module)
+        assert found.attempted and not found.failed
+
+
+def test_what_is_public_is_documented():
+    for name in fibrad.__all__:
+        assert name == "STEFAN_BOLTZMANN" or getattr(fibrad, name).__doc__
+
+
+def test_page(tree, tmp_path, monkeypatch):
+    """Python blocks of the page, one after the other, as one reader types them."""
+    page = (tree / "docs" / "python.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    assert len(blocks) > 4
+    shutil.copy(tree / "tests" / "data" / "mono2000.dump", tmp_path / "bed.dump")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for block in blocks:
+        exec(compile(block, f"docs/python.md: {block.splitlines()[0]}", "exec"), names)
+
+
+def test_cooling(examples):
+    run = subprocess.run([sys.executable, examples / "cooling.py", "5"], capture_output=True, text=True, check=True)
+    lost, gained = map(float, re.search(r"lost by the spheres (\S+) J, gained by .* (\S+) J", run.stdout).groups())
+    assert lost == gained > 1000
+
+
+class Cell(np.ndarray):
+    """Of the API of OVITO: a matrix of three edges and the origin, and pbc."""
+    pbc = (True, True, False)
+
+
+def ovito_data(small, **more):
+    """A stand-in for OVITO's DataCollection: what a modifier function reads and writes of it."""
+    particles = {"Position": small.x, "Radius": small.r.astype(np.float32), **more}
+    made = {}
+    writer = SimpleNamespace(create_property=lambda name, data: made.update({name: np.array(data)}))
+    cell = np.hstack([np.diag([12.0, 12.0, 50.0]), np.zeros((3, 1))]).view(Cell)
+    return SimpleNamespace(particles=particles, particles_=writer, cell=cell, attributes={}), made
+
+
+def test_ovito_modifier(small, examples):
+    modify = runpy.run_path(str(examples / "ovito_modifier.py"))["modify"]
+    data, made = ovito_data(small)
+    modify(0, data)
+    expected = fibrad.view_factors(small.x, small.r.astype(np.float32), box=(12, 12, 0))
+    assert set(made) == {"Escaped", "Seen"} and made["Escaped"].tobytes() == expected.escaped.tobytes()
+    assert made["Seen"].sum() == len(expected.data) and 0 < data.attributes["fibrad.error"] < 0.02
+    temperature = np.linspace(300, 900, small.n)
+    data, made = ovito_data(small, **{"Temperature": temperature, "Particle Identifier": np.arange(small.n)})
+    modify(0, data)
+    powers = made["Radiative Power"]
+    assert powers[-1] < 0 and powers.sum() == pytest.approx(-data.attributes["fibrad.surroundings"])
+    data.cell[0, 1] = 1
+    with pytest.raises(ValueError, match="right angles"):
+        modify(0, data)
+    data.cell = None
+    modify(0, data)
+    del data.particles["Radius"]
+    with pytest.raises(ValueError, match="Radius"):
+        modify(0, data)
+
+
+def test_yade_runner_with_a_stand_in(small, examples):
+    """Bodies with the attributes that YADE's have, one of them no sphere."""
+    class Sphere:
+        def __init__(self, radius):
+            self.radius = radius
+
+    def body(i):
+        state = SimpleNamespace(pos=tuple(small.x[i]), mass=0.01)
+        return SimpleNamespace(id=3 * i, shape=Sphere(small.r[i]), state=state)
+
+    wall = SimpleNamespace(id=1, shape=None, state=SimpleNamespace(pos=(0, 0, 0), mass=0))
+    scene = SimpleNamespace(bodies=[wall, *map(body, range(small.n))], periodic=True, time=0.0,
+                            cell=SimpleNamespace(size=(12.0, 12.0, 0.0)))
+    names = runpy.run_path(str(examples / "yade_radiation.py"), {"O": scene, "Sphere": Sphere}, "yade_radiation")
+    radiate = names["radiate"]
+    state = radiate.__globals__
+    radiate()
+    assert set(state["temperature"].values()) == {300.0} and state["heat"].n == small.n
+    first, scene.time = state["heat"], 1e-6
+    radiate()
+    stored = sum(0.01 * 800 * (t - 300) for t in state["temperature"].values())
+    assert state["absorbed"] == pytest.approx(stored, rel=1e-6) and state["absorbed"] > 0 and state["heat"] is first
+    scene.bodies.pop()
+    radiate()
+    assert state["heat"].n == small.n - 1
+
+
+def test_yade_runner(examples, tmp_path):
+    if not shutil.which("yade"):
+        pytest.skip("no YADE (Debian: yade); its stand-in is tested")
+    places = os.path.dirname(os.path.dirname(fibrad.__file__))
+    run = subprocess.run(["yade", "-n", "-x", examples / "yade_radiation.py"], cwd=tmp_path, check=False, text=True,
+                         env={**os.environ, "PYTHONPATH": places}, capture_output=True)
+    found = re.search(r"48 spheres, (\S+) to (\S+) K, absorbed (\S+) J, stored (\S+) J", run.stdout)
+    assert found, run.stdout + run.stderr
+    coldest, hottest, absorbed, stored = map(float, found.groups())
+    assert 300 < coldest < hottest < 1000 and absorbed == pytest.approx(stored, rel=1e-6)

@@ -1,0 +1,219 @@
+# test_heat.py - powers from Python against closed forms. SPDX-License-Identifier: MIT
+import threading
+
+import numpy as np
+import pytest
+
+import fibrad
+
+SIGMA = fibrad.STEFAN_BOLTZMANN
+CUBE = {"xmin": -5, "xmax": 5, "ymin": -5, "ymax": 5, "zmin": -5, "zmax": 5}
+PAIR = [[0, 0, 0], [0, 0, 3]]
+F12 = fibrad.view_factors(PAIR, 1, directions=65536).data[0]
+
+
+@pytest.mark.parametrize("emissivity", [0.3, 1])
+def test_one_sphere(emissivity):
+    """It sees the surroundings alone: 4 pi r^2 e sigma (Ta^4 - T^4)."""
+    with fibrad.Heat([[1, 2, 3]], 0.02) as heat:
+        powers = heat.solve(900, emissivity, surroundings=400)
+    expected = 4 * np.pi * 0.02**2 * emissivity * SIGMA * (400**4 - 900**4)
+    assert powers.spheres == pytest.approx(expected, rel=1e-9, abs=1e-12) and powers.walls == {}
+    assert powers.surroundings == pytest.approx(-expected, rel=1e-9, abs=1e-12)
+    assert abs(powers.balance) < 1e-12 * 900**4 * SIGMA
+
+
+def test_two_black_spheres():
+    """By the exact view factor between them."""
+    with fibrad.Heat(PAIR, 1.0, directions=1000) as heat:
+        powers = heat.solve([1000, 500], 1, surroundings=300)
+    hot, warm, cold = SIGMA * 1000**4, SIGMA * 500**4, SIGMA * 300**4
+    area = 4 * np.pi
+    expected = area * np.array([F12 * warm + (1 - F12) * cold - hot, F12 * hot + (1 - F12) * cold - warm])
+    assert np.sqrt(np.mean((powers.spheres - expected) ** 2)) < 3 * powers.error < 1e-3 * area * hot
+
+
+def test_a_mirror_gains_nothing():
+    powers = fibrad.Heat(PAIR, 1.0).solve([1000, 300], [0.5, 0], surroundings=400)
+    assert abs(powers.spheres[1]) < powers.error < 0.01 * -powers.spheres[0]
+
+
+@pytest.mark.parametrize("e1, e2", [(1, 1), (0.8, 0.5), (0.1, 0.9)])
+def test_parallel_plates(e1, e2):
+    """No spheres: sigma (T1^4 - T2^4)/(1/e1 + 1/e2 - 1) for each of 2 m2."""
+    heat = fibrad.Heat(np.zeros((0, 3)), [], box=(1, 2, 0), walls={"zmin": 0, "zmax": 1})
+    powers = heat.solve([], [], wall_temperature={"zmax": 500, "zmin": 1000}, wall_emissivity={"zmin": e1, "zmax": e2})
+    expected = 2 * SIGMA * (1000**4 - 500**4) / (1 / e1 + 1 / e2 - 1)
+    assert powers.walls["zmax"] == pytest.approx(expected, rel=1e-5)
+    assert powers.walls["zmin"] == pytest.approx(-expected, rel=1e-5) and powers.surroundings == 0
+
+
+def test_a_sphere_within_black_walls():
+    """Closed, so that no temperature of surroundings is needed."""
+    heat = fibrad.Heat([[0, 0, 0]], 1.0, walls=CUBE)
+    powers = heat.solve(500, 0.4, wall_temperature=800, wall_emissivity=1)
+    assert powers.spheres[0] == pytest.approx(4 * np.pi * 0.4 * SIGMA * (800**4 - 500**4), rel=1e-9)
+    assert powers.surroundings == 0 and sum(powers.walls.values()) == pytest.approx(-powers.spheres[0])
+
+
+def test_at_one_temperature_nothing_flows(small):
+    powers = fibrad.Heat(small.x, small.r, walls={"zmin": 0}).solve(700, 0.5, surroundings=700, wall_temperature=700,
+                                                                   wall_emissivity=0.2)
+    assert np.abs(powers.spheres).max() < 1e-9 * SIGMA * 700**4
+
+
+def test_energy_is_kept(small):
+    temperature = np.linspace(300, 1200, small.n)
+    powers = fibrad.Heat(small.x, small.r, walls={"zmin": 0, "xmin": 0}).solve(
+        temperature, 0.7, surroundings=350, wall_temperature={"zmin": 900, "xmin": 300}, wall_emissivity=0.9)
+    assert abs(powers.balance) < 1e-11 * np.abs(powers.spheres).sum()
+    assert 0 < powers.error < 0.02 * np.sqrt(np.mean(powers.spheres**2))
+    assert powers.error == pytest.approx(np.hypot(powers.error_patches, powers.error_beams))
+    assert powers.sweeps > 0 and 0 < powers.residual < 1e-3
+
+
+def test_powers_follow_from_exchange_factors(small):
+    """The same by paths: sum over j of A_i e_i D_ij sigma (T_j^4 - T_i^4)."""
+    e = np.linspace(0.4, 0.9, small.n)
+    emission = SIGMA * np.linspace(300, 1200, small.n) ** 4
+    exchange = fibrad.exchange_factors(small.x, small.r, e, directions=500, paths=20000)
+    outside = SIGMA * 300**4
+    sent = 4 * np.pi * small.r**2 * e
+    expected = sent * (exchange.matrix @ emission + exchange.escaped * outside - emission)
+    powers = fibrad.Heat(small.x, small.r, directions=500).solve((emission / SIGMA) ** 0.25, e, surroundings=300)
+    assert np.sqrt(np.mean((powers.spheres - expected) ** 2)) < 0.005 * np.sqrt(np.mean(expected**2))
+
+
+def test_threads_change_no_bit(small):
+    one, three = (fibrad.Heat(small.x, small.r, threads=threads).solve(np.linspace(300, 900, small.n), 0.5, surroundings=0)
+                  for threads in (1, 3))
+    assert one.spheres.tobytes() == three.spheres.tobytes() and one.surroundings == three.surroundings
+
+
+def test_move(small):
+    """Moved spheres have the powers of a Heat made anew, and those of before when they are back."""
+    state = {"temperature": np.linspace(300, 900, small.n), "emissivity": 0.5, "surroundings": 300, "tolerance": 1e-8}
+    there = small.x * 1.5
+    with fibrad.Heat(small.x, small.r) as heat, fibrad.Heat(there, small.r) as anew:
+        before = heat.solve(**state).spheres
+        heat.move(there)
+        expected = anew.solve(**state).spheres
+        scale = np.abs(expected).max()
+        assert heat.solve(**state).spheres == pytest.approx(expected, abs=1e-6 * scale)
+        heat.move(small.x, small.r)
+        assert heat.solve(**state).spheres == pytest.approx(before, abs=1e-6 * scale)
+        heat.move(np.asfortranarray(small.x), small.r * 0.9)
+        assert np.abs(heat.solve(**state).spheres - before).max() > 0.01 * scale
+
+
+def test_walls_move():
+    heat = fibrad.Heat([[0, 0, 0]], 1.0, walls={"zmin": -1, "zmax": 1}, box=(4, 4, 0))
+    state = {"temperature": 300, "emissivity": 1, "wall_temperature": {"zmin": 900, "zmax": 900}, "wall_emissivity": 1}
+    near = heat.solve(**state).spheres[0]
+    heat.move([[0, 0, 0]], walls={"zmin": -9, "zmax": 9})
+    assert heat.solve(**state).spheres[0] == pytest.approx(near, rel=0.1)
+    heat.move([[0, 0, 0]], box=(8, 8, 0))
+    heat.solve(**state)
+
+
+def test_moves_that_cannot_be(small):
+    heat = fibrad.Heat(small.x, small.r, ids=np.arange(small.n) + 100)
+    before = heat.solve(300, 1, surroundings=400).spheres
+    with pytest.raises(fibrad.InputError, match=rf"\(5, 3\); this Heat has {small.n}"):
+        heat.move(small.x[:5], small.r[:5])
+    with pytest.raises(fibrad.InputError, match="the walls are zmin; they were none"):
+        heat.move(small.x, walls={"zmin": -1})
+    broken = small.x.copy()
+    broken[7, 0] = np.nan
+    with pytest.raises(fibrad.InputError, match="sphere of id 107 at") as caught:
+        heat.move(broken)
+    assert caught.value.spheres == (7,)
+    assert heat.solve(300, 1, surroundings=400).spheres == pytest.approx(before, rel=1e-6)  # the bed of before
+
+
+@pytest.mark.parametrize("options, text", [
+    ({}, "surroundings is missing"), ({"surroundings": -1}, "surroundings"), ({"surroundings": np.nan}, "surroundings"),
+    ({"temperature": [300, -1]}, "temperature of sphere 1 is -1"), ({"temperature": [300, np.nan]}, "temperature of sphere 1"),
+    ({"temperature": [300]}, "temperature has the shape"), ({"emissivity": 1.1}, "emissivity of sphere 0 is 1.1"),
+    ({"wall_temperature": 300}, "there are no walls"), ({"sigma": 0}, "sigma"), ({"tolerance": 2}, "tolerance"),
+])
+def test_sources_that_cannot_be(options, text):
+    heat = fibrad.Heat(PAIR, 1.0)
+    given = {"temperature": 300, "emissivity": 1, **({"surroundings": 300} if options else {}), **options}
+    with pytest.raises(fibrad.InputError, match=text):
+        heat.solve(**given)
+
+
+def test_walls_have_temperatures_by_name():
+    heat = fibrad.Heat(PAIR, 1.0, walls={"zmin": -1, "xmax": 1})
+    state = {"temperature": 300, "emissivity": 1, "surroundings": 0}
+    for temperature, text in ((None, "wall_temperature of zmin, xmax is missing"),
+                              ({"zmin": 3}, "wall_temperature of xmax is missing"),
+                              ({"zmin": 3, "xmax": 3, "top": 3}, "no wall 'top'; there are zmin, xmax"),
+                              ({"zmin": 3, "xmax": np.nan}, "wall_temperature of xmax")):
+        with pytest.raises(fibrad.InputError, match=text):
+            heat.solve(**state, wall_temperature=temperature, wall_emissivity=1)
+    with pytest.raises(fibrad.InputError, match="wall_emissivity of zmin, xmax is missing"):
+        heat.solve(**state, wall_temperature=300)
+
+
+@pytest.mark.parametrize("box, walls, closed", [
+    ((6, 6, 6), {}, True), ((6, 6, 0), {}, False), ((6, 6, 0), {"zmin": -2, "zmax": 2}, True),
+    ((6, 6, 0), {"zmin": -2}, False), ((0, 0, 6), {"cylinder": (0, 0, 3)}, True),
+    (None, {"cylinder": (0, 0, 3), "zmin": -2, "zmax": 2}, True), (None, {"cylinder": (0, 0, 3)}, False),
+    (None, CUBE, True),
+])
+def test_what_is_closed_needs_no_surroundings(box, walls, closed):
+    heat = fibrad.Heat([[0, 0, 0], [2, 2, 0]], 0.5, box=box, walls=walls)
+    state = {"temperature": [300, 900], "emissivity": 1}
+    if walls:
+        state.update(wall_temperature=500, wall_emissivity=0.5)
+    try:
+        powers = heat.solve(**state)
+        assert closed and powers.surroundings == 0
+    except fibrad.InputError as error:  # few spheres in a periodic box let some beams through
+        assert "surroundings is missing" in str(error) if not closed else "leave the bed after 100 periods" in str(error)
+        assert heat.solve(**state, surroundings=300).surroundings != 0
+
+
+def test_configurations_that_cannot_be():
+    for options, text in (({"directions": 4}, "directions"), ({"points": 65}, "points = 65 is none of 64, 128, 256"),
+                          ({"patches": 25}, "patches = 25 is none of 24, 96, 384"), ({"ids": [2, 2]}, "id 2")):
+        with pytest.raises(fibrad.InputError, match=text):
+            fibrad.Heat(PAIR, 1.0, **options)
+    with pytest.raises(fibrad.InputError, match="same centre") as caught:
+        fibrad.Heat([[0, 0, 0], [0, 0, 0]], 1.0)
+    assert caught.value.spheres == (0, 1)
+
+
+def test_closed_for_good():
+    heat = fibrad.Heat(PAIR, 1.0)
+    heat.close()
+    heat.close()
+    with pytest.raises(fibrad.StateError, match="closed"):
+        heat.solve(300, 1, surroundings=300)
+    with pytest.raises(RuntimeError, match="closed"):
+        heat.move(PAIR)
+
+
+def test_one_thread_at_a_time(small):
+    """A second thread is refused while the first one computes."""
+    refused, computing = [], threading.Event()
+
+    def progress(stage, done, total):
+        if stage == "sweeps" and not computing.is_set():
+            computing.set()
+            other.join()
+
+    def intrude():
+        computing.wait()
+        for use in (heat.close, lambda: heat.move(small.x), lambda: heat.solve(300, 1, surroundings=300)):
+            with pytest.raises(fibrad.StateError, match="in use"):
+                use()
+            refused.append(use)
+
+    heat = fibrad.Heat(small.x, small.r, progress=progress)
+    other = threading.Thread(target=intrude)
+    other.start()
+    heat.solve(np.linspace(300, 900, small.n), 0.5, surroundings=300)
+    assert len(refused) == 3

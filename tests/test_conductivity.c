@@ -1,0 +1,367 @@
+/* test_conductivity.c - effective conductivity: gaps, rays, axes, units and files. SPDX-License-Identifier: MIT
+ *
+ * Truth: laws of flights in slabs, closed forms of lattices, the spread over seeds. Runs $BUILD/fibrad (default:
+ * build/fibrad) from the project's root. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "bed/conduction.h"
+#include "bed/packing.h"
+#include "suite.h"
+
+#define PI 3.14159265358979323846
+
+/* ---- by the functions -------------------------------------------------------------------------------------------- */
+
+/* One unit sphere a cell. */
+static struct bed cell_of(double a, double b, double c) {
+    struct bed bed;
+    bed_init(&bed, false, 0);
+    ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.r = 1}), 0);
+    bed.period[0] = a, bed.period[1] = b, bed.period[2] = c;
+    return bed;
+}
+
+static struct bed copy_of(const struct bed *bed) {
+    struct bed copy;
+    bed_init(&copy, false, 0);
+    ck_assert_int_eq(bed_make_copies(&copy, bed, (const uint32_t[]){1, 1, 1}), 0);
+    return copy;
+}
+
+/* F_E and what belongs to it, all spheres of this emissivity. Frees the bed. */
+static struct conduction follow(struct bed *bed, double emissivity, struct conduction_rule rule) {
+    struct conduction result;
+    double *all = malloc(bed->n * sizeof *all);
+    unsigned char *emits = malloc(bed->n);
+    ck_assert(all && emits);
+    for (uint32_t i = 0; i < bed->n; ++i) all[i] = emissivity;
+    rule.emissivity = all;
+    fibrad_run run = {.threads = 1};
+    ck_assert_int_eq(conduction_emitters(bed, "bed", emits, &result), 0);
+    ck_assert_int_eq(conduction_follow(bed, emits, &rule, &run, &result), FIBRAD_OK);
+    free(all);
+    free(emits);
+    bed_free(bed);
+    return result;
+}
+
+/* Two layers of touching spheres, in the hollows of each other, and a gap of 8: flights of up to 100 periods along it.
+ * With cells twice as wide F_E grows by h^2/(P d) ln 2; across it does not. */
+START_TEST(slab_grows_with_the_logarithm) {
+    const double height = 8, period = 2 + sqrt(2) + height, growth = height * height / (period * 2);
+    struct conduction narrow, wide;
+    struct bed bed = cell_of(2, 2, period), four;
+    ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){1, 1, sqrt(2), 1, 0, 0}), 0);
+    bed_init(&four, false, 0);
+    ck_assert_int_eq(bed_make_copies(&four, &bed, (const uint32_t[]){2, 2, 1}), 0);
+    narrow = follow(&bed, 1, (struct conduction_rule){.axis = -1, .paths = 400000});
+    wide = follow(&four, 1, (struct conduction_rule){.axis = -1, .paths = 100000});
+    for (int axis = 0; axis < 2; ++axis) {
+        const double error = hypot(narrow.error[axis], wide.error[axis]);
+        ck_assert_double_eq_tol(narrow.growth[axis], growth, 1e-12 * growth);
+        ck_assert_double_lt(error, .3);
+        ck_assert_double_eq_tol(wide.factor[axis] - narrow.factor[axis], growth * log(2), 4 * error);
+        ck_assert_int_eq(conduction_flights(&narrow, axis), FLIGHTS_ENDLESS);
+    }
+    ck_assert_double_eq(narrow.growth[2], 0);
+    ck_assert_int_eq(conduction_flights(&narrow, 2), FLIGHTS_SETTLED);
+    ck_assert_double_eq_tol(wide.factor[2], narrow.factor[2], 4 * hypot(narrow.error[2], wide.error[2]));
+}
+END_TEST
+
+/* Gaps are found wherever they are in the period, and none where spheres overlap in projection; slabs across all axes
+ * add up. */
+START_TEST(gaps_across_axes) {
+    unsigned char emits[2];
+    struct conduction result;
+    for (int shift = -7; shift <= 7; ++shift) {
+        struct bed bed = cell_of(2, 2, 7);
+        ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.x = 1, .z = 1.9, .r = 1}), 0);
+        for (int i = 0; i < 2; ++i) bed.z[i] += shift * .7;
+        ck_assert_int_eq(conduction_emitters(&bed, "bed", emits, &result), 0);
+        ck_assert_double_eq_tol(result.growth[0], 3.1 * 3.1 / 14, 1e-12);
+        ck_assert_double_eq(result.growth[2], 0);
+        bed_free(&bed);
+    }
+    struct bed loose = cell_of(2.5, 2.2, 2);
+    ck_assert_int_eq(conduction_emitters(&loose, "bed", emits, &result), 0);
+    ck_assert_double_eq_tol(result.growth[0], .04 / 4.4, 1e-12);
+    ck_assert_double_eq_tol(result.growth[1], .25 / 5, 1e-12);
+    ck_assert_double_eq_tol(result.growth[2], .04 / 4.4 + .25 / 5, 1e-12);
+    bed_free(&loose);
+}
+END_TEST
+
+/* Random beds are settled, and over seeds F_E is spread as the standard errors say, or less: paths are quasi-random. */
+START_TEST(errors_are_those_of_seeds) {
+    enum { SEEDS = 30 };
+    double factor[SEEDS][3], estimate[3] = {0};
+    struct bed packing;
+    bed_init(&packing, false, 0);
+    ck_assert_int_eq(bed_make_packing(&packing, 300, 1, 1, .55, 1), 0);
+    for (int seed = 0; seed < SEEDS; ++seed) {
+        struct bed bed = copy_of(&packing);
+        const struct conduction result = follow(
+            &bed, .7, (struct conduction_rule){.axis = -1, .seed = (uint64_t)seed, .error = .03, .max_rays = 1000000});
+        ck_assert(!result.stopped);
+        for (int axis = 0; axis < 3; ++axis) {
+            ck_assert_int_eq(conduction_flights(&result, axis), FLIGHTS_SETTLED);
+            factor[seed][axis] = result.factor[axis];
+            estimate[axis] += pow(result.error[axis], 2) / SEEDS;
+        }
+    }
+    bed_free(&packing);
+    for (int axis = 0; axis < 3; ++axis) {
+        double mean = 0, spread = 0;
+        for (int seed = 0; seed < SEEDS; ++seed) mean += factor[seed][axis] / SEEDS;
+        for (int seed = 0; seed < SEEDS; ++seed) spread += pow(factor[seed][axis] - mean, 2) / (SEEDS - 1);
+        ck_assert_double_lt(sqrt(spread / estimate[axis]), 1.4); /* 3 standard deviations of such a ratio above 1 */
+        ck_assert_double_gt(sqrt(spread / estimate[axis]), .3);
+    }
+}
+END_TEST
+
+/* A wide channel along x through a random bed: flights have no mean fourth power. Told with most seeds, and never
+ * across it. */
+START_TEST(channel_is_told) {
+    struct bed packing, bed;
+    bed_init(&packing, false, 0);
+    bed_init(&bed, false, 0);
+    ck_assert_int_eq(bed_make_packing(&packing, 300, 1, 1, .5, 1), 0);
+    const double edge = packing.period[0];
+    for (uint32_t i = 0; i < packing.n; ++i)
+        if (hypot(packing.y[i] - edge / 2, packing.z[i] - edge / 2) > 3)
+            ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){packing.x[i], packing.y[i], packing.z[i], 1, 0, 0}), 0);
+    memcpy(bed.period, packing.period, sizeof bed.period);
+    bed_free(&packing);
+    int told = 0;
+    for (uint64_t seed = 0; seed < 8; ++seed) {
+        struct bed copy = copy_of(&bed);
+        const struct conduction result =
+            follow(&copy, .8, (struct conduction_rule){.axis = -1, .seed = seed, .error = .02, .max_rays = 1000000});
+        told += conduction_flights(&result, 0) == FLIGHTS_RARE;
+        ck_assert_int_eq(conduction_flights(&result, 1), FLIGHTS_SETTLED);
+        ck_assert_int_eq(conduction_flights(&result, 2), FLIGHTS_SETTLED);
+    }
+    bed_free(&bed);
+    ck_assert_int_ge(told, 4);
+}
+END_TEST
+
+/* Few large spheres among small ones: they have most of the variance, and yet it is no few flights. */
+START_TEST(mixtures_are_settled) {
+    struct bed bed;
+    bed_init(&bed, false, 0);
+    ck_assert_int_eq(bed_make_two_sizes(&bed, 2, 6, .5, 1), 0);
+    const struct conduction result =
+        follow(&bed, .8, (struct conduction_rule){.axis = -1, .error = .02, .max_rays = 4000000});
+    for (int axis = 0; axis < 3; ++axis) ck_assert_int_eq(conduction_flights(&result, axis), FLIGHTS_SETTLED);
+}
+END_TEST
+
+/* Exact for lattices; of an open bed that of its core. */
+START_TEST(solid_fraction) {
+    unsigned char emits[16 * 16 * 16];
+    struct conduction result;
+    struct bed cubic = cell_of(2, 2, 2), centred = cell_of(4 / sqrt(3), 4 / sqrt(3), 4 / sqrt(3)), open;
+    ck_assert_int_eq(bed_add(&centred, &(struct bed_sphere){2 / sqrt(3), 2 / sqrt(3), 2 / sqrt(3), 1, 0, 0}), 0);
+    ck_assert_int_eq(conduction_emitters(&cubic, "bed", emits, &result), 0);
+    ck_assert_double_eq_tol(result.solid_fraction, PI / 6, 1e-14);
+    ck_assert_int_eq(conduction_emitters(&centred, "bed", emits, &result), 0);
+    ck_assert_double_eq_tol(result.solid_fraction, PI * sqrt(3) / 8, 1e-14);
+    bed_init(&open, false, 0);
+    ck_assert_int_eq(bed_make_copies(&open, &cubic, (const uint32_t[]){16, 16, 16}), 0);
+    memset(open.period, 0, sizeof open.period);
+    ck_assert_int_eq(conduction_emitters(&open, "bed", emits, &result), 0);
+    ck_assert_double_eq_tol(result.solid_fraction, PI / 6, .02);
+    bed_free(&cubic);
+    bed_free(&centred);
+    bed_free(&open);
+}
+END_TEST
+
+/* ---- by the program ---------------------------------------------------------------------------------------------- */
+
+static char folder[200], printed[8192], said[2048];
+
+static void make_conductivity_folder(void) {
+    const char *build = getenv("BUILD") ? getenv("BUILD") : "build";
+    snprintf(folder, sizeof folder, "%.100s/tests/conductivity_XXXXXX", build);
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+}
+
+static void remove_conductivity_folder(void) {
+    char command[300];
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    ck_assert_int_eq(system(command), 0);
+}
+
+static void read_back(const char *name, char *text, size_t size) {
+    char path[300];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "r");
+    ck_assert_msg(file != NULL, "%s is not there", path);
+    text[fread(text, 1, size - 1, file)] = 0;
+    fclose(file);
+}
+
+/* Runs `fibrad conductivity` in the test's folder; its exit status. */
+static int run_conductivity(const char *arguments) {
+    const char *build = getenv("BUILD") ? getenv("BUILD") : "build";
+    char command[1000];
+    snprintf(command, sizeof command,
+             "program=$(realpath %s/fibrad) data=$(realpath tests/data) && cd %s && "
+             "$program conductivity %s >stdout 2>stderr </dev/null",
+             build, folder, arguments);
+    const int end = system(command);
+    ck_assert(WIFEXITED(end));
+    read_back("stdout", printed, sizeof printed);
+    read_back("stderr", said, sizeof said);
+    return WEXITSTATUS(end);
+}
+
+#define CONDUCTIVITY(arguments) ck_assert_msg(run_conductivity(arguments) == 0, "%s", said)
+
+static void write_text(const char *name, const char *text) {
+    char path[300];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_int_ge(fputs(text, file), 0);
+    ck_assert_int_eq(fclose(file), 0);
+}
+
+/* What follows `key ` on a line of the summary; NULL: no such line. */
+static const char *text_of(const char *key) {
+    char begin[50];
+    snprintf(begin, sizeof begin, "\n%s ", key);
+    const char *line = strstr(printed, begin);
+    return line ? line + strlen(begin) : NULL;
+}
+
+static double number_of(const char *key) {
+    const char *text = text_of(key);
+    ck_assert_msg(text != NULL, "no line '%s' in: %s", key, printed);
+    return strtod(text, NULL);
+}
+
+static void expect_said(const char *what) { ck_assert_msg(strstr(said, what) != NULL, "'%s' has no '%s'", said, what); }
+
+/* A settled bed in a box twice as high as it is: F_E along the gap does not exist, and no search for its error begins.
+ */
+START_TEST(gap_is_told) {
+    CONDUCTIVITY("$data/monoper2000.dump --periodic 12,12,26.6648 --emissivity 0.8 --error 0.02");
+    expect_said("monoper2000.dump: warning: F_E along xy does not exist");
+    ck_assert_int_eq(strncmp(text_of("unreliable"), "xy\n", 3), 0);
+    ck_assert_double_lt(number_of("rays"), 1e6);
+    ck_assert_double_lt(number_of("F_E_z_error") / number_of("F_E_z"), .02);
+    CONDUCTIVITY("$data/monoper2000.dump --emissivity 0.8 --error 0.02");
+    ck_assert_str_eq(said, "");
+    ck_assert_int_eq(strncmp(text_of("unreliable"), "none\n", 5), 0);
+}
+END_TEST
+
+START_TEST(rays_have_a_ceiling) {
+    CONDUCTIVITY("$data/monoper2000.dump --emissivity 0.8 --error 0.0005 --max-rays 3e5");
+    expect_said("monoper2000.dump: warning: stopped at --max-rays 300000 with a standard error of 0.00");
+    expect_said("of F_E, not 0.0005\n");
+    ck_assert_double_lt(number_of("rays"), 3.1e5);
+    ck_assert_double_gt(number_of("rays"), 2.5e5);
+    ck_assert_double_gt(number_of("F_E_x_error") / number_of("F_E_x"), .0005);
+    ck_assert_int_eq(run_conductivity("$data/monoper2000.dump --emissivity 0.8 --rays 20 --max-rays 1e6"), 2);
+    expect_said("--max-rays is for --error; leave out --rays");
+    ck_assert_int_eq(run_conductivity("$data/monoper2000.dump --emissivity 0.8 --max-rays 0"), 2);
+}
+END_TEST
+
+/* Along an open axis z of a bed that is periodic across it; the error of z alone counts. */
+START_TEST(one_axis) {
+    CONDUCTIVITY("$data/monoper2000.dump --emissivity 0.8 --rays 50");
+    const double factor = number_of("F_E_z");
+    CONDUCTIVITY("$data/monoper2000.dump --emissivity 0.8 --rays 50 --axis z");
+    ck_assert_double_eq(number_of("F_E_z"), factor);
+    ck_assert_ptr_null(text_of("F_E_x"));
+    ck_assert_ptr_null(text_of("F_E_y_error"));
+    write_text("gap.csv", "x,y,z,r\n0,0,0,1\n1,1,1.4142136,1\n");
+    CONDUCTIVITY("gap.csv --periodic 2,2,10 --emissivity 1 --axis z --error 0.02");
+    ck_assert_str_eq(said, "");
+    CONDUCTIVITY("gap.csv --periodic 2,2,10 --emissivity 1 --axis y --error 0.1");
+    expect_said("F_E along y does not exist");
+    ck_assert_int_eq(strncmp(text_of("unreliable"), "y\n", 2), 0);
+    ck_assert_int_eq(run_conductivity("gap.csv --periodic 2,0,10 --emissivity 1 --axis z"), 3);
+    expect_said("too thin along y, an open axis");
+    ck_assert_int_eq(run_conductivity("gap.csv --periodic 2,2,10 --emissivity 1 --axis q"), 2);
+    expect_said("--axis: 'q' is none of x, y and z");
+}
+END_TEST
+
+/* k = F_E 4 sigma T^3 d, in the summary, the table and the object alike. */
+START_TEST(watts_and_files) {
+    char text[2000], axis;
+    double factor, factor_error, k, k_error;
+    write_text("cell.csv", "x,y,z,r\n0,0,0,0.003\n");
+    CONDUCTIVITY("cell.csv --periodic .006,.006,.006 --emissivity 1 --rays 20000 --temperature 1000 -o k.csv");
+    const double scale = 4 * 5.670374419e-8 * 1e9 * .006;
+    ck_assert_double_eq_tol(number_of("k_x"), number_of("F_E_x") * scale, 1e-12);
+    ck_assert_double_eq_tol(number_of("k_z_error"), number_of("F_E_z_error") * scale, 1e-12);
+    ck_assert_double_eq_tol(number_of("F_E_x"), 1.2005, .05);
+    ck_assert_double_eq_tol(number_of("solid_fraction"), PI / 6, 1e-12);
+    read_back("k.csv", text, sizeof text);
+    const char *head = "axis,F_E,F_E_error,k_W_mK,k_error\n";
+    ck_assert_int_eq(strncmp(text, head, strlen(head)), 0);
+    ck_assert_int_eq(sscanf(text + strlen(head), "%c,%lf,%lf,%lf,%lf\n", &axis, &factor, &factor_error, &k, &k_error),
+                     5);
+    ck_assert_int_eq(axis, 'x');
+    ck_assert_double_eq(factor, number_of("F_E_x"));
+    ck_assert_double_eq(factor_error, number_of("F_E_x_error"));
+    ck_assert_double_eq(k, number_of("k_x"));
+    ck_assert_double_eq(k_error, number_of("k_x_error"));
+    CONDUCTIVITY("cell.csv --periodic .006,.006,.006 --emissivity 1 --rays 200 --axis y -o k.csv");
+    read_back("k.csv", text, sizeof text);
+    ck_assert_ptr_null(text_of("k_y"));
+    ck_assert_int_eq(sscanf(text + strlen(head), "y,%lf,%lf,,\n", &factor, &factor_error), 2);
+    ck_assert_str_eq(strchr(text + strlen(head), '\n'), "\n");
+    CONDUCTIVITY("cell.csv --periodic .006,.006,.006 --emissivity 1 --rays 200 --temperature 900 -o k.json");
+    read_back("k.json", text, sizeof text);
+    ck_assert(strstr(text, "\"axes\": [") && strstr(text, "\"axis\": \"z\", \"F_E\": "));
+    const char *last = strrchr(text, ':'); /* of the error of k along z */
+    ck_assert_double_eq(strtod(last + 1, NULL), number_of("k_z_error"));
+    ck_assert_int_eq(run_conductivity("cell.csv --emissivity 1 -o k.txt"), 2);
+    expect_said("k.txt: unknown ending; there are .csv and .json");
+}
+END_TEST
+
+/* The same bytes for any number of threads, batches and rounds notwithstanding. */
+START_TEST(threads_change_nothing) {
+    char one[2000], three[2000];
+    write_text("cell.csv", "x,y,z,r\n0,0,0,1\n1,1,1,0.5\n");
+    CONDUCTIVITY("cell.csv --periodic 2,2,2 --emissivity 0.5 --error 0.02 --threads 1 -o k.csv");
+    read_back("k.csv", one, sizeof one);
+    CONDUCTIVITY("cell.csv --periodic 2,2,2 --emissivity 0.5 --error 0.02 --threads 3 -o k.csv");
+    read_back("k.csv", three, sizeof three);
+    ck_assert_str_eq(one, three);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("conductivity");
+    TCase *functions = suite_case(suite, "functions"), *program = suite_case(suite, "program");
+    tcase_add_checked_fixture(program, make_conductivity_folder, remove_conductivity_folder);
+    tcase_add_test(functions, slab_grows_with_the_logarithm);
+    tcase_add_test(functions, gaps_across_axes);
+    tcase_add_test(functions, errors_are_those_of_seeds);
+    tcase_add_test(functions, channel_is_told);
+    tcase_add_test(functions, mixtures_are_settled);
+    tcase_add_test(functions, solid_fraction);
+    tcase_add_test(program, gap_is_told);
+    tcase_add_test(program, rays_have_a_ceiling);
+    tcase_add_test(program, one_axis);
+    tcase_add_test(program, watts_and_files);
+    tcase_add_test(program, threads_change_nothing);
+    return suite_run(suite);
+}
