@@ -184,7 +184,8 @@ HOST = \
     host/command/command_heat.c \
     host/command/command_join.c \
     host/command/command_pair.c \
-    host/command/command_reproduce.c
+    host/command/command_reproduce.c \
+    host/command/heat_run.c
 
 TESTS = \
     tests/test_accuracy.c \

@@ -123,7 +123,7 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     if (rule->error == 0) rule->error = 0.003;
     if (rule->max_rays == 0) rule->max_rays = 50000000;
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
-    return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION);
+    return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION, NULL);
 }
 
 /* The axes with some of these kinds of flights, such as "xz"; how many there are. */

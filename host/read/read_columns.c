@@ -91,7 +91,8 @@ int columns_find(struct columns *columns, const struct lines *lines, const struc
         columns->scaled[axis] = which == 2 || which == 3;
         if (columns->scaled[axis] && bed->low[axis] == bed->high[axis])
             return message_at(STATUS_INPUT, lines->name, lines->number,
-                              "the scaled coordinate %s needs a box, of which nothing is said before", names->at[columns->place[axis]]);
+                              "the scaled coordinate %s needs a box, of which nothing is said before",
+                              names->at[columns->place[axis]]);
     }
     int status = find_radius(columns, lines, names, options);
     if (!status) status = find_any(&columns->id, &which, lines, names, id);
@@ -136,8 +137,7 @@ int columns_add(struct columns *columns, const struct lines *lines, const struct
     struct bed_sphere sphere = {.x = centre[0], .y = centre[1], .z = centre[2], .line = lines->number};
     bed->ids = columns->id < columns->width && !options->positions;
     int status = STATUS_OK;
-    if (!options->no_radius)
-        status = columns_number(columns, lines, "the radius", row->at[columns->radius], &sphere.r);
+    if (!options->no_radius) status = columns_number(columns, lines, "the radius", row->at[columns->radius], &sphere.r);
     sphere.r *= columns->radius_unit;
     if (!status && bed->ids) status = lines_whole(lines, "the id", row->at[columns->id], &sphere.id);
     if (!status) status = columns_add_sphere(lines, options, &sphere, bed);

@@ -24,8 +24,7 @@ static char *item(const struct source *source, const char *name) {
 static int section_line(struct source *source, bool *more) {
     const int status = lines_next(&source->lines, more);
     if (status || !*more) return status;
-    if (item(source, "ITEM:"))
-        return source_fail(source, "a section begins where lines of the one before are missing");
+    if (item(source, "ITEM:")) return source_fail(source, "a section begins where lines of the one before are missing");
     return STATUS_OK;
 }
 

@@ -26,8 +26,8 @@ enum found {
 struct format {
     bool (*is)(const struct source *source); /* by the first bytes of the file, as lines_open has left them */
 
-    /* Passes over a frame and checks that all lines of it are there, without cutting any; tells in LACK_MAX bytes what a
-     * part lacks. NULL: the file is one frame. */
+    /* Passes over a frame and checks that all lines of it are there, without cutting any; tells in LACK_MAX bytes what
+     * a part lacks. NULL: the file is one frame. */
     int (*skip)(struct source *source, enum found *found, char *lack);
 
     /* Reads a frame into an empty bed. */

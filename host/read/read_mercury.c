@@ -38,8 +38,8 @@ static bool is_mercury(const struct source *source) {
 
 /* The number of spheres and the box, as the line that begins a frame says. */
 static int read_head(struct source *source, double head[8]) {
-    static const char *const names[] = {"the number of atoms", "the time", "xmin", "ymin", "zmin", "xmax", "ymax",
-                                        "zmax"};
+    static const char *const names[] = {
+        "the number of atoms", "the time", "xmin", "ymin", "zmin", "xmax", "ymax", "zmax"};
     int status = fields_split_blanks(&source->fields, source->lines.text);
     if (!status && source->fields.n == 6)
         return source_fail(source, "a MercuryDPM file in two dimensions: these are discs");

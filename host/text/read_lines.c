@@ -162,9 +162,7 @@ int lines_rest(struct lines *lines, char **rest, size_t *size) {
 
 bool lines_blank(const struct lines *lines) { return lines->text[strspn(lines->text, blanks)] == 0; }
 
-bool lines_begin(const struct lines *lines, const char *with) {
-    return strncmp(lines->text, with, strlen(with)) == 0;
-}
+bool lines_begin(const struct lines *lines, const char *with) { return strncmp(lines->text, with, strlen(with)) == 0; }
 
 static int add_field(struct fields *fields, char *text) {
     if (fields->n == fields->capacity) {
