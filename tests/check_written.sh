@@ -14,17 +14,25 @@ cd "$work"
     head -9 "$bed"
     tail -n +10 "$bed" | sort -r
 } >a.dump
-cp a.dump b.dump
+sed 's/^75000$/76000/' a.dump >b.dump
 
-heat() {
-    "$fibrad" heat "$@" --emissivity 0.5 --temperature v_T --directions 13 --patches 24 --threads 2 --ambient 300 \
-        --wall zmin --wall-temperature 900 --quiet
+heat() { # COLUMN FILES AND OUTPUTS
+    "$fibrad" heat --temperature "$@" --emissivity 0.5 --directions 13 --patches 24 --threads 2 --ambient 300 \
+        --wall zmin=0 --wall-temperature 900 --quiet
 }
-heat a.dump -o q.csv -o q.json -o q.dump -o q.vtp -o - --format json >out.json
+heat v_T a.dump -o q.csv -o q.json -o q.dump -o q.vtp -o - --format json >out.json
 cmp out.json q.json
-heat a.dump b.dump -o two.csv -o two.json -o two.lammpstrj -o 'frame*.dump'
+heat v_T a.dump b.dump -o two.csv -o two.json -o two.lammpstrj -o 'frame*.dump'
 cmp frame0.dump q.dump
-cmp frame1.dump q.dump
+sed 's/^75000$/76000/' q.dump | cmp - frame1.dump
+
+# what was written is read again
+heat T_K q.dump -o again.csv
+cmp again.csv q.csv
+heat temperature_K q.vtp --length-unit m --periodic 12,12,0 -o again.csv
+cmp again.csv q.csv
+heat T_K two.lammpstrj --frame all -o again.csv
+cut -d, -f2- two.csv | sed '2003,$s/^0/1/' | cmp - again.csv
 "$fibrad" bed a.dump --directions 13 --threads 2 --wall zmin,zmax --targets 1-999 --quiet -o F.csv -o F.json -o F.mtx -o F.vtp
 
 if ! command -v python3 >/dev/null; then
@@ -52,6 +60,7 @@ assert dict(zip(q['id'], zip(q['T_K'], q['q_W']))) == powers and q['frame'] == 0
 assert tuple(q['surroundings'].values()) == bodies['surroundings'] and tuple(q['walls']['zmin'].values()) == bodies['zmin']
 two = lines('two.json')
 assert [frame.pop('file') for frame in two] == ['a.dump', 'b.dump']
+assert [frame.pop('timestep') for frame in two] == [75000, 76000] and q.pop('timestep') == 75000
 assert two == [q, q]
 rows = list(csv.DictReader(open('two.csv')))
 assert len(rows) == 2 * 2002 and {row['file'] for row in rows} == {'a.dump', 'b.dump'}
@@ -118,7 +127,7 @@ region r block 0 1 0 1 0 1
 create_box 1 r
 create_atoms 1 random 2000 1 r
 mass 1 1
-read_dump two.lammpstrj 0 x y z vx vy vz label vx T_K label vy q_W label vz radius box yes
+read_dump two.lammpstrj 76000 x y z vx vy vz label vx T_K label vy q_W label vz radius box yes
 write_dump all custom back.dump id x y z vx vy vz modify sort id format float %.17g
 END
     lmp -in read.lmp -log none >lammps.log 2>&1 || { cat lammps.log; exit 1; }

@@ -605,6 +605,11 @@ static const struct {
     {1, "<VTKFile type='Collection'>\n", "this is a ParaView collection"},
     {0, "<VTKFile type='ImageData'>\n", "a VTK file of type ImageData: it has no spheres"},
     {1, "<VTKFile type='PolyData' compressor='vtkLZ4DataCompressor'>\n", "its arrays are packed by vtkLZ4"},
+    {4,
+     "<?xml version='1.0'?>\n<!-- <VTKFile --><Piece NumberOfPoints='1'>\n<PointData>\n<DataArray type='Float32' "
+     "Name='radius' "
+     "format='binary'>\nBAAAAAAAAD\n</DataArray>",
+     "an array is damaged"},
     {1, "ITEM: ENTRIES c_1[1]\n1\n", "a LAMMPS dump of local values"},
     {0, "# how to settle\nunits si\n", "this is an input script of LAMMPS"},
     {0, "{\"x\": 1}\n", "this is JSON"},

@@ -191,7 +191,7 @@ START_TEST(heat) {
 }
 END_TEST
 
-/* As JSON, bare of NaN and of control characters; tests/check_formats.sh has Python read it. */
+/* As JSON, bare of NaN and of control characters; tests/check_written.sh has Python read it. */
 START_TEST(json) {
     struct contents what = {
         .bed = &bed, .factors = &factors, .wanted = wanted, .walls = &walls, .file = "a\n\"b\\.csv"};

@@ -10,6 +10,7 @@
 #include "bed/bed_scene.h"
 #include "cli/memory.h"
 #include "cli/message.h"
+#include "plot/gnuplot.h"
 
 /* A mean radius above this is hardly one of a particle in metres. */
 #define RADIUS_LARGE 0.1
@@ -123,9 +124,13 @@ size_t bed_options_column(struct bed_options *asked, const char *name) {
 
 bool bed_options_series(const struct bed_options *asked) { return asked->range || asked->files > 1; }
 
-int bed_options_check(struct bed_options *asked, const char *command, enum content content) {
+int bed_options_check(struct bed_options *asked, const char *command, enum content content, const char *picture) {
     if (asked->files == 0) return message(STATUS_USAGE, "which FILE? see fibrad %s --help", command);
     asked->radius.place = bed_options_column(asked, asked->radius.column);
+    if (picture && !plot_ending(picture))
+        return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
+    if (picture && bed_options_series(asked))
+        return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
     for (size_t k = 0; asked->json && k < asked->files; ++k)
         if (output_same(asked->file[k], asked->json))
             return message_at(STATUS_USAGE, asked->json, 0, "is the bed itself; it would be replaced");

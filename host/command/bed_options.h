@@ -74,8 +74,9 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
 /* Asks for a column of the file; returns its place in bed->extra. NULL: none. */
 size_t bed_options_column(struct bed_options *asked, const char *name);
 
-/* Is a file missing, or is there something wrong with the outputs of this content? Status 0 or STATUS_USAGE. */
-int bed_options_check(struct bed_options *asked, const char *command, enum content content);
+/* Is a file missing, or is there something wrong with the outputs of this content, or with a picture (NULL: none)?
+ * Status 0 or STATUS_USAGE. */
+int bed_options_check(struct bed_options *asked, const char *command, enum content content, const char *picture);
 
 /* Computes, writes and reports one frame. Returns its status. */
 typedef int bed_options_frame(void *request, struct bed *bed);

@@ -150,12 +150,8 @@ static int bed_choose(struct bed_request *request) {
 
 /* What can be found wrong before any work is done. */
 static int bed_check(struct bed_request *request) {
-    int status = bed_options_check(&request->bed, "bed", CONTENT_MATRIX);
+    int status = bed_options_check(&request->bed, "bed", CONTENT_MATRIX, request->plot);
     if (status) return status;
-    if (request->plot && !plot_ending(request->plot))
-        return message_at(STATUS_USAGE, request->plot, 0, "unknown ending; there are .svg and .png");
-    if (request->plot && bed_options_series(&request->bed))
-        return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
     if (request->targets) request->options.raw = 1;
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw or --targets");

@@ -98,7 +98,7 @@ static int exchange_check(struct exchange_request *request) {
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
-    return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX);
+    return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX, NULL);
 }
 
 static int exchange_parse(struct exchange_request *request, int argc, char **argv) {

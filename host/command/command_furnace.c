@@ -7,13 +7,13 @@
 
 #include "boxes/furnace_cases.h"
 #include "boxes/furnace_run.h"
+#include "boxes/read_furnace.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "command/commands.h"
-#include "plot/plot_bed.h"
+#include "plot/gnuplot.h"
 #include "plot/plot_furnace.h"
-#include "boxes/read_furnace.h"
 #include "write/write_furnace.h"
 
 enum { KEY_CASE = KEY_OWN, KEY_THETA, KEY_SCATTER, KEY_CELLS, KEY_BUNDLES, KEY_TOLERANCE, KEY_OUTERS };

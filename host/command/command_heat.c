@@ -1,15 +1,15 @@
 /* command_heat.c - `fibrad heat`: net radiative powers of grey spheres and walls. SPDX-License-Identifier: MIT */
-#include <gsl/gsl_math.h>
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed/bed_scene.h"
-#include "cli/memory.h"
 #include "cli/message.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
+#include "command/heat_run.h"
+#include "plot/plot_heat.h"
 
 enum { KEY_TEMPERATURE = KEY_OWN, KEY_AMBIENT, KEY_WALL_TEMPERATURE, KEY_MODEL, KEY_PATCHES };
 
@@ -35,6 +35,7 @@ static const struct option heat_table[] = {
     OPTIONS_INPUT,
     {'o', "output", "OUT", "powers: .csv .dump (OVITO) .vtp (ParaView) .json; - [summary only]"},
     {OPTION_FORMAT},
+    {KEY_PLOT, "plot", "OUT", "a picture, .svg or .png, by gnuplot [none]"},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
@@ -44,11 +45,8 @@ struct heat_request {
     struct quantity emissivity, temperature;
     double zero;         /* 0 of the unit of temperature [K] */
     const char *ambient; /* NULL: not given */
-    struct walls walls;
-    bool counted;              /* --directions, --points or --patches was given */
-    fibrad_heat_config config; /* with --error, where to begin */
-    fibrad_heat_sources sources;
-    double error; /* wanted of the powers, over their root mean square; 0: config as it is */
+    bool counted;        /* --directions, --points or --patches was given */
+    struct heat_problem problem;
     struct output picture;
 };
 
@@ -95,8 +93,8 @@ static int take_beams(struct heat_request *request, const char *text, int key) {
     struct beam_options beam = {0};
     const int status = options_beam(key, text, &beam);
     request->counted = true;
-    if (key == KEY_DIRECTIONS) request->config.directions = beam.directions;
-    if (key == KEY_POINTS) request->config.points = beam.points;
+    if (key == KEY_DIRECTIONS) request->problem.config.directions = beam.directions;
+    if (key == KEY_POINTS) request->problem.config.points = beam.points;
     return status;
 }
 
@@ -119,15 +117,15 @@ static int heat_take(struct heat_request *request, const struct options *options
         request->wall_emissivity = value;
         return STATUS_OK;
     case KEY_MODEL:
-        return take_model(value, &request->sources.uniform);
+        return take_model(value, &request->problem.sources.uniform);
     case KEY_PATCHES:
         request->counted = true;
-        return take_patches(value, &request->config.patches);
+        return take_patches(value, &request->problem.config.patches);
     case KEY_DIRECTIONS:
     case KEY_POINTS:
         return take_beams(request, value, key);
     case KEY_ERROR:
-        return options_number("--error", value, 1e-5, 1, &request->error);
+        return options_number("--error", value, 1e-5, 1, &request->problem.error);
     case KEY_PLOT:
         request->plot = value;
         return STATUS_OK;
@@ -138,7 +136,7 @@ static int heat_take(struct heat_request *request, const struct options *options
 
 /* The temperature of the surroundings, if it was given; else NaN. */
 static int take_ambient(struct heat_request *request) {
-    double *ambient = &request->sources.surroundings;
+    double *ambient = &request->problem.sources.surroundings;
     *ambient = NAN;
     if (!request->ambient) return STATUS_OK;
     const int status = options_number("--ambient", request->ambient, -request->zero, TEMPERATURE_MAX, ambient);
@@ -147,156 +145,44 @@ static int take_ambient(struct heat_request *request) {
 }
 
 static int heat_check_request(struct heat_request *request) {
-    const int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT);
+    const int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT, request->plot);
     if (status) return status;
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (!request->temperature.given) return message(STATUS_USAGE, "which --temperature? see fibrad heat --help");
     if (request->temperature.value < -request->zero)
         return message(STATUS_USAGE, "--temperature: %g is below absolute zero", request->temperature.value);
-    if (request->error > 0 && request->counted)
+    if (request->problem.error > 0 && request->counted)
         return message(STATUS_USAGE,
                        "--error finds directions and patches itself; leave out --directions, --points and --patches");
-    if (request->error > 0 && request->sources.uniform)
+    if (request->problem.error > 0 && request->problem.sources.uniform)
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
-    if (request->plot && bed_options_series(&request->bed))
-        return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
     request->temperature.place = bed_options_column(&request->bed, request->temperature.column);
-    if (request->error > 0) request->config.directions = 72;
+    if (request->problem.error > 0) request->problem.config.directions = 72;
     return take_ambient(request);
 }
 
 static int heat_parse(struct heat_request *request, int argc, char **argv) {
     struct options options = {.command = "heat", .table = heat_table, .argc = argc, .argv = argv};
-    *request = (struct heat_request){.config = {.directions = 168, .points = 64, .patches = 96}};
-    fibrad_heat_sources_init(&request->sources);
+    *request = (struct heat_request){.problem.config = {.directions = 168, .points = 64, .patches = 96}};
+    fibrad_heat_sources_init(&request->problem.sources);
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = heat_take(request, &options, key);
     return status ? status : heat_check_request(request);
 }
 
-/* Powers, and what is said of them. */
-struct heat_report {
-    fibrad_heat_result result; /* [W] */
-    fibrad_heat_config config; /* as used in the end */
-    fibrad_scene_facts facts;
-    double seconds;             /* computing, without reading and writing */
-    double power_rms, largest;  /* of the spheres: root mean square; of all: largest [W] */
-    double emitted;             /* by the spheres [W] */
-    double throughput;          /* root mean square of what a sphere emits, or absorbs where that is more [W] */
-    double balance, error;      /* sum of all powers; root mean square error of a sphere's [W] */
-    double balance_of_emission; /* over the sum of what the spheres emit or absorb */
-};
-
-static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sources, double square_metres,
-                           uint32_t walls, struct heat_report *report) {
-    const fibrad_heat_result *result = &report->result;
-    double square = 0, squares = 0, throughput = 0;
-    report->balance = result->surroundings_power;
-    report->largest = fabs(result->surroundings_power);
-    for (uint32_t k = 0; k < walls; ++k) {
-        report->balance += result->body_power[k];
-        report->largest = fmax(report->largest, fabs(result->body_power[k]));
-    }
-    report->emitted = 0;
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const double power = result->power[i];
-        const double emitted = sources->emissivity[i] * FIBRAD_STEFAN_BOLTZMANN * pow(sources->temperature[i], 4) * 4 *
-                               M_PI * bed->r[i] * bed->r[i] * square_metres;
-        const double through = fmax(emitted, emitted + power);
-        report->emitted += emitted;
-        report->balance += power;
-        square += power * power;
-        squares += through * through;
-        throughput += through;
-        report->largest = fmax(report->largest, fabs(power));
-    }
-    report->power_rms = sqrt(square / bed->n);
-    report->throughput = sqrt(squares / bed->n);
-    report->balance_of_emission = throughput > 0 ? report->balance / throughput : 0;
-    report->error = hypot(result->error_patches, result->error_beams);
-}
-
-/* Powers in square metres instead of the file's unit. */
-static void heat_scale(const struct bed *bed, uint32_t walls, double square_metres, fibrad_heat_result *result) {
-    if (square_metres == 1) return;
-    for (uint32_t i = 0; i < bed->n; ++i) result->power[i] *= square_metres;
-    for (uint32_t k = 0; k < walls; ++k) result->body_power[k] *= square_metres;
-    result->surroundings_power *= square_metres;
-    result->error_patches *= square_metres;
-    result->error_beams *= square_metres;
-}
-
-/* Whether a problem of this kind will fit into memory. Source: fibrad_heat_size. */
-static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) {
-    const double beams = 4. * config->directions * config->points, patches = 8. * config->patches * (8 + 16);
-    return memory_check(bed->n * (beams + patches), "fewer --directions, --points or --patches take less");
-}
-
-static int heat_once(struct heat_request *request, const struct bed *bed, double square_metres,
-                     struct heat_report *report) {
-    const fibrad_scene_config scene = bed_scene(bed, &request->walls);
-    const fibrad_spheres spheres = bed_spheres(bed);
-    fibrad_heat_sources sources = request->sources;
-    fibrad_run run = bed_options_run(&request->bed);
-    fibrad_radiation *radiation;
-    if (isnan(sources.surroundings)) sources.surroundings = 0; /* closed: nothing gets there */
-    int status = heat_memory(bed, &report->config);
-    if (status) return status;
-    status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
-    if (!status) status = fibrad_radiation_solve(radiation, &sources, &report->result);
-    fibrad_radiation_describe(radiation, &report->facts, &run.fault);
-    fibrad_radiation_free(radiation);
-    heat_scale(bed, request->walls.count, square_metres, &report->result);
-    if (!status) heat_summarise(bed, &sources, square_metres, request->walls.count, report);
-    return bed_options_status(&request->bed, bed, status, &run.fault);
-}
-
-/* More of what makes the larger part of the error. False: there is no more. */
-static bool heat_refine(struct heat_report *report) {
-    fibrad_heat_config *config = &report->config;
-    const bool beams = report->result.error_beams > report->result.error_patches;
-    if ((beams || config->patches == 384) && config->directions <= FIBRAD_DIRECTIONS_MAX / 4)
-        config->directions *= 2;
-    else if (config->patches < 384)
-        config->patches *= 4;
-    else
-        return false;
-    return true;
-}
-
-/* The error that --error allows [W]; powers that nearly cancel need not be known to E of themselves. */
-static double heat_allowed(const struct heat_request *request, const struct heat_report *report) {
-    return request->error * fmax(report->power_rms, 1e-3 * report->throughput);
-}
-
-static int heat_compute(struct heat_request *request, struct bed *bed, struct heat_report *report) {
-    const double begun = progress_clock();
-    double metres;
-    report->config = request->config;
-    int status = bed_options_metres(&request->bed, bed, &metres);
-    if (!status) status = heat_once(request, bed, metres * metres, report);
-    while (!status && request->error > 0 && report->error > heat_allowed(request, report) && heat_refine(report))
-        status = heat_once(request, bed, metres * metres, report);
-    report->seconds = progress_clock() - begun;
-    if (!status && request->error > 0 && report->error > heat_allowed(request, report))
-        fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g of the powers\n", request->bed.name,
-                report->error / report->power_rms);
-    return status;
-}
-
 static void heat_print(struct heat_request *request, const struct bed *bed, const struct heat_report *heat) {
     const fibrad_heat_result *result = &heat->result;
-    const fibrad_heat_sources *sources = &request->sources;
+    const fibrad_heat_sources *sources = &request->problem.sources;
     struct report *report = &request->bed.report;
-    bed_options_report(&request->bed, bed, &request->walls, &heat->facts);
+    bed_options_report(&request->bed, bed, &request->problem.walls, &heat->facts);
     report_text(report, "model", sources->uniform ? "spheres" : "patches");
     quantity_report(&request->emissivity, "emissivity", report);
     quantity_report(&request->temperature, request->zero > 0 ? "temperature_C" : "temperature_K", report);
     if (request->ambient) report_value(report, "surroundings_K", sources->surroundings, 6);
-    wall_values_report(&request->walls, sources->body_temperature, "_K", 6, report);
-    wall_values_report(&request->walls, sources->body_emissivity, "_emissivity", 6, report);
+    wall_values_report(&request->problem.walls, sources->body_temperature, "_K", 6, report);
+    wall_values_report(&request->problem.walls, sources->body_emissivity, "_emissivity", 6, report);
     report_count(report, "patches", heat->config.patches);
     report_count(report, "directions", heat->config.directions);
     report_count(report, "points", heat->config.points);
@@ -308,17 +194,33 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
     report_measured(report, "power_rms_W", heat->power_rms, heat->error);
     report_measured(report, "power_largest_W", heat->largest, heat->error);
     if (request->ambient) report_measured(report, "surroundings_W", result->surroundings_power, heat->error);
-    wall_values_report(&request->walls, result->body_power, "_W", 6, report);
+    wall_values_report(&request->problem.walls, result->body_power, "_W", 6, report);
     report_value(report, "balance_of_emission", heat->balance_of_emission, 2);
     report_value(report, "error_of_emission", heat->throughput > 0 ? heat->error / heat->throughput : 0, 2);
     report_value(report, "error_rms_W", heat->error, 2);
     report_end(report);
 }
 
+static int heat_picture(const struct heat_request *request, const struct bed *bed, const struct heat_report *report) {
+    const struct heat_problem *problem = &request->problem;
+    const struct heat_shown shown = {.bed = bed,
+                                     .walls = &problem->walls,
+                                     .metres = report->metres,
+                                     .temperature = problem->sources.temperature,
+                                     .power = report->result.power,
+                                     .wall_temperature = problem->sources.body_temperature,
+                                     .wall_power = report->result.body_power,
+                                     .surroundings_temperature = problem->sources.surroundings,
+                                     .surroundings_power = request->ambient ? report->result.surroundings_power : NAN};
+    return plot_heat(&request->picture, request->bed.name, &shown);
+}
+
 static int heat_solve(struct heat_request *request, struct bed *bed, struct heat_report *report) {
-    int status = heat_compute(request, bed, report);
-    struct contents what = {.walls = &request->walls, .sources = &request->sources, .result = &report->result};
+    int status = heat_run(&request->bed, &request->problem, bed, report);
+    struct contents what = {
+        .walls = &request->problem.walls, .sources = &request->problem.sources, .result = &report->result};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
+    if (!status && request->plot) status = heat_picture(request, bed, report);
     if (!status) heat_print(request, bed, report);
     return status;
 }
@@ -326,9 +228,9 @@ static int heat_solve(struct heat_request *request, struct bed *bed, struct heat
 /* Every wall needs a temperature, and so do the surroundings if something can get there. */
 static int heat_temperatures(struct heat_request *request, const struct bed *bed, double *wall_temperature) {
     const int status = wall_values("--wall-temperature", request->wall_temperature, NAN, -request->zero,
-                                   TEMPERATURE_MAX, &request->walls, wall_temperature);
-    for (uint32_t k = 0; k < request->walls.count && !status; ++k) wall_temperature[k] += request->zero;
-    if (!status && !request->ambient && !walls_closed(&request->walls, bed))
+                                   TEMPERATURE_MAX, &request->problem.walls, wall_temperature);
+    for (uint32_t k = 0; k < request->problem.walls.count && !status; ++k) wall_temperature[k] += request->zero;
+    if (!status && !request->ambient && !walls_closed(&request->problem.walls, bed))
         return message(STATUS_USAGE, "which --ambient? the bed is open: its surroundings need a temperature");
     return status;
 }
@@ -336,13 +238,13 @@ static int heat_temperatures(struct heat_request *request, const struct bed *bed
 static int heat_frame(void *heat_request, struct bed *bed) {
     struct heat_request *request = heat_request;
     struct heat_report report = {0};
-    fibrad_heat_sources *sources = &request->sources;
+    fibrad_heat_sources *sources = &request->problem.sources;
     double *emissivity = NULL, *temperature = NULL, *power = NULL;
     double wall_temperature[WALLS_MAX], wall_emissivity[WALLS_MAX], wall_power[WALLS_MAX];
     const char *file = request->bed.name;
-    int status = walls_of(&request->bed.walls, bed, file, &request->walls);
+    int status = walls_of(&request->bed.walls, bed, file, &request->problem.walls);
     if (!status) status = heat_temperatures(request, bed, wall_temperature);
-    if (!status) status = wall_emissivities(request->wall_emissivity, &request->walls, wall_emissivity);
+    if (!status) status = wall_emissivities(request->wall_emissivity, &request->problem.walls, wall_emissivity);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     if (!status)
         status = quantity_values(&request->temperature, bed, file, "temperature in kelvins", request->zero, 0,

@@ -157,7 +157,7 @@ static void join_report(struct join_request *request, const struct joined *joine
     for (uint32_t k = 0; k < matrix->bodies; ++k) {
         char name[BODY_NAME], key[BODY_NAME + 8];
         snprintf(key, sizeof key, "%s_F", contents_body(what, k, name));
-        report_measured(report, key, summary.wall_mean[k], summary.error_rms);
+        report_value(report, key, summary.wall_mean[k], 6);
     }
     report_value(report, "closure_max", summary.closure_max, 2);
     report_value(report, "reciprocity_max", what->factors->reciprocity_error, 2);

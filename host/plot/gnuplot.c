@@ -11,6 +11,8 @@
 #include "cli/interrupt.h"
 #include "cli/message.h"
 
+bool plot_ending(const char *path) { return output_ends(path, ".svg") || output_ends(path, ".png"); }
+
 extern char **environ;
 
 static int gnuplot_spawn(struct gnuplot *gnuplot, int script, int script_end, int picture) {

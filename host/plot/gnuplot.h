@@ -2,10 +2,14 @@
 #ifndef GNUPLOT_H
 #define GNUPLOT_H
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <sys/types.h>
 
 #include "cli/output.h"
+
+/* Can a plot be written to a path with this ending? */
+bool plot_ending(const char *path);
 
 struct gnuplot {
     FILE *script; /* what is written here, gnuplot executes */

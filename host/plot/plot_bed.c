@@ -10,8 +10,6 @@
 #include "plot/plot_data.h"
 #include "plot/plot_slice.h"
 
-bool plot_ending(const char *path) { return output_ends(path, ".svg") || output_ends(path, ".png"); }
-
 /* What is said of where the radiation goes. */
 static void print_fate(FILE *script, const struct contents *what, const struct summary *summary) {
     double walls = 0;

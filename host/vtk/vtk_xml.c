@@ -204,7 +204,7 @@ static int take_file(struct xml *xml, const struct tag *tag) {
     if (strcmp(value, "PolyData") != 0 && strcmp(value, "UnstructuredGrid") != 0)
         return vtk_fail(xml->grid, NULL, "this is a VTK file of type %.40s: it has no spheres", value);
     xml->big = strcmp(attribute(tag, "byte_order", value), "BigEndian") == 0;
-    xml->header = vtk_find_type(*attribute(tag, "header_type", value) ? value : "UInt32");
+    if (*attribute(tag, "header_type", value)) xml->header = vtk_find_type(value);
     if (xml->header.kind != 'u') return xml_fail(xml, "the header_type is not known");
     attribute(tag, "compressor", value);
     xml->packed = *value != 0;
@@ -278,7 +278,7 @@ static void find_appended(struct xml *xml) {
 }
 
 int vtk_read_xml(struct vtk_grid *grid) {
-    struct xml xml = {.grid = grid, .at = grid->text};
+    struct xml xml = {.grid = grid, .at = grid->text, .header = vtk_find_type("UInt32")};
     struct tag tag;
     find_appended(&xml);
     while (next_tag(&xml, &tag) && !is_tag(&tag, "AppendedData")) {

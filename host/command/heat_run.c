@@ -1,0 +1,111 @@
+/* heat_run.c - powers of one bed in watts, and what they have in common. SPDX-License-Identifier: MIT */
+#include "command/heat_run.h"
+
+#include <gsl/gsl_math.h>
+#include <stdio.h>
+
+#include "bed/bed_scene.h"
+#include "cli/memory.h"
+#include "cli/message.h"
+
+static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sources, uint32_t walls,
+                           struct heat_report *report) {
+    const fibrad_heat_result *result = &report->result;
+    const double sphere = 4 * M_PI * FIBRAD_STEFAN_BOLTZMANN * report->metres * report->metres;
+    double square = 0, squares = 0, throughput = 0;
+    report->balance = result->surroundings_power;
+    report->largest = fabs(result->surroundings_power);
+    for (uint32_t k = 0; k < walls; ++k) {
+        report->balance += result->body_power[k];
+        report->largest = fmax(report->largest, fabs(result->body_power[k]));
+    }
+    report->emitted = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double power = result->power[i];
+        const double emitted =
+            sphere * bed->r[i] * bed->r[i] * sources->emissivity[i] * pow(sources->temperature[i], 4);
+        const double through = fmax(emitted, emitted + power);
+        report->emitted += emitted;
+        report->balance += power;
+        square += power * power;
+        squares += through * through;
+        throughput += through;
+        report->largest = fmax(report->largest, fabs(power));
+    }
+    report->power_rms = sqrt(square / bed->n);
+    report->throughput = sqrt(squares / bed->n);
+    report->balance_of_emission = throughput > 0 ? report->balance / throughput : 0;
+    report->error = hypot(result->error_patches, result->error_beams);
+}
+
+/* Powers in square metres instead of the file's unit. */
+static void heat_scale(const struct bed *bed, uint32_t walls, double square_metres, fibrad_heat_result *result) {
+    if (square_metres == 1) return;
+    for (uint32_t i = 0; i < bed->n; ++i) result->power[i] *= square_metres;
+    for (uint32_t k = 0; k < walls; ++k) result->body_power[k] *= square_metres;
+    result->surroundings_power *= square_metres;
+    result->error_patches *= square_metres;
+    result->error_beams *= square_metres;
+}
+
+/* Whether a problem of this kind will fit into memory. Source: fibrad_heat_size. */
+static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) {
+    const double beams = 4. * config->directions * config->points, patches = 8. * config->patches * (8 + 16);
+    return memory_check(bed->n * (beams + patches), "fewer --directions, --points or --patches take less");
+}
+
+static int heat_once(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
+                     struct heat_report *report) {
+    const fibrad_scene_config scene = bed_scene(bed, &problem->walls);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    fibrad_heat_sources sources = problem->sources;
+    fibrad_run run = bed_options_run(asked);
+    fibrad_radiation *radiation;
+    if (isnan(sources.surroundings)) sources.surroundings = 0; /* closed: nothing gets there */
+    int status = heat_memory(bed, &report->config);
+    if (status) return status;
+    status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
+    if (!status) status = fibrad_radiation_solve(radiation, &sources, &report->result);
+    fibrad_radiation_describe(radiation, &report->facts, &run.fault);
+    fibrad_radiation_free(radiation);
+    status = bed_options_status(asked, bed, status, &run.fault);
+    if (status) return status;
+    heat_scale(bed, problem->walls.count, report->metres * report->metres, &report->result);
+    heat_summarise(bed, &sources, problem->walls.count, report);
+    return STATUS_OK;
+}
+
+/* More of what makes the larger part of the error. False: there is no more. */
+static bool heat_refine(struct heat_report *report) {
+    fibrad_heat_config *config = &report->config;
+    const bool beams = report->result.error_beams > report->result.error_patches;
+    if ((beams || config->patches == 384) && config->directions <= FIBRAD_DIRECTIONS_MAX / 4)
+        config->directions *= 2;
+    else if (config->patches < 384)
+        config->patches *= 4;
+    else
+        return false;
+    return true;
+}
+
+/* The error that --error allows [W]; powers that nearly cancel need not be known to E of themselves. */
+static double heat_allowed(const struct heat_problem *problem, const struct heat_report *report) {
+    return problem->error * fmax(report->power_rms, 1e-3 * report->throughput);
+}
+
+int heat_run(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
+             struct heat_report *report) {
+    const double begun = progress_clock();
+    report->config = problem->config;
+    int status = bed_options_metres(asked, bed, &report->metres);
+    if (!status) status = heat_once(asked, problem, bed, report);
+    if (problem->error > 0) {
+        while (!status && report->error > heat_allowed(problem, report) && heat_refine(report))
+            status = heat_once(asked, problem, bed, report);
+        if (!status && report->error > heat_allowed(problem, report))
+            fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g of the powers\n", asked->name,
+                    report->error / report->power_rms);
+    }
+    report->seconds = progress_clock() - begun;
+    return status;
+}

@@ -1,0 +1,34 @@
+/* heat_run.h - powers of one bed in watts, and what they have in common. SPDX-License-Identifier: MIT */
+#ifndef HEAT_RUN_H
+#define HEAT_RUN_H
+
+#include "command/bed_options.h"
+
+/* What is to be solved. */
+struct heat_problem {
+    struct walls walls;
+    fibrad_heat_config config;   /* with an error wanted, where to begin */
+    fibrad_heat_sources sources; /* [K]; surroundings NaN: nothing gets there */
+    double error;                /* wanted of the powers, over their root mean square; 0: config as it is */
+};
+
+/* Powers, and what is said of them. */
+struct heat_report {
+    fibrad_heat_result result; /* [W] */
+    fibrad_heat_config config; /* as used in the end */
+    fibrad_scene_facts facts;
+    double metres;              /* of the bed's unit of length */
+    double seconds;             /* computing, without reading and writing */
+    double power_rms, largest;  /* of the spheres: root mean square; of all: largest [W] */
+    double emitted;             /* by the spheres [W] */
+    double throughput;          /* root mean square of what a sphere emits, or absorbs where that is more [W] */
+    double balance, error;      /* sum of all powers; root mean square error of a sphere's [W] */
+    double balance_of_emission; /* over the sum of what the spheres emit or absorb */
+};
+
+/* Solves it for a bed, more and more accurately if an error is wanted; report->result has arrays of the caller. Status
+ * 0, STATUS_USAGE if the bed's units have no metres, STATUS_MEMORY, or as bed_options_status. */
+int heat_run(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
+             struct heat_report *report);
+
+#endif
