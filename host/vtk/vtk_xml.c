@@ -154,7 +154,7 @@ static int take_packed(const struct xml *xml, struct stream *stream, unsigned ch
     const uint64_t most = (uint64_t)(xml->grid->end - xml->grid->text);
     uint64_t blocks, size, last;
     if (!take_size(xml, stream, &blocks) || !take_size(xml, stream, &size) || !take_size(xml, stream, &last) ||
-        blocks > most || (blocks > 0 && (size == 0 || blocks - 1 > bytes / size)))
+        blocks > most / xml->header.size || (blocks > 0 && (size == 0 || blocks - 1 > bytes / size)))
         return xml_fail(xml, "the blocks of an array are damaged");
     uint64_t *packed = malloc((size_t)(blocks + 1) * sizeof *packed);
     unsigned char *from = malloc((size_t)most + 1);
