@@ -233,6 +233,7 @@ SCRIPTS = \
     tests/check_header.sh \
     tests/check_npz.sh \
     tests/check_house.sh \
+    tests/check_man.sh \
     tests/check_map.sh \
     tests/check_python.sh \
     tests/check_symbols.sh \
@@ -281,7 +282,7 @@ COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
 .PHONY: all lib lib-host dist demo reproduce test run-programs programs check symbols lists format house bench bench-quick \
-    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci install install-lib clean help need-libraries need-check
+    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
 all: $(BUILD)/fibrad lib lib-host
@@ -567,10 +568,22 @@ deps-ci:
 	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-numpy python3-scipy python3-pytest \
 	    python3-venv python3-pip gfortran
 
-## install: the program, the libraries, their headers and .pc files, to DESTDIR and PREFIX
-install: install-lib $(BUILD)/fibrad
-	install -d $(DESTDIR)$(PREFIX)/bin
+## man: manual pages of the program and its commands, made from --help into build/man
+man: $(BUILD)/man/fibrad.1
+
+$(BUILD)/man/fibrad.1: $(BUILD)/fibrad host/man/make_man.sh host/man/man.awk
+	host/man/make_man.sh $< $(@D)
+
+COMPLETIONS = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
+
+## install: the program, its manual pages and completion, documents, libraries, headers and .pc files, to DESTDIR and PREFIX
+install: install-lib $(BUILD)/fibrad man
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(COMPLETIONS) $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs
 	install $(BUILD)/fibrad $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $(BUILD)/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 644 host/man/fibrad.bash $(COMPLETIONS)/fibrad
+	install -m 644 README.md CHANGELOG.md LICENSE $(DESTDIR)$(PREFIX)/share/doc/fibrad
+	install -m 644 docs/*.md $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs
 
 PC_FILES = kernel/fibrad.pc.in host/simple/fibrad_host.pc.in
 

@@ -1,17 +1,9 @@
 /* test_conductivity.c - effective conductivity: gaps, rays, axes, units and files. SPDX-License-Identifier: MIT
  *
- * Truth: laws of flights in slabs, closed forms of lattices, the spread over seeds. Runs $BUILD/fibrad (default:
- * build/fibrad) from the project's root. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
+ * Truth: laws of flights in slabs, closed forms of lattices, the spread over seeds. */
 #include "bed/conduction.h"
 #include "bed/packing.h"
-#include "suite.h"
+#include "program.h"
 
 #define PI 3.14159265358979323846
 
@@ -20,7 +12,7 @@
 /* One unit sphere a cell. */
 static struct bed cell_of(double a, double b, double c) {
     struct bed bed;
-    bed_init(&bed, false, 0);
+    bed_init(&bed);
     ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.r = 1}), 0);
     bed.period[0] = a, bed.period[1] = b, bed.period[2] = c;
     return bed;
@@ -28,7 +20,7 @@ static struct bed cell_of(double a, double b, double c) {
 
 static struct bed copy_of(const struct bed *bed) {
     struct bed copy;
-    bed_init(&copy, false, 0);
+    bed_init(&copy);
     ck_assert_int_eq(bed_make_copies(&copy, bed, (const uint32_t[]){1, 1, 1}), 0);
     return copy;
 }
@@ -57,14 +49,14 @@ START_TEST(slab_grows_with_the_logarithm) {
     struct conduction narrow, wide;
     struct bed bed = cell_of(2, 2, period), four;
     ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){1, 1, sqrt(2), 1, 0, 0}), 0);
-    bed_init(&four, false, 0);
+    bed_init(&four);
     ck_assert_int_eq(bed_make_copies(&four, &bed, (const uint32_t[]){2, 2, 1}), 0);
-    narrow = follow(&bed, 1, (struct conduction_rule){.axis = -1, .paths = 400000});
-    wide = follow(&four, 1, (struct conduction_rule){.axis = -1, .paths = 100000});
+    narrow = follow(&bed, 1, (struct conduction_rule){.axis = -1, .paths = 200000});
+    wide = follow(&four, 1, (struct conduction_rule){.axis = -1, .paths = 50000});
     for (int axis = 0; axis < 2; ++axis) {
         const double error = hypot(narrow.error[axis], wide.error[axis]);
         ck_assert_double_eq_tol(narrow.growth[axis], growth, 1e-12 * growth);
-        ck_assert_double_lt(error, .3);
+        ck_assert_double_lt(error, .5);
         ck_assert_double_eq_tol(wide.factor[axis] - narrow.factor[axis], growth * log(2), 4 * error);
         ck_assert_int_eq(conduction_flights(&narrow, axis), FLIGHTS_ENDLESS);
     }
@@ -102,7 +94,7 @@ START_TEST(errors_are_those_of_seeds) {
     enum { SEEDS = 30 };
     double factor[SEEDS][3], estimate[3] = {0};
     struct bed packing;
-    bed_init(&packing, false, 0);
+    bed_init(&packing);
     ck_assert_int_eq(bed_make_packing(&packing, 300, 1, 1, .55, 1), 0);
     for (int seed = 0; seed < SEEDS; ++seed) {
         struct bed bed = copy_of(&packing);
@@ -130,8 +122,8 @@ END_TEST
  * across it. */
 START_TEST(channel_is_told) {
     struct bed packing, bed;
-    bed_init(&packing, false, 0);
-    bed_init(&bed, false, 0);
+    bed_init(&packing);
+    bed_init(&bed);
     ck_assert_int_eq(bed_make_packing(&packing, 300, 1, 1, .5, 1), 0);
     const double edge = packing.period[0];
     for (uint32_t i = 0; i < packing.n; ++i)
@@ -149,15 +141,15 @@ START_TEST(channel_is_told) {
         ck_assert_int_eq(conduction_flights(&result, 2), FLIGHTS_SETTLED);
     }
     bed_free(&bed);
-    ck_assert_int_ge(told, 4);
+    ck_assert_int_ge(told, 4); /* on the mean 6 */
 }
 END_TEST
 
 /* Few large spheres among small ones: they have most of the variance, and yet it is no few flights. */
 START_TEST(mixtures_are_settled) {
     struct bed bed;
-    bed_init(&bed, false, 0);
-    ck_assert_int_eq(bed_make_two_sizes(&bed, 2, 6, .5, 1), 0);
+    bed_init(&bed);
+    ck_assert_int_eq(bed_make_two_sizes(&bed, 3, 5, .5, 1), 0);
     const struct conduction result =
         follow(&bed, .8, (struct conduction_rule){.axis = -1, .error = .02, .max_rays = 4000000});
     for (int axis = 0; axis < 3; ++axis) ck_assert_int_eq(conduction_flights(&result, axis), FLIGHTS_SETTLED);
@@ -174,7 +166,7 @@ START_TEST(solid_fraction) {
     ck_assert_double_eq_tol(result.solid_fraction, PI / 6, 1e-14);
     ck_assert_int_eq(conduction_emitters(&centred, "bed", emits, &result), 0);
     ck_assert_double_eq_tol(result.solid_fraction, PI * sqrt(3) / 8, 1e-14);
-    bed_init(&open, false, 0);
+    bed_init(&open);
     ck_assert_int_eq(bed_make_copies(&open, &cubic, (const uint32_t[]){16, 16, 16}), 0);
     memset(open.period, 0, sizeof open.period);
     ck_assert_int_eq(conduction_emitters(&open, "bed", emits, &result), 0);
@@ -187,54 +179,7 @@ END_TEST
 
 /* ---- by the program ---------------------------------------------------------------------------------------------- */
 
-static char folder[200], printed[8192], said[2048];
-
-static void make_conductivity_folder(void) {
-    const char *build = getenv("BUILD") ? getenv("BUILD") : "build";
-    snprintf(folder, sizeof folder, "%.100s/tests/conductivity_XXXXXX", build);
-    ck_assert_ptr_nonnull(mkdtemp(folder));
-}
-
-static void remove_conductivity_folder(void) {
-    char command[300];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    ck_assert_int_eq(system(command), 0);
-}
-
-static void read_back(const char *name, char *text, size_t size) {
-    char path[300];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "r");
-    ck_assert_msg(file != NULL, "%s is not there", path);
-    text[fread(text, 1, size - 1, file)] = 0;
-    fclose(file);
-}
-
-/* Runs `fibrad conductivity` in the test's folder; its exit status. */
-static int run_conductivity(const char *arguments) {
-    const char *build = getenv("BUILD") ? getenv("BUILD") : "build";
-    char command[1000];
-    snprintf(command, sizeof command,
-             "program=$(realpath %s/fibrad) data=$(realpath tests/data) && cd %s && "
-             "$program conductivity %s >stdout 2>stderr </dev/null",
-             build, folder, arguments);
-    const int end = system(command);
-    ck_assert(WIFEXITED(end));
-    read_back("stdout", printed, sizeof printed);
-    read_back("stderr", said, sizeof said);
-    return WEXITSTATUS(end);
-}
-
-#define CONDUCTIVITY(arguments) ck_assert_msg(run_conductivity(arguments) == 0, "%s", said)
-
-static void write_text(const char *name, const char *text) {
-    char path[300];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "w");
-    ck_assert_ptr_nonnull(file);
-    ck_assert_int_ge(fputs(text, file), 0);
-    ck_assert_int_eq(fclose(file), 0);
-}
+#define CONDUCTIVITY(...) SUCCEED("conductivity", __VA_ARGS__)
 
 /* What follows `key ` on a line of the summary; NULL: no such line. */
 static const char *text_of(const char *key) {
@@ -244,114 +189,119 @@ static const char *text_of(const char *key) {
     return line ? line + strlen(begin) : NULL;
 }
 
-static double number_of(const char *key) {
-    const char *text = text_of(key);
-    ck_assert_msg(text != NULL, "no line '%s' in: %s", key, printed);
-    return strtod(text, NULL);
-}
-
 static void expect_said(const char *what) { ck_assert_msg(strstr(said, what) != NULL, "'%s' has no '%s'", said, what); }
 
 /* A settled bed in a box twice as high as it is: F_E along the gap does not exist, and no search for its error begins.
  */
 START_TEST(gap_is_told) {
-    CONDUCTIVITY("$data/monoper2000.dump --periodic 12,12,26.6648 --emissivity 0.8 --error 0.02");
+    CONDUCTIVITY(PERIODIC, "--periodic", "12,12,26.6648", "--emissivity", "0.8", "--error", "0.02");
     expect_said("monoper2000.dump: warning: F_E along xy does not exist");
     ck_assert_int_eq(strncmp(text_of("unreliable"), "xy\n", 3), 0);
-    ck_assert_double_lt(number_of("rays"), 1e6);
-    ck_assert_double_lt(number_of("F_E_z_error") / number_of("F_E_z"), .02);
-    CONDUCTIVITY("$data/monoper2000.dump --emissivity 0.8 --error 0.02");
+    ck_assert_double_lt(value_of("rays"), 1e6);
+    ck_assert_double_lt(value_of("F_E_z_error") / value_of("F_E_z"), .02);
+    CONDUCTIVITY(PERIODIC, "--emissivity", "0.8", "--error", "0.02");
     ck_assert_str_eq(said, "");
     ck_assert_int_eq(strncmp(text_of("unreliable"), "none\n", 5), 0);
 }
 END_TEST
 
 START_TEST(rays_have_a_ceiling) {
-    CONDUCTIVITY("$data/monoper2000.dump --emissivity 0.8 --error 0.0005 --max-rays 3e5");
+    CONDUCTIVITY(PERIODIC, "--emissivity", "0.8", "--error", "0.0005", "--max-rays", "3e5");
     expect_said("monoper2000.dump: warning: stopped at --max-rays 300000 with a standard error of 0.00");
     expect_said("of F_E, not 0.0005\n");
-    ck_assert_double_lt(number_of("rays"), 3.1e5);
-    ck_assert_double_gt(number_of("rays"), 2.5e5);
-    ck_assert_double_gt(number_of("F_E_x_error") / number_of("F_E_x"), .0005);
-    ck_assert_int_eq(run_conductivity("$data/monoper2000.dump --emissivity 0.8 --rays 20 --max-rays 1e6"), 2);
+    ck_assert_double_lt(value_of("rays"), 3.1e5);
+    ck_assert_double_gt(value_of("rays"), 2.5e5);
+    ck_assert_double_gt(value_of("F_E_x_error") / value_of("F_E_x"), .0005);
+    ck_assert_int_eq(RUN("conductivity", PERIODIC, "--emissivity", "0.8", "--rays", "20", "--max-rays", "1e6"), 2);
     expect_said("--max-rays is for --error; leave out --rays");
-    ck_assert_int_eq(run_conductivity("$data/monoper2000.dump --emissivity 0.8 --max-rays 0"), 2);
+    ck_assert_int_eq(RUN("conductivity", PERIODIC, "--emissivity", "0.8", "--max-rays", "0"), 2);
 }
 END_TEST
 
 /* Along an open axis z of a bed that is periodic across it; the error of z alone counts. */
 START_TEST(one_axis) {
-    CONDUCTIVITY("$data/monoper2000.dump --emissivity 0.8 --rays 50");
-    const double factor = number_of("F_E_z");
-    CONDUCTIVITY("$data/monoper2000.dump --emissivity 0.8 --rays 50 --axis z");
-    ck_assert_double_eq(number_of("F_E_z"), factor);
+    CONDUCTIVITY(PERIODIC, "--emissivity", "0.8", "--rays", "50");
+    const double factor = value_of("F_E_z");
+    CONDUCTIVITY(PERIODIC, "--emissivity", "0.8", "--rays", "50", "--axis", "z");
+    ck_assert_double_eq(value_of("F_E_z"), factor);
     ck_assert_ptr_null(text_of("F_E_x"));
     ck_assert_ptr_null(text_of("F_E_y_error"));
-    write_text("gap.csv", "x,y,z,r\n0,0,0,1\n1,1,1.4142136,1\n");
-    CONDUCTIVITY("gap.csv --periodic 2,2,10 --emissivity 1 --axis z --error 0.02");
+    const char *gap = write_file("gap.csv", "x,y,z,r\n0,0,0,1\n1,1,1.4142136,1\n");
+    CONDUCTIVITY(gap, "--periodic", "2,2,10", "--emissivity", "1", "--axis", "z", "--error", "0.02");
     ck_assert_str_eq(said, "");
-    CONDUCTIVITY("gap.csv --periodic 2,2,10 --emissivity 1 --axis y --error 0.1");
+    CONDUCTIVITY(gap, "--periodic", "2,2,10", "--emissivity", "1", "--axis", "y", "--error", "0.1");
     expect_said("F_E along y does not exist");
     ck_assert_int_eq(strncmp(text_of("unreliable"), "y\n", 2), 0);
-    ck_assert_int_eq(run_conductivity("gap.csv --periodic 2,0,10 --emissivity 1 --axis z"), 3);
+    ck_assert_int_eq(RUN("conductivity", gap, "--periodic", "2,0,10", "--emissivity", "1", "--axis", "z"), 3);
     expect_said("too thin along y, an open axis");
-    ck_assert_int_eq(run_conductivity("gap.csv --periodic 2,2,10 --emissivity 1 --axis q"), 2);
+    ck_assert_int_eq(RUN("conductivity", gap, "--periodic", "2,2,10", "--emissivity", "1", "--axis", "q"), 2);
     expect_said("--axis: 'q' is none of x, y and z");
 }
 END_TEST
 
 /* k = F_E 4 sigma T^3 d, in the summary, the table and the object alike. */
 START_TEST(watts_and_files) {
-    char text[2000], axis;
+    char axis;
     double factor, factor_error, k, k_error;
-    write_text("cell.csv", "x,y,z,r\n0,0,0,0.003\n");
-    CONDUCTIVITY("cell.csv --periodic .006,.006,.006 --emissivity 1 --rays 20000 --temperature 1000 -o k.csv");
+    const char *cell = write_file("cell.csv", "x,y,z,r\n0,0,0,3\n"), *csv = in_folder("k.csv"),
+               *json = in_folder("s.json");
+    CONDUCTIVITY(cell, "--length-unit", "mm", "--periodic", "6,6,6", "--emissivity", "1", "--rays", "20000",
+                 "--temperature", "726.85", "--temperature-unit", "C", "-o", csv, "--json", json);
     const double scale = 4 * 5.670374419e-8 * 1e9 * .006;
-    ck_assert_double_eq_tol(number_of("k_x"), number_of("F_E_x") * scale, 1e-12);
-    ck_assert_double_eq_tol(number_of("k_z_error"), number_of("F_E_z_error") * scale, 1e-12);
-    ck_assert_double_eq_tol(number_of("F_E_x"), 1.2005, .05);
-    ck_assert_double_eq_tol(number_of("solid_fraction"), PI / 6, 1e-12);
-    read_back("k.csv", text, sizeof text);
-    const char *head = "axis,F_E,F_E_error,k_W_mK,k_error\n";
+    ck_assert_double_eq_tol(json_of(json, "k_x_W_mK"), json_of(json, "F_E_x") * scale, 1e-12);
+    ck_assert_double_eq_tol(json_of(json, "k_z_W_mK_error"), json_of(json, "F_E_z_error") * scale, 1e-12);
+    ck_assert_double_eq_tol(json_of(json, "F_E_x"), 1.2005, .05);
+    ck_assert_double_eq_tol(json_of(json, "solid_fraction"), PI / 6, 1e-12);
+    char *text = read_file(csv);
+    const char *head = "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable\n";
     ck_assert_int_eq(strncmp(text, head, strlen(head)), 0);
-    ck_assert_int_eq(sscanf(text + strlen(head), "%c,%lf,%lf,%lf,%lf\n", &axis, &factor, &factor_error, &k, &k_error),
+    ck_assert_int_eq(sscanf(text + strlen(head), "%c,%lf,%lf,%lf,%lf,", &axis, &factor, &factor_error, &k, &k_error),
                      5);
     ck_assert_int_eq(axis, 'x');
-    ck_assert_double_eq(factor, number_of("F_E_x"));
-    ck_assert_double_eq(factor_error, number_of("F_E_x_error"));
-    ck_assert_double_eq(k, number_of("k_x"));
-    ck_assert_double_eq(k_error, number_of("k_x_error"));
-    CONDUCTIVITY("cell.csv --periodic .006,.006,.006 --emissivity 1 --rays 200 --axis y -o k.csv");
-    read_back("k.csv", text, sizeof text);
-    ck_assert_ptr_null(text_of("k_y"));
-    ck_assert_int_eq(sscanf(text + strlen(head), "y,%lf,%lf,,\n", &factor, &factor_error), 2);
+    ck_assert_double_eq(factor, json_of(json, "F_E_x"));
+    ck_assert_double_eq(factor_error, json_of(json, "F_E_x_error"));
+    ck_assert_double_eq(k, json_of(json, "k_x_W_mK"));
+    ck_assert_double_eq(k_error, json_of(json, "k_x_W_mK_error"));
+    free(text);
+    CONDUCTIVITY(cell, "--periodic", "6,6,6", "--emissivity", "1", "--rays", "200", "--axis", "y", "-o", csv);
+    ck_assert_str_eq(said, ""); /* without watts lengths need no unit */
+    ck_assert_ptr_null(text_of("k_y_W_mK"));
+    text = read_file(csv);
+    ck_assert_int_eq(sscanf(text + strlen(head), "y,%lf,%lf,,,", &factor, &factor_error), 2);
     ck_assert_str_eq(strchr(text + strlen(head), '\n'), "\n");
-    CONDUCTIVITY("cell.csv --periodic .006,.006,.006 --emissivity 1 --rays 200 --temperature 900 -o k.json");
-    read_back("k.json", text, sizeof text);
-    ck_assert(strstr(text, "\"axes\": [") && strstr(text, "\"axis\": \"z\", \"F_E\": "));
-    const char *last = strrchr(text, ':'); /* of the error of k along z */
-    ck_assert_double_eq(strtod(last + 1, NULL), number_of("k_z_error"));
-    ck_assert_int_eq(run_conductivity("cell.csv --emissivity 1 -o k.txt"), 2);
+    free(text);
+    CONDUCTIVITY(cell, "--periodic", "6,6,6", "--emissivity", "1", "--rays", "200", "--temperature", "0", "-o",
+                 in_folder("k.json"), "--json", json);
+    text = read_file(in_folder("k.json"));
+    ck_assert(strstr(text, "\"axes\":[") && strstr(text, "{\"axis\":\"z\",") && strstr(text, "\"k_W_mK\":0,"));
+    free(text);
+    ck_assert_int_eq(RUN("conductivity", cell, "--emissivity", "1", "-o", in_folder("k.txt")), 2);
     expect_said("k.txt: unknown ending; there are .csv and .json");
+    const char *mirror = write_file("mirror.csv", "x,y,z,r\n0,0,0,1\n");
+    ck_assert_int_eq(RUN("conductivity", mirror, "--periodic", "2,2,2", "--emissivity", "0"), 3);
+    expect_said("the emissivities are all 0");
 }
 END_TEST
 
 /* The same bytes for any number of threads, batches and rounds notwithstanding. */
 START_TEST(threads_change_nothing) {
-    char one[2000], three[2000];
-    write_text("cell.csv", "x,y,z,r\n0,0,0,1\n1,1,1,0.5\n");
-    CONDUCTIVITY("cell.csv --periodic 2,2,2 --emissivity 0.5 --error 0.02 --threads 1 -o k.csv");
-    read_back("k.csv", one, sizeof one);
-    CONDUCTIVITY("cell.csv --periodic 2,2,2 --emissivity 0.5 --error 0.02 --threads 3 -o k.csv");
-    read_back("k.csv", three, sizeof three);
-    ck_assert_str_eq(one, three);
+    static const char *const threads[] = {"1", "3"};
+    char *text[2];
+    const char *cell = write_file("cell.csv", "x,y,z,r\n0,0,0,1\n1,1,1,0.5\n"), *out = in_folder("k.csv");
+    for (int k = 0; k < 2; ++k) {
+        CONDUCTIVITY(cell, "--periodic", "2,2,2", "--emissivity", "0.5", "--error", "0.02", "--threads", threads[k],
+                     "-o", out);
+        text[k] = read_file(out);
+    }
+    ck_assert_str_eq(text[0], text[1]);
+    free(text[0]), free(text[1]);
 }
 END_TEST
 
 int main(void) {
     Suite *suite = suite_create("conductivity");
     TCase *functions = suite_case(suite, "functions"), *program = suite_case(suite, "program");
-    tcase_add_checked_fixture(program, make_conductivity_folder, remove_conductivity_folder);
+    tcase_add_checked_fixture(program, make_folder, remove_folder);
     tcase_add_test(functions, slab_grows_with_the_logarithm);
     tcase_add_test(functions, gaps_across_axes);
     tcase_add_test(functions, errors_are_those_of_seeds);

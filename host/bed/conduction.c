@@ -19,7 +19,7 @@
 /* A search begins with so many paths in all, in so many groups, each of a multiple of so many paths, which the kernel
  * compares in as many parts. It goes on to at most so many times what there is. */
 #define PILOT      50000.0
-#define GROUPS     1024.0
+#define GROUPS     256.0
 #define PARTS      16u
 #define GROWTH     8.0
 #define BATCH_MOST (FIBRAD_PATHS_MAX / PARTS * PARTS)
@@ -27,7 +27,7 @@
 /* Concentration above which a standard error is not relied on: its square root is the relative standard error of the
  * variance. Where the variances of groups have a tail of index a < 1 it tends to 1 - a however many groups there are,
  * 1/4 for flights along channels, 1/2 for those in slabs (docs/heat.md); without such a tail, to zero. */
-#define SETTLED 0.05
+#define SETTLED 0.03
 
 /* Growth of F_E over itself from which it is told whatever the standard error: flights of 100 periods are about e^10
  * times a gap, which makes as much of F_E as most ask for. */
@@ -130,7 +130,7 @@ static int find_growth(const struct bed *bed, struct conduction *result) {
 int conduction_emitters(const struct bed *bed, const char *file, unsigned char *emits, struct conduction *result) {
     struct core core;
     double solid = 0, emitting = 0;
-    *result = (struct conduction){0};
+    *result = (struct conduction){.temperature = NAN};
     for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
     const int status = find_core(bed, file, result->diameter, &core);
     if (status) return status;
@@ -154,7 +154,8 @@ int conduction_emitters(const struct bed *bed, const char *file, unsigned char *
 struct tally {
     uint64_t batches, paths; /* per emitter */
     double factor[3], variance[3], fourth[3], lost, all;
-    fibrad_displacement *moved; /* [n] of the last batch */
+    double expected, expected_fourth; /* of groups whose spheres carry light as far as their own size */
+    fibrad_displacement *moved;       /* [n] of the last batch */
 };
 
 /* Adds a batch of so many paths from each emitter. Summed in order, whatever the threads did. */
@@ -171,6 +172,9 @@ static void add_batch(struct tally *tally, const struct bed *bed, const unsigned
             tally->variance[axis] += variance;
             tally->fourth[axis] += variance * variance;
         }
+        const double expected = paths * pow(emissivity[i] * pow(bed->r[i], 4), 2);
+        tally->expected += expected;
+        tally->expected_fourth += expected * expected;
         tally->lost += emission * (1 - moved->absorbed);
         tally->all += emission;
         result->rays += moved->rays;
@@ -180,12 +184,14 @@ static void add_batch(struct tally *tally, const struct bed *bed, const unsigned
 }
 
 static void read_tally(const struct tally *tally, struct conduction *result) {
+    /* few large spheres among small ones concentrate the variance, too; twice that, as it is a rough estimate */
+    const double sizes = 2 * tally->expected_fourth / (tally->expected * tally->expected);
     result->paths = tally->paths;
     for (int axis = 0; axis < 3; ++axis) {
         const double variance = tally->variance[axis];
         result->factor[axis] = tally->factor[axis] / (double)tally->paths;
         result->error[axis] = sqrt(variance) / (double)tally->paths;
-        result->concentration[axis] = variance > 0 ? tally->fourth[axis] / (variance * variance) : 0;
+        result->concentration[axis] = variance > 0 ? tally->fourth[axis] / (variance * variance) - sizes : 0;
     }
     result->escaped = fmax(0, tally->lost / tally->all);
 }
@@ -212,7 +218,9 @@ static int follow_round(const struct bed *bed, const unsigned char *emits, const
         const uint32_t share = (uint32_t)(paths / batches + (round.batch < paths % batches));
         const fibrad_exchange_rule how = {
             .emissivity = rule->emissivity, .paths = share, .seed = rule->seed + tally->batches * 0x9e3779b97f4a7c15u};
-        fibrad_run own = {.threads = run->threads, .progress = run->progress ? round_stage : NULL, .context = &round};
+        fibrad_run own = {.threads = result->emitters == 1 ? 1 : run->threads, /* short batches: no team to wake */
+                          .progress = run->progress ? round_stage : NULL,
+                          .context = &round};
         const int status = fibrad_displacements(&scene, &spheres, &how, emits, &own, tally->moved, NULL);
         run->fault = own.fault;
         if (status) return status;
@@ -254,22 +262,11 @@ static int search(const struct bed *bed, const unsigned char *emits, const struc
     return FIBRAD_OK;
 }
 
-/* As many emitters as would share the variance alike: the largest of a mixture have most of it. */
-static double effective_emitters(const struct bed *bed, const unsigned char *emits, const double *emissivity) {
-    double sum = 0, squares = 0;
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const double variance = emits[i] * pow(emissivity[i], 2) * pow(bed->r[i], 8);
-        sum += variance;
-        squares += variance * variance;
-    }
-    return sum * sum / squares;
-}
-
 int conduction_follow(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
                       fibrad_run *run, struct conduction *result) {
     struct tally tally = {.moved = calloc(bed->n, sizeof *tally.moved)};
     if (!tally.moved) return FIBRAD_E_MEMORY;
-    const uint32_t batches = (uint32_t)ceil(GROUPS / effective_emitters(bed, emits, rule->emissivity));
+    const uint32_t batches = (uint32_t)ceil(GROUPS / result->emitters);
     const double begun = progress_clock();
     result->axis = rule->axis;
     const int status = rule->paths > 0 ? follow_round(bed, emits, rule, run,

@@ -30,10 +30,11 @@ struct conduction {
     uint64_t rays;
     double factor[3], error[3]; /* F_E per axis and its standard error */
     int axis;                   /* the only one wanted; -1: all three */
-    double temperature;         /* [K]; 0: k is not known */
+    double temperature;         /* [K]; NaN: k is not known */
     double k[3], k_error[3];    /* [W/(m K)] */
     double growth[3]; /* of F_E for each factor e in the length of flights allowed, through slabs without spheres */
-    double concentration[3]; /* of the variance in few groups of paths: sum of squares over squared sum */
+    double concentration[3]; /* of the variance in few groups of paths, sum of squares over squared sum, beyond what
+                                sizes make */
     double escaped;          /* fraction of the emission that no sphere absorbs */
     bool stopped;            /* by max_rays, before the error was reached */
     double seconds;

@@ -32,7 +32,7 @@ struct conductivity_request {
     struct quantity emissivity;
     const char *at;     /* --temperature; NULL: not given */
     double zero;        /* 0 of the unit of temperature [K] */
-    double temperature; /* [K]; 0: not given */
+    double temperature; /* [K] */
     struct conduction_rule rule;
 };
 
@@ -167,7 +167,7 @@ static void conductivity_report(struct conductivity_request *request, const stru
     report_value(report, "escaped", result->escaped, 2);
     axes_with(result, FLIGHTS_ENDLESS | FLIGHTS_RARE, unreliable);
     report_text(report, "unreliable", *unreliable ? unreliable : "none");
-    if (result->temperature > 0) {
+    if (!isnan(result->temperature)) {
         report_value(report, "temperature_K", result->temperature, 6);
         report_axes(report, result, "k_%c_W_mK%s", result->k, result->k_error);
     }

@@ -158,9 +158,9 @@ int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
         at = text_real(put_comma(at), conduction->factor[axis]);
         at = text_real(put_comma(at), conduction->error[axis]);
         at = put_comma(at);
-        if (conduction->temperature > 0) at = text_real(at, conduction->k[axis]);
+        if (!isnan(conduction->temperature)) at = text_real(at, conduction->k[axis]);
         at = put_comma(at);
-        if (conduction->temperature > 0) at = text_real(at, conduction->k_error[axis]);
+        if (!isnan(conduction->temperature)) at = text_real(at, conduction->k_error[axis]);
         at = put_comma(at);
         *at++ = conduction_flights(conduction, axis) == FLIGHTS_SETTLED ? '1' : '0';
         end_line(&csv, at, "");

@@ -127,7 +127,7 @@ int write_conduction_json(FILE *file, const struct contents *what, bool first) {
         json_entry(file, "F_E", conduction->factor[axis]);
         json_entry(file, "F_E_error", conduction->error[axis]);
         comma = ",";
-        if (conduction->temperature > 0) {
+        if (!isnan(conduction->temperature)) {
             json_entry(file, "k_W_mK", conduction->k[axis]);
             json_entry(file, "k_W_mK_error", conduction->k_error[axis]);
         }

@@ -1,6 +1,7 @@
 #!/bin/sh
 # check_package.sh - programs in C99 and C++17 build and run against the installed libraries, static ones found by
-# pkg-config and the shared one, which exports the functions of the public headers and nothing else.
+# pkg-config and the shared one, which exports the functions of the public headers and nothing else; the program is
+# installed with its manual pages, completion and documents.
 # SPDX-License-Identifier: MIT
 set -eu
 : "${BUILD:=build}" "${CC:=cc}" "${CXX:=c++}" "${MAKE:=make}"
@@ -49,3 +50,23 @@ test -e "$tree/usr/lib/$name" && test "$(readlink "$library")" = "$name"
 sed -n '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1/p' "$tree"/usr/include/*.h | sort >"$tree/declared"
 nm -D --defined-only "$library" | awk '$2 != "A" {sub(/@.*/, "", $3); print $3}' | sort >"$tree/exported"
 diff "$tree/declared" "$tree/exported"
+
+# the program: all that comes with it is there, readable, and nothing names where it was built
+(
+    unset PKG_CONFIG_LIBDIR PKG_CONFIG_SYSROOT_DIR
+    "$MAKE" -s --no-print-directory install BUILD="$BUILD" CC="$CC" PREFIX=/opt/fibrad DESTDIR="$tree/all"
+)
+prefix=$tree/all/opt/fibrad
+"$prefix/bin/fibrad" --help >"$tree/help"
+{
+    sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/share\/man\/man1\/fibrad-\1.1/p' "$tree/help"
+    for file in bin/fibrad share/man/man1/fibrad.1 share/bash-completion/completions/fibrad lib/libfibrad.a \
+        lib/libfibrad_host.a lib/libfibrad.so "lib/$name" lib/pkgconfig/fibrad.pc lib/pkgconfig/fibrad_host.pc; do
+        echo "$file"
+    done
+    for file in README.md CHANGELOG.md LICENSE docs/*.md; do echo "share/doc/fibrad/$file"; done
+    for file in "$tree"/usr/include/*.h; do echo "include/${file##*/}"; done
+} | sort >"$tree/expected"
+(cd "$prefix" && find . -type f -o -type l) | sed 's|^\./||' | sort | diff "$tree/expected" -
+if grep -rlI "$tree" "$prefix"; then exit 1; fi
+test -z "$(find "$prefix" -type f ! -perm -444)"

@@ -10,11 +10,11 @@
 temperatures, step after step. Arrays of positions are (n, 3), of radii (n,). The GIL is released while the library
 computes; Ctrl-C stops it. Errors are subclasses of `Error`.
 """
+from . import _library
 from ._errors import Cancelled, Error, InputError, OutOfMemory, StateError
 from ._factors import Displacements, Factors, displacements, exchange_factors, view_factors
 from ._heat import STEFAN_BOLTZMANN, Heat, Powers
-from ._library import library as _library
 
-__version__ = _library.fibrad_version().decode()
+__version__: str = _library.library.fibrad_version().decode()
 __all__ = ["Cancelled", "Displacements", "Error", "Factors", "Heat", "InputError", "OutOfMemory", "Powers",
            "STEFAN_BOLTZMANN", "StateError", "displacements", "exchange_factors", "view_factors"]

@@ -1,0 +1,87 @@
+#!/bin/sh
+# check_man.sh - manual pages have all that --help says, and groff and mandoc are content with them; completion in bash
+# knows commands, options and files. SPDX-License-Identifier: MIT
+set -u
+: "${BUILD:=build}" "${MAKE:=make}"
+export LC_ALL=C
+fibrad=$BUILD/fibrad
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
+faults=0
+fault() {
+    echo "$@"
+    faults=1
+}
+
+$MAKE -s --no-print-directory BUILD="$BUILD" man || exit 1
+"$fibrad" --help >"$work/help"
+commands=$(sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p' "$work/help")
+count=$(echo "$commands" | wc -w)
+test "$count" -ge 8 || fault "only $count commands"
+
+# ---- pages: as many as commands, and one; all words of the help in their order but headings and synopsis --------------
+words() { sed 's/  */\n/g' | grep -v '^$'; }
+if command -v groff >/dev/null; then
+    for name in "" $commands; do
+        page=$BUILD/man/fibrad${name:+-$name}.1
+        groff -man -Tascii -P-cbou -ww -rLL=400n "$page" >"$work/page" 2>"$work/err" || fault "$page: groff fails"
+        test -s "$work/err" && fault "$page: $(head -n 2 "$work/err")"
+        if test -z "$name"; then
+            sed -n '3,$p' "$work/help" | sed "s/^Commands://; s/^Exit status://; s/^  \([a-z][a-z]*\) /  fibrad-\1(1) /"
+        else
+            "$fibrad" "$name" --help | sed 's/^Examples:$//'
+        fi | words >"$work/expected"
+        sed '/^NAME$/,/^SYNOPSIS$/d; /^[A-Z ]*$/d; /^SEE ALSO$/,$d' "$work/page" | words >"$work/found"
+        # the page may have more, at the beginning and the end
+        diff "$work/expected" "$work/found" | grep '^<' | grep -v '^< \(FIBRAD\)' >"$work/missing"
+        test -s "$work/missing" && fault "$page: is not said: $(head -n 5 "$work/missing" | tr '\n' ' ')"
+        grep -q "^ *fibrad${name:+-$name} - [a-z]" "$work/page" || fault "$page: no purpose"
+    done
+else
+    echo "SKIP manual pages: no groff on this machine"
+fi
+if command -v mandoc >/dev/null; then
+    mandoc -T lint -W error "$BUILD"/man/*.1 || faults=1
+fi
+test "$(find "$BUILD/man" -type f | wc -l)" = $((count + 1)) || fault "other files in $BUILD/man"
+
+# ---- completion --------------------------------------------------------------------------------------------------------
+# complete WORD...: what is offered for the last word
+complete_words() {
+    (cd "$work/files" && bash -c '
+        source "$0"
+        program=$1 && shift
+        COMP_WORDS=(fibrad "$@") COMP_CWORD=$#
+        _fibrad "$program" "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD - 1]}"
+        test ${#COMPREPLY[@]} -gt 0 && printf "%s\n" "${COMPREPLY[@]}"' "$completion" "$program" "$@" | sort | tr '\n' ' ')
+}
+offers() { # EXPECTED WORD...
+    expected=$1
+    shift
+    found=$(complete_words "$@")
+    test "$found" = "${expected:+$expected }" || fault "fibrad $*: offers '$found' instead of '$expected'"
+}
+if command -v bash >/dev/null; then
+    completion=$PWD/host/man/fibrad.bash
+    case $fibrad in /*) program=$fibrad ;; *) program=$PWD/$fibrad ;; esac
+    mkdir "$work/files" && touch "$work/files/bed one.dump" "$work/files/bed.csv" "$work/files/-odd"
+    for name in $commands; do
+        offers "$name" "$name"
+        for option in $("$fibrad" "$name" --help | sed -n 's/^  \(-., \)\{0,1\}\(--[a-z-]*\) .*/\2/p'); do
+            complete_words "$name" "$option" | tr ' ' '\n' | grep -qx -e "$option" || fault "fibrad $name $option: not offered"
+        done
+    done
+    test "$(complete_words "" | wc -w)" -ge 13 || fault "fibrad: offers '$(complete_words "")'"
+    offers "heat help" he
+    offers "heat" help he
+    offers "--targets" bed --tar
+    offers "-o" bed -o
+    offers "bed one.dump bed.csv" bed be
+    offers "bed.csv" bed -o bed.
+    offers "bed.csv" bed --output = bed.
+    offers "-odd" bed -- -o
+    offers "" bed --no-such
+    offers "" nothing --a
+else
+    echo "SKIP completion: no bash on this machine"
+fi
+exit $faults
