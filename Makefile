@@ -139,14 +139,19 @@ HOST = \
     host/text/read_lines.c \
     host/text/read_number.c \
     host/text/text.c \
+    host/vtk/vtk_grid.c \
+    host/vtk/vtk_legacy.c \
+    host/vtk/vtk_xml.c \
     host/read/read.c \
     host/read/read_columns.c \
     host/read/read_data.c \
     host/read/read_dump.c \
+    host/read/read_foreign.c \
     host/read/read_format.c \
     host/read/read_mercury.c \
     host/read/read_rows.c \
     host/read/read_table.c \
+    host/read/read_vtk.c \
     host/read/read_xyz.c \
     host/boxes/furnace_cases.c \
     host/boxes/furnace_run.c \

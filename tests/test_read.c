@@ -1,12 +1,15 @@
 /* test_read.c - readers: every format, every fault with its line. SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include "cli/message.h"
 #include "read/read.h"
 #include "suite.h"
+#include "text/read_number.h"
 
 static char path[200];
 static char said[4096]; /* on standard error by the last `try` */
@@ -25,23 +28,39 @@ static void remove_file(void) {
     bed_free(&bed);
 }
 
-/* Reads a text as a file and keeps what was said. */
-static int try_options(const char *text, size_t size, const struct read_options *options) {
+static void write_file(const char *text, size_t size) {
     FILE *file = fopen(path, "wb");
     ck_assert_ptr_nonnull(file);
     ck_assert_uint_eq(fwrite(text, 1, size, file), size);
     fclose(file);
-    FILE *catch = tmpfile();
+}
+
+static FILE *caught;
+static int screen;
+
+/* What goes to standard error is kept in `said`. */
+static void begin_catching(void) {
+    caught = tmpfile();
     fflush(stderr);
-    const int screen = dup(STDERR_FILENO);
-    dup2(fileno(catch), STDERR_FILENO);
-    bed_free(&bed);
-    const int status = read_bed(path, options, &bed);
+    screen = dup(STDERR_FILENO);
+    dup2(fileno(caught), STDERR_FILENO);
+}
+
+static void end_catching(void) {
     dup2(screen, STDERR_FILENO);
     close(screen);
-    rewind(catch);
-    said[fread(said, 1, sizeof said - 1, catch)] = 0;
-    fclose(catch);
+    rewind(caught);
+    said[fread(said, 1, sizeof said - 1, caught)] = 0;
+    fclose(caught);
+}
+
+/* Reads a text as a file and keeps what was said. */
+static int try_options(const char *text, size_t size, const struct read_options *options) {
+    write_file(text, size);
+    bed_free(&bed);
+    begin_catching();
+    const int status = read_bed(path, options, &bed);
+    end_catching();
     return status;
 }
 
@@ -90,21 +109,126 @@ END_TEST
 
 START_TEST(further_columns_by_name) {
     const char *const names[] = {"emissivity", "T"};
-    const char text[] = "T,x,y,z,r,emissivity,id\n300,0,0,0,1,0.8,17\n400,3,0,0,1,0.9,-4\n";
+    const char text[] = "T,x,y,z,r,emissivity,id\n300,0,0,0,1,0.8,17\n400,3,0,0,1,0.9,4\n";
     const struct read_options options = {.extra = names, .extras = 2};
     ck_assert_int_eq(try_options(text, sizeof text - 1, &options), 0);
-    ck_assert_double_eq(bed.extra[0], 0.8);
-    ck_assert_double_eq(bed.extra[1], 300);
-    ck_assert_double_eq(bed.extra[2], 0.9);
-    ck_assert_double_eq(bed.extra[3], 400);
-    ck_assert_int_eq(bed.id[0], 17);
-    ck_assert_int_eq(bed.id[1], -4);
+    ck_assert_double_eq(bed.extra[0], 0.9); /* by id */
+    ck_assert_double_eq(bed.extra[1], 400);
+    ck_assert_double_eq(bed.extra[2], 0.8);
+    ck_assert_double_eq(bed.extra[3], 300);
+    ck_assert_int_eq(bed.id[0], 4);
+    ck_assert_int_eq(bed.id[1], 17);
     const char bad[] = "x,y,z,r,emissivity,T,id\n0,0,0,1,dark,1,1\n";
     expect_refusal(bad, sizeof bad - 1, &options, 2, "emissivity is not a number: 'dark'");
     const char lacking[] = "x,y,z,r,emissivity,id\n0,0,0,1,1,1\n";
     expect_refusal(lacking, sizeof lacking - 1, &options, 1, "no column T");
-    const char text_id[] = "x,y,z,r,emissivity,T,id\n0,0,0,1,1,1,1.5\n";
-    expect_refusal(text_id, sizeof text_id - 1, &options, 2, "the id is not a whole number: '1.5'");
+}
+END_TEST
+
+/* Spheres go by their ids; --positions leaves these alone. */
+START_TEST(ids) {
+    static const struct {
+        const char *id[2], *reason;
+        unsigned line;
+    } bad[] = {{{"3", "3"}, "the id 3 is that of line 2, too", 3},
+               {{"3", "-4"}, "the id -4 is negative", 3},
+               {{"3", "1.5"}, "the id is not a whole number: '1.5'", 3},
+               {{"1e6", "2"}, "the id is not a whole number: '1e6'", 2},
+               {{"9223372036854775808", "2"}, "the id is too large: '9223372036854775808'", 2}};
+    const struct read_options positions = {.positions = true};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
+        char text[200];
+        snprintf(text, sizeof text, "id,x,y,z,r\n%s,1,0,0,1\n%s,5,0,0,1\n", bad[k].id[0], bad[k].id[1]);
+        expect_refusal(text, strlen(text), &(struct read_options){0}, bad[k].line, bad[k].reason);
+        ck_assert_int_eq(try_options(text, strlen(text), &positions), 0);
+        ck_assert(!bed.ids && bed.x[0] == 1 && bed.x[1] == 5);
+    }
+    ck_assert_int_eq(try("id,x,y,z,r\n9223372036854775807,1,0,0,1\n70000,3,0,0,1\n0,5,0,0,1\n"), 0);
+    ck_assert(bed.x[0] == 5 && bed.x[1] == 3 && bed.x[2] == 1);
+    ck_assert_int_eq(bed_name(&bed, 2), INT64_MAX);
+}
+END_TEST
+
+/* Separators, decimal commas, names in any case, units, headers in comments. */
+START_TEST(tables) {
+    static const struct {
+        const char *text, *units;
+    } good[] = {
+        {"X;Y;Z;R\n1,5;2;-3,25;0,5\n", ""},
+        {"x\ty\tz\tdiameter\n1,5\t2\t-3,25\t1\n", ""},
+        {"x y  z r\n1.5 2 -3.25 0.5\n", ""},
+        {" x [mm], y [mm] ,z[mm],Radius (mm)\n1.5,2,-3.25,.5\n", "mm"},
+        {"x [cm] y [cm] z [cm] d [cm]\n1.5 2 -3.25 1\n", "cm"},
+        {"# x,y,z,r\n1.5,2,-3.25,0.5\n", ""},
+        {"# by hand\n#x y z r\n# more\n1.5 2 -3.25 0.5\n", ""},
+        {"# x y z r\n1.5,2,-3.25,0.5\n", ""},
+        {"\"r\",\"Points:0\",\"Points:1\",\"Points:2\"\n0.5,1.5,2,-3.25\n", ""},
+        {"Points_0,Points_1,Points_2,Points_Magnitude,d\n1.5,2,-3.25,9,1\n", ""},
+        {"#format x_y_z_r_attrs\n# x y z r T vx\n1.5\t2\t-3.25\t0.5\t300\t1e-3\n", ""},
+        {"#format x_y_z_r_attrs\n1.5\t2\t-3.25\t0.5\t300\t1e-3\n", ""},
+        {"# x y z r is what columns are\nx,y,z,R\n1.5,2,-3.25,0.5\n", ""},
+    };
+    for (size_t k = 0; k < sizeof good / sizeof *good; ++k) {
+        ck_assert_msg(try(good[k].text) == 0, "%s%s", good[k].text, said);
+        ck_assert_uint_eq(bed.n, 1);
+        ck_assert_msg(bed.x[0] == 1.5 && bed.y[0] == 2 && bed.z[0] == -3.25 && bed.r[0] == 0.5, "%s", good[k].text);
+        ck_assert_str_eq(bed.units, good[k].units);
+    }
+    /* what is written as it is goes before any other case */
+    ck_assert_int_eq(try("R,x,y,z,r\n0.3,1,2,3,0.5\n"), 0);
+    ck_assert_double_eq(bed.r[0], 0.5);
+}
+END_TEST
+
+START_TEST(without_radii) {
+    const char *const names[] = {"type"};
+    const struct read_options options = {.no_radius = true, .extra = names, .extras = 1};
+    const char text[] = "x,y,z,type\n1,2,3,7\n";
+    ck_assert_int_eq(try_options(text, sizeof text - 1, &options), 0);
+    ck_assert(isnan(bed.r[0]) && bed.extra[0] == 7);
+    const char atomic[] = "c\n\n1 atoms\n0 2 xlo xhi\n0 2 ylo yhi\n0 2 zlo zhi\n\nAtoms\n\n5 7 1 0 0 0 0 0\n";
+    ck_assert_int_eq(try_options(atomic, sizeof atomic - 1, &options), 0);
+    ck_assert(isnan(bed.r[0]) && bed.extra[0] == 7 && bed.id[0] == 5);
+    const char plain[] = "1\nAtoms. Timestep: 70\n7 1 2 3\n";
+    ck_assert_int_eq(try_options(plain, sizeof plain - 1, &options), 0);
+    ck_assert(isnan(bed.r[0]) && bed.extra[0] == 7 && bed.timestep == 70);
+}
+END_TEST
+
+/* Numbers have the bits of strtod, however they are written. */
+START_TEST(numbers) {
+    static const char *const odd[] = {"0",
+                                      "-0",
+                                      "+7.",
+                                      ".5",
+                                      "1e22",
+                                      "1e23",
+                                      "1e-22",
+                                      "1e-23",
+                                      "0x1p3",
+                                      "1E+5",
+                                      "1e05",
+                                      "9007199254740993",
+                                      "9007199254740992e22",
+                                      "4.9e-324",
+                                      "1.7976931348623157e308",
+                                      "0.1000000000000000055511151231257827"};
+    static const char *const none[] = {"", "-", ".", "e5", "1e", "1e+", "1.2.3", "1,5", "1 ", "--1", "1e5x", "+-1"};
+    char text[80];
+    double value;
+    uint64_t state = 12345;
+    for (int k = 0; k < 200000; ++k) {
+        state = state * 6364136223846793005U + 1442695040888963407U;
+        const double size = ldexp((double)(state >> 11), (int)(state % 120) - 110);
+        const char *const format[] = {"%.*g", "%.*e", "%.*f", "-%.*g"};
+        snprintf(text, sizeof text, format[k % 4], (int)(state >> 20) % 20, size);
+        ck_assert_msg(number_read(text, &value) && value == strtod(text, NULL), "%s", text);
+    }
+    for (size_t k = 0; k < sizeof odd / sizeof *odd; ++k) {
+        const double wanted = strtod(odd[k], NULL);
+        ck_assert_msg(number_read(odd[k], &value) && memcmp(&value, &wanted, sizeof value) == 0, "%s", odd[k]);
+    }
+    for (size_t k = 0; k < sizeof none / sizeof *none; ++k) ck_assert_msg(!number_read(none[k], &value), "%s", none[k]);
 }
 END_TEST
 
@@ -115,8 +239,8 @@ END_TEST
 START_TEST(dump_columns_by_name) {
     ck_assert_int_eq(try(FRAME(" pp ff mm ", "id type z y x radius ") "9 1 3 2 1 .5 \n4 1 6 5 4 1 \n"), 0);
     ck_assert_uint_eq(bed.n, 2);
-    expect_sphere(0, 1, 2, 3, 0.5, 10);
-    expect_sphere(1, 4, 5, 6, 1, 11);
+    expect_sphere(0, 4, 5, 6, 1, 11); /* by id */
+    expect_sphere(1, 1, 2, 3, 0.5, 10);
     ck_assert(bed.period[0] == 4 && bed.period[1] == 0 && bed.period[2] == 0);
     ck_assert(bed.low[0] == -1 && bed.high[2] == 20);
 }
@@ -140,21 +264,225 @@ END_TEST
     "ITEM: UNITS\nlj\nITEM: TIME\n0.5\nITEM: TIMESTEP\n8\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS r z y x\n4 3 2 1\n"
 
 START_TEST(dump_frames) {
-    struct read_options options = {.frame = -1};
-    for (options.frame = -1; options.frame < 2; options.frame += 2) {
+    struct read_options options = {0};
+    for (int k = 0; k < 2; ++k) {
         ck_assert_int_eq(try_options(TWO_FRAMES, strlen(TWO_FRAMES), &options), 0);
         ck_assert_uint_eq(bed.n, 1);
         expect_sphere(0, 1, 2, 3, 4, 21);
         ck_assert(bed.period[0] == 0); /* the second frame has no box */
+        ck_assert(bed.frame == 1 && bed.timestep == 8);
+        ck_assert_str_eq(bed.units, "lj");
+        options.frames = (struct frames){1, 2, 1};
     }
-    options.frame = 0;
+    options.frames = (struct frames){0, 1, 1};
     ck_assert_int_eq(try_options(TWO_FRAMES "ITEM: TIMESTEP\n", strlen(TWO_FRAMES) + 15, &options), 0);
     ck_assert_uint_eq(bed.n, 2);
     expect_sphere(1, 3, 0, 0, 1, 11);
-    options.frame = 2;
+    ck_assert(bed.frame == 0 && bed.timestep == 7);
+    options.frames = (struct frames){2, 3, 1};
     expect_refusal(TWO_FRAMES, strlen(TWO_FRAMES), &options, 0, "there is no frame 2; the last is 1");
     const char csv[] = "x,y,z,r\n0,0,0,1\n";
     expect_refusal(csv, sizeof csv - 1, &options, 0, "there is no frame 2");
+}
+END_TEST
+
+/* Goes through the frames wanted of the file; returns their numbers as digits. */
+static const char *frames_of(const char *text, size_t size, struct frames frames, int *status) {
+    static char seen[40];
+    size_t beds = 0;
+    bool more;
+    struct reader *reader;
+    const struct read_options options = {.frames = frames};
+    write_file(text, size);
+    begin_catching();
+    *status = reader_open(&reader, path, &options);
+    while (!*status && !(*status = reader_next(reader, &bed, &more)) && more && beds < sizeof seen - 1)
+        seen[beds++] = (char)('0' + bed.frame);
+    reader_close(reader);
+    end_catching();
+    seen[beds] = 0;
+    return seen;
+}
+
+#define SMALL_FRAME "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: ATOMS x y z r\n0 0 0 1\n3 0 0 1\n"
+#define EMPTY_FRAME "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n0\nITEM: ATOMS x y z r\n"
+#define FIVE_FRAMES SMALL_FRAME SMALL_FRAME SMALL_FRAME SMALL_FRAME SMALL_FRAME
+#define XYZ_FRAME   "2\nProperties=species:S:1:pos:R:3:radius:R:1\nA 0 0 0 1\nA 3 0 0 1\n"
+#define DATA_ROW    " 0 0 0 1 0 0 0 0 0 0 0\n"
+#define DATA_FRAME  "2 0.5 0 0 0 1 1 1\n0 0 0" DATA_ROW "3 0 0" DATA_ROW
+
+START_TEST(ranges) {
+    static const struct {
+        const char *text;
+        struct frames frames;
+        const char *seen, *said;
+        int status;
+    } cases[] = {
+        {FIVE_FRAMES, {0, 5, 1}, "01234", "", 0},
+        {FIVE_FRAMES, {1, 99, 2}, "13", "", 0},
+        {FIVE_FRAMES, {0, 0, 0}, "4", "", 0},
+        {FIVE_FRAMES "\n \n", {0, 0, 0}, "4", "", 0},
+        {FIVE_FRAMES, {7, 9, 1}, "", "there is no frame 7; the last is 4", STATUS_INPUT},
+        {FIVE_FRAMES "ITEM: TIMESTEP\n", {0, 9, 1}, "01234", "warning: frame 5 is left out: the file ends within", 0},
+        {FIVE_FRAMES "ITEM: TIMESTEP\n", {0, 0, 0}, "", "ends within a frame; the last whole frame is 4", STATUS_INPUT},
+        {FIVE_FRAMES "ITEM: TIMESTEP\n", {5, 6, 1}, "", "ends within a frame; the last whole frame is 4", STATUS_INPUT},
+        {SMALL_FRAME "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS x y z r\n0 0 0 1.2",
+         {0, 2, 1},
+         "0",
+         "warning: frame 1 is left out: the file ends within a line",
+         0},
+        {SMALL_FRAME EMPTY_FRAME SMALL_FRAME, {0, 9, 1}, "02", "warning: frame 1 is left out: it is empty", 0},
+        {SMALL_FRAME EMPTY_FRAME, {0, 0, 0}, "", "there are no spheres", STATUS_INPUT},
+        {EMPTY_FRAME EMPTY_FRAME, {0, 9, 1}, "", "there are no spheres", STATUS_INPUT},
+        {XYZ_FRAME XYZ_FRAME "\n" XYZ_FRAME, {0, 9, 1}, "012", "", 0},
+        {XYZ_FRAME XYZ_FRAME "2\n", {0, 9, 1}, "01", "warning: frame 2 is left out: the frame ends after 0", 0},
+        {XYZ_FRAME XYZ_FRAME "2\n\nA 0 0 0 1\n", {2, 3, 1}, "", "after 1 spheres; 2 were declared", STATUS_INPUT},
+        {DATA_FRAME DATA_FRAME, {0, 9, 1}, "01", "does not say which axes are periodic", 0},
+        {DATA_FRAME "2 0 0 0 0 1 1 1\n0 0 0 1", {0, 9, 1}, "0", "after 1 spheres", 0},
+        {"x,y,z,r\n0,0,0,1\n", {0, 9, 1}, "0", "", 0},
+        {"x,y,z,r\n0,0,0,1\n", {1, 9, 1}, "", "there is no frame 1; the last is 0", STATUS_INPUT},
+    };
+    int status;
+    const char *seen = frames_of(cases[_i].text, strlen(cases[_i].text), cases[_i].frames, &status);
+    ck_assert_msg(status == cases[_i].status, "status %d: %s", status, said);
+    ck_assert_str_eq(seen, cases[_i].seen);
+    ck_assert_msg(strstr(said, cases[_i].said) && (*said != 0) == (*cases[_i].said != 0), "%s", said);
+}
+END_TEST
+
+/* The file, packed by gzip. */
+static size_t pack(const char *text, size_t size, char *to, size_t room) {
+    z_stream stream = {.next_in = (unsigned char *)(uintptr_t)text,
+                       .avail_in = (unsigned)size,
+                       .next_out = (unsigned char *)to,
+                       .avail_out = (unsigned)room};
+    ck_assert_int_eq(deflateInit2(&stream, 6, Z_DEFLATED, 31, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    ck_assert_int_eq(deflate(&stream, Z_FINISH), Z_STREAM_END);
+    const size_t packed = stream.total_out;
+    deflateEnd(&stream);
+    return packed;
+}
+
+START_TEST(gzip) {
+    char text[20000], packed[20000];
+    size_t size = 0;
+    int status;
+    for (int k = 0; k < 40; ++k)
+        size += (size_t)snprintf(text + size, sizeof text - size,
+                                 "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS x y z r\n%d %d 1 %d\n", k,
+                                 k * 7919 % 104729, k * k * 7907 % 104729, k + 1);
+    const size_t bytes = pack(text, size, packed, sizeof packed);
+    ck_assert_str_eq(frames_of(packed, bytes, (struct frames){37, 40, 1}, &status), "UVW");
+    ck_assert_int_eq(status, 0);
+    /* cut off */
+    ck_assert_ptr_nonnull(strstr("0123456789:;<=>?@ABCDEFGHIJKLMNOPQRSTUVW",
+                                 frames_of(packed, bytes / 2, (struct frames){0, 40, 1}, &status)));
+    ck_assert_int_eq(status, 0);
+    ck_assert_msg(strstr(said, "warning: frame ") && strstr(said, "the gzip file is cut off"), "%s", said);
+    frames_of(packed, bytes / 2, (struct frames){0, 0, 0}, &status);
+    ck_assert_int_eq(status, STATUS_INPUT);
+    ck_assert_msg(strstr(said, "the gzip file is cut off; the last whole frame is "), "%s", said);
+    /* damaged */
+    packed[bytes / 2] = (char)(packed[bytes / 2] ^ 0x55);
+    packed[bytes / 2 + 1] = (char)~packed[bytes / 2 + 1];
+    expect_refusal(packed, bytes, &(struct read_options){0}, 0, "the gzip file is damaged");
+    /* tables hold one frame */
+    const char table[] = "x,y,z,r\n0,0,0,1\n5,0,0,1\n";
+    const size_t short_bytes = pack(table, sizeof table - 1, packed, sizeof packed);
+    ck_assert_int_eq(try_options(packed, short_bytes, &(struct read_options){0}), 0);
+    ck_assert_uint_eq(bed.n, 2);
+    ck_assert_int_eq(try_options(packed, short_bytes - 9, &(struct read_options){0}), STATUS_INPUT);
+    ck_assert_msg(strstr(said, "the gzip file is cut off"), "%s", said);
+}
+END_TEST
+
+START_TEST(dump_without_tilt) {
+    const char text[] =
+        "ITEM: UNITS\ncgs \nITEM: TIME\n0.5\nITEM: TIMESTEP\n 7 \nITEM: NUMBER OF ATOMS\n1 \nITEM: BOX BOUNDS xy xz "
+        "yz pp ff pp\n-1 3 0\n0 10 0\n0 20 0.0\nITEM: ATOMS xs y z radius\n0.25 0 0 1\n";
+    ck_assert_int_eq(try(text), 0);
+    expect_sphere(0, 0, 0, 0, 1, 14);
+    ck_assert(bed.period[0] == 4 && bed.period[1] == 0 && bed.period[2] == 20);
+    ck_assert_str_eq(bed.units, "cgs");
+    ck_assert_int_eq(bed.timestep, 7);
+}
+END_TEST
+
+#define DATA_HEAD                                                                                                      \
+    "LAMMPS data file via write_data, version 2 Aug 2023, timestep = 30, units = si\n\n2 atoms\n2 atom types\n\n"      \
+    "-1 3 xlo xhi\n0 10 ylo yhi\n0 2e1 zlo zhi\n"
+
+START_TEST(data_files) {
+    static const char *const good[] = {
+        DATA_HEAD
+        "0 0 0 xy xz yz\n\nMasses\n\n1 1\n2 1\n\nAtoms # sphere\n\n9 1 1 2500 1 2 3 0 0 0\n4 2 2 2500 4 5 6 1 0 -1\n\n"
+        "Velocities\n\n9 0 0 0 0 0 0\n4 0 0 0 0 0 0\n",
+        DATA_HEAD "\nAtoms # hybrid sphere\n\n9 1 1 2 3 1 2500 0.5\n4 2 4 5 6 2 2500 0.5\n",
+        "LAMMPS data file via write_data, version Version LIGGGHTS-PUBLIC 3.8.0, timestep = 30\n\n2 atoms\n-1 3 xlo "
+        "xhi\n"
+        "0 10 ylo yhi\n0 20 zlo zhi\nAtoms\n\n9 1 1 2500 1 2 3\n4 2 2 2500 4 5 6\n",
+    };
+    for (size_t k = 0; k < 3; ++k) {
+        ck_assert_msg(try(good[k]) == 0, "%s", said);
+        ck_assert_uint_eq(bed.n, 2);
+        ck_assert(bed.id[0] == 4 && bed.x[0] == 4 && bed.y[0] == 5 && bed.z[0] == 6 && bed.r[0] == 1);
+        ck_assert(bed.id[1] == 9 && bed.x[1] == 1 && bed.y[1] == 2 && bed.z[1] == 3 && bed.r[1] == 0.5);
+        ck_assert(bed.low[0] == -1 && bed.high[2] == 20 && bed.period[0] == 0);
+        ck_assert_int_eq(bed.timestep, 30);
+        ck_assert_str_eq(bed.units, k < 2 ? "si" : "");
+        ck_assert_msg(strstr(said, "warning: the file does not say which axes are periodic"), "%s", said);
+    }
+}
+END_TEST
+
+START_TEST(xyz) {
+    ck_assert_int_eq(
+        try("2\nLattice=\"4 0 0 0 5 0 0 0 6\" Origin=\"-1 0 1\" Properties=species:S:1:id:I:1:pos:R:3:velo:R:3:"
+            "Radius:R:1 pbc=\"T F 1\"\nA 9 1 2 3 0 0 0 0.5\nB 4 4 5 6 0 0 0 1\n"),
+        0);
+    ck_assert(bed.n == 2 && bed.id[0] == 4);
+    expect_sphere(0, 4, 5, 6, 1, 4);
+    expect_sphere(1, 1, 2, 3, 0.5, 3);
+    ck_assert(bed.low[0] == -1 && bed.high[0] == 3 && bed.low[2] == 1 && bed.high[2] == 7);
+    ck_assert(bed.period[0] == 4 && bed.period[1] == 0 && bed.period[2] == 6);
+    ck_assert_int_eq(try("1\nProperties=pos:R:3:r:R:1 Lattice=\"4 0 0 0 5 0 0 0 6\"\n1 2 3 1"), 0);
+    ck_assert(bed.period[0] == 4 && bed.period[1] == 5 && bed.period[2] == 6);
+}
+END_TEST
+
+START_TEST(mercury) {
+    ck_assert_int_eq(try("2 0.5 0 0 -1 4 5 6 \n1 2 3 0 0 0 0.5 0 0 0 0 0 0 0\n4 5 6 0 0 0 1 0 0 0 0 0 0 1\n"), 0);
+    ck_assert_uint_eq(bed.n, 2);
+    expect_sphere(1, 4, 5, 6, 1, 3);
+    ck_assert(!bed.ids && bed.low[2] == -1 && bed.high[0] == 4 && bed.period[0] == 0);
+}
+END_TEST
+
+#define VTK_HEAD "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n1 2 3 4 5 6\n"
+#define VTP(array)                                                                                                     \
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\">\n<PolyData><Piece "              \
+    "NumberOfPoints=\"2\">\n<PointData>" array "</PointData><Points><DataArray type=\"Float32\" Name=\"p\" "           \
+    "NumberOfComponents=\"3\" format=\"ascii\">1 2 3 4 5 6</DataArray></Points></Piece></PolyData></VTKFile>\n"
+#define ARRAY(name, text) "<DataArray type=\"Float64\" Name=\"" name "\" format=\"ascii\">" text "</DataArray>"
+
+START_TEST(vtk) {
+    static const char *const good[] = {
+        VTK_HEAD "VERTICES 2 4\n1 0 1 1\nPOINT_DATA 2\nVECTORS v float\n0 0 0 0 0 0\nSCALARS radius double 1\n"
+                 "LOOKUP_TABLE default\n0.5 1\nSCALARS id int\nLOOKUP_TABLE default\n4 9\n",
+        VTK_HEAD
+        "METADATA\nINFORMATION 0\n\nCELL_DATA 2\nSCALARS radius double\nLOOKUP_TABLE default\n7 7\nPOINT_DATA 2\n"
+        "FIELD FieldData 2\nid 1 2 int\n4 9\nMETADATA\nINFORMATION 0\n\nDiameter 1 2 double\n1 2\n",
+        VTP(ARRAY("Radius", " 0.5 1 ") ARRAY("id", "4 9")),
+        VTP(ARRAY("id", "4 9") "<DataArray type='Float32' Name='Radii' format='binary'>CAAAAAAAAD8AAIA/</DataArray>"),
+        VTP(ARRAY("id",
+                  "4 9") "<DataArray type='Float32' Name='radii' format='binary'>CAAAAA==AAAAPwAAgD8=</DataArray>"),
+    };
+    for (size_t k = 0; k < sizeof good / sizeof *good; ++k) {
+        ck_assert_msg(try(good[k]) == 0, "%zu: %s", k, said);
+        ck_assert(bed.n == 2 && bed.id[0] == 4 && bed.id[1] == 9);
+        expect_sphere(0, 1, 2, 3, 0.5, 0);
+        expect_sphere(1, 4, 5, 6, 1, 0);
+    }
 }
 END_TEST
 
@@ -182,7 +510,7 @@ START_TEST(settled_beds) {
         for (uint32_t i = 0; i < bed.n; ++i) {
             ck_assert(bed.r[i] >= beds[k].radius_min && bed.r[i] <= beds[k].radius_max);
             ck_assert(bed.extra[i] >= 299 && bed.extra[i] <= 1001);
-            ck_assert_uint_eq(bed.line[i], i + 10);
+            ck_assert(bed.id[i] == i + 1 && bed.line[i] >= 10 && bed.line[i] < 2010);
         }
     }
 }
@@ -199,8 +527,9 @@ START_TEST(growth) {
     free(text);
     ck_assert_uint_eq(bed.n, N);
     for (uint32_t i = 0; i < N; ++i) {
-        expect_sphere(i, i, 2. * i, 3. * i, 1, i + 2);
-        ck_assert_int_eq(bed.id[i], N - (int64_t)i);
+        const uint32_t k = N - 1 - i;
+        expect_sphere(i, k, 2. * k, 3. * k, 1, k + 2);
+        ck_assert_int_eq(bed.id[i], i + 1);
     }
 }
 END_TEST
@@ -219,7 +548,79 @@ static const struct {
     {0, "x,y,z,r\n", "no spheres"},
     {1, "x,y,r\n0,0,1\n", "no column z"},
     {1, "x,y,z\n0,0,1\n", "no column r"},
-    {1, "0,0,0,1\n", "no column x"},
+    {1, "0,0,0,1\n", "numbers without a header that names their columns, such as x,y,z,r"},
+    {2, "# made by hand\n0,0,0,1\n", "numbers without a header"},
+    {1, "x [mm],y [mm],z [mm],r [m]\n0,0,0,1\n", "lengths of more than one unit: x in [mm], r in [m]"},
+    {1, "x [mm],y,z,r\n0,0,0,1\n", "lengths of more than one unit: x in [mm], y in []"},
+    {3, "x;y;z;r\n0,5;0;0;1\n0.5;0;0;1\n", "x is '0.5': decimal commas and decimal points in one file"},
+    {2, "x;y;z;r\n1.234,5;0;0;1\n", "x is not a number: '1.234,5'"},
+    {1, "xs,ys,zs,r\n0,0,0,1\n", "the scaled coordinate xs needs a box"},
+    {1, "x y z r X x\n0 0 0 1 0 0\n", "two columns are named x"},
+    {2, "#format x_y_z_r\n0 0 0 1 1\n", "5 fields"},
+    {2, "1\nno properties\nA 0 0 0 1\n", "an XYZ file without Properties=... has no radii; --radius gives them"},
+    {2, "1\nProperties=pos:R:3\n0 0 0\n", "no column r"},
+    {2, "1\nProperties=pos:R:3:radius:R\n0 0 0 1\n", "Properties needs name:type:count"},
+    {2, "1\nProperties=pos:R:3:radius:R:0\n0 0 0 1\n", "Properties needs name:type:count"},
+    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 1 0 0.1 0 1\"\n0 0 0 1\n", "the lattice is tilted"},
+    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 1 0 0\"\n0 0 0 1\n", "Lattice needs nine numbers"},
+    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 0 0 0 0 1\"\n0 0 0 1\n", "the box is empty"},
+    {2, "1\nProperties=pos:R:3:r:R:1 Lattice=\"1 0 0 0 1 0 0 0 1\" pbc=\"T F\"\n0 0 0 1\n", "pbc needs three"},
+    {3, "1\nProperties=pos:R:3:r:R:1\n0 0 0 1 1\n", "5 fields"},
+    {4, "2\nProperties=pos:R:3:r:R:1\n0 0 0 1\nx 0 0 1\n", "x is not a number"},
+    {1, "1 0 0 0 1 1\n0 0 0 0 1 0 0 0\n", "MercuryDPM file in two dimensions"},
+    {1, "1 0 0 0 0 1 1 0\n0 0 0 0 0 0 1 0 0 0 0 0 0 0\n", "the box is empty"},
+    {2, "1 0 0 0 0 1 1 1\n0 0 0 0 0 0 0 0 0 0 0 0 0 0\n", "the radius is 0"},
+    {6, "c\n1 atoms\n0 1 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\nAtoms # atomic\n\n1 1 0 0 0\n",
+     "this is a LAMMPS data file of style atomic: it has no radii; --radius gives them"},
+    {3, "c\n1 atoms\nAtoms\n1 1 0 0 0\n", "style atomic: it has no radii"},
+    {3, "c\n1 atoms\nAtoms # hybrid\n1 1 0 0 0 1 1\n", "style hybrid, which does not say of what"},
+    {3, "c\n1 atoms\nAtoms # body\n1 1 0 0 0 1 1\n", "style body, whose columns are not known"},
+    {4, "c\n1 atoms\nAtoms\n1 1 1 1 0 0 0\n", "the style of the atoms is not said"},
+    {3, "c\n1 atoms\n0.1 0 0 xy xz yz\nAtoms # sphere\n1 1 1 1 0 0 0\n", "the box is tilted"},
+    {3, "c\n1 atoms\n1 1 xlo xhi\nAtoms # sphere\n1 1 1 1 0 0 0\n", "the box is empty"},
+    {3, "c\n1 atoms\n0 1 xlo xhi\n", "there is no section Atoms"},
+    {2, "c\nmany atoms\n1 atoms\nAtoms # sphere\n1 1 1 1 0 0 0\n", "the number of atoms is not a whole number"},
+    {0, VTK_HEAD, "this VTK file has no array radius or diameter on its points; --radius gives radii"},
+    {0, "# vtk DataFile Version 3.0\n\nASCII\nDATASET STRUCTURED_POINTS\n", "another kind than POLYDATA"},
+    {3, "# vtk DataFile Version 3.0\n\nText\nDATASET POLYDATA\n", "ASCII or BINARY is expected"},
+    {7, VTK_HEAD "POINTS 1 float\n0 0 0\n", "points are given twice"},
+    {7, VTK_HEAD "SPHERES 1\n", "the keyword SPHERES is not known"},
+    {0, VTK_HEAD "POINT_DATA 2\nSCALARS radius float 1\nLOOKUP_TABLE default\n1 nan\n",
+     "the radius of point 1 is not finite"},
+    {0, VTK_HEAD "POINT_DATA 2\nVECTORS radius float\n1 1 1 1 1 1\n", "the array radius has 3 components"},
+    {9, VTK_HEAD "POINT_DATA 2\nSCALARS radius float 1\nLOOKUP_TABLE default\n1", "the file ends within an array"},
+    {10, VTK_HEAD "POINT_DATA 2\nSCALARS radius float 1\nLOOKUP_TABLE default\n1 one\n", "a number is expected"},
+    {9, VTK_HEAD "POINT_DATA 2\nSCALARS radius string 1\nLOOKUP_TABLE default\n1 2\n", "arrays of type string"},
+    {0, VTP(ARRAY("mass", "1 1")), "no array radius or diameter"},
+    {0, VTP(ARRAY("radius", "1 -1")), "the radius is -1; it must be above 0"},
+    {0, VTP(ARRAY("radius", "1 1") ARRAY("id", "3 3")), "the id 3 is there twice"},
+    {0, VTP(ARRAY("radius", "1 1") ARRAY("id", "3 3.5")), "the id of point 1 is 3.5"},
+    {4, VTP(ARRAY("radius", "1")), "an array is too short"},
+    {4, VTP("<DataArray type='Float32' Name='radius' format='binary'>CAAAAAAAAD8AAIA</DataArray>"),
+     "an array is damaged"},
+    {4, VTP("<DataArray type='Float32' Name='radius' format='binary'>CQAAAAAAAD8AAIA/</DataArray>"),
+     "an array is damaged"},
+    {4, VTP("<DataArray type='Float32' Name='radius' format='appended' offset='0'/>"), "the array has no data"},
+    {4, VTP("<DataArray type='String' Name='radius' format='ascii'>a b</DataArray>"), "arrays of type String"},
+    {1, "<VTKFile type='Collection'>\n", "this is a ParaView collection"},
+    {0, "<VTKFile type='ImageData'>\n", "a VTK file of type ImageData: it has no spheres"},
+    {1, "<VTKFile type='PolyData' compressor='vtkLZ4DataCompressor'>\n", "its arrays are packed by vtkLZ4"},
+    {4,
+     "<?xml version='1.0'?>\n<!-- <VTKFile --><Piece NumberOfPoints='1'>\n<PointData>\n<DataArray type='Float32' "
+     "Name='radius' "
+     "format='binary'>\nBAAAAAAAAD\n</DataArray>",
+     "an array is damaged"},
+    {1, "ITEM: ENTRIES c_1[1]\n1\n", "a LAMMPS dump of local values"},
+    {0, "# how to settle\nunits si\n", "this is an input script of LAMMPS"},
+    {0, "{\"x\": 1}\n", "this is JSON"},
+    {0, "<html>\n", "this is XML"},
+    {0, "\x89PNG\r\n", "this is a PNG picture"},
+    {0, "\x89HDF\r\n", "this is an HDF5 file"},
+    {0, "\x93NUMPY", "this is a NumPy array"},
+    {0, "PK\003\004", "this is a zip archive"},
+    {0, "\xff\xfex", "this is text in UTF-16"},
+    {0, "LammpS RestartT", "this is a LAMMPS restart file"},
+    {0, "BZh91AY", "this is packed by bzip2"},
     {2, "#\nx,y,z,r,x\n0,0,0,1,2\n", "two columns are named x"},
     {3, "x,y,z,r\n0,0,0,1\n3,nan,0,1\n", "y is not finite"},
     {3, "x,y,z,r\n0,0,0,1\n3,0,-inf,1\n", "z is not finite"},
@@ -241,9 +642,9 @@ static const struct {
     {1, "ITEM: TIMESTEP\n", "the file ends within a frame"},
     {4, HEAD "many\n" BOX ATOMS SPHERE, "the number of atoms is not a whole number: 'many'"},
     {4, HEAD "-1\n" BOX ATOMS SPHERE, "the number of atoms is negative"},
-    {4, HEAD "1 1\n" BOX ATOMS SPHERE, "the number of atoms is expected"},
+    {4, HEAD "1 1\n" BOX ATOMS SPHERE, "the number of atoms is not a whole number: '1 1'"},
     {4, HEAD BOX ATOMS SPHERE, "a section begins where lines of the one before are missing"},
-    {4, HEAD "99999999999999999999\n" BOX ATOMS SPHERE, "not a whole number"},
+    {4, HEAD "99999999999999999999\n" BOX ATOMS SPHERE, "the number of atoms is too large"},
     {10, HEAD "99999999999\n" BOX ATOMS SPHERE, "the frame ends after 1 atoms; 99999999999 were declared"},
     {11, HEAD "3\n" BOX ATOMS SPHERE SPHERE, "the frame ends after 2 atoms; 3 were declared"},
     {11, HEAD "2\n" BOX ATOMS SPHERE HEAD "1\n", "the frame ends after 1 atoms; 2 were declared"},
@@ -256,10 +657,10 @@ static const struct {
     {5,
      HEAD "1\n"
           "ITEM: ATOMS xs y z r\n0 0 0 1\n",
-     "scaled coordinates need ITEM: BOX BOUNDS"},
-    {0, "ITEM: ATOMS x y z r\n0 0 0 1\n", "no frame"},
+     "the scaled coordinate xs needs a box"},
+    {1, "ITEM: ATOMS x y z r\n0 0 0 1\n", "ITEM: ATOMS comes before ITEM: NUMBER OF ATOMS"},
     {3, "ITEM: TIMESTEP\n0\n" ATOMS SPHERE, "before ITEM: NUMBER OF ATOMS"},
-    {5, HEAD "1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n0 1 0\n0 1 0\n0 1 0\n" ATOMS SPHERE, "triclinic"},
+    {7, HEAD "1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n0 1 0\n0 1 0.1\n0 1 0\n" ATOMS SPHERE, "the box is tilted"},
     {5, HEAD "1\nITEM: BOX BOUNDS abc origin pp pp pp\n0 1 0 0\n0 1 0 0\n0 1 0 0\n" ATOMS SPHERE, "triclinic"},
     {5, HEAD "1\nITEM: BOX BOUNDS pp pq pp\n0 1\n0 1\n0 1\n" ATOMS SPHERE, "unknown boundary mark 'pq'"},
     {7, HEAD "1\nITEM: BOX BOUNDS pp pp pp\n0 1\n1 1\n0 1\n" ATOMS SPHERE, "the box is empty"},
@@ -278,7 +679,7 @@ END_TEST
 START_TEST(binary_data) {
     const char zeros[] = "x,y,z,r\n0,0,0,\0001\n";
     expect_refusal(zeros, sizeof zeros - 1, &(struct read_options){0}, 2, "binary data");
-    expect_refusal("\x1f\x8b\x08 gzip", 8, &(struct read_options){0}, 0, "compressed");
+    expect_refusal("\x1f\x8b\x08 gzip", 8, &(struct read_options){0}, 0, "the gzip file is damaged");
     char *endless = malloc(3 << 20);
     ck_assert_ptr_nonnull(endless);
     memset(endless, '1', 3 << 20);
@@ -307,6 +708,17 @@ int main(void) {
     tcase_add_test(formats, dump_columns_by_name);
     tcase_add_test(formats, dump_scaled_unwrapped_diameter);
     tcase_add_test(formats, dump_frames);
+    tcase_add_test(formats, ids);
+    tcase_add_test(formats, tables);
+    tcase_add_test(formats, without_radii);
+    tcase_add_test(formats, numbers);
+    tcase_add_loop_test(formats, ranges, 0, 19);
+    tcase_add_test(formats, gzip);
+    tcase_add_test(formats, dump_without_tilt);
+    tcase_add_test(formats, data_files);
+    tcase_add_test(formats, xyz);
+    tcase_add_test(formats, mercury);
+    tcase_add_test(formats, vtk);
     tcase_add_test(formats, yade);
     tcase_add_test(formats, settled_beds);
     tcase_add_test(formats, growth);

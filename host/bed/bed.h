@@ -9,7 +9,7 @@
 struct bed {
     uint32_t n, capacity;
     double *x, *y, *z, *r; /* [n] units of the file */
-    uint64_t *line;        /* [n] where in the file each sphere stands, from 1 */
+    uint64_t *line;        /* [n] where in the file each sphere stands, from 1; 0: in a VTK file */
     bool ids;              /* spheres have ids; else their positions name them */
     int64_t *id;           /* [n] ascending, from 0 on, no two alike */
     double *extra;         /* [n][extras] further columns asked for by name */

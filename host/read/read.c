@@ -23,8 +23,13 @@ struct reader {
 };
 
 int reader_open(struct reader **reader, const char *path, const struct read_options *options) {
+<<<<<<< HEAD
+    static const struct format *const formats[] = {&format_dump,    &format_xyz,     &format_data, &format_vtk,
+                                                   &format_vtk_xml, &format_mercury, &format_table};
+=======
     static const struct format *const formats[] = {&format_dump, &format_xyz, &format_data, &format_mercury,
                                                    &format_table};
+>>>>>>> main
     struct reader *r = *reader = calloc(1, sizeof *r);
     if (!r) return message_memory();
     r->source.options = *options;
@@ -32,7 +37,7 @@ int reader_open(struct reader **reader, const char *path, const struct read_opti
     if (status) return status;
     for (size_t k = 0; k < sizeof formats / sizeof *formats && !r->format; ++k)
         if (formats[k]->is(&r->source)) r->format = formats[k];
-    return STATUS_OK;
+    return r->format == &format_table ? source_foreign(&r->source) : STATUS_OK;
 }
 
 void reader_close(struct reader *reader) {
@@ -109,6 +114,7 @@ static int find_frame(struct reader *r, bool *more) {
 /* The only frame of a file that holds one. */
 static int find_only(struct reader *r, bool *more) {
     *more = r->frame == 0 && wants_frame(r);
+    r->frame += !*more && r->frame == 0;
     return *more || r->found ? STATUS_OK : say_end(r, FOUND_END, "");
 }
 

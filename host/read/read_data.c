@@ -53,10 +53,12 @@ static bool is_data(const struct source *source) {
 
 /* ---- header ----------------------------------------------------------------------------------------------------- */
 
-/* `LAMMPS data file via write_data, version 2 Aug 2023, timestep = 3, units = si` */
-static void read_comment(const char *comment, struct bed *bed) {
+/* `LAMMPS data file via write_data, version 2 Aug 2023, timestep = 3, units = si`. LIGGGHTS says no style with Atoms.
+ */
+static void read_comment(const struct lines *lines, char *style, struct bed *bed) {
     char word[WORD];
-    const char *units = strstr(comment, ", units = "), *step = strstr(comment, ", timestep = ");
+    const char *units = strstr(lines->text, ", units = "), *step = strstr(lines->text, ", timestep = ");
+    if (strstr(lines->text, "write_data, version Version LIGGGHTS")) strcpy(style, "granular");
     if (units) (void)sscanf(units, ", units = %15[a-z]", bed->units);
     if (step && sscanf(step, ", timestep = %39[0-9]", word) == 1) (void)number_read_whole(word, &bed->timestep);
 }
@@ -86,19 +88,18 @@ static int read_header_line(struct source *source, int64_t *atoms, struct bed *b
     return status;
 }
 
-/* Reads up to the section Atoms; *style is what its comment says, "" if it has none. */
+/* Reads up to the section Atoms; style becomes what its comment says. */
 static int read_header(struct source *source, int64_t *atoms, char *style, struct bed *bed) {
     struct lines *lines = &source->lines;
     bool more, header = true;
     int status = lines_next(lines, &more);
-    if (!status && more) read_comment(lines->text, bed);
+    if (!status && more) read_comment(lines, style, bed);
     while (!status && (status = lines_next(lines, &more)) == STATUS_OK && more) {
         char word[WORD] = "";
         char *comment = strchr(lines->text, '#');
         if (comment) *comment++ = 0;
         sscanf(lines->text, "%39s", word);
         if (strcmp(word, "Atoms") == 0) {
-            style[0] = 0;
             if (comment && sscanf(comment, " %79[^\r\n]", style) == 1)
                 for (size_t end = strlen(style); end > 0 && isspace((unsigned char)style[end - 1]); --end)
                     style[end - 1] = 0;
@@ -114,8 +115,8 @@ static int read_header(struct source *source, int64_t *atoms, char *style, struc
 
 /* ---- atoms ------------------------------------------------------------------------------------------------------ */
 
-/* The style where the file does not say it: that of the rows by LIGGGHTS, or of five columns and image flags. */
-static int guess_style(struct source *source, bool granular, char *style) {
+/* The style where the file does not say it: five columns, and image flags, are of one style alone. */
+static int guess_style(struct source *source, char *style) {
     char line[200];
     int n = 0, length;
     bool more;
@@ -124,10 +125,10 @@ static int guess_style(struct source *source, bool granular, char *style) {
     if (status || !more) return status;
     snprintf(line, sizeof line, "%.*s", (int)strcspn(source->lines.text, "#"), source->lines.text);
     for (const char *text = line; sscanf(text, "%*s%n", &length) != EOF; text += length) ++n;
-    if (!granular && n != 5 && n != 8)
+    if (n != 5 && n != 8)
         return source_fail(source, "the style of the atoms is not said; write `Atoms # sphere` above them if their "
                                    "columns are id type diameter density x y z");
-    strcpy(style, granular ? "granular" : "atomic");
+    strcpy(style, "atomic");
     lines_hold(&source->lines);
     return STATUS_OK;
 }
@@ -152,24 +153,21 @@ static int find_style(struct source *source, const char *style, size_t *more, co
 }
 
 static int read_data(struct source *source, struct bed *bed) {
-    static const char liggghts[] = "LIGGGHTS data file via write_data";
-    size_t size, more;
-    const char *begin = source_begin(source, &size);
-    const bool granular = size > strlen(liggghts) && memcmp(begin, liggghts, strlen(liggghts)) == 0;
+    size_t more;
     char style[80] = "";
     int64_t atoms = 0;
     bool there = true;
     int status = read_header(source, &atoms, style, bed);
-    if (!status && !*style) status = guess_style(source, granular, style);
+    if (!status && !*style) status = guess_style(source, style);
     if (!status) status = find_style(source, style, &more, bed);
     while (!status && (status = lines_next(&source->lines, &there)) == STATUS_OK && there)
         if (!lines_blank(&source->lines)) {
             lines_hold(&source->lines);
             break;
         }
-    if (status) return status;
-    source_warn_open(source);
-    return source_rows(source, atoms, more, bed);
+    if (!status) status = source_rows(source, atoms, more, bed);
+    if (!status) source_warn_open(source);
+    return status;
 }
 
 const struct format format_data = {is_data, NULL, read_data};

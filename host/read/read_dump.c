@@ -9,11 +9,7 @@
 #include "cli/message.h"
 #include "read/read_format.h"
 
-static bool is_dump(const struct source *source) {
-    size_t size;
-    const char *text = source_begin(source, &size);
-    return size >= 5 && memcmp(text, "ITEM:", 5) == 0;
-}
+static bool is_dump(const struct source *source) { return source_begins(source, "ITEM:"); }
 
 /* The rest of an ITEM line if it is the one named, else NULL. */
 static char *item(const struct source *source, const char *name) {
@@ -81,6 +77,7 @@ static int skip_dump(struct source *source, enum found *found, char *lack) {
             if (atoms < 0) return source_fail(source, "ITEM: ATOMS comes before ITEM: NUMBER OF ATOMS");
             status = skip_atoms(source, atoms, &more, lack);
             if (more) *found = FOUND_FRAME;
+            source_skip_end(source, found, lack);
             return status;
         }
         if (item(source, "ITEM: NUMBER OF ATOMS")) {

@@ -13,6 +13,12 @@ const char *source_begin(const struct source *source, size_t *size) {
     return source->lines.buffer + source->lines.next;
 }
 
+bool source_begins(const struct source *source, const char *text) {
+    size_t size;
+    const char *begin = source_begin(source, &size);
+    return size >= strlen(text) && memcmp(begin, text, strlen(text)) == 0;
+}
+
 int source_fail(const struct source *source, const char *what) {
     return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "%s", what);
 }
@@ -32,7 +38,9 @@ int source_ends(const struct source *source, const char *lack) {
     return source_fail(source, source->lines.truncated ? "the gzip file is cut off" : lack);
 }
 
-void source_warn_open(const struct source *source) {
+void source_warn_open(struct source *source) {
+    if (source->warned) return;
+    source->warned = true;
     message_at(STATUS_OK, source->lines.name, 0,
                "warning: the file does not say which axes are periodic; all are open unless --periodic says otherwise");
 }
@@ -74,6 +82,12 @@ int source_skip(struct source *source, int64_t rows, enum found *found, char *la
         return STATUS_OK;
     }
     return STATUS_OK;
+}
+
+void source_skip_end(const struct source *source, enum found *found, char *lack) {
+    if (*found != FOUND_FRAME || source->lines.ended) return;
+    *found = FOUND_PART;
+    snprintf(lack, LACK_MAX, "the file ends within a line");
 }
 
 int source_count(const struct source *source, const char *text, int64_t *atoms) {

@@ -14,6 +14,7 @@ struct source {
     struct fields fields;
     struct columns columns;
     char units[sizeof((struct bed *)0)->units]; /* as said once for all frames */
+    bool warned;                                /* that the file does not say what is periodic */
 };
 
 enum found {
@@ -36,10 +37,17 @@ struct format {
 
 enum { LACK_MAX = 100 };
 
-/* The first bytes of the file. */
+/* The first bytes of the file, before any line has been read. */
 const char *source_begin(const struct source *source, size_t *size);
 
-extern const struct format format_data, format_dump, format_mercury, format_table, format_xyz;
+/* Does the file begin with a text? */
+bool source_begins(const struct source *source, const char *text);
+
+extern const struct format format_data, format_dump, format_mercury, format_table, format_vtk, format_vtk_xml,
+    format_xyz;
+
+/* Refuses a file that is known to have no spheres, and says what it is. Status 0 or STATUS_INPUT. */
+int source_foreign(const struct source *source);
 
 /* The error `what`, in the current line. Status STATUS_INPUT. */
 int source_fail(const struct source *source, const char *what);
@@ -54,11 +62,14 @@ int source_rows(struct source *source, int64_t rows, size_t more, struct bed *be
 /* Passes over so many lines; FOUND_PART: the file has fewer. */
 int source_skip(struct source *source, int64_t rows, enum found *found, char *lack);
 
+/* A frame whose last line has no end is but a part: a number may have been cut. For files that programs alone write. */
+void source_skip_end(const struct source *source, enum found *found, char *lack);
+
 /* The line, or its first word, as a number of atoms. */
 int source_count(const struct source *source, const char *text, int64_t *atoms);
 
-/* Warns that the file does not say which axes are periodic. */
-void source_warn_open(const struct source *source);
+/* Warns, once, that the file does not say which axes are periodic. */
+void source_warn_open(struct source *source);
 
 /* The line without the blanks about it, as much as there is room for. Returns `to`. */
 char *source_word(const struct source *source, char *to, size_t room);

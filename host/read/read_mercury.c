@@ -64,8 +64,11 @@ static int skip_mercury(struct source *source, enum found *found, char *lack) {
     bool more;
     int64_t spheres;
     *found = FOUND_END;
-    const int status = mercury_count(source, &spheres, &more);
-    return status || !more ? status : source_skip(source, spheres, found, lack);
+    int status = mercury_count(source, &spheres, &more);
+    if (status || !more) return status;
+    status = source_skip(source, spheres, found, lack);
+    source_skip_end(source, found, lack);
+    return status;
 }
 
 static int read_mercury(struct source *source, struct bed *bed) {
@@ -79,9 +82,10 @@ static int read_mercury(struct source *source, struct bed *bed) {
         bed->high[axis] = head[5 + axis];
         if (!(bed->low[axis] < bed->high[axis])) status = source_fail(source, "the box is empty");
     }
-    if (!status && bed->frame == 0) source_warn_open(source);
     if (!status) status = source_columns(source, "x y z vx vy vz r a b c wx wy wz info", bed);
-    return status ? status : source_rows(source, spheres, 0, bed);
+    if (!status) status = source_rows(source, spheres, 0, bed);
+    if (!status) source_warn_open(source);
+    return status;
 }
 
 const struct format format_mercury = {is_mercury, skip_mercury, read_mercury};

@@ -17,6 +17,7 @@ struct header {
     struct fields names;
     char **unit; /* [names.n] "": it says none */
     uint64_t line;
+    bool yade; /* rows are parted by blanks of any kind */
 };
 
 static bool is_table(const struct source *source) {
@@ -83,7 +84,8 @@ static int take_header(struct header *header, const struct lines *lines, const c
     if (!header->text) return message_memory();
     char *names = header->text;
     int status;
-    if (strncmp(names, yade, strlen(yade)) == 0) {
+    header->yade = strncmp(names, yade, strlen(yade)) == 0;
+    if (header->yade) {
         status = fields_split(&header->names, names + strlen(yade), "_ \t");
     } else {
         names += strspn(names, "# \t");
@@ -118,7 +120,7 @@ static int find_header(struct source *source, struct header *header, char *separ
         if (*lines->text == '#') status = take_comment(header, lines);
         if (status) return status;
         if (*lines->text == '#' || lines_blank(lines)) continue;
-        *separator = find_separator(lines->text);
+        *separator = header->yade ? ' ' : find_separator(lines->text);
         if (!begins_with_number(lines)) return take_header(header, lines, lines->text);
         if (header->names.n == 0)
             return source_fail(source, "numbers without a header that names their columns, such as x,y,z,r");
@@ -152,9 +154,13 @@ static int find_columns(struct source *source, const struct header *header, char
     return status ? status : find_unit(source, header, bed);
 }
 
-static int read_row(struct source *source, char separator, struct bed *bed) {
+/* Where YADE says that there are attributes, and not which, a row may have any number of them. */
+static int read_row(struct source *source, const struct header *header, char separator, struct bed *bed) {
+    const struct fields *names = &header->names;
     const int status = split(&source->fields, &source->lines, source->lines.text, separator);
     if (status) return status;
+    if (header->yade && source->fields.n > names->n && strcmp(names->at[names->n - 1], "attrs") == 0)
+        source->fields.n = names->n;
     return columns_add(&source->columns, &source->lines, &source->fields, &source->options, bed);
 }
 
@@ -166,7 +172,7 @@ static int read_table(struct source *source, struct bed *bed) {
     int status = find_header(source, &header, &separator);
     if (!status && header.names.n > 0) status = find_columns(source, &header, separator, bed);
     while (!status && (status = lines_next(lines, &more)) == STATUS_OK && more)
-        if (*lines->text != '#' && !lines_blank(lines)) status = read_row(source, separator, bed);
+        if (*lines->text != '#' && !lines_blank(lines)) status = read_row(source, &header, separator, bed);
     forget_header(&header);
     return status;
 }

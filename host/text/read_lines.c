@@ -15,8 +15,8 @@
 #include "cli/message.h"
 #include "text/read_number.h"
 
-/* A line that is longer than a block is far beyond any real one: binary files are refused instead of swallowed. */
-enum { BLOCK = 1 << 20 };
+/* A line that is longer than the most is far beyond any real one: binary files are refused instead of swallowed. */
+enum { BLOCK = 1 << 16, MOST = 1 << 20 };
 
 static const char blanks[] = " \t\r\v\f";
 
@@ -53,7 +53,7 @@ static int lines_read_block(struct lines *lines) {
     int status = lines_make_room(lines);
     if (status) return status;
     const size_t room = lines->capacity - 1 - lines->end;
-    const int got = gzread(lines->file, lines->buffer + lines->end, (unsigned)(room < BLOCK ? room : BLOCK));
+    const int got = gzread(lines->file, lines->buffer + lines->end, (unsigned)(room < MOST ? room : MOST));
     if (interrupt_status()) return interrupt_status();
     if (got < 0) return lines_fail(lines);
     lines->end += (size_t)got;
@@ -68,7 +68,7 @@ int lines_open(struct lines *lines, const char *path) {
     *lines = (struct lines){.name = lines_name(path), .capacity = BLOCK + 1};
     lines->file = strcmp(path, "-") == 0 ? gzdopen(dup(STDIN_FILENO), "rb") : gzopen(path, "rb");
     if (!lines->file) return message_at(STATUS_FILE, path, 0, "%s", strerror(errno));
-    gzbuffer(lines->file, BLOCK / 4);
+    gzbuffer(lines->file, BLOCK);
     lines->buffer = malloc(lines->capacity);
     if (!lines->buffer) return message_memory();
     const int status = lines_read_block(lines);
@@ -97,7 +97,7 @@ static int find_end(struct lines *lines, size_t *end) {
         *end = found ? (size_t)(found - lines->buffer) : lines->end;
         if (found || lines->finished) return STATUS_OK;
         sought = lines->end - lines->next;
-        if (sought >= BLOCK)
+        if (sought >= MOST)
             return message_at(STATUS_INPUT, lines->name, lines->number, "the line has no end; is this a text file?");
         const int status = lines_read_block(lines);
         if (status) return status;
@@ -118,7 +118,8 @@ int lines_next(struct lines *lines, bool *more) {
     }
     lines->text = lines->buffer + lines->next;
     lines->length = end - lines->next;
-    lines->next = end + (end < lines->end);
+    lines->ended = end < lines->end;
+    lines->next = end + lines->ended;
     if (lines->length && lines->text[lines->length - 1] == '\r') --lines->length;
     lines->behind = lines->text[lines->length];
     lines->text[lines->length] = 0;

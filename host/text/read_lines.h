@@ -14,6 +14,7 @@ struct lines {
     uint64_t number;  /* of the line in `text`, from 1 */
     char *text;       /* without its end */
     size_t length;
+    bool ended;     /* a line end is behind it, not the end of the file */
     bool truncated; /* the end of the file is that of a gzip file that was cut off */
 
     /* what has been read of the file: lines that are kept, the current line, bytes that are still to come */
@@ -33,7 +34,7 @@ struct fields {
 /* What messages call a path: "-" is standard input. */
 const char *lines_name(const char *path);
 
-/* Opens a file, or standard input for "-", and reads its first bytes, up to a mebibyte: those of lines->buffer from
+/* Opens a file, or standard input for "-", and reads its first bytes, up to 65536: those of lines->buffer from
  * lines->next to lines->end. A byte order mark is skipped. Status 0, STATUS_FILE, STATUS_INPUT (damaged gzip) or
  * STATUS_MEMORY. */
 int lines_open(struct lines *lines, const char *path);

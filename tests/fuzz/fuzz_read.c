@@ -15,6 +15,44 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
+/* A bed that is read must be sound. What is packed or in binary may have more spheres than bytes. */
+static void check_bed(const struct bed *bed, bool radii) {
+    if (bed->n == 0) abort();
+    for (uint32_t i = 0; i < bed->n; i++) {
+        if (!isfinite(bed->x[i] + bed->y[i] + bed->z[i])) abort();
+        if (radii ? !(bed->r[i] > 0 && isfinite(bed->r[i])) : !isnan(bed->r[i])) abort();
+        if (bed->ids && (bed->id[i] < 0 || (i > 0 && bed->id[i] <= bed->id[i - 1]))) abort();
+    }
+    for (size_t k = 0; k < bed->n * bed->extras; k++)
+        if (!isfinite(bed->extra[k])) abort();
+    for (int axis = 0; axis < 3; axis++)
+        if (!(bed->period[axis] >= 0) || !(bed->low[axis] <= bed->high[axis])) abort();
+}
+
+/* Reads all frames that an input asks for: the last one, or a range. */
+static void read_frames(const char *path, uint8_t asked, size_t size) {
+    static const char *const extra[] = {"T", "mass"};
+    static const struct frames frames[] = {{0, 0, 0}, {0, 9, 1}, {1, 8, 2}, {2, 3, 1}};
+    const struct read_options options = {.frames = frames[asked % 4],
+                                         .positions = (asked & 4) != 0,
+                                         .extra = extra,
+                                         .extras = asked & 8 ? 1 + (asked >> 4 & 1) : 0,
+                                         .no_radius = (asked & 32) != 0};
+    struct reader *reader;
+    struct bed bed;
+    bool more = true;
+    size_t beds = 0;
+    bed_init(&bed);
+    int status = reader_open(&reader, path, &options);
+    while (status == 0 && (status = reader_next(reader, &bed, &more)) == 0 && more) {
+        check_bed(&bed, !options.no_radius);
+        if (++beds > size) abort();
+    }
+    if (status == 0 && beds == 0) abort();
+    reader_close(reader);
+    bed_free(&bed);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static int file = -1;
     char path[40];
@@ -23,19 +61,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (file < 0 || ftruncate(file, 0) != 0 || pwrite(file, data + 1, size - 1, 0) != (ssize_t)(size - 1)) abort();
     snprintf(path, sizeof path, "/proc/self/fd/%d", file);
 
-    static const char *const extra[] = {"T", "mass"};
-    struct read_options options = {.frames = {.end = data[0] % 4},
-                                   .positions = (data[0] & 4) != 0,
-                                   .extra = extra,
-                                   .extras = data[0] >> 3 & 1 ? 2 : 0};
-    struct bed bed;
-    if (read_bed(path, &options, &bed) == 0) {
-        if (bed.n == 0 || bed.n > size) abort();
-        for (uint32_t i = 0; i < bed.n; i++)
-            if (!isfinite(bed.x[i] + bed.y[i] + bed.z[i]) || !(bed.r[i] > 0 && isfinite(bed.r[i])) || bed.line[i] == 0)
-                abort();
-    }
-    bed_free(&bed);
+    read_frames(path, data[0], size);
 
     fibrad_furnace_config furnace;
     if (read_furnace(path, &furnace) == 0) {

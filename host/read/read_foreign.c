@@ -1,0 +1,89 @@
+/* read_foreign.c - files that have no spheres to be read, told by what they are. SPDX-License-Identifier: MIT */
+#include <ctype.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "read/read_format.h"
+
+/* Files that begin in one way. */
+static const struct {
+    size_t at, size;
+    const char *bytes, *what;
+} magics[] = {
+    {0, 4, "\x89PNG", "a PNG picture"},
+    {0, 3, "\xff\xd8\xff", "a JPEG picture"},
+    {0, 4, "%PDF", "a PDF document"},
+    {0, 4, "\x89HDF", "an HDF5 file; export the spheres as text"},
+    {0, 3, "CDF", "a NetCDF file; write a text dump"},
+    {0, 6, "\x93NUMPY", "a NumPy array; write it by savetxt(..., header='x y z r')"},
+    {0, 4, "PK\x03\x04", "a zip archive, as .npz and .xlsx are; export the spheres as CSV"},
+    {0, 3, "BZh", "packed by bzip2; try: bzcat FILE | fibrad bed -"},
+    {0, 4,
+     "\xfd"
+     "7zX",
+     "packed by xz; try: xzcat FILE | fibrad bed -"},
+    {0, 4, "\x28\xb5\x2f\xfd", "packed by zstd; try: zstdcat FILE | fibrad bed -"},
+    {0, 4,
+     "\x7f"
+     "ELF",
+     "a program"},
+    {0, 6, "MATLAB", "a MATLAB file; export the spheres as CSV"},
+    {0, 6, "SQLite", "a SQLite database; export the spheres as CSV"},
+    {0, 4, "\xdf\x65\xdf\x65", "a GSD file of HOOMD-blue; export the spheres as extended XYZ"},
+    {0, 2, "\xff\xfe", "text in UTF-16; save it as UTF-8"},
+    {0, 2, "\xfe\xff", "text in UTF-16; save it as UTF-8"},
+    {0, 15, "LammpS RestartT", "a LAMMPS restart file; write a text dump or a data file"},
+    {8, 4, "DUMP", "a binary LAMMPS dump; write a text dump"},
+    {0, 4, "ply\n", "a PLY file of surfaces"},
+    {0, 6, "solid ", "an STL file of surfaces"},
+};
+
+/* Text that goes on in one way behind blanks. */
+static const struct {
+    const char *text, *what;
+} texts[] = {
+    {"{", "JSON; export the spheres as CSV"},
+    {"<", "XML of a kind that has no spheres to be read"},
+    {"#!/", "a script"},
+    {"import ", "a Python program"},
+    {"from ", "a Python program"},
+};
+
+/* Commands one of which a LAMMPS input script begins with. */
+static const char *const commands[] = {"units",       "atom_style",     "boundary",   "variable", "dimension", "newton",
+                                       "atom_modify", "processors",     "package",    "shell",    "log",       "echo",
+                                       "clear",       "region",         "read_data",  "include",  "print",     "if",
+                                       "label",       "hard_particles", "communicate"};
+
+/* Is the first word of the text, comments before it aside, a command of LAMMPS with words behind it? */
+static bool is_script(const char *text, const char *end) {
+    while (text < end && (*text == '#' || isspace((unsigned char)*text))) {
+        const char *next = *text == '#' ? memchr(text, '\n', (size_t)(end - text)) : text;
+        text = next ? next + 1 : end;
+    }
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k) {
+        const size_t length = strlen(commands[k]);
+        if ((size_t)(end - text) > length && memcmp(text, commands[k], length) == 0 && strchr(" \t", text[length]))
+            return true;
+    }
+    return false;
+}
+
+static const char *find_kind(const char *text, size_t size) {
+    for (size_t k = 0; k < sizeof magics / sizeof *magics; ++k)
+        if (size >= magics[k].at + magics[k].size && memcmp(text + magics[k].at, magics[k].bytes, magics[k].size) == 0)
+            return magics[k].what;
+    const char *end = text + size;
+    if (is_script(text, end)) return "an input script of LAMMPS; give a dump or data file";
+    while (text < end && isspace((unsigned char)*text)) ++text;
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; ++k)
+        if ((size_t)(end - text) >= strlen(texts[k].text) && memcmp(text, texts[k].text, strlen(texts[k].text)) == 0)
+            return texts[k].what;
+    return NULL;
+}
+
+int source_foreign(const struct source *source) {
+    size_t size;
+    const char *text = source_begin(source, &size), *kind = find_kind(text, size);
+    return kind ? message_at(STATUS_INPUT, source->lines.name, 0, "this is %s", kind) : STATUS_OK;
+}

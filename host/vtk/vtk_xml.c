@@ -1,0 +1,289 @@
+/* vtk_xml.c - points and arrays of VTK's XML files, .vtp and .vtu. SPDX-License-Identifier: MIT
+ *
+ * Arrays stand as text or base64 where they are declared, or behind all else, as base64 or bytes, each at an offset.
+ * Bytes begin with their number, or with a list of blocks that zlib has packed. */
+#include <ctype.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "cli/message.h"
+#include "text/read_number.h"
+#include "vtk/vtk_grid.h"
+
+enum { WORD = 80, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
+
+struct xml {
+    struct vtk_grid *grid;
+    const char *at;
+    const char *appended; /* the first byte of arrays that stand behind all else */
+    bool raw;             /* they are bytes and not base64 */
+    bool big, packed, points, point_data;
+    struct vtk_type header; /* type of the numbers before bytes */
+    int pieces;
+};
+
+/* A tag, from behind its < to its >. */
+struct tag {
+    const char *text, *end;
+};
+
+/* Where an array stands. */
+struct place {
+    struct vtk_type type;
+    uint64_t count;
+    const char *at;
+    bool text, raw;
+};
+
+static int xml_fail(const struct xml *xml, const char *what) { return vtk_fail(xml->grid, xml->at, "%s", what); }
+
+static bool is_tag(const struct tag *tag, const char *name) {
+    const size_t length = strlen(name);
+    return (size_t)(tag->end - tag->text) >= length && memcmp(tag->text, name, length) == 0 &&
+           (tag->text + length == tag->end || !isalnum((unsigned char)tag->text[length]));
+}
+
+/* Goes behind the next tag; false: there is none. */
+static bool next_tag(struct xml *xml, struct tag *tag) {
+    const char *last = xml->grid->end;
+    const char *open = memchr(xml->at, '<', (size_t)(last - xml->at));
+    if (!open) return false;
+    char quote = 0;
+    for (const char *c = tag->text = open + 1; c < last; ++c) {
+        if (!quote && *c == '>') {
+            tag->end = c;
+            xml->at = c + 1;
+            return true;
+        }
+        if (*c == '"' || *c == '\'') quote = quote == *c ? 0 : quote ? quote : *c;
+    }
+    return false;
+}
+
+/* The value of an attribute; "": it is not there. */
+static const char *attribute(const struct tag *tag, const char *name, char value[WORD]) {
+    const size_t length = strlen(name);
+    value[0] = 0;
+    for (const char *c = tag->text; c + length + 2 < tag->end; ++c) {
+        if (!isspace((unsigned char)*c) || memcmp(c + 1, name, length) != 0 || c[length + 1] != '=') continue;
+        const char *from = c + length + 3;
+        size_t size = 0;
+        while (from + size < tag->end && from[size] != from[-1] && size < WORD - 1) ++size;
+        memcpy(value, from, size);
+        value[size] = 0;
+        break;
+    }
+    return value;
+}
+
+static uint64_t number_of(const struct tag *tag, const char *name, uint64_t otherwise) {
+    char value[WORD];
+    int64_t number;
+    return number_read_whole(attribute(tag, name, value), &number) && number >= 0 ? (uint64_t)number : otherwise;
+}
+
+/* ---- bytes ------------------------------------------------------------------------------------------------------ */
+
+/* Bytes from base64 or as they are. */
+struct stream {
+    const char *at, *end;
+    bool raw;
+    unsigned char ready[3];
+    int left; /* of those ready */
+};
+
+static int sextet(char c) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const char *found = c ? strchr(digits, c) : NULL;
+    return found ? (int)(found - digits) : -1;
+}
+
+/* Four digits of base64 become three bytes, or fewer before a padding. */
+static bool decode(struct stream *stream) {
+    uint32_t bits = 0;
+    int digits = 0;
+    for (int k = 0; k < 4; ++k) {
+        while (stream->at < stream->end && isspace((unsigned char)*stream->at)) ++stream->at;
+        if (stream->at == stream->end) return false;
+        const char c = *stream->at++;
+        const int value = c == '=' ? 0 : sextet(c);
+        if (value < 0 || (c != '=' && digits < k)) return false;
+        digits += c != '=';
+        bits = bits << 6 | (uint32_t)value;
+    }
+    stream->left = digits - 1;
+    for (int k = 0; k < stream->left; ++k) stream->ready[stream->left - 1 - k] = (unsigned char)(bits >> (16 - 8 * k));
+    return stream->left > 0;
+}
+
+static bool take_bytes(struct stream *stream, void *to, uint64_t size) {
+    if (stream->raw) {
+        if (size > (uint64_t)(stream->end - stream->at)) return false;
+        memcpy(to, stream->at, (size_t)size);
+        stream->at += size;
+        return true;
+    }
+    for (unsigned char *byte = to; size > 0; --size) {
+        if (stream->left == 0 && !decode(stream)) return false;
+        *byte++ = stream->ready[--stream->left];
+    }
+    return true;
+}
+
+static bool take_size(const struct xml *xml, struct stream *stream, uint64_t *size) {
+    unsigned char bytes[WIDEST];
+    double value;
+    if (!take_bytes(stream, bytes, xml->header.size)) return false;
+    vtk_convert(xml->header, xml->big, bytes, 1, &value);
+    *size = value < 9e15 ? (uint64_t)value : UINT64_MAX;
+    return true;
+}
+
+static int take_plain(const struct xml *xml, struct stream *stream, unsigned char *to, uint64_t bytes) {
+    uint64_t size;
+    if (!take_size(xml, stream, &size) || size != bytes || !take_bytes(stream, to, bytes))
+        return xml_fail(xml, "an array is damaged, or has not the size it should have");
+    return STATUS_OK;
+}
+
+/* Number of blocks, size of a block, size of the last one if it is smaller, sizes when packed; then the blocks. */
+static int take_packed(const struct xml *xml, struct stream *stream, unsigned char *to, uint64_t bytes) {
+    const uint64_t most = (uint64_t)(xml->grid->end - xml->grid->text);
+    uint64_t blocks, size, last;
+    if (!take_size(xml, stream, &blocks) || !take_size(xml, stream, &size) || !take_size(xml, stream, &last) ||
+        blocks > most || (blocks > 0 && (size == 0 || blocks - 1 > bytes / size)))
+        return xml_fail(xml, "the blocks of an array are damaged");
+    uint64_t *packed = malloc((size_t)(blocks + 1) * sizeof *packed);
+    unsigned char *from = malloc((size_t)most + 1);
+    int status = packed && from ? STATUS_OK : message_memory();
+    bool good = !status;
+    for (uint64_t k = 0; k < blocks && good; ++k) good = take_size(xml, stream, &packed[k]) && packed[k] <= most;
+    stream->left = 0;
+    uint64_t done = 0;
+    for (uint64_t k = 0; k < blocks && good; ++k) {
+        uLongf got = (uLongf)(bytes - done);
+        good = take_bytes(stream, from, packed[k]) && uncompress(to + done, &got, from, (uLong)packed[k]) == Z_OK;
+        if (good) done += got;
+    }
+    if (!status && (!good || done != bytes)) status = xml_fail(xml, "the blocks of an array are damaged");
+    free(packed);
+    free(from);
+    return status;
+}
+
+static int take_values(struct xml *xml, const struct place *place, double **values) {
+    const uint64_t most = (uint64_t)(xml->grid->end - xml->grid->text), bytes = place->count * place->type.size;
+    if (bytes / (place->text ? WIDEST : xml->packed ? PACKED_MOST : 1) > most)
+        return xml_fail(xml, "an array is longer than the file");
+    int status = vtk_room(values, place->count);
+    if (status) return status;
+    if (place->text) {
+        const char *at = place->at;
+        return vtk_scan(&at, xml->grid->end, place->count, *values) ? STATUS_OK
+                                                                    : xml_fail(xml, "an array is too short");
+    }
+    unsigned char *data = malloc((size_t)bytes + 1);
+    struct stream stream = {.at = place->at, .end = xml->grid->end, .raw = place->raw};
+    if (!data) return message_memory();
+    status = (xml->packed ? take_packed : take_plain)(xml, &stream, data, bytes);
+    if (!status) vtk_convert(place->type, xml->big, data, place->count, *values);
+    free(data);
+    return status;
+}
+
+/* ---- tags ------------------------------------------------------------------------------------------------------- */
+
+static int take_file(struct xml *xml, const struct tag *tag) {
+    char value[WORD];
+    attribute(tag, "type", value);
+    if (strcmp(value, "Collection") == 0)
+        return xml_fail(xml, "this is a ParaView collection: it names the files that have spheres");
+    if (strcmp(value, "PolyData") != 0 && strcmp(value, "UnstructuredGrid") != 0)
+        return vtk_fail(xml->grid, NULL, "this is a VTK file of type %.40s: it has no spheres", value);
+    xml->big = strcmp(attribute(tag, "byte_order", value), "BigEndian") == 0;
+    if (*attribute(tag, "header_type", value)) xml->header = vtk_find_type(value);
+    if (xml->header.kind != 'u') return xml_fail(xml, "the header_type is not known");
+    attribute(tag, "compressor", value);
+    xml->packed = *value != 0;
+    if (xml->packed && strcmp(value, "vtkZLibDataCompressor") != 0)
+        return vtk_fail(xml->grid, xml->at, "its arrays are packed by %.40s; zlib can be read", value);
+    return STATUS_OK;
+}
+
+static int take_piece(struct xml *xml, const struct tag *tag) {
+    const uint64_t n = number_of(tag, "NumberOfPoints", 0);
+    if (n == 0) return STATUS_OK;
+    if (xml->pieces++ > 0) return xml_fail(xml, "a file of more than one piece; one can be read");
+    if (n > UINT32_MAX) return xml_fail(xml, "too many points");
+    xml->grid->n = n;
+    return STATUS_OK;
+}
+
+static int take_array(struct xml *xml, const struct tag *tag) {
+    char name[WORD], format[WORD], type[WORD];
+    const uint64_t components = number_of(tag, "NumberOfComponents", 1);
+    attribute(tag, "Name", name);
+    attribute(tag, "format", format);
+    double **values = xml->points ? &xml->grid->points : vtk_find_wanted(xml->grid, name);
+    if (!values) return STATUS_OK;
+    if (components != (xml->points ? 3 : 1))
+        return vtk_fail(xml->grid, xml->at, "the array %.40s has %" PRIu64 " components", name, components);
+    struct place place = {.type = vtk_find_type(attribute(tag, "type", type)),
+                          .count = components * xml->grid->n,
+                          .at = xml->at,
+                          .text = strcmp(format, "ascii") == 0};
+    if (place.type.size == 0) return vtk_fail(xml->grid, xml->at, "arrays of type %.40s cannot be read", type);
+    if (strcmp(format, "appended") == 0) {
+        const uint64_t offset = number_of(tag, "offset", UINT64_MAX);
+        if (!xml->appended || offset > (uint64_t)(xml->grid->end - xml->appended))
+            return xml_fail(xml, "the array has no data");
+        place.at = xml->appended + offset;
+        place.raw = xml->raw;
+    }
+    return take_values(xml, &place, values);
+}
+
+static int take_tag(struct xml *xml, const struct tag *tag) {
+    if (is_tag(tag, "VTKFile")) return take_file(xml, tag);
+    if (is_tag(tag, "Piece")) return take_piece(xml, tag);
+    if (is_tag(tag, "DataArray") && (xml->points || xml->point_data)) return take_array(xml, tag);
+    const bool begins = *tag->text != '/' && tag->end[-1] != '/';
+    const struct tag rest = {tag->text + (*tag->text == '/'), tag->end};
+    if (is_tag(&rest, "Points")) xml->points = begins;
+    if (is_tag(&rest, "PointData")) xml->point_data = begins;
+    return STATUS_OK;
+}
+
+/* Finds what is appended to the tags: behind the first _ after its tag. */
+static void find_appended(struct xml *xml) {
+    static const char name[] = "<AppendedData";
+    struct tag tag;
+    char encoding[WORD];
+    const char *from = xml->at;
+    const size_t length = strlen(name);
+    while ((from = memchr(from, '<', (size_t)(xml->grid->end - from)))) {
+        if ((size_t)(xml->grid->end - from) > length && memcmp(from, name, length) == 0) break;
+        ++from;
+    }
+    if (!from) return;
+    struct xml behind = *xml;
+    behind.at = from;
+    if (!next_tag(&behind, &tag)) return;
+    const char *mark = memchr(behind.at, '_', (size_t)(xml->grid->end - behind.at));
+    xml->raw = strcmp(attribute(&tag, "encoding", encoding), "raw") == 0;
+    xml->appended = mark ? mark + 1 : NULL;
+}
+
+int vtk_read_xml(struct vtk_grid *grid) {
+    struct xml xml = {.grid = grid, .at = grid->text, .header = vtk_find_type("UInt32")};
+    struct tag tag;
+    find_appended(&xml);
+    while (next_tag(&xml, &tag) && !is_tag(&tag, "AppendedData")) {
+        const int status = take_tag(&xml, &tag);
+        if (status) return status;
+    }
+    return STATUS_OK;
+}
