@@ -23,13 +23,8 @@ struct reader {
 };
 
 int reader_open(struct reader **reader, const char *path, const struct read_options *options) {
-<<<<<<< HEAD
     static const struct format *const formats[] = {&format_dump,    &format_xyz,     &format_data, &format_vtk,
                                                    &format_vtk_xml, &format_mercury, &format_table};
-=======
-    static const struct format *const formats[] = {&format_dump, &format_xyz, &format_data, &format_mercury,
-                                                   &format_table};
->>>>>>> main
     struct reader *r = *reader = calloc(1, sizeof *r);
     if (!r) return message_memory();
     r->source.options = *options;
