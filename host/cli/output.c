@@ -37,8 +37,8 @@ static bool target_of(const char *path, char target[PATH_MAX]) {
         return join_path(folder, path, link[0] == '/' ? 0 : length, link) && target_of(folder, target);
     }
     errno = ENOENT;
-    return path[length] && join_path(folder, path, length, ".") && realpath(folder, link) && strcat(link, "/") &&
-           join_path(target, link, PATH_MAX, path + length);
+    return path[length] && join_path(folder, path, length, ".") && realpath(folder, link) &&
+           join_path(folder, "/", 1, path + length) && join_path(target, link, PATH_MAX, folder);
 }
 
 static bool same_file(const struct stat *a, const struct stat *b) {

@@ -98,10 +98,7 @@ const char *take(int key, const char *text, liggghts_options *options) {
         options->rows_file = text;
         return nullptr;
     case 'e':
-        if (!numbers(text, 0, 1, &options->emissivity)) return "is no number above 0 up to 1, nor one for each type";
-        for (double e : options->emissivity)
-            if (!(e > 0)) return "is not above 0";
-        return nullptr;
+        return numbers(text, 0, 1, &options->emissivity) ? nullptr : "is no number from 0 to 1, nor one for each type";
     case 'T':
         return number(text, 0, 1e9, &options->surroundings) ? nullptr : "is no temperature";
     case 'w':
@@ -168,7 +165,7 @@ void liggghts_options_help() {
         "particles, walls and surroundings beside the conduction. Units si or cgs; docs/liggghts.md has an example.\n\n"
         "  -in SCRIPT               the script, which need not have a run; one it has is without radiation\n"
         "  --steps N                steps to run with radiation\n"
-        "  --emissivity E[,E...]    of all particles, above 0 up to 1, or of each type\n"
+        "  --emissivity E[,E...]    of all particles, 0 to 1, or of each type\n"
         "  --surroundings T         temperature [K] of what is seen where there is neither particle nor wall\n"
         "  --wall SIDE=T,E[,AT]     a plane wall that radiates: xlo ... zhi, temperature [K], emissivity, place [fixed "
         "end of the box]\n"

@@ -250,8 +250,8 @@ static int take_sphere(const struct part_rows *from, uint64_t k, uint32_t i) {
     to->radius[i] = radius[k];
     to->emissivity[i] = emissivity[k];
     if (!(to->radius[i] > 0 && to->radius[i] < INFINITY)) return part_fault(from, k, "its radius is not above 0");
-    if (!(to->emissivity[i] > 0 && to->emissivity[i] <= 1))
-        return part_fault(from, k, "its emissivity is not above 0 and up to 1");
+    if (!(to->emissivity[i] >= 0 && to->emissivity[i] <= 1))
+        return part_fault(from, k, "its emissivity is not within 0 and 1");
     return STATUS_OK;
 }
 

@@ -26,13 +26,18 @@ static void add_summary(struct summary *summary, const fibrad_factors *matrix, u
     summary->beyond_mean += matrix->beyond[i];
 }
 
+/* Rows not wanted, and those of spheres that emit nothing, are empty. */
+static bool has_row(const struct contents *what, uint32_t i) {
+    return (!what->wanted || what->wanted[i]) && (!what->grey || what->grey->emissivity[i] > 0);
+}
+
 void summary_make(struct summary *summary, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
     uint32_t rows = 0;
     *summary = (struct summary){.row_sum_min = INFINITY, .row_sum_max = -INFINITY};
-    for (uint32_t i = 0; i < matrix->n; ++i) rows += !what->wanted || what->wanted[i];
+    for (uint32_t i = 0; i < matrix->n; ++i) rows += has_row(what, i);
     for (uint32_t i = 0; i < matrix->n; ++i)
-        if (!what->wanted || what->wanted[i]) add_summary(summary, matrix, i, rows);
+        if (has_row(what, i)) add_summary(summary, matrix, i, rows);
     summary->escaped_mean /= rows;
     summary->beyond_mean /= rows;
     summary->error_rms = sqrt(summary->error_rms);

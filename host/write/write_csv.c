@@ -59,12 +59,8 @@ static void begin_csv(struct csv *csv, FILE *file, const struct contents *what, 
 }
 
 static void end_line(struct csv *csv, char *at, const char *body) {
-    const size_t length = strlen(body);
-    if (csv->named) {
-        at = put_comma(at);
-        memcpy(at, body, length);
-        at += length;
-    }
+    if (csv->named) at = put_comma(at);
+    for (; csv->named && *body; ++body) *at++ = *body;
     *at++ = '\n';
     fwrite(csv->line, 1, (size_t)(at - csv->line), csv->file);
 }

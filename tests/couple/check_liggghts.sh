@@ -103,7 +103,7 @@ refuse 2 2 "which --emissivity" -in bed --surroundings 300 --steps 1
 refuse 1 2 "which temperature" -in bed --emissivity 0.8 --steps 1
 refuse 1 2 "which script" --emissivity 0.8 --surroundings 300 --steps 1
 refuse 1 2 "unknown option: --bad" -in bed --bad 3
-refuse 1 2 "'1.2' is no number above 0" -in bed --emissivity 1.2
+refuse 1 2 "'1.2' is no number from 0 to 1" -in bed --emissivity 1.2
 refuse 1 2 "neither SIDE=T,E" -in bed --wall floor=300,1
 refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
 refuse 2 3 "2 emissivities for 1 types" -in bed --emissivity .5,.6 --surroundings 300 --steps 1
