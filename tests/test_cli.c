@@ -623,6 +623,10 @@ static const struct {
     {"x,y,z,r\n0,0,0,1\n5,0,0,1\n\n0,0,0,1\n", ":5: ", "sphere 2 has the same centre as sphere 0 of line 2"},
     {"x,y,z,r\n0,0,0,1\n5,0,0,1\n4.5,0,0,2\n", ":4: ", "the centre of one lies inside the other"},
     {"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n9\nITEM: ATOMS x y z radius\n0 0 0 1\n", ":6: ", "9 were declared"},
+    {"# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n1 2 3 1 2 3\nPOINT_DATA 2\nSCALARS r "
+     "float\n"
+     "LOOKUP_TABLE default\n1 1\n",
+     ": sphere", "sphere 0 has the same centre as sphere 1\n"}, /* on no line */
     {FRAME("0", "xy xz yz ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n"), ":6: ", "bounds"},
     {FRAME("0", "ff pp ff", "1 4 0 4 70\n1 4 8 4 5\n"), ":11: ", "line 10"}, /* the same place in the box */
 };
