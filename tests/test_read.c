@@ -595,6 +595,14 @@ static const struct {
     {9, VTK_HEAD "POINT_DATA 2\nSCALARS radius float 1\nLOOKUP_TABLE default\n1", "the file ends within an array"},
     {10, VTK_HEAD "POINT_DATA 2\nSCALARS radius float 1\nLOOKUP_TABLE default\n1 one\n", "a number is expected"},
     {9, VTK_HEAD "POINT_DATA 2\nSCALARS radius string 1\nLOOKUP_TABLE default\n1 2\n", "arrays of type string"},
+    {0,
+     "<VTKFile type='PolyData'><Piece NumberOfPoints='0'><PointData>" ARRAY("radius", "") "</PointData><Points>" ARRAY(
+         "p", "") "</Points></Piece><Piece NumberOfPoints='2'></Piece></VTKFile>",
+     "this VTK file has no points"},
+    {0,
+     "# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINT_DATA 0\nSCALARS r float\nPOINTS 2 float\n1 2 3 4 5 "
+     "6\n",
+     "no array radius"},
     {0, VTP(ARRAY("mass", "1 1")), "no array radius or diameter"},
     {0, VTP(ARRAY("radius", "1 -1")), "the radius is -1; it must be above 0"},
     {0, VTP(ARRAY("radius", "1 1") ARRAY("id", "3 3")), "the id 3 is there twice"},

@@ -73,7 +73,8 @@ static int legacy_array(struct legacy *legacy, const char *type_name, uint64_t c
 
 /* An array on points or cells. */
 static int take_data(struct legacy *legacy, const char *name, const char *type, uint64_t components, uint64_t tuples) {
-    double **values = legacy->on_points && tuples == legacy->grid->n ? vtk_find_wanted(legacy->grid, name) : NULL;
+    const bool known = legacy->grid->points && tuples == legacy->grid->n;
+    double **values = legacy->on_points && known ? vtk_find_wanted(legacy->grid, name) : NULL;
     if (values && components != 1)
         return vtk_fail(legacy->grid, NULL, "the array %.40s has %" PRIu64 " components; one is expected", name,
                         components);

@@ -228,7 +228,7 @@ static int xml_array(struct xml *xml, const struct tag *tag) {
     attribute(tag, "Name", name);
     attribute(tag, "format", format);
     double **values = xml->points ? &xml->grid->points : vtk_find_wanted(xml->grid, name);
-    if (!values) return STATUS_OK;
+    if (!values || xml->pieces == 0) return STATUS_OK;
     if (components != (xml->points ? 3 : 1))
         return vtk_fail(xml->grid, xml->at, "the array %.40s has %" PRIu64 " components", name, components);
     struct place place = {.type = vtk_find_type(attribute(tag, "type", type)),
