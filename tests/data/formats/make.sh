@@ -5,7 +5,7 @@
 # LAMMPS settles the spheres and says where they are in six digits; these numbers go to every program.
 set -eu
 cd "$(dirname "$0")"
-trap 'rm -f settled.dump hybrid_in.data liggghts_in.data shuffled.data log.* *.vtr *boundingBox* Zone.Identifier' EXIT
+trap 'rm -f settled.dump hybrid_in.data liggghts_in.data shuffled.data log.* *.vtr *boundingBox*' EXIT
 
 lmp -in in.settle -log none >/dev/null
 sed '1,9d' settled.dump | LC_ALL=C sort -n | awk 'BEGIN { print "id,type,x,y,z,r,T" }
