@@ -66,7 +66,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fibrad_furnace_config furnace;
     if (read_furnace(path, &furnace) == 0) {
         size_t bytes = fibrad_furnace_size(&furnace);
-        void *memory = bytes > 0 && bytes < 1 << 20 ? aligned_alloc(64, bytes) : NULL;
+        void *memory = bytes > 0 && bytes < 1 << 20 ? malloc(bytes) : NULL;
         fibrad_furnace *box;
         if (memory != NULL && fibrad_furnace_init(&box, memory, bytes, &furnace) != 0) abort();
         free(memory);
