@@ -150,6 +150,7 @@ static int run_file(struct bed_options *asked, const char *path, struct bed *bed
                     void *request) {
     const struct read_options read = {.frames = asked->frames,
                                       .positions = asked->positions,
+                                      .periods_given = asked->periodic,
                                       .no_radius = asked->radius.given,
                                       .extra = asked->column,
                                       .extras = asked->columns};

@@ -39,7 +39,7 @@ int source_ends(const struct source *source, const char *lack) {
 }
 
 void source_warn_open(struct source *source) {
-    if (source->warned) return;
+    if (source->warned || source->options.periods_given) return;
     source->warned = true;
     message_at(STATUS_OK, source->lines.name, 0,
                "warning: the file does not say which axes are periodic; all are open unless --periodic says otherwise");

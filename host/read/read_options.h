@@ -14,6 +14,7 @@ struct frames {
 struct read_options {
     struct frames frames;
     bool positions;           /* ids are left alone: spheres stand in the order of the file */
+    bool periods_given;       /* besides the file, which need not say them */
     bool no_radius;           /* no radius is looked for; bed->r is NaN */
     const char *const *extra; /* [extras] names of further columns wanted, numbers all */
     size_t extras;
