@@ -59,10 +59,10 @@ static int take_frames(const char *text, struct bed_options *asked) {
     }
     if (strspn(text, digits) > 0) frames.begin = strtoll(text, &end, 10);
     bool good = (*end == 0 && end != text) || *end == ':';
-    if (*end == 0) frames.end = frames.begin + 1;
+    if (*end == 0) frames.end = frames.begin < INT64_MAX ? frames.begin + 1 : frames.begin;
     if (*end == ':' && strspn(++end, digits) > 0) frames.end = strtoll(end, &end, 10);
     if (*end == ':' && strspn(++end, digits) > 0) frames.step = strtoll(end, &end, 10);
-    good = good && *end == 0 && frames.begin < frames.end && frames.begin < INT64_MAX && frames.step > 0;
+    good = good && *end == 0 && frames.begin < frames.end && frames.step > 0;
     if (!good) return message(STATUS_USAGE, "--frame: '%.40s' is none of K, all, A:B, A:B:STEP, -1", text);
     asked->frames = frames;
     return STATUS_OK;
@@ -134,6 +134,8 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
     for (size_t k = 0; asked->json && k < asked->files; ++k)
         if (output_same(asked->file[k], asked->json))
             return message_at(STATUS_USAGE, asked->json, 0, "is the bed itself; it would be replaced");
+    asked->outputs.summary = asked->json;
+    asked->outputs.picture = picture;
     return outputs_check(&asked->outputs, content, (const char *const *)asked->file, asked->files,
                          bed_options_series(asked));
 }
@@ -142,8 +144,11 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
 static int complete_bed(struct bed_options *asked, struct bed *bed) {
     if (asked->periodic) memcpy(bed->period, asked->period, sizeof bed->period);
     if (!asked->radius.given) return STATUS_OK;
-    free(bed->r);
-    return quantity_values(&asked->radius, bed, asked->name, "radius", 0, 1e-150, 1e150, &bed->r);
+    double *radius; /* the bed's own array has room for more than this frame */
+    const int status = quantity_values(&asked->radius, bed, asked->name, "radius", 0, 1e-150, 1e150, &radius);
+    if (!status) memcpy(bed->r, radius, bed->n * sizeof *radius);
+    free(radius);
+    return status;
 }
 
 static int run_file(struct bed_options *asked, const char *path, struct bed *bed, bed_options_frame *frame,
