@@ -123,6 +123,10 @@ START_TEST(units_of_length) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)); /* millimetres, by their looks */
     SUCCEED(HEAT, bed, "--ambient", "300");
     expect_message(bed, "warning: radii of 0.9 are taken as metres");
+    ck_assert_int_eq(RUN(HEAT, bed, cgs, "--ambient", "300", "--length-unit", "mm"), 2); /* one series, one unit */
+    expect_message(cgs, "its units are cgs");
+    ck_assert_int_eq(RUN(HEAT, cgs, write_file("si.dump", frame("si", "0", "3", SORTED)), "--ambient", "300"), 2);
+    expect_message(in_folder("si.dump"), "its unit of length is 1 m, that of the files before 0.01 m");
 }
 END_TEST
 

@@ -254,6 +254,10 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
                 mean_radius(bed));
         asked->warned = true;
     }
+    if (asked->metres > 0 && asked->metres != *metres)
+        return message_at(STATUS_USAGE, asked->name, 0, "its unit of length is %g m, that of the files before %g m",
+                          *metres, asked->metres);
+    asked->metres = *metres;
     return STATUS_OK;
 }
 

@@ -63,7 +63,8 @@ struct bed_options {
     /* of the run */
     const char *name; /* of the file in hand, in messages */
     int64_t frames_done;
-    bool warned; /* of radii that look like another unit's */
+    bool warned;   /* of radii that look like another unit's */
+    double metres; /* of the unit of length so far; 0: not known */
     struct report report;
 };
 
@@ -105,7 +106,7 @@ typedef int bed_options_compute(void *request, const struct bed *bed, fibrad_bed
 int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute, void *request);
 
 /* Metres of the bed's unit of length, for what comes in watts, with a word where it is assumed and looks wrong. Status
- * 0; STATUS_USAGE if there is none, as in lj. */
+ * 0; STATUS_USAGE if there is none, as in lj, or if frames before had another one. */
 int bed_options_metres(struct bed_options *asked, const struct bed *bed, double *metres);
 
 /* Writes the frame in hand to all outputs. what: all but bed, file and series. */
