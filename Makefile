@@ -234,6 +234,7 @@ SCRIPTS = \
     tests/check_dist.sh \
     tests/check_examples.sh \
     tests/check_faults.sh \
+    tests/check_formats.sh \
     tests/check_fortran.sh \
     tests/check_header.sh \
     tests/check_npz.sh \
@@ -259,6 +260,7 @@ BENCHES = \
     bench/bench_heat.c \
     bench/bench_moved.c \
     bench/bench_pair.c \
+    bench/bench_read.c \
     bench/bench_scale.c \
     bench/bench_sizes.c \
     bench/bench_skips.c \

@@ -120,6 +120,10 @@ START_TEST(further_columns_by_name) {
     ck_assert_int_eq(bed.id[1], 17);
     const char bad[] = "x,y,z,r,emissivity,T,id\n0,0,0,1,dark,1,1\n";
     expect_refusal(bad, sizeof bad - 1, &options, 2, "emissivity is not a number: 'dark'");
+    const char unit[] = "x,y,z,r,emissivity [-],T [C],id\n0,0,0,1,1,1,1\n";
+    expect_refusal(unit, sizeof unit - 1, &options, 1, "the column T is in [C]; take that off its name");
+    const char kelvins[] = "x,y,z,r,emissivity [-],T (K)\n0,0,0,1,0.5,300\n";
+    ck_assert_int_eq(try_options(kelvins, sizeof kelvins - 1, &options), 0);
     const char lacking[] = "x,y,z,r,emissivity,id\n0,0,0,1,1,1\n";
     expect_refusal(lacking, sizeof lacking - 1, &options, 1, "no column T");
 }

@@ -2,6 +2,7 @@
 #include "bed/bed.h"
 
 #include <assert.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,6 +50,12 @@ int bed_add(struct bed *bed, const struct bed_sphere *sphere) {
 }
 
 int64_t bed_name(const struct bed *bed, uint32_t i) { return bed->ids ? bed->id[i] : (int64_t)i; }
+
+const char *bed_place(const struct bed *bed, uint32_t i, char text[BED_PLACE]) {
+    text[0] = 0;
+    if (bed->line[i]) snprintf(text, BED_PLACE, " of line %llu", (unsigned long long)bed->line[i]);
+    return text;
+}
 
 /* A sphere's id and where the sphere stands. */
 struct named {

@@ -37,6 +37,12 @@ int bed_add(struct bed *bed, const struct bed_sphere *sphere);
 /* The name of a sphere: its id, or its position from 0 on. */
 int64_t bed_name(const struct bed *bed, uint32_t i);
 
+/* Room for what bed_place says. */
+enum { BED_PLACE = 32 };
+
+/* " of line 7", or "" where a sphere is on no line, in `text`, which is returned. */
+const char *bed_place(const struct bed *bed, uint32_t i, char text[BED_PLACE]);
+
 /* Puts the spheres in the order of their ids, if they have any. Status 0; STATUS_INPUT naming the line of an id that is
  * negative or there twice; STATUS_MEMORY. `file` is the bed's name in messages. */
 int bed_sort(struct bed *bed, const char *file);

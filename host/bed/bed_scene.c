@@ -19,16 +19,16 @@ fibrad_scene_config bed_scene(const struct bed *bed, const struct walls *walls) 
 static int bed_overlap(const struct bed *bed, const char *file, uint32_t first, uint32_t second) {
     const uint32_t later = bed->line[first] < bed->line[second] ? second : first;
     const uint32_t other = later == first ? second : first;
+    char place[BED_PLACE];
     if (later == other)
         return message_at(STATUS_INPUT, file, bed->line[later], "sphere %lld reaches its own image in the periodic box",
                           (long long)bed_name(bed, later));
     const bool equal =
         bed->x[first] == bed->x[second] && bed->y[first] == bed->y[second] && bed->z[first] == bed->z[second];
     return message_at(STATUS_INPUT, file, bed->line[later],
-                      equal ? "sphere %lld has the same centre as sphere %lld of line %llu"
-                            : "sphere %lld and sphere %lld of line %llu: the centre of one lies inside the other",
-                      (long long)bed_name(bed, later), (long long)bed_name(bed, other),
-                      (unsigned long long)bed->line[other]);
+                      equal ? "sphere %lld has the same centre as sphere %lld%s"
+                            : "sphere %lld and sphere %lld%s: the centre of one lies inside the other",
+                      (long long)bed_name(bed, later), (long long)bed_name(bed, other), bed_place(bed, other, place));
 }
 
 int bed_status(const struct bed *bed, const char *file, int status, const fibrad_fault *fault) {

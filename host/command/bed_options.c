@@ -281,13 +281,13 @@ static void report_wall(struct report *report, const fibrad_body *wall) {
 /* Overlaps are common in DEM; large ones are not, and make factors mean little. */
 static void report_overlap(struct bed_options *asked, const struct bed *bed, const fibrad_scene_facts *facts) {
     const uint32_t first = facts->overlap_pair[0], second = facts->overlap_pair[1];
+    char place[2][BED_PLACE];
     if (facts->overlap_max == 0) return;
     report_value(&asked->report, "overlap_max", facts->overlap_max, 3);
     if (facts->overlap_max > OVERLAP_LARGE)
-        fprintf(stderr,
-                "fibrad: %s: warning: spheres %lld and %lld of lines %llu and %llu overlap by %.3g of a radius\n",
-                asked->name, (long long)bed_name(bed, first), (long long)bed_name(bed, second),
-                (unsigned long long)bed->line[first], (unsigned long long)bed->line[second], facts->overlap_max);
+        fprintf(stderr, "fibrad: %s: warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius\n",
+                asked->name, (long long)bed_name(bed, first), bed_place(bed, first, place[0]),
+                (long long)bed_name(bed, second), bed_place(bed, second, place[1]), facts->overlap_max);
 }
 
 void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,

@@ -103,8 +103,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     }
     if (!emissivity.given()) error->all(FLERR, std::string("fix fibrad: `emissivity` is missing"));
     for (double e : emissivity.of_type)
-        if (!(e >= 0 && e <= 1))
-            error->all(FLERR, text("fix fibrad: emissivity must be within 0 and 1, not %g", e));
+        if (!(e >= 0 && e <= 1)) error->all(FLERR, text("fix fibrad: emissivity must be within 0 and 1, not %g", e));
     for (double c : cp.of_type)
         if (!(c > 0)) error->all(FLERR, text("fix fibrad: cp must be above 0, not %g", c));
     if (heat_every && surroundings < 0)

@@ -23,14 +23,14 @@ struct reader {
 };
 
 int reader_open(struct reader **reader, const char *path, const struct read_options *options) {
-    static const struct format *const formats[] = {&format_dump,    &format_xyz,     &format_data, &format_vtk,
-                                                   &format_vtk_xml, &format_mercury, &format_table};
+    static const struct format *const formats[] = {&format_dump,    &format_xyz,     &format_data,  &format_vtk,
+                                                   &format_vtk_xml, &format_mercury, &format_table, NULL};
     struct reader *r = *reader = calloc(1, sizeof *r);
     if (!r) return message_memory();
     r->source.options = *options;
     const int status = lines_open(&r->source.lines, path);
     if (status) return status;
-    for (size_t k = 0; k < sizeof formats / sizeof *formats && !r->format; ++k)
+    for (size_t k = 0; formats[k] && !r->format; ++k)
         if (formats[k]->is(&r->source)) r->format = formats[k];
     return r->format == &format_table ? source_foreign(&r->source) : STATUS_OK;
 }

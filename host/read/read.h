@@ -7,20 +7,8 @@
 #include <stdint.h>
 
 #include "bed/bed.h"
+#include "read/read_options.h"
 #include "text/read_lines.h"
-
-/* Which frames of a file are wanted, counted from 0: begin, begin + step ... below end. Zeroed: the last one alone. */
-struct frames {
-    int64_t begin, end, step;
-};
-
-struct read_options {
-    struct frames frames;
-    bool positions;           /* ids are left alone: spheres stand in the order of the file */
-    bool no_radius;           /* no radius is looked for; bed->r is NaN */
-    const char *const *extra; /* [extras] names of further columns wanted, numbers all */
-    size_t extras;
-};
 
 /* A file that is read frame by frame. */
 struct reader;

@@ -3,7 +3,7 @@
 #define READ_COLUMNS_H
 
 #include "bed/bed.h"
-#include "read/read.h"
+#include "read/read_options.h"
 #include "text/read_lines.h"
 
 /* Where the columns wanted stand in a row. */

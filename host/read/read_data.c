@@ -58,7 +58,7 @@ static bool is_data(const struct source *source) {
 static void read_comment(const struct lines *lines, char *style, struct bed *bed) {
     char word[WORD];
     const char *units = strstr(lines->text, ", units = "), *step = strstr(lines->text, ", timestep = ");
-    if (strstr(lines->text, "write_data, version Version LIGGGHTS")) strcpy(style, "granular");
+    if (strstr(lines->text, "write_data, version Version LIGGGHTS")) memcpy(style, "granular", sizeof "granular");
     if (units) (void)sscanf(units, ", units = %15[a-z]", bed->units);
     if (step && sscanf(step, ", timestep = %39[0-9]", word) == 1) (void)number_read_whole(word, &bed->timestep);
 }
@@ -128,7 +128,7 @@ static int guess_style(struct source *source, char *style) {
     if (n != 5 && n != 8)
         return source_fail(source, "the style of the atoms is not said; write `Atoms # sphere` above them if their "
                                    "columns are id type diameter density x y z");
-    strcpy(style, "atomic");
+    memcpy(style, "atomic", sizeof "atomic");
     lines_hold(&source->lines);
     return STATUS_OK;
 }

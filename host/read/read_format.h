@@ -3,8 +3,8 @@
 #define READ_FORMAT_H
 
 #include "bed/bed.h"
-#include "read/read.h"
 #include "read/read_columns.h"
+#include "read/read_options.h"
 #include "text/read_lines.h"
 
 /* A file that is being read. */

@@ -37,7 +37,7 @@ static bool is_mercury(const struct source *source) {
 }
 
 /* The number of spheres and the box, as the line that begins a frame says. */
-static int read_head(struct source *source, double head[8]) {
+static int mercury_head(struct source *source, double head[8]) {
     static const char *const names[] = {
         "the number of atoms", "the time", "xmin", "ymin", "zmin", "xmax", "ymax", "zmax"};
     int status = fields_split_blanks(&source->fields, source->lines.text);
@@ -76,7 +76,7 @@ static int read_mercury(struct source *source, struct bed *bed) {
     int64_t spheres;
     double head[8] = {0};
     int status = mercury_count(source, &spheres, &more);
-    if (!status) status = read_head(source, head);
+    if (!status) status = mercury_head(source, head);
     for (int axis = 0; axis < 3 && !status; ++axis) {
         bed->low[axis] = head[2 + axis];
         bed->high[axis] = head[5 + axis];

@@ -146,11 +146,25 @@ static int find_unit(const struct source *source, const struct header *header, s
     return STATUS_OK;
 }
 
+/* Further columns are kelvins or have no unit. */
+static int check_units(const struct source *source, const struct header *header) {
+    for (size_t k = 0; k < source->options.extras; ++k) {
+        const char *unit = header->unit[source->columns.extra[k]];
+        if (*unit && strcmp(unit, "K") != 0 && strcmp(unit, "-") != 0 && strcmp(unit, "1") != 0)
+            return message_at(STATUS_INPUT, source->lines.name, header->line,
+                              "the column %.40s is in [%.20s]; take that off its name (--temperature-unit C is for "
+                              "temperatures)",
+                              source->options.extra[k], unit);
+    }
+    return STATUS_OK;
+}
+
 static int find_columns(struct source *source, const struct header *header, char separator, struct bed *bed) {
     struct lines at = source->lines; /* for messages */
     at.number = header->line;
-    const int status = columns_find(&source->columns, &at, &header->names, &source->options, bed);
+    int status = columns_find(&source->columns, &at, &header->names, &source->options, bed);
     source->columns.commas = separator != ',';
+    if (!status) status = check_units(source, header);
     return status ? status : find_unit(source, header, bed);
 }
 

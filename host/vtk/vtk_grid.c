@@ -93,6 +93,6 @@ int vtk_fail(const struct vtk_grid *grid, const char *at, const char *format, ..
 
 int vtk_room(double **values, uint64_t count) {
     free(*values);
-    *values = malloc((size_t)count * sizeof **values + 1);
+    *values = count < SIZE_MAX / sizeof **values ? malloc((size_t)(count + 1) * sizeof **values) : NULL;
     return *values ? STATUS_OK : message_memory();
 }

@@ -49,7 +49,7 @@ static bool take_words(struct legacy *legacy, char *line, size_t room) {
 }
 
 /* An array of so many values, into *values unless that is NULL. */
-static int take_array(struct legacy *legacy, const char *type_name, uint64_t count, double **values) {
+static int legacy_array(struct legacy *legacy, const char *type_name, uint64_t count, double **values) {
     const struct vtk_type type = vtk_find_type(type_name);
     const uint64_t left = (uint64_t)(legacy->grid->end - legacy->at);
     if (strcmp(type_name, "bit") != 0 && type.size == 0)
@@ -78,7 +78,7 @@ static int take_data(struct legacy *legacy, const char *name, const char *type, 
         return vtk_fail(legacy->grid, NULL, "the array %.40s has %" PRIu64 " components; one is expected", name,
                         components);
     if (components > 1 && tuples > UINT64_MAX / components) return legacy_fail(legacy, "an array is too large");
-    return take_array(legacy, type, components * tuples, values);
+    return legacy_array(legacy, type, components * tuples, values);
 }
 
 static void skip_metadata(struct legacy *legacy) {
@@ -109,14 +109,14 @@ static int take_points(struct legacy *legacy, uint64_t n, const char *type) {
     if (legacy->grid->points) return legacy_fail(legacy, "points are given twice");
     if (n > UINT64_MAX / 24) return legacy_fail(legacy, "an array is too large");
     legacy->grid->n = n;
-    return take_array(legacy, type, 3 * n, &legacy->grid->points);
+    return legacy_array(legacy, type, 3 * n, &legacy->grid->points);
 }
 
 /* Cells, which are of no use here: `CELLS n size` and size numbers; or `CELLS n m`, n offsets and m numbers. */
 static int take_cells(struct legacy *legacy, uint64_t n, uint64_t size) {
     legacy->sizes[0] = n;
     legacy->sizes[1] = size;
-    return legacy->fifth ? STATUS_OK : take_array(legacy, "int", size, NULL);
+    return legacy->fifth ? STATUS_OK : legacy_array(legacy, "int", size, NULL);
 }
 
 /* `SCALARS name type components`, and a table of colours. */
@@ -150,9 +150,9 @@ static int take_keyword(struct legacy *legacy, const char *line) {
     }
     if (strcmp(word, "POINTS") == 0) return take_points(legacy, n, second);
     if (strstr(lists, marked)) return take_cells(legacy, n, m);
-    if (strcmp(word, "OFFSETS") == 0) return take_array(legacy, first, legacy->sizes[0], NULL);
-    if (strcmp(word, "CONNECTIVITY") == 0) return take_array(legacy, first, legacy->sizes[1], NULL);
-    if (strcmp(word, "CELL_TYPES") == 0) return take_array(legacy, "int", n, NULL);
+    if (strcmp(word, "OFFSETS") == 0) return legacy_array(legacy, first, legacy->sizes[0], NULL);
+    if (strcmp(word, "CONNECTIVITY") == 0) return legacy_array(legacy, first, legacy->sizes[1], NULL);
+    if (strcmp(word, "CELL_TYPES") == 0) return legacy_array(legacy, "int", n, NULL);
     if (strcmp(word, "FIELD") == 0) return take_field(legacy, (int64_t)(m <= INT64_MAX ? m : 0));
     if (strcmp(word, "SCALARS") == 0) return take_scalars(legacy, line);
     if (strcmp(word, "POINT_DATA") == 0 || strcmp(word, "CELL_DATA") == 0) {

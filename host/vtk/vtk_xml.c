@@ -154,7 +154,7 @@ static int take_packed(const struct xml *xml, struct stream *stream, unsigned ch
     const uint64_t most = (uint64_t)(xml->grid->end - xml->grid->text);
     uint64_t blocks, size, last;
     if (!take_size(xml, stream, &blocks) || !take_size(xml, stream, &size) || !take_size(xml, stream, &last) ||
-        blocks > most || (blocks > 0 && (size == 0 || blocks - 1 > bytes / size)))
+        blocks > most / xml->header.size || (blocks > 0 && (size == 0 || blocks - 1 > bytes / size)))
         return xml_fail(xml, "the blocks of an array are damaged");
     uint64_t *packed = malloc((size_t)(blocks + 1) * sizeof *packed);
     unsigned char *from = malloc((size_t)most + 1);
@@ -185,10 +185,10 @@ static int take_values(struct xml *xml, const struct place *place, double **valu
         return vtk_scan(&at, xml->grid->end, place->count, *values) ? STATUS_OK
                                                                     : xml_fail(xml, "an array is too short");
     }
-    unsigned char *data = malloc((size_t)bytes + 1);
+    double *data = NULL; /* bytes, in fact */
     struct stream stream = {.at = place->at, .end = xml->grid->end, .raw = place->raw};
-    if (!data) return message_memory();
-    status = (xml->packed ? take_packed : take_plain)(xml, &stream, data, bytes);
+    status = vtk_room(&data, bytes / sizeof *data + 1);
+    if (!status) status = (xml->packed ? take_packed : take_plain)(xml, &stream, (unsigned char *)data, bytes);
     if (!status) vtk_convert(place->type, xml->big, data, place->count, *values);
     free(data);
     return status;
@@ -196,7 +196,7 @@ static int take_values(struct xml *xml, const struct place *place, double **valu
 
 /* ---- tags ------------------------------------------------------------------------------------------------------- */
 
-static int take_file(struct xml *xml, const struct tag *tag) {
+static int xml_file(struct xml *xml, const struct tag *tag) {
     char value[WORD];
     attribute(tag, "type", value);
     if (strcmp(value, "Collection") == 0)
@@ -222,7 +222,7 @@ static int take_piece(struct xml *xml, const struct tag *tag) {
     return STATUS_OK;
 }
 
-static int take_array(struct xml *xml, const struct tag *tag) {
+static int xml_array(struct xml *xml, const struct tag *tag) {
     char name[WORD], format[WORD], type[WORD];
     const uint64_t components = number_of(tag, "NumberOfComponents", 1);
     attribute(tag, "Name", name);
@@ -246,10 +246,10 @@ static int take_array(struct xml *xml, const struct tag *tag) {
     return take_values(xml, &place, values);
 }
 
-static int take_tag(struct xml *xml, const struct tag *tag) {
-    if (is_tag(tag, "VTKFile")) return take_file(xml, tag);
+static int xml_tag(struct xml *xml, const struct tag *tag) {
+    if (is_tag(tag, "VTKFile")) return xml_file(xml, tag);
     if (is_tag(tag, "Piece")) return take_piece(xml, tag);
-    if (is_tag(tag, "DataArray") && (xml->points || xml->point_data)) return take_array(xml, tag);
+    if (is_tag(tag, "DataArray") && (xml->points || xml->point_data)) return xml_array(xml, tag);
     const bool begins = *tag->text != '/' && tag->end[-1] != '/';
     const struct tag rest = {tag->text + (*tag->text == '/'), tag->end};
     if (is_tag(&rest, "Points")) xml->points = begins;
@@ -282,7 +282,7 @@ int vtk_read_xml(struct vtk_grid *grid) {
     struct tag tag;
     find_appended(&xml);
     while (next_tag(&xml, &tag) && !is_tag(&tag, "AppendedData")) {
-        const int status = take_tag(&xml, &tag);
+        const int status = xml_tag(&xml, &tag);
         if (status) return status;
     }
     return STATUS_OK;

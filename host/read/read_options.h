@@ -1,0 +1,22 @@
+/* read_options.h - what is wanted of a file. SPDX-License-Identifier: MIT */
+#ifndef READ_OPTIONS_H
+#define READ_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Which frames of a file are wanted, counted from 0: begin, begin + step ... below end. Zeroed: the last one alone. */
+struct frames {
+    int64_t begin, end, step;
+};
+
+struct read_options {
+    struct frames frames;
+    bool positions;           /* ids are left alone: spheres stand in the order of the file */
+    bool no_radius;           /* no radius is looked for; bed->r is NaN */
+    const char *const *extra; /* [extras] names of further columns wanted, numbers all */
+    size_t extras;
+};
+
+#endif
