@@ -298,6 +298,8 @@ START_TEST(several_files) {
     snprintf(names, sizeof names, "%s/none.*.dump", folder);
     ck_assert_int_eq(RUN("bed", names), 4);
     expect_message(names, "there are no such files");
+    ck_assert_int_eq(RUN("bed", "-", first, "-"), 2);
+    expect_message("standard input", "once only");
 }
 END_TEST
 

@@ -28,6 +28,9 @@ static int take_period(const char *text, double period[3]) {
 }
 
 static int add_file(struct bed_options *asked, const char *name) {
+    for (size_t k = 0; k < asked->files; ++k)
+        if (strcmp(name, "-") == 0 && strcmp(asked->file[k], name) == 0)
+            return message(STATUS_USAGE, "standard input can be read once only");
     char **file = realloc(asked->file, (asked->files + 1) * sizeof *file);
     if (!file) return message_memory();
     asked->file = file;
