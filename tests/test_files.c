@@ -298,6 +298,8 @@ START_TEST(several_files) {
     snprintf(names, sizeof names, "%s/none.*.dump", folder);
     ck_assert_int_eq(RUN("bed", names), 4);
     expect_message(names, "there are no such files");
+    SUCCEED("bed", first, write_file("bed.csv", "x,y,z,r\n0,0,0,1\n"), "--directions", "8");
+    expect_message(in_folder("bed.csv"), "warning: spheres go by positions, those of the frames before by ids");
     ck_assert_int_eq(RUN("bed", "-", first, "-"), 2);
     expect_message("standard input", "once only");
 }

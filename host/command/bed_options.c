@@ -154,6 +154,14 @@ static int complete_bed(struct bed_options *asked, struct bed *bed) {
     return status;
 }
 
+/* Rows of one output by ids and by positions are told apart by nothing. */
+static void warn_of_names(struct bed_options *asked, const struct bed *bed) {
+    if (asked->frames_done > 0 && asked->ids != bed->ids)
+        message_at(STATUS_OK, asked->name, 0, "warning: spheres go by %s, those of the frames before by %s",
+                   bed->ids ? "ids" : "positions", asked->ids ? "ids" : "positions");
+    asked->ids = bed->ids;
+}
+
 static int run_file(struct bed_options *asked, const char *path, struct bed *bed, bed_options_frame *frame,
                     void *request) {
     const struct read_options read = {.frames = asked->frames,
@@ -168,6 +176,7 @@ static int run_file(struct bed_options *asked, const char *path, struct bed *bed
     while (!status) {
         status = reader_next(reader, bed, &more);
         if (status || !more) break;
+        warn_of_names(asked, bed);
         status = complete_bed(asked, bed);
         if (!status) status = frame(request, bed);
         ++asked->frames_done;

@@ -63,6 +63,7 @@ struct bed_options {
     /* of the run */
     const char *name; /* of the file in hand, in messages */
     int64_t frames_done;
+    bool ids;      /* spheres of the last frame have them */
     bool warned;   /* of radii that look like another unit's */
     double metres; /* of the unit of length so far; 0: not known */
     struct report report;
