@@ -295,6 +295,12 @@ START_TEST(several_files) {
     ck_assert_ptr_nonnull(strstr(text, "bed.2.dump,1,250,3,7,"));
     free(text);
     free(read_file(in_folder("F.1.mtx")));
+    write_frames("bed.10.dump", 3); /* times are not padded with zeros: 10 comes behind 2 */
+    SUCCEED("bed", names, "--directions", "8", "-o", out);
+    text = read_file(out);
+    ck_assert_ptr_nonnull(strstr(text, "bed.10.dump,2,900,3,7,"));
+    ck_assert(strstr(text, "bed.10.dump,") > strstr(text, "bed.2.dump,"));
+    free(text);
     snprintf(names, sizeof names, "%s/none.*.dump", folder);
     ck_assert_int_eq(RUN("bed", names), 4);
     expect_message(names, "there are no such files");

@@ -38,12 +38,34 @@ static int add_file(struct bed_options *asked, const char *name) {
     return file[asked->files++] ? STATUS_OK : message_memory();
 }
 
+/* Order of names by the numbers in them: bed.200.dump stands before bed.1000.dump. */
+static int order_of_names(const void *a, const void *b) {
+    static const char digits[] = "0123456789";
+    const char *one = *(char *const *)a, *other = *(char *const *)b;
+    while (*one && *other) {
+        const size_t length = strspn(one, digits), width = strspn(other, digits);
+        if (length == 0 || width == 0) {
+            if (*one != *other) break;
+            ++one, ++other;
+            continue;
+        }
+        const char *first = one + strspn(one, "0"), *second = other + strspn(other, "0");
+        one += length, other += width;
+        if (one - first != other - second) return one - first < other - second ? -1 : 1;
+        const int order = strncmp(first, second, (size_t)(one - first));
+        if (order != 0) return order;
+    }
+    const int order = strcmp(one, other);
+    return order != 0 ? order : strcmp(*(char *const *)a, *(char *const *)b);
+}
+
 /* A name, or all files that a pattern of the shell stands for, which the shell has left alone. */
 static int take_file(struct bed_options *asked, const char *name) {
     struct stat there;
     glob_t found;
     if (!strpbrk(name, "*?[") || stat(name, &there) == 0) return add_file(asked, name);
     if (glob(name, 0, NULL, &found) != 0) return message_at(STATUS_FILE, name, 0, "there are no such files");
+    qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, order_of_names);
     int status = STATUS_OK;
     for (size_t k = 0; k < found.gl_pathc && !status; ++k) status = add_file(asked, found.gl_pathv[k]);
     globfree(&found);
