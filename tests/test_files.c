@@ -123,6 +123,10 @@ START_TEST(units_of_length) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED)); /* millimetres, by their looks */
     SUCCEED(HEAT, bed, "--ambient", "300");
     expect_message(bed, "warning: radii of 0.9 are taken as metres");
+    ck_assert_int_eq(RUN(HEAT, bed, cgs, "--ambient", "300", "--length-unit", "mm"), 2); /* one series, one unit */
+    expect_message(cgs, "its units are cgs");
+    ck_assert_int_eq(RUN(HEAT, cgs, write_file("si.dump", frame("si", "0", "3", SORTED)), "--ambient", "300"), 2);
+    expect_message(in_folder("si.dump"), "its unit of length is 1 m, that of the files before 0.01 m");
 }
 END_TEST
 
@@ -271,6 +275,8 @@ START_TEST(some_frames) {
     ck_assert_double_eq(value_of("frame"), 1);
     ck_assert_int_eq(RUN("bed", bed, "--frame", "3"), 3);
     expect_message(bed, "there is no frame 3; the last is 2");
+    ck_assert_int_eq(RUN("bed", bed, "--frame", "99999999999999999999"), 2);
+    expect_message("--frame", "is none of K");
     ck_assert_int_eq(RUN("bed", bed, "--frame", "all", "-o", in_folder("F.npz")), 2);
     expect_message(in_folder("F.npz"), "holds one frame");
 }
@@ -289,9 +295,19 @@ START_TEST(several_files) {
     ck_assert_ptr_nonnull(strstr(text, "bed.2.dump,1,250,3,7,"));
     free(text);
     free(read_file(in_folder("F.1.mtx")));
+    write_frames("bed.10.dump", 3); /* times are not padded with zeros: 10 comes behind 2 */
+    SUCCEED("bed", names, "--directions", "8", "-o", out);
+    text = read_file(out);
+    ck_assert_ptr_nonnull(strstr(text, "bed.10.dump,2,900,3,7,"));
+    ck_assert(strstr(text, "bed.10.dump,") > strstr(text, "bed.2.dump,"));
+    free(text);
     snprintf(names, sizeof names, "%s/none.*.dump", folder);
     ck_assert_int_eq(RUN("bed", names), 4);
     expect_message(names, "there are no such files");
+    SUCCEED("bed", first, write_file("bed.csv", "x,y,z,r\n0,0,0,1\n"), "--directions", "8");
+    expect_message(in_folder("bed.csv"), "warning: spheres go by positions, those of the frames before by ids");
+    ck_assert_int_eq(RUN("bed", "-", first, "-"), 2);
+    expect_message("standard input", "once only");
 }
 END_TEST
 
@@ -305,6 +321,27 @@ START_TEST(truncated_last_frame) {
     ck_assert_int_eq(RUN("bed", bed, "--directions", "8"), 3);
     expect_message(bed, "the last whole frame is 1");
     ck_assert_int_eq(RUN("bed", bed, "--frame", "2", "--directions", "8"), 3);
+}
+END_TEST
+
+/* Radii that are given reach frames that have more spheres than those before. */
+START_TEST(radii_of_growing_frames) {
+    static const int counts[] = {2, 300};
+    const char *bed = in_folder("bed.dump"), *all = in_folder("all.csv"), *last = in_folder("last.csv");
+    FILE *file = fopen(bed, "w");
+    ck_assert_ptr_nonnull(file);
+    for (int k = 0; k < 2; ++k) {
+        fprintf(file, "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: ATOMS id x y z\n", k, counts[k]);
+        for (int i = 0; i < counts[k]; ++i) fprintf(file, "%d %d %d %d\n", i + 1, i % 7, i / 7 % 7, i / 49);
+    }
+    fclose(file);
+    SUCCEED("bed", bed, "--frame", "all", "--radius", ".4", "--directions", "8", "-o", all);
+    SUCCEED("bed", bed, "--frame", "1:", "--radius", ".4", "--directions", "8", "-o", last);
+    char *text = read_file(all), *expected = read_file(last);
+    const char *frame = strstr(text, "\n1,1,1,2,");
+    ck_assert_ptr_nonnull(frame);
+    ck_assert_str_eq(frame, strchr(expected, '\n'));
+    free(text), free(expected);
 }
 END_TEST
 
@@ -347,6 +384,36 @@ START_TEST(quiet_and_streams) {
 END_TEST
 
 /* What does not fit is said before the work begins, with what would help. */
+/* No two results of a run go to one place, the summary among them. */
+START_TEST(one_place_each) {
+    const char *bed = write_frames("bed.dump", 2), *name = in_folder("q.1.json");
+    static const char *const more[][4] = {{"-o", "q.1.json"}, {"-o", "q.*.json"}, {"-o", "-", "--format", "json"}};
+    for (int k = 0; k < 3; ++k) {
+        const int standard = more[k][2] != NULL;
+        const char *const to = standard ? "-" : in_folder(more[k][1]);
+        ck_assert_int_eq(RUN(HEAT, bed, "--ambient", "300", "--frame", "0:2", "--length-unit", "m", "--quiet", "--json",
+                             standard ? "-" : name, "-o", to, more[k][2], more[k][3]),
+                         2);
+        expect_message(standard ? "-" : name, "is there twice");
+        ck_assert_int_eq(access(name, F_OK), -1);
+    }
+    SUCCEED(HEAT, bed, "--ambient", "300", "--json", "-");
+    ck_assert_int_eq(strncmp(printed, "{\"fibrad\"", 9), 0);
+    ck_assert_ptr_null(strstr(printed, "\nfile"));
+    ck_assert_ptr_nonnull(strstr(said, "\nframe 1\n"));
+}
+END_TEST
+
+/* Where nothing is emitted, there are no rows, and their figures are 0. */
+START_TEST(summary_of_no_rows) {
+    const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
+    SUCCEED("exchange", bed, "--emissivity", "0");
+    ck_assert_double_eq(value_of("row_sum_min"), 0);
+    ck_assert_double_eq(value_of("row_sum_max"), 0);
+    ck_assert_double_eq(value_of("escaped_mean"), 0);
+}
+END_TEST
+
 START_TEST(too_little_memory) {
     ck_assert_int_eq(RUN("heat", MONO, "--emissivity", ".5", "--temperature", "v_T", "--ambient", "300", "--directions",
                          "65536", "--points", "256", "--patches", "384", "-o", in_folder("q.csv")),
@@ -384,9 +451,12 @@ int main(void) {
     tcase_add_test(frames, all_frames);
     tcase_add_test(frames, some_frames);
     tcase_add_test(frames, several_files);
+    tcase_add_test(frames, radii_of_growing_frames);
     tcase_add_test(frames, truncated_last_frame);
     tcase_add_test(summaries, summary_says_what_was_computed);
     tcase_add_test(summaries, quiet_and_streams);
+    tcase_add_test(summaries, one_place_each);
+    tcase_add_test(summaries, summary_of_no_rows);
     tcase_add_test(summaries, too_little_memory);
     tcase_add_test(summaries, versions_and_help);
     return suite_run(suite);

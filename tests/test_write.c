@@ -636,6 +636,7 @@ START_TEST(dump_read_back) {
     first.period[1] = first.high[1] = 9, first.low[1] = 0;
     second.timestep = 1300;
     second.period[0] = 11;
+    second.low[2] = 0, second.high[2] = 5, second.period[2] = 7; /* by --periodic */
     FILE *file = fopen(path, "w");
     ck_assert_ptr_nonnull(file);
     struct contents what = frame_of(&first);
@@ -661,7 +662,7 @@ START_TEST(dump_read_back) {
             ck_assert(back.low[0] == -5.0 / 3 && back.high[0] == 3.5 && back.low[2] == -10 && back.high[2] == 1.0 / 3);
         } else {
             ck_assert_double_eq_tol(back.period[0], 11, 1e-14);
-            ck_assert(back.low[0] == -5.0 / 3 && back.period[1] == 0);
+            ck_assert(back.low[0] == -5.0 / 3 && back.period[1] == 0 && back.period[2] == 7);
         }
         bed_free(&back);
     }

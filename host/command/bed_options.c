@@ -28,11 +28,35 @@ static int take_period(const char *text, double period[3]) {
 }
 
 static int add_file(struct bed_options *asked, const char *name) {
+    for (size_t k = 0; k < asked->files; ++k)
+        if (strcmp(name, "-") == 0 && strcmp(asked->file[k], name) == 0)
+            return message(STATUS_USAGE, "standard input can be read once only");
     char **file = realloc(asked->file, (asked->files + 1) * sizeof *file);
     if (!file) return message_memory();
     asked->file = file;
     file[asked->files] = strdup(name);
     return file[asked->files++] ? STATUS_OK : message_memory();
+}
+
+/* Order of names by the numbers in them: bed.200.dump stands before bed.1000.dump. */
+static int order_of_names(const void *a, const void *b) {
+    static const char digits[] = "0123456789";
+    const char *one = *(char *const *)a, *other = *(char *const *)b;
+    while (*one && *other) {
+        const size_t length = strspn(one, digits), width = strspn(other, digits);
+        if (length == 0 || width == 0) {
+            if (*one != *other) break;
+            ++one, ++other;
+            continue;
+        }
+        const char *first = one + strspn(one, "0"), *second = other + strspn(other, "0");
+        one += length, other += width;
+        if (one - first != other - second) return one - first < other - second ? -1 : 1;
+        const int order = strncmp(first, second, (size_t)(one - first));
+        if (order != 0) return order;
+    }
+    const int order = strcmp(one, other);
+    return order != 0 ? order : strcmp(*(char *const *)a, *(char *const *)b);
 }
 
 /* A name, or all files that a pattern of the shell stands for, which the shell has left alone. */
@@ -41,6 +65,7 @@ static int take_file(struct bed_options *asked, const char *name) {
     glob_t found;
     if (!strpbrk(name, "*?[") || stat(name, &there) == 0) return add_file(asked, name);
     if (glob(name, 0, NULL, &found) != 0) return message_at(STATUS_FILE, name, 0, "there are no such files");
+    qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, order_of_names);
     int status = STATUS_OK;
     for (size_t k = 0; k < found.gl_pathc && !status; ++k) status = add_file(asked, found.gl_pathv[k]);
     globfree(&found);
@@ -59,10 +84,10 @@ static int take_frames(const char *text, struct bed_options *asked) {
     }
     if (strspn(text, digits) > 0) frames.begin = strtoll(text, &end, 10);
     bool good = (*end == 0 && end != text) || *end == ':';
-    if (*end == 0) frames.end = frames.begin + 1;
+    if (*end == 0) frames.end = frames.begin < INT64_MAX ? frames.begin + 1 : frames.begin;
     if (*end == ':' && strspn(++end, digits) > 0) frames.end = strtoll(end, &end, 10);
     if (*end == ':' && strspn(++end, digits) > 0) frames.step = strtoll(end, &end, 10);
-    good = good && *end == 0 && frames.begin < frames.end && frames.begin < INT64_MAX && frames.step > 0;
+    good = good && *end == 0 && frames.begin < frames.end && frames.step > 0;
     if (!good) return message(STATUS_USAGE, "--frame: '%.40s' is none of K, all, A:B, A:B:STEP, -1", text);
     asked->frames = frames;
     return STATUS_OK;
@@ -134,6 +159,8 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
     for (size_t k = 0; asked->json && k < asked->files; ++k)
         if (output_same(asked->file[k], asked->json))
             return message_at(STATUS_USAGE, asked->json, 0, "is the bed itself; it would be replaced");
+    asked->outputs.summary = asked->json;
+    asked->outputs.picture = picture;
     return outputs_check(&asked->outputs, content, (const char *const *)asked->file, asked->files,
                          bed_options_series(asked));
 }
@@ -142,8 +169,19 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
 static int complete_bed(struct bed_options *asked, struct bed *bed) {
     if (asked->periodic) memcpy(bed->period, asked->period, sizeof bed->period);
     if (!asked->radius.given) return STATUS_OK;
-    free(bed->r);
-    return quantity_values(&asked->radius, bed, asked->name, "radius", 0, 1e-150, 1e150, &bed->r);
+    double *radius; /* the bed's own array has room for more than this frame */
+    const int status = quantity_values(&asked->radius, bed, asked->name, "radius", 0, 1e-150, 1e150, &radius);
+    if (!status) memcpy(bed->r, radius, bed->n * sizeof *radius);
+    free(radius);
+    return status;
+}
+
+/* Rows of one output by ids and by positions are told apart by nothing. */
+static void warn_of_names(struct bed_options *asked, const struct bed *bed) {
+    if (asked->frames_done > 0 && asked->ids != bed->ids)
+        message_at(STATUS_OK, asked->name, 0, "warning: spheres go by %s, those of the frames before by %s",
+                   bed->ids ? "ids" : "positions", asked->ids ? "ids" : "positions");
+    asked->ids = bed->ids;
 }
 
 static int run_file(struct bed_options *asked, const char *path, struct bed *bed, bed_options_frame *frame,
@@ -161,6 +199,7 @@ static int run_file(struct bed_options *asked, const char *path, struct bed *bed
     while (!status) {
         status = reader_next(reader, bed, &more);
         if (status || !more) break;
+        warn_of_names(asked, bed);
         status = complete_bed(asked, bed);
         if (!status) status = frame(request, bed);
         ++asked->frames_done;
@@ -250,6 +289,10 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
                 mean_radius(bed));
         asked->warned = true;
     }
+    if (asked->metres > 0 && asked->metres != *metres)
+        return message_at(STATUS_USAGE, asked->name, 0, "its unit of length is %g m, that of the files before %g m",
+                          *metres, asked->metres);
+    asked->metres = *metres;
     return STATUS_OK;
 }
 

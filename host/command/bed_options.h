@@ -20,7 +20,7 @@
 
 /* Rows of a table of options, without the outermost braces: what is read, and what is left of it. */
 #define OPTIONS_INPUT                                                                                                  \
-    {KEY_RADIUS, "radius", "R", "of all spheres; or TYPE:R,... [the file's column]"},                                  \
+    {KEY_RADIUS, "radius", "R", "of all spheres; or TYPE:R,... ; or the file's column of that name [r or radius]"},    \
         {KEY_LENGTH_UNIT, "length-unit", "UNIT", "of files that name none: " UNITS_LENGTH " [m]"},                     \
         {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},         \
         {KEY_FRAME, "frame", "K", "frame of a file, from 0; all; A:B or A:B:STEP, B excluded; -1: the last [-1]"}, {   \
@@ -36,8 +36,10 @@
 /* What --help says below of the files. */
 #define FILES_MORE                                                                                                     \
     "FILE: LAMMPS and LIGGGHTS dumps and data files, CSV with a header, extended XYZ, VTK (.vtp, .vtk), YADE and\n"    \
-    "MercuryDPM text, all of them also compressed by gzip; - for standard input. Several files, and 'bed.*.dump',\n"   \
-    "are one series. Spheres go by the ids of the file, or by positions from 0 if it has none. docs/files.md\n"
+    "MercuryDPM text, all of them also compressed by gzip; - for standard input. Several files are one series;\n"      \
+    "those of a pattern 'bed.*.dump' come in the order of their numbers. A * in OUT stands for the number of the\n"    \
+    "frame, with several files counted through them all, from 0. Spheres go by the ids of the file, or by\n"           \
+    "positions from 0 if it has none. docs/files.md\n"
 
 enum { BED_COLUMNS_MAX = 4 };
 
@@ -63,7 +65,9 @@ struct bed_options {
     /* of the run */
     const char *name; /* of the file in hand, in messages */
     int64_t frames_done;
-    bool warned; /* of radii that look like another unit's */
+    bool ids;      /* spheres of the last frame have them */
+    bool warned;   /* of radii that look like another unit's */
+    double metres; /* of the unit of length so far; 0: not known */
     struct report report;
 };
 
@@ -105,7 +109,7 @@ typedef int bed_options_compute(void *request, const struct bed *bed, fibrad_bed
 int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute, void *request);
 
 /* Metres of the bed's unit of length, for what comes in watts, with a word where it is assumed and looks wrong. Status
- * 0; STATUS_USAGE if there is none, as in lj. */
+ * 0; STATUS_USAGE if there is none, as in lj, or if frames before had another one. */
 int bed_options_metres(struct bed_options *asked, const struct bed *bed, double *metres);
 
 /* Writes the frame in hand to all outputs. what: all but bed, file and series. */

@@ -112,7 +112,8 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
         status = conductivity_take(request, &options, key);
     if (status) return status;
     if (request->at)
-        status = options_number("--temperature", request->at, -request->zero, TEMPERATURE_MAX, &request->temperature);
+        status =
+            options_number("--temperature", request->at, 0 - request->zero, TEMPERATURE_MAX, &request->temperature);
     if (status) return status;
     if (request->at) request->temperature += request->zero;
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");

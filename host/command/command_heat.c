@@ -139,7 +139,7 @@ static int take_ambient(struct heat_request *request) {
     double *ambient = &request->problem.sources.surroundings;
     *ambient = NAN;
     if (!request->ambient) return STATUS_OK;
-    const int status = options_number("--ambient", request->ambient, -request->zero, TEMPERATURE_MAX, ambient);
+    const int status = options_number("--ambient", request->ambient, 0 - request->zero, TEMPERATURE_MAX, ambient);
     *ambient += request->zero;
     return status;
 }
@@ -227,7 +227,7 @@ static int heat_solve(struct heat_request *request, struct bed *bed, struct heat
 
 /* Every wall needs a temperature, and so do the surroundings if something can get there. */
 static int heat_temperatures(struct heat_request *request, const struct bed *bed, double *wall_temperature) {
-    const int status = wall_values("--wall-temperature", request->wall_temperature, NAN, -request->zero,
+    const int status = wall_values("--wall-temperature", request->wall_temperature, NAN, 0 - request->zero,
                                    TEMPERATURE_MAX, &request->problem.walls, wall_temperature);
     for (uint32_t k = 0; k < request->problem.walls.count && !status; ++k) wall_temperature[k] += request->zero;
     if (!status && !request->ambient && !walls_closed(&request->problem.walls, bed))

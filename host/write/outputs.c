@@ -85,14 +85,16 @@ static int check_inputs(const struct outputs *outputs, const char *path) {
     return STATUS_OK;
 }
 
-static int check_others(const struct outputs *outputs, size_t k) {
-    const char *path = outputs->to[k].path;
-    for (size_t other = 0; other < k; ++other) {
-        const char *before = outputs->to[other].path;
-        if ((output_stdout(path) && output_stdout(before)) || output_same(path, before))
-            return message_at(STATUS_USAGE, path, 0, "is there twice");
-    }
-    return STATUS_OK;
+static bool is_same(const char *a, const char *b) {
+    return a && b && ((output_stdout(a) && output_stdout(b)) || output_same(a, b));
+}
+
+/* Would output k, under this name, and another file of the run replace each other? */
+static int check_others(const struct outputs *outputs, size_t k, const char *path) {
+    bool twice = is_same(path, outputs->summary) || is_same(path, outputs->picture);
+    for (size_t other = 0; other < outputs->count; ++other)
+        twice = twice || (other != k && is_same(path, outputs->to[other].path));
+    return twice ? message_at(STATUS_USAGE, path, 0, "is there twice") : STATUS_OK;
 }
 
 int outputs_check(struct outputs *outputs, enum content content, const char *const *inputs, size_t input_count,
@@ -106,8 +108,10 @@ int outputs_check(struct outputs *outputs, enum content content, const char *con
         if (!outputs->to[k].format) wanted = true;
         status = check_format(outputs, k, series);
         if (!status) status = check_inputs(outputs, outputs->to[k].path);
-        if (!status) status = check_others(outputs, k);
+        if (!status) status = check_others(outputs, k, outputs->to[k].path);
     }
+    if (!status && is_same(outputs->summary, outputs->picture))
+        status = message_at(STATUS_USAGE, outputs->summary, 0, "is there twice");
     if (status || wanted) return status;
     return message(STATUS_USAGE, "--format %s: no -o needs it", outputs->format->name);
 }
@@ -129,6 +133,7 @@ static int write_alone(const struct outputs *outputs, size_t k, const struct con
     const int used = snprintf(path, sizeof path, "%.*s%" PRId64 "%s", (int)(star - pattern), pattern, number, star + 1);
     if (used >= (int)sizeof path) return message_at(STATUS_FILE, pattern, 0, "is too long a name");
     int status = check_inputs(outputs, path);
+    if (!status) status = check_others(outputs, k, path);
     if (!status) status = output_open(&file, path);
     if (!status) status = outputs->to[k].format->write[outputs->content](file.file, what, true);
     return output_close(&file, status);
@@ -155,6 +160,7 @@ int outputs_close(struct outputs *outputs, int status) {
 }
 
 bool outputs_stdout(const struct outputs *outputs) {
+    if (outputs->summary && output_stdout(outputs->summary)) return true;
     for (size_t k = 0; k < outputs->count; ++k)
         if (output_stdout(outputs->to[k].path)) return true;
     return false;

@@ -34,6 +34,7 @@ struct outputs {
     enum content content;
     const char *const *inputs; /* [input_count] */
     size_t input_count;
+    const char *summary, *picture; /* other files of the run; NULL: none */
 };
 
 /* Rows of a table of options, without braces. */

@@ -36,6 +36,10 @@ void summary_make(struct summary *summary, const struct contents *what) {
     uint32_t rows = 0;
     *summary = (struct summary){.row_sum_min = INFINITY, .row_sum_max = -INFINITY};
     for (uint32_t i = 0; i < matrix->n; ++i) rows += has_row(what, i);
+    if (rows == 0) { /* nothing emits */
+        *summary = (struct summary){0};
+        return;
+    }
     for (uint32_t i = 0; i < matrix->n; ++i)
         if (has_row(what, i)) add_summary(summary, matrix, i, rows);
     summary->escaped_mean /= rows;

@@ -7,19 +7,18 @@
 #include "text/text.h"
 #include "write/write.h"
 
-/* The file's box; along an axis that has none, the length of its period, or as far as the spheres reach. */
+/* The file's box; along an axis that has none, as far as the spheres reach; the length of the period, if there is one.
+ */
 static void box_of(const struct bed *bed, int axis, double *low, double *high) {
     const double *centre = axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z;
-    *low = bed->low[axis];
-    *high = bed->high[axis];
-    if (*low < *high) return;
-    *low = INFINITY;
-    *high = -INFINITY;
-    for (uint32_t i = 0; i < bed->n; ++i) {
+    const bool box = bed->low[axis] < bed->high[axis];
+    *low = box ? bed->low[axis] : INFINITY;
+    *high = box ? bed->high[axis] : -INFINITY;
+    for (uint32_t i = 0; i < bed->n && !box; ++i) {
         *low = fmin(*low, centre[i] - bed->r[i]);
         *high = fmax(*high, centre[i] + bed->r[i]);
     }
-    if (bed->period[axis] > 0) *high = *low + bed->period[axis];
+    if (bed->period[axis] > 0 && *high - *low != bed->period[axis]) *high = *low + bed->period[axis];
 }
 
 static void write_header(FILE *file, const struct bed *bed, bool first) {
