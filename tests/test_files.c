@@ -145,6 +145,20 @@ START_TEST(degrees_celsius) {
 }
 END_TEST
 
+/* Names of columns may say their unit, which is not to be another one. */
+START_TEST(units_of_temperature_columns) {
+    const char *kelvins = write_file("k.csv", "x,y,z,r,T [K]\n0,0,0,.01,300\n"), *out = in_folder("q.csv");
+    const char *celsius = write_file("c.csv", "x,y,z,r,T [C]\n0,0,0,.01,26.85\n"), *other = in_folder("p.csv");
+    ck_assert_int_eq(RUN(HEAT, kelvins, "--temperature-unit", "C", "--ambient", "20"), 3);
+    expect_message(kelvins, ":1: the column T is in [K], and taken for [C]; see --temperature-unit");
+    ck_assert_int_eq(RUN(HEAT, celsius, "--ambient", "290"), 3);
+    expect_message(celsius, ":1: the column T is in [C], and taken for [K]");
+    SUCCEED(HEAT, kelvins, "--ambient", "290", "-o", out);
+    SUCCEED(HEAT, celsius, "--ambient", "16.85", "--temperature-unit", "C", "-o", other);
+    ck_assert_double_eq_tol(power_of(other, "0,", ""), power_of(out, "0,", ""), 1e-9);
+}
+END_TEST
+
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 
 /* The order of a file is no matter: spheres go by their ids. */
@@ -176,7 +190,7 @@ START_TEST(ids_in_any_order) {
     ck_assert_int_eq(strncmp(text, "i,j,F\n0,1,", 10), 0);
     free(text);
     ck_assert_int_eq(RUN("bed", bed, "--targets", "8-19"), 2);
-    expect_message("", "there is no sphere 8; they are 3 to 20");
+    expect_message("", "there is no sphere 8 in frame 0 of ");
 }
 END_TEST
 
@@ -311,10 +325,24 @@ START_TEST(several_files) {
 }
 END_TEST
 
+/* A series may begin before the first sphere is there. */
+START_TEST(empty_files_of_a_series) {
+    const char *empty = write_file("0.dump", frame(NULL, "0", "0", "")), *bed = write_frames("1.dump", 1);
+    SUCCEED("bed", empty, bed, "--directions", "8");
+    expect_message(empty, "warning: frame 0 is left out: it is empty");
+    ck_assert_double_eq(value_of("timestep"), 100);
+    ck_assert_int_eq(RUN("bed", empty), 3);
+    ck_assert_int_eq(RUN("bed", empty, empty), 3);
+    ck_assert_ptr_nonnull(strstr(said, "there are no spheres in any of the files"));
+}
+END_TEST
+
 /* What a simulation is still writing: the frames before are computed, with a word. */
 START_TEST(truncated_last_frame) {
     const char *bed = write_frames("bed.dump", 3);
-    ck_assert_int_eq(truncate(bed, (off_t)(strlen(read_file(bed)) - 30)), 0);
+    struct stat there;
+    ck_assert_int_eq(stat(bed, &there), 0);
+    ck_assert_int_eq(truncate(bed, there.st_size - 30), 0);
     SUCCEED("bed", bed, "--frame", "all", "--directions", "8");
     expect_message(bed, "warning: ");
     ck_assert_double_eq(value_of("frame"), 1);
@@ -445,12 +473,14 @@ int main(void) {
     tcase_add_test(asked, surroundings_are_asked_for);
     tcase_add_test(asked, units_of_length);
     tcase_add_test(asked, degrees_celsius);
+    tcase_add_test(asked, units_of_temperature_columns);
     tcase_add_test(named, ids_in_any_order);
     tcase_add_test(named, ambiguous_ids);
     tcase_add_test(named, values_by_type);
     tcase_add_test(frames, all_frames);
     tcase_add_test(frames, some_frames);
     tcase_add_test(frames, several_files);
+    tcase_add_test(frames, empty_files_of_a_series);
     tcase_add_test(frames, radii_of_growing_frames);
     tcase_add_test(frames, truncated_last_frame);
     tcase_add_test(summaries, summary_says_what_was_computed);

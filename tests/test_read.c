@@ -110,7 +110,8 @@ END_TEST
 START_TEST(further_columns_by_name) {
     const char *const names[] = {"emissivity", "T"};
     const char text[] = "T,x,y,z,r,emissivity,id\n300,0,0,0,1,0.8,17\n400,3,0,0,1,0.9,4\n";
-    const struct read_options options = {.extra = names, .extras = 2};
+    const char *const units[] = {NULL, "K"};
+    const struct read_options options = {.extra = names, .unit = units, .extras = 2};
     ck_assert_int_eq(try_options(text, sizeof text - 1, &options), 0);
     ck_assert_double_eq(bed.extra[0], 0.9); /* by id */
     ck_assert_double_eq(bed.extra[1], 400);
@@ -121,7 +122,7 @@ START_TEST(further_columns_by_name) {
     const char bad[] = "x,y,z,r,emissivity,T,id\n0,0,0,1,dark,1,1\n";
     expect_refusal(bad, sizeof bad - 1, &options, 2, "emissivity is not a number: 'dark'");
     const char unit[] = "x,y,z,r,emissivity [-],T [C],id\n0,0,0,1,1,1,1\n";
-    expect_refusal(unit, sizeof unit - 1, &options, 1, "the column T is in [C]; take that off its name");
+    expect_refusal(unit, sizeof unit - 1, &options, 1, "the column T is in [C], and taken for [K]");
     const char kelvins[] = "x,y,z,r,emissivity [-],T (K)\n0,0,0,1,0.5,300\n";
     ck_assert_int_eq(try_options(kelvins, sizeof kelvins - 1, &options), 0);
     const char lacking[] = "x,y,z,r,emissivity,id\n0,0,0,1,1,1\n";

@@ -33,18 +33,18 @@ static uint32_t first_from(const int64_t *id, uint32_t n, unsigned long long nam
     return low;
 }
 
-static int mark_range(const int64_t *id, uint32_t n, unsigned long long first, unsigned long long last,
-                      unsigned char *marks) {
+static int mark_range(const int64_t *id, uint32_t n, const char *where, unsigned long long first,
+                      unsigned long long last, unsigned char *marks) {
     const uint32_t begin = first_from(id, n, first), end = first_from(id, n, last + 1);
     if (begin == end || (!id && last >= n))
-        return message(STATUS_USAGE, "--targets: there is no sphere %llu; they are %lld to %lld",
-                       begin == end ? first : last, id && n ? (long long)id[0] : 0,
+        return message(STATUS_USAGE, "--targets: there is no sphere %llu in %s; they are %lld to %lld",
+                       begin == end ? first : last, where, id && n ? (long long)id[0] : 0,
                        id && n ? (long long)id[n - 1] : (long long)n - 1);
     memset(marks + begin, 1, end - begin);
     return STATUS_OK;
 }
 
-int targets_mark(const char *list, const int64_t *id, uint32_t n, unsigned char *marks) {
+int targets_mark(const char *list, const int64_t *id, uint32_t n, const char *where, unsigned char *marks) {
     for (const char *text = list;; ++text) {
         unsigned long long first, last;
         bool good = position(&text, &first);
@@ -55,7 +55,7 @@ int targets_mark(const char *list, const int64_t *id, uint32_t n, unsigned char 
         }
         if (!good || last > INT64_MAX - 1 || (*text && *text != ','))
             return message(STATUS_USAGE, "--targets: '%.60s' is no list such as 3,7,10-19", list);
-        const int status = marks ? mark_range(id, n, first, last, marks) : STATUS_OK;
+        const int status = marks ? mark_range(id, n, where, first, last, marks) : STATUS_OK;
         if (status || *text == 0) return status;
     }
 }

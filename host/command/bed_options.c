@@ -142,8 +142,9 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
     }
 }
 
-size_t bed_options_column(struct bed_options *asked, const char *name) {
+size_t bed_options_column(struct bed_options *asked, const char *name, const char *unit) {
     asked->column[asked->columns] = name;
+    asked->unit[asked->columns] = unit;
     return name ? asked->columns++ : 0;
 }
 
@@ -151,7 +152,7 @@ bool bed_options_series(const struct bed_options *asked) { return asked->range |
 
 int bed_options_check(struct bed_options *asked, const char *command, enum content content, const char *picture) {
     if (asked->files == 0) return message(STATUS_USAGE, "which FILE? see fibrad %s --help", command);
-    asked->radius.place = bed_options_column(asked, asked->radius.column);
+    asked->radius.place = bed_options_column(asked, asked->radius.column, NULL);
     if (picture && !plot_ending(picture))
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
     if (picture && bed_options_series(asked))
@@ -168,6 +169,8 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
 /* What the options say of a bed that was read. */
 static int complete_bed(struct bed_options *asked, struct bed *bed) {
     if (asked->periodic) memcpy(bed->period, asked->period, sizeof bed->period);
+    if (!bed->units[0] && asked->length_unit)
+        snprintf(bed->units, sizeof bed->units, "%s", asked->length_unit); /* for what is written of it */
     if (!asked->radius.given) return STATUS_OK;
     double *radius; /* the bed's own array has room for more than this frame */
     const int status = quantity_values(&asked->radius, bed, asked->name, "radius", 0, 1e-150, 1e150, &radius);
@@ -190,7 +193,9 @@ static int run_file(struct bed_options *asked, const char *path, struct bed *bed
                                       .positions = asked->positions,
                                       .periods_given = asked->periodic,
                                       .no_radius = asked->radius.given,
+                                      .part = asked->files > 1,
                                       .extra = asked->column,
+                                      .unit = asked->unit,
                                       .extras = asked->columns};
     struct reader *reader;
     bool more = true;
@@ -220,6 +225,7 @@ int bed_options_frames(struct bed_options *asked, const char *command, bed_optio
                                     .json = json.file};
     if (!status) report_open(&asked->report, command);
     for (size_t k = 0; k < asked->files && !status; ++k) status = run_file(asked, asked->file[k], &bed, frame, request);
+    if (!status && asked->frames_done == 0) status = message(STATUS_INPUT, "there are no spheres in any of the files");
     if (!status) report_close(&asked->report);
     status = outputs_close(&asked->outputs, status);
     bed_free(&bed);

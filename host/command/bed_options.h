@@ -54,7 +54,8 @@ struct bed_options {
     bool positions;
     struct quantity radius;
     const char *length_unit;             /* NULL: not given */
-    const char *column[BED_COLUMNS_MAX]; /* [columns] read besides */
+    const char *column[BED_COLUMNS_MAX]; /* [columns] read besides, */
+    const char *unit[BED_COLUMNS_MAX];   /* and their units; NULL: none */
     size_t columns;
     struct wall_options walls;
     int threads; /* 0: all cores */
@@ -75,8 +76,9 @@ struct bed_options {
  * STATUS_HELP, STATUS_USAGE or STATUS_MEMORY. */
 int bed_options_take(struct bed_options *asked, const struct options *options, int key);
 
-/* Asks for a column of the file; returns its place in bed->extra. NULL: none. */
-size_t bed_options_column(struct bed_options *asked, const char *name);
+/* Asks for a column of the file, whose unit is to be this one (NULL: it has none); returns its place in bed->extra.
+ * name NULL: no column. */
+size_t bed_options_column(struct bed_options *asked, const char *name, const char *unit);
 
 /* Is a file missing, or is there something wrong with the outputs of this content, or with a picture (NULL: none)?
  * Status 0 or STATUS_USAGE. */

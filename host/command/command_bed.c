@@ -105,7 +105,7 @@ static int bed_take(struct bed_request *request, const struct options *options, 
         return options_number("--error", value, 1e-7, 1, &request->error);
     case KEY_TARGETS:
         request->targets = strcmp(value, "all") == 0 ? NULL : value;
-        if (request->targets) status = targets_mark(value, NULL, 0, NULL);
+        if (request->targets) status = targets_mark(value, NULL, 0, "", NULL);
         break;
     case KEY_RAW:
         request->options.raw = 1;
@@ -237,8 +237,11 @@ static int bed_frame(void *bed_request, struct bed *bed) {
         return message(STATUS_USAGE, "--wall is for the methods beam, cast and mc");
     unsigned char *marks = NULL;
     if (request->targets) {
+        char where[600];
+        snprintf(where, sizeof where, "frame %lld of %.560s", (long long)bed->frame, request->bed.name);
         marks = calloc(bed->n, 1);
-        status = marks ? targets_mark(request->targets, bed->ids ? bed->id : NULL, bed->n, marks) : message_memory();
+        status =
+            marks ? targets_mark(request->targets, bed->ids ? bed->id : NULL, bed->n, where, marks) : message_memory();
     }
     request->options.wanted = marks;
     if (!status) status = bed_matrix(request, bed, &factors);

@@ -116,14 +116,15 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
             options_number("--temperature", request->at, 0 - request->zero, TEMPERATURE_MAX, &request->temperature);
     if (status) return status;
     if (request->at) request->temperature += request->zero;
-    if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");
+    if (!request->emissivity.given && request->bed.files > 0)
+        return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");
     if (rule->error > 0 && rule->paths > 0)
         return message(STATUS_USAGE, "--error finds the rays itself; leave out --rays");
     if (rule->max_rays > 0 && rule->paths > 0)
         return message(STATUS_USAGE, "--max-rays is for --error; leave out --rays");
     if (rule->error == 0) rule->error = 0.003;
     if (rule->max_rays == 0) rule->max_rays = 50000000;
-    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
+    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
     return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION, NULL);
 }
 

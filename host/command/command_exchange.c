@@ -97,7 +97,7 @@ static int exchange_check(struct exchange_request *request) {
         return message(STATUS_USAGE, "--error finds rays and directions itself; leave out --rays and --directions");
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
-    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
+    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
     return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX, NULL);
 }
 

@@ -157,8 +157,9 @@ static int heat_check_request(struct heat_request *request) {
     if (request->problem.error > 0 && request->problem.sources.uniform)
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
-    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column);
-    request->temperature.place = bed_options_column(&request->bed, request->temperature.column);
+    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
+    request->temperature.place =
+        bed_options_column(&request->bed, request->temperature.column, request->zero > 0 ? "C" : "K");
     if (request->problem.error > 0) request->problem.config.directions = 72;
     return take_ambient(request);
 }

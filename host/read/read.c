@@ -135,7 +135,8 @@ int reader_next(struct reader *r, struct bed *bed, bool *more) {
             r->given = true;
             return STATUS_OK;
         }
-        if (r->done && !r->given) return message_at(STATUS_INPUT, name, 0, "there are no spheres in it");
+        if (r->done && !r->given && !r->source.options.part)
+            return message_at(STATUS_INPUT, name, 0, "there are no spheres in it");
         if (*more) message_at(STATUS_OK, name, 0, "warning: frame %" PRId64 " is left out: it is empty", bed->frame);
     }
     return STATUS_OK;

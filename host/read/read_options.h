@@ -16,7 +16,10 @@ struct read_options {
     bool positions;           /* ids are left alone: spheres stand in the order of the file */
     bool periods_given;       /* besides the file, which need not say them */
     bool no_radius;           /* no radius is looked for; bed->r is NaN */
+    bool part;                /* of a series of files: one without spheres is left out with a warning */
     const char *const *extra; /* [extras] names of further columns wanted, numbers all */
+    const char *const *unit;  /* [extras] the unit they are taken to have, such as "K", NULL for none; a name with
+                                 another  one is refused. NULL: none has any */
     size_t extras;
 };
 

@@ -146,15 +146,16 @@ static int find_unit(const struct source *source, const struct header *header, s
     return STATUS_OK;
 }
 
-/* Further columns are kelvins or have no unit. */
+/* Further columns have the unit they are taken to have, if their names say one. */
 static int check_units(const struct source *source, const struct header *header) {
     for (size_t k = 0; k < source->options.extras; ++k) {
         const char *unit = header->unit[source->columns.extra[k]];
-        if (*unit && strcmp(unit, "K") != 0 && strcmp(unit, "-") != 0 && strcmp(unit, "1") != 0)
+        const char *taken = source->options.unit ? source->options.unit[k] : NULL;
+        const bool none = !*unit || strcmp(unit, "-") == 0 || strcmp(unit, "1") == 0;
+        if (taken ? *unit && strcmp(unit, taken) != 0 : !none)
             return message_at(STATUS_INPUT, source->lines.name, header->line,
-                              "the column %.40s is in [%.20s]; take that off its name (--temperature-unit C is for "
-                              "temperatures)",
-                              source->options.extra[k], unit);
+                              "the column %.40s is in [%.20s], and taken for [%.20s]%s", source->options.extra[k], unit,
+                              taken ? taken : "-", taken ? "; see --temperature-unit" : "");
     }
     return STATUS_OK;
 }

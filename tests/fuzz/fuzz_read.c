@@ -75,7 +75,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char *text = strndup((const char *)data + 1, size - 1); /* the same as a list of targets */
     unsigned char marks[64] = {0};
     if (text == NULL) abort();
-    (void)targets_mark(text, NULL, data[0] & 1 ? 64 : 0, marks);
+    (void)targets_mark(text, NULL, data[0] & 1 ? 64 : 0, "", marks);
     free(text);
     return 0;
 }
