@@ -36,7 +36,6 @@ enum {
     KEY_PERIODIC,
     KEY_FRAME,
     KEY_THREADS,
-    KEY_IDS,
     KEY_POSITIONS,
     KEY_RADIUS,
     KEY_LENGTH_UNIT,

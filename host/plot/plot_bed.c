@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "bed/units.h"
 #include "cli/message.h"
 #include "plot/gnuplot.h"
 #include "plot/plot_data.h"
@@ -42,13 +43,14 @@ static void print_style(FILE *script, const struct output *output, const char *n
 static int print_slice(FILE *script, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
     struct plot_slice slice;
-    double *away = malloc(matrix->n * sizeof *away);
+    double metres = 0, *away = malloc(matrix->n * sizeof *away);
     if (!away) return message_memory();
     for (uint32_t i = 0; i < matrix->n; ++i) {
         away[i] = matrix->escaped[i];
         for (uint32_t k = 0; k < matrix->bodies; ++k) away[i] += matrix->body[(size_t)i * matrix->bodies + k];
     }
-    plot_slice_of(&slice, what->bed, what->walls, 0);
+    unit_of_length(what->bed->units, &metres);
+    plot_slice_of(&slice, what->bed, what->walls, metres);
     fprintf(script, "set title '%s, slice at y = %s'; set cbrange [0:*]\n",
             matrix->bodies > 0 ? "Fraction to walls and out of the bed" : "Escaped fraction", slice.place);
     plot_slice_draw(script, &slice, away, what->wanted, NULL);
