@@ -221,6 +221,8 @@ START_TEST(values_by_type) {
     ck_assert_str_eq(first, second);
     free(first), free(second);
     ck_assert_double_le(fabs(power_of(one, "1,", "")), 1e-9 * fabs(power_of(one, "0,", ""))); /* reflects all */
+    const char *colons = write_file("colons.csv", "x,y,z,r,velo:0\n0,0,0,.01,300\n");
+    SUCCEED("heat", colons, "--emissivity", "1", "--temperature", "velo:0", "--ambient", "300"); /* no list of types */
     ck_assert_int_eq(RUN("bed", bed, "--radius", "1:.01"), 3);
     expect_message(bed, ":3: the list of the radius has no type 2");
     SUCCEED("bed", bed, "--radius", ".01");

@@ -38,8 +38,9 @@ static int take_types(const char *what, const char *text, double low, double hig
 
 int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity) {
     *quantity = (struct quantity){.given = true};
-    if (strchr(text, ':')) return take_types(what, text, low, high, quantity);
-    if (!isalpha((unsigned char)*text) && *text != '_') return options_number(what, text, low, high, &quantity->value);
+    const bool column = isalpha((unsigned char)*text) || *text == '_';
+    if (!column && strchr(text, ':')) return take_types(what, text, low, high, quantity);
+    if (!column) return options_number(what, text, low, high, &quantity->value);
     quantity->column = text;
     return STATUS_OK;
 }
