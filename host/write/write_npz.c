@@ -6,6 +6,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
@@ -21,21 +22,6 @@ struct member {
     uint64_t offset;    /* where in the file the member begins */
     uint32_t crc;
 };
-
-static uint32_t crc_table[256];
-
-static void make_crc_table(void) {
-    for (uint32_t k = 0; k < 256; ++k) {
-        uint32_t c = k;
-        for (int bit = 0; bit < 8; ++bit) c = c & 1 ? c >> 1 ^ 0xedb88320u : c >> 1;
-        crc_table[k] = c;
-    }
-}
-
-static uint32_t crc_add(uint32_t crc, const unsigned char *data, size_t bytes) {
-    for (size_t k = 0; k < bytes; ++k) crc = crc >> 8 ^ crc_table[(crc ^ data[k]) & 255];
-    return crc;
-}
 
 /* Writes `bytes` bytes of a number, the lowest first. */
 static void put_little(FILE *file, uint64_t value, int bytes) {
@@ -87,14 +73,14 @@ static void put_sizes(FILE *file, const struct member *member, uint64_t field) {
 static int write_member(FILE *file, struct member *member) {
     unsigned char header[HEADER];
     make_header(member, header);
-    uint32_t crc = crc_add(UINT32_MAX, header, HEADER);
+    uLong crc = crc32_z(0, header, HEADER);
     const unsigned char *data = member->array.data;
     for (uint64_t done = 0; done < member->bytes; done += BLOCK) {
         if (interrupt_status()) return interrupt_status();
         const uint64_t left = member->bytes - done;
-        crc = crc_add(crc, data + done, left < BLOCK ? left : BLOCK);
+        crc = crc32_z(crc, data + done, left < BLOCK ? left : BLOCK);
     }
-    member->crc = ~crc;
+    member->crc = (uint32_t)crc;
     put_little(file, 0x04034b50, 4);
     put_common(file, member);
     put_little(file, 20, 2);
@@ -212,7 +198,6 @@ static void add_rows(struct arrays *arrays, const struct contents *what, char wa
 static int write_archive(FILE *file, const struct arrays *arrays) {
     struct member members[ARRAYS_MAX];
     uint64_t offset = 0, directory = 0;
-    make_crc_table();
     for (size_t k = 0; k < arrays->count; ++k) {
         members[k] = make_member(&arrays->list[k]);
         members[k].offset = offset;
