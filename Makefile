@@ -527,7 +527,7 @@ fuzz: fuzz-programs
 	done
 
 ## fuzz-fixed: the same with a fixed number of inputs, the same ones every time (a minute)
-FUZZ_RUNS = read:80000 kernel:2500
+FUZZ_RUNS = read:40000 kernel:2500
 # what comparisons show would bring addresses in, which differ from run to run: -use_cmp=0
 fuzz-fixed: fuzz-programs
 	@set -e; for run in $(FUZZ_RUNS); do \
