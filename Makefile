@@ -265,6 +265,7 @@ BENCHES = \
     bench/bench_sizes.c \
     bench/bench_skips.c \
     bench/bench_surface.c \
+    bench/bench_walls.c \
     bench/bench_window.c
 
 # built and run where Embree 3 is found (Debian: libembree-dev)

@@ -291,6 +291,23 @@ START_TEST(view_factors_between_the_walls_of_a_cube) {
 }
 END_TEST
 
+/* More beams, more rays: what walls exchange, without many spheres, would otherwise stay as it is. */
+START_TEST(walls_exchange_better_with_more_beams) {
+    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
+    p.walls = box_of(.5);
+    p.wall_temperature[4] = 1;
+    p.config.directions = 4000;
+    trace_and_solve(&p);
+    double square = 0;
+    for (int k = 0; k < 6; k++) {
+        const double truth = k == 5 ? 0.1998249 : 0.2000438, error = p.wall_power[k] / truth - 1;
+        if (k != 4) square += error * error / 5;
+    }
+    ck_assert_msg(sqrt(square) < 7e-4, "off by %g", sqrt(square));
+    free_problem(&p);
+}
+END_TEST
+
 START_TEST(view_factors_between_the_walls_of_a_cylinder) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -1, 1}, .cylinder = {0, 0, 1}};
@@ -1074,6 +1091,7 @@ int main(void) {
     tcase_add_test(closed, a_black_sphere_touches_a_black_plane);
     tcase_add_test(closed, white_walls_take_nothing);
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cube);
+    tcase_add_test(closed, walls_exchange_better_with_more_beams);
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cylinder);
     tcase_add_test(closed, walls_alone);
     tcase_add_test(closed, two_black_spheres_in_contact);

@@ -8,10 +8,12 @@
 /* Patches of walls are about as large as those of the spheres, unless that makes more of them than FEW and a fourth of
  * those of the spheres. What spheres and walls exchange is known from the beams of the spheres, which are spread far
  * more evenly than rays; rays of walls tell what walls exchange with each other. Where there is a bed between them that
- * is little, so that a few of each patch do, but RAYS_MIN in all. */
+ * is little, so that a few of each patch do, but RAYS_MIN in all, and RAYS_PER_BEAM for each beam of one sphere: so
+ * what walls exchange gets better, too, where more beams are asked for. */
 #define FEW            1536.0
 #define RAYS_PER_PATCH 8.0
 #define RAYS_MIN       262144.0
+#define RAYS_PER_BEAM  6.0
 
 /* The longest finite edge of the container; 1 if there is none. */
 static double container_size(const fibrad_scene *scene) {
@@ -74,7 +76,8 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
     for (uint32_t i = 0; i < heat->spheres; i++) surface += 4 * FIBRAD_PI * scene->r[i] * scene->r[i];
     const double of_spheres = (double)heat->spheres * heat->config.patches, most = FEW + of_spheres / 4;
     const double square = fibrad_sqrt(fibrad_max(surface / of_spheres, area / most));
-    const double density = fibrad_max(RAYS_PER_PATCH / (square * square), RAYS_MIN / area);
+    const double rays = fibrad_max(RAYS_MIN, RAYS_PER_BEAM * heat->beams);
+    const double density = fibrad_max(RAYS_PER_PATCH / (square * square), rays / area);
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         fibrad_heat_wall *wall = &heat->wall[k];
         if (!(scene->wall_area[k] > 0)) continue;
