@@ -225,7 +225,7 @@ END_TEST
 START_TEST(surface_method) {
     SUCCEED("bed", POLY, "--method", "surface", "--cutoff", "3");
     ck_assert_double_eq(value_of("nf"), 55);
-    const double sum = value_of("row_sum_max"), error = value_of("error_max");
+    const double sum = value_of("row_sum_max"), error = value_of("error_estimate");
     SUCCEED("bed", POLY, "--cutoff", "3");
     ck_assert_double_eq_tol(value_of("row_sum_max"), sum, 3 * error);
 }
@@ -233,25 +233,25 @@ END_TEST
 
 START_TEST(tolerance) {
     SUCCEED("bed", POLY, "--error", "0.01");
-    ck_assert_double_le(value_of("error_max"), .01);
-    ck_assert_double_gt(value_of("error_max"), .002);
+    ck_assert_double_le(value_of("error_estimate"), .01);
+    ck_assert_double_gt(value_of("error_estimate"), .002);
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);
     const double all = value_of("directions");
     SUCCEED("bed", POLY, "--error", "0.001", "--targets", "3,7,1000-1009");
-    ck_assert_double_le(value_of("error_max"), .001);
+    ck_assert_double_le(value_of("error_estimate"), .001);
     ck_assert_double_gt(value_of("directions"), all);
     SUCCEED("bed", POLY, "--error", "1e-7", "--targets", "3", "--cutoff", "1.1", "--points", "64");
     ck_assert_double_eq(value_of("directions"), 65536);
-    ck_assert_double_gt(value_of("error_max"), 1e-7);
+    ck_assert_double_gt(value_of("error_estimate"), 1e-7);
     ck_assert(strstr(said, "65536 directions were not enough for --error 1e-07") != NULL);
 }
 END_TEST
 
 START_TEST(summary) {
     SUCCEED("bed", POLY, "--directions", "34");
-    static const char *const keys[] = {"spheres",     "directions",      "threads",     "seconds",
-                                       "nonzeros",    "row_sum_min",     "row_sum_max", "escaped_mean",
-                                       "closure_max", "reciprocity_max", "error_max",   "fallbacks"};
+    static const char *const keys[] = {"spheres",     "directions",      "threads",        "seconds",
+                                       "nonzeros",    "row_sum_min",     "row_sum_max",    "escaped_mean",
+                                       "closure_max", "reciprocity_max", "error_estimate", "fallbacks"};
     const char *at = printed;
     for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k) {
         ck_assert_msg((at = strstr(at, keys[k])) != NULL, "%s is missing or out of order", keys[k]);
@@ -505,7 +505,7 @@ START_TEST(exchange_factors) {
             "zmin=0.5,zmax=0", "--threads", "1", "-o", out);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
     ck_assert_double_lt(value_of("reciprocity_max"), 1e-12);
-    ck_assert_double_lt(value_of("error_max"), .1);
+    ck_assert_double_lt(value_of("error_estimate"), .1);
     SUCCEED("exchange", file, "--emissivity", "e", "--rays", "300", "--wall", "zmin=-1.5,zmax=4", "--wall-emissivity",
             "zmin=0.5,zmax=0", "--threads", "3", "-o", other);
     char *text = read_file(out), *again = read_file(other);
@@ -527,7 +527,7 @@ START_TEST(exchange_factors) {
     free(text);
     free(again);
     SUCCEED("exchange", file, "--emissivity", "0.6", "--error", "0.02", "--drop", "0.001", "--threads", "2");
-    ck_assert_double_lt(value_of("error_max"), .04);
+    ck_assert_double_lt(value_of("error_estimate"), .04);
     ck_assert_double_lt(value_of("closure_max"), 1e-12);
     ck_assert_int_eq(RUN("exchange", file, "--emissivity", "x"), 3);
     expect_message(file, "the emissivity is 2; it must be within 0 and 1");
@@ -771,6 +771,14 @@ START_TEST(joined) {
     expect_message(one, "unknown ending");
     ck_assert_int_eq(RUN("join", zero, csv, "-o", csv), 2);
     expect_message(csv, "is one of the files");
+    const char *both = in_folder("both.json");
+    ck_assert_int_eq(RUN("join", zero, one, "-o", both, "--json", both), 2); /* the one would replace the other */
+    expect_message(both, "is there twice");
+    ck_assert_int_eq(RUN("join", zero, one, "--json", one), 2);
+    expect_message(one, "is one of the files");
+    SUCCEED("join", zero, one, "--json", "-");
+    ck_assert_int_eq(strncmp(printed, "{\"fibrad\"", 9), 0);
+    ck_assert_ptr_nonnull(strstr(said, "\nspheres 3\n"));
     remove_files(0);
 }
 END_TEST

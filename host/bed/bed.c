@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,6 +48,14 @@ int bed_add(struct bed *bed, const struct bed_sphere *sphere) {
     bed->line[i] = sphere->line;
     if (bed->ids) bed->id[i] = sphere->id;
     return STATUS_OK;
+}
+
+double bed_end(const struct bed *bed, int axis, bool upper) {
+    if (bed->low[axis] < bed->high[axis]) return upper ? bed->high[axis] : bed->low[axis];
+    const double *c = axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z;
+    double end = upper ? -INFINITY : INFINITY;
+    for (uint32_t i = 0; i < bed->n; ++i) end = upper ? fmax(end, c[i] + bed->r[i]) : fmin(end, c[i] - bed->r[i]);
+    return end;
 }
 
 int64_t bed_name(const struct bed *bed, uint32_t i) { return bed->ids ? bed->id[i] : (int64_t)i; }

@@ -34,6 +34,9 @@ void bed_init(struct bed *bed);
 /* Adds a sphere; its extra columns are for the caller to fill in. Status 0 or STATUS_MEMORY. */
 int bed_add(struct bed *bed, const struct bed_sphere *sphere);
 
+/* The lower or upper end of a bed along an axis: that of the file's box, or else of the spheres. */
+double bed_end(const struct bed *bed, int axis, bool upper);
+
 /* The name of a sphere: its id, or its position from 0 on. */
 int64_t bed_name(const struct bed *bed, uint32_t i);
 

@@ -104,15 +104,6 @@ static int spell_out(struct wall_options *options, const struct bed *bed, const 
     return STATUS_OK;
 }
 
-/* Where a plane stands whose place was not given. */
-static double end_of_bed(const struct bed *bed, int axis, bool upper) {
-    if (bed->low[axis] < bed->high[axis]) return upper ? bed->high[axis] : bed->low[axis];
-    const double *c = axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z;
-    double end = upper ? -INFINITY : INFINITY;
-    for (uint32_t i = 0; i < bed->n; ++i) end = upper ? fmax(end, c[i] + bed->r[i]) : fmin(end, c[i] - bed->r[i]);
-    return end;
-}
-
 static int check_axes(const struct walls *walls, const struct bed *bed) {
     const bool cylinder = wall_named(walls, "cylinder");
     for (int k = 0; k < PLANES; ++k) {
@@ -162,7 +153,7 @@ int walls_of(const struct wall_options *options, const struct bed *bed, const ch
     *walls = all.walls;
     for (uint32_t k = 0; k < walls->count; ++k) {
         fibrad_body *wall = &walls->body[k];
-        if (!is_cylinder(wall) && !all.placed[k]) wall->plane.at = end_of_bed(bed, wall->plane.axis, wall->plane.upper);
+        if (!is_cylinder(wall) && !all.placed[k]) wall->plane.at = bed_end(bed, wall->plane.axis, wall->plane.upper);
     }
     status = check_axes(walls, bed);
     return status ? status : check_centres(walls, bed, file);

@@ -125,7 +125,7 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
     case KEY_LENGTH_UNIT:
         return take_length_unit(value, asked);
     case KEY_JSON:
-        asked->json = value;
+        asked->outputs.summary = value;
         return STATUS_OK;
     case KEY_QUIET:
         asked->quiet = asked->progress.quiet = true;
@@ -157,10 +157,6 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
     if (picture && bed_options_series(asked))
         return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
-    for (size_t k = 0; asked->json && k < asked->files; ++k)
-        if (output_same(asked->file[k], asked->json))
-            return message_at(STATUS_USAGE, asked->json, 0, "is the bed itself; it would be replaced");
-    asked->outputs.summary = asked->json;
     asked->outputs.picture = picture;
     return outputs_check(&asked->outputs, content, (const char *const *)asked->file, asked->files,
                          bed_options_series(asked));
@@ -214,22 +210,16 @@ static int run_file(struct bed_options *asked, const char *path, struct bed *bed
 }
 
 int bed_options_frames(struct bed_options *asked, const char *command, bed_options_frame *frame, void *request) {
-    struct output json;
     struct bed bed;
     bed_init(&bed);
-    int status = output_open(&json, asked->json);
-    if (!status) status = outputs_open(&asked->outputs);
-    asked->report = (struct report){.text = asked->quiet                      ? NULL
-                                            : outputs_stdout(&asked->outputs) ? stderr
-                                                                              : stdout,
-                                    .json = json.file};
+    int status = outputs_open(&asked->outputs);
+    asked->report = outputs_report(&asked->outputs, asked->quiet);
     if (!status) report_open(&asked->report, command);
     for (size_t k = 0; k < asked->files && !status; ++k) status = run_file(asked, asked->file[k], &bed, frame, request);
     if (!status && asked->frames_done == 0) status = message(STATUS_INPUT, "there are no spheres in any of the files");
     if (!status) report_close(&asked->report);
-    status = outputs_close(&asked->outputs, status);
     bed_free(&bed);
-    return output_close(&json, status);
+    return outputs_close(&asked->outputs, status);
 }
 
 void bed_options_free(struct bed_options *asked) {
@@ -291,8 +281,8 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
         return message_at(STATUS_USAGE, asked->name, 0,
                           "its units are %.20s; --length-unit is for files that name none", unit);
     if (!unit && mean_radius(bed) > RADIUS_LARGE && !asked->warned) {
-        fprintf(stderr, "fibrad: %s: warning: radii of %g are taken as metres; --length-unit mm, or m\n", asked->name,
-                mean_radius(bed));
+        message_at(STATUS_OK, asked->name, 0, "warning: radii of %g are taken as metres; --length-unit mm, or m",
+                   mean_radius(bed));
         asked->warned = true;
     }
     if (asked->metres > 0 && asked->metres != *metres)
@@ -326,9 +316,9 @@ static void report_overlap(struct bed_options *asked, const struct bed *bed, con
     if (facts->overlap_max == 0) return;
     report_value(&asked->report, "overlap_max", facts->overlap_max, 3);
     if (facts->overlap_max > OVERLAP_LARGE)
-        fprintf(stderr, "fibrad: %s: warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius\n",
-                asked->name, (long long)bed_name(bed, first), bed_place(bed, first, place[0]),
-                (long long)bed_name(bed, second), bed_place(bed, second, place[1]), facts->overlap_max);
+        message_at(STATUS_OK, asked->name, 0, "warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius",
+                   (long long)bed_name(bed, first), bed_place(bed, first, place[0]), (long long)bed_name(bed, second),
+                   bed_place(bed, second, place[1]), facts->overlap_max);
 }
 
 void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,

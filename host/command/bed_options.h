@@ -60,7 +60,6 @@ struct bed_options {
     struct wall_options walls;
     int threads; /* 0: all cores */
     struct outputs outputs;
-    const char *json;
     bool quiet;
     struct progress progress;
     /* of the run */

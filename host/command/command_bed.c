@@ -184,16 +184,7 @@ static void bed_report(struct bed_request *request, const struct contents *what,
     report_text(report, "rows", request->options.raw ? "raw" : "reciprocal");
     report_count(report, "threads", (uint64_t)factors->threads);
     report_value(report, "seconds", factors->seconds, 3);
-    report_count(report, "nonzeros", factors->matrix.start[factors->facts.spheres]);
-    report_measured(report, "row_sum_min", summary->row_sum_min, summary->error_max);
-    report_measured(report, "row_sum_max", summary->row_sum_max, summary->error_max);
-    report_measured(report, "escaped_mean", summary->escaped_mean, summary->error_rms);
-    if (request->cutoff > 0) report_measured(report, "beyond_mean", summary->beyond_mean, summary->error_rms);
-    summary_report_walls(summary, what, report);
-    report_value(report, "closure_max", factors->closure_error, 2);
-    report_value(report, "reciprocity_max", factors->reciprocity_error, 2);
-    report_value(report, "error_rms", summary->error_rms, 2);
-    report_value(report, "error_max", summary->error_max, 2);
+    summary_report(summary, what, report);
     if (request->method == METHOD_BEAM) report_count(report, "fallbacks", factors->fallbacks);
     report_end(report);
 }
@@ -217,8 +208,8 @@ static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_f
     what.factors = *factors;
     summary_make(&summary, &what);
     if (request->error > 0 && summary.error_max > request->error)
-        fprintf(stderr, "fibrad: %s: warning: %d directions were not enough for --error %g\n", request->bed.name,
-                FIBRAD_DIRECTIONS_MAX, request->error);
+        message_at(STATUS_OK, request->bed.name, 0, "warning: %d directions were not enough for --error %g",
+                   FIBRAD_DIRECTIONS_MAX, request->error);
     status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->plot) status = plot_bed(&request->picture, request->bed.name, &what);
     if (!status) bed_report(request, &what, &summary);

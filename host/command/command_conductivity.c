@@ -181,21 +181,21 @@ static void conductivity_warn(const struct conductivity_request *request, const 
     const char *file = request->bed.name;
     char axes[4];
     if (result->escaped > 1e-3)
-        fprintf(stderr, "fibrad: %s: warning: %.2g of what the core emits leaves the bed; F_E is too low\n", file,
-                result->escaped);
+        message_at(STATUS_OK, file, 0, "warning: %.2g of what the core emits leaves the bed; F_E is too low",
+                   result->escaped);
     if (axes_with(result, FLIGHTS_ENDLESS, axes))
-        fprintf(stderr,
-                "fibrad: %s: warning: F_E along %s does not exist: flights through a gap across the whole bed have no "
-                "mean square length; it is given for flights of up to 100 periods, its standard error is unreliable\n",
-                file, axes);
+        message_at(STATUS_OK, file, 0,
+                   "warning: F_E along %s does not exist: flights through a gap across the whole bed have no mean "
+                   "square length; it is given for flights of up to 100 periods, its standard error is unreliable",
+                   axes);
     if (axes_with(result, FLIGHTS_RARE, axes))
-        fprintf(stderr,
-                "fibrad: %s: warning: F_E along %s rests on a few long flights, as through a channel without spheres; "
-                "its standard error is unreliable\n",
-                file, axes);
+        message_at(STATUS_OK, file, 0,
+                   "warning: F_E along %s rests on a few long flights, as through a channel without spheres; its "
+                   "standard error is unreliable",
+                   axes);
     if (result->stopped)
-        fprintf(stderr, "fibrad: %s: warning: stopped at --max-rays %g with a standard error of %.2g of F_E, not %g\n",
-                file, (double)request->rule.max_rays, conduction_worst(&request->rule, result), request->rule.error);
+        message_at(STATUS_OK, file, 0, "warning: stopped at --max-rays %g with a standard error of %.2g of F_E, not %g",
+                   (double)request->rule.max_rays, conduction_worst(&request->rule, result), request->rule.error);
 }
 
 /* Follows the paths of a bed in which something is emitted. */

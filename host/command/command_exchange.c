@@ -124,15 +124,7 @@ static void exchange_report(struct exchange_request *request, const struct conte
     report_text(report, "rows", request->options.raw ? "raw" : "reciprocal");
     report_count(report, "threads", (uint64_t)factors->threads);
     report_value(report, "seconds", factors->seconds, 3);
-    report_count(report, "nonzeros", factors->matrix.start[factors->facts.spheres]);
-    report_measured(report, "row_sum_min", summary.row_sum_min, summary.error_max);
-    report_measured(report, "row_sum_max", summary.row_sum_max, summary.error_max);
-    report_measured(report, "escaped_mean", summary.escaped_mean, summary.error_rms);
-    summary_report_walls(&summary, what, report);
-    report_value(report, "closure_max", summary.closure_max, 2);
-    report_value(report, "reciprocity_max", factors->reciprocity_error, 2);
-    report_value(report, "error_rms", summary.error_rms, 2);
-    report_value(report, "error_max", summary.error_max, 2);
+    summary_report(&summary, what, report);
     report_end(report);
 }
 

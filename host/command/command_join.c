@@ -27,7 +27,6 @@ struct join_request {
     const char **files; /* [count] */
     size_t count;
     struct outputs outputs;
-    const char *json; /* NULL: none */
     bool raw, positions, quiet;
     struct report report;
 };
@@ -67,7 +66,7 @@ static int join_take(struct join_request *request, const struct options *options
         request->positions = true;
         return STATUS_OK;
     case KEY_JSON:
-        request->json = options->value;
+        request->outputs.summary = options->value;
         return STATUS_OK;
     case KEY_QUIET:
         request->quiet = true;
@@ -149,20 +148,7 @@ static void join_report(struct join_request *request, const struct joined *joine
     report_value(report, "radius_min", what->factors->facts.radius_min, 6);
     report_value(report, "radius_max", what->factors->facts.radius_max, 6);
     report_value(report, "cutoff", joined->cutoff, 6);
-    report_count(report, "nonzeros", matrix->start[matrix->n]);
-    report_measured(report, "row_sum_min", summary.row_sum_min, summary.error_max);
-    report_measured(report, "row_sum_max", summary.row_sum_max, summary.error_max);
-    report_measured(report, "escaped_mean", summary.escaped_mean, summary.error_rms);
-    report_measured(report, "beyond_mean", summary.beyond_mean, summary.error_rms);
-    for (uint32_t k = 0; k < matrix->bodies; ++k) {
-        char name[BODY_NAME], key[BODY_NAME + 8];
-        snprintf(key, sizeof key, "%s_F", contents_body(what, k, name));
-        report_value(report, key, summary.wall_mean[k], 6);
-    }
-    report_value(report, "closure_max", summary.closure_max, 2);
-    report_value(report, "reciprocity_max", what->factors->reciprocity_error, 2);
-    report_value(report, "error_rms", summary.error_rms, 2);
-    report_value(report, "error_max", summary.error_max, 2);
+    summary_report(&summary, what, report);
     report_end(report);
 }
 
@@ -221,19 +207,15 @@ static int join_names(const struct join_request *request, const struct joined *j
 /* Everything between the options and the end; outputs are opened before the work. */
 static int join_run(struct join_request *request) {
     struct joined joined = {0};
-    struct output json;
-    FILE *text = outputs_stdout(&request->outputs) ? stderr : stdout;
-    int status = output_open(&json, request->json);
-    if (!status) status = outputs_open(&request->outputs);
-    request->report = (struct report){.text = request->quiet ? NULL : text, .json = json.file};
+    int status = outputs_open(&request->outputs);
+    request->report = outputs_report(&request->outputs, request->quiet);
     if (!status) report_open(&request->report, "join");
     if (!status) status = read_rows(request->files, request->count, &joined);
     if (!status) status = join_names(request, &joined);
     if (!status) status = join_solve(request, &joined);
     if (!status) report_close(&request->report);
-    status = outputs_close(&request->outputs, status);
     joined_free(&joined);
-    return output_close(&json, status);
+    return outputs_close(&request->outputs, status);
 }
 
 int command_join(int argc, char **argv) {

@@ -103,8 +103,8 @@ int heat_run(struct bed_options *asked, const struct heat_problem *problem, cons
         while (!status && report->error > heat_allowed(problem, report) && heat_refine(report))
             status = heat_once(asked, problem, bed, report);
         if (!status && report->error > heat_allowed(problem, report))
-            fprintf(stderr, "fibrad: %s: warning: the estimated error is %.3g of the powers\n", asked->name,
-                    report->error / report->power_rms);
+            message_at(STATUS_OK, asked->name, 0, "warning: the estimated error is %.3g of the powers",
+                       report->error / report->power_rms);
     }
     report->seconds = progress_clock() - begun;
     return status;

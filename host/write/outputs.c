@@ -110,6 +110,7 @@ int outputs_check(struct outputs *outputs, enum content content, const char *con
         if (!status) status = check_inputs(outputs, outputs->to[k].path);
         if (!status) status = check_others(outputs, k, outputs->to[k].path);
     }
+    if (!status && outputs->summary) status = check_inputs(outputs, outputs->summary);
     if (!status && is_same(outputs->summary, outputs->picture))
         status = message_at(STATUS_USAGE, outputs->summary, 0, "is there twice");
     if (status || wanted) return status;
@@ -117,7 +118,7 @@ int outputs_check(struct outputs *outputs, enum content content, const char *con
 }
 
 int outputs_open(struct outputs *outputs) {
-    int status = STATUS_OK;
+    int status = output_open(&outputs->summary_file, outputs->summary);
     for (size_t k = 0; k < outputs->count && !status; ++k) {
         status = output_open(&outputs->to[k].file, outputs->to[k].path);
         if (!status && outputs->to[k].star) output_close(&outputs->to[k].file, STATUS_FILE);
@@ -156,12 +157,11 @@ int outputs_write(struct outputs *outputs, const struct contents *what, int64_t 
 
 int outputs_close(struct outputs *outputs, int status) {
     for (size_t k = 0; k < outputs->count; ++k) status = output_close(&outputs->to[k].file, status);
-    return status;
+    return output_close(&outputs->summary_file, status);
 }
 
-bool outputs_stdout(const struct outputs *outputs) {
-    if (outputs->summary && output_stdout(outputs->summary)) return true;
-    for (size_t k = 0; k < outputs->count; ++k)
-        if (output_stdout(outputs->to[k].path)) return true;
-    return false;
+struct report outputs_report(const struct outputs *outputs, bool quiet) {
+    bool taken = outputs->summary && output_stdout(outputs->summary);
+    for (size_t k = 0; k < outputs->count; ++k) taken = taken || output_stdout(outputs->to[k].path);
+    return (struct report){.text = quiet ? NULL : taken ? stderr : stdout, .json = outputs->summary_file.file};
 }

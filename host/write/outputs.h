@@ -34,7 +34,8 @@ struct outputs {
     enum content content;
     const char *const *inputs; /* [input_count] */
     size_t input_count;
-    const char *summary, *picture; /* other files of the run; NULL: none */
+    const char *summary, *picture; /* other files of the run, --json and --plot; NULL: none */
+    struct output summary_file;
 };
 
 /* Rows of a table of options, without braces. */
@@ -60,7 +61,8 @@ int outputs_write(struct outputs *outputs, const struct contents *what, int64_t 
 /* Gives the files their names, or removes those still open after any trouble; `status` as in output_close. */
 int outputs_close(struct outputs *outputs, int status);
 
-/* Whether results go to standard output, so that the summary goes to standard error. */
-bool outputs_stdout(const struct outputs *outputs);
+/* Where the summary goes, once they are open: its lines to standard output, or to standard error where results go there
+ * (quiet: nowhere), and to --json. */
+struct report outputs_report(const struct outputs *outputs, bool quiet);
 
 #endif

@@ -1,7 +1,6 @@
 /* summary.c - what the rows of a matrix have in common. SPDX-License-Identifier: MIT */
 #include <math.h>
 
-#include "bed/property_option.h"
 #include "write/write.h"
 
 double summary_row(const fibrad_factors *matrix, uint32_t i) {
@@ -47,7 +46,28 @@ void summary_make(struct summary *summary, const struct contents *what) {
     summary->error_rms = sqrt(summary->error_rms);
 }
 
-void summary_report_walls(const struct summary *summary, const struct contents *what, struct report *report) {
-    wall_values_report(what->walls, summary->wall_mean, "_F", 6, report);
-    wall_values_report(what->walls, what->factors->body_area, "_area", 6, report);
+/* Of a wall: the mean F to it and, where it has an end, its area. */
+static void report_wall_share(const struct summary *summary, const struct contents *what, uint32_t k,
+                              struct report *report) {
+    const char *kind = what->walls->body[k].kind ? "wall_" : ""; /* else that is its name */
+    const double area = what->factors->body_area[k];
+    char name[BODY_NAME], key[BODY_NAME + 16];
+    snprintf(key, sizeof key, "%s%s_F", kind, contents_body(what, k, name));
+    report_value(report, key, summary->wall_mean[k], 6);
+    snprintf(key, sizeof key, "%s%s_area", kind, contents_body(what, k, name));
+    if (area < INFINITY) report_value(report, key, area, 6);
+}
+
+void summary_report(const struct summary *summary, const struct contents *what, struct report *report) {
+    const fibrad_factors *matrix = &what->factors->matrix;
+    report_count(report, "nonzeros", matrix->start[matrix->n]);
+    report_measured(report, "row_sum_min", summary->row_sum_min, summary->error_max);
+    report_measured(report, "row_sum_max", summary->row_sum_max, summary->error_max);
+    report_measured(report, "escaped_mean", summary->escaped_mean, summary->error_rms);
+    report_measured(report, "beyond_mean", summary->beyond_mean, summary->error_rms);
+    for (uint32_t k = 0; k < what->walls->count; ++k) report_wall_share(summary, what, k, report);
+    report_value(report, "closure_max", fmax(what->factors->closure_error, summary->closure_max), 2);
+    report_value(report, "reciprocity_max", what->factors->reciprocity_error, 2);
+    report_value(report, "error_rms", summary->error_rms, 2);
+    report_value(report, "error_estimate", summary->error_max, 2);
 }

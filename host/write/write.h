@@ -69,7 +69,8 @@ double summary_row(const fibrad_factors *matrix, uint32_t i);
 
 void summary_make(struct summary *summary, const struct contents *what);
 
-/* Reports the mean F to each wall, `wall_NAME_F`, and its area. */
-void summary_report_walls(const struct summary *summary, const struct contents *what, struct report *report);
+/* Reports it, with the entries of the matrix, its reciprocity, and the area of each wall that has an end; closure is
+ * that of the raw rows and of those written. */
+void summary_report(const struct summary *summary, const struct contents *what, struct report *report);
 
 #endif

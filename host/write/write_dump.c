@@ -1,25 +1,10 @@
 /* write_dump.c - heat as a LAMMPS text dump, which OVITO and our own reader open, too. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
-#include <math.h>
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "text/text.h"
 #include "write/write.h"
-
-/* The file's box; along an axis that has none, as far as the spheres reach; the length of the period, if there is one.
- */
-static void box_of(const struct bed *bed, int axis, double *low, double *high) {
-    const double *centre = axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z;
-    const bool box = bed->low[axis] < bed->high[axis];
-    *low = box ? bed->low[axis] : INFINITY;
-    *high = box ? bed->high[axis] : -INFINITY;
-    for (uint32_t i = 0; i < bed->n && !box; ++i) {
-        *low = fmin(*low, centre[i] - bed->r[i]);
-        *high = fmax(*high, centre[i] + bed->r[i]);
-    }
-    if (bed->period[axis] > 0 && *high - *low != bed->period[axis]) *high = *low + bed->period[axis];
-}
 
 static void write_header(FILE *file, const struct bed *bed, bool first) {
     if (first && bed->units[0]) fprintf(file, "ITEM: UNITS\n%s\n", bed->units);
@@ -28,9 +13,8 @@ static void write_header(FILE *file, const struct bed *bed, bool first) {
     for (int axis = 0; axis < 3; ++axis) fputs(bed->period[axis] > 0 ? " pp" : " ff", file);
     putc('\n', file);
     for (int axis = 0; axis < 3; ++axis) {
-        double low, high;
-        box_of(bed, axis, &low, &high);
-        fprintf(file, "%.17g %.17g\n", low, high);
+        const double low = bed_end(bed, axis, false), high = bed_end(bed, axis, true), period = bed->period[axis];
+        fprintf(file, "%.17g %.17g\n", low, period > 0 && high - low != period ? low + period : high);
     }
     fputs("ITEM: ATOMS id x y z radius T_K q_W\n", file);
 }
