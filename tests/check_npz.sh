@@ -40,11 +40,7 @@ for name, kind, shape in further:
     assert arrays.pop(name + '.npy')[0] == {'descr': kind, 'fortran_order': False, 'shape': shape}, name
 assert len(arrays) == 5, arrays.keys()
 END
-    # Debian's own python3 may have SciPy where another in the path has not
-    scipy=
-    for python in python3 /usr/bin/python3; do
-        if "$python" -c 'import scipy.sparse' 2>/dev/null; then scipy=$python; fi
-    done
+    scipy=$(tests/find_python.sh numpy scipy.sparse)
     if test -z "$scipy"; then
         echo "SKIP: no SciPy (Debian: python3-scipy)"
         continue

@@ -6,11 +6,7 @@ set -eu
 tree=$PWD
 case $BUILD in /*) build=$BUILD ;; *) build=$tree/$BUILD ;; esac
 
-# Debian's own python3 may have what another in the path has not
-python=
-for candidate in python3 /usr/bin/python3; do
-    if "$candidate" -c 'import ensurepip, numpy, pytest, scipy.sparse, venv' 2>/dev/null; then python=$candidate; fi
-done
+python=$(tests/find_python.sh ensurepip numpy pytest scipy.sparse venv)
 if test -z "$python"; then
     echo "SKIP: no Python with NumPy, SciPy, pytest and venv (Debian: python3-numpy python3-scipy python3-pytest python3-venv)"
     exit 0

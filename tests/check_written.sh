@@ -8,6 +8,7 @@ set -eu
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 fibrad=$(cd "$BUILD" && pwd)/fibrad
 bed=$(pwd)/tests/data/monoper2000.dump
+vtk=$(tests/find_python.sh vtkmodules.vtkIOXML)
 cd "$work"
 {
     printf 'ITEM: UNITS\nsi\n'
@@ -85,11 +86,6 @@ for line in open('F.mtx'):
 assert entries == factors
 END
 
-# Debian's own python3 may have VTK where another in the path has not
-vtk=
-for python in python3 /usr/bin/python3; do
-    if "$python" -c 'import vtkmodules.vtkIOXML' 2>/dev/null; then vtk=$python; fi
-done
 if test -n "$vtk"; then
     "$vtk" - <<'END'
 from known import *
