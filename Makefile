@@ -55,7 +55,7 @@ CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
 CHECK_LIBS   = $(shell $(PKG_CONFIG) --libs check)
 
 # the public headers, and sed that finds their functions
-HEADERS   = kernel/fibrad.h kernel/fibrad_part.h kernel/fibrad_surface.h kernel/fibrad_furnace.h host/simple/fibrad_host.h
+HEADERS   = kernel/fibrad.h kernel/fibrad_heat.h kernel/fibrad_part.h kernel/fibrad_surface.h kernel/fibrad_furnace.h host/simple/fibrad_host.h
 FUNCTIONS = '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1;/p'
 
 # ---- sources --------------------------------------------------------------------------------------------------------
@@ -86,7 +86,10 @@ KERNEL = \
     kernel/exchange/exchange.c \
     kernel/exchange/flow.c \
     kernel/heat/heat.c \
+    kernel/heat/result.c \
     kernel/heat/solve.c \
+    kernel/heat/sources.c \
+    kernel/heat/sweep.c \
     kernel/heat/wall_patch.c \
     kernel/furnace/bundle_plan.c \
     kernel/furnace/bundles.c \

@@ -14,13 +14,11 @@
  *                                                       _reciprocity
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   absorbed after reflections (grey)        fibrad_exchange_row, _displacement
- *   heat       net powers for given temperatures        fibrad_heat_size, _init, _move, _tasks, _parts, _trace,
- *                                                       _sources_init, _begin, _sweep, _step, _read
- * fibrad_part.h has parts of beds, fibrad_surface.h the method of Bao, Gao and Tan, fibrad_furnace.h a furnace.
+ * fibrad_heat.h has net powers and temperatures, fibrad_part.h parts of beds, fibrad_surface.h the method of Bao, Gao
+ * and Tan, fibrad_furnace.h a furnace.
  *
  * One row   fibrad_scene_init, fibrad_beam_row. All rows: per thread a fibrad_work and a fibrad_rows; fibrad_beam_row
- *           for every sphere; fibrad_matrix_init, _close, _read. Heat: fibrad_heat_init; _trace every task; _begin;
- *           _sweep every part and _step until solved; _read. docs/embedding.md has complete programs.
+ *           for every sphere; fibrad_matrix_init, _close, _read. docs/embedding.md has complete programs.
  * Units     One length unit L, the caller's choice; angles in radians; factors dimensionless; temperatures absolute.
  *           x[n] is an array of n elements; [a, b) and [a, b] are the range of values.
  * Memory    The caller owns every block, of any alignment, and keeps it in place while it is used; there is no free.
@@ -43,7 +41,8 @@
 extern "C" {
 #endif
 
-#define FIBRAD_VERSION "0.2.0"
+#define FIBRAD_VERSION          "0.2.0"
+#define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
 
 /* ---- status ---------------------------------------------------------------------------------------------------- */
 typedef enum fibrad_status {
@@ -59,7 +58,8 @@ typedef enum fibrad_status {
     FIBRAD_E_ISA = -9,          /* this build or this machine does not have that instruction set */
     FIBRAD_E_UNSUPPORTED = -10, /* a valid request that this version does not compute */
     FIBRAD_E_MEMORY = -11,      /* a resize function or the heap had no more memory */
-    FIBRAD_E_CANCELLED = -12    /* a progress function asked to stop */
+    FIBRAD_E_CANCELLED = -12,   /* a progress function asked to stop */
+    FIBRAD_E_UNSOLVABLE = -13   /* no temperatures give bodies the powers that were asked for */
 } fibrad_status;                /* the numbers never change their meaning */
 
 /* One English sentence for any number, never NULL; FIBRAD_VERSION of the library linked in. No errors. */
@@ -375,74 +375,6 @@ typedef struct fibrad_displacement {
  * periods counted; what bodies absorb, escapes or is beyond counts as 0. Errors and cost: as fibrad_exchange_row. */
 int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
                                  const fibrad_exchange_rule *rule, fibrad_displacement *displacement);
-
-/* ---- heat ------------------------------------------------------------------------------------------------------ */
-/* Net radiative power of grey diffuse spheres and bodies of given temperatures. Each surface is cut into patches; beams
- * of points connect the patch they leave with the patch they meet, and serve both ways: at equal temperatures nothing
- * flows, and all powers add up to zero. The radiosities J = eps E + (1 - eps) H follow by conjugate gradients, first on
- * patches four times as large; the powers of both are extrapolated to patches without size. Source: docs/heat.md. */
-#define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
-
-typedef struct fibrad_heat_config {
-    uint32_t directions; /* [FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX] of the beams; 0: 168 */
-    uint32_t points;     /* per direction: 64, 128 or 256; 0: 64 */
-    uint32_t patches;    /* of a sphere: 24, 96 or 384; 0: 96 */
-    uint32_t parts;      /* [1, 1024] of a sweep, for as many threads; last bits depend on it; 0: 8 */
-    double cutoff;       /* 0: none; else, as with a known region, FIBRAD_E_UNSUPPORTED */
-} fibrad_heat_config;
-
-typedef struct fibrad_heat fibrad_heat; /* beams, patches and radiosities of a scene */
-
-/* Makes a heat problem in memory[size]. The scene stays as it is until fibrad_heat_move. config: NULL is all defaults.
- * Bytes: about spheres times (4 directions points + 8 patches (8 + parts)). Errors: _ARGUMENT, _SIZE, _UNSUPPORTED. */
-size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene);
-int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
-                     const fibrad_scene *scene);
-
-/* Changes to another scene of as many spheres and the same kinds of bodies, or the same one rebuilt in place. All tasks
- * are traced again; the next solution starts from the last one. Errors: _ARGUMENT, _SIZE (walls have grown). */
-int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene);
-
-/* Tasks that the beams are divided into, one per sphere and some for the walls; parts of a sweep (NULL: 0). _trace: the
- * beams of a task [0, tasks), each task once, by several threads at once. Errors: _ARGUMENT, _WORK, _MEMORY (then call
- * again), _STATE. Cost: about 1 microsecond per direction of 64 points. */
-uint32_t fibrad_heat_tasks(const fibrad_heat *heat);
-uint32_t fibrad_heat_parts(const fibrad_heat *heat);
-int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
-
-/* What radiates. Begin with fibrad_heat_sources_init, which zeroes all but sigma, FIBRAD_STEFAN_BOLTZMANN, and
- * surroundings, NaN, which is refused: set it. */
-typedef struct fibrad_heat_sources {
-    const double *temperature;      /* [spheres] 0 to 1e20 */
-    const double *emissivity;       /* [spheres] [0, 1]; 0: power 0, whatever the temperature */
-    const double *body_temperature; /* [bodies] 0 to 1e20; NULL if there are none */
-    const double *body_emissivity;  /* [bodies] [0, 1]; NULL if there are none */
-    double surroundings;            /* temperature of what beams meet that escape; black */
-    double sigma;                   /* emission is sigma T^4; 1e-30 to 1e30 */
-    double tolerance;               /* residual at which to stop, relative to the differences of emission; 0: 1e-3 */
-    uint32_t sweeps_max;            /* 0: 1000 */
-    int uniform; /* 1: one radiosity per sphere and wall, no extrapolation; wrong but for emissivities near 1 */
-} fibrad_heat_sources;
-void fibrad_heat_sources_init(fibrad_heat_sources *sources);
-
-/* A solution, which starts from the last one if there is one: _begin; then every part [0, parts) of a _sweep once, by
- * several threads at once, and _step, until *solved is 1 (done, or about sweeps_max sweeps made). Errors: _ARGUMENT,
- * _STATE: a task is not traced, a part swept twice or not at all. Cost: about 2 ns per beam and sweep. */
-int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
-int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
-int fibrad_heat_step(fibrad_heat *heat, int *solved);
-
-/* The powers, positive where heat is gained; the arrays are the caller's. Errors: _ARGUMENT, _STATE: no solution. */
-typedef struct fibrad_heat_result {
-    double *power;             /* [spheres] out */
-    double *body_power;        /* [bodies] out; NULL if there are none */
-    double surroundings_power; /* out */
-    double error_patches;      /* out: estimated error of the powers, root mean square over the spheres, from patches */
-    double error_beams;        /* out: ... and from beams: take the root of the sum of squares of both */
-    double residual;           /* out: that of the radiosities, as in `tolerance` */
-    uint32_t sweeps;           /* out */
-} fibrad_heat_result;
-int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 
 #ifdef __cplusplus
 }

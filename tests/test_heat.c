@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "row/beam.h"
 #include "scene/walls.h"
+#include "fibrad_heat.h"
 #include "heat/wall_patch.h"
 #include "sample/direction.h"
 #include "sample/tables.h"

@@ -1,6 +1,7 @@
 /* test_part.c - parts of beds: rows that do not depend on what is far, what is beyond, occupancy, turned directions,
  * powers from rows. SPDX-License-Identifier: MIT */
 #include "base/random.h"
+#include "fibrad_heat.h"
 #include "fibrad_part.h"
 #include "scene/surroundings.h"
 #include "fibrad_surface.h"

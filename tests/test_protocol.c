@@ -1,5 +1,6 @@
 /* test_protocol.c - calls left out, repeated, too early or for a scene that has changed: each is refused, and when the
  * protocol is then followed the numbers are right. SPDX-License-Identifier: MIT */
+#include "fibrad_heat.h"
 #include "scenes.h"
 #include "suite.h"
 

@@ -1,5 +1,6 @@
 /* test_work.c - work memory: fixed and growing, of any alignment, for any scenes and functions in turn, without a trace
  * in the results; and the blocks of heat problems. SPDX-License-Identifier: MIT */
+#include "fibrad_heat.h"
 #include "fibrad_surface.h"
 #include "scenes.h"
 #include "suite.h"

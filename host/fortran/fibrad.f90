@@ -117,7 +117,9 @@ module fibrad
 
     type, bind(C) :: c_heat_sources
         type(c_ptr) :: temperature = c_null_ptr, emissivity = c_null_ptr
-        type(c_ptr) :: body_temperature = c_null_ptr, body_emissivity = c_null_ptr
+        type(c_ptr) :: power = c_null_ptr, hold = c_null_ptr, reference = c_null_ptr
+        type(c_ptr) :: body_temperature = c_null_ptr, body_emissivity = c_null_ptr, body_power = c_null_ptr
+        type(c_ptr) :: insulated = c_null_ptr
         real(c_double) :: surroundings = 0, sigma = fibrad_stefan_boltzmann, tolerance = 0
         integer(c_int32_t) :: sweeps_max = 0
         integer(c_int) :: uniform = 0
@@ -125,7 +127,11 @@ module fibrad
 
     type, bind(C) :: c_heat_result
         type(c_ptr) :: power = c_null_ptr, body_power = c_null_ptr
-        real(c_double) :: surroundings_power = 0, error_patches = 0, error_beams = 0, residual = 0
+        real(c_double) :: surroundings_power = 0
+        type(c_ptr) :: temperature = c_null_ptr, body_temperature = c_null_ptr
+        type(c_ptr) :: power_error = c_null_ptr, body_error = c_null_ptr
+        type(c_ptr) :: temperature_error = c_null_ptr, body_temperature_error = c_null_ptr
+        real(c_double) :: error_patches = 0, error_beams = 0, residual = 0
         integer(c_int32_t) :: sweeps = 0
     end type c_heat_result
 

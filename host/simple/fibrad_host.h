@@ -20,7 +20,7 @@
 #ifndef FIBRAD_HOST_H
 #define FIBRAD_HOST_H
 
-#include "fibrad.h"
+#include "fibrad_heat.h"
 #include "fibrad_surface.h"
 
 #ifdef __cplusplus

@@ -29,6 +29,8 @@ const char *fibrad_status_text(int status) {
         return "out of memory";
     case FIBRAD_E_CANCELLED:
         return "stopped on request";
+    case FIBRAD_E_UNSOLVABLE:
+        return "no temperatures give bodies the powers that were asked for";
     default:
         return "no known status";
     }

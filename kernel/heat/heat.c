@@ -1,10 +1,9 @@
-/* heat.c - lays out a heat problem, has its beams followed, takes its sources and hands out its powers.
+/* heat.c - lays out a heat problem and has its beams followed.
  * SPDX-License-Identifier: MIT */
 #include "base/arena.h"
 #include "base/constants.h"
 #include "base/dispatch.h"
 #include "heat/hits_lanes.h"
-#include "heat/solve.h"
 #include "heat/sphere_patch.h"
 #include "heat/wall_patch.h"
 #include "sample/direction.h"
@@ -14,13 +13,7 @@
 #define HEAT_PATCHES    96u
 #define HEAT_PARTS      8u
 #define HEAT_PARTS_MAX  1024u
-#define HEAT_TOLERANCE  1e-3
-#define HEAT_SWEEPS_MAX 1000u
 #define HEAT_RADIUS_MIN 1e-30 /* and its inverse the largest */
-/* Errors over what they are told from, as measured: docs/heat.md. */
-#define PATCH_ERROR .2
-#define BEAM_ERROR  .2
-#define FEW_ERROR   .25
 
 static fibrad_heat_config heat_config_of(const fibrad_heat_config *config) {
     fibrad_heat_config c = {0};
@@ -255,132 +248,4 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task) {
     }
     if (status == FIBRAD_OK) heat->traced[task] = 1;
     return status;
-}
-
-void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
-    if (sources == NULL) return;
-    *sources = (fibrad_heat_sources){.surroundings = __builtin_nan(""), .sigma = FIBRAD_STEFAN_BOLTZMANN};
-}
-
-static bool is_share(double x) { return x >= 0 && x <= 1; }
-
-/* Within these bounds no square of an emission, nor its product with areas, leaves the range of doubles. */
-static bool is_temperature(double t) { return t >= 0 && t <= 1e20; }
-static bool is_sigma(double sigma) { return sigma >= 1e-30 && sigma <= 1e30; }
-
-static bool sources_valid(const fibrad_heat *heat, const fibrad_heat_sources *s) {
-    const uint32_t bodies = heat->given_bodies;
-    if (heat->spheres > 0 && (s->temperature == NULL || s->emissivity == NULL)) return false;
-    if (bodies > 0 && (s->body_temperature == NULL || s->body_emissivity == NULL)) return false;
-    for (uint32_t i = 0; i < heat->spheres; i++)
-        if (!is_temperature(s->temperature[i]) || !is_share(s->emissivity[i])) return false;
-    for (uint32_t b = 0; b < bodies; b++)
-        if (!is_temperature(s->body_temperature[b]) || !is_share(s->body_emissivity[b])) return false;
-    return is_temperature(s->surroundings) && is_sigma(s->sigma) && s->tolerance >= 0 && s->tolerance < 1;
-}
-
-/* sigma (T^4 - T0^4), T0 being that of the surroundings: all emission and radiosity is counted from theirs. */
-static double emission_of(const fibrad_heat_sources *s, double t) {
-    const double t0 = s->surroundings;
-    return s->sigma * (t * t + t0 * t0) * (t + t0) * (t - t0);
-}
-
-/* Widens a range of emissions by that of a body, if it emits. */
-static void widen_range(double range[2], double eps, double emission) {
-    if (eps > 0) range[0] = fibrad_min(range[0], emission), range[1] = fibrad_max(range[1], emission);
-}
-
-/* The middle of what spheres and walls emit, where the radiosities of those that reflect all begin: so nothing flows
- * where all that emit do so alike. 0: none of them emits. */
-static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources *s) {
-    double range[2] = {__builtin_inf(), -__builtin_inf()};
-    for (uint32_t i = 0; i < heat->spheres; i++)
-        widen_range(range, s->emissivity[i], emission_of(s, s->temperature[i]));
-    for (uint32_t b = 0; b < heat->given_bodies; b++)
-        widen_range(range, s->body_emissivity[b], emission_of(s, s->body_temperature[b]));
-    return range[0] <= range[1] ? range[0] + 0.5 * (range[1] - range[0]) : 0;
-}
-
-/* Emissivity and emission of a body; `middle` for one that reflects all, whose own plays no part. What lies beyond the
- * patches of a wall receives no more than the surroundings send, its area being infinite; so it is like a black body of
- * that radiosity. */
-static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b) {
-    const uint32_t spheres = heat->spheres;
-    double eps = 1, emission = 0;
-    if (b < spheres) {
-        const uint32_t i = heat->order[b];
-        eps = s->emissivity[i], emission = emission_of(s, s->temperature[i]);
-    } else if (b + 1 < heat->bodies) {
-        const uint32_t wall = (b - spheres) % FIBRAD_WALLS;
-        const double wall_eps = heat->wall_emissivity[wall], wall_emission = heat->wall_emission[wall];
-        if (b < spheres + FIBRAD_WALLS)
-            eps = wall_eps, emission = wall_emission;
-        else
-            emission = wall_eps * wall_emission;
-    }
-    if (eps == 0) emission = middle;
-    /* an earlier solution goes up or down with the emission; the coarser level begins with what it had of it */
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        if (heat->warm && !s->uniform && eps < 1)
-            heat->radiosity[a] += emission - heat->emission[b] - heat->detail[a];
-        else
-            heat->radiosity[a] = emission, heat->detail[a] = 0;
-    }
-    heat->emissivity[b] = eps, heat->emission[b] = emission;
-}
-
-int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
-    if (heat == NULL || sources == NULL || !sources_valid(heat, sources)) return FIBRAD_E_ARGUMENT;
-    if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
-    for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
-        if (!heat->traced[task]) return FIBRAD_E_STATE;
-    fibrad_zero(heat->wall_emissivity, sizeof heat->wall_emissivity);
-    fibrad_zero(heat->wall_emission, sizeof heat->wall_emission);
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
-        heat->wall_emissivity[heat->slot[b]] = sources->body_emissivity[b];
-        heat->wall_emission[heat->slot[b]] = emission_of(sources, sources->body_temperature[b]);
-    }
-    const double middle = middle_emission(heat, sources);
-    for (uint32_t b = 0; b < heat->bodies; b++) set_body(heat, sources, middle, b);
-    heat->group = sources->uniform ? UINT32_MAX : 4;
-    heat->tolerance = sources->tolerance > 0 ? sources->tolerance : HEAT_TOLERANCE;
-    heat->limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
-    heat->sweeps = 0;
-    heat->warm = false;
-    fibrad_zero(heat->swept, heat->config.parts);
-    fibrad_heat_start(heat);
-    return FIBRAD_OK;
-}
-
-int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
-    if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
-    if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
-    if (heat->phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
-    const uint32_t spheres = heat->spheres, open = heat->bodies - 1;
-    double patches = 0, beams = 0, square = 0, reflected = 0;
-    for (uint32_t b = 0; b < spheres; b++) {
-        const double change = heat->power[b] - heat->coarse[b];
-        result->power[heat->order[b]] = heat->power[b];
-        patches += change * change, square += heat->power[b] * heat->power[b], reflected += 1 - heat->emissivity[b];
-        beams += heat->halves[b] * heat->halves[b];
-    }
-    result->surroundings_power = heat->power[open];
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
-        const uint32_t k = heat->slot[b], beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
-        result->body_power[b] = heat->power[fibrad_heat_wall_body(heat, k)];
-        if (a == heat->first[beyond + 1]) continue;
-        /* beyond its patches the wall takes eps of what comes and reflects the rest to the surroundings */
-        const double less = heat->radiosity[a] - heat->wall_emission[k];
-        const double absorbed = heat->wall_emissivity[k] * (heat->net[a] + heat->area[a] * less);
-        result->body_power[b] += absorbed;
-        result->surroundings_power += heat->power[beyond] - absorbed;
-    }
-    /* patches that few beams leave send too much back along each; not so if there is one radiosity per body */
-    const double each = heat->group == 1 ? 2.0 * heat->beams / heat->config.patches : __builtin_inf();
-    const double few = FEW_ERROR / each * fibrad_sqrt(reflected / fibrad_max(1, spheres));
-    result->error_patches = PATCH_ERROR * fibrad_sqrt(patches / fibrad_max(1, spheres));
-    result->error_beams = fibrad_sqrt((BEAM_ERROR * BEAM_ERROR * beams + few * few * square) / fibrad_max(1, spheres));
-    result->sweeps = heat->sweeps;
-    result->residual = heat->scale > 0 ? fibrad_sqrt(heat->slope / heat->scale) : 0;
-    return FIBRAD_OK;
 }

@@ -6,6 +6,7 @@
 #ifndef FIBRAD_HEAT_PROBLEM_H
 #define FIBRAD_HEAT_PROBLEM_H
 
+#include "fibrad_heat.h"
 #include "row/work.h"
 #include "scene/scene.h"
 

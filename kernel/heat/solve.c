@@ -10,111 +10,9 @@
  * E and take no part. On the coarser level J is the same on the patches of a group. For that the residuals of a group
  * are replaced by their mean, and all vectors stay within such J; the finer level goes on from there. */
 #include "heat/solve.h"
+#include "heat/sweep.h"
 
-#define BEYOND (FIBRAD_WALLS + 1)
-
-/* A beam stands for the area 1/(n + m) if its two surfaces send out n and m beams per area: so the beams either way
- * together tell what the two exchange, those of the denser one counting as much more as there are more of them. */
-static double beam_area(const fibrad_heat_source *a, const fibrad_heat_source *b) {
-    return 1 / (a->density + b->density);
-}
-
-/* Many beams meet the few patches that lie beyond the walls and their patches; one sum of all would lose digits. So
- * what has come to them lately is moved to a longer sum. */
-static void set_aside(const fibrad_heat *heat, double *to, double sum[BEYOND]) {
-    const uint32_t first = heat->first[fibrad_heat_beyond(heat, 0)];
-    for (uint32_t b = first; b < heat->patches; b++) sum[b - first] += to[b], to[b] = 0;
-}
-
-/* Adds what the beams of one sphere bring to its own patches, and to those they meet; or, in the first sweep of all,
- * the areas they stand for. */
-static void sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to, double away[BEYOND]) {
-    const uint32_t *hit = heat->hit + (size_t)place * heat->beams, patches = heat->config.patches;
-    const fibrad_heat_source *source = heat->source, *mine = source + (size_t)place * patches;
-    const bool areas = heat->phase == FIBRAD_HEAT_AREA;
-    double own[FIBRAD_HEAT_PATCHES_MAX] = {0}, sum[BEYOND] = {0};
-    for (uint32_t begin = 0; begin < heat->beams; begin += heat->config.points) {
-        for (uint32_t k = begin; k < begin + heat->config.points; k++) {
-            const uint32_t a = heat->leave[k], b = hit[k];
-            const double area = beam_area(mine, &source[b]);
-            const double flow = areas ? area : area * (source[b].value - mine[a].value);
-            own[a] += flow;
-            to[b] += areas ? flow : -flow;
-        }
-        set_aside(heat, to, sum);
-    }
-    for (uint32_t a = 0; a < patches; a++) to[(size_t)place * patches + a] += own[a];
-    for (int b = 0; b < BEYOND; b++) away[b] += sum[b];
-}
-
-static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, double *to, double away[BEYOND]) {
-    const bool areas = heat->phase == FIBRAD_HEAT_AREA;
-    for (uint32_t k = begin; k < end; k++) {
-        const fibrad_heat_ray ray = heat->ray[k];
-        const double flow = areas ? ray.area : ray.area * (heat->source[ray.to].value - heat->source[ray.from].value);
-        to[ray.from] += flow;
-        to[ray.to] += areas ? flow : -flow;
-        if (k % 64 == 63) set_aside(heat, to, away);
-    }
-}
-
-/* Where a part begins of n things. */
-static uint32_t part_begin(const fibrad_heat *heat, uint32_t n, uint32_t part) {
-    return (uint32_t)((uint64_t)n * part / heat->config.parts);
-}
-
-/* How much more the even directions of a sphere's own beams bring it than the odd ones. */
-static double sweep_halves(const fibrad_heat *heat, uint32_t place) {
-    const uint32_t *hit = heat->hit + (size_t)place * heat->beams, points = heat->config.points;
-    const fibrad_heat_source *source = heat->source, *mine = source + (size_t)place * heat->config.patches;
-    double half[2] = {0, 0};
-    for (uint32_t k = 0; k < heat->config.directions; k++) {
-        double sum = 0;
-        for (uint32_t p = k * points; p < (k + 1) * points; p++) {
-            const fibrad_heat_source *other = &source[hit[p]];
-            sum += beam_area(mine, other) * (other->value - mine[heat->leave[p]].value);
-        }
-        half[k % 2] += k == 0 || k + 1 == heat->config.directions ? sum / 2 : sum;
-    }
-    return half[0] - half[1];
-}
-
-/* All of a part but the note that it is done. */
-static void sweep_part(fibrad_heat *heat, uint32_t part) {
-    const uint32_t spheres = heat->spheres;
-    const uint32_t begin = part_begin(heat, spheres, part), end = part_begin(heat, spheres, part + 1);
-    double *to = heat->gathered + (size_t)part * heat->patches, away[BEYOND] = {0};
-    if (heat->phase == FIBRAD_HEAT_CHECK) {
-        for (uint32_t place = begin; place < end; place++) heat->halves[place] = sweep_halves(heat, place);
-        return;
-    }
-    fibrad_zero(to, heat->patches * sizeof *to);
-    for (uint32_t place = begin; place < end; place++) sweep_sphere(heat, place, to, away);
-    sweep_rays(heat, part_begin(heat, heat->rays, part), part_begin(heat, heat->rays, part + 1), to, away);
-    set_aside(heat, to, away);
-    const uint32_t few = heat->first[fibrad_heat_beyond(heat, 0)];
-    fibrad_copy(to + few, away, (heat->patches - few) * sizeof *to);
-}
-
-int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
-    if (heat == NULL || part >= heat->config.parts) return FIBRAD_E_ARGUMENT;
-    if (heat->phase == FIBRAD_HEAT_IDLE || heat->phase == FIBRAD_HEAT_DONE || heat->swept[part]) return FIBRAD_E_STATE;
-    sweep_part(heat, part);
-    heat->swept[part] = 1;
-    return FIBRAD_OK;
-}
-
-/* Adds up what the parts have gathered, in the first part's place. */
-static const double *gather_parts_of(fibrad_heat *heat) {
-    double *sum = heat->gathered;
-    for (uint32_t part = 1; part < heat->config.parts; part++) {
-        const double *from = heat->gathered + (size_t)part * heat->patches;
-        for (uint32_t a = 0; a < heat->patches; a++) sum[a] += from[a];
-    }
-    return sum;
-}
-
-/* What one Jacobi iteration would change: of all patches, into source[].value. Returns the residual times that. */
+/* What one Jacobi iteration would change: of all patches, to be sent. Returns the residual times that. */
 static double find_residual(fibrad_heat *heat) {
     double slope = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -128,7 +26,7 @@ static double find_residual(fibrad_heat *heat) {
                 area += heat->area[k];
             }
             const double change = eps < 1 && area > 0 ? sum / area : 0;
-            for (uint32_t k = a; k < next; k++) heat->source[k].value = change;
+            for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, change);
             if (eps < 1) slope += area * change * change / (1 - eps);
         }
     }
@@ -175,7 +73,7 @@ static void find_scale(fibrad_heat *heat) {
 
 /* Makes the next sweep one of the radiosities. */
 static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
-    for (uint32_t a = 0; a < heat->patches; a++) heat->source[a].value = heat->radiosity[a];
+    for (uint32_t a = 0; a < heat->patches; a++) fibrad_heat_send(heat, a, heat->radiosity[a]);
     heat->phase = phase;
 }
 
@@ -210,8 +108,8 @@ static bool level_solved(const fibrad_heat *heat) {
 /* The direction to search next: the residual, and `keep` of the last direction. */
 static void turn_direction(fibrad_heat *heat, double keep) {
     for (uint32_t a = 0; a < heat->patches; a++) {
-        heat->direction[a] = heat->source[a].value + (keep != 0 ? keep * heat->direction[a] : 0);
-        heat->source[a].value = heat->direction[a];
+        heat->direction[a] = fibrad_heat_sent(heat, a) + (keep != 0 ? keep * heat->direction[a] : 0);
+        fibrad_heat_send(heat, a, heat->direction[a]);
     }
 }
 
@@ -270,7 +168,7 @@ static void end_sweep(fibrad_heat *heat) {
         heat->warm = true;
         return;
     }
-    const double *sum = gather_parts_of(heat);
+    const double *sum = fibrad_heat_gathered(heat);
     heat->sweeps++;
     switch (heat->phase) {
     case FIBRAD_HEAT_AREA:

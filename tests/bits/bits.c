@@ -9,6 +9,7 @@
 
 #include "fibrad.h"
 #include "fibrad_furnace.h"
+#include "fibrad_heat.h"
 #include "fibrad_part.h"
 #include "fibrad_surface.h"
 

@@ -53,10 +53,13 @@ ExchangeRule = _structure("exchange_rule", ("emissivity body_emissivity", DOUBLE
                           ("seed", c_uint64), ("cutoff tolerance", c_double))
 Displacement = _structure("displacement", ("square error", c_double * 3), ("absorbed", c_double), ("rays", c_uint64))
 HeatConfig = _structure("heat_config", ("directions points patches parts", c_uint32), ("cutoff", c_double))
-HeatSources = _structure("heat_sources", ("temperature emissivity body_temperature body_emissivity", DOUBLES),
+HeatSources = _structure("heat_sources", ("temperature emissivity power hold reference", DOUBLES),
+                         ("body_temperature body_emissivity body_power", DOUBLES), ("insulated", POINTER(c_ubyte)),
                          ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int))
-HeatResult = _structure("heat_result", ("power body_power", DOUBLES),
-                        ("surroundings_power error_patches error_beams residual", c_double), ("sweeps", c_uint32))
+HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surroundings_power", c_double),
+                        ("temperature body_temperature power_error body_error", DOUBLES),
+                        ("temperature_error body_temperature_error", DOUBLES),
+                        ("error_patches error_beams residual", c_double), ("sweeps", c_uint32))
 
 
 def _declare(library: ctypes.CDLL) -> None:
