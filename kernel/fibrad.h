@@ -41,7 +41,8 @@
 extern "C" {
 #endif
 
-#define FIBRAD_VERSION          "0.2.0"
+#define FIBRAD_VERSION "0.2.0"
+
 #define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
 
 /* ---- status ---------------------------------------------------------------------------------------------------- */
