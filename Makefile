@@ -221,6 +221,7 @@ TESTS = \
     tests/test_reference.c \
     tests/test_reproduce.c \
     tests/test_scene.c \
+    tests/test_settled.c \
     tests/test_simple.c \
     tests/test_status.c \
     tests/test_stress.c \

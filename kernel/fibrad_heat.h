@@ -47,21 +47,23 @@ uint32_t fibrad_heat_parts(const fibrad_heat *heat);
 int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
 
 /* What radiates. Begin with fibrad_heat_sources_init, which zeroes all but sigma, FIBRAD_STEFAN_BOLTZMANN, and
- * surroundings, NaN, which is refused: set it. A body whose temperature is NaN has the one at which it gives off
- * power - hold sigma (T^4 - reference^4) from inside; hold is what a store of heat and a step of time make of it. */
+ * surroundings, NaN, which is refused: set it. A body whose temperature is NaN, and whose power is not, has the one at
+ * which it gives off power - hold sigma (T^4 - reference^4) from inside; hold is what a store of heat makes of a step
+ * in time. Power, hold and reference are not used where temperatures are given. */
 typedef struct fibrad_heat_sources {
     const double *temperature;      /* [spheres] 0 to 1e20; NaN: unknown */
     const double *emissivity;       /* [spheres] [0, 1]; 0: power 0, whatever the temperature */
-    const double *power;            /* [spheres] > 0 gives off; NULL: 0 of all. Not used where temperatures are given */
-    const double *hold;             /* [spheres] [L^2] >= 0; NULL: 0 of all. Likewise */
-    const double *reference;        /* [spheres] 0 to 1e20, also where the search begins; NULL where hold is: 0 */
-    const double *body_temperature; /* [bodies] 0 to 1e20; NaN: unknown; NULL if there are none */
+    const double *power;            /* [spheres] up to 1e100 either way, > 0 gives off; NULL: none is unknown */
+    const double *hold;             /* [spheres] [L^2] 0 to 1e60; NULL: 0 */
+    const double *reference;        /* [spheres] 0 to 1e20, also where the search begins; NULL, NaN: none, hold is 0 */
+    const double *body_temperature; /* [bodies] 0 to 1e20; NaN: unknown, of walls of finite area; NULL if no bodies */
     const double *body_emissivity;  /* [bodies] [0, 1]; NULL if there are none */
     const double *body_power;       /* [bodies] as power */
     const unsigned char *insulated; /* [bodies] not 0: sends back all that arrives, place by place; NULL: none */
     double surroundings;            /* temperature of what beams meet that escape; black */
     double sigma;                   /* emission is sigma T^4; 1e-30 to 1e30 */
-    double tolerance;               /* residual at which to stop, relative to the differences of emission; 0: 1e-3 */
+    double tolerance;               /* residual at which to stop, relative to the differences of emission; 0: 1e-3, or
+                                     * 1e-5 where a temperature is unknown and not held */
     uint32_t sweeps_max;            /* 0: 1000 */
     int uniform; /* 1: one radiosity per sphere and wall, no extrapolation; wrong but for emissivities near 1 */
 } fibrad_heat_sources;
@@ -69,9 +71,10 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
 
 /* A solution, which starts from the last one if there is one: _begin; then every part [0, parts) of a _sweep once, by
  * several threads at once, and _step, until *solved is 1 (done, or about sweeps_max sweeps made). Errors: _ARGUMENT
- * (also a power of emissivity 0), _STATE: a task is not traced, a part swept twice or not at all; of _step also
- * _UNSOLVABLE: nothing has a given temperature, and the powers do not add up to zero. If they do, the solution is the
- * one whose mean emission, by emissivity and area, is that of the surroundings. Cost: about 2 ns per beam and sweep. */
+ * (also a power of emissivity 0), _UNSUPPORTED (unknown temperature of an endless wall), _STATE: a task is not traced,
+ * a part swept twice or not at all; of _step also _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the
+ * powers do not add up to zero. If they do, the mean emission, by emissivity and area, is that of the surroundings.
+ * Cost: about 2 ns per beam and sweep; temperatures of deep beds take some sweeps a layer. */
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
 int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
 int fibrad_heat_step(fibrad_heat *heat, int *solved);

@@ -85,7 +85,8 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     double **const of_patches[] = {&heat->area, &heat->radiosity, &heat->detail, &heat->net, &heat->direction};
     for (size_t k = 0; k < sizeof of_patches / sizeof *of_patches; k++)
         *of_patches[k] = fibrad_arena_take(arena, patches, sizeof(double));
-    double **const of_bodies[] = {&heat->emissivity, &heat->emission, &heat->coarse, &heat->power};
+    double **const of_bodies[] = {&heat->emissivity, &heat->emission,        &heat->drive,       &heat->hold,
+                                  &heat->coarse,     &heat->coarse_emission, &heat->temperature, &heat->power};
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
         *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
     heat->halves = fibrad_arena_take(arena, spheres, sizeof(double));

@@ -72,18 +72,24 @@ struct fibrad_heat {
     double *radiosity, *net;       /* [patches] J, and the net flow N J */
     double *detail;                /* [patches] J less that of the coarser level */
     double *direction;             /* [patches] of the search */
-    double *emissivity, *emission; /* [bodies] eps and E */
-    double *coarse, *power;        /* [bodies] net power at the coarser level, and extrapolated */
-    double *halves;                /* [spheres] by how much the power by even directions exceeds that by odd ones */
+    double *emissivity, *emission; /* [bodies] eps and E, the latter less that of the surroundings */
+    double *drive, *hold;    /* [bodies] of unknown temperature: gives off drive - hold E; hold < 0: it is given */
+    double *coarse, *power;  /* [bodies] net power at the coarser level, and extrapolated */
+    double *coarse_emission; /* [bodies] E at the coarser level */
+    double *temperature;     /* [bodies] given, or found; NaN: none */
+    double *halves;          /* [spheres] by how much the power by even directions exceeds that by odd ones */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
+    bool insulated[FIBRAD_WALLS];                                      /* likewise */
 
     fibrad_heat_phase phase;
-    bool warm;       /* the radiosities are those of a solution */
-    bool areas;      /* so are the areas, those of the beams as they are */
-    uint32_t group;  /* patches that share one J, the most: 1, 4, or PATCHES_MAX and more for whole bodies */
-    double slope;    /* residual times preconditioned residual */
-    double scale;    /* what the slope is compared with */
-    double smallest; /* a slope that is nothing but rounding */
+    bool warm;                  /* the radiosities are those of a solution */
+    bool areas;                 /* so are the areas, those of the beams as they are */
+    bool afloat;                /* nothing says how high emissions are, but how they differ */
+    double sigma, surroundings; /* of the sources */
+    uint32_t group;             /* patches that share one J, the most: 1, 4, or PATCHES_MAX and more for whole bodies */
+    double slope;               /* residual times preconditioned residual */
+    double scale;               /* what the slope is compared with */
+    double smallest;            /* a slope that is nothing but rounding */
     double tolerance;
     uint32_t sweeps, limit;
 };

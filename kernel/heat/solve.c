@@ -8,46 +8,134 @@
  * one end what it takes from the other: they add up to zero whatever J is, and are zero where all J are equal. Times
  * rho/A the residual is eps (E - J) + rho N J/A: what one Jacobi iteration would change. Patches with rho = 0 have J =
  * E and take no part. On the coarser level J is the same on the patches of a group. For that the residuals of a group
- * are replaced by their mean, and all vectors stay within such J; the finer level goes on from there. */
+ * are replaced by their mean, and all vectors stay within such J; the finer level goes on from there.
+ *
+ * A body of unknown temperature gives off S - h E. From q = A eps/rho (<J> - E) = h E - S, <J> the mean over it,
+ *
+ *     E = (rho S + A eps <J>)/D,    D = rho h + A eps,
+ *
+ * which leaves a system of J alone that is symmetric as before. Its residuals are dealt with in two parts, none of
+ * which divides by eps or rho: their mean r = eps (S - h <J>)/D + q/A, changed by r/(1 + eps h/D), and the rest,
+ * changed as that of other bodies about the mean. A black body sends J = E all over. */
 #include "heat/solve.h"
 #include "heat/sweep.h"
 
-/* What one Jacobi iteration would change: of all patches, to be sent. Returns the residual times that. */
-static double find_residual(fibrad_heat *heat) {
+/* A body of unknown temperature: its area, the means of J and of N J per area, and D. */
+typedef struct free_body {
+    double area, radiosity, net, divisor;
+} free_body;
+
+static bool is_free(const fibrad_heat *heat, uint32_t body) { return heat->hold[body] >= 0; }
+
+/* The mean of values per area, or the sum of values, over the patches of a body. */
+static double mean_over(const fibrad_heat *heat, uint32_t body, const double *value) {
+    double sum = 0, area = 0;
+    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++)
+        sum += heat->area[a] * value[a], area += heat->area[a];
+    return area > 0 ? sum / area : 0;
+}
+
+static double sum_over(const fibrad_heat *heat, uint32_t body, const double *value) {
+    double sum = 0;
+    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++) sum += value[a];
+    return sum;
+}
+
+static free_body free_body_of(const fibrad_heat *heat, uint32_t b) {
+    const double eps = heat->emissivity[b], area = sum_over(heat, b, heat->area);
+    return (free_body){area, mean_over(heat, b, heat->radiosity), area > 0 ? sum_over(heat, b, heat->net) / area : 0,
+                       (1 - eps) * heat->hold[b] + area * eps};
+}
+
+/* What the mean residual of a body of unknown temperature is, where it and what it receives are at one emission. */
+static double drive_at(const fibrad_heat *heat, uint32_t b, const free_body *body, double emission) {
+    return heat->emissivity[b] * (heat->drive[b] - heat->hold[b] * emission) / body->divisor;
+}
+
+/* 1 + eps h/D */
+static double stiffness(const fibrad_heat *heat, uint32_t b, const free_body *body) {
+    return 1 + heat->emissivity[b] * heat->hold[b] / body->divisor;
+}
+
+/* Patches from a on that share one J, up to `end`. */
+static uint32_t group_end(const fibrad_heat *heat, uint32_t a, uint32_t end) {
+    return end - a > heat->group ? a + heat->group : end;
+}
+
+/* What one Jacobi iteration would change of a body of given temperature. Returns the residual times that. */
+static double given_residual(fibrad_heat *heat, uint32_t b) {
+    const double eps = heat->emissivity[b];
+    const uint32_t end = heat->first[b + 1];
     double slope = 0;
-    for (uint32_t b = 0; b < heat->bodies; b++) {
-        const double eps = heat->emissivity[b];
-        const uint32_t end = heat->first[b + 1];
-        for (uint32_t a = heat->first[b], next; a < end; a = next) {
-            double sum = 0, area = 0;
-            next = end - a > heat->group ? a + heat->group : end;
-            for (uint32_t k = a; k < next; k++) {
-                sum += heat->area[k] * eps * (heat->emission[b] - heat->radiosity[k]) + (1 - eps) * heat->net[k];
-                area += heat->area[k];
-            }
-            const double change = eps < 1 && area > 0 ? sum / area : 0;
-            for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, change);
-            if (eps < 1) slope += area * change * change / (1 - eps);
+    for (uint32_t a = heat->first[b], next; a < end; a = next) {
+        double sum = 0, area = 0;
+        next = group_end(heat, a, end);
+        for (uint32_t k = a; k < next; k++) {
+            sum += heat->area[k] * eps * (heat->emission[b] - heat->radiosity[k]) + (1 - eps) * heat->net[k];
+            area += heat->area[k];
         }
+        const double change = eps < 1 && area > 0 ? sum / area : 0;
+        for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, change);
+        if (eps < 1) slope += area * change * change / (1 - eps);
     }
     return slope;
 }
 
-/* Emissivity times area of a body. */
-static double emitting(const fibrad_heat *heat, uint32_t body) {
-    double area = 0;
-    for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++) area += heat->area[a];
-    return heat->emissivity[body] * area;
+/* The same of a body of unknown temperature. */
+static double free_residual(fibrad_heat *heat, uint32_t b) {
+    const double eps = heat->emissivity[b], rho = 1 - eps;
+    const uint32_t end = heat->first[b + 1];
+    const free_body body = free_body_of(heat, b);
+    if (!(body.area > 0)) return 0;
+    const double mean = drive_at(heat, b, &body, body.radiosity) + body.net;
+    const double shift = mean / stiffness(heat, b, &body);
+    double slope = body.area * mean * shift;
+    for (uint32_t a = heat->first[b], next; a < end; a = next) {
+        double sum = 0, area = 0;
+        next = group_end(heat, a, end);
+        for (uint32_t k = a; k < next; k++) {
+            sum += heat->area[k] * (eps * (body.radiosity - heat->radiosity[k]) - rho * body.net) + rho * heat->net[k];
+            area += heat->area[k];
+        }
+        const double change = eps < 1 && area > 0 ? sum / area : 0;
+        for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, shift + change);
+        if (eps < 1) slope += area * change * change / rho;
+    }
+    return slope;
 }
 
-/* Net powers of the bodies. Those that reflect all have none: what residuals leave of theirs goes to the others, by
- * emissivity times area. */
+/* The changes of all patches, to be sent. */
+static double find_residual(fibrad_heat *heat) {
+    double slope = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        slope += is_free(heat, b) ? free_residual(heat, b) : given_residual(heat, b);
+    return slope;
+}
+
+/* Emissions of the bodies of unknown temperature. */
+static void find_emissions(fibrad_heat *heat) {
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        if (!is_free(heat, b)) continue;
+        const free_body body = free_body_of(heat, b);
+        const double eps = heat->emissivity[b];
+        if (body.area > 0)
+            heat->emission[b] = ((1 - eps) * heat->drive[b] + body.area * eps * body.radiosity) / body.divisor;
+    }
+}
+
+/* Emissivity times area of a body whose power and emission are not both told by others; 0 of the rest. */
+static double emitting(const fibrad_heat *heat, uint32_t body) {
+    return heat->hold[body] != 0 ? heat->emissivity[body] * sum_over(heat, body, heat->area) : 0;
+}
+
+/* Net powers of the bodies. Those that reflect all have none, and some give off a given power: what residuals leave of
+ * theirs goes to the others, by emissivity times area. */
 static void find_powers(const fibrad_heat *heat, double *power) {
     double left = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        power[b] = 0;
-        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) power[b] += heat->net[a];
+        power[b] = sum_over(heat, b, heat->net);
         if (heat->emissivity[b] == 0) left += power[b], power[b] = 0;
+        if (heat->hold[b] == 0) left += power[b] + heat->drive[b], power[b] = -heat->drive[b];
     }
     for (uint32_t b = 0; b < heat->bodies && left != 0; b++) weights += emitting(heat, b);
     for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) power[b] += left * (emitting(heat, b) / weights);
@@ -56,7 +144,8 @@ static void find_powers(const fibrad_heat *heat, double *power) {
 /* What is nothing but rounding in a sum of squares. */
 #define ROUNDING 1e-28
 
-/* What residuals are compared with: how much emission differs from its mean, and, for rounding, emission itself. */
+/* What residuals are compared with: how much emission differs from its mean, what is given off, and, for rounding,
+ * emission itself. */
 static void find_scale(fibrad_heat *heat) {
     double weights = 0, sum = 0, largest = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -64,11 +153,31 @@ static void find_scale(fibrad_heat *heat) {
         weights += area, sum += area * emission, largest += area * emission * emission;
     }
     heat->scale = 0;
-    heat->smallest = ROUNDING * largest;
-    for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) {
-        const double difference = heat->emission[b] - sum / weights;
-        heat->scale += emitting(heat, b) * difference * difference;
+    const double mean = weights > 0 ? sum / weights : 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double difference = heat->emission[b] - mean;
+        const free_body body = is_free(heat, b) ? free_body_of(heat, b) : (free_body){0};
+        if (body.area > 0) {
+            const double drive = drive_at(heat, b, &body, mean);
+            heat->scale += body.area * drive * drive / stiffness(heat, b, &body);
+        } else {
+            heat->scale += emitting(heat, b) * difference * difference;
+        }
     }
+    heat->smallest = ROUNDING * fibrad_max(largest, heat->scale);
+}
+
+/* Whether there are temperatures that give the powers: something is given, or the powers add up to zero. */
+#define BALANCED 1e-9
+static bool solvable(fibrad_heat *heat) {
+    double sum = 0, sizes = 0;
+    bool held = false;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        held = held || emitting(heat, b) > 0;
+        if (heat->hold[b] == 0) sum += heat->drive[b], sizes += fibrad_abs(heat->drive[b]);
+    }
+    heat->afloat = !held;
+    return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
 /* Makes the next sweep one of the radiosities. */
@@ -84,15 +193,37 @@ void fibrad_heat_start(fibrad_heat *heat) {
         heat->phase = FIBRAD_HEAT_AREA;
 }
 
+double fibrad_heat_temperature(const fibrad_heat *heat, double emission) {
+    const double t0 = heat->surroundings, power = emission / heat->sigma + (t0 * t0) * (t0 * t0);
+    return power >= 0 ? fibrad_sqrt(fibrad_sqrt(power)) : __builtin_nan("");
+}
+
+/* Where nothing says how high emissions are: lowers all, so that their mean is that of the surroundings. */
+static void sink(fibrad_heat *heat) {
+    double sum = 0, weights = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double area = heat->emissivity[b] * sum_over(heat, b, heat->area);
+        sum += area * heat->emission[b], weights += area;
+    }
+    const double mean = weights > 0 ? sum / weights : 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) heat->emission[b] -= mean;
+    for (uint32_t a = 0; a < heat->patches; a++) heat->radiosity[a] -= mean;
+}
+
 /* Takes the finer powers and adds what patches without size would change. Where radiosities are smooth the error falls
  * with the area of patches, and a third of the difference from the coarser powers would be right; near contacts they
  * are not quite, and this is what settled beds ask for: docs/heat.md. */
 #define EXTRAPOLATION 0.4
 static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->power);
+    find_emissions(heat);
+    if (heat->afloat) sink(heat);
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        if (heat->group > 1) heat->coarse[b] = heat->power[b];
+        if (heat->group > 1) heat->coarse[b] = heat->power[b], heat->coarse_emission[b] = heat->emission[b];
         heat->power[b] += EXTRAPOLATION * (heat->power[b] - heat->coarse[b]);
+        if (is_free(heat, b))
+            heat->temperature[b] = fibrad_heat_temperature(
+                heat, heat->emission[b] + EXTRAPOLATION * (heat->emission[b] - heat->coarse_emission[b]));
     }
     if (heat->group == 1)
         for (uint32_t a = 0; a < heat->patches; a++) heat->detail[a] += heat->radiosity[a];
@@ -117,6 +248,9 @@ static void turn_direction(fibrad_heat *heat, double keep) {
  * `detail` holds what is to be taken from it. */
 static void refine_patches(fibrad_heat *heat) {
     find_powers(heat, heat->coarse);
+    find_emissions(heat);
+    if (heat->afloat) sink(heat);
+    fibrad_copy(heat->coarse_emission, heat->emission, heat->bodies * sizeof *heat->emission);
     heat->group = 1;
     for (uint32_t a = 0; a < heat->patches; a++) {
         const double coarse = heat->radiosity[a];
@@ -142,17 +276,37 @@ static void search_on(fibrad_heat *heat, bool restart) {
     heat->phase = FIBRAD_HEAT_STEPS;
 }
 
+/* The product of the search direction with its image, over a body of given temperature. */
+static double given_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
+    double sum = 0;
+    if (heat->emissivity[b] == 1) return 0;
+    const double share = heat->emissivity[b] / (1 - heat->emissivity[b]);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+        const double p = heat->direction[a];
+        sum += p * (heat->area[a] * p * share - product[a]);
+    }
+    return sum;
+}
+
+/* The same of unknown temperature: what differs from the mean counts as above, the mean for what holds it. */
+static double free_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
+    const double eps = heat->emissivity[b], mean = mean_over(heat, b, heat->direction);
+    const double share = eps < 1 ? eps / (1 - eps) : 0;
+    const free_body body = free_body_of(heat, b);
+    if (!(body.area > 0)) return 0;
+    double sum = body.area * mean * mean * (stiffness(heat, b, &body) - 1);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+        const double p = heat->direction[a], rest = p - mean;
+        sum += share * heat->area[a] * rest * rest - p * product[a];
+    }
+    return sum;
+}
+
 /* Goes along the direction whose product with N is `product`, as far as the error falls. */
 static void advance_radiosities(fibrad_heat *heat, const double *product) {
     double curvature = 0;
-    for (uint32_t b = 0; b < heat->bodies; b++) {
-        if (heat->emissivity[b] == 1) continue;
-        const double share = heat->emissivity[b] / (1 - heat->emissivity[b]);
-        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-            const double p = heat->direction[a];
-            curvature += p * (heat->area[a] * p * share - product[a]);
-        }
-    }
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        curvature += is_free(heat, b) ? free_curvature(heat, b, product) : given_curvature(heat, b, product);
     if (!(curvature > 0)) return;
     const double length = heat->slope / curvature;
     for (uint32_t a = 0; a < heat->patches; a++) {
@@ -161,12 +315,12 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
     }
 }
 
-/* What the sweep in hand was for. */
-static void end_sweep(fibrad_heat *heat) {
+/* What the sweep in hand was for; FIBRAD_E_UNSOLVABLE. */
+static int end_sweep(fibrad_heat *heat) {
     if (heat->phase == FIBRAD_HEAT_CHECK) {
         heat->phase = FIBRAD_HEAT_DONE;
         heat->warm = true;
-        return;
+        return FIBRAD_OK;
     }
     const double *sum = fibrad_heat_gathered(heat);
     heat->sweeps++;
@@ -175,15 +329,17 @@ static void end_sweep(fibrad_heat *heat) {
         fibrad_copy(heat->area, sum, heat->patches * sizeof *sum);
         heat->areas = true;
         send_radiosities(heat, FIBRAD_HEAT_FIRST);
-        return;
+        return FIBRAD_OK;
     case FIBRAD_HEAT_FIRST:
         fibrad_copy(heat->net, sum, heat->patches * sizeof *sum);
+        if (!solvable(heat)) return FIBRAD_E_UNSOLVABLE;
         find_scale(heat);
         search_on(heat, true);
-        return;
+        return FIBRAD_OK;
     default:
         advance_radiosities(heat, sum);
         search_on(heat, false);
+        return FIBRAD_OK;
     }
 }
 
@@ -193,7 +349,11 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved) {
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     for (uint32_t part = 0; part < heat->config.parts; part++)
         if (!heat->swept[part]) return FIBRAD_E_STATE;
-    end_sweep(heat);
+    const int status = end_sweep(heat);
+    if (status != FIBRAD_OK) {
+        heat->phase = FIBRAD_HEAT_IDLE;
+        return status;
+    }
     fibrad_zero(heat->swept, heat->config.parts);
     *solved = heat->phase == FIBRAD_HEAT_DONE;
     return FIBRAD_OK;

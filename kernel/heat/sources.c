@@ -1,8 +1,12 @@
 /* sources.c - what radiates, and where radiosities begin. SPDX-License-Identifier: MIT */
+#include "base/port.h"
 #include "heat/solve.h"
 
 #define HEAT_TOLERANCE  1e-3
+#define FREE_TOLERANCE  1e-5 /* where temperatures are unknown: errors of long waves are larger than their residuals */
 #define HEAT_SWEEPS_MAX 1000u
+#define POWER_MAX       1e100
+#define HOLD_MAX        1e60
 
 void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
     if (sources == NULL) return;
@@ -15,14 +19,49 @@ static bool is_share(double x) { return x >= 0 && x <= 1; }
 static bool is_temperature(double t) { return t >= 0 && t <= 1e20; }
 static bool is_sigma(double sigma) { return sigma >= 1e-30 && sigma <= 1e30; }
 
+/* What the sources say of one body. */
+typedef struct radiator {
+    double temperature, emissivity, power, hold, reference; /* NaN: not given */
+} radiator;
+
+static double or_else(const double *value, uint32_t i, double otherwise) {
+    return value != NULL ? value[i] : otherwise;
+}
+
+static radiator of_sphere(const fibrad_heat_sources *s, uint32_t i) {
+    return (radiator){s->temperature[i], s->emissivity[i], or_else(s->power, i, __builtin_nan("")),
+                      or_else(s->hold, i, 0), or_else(s->reference, i, __builtin_nan(""))};
+}
+
+/* A wall that is insulated reflects all, like one of emissivity 0. */
+static radiator of_body(const fibrad_heat_sources *s, uint32_t b) {
+    const bool insulated = s->insulated != NULL && s->insulated[b] != 0;
+    return (radiator){insulated ? __builtin_nan("") : s->body_temperature[b], insulated ? 0 : s->body_emissivity[b],
+                      insulated ? 0 : or_else(s->body_power, b, __builtin_nan("")), 0, __builtin_nan("")};
+}
+
+static bool is_given(double temperature) { return temperature == temperature; }
+
+static bool source_valid(const radiator *s) {
+    if (!is_share(s->emissivity)) return false;
+    if (is_given(s->temperature)) return is_temperature(s->temperature);
+    if (is_given(s->reference) ? !is_temperature(s->reference) : s->hold != 0) return false;
+    return fibrad_abs(s->power) <= POWER_MAX && s->hold >= 0 && s->hold <= HOLD_MAX &&
+           (s->emissivity > 0 || s->power == 0);
+}
+
 static bool sources_valid(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     const uint32_t bodies = heat->given_bodies;
     if (heat->spheres > 0 && (s->temperature == NULL || s->emissivity == NULL)) return false;
     if (bodies > 0 && (s->body_temperature == NULL || s->body_emissivity == NULL)) return false;
-    for (uint32_t i = 0; i < heat->spheres; i++)
-        if (!is_temperature(s->temperature[i]) || !is_share(s->emissivity[i])) return false;
-    for (uint32_t b = 0; b < bodies; b++)
-        if (!is_temperature(s->body_temperature[b]) || !is_share(s->body_emissivity[b])) return false;
+    for (uint32_t i = 0; i < heat->spheres; i++) {
+        const radiator source = of_sphere(s, i);
+        if (!source_valid(&source)) return false;
+    }
+    for (uint32_t b = 0; b < bodies; b++) {
+        const radiator source = of_body(s, b);
+        if (!source_valid(&source)) return false;
+    }
     return is_temperature(s->surroundings) && is_sigma(s->sigma) && s->tolerance >= 0 && s->tolerance < 1;
 }
 
@@ -32,41 +71,41 @@ static double emission_of(const fibrad_heat_sources *s, double t) {
     return s->sigma * (t * t + t0 * t0) * (t + t0) * (t - t0);
 }
 
-/* Widens a range of emissions by that of a body, if it emits. */
-static void widen_range(double range[2], double eps, double emission) {
-    if (eps > 0) range[0] = fibrad_min(range[0], emission), range[1] = fibrad_max(range[1], emission);
+/* Widens a range of emissions by that of a body, if it emits and one is known. */
+static void widen_range(double range[2], const fibrad_heat_sources *s, const radiator *source) {
+    const double t = is_given(source->temperature) ? source->temperature : source->reference;
+    if (source->emissivity == 0 || !is_given(t)) return;
+    const double emission = emission_of(s, t);
+    range[0] = fibrad_min(range[0], emission), range[1] = fibrad_max(range[1], emission);
 }
 
 /* The middle of what spheres and walls emit, where the radiosities of those that reflect all begin: so nothing flows
  * where all that emit do so alike. 0: none of them emits. */
 static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     double range[2] = {__builtin_inf(), -__builtin_inf()};
-    for (uint32_t i = 0; i < heat->spheres; i++)
-        widen_range(range, s->emissivity[i], emission_of(s, s->temperature[i]));
-    for (uint32_t b = 0; b < heat->given_bodies; b++)
-        widen_range(range, s->body_emissivity[b], emission_of(s, s->body_temperature[b]));
+    for (uint32_t i = 0; i < heat->spheres; i++) {
+        const radiator source = of_sphere(s, i);
+        widen_range(range, s, &source);
+    }
+    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+        const radiator source = of_body(s, b);
+        widen_range(range, s, &source);
+    }
     return range[0] <= range[1] ? range[0] + 0.5 * (range[1] - range[0]) : 0;
 }
 
-/* Emissivity and emission of a body; `middle` for one that reflects all, whose own plays no part. What lies beyond the
- * patches of a wall receives no more than the surroundings send, its area being infinite; so it is like a black body of
- * that radiosity. */
-static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b) {
-    const uint32_t spheres = heat->spheres;
-    double eps = 1, emission = 0;
-    if (b < spheres) {
-        const uint32_t i = heat->order[b];
-        eps = s->emissivity[i], emission = emission_of(s, s->temperature[i]);
-    } else if (b + 1 < heat->bodies) {
-        const uint32_t wall = (b - spheres) % FIBRAD_WALLS;
-        const double wall_eps = heat->wall_emissivity[wall], wall_emission = heat->wall_emission[wall];
-        if (b < spheres + FIBRAD_WALLS)
-            eps = wall_eps, emission = wall_emission;
-        else
-            emission = wall_eps * wall_emission;
-    }
-    if (eps == 0) emission = middle;
-    /* an earlier solution goes up or down with the emission; the coarser level begins with what it had of it */
+/* The emission of a body, given or to begin with: that of its reference, of the last solution, or `middle`. */
+static double first_emission(const fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b,
+                             const radiator *source) {
+    if (source->emissivity == 0) return middle;
+    if (is_given(source->temperature)) return emission_of(s, source->temperature);
+    if (is_given(source->reference)) return emission_of(s, source->reference);
+    return heat->warm ? heat->emission[b] + emission_of(s, heat->surroundings) : middle;
+}
+
+/* Sets emissivity and emission, and moves the radiosities of an earlier solution up or down with the latter; the
+ * coarser level begins with what it had of it. */
+static void set_emission(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b, double eps, double emission) {
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
         if (heat->warm && !s->uniform && eps < 1)
             heat->radiosity[a] += emission - heat->emission[b] - heat->detail[a];
@@ -74,23 +113,66 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
             heat->radiosity[a] = emission, heat->detail[a] = 0;
     }
     heat->emissivity[b] = eps, heat->emission[b] = emission;
+    heat->drive[b] = 0, heat->hold[b] = -1;
+}
+
+static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b,
+                     const radiator *source) {
+    set_emission(heat, s, b, source->emissivity, first_emission(heat, s, middle, b, source));
+    heat->temperature[b] = source->emissivity > 0 ? source->temperature : __builtin_nan("");
+    if (source->emissivity == 0 || is_given(source->temperature)) return;
+    heat->hold[b] = source->hold;
+    heat->drive[b] = source->power + (source->hold > 0 ? source->hold * emission_of(s, source->reference) : 0);
+}
+
+/* What lies beyond the patches of a wall receives no more than the surroundings send, its area being infinite; so it is
+ * like a black body of that radiosity. */
+static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double middle) {
+    static const radiator absent = {0, 0, 0, 0, 0};
+    radiator source[FIBRAD_WALLS];
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++) source[k] = absent, heat->insulated[k] = false;
+    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+        source[heat->slot[b]] = of_body(s, b);
+        heat->insulated[heat->slot[b]] = s->insulated != NULL && s->insulated[b] != 0;
+    }
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
+        const bool emits = source[k].emissivity > 0 && is_given(source[k].temperature);
+        heat->wall_emissivity[k] = source[k].emissivity;
+        heat->wall_emission[k] = emits ? emission_of(s, source[k].temperature) : 0;
+        set_body(heat, s, middle, fibrad_heat_wall_body(heat, k), &source[k]);
+        set_emission(heat, s, fibrad_heat_beyond(heat, k), 1, heat->wall_emissivity[k] * heat->wall_emission[k]);
+    }
+    set_emission(heat, s, heat->bodies - 1, 1, 0);
+}
+
+/* Whether a wall goes on for ever whose temperature is to be found: what it gives off then has no bound. */
+static bool endless_unknown(const fibrad_heat *heat, const fibrad_heat_sources *s) {
+    bool found = false;
+    for (uint32_t b = 0; b < heat->given_bodies; b++) {
+        const radiator source = of_body(s, b);
+        found =
+            found || (heat->wall[heat->slot[b]].unbounded && source.emissivity > 0 && !is_given(source.temperature));
+    }
+    return found;
 }
 
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     if (heat == NULL || sources == NULL || !sources_valid(heat, sources)) return FIBRAD_E_ARGUMENT;
+    if (endless_unknown(heat, sources)) return FIBRAD_E_UNSUPPORTED;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
         if (!heat->traced[task]) return FIBRAD_E_STATE;
-    fibrad_zero(heat->wall_emissivity, sizeof heat->wall_emissivity);
-    fibrad_zero(heat->wall_emission, sizeof heat->wall_emission);
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
-        heat->wall_emissivity[heat->slot[b]] = sources->body_emissivity[b];
-        heat->wall_emission[heat->slot[b]] = emission_of(sources, sources->body_temperature[b]);
-    }
     const double middle = middle_emission(heat, sources);
-    for (uint32_t b = 0; b < heat->bodies; b++) set_body(heat, sources, middle, b);
+    bool unknown = false;
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        const radiator source = of_sphere(sources, heat->order[b]);
+        set_body(heat, sources, middle, b, &source);
+    }
+    set_walls(heat, sources, middle);
+    for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->hold[b] == 0;
+    heat->sigma = sources->sigma, heat->surroundings = sources->surroundings;
     heat->group = sources->uniform ? UINT32_MAX : 4;
-    heat->tolerance = sources->tolerance > 0 ? sources->tolerance : HEAT_TOLERANCE;
+    heat->tolerance = sources->tolerance > 0 ? sources->tolerance : unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;
     heat->limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
     heat->sweeps = 0;
     heat->warm = false;

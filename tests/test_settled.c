@@ -1,0 +1,255 @@
+/* test_settled.c - temperatures that are found for given powers: against closed forms, and against the powers that the
+ * same temperatures have when they are given. SPDX-License-Identifier: MIT */
+#include "scenes.h"
+#include "simple/fibrad_host.h"
+#include "suite.h"
+
+enum { N = 40, WALLS = 6 };
+
+static const double pi = 3.14159265358979323846, sigma = FIBRAD_STEFAN_BOLTZMANN, unknown = NAN;
+
+/* A bed in a box, or in the open, and all that goes in and comes out. */
+struct settled {
+    struct bed bed;
+    fibrad_body body[WALLS];
+    fibrad_scene_config scene;
+    fibrad_heat_config config;
+    fibrad_heat_sources sources;
+    fibrad_heat_result result;
+    double temperature[N], emissivity[N], power[N], hold[N], reference[N];
+    double wall_temperature[WALLS], wall_emissivity[WALLS], wall_power[WALLS];
+    unsigned char insulated[WALLS];
+    struct {
+        double power[N], temperature[N], error[N], wall_power[WALLS], wall_temperature[WALLS];
+    } found;
+};
+
+static void begin(struct settled *s, struct bed bed) {
+    *s = (struct settled){.bed = bed};
+    for (int axis = 0; axis < 3; axis++) s->scene.period[axis] = bed.period[axis];
+    for (uint32_t i = 0; i < N; i++) s->temperature[i] = 300, s->emissivity[i] = .8, s->reference[i] = NAN;
+    fibrad_heat_sources_init(&s->sources);
+    s->sources.temperature = s->temperature, s->sources.emissivity = s->emissivity;
+    s->sources.surroundings = 300;
+    s->result = (fibrad_heat_result){.power = s->found.power,
+                                     .body_power = s->found.wall_power,
+                                     .temperature = s->found.temperature,
+                                     .body_temperature = s->found.wall_temperature,
+                                     .temperature_error = s->found.error};
+}
+
+static void add_wall(struct settled *s, int axis, int upper, double at, double temperature, double emissivity) {
+    const uint32_t k = s->scene.bodies++;
+    s->body[k] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {axis, upper, at}};
+    s->scene.body = s->body;
+    s->wall_temperature[k] = temperature, s->wall_emissivity[k] = emissivity;
+    s->sources.body_temperature = s->wall_temperature, s->sources.body_emissivity = s->wall_emissivity;
+}
+
+/* N unequal spheres in a box of six grey walls. */
+static void begin_box(struct settled *s, uint64_t seed) {
+    struct bed bed = packing(N, .3, 1, .3, seed, false);
+    begin(s, bed);
+    for (uint32_t i = 0; i < N; i++) {
+        s->temperature[i] = 400 + 20 * (i * 7 % N);
+        s->emissivity[i] = i % 8 == 0 ? 1 : .2 + .7 * (i * 11 % N) / N;
+    }
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < N; i++) {
+        const double at[3] = {bed.x[i], bed.y[i], bed.z[i]};
+        for (int a = 0; a < 3; a++) low[a] = fmin(low[a], at[a] - bed.r[i]), high[a] = fmax(high[a], at[a] + bed.r[i]);
+    }
+    for (int k = 0; k < WALLS; k++)
+        add_wall(s, k / 2, k % 2, k % 2 ? high[k / 2] + .1 : low[k / 2] - .1, 300 + 150 * k, .25 + .12 * k);
+}
+
+static int settle(struct settled *s) {
+    fibrad_radiation *radiation;
+    const fibrad_spheres spheres = {.x = s->bed.x, .y = s->bed.y, .z = s->bed.z, .r = s->bed.r, .n = s->bed.n};
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, &s->scene, &spheres, &s->config, NULL), FIBRAD_OK);
+    const int status = fibrad_radiation_solve(radiation, &s->sources, &s->result);
+    fibrad_radiation_free(radiation);
+    return status;
+}
+
+static void close_to(double value, double truth, double error) {
+    ck_assert_msg(fabs(value - truth) <= error * fabs(truth), "%.9g is not %.9g, off by %.2g", value, truth,
+                  value / truth - 1);
+}
+
+/* A sphere alone gives off A eps sigma (T^4 - T0^4), less what holds it. */
+START_TEST(one_sphere) {
+    static const double eps[] = {.1, .5, 1}, hold[] = {0, 3, 1e6};
+    for (int k = 0; k < 9; k++) {
+        struct settled s;
+        begin(&s, bed_of(1, (const double[][4]){{0, 0, 0, .5}}));
+        s.temperature[0] = unknown, s.emissivity[0] = eps[k % 3], s.power[0] = 5e4, s.hold[0] = hold[k / 3];
+        s.reference[0] = 900;
+        s.sources.power = s.power, s.sources.hold = s.hold, s.sources.reference = s.reference;
+        s.sources.tolerance = 1e-12;
+        ck_assert_int_eq(settle(&s), FIBRAD_OK);
+        const double link = pi * eps[k % 3], t0 = 300, t1 = 900;
+        const double e =
+            (5e4 + sigma * (hold[k / 3] * pow(t1, 4) + link * pow(t0, 4))) / (sigma * (hold[k / 3] + link));
+        close_to(s.found.temperature[0], pow(e, .25), 1e-9);
+        close_to(-s.found.power[0], link * sigma * (e - pow(t0, 4)), hold[k / 3] > 1e3 ? 1e-6 : 1e-9);
+        ck_assert_double_eq_tol(s.found.power[0] + s.result.surroundings_power, 0, 1e-9 * 5e4);
+        bed_free(&s.bed);
+    }
+}
+END_TEST
+
+/* Between endless plates, without spheres: q = sigma (T1^4 - T2^4)/(1/e1 + 1/e2 - 1). */
+START_TEST(plates) {
+    struct settled s;
+    begin(&s, bed_of(0, NULL));
+    s.scene.period[0] = s.scene.period[1] = 2;
+    add_wall(&s, 2, 0, 0, unknown, .3);
+    add_wall(&s, 2, 1, 1.5, 500, .6);
+    s.sources.body_power = s.wall_power;
+    s.wall_power[0] = 4 * 8000;
+    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    close_to(s.found.wall_temperature[0], pow(pow(500, 4) + 8000 / sigma * (1 / .3 + 1 / .6 - 1), .25), 1e-6);
+    close_to(s.found.wall_power[1], 4 * 8000, 1e-9);
+    ck_assert_double_eq(s.found.wall_temperature[1], 500);
+    bed_free(&s.bed);
+}
+END_TEST
+
+/* Powers of given temperatures, given back for every other body: the temperatures. Exactly so with one radiosity per
+ * body; with patches both extrapolate, so that squares of what that changes remain. */
+START_TEST(there_and_back) {
+    for (int uniform = 0; uniform < 2; uniform++) {
+        struct settled s;
+        double temperature[N], wall_temperature[WALLS];
+        begin_box(&s, 7);
+        s.sources.uniform = uniform, s.sources.tolerance = 1e-9;
+        ck_assert_int_eq(settle(&s), FIBRAD_OK);
+        memcpy(temperature, s.temperature, sizeof temperature);
+        memcpy(wall_temperature, s.wall_temperature, sizeof wall_temperature);
+        for (uint32_t i = 0; i < N; i++) {
+            ck_assert_double_eq_tol(s.found.temperature[i], temperature[i], 1e-9 * temperature[i]);
+            s.power[i] = -s.found.power[i];
+            if (i % 2) s.temperature[i] = unknown;
+        }
+        for (int k = 0; k < WALLS; k++) s.wall_power[k] = -s.found.wall_power[k];
+        s.wall_temperature[2] = s.wall_temperature[5] = unknown;
+        s.sources.power = s.power, s.sources.body_power = s.wall_power;
+        ck_assert_int_eq(settle(&s), FIBRAD_OK);
+        for (uint32_t i = 0; i < N; i++) close_to(s.found.temperature[i], temperature[i], uniform ? 1e-7 : 1e-3);
+        for (int k = 0; k < WALLS; k++)
+            close_to(s.found.wall_temperature[k], wall_temperature[k], uniform ? 1e-7 : 1e-3);
+        for (uint32_t i = 1; i < N; i += 2) ck_assert_double_eq(s.found.power[i], -s.power[i]);
+        bed_free(&s.bed);
+    }
+}
+END_TEST
+
+/* In a box at one temperature bodies that give off nothing have it too. */
+START_TEST(equilibrium) {
+    struct settled s;
+    begin_box(&s, 3);
+    s.sources.power = s.power, s.sources.body_power = s.wall_power, s.sources.insulated = s.insulated;
+    for (int k = 0; k < WALLS; k++) s.wall_temperature[k] = k == 1 ? unknown : 700;
+    s.insulated[4] = 1;
+    for (uint32_t i = 0; i < N; i++) s.temperature[i] = unknown;
+    s.emissivity[5] = 0;
+    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    for (uint32_t i = 0; i < N; i++)
+        if (i != 5) close_to(s.found.temperature[i], 700, 1e-12);
+    ck_assert(isnan(s.found.temperature[5]));
+    for (int k = 0; k < WALLS; k++) close_to(s.found.wall_temperature[k], 700, 1e-12);
+    bed_free(&s.bed);
+}
+END_TEST
+
+/* An insulated wall is one that reflects all, but has a temperature: between those about it. */
+START_TEST(insulated) {
+    struct settled s;
+    double power[N];
+    begin_box(&s, 5);
+    for (int k = 0; k < WALLS; k++) s.wall_emissivity[k] = k == 3 ? 0 : .7;
+    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    ck_assert(isnan(s.found.wall_temperature[3]));
+    memcpy(power, s.found.power, sizeof power);
+    s.wall_emissivity[3] = .4, s.insulated[3] = 1, s.wall_temperature[3] = unknown;
+    s.sources.insulated = s.insulated;
+    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    ck_assert_mem_eq(power, s.found.power, sizeof power);
+    ck_assert_double_eq(s.found.wall_power[3], 0);
+    ck_assert(s.found.wall_temperature[3] > 300 && s.found.wall_temperature[3] < 1200);
+    bed_free(&s.bed);
+}
+END_TEST
+
+/* Nothing has a given temperature: powers add up to zero, or there is no solution. */
+START_TEST(afloat) {
+    struct settled s;
+    double sum = 0, weights = 0;
+    begin_box(&s, 9);
+    for (uint32_t i = 0; i < N; i++) s.temperature[i] = unknown, s.power[i] = i % 2 ? 1000 : -1000;
+    for (int k = 0; k < WALLS; k++) s.wall_temperature[k] = unknown;
+    s.sources.power = s.power, s.sources.body_power = s.wall_power;
+    s.sources.surroundings = 800, s.sources.uniform = 1;
+    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    for (uint32_t i = 0; i < N; i++) {
+        const double weight = s.emissivity[i] * 4 * pi * s.bed.r[i] * s.bed.r[i];
+        sum += weight * pow(s.found.temperature[i], 4), weights += weight;
+    }
+    for (int k = 0; k < WALLS; k++) {
+        const fibrad_body *b = s.body;
+        const double size[3] = {b[1].plane.at - b[0].plane.at, b[3].plane.at - b[2].plane.at,
+                                b[5].plane.at - b[4].plane.at};
+        const double weight = s.wall_emissivity[k] * size[0] * size[1] * size[2] / size[k / 2];
+        sum += weight * pow(s.found.wall_temperature[k], 4), weights += weight;
+    }
+    close_to(sum / weights, pow(800, 4), .01); /* areas as beams have them */
+    for (uint32_t i = 0; i < N; i++) ck_assert_double_eq_tol(s.found.power[i], -s.power[i], 1e-6 * 1000);
+    s.power[0] = -999;
+    ck_assert_int_eq(settle(&s), FIBRAD_E_UNSOLVABLE);
+    s.wall_temperature[0] = 800; /* which takes up the rest */
+    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    bed_free(&s.bed);
+}
+END_TEST
+
+START_TEST(refused) {
+    struct settled s;
+    begin_box(&s, 1);
+    s.temperature[3] = unknown; /* and no powers */
+    ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
+    s.sources.power = s.power;
+    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    s.power[3] = NAN;
+    ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
+    s.power[3] = 10, s.emissivity[3] = 0;
+    ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
+    s.emissivity[3] = .5, s.power[3] = -1e7; /* more than it can take up */
+    ck_assert_int_eq(settle(&s), FIBRAD_E_UNSOLVABLE);
+    ck_assert(isnan(s.found.temperature[3]) && s.found.temperature[2] == s.temperature[2]);
+    s.power[3] = 10, s.hold[3] = 1, s.sources.hold = s.hold; /* held at what? */
+    ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
+    s.hold[3] = 0;
+    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    s.wall_temperature[2] = unknown;
+    ck_assert_int_eq(settle(&s), FIBRAD_E_ARGUMENT);
+    s.sources.body_power = s.wall_power;
+    ck_assert_int_eq(settle(&s), FIBRAD_OK);
+    s.scene.bodies = 3; /* walls without end */
+    ck_assert_int_eq(settle(&s), FIBRAD_E_UNSUPPORTED);
+    bed_free(&s.bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("settled");
+    TCase *tcase = suite_case(suite, "settled");
+    tcase_add_test(tcase, one_sphere);
+    tcase_add_test(tcase, plates);
+    tcase_add_test(tcase, there_and_back);
+    tcase_add_test(tcase, equilibrium);
+    tcase_add_test(tcase, insulated);
+    tcase_add_test(tcase, afloat);
+    tcase_add_test(tcase, refused);
+    return suite_run(suite);
+}
