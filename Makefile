@@ -193,6 +193,7 @@ HOST = \
     host/command/command_join.c \
     host/command/command_pair.c \
     host/command/command_reproduce.c \
+    host/command/heat_given.c \
     host/command/heat_run.c
 
 TESTS = \

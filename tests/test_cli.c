@@ -87,6 +87,15 @@ static const struct {
      "one number for all others; name the walls, such as xmin=400"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=zmin"},
      "--wall-temperature: none for zmin; give zmin=NUMBER"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--power=4"}, "a sphere has the one or the other given"},
+    {{"heat", MONO, "--emissivity=.5", "--power=1e40"}, "--power: 1e40 is not within"},
+    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-power=zmin=1",
+      "--wall-temperature=zmin=3"},
+     "zmin has both a temperature and a power"},
+    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-power=zmin=1"},
+     "zmin goes on for ever; it needs its --wall-temperature"},
+    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-temperature=isolated"},
+     "'isolated' is neither NAME=NUMBER nor a number"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "-o", "q.mtx"},
      "unknown ending; there are .csv, .vtp, .json, .dump"},
     {{"conductivity", MONO}, "which --emissivity"},
@@ -418,7 +427,7 @@ static int read_powers(const char *path, double *sum, double *largest, long want
                        double *power) {
     char *text = read_file(path), *line = strchr(text, '\n');
     int count = 0;
-    ck_assert_int_eq(strncmp(text, "i,T_K,q_W,body\n", 15), 0);
+    ck_assert_int_eq(strncmp(text, "i,T_K,q_W,q_error_W,T_error_K,body\n", 15), 0);
     for (*sum = *largest = 0; line && line[1]; line = strchr(line + 1, '\n'), count++) {
         long i;
         double t, q;
@@ -430,6 +439,54 @@ static int read_powers(const char *path, double *sum, double *largest, long want
     free(text);
     return count;
 }
+
+/* Temperatures of spheres and walls whose powers are given; why there are none. */
+START_TEST(temperatures) {
+    const char *file = write_file("warm.csv", "x,y,z,r,eps,type\n0,0,0,1,.5,1\n3,0,0,1,.8,2\n0,2.5,0,.7,0,1\n");
+    const char *out = in_folder("q.csv");
+    double sum, largest, t = 0, q = 0;
+    SUCCEED("heat", file, "--emissivity", "eps", "--temperature", "2:900", "--power", "1:0", "--ambient", "300", "-o",
+            out);
+    ck_assert_int_eq(read_powers(out, &sum, &largest, 0, &t, &q), 4);
+    ck_assert(t > 300 && t < 900 && q == 0);
+    ck_assert_double_eq(value_of("temperature_mean_K"), value_of("temperature_min_K"));
+    read_powers(out, &sum, &largest, 2, &t, &q);
+    ck_assert(isnan(t) && q == 0);
+
+    /* millimetres: areas, and powers with them, are 1e6 times smaller */
+    double warm[2];
+    for (int k = 0; k < 2; ++k) {
+        SUCCEED("heat", file, "--emissivity", ".5", "--power", k ? "4e-3" : "4e3", "--length-unit", k ? "mm" : "m",
+                "--wall", "box", "--wall-temperature", "zmax=400,insulated", "--wall-power",
+                k ? "xmin=1e-2" : "xmin=1e4", "--wall-emissivity", ".6", "-o", out);
+        read_powers(out, &sum, &largest, 1, &warm[k], &q);
+        ck_assert_double_le(fabs(sum), 1e-12 * largest);
+        ck_assert_double_eq_tol(q, k ? -4e-3 : -4e3, 1e-14 * fabs(q));
+        ck_assert_double_eq_tol(value_of("wall_xmin_W"), k ? -1e-2 : -1e4, 1e-6 * fabs(q));
+        ck_assert_double_gt(value_of("wall_xmin_K"), 400);
+        ck_assert_double_gt(value_of("wall_zmin_K"), 400);
+    }
+    ck_assert_double_eq_tol(warm[0], warm[1], 1e-9 * warm[0]);
+
+    ck_assert_int_eq(RUN("heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "4", "--wall", "box",
+                         "--wall-temperature", "insulated"),
+                     3);
+    expect_message(file, "its powers add up to 12 W, not to 0");
+    ck_assert_int_eq(
+        RUN("heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "-1e6", "--ambient", "300"), 3);
+    expect_message(file, "sphere 0: no temperature above 0 K gives off -1e+06 W here");
+    ck_assert_int_eq(
+        RUN("heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:4", "--ambient", "300"), 3);
+    expect_message(file, "sphere 1 has neither a temperature nor a power");
+    ck_assert_int_eq(RUN("heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "1:4", "--temperature",
+                         "1:4,2:5", "--ambient", "300"),
+                     3);
+    expect_message(file, "sphere 0 has both a temperature and a power");
+    ck_assert_int_eq(RUN("heat", file, "--length-unit", "m", "--emissivity", "eps", "--power", "4", "--ambient", "300"),
+                     3);
+    expect_message(file, "sphere 2 reflects all (emissivity 0): it cannot give off 4 W");
+}
+END_TEST
 
 START_TEST(powers) {
     const char *file = write_file("hot.csv", "x,y,z,r,eps,T\n0,0,0,1,.5,600\n2,0,0,1,.8,300\n0,2.5,0,.7,1,450\n");
@@ -926,6 +983,7 @@ int main(void) {
     tcase_add_test(beds, frames_periods_and_ids);
     tcase_add_test(beds, exchange_factors);
     tcase_add_test(beds, powers);
+    tcase_add_test(beds, temperatures);
     tcase_add_test(beds, conductivity);
     tcase_add_test(beds, points_and_cutoff);
     tcase_add_test(beds, paraview_and_picture);

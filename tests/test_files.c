@@ -251,7 +251,7 @@ START_TEST(all_frames) {
     SUCCEED(HEAT, bed, "--frame", "all", "--ambient", "300", "-o", all, "-o", in_folder("q.*.vtp"), "-o",
             in_folder("all.json"));
     char *text = read_file(all), *at = strchr(text, '\n') + 1;
-    ck_assert_int_eq(strncmp(text, "frame,timestep,i,T_K,q_W,body\n", 30), 0);
+    ck_assert_int_eq(strncmp(text, "frame,timestep,i,T_K,q_W,q_error_W,T_error_K,body\n", 30), 0);
     for (int k = 0; k < 3; ++k) {
         const char *one = in_folder("one.csv");
         SUCCEED(HEAT, bed, "--frame", number[k], "--ambient", "300", "-o", one);

@@ -39,7 +39,16 @@ static double kelvins[] = {600, 1.0 / 3, 1e-300}, watts[] = {-1e-3, 2.5, 1e300},
               wall_watts[] = {-0.1, 1e17};
 static fibrad_heat_sources sources = {
     .temperature = kelvins, .emissivity = r, .body_temperature = wall_kelvins, .surroundings = 300};
-static fibrad_heat_result result = {.power = watts, .body_power = wall_watts, .surroundings_power = 0.1};
+static double missed[] = {.25, .5, .75}, wall_missed[] = {2, NAN}, none_missed[] = {0, 1, 0};
+static fibrad_heat_result result = {.power = watts,
+                                    .body_power = wall_watts,
+                                    .surroundings_power = 0.1,
+                                    .temperature = kelvins,
+                                    .body_temperature = wall_kelvins,
+                                    .power_error = missed,
+                                    .body_error = wall_missed,
+                                    .temperature_error = none_missed,
+                                    .body_temperature_error = none_missed};
 
 static void write_text(write_function *write, const struct contents *what, bool first) {
     FILE *file = tmpfile();
@@ -167,7 +176,7 @@ START_TEST(series) {
     write_text(write_csv, &what, true);
     expect_begin("file,frame,timestep,i,j,F\n");
     write_heat(write_heat_csv, &(struct contents){.bed = &bed, .series = true});
-    expect_begin("frame,timestep,i,T_K,q_W,body\n0,1200,0,600,");
+    expect_begin("frame,timestep,i,T_K,q_W,q_error_W,T_error_K,body\n0,1200,0,600,");
 }
 END_TEST
 
@@ -178,9 +187,10 @@ START_TEST(heat) {
         sources.surroundings = closed ? NAN : 300;
         write_heat(write_heat_csv, &(struct contents){.bed = &bed, .walls = &walls});
         snprintf(all, sizeof all,
-                 "i,T_K,q_W,body\n0,600,-0.001,\n70,%.17g,2.5,\n123456789012,%.17g,1.0000000000000001e+300,\n%s"
-                 "-2,900,-0.10000000000000001,cylinder\n-3,77,1e+17,zmin\n",
-                 kelvins[1], kelvins[2], closed ? "" : "-1,300,0.10000000000000001,surroundings\n");
+                 "i,T_K,q_W,q_error_W,T_error_K,body\n0,600,-0.001,0.25,0,\n70,%.17g,2.5,0.5,1,\n"
+                 "123456789012,%.17g,1.0000000000000001e+300,0.75,0,\n%s"
+                 "-2,900,-0.10000000000000001,2,0,cylinder\n-3,77,1e+17,,1,zmin\n",
+                 kelvins[1], kelvins[2], closed ? "" : "-1,300,0.10000000000000001,,0,surroundings\n");
         ck_assert_str_eq(text, all);
         write_heat(write_heat_json, &(struct contents){.bed = &bed, .walls = &walls});
         ck_assert((strstr(text, "surroundings") == NULL) == closed);
@@ -207,7 +217,7 @@ START_TEST(json) {
     write_heat(write_heat_json, &(struct contents){.bed = &plain});
     snprintf(all, sizeof all,
              "{\"kind\":\"heat\",\"frame\":7,\"timestep\":null,\"id\":[0,1,2],\"T_K\":[600,%.17g,%.17g],"
-             "\"q_W\":[-0.001,2.5,1.0000000000000001e+300]}\n",
+             "\"q_W\":[-0.001,2.5,1.0000000000000001e+300],\"q_error_W\":[0.25,0.5,0.75],\"T_error_K\":[0,1,0]}\n",
              kelvins[1], kelvins[2]);
     ck_assert_str_eq(text, all);
 }

@@ -47,6 +47,7 @@ int quantity_option(const char *what, const char *text, double low, double high,
 
 /* The value of sphere i; NaN: its type has none. */
 static double value_of_sphere(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
+    if (!quantity->given) return NAN;
     if (!quantity->column) return quantity->value;
     const double found = bed->extra[i * bed->extras + quantity->place];
     if (!quantity->types) return found;
@@ -61,7 +62,7 @@ int quantity_values(const struct quantity *quantity, const struct bed *bed, cons
     if (!v) return message_memory();
     for (uint32_t i = 0; i < bed->n; ++i) {
         v[i] = value_of_sphere(quantity, bed, i) + offset;
-        if (v[i] >= low && v[i] <= high) continue;
+        if ((v[i] >= low && v[i] <= high) || (quantity->some && isnan(v[i]))) continue;
         if (quantity->types && isnan(v[i]))
             return message_at(STATUS_INPUT, file, bed->line[i], "the list of the %s has no type %g", what,
                               bed->extra[i * bed->extras + quantity->place]);
@@ -72,10 +73,10 @@ int quantity_values(const struct quantity *quantity, const struct bed *bed, cons
 }
 
 /* One item of a list: NAME=VALUE or VALUE; `wall`: the number of the wall named, or -1. *text moves behind it. */
-static int take_wall_value(const char *option, const char **text, const struct walls *walls, int *wall, double *value) {
+static int take_wall_value(const char *option, const char **text, const char *word, const struct walls *walls,
+                           int *wall, double *value) {
     const size_t length = strcspn(*text, "=,");
     const bool named = (*text)[length] == '=';
-    char *end;
     *wall = -1;
     for (uint32_t k = 0; k < walls->count && named; ++k) {
         const char *name = wall_name(&walls->body[k]);
@@ -84,39 +85,47 @@ static int take_wall_value(const char *option, const char **text, const struct w
     if (named && *wall < 0)
         return message(STATUS_USAGE, "%s: there is no wall %.*s", option, length > 40 ? 40 : (int)length, *text);
     const char *number = named ? *text + length + 1 : *text;
-    *value = strtod(number, &end);
+    const bool is_word = word && strcspn(number, ",") == strlen(word) && strncmp(number, word, strlen(word)) == 0;
+    char *end = (char *)number + (is_word ? strlen(word) : 0);
+    *value = is_word ? INFINITY : strtod(number, &end);
     if (end == number || (*end && *end != ','))
         return message(STATUS_USAGE, "%s: '%.40s' is neither NAME=NUMBER nor a number", option, *text);
     *text = *end ? end + 1 : end;
     return STATUS_OK;
 }
 
-int wall_values(const char *option, const char *text, double otherwise, double low, double high,
-                const struct walls *walls, double values[WALLS_MAX]) {
-    bool named[WALLS_MAX] = {false}, bare = false;
+int wall_list(const char *option, const char *text, const char *word, double low, double high,
+              const struct walls *walls, struct wall_list *list) {
+    *list = (struct wall_list){.others = NAN};
     if (text && walls->count == 0) return message(STATUS_USAGE, "%s: there are no walls", option);
     while (text && *text) {
         int wall;
         double value = 0;
-        const int status = take_wall_value(option, &text, walls, &wall, &value);
+        const int status = take_wall_value(option, &text, word, walls, &wall, &value);
         if (status) return status;
-        if (!(value >= low && value <= high))
+        if (!(value >= low && value <= high) && !(word && isinf(value)))
             return message(STATUS_USAGE, "%s: %g is not within %g and %g", option, value, low, high);
-        if (wall < 0 ? bare : named[wall])
+        if (wall < 0 ? !isnan(list->others) : list->named[wall])
             return message(STATUS_USAGE,
                            wall < 0 ? "%s: one number for all others; name the walls, such as %s=%g"
                                     : "%s: %s has two values, the second %g",
                            option, wall_name(&walls->body[wall < 0 ? 0 : wall]), value);
-        if (wall < 0) {
-            bare = true;
-            otherwise = value;
-        } else {
-            named[wall] = true;
-            values[wall] = value;
-        }
+        if (wall < 0)
+            list->others = value;
+        else
+            list->named[wall] = true, list->value[wall] = value;
     }
+    return STATUS_OK;
+}
+
+int wall_values(const char *option, const char *text, double otherwise, double low, double high,
+                const struct walls *walls, double values[WALLS_MAX]) {
+    struct wall_list list;
+    const int status = wall_list(option, text, NULL, low, high, walls, &list);
+    if (status) return status;
+    if (!isnan(list.others)) otherwise = list.others;
     for (uint32_t k = 0; k < walls->count; ++k) {
-        if (!named[k]) values[k] = otherwise;
+        values[k] = list.named[k] ? list.value[k] : otherwise;
         if (isnan(values[k]))
             return message(STATUS_USAGE, "%s: none for %s; give %s=NUMBER, or one number for all", option,
                            wall_name(&walls->body[k]), wall_name(&walls->body[k]));
@@ -126,7 +135,7 @@ int wall_values(const char *option, const char *text, double otherwise, double l
 
 void quantity_report(const struct quantity *quantity, const char *key, struct report *report) {
     char of_type[60];
-    if (!quantity->column) report_value(report, key, quantity->value, 6);
+    if (quantity->given && !quantity->column) report_value(report, key, quantity->value, 6);
     if (quantity->column && !quantity->types) {
         snprintf(of_type, sizeof of_type, "column %.40s", quantity->column);
         report_text(report, key, of_type);

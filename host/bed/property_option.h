@@ -23,6 +23,7 @@
 enum { QUANTITY_TYPES_MAX = 64 };
 struct quantity {
     bool given;
+    bool some; /* spheres may have none: NaN */
     double value;
     const char *column;                                           /* NULL: value */
     size_t place;                                                 /* of the column in bed->extra */
@@ -35,18 +36,29 @@ int quantity_option(const char *what, const char *text, double low, double high,
 
 /* The values of all spheres [n], to be freed also after an error; `file` is the bed's name and `what` that of the
  * quantity in messages. offset is added. Status 0, STATUS_INPUT naming the line of one that is not in [low, high], or
- * STATUS_MEMORY. */
+ * STATUS_MEMORY. Without the option, and where quantity->some: NaN. */
 int quantity_values(const struct quantity *quantity, const struct bed *bed, const char *file, const char *what,
                     double offset, double low, double high, double **values);
 
-/* Spreads a list such as zmin=1200,300 over the walls: by name, a bare number for all others, `otherwise` if there is
- * none; values are in [low, high]. text NULL: no list. Status 0, or STATUS_USAGE naming the wall that is not there or
- * has no value, `otherwise` being NaN. */
+/* A list such as zmin=1200,300: values by name, a bare number for all others. */
+struct wall_list {
+    bool named[WALLS_MAX];
+    double value[WALLS_MAX]; /* of those named */
+    double others;           /* NaN: there is no bare number */
+};
+
+/* Takes such a list of values in [low, high], or the word (NULL: none), which is INFINITY. text NULL: no list. Status
+ * 0, or STATUS_USAGE naming the wall that is not there. */
+int wall_list(const char *option, const char *text, const char *word, double low, double high,
+              const struct walls *walls, struct wall_list *list);
+
+/* Spreads such a list over the walls, `otherwise` where there is neither name nor bare number. Status 0, or
+ * STATUS_USAGE naming the wall that is not there or has no value, `otherwise` being NaN. */
 int wall_values(const char *option, const char *text, double otherwise, double low, double high,
                 const struct walls *walls, double values[WALLS_MAX]);
 
-/* Reports a quantity of spheres: its number, its types' numbers or its column; values of walls, each under the key
- * wall_NAME and this ending. */
+/* Reports a quantity of spheres if it was given: its number, its types' numbers or its column; values of walls, each
+ * under the key wall_NAME and this ending. */
 void quantity_report(const struct quantity *quantity, const char *key, struct report *report);
 void wall_values_report(const struct walls *walls, const double *values, const char *ending, int digits,
                         struct report *report);

@@ -122,12 +122,20 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
     return STATUS_OK;
 }
 
+/* Whether nothing can escape along an axis. */
+static bool is_closed(const struct walls *walls, const struct bed *bed, int axis) {
+    const bool both = wall_named(walls, plane_names[2 * axis]) && wall_named(walls, plane_names[2 * axis + 1]);
+    return bed->period[axis] > 0 || both || (axis < 2 && wall_named(walls, "cylinder"));
+}
+
 bool walls_closed(const struct walls *walls, const struct bed *bed) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const bool both = wall_named(walls, plane_names[2 * axis]) && wall_named(walls, plane_names[2 * axis + 1]);
-        if (!(bed->period[axis] > 0) && !both && !(axis < 2 && wall_named(walls, "cylinder"))) return false;
-    }
-    return true;
+    return is_closed(walls, bed, 0) && is_closed(walls, bed, 1) && is_closed(walls, bed, 2);
+}
+
+bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_body *wall) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(is_cylinder(wall) ? axis < 2 : axis == wall->plane.axis) && !is_closed(walls, bed, axis)) return true;
+    return false;
 }
 
 static bool is_beyond(const fibrad_body *wall, const double centre[3]) {

@@ -46,4 +46,7 @@ int walls_of(const struct wall_options *options, const struct bed *bed, const ch
 /* Whether nothing can escape: each axis is periodic or has both planes, or the cylinder stands about it. */
 bool walls_closed(const struct walls *walls, const struct bed *bed);
 
+/* Whether a wall goes on for ever along an axis. */
+bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_body *wall);
+
 #endif

@@ -41,7 +41,7 @@
     "frame, with several files counted through them all, from 0. Spheres go by the ids of the file, or by\n"           \
     "positions from 0 if it has none. docs/files.md\n"
 
-enum { BED_COLUMNS_MAX = 4 };
+enum { BED_COLUMNS_MAX = 8 };
 
 /* What was asked; zeroed to begin with. To be freed with bed_options_free. */
 struct bed_options {

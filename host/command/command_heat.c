@@ -8,19 +8,28 @@
 #include "cli/message.h"
 #include "command/bed_options.h"
 #include "command/commands.h"
+#include "command/heat_given.h"
 #include "command/heat_run.h"
 #include "plot/plot_heat.h"
 
-enum { KEY_TEMPERATURE = KEY_OWN, KEY_AMBIENT, KEY_WALL_TEMPERATURE, KEY_MODEL, KEY_PATCHES };
+enum {
+    KEY_TEMPERATURE = KEY_OWN,
+    KEY_POWER,
+    KEY_AMBIENT,
+    KEY_WALL_TEMPERATURE,
+    KEY_WALL_POWER,
+    KEY_MODEL,
+    KEY_PATCHES
+};
 
 static const struct option heat_table[] = {
     {OPTION_EMISSIVITY},
-    {KEY_TEMPERATURE, "temperature", "T", "of all spheres; or TYPE:T,... ; or the file's column of that name"},
-    {KEY_AMBIENT, "ambient", "T",
-     "of the surroundings, which are black; needed unless walls and periods close the bed"},
+    {KEY_TEMPERATURE, OPTION_TEMPERATURE},
+    {KEY_POWER, OPTION_POWER},
+    {KEY_AMBIENT, OPTION_AMBIENT},
     {OPTION_WALL},
-    {KEY_WALL_TEMPERATURE, "wall-temperature", "LIST",
-     "of the walls: zmin=1200,300: one number for all others; every wall needs one"},
+    {KEY_WALL_TEMPERATURE, OPTION_WALL_TEMPERATURE},
+    {KEY_WALL_POWER, OPTION_WALL_POWER},
     {OPTION_WALL_EMISSIVITY},
     {OPTION_TEMPERATURE_UNIT},
     {KEY_MODEL, "model", "NAME",
@@ -41,11 +50,10 @@ static const struct option heat_table[] = {
 
 struct heat_request {
     struct bed_options bed;
-    const char *plot, *wall_temperature, *wall_emissivity;
-    struct quantity emissivity, temperature;
-    double zero;         /* 0 of the unit of temperature [K] */
-    const char *ambient; /* NULL: not given */
-    bool counted;        /* --directions, --points or --patches was given */
+    struct given_options given;
+    const char *plot, *wall_emissivity;
+    struct quantity emissivity;
+    bool counted; /* --directions, --points or --patches was given */
     struct heat_problem problem;
     struct output picture;
 };
@@ -54,12 +62,17 @@ static int heat_help(void) {
     puts("fibrad heat FILE... --emissivity E --temperature T --ambient T [options]\n\n"
          "Net radiative power of every sphere of FILE, of walls and of the surroundings, all grey and diffuse, in "
          "watts;\n"
-         "positive where heat is gained. Temperatures in kelvins, lengths in the unit of the file.\n");
+         "positive where heat is gained; and the temperature of those whose power is given. Temperatures in kelvins,\n"
+         "lengths in the unit of the file.\n");
     options_print(heat_table);
-    puts("\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,T_K,q_W,body: spheres by name, the surroundings i = -1, "
-         "walls i = -2, -3 ... with their names "
-         "in\n"
-         "the column `body`. All q add up to zero. Spheres of emissivity 0 reflect all and gain nothing.\n"
+    puts("\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,T_K,q_W,body,q_error_W,T_error_K: spheres by name, the "
+         "surroundings i = -1, walls i = -2, -3\n"
+         "... with their names in the column `body`; errors as estimated. All q add up to zero. Spheres of emissivity "
+         "0\n"
+         "reflect all, gain nothing and have no temperature.\n"
+         "Powers given (--power, --wall-power) are given off from inside, > 0, so that q is their negative. With "
+         "columns\n"
+         "and lists by type each sphere has either a temperature or a power.\n"
          "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a "
          "*.\n"
          "Standard output ends with a summary of each, one `key value` a line. In it balance and error are relative to "
@@ -68,6 +81,8 @@ static int heat_help(void) {
          "Examples:\n"
          "  fibrad heat packing.dump --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
          "  fibrad heat 'bed.*.dump.gz' --frame all --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
+         "  fibrad heat packing.dump --emissivity 0.8 --power 40 --ambient 300 --wall box \\\n"
+         "      --wall-temperature zmin=1200,insulated -o q.csv\n"
          "  fibrad heat spheres.csv --length-unit mm --emissivity eps --temperature T --temperature-unit C \\\n"
          "      --wall box --wall-temperature zmin=900,20 -o q.csv\n"
          "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --wall zmin,cylinder:0,0,0.48 \\\n"
@@ -103,15 +118,20 @@ static int heat_take(struct heat_request *request, const struct options *options
     switch (key) {
     case KEY_EMISSIVITY:
         return quantity_option("--emissivity", value, 0, 1, &request->emissivity);
-    case KEY_TEMPERATURE: /* its unit is not known yet */
-        return quantity_option("--temperature", value, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, &request->temperature);
+    case KEY_TEMPERATURE:
+        return given_temperature_option(value, &request->given);
+    case KEY_POWER:
+        return given_power_option(value, &request->given);
     case KEY_TEMPERATURE_UNIT:
-        return temperature_unit_option(value, &request->zero);
+        return temperature_unit_option(value, &request->given.zero);
     case KEY_AMBIENT:
-        request->ambient = value;
+        request->given.ambient = value;
         return STATUS_OK;
     case KEY_WALL_TEMPERATURE:
-        request->wall_temperature = value;
+        request->given.wall_temperature = value;
+        return STATUS_OK;
+    case KEY_WALL_POWER:
+        request->given.wall_power = value;
         return STATUS_OK;
     case KEY_WALL_EMISSIVITY:
         request->wall_emissivity = value;
@@ -134,23 +154,10 @@ static int heat_take(struct heat_request *request, const struct options *options
     }
 }
 
-/* The temperature of the surroundings, if it was given; else NaN. */
-static int take_ambient(struct heat_request *request) {
-    double *ambient = &request->problem.sources.surroundings;
-    *ambient = NAN;
-    if (!request->ambient) return STATUS_OK;
-    const int status = options_number("--ambient", request->ambient, 0 - request->zero, TEMPERATURE_MAX, ambient);
-    *ambient += request->zero;
-    return status;
-}
-
 static int heat_check_request(struct heat_request *request) {
-    const int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT, request->plot);
+    int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT, request->plot);
     if (status) return status;
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
-    if (!request->temperature.given) return message(STATUS_USAGE, "which --temperature? see fibrad heat --help");
-    if (request->temperature.value < -request->zero)
-        return message(STATUS_USAGE, "--temperature: %g is below absolute zero", request->temperature.value);
     if (request->problem.error > 0 && request->counted)
         return message(STATUS_USAGE,
                        "--error finds directions and patches itself; leave out --directions, --points and --patches");
@@ -158,10 +165,9 @@ static int heat_check_request(struct heat_request *request) {
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
-    request->temperature.place =
-        bed_options_column(&request->bed, request->temperature.column, request->zero > 0 ? "C" : "K");
     if (request->problem.error > 0) request->problem.config.directions = 72;
-    return take_ambient(request);
+    status = given_check(&request->given, &request->bed);
+    return status ? status : given_ambient(&request->given, &request->problem.sources.surroundings);
 }
 
 static int heat_parse(struct heat_request *request, int argc, char **argv) {
@@ -180,9 +186,10 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
     bed_options_report(&request->bed, bed, &request->problem.walls, &heat->facts);
     report_text(report, "model", sources->uniform ? "spheres" : "patches");
     quantity_report(&request->emissivity, "emissivity", report);
-    quantity_report(&request->temperature, request->zero > 0 ? "temperature_C" : "temperature_K", report);
-    if (request->ambient) report_value(report, "surroundings_K", sources->surroundings, 6);
-    wall_values_report(&request->problem.walls, sources->body_temperature, "_K", 6, report);
+    quantity_report(&request->given.temperature, request->given.zero > 0 ? "temperature_C" : "temperature_K", report);
+    quantity_report(&request->given.power, "power_W", report);
+    if (request->given.ambient) report_value(report, "surroundings_K", sources->surroundings, 6);
+    wall_values_report(&request->problem.walls, result->body_temperature, "_K", 6, report);
     wall_values_report(&request->problem.walls, sources->body_emissivity, "_emissivity", 6, report);
     report_count(report, "patches", heat->config.patches);
     report_count(report, "directions", heat->config.directions);
@@ -194,8 +201,14 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
     report_value(report, "emitted_W", heat->emitted, 6);
     report_measured(report, "power_rms_W", heat->power_rms, heat->error);
     report_measured(report, "power_largest_W", heat->largest, heat->error);
-    if (request->ambient) report_measured(report, "surroundings_W", result->surroundings_power, heat->error);
+    if (request->given.ambient) report_measured(report, "surroundings_W", result->surroundings_power, heat->error);
     wall_values_report(&request->problem.walls, result->body_power, "_W", 6, report);
+    if (heat->unknown) {
+        report_measured(report, "temperature_min_K", heat->coldest, heat->temperature_error);
+        report_measured(report, "temperature_mean_K", heat->temperature_mean, heat->temperature_error);
+        report_measured(report, "temperature_max_K", heat->hottest, heat->temperature_error);
+        report_value(report, "error_temperature_rms_K", heat->temperature_error, 2);
+    }
     report_value(report, "balance_of_emission", heat->balance_of_emission, 2);
     report_value(report, "error_of_emission", heat->throughput > 0 ? heat->error / heat->throughput : 0, 2);
     report_value(report, "error_rms_W", heat->error, 2);
@@ -207,12 +220,13 @@ static int heat_picture(const struct heat_request *request, const struct bed *be
     const struct heat_shown shown = {.bed = bed,
                                      .walls = &problem->walls,
                                      .metres = report->metres,
-                                     .temperature = problem->sources.temperature,
+                                     .temperature = report->result.temperature,
                                      .power = report->result.power,
-                                     .wall_temperature = problem->sources.body_temperature,
+                                     .wall_temperature = report->result.body_temperature,
                                      .wall_power = report->result.body_power,
                                      .surroundings_temperature = problem->sources.surroundings,
-                                     .surroundings_power = request->ambient ? report->result.surroundings_power : NAN};
+                                     .surroundings_power =
+                                         request->given.ambient ? report->result.surroundings_power : NAN};
     return plot_heat(&request->picture, request->bed.name, &shown);
 }
 
@@ -226,39 +240,48 @@ static int heat_solve(struct heat_request *request, struct bed *bed, struct heat
     return status;
 }
 
-/* Every wall needs a temperature, and so do the surroundings if something can get there. */
-static int heat_temperatures(struct heat_request *request, const struct bed *bed, double *wall_temperature) {
-    const int status = wall_values("--wall-temperature", request->wall_temperature, NAN, 0 - request->zero,
-                                   TEMPERATURE_MAX, &request->problem.walls, wall_temperature);
-    for (uint32_t k = 0; k < request->problem.walls.count && !status; ++k) wall_temperature[k] += request->zero;
-    if (!status && !request->ambient && !walls_closed(&request->problem.walls, bed))
-        return message(STATUS_USAGE, "which --ambient? the bed is open: its surroundings need a temperature");
+/* The arrays of a result. */
+static int heat_arrays(fibrad_heat_result *result, uint32_t n) {
+    double **const of_spheres[] = {&result->power, &result->temperature, &result->power_error,
+                                   &result->temperature_error};
+    int status = STATUS_OK;
+    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k) {
+        *of_spheres[k] = calloc(n, sizeof(double));
+        if (!*of_spheres[k] && !status) status = message_memory();
+    }
     return status;
 }
 
 static int heat_frame(void *heat_request, struct bed *bed) {
     struct heat_request *request = heat_request;
     struct heat_report report = {0};
+    struct walls *walls = &request->problem.walls;
     fibrad_heat_sources *sources = &request->problem.sources;
-    double *emissivity = NULL, *temperature = NULL, *power = NULL;
-    double wall_temperature[WALLS_MAX], wall_emissivity[WALLS_MAX], wall_power[WALLS_MAX];
+    struct given given = {0};
+    double *emissivity = NULL, of_walls[5][WALLS_MAX] = {{0}};
     const char *file = request->bed.name;
-    int status = walls_of(&request->bed.walls, bed, file, &request->problem.walls);
-    if (!status) status = heat_temperatures(request, bed, wall_temperature);
-    if (!status) status = wall_emissivities(request->wall_emissivity, &request->problem.walls, wall_emissivity);
+    int status = walls_of(&request->bed.walls, bed, file, walls);
+    if (!status) status = given_values(&request->given, bed, file, walls, &given);
+    if (!status && !request->given.ambient && !walls_closed(walls, bed))
+        status = message(STATUS_USAGE, "which --ambient? the bed is open: its surroundings need a temperature");
+    if (!status) status = wall_emissivities(request->wall_emissivity, walls, of_walls[0]);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
-    if (!status)
-        status = quantity_values(&request->temperature, bed, file, "temperature in kelvins", request->zero, 0,
-                                 TEMPERATURE_MAX, &temperature);
-    if (!status) power = malloc(bed->n * sizeof *power);
-    if (!status && !power) status = message_memory();
-    sources->emissivity = emissivity, sources->temperature = temperature;
-    sources->body_emissivity = wall_emissivity, sources->body_temperature = wall_temperature;
-    report.result = (fibrad_heat_result){.power = power, .body_power = wall_power};
-    if (!status) status = heat_solve(request, bed, &report);
+    if (!status) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);
+    if (!status) status = bed_options_metres(&request->bed, bed, &report.metres);
+    if (!status) status = heat_arrays(&report.result, bed->n);
+    if (!status) {
+        given_heat_sources(&given, bed->n, report.metres, sources);
+        sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
+        report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
+        report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
+        status = heat_solve(request, bed, &report);
+    }
     free(emissivity);
-    free(temperature);
-    free(power);
+    given_free(&given);
+    free(report.result.power);
+    free(report.result.temperature);
+    free(report.result.power_error);
+    free(report.result.temperature_error);
     return status;
 }
 

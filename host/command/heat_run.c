@@ -22,8 +22,9 @@ static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sou
     report->emitted = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double power = result->power[i];
+        const double emissivity = sources->emissivity[i];
         const double emitted =
-            sphere * bed->r[i] * bed->r[i] * sources->emissivity[i] * pow(sources->temperature[i], 4);
+            emissivity > 0 ? sphere * bed->r[i] * bed->r[i] * emissivity * pow(result->temperature[i], 4) : 0;
         const double through = fmax(emitted, emitted + power);
         report->emitted += emitted;
         report->balance += power;
@@ -38,11 +39,53 @@ static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sou
     report->error = hypot(result->error_patches, result->error_beams);
 }
 
+/* Of the spheres whose temperatures were found. */
+static void heat_temperatures(const struct bed *bed, const fibrad_heat_sources *sources, struct heat_report *report) {
+    const fibrad_heat_result *result = &report->result;
+    double sum = 0, square = 0;
+    report->unknown = 0;
+    report->coldest = INFINITY, report->hottest = -INFINITY;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        if (!isnan(sources->temperature[i]) || !(sources->emissivity[i] > 0)) continue;
+        report->unknown++;
+        sum += result->temperature[i], square += gsl_pow_2(result->temperature_error[i]);
+        report->coldest = fmin(report->coldest, result->temperature[i]);
+        report->hottest = fmax(report->hottest, result->temperature[i]);
+    }
+    report->temperature_mean = sum / report->unknown;
+    report->temperature_error = sqrt(square / report->unknown);
+}
+
+/* Why there are no temperatures with the powers given. */
+static int heat_unsolvable(const struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
+                           const struct heat_report *report) {
+    const fibrad_heat_sources *sources = &problem->sources;
+    const double square_metres = report->metres * report->metres;
+    double sum = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        if (!isnan(sources->temperature[i])) continue;
+        sum += sources->power[i] * square_metres;
+        if (isnan(report->result.temperature[i]) && sources->emissivity[i] > 0)
+            return message_at(STATUS_INPUT, asked->name, bed->line[i],
+                              "sphere %lld: no temperature above 0 K gives off %g W here", (long long)bed_name(bed, i),
+                              sources->power[i] * square_metres);
+    }
+    for (uint32_t k = 0; k < problem->walls.count; ++k) {
+        if (!isnan(sources->body_temperature[k]) || sources->insulated[k]) continue;
+        sum += sources->body_power[k] * square_metres;
+        if (isnan(report->result.body_temperature[k]))
+            return message_at(STATUS_INPUT, asked->name, 0, "wall %s: no temperature above 0 K gives off %g W here",
+                              wall_name(&problem->walls.body[k]), sources->body_power[k] * square_metres);
+    }
+    return message_at(STATUS_INPUT, asked->name, 0,
+                      "no temperature is given in this closed bed, and its powers add up to %g W, not to 0", sum);
+}
+
 /* Powers in square metres instead of the file's unit. */
 static void heat_scale(const struct bed *bed, uint32_t walls, double square_metres, fibrad_heat_result *result) {
     if (square_metres == 1) return;
-    for (uint32_t i = 0; i < bed->n; ++i) result->power[i] *= square_metres;
-    for (uint32_t k = 0; k < walls; ++k) result->body_power[k] *= square_metres;
+    for (uint32_t i = 0; i < bed->n; ++i) result->power[i] *= square_metres, result->power_error[i] *= square_metres;
+    for (uint32_t k = 0; k < walls; ++k) result->body_power[k] *= square_metres, result->body_error[k] *= square_metres;
     result->surroundings_power *= square_metres;
     result->error_patches *= square_metres;
     result->error_beams *= square_metres;
@@ -68,8 +111,13 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     if (!status) status = fibrad_radiation_solve(radiation, &sources, &report->result);
     fibrad_radiation_describe(radiation, &report->facts, &run.fault);
     fibrad_radiation_free(radiation);
+    if (status == FIBRAD_E_UNSOLVABLE) {
+        progress_stop(&asked->progress);
+        return heat_unsolvable(asked, problem, bed, report);
+    }
     status = bed_options_status(asked, bed, status, &run.fault);
     if (status) return status;
+    heat_temperatures(bed, &sources, report);
     heat_scale(bed, problem->walls.count, report->metres * report->metres, &report->result);
     heat_summarise(bed, &sources, problem->walls.count, report);
     return STATUS_OK;
@@ -97,8 +145,7 @@ int heat_run(struct bed_options *asked, const struct heat_problem *problem, cons
              struct heat_report *report) {
     const double begun = progress_clock();
     report->config = problem->config;
-    int status = bed_options_metres(asked, bed, &report->metres);
-    if (!status) status = heat_once(asked, problem, bed, report);
+    int status = heat_once(asked, problem, bed, report);
     if (problem->error > 0) {
         while (!status && report->error > heat_allowed(problem, report) && heat_refine(report))
             status = heat_once(asked, problem, bed, report);

@@ -17,17 +17,19 @@ struct heat_report {
     fibrad_heat_result result; /* [W] */
     fibrad_heat_config config; /* as used in the end */
     fibrad_scene_facts facts;
-    double metres;              /* of the bed's unit of length */
+    double metres;              /* in: of the bed's unit of length */
     double seconds;             /* computing, without reading and writing */
     double power_rms, largest;  /* of the spheres: root mean square; of all: largest [W] */
     double emitted;             /* by the spheres [W] */
     double throughput;          /* root mean square of what a sphere emits, or absorbs where that is more [W] */
     double balance, error;      /* sum of all powers; root mean square error of a sphere's [W] */
     double balance_of_emission; /* over the sum of what the spheres emit or absorb */
+    uint32_t unknown;           /* spheres whose temperatures were found; */
+    double coldest, hottest, temperature_mean, temperature_error; /* the latter root mean square [K] */
 };
 
-/* Solves it for a bed, more and more accurately if an error is wanted; report->result has arrays of the caller. Status
- * 0, STATUS_USAGE if the bed's units have no metres, STATUS_MEMORY, or as bed_options_status. */
+/* Solves it for a bed, more and more accurately if an error is wanted; report->result has arrays of the caller, all
+ * of them. Status 0, STATUS_INPUT if no temperatures have the powers given, STATUS_MEMORY, or as bed_options_status. */
 int heat_run(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
              struct heat_report *report);
 

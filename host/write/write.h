@@ -36,7 +36,7 @@ struct contents {
     size_t arrays;
 
     const fibrad_heat_sources *sources; /* kelvins; surroundings NaN: there are none, the geometry is closed */
-    const fibrad_heat_result *result;   /* watts */
+    const fibrad_heat_result *result;   /* watts, kelvins; has all arrays */
 
     const struct conduction *conduction;
 };

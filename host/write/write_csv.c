@@ -1,4 +1,4 @@
-/* write_csv.c - comma-separated values: i,j,F or i,j,D of a matrix, i,T_K,q_W of heat, F_E and k of conduction.
+/* write_csv.c - comma-separated values: i,j,F or i,j,D of a matrix, i,T_K,q_W,... of heat, F_E and k of conduction.
  * SPDX-License-Identifier: MIT
  *
  * What is no sphere has negative numbers, and its name in the column body: the surroundings -1, walls -2, -3 ..., then
@@ -118,28 +118,35 @@ int write_csv(FILE *file, const struct contents *what, bool first) {
     return csv.named ? write_walls(&csv) : STATUS_OK;
 }
 
-static void write_power(struct csv *csv, int64_t name, double temperature, double power, const char *body) {
+/* A number; nothing if there is none. */
+static char *put_error(char *to, double error) { return isnan(error) ? to : text_real(to, error); }
+
+static void write_power(struct csv *csv, int64_t name, const char *body, double temperature, double power,
+                        double power_error, double temperature_error) {
     char *at = put_comma(text_whole(csv->line + csv->columns, name));
     at = put_comma(text_real(at, temperature));
-    end_line(csv, text_real(at, power), body);
+    at = put_comma(text_real(at, power));
+    at = put_comma(put_error(at, power_error));
+    end_line(csv, put_error(at, temperature_error), body);
 }
 
 int write_heat_csv(FILE *file, const struct contents *what, bool first) {
-    const fibrad_heat_sources *sources = what->sources;
+    const double surroundings = what->sources->surroundings;
     const fibrad_heat_result *result = what->result;
     struct csv csv = {.named = true};
     char name[BODY_NAME];
-    begin_csv(&csv, file, what, "i,T_K,q_W", first);
+    begin_csv(&csv, file, what, "i,T_K,q_W,q_error_W,T_error_K", first);
     for (uint32_t i = 0; i < what->bed->n; ++i) {
         if (interrupt_status()) return interrupt_status();
-        write_power(&csv, bed_name(what->bed, i), sources->temperature[i], result->power[i], "");
+        write_power(&csv, bed_name(what->bed, i), "", result->temperature[i], result->power[i], result->power_error[i],
+                    result->temperature_error[i]);
     }
     if (!what->walls) return STATUS_OK;
-    if (!isnan(sources->surroundings))
-        write_power(&csv, SURROUNDINGS, sources->surroundings, result->surroundings_power, "surroundings");
+    if (!isnan(surroundings))
+        write_power(&csv, SURROUNDINGS, "surroundings", surroundings, result->surroundings_power, NAN, 0);
     for (uint32_t k = 0; k < what->walls->count; ++k)
-        write_power(&csv, FIRST_WALL - (int64_t)k, sources->body_temperature[k], result->body_power[k],
-                    contents_body(what, k, name));
+        write_power(&csv, FIRST_WALL - (int64_t)k, contents_body(what, k, name), result->body_temperature[k],
+                    result->body_power[k], result->body_error[k], result->body_temperature_error[k]);
     return STATUS_OK;
 }
 

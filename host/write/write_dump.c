@@ -26,7 +26,7 @@ int write_heat_dump(FILE *file, const struct contents *what, bool first) {
     for (uint32_t i = 0; i < bed->n; ++i) {
         if (interrupt_status()) return interrupt_status();
         const double values[] = {
-            bed->x[i], bed->y[i], bed->z[i], bed->r[i], what->sources->temperature[i], what->result->power[i]};
+            bed->x[i], bed->y[i], bed->z[i], bed->r[i], what->result->temperature[i], what->result->power[i]};
         char *at = text_whole(line, bed_name(bed, i));
         for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
             *at++ = ' ';

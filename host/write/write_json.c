@@ -88,28 +88,32 @@ int write_json(FILE *file, const struct contents *what, bool first) {
     return interrupt_status();
 }
 
-static void json_power(FILE *file, const char *comma, const char *name, double temperature, double power) {
+static void json_power(FILE *file, const char *comma, const char *name, double temperature, double power,
+                       double power_error, double temperature_error) {
     fprintf(file, "%s\"%s\":{\"T_K\":", comma, name);
     text_json_real(file, temperature);
-    fputs(",\"q_W\":", file);
-    text_json_real(file, power);
+    json_entry(file, "q_W", power);
+    json_entry(file, "q_error_W", power_error);
+    json_entry(file, "T_error_K", temperature_error);
     putc('}', file);
 }
 
 int write_heat_json(FILE *file, const struct contents *what, bool first) {
-    const fibrad_heat_sources *sources = what->sources;
+    const double surroundings = what->sources->surroundings;
     const fibrad_heat_result *result = what->result;
-    const uint32_t walls = what->walls ? what->walls->count : 0;
+    const uint32_t walls = what->walls ? what->walls->count : 0, n = what->bed->n;
     char name[BODY_NAME];
     (void)first;
     json_begin(file, what, "heat");
-    json_reals(file, ",", "T_K", sources->temperature, what->bed->n, 1, NULL);
-    json_reals(file, ",", "q_W", result->power, what->bed->n, 1, NULL);
-    if (what->walls && !isnan(sources->surroundings))
-        json_power(file, ",", "surroundings", sources->surroundings, result->surroundings_power);
+    json_reals(file, ",", "T_K", result->temperature, n, 1, NULL);
+    json_reals(file, ",", "q_W", result->power, n, 1, NULL);
+    json_reals(file, ",", "q_error_W", result->power_error, n, 1, NULL);
+    json_reals(file, ",", "T_error_K", result->temperature_error, n, 1, NULL);
+    if (what->walls && !isnan(surroundings))
+        json_power(file, ",", "surroundings", surroundings, result->surroundings_power, NAN, 0);
     for (uint32_t k = 0; k < walls; ++k)
-        json_power(file, k > 0 ? "," : ",\"walls\":{", contents_body(what, k, name), sources->body_temperature[k],
-                   result->body_power[k]);
+        json_power(file, k > 0 ? "," : ",\"walls\":{", contents_body(what, k, name), result->body_temperature[k],
+                   result->body_power[k], result->body_error[k], result->body_temperature_error[k]);
     fputs(walls > 0 ? "}}\n" : "}\n", file);
     return interrupt_status();
 }

@@ -146,7 +146,7 @@ int write_heat_vtp(FILE *file, const struct contents *what, bool first) {
     const struct bed *bed = what->bed;
     (void)first;
     vtp_begin(file, bed, "power_W");
-    vtp_doubles(file, "temperature_K", what->sources->temperature, bed->n, NULL);
+    vtp_doubles(file, "temperature_K", what->result->temperature, bed->n, NULL);
     vtp_doubles(file, "emissivity", what->sources->emissivity, bed->n, NULL);
     vtp_doubles(file, "power_W", what->result->power, bed->n, NULL);
     vtp_end(file, bed);

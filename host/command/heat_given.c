@@ -1,0 +1,111 @@
+/* heat_given.c - what is given of each sphere and wall: its temperature or its power. SPDX-License-Identifier: MIT */
+#include "command/heat_given.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "cli/message.h"
+
+#define POWER_MAX 1e30 /* [W] either way */
+
+int given_temperature_option(const char *text, struct given_options *options) { /* its unit is not known yet */
+    return quantity_option("--temperature", text, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, &options->temperature);
+}
+
+int given_power_option(const char *text, struct given_options *options) {
+    return quantity_option("--power", text, -POWER_MAX, POWER_MAX, &options->power);
+}
+
+int given_check(struct given_options *options, struct bed_options *bed) {
+    struct quantity *t = &options->temperature, *p = &options->power;
+    if (!t->given && !p->given) return message(STATUS_USAGE, "which --temperature, or --power? see fibrad heat --help");
+    if (t->given && !t->column && p->given && !p->column)
+        return message(STATUS_USAGE, "--temperature and --power: a sphere has the one or the other given");
+    if (t->value < -options->zero) return message(STATUS_USAGE, "--temperature: %g is below absolute zero", t->value);
+    t->some = p->given;
+    p->some = true;
+    t->place = bed_options_column(bed, t->column, options->zero > 0 ? "C" : "K");
+    p->place = bed_options_column(bed, p->column, "W");
+    return STATUS_OK;
+}
+
+int given_ambient(const struct given_options *options, double *ambient) {
+    *ambient = NAN;
+    if (!options->ambient) return STATUS_OK;
+    const int status = options_number("--ambient", options->ambient, 0 - options->zero, TEMPERATURE_MAX, ambient);
+    *ambient += options->zero;
+    return status;
+}
+
+/* Each wall has a temperature, is insulated, or has a power; names go before numbers for all others. */
+static int given_walls(const struct given_options *options, const struct bed *bed, const struct walls *walls,
+                       struct given *given) {
+    struct wall_list t, p;
+    int status = wall_list("--wall-temperature", options->wall_temperature, "insulated", 0 - options->zero,
+                           TEMPERATURE_MAX, walls, &t);
+    if (!status) status = wall_list("--wall-power", options->wall_power, NULL, -POWER_MAX, POWER_MAX, walls, &p);
+    for (uint32_t k = 0; k < walls->count && !status; ++k) {
+        const char *name = wall_name(&walls->body[k]);
+        if (t.named[k] && p.named[k])
+            return message(STATUS_USAGE, "%s has both a temperature and a power; give the one or the other", name);
+        const double temperature = t.named[k] ? t.value[k] : p.named[k] ? NAN : t.others;
+        given->wall_power[k] = p.named[k] ? p.value[k] : isnan(temperature) ? p.others : NAN;
+        given->insulated[k] = isinf(temperature) != 0;
+        given->wall_temperature[k] = given->insulated[k] ? NAN : temperature + options->zero;
+        if (isnan(temperature) && isnan(given->wall_power[k]))
+            return message(STATUS_USAGE,
+                           "--wall-temperature: none for %s; give %s=NUMBER, one number for all, %s=insulated, "
+                           "or its --wall-power",
+                           name, name, name);
+        if (isnan(temperature) && wall_endless(walls, bed, &walls->body[k]))
+            return message(STATUS_USAGE, "--wall-power: %s goes on for ever; it needs its --wall-temperature", name);
+    }
+    return status;
+}
+
+static int given_spheres(const struct bed *bed, const char *file, struct given *given) {
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const bool t = !isnan(given->temperature[i]);
+        if (t == !isnan(given->power[i]))
+            return message_at(STATUS_INPUT, file, bed->line[i], "sphere %lld has %s", (long long)bed_name(bed, i),
+                              t ? "both a temperature and a power" : "neither a temperature nor a power");
+    }
+    return STATUS_OK;
+}
+
+int given_reflectors(const struct given *given, const double *emissivity, const struct walls *walls,
+                     const double *wall_emissivity, const struct bed *bed, const char *file) {
+    for (uint32_t k = 0; k < walls->count; ++k)
+        if (wall_emissivity[k] == 0 && !isnan(given->wall_power[k]) && given->wall_power[k] != 0)
+            return message(STATUS_USAGE, "--wall-power: %s reflects all (emissivity 0)", wall_name(&walls->body[k]));
+    for (uint32_t i = 0; i < bed->n; ++i)
+        if (emissivity[i] == 0 && !isnan(given->power[i]) && given->power[i] != 0)
+            return message_at(STATUS_INPUT, file, bed->line[i],
+                              "sphere %lld reflects all (emissivity 0): it cannot give off %g W",
+                              (long long)bed_name(bed, i), given->power[i]);
+    return STATUS_OK;
+}
+
+int given_values(const struct given_options *options, const struct bed *bed, const char *file,
+                 const struct walls *walls, struct given *given) {
+    *given = (struct given){0};
+    int status = given_walls(options, bed, walls, given);
+    if (!status)
+        status = quantity_values(&options->temperature, bed, file, "temperature in kelvins", options->zero, 0,
+                                 TEMPERATURE_MAX, &given->temperature);
+    if (!status) status = quantity_values(&options->power, bed, file, "power", 0, -POWER_MAX, POWER_MAX, &given->power);
+    return status ? status : given_spheres(bed, file, given);
+}
+
+void given_free(struct given *given) {
+    free(given->temperature);
+    free(given->power);
+}
+
+void given_heat_sources(struct given *given, uint32_t n, double metres, fibrad_heat_sources *sources) {
+    for (uint32_t i = 0; i < n; ++i) given->power[i] /= metres * metres;
+    for (uint32_t k = 0; k < WALLS_MAX; ++k) given->wall_power[k] /= metres * metres;
+    sources->temperature = given->temperature, sources->power = given->power;
+    sources->body_temperature = given->wall_temperature, sources->body_power = given->wall_power;
+    sources->insulated = given->insulated;
+}
