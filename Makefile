@@ -139,6 +139,7 @@ HOST = \
     host/bed/property_option.c \
     host/bed/units.c \
     host/bed/wall_option.c \
+    host/text/read_curve.c \
     host/text/read_lines.c \
     host/text/read_number.c \
     host/text/text.c \

@@ -468,6 +468,29 @@ START_TEST(temperatures) {
     }
     ck_assert_double_eq_tol(warm[0], warm[1], 1e-9 * warm[0]);
 
+    /* emissivities by table: at 600 K .5, whatever the type */
+    const char *table = write_file("eps.csv", "# K\nT_K,emissivity\n500,.6\n\n700;.4\n");
+    char by_type[300], all[300];
+    snprintf(all, sizeof all, "@%s", table);
+    snprintf(by_type, sizeof by_type, "1:@%s,2:.5", table);
+    double power[3];
+    for (int k = 0; k < 3; ++k) {
+        SUCCEED("heat", file, "--length-unit", "m", "--emissivity",
+                k == 0   ? ".5"
+                : k == 1 ? all
+                         : by_type,
+                "--temperature", "600", "--ambient", "300", "-o", out);
+        read_powers(out, &sum, &largest, 0, &t, &power[k]);
+    }
+    ck_assert(power[0] == power[1] && power[0] == power[2]);
+    ck_assert_int_eq(RUN("heat", file, "--emissivity", all, "--ambient", "300"), 2);
+    write_file("eps.csv", "500,.6\n700,1.4\n");
+    ck_assert_int_eq(RUN("heat", file, "--emissivity", all, "--temperature", "600", "--ambient", "300"), 3);
+    expect_message(table, "the emissivity is 1.4; it must be within 0 and 1");
+    write_file("eps.csv", "500,.6\n400,.4\n");
+    ck_assert_int_eq(RUN("heat", file, "--emissivity", all, "--temperature", "600", "--ambient", "300"), 3);
+    expect_message(table, ":2: 400 does not lie above the one before");
+
     ck_assert_int_eq(RUN("heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "4", "--wall", "box",
                          "--wall-temperature", "insulated"),
                      3);

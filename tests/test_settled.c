@@ -213,6 +213,39 @@ START_TEST(afloat) {
 }
 END_TEST
 
+/* eps = .9 - T/2000, of spheres and of the floor. */
+static void falling(void *calls, const double *temperature, const double *body_temperature, double *emissivity,
+                    double *body_emissivity) {
+    ++*(int *)calls;
+    if (!isnan(temperature[0])) emissivity[0] = .9 - temperature[0] / 2000;
+    if (body_emissivity && !isnan(body_temperature[0])) body_emissivity[0] = .9 - body_temperature[0] / 2000;
+}
+
+/* A sphere alone whose emissivity falls with its temperature, given or found: A eps(T) sigma (T^4 - T0^4) = W. */
+START_TEST(emissivity_of_temperature) {
+    for (int given = 0; given < 2; ++given) {
+        struct settled s;
+        fibrad_radiation *radiation;
+        int calls = 0;
+        begin(&s, bed_of(1, (const double[][4]){{0, 0, 0, .5}}));
+        s.temperature[0] = given ? 800 : unknown, s.power[0] = 5e4, s.emissivity[0] = .5;
+        s.sources.power = s.power, s.sources.emissivity = NULL;
+        const fibrad_spheres spheres = {.x = s.bed.x, .y = s.bed.y, .z = s.bed.z, .r = s.bed.r, .n = 1};
+        ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, NULL, NULL), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_radiation_settle(radiation, &s.sources, falling, &calls, s.emissivity, NULL, &s.result),
+                         FIBRAD_OK);
+        const double t = s.found.temperature[0];
+        close_to(-s.found.power[0], pi * (.9 - t / 2000) * sigma * (pow(t, 4) - pow(300, 4)), 1e-4);
+        if (given) ck_assert(t == 800 && calls == 2 && s.emissivity[0] == .5);
+        if (!given) ck_assert_double_eq(s.found.power[0], -5e4);
+        ck_assert_int_eq(fibrad_radiation_settle(radiation, &s.sources, NULL, NULL, s.emissivity, NULL, &s.result),
+                         FIBRAD_E_ARGUMENT);
+        fibrad_radiation_free(radiation);
+        bed_free(&s.bed);
+    }
+}
+END_TEST
+
 START_TEST(refused) {
     struct settled s;
     begin_box(&s, 1);
@@ -250,6 +283,7 @@ int main(void) {
     tcase_add_test(tcase, equilibrium);
     tcase_add_test(tcase, insulated);
     tcase_add_test(tcase, afloat);
+    tcase_add_test(tcase, emissivity_of_temperature);
     tcase_add_test(tcase, refused);
     return suite_run(suite);
 }

@@ -11,6 +11,27 @@
 #include "cli/message.h"
 #include "cli/options.h"
 
+/* A number, or @TABLE where that may be; *text moves behind it. */
+static int take_value(const char *what, const char **text, double low, double high, struct quantity *quantity,
+                      struct curve *curve, double *value) {
+    char *end;
+    if (!quantity->curves || **text != '@') {
+        *value = strtod(*text, &end);
+        if (end == *text || (*end && *end != ','))
+            return message(STATUS_USAGE, "%s: '%.60s' is no list such as 1:0.5,2:0.8", what, *text);
+        *text = end;
+        if (*value >= low && *value <= high) return STATUS_OK;
+        return message(STATUS_USAGE, "%s: %g is not within %g and %g", what, *value, low, high);
+    }
+    const size_t length = strcspn(++*text, ",");
+    char *path = strndup(*text, length);
+    *text += length;
+    const int status = path ? curve_read(path, what + strlen("--"), low, high, curve) : message_memory();
+    free(path);
+    if (!status) *value = curve->y[curve->n / 2];
+    return status;
+}
+
 /* TYPE:VALUE,TYPE:VALUE ... */
 static int take_types(const char *what, const char *text, double low, double high, struct quantity *quantity) {
     quantity->column = "type";
@@ -19,30 +40,49 @@ static int take_types(const char *what, const char *text, double low, double hig
         char *end;
         if (k == QUANTITY_TYPES_MAX) return message(STATUS_USAGE, "%s: more than %d types", what, QUANTITY_TYPES_MAX);
         quantity->type[k] = strtod(text, &end);
-        bool good = end != text && *end == ':';
-        if (good) {
-            text = end + 1;
-            quantity->of_type[k] = strtod(text, &end);
-            good = end != text && (*end == 0 || *end == ',');
-        }
-        if (!good) return message(STATUS_USAGE, "%s: '%.60s' is no list such as 1:0.5,2:0.8", what, text);
-        if (!(quantity->of_type[k] >= low && quantity->of_type[k] <= high))
-            return message(STATUS_USAGE, "%s: %g is not within %g and %g", what, quantity->of_type[k], low, high);
+        if (end == text || *end != ':')
+            return message(STATUS_USAGE, "%s: '%.60s' is no list such as 1:0.5,2:0.8", what, text);
+        text = end + 1;
+        const int status = take_value(what, &text, low, high, quantity, &quantity->curve[k], &quantity->of_type[k]);
+        if (status) return status;
         for (int j = 0; j < k; ++j)
             if (quantity->type[j] == quantity->type[k])
                 return message(STATUS_USAGE, "%s: type %g is named twice", what, quantity->type[k]);
-        if (*end == 0) return STATUS_OK;
-        text = end + 1;
+        if (*text++ == 0) return STATUS_OK;
     }
 }
 
-int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity) {
-    *quantity = (struct quantity){.given = true};
+static int take_quantity(const char *what, const char *text, double low, double high, bool curves,
+                         struct quantity *quantity) {
+    quantity_free(quantity);
+    *quantity = (struct quantity){.given = true, .curves = curves};
     const bool column = isalpha((unsigned char)*text) || *text == '_';
+    if (curves && *text == '@') return take_value(what, &text, low, high, quantity, quantity->curve, &quantity->value);
     if (!column && strchr(text, ':')) return take_types(what, text, low, high, quantity);
     if (!column) return options_number(what, text, low, high, &quantity->value);
     quantity->column = text;
     return STATUS_OK;
+}
+
+int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity) {
+    return take_quantity(what, text, low, high, false, quantity);
+}
+
+int emissivity_option(const char *text, struct quantity *quantity) {
+    return take_quantity("--emissivity", text, 0, 1, true, quantity);
+}
+
+void quantity_free(struct quantity *quantity) {
+    for (int k = 0; k < QUANTITY_TYPES_MAX; ++k) curve_free(&quantity->curve[k]);
+}
+
+const struct curve *quantity_curve(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
+    int k = 0;
+    if (quantity->types) {
+        const double type = bed->extra[i * bed->extras + quantity->place];
+        while (k < quantity->types - 1 && quantity->type[k] != type) ++k;
+    }
+    return quantity->curve[k].n > 0 ? &quantity->curve[k] : NULL;
 }
 
 /* The value of sphere i; NaN: its type has none. */
@@ -135,14 +175,19 @@ int wall_values(const char *option, const char *text, double otherwise, double l
 
 void quantity_report(const struct quantity *quantity, const char *key, struct report *report) {
     char of_type[60];
-    if (quantity->given && !quantity->column) report_value(report, key, quantity->value, 6);
+    if (quantity->given && !quantity->column && quantity->curve[0].n == 0)
+        report_value(report, key, quantity->value, 6);
+    if (quantity->given && !quantity->column && quantity->curve[0].n > 0) report_text(report, key, "table");
     if (quantity->column && !quantity->types) {
         snprintf(of_type, sizeof of_type, "column %.40s", quantity->column);
         report_text(report, key, of_type);
     }
     for (int k = 0; k < quantity->types; ++k) {
         snprintf(of_type, sizeof of_type, "%.40s_type_%g", key, quantity->type[k]);
-        report_value(report, of_type, quantity->of_type[k], 6);
+        if (quantity->curve[k].n > 0)
+            report_text(report, of_type, "table");
+        else
+            report_value(report, of_type, quantity->of_type[k], 6);
     }
 }
 

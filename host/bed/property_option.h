@@ -8,6 +8,7 @@
 #include "bed/bed.h"
 #include "bed/wall_option.h"
 #include "report/report.h"
+#include "text/read_curve.h"
 #include "fibrad.h"
 
 /* The hottest there may be [K]. */
@@ -16,6 +17,10 @@
 /* Rows of tables of options, without braces. */
 #define OPTION_EMISSIVITY                                                                                              \
     KEY_EMISSIVITY, "emissivity", "E", "of all spheres, 0 to 1; or TYPE:E,... ; or the file's column of that name"
+#define OPTION_EMISSIVITY_CURVES                                                                                       \
+    KEY_EMISSIVITY, "emissivity", "E",                                                                                 \
+        "of all spheres, 0 to 1; or @TABLE of temperatures [K] and emissivities; or TYPE:E,TYPE:@TABLE,... ; or the "  \
+        "file's column of that name"
 #define OPTION_WALL_EMISSIVITY                                                                                         \
     KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST", "of the walls, 0 to 1: zmin=0.3,0.9: one number for all others [1]"
 
@@ -29,14 +34,24 @@ struct quantity {
     size_t place;                                                 /* of the column in bed->extra */
     int types;                                                    /* not 0: the column is that of types, from 1 on, */
     double type[QUANTITY_TYPES_MAX], of_type[QUANTITY_TYPES_MAX]; /* [types] and these are the values of these */
+    bool curves;                                                  /* @TABLE may stand for a value, */
+    struct curve curve[QUANTITY_TYPES_MAX];                       /* by type, [0] without types; n = 0: a number */
 };
 
-/* Takes the argument of an option whose values are in [low, high]. Status 0 or STATUS_USAGE. */
+/* Takes the argument of an option whose values are in [low, high]. Status 0, STATUS_USAGE, or as curve_read. */
 int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity);
+int emissivity_option(const char *text, struct quantity *quantity); /* of --emissivity, with tables */
+
+/* Frees its tables. */
+void quantity_free(struct quantity *quantity);
+
+/* The table that the value of sphere i comes from; NULL: it is a number. */
+const struct curve *quantity_curve(const struct quantity *quantity, const struct bed *bed, uint32_t i);
 
 /* The values of all spheres [n], to be freed also after an error; `file` is the bed's name and `what` that of the
  * quantity in messages. offset is added. Status 0, STATUS_INPUT naming the line of one that is not in [low, high], or
- * STATUS_MEMORY. Without the option, and where quantity->some: NaN. */
+ * STATUS_MEMORY. Without the option, and where quantity->some: NaN;
+ * from tables: one of their values. */
 int quantity_values(const struct quantity *quantity, const struct bed *bed, const char *file, const char *what,
                     double offset, double low, double high, double **values);
 

@@ -23,7 +23,7 @@ enum {
 };
 
 static const struct option heat_table[] = {
-    {OPTION_EMISSIVITY},
+    {OPTION_EMISSIVITY_CURVES},
     {KEY_TEMPERATURE, OPTION_TEMPERATURE},
     {KEY_POWER, OPTION_POWER},
     {KEY_AMBIENT, OPTION_AMBIENT},
@@ -117,7 +117,7 @@ static int heat_take(struct heat_request *request, const struct options *options
     const char *value = options->value;
     switch (key) {
     case KEY_EMISSIVITY:
-        return quantity_option("--emissivity", value, 0, 1, &request->emissivity);
+        return emissivity_option(value, &request->emissivity);
     case KEY_TEMPERATURE:
         return given_temperature_option(value, &request->given);
     case KEY_POWER:
@@ -272,6 +272,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status) {
         given_heat_sources(&given, bed->n, report.metres, sources);
         sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
+        request->problem.emissivity = emissivity, request->problem.of_emissivity = &request->emissivity;
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
         status = heat_solve(request, bed, &report);
@@ -295,6 +296,7 @@ int command_heat(int argc, char **argv) {
         if (!status) status = bed_options_frames(&request.bed, "heat", heat_frame, &request);
         status = output_close(&request.picture, status);
     }
+    quantity_free(&request.emissivity);
     bed_options_free(&request.bed);
     return status;
 }

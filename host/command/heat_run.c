@@ -97,6 +97,23 @@ static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) 
     return memory_check(bed->n * (beams + patches), "fewer --directions, --points or --patches take less");
 }
 
+/* What emissivities follow. */
+struct heat_law {
+    const struct quantity *emissivity;
+    const struct bed *bed;
+};
+
+static void heat_emissivities(void *law, const double *temperature, const double *wall_temperature, double *emissivity,
+                              double *wall_emissivity) {
+    const struct heat_law *how = law;
+    (void)wall_temperature;
+    (void)wall_emissivity;
+    for (uint32_t i = 0; i < how->bed->n; ++i) {
+        const struct curve *curve = quantity_curve(how->emissivity, how->bed, i);
+        if (curve && !isnan(temperature[i])) emissivity[i] = curve_at(curve, temperature[i]);
+    }
+}
+
 static int heat_once(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
                      struct heat_report *report) {
     const fibrad_scene_config scene = bed_scene(bed, &problem->walls);
@@ -108,7 +125,10 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     int status = heat_memory(bed, &report->config);
     if (status) return status;
     status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
-    if (!status) status = fibrad_radiation_solve(radiation, &sources, &report->result);
+    if (!status)
+        status = fibrad_radiation_settle(radiation, &sources, heat_emissivities,
+                                         &(struct heat_law){problem->of_emissivity, bed}, problem->emissivity,
+                                         (double *)sources.body_emissivity, &report->result);
     fibrad_radiation_describe(radiation, &report->facts, &run.fault);
     fibrad_radiation_free(radiation);
     if (status == FIBRAD_E_UNSOLVABLE) {

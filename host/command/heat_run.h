@@ -9,7 +9,9 @@ struct heat_problem {
     struct walls walls;
     fibrad_heat_config config;   /* with an error wanted, where to begin */
     fibrad_heat_sources sources; /* [K]; surroundings NaN: nothing gets there */
-    double error;                /* wanted of the powers, over their root mean square; 0: config as it is */
+    double *emissivity;          /* [spheres] as in sources; in and out where it follows the temperature, by */
+    const struct quantity *of_emissivity;
+    double error; /* wanted of the powers, over their root mean square; 0: config as it is */
 };
 
 /* Powers, and what is said of them. */

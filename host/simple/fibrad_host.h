@@ -4,7 +4,7 @@
  * Index
  *   run       fibrad_run: threads, progress, cancelling
  *   factors   fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_displacements
- *   heat      fibrad_radiation_new, _move, _solve, _describe, _free
+ *   heat      fibrad_radiation_new, _move, _solve, _settle, _describe, _free
  *   kernel    fibrad_heap_resize, fibrad_host_sizeof
  *
  * Typical  fibrad_bed_factors *bed;
@@ -109,6 +109,19 @@ int fibrad_radiation_move(fibrad_radiation *radiation, const fibrad_scene_config
 /* Net powers for these sources into the caller's result (power [spheres], body_power [bodies]). Errors: as
  * fibrad_heat_begin, fibrad_heat_read. Cost: its sweeps, over threads. */
 int fibrad_radiation_solve(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_heat_result *result);
+
+/* Emissivities that follow temperatures: fills emissivity [spheres] and body_emissivity [bodies] for these temperatures
+ * (NaN: not known yet, of insulated bodies, or of emissivity 0: leave them); called by the thread that made the call.
+ */
+typedef void fibrad_emissivity_law(void *context, const double *temperature, const double *body_temperature,
+                                   double *emissivity, double *body_emissivity);
+
+/* As fibrad_radiation_solve with emissivities of a law, in the arrays [spheres] and [bodies] of the caller: in, those
+ * to begin with where temperatures are unknown; out, those of the solution. Solves again until no emissivity changes by
+ * more than 1e-5. result->temperature and, with bodies, ->body_temperature are to be set; emissivities of the sources
+ * are not used. Errors: as fibrad_radiation_solve; _UNSOLVABLE also if 100 solutions do not suffice. */
+int fibrad_radiation_settle(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
+                            void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result);
 
 /* Facts of the scene in use, and the spheres concerned by the last error, as in fibrad_run. Outputs may be NULL;
  * radiation NULL: nothing. No errors. */

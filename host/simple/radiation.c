@@ -1,5 +1,7 @@
 /* radiation.c - net radiative powers of a bed, step after step. SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "simple/heap.h"
 #include "simple/team.h"
@@ -100,6 +102,43 @@ int fibrad_radiation_solve(fibrad_radiation *r, const fibrad_heat_sources *sourc
         if (!status) status = fibrad_heat_step(r->heat, &solved);
     }
     return status ? status : fibrad_heat_read(r->heat, result);
+}
+
+#define EMISSIVITY_CHANGE 1e-5
+enum { SETTLE_MAX = 100 };
+
+static double largest_change(const double *before, const double *now, uint32_t n) {
+    double change = 0;
+    for (uint32_t i = 0; i < n; ++i) change = fmax(change, fabs(now[i] - before[i]));
+    return change;
+}
+
+int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
+                            void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result) {
+    fibrad_scene_facts facts = {0};
+    if (!r || !sources || !law || !result) return FIBRAD_E_ARGUMENT;
+    fibrad_scene_describe(r->scene, &facts);
+    if ((facts.spheres && !(emissivity && result->temperature)) ||
+        (facts.bodies && !(body_emissivity && result->body_temperature)))
+        return FIBRAD_E_ARGUMENT;
+    const uint32_t n = facts.spheres, bodies = facts.bodies;
+    double *before = malloc((n + bodies + (size_t)1) * sizeof *before);
+    if (!before) return FIBRAD_E_MEMORY;
+    fibrad_heat_sources now = *sources;
+    now.emissivity = emissivity, now.body_emissivity = body_emissivity;
+    double change = 1;
+    int status = FIBRAD_OK;
+    law(context, sources->temperature, sources->body_temperature, emissivity, body_emissivity);
+    for (int k = 0; k < SETTLE_MAX && !status && change > EMISSIVITY_CHANGE; ++k) {
+        status = fibrad_radiation_solve(r, &now, result);
+        if (status) break;
+        if (n) memcpy(before, emissivity, n * sizeof *before);
+        if (bodies) memcpy(before + n, body_emissivity, bodies * sizeof *before);
+        law(context, result->temperature, result->body_temperature, emissivity, body_emissivity);
+        change = fmax(largest_change(before, emissivity, n), largest_change(before + n, body_emissivity, bodies));
+    }
+    free(before);
+    return status ? status : change > EMISSIVITY_CHANGE ? FIBRAD_E_UNSOLVABLE : FIBRAD_OK;
 }
 
 void fibrad_radiation_describe(const fibrad_radiation *r, fibrad_scene_facts *facts, fibrad_fault *fault) {

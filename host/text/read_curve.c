@@ -1,0 +1,75 @@
+/* read_curve.c - curves from tables of two columns. SPDX-License-Identifier: MIT */
+#include "text/read_curve.h"
+
+#include <ctype.h>
+#include <gsl/gsl_interp.h>
+#include <stdlib.h>
+
+#include "cli/message.h"
+#include "text/read_lines.h"
+
+/* Room for another point. */
+static int curve_grow(struct curve *curve) {
+    if (curve->n & (curve->n - 1)) return STATUS_OK; /* it doubles at powers of 2 */
+    const size_t room = curve->n ? 2 * curve->n : 1;
+    double *x = realloc(curve->x, room * sizeof *x);
+    if (x) curve->x = x;
+    double *y = realloc(curve->y, room * sizeof *y);
+    if (y) curve->y = y;
+    return x && y ? STATUS_OK : message_memory();
+}
+
+static int curve_point(const struct lines *lines, const struct fields *fields, const char *what, double low,
+                       double high, struct curve *curve) {
+    if (fields->n != 2)
+        return message_at(STATUS_INPUT, lines->name, lines->number, "%zu columns instead of 2", fields->n);
+    int status = curve_grow(curve);
+    if (!status) status = lines_number(lines, "number", fields->at[0], &curve->x[curve->n]);
+    if (!status) status = lines_number(lines, what, fields->at[1], &curve->y[curve->n]);
+    if (status) return status;
+    const double y = curve->y[curve->n];
+    if (!(y >= low && y <= high))
+        return message_at(STATUS_INPUT, lines->name, lines->number, "the %s is %g; it must be within %g and %g", what,
+                          y, low, high);
+    if (curve->n > 0 && !(curve->x[curve->n] > curve->x[curve->n - 1]))
+        return message_at(STATUS_INPUT, lines->name, lines->number, "%s does not lie above the one before",
+                          fields->at[0]);
+    curve->n++;
+    return STATUS_OK;
+}
+
+int curve_read(const char *path, const char *what, double low, double high, struct curve *curve) {
+    struct lines lines;
+    struct fields fields = {0};
+    *curve = (struct curve){0};
+    int status = lines_open(&lines, path);
+    if (status) return status;
+    for (bool more = true, header = true; !status;) {
+        status = lines_next(&lines, &more);
+        if (status || !more) break;
+        if (lines_blank(&lines) || *lines.text == '#') continue;
+        const bool name = header && isalpha((unsigned char)*lines.text);
+        header = false;
+        if (name) continue;
+        status = fields_split(&fields, lines.text, ",; \t\r");
+        if (!status) status = curve_point(&lines, &fields, what, low, high, curve);
+    }
+    if (!status && curve->n == 0) status = message_at(STATUS_INPUT, lines_name(path), 0, "no numbers of a table");
+    lines_close(&lines);
+    free(fields.at);
+    return status;
+}
+
+void curve_free(struct curve *curve) {
+    free(curve->x);
+    free(curve->y);
+    *curve = (struct curve){0};
+}
+
+double curve_at(const struct curve *curve, double x) {
+    const double *at = curve->x;
+    if (!(x > at[0])) return curve->y[0];
+    if (x >= at[curve->n - 1]) return curve->y[curve->n - 1];
+    const size_t k = gsl_interp_bsearch(at, x, 0, curve->n - 1);
+    return curve->y[k] + (curve->y[k + 1] - curve->y[k]) * ((x - at[k]) / (at[k + 1] - at[k]));
+}
