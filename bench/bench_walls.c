@@ -9,7 +9,7 @@
 
 #include "bench.h"
 
-enum { SPHERES_MAX = 34, WALLS_MAX = 6, BODIES_MAX = SPHERES_MAX + WALLS_MAX, BATCHES = 16, EVEN = 6 };
+enum { SPHERES_MAX = 216, WALLS_MAX = 6, BODIES_MAX = SPHERES_MAX + WALLS_MAX, BATCHES = 16, EVEN = 6 };
 
 static const double pi = 3.14159265358979323846;
 
@@ -74,21 +74,61 @@ static double place(const struct room *room, int i, int axis, uint64_t *state) {
     return low + r + (high - low - 2 * r) * draw(state);
 }
 
-static void make_room(struct room *room, int round, int spheres, uint64_t seed) {
+/* Kinds of scenes. Spheres have radii of 1 to `least`, the largest first, so that all find room; in a lattice each has
+ * a cube of side 2 to itself, within which it may lie anywhere. */
+struct kind {
+    const char *name;
+    int round, spheres, lattice; /* lattice: spheres along an edge of the box; 0: none */
+    double size;                 /* of the box, give or take a sixth; of a cylinder .65 of that is the radius */
+    double least;
+    int white; /* walls of emissivity 0, from the first on */
+};
+static const struct kind kinds[] = {
+    {"box", 0, 34, 0, 6, .3, 0},
+    {"box", 0, 34, 0, 6, .3, 0},
+    {"box", 0, 34, 0, 6, .3, 0},
+    {"cylinder", 1, 34, 0, 6, .3, 0},
+    {"box", 0, 34, 0, 6, .3, 0},
+    {"box", 0, 34, 0, 6, .3, 0},
+    {"one", 0, 1, 0, 6, .5, 0},
+    {"cylinder", 1, 34, 0, 6, .3, 0},
+    {"one, far walls", 0, 1, 0, 24, .5, 0},
+    {"one, cylinder", 1, 1, 0, 6, .5, 0},
+    {"three", 0, 3, 0, 5, .5, 0},
+    {"dilute", 0, 34, 0, 24, .3, 0},
+    {"dilute, cylinder", 1, 34, 0, 24, .3, 0},
+    {"dense", 0, 27, 3, 6, .85, 0},
+    {"dense, large", 0, 216, 6, 12, .85, 0},
+    {"white walls", 0, 34, 0, 6, .3, 3},
+};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static double extent_of(const struct kind *kind, int axis, uint64_t *state) {
+    if (kind->lattice > 0) return kind->size;
+    return kind->size * ((kind->round && axis < 2 ? 3 : 5) + 2 * draw(state)) / 6;
+}
+
+static void make_room(struct room *room, const struct kind *kind, uint64_t seed) {
     uint64_t state = seed_of(seed, 1);
-    *room = (struct room){.spheres = spheres, .walls = round ? 3 : 6, .round = round};
-    for (int axis = 0; axis < 3; axis++) room->size[axis] = (round && axis < 2 ? 3 : 5) + 2 * draw(&state);
-    for (int i = 0; i < spheres; i++) { /* the largest first, so that all find room */
-        room->r[i] = 1 - .7 * (i + draw(&state)) / spheres;
+    const int spheres = kind->spheres;
+    *room = (struct room){.spheres = spheres, .walls = kind->round ? 3 : 6, .round = kind->round};
+    for (int axis = 0; axis < 3; axis++) room->size[axis] = extent_of(kind, axis, &state);
+    for (int i = 0; i < spheres; i++) {
+        double *const at[3] = {&room->x[i], &room->y[i], &room->z[i]};
+        room->r[i] = 1 - (1 - kind->least) * (i + draw(&state)) / spheres;
         do {
-            room->x[i] = place(room, i, 0, &state);
-            room->y[i] = place(room, i, 1, &state);
-            room->z[i] = place(room, i, 2, &state);
-        } while (!fits(room, i, .01));
+            for (int axis = 0, k = i; axis < 3; axis++) {
+                *at[axis] = place(room, i, axis, &state);
+                if (kind->lattice == 0) continue;
+                *at[axis] = 2 * (k % kind->lattice) + 1 + 2 * (1 - room->r[i]) * (draw(&state) - .5);
+                k /= kind->lattice;
+            }
+        } while (kind->lattice == 0 && !fits(room, i, .01));
     }
     for (int b = 0; b < spheres + room->walls; b++) {
         room->emissivity[b] = .15 + .85 * draw(&state);
         room->temperature[b] = .3 + (b < spheres ? .9 : 1.2) * draw(&state);
+        if (b >= spheres && b < spheres + kind->white) room->emissivity[b] = 0;
     }
 }
 
@@ -228,7 +268,7 @@ static struct truth find_truth(const struct room *room, long paths, uint64_t see
 
 /* ---- comparison -------------------------------------------------------------------------------------------------- */
 struct answer {
-    double power[BODIES_MAX], seconds;
+    double power[BODIES_MAX], error[BODIES_MAX], seconds;
     fibrad_heat_result result;
 };
 
@@ -252,9 +292,10 @@ static struct answer solve(const struct room *room, const fibrad_heat_config *co
     sources.surroundings = 0, sources.sigma = 1, sources.tolerance = 1e-6;
     fibrad_run run = {.threads = 1};
     fibrad_radiation *radiation;
-    struct answer answer = {{0}, 0, {0}};
+    struct answer answer = {.seconds = 0};
     const double begun = bench_thread_seconds();
     answer.result.power = answer.power, answer.result.body_power = answer.power + room->spheres;
+    answer.result.power_error = answer.error, answer.result.body_error = answer.error + room->spheres;
     bench_check("radiation", fibrad_radiation_new(&radiation, &scene, &spheres, config, &run));
     bench_check("solve", fibrad_radiation_solve(radiation, &sources, &answer.result));
     fibrad_radiation_free(radiation);
@@ -278,35 +319,77 @@ static double rms(const double *v, int n) {
     return sqrt(sum / n);
 }
 
-static void compare(int scene, const struct room *room, const struct truth *truth, const fibrad_heat_config *config) {
+static int in_order(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Estimates over true errors of all bodies of a scene, and how many of those are below one half: too low to be told
+ * from noise are errors below twice the truth's. */
+struct honesty {
+    double ratio[KINDS * BODIES_MAX];
+    int bodies, low;
+};
+
+static void judge(struct honesty *honesty, const struct answer *answer, const struct truth *truth, int bodies) {
+    for (int b = 0; b < bodies; b++) {
+        const double error = fabs(answer->power[b] - truth->power[b]), sure = fmax(0, error - 2 * truth->noise[b]);
+        if (answer->error[b] == 0 && error <= 2 * truth->noise[b]) continue;
+        honesty->low += sure > 2 * answer->error[b];
+        honesty->ratio[honesty->bodies++] = answer->error[b] / hypot(error, .1 * truth->noise[b]);
+    }
+}
+
+static double median(struct honesty *honesty) {
+    qsort(honesty->ratio, (size_t)honesty->bodies, sizeof *honesty->ratio, in_order);
+    return honesty->bodies > 0 ? honesty->ratio[honesty->bodies / 2] : 0;
+}
+
+static void compare(int scene, const struct room *room, const struct truth *truth, const fibrad_heat_config *config,
+                    struct honesty *all) {
     const struct answer answer = solve(room, config);
+    const int bodies = room->spheres + room->walls;
     const double size = rms(truth->power, room->spheres);
     double error[BODIES_MAX];
-    for (int b = 0; b < room->spheres + room->walls; b++) error[b] = answer.power[b] - truth->power[b];
-    printf("%d,%s,%d,%u,%u,%u,%.2e,%.2e,%.2e,%.2e,%.2e,%.3f\n", scene, room->round ? "cylinder" : "box", room->spheres,
-           config->directions, config->points, config->patches, rms(error, room->spheres) / size,
+    static struct honesty here;
+    here.bodies = here.low = 0;
+    for (int b = 0; b < bodies; b++) error[b] = answer.power[b] - truth->power[b];
+    judge(&here, &answer, truth, bodies);
+    judge(all, &answer, truth, bodies);
+    printf("%d,%s,%d,%u,%u,%u,%.2e,%.2e,%.2e,%.2e,%.2e,%.2e,%d,%d,%.2f,%.3f\n", scene, kinds[scene % KINDS].name,
+           room->spheres, config->directions, config->points, config->patches, rms(error, room->spheres) / size,
            hypot(answer.result.error_patches, answer.result.error_beams) / size,
            rms(truth->noise, room->spheres) / size, worst_wall(room, truth, error),
-           worst_wall(room, truth, truth->noise), answer.seconds);
+           worst_wall(room, truth, answer.error), worst_wall(room, truth, truth->noise), here.low, here.bodies,
+           median(&here), answer.seconds);
     fflush(stdout);
 }
 
 int main(int argc, char **argv) {
     static const fibrad_heat_config configs[] = {
         {168, 64, 96, 0, 0}, {672, 64, 96, 0, 0}, {2688, 64, 384, 0, 0}, {8000, 64, 384, 0, 0}};
+    enum { CONFIGS = sizeof configs / sizeof *configs };
+    static struct honesty all[CONFIGS];
     const int quick = argc > 1 && strcmp(argv[1], "quick") == 0, given = argc > 1 && !quick;
-    const int scenes = quick ? 1 : given ? atoi(argv[1]) : 8, first = argc > 3 ? atoi(argv[3]) : 0;
+    const int scenes = quick ? 1 : given ? atoi(argv[1]) : KINDS, first = argc > 3 ? atoi(argv[3]) : 0;
     const long paths = quick ? 20000 : given && argc > 2 ? atol(argv[2]) : 400000;
-    bench_preamble("net powers with walls: errors over the spheres' root mean square power, and of the worst wall over "
-                   "the larger of its power and 5 % of what it absorbs; processor seconds of one thread",
-                   1);
-    puts("scene,kind,spheres,directions,points,patches,error,estimate,noise,wall_error,wall_noise,seconds");
+    bench_preamble(
+        "net powers with walls: errors over the spheres' root mean square power, and of the worst wall over "
+        "the larger of its power and 5 % of what it absorbs; bodies whose error is above twice its estimate, "
+        "and the median of estimate over error; processor seconds of one thread",
+        1);
+    puts("scene,kind,spheres,directions,points,patches,error,estimate,noise,wall_error,wall_estimate,wall_noise,low,"
+         "bodies,median,seconds");
     for (int scene = first; scene < first + scenes; scene++) {
-        struct room room;
-        make_room(&room, scene % 4 == 3, scene % 8 == 6 ? 1 : SPHERES_MAX, (uint64_t)scene);
+        static struct room room;
+        make_room(&room, &kinds[scene % KINDS], (uint64_t)scene);
         const struct truth truth = find_truth(&room, paths, (uint64_t)scene);
-        for (size_t k = 0; k < (quick ? 1 : sizeof configs / sizeof *configs); k++)
-            compare(scene, &room, &truth, &configs[k]);
+        for (int k = 0; k < (quick ? 1 : CONFIGS); k++) compare(scene, &room, &truth, &configs[k], &all[k]);
     }
+    for (int k = 0; k < (quick ? 1 : CONFIGS); k++)
+        printf(
+            "# %u directions, %u patches: %d of %d bodies err by more than twice the estimate; median of estimate over "
+            "error %.2f\n",
+            configs[k].directions, configs[k].patches, all[k].low, all[k].bodies, median(&all[k]));
     return 0;
 }

@@ -252,8 +252,8 @@ START_TEST(a_black_sphere_touches_a_black_plane) {
         p.walls = (struct walls){.planes = 1u << wall};
         p.walls.at[wall] = wall % 2 ? 1 : -1;
         trace_and_solve(&p);
-        assert_near(p.wall_power[wall], 16 * 2 * PI, 1e-3);
-        assert_near(p.result.surroundings_power, 16 * 2 * PI, 1e-3);
+        assert_near(p.wall_power[wall], 16 * 2 * PI, 2e-3);
+        assert_near(p.result.surroundings_power, 16 * 2 * PI, 2e-3);
         free_heat(&p);
     }
     p.scene = NULL, p.heat = NULL;
@@ -440,7 +440,7 @@ static double power_by_paths(const struct problem *p, uint32_t i, uint32_t paths
 START_TEST(powers_are_those_of_paths) {
     static const struct {
         double low, high, spheres, walls, bar;
-    } cases[] = {{1, 1, .3, .5, .015}, {.5, 1.5, .3, .4, .015}, {1, 1, .8, .9, .015}};
+    } cases[] = {{1, 1, .3, .5, .01}, {.5, 1.5, .3, .4, .015}, {1, 1, .8, .9, .015}};
     struct problem p = problem_of(packing(24, cases[_i].low, cases[_i].high, .55, 11, false), 1, cases[_i].spheres);
     p.walls = box_about(&p.bed);
     for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + .5 * bed_make_random(4, i);

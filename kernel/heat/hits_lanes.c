@@ -84,19 +84,22 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
 
 /* A window stands for all directions nearer to its own than to others. To distinguish far walls, the beam of
  * each open point has a direction of its own, from a disc about that of the window whose density falls towards its rim;
- * another point of the set chooses it. Without that the view factor of a plane errs by up to 1 % at 168 directions;
- * with it the error is 0.06 %. */
-#define HIT_SPREAD 4.5 /* radius of the disc, times sqrt n */
+ * another point of the set chooses it. Where spheres hide part of a window, its neighbours are hidden in part too, and
+ * the disc is smaller, or walls would be met that are hidden: docs/methods.md, section 9. */
+#define HIT_SPREAD 2.25 /* radius of the disc if the window is open, times sqrt n */
 
 /* The patch that the beam of open point p of window k meets. */
 static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *work, const double frame[9],
-                             const fibrad_disc_points *set, uint32_t k, uint32_t p) {
+                             const fibrad_points *points, uint32_t k, uint32_t p) {
     if (!heat->scene->container.walls) return fibrad_heat_open(heat);
     const uint32_t other = fibrad_points_partner(heat->config.points, p, k);
+    const fibrad_disc_points *set = &points->set;
     const double x = set->x[p], y = set->y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
     const double a = set->x[other], b = set->y[other];
     const double rare = fibrad_sqrt(1 + fibrad_sqrt(fibrad_max(0, 1 - (a * a + b * b))));
-    const double spread = HIT_SPREAD / (fibrad_sqrt(heat->config.directions) * rare), du = spread * a, dv = spread * b;
+    const double open = (double)points->open / points->count;
+    const double spread = HIT_SPREAD * open / (fibrad_sqrt(heat->config.directions) * rare);
+    const double du = spread * a, dv = spread * b;
     double origin[3], w[3];
     for (int axis = 0; axis < 3; axis++) {
         const double e = frame[axis], f = frame[3 + axis], g = frame[6 + axis];
@@ -125,7 +128,7 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
             number_patches_of(&window, frame, heat->side, patch);
             for (uint32_t p = 0; p < HIT_POINTS; p++) {
                 if (window.disc[p] == FIBRAD_NONE)
-                    hit[p] = escape_patch(heat, work, frame, &points.set, k, HIT_POINTS * word + p);
+                    hit[p] = escape_patch(heat, work, frame, &points, k, HIT_POINTS * word + p);
                 else
                     hit[p] = fibrad_work_sphere(work, window.disc[p]) * heat->config.patches + patch[p];
             }
