@@ -82,7 +82,7 @@ static double discs(double r, double h) {
     return (x - sqrt(x * x - 4)) / 2;
 }
 
-static const fibrad_beam_rule fine = {.directions = 8192}; /* 524,288 paths from each wall */
+static const fibrad_beam_rule fine = {.tolerance = 3e-4};
 
 START_TEST(empty_box) {
     struct bed none = bed_of(0, NULL);
@@ -100,11 +100,11 @@ START_TEST(empty_box) {
             const double exact = c == b          ? 0
                                  : c / 2 == axis ? opposite(size[(axis + 1) % 3], size[(axis + 2) % 3], size[axis])
                                                  : adjacent(size[along], size[c / 2], size[axis]);
-            ck_assert_double_eq_tol(between(f, b, c), exact, 3e-4);
+            ck_assert_double_eq_tol(between(f, b, c), exact, 4e-4);
             square += pow(between(f, b, c) - exact, 2);
         }
         ck_assert_double_lt(sqrt(square), 2 * f->matrix.body_error[b]);
-        ck_assert_double_lt(f->matrix.body_error[b], 1e-3);
+        ck_assert_double_le(f->matrix.body_error[b], 3e-4);
         ck_assert_double_eq(f->matrix.body_escaped[b], 0);
     }
     fibrad_bed_free(f);
@@ -119,10 +119,10 @@ START_TEST(empty_cylinder) {
                                        &(fibrad_bed_options){.beam = &fine});
     const double end_end = discs(r, h), side_end = r / (2 * h) * (1 - end_end);
     check_balance(&none, f, NULL, NULL);
-    ck_assert_double_eq_tol(between(f, 1, 2), end_end, 3e-4);
-    ck_assert_double_eq_tol(between(f, 1, 0), 1 - end_end, 3e-4);
-    ck_assert_double_eq_tol(between(f, 0, 1), side_end, 3e-4);
-    ck_assert_double_eq_tol(between(f, 0, 0), 1 - 2 * side_end, 3e-4);
+    ck_assert_double_eq_tol(between(f, 1, 2), end_end, 4e-4);
+    ck_assert_double_eq_tol(between(f, 1, 0), 1 - end_end, 4e-4);
+    ck_assert_double_eq_tol(between(f, 0, 1), side_end, 4e-4);
+    ck_assert_double_eq_tol(between(f, 0, 0), 1 - 2 * side_end, 4e-4);
     fibrad_bed_free(f);
 }
 END_TEST
@@ -135,7 +135,7 @@ START_TEST(open_and_periodic) {
     fibrad_bed_factors *f =
         factors_of(&none, &(fibrad_scene_config){.body = box, .bodies = 5}, NULL, &(fibrad_bed_options){.beam = &fine});
     check_balance(&none, f, NULL, NULL);
-    for (uint32_t c = 0; c < 4; c++) ck_assert_double_eq_tol(between(f, 4, c), .25, 3e-4); /* sides are endless */
+    for (uint32_t c = 0; c < 4; c++) ck_assert_double_eq_tol(between(f, 4, c), .25, 4e-4); /* sides are endless */
     ck_assert_double_eq_tol(f->matrix.body_escaped[4], 0, 1e-6);
     fibrad_bed_free(f);
 

@@ -4,8 +4,9 @@
 
 #define PATHS_MOST (1u << 24) /* from each wall */
 
-/* So many paths are some percent of the work of this many spheres; in larger beds they stay that. */
-#define SPHERES_PER_SHARE 2000u
+/* Paths from each wall: some percent of the work of the spheres, but in small beds up to FEW_PATHS all the same. */
+#define SPHERES_PER_SHARE 2048u
+#define FEW_PATHS         32768u
 
 struct body_tasks {
     fibrad_job *job;
@@ -31,9 +32,9 @@ static uint32_t more_paths(uint32_t paths, double ratio) {
 }
 
 uint32_t fibrad_job_body_paths(const fibrad_job *job, uint64_t paths) {
-    const uint32_t n = job->facts.spheres;
-    if (n > SPHERES_PER_SHARE) paths = paths * n / SPHERES_PER_SHARE;
-    return paths < PATHS_MOST ? (uint32_t)paths : PATHS_MOST;
+    const uint64_t share = paths * job->facts.spheres / SPHERES_PER_SHARE, few = paths < FEW_PATHS ? paths : FEW_PATHS;
+    const uint64_t wanted = share > few ? share : few;
+    return wanted < PATHS_MOST ? (uint32_t)wanted : PATHS_MOST;
 }
 
 int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_body_row *row) {

@@ -32,7 +32,7 @@ static int check_options(const fibrad_bed_options *options, int most) {
     return rules <= most && options->drop >= 0 && options->drop <= 1 ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
 
-/* Paths from a wall for each direction of beams, or each path, of a sphere. */
+/* Paths from a wall for each direction of beams, or each path, of a sphere, which cost about as much as that. */
 enum { PER_DIRECTION = 128, PER_PATH = 16 };
 
 /* How a matrix is made of the rows of spheres; and rows of bodies, by `walls`, where they are asked for and all

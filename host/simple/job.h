@@ -50,7 +50,7 @@ int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam
  * (0: none); row [bodies] out. Errors: as fibrad_exchange_body. */
 int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_body_row *row);
 
-/* `paths`, or more in a large bed: as many for each sphere there. */
+/* `paths`, less in small beds and more in large ones. */
 uint32_t fibrad_job_body_paths(const fibrad_job *job, uint64_t paths);
 
 #endif

@@ -141,7 +141,9 @@ void fibrad_matrix_take_bodies(fibrad_matrix *m, const fibrad_scene *scene, cons
 }
 
 void fibrad_matrix_enclose(fibrad_matrix *m) {
-    double before[FIBRAD_WALLS][FIBRAD_WALLS + 1] = {{0}}, wanted[FIBRAD_WALLS] = {0};
+    double before[FIBRAD_WALLS][FIBRAD_WALLS + 1] = {{0}}, wanted[FIBRAD_WALLS] = {0}, most = 0;
+    for (uint32_t b = 0; b < m->bodies; b++) most = fibrad_max(most, m->length[b]);
+    if (most == 0) return;
     for (uint32_t b = 0; b < m->bodies; b++) {
         for (uint32_t c = 0; c < m->bodies; c++) before[b][c] = *between(m, b, c);
         before[b][m->bodies] = m->body_escaped[b];
