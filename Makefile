@@ -77,12 +77,14 @@ KERNEL = \
     kernel/row/row_sum.c \
     kernel/row/work.c \
     kernel/matrix/average.c \
+    kernel/matrix/enclose.c \
     kernel/matrix/matrix.c \
     kernel/matrix/scale.c \
     kernel/surface/surface.c \
     kernel/surface/surface_row.c \
     kernel/ray/cast.c \
     kernel/ray/tracer.c \
+    kernel/exchange/body_row.c \
     kernel/exchange/exchange.c \
     kernel/exchange/flow.c \
     kernel/heat/heat.c \
@@ -115,6 +117,7 @@ LANED = \
 
 # the simple layer, libfibrad_host.a
 SIMPLE = \
+    host/simple/body_rows.c \
     host/simple/factors.c \
     host/simple/heap.c \
     host/simple/job.c \
@@ -210,6 +213,7 @@ TESTS = \
     tests/test_drift.c \
     tests/test_files.c \
     tests/test_estimate.c \
+    tests/test_body_rows.c \
     tests/test_exchange.c \
     tests/test_furnace.c \
     tests/test_heat.c \

@@ -13,7 +13,7 @@
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _average, _close, _read,
  *                                                       _reciprocity
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
- *   exchange   absorbed after reflections (grey)        fibrad_exchange_row, _displacement
+ *   exchange   absorbed after reflections (grey)        fibrad_exchange_row, _body, _body_mean, _displacement
  * fibrad_heat.h has net powers and temperatures, fibrad_part.h parts of beds, fibrad_surface.h the method of Bao, Gao
  * and Tan, fibrad_furnace.h a furnace.
  *
@@ -143,12 +143,14 @@ typedef struct fibrad_body {
     } cylinder;              /* of FIBRAD_BODY_CYLINDER */
 } fibrad_body;
 
+#define FIBRAD_BODIES_MAX 7
+
 /* What a scene is made for. Zeroed: open on all sides, no bodies but spheres, the best instruction set. */
 typedef struct fibrad_scene_config {
     int isa;                            /* a fibrad_isa */
     double period[3];                   /* [L] of the periodic box along each axis; 0: the axis is open */
     const fibrad_body *body;            /* [bodies] copied */
-    uint32_t bodies;                    /* [0, 7], else FIBRAD_E_UNSUPPORTED */
+    uint32_t bodies;                    /* [0, FIBRAD_BODIES_MAX], else FIBRAD_E_UNSUPPORTED */
     double known_low[3], known_high[3]; /* [L] spheres beyond may be missing; equal (zeroed): none, along the axis */
     const struct fibrad_occupancy *occupancy; /* fibrad_part.h: where such spheres may be; NULL: not told; not copied */
 } fibrad_scene_config;
@@ -283,24 +285,42 @@ int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t bodies);
 void fibrad_rows_clear(fibrad_rows *rows);
 
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
+/* The row of a body, of fibrad_exchange_body. */
+typedef struct fibrad_body_row {
+    double body[FIBRAD_BODIES_MAX]; /* factor to each body */
+    double spheres, escaped;        /* to all spheres together; to the surroundings: the sum is 1, of emissivity 0 it
+                                       is 0 */
+    double error;                   /* of the mean of parts: Euclidean, estimated by their spread; of one part: 0 */
+    uint64_t rays;                  /* traced */
+} fibrad_body_row;
+
 /* What becomes of the rows. Zeroed: view factors, reciprocal and closed. */
 typedef struct fibrad_matrix_rule {
-    const double *emissivity; /* [spheres] [0, 1]: the rows are exchange factors; NULL: view factors */
-    int raw;                  /* 1: rows as they are, in order; a missing one is empty */
-    double drop;              /* [0, 1] what entries below this carry goes to the others, or to F_ii; 0: none */
-    uint32_t tasks;           /* [1, 1024] for as many threads, 0: 1; no bit depends on it */
+    const double *emissivity;        /* [spheres] [0, 1]: the rows are exchange factors; NULL: view factors */
+    int raw;                         /* 1: rows as they are, in order; a missing one is empty */
+    double drop;                     /* [0, 1] what entries below this carry goes to the others, or to F_ii; 0: none */
+    uint32_t tasks;                  /* [1, 1024] for as many threads, 0: 1; no bit depends on it */
+    const fibrad_body_row *body_row; /* [bodies] rows of bodies, too, copied; those of bodies without bounds are not
+                                        looked at. NULL: spheres alone have rows */
+    const double *body_emissivity;   /* [bodies] [0, 1] for these; NULL: 1 */
 } fibrad_matrix_rule;
 
 /* A matrix of factors, compressed rows. The arrays are those of the matrix it was read from. */
 typedef struct fibrad_factors {
     uint32_t n, bodies;
-    const uint64_t *start; /* [n + 1]: row i is [start[i], start[i+1]) */
-    const uint32_t *col;   /* [start[n]] ascending within each row */
-    const double *f;       /* [start[n]] factor from i to col */
-    const double *escaped; /* [n] */
-    const double *beyond;  /* [n] */
-    const double *error;   /* [n] estimated Euclidean error of each row */
-    const double *body;    /* [n][bodies] factors to bodies */
+    const uint64_t *start;      /* [n + 1]: row i is [start[i], start[i+1]) */
+    const uint32_t *col;        /* [start[n]] ascending within each row */
+    const double *f;            /* [start[n]] factor from i to col */
+    const double *escaped;      /* [n] */
+    const double *beyond;       /* [n] */
+    const double *error;        /* [n] estimated Euclidean error of each row */
+    const double *body;         /* [n][bodies] factors to bodies */
+    const double *body_body;    /* [bodies][bodies] factors between bodies, NaN from those without bounds, 0 from those
+                                   of emissivity 0; NULL, as the next two: bodies have no rows */
+    const double *body_escaped; /* [bodies] */
+    const double *body_error;   /* [bodies] estimated Euclidean error of both */
+    double body_correction;     /* the largest |sum - 1| of a row of a body before it was closed: how well rows of
+                                   spheres and paths of bodies agree */
 } fibrad_factors;
 
 typedef struct fibrad_matrix fibrad_matrix; /* rows put together into one matrix */
@@ -320,8 +340,9 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
 
 /* Ends the matrix. View factors: row sums above 1 are brought down to 1 symmetrically. Exchange factors: row sums are
  * brought to those of the raw rows by D_ij u_i u_j. Then bodies, escaped and beyond are scaled to what the row sums
- * leave of 1; a row that met none of them takes the shares of all spheres together. A_i F_ij = A_j F_ji to the last
- * bits, sums are 1 to rounding but for empty rows. Errors: _STATE. Cost: O(entries), 40 times for exchange, `drop`. */
+ * leave of 1; a row that met none of them takes the shares of all spheres together. Rows of bodies, where A_b F_bi =
+ * A_i F_ib, are closed with all others by F_pq u_p u_q. A_i F_ij = A_j F_ji to the last bits, sums are 1 to rounding
+ * but for empty rows. Errors: _STATE. Cost: O(entries), 40 times for exchange, `drop`, bodies. Source: docs/heat.md. */
 int fibrad_matrix_close(fibrad_matrix *matrix);
 
 /* The matrix, once closed; the largest |A_i F_ij - A_j F_ji| / max(A_i, A_j) over all entries, absent partners taken as
@@ -364,6 +385,17 @@ typedef struct fibrad_exchange_rule {
  * at emissivity 0.8, 14 at 0.2. Work memory: up to 6 MB more, for speed. Source: docs/heat.md. */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);
+
+/* Part `part` [0, FIBRAD_BODY_PARTS) of the row of a body: what the body emits, on its part inside all others, and whom
+ * that is absorbed by; to each sphere it is A_i e_i D_ib/(A_b e_b). Each part follows an eighth of rule->paths (0:
+ * 8192) from point to point; errors fall as paths^-0.6, or as paths^-0.5 at low emissivities. rule: emissivity and
+ * body_emissivity may be NULL: all are black, and D is F; directions and tolerance are not used. _mean: the mean of all
+ * parts. Errors: _ARGUMENT, _WORK, _MEMORY, _UNSUPPORTED (a body without bounds, a cutoff, a known region). Cost: 0.1
+ * to 0.5 microseconds a ray. Source: docs/heat.md. */
+#define FIBRAD_BODY_PARTS 8
+int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
+                         uint32_t part, fibrad_body_row *row);
+int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fibrad_body_row *mean);
 
 typedef struct fibrad_displacement {
     double square[3]; /* [L^2] mean square displacement along each axis */

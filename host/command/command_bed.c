@@ -61,8 +61,9 @@ static int bed_help(void) {
     puts("\n" FILES_MORE "\n" WALLS_MORE "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... "
          "and the surroundings j = -1, with\n"
          "their names in the column `body`, so that rows add up to 1; i = -2, -3 ... from walls of finite area to\n"
-         "spheres; in .vtp an array for each wall. .mtx and .npz hold spheres only. What leaves a --cutoff is "
-         "beyond.\n\n"
+         "spheres, walls and the surroundings (not with --targets or --cutoff); in .vtp an array for each wall. .mtx "
+         "holds\n"
+         "spheres only. What leaves a --cutoff is beyond.\n\n"
          "Several frames go into one .csv or .json, with their numbers, or into one file each where OUT has a *.\n"
          "Standard output ends with a summary of each, one `key value` a line; `wall_NAME_F`: mean from a sphere.\n\n"
          "Examples:\n"
@@ -235,6 +236,7 @@ static int bed_frame(void *bed_request, struct bed *bed) {
             marks ? targets_mark(request->targets, bed->ids ? bed->id : NULL, bed->n, where, marks) : message_memory();
     }
     request->options.wanted = marks;
+    request->options.bodies = 1;
     if (!status) status = bed_matrix(request, bed, &factors);
     fibrad_bed_free(factors);
     free(marks);

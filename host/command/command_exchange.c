@@ -47,8 +47,9 @@ static int exchange_help(void) {
     options_print(exchange_table);
     puts("\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,j,D,body: spheres by name, the surroundings j = -1, walls j "
          "= -2, -3 ... with their names in\n"
-         "the column `body`; then from walls of finite area to spheres, i = -2, -3 ... .mtx and .npz hold spheres "
-         "only.\n"
+         "the column `body`; then from walls of finite area, i = -2, -3 ..., to spheres, walls and the surroundings. "
+         ".mtx\n"
+         "holds spheres only.\n"
          "Net power to i is sum over j of A_i e_i D_ij sigma (T_j^4 - T_i^4), A_i = 4 pi r_i^2 in square metres and T "
          "in\n"
          "kelvins. Spheres of emissivity 0 reflect all: no row, and nothing in their column.\n"
@@ -158,6 +159,7 @@ static int exchange_frame(void *exchange_request, struct bed *bed) {
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     request->rule.emissivity = emissivity;
     request->rule.body_emissivity = wall_emissivity;
+    request->options.bodies = 1;
     if (!status) status = exchange_matrix(request, bed);
     free(emissivity);
     return status;

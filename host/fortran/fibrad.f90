@@ -85,12 +85,15 @@ module fibrad
         type(c_ptr) :: beam = c_null_ptr, surface = c_null_ptr, cast = c_null_ptr, wanted = c_null_ptr
         integer(c_int) :: raw = 0
         real(c_double) :: drop = 0
+        integer(c_int) :: bodies = 1
     end type c_bed_options
 
     type, bind(C) :: c_factors
         integer(c_int32_t) :: n = 0, bodies = 0
         type(c_ptr) :: start = c_null_ptr, col = c_null_ptr, f = c_null_ptr
         type(c_ptr) :: escaped = c_null_ptr, beyond = c_null_ptr, error = c_null_ptr, body = c_null_ptr
+        type(c_ptr) :: body_body = c_null_ptr, body_escaped = c_null_ptr, body_error = c_null_ptr
+        real(c_double) :: body_correction = 0
     end type c_factors
 
     type, bind(C) :: c_bed_factors
@@ -228,6 +231,10 @@ module fibrad
         real(c_double), allocatable :: error(:)     ! (n) Euclidean error of each row, estimated
         real(c_double), allocatable :: wall(:, :)   ! (walls, n)
         real(c_double), allocatable :: wall_area(:) ! (walls)
+        ! between walls: (j, i) from wall i to wall j, NaN from those without bounds; not allocated with a cutoff
+        real(c_double), allocatable :: wall_wall(:, :)
+        real(c_double), allocatable :: wall_escaped(:) ! (walls) from walls to the surroundings
+        real(c_double), allocatable :: wall_error(:)   ! (walls) Euclidean error of these two, estimated
         integer :: directions = 0, threads = 0
         real(c_double) :: seconds = 0, closure_error = 0, reciprocity_error = 0
     end type fibrad_factors
@@ -557,6 +564,11 @@ contains
         factors%error = reals(bed%matrix%error, int(n, c_int64_t))
         factors%wall = reshape(reals(bed%matrix%body, int(n, c_int64_t) * walls), [walls, n])
         factors%wall_area = reals(bed%body_area, int(walls, c_int64_t))
+        if (c_associated(bed%matrix%body_body)) then
+            factors%wall_wall = reshape(reals(bed%matrix%body_body, int(walls, c_int64_t)**2), [walls, walls])
+            factors%wall_escaped = reals(bed%matrix%body_escaped, int(walls, c_int64_t))
+            factors%wall_error = reals(bed%matrix%body_error, int(walls, c_int64_t))
+        end if
         factors%directions = bed%directions
         factors%threads = bed%threads
         factors%seconds = bed%seconds

@@ -32,23 +32,56 @@ static int check_options(const fibrad_bed_options *options, int most) {
     return rules <= most && options->drop >= 0 && options->drop <= 1 ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
 
+/* Paths from a wall for each direction of beams, or each path, of a sphere, which cost about as much as that. */
+enum { PER_DIRECTION = 128, PER_PATH = 16 };
+
+/* How a matrix is made of the rows of spheres; and rows of bodies, by `walls`, where they are asked for and all
+ * spheres have theirs. */
+static int plan_matrix(fibrad_job *job, const fibrad_bed_options *options, const fibrad_exchange_rule *walls,
+                       fibrad_body_row *body_row, fibrad_matrix_rule *rule) {
+    *rule = (fibrad_matrix_rule){.raw = options->raw || options->wanted, .drop = options->drop};
+    if (!options->bodies || options->wanted || walls->cutoff > 0 || job->facts.bodies == 0) return FIBRAD_OK;
+    rule->body_row = body_row;
+    rule->body_emissivity = walls->body_emissivity;
+    return fibrad_job_bodies(job, walls, body_row);
+}
+
 /* Rows by one rule, and their matrix. */
 static int run_rule(fibrad_job *job, fibrad_job_row *row, const void *rule, const fibrad_bed_options *options,
-                    const double *emissivity, fibrad_bed_factors **factors) {
-    const fibrad_matrix_rule how = {
-        .emissivity = emissivity, .raw = options->raw || options->wanted, .drop = options->drop};
+                    const fibrad_matrix_rule *how, fibrad_bed_factors **factors) {
     fibrad_job_report report;
     const int status = fibrad_job_rows(job, row, rule, options->wanted, NULL, &report);
-    return status ? status : fibrad_job_factors(job, &how, &report, factors);
+    return status ? status : fibrad_job_factors(job, how, &report, factors);
+}
+
+/* How bodies are followed to view factors that are as accurate as those of the spheres. */
+static fibrad_exchange_rule black_bodies(const fibrad_job *job, const fibrad_bed_options *options) {
+    const fibrad_beam_rule *beam = options->beam;
+    const fibrad_cast_rule *cast = options->cast;
+    fibrad_exchange_rule rule = {.paths = 20000};
+    if (cast) {
+        if (cast->rays) rule.paths = cast->rays;
+        rule.seed = cast->seed, rule.cutoff = cast->cutoff;
+    } else if (!options->surface) {
+        rule.paths = PER_DIRECTION * (beam && beam->directions ? beam->directions : 233);
+        if (beam) rule.tolerance = beam->tolerance, rule.cutoff = beam->cutoff;
+    }
+    rule.paths = fibrad_job_body_paths(job, rule.paths);
+    return rule;
 }
 
 static int run_options(fibrad_job *job, const fibrad_bed_options *options, fibrad_bed_factors **factors) {
     const fibrad_beam_rule *beam = options->beam;
-    if (options->surface) return run_rule(job, row_by_surface, options->surface, options, NULL, factors);
-    if (options->cast) return run_rule(job, row_by_rays, options->cast, options, NULL, factors);
+    const fibrad_exchange_rule walls = black_bodies(job, options);
+    fibrad_body_row body_row[FIBRAD_BODIES_MAX];
+    fibrad_matrix_rule how;
+    const int status = plan_matrix(job, options, &walls, body_row, &how);
+    if (status) return status;
+    if (options->surface) return run_rule(job, row_by_surface, options->surface, options, &how, factors);
+    if (options->cast) return run_rule(job, row_by_rays, options->cast, options, &how, factors);
     if (beam && beam->tolerance > 0 && !options->raw && !options->wanted)
-        return fibrad_job_tolerance(job, row_by_beams, beam, options->drop, factors);
-    return run_rule(job, row_by_beams, beam, options, NULL, factors);
+        return fibrad_job_tolerance(job, row_by_beams, beam, &how, factors);
+    return run_rule(job, row_by_beams, beam, options, &how, factors);
 }
 
 int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
@@ -80,6 +113,19 @@ static int check_emissivities(fibrad_job *job, const fibrad_exchange_rule *rule)
     return FIBRAD_OK;
 }
 
+static int run_exchange(fibrad_job *job, const fibrad_exchange_rule *rule, const fibrad_bed_options *options,
+                        fibrad_bed_factors **factors) {
+    fibrad_exchange_rule spheres = *rule, walls = *rule;
+    fibrad_body_row body_row[FIBRAD_BODIES_MAX];
+    fibrad_matrix_rule how;
+    if (!options->raw && !options->wanted) spheres.tolerance *= BEFORE_AVERAGING;
+    walls.paths = fibrad_job_body_paths(job, PER_PATH * (uint64_t)(rule->paths ? rule->paths : 400));
+    const int status = plan_matrix(job, options, &walls, body_row, &how);
+    if (status) return status;
+    how.emissivity = rule->emissivity;
+    return run_rule(job, row_by_paths, &spheres, options, &how, factors);
+}
+
 int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                             const fibrad_exchange_rule *rule, const fibrad_bed_options *options, fibrad_run *run,
                             fibrad_bed_factors **factors) {
@@ -91,11 +137,7 @@ int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_sphe
     int status = fibrad_job_open(&job, config, spheres, run);
     if (!status) status = check_options(options, 0);
     if (!status) status = check_emissivities(&job, rule);
-    if (!status) {
-        fibrad_exchange_rule used = *rule;
-        if (!options->raw && !options->wanted) used.tolerance *= BEFORE_AVERAGING;
-        status = run_rule(&job, row_by_paths, &used, options, rule->emissivity, factors);
-    }
+    if (!status) status = run_exchange(&job, rule, options, factors);
     fibrad_job_close(&job);
     return status;
 }

@@ -29,9 +29,9 @@ extern "C" {
 
 /* ---- run ------------------------------------------------------------------------------------------------------- */
 
-/* Called by the thread that made the call, at the beginning and the end of each stage ("rows", "beams", "sweeps") and
- * up to 20 times a second in between: `done` of `total` things are done; total 0: unknown. Not 0: stop, which the call
- * then returns as FIBRAD_E_CANCELLED. */
+/* Called by the thread that made the call, at the beginning and the end of each stage ("walls", "rows", "beams",
+ * "sweeps") and up to 20 times a second in between: `done` of `total` things are done; total 0: unknown. Not 0: stop,
+ * which the call then returns as FIBRAD_E_CANCELLED. */
 typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uint64_t total);
 
 /* How a call is run. NULL or zeroed: OpenMP's threads, no progress. */
@@ -52,6 +52,8 @@ typedef struct fibrad_bed_options {
     const unsigned char *wanted;        /* [spheres] not 0: this row; sets raw. NULL: all rows */
     int raw;                            /* 1: leave the rows as the method gave them */
     double drop;                        /* as in fibrad_matrix_rule */
+    int bodies; /* 1: rows of bodies, too, unless there is a cutoff or only some rows are wanted; what spheres exchange
+                   then changes within its error, as all is closed together */
 } fibrad_bed_options;
 
 /* A matrix, and what else is known of it. */

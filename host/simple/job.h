@@ -2,6 +2,8 @@
 #ifndef FIBRAD_SIMPLE_JOB_H
 #define FIBRAD_SIMPLE_JOB_H
 
+#include <stdbool.h>
+
 #include "simple/team.h"
 
 typedef struct fibrad_job {
@@ -41,7 +43,14 @@ int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fi
 
 /* Rows by the beam rule such that the worst averaged one has an estimated error of rule->tolerance or less, if
  * FIBRAD_DIRECTIONS_MAX suffices, and their matrix. Errors: as the two above. */
-int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule, double drop,
-                         fibrad_bed_factors **factors);
+int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule,
+                         const fibrad_matrix_rule *average, fibrad_bed_factors **factors);
+
+/* Rows of all bodies that have bounds, by rule->paths paths from each, or more until no error is above rule->tolerance
+ * (0: none); row [bodies] out. Errors: as fibrad_exchange_body. */
+int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_body_row *row);
+
+/* `paths`, less in small beds and more in large ones. */
+uint32_t fibrad_job_body_paths(const fibrad_job *job, uint64_t paths);
 
 #endif

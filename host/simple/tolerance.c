@@ -52,10 +52,9 @@ static double worst_error(const fibrad_factors *matrix) {
     return worst;
 }
 
-int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule, double drop,
-                         fibrad_bed_factors **factors) {
+int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule,
+                         const fibrad_matrix_rule *average, fibrad_bed_factors **factors) {
     const uint32_t n = job->facts.spheres;
-    const fibrad_matrix_rule average = {.drop = drop};
     fibrad_beam_rule used = *rule;
     fibrad_job_report report;
     double *error = malloc(((size_t)n + 1) * sizeof *error);
@@ -67,7 +66,7 @@ int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam
     used.tolerance = 0;
     while (!status) {
         status = fibrad_job_rows(job, row, &used, NULL, NULL, &report);
-        if (!status) status = fibrad_job_factors(job, &average, &report, factors);
+        if (!status) status = fibrad_job_factors(job, average, &report, factors);
         if (status) break;
         const double worst = worst_error(&(*factors)->matrix);
         if (worst <= rule->tolerance || used.directions == FIBRAD_DIRECTIONS_MAX) break;

@@ -58,6 +58,22 @@ static void report_wall_share(const struct summary *summary, const struct conten
     if (area < INFINITY) report_value(report, key, area, 6);
 }
 
+/* Of a wall that has a row: what it sends to all walls and to the surroundings, and the error of both. */
+static void report_wall_row(const struct contents *what, uint32_t k, struct report *report) {
+    const fibrad_factors *matrix = &what->factors->matrix;
+    char name[BODY_NAME], key[BODY_NAME + 16];
+    double sum = 0;
+    for (uint32_t j = 0; j < matrix->bodies; ++j) sum += matrix->body_body[(size_t)k * matrix->bodies + j];
+    if (isnan(sum)) return;
+    const char *of = contents_body(what, k, name);
+    snprintf(key, sizeof key, "wall_%s_to_walls", of);
+    report_measured(report, key, sum, matrix->body_error[k]);
+    snprintf(key, sizeof key, "wall_%s_escaped", of);
+    report_measured(report, key, matrix->body_escaped[k], matrix->body_error[k]);
+    snprintf(key, sizeof key, "wall_%s_error", of);
+    report_value(report, key, matrix->body_error[k], 2);
+}
+
 void summary_report(const struct summary *summary, const struct contents *what, struct report *report) {
     const fibrad_factors *matrix = &what->factors->matrix;
     report_count(report, "nonzeros", matrix->start[matrix->n]);
@@ -66,6 +82,10 @@ void summary_report(const struct summary *summary, const struct contents *what, 
     report_measured(report, "escaped_mean", summary->escaped_mean, summary->error_rms);
     report_measured(report, "beyond_mean", summary->beyond_mean, summary->error_rms);
     for (uint32_t k = 0; k < what->walls->count; ++k) report_wall_share(summary, what, k, report);
+    if (matrix->body_body) {
+        for (uint32_t k = 0; k < matrix->bodies; ++k) report_wall_row(what, k, report);
+        report_value(report, "wall_correction", matrix->body_correction, 2);
+    }
     report_value(report, "closure_max", fmax(what->factors->closure_error, summary->closure_max), 2);
     report_value(report, "reciprocity_max", what->factors->reciprocity_error, 2);
     report_value(report, "error_rms", summary->error_rms, 2);

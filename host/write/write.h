@@ -18,7 +18,7 @@ struct array {
     uint64_t length, columns; /* columns 0: one dimension */
 };
 
-enum { ARRAYS_MAX = 16 };
+enum { ARRAYS_MAX = 24 };
 
 /* The results of one frame: a matrix, or heat, or conduction; what belongs to the others is 0. */
 struct contents {

@@ -87,7 +87,22 @@ static void write_outside(struct csv *csv, uint32_t i) {
     write_entry(csv, row, FIRST_WALL - (int64_t)walls, what->factors->matrix.beyond[i], "beyond");
 }
 
-/* From the walls of finite area to the spheres, by reciprocity. */
+/* From a wall to the walls and the surroundings; the column body then has both names. */
+static void write_wall_row(struct csv *csv, uint32_t k) {
+    const struct contents *what = csv->what;
+    const fibrad_factors *matrix = &what->factors->matrix;
+    const uint32_t walls = what->walls->count;
+    char from[BODY_NAME], to[BODY_NAME], both[2 * BODY_NAME + 16];
+    const char *name = contents_body(what, k, from);
+    if (!matrix->body_body) return;
+    for (uint32_t j = 0; j <= walls; ++j) {
+        snprintf(both, sizeof both, "%s:%s", name, j < walls ? contents_body(what, j, to) : "surroundings");
+        write_entry(csv, FIRST_WALL - (int64_t)k, j < walls ? FIRST_WALL - (int64_t)j : SURROUNDINGS,
+                    j < walls ? matrix->body_body[(size_t)k * walls + j] : matrix->body_escaped[k], both);
+    }
+}
+
+/* From the walls of finite area: to the spheres by reciprocity, and what else their rows have. */
 static int write_walls(struct csv *csv) {
     const struct contents *what = csv->what;
     const struct bed *bed = what->bed;
@@ -101,6 +116,7 @@ static int write_walls(struct csv *csv) {
                         4 * M_PI * bed->r[j] * bed->r[j] * (what->grey ? what->grey->emissivity[j] : 1) *
                             wall_factor(what, j, k) / weight,
                         contents_body(what, k, name));
+        write_wall_row(csv, k);
     }
     return STATUS_OK;
 }

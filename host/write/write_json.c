@@ -61,6 +61,20 @@ static void json_begin(FILE *file, const struct contents *what, const char *kind
     putc(']', file);
 }
 
+/* From each wall to all walls, in the order of `walls`, and to the surroundings. */
+static void json_wall_rows(FILE *file, const struct contents *what) {
+    const fibrad_factors *matrix = &what->factors->matrix;
+    char name[BODY_NAME];
+    for (uint32_t k = 0; k < matrix->bodies; ++k) {
+        fprintf(file, "%s\"%s\":{", k > 0 ? "," : ",\"wall_rows\":{", contents_body(what, k, name));
+        json_reals(file, "", "walls", matrix->body_body + (size_t)k * matrix->bodies, matrix->bodies, 1, NULL);
+        json_entry(file, "escaped", matrix->body_escaped[k]);
+        json_entry(file, "error", matrix->body_error[k]);
+        putc('}', file);
+    }
+    putc('}', file);
+}
+
 /* The matrix in compressed rows, as SciPy's csr_array((data, indices, indptr)) takes it. */
 int write_json(FILE *file, const struct contents *what, bool first) {
     const fibrad_factors *matrix = &what->factors->matrix;
@@ -84,7 +98,9 @@ int write_json(FILE *file, const struct contents *what, bool first) {
     for (uint32_t k = 0; k < walls; ++k)
         json_reals(file, k > 0 ? "," : ",\"walls\":{", contents_body(what, k, name), matrix->body + k, matrix->n, walls,
                    what->wanted);
-    fputs(walls > 0 ? "}}\n" : "}\n", file);
+    if (walls > 0) putc('}', file);
+    if (walls > 0 && matrix->body_body) json_wall_rows(file, what);
+    fputs("}\n", file);
     return interrupt_status();
 }
 

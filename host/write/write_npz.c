@@ -193,6 +193,11 @@ static void add_rows(struct arrays *arrays, const struct contents *what, char wa
     for (uint32_t k = 0; k < walls; ++k) strncpy(wall[k], contents_body(what, k, name), 8);
     add_array(arrays, (struct array){"body.npy", "f8", matrix->body, n, walls});
     add_array(arrays, (struct array){"wall_names.npy", "S8", wall, walls, 0});
+    if (!matrix->body_body) return;
+    add_array(arrays, (struct array){"wall_area.npy", "f8", what->factors->body_area, walls, 0});
+    add_array(arrays, (struct array){"wall_wall.npy", "f8", matrix->body_body, walls, walls});
+    add_array(arrays, (struct array){"wall_escaped.npy", "f8", matrix->body_escaped, walls, 0});
+    add_array(arrays, (struct array){"wall_error.npy", "f8", matrix->body_error, walls, 0});
 }
 
 static int write_archive(FILE *file, const struct arrays *arrays) {

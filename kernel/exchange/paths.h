@@ -1,4 +1,5 @@
-/* paths.h - paths of grey diffuse radiation from one sphere, reflection by reflection. SPDX-License-Identifier: MIT
+/* paths.h - paths of grey diffuse radiation from a sphere or a wall, reflection by reflection. SPDX-License-Identifier:
+ * MIT
  *
  * A path carries what is left of a unit of emission. At every surface the part that the surface absorbs is put down,
  * and the rest goes on in a direction drawn by the cosine law. */
@@ -6,6 +7,7 @@
 #define FIBRAD_EXCHANGE_PATHS_H
 
 #include "base/random.h"
+#include "base/sobol.h"
 #include "ray/tracer.h"
 #include "row/work.h"
 
@@ -13,11 +15,13 @@
 
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
-    uint32_t place;                /* of the sphere they leave */
-    double inverse;                /* 1/its radius */
+    uint32_t place;                /* of the sphere they leave; FIBRAD_NONE: they leave a wall, and are not cut */
+    uint32_t from;                 /* then: its slot */
+    const fibrad_sobol *sobol;     /* then: even points */
+    double inverse;                /* 1/radius of the sphere */
     bool cut;                      /* whether they end beyond a cutoff or a known region */
     double cutoff;                 /* from its centre, in its radii; infinity: none */
-    const double *emissivity;      /* [spheres], in the caller's order */
+    const double *emissivity;      /* [spheres], in the caller's order; NULL: all are black */
     const double *wall_emissivity; /* [FIBRAD_WALLS] by slot */
     fibrad_random stream;          /* all numbers of path k come from it and k */
     bool first;                    /* whether what the first surface absorbs counts */

@@ -1,6 +1,7 @@
 /* paths_lanes.c - traces paths. Compiled once per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/laned.h"
+#include "base/elementary.h"
 #include "base/lanes/turn.h"
 #include "exchange/paths.h"
 #include "scene/walls.h"
@@ -16,7 +17,7 @@
 #define ROULETTE_WEIGHT 0.2
 /* Coordinates that are quasi-random: those of the start and of the first two directions. Two more than four save a
  * tenth to a fifth of the rays. */
-#define QUASI_COORDINATES 6
+#define QUASI_COORDINATES FIBRAD_SOBOL_DIMENSIONS
 
 /* A path so far. */
 struct grey_path {
@@ -31,22 +32,25 @@ struct grey_path {
     uint32_t used;   /* how many of all its points are used up */
 };
 
-/* The next PATH_BATCH points of the unit sphere: the first is where the path starts, each further one belongs to a
- * direction. The first QUASI_COORDINATES coordinates are those of the additive recurrence with the steps g^-1 ... g^-6,
- * g^7 = g + 1, in units of 2^-64, as for the rays of ray/cast_lanes.c; all others are random. */
-static void make_sphere_points(const fibrad_paths *paths, struct grey_path *path) {
+/* Coordinate d of a path. The first QUASI_COORDINATES are, from spheres, those of the additive recurrence with the
+ * steps g^-1 ... g^-6, g^7 = g + 1, in units of 2^-64, as for the rays of ray/cast_lanes.c, and from walls those of
+ * Sobol's sequence; all others are random. */
+static double path_coordinate(const fibrad_paths *paths, const struct grey_path *path, uint32_t d) {
     static const uint64_t step[QUASI_COORDINATES] = {UINT64_C(0xe60e2b722b53aeeb), UINT64_C(0xcebd76d9edb6a8ef),
                                                      UINT64_C(0xb9c9aa3a51d00b65), UINT64_C(0xa6f5777f6f88983f),
                                                      UINT64_C(0x9609c71eb7d03f7a), UINT64_C(0x86d516e50b04ab1b)};
+    if (d >= QUASI_COORDINATES) return fibrad_fraction(fibrad_random_ahead(path->own, d));
+    const uint64_t shift = fibrad_random_ahead(paths->stream, d);
+    if (paths->place != FIBRAD_NONE) return fibrad_fraction(shift + path->k * step[d]);
+    return fibrad_fraction(shift ^ fibrad_sobol_coordinate(paths->sobol, (int)d, (uint32_t)path->k));
+}
+
+/* The next PATH_BATCH points of the unit sphere: the first is where the path starts, each further one belongs to a
+ * direction. */
+static void make_sphere_points(const fibrad_paths *paths, struct grey_path *path) {
     _Alignas(64) double at[2][PATH_BATCH];
     for (uint32_t b = 0; b < PATH_BATCH; b++)
-        for (uint32_t d = 0; d < 2; d++) {
-            uint32_t coordinate = 2 * (path->used + b) + d;
-            uint64_t x = coordinate < QUASI_COORDINATES
-                             ? fibrad_random_ahead(paths->stream, coordinate) + path->k * step[coordinate]
-                             : fibrad_random_ahead(path->own, coordinate);
-            at[d][b] = fibrad_fraction(x);
-        }
+        for (uint32_t d = 0; d < 2; d++) at[d][b] = path_coordinate(paths, path, 2 * (path->used + b) + d);
     const vd one = vd_set1(1);
     for (uint32_t b = 0; b < PATH_BATCH; b += VD_LANES) {
         vd height = vd_load(at[0] + b), cosine, sine;
@@ -160,8 +164,11 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
 /* Subtracts from the path what the surface met absorbs, and adds that to the surface if it counts. */
 static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint32_t wall, bool counts) {
     const fibrad_scene *scene = paths->tracer->scene;
-    double emissivity =
-        wall != FIBRAD_NONE ? paths->wall_emissivity[wall] : paths->emissivity[scene->order[path->place]];
+    double emissivity = 1;
+    if (wall != FIBRAD_NONE)
+        emissivity = paths->wall_emissivity[wall];
+    else if (paths->emissivity != NULL)
+        emissivity = paths->emissivity[scene->order[path->place]];
     double absorbed = path->weight * emissivity;
     path->weight -= absorbed;
     if (!counts || emissivity == 0) return; /* no entry of what absorbs nothing */
@@ -178,10 +185,40 @@ static void absorb_at_surface(fibrad_paths *paths, struct grey_path *path, uint3
     fibrad_entries_add(paths->entries, entry, (uint32_t)(path->k % 4), absorbed);
 }
 
+/* An even point on the part of a wall inside all others, within one period of periodic axes. */
+static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
+    const fibrad_scene *scene = paths->tracer->scene;
+    const fibrad_container *c = &scene->container;
+    const double share[2] = {path_coordinate(paths, path, 0), path_coordinate(paths, path, 1)};
+    const bool round = c->radius < __builtin_inf();
+    double low[3], size[3], sine, cosine;
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = scene->period[axis] > 0 ? 0 : c->low[axis];
+        size[axis] = scene->period[axis] > 0 ? scene->period[axis] : c->high[axis] - c->low[axis];
+    }
+    if (paths->from < FIBRAD_CYLINDER) {
+        const uint32_t axis = paths->from / 2;
+        path->point[axis] = paths->from % 2 == 0 ? c->low[axis] : c->high[axis];
+        for (uint32_t side = 0; side < 2 && !round; side++) {
+            const uint32_t along = (axis + 1 + side) % 3;
+            path->point[along] = low[along] + size[along] * share[side];
+        }
+    } else {
+        path->point[2] = low[2] + size[2] * share[1];
+    }
+    if (round) {
+        const double radius = paths->from < FIBRAD_CYLINDER ? c->radius * fibrad_sqrt(share[1]) : c->radius;
+        fibrad_sincos_turn(share[0], &sine, &cosine);
+        path->point[0] = c->axis[0] + radius * cosine, path->point[1] = c->axis[1] + radius * sine;
+    }
+    fibrad_wall_normal(scene, paths->from, path->point, path->n);
+}
+
 static void follow_path(fibrad_paths *paths, uint64_t k) {
     struct grey_path path = {
         .k = k, .own = {fibrad_random_ahead(paths->stream, 8 + k)}, .weight = 1, .place = paths->place};
     next_sphere_point(paths, &path, path.n);
+    if (path.place == FIBRAD_NONE) start_at_wall(paths, &path);
     for (uint32_t leg = 0; leg < PATH_LEGS && path.weight > 0; leg++) {
         const bool counts = leg > 0 || paths->first;
         double w[3];

@@ -22,6 +22,16 @@ static uint32_t tasks_of(const fibrad_matrix_rule *rule) {
 static bool matrix_rule_valid(const fibrad_scene *scene, const fibrad_matrix_rule *rule) {
     if (rule == NULL) return true;
     if (rule->tasks > TASKS_MAX || !(rule->drop >= 0 && rule->drop <= 1)) return false;
+    for (uint32_t b = 0; b < scene->facts.bodies && rule->body_row != NULL; b++) {
+        const fibrad_body_row *row = &rule->body_row[b];
+        if (!fibrad_finite(scene->wall_area[scene->slot[b]])) continue;
+        if (rule->body_emissivity != NULL && !(rule->body_emissivity[b] >= 0 && rule->body_emissivity[b] <= 1))
+            return false;
+        bool valid = row->escaped >= 0 && fibrad_finite(row->escaped) && row->error >= 0 && fibrad_finite(row->error);
+        for (uint32_t c = 0; c < scene->facts.bodies; c++)
+            valid = valid && row->body[c] >= 0 && fibrad_finite(row->body[c]);
+        if (!valid) return false;
+    }
     for (uint32_t i = 0; i < scene->facts.spheres && rule->emissivity != NULL; i++)
         if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1)) return false;
     return true;
@@ -64,6 +74,9 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     m->beyond = fibrad_arena_take(arena, n, sizeof *m->beyond);
     m->error = fibrad_arena_take(arena, n, sizeof *m->error);
     m->body = fibrad_arena_take(arena, n * m->bodies, sizeof *m->body);
+    m->between = fibrad_arena_take(arena, m->enclosed ? m->bodies * m->bodies : 0, sizeof *m->between);
+    m->body_escaped = fibrad_arena_take(arena, m->enclosed ? m->bodies : 0, sizeof *m->body_escaped);
+    m->body_error = fibrad_arena_take(arena, m->enclosed ? m->bodies : 0, sizeof *m->body_error);
     m->r = fibrad_arena_take(arena, n, sizeof *m->r);
     m->place = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->place);
     m->scratch = fibrad_arena_take(arena, m->raw ? 0 : 3 * n, sizeof *m->scratch);
@@ -79,6 +92,7 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule)};
     m->raw = rule != NULL && rule->raw;
     m->exchange = rule != NULL && rule->emissivity != NULL;
+    m->enclosed = rule != NULL && rule->body_row != NULL;
     m->drop = rule != NULL ? rule->drop : 0;
     m->result.n = scene->facts.spheres;
     m->result.capacity = m->raw ? entries : 2 * entries + (m->drop > 0 ? m->result.n : 0);
@@ -206,6 +220,7 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
         if (m->exchange) m->r[i] *= fibrad_sqrt(rule->emissivity[i]);
         copy_rest(m, i);
     }
+    if (m->enclosed) fibrad_matrix_take_bodies(m, scene, rule);
     if (m->raw)
         copy_raw(m);
     else
@@ -309,6 +324,7 @@ int fibrad_matrix_close(fibrad_matrix *m) {
     else
         fibrad_sparse_limit(&m->result, m->scratch);
     close_rows(m);
+    if (m->enclosed) fibrad_matrix_enclose(m);
     estimate_errors(m);
     if (m->drop > 0) fibrad_sparse_drop(&m->result, m->r, m->drop, m->scratch);
     return FIBRAD_OK;
@@ -317,8 +333,20 @@ int fibrad_matrix_close(fibrad_matrix *m) {
 int fibrad_matrix_read(const fibrad_matrix *m, fibrad_factors *factors) {
     if (m == NULL || factors == NULL) return FIBRAD_E_ARGUMENT;
     if (!m->closed) return FIBRAD_E_STATE;
-    *factors = (fibrad_factors){m->result.n, m->bodies, m->result.start, m->result.col, m->result.f,
-                                m->escaped,  m->beyond, m->error,        m->body};
+    *factors = (fibrad_factors){.n = m->result.n,
+                                .bodies = m->bodies,
+                                .start = m->result.start,
+                                .col = m->result.col,
+                                .f = m->result.f,
+                                .escaped = m->escaped,
+                                .beyond = m->beyond,
+                                .error = m->error,
+                                .body = m->body};
+    if (!m->enclosed) return FIBRAD_OK;
+    factors->body_body = m->between;
+    factors->body_escaped = m->body_escaped;
+    factors->body_error = m->body_error;
+    factors->body_correction = m->correction;
     return FIBRAD_OK;
 }
 

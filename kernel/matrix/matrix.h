@@ -2,6 +2,7 @@
 #ifndef FIBRAD_MATRIX_MATRIX_H
 #define FIBRAD_MATRIX_MATRIX_H
 
+#include "scene/scene.h"
 #include "store/record.h"
 
 /* Rows [begin, end) of the result, averaged by one task into a stretch of col and f of its own. */
@@ -34,12 +35,23 @@ struct fibrad_matrix {
     uint64_t *place;           /* [n] where the next entry of each row of the transpose goes */
     double *scratch;           /* [3 n] */
     double *escaped, *beyond, *error;
-    double *body;             /* [n][bodies] */
-    fibrad_matrix_part *part; /* [tasks] */
+    double *body;    /* [n][bodies] */
+    bool enclosed;   /* whether bodies have rows, too; else what follows is not used */
+    double *between; /* [bodies][bodies] */
+    double *body_escaped, *body_error;
+    double length[FIBRAD_WALLS]; /* as r of spheres; 0: no row */
+    double correction;           /* the largest distance of a body's sum from 1, before all were closed */
+    fibrad_matrix_part *part;    /* [tasks] */
 };
 
 /* Averages the rows of a part. */
 void fibrad_matrix_average_part(fibrad_matrix *matrix, fibrad_matrix_part *part);
+
+/* Takes over the rows of bodies that a rule has. */
+void fibrad_matrix_take_bodies(fibrad_matrix *matrix, const fibrad_scene *scene, const fibrad_matrix_rule *rule);
+
+/* Makes them reciprocal, and closes them together with the rows of spheres, which are closed already. */
+void fibrad_matrix_enclose(fibrad_matrix *matrix);
 
 /* Sum of a row. */
 double fibrad_sparse_sum(const fibrad_sparse *rows, uint32_t i);

@@ -9,7 +9,7 @@
 
 /* Walls have slots: 0 to 5 are planes across the axes, x low, x high, y low, y high, z low, z high; 6 is the cylinder.
  */
-#define FIBRAD_WALLS    7
+#define FIBRAD_WALLS    FIBRAD_BODIES_MAX
 #define FIBRAD_CYLINDER 6u
 
 /* Spheres whose radii differ by less than a factor two share a level, a grid of its own with cells to their measure:

@@ -58,6 +58,9 @@ contains
         call expect(all(shape(found%wall) == [3, 2]) .and. near(found%wall_area(1), 1600 * pi, 1e-12_dp), 'tube')
         call expect(abs(found%wall(2, 1) - (1 - sqrt(0.5_dp)) / 2) < 2e-3_dp, 'disc under 45 degrees')
         call expect(abs(sum(found%wall(:, 2)) + sum(found%f(found%start(2):found%start(3) - 1)) - 1) < 1e-12_dp, 'closed')
+        call expect(abs(found%wall_wall(1, 2) - (sqrt(8.0_dp) - 2)) < 1e-2_dp, 'from a disc to the tube')
+        call expect(abs(20**2 * found%wall_wall(1, 2) - 1600 * found%wall_wall(2, 1)) < 1e-10_dp, 'reciprocal walls')
+        call expect(maxval(abs(found%wall_escaped)) < 1e-12_dp .and. maxval(found%wall_error) < 1e-2_dp, 'nothing escapes')
         call fibrad_view_factors([0.5_dp], [0.5_dp], [0.5_dp], [0.5_dp], found, status, box=[1.0_dp, 1.0_dp, 1.0_dp])
         call expect(size(found%f) == 1 .and. abs(found%f(1) - 1) < 1e-2_dp, 'it sees its own images')
     end subroutine walls_and_boxes

@@ -169,6 +169,27 @@ def test_walls():
     assert point.wall("zmax") == pytest.approx((1 - np.sqrt(0.5)) / 2, abs=1e-3)
 
 
+def test_rows_of_walls():
+    """They add up to 1 with what goes to the spheres, are reciprocal, and those of an empty cube are in every table."""
+    cube = fibrad.view_factors(np.zeros((0, 3)), [], walls=CUBE, directions=256)
+    assert cube.wall_wall[:2, 2:] == pytest.approx(0.2000438, abs=3e-3) and cube.wall_escaped == pytest.approx(0)
+    x, r, e = [[1, 2, 0], [-2, 0, 0]], np.array([2, 1]), np.array([0.5, 0.9])
+    grey = dict(zip(CUBE, [0.3, 0.5, 0.7, 0.9, 1.0, 0.0]))
+    for found, emitted, walls_emit in (
+            (fibrad.view_factors(x, r, walls=CUBE), 4 * np.pi * r**2, np.full(6, 100)),
+            (fibrad.exchange_factors(x, r, e, walls=CUBE, wall_emissivity=grey), 4 * np.pi * r**2 * e,
+             100 * np.array(list(grey.values())))):
+        with np.errstate(invalid="ignore"):
+            sums = found.wall_wall.sum(axis=1) + found.wall_escaped + emitted @ found.walls / walls_emit
+        assert np.nan_to_num(sums, nan=1) == pytest.approx(1, abs=1e-12)
+        exchanged = walls_emit[:, None] * found.wall_wall
+        assert exchanged == pytest.approx(exchanged.T, rel=1e-15) and 0 < found.wall_error.max() < 0.02
+    assert np.all(found.wall_wall[5] == 0) and np.all(found.wall_wall[:, 5] == 0)
+    assert np.isnan(fibrad.view_factors([[0, 0, 3]], 1, walls={"zmin": 0}).wall_wall).all()
+    for less in ({"cutoff": 3}, {"wanted": [0]}, {"walls": None}):
+        assert fibrad.view_factors(x, r, **{"walls": CUBE, **less}).wall_wall is None
+
+
 def test_periodic_spheres_see_themselves():
     factors = fibrad.view_factors([[0.5, 0.5, 0.5]], 0.5, box=(1, 1, 1))
     assert factors.matrix[0, 0] == pytest.approx(1, abs=1e-2) and sums(factors) == pytest.approx(1, abs=1e-13)

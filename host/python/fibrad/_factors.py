@@ -72,6 +72,14 @@ class Factors:
     """(walls,) in the order given."""
     wall_area: NDArray[np.float64]
     """(walls,) of the part inside all others, per period; infinite where there is no bound."""
+    wall_wall: Optional[NDArray[np.float64]]
+    """(walls, walls) between walls, closed and reciprocal with all else: to sphere i a wall sends what makes
+    ``A_w F_wi = A_i F_iw`` (areas times emissivities). NaN from walls without bounds. None, as the next two, without
+    walls, with a cutoff, or if only some rows were wanted."""
+    wall_escaped: Optional[NDArray[np.float64]]
+    """(walls,) from walls to the surroundings."""
+    wall_error: Optional[NDArray[np.float64]]
+    """(walls,) Euclidean error of these two, estimated."""
     ids: Optional[NDArray[np.uint64]]
     """(n,) as given."""
     closure_error: float
@@ -130,7 +138,10 @@ def _factors(owner: _Owner, wall_names: tuple[str, ...], ids: Optional[NDArray[n
         data=_array(owner, matrix.f, (entries,)), escaped=_array(owner, matrix.escaped, (n,)),
         beyond=_array(owner, matrix.beyond, (n,)), error=_array(owner, matrix.error, (n,)),
         walls=_array(owner, matrix.body, (n, walls)), wall_names=wall_names,
-        wall_area=_array(owner, found.body_area, (walls,)), ids=ids, closure_error=found.closure_error,
+        wall_area=_array(owner, found.body_area, (walls,)),
+        wall_wall=_array(owner, matrix.body_body, (walls, walls)) if matrix.body_body else None,
+        wall_escaped=_array(owner, matrix.body_escaped, (walls,)) if matrix.body_escaped else None,
+        wall_error=_array(owner, matrix.body_error, (walls,)) if matrix.body_error else None, ids=ids, closure_error=found.closure_error,
         reciprocity_error=found.reciprocity_error, directions=found.directions, fallbacks=found.fallbacks,
         rays=found.rays, overlap=found.facts.overlap_max, threads=found.threads, seconds=found.seconds)
 
@@ -262,7 +273,7 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
               "seed": seed}
     rule = _method_options(method, values, cutoff)
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
-    options = BedOptions(wanted=job.wanted, raw=bool(raw), drop=real("drop", drop, 0, 1), **rule)
+    options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1), **rule)
     return job.factors(library.fibrad_view_factors, tolerance, options)
 
 
@@ -300,7 +311,7 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
     rule = job.exchange_rule(emissivity, wall_emissivity, directions=whole("directions", directions, *_DIRECTIONS),
                              paths=whole("paths", paths, 1, 2**28), seed=whole("seed", seed, *_SEED),
                              cutoff=real("cutoff", cutoff, *_FAR), tolerance=real("tolerance", tolerance, 0, 1))
-    options = BedOptions(wanted=job.wanted, raw=bool(raw), drop=real("drop", drop, 0, 1))
+    options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1))
     return job.factors(library.fibrad_exchange_factors, tolerance, rule, options)
 
 

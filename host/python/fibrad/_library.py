@@ -43,9 +43,11 @@ BeamRule = _structure("beam_rule", ("directions points", c_uint32), ("cutoff tol
 SurfaceRule = _structure("surface_rule", ("nodes flags", c_uint32), ("cutoff", c_double), ("isa", c_int))
 CastRule = _structure("cast_rule", ("rays", c_uint32), ("random", c_int), ("seed", c_uint64), ("cutoff", c_double))
 BedOptions = _structure("bed_options", ("beam", POINTER(BeamRule)), ("surface", POINTER(SurfaceRule)),
-                        ("cast", POINTER(CastRule)), ("wanted", POINTER(c_ubyte)), ("raw", c_int), ("drop", c_double))
+                        ("cast", POINTER(CastRule)), ("wanted", POINTER(c_ubyte)), ("raw", c_int), ("drop", c_double),
+                        ("bodies", c_int))
 Matrix = _structure("factors", ("n bodies", c_uint32), ("start", POINTER(c_uint64)), ("col", POINTER(c_uint32)),
-                    ("f escaped beyond error body", DOUBLES))
+                    ("f escaped beyond error body body_body body_escaped body_error", DOUBLES),
+                    ("body_correction", c_double))
 BedFactors = _structure("bed_factors", ("matrix", Matrix), ("facts", SceneFacts), ("body_area", DOUBLES),
                         ("threads", c_int), ("directions", c_uint32), ("fallbacks rays", c_uint64),
                         ("seconds closure_error reciprocity_error", c_double))

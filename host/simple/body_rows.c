@@ -1,0 +1,61 @@
+/* body_rows.c - rows of walls, by as many paths as what is asked of the spheres deserves. SPDX-License-Identifier: MIT
+ */
+#include "simple/job.h"
+
+#define PATHS_MOST (1u << 24) /* from each wall */
+
+/* Paths from each wall: some percent of the work of the spheres, but in small beds up to FEW_PATHS all the same. */
+#define SPHERES_PER_SHARE 2048u
+#define FEW_PATHS         32768u
+
+struct body_tasks {
+    fibrad_job *job;
+    fibrad_exchange_rule rule;
+    uint32_t paths[FIBRAD_BODIES_MAX]; /* from each body; 0: not now */
+    fibrad_body_row part[FIBRAD_BODIES_MAX][FIBRAD_BODY_PARTS];
+};
+
+static int run_part(void *tasks, int thread, uint32_t task) {
+    struct body_tasks *bodies = tasks;
+    const uint32_t body = task / FIBRAD_BODY_PARTS, part = task % FIBRAD_BODY_PARTS;
+    fibrad_exchange_rule rule = bodies->rule;
+    rule.paths = bodies->paths[body];
+    if (rule.paths == 0) return FIBRAD_OK;
+    return fibrad_exchange_body(bodies->job->scene, &bodies->job->team.work[thread], body, &rule, part,
+                                &bodies->part[body][part]);
+}
+
+/* How many paths follow so many that had an error above the tolerance: by the law paths^-0.5, less a fourth. */
+static uint32_t more_paths(uint32_t paths, double ratio) {
+    const double growth = ratio > 4 ? 12 : 0.75 * ratio * ratio, next = (double)paths * (growth > 1.5 ? growth : 1.5);
+    return next < PATHS_MOST ? (uint32_t)next : PATHS_MOST;
+}
+
+uint32_t fibrad_job_body_paths(const fibrad_job *job, uint64_t paths) {
+    const uint64_t share = paths * job->facts.spheres / SPHERES_PER_SHARE, few = paths < FEW_PATHS ? paths : FEW_PATHS;
+    const uint64_t wanted = share > few ? share : few;
+    return wanted < PATHS_MOST ? (uint32_t)wanted : PATHS_MOST;
+}
+
+int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_body_row *row) {
+    const uint32_t bodies = job->facts.bodies;
+    struct body_tasks tasks = {.job = job, .rule = *rule};
+    int status = FIBRAD_OK;
+    for (uint32_t b = 0; b < bodies; ++b) {
+        row[b] = (fibrad_body_row){0};
+        tasks.paths[b] = fibrad_scene_body_area(job->scene, b) < 1e300 ? rule->paths : 0;
+    }
+    for (bool again = true; again && !status;) {
+        status = fibrad_team_run(&job->team, "walls", bodies * FIBRAD_BODY_PARTS, 1, run_part, &tasks, NULL);
+        again = false;
+        for (uint32_t b = 0; b < bodies && !status; ++b) {
+            if (tasks.paths[b] == 0) continue;
+            status = fibrad_exchange_body_mean(tasks.part[b], &row[b]);
+            const bool enough =
+                !(rule->tolerance > 0 && row[b].error > rule->tolerance) || tasks.paths[b] == PATHS_MOST;
+            tasks.paths[b] = enough ? 0 : more_paths(tasks.paths[b], row[b].error / rule->tolerance);
+            again = again || !enough;
+        }
+    }
+    return status;
+}

@@ -1,0 +1,509 @@
+/* test_body_rows.c - rows of walls: closed forms, grey plates, paths followed by other means, balances.
+ * SPDX-License-Identifier: MIT */
+#include "scenes.h"
+#include "simple/fibrad_host.h"
+#include "suite.h"
+
+#define PI 3.14159265358979323846
+
+static fibrad_bed_factors *factors_of(const struct bed *bed, const fibrad_scene_config *config,
+                                      const fibrad_exchange_rule *grey, const fibrad_bed_options *options) {
+    const fibrad_spheres spheres = spheres_of(bed);
+    fibrad_scene_config whole = *config;
+    fibrad_bed_options with_bodies = *options;
+    fibrad_bed_factors *factors;
+    memcpy(whole.period, bed->period, sizeof whole.period);
+    with_bodies.bodies = 1;
+    const int status = grey ? fibrad_exchange_factors(&whole, &spheres, grey, &with_bodies, NULL, &factors)
+                            : fibrad_view_factors(&whole, &spheres, &with_bodies, NULL, &factors);
+    ck_assert_int_eq(status, FIBRAD_OK);
+    ck_assert_ptr_nonnull(factors->matrix.body_body);
+    return factors;
+}
+
+static double between(const fibrad_bed_factors *f, uint32_t b, uint32_t c) {
+    return f->matrix.body_body[b * f->matrix.bodies + c];
+}
+
+/* A e of a sphere, of a body; emissivities NULL: 1. */
+static double emits(const struct bed *bed, const double *e, uint32_t i) {
+    return 4 * PI * bed->r[i] * bed->r[i] * (e ? e[i] : 1);
+}
+
+static double body_emits(const fibrad_bed_factors *f, const double *e, uint32_t b) {
+    return f->body_area[b] * (e ? e[b] : 1);
+}
+
+/* Rows of bodies add up to 1 with what they send to spheres, as those of spheres do, and are reciprocal. */
+static void check_balance(const struct bed *bed, const fibrad_bed_factors *f, const double *e, const double *body_e) {
+    const fibrad_factors *m = &f->matrix;
+    for (uint32_t i = 0; i < m->n; i++)
+        if (!e || e[i] > 0) ck_assert_double_eq_tol(matrix_total(m, i), 1, 1e-12);
+    for (uint32_t b = 0; b < m->bodies; b++) {
+        const double emitted = body_emits(f, body_e, b);
+        if (isinf(emitted)) {
+            ck_assert(isnan(between(f, b, 0)) && isnan(m->body_escaped[b]) && isnan(m->body_error[b]));
+            continue;
+        }
+        double sum = m->body_escaped[b];
+        for (uint32_t c = 0; c < m->bodies; c++) {
+            const double there = emitted * between(f, b, c), back = body_emits(f, body_e, c) * between(f, c, b);
+            ck_assert_double_ge(between(f, b, c), 0);
+            if (!isnan(back)) ck_assert_double_le(fabs(there - back), 4e-16 * (there + back));
+            sum += between(f, b, c);
+        }
+        for (uint32_t i = 0; i < m->n && emitted > 0; i++)
+            sum += emits(bed, e, i) * m->body[(size_t)i * m->bodies + b] / emitted;
+        ck_assert_double_eq_tol(sum, emitted > 0, 1e-12);
+    }
+}
+
+/* ---- closed forms: J. R. Howell, A catalog of radiation heat transfer configuration factors ---------------------- */
+
+/* C-11: rectangles a by b at distance c. */
+static double opposite(double a, double b, double c) {
+    const double x = a / c, y = b / c, p = 1 + x * x, q = 1 + y * y;
+    return 2 / (PI * x * y) *
+           (.5 * log(p * q / (p + q - 1)) + x * sqrt(q) * atan(x / sqrt(q)) + y * sqrt(p) * atan(y / sqrt(p)) -
+            x * atan(x) - y * atan(y));
+}
+
+/* C-14: from a rectangle l by w to one l by h that stands on its edge l. */
+static double adjacent(double l, double w, double h) {
+    const double a = h / l, b = w / l, p = 1 + a * a, q = 1 + b * b, s = a * a + b * b;
+    return 1 / (PI * b) *
+           (b * atan(1 / b) + a * atan(1 / a) - sqrt(s) * atan(1 / sqrt(s)) +
+            .25 * log(p * q / (1 + s) * pow(b * b * (1 + s) / (q * s), b * b) * pow(a * a * (1 + s) / (p * s), a * a)));
+}
+
+/* C-41: discs of radius r at distance h. */
+static double discs(double r, double h) {
+    const double x = 2 + h * h / (r * r);
+    return (x - sqrt(x * x - 4)) / 2;
+}
+
+static const fibrad_beam_rule fine = {.tolerance = 3e-4};
+
+START_TEST(empty_box) {
+    struct bed none = bed_of(0, NULL);
+    const double size[3] = {1, 1.5, .6};
+    fibrad_body wall[6];
+    for (int k = 0; k < 6; k++) wall[k] = plane_at(k / 2, k % 2, k % 2 * size[k / 2]);
+    fibrad_bed_factors *f = factors_of(&none, &(fibrad_scene_config){.body = wall, .bodies = 6}, NULL,
+                                       &(fibrad_bed_options){.beam = &fine});
+    check_balance(&none, f, NULL, NULL);
+    for (uint32_t b = 0; b < 6; b++) {
+        const uint32_t axis = b / 2;
+        double square = 0;
+        for (uint32_t c = 0; c < 6; c++) {
+            const uint32_t along = (6 - axis - c / 2) % 3; /* of the edge in common, where there is one */
+            const double exact = c == b          ? 0
+                                 : c / 2 == axis ? opposite(size[(axis + 1) % 3], size[(axis + 2) % 3], size[axis])
+                                                 : adjacent(size[along], size[c / 2], size[axis]);
+            ck_assert_double_eq_tol(between(f, b, c), exact, 4e-4);
+            square += pow(between(f, b, c) - exact, 2);
+        }
+        ck_assert_double_lt(sqrt(square), 2 * f->matrix.body_error[b]);
+        ck_assert_double_le(f->matrix.body_error[b], 3e-4);
+        ck_assert_double_eq(f->matrix.body_escaped[b], 0);
+    }
+    fibrad_bed_free(f);
+}
+END_TEST
+
+START_TEST(empty_cylinder) {
+    struct bed none = bed_of(0, NULL);
+    const double r = 1.5, h = 2;
+    const fibrad_body wall[3] = {cylinder_at(3, -4, r), plane_at(2, 0, 1), plane_at(2, 1, 1 + h)};
+    fibrad_bed_factors *f = factors_of(&none, &(fibrad_scene_config){.body = wall, .bodies = 3}, NULL,
+                                       &(fibrad_bed_options){.beam = &fine});
+    const double end_end = discs(r, h), side_end = r / (2 * h) * (1 - end_end);
+    check_balance(&none, f, NULL, NULL);
+    ck_assert_double_eq_tol(between(f, 1, 2), end_end, 4e-4);
+    ck_assert_double_eq_tol(between(f, 1, 0), 1 - end_end, 4e-4);
+    ck_assert_double_eq_tol(between(f, 0, 1), side_end, 4e-4);
+    ck_assert_double_eq_tol(between(f, 0, 0), 1 - 2 * side_end, 4e-4);
+    fibrad_bed_free(f);
+}
+END_TEST
+
+/* Walls missing: what they would get escapes. Periods: as a box without end. Walls without bounds: no row of theirs. */
+START_TEST(open_and_periodic) {
+    struct bed none = bed_of(0, NULL);
+    const fibrad_body box[] = {plane_at(0, 0, 0), plane_at(0, 1, 1), plane_at(1, 0, 0), plane_at(1, 1, 1),
+                               plane_at(2, 0, 0)};
+    fibrad_bed_factors *f =
+        factors_of(&none, &(fibrad_scene_config){.body = box, .bodies = 5}, NULL, &(fibrad_bed_options){.beam = &fine});
+    check_balance(&none, f, NULL, NULL);
+    for (uint32_t c = 0; c < 4; c++) ck_assert_double_eq_tol(between(f, 4, c), .25, 4e-4); /* sides are endless */
+    ck_assert_double_eq_tol(f->matrix.body_escaped[4], 0, 1e-6);
+    fibrad_bed_free(f);
+
+    struct bed duct = bed_of(0, NULL);
+    duct.period[1] = .7;
+    const fibrad_body sides[] = {plane_at(0, 0, 0), plane_at(0, 1, 2), plane_at(2, 1, 1)};
+    f = factors_of(&duct, &(fibrad_scene_config){.body = sides, .bodies = 3}, NULL,
+                   &(fibrad_bed_options){.beam = &fine});
+    check_balance(&duct, f, NULL, NULL);
+    ck_assert_double_eq_tol(f->body_area[2], 1.4, 1e-14);
+    ck_assert_double_eq_tol(between(f, 2, 0), .5, 1e-3); /* endless below: half to each side */
+    fibrad_bed_free(f);
+
+    struct bed plates = bed_of(0, NULL);
+    plates.period[0] = 3, plates.period[1] = .7;
+    const fibrad_body two[] = {plane_at(2, 0, 0), plane_at(2, 1, 2)};
+    f = factors_of(&plates, &(fibrad_scene_config){.body = two, .bodies = 2}, NULL, &(fibrad_bed_options){0});
+    check_balance(&plates, f, NULL, NULL);
+    ck_assert_double_eq_tol(between(f, 1, 0), 1, 1e-13);
+    fibrad_bed_free(f);
+    f = factors_of(&plates, &(fibrad_scene_config){.body = two, .bodies = 1}, NULL, &(fibrad_bed_options){0});
+    ck_assert_double_eq_tol(f->matrix.body_escaped[0], 1, 1e-13);
+    ck_assert_double_eq(between(f, 0, 0), 0);
+    fibrad_bed_free(f);
+}
+END_TEST
+
+/* Between grey plates D_12 = e_2/(1 - (1 - e_1)(1 - e_2)), and D_11 is that with e_1 for what plate 2 reflects. */
+START_TEST(grey_plates) {
+    struct bed plates = bed_of(0, NULL);
+    plates.period[0] = plates.period[1] = 1;
+    const fibrad_body two[] = {plane_at(2, 0, 0), plane_at(2, 1, 2)};
+    const double e[2] = {.3, .6}, all = 1 - .7 * .4;
+    const fibrad_exchange_rule rule = {.body_emissivity = e, .paths = 40000};
+    fibrad_bed_factors *f =
+        factors_of(&plates, &(fibrad_scene_config){.body = two, .bodies = 2}, &rule, &(fibrad_bed_options){0});
+    check_balance(&plates, f, NULL, e);
+    ck_assert_double_eq_tol(between(f, 0, 1), .6 / all, 3e-3);
+    ck_assert_double_eq_tol(between(f, 0, 0), .4 * .3 / all, 3e-3);
+    ck_assert_double_eq_tol(between(f, 1, 1), .7 * .6 / all, 3e-3);
+    fibrad_bed_free(f);
+}
+END_TEST
+
+/* ---- paths by other means: nothing of the kernel's --------------------------------------------------------------- */
+
+struct room {
+    struct bed bed;
+    fibrad_body wall[6];
+    uint32_t walls;
+    double low[3], high[3], radius; /* the cylinder stands about the z axis */
+    double e[64], wall_e[6];
+};
+
+static double draw(uint64_t *state) { /* xorshift64* */
+    *state ^= *state >> 12, *state ^= *state << 25, *state ^= *state >> 27;
+    return (double)((*state * 0x2545F4914F6CDD1Du) >> 11) * 0x1p-53;
+}
+
+/* `kind` 0: box, 1: cylinder with ends, 2: floor and sides, open at the top. */
+static struct room make_room(int kind, uint32_t n, uint64_t seed) {
+    uint64_t state = 77 + 1000 * seed;
+    struct room room = {.bed = bed_of(0, NULL), .radius = kind == 1 ? 3 : INFINITY};
+    for (int k = 0; k < 20; k++) draw(&state);
+    for (int a = 0; a < 3; a++) {
+        room.low[a] = kind == 1 && a < 2 ? -3 : -1;
+        room.high[a] = kind == 1 && a < 2 ? 3 : 3 + 2 * draw(&state);
+    }
+    for (int tries = 0; room.bed.n < n && tries < 100000; tries++) {
+        double c[3], r = (.3 + .7 * draw(&state)) / (1 + .05 * room.bed.n), far = 0;
+        for (int a = 0; a < 3; a++) c[a] = room.low[a] + r + (room.high[a] - room.low[a] - 2 * r) * draw(&state);
+        if (kind == 1 && hypot(c[0], c[1]) + r > 3) continue;
+        for (uint32_t j = 0; j < room.bed.n; j++) {
+            const double d =
+                sqrt(pow(c[0] - room.bed.x[j], 2) + pow(c[1] - room.bed.y[j], 2) + pow(c[2] - room.bed.z[j], 2));
+            if (d < r + room.bed.r[j]) far = 1;
+        }
+        if (far == 0) add_sphere(&room.bed, c[0], c[1], c[2], r);
+    }
+    for (int a = kind == 1 ? 2 : 0; a < 3; a++)
+        for (int upper = 0; upper < 2; upper++)
+            if (kind != 2 || a < 2 || !upper)
+                room.wall[room.walls++] = plane_at(a, upper, upper ? room.high[a] : room.low[a]);
+    if (kind == 1) room.wall[room.walls++] = cylinder_at(0, 0, 3);
+    if (kind == 2) room.high[2] = INFINITY;
+    for (uint32_t i = 0; i < 64; i++) room.e[i] = .2 + .8 * draw(&state);
+    for (uint32_t b = 0; b < 6; b++) room.wall_e[b] = .2 + .8 * draw(&state);
+    return room;
+}
+
+static void normal_of(const fibrad_body *wall, const double o[3], double n[3]) {
+    n[0] = n[1] = n[2] = 0;
+    if (wall->kind == FIBRAD_BODY_CYLINDER)
+        n[0] = -o[0] / wall->cylinder.radius, n[1] = -o[1] / wall->cylinder.radius;
+    else
+        n[wall->plane.axis] = wall->plane.upper ? -1 : 1;
+}
+
+/* The wall that a ray meets and how far away it is, -1 and infinity if none. */
+static int wall_ahead(const struct room *room, const double o[3], const double w[3], double *distance) {
+    int met = -1;
+    *distance = INFINITY;
+    for (uint32_t b = 0; b < room->walls; b++) {
+        const fibrad_body *wall = &room->wall[b];
+        const int axis = wall->plane.axis;
+        double t = INFINITY;
+        if (wall->kind == FIBRAD_BODY_CYLINDER) {
+            const double a = w[0] * w[0] + w[1] * w[1], h = o[0] * w[0] + o[1] * w[1];
+            t = (sqrt(fmax(0, h * h - a * (o[0] * o[0] + o[1] * o[1] - 9))) - h) / a;
+        } else if (w[axis] * (wall->plane.upper ? 1 : -1) > 0) {
+            t = fmax(0, (wall->plane.at - o[axis]) / w[axis]);
+        }
+        if (t < *distance) *distance = t, met = (int)b;
+    }
+    return met;
+}
+
+/* One path from a wall: adds to got[] what walls absorb, [walls] what escapes, [walls + 1] what spheres absorb. */
+static void follow(const struct room *room, uint32_t b, uint64_t *state, double *got) {
+    const fibrad_body *from = &room->wall[b];
+    double o[3], n[3], w[3];
+    const double turn = 2 * PI * draw(state), share = draw(state);
+    const double radius = from->kind == FIBRAD_BODY_CYLINDER ? 3 : 3 * sqrt(share);
+    for (int a = 0; a < 3; a++) o[a] = room->low[a] + (room->high[a] - room->low[a]) * draw(state);
+    if (room->radius < INFINITY) o[0] = radius * cos(turn), o[1] = radius * sin(turn);
+    if (from->kind == FIBRAD_BODY_PLANE) o[from->plane.axis] = from->plane.at;
+    normal_of(from, o, n);
+    for (;;) {
+        double square = 0, nearest;
+        const double up = 2 * draw(state) - 1, around = 2 * PI * draw(state), ring = sqrt(1 - up * up);
+        w[0] = n[0] + ring * cos(around), w[1] = n[1] + ring * sin(around), w[2] = n[2] + up;
+        for (int a = 0; a < 3; a++) square += w[a] * w[a];
+        for (int a = 0; a < 3; a++) w[a] /= sqrt(square);
+        const int wall = wall_ahead(room, o, w, &nearest);
+        int sphere = -1;
+        for (uint32_t i = 0; i < room->bed.n; i++) {
+            const double c[3] = {o[0] - room->bed.x[i], o[1] - room->bed.y[i], o[2] - room->bed.z[i]};
+            const double h = c[0] * w[0] + c[1] * w[1] + c[2] * w[2], r = room->bed.r[i];
+            const double d = h * h - (c[0] * c[0] + c[1] * c[1] + c[2] * c[2] - r * r);
+            if (d > 0 && h < 0 && -h - sqrt(d) > -1e-9 && -h - sqrt(d) < nearest)
+                nearest = -h - sqrt(d), sphere = (int)i;
+        }
+        if (sphere < 0 && wall < 0) {
+            got[room->walls]++;
+            return;
+        }
+        if (draw(state) < (sphere >= 0 ? room->e[sphere] : room->wall_e[wall])) {
+            got[sphere >= 0 ? room->walls + 1 : (uint32_t)wall]++;
+            return;
+        }
+        for (int a = 0; a < 3; a++) o[a] += nearest * w[a];
+        if (sphere >= 0) {
+            n[0] = (o[0] - room->bed.x[sphere]) / room->bed.r[sphere];
+            n[1] = (o[1] - room->bed.y[sphere]) / room->bed.r[sphere];
+            n[2] = (o[2] - room->bed.z[sphere]) / room->bed.r[sphere];
+        } else {
+            normal_of(&room->wall[wall], o, n);
+        }
+    }
+}
+
+/* Grey rooms with few spheres and with many: rows of walls are those of plain paths within the noise of these and the
+ * error stated; the balances hold; the correction is small. */
+START_TEST(against_plain_walls) {
+    enum { PATHS = 150000 };
+    struct room room = make_room(_i % 3, _i < 3 ? 3 : 25, (uint64_t)_i);
+    const bool black = _i % 2 != 0;
+    const fibrad_exchange_rule rule = {
+        .emissivity = room.e, .body_emissivity = room.wall_e, .directions = 400, .paths = 4000};
+    if (black)
+        for (uint32_t k = 0; k < 64; k++) room.e[k] = room.wall_e[k % 6] = 1;
+    const fibrad_scene_config config = {.body = room.wall, .bodies = room.walls};
+    fibrad_bed_factors *f = factors_of(&room.bed, &config, black ? NULL : &rule, &(fibrad_bed_options){0});
+    const fibrad_factors *m = &f->matrix;
+    uint64_t state = 4711;
+    check_balance(&room.bed, f, black ? NULL : room.e, black ? NULL : room.wall_e);
+    ck_assert_double_lt(m->body_correction, .02);
+    for (uint32_t b = 0; b < room.walls; b++) {
+        double got[8] = {0}, square = 0, noise = 0;
+        if (isinf(f->body_area[b])) continue;
+        for (int k = 0; k < PATHS; k++) follow(&room, b, &state, got);
+        for (uint32_t c = 0; c <= room.walls; c++) {
+            const double truth = got[c] / PATHS, d = c < room.walls ? between(f, b, c) : m->body_escaped[b];
+            square += pow(d - truth, 2);
+            noise += truth * (1 - truth) / PATHS;
+        }
+        ck_assert_double_lt(square, 4 * (noise + m->body_error[b] * m->body_error[b]));
+        ck_assert_double_lt(m->body_error[b], .01);
+    }
+    fibrad_bed_free(f);
+    bed_free(&room.bed);
+}
+END_TEST
+
+/* A bed that fills the space between black plates: what the plates see of each other is next to nothing, and what
+ * spheres leave over is no measure of it. */
+START_TEST(plates_and_a_dense_bed) {
+    struct bed bed = packing(400, .5, 1, .55, 4, true);
+    const double top = bed.period[2];
+    bed.period[2] = 0;
+    const fibrad_body two[] = {plane_at(2, 0, -.5), plane_at(2, 1, top + .5)};
+    const fibrad_scene_config config = {.body = two, .bodies = 2};
+    fibrad_bed_factors *f = factors_of(&bed, &config, NULL, &(fibrad_bed_options){0});
+    check_balance(&bed, f, NULL, NULL);
+    ck_assert_double_lt(between(f, 0, 1), 1e-3);
+    ck_assert_double_eq(between(f, 0, 0), 0);
+    ck_assert_double_lt(f->matrix.body_correction, 3e-3);
+    fibrad_bed_factors *alone = NULL;
+    fibrad_scene_config whole = config;
+    const fibrad_spheres spheres = spheres_of(&bed);
+    memcpy(whole.period, bed.period, sizeof whole.period);
+    ck_assert_int_eq(fibrad_view_factors(&whole, &spheres, NULL, NULL, &alone), FIBRAD_OK);
+    ck_assert_ptr_null(alone->matrix.body_body);
+    for (uint32_t i = 0; i < bed.n; i++) { /* what spheres exchange is the same within its error */
+        fibrad_row with = matrix_row(&f->matrix, i), without = matrix_row(&alone->matrix, i);
+        ck_assert_double_lt(row_distance(&with, &without), 2 * alone->matrix.error[i] + 1e-6);
+    }
+    fibrad_bed_free(f), fibrad_bed_free(alone);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Reflectors have empty rows, and nothing goes to them; bodies in another order have the same rows but for noise, and a
+ * room laid on its side too. */
+START_TEST(other_orders_and_axes) {
+    struct room room = make_room(0, 12, 5);
+    room.wall_e[3] = 0, room.e[2] = 0;
+    const fibrad_exchange_rule rule = {
+        .emissivity = room.e, .body_emissivity = room.wall_e, .directions = 300, .paths = 4000};
+    fibrad_bed_factors *f =
+        factors_of(&room.bed, &(fibrad_scene_config){.body = room.wall, .bodies = 6}, &rule, &(fibrad_bed_options){0});
+    check_balance(&room.bed, f, room.e, room.wall_e);
+    for (uint32_t b = 0; b < 6; b++)
+        ck_assert(between(f, 3, b) == 0 && between(f, b, 3) == 0 && f->matrix.body_escaped[3] == 0);
+
+    struct bed turned = bed_of(0, NULL);
+    fibrad_body wall[6];
+    double wall_e[6];
+    for (uint32_t i = 0; i < room.bed.n; i++)
+        add_sphere(&turned, room.bed.z[i], room.bed.y[i], room.bed.x[i], room.bed.r[i]);
+    for (uint32_t b = 0; b < 6; b++) { /* body b is now 5 - b, x is z */
+        wall[5 - b] = room.wall[b];
+        wall[5 - b].plane.axis = 2 - room.wall[b].plane.axis;
+        wall_e[5 - b] = room.wall_e[b];
+    }
+    const fibrad_exchange_rule turned_rule = {
+        .emissivity = room.e, .body_emissivity = wall_e, .directions = 300, .paths = 4000};
+    fibrad_bed_factors *g =
+        factors_of(&turned, &(fibrad_scene_config){.body = wall, .bodies = 6}, &turned_rule, &(fibrad_bed_options){0});
+    check_balance(&turned, g, room.e, wall_e);
+    for (uint32_t b = 0; b < 6; b++) {
+        double square = 0;
+        for (uint32_t c = 0; c < 6; c++) square += pow(between(f, b, c) - between(g, 5 - b, 5 - c), 2);
+        ck_assert_double_le(sqrt(square), 2 * (f->matrix.body_error[b] + g->matrix.body_error[5 - b]));
+    }
+    fibrad_bed_free(f), fibrad_bed_free(g);
+    bed_free(&room.bed), bed_free(&turned);
+}
+END_TEST
+
+/* Errors asked for are kept; raw rows are what the paths say. */
+START_TEST(tolerance_and_raw_rows) {
+    struct room room = make_room(0, 6, 9);
+    const fibrad_scene_config config = {.body = room.wall, .bodies = 6};
+    fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e, .tolerance = 2e-3};
+    fibrad_bed_factors *f = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){0});
+    rule.tolerance = 0, rule.paths = 6000, rule.directions = 1000, rule.seed = 5;
+    fibrad_bed_factors *truth = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){0});
+    fibrad_bed_factors *raw = factors_of(&room.bed, &config, &rule, &(fibrad_bed_options){.raw = 1});
+    ck_assert_double_eq(raw->matrix.body_correction, 0);
+    for (uint32_t b = 0; b < 6; b++) {
+        double square = 0, of_raw = 0;
+        for (uint32_t c = 0; c < 6; c++) {
+            square += pow(between(f, b, c) - between(truth, b, c), 2);
+            of_raw += pow(between(raw, b, c) - between(truth, b, c), 2);
+        }
+        ck_assert_double_lt(sqrt(square), 4e-3);
+        ck_assert_double_lt(sqrt(of_raw), 3 * raw->matrix.body_error[b] + 1e-3);
+        ck_assert_double_lt(raw->matrix.body_error[b], 2e-3);
+    }
+    fibrad_bed_free(f), fibrad_bed_free(truth), fibrad_bed_free(raw);
+    bed_free(&room.bed);
+}
+END_TEST
+
+/* The same bits for any number of threads and any instruction set. */
+START_TEST(same_bits_of_bodies) {
+    struct room room = make_room(1, 12, 3);
+    const fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e};
+    const fibrad_spheres spheres = spheres_of(&room.bed);
+    fibrad_bed_factors *first = NULL;
+    int isa[ISAS_MOST];
+    const int sets = isas_there(isa);
+    for (int k = 0; k < sets; k++) {
+        const fibrad_scene_config config = {.isa = isa[k], .body = room.wall, .bodies = room.walls};
+        fibrad_run run = {.threads = 1 + k};
+        fibrad_bed_factors *f;
+        ck_assert_int_eq(
+            fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.bodies = 1}, &run, &f), FIBRAD_OK);
+        if (first) {
+            ck_assert(matrix_same_bits(&f->matrix, &first->matrix));
+            ck_assert_mem_eq(f->matrix.body_body, first->matrix.body_body, 9 * sizeof(double));
+            ck_assert_mem_eq(f->matrix.body_escaped, first->matrix.body_escaped, 3 * sizeof(double));
+            ck_assert_mem_eq(f->matrix.body_error, first->matrix.body_error, 3 * sizeof(double));
+            fibrad_bed_free(f);
+        } else {
+            first = f;
+        }
+    }
+    fibrad_bed_free(first);
+    bed_free(&room.bed);
+}
+END_TEST
+
+START_TEST(bad_arguments_of_bodies) {
+    struct room room = make_room(2, 3, 1);
+    fibrad_scene *scene = scene_with(&room.bed, &(fibrad_scene_config){.body = room.wall, .bodies = room.walls});
+    fibrad_work work = work_growing();
+    fibrad_body_row row, part[FIBRAD_BODY_PARTS];
+    memset(part, 0, sizeof part);
+    fibrad_exchange_rule rule = {.emissivity = room.e, .body_emissivity = room.wall_e};
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row), FIBRAD_OK); /* the floor */
+    ck_assert_double_eq_tol(
+        row.spheres + row.escaped + row.body[0] + row.body[1] + row.body[2] + row.body[3] + row.body[4], 1, 1e-13);
+    row.rays = 7;
+    ck_assert_int_eq(fibrad_exchange_body(NULL, &work, 4, &rule, 0, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_exchange_body(scene, NULL, 4, &rule, 0, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 4, NULL, 0, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 4, &rule, 0, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 5, &rule, 0, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 4, &rule, FIBRAD_BODY_PARTS, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 0, &rule, 0, &row), FIBRAD_E_UNSUPPORTED);
+    rule.cutoff = 3;
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row), FIBRAD_E_UNSUPPORTED);
+    rule.cutoff = 0, room.wall_e[1] = 1.5;
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row), FIBRAD_E_ARGUMENT);
+    room.wall_e[1] = NAN;
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 4, &rule, 0, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(row.rays, 7);
+    ck_assert_int_eq(fibrad_exchange_body_mean(NULL, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_exchange_body_mean(part, NULL), FIBRAD_E_ARGUMENT);
+    fibrad_body_row bodies[5];
+    memset(bodies, 0, sizeof bodies);
+    fibrad_matrix_rule how = {.body_row = bodies};
+    fibrad_rows rows = {.memory = memory_growing()};
+    ck_assert_uint_gt(fibrad_matrix_size(scene, &rows, 1, &how), 0);
+    bodies[4].body[2] = NAN;
+    ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &how), 0);
+    bodies[4].body[2] = 0, bodies[4].error = -1;
+    ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &how), 0);
+    rows_free(&rows), work_free(&work);
+    free(scene);
+    bed_free(&room.bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("body_rows");
+    TCase *cases = suite_case(suite, "body_rows");
+    tcase_add_test(cases, empty_box);
+    tcase_add_test(cases, empty_cylinder);
+    tcase_add_test(cases, open_and_periodic);
+    tcase_add_test(cases, grey_plates);
+    tcase_add_loop_test(cases, against_plain_walls, 0, 6);
+    tcase_add_test(cases, plates_and_a_dense_bed);
+    tcase_add_test(cases, other_orders_and_axes);
+    tcase_add_test(cases, tolerance_and_raw_rows);
+    tcase_add_test(cases, same_bits_of_bodies);
+    tcase_add_test(cases, bad_arguments_of_bodies);
+    return suite_run(suite);
+}
