@@ -108,9 +108,12 @@ int fibrad_radiation_solve(fibrad_radiation *r, const fibrad_heat_sources *sourc
 enum { SETTLE_MAX = 100 };
 
 static double largest_change(const double *before, const double *now, uint32_t n) {
-    double change = 0;
-    for (uint32_t i = 0; i < n; ++i) change = fmax(change, fabs(now[i] - before[i]));
-    return change;
+    double largest = 0;
+    for (uint32_t i = 0; i < n; ++i) {
+        const double change = fabs(now[i] - before[i]);
+        if (change > largest) largest = change;
+    }
+    return largest;
 }
 
 int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
@@ -135,7 +138,7 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
         if (n) memcpy(before, emissivity, n * sizeof *before);
         if (bodies) memcpy(before + n, body_emissivity, bodies * sizeof *before);
         law(context, result->temperature, result->body_temperature, emissivity, body_emissivity);
-        change = fmax(largest_change(before, emissivity, n), largest_change(before + n, body_emissivity, bodies));
+        change = largest_change(before, emissivity, n) + largest_change(before + n, body_emissivity, bodies);
     }
     free(before);
     return status ? status : change > EMISSIVITY_CHANGE ? FIBRAD_E_UNSOLVABLE : FIBRAD_OK;

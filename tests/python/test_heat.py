@@ -217,3 +217,35 @@ def test_one_thread_at_a_time(small):
     other.start()
     heat.solve(np.linspace(300, 900, small.n), 0.5, surroundings=300)
     assert len(refused) == 3
+
+
+def test_temperatures_are_found():
+    """A sphere alone: A eps sigma (T^4 - T0^4) = W, with an emissivity that follows the temperature, too."""
+    with fibrad.Heat([[0, 0, 0]], 0.5) as heat:
+        found = heat.solve(None, 0.6, power=5e4, surroundings=300.)
+        assert found.temperatures[0] == pytest.approx((5e4 / (np.pi * 0.6 * SIGMA) + 300**4)**0.25, rel=1e-9)
+        assert found.spheres[0] == -5e4 and found.emissivities[0] == 0.6
+        found = heat.solve(None, lambda kelvins: 0.9 - kelvins / 2000, power=5e4, surroundings=300.)
+        kelvins = found.temperatures[0]
+        assert np.pi * (0.9 - kelvins / 2000) * SIGMA * (kelvins**4 - 300**4) == pytest.approx(5e4, rel=1e-4)
+
+
+def test_walls_find_their_temperatures(small):
+    box = {side: value for side, value in zip(("xmin", "xmax", "ymin", "ymax", "zmin", "zmax"), (-9, 9) * 3)}
+    with fibrad.Heat([[0, 0, 0], [3, 0, 0]], 1, walls=box) as heat:
+        found = heat.solve([np.nan, 700], 0.5, power=[0, np.nan], wall_temperature=500, wall_emissivity=0.8,
+                           wall_power={"zmax": 0}, insulated=["xmin"])
+    assert 500 < found.temperatures[0] < 700 and found.temperatures[1] == 700
+    assert 500 < found.wall_temperatures["zmax"] < 700 and 500 < found.wall_temperatures["xmin"] < 700
+    assert found.walls["zmax"] == found.walls["xmin"] == 0 and found.wall_temperatures["ymin"] == 500
+    assert abs(found.balance) < 1e-12 * abs(found.spheres[1])
+
+
+@pytest.mark.parametrize("options, text", [
+    ({"temperature": np.nan}, "temperature"),
+    ({"temperature": None, "power": -1e9}, "temperatures"),
+    ({"wall_power": {"zmax": 1.}}, "no wall"),
+])
+def test_temperatures_that_cannot_be(options, text):
+    with fibrad.Heat([[0, 0, 0]], 0.5) as heat, pytest.raises(fibrad.InputError, match=text):
+        heat.solve(**{"temperature": 300., "emissivity": 0.5, "surroundings": 300., **options})

@@ -6,7 +6,8 @@ import dataclasses
 import math
 import threading
 import weakref
-from typing import Any, Optional
+from collections.abc import Callable, Collection, Mapping
+from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,12 +21,13 @@ from ._values import per_sphere, real, refuse, whole
 STEFAN_BOLTZMANN = 5.670374419e-8
 """W/(m2 K4)"""
 
-_HOTTEST = 1e20
+_HOTTEST, _STRONGEST = 1e20, 1e100
+_SETTLE_MAX, _EMISSIVITY_CHANGE = 100, 1e-5
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Powers:
-    """Net powers [W], positive where heat is gained. All of them add up to 0."""
+    """Net powers [W], positive where heat is gained; all of them add up to 0. And temperatures."""
 
     spheres: NDArray[np.float64]
     """(n,) to each sphere."""
@@ -33,6 +35,18 @@ class Powers:
     """To each wall, by its name."""
     surroundings: float
     """To the surroundings."""
+    temperatures: NDArray[np.float64]
+    """(n,) of each sphere [K], given or found; NaN of emissivity 0."""
+    wall_temperatures: dict[str, float]
+    """Of each wall [K]; of an insulated one that at which it would emit what it sends back."""
+    emissivities: NDArray[np.float64]
+    """(n,) of each sphere, at its temperature."""
+    errors: NDArray[np.float64]
+    """(n,) estimated errors of `spheres` [W]."""
+    wall_errors: dict[str, float]
+    """Of `walls` [W]."""
+    temperature_errors: NDArray[np.float64]
+    """(n,) estimated errors of `temperatures` [K], 0 of those given."""
     error: float
     """Estimated error of the powers of spheres, root mean square."""
     error_patches: float
@@ -57,7 +71,7 @@ def _choice(name: str, value: Optional[int], choices: tuple[int, ...]) -> int:
 
 
 class Heat:
-    """Radiation between grey diffuse spheres, walls and surroundings of given temperatures.
+    """Radiation between grey diffuse spheres, walls and surroundings of given temperatures or powers.
 
     The beams between all surfaces are traced once; `solve` gives the net powers for any temperatures and emissivities,
     and starts from the last solution. Memory is freed by `close`, at the end of ``with``, or with the object. One
@@ -158,25 +172,35 @@ class Heat:
         self._use(library.fibrad_radiation_move, packing, container.config, packing.spheres)
         self._packing, self._container = packing, container
 
-    def solve(self, temperature: ArrayLike, emissivity: ArrayLike, *, surroundings: Optional[float] = None,
-              wall_temperature: Any = None, wall_emissivity: Any = None, tolerance: Optional[float] = None,
-              uniform: bool = False, sigma: float = STEFAN_BOLTZMANN) -> Powers:
-        """Net powers.
+    def solve(self, temperature: Optional[ArrayLike], emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]], *,
+              power: Optional[ArrayLike] = None, surroundings: Optional[float] = None, wall_temperature: Any = None,
+              wall_emissivity: Any = None, wall_power: Optional[Mapping[str, float]] = None,
+              insulated: Collection[str] = (), tolerance: Optional[float] = None, uniform: bool = False,
+              sigma: float = STEFAN_BOLTZMANN) -> Powers:
+        """Net powers, and the temperatures of spheres and walls whose powers are given.
 
         Parameters
         ----------
         temperature : (n,) array or float
-            Of the spheres [K].
-        emissivity : (n,) array or float
-            Of the spheres, 0 to 1; 0 reflects all.
+            Of the spheres [K]; NaN: unknown, which needs `power`. None: of all.
+        emissivity : (n,) array, float or function
+            Of the spheres, 0 to 1; 0 reflects all. A function gets the temperatures (n,) and returns emissivities;
+            it is asked again until they change no more.
+        power : (n,) array or float, optional
+            What spheres of unknown temperature give off from inside [W]; their net power is its negative.
         surroundings : float
             Temperature of the surroundings [K]; may be left out only where walls and periods leave no way out.
         wall_temperature : mapping or float
-            Temperatures of the walls [K] by their names, or of all; needed where there are walls.
+            Temperatures of the walls [K] by their names, or of all others; needed where there are walls.
         wall_emissivity : mapping or float
             Emissivities of the walls by their names, or of all, 0 to 1; needed where there are walls.
+        wall_power : mapping, optional
+            What walls of unknown temperature give off [W], by their names.
+        insulated : names, optional
+            Walls that send back all that arrives, place by place.
         tolerance : float, optional
-            Residual at which to stop, relative to the differences of emission. Default: 1e-3.
+            Residual at which to stop, relative to the differences of emission. Default: 1e-3, or 1e-5 where
+            temperatures are unknown.
         uniform : bool
             One radiosity for each sphere and wall; wrong but for emissivities near 1.
         sigma : float
@@ -188,25 +212,54 @@ class Heat:
 
         Raises
         ------
-        InputError, StateError, OutOfMemory
+        InputError
+            Also where no temperatures give the powers.
+        StateError, OutOfMemory
         """
         container, names, n = self._container, self._packing.names, self.n
-        arrays = {"temperature": per_sphere("temperature", temperature, n, 0, _HOTTEST, names),
-                  "emissivity": per_sphere("emissivity", emissivity, n, 0, 1, names),
-                  "body_temperature": container.per_wall("wall_temperature", wall_temperature, 0, _HOTTEST),
-                  "body_emissivity": container.per_wall("wall_emissivity", wall_emissivity, 0, 1)}
+        powers, walls_off = dict(wall_power or {}), frozenset([*(wall_power or {}), *insulated])
+        wrong = walls_off - set(container.names)
+        if wrong:
+            raise refuse(f"there is no wall {', '.join(map(repr, sorted(wrong)))}")
+        if isinstance(wall_temperature, Mapping) and walls_off & set(wall_temperature):
+            raise refuse(f"{', '.join(sorted(walls_off & set(wall_temperature)))}: its temperature is to be found")
+        kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, _HOTTEST, names,
+                             power is not None)
+        arrays = {"temperature": kelvins,
+                  "power": None if power is None else per_sphere("power", power, n, -_STRONGEST, _STRONGEST, names, True),
+                  "body_temperature": container.per_wall("wall_temperature", wall_temperature, 0, _HOTTEST, walls_off),
+                  "body_emissivity": container.per_wall("wall_emissivity", wall_emissivity, 0, 1, frozenset(insulated)),
+                  "body_power": container.per_wall("wall_power", powers, -_STRONGEST, _STRONGEST,
+                                                   frozenset(container.names)) if powers else None}
+        arrays["body_emissivity"] = np.nan_to_num(arrays["body_emissivity"])
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
+        law = emissivity if callable(emissivity) else lambda found: emissivity
+        shares = per_sphere("emissivity", law(np.where(np.isnan(kelvins), surroundings or 300., kelvins)), n, 0, 1, names)
+        closed = np.array([wall in insulated for wall in container.names], np.uint8)
         sources = HeatSources(surroundings=real("surroundings", surroundings, 0, _HOTTEST),
                               sigma=real("sigma", sigma, 1e-30, 1e30), tolerance=real("tolerance", tolerance, 0, 1),
-                              uniform=bool(uniform), **{name: pointer(array) for name, array in arrays.items()})
-        power, wall_power = np.zeros(n), np.zeros(len(container.names))
-        result = HeatResult(power=pointer(power), body_power=pointer(wall_power))
-        self._use(library.fibrad_radiation_solve, self._packing, sources, result)
+                              uniform=bool(uniform), insulated=pointer(closed, ctypes.POINTER(ctypes.c_ubyte)),
+                              **{name: pointer(array) for name, array in arrays.items() if array is not None})
+        of_spheres = {name: np.zeros(n) for name in ("power", "temperature", "power_error", "temperature_error")}
+        of_walls = {name: np.zeros(len(container.names)) for name in ("body_power", "body_temperature", "body_error")}
+        result = HeatResult(**{name: pointer(array) for name, array in (of_spheres | of_walls).items()})
+        for _ in range(_SETTLE_MAX):
+            sources.emissivity = pointer(shares)
+            self._use(library.fibrad_radiation_solve, self._packing, sources, result)
+            before, known = shares, np.isfinite(of_spheres["temperature"])
+            shares = per_sphere("emissivity", law(np.where(known, of_spheres["temperature"], kelvins)), n, 0, 1, names)
+            if np.max(np.abs(shares - before)[known], initial=0) <= _EMISSIVITY_CHANGE:
+                break
+        else:
+            raise refuse("the emissivities do not settle")
         if surroundings is None and result.surroundings_power != 0:
             raise refuse(f"{result.surroundings_power} W leave the bed after 100 periods: surroundings is needed")
-        return Powers(spheres=power, walls=dict(zip(container.names, wall_power.tolist())),
-                      surroundings=result.surroundings_power,
+        walls = {name: dict(zip(container.names, array.tolist())) for name, array in of_walls.items()}
+        return Powers(spheres=of_spheres["power"], walls=walls["body_power"], surroundings=result.surroundings_power,
+                      temperatures=of_spheres["temperature"], wall_temperatures=walls["body_temperature"],
+                      emissivities=before, errors=of_spheres["power_error"], wall_errors=walls["body_error"],
+                      temperature_errors=of_spheres["temperature_error"],
                       error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,
                       error_beams=result.error_beams, residual=result.residual, sweeps=result.sweeps)
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
@@ -115,17 +116,20 @@ class Container:
             return self.period[axis] > 0 or ends <= set(self.names) or (axis < 2 and "cylinder" in self.names)
         return all(bounded(axis) for axis in range(3))
 
-    def per_wall(self, name: str, value: Any, low: float, high: float) -> NDArray[np.float64]:
-        """[walls] values [low, high] of a mapping by the walls' names; a number is for all walls."""
+    def per_wall(self, name: str, value: Any, low: float, high: float,
+                 others: frozenset[str] = frozenset()) -> NDArray[np.float64]:
+        """[walls] values [low, high] of a mapping by the walls' names; a number is for all walls, but for `others`,
+        which need none and are NaN."""
         if not self.names and value is not None:
             raise refuse(f"{name} is given, and there are no walls")
         if not isinstance(value, Mapping):
-            value = dict.fromkeys(self.names, value)
+            value = dict.fromkeys([wall for wall in self.names if wall not in others], value)
         wrong = set(value) - set(self.names)
         if wrong:
             raise refuse(f"{name}: there is no wall {', '.join(map(repr, sorted(wrong)))}; "
                          f"there are {', '.join(self.names)}")
-        missing = [wall for wall in self.names if value.get(wall) is None]
+        missing = [wall for wall in self.names if value.get(wall) is None and wall not in others]
         if missing:
             raise refuse(f"{name} of {', '.join(missing)} is missing")
-        return np.array([real(f"{name} of {wall}", value[wall], low, high) for wall in self.names])
+        return np.array([math.nan if value.get(wall) is None else real(f"{name} of {wall}", value[wall], low, high)
+                         for wall in self.names])

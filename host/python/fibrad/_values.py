@@ -50,13 +50,14 @@ def doubles(name: str, value: ArrayLike) -> NDArray[np.float64]:
     raise refuse(f"{name} must be numbers, not {array.dtype}")
 
 
-def per_sphere(name: str, value: ArrayLike, n: int, low: float, high: float, names: "Names") -> NDArray[np.float64]:
-    """[n] values [low, high], contiguous; a number is for all spheres."""
+def per_sphere(name: str, value: ArrayLike, n: int, low: float, high: float, names: "Names",
+               some: bool = False) -> NDArray[np.float64]:
+    """[n] values [low, high], or with `some` NaN, contiguous; a number is for all spheres."""
     array = doubles(name, value)
     if array.shape not in ((), (n,)):
         raise refuse(f"{name} has the shape {array.shape}; a number or {n} of them, one for each sphere, are wanted")
     array = np.ascontiguousarray(np.broadcast_to(array, (n,)))
-    wrong = np.flatnonzero(~((array >= low) & (array <= high)))
+    wrong = np.flatnonzero(~((array >= low) & (array <= high) | (some & np.isnan(array))))
     if wrong.size:
         i = int(wrong[0])
         raise refuse(f"{name} of {names(i)} is {array[i]}, not in [{low:g}, {high:g}]", i)
