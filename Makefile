@@ -188,7 +188,7 @@ HOST = \
     host/reproduce/reproduce_pebbles.c \
     host/reproduce/reproduce_rays.c \
     host/reproduce/reproduce_rows.c \
-    host/command/bed_options.c \
+    host/frames/bed_options.c \
     host/command/command_bed.c \
     host/command/command_conductivity.c \
     host/command/command_exchange.c \
@@ -197,8 +197,8 @@ HOST = \
     host/command/command_join.c \
     host/command/command_pair.c \
     host/command/command_reproduce.c \
-    host/command/heat_given.c \
-    host/command/heat_run.c
+    host/heat/heat_given.c \
+    host/heat/heat_run.c
 
 TESTS = \
     tests/test_accuracy.c \

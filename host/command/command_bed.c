@@ -8,7 +8,7 @@
 #include "cli/message.h"
 #include "cli/output.h"
 #include "cli/targets.h"
-#include "command/bed_options.h"
+#include "frames/bed_options.h"
 #include "command/commands.h"
 #include "plot/plot_bed.h"
 #include "write/write.h"

@@ -7,7 +7,7 @@
 
 #include "bed/conduction.h"
 #include "cli/message.h"
-#include "command/bed_options.h"
+#include "frames/bed_options.h"
 #include "command/commands.h"
 
 enum { KEY_AXIS = KEY_OWN, KEY_CONDUCTIVITY_TEMPERATURE, KEY_MAX_RAYS };

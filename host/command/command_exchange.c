@@ -5,7 +5,7 @@
 
 #include "bed/bed_scene.h"
 #include "cli/message.h"
-#include "command/bed_options.h"
+#include "frames/bed_options.h"
 #include "command/commands.h"
 #include "write/write.h"
 

@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "command/bed_options.h"
+#include "frames/bed_options.h"
 #include "command/commands.h"
-#include "command/heat_given.h"
-#include "command/heat_run.h"
+#include "heat/heat_given.h"
+#include "heat/heat_run.h"
 #include "plot/plot_heat.h"
 
 enum {

@@ -1,5 +1,5 @@
 /* heat_run.c - powers of one bed in watts, and what they have in common. SPDX-License-Identifier: MIT */
-#include "command/heat_run.h"
+#include "heat/heat_run.h"
 
 #include <gsl/gsl_math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* bed_options.c - what all commands about beds are asked. SPDX-License-Identifier: MIT */
-#include "command/bed_options.h"
+#include "frames/bed_options.h"
 
 #include <glob.h>
 #include <math.h>

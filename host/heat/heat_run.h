@@ -2,7 +2,7 @@
 #ifndef HEAT_RUN_H
 #define HEAT_RUN_H
 
-#include "command/bed_options.h"
+#include "frames/bed_options.h"
 
 /* What is to be solved. */
 struct heat_problem {

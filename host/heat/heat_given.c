@@ -1,5 +1,5 @@
 /* heat_given.c - what is given of each sphere and wall: its temperature or its power. SPDX-License-Identifier: MIT */
-#include "command/heat_given.h"
+#include "heat/heat_given.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef HEAT_GIVEN_H
 #define HEAT_GIVEN_H
 
-#include "command/bed_options.h"
+#include "frames/bed_options.h"
 
 /* Rows of tables of options, without braces; KEY_* are the command's. */
 #define OPTION_TEMPERATURE "temperature", "T", "of all spheres; or TYPE:T,... ; or the file's column of that name"
