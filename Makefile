@@ -198,7 +198,8 @@ HOST = \
     host/command/command_pair.c \
     host/command/command_reproduce.c \
     host/heat/heat_given.c \
-    host/heat/heat_run.c
+    host/heat/heat_run.c \
+    host/heat/steady.c
 
 TESTS = \
     tests/test_accuracy.c \

@@ -298,6 +298,20 @@ START_TEST(threads_change_nothing) {
 }
 END_TEST
 
+/* Between plates spheres settle at temperatures of their own; the flux is that of the linear field all the same. Sides
+ * that are open have none. */
+START_TEST(between_plates) {
+    SUCCEED("conductivity", PERIODIC, "--periodic", "12,12,0", "--emissivity", "1", "--axis", "z", "--steady");
+    const double linear = value_of("F_E_z"), steady = value_of("F_E_steady_z");
+    ck_assert_double_eq_tol(steady, linear, .005 * linear + 2 * value_of("F_E_z_error"));
+    ck_assert_double_lt(value_of("F_E_steady_z_error"), .002 * steady);
+    ck_assert_int_eq(RUN("conductivity", PERIODIC, "--periodic", "12,12,0", "--emissivity", "1", "--axis", "x",
+                         "--error", ".1", "--steady"),
+                     2);
+    expect_message(PERIODIC, "--steady: the two axes across it must be periodic");
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("conductivity");
     TCase *functions = suite_case(suite, "functions"), *program = suite_case(suite, "program");
@@ -313,5 +327,6 @@ int main(void) {
     tcase_add_test(program, one_axis);
     tcase_add_test(program, watts_and_files);
     tcase_add_test(program, threads_change_nothing);
+    tcase_add_test(program, between_plates);
     return suite_run(suite);
 }

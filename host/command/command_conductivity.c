@@ -9,8 +9,9 @@
 #include "cli/message.h"
 #include "frames/bed_options.h"
 #include "command/commands.h"
+#include "heat/steady.h"
 
-enum { KEY_AXIS = KEY_OWN, KEY_CONDUCTIVITY_TEMPERATURE, KEY_MAX_RAYS };
+enum { KEY_AXIS = KEY_OWN, KEY_CONDUCTIVITY_TEMPERATURE, KEY_MAX_RAYS, KEY_STEADY };
 
 static const struct option conductivity_table[] = {
     {OPTION_EMISSIVITY},
@@ -20,6 +21,9 @@ static const struct option conductivity_table[] = {
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [as many as --error takes]"},
     {KEY_ERROR, "error", "E", "as many as bring the estimated standard errors to E of F_E, 1e-4 to 1 [0.003]"},
     {KEY_MAX_RAYS, "max-rays", "N", "no more rays in all than about so many for --error [5e7]"},
+    {KEY_STEADY, "steady", NULL,
+     "besides, F_E of the bed between two black plates, spheres at the temperatures at which they gain nothing, along "
+     "each axis whose other two are periodic"},
     {KEY_SEED, "seed", "S", "another number, other paths and directions [0]"},
     OPTIONS_INPUT,
     {'o', "output", "OUT", "F_E and k per axis: .csv .json; - [summary only]"},
@@ -34,6 +38,8 @@ struct conductivity_request {
     double zero;        /* 0 of the unit of temperature [K] */
     double temperature; /* [K] */
     struct conduction_rule rule;
+    bool steady;
+    struct steady between[3]; /* plates, along each axis; 0 spheres: not computed */
 };
 
 static int conductivity_help(void) {
@@ -98,6 +104,9 @@ static int conductivity_take(struct conductivity_request *request, const struct 
         return take_rays(value, &rule->max_rays);
     case KEY_SEED:
         return options_whole("--seed", value, 0, UINT64_MAX, &rule->seed);
+    case KEY_STEADY:
+        request->steady = true;
+        return STATUS_OK;
     default:
         return bed_options_take(&request->bed, options, key);
     }
@@ -152,6 +161,17 @@ static void report_axes(struct report *report, const struct conduction *result, 
     }
 }
 
+static void report_steady(struct report *report, int axis, const struct steady *steady) {
+    char key[40];
+    if (steady->spheres == 0) return;
+    snprintf(key, sizeof key, "F_E_steady_%c", 'x' + axis);
+    report_measured(report, key, steady->factor, steady->error);
+    snprintf(key, sizeof key, "F_E_steady_%c_error", 'x' + axis);
+    report_value(report, key, steady->error, 2);
+    snprintf(key, sizeof key, "seconds_steady_%c", 'x' + axis);
+    report_value(report, key, steady->seconds, 3);
+}
+
 static void conductivity_report(struct conductivity_request *request, const struct bed *bed,
                                 const struct conduction *result) {
     static const struct walls none;
@@ -173,6 +193,7 @@ static void conductivity_report(struct conductivity_request *request, const stru
         report_value(report, "temperature_K", result->temperature, 6);
         report_axes(report, result, "k_%c_W_mK%s", result->k, result->k_error);
     }
+    for (int axis = 0; axis < 3; ++axis) report_steady(report, axis, &request->between[axis]);
     report_axes(report, result, "F_E_%c%s", result->factor, result->error);
     report_end(report);
 }
@@ -209,6 +230,22 @@ static int conductivity_follow(struct conductivity_request *request, const struc
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
+/* Between plates, along the axes that are wanted and possible. */
+static int conductivity_steady(struct conductivity_request *request, const struct bed *bed,
+                               const struct conduction *result) {
+    int status = STATUS_OK;
+    bool any = false;
+    for (int axis = 0; axis < 3 && !status; ++axis) {
+        request->between[axis] = (struct steady){0};
+        if (!request->steady || !conduction_wants(result, axis) || !steady_possible(bed, axis)) continue;
+        any = true;
+        status = steady_conduction(&request->bed, bed, request->rule.emissivity, axis, &request->between[axis]);
+    }
+    if (request->steady && !any)
+        return message_at(STATUS_USAGE, request->bed.name, 0, "--steady: the two axes across it must be periodic");
+    return status;
+}
+
 static int conductivity_compute(struct conductivity_request *request, struct bed *bed, struct conduction *result) {
     const char *file = request->bed.name;
     double *emissivity = NULL, metres;
@@ -220,6 +257,7 @@ static int conductivity_compute(struct conductivity_request *request, struct bed
     if (!status) status = conduction_emitters(bed, file, emits, result);
     if (!status) status = conductivity_follow(request, bed, emits, result);
     if (!status && request->at) conduction_at(result, request->temperature, metres);
+    if (!status) status = conductivity_steady(request, bed, result);
     free(emits);
     free(emissivity);
     return status;
