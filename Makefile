@@ -87,6 +87,7 @@ KERNEL = \
     kernel/exchange/body_row.c \
     kernel/exchange/exchange.c \
     kernel/exchange/flow.c \
+    kernel/heat/errors.c \
     kernel/heat/heat.c \
     kernel/heat/result.c \
     kernel/heat/solve.c \

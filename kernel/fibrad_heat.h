@@ -25,6 +25,8 @@ typedef struct fibrad_heat_config {
     uint32_t patches;    /* of a sphere: 24, 96 or 384; 0: 96 */
     uint32_t parts;      /* [1, 1024] of a sweep, for as many threads; last bits depend on it; 0: 8 */
     double cutoff;       /* 0: none; else, as with a known region, FIBRAD_E_UNSUPPORTED */
+    uint32_t wall_rays;  /* up to 2^30, from all walls together; 0: 262144, 8 for each of their patches, or
+                          * 6 directions points, whichever is most */
 } fibrad_heat_config;
 
 typedef struct fibrad_heat fibrad_heat; /* beams, patches and radiosities of a scene */

@@ -309,6 +309,29 @@ START_TEST(walls_exchange_better_with_more_beams) {
 }
 END_TEST
 
+/* Each wall has an estimate of its own error, above which it is seldom by more than a factor of two. */
+START_TEST(walls_know_their_errors) {
+    double error[6], ratio = 0;
+    uint32_t low = 0;
+    for (uint32_t hot = 0; hot < 6; hot++) {
+        struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
+        p.walls = box_of(.5);
+        p.wall_temperature[hot] = 1;
+        p.result.body_error = error;
+        trace_and_solve(&p);
+        for (uint32_t k = 0; k < 6; k++) {
+            const double truth = k == hot ? -1 : k == (hot ^ 1) ? 0.1998249 : 0.2000438;
+            low += fabs(p.wall_power[k] - truth) > 2 * error[k];
+            ratio += error[k] / 36 / 1e-3;
+        }
+        free_problem(&p);
+    }
+    ck_assert_uint_le(low, 6); /* of 36, which are not independent */
+    ck_assert_double_lt(ratio, 1);
+    ck_assert_double_gt(ratio, .05);
+}
+END_TEST
+
 START_TEST(view_factors_between_the_walls_of_a_cylinder) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1e-4}}), 0, 1);
     p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -1, 1}, .cylinder = {0, 0, 1}};
@@ -785,16 +808,22 @@ START_TEST(an_earlier_solution_goes_with_the_spheres) {
 END_TEST
 
 START_TEST(the_error_is_as_estimated) {
-    double truth[100], *power = NULL;
+    double truth[100], each[100], *power = NULL;
     for (int k = 0; k < 3; k++) {
         static const fibrad_heat_config configs[] = {
             {.directions = 600, .patches = 384}, {.directions = 72, .patches = 96}, {.directions = 144, .patches = 24}};
         struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .4);
         for (uint32_t i = 0; i < p.bed.n; i++) p.temperature[i] = 1 + bed_make_random(3, i);
         p.config = configs[k];
+        p.result.power_error = each;
         trace_and_solve(&p);
         power = p.result.power;
-        double square = 0;
+        double square = 0, squares = 0;
+        uint32_t low = 0;
+        for (uint32_t i = 0; i < p.bed.n; i++) squares += each[i] * each[i] / p.bed.n;
+        assert_near(hypot(p.result.error_patches, p.result.error_beams), sqrt(squares), 1e-12);
+        for (uint32_t i = 0; i < p.bed.n && k > 0; i++) low += fabs(power[i] - truth[i]) > 2 * each[i];
+        ck_assert_uint_le(low, 5);
         for (uint32_t i = 0; i < p.bed.n; i++) square += (power[i] - truth[i]) * (power[i] - truth[i]) / p.bed.n;
         if (k == 0) memcpy(truth, power, sizeof truth);
         if (k > 0) {
@@ -1093,6 +1122,7 @@ int main(void) {
     tcase_add_test(closed, white_walls_take_nothing);
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cube);
     tcase_add_test(closed, walls_exchange_better_with_more_beams);
+    tcase_add_test(closed, walls_know_their_errors);
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cylinder);
     tcase_add_test(closed, walls_alone);
     tcase_add_test(closed, two_black_spheres_in_contact);

@@ -116,6 +116,7 @@ module fibrad
     type, bind(C) :: c_heat_config
         integer(c_int32_t) :: directions = 0, points = 0, patches = 0, parts = 0
         real(c_double) :: cutoff = 0
+        integer(c_int32_t) :: wall_rays = 0
     end type c_heat_config
 
     type, bind(C) :: c_heat_sources

@@ -13,6 +13,7 @@
 #define HEAT_PATCHES    96u
 #define HEAT_PARTS      8u
 #define HEAT_PARTS_MAX  1024u
+#define HEAT_RAYS_MAX   (1u << 30)
 #define HEAT_RADIUS_MIN 1e-30 /* and its inverse the largest */
 
 static fibrad_heat_config heat_config_of(const fibrad_heat_config *config) {
@@ -36,7 +37,7 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
     const bool valid = c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX &&
                        fibrad_disc_points_get(c->points, &set) == FIBRAD_OK && side_of(c->patches) > 0 &&
                        c->parts <= HEAT_PARTS_MAX && scene->facts.spheres <= (UINT32_MAX >> 1) / c->patches &&
-                       c->cutoff >= 0 &&
+                       c->cutoff >= 0 && c->wall_rays <= HEAT_RAYS_MAX &&
                        (scene->facts.spheres == 0 ||
                         (scene->facts.radius_min >= HEAT_RADIUS_MIN && scene->facts.radius_max <= 1 / HEAT_RADIUS_MIN));
     return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 || scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
@@ -85,11 +86,10 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     double **const of_patches[] = {&heat->area, &heat->radiosity, &heat->detail, &heat->net, &heat->direction};
     for (size_t k = 0; k < sizeof of_patches / sizeof *of_patches; k++)
         *of_patches[k] = fibrad_arena_take(arena, patches, sizeof(double));
-    double **const of_bodies[] = {&heat->emissivity, &heat->emission,        &heat->drive,       &heat->hold,
-                                  &heat->coarse,     &heat->coarse_emission, &heat->temperature, &heat->power};
+    double **const of_bodies[] = {&heat->emissivity,      &heat->emission,    &heat->drive, &heat->hold,  &heat->coarse,
+                                  &heat->coarse_emission, &heat->temperature, &heat->power, &heat->halves};
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
         *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
-    heat->halves = fibrad_arena_take(arena, spheres, sizeof(double));
     heat->order = fibrad_arena_take(arena, spheres, sizeof *heat->order);
     heat->traced = fibrad_arena_take(arena, tasks_for(spheres, heat->rays_capacity), 1);
     heat->swept = fibrad_arena_take(arena, heat->config.parts, 1);

@@ -77,7 +77,7 @@ struct fibrad_heat {
     double *coarse, *power;  /* [bodies] net power at the coarser level, and extrapolated */
     double *coarse_emission; /* [bodies] E at the coarser level */
     double *temperature;     /* [bodies] given, or found; NaN: none */
-    double *halves;          /* [spheres] by how much the power by even directions exceeds that by odd ones */
+    double *halves;          /* [bodies] by how much the power by even directions exceeds that by odd ones */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_WALLS];                                      /* likewise */
 

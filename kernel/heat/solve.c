@@ -317,12 +317,13 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
 
 /* What the sweep in hand was for; FIBRAD_E_UNSOLVABLE. */
 static int end_sweep(fibrad_heat *heat) {
+    const double *sum = fibrad_heat_gathered(heat);
     if (heat->phase == FIBRAD_HEAT_CHECK) {
+        for (uint32_t b = 0; b < heat->bodies; b++) heat->halves[b] = sum_over(heat, b, sum);
         heat->phase = FIBRAD_HEAT_DONE;
         heat->warm = true;
         return FIBRAD_OK;
     }
-    const double *sum = fibrad_heat_gathered(heat);
     heat->sweeps++;
     switch (heat->phase) {
     case FIBRAD_HEAT_AREA:

@@ -6,6 +6,10 @@
 
 #define BEYOND (FIBRAD_WALLS + 1)
 
+/* Halves of rays are independent, so that by how much they differ is their error; those of directions differ by more.
+ */
+#define RAYS_WEIGHT 2.5
+
 /* A beam stands for the area 1/(n + m) if its two surfaces send out n and m beams per area: so the beams either way
  * together tell what the two exchange, those of the denser one counting as much more as there are more of them. */
 static double beam_area(const fibrad_heat_source *a, const fibrad_heat_source *b) {
@@ -19,6 +23,13 @@ static void set_aside(const fibrad_heat *heat, double *to, double sum[BEYOND]) {
     for (uint32_t b = first; b < heat->patches; b++) sum[b - first] += to[b], to[b] = 0;
 }
 
+/* What flows count for by direction k of n, or ray k: 1, but in the sweep for the error that much more by even ones
+ * than by odd ones. The first and the last direction are halved, or the even ones would lean to one side. */
+static double half_sign(const fibrad_heat *heat, uint32_t k, uint32_t n) {
+    if (heat->phase != FIBRAD_HEAT_CHECK) return 1;
+    return (k % 2 == 0 ? 1 : -1) * (k == 0 || k + 1 == n ? .5 : 1);
+}
+
 /* Adds what the beams of one sphere bring to its own patches, and to those they meet; or, in the first sweep of all,
  * the areas they stand for. */
 static void sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to, double away[BEYOND]) {
@@ -26,10 +37,12 @@ static void sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to, do
     const fibrad_heat_source *source = heat->source, *mine = source + (size_t)place * patches;
     const bool areas = heat->phase == FIBRAD_HEAT_AREA;
     double own[FIBRAD_HEAT_PATCHES_MAX] = {0}, sum[BEYOND] = {0};
-    for (uint32_t begin = 0; begin < heat->beams; begin += heat->config.points) {
+    for (uint32_t direction = 0; direction < heat->config.directions; direction++) {
+        const double sign = half_sign(heat, direction, heat->config.directions);
+        const uint32_t begin = direction * heat->config.points;
         for (uint32_t k = begin; k < begin + heat->config.points; k++) {
             const uint32_t a = heat->leave[k], b = hit[k];
-            const double area = beam_area(mine, &source[b]);
+            const double area = sign * beam_area(mine, &source[b]);
             const double flow = areas ? area : area * (source[b].value - mine[a].value);
             own[a] += flow;
             to[b] += areas ? flow : -flow;
@@ -44,7 +57,8 @@ static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, do
     const bool areas = heat->phase == FIBRAD_HEAT_AREA;
     for (uint32_t k = begin; k < end; k++) {
         const fibrad_heat_ray ray = heat->ray[k];
-        const double flow = areas ? ray.area : ray.area * (heat->source[ray.to].value - heat->source[ray.from].value);
+        const double area = (heat->phase == FIBRAD_HEAT_CHECK ? RAYS_WEIGHT * (1 - 2 * (double)(k % 2)) : 1) * ray.area;
+        const double flow = areas ? area : area * (heat->source[ray.to].value - heat->source[ray.from].value);
         to[ray.from] += flow;
         to[ray.to] += areas ? flow : -flow;
         if (k % 64 == 63) set_aside(heat, to, away);
@@ -56,31 +70,11 @@ static uint32_t part_begin(const fibrad_heat *heat, uint32_t n, uint32_t part) {
     return (uint32_t)((uint64_t)n * part / heat->config.parts);
 }
 
-/* How much more the even directions of a sphere's own beams bring it than the odd ones. */
-static double sweep_halves(const fibrad_heat *heat, uint32_t place) {
-    const uint32_t *hit = heat->hit + (size_t)place * heat->beams, points = heat->config.points;
-    const fibrad_heat_source *source = heat->source, *mine = source + (size_t)place * heat->config.patches;
-    double half[2] = {0, 0};
-    for (uint32_t k = 0; k < heat->config.directions; k++) {
-        double sum = 0;
-        for (uint32_t p = k * points; p < (k + 1) * points; p++) {
-            const fibrad_heat_source *other = &source[hit[p]];
-            sum += beam_area(mine, other) * (other->value - mine[heat->leave[p]].value);
-        }
-        half[k % 2] += k == 0 || k + 1 == heat->config.directions ? sum / 2 : sum;
-    }
-    return half[0] - half[1];
-}
-
 /* All of a part but the note that it is done. */
 static void sweep_part(fibrad_heat *heat, uint32_t part) {
     const uint32_t spheres = heat->spheres;
     const uint32_t begin = part_begin(heat, spheres, part), end = part_begin(heat, spheres, part + 1);
     double *to = heat->gathered + (size_t)part * heat->patches, away[BEYOND] = {0};
-    if (heat->phase == FIBRAD_HEAT_CHECK) {
-        for (uint32_t place = begin; place < end; place++) heat->halves[place] = sweep_halves(heat, place);
-        return;
-    }
     fibrad_zero(to, heat->patches * sizeof *to);
     for (uint32_t place = begin; place < end; place++) sweep_sphere(heat, place, to, away);
     sweep_rays(heat, part_begin(heat, heat->rays, part), part_begin(heat, heat->rays, part + 1), to, away);

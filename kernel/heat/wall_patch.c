@@ -9,8 +9,8 @@
  * those of the spheres. What spheres and walls exchange is known from the beams of the spheres, which are spread far
  * more evenly than rays; rays of walls tell what walls exchange with each other. Where there is a bed between them that
  * is little, so that a few of each patch do, but RAYS_MIN in all, and RAYS_PER_BEAM for each beam of one sphere: so
- * what walls exchange gets better, too, where more beams are asked for. */
-#define FEW            1536.0
+ * what walls exchange gets better, too, where more beams are asked for; or as many as the configuration has. */
+#define FEW            16.0 /* times the patches of a sphere */
 #define RAYS_PER_PATCH 8.0
 #define RAYS_MIN       262144.0
 #define RAYS_PER_BEAM  6.0
@@ -74,10 +74,12 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
     }
     if (area == 0) return;
     for (uint32_t i = 0; i < heat->spheres; i++) surface += 4 * FIBRAD_PI * scene->r[i] * scene->r[i];
-    const double of_spheres = (double)heat->spheres * heat->config.patches, most = FEW + of_spheres / 4;
+    const double of_spheres = (double)heat->spheres * heat->config.patches,
+                 most = FEW * heat->config.patches + of_spheres / 4;
     const double square = fibrad_sqrt(fibrad_max(surface / of_spheres, area / most));
     const double rays = fibrad_max(RAYS_MIN, RAYS_PER_BEAM * heat->beams);
-    const double density = fibrad_max(RAYS_PER_PATCH / (square * square), rays / area);
+    const double all = fibrad_max(RAYS_PER_PATCH * area / (square * square), rays);
+    const double density = (heat->config.wall_rays > 0 ? heat->config.wall_rays : all) / area;
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         fibrad_heat_wall *wall = &heat->wall[k];
         if (!(scene->wall_area[k] > 0)) continue;
@@ -134,11 +136,17 @@ uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], con
     return fibrad_heat_wall_patch(heat, wall, at);
 }
 
+/* Rays start where, and as, the points of a four-dimensional sequence lie: multiples of g^-1 ... g^-4 modulo 1, g^5 = g
+ * + 1 (source: base/random.h), from another point on for each wall. */
+static const uint64_t ray_step[4] = {0xdb4f0b9175ae2165u, 0xbbe0563303a4615fu, 0xa0f2ec75a1fe1575u,
+                                     0x89e182857d9ed689u};
+
 bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, double origin[3], double w[3]) {
     const fibrad_heat_wall *part = &heat->wall[wall];
     const fibrad_container *c = &heat->scene->container;
     double x[4], normal[3], sine, cosine;
-    for (int d = 0; d < 4; d++) x[d] = fibrad_quasirandom(wall, k, d);
+    for (int d = 0; d < 4; d++)
+        x[d] = fibrad_fraction(k / 2 * ray_step[d] + fibrad_mix((2 * wall + k % 2) ^ ray_step[d]));
     if (wall == FIBRAD_CYLINDER) {
         fibrad_sincos_turn(x[0], &sine, &cosine);
         origin[0] = c->axis[0] + c->radius * cosine, origin[1] = c->axis[1] + c->radius * sine;

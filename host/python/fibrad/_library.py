@@ -54,7 +54,8 @@ BedFactors = _structure("bed_factors", ("matrix", Matrix), ("facts", SceneFacts)
 ExchangeRule = _structure("exchange_rule", ("emissivity body_emissivity", DOUBLES), ("directions paths", c_uint32),
                           ("seed", c_uint64), ("cutoff tolerance", c_double))
 Displacement = _structure("displacement", ("square error", c_double * 3), ("absorbed", c_double), ("rays", c_uint64))
-HeatConfig = _structure("heat_config", ("directions points patches parts", c_uint32), ("cutoff", c_double))
+HeatConfig = _structure("heat_config", ("directions points patches parts", c_uint32), ("cutoff", c_double),
+                        ("wall_rays", c_uint32))
 HeatSources = _structure("heat_sources", ("temperature emissivity power hold reference", DOUBLES),
                          ("body_temperature body_emissivity body_power", DOUBLES), ("insulated", POINTER(c_ubyte)),
                          ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int))
