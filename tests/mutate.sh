@@ -7,7 +7,7 @@
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
 export BUILD MAKE CC
-tests="base pair_exact surface matrix scene direction drift areas furnace surface_row work beam cast walls trace exchange protocol part heat stress"
+tests="base pair_exact surface matrix scene direction drift areas furnace surface_row work beam cast walls trace exchange body_rows protocol part heat stress"
 whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-60}"
 
@@ -29,7 +29,7 @@ LINE
     rm -rf "$tree" && cp -Rp "$whole" "$tree" || exit 1
     case $file in # what is most likely to notice comes first
     kernel/exchange/flow.c | kernel/scene/surroundings.c) tests="part $tests" ;;
-    kernel/exchange/*) tests="exchange protocol part $tests" ;;
+    kernel/exchange/*) tests="exchange body_rows protocol part $tests" ;;
     kernel/heat/*) tests="protocol heat $tests" ;;
     */points_*) tests="beam cast $tests" ;;
     kernel/window/*) tests="areas beam $tests" ;;

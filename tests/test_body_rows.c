@@ -414,7 +414,7 @@ START_TEST(tolerance_and_raw_rows) {
         }
         ck_assert_double_lt(sqrt(square), 4e-3);
         ck_assert_double_lt(sqrt(of_raw), 3 * raw->matrix.body_error[b] + 1e-3);
-        ck_assert_double_lt(raw->matrix.body_error[b], 2e-3);
+        ck_assert_double_lt(raw->matrix.body_error[b], 5e-3);
     }
     fibrad_bed_free(f), fibrad_bed_free(truth), fibrad_bed_free(raw);
     bed_free(&room.bed);

@@ -298,7 +298,7 @@ END_TEST
 /* In a box rows add up to 1 with the walls, nothing escapes, and the walls' own rows are reciprocal. */
 START_TEST(walls) {
     enum { SPHERES = 2000, WALLS = 6 };
-    static double sum[SPHERES], to[SPHERES][WALLS];
+    static double sum[SPHERES], to[SPHERES][WALLS], wall_sum[WALLS], between[WALLS][WALLS];
     char *first = NULL;
     for (int k = 0; k < 2; ++k) {
         const char *out = in_folder("F.csv");
@@ -318,13 +318,25 @@ START_TEST(walls) {
         ck_assert(i < SPHERES && j < SPHERES && i >= -1 - WALLS && j >= -1 - WALLS && f > 0);
         if (i >= 0) sum[i] += f;
         if (i >= 0 && j < -1) to[i][-2 - j] = f;
-        if (i < -1) {
-            const double area = i >= -5 ? 12 * 50 : 12 * 12;
+        const double area = i >= -5 ? 12 * 50 : 12 * 12;
+        if (i < -1) wall_sum[-2 - i] += f;
+        if (i < -1 && j < -1) between[-2 - i][-2 - j] = f * area;
+        if (i < -1 && j >= 0) {
             ck_assert_double_eq_tol(f * area, acos(-1) * to[j][-2 - i], 1e-13);
             ++back;
         }
     }
     ck_assert_int_gt(back, 1000);
+    ck_assert_ptr_nonnull(strstr(first, ",zmin:xmax\n"));
+    for (int b = 0; b < WALLS; ++b) {
+        ck_assert_double_eq_tol(wall_sum[b], 1, 1e-13);
+        for (int c = 0; c < WALLS; ++c) ck_assert_double_eq_tol(between[b][c], between[c][b], 1e-13);
+    }
+    ck_assert_double_gt(between[5][0], 10); /* the lid and a side see each other */
+    ck_assert_double_eq_tol(value_of("wall_zmax_to_walls") * 12 * 12,
+                            between[5][0] + between[5][1] + between[5][2] + between[5][3] + between[5][4], .1);
+    ck_assert_double_lt(value_of("wall_zmax_error"), .01);
+    ck_assert_double_lt(value_of("wall_correction"), .01);
     double mean = 0;
     for (int i = 0; i < SPHERES; ++i) {
         ck_assert_double_eq_tol(sum[i], 1, 1e-13);

@@ -164,6 +164,24 @@ START_TEST(csv_of_walls) {
 }
 END_TEST
 
+/* Rows of walls: after what a wall sends to the spheres; nothing from walls without bounds, of which they are null. */
+START_TEST(rows_of_walls) {
+    static const double between[] = {0.5, 0.25, NAN, NAN}, leaves[] = {0.125, NAN}, off[] = {0.0625, NAN};
+    fibrad_bed_factors whole = factors;
+    whole.matrix.body_body = between, whole.matrix.body_escaped = leaves, whole.matrix.body_error = off;
+    const struct contents what = {.bed = &bed, .factors = &whole, .walls = &walls};
+    write_text(write_csv, &what, true);
+    const char *rows = strstr(text, "\n-2,0,");
+    ck_assert_ptr_nonnull(rows);
+    ck_assert_str_eq(strchr(rows + 1, '\n'), "\n-2,-2,0.5,cylinder:cylinder\n-2,-3,0.25,cylinder:zmin\n"
+                                             "-2,-1,0.125,cylinder:surroundings\n");
+    write_text(write_json, &what, true);
+    ck_assert_ptr_nonnull(
+        strstr(text, "\"zmin\":[0.25,0.125,0]},\"wall_rows\":{\"cylinder\":{\"walls\":[0.5,0.25],\"escaped\":0.125,"
+                     "\"error\":0.0625},\"zmin\":{\"walls\":[null,null],\"escaped\":null,\"error\":null}}}\n"));
+}
+END_TEST
+
 /* Frames and files are columns; a header comes once. */
 START_TEST(series) {
     struct contents what = {.bed = &bed, .factors = &factors, .series = true};
@@ -366,6 +384,19 @@ START_TEST(numpy) {
         }
         ck_assert_mem_eq(at, "PK\1\2", 4);
     }
+    fibrad_bed_factors whole = factors; /* with rows of walls */
+    whole.matrix.body_body = &wall[0][0], whole.matrix.body_escaped = wall[1], whole.matrix.body_error = wall[2];
+    what.factors = &whole;
+    write_text(write_npz, &what, true);
+    const char *at = text;
+    while (memcmp(at + 30, "wall_names.npy", 14) != 0) at++;
+    at = next_member(at, "wall_names.npy", 16) + 16;
+    at = next_member(at, "wall_area.npy", sizeof area) + sizeof area;
+    at = next_member(at, "wall_wall.npy", 32);
+    ck_assert_mem_eq(at, wall, 32);
+    at = next_member(at + 32, "wall_escaped.npy", 16) + 16;
+    at = next_member(at, "wall_error.npy", 16) + 16;
+    ck_assert_mem_eq(at, "PK\1\2", 4);
 }
 END_TEST
 
@@ -684,6 +715,7 @@ int main(void) {
     TCase *formats = suite_case(suite, "formats"), *files = suite_case(suite, "files");
     tcase_add_test(formats, csv);
     tcase_add_test(formats, csv_of_walls);
+    tcase_add_test(formats, rows_of_walls);
     tcase_add_test(formats, numbers);
     tcase_add_test(formats, series);
     tcase_add_test(formats, heat);

@@ -6,7 +6,7 @@
 
 /* Paths from each wall: some percent of the work of the spheres, but in small beds up to FEW_PATHS all the same. */
 #define SPHERES_PER_SHARE 2048u
-#define FEW_PATHS         32768u
+#define FEW_PATHS         16384u
 
 struct body_tasks {
     fibrad_job *job;

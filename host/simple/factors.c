@@ -33,7 +33,7 @@ static int check_options(const fibrad_bed_options *options, int most) {
 }
 
 /* Paths from a wall for each direction of beams, or each path, of a sphere, which cost about as much as that. */
-enum { PER_DIRECTION = 128, PER_PATH = 16 };
+enum { PER_DIRECTION = 64, PER_PATH = 8 };
 
 /* How a matrix is made of the rows of spheres; and rows of bodies, by `walls`, where they are asked for and all
  * spheres have theirs. */

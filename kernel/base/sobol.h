@@ -12,7 +12,7 @@
 #define FIBRAD_SOBOL_DIMENSIONS 6
 
 typedef struct fibrad_sobol {
-    uint32_t direction[FIBRAD_SOBOL_DIMENSIONS][32];
+    uint32_t direction[32][8]; /* of each bit of a point's number: one for each dimension, and two of no use */
 } fibrad_sobol;
 
 static inline void fibrad_sobol_make(fibrad_sobol *sobol) {
@@ -21,26 +21,30 @@ static inline void fibrad_sobol_make(fibrad_sobol *sobol) {
         uint32_t m[4];
     } dimension[FIBRAD_SOBOL_DIMENSIONS - 1] = {
         {1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}}, {4, 1, {1, 1, 3, 3}}};
-    for (uint32_t bit = 0; bit < 32; bit++) sobol->direction[0][bit] = UINT32_C(1) << (31 - bit);
-    for (int d = 1; d < FIBRAD_SOBOL_DIMENSIONS; d++) {
-        const uint32_t degree = dimension[d - 1].degree;
-        uint32_t *v = sobol->direction[d];
-        for (uint32_t bit = 0; bit < degree; bit++) v[bit] = dimension[d - 1].m[bit] << (31 - bit);
-        for (uint32_t bit = degree; bit < 32; bit++) {
-            v[bit] = v[bit - degree] ^ v[bit - degree] >> degree;
+    *sobol = (fibrad_sobol){{{0}}};
+    for (uint32_t bit = 0; bit < 32; bit++) {
+        uint32_t *v = sobol->direction[bit];
+        v[0] = UINT32_C(1) << (31 - bit);
+        for (int d = 1; d < FIBRAD_SOBOL_DIMENSIONS; d++) {
+            const uint32_t degree = dimension[d - 1].degree;
+            v[d] = dimension[d - 1].m[bit < degree ? bit : 0] << (31 - bit);
+            if (bit < degree) continue;
+            const uint32_t before = sobol->direction[bit - degree][d];
+            v[d] = before ^ before >> degree;
             for (uint32_t k = 1; k < degree; k++)
-                if (dimension[d - 1].inner >> (degree - 1 - k) & 1) v[bit] ^= v[bit - k];
+                if (dimension[d - 1].inner >> (degree - 1 - k) & 1) v[d] ^= sobol->direction[bit - k][d];
         }
     }
 }
 
-/* Coordinate d of point k, in units of 2^-64; every 64-bit number, added bit by bit without carry, moves the points and
- * leaves them as even. */
-static inline uint64_t fibrad_sobol_coordinate(const fibrad_sobol *sobol, int d, uint32_t k) {
-    uint32_t x = 0;
-    for (int bit = 0; k != 0; bit++, k >>= 1)
-        if (k & 1) x ^= sobol->direction[d][bit];
-    return (uint64_t)x << 32;
+/* The coordinates of point k in units of 2^-32. Any number added bit by bit, without carry, moves the points and leaves
+ * them as even. */
+static inline void fibrad_sobol_point(const fibrad_sobol *sobol, uint32_t k, uint32_t x[8]) {
+    for (int d = 0; d < 8; d++) x[d] = 0;
+    for (int bit = 0; k != 0; bit++, k >>= 1) {
+        const uint32_t all = 0u - (k & 1);
+        for (int d = 0; d < 8; d++) x[d] ^= sobol->direction[bit][d] & all;
+    }
 }
 
 #endif

@@ -27,9 +27,10 @@ struct grey_path {
     double weight;
     double centre[3]; /* [L] of the sphere, from that of the sphere left first; at a wall: of the scene's origin */
     double n[3];
-    uint32_t place;  /* of the sphere; FIBRAD_NONE: it is at a wall */
-    double point[3]; /* [L] then: where */
-    uint32_t used;   /* how many of all its points are used up */
+    uint32_t place;    /* of the sphere; FIBRAD_NONE: it is at a wall */
+    double point[3];   /* [L] then: where */
+    uint32_t used;     /* how many of all its points are used up */
+    uint32_t sobol[8]; /* of a path from a wall */
 };
 
 /* Coordinate d of a path. The first QUASI_COORDINATES are, from spheres, those of the additive recurrence with the
@@ -42,7 +43,7 @@ static double path_coordinate(const fibrad_paths *paths, const struct grey_path 
     if (d >= QUASI_COORDINATES) return fibrad_fraction(fibrad_random_ahead(path->own, d));
     const uint64_t shift = fibrad_random_ahead(paths->stream, d);
     if (paths->place != FIBRAD_NONE) return fibrad_fraction(shift + path->k * step[d]);
-    return fibrad_fraction(shift ^ fibrad_sobol_coordinate(paths->sobol, (int)d, (uint32_t)path->k));
+    return fibrad_fraction(shift ^ (uint64_t)path->sobol[d] << 32);
 }
 
 /* The next PATH_BATCH points of the unit sphere: the first is where the path starts, each further one belongs to a
@@ -217,6 +218,7 @@ static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
 static void follow_path(fibrad_paths *paths, uint64_t k) {
     struct grey_path path = {
         .k = k, .own = {fibrad_random_ahead(paths->stream, 8 + k)}, .weight = 1, .place = paths->place};
+    if (path.place == FIBRAD_NONE) fibrad_sobol_point(paths->sobol, (uint32_t)k, path.sobol);
     next_sphere_point(paths, &path, path.n);
     if (path.place == FIBRAD_NONE) start_at_wall(paths, &path);
     for (uint32_t leg = 0; leg < PATH_LEGS && path.weight > 0; leg++) {
