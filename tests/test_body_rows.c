@@ -358,6 +358,24 @@ START_TEST(plates_and_a_dense_bed) {
 }
 END_TEST
 
+/* Two ends of a flat cylinder see little but each other, and so do plates: sums that add up all the same. */
+START_TEST(flat_rooms) {
+    struct bed bed = bed_of(2, (const double[][4]){{1, 2, .02, .015}, {-9, 4, .021, .019}});
+    const fibrad_body tube[3] = {cylinder_at(0, 0, 80), plane_at(2, 0, 0), plane_at(2, 1, .04)};
+    fibrad_bed_factors *f =
+        factors_of(&bed, &(fibrad_scene_config){.body = tube, .bodies = 3}, NULL, &(fibrad_bed_options){0});
+    check_balance(&bed, f, NULL, NULL);
+    ck_assert_double_eq_tol(between(f, 1, 2), discs(80, .04), 1e-4);
+    fibrad_bed_free(f);
+    bed.period[0] = 23, bed.period[1] = 16;
+    f = factors_of(&bed, &(fibrad_scene_config){.body = tube + 1, .bodies = 2}, NULL, &(fibrad_bed_options){0});
+    check_balance(&bed, f, NULL, NULL);
+    ck_assert_double_eq_tol(between(f, 0, 1), 1, 1e-4);
+    fibrad_bed_free(f);
+    bed_free(&bed);
+}
+END_TEST
+
 /* Reflectors have empty rows, and nothing goes to them; bodies in another order have the same rows but for noise, and a
  * room laid on its side too. */
 START_TEST(other_orders_and_axes) {
@@ -501,6 +519,7 @@ int main(void) {
     tcase_add_test(cases, grey_plates);
     tcase_add_loop_test(cases, against_plain_walls, 0, 6);
     tcase_add_test(cases, plates_and_a_dense_bed);
+    tcase_add_test(cases, flat_rooms);
     tcase_add_test(cases, other_orders_and_axes);
     tcase_add_test(cases, tolerance_and_raw_rows);
     tcase_add_test(cases, same_bits_of_bodies);

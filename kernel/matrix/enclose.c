@@ -8,10 +8,10 @@
 #include "matrix/matrix.h"
 
 #define CLOSED_TO   1e-14
-#define OWN_STEPS   2000 /* of bodies alone, which cost nothing: two discs that see little else converge slowly */
+#define OWN_STEPS   60 /* of Newton's method; some five do, but where sums contradict each other */
 #define JOINT_STEPS 200
 
-/* A body as a row: 4 pi length^2 is its area times its emissivity; 0: it has none, being unbounded or a reflector. */
+/* The factor from one body to another. */
 static double *between(const fibrad_matrix *m, uint32_t b, uint32_t c) { return &m->between[b * m->bodies + c]; }
 
 /* A_i e_i over A_b e_b. */
@@ -56,52 +56,74 @@ static double rest_wanted(fibrad_matrix *m, uint32_t b) {
     return fibrad_max(wanted, 0.5 * rest);
 }
 
-/* Brings what bodies send to each other and the surroundings to `wanted`. */
-static void scale_bodies(fibrad_matrix *m, const double wanted[]) {
-    double v[FIBRAD_WALLS], next[FIBRAD_WALLS], worst = 1;
-    for (uint32_t b = 0; b < m->bodies; b++) v[b] = next[b] = 1;
-    for (int step = 0; step < OWN_STEPS && worst > CLOSED_TO; step++) {
-        worst = 0;
-        for (uint32_t b = 0; b < m->bodies; b++) {
-            if (m->length[b] == 0) continue;
-            double sum = m->body_escaped[b];
-            for (uint32_t c = 0; c < m->bodies; c++) sum += *between(m, b, c) * v[c];
-            worst = fibrad_max(worst, fibrad_abs(wanted[b] - v[b] * sum));
-            next[b] = sum > 0 ? fibrad_sqrt(v[b] * wanted[b] / sum) : 1;
+/* Solves the equations of `bodies` unknowns in place; rows that depend on those before are left out. */
+static void solve_linear(uint32_t bodies, double a[FIBRAD_WALLS][FIBRAD_WALLS], double x[FIBRAD_WALLS]) {
+    for (uint32_t k = 0; k < bodies; k++) {
+        for (uint32_t i = k + 1; i < bodies && a[k][k] > 1e-12; i++) {
+            const double part = a[i][k] / a[k][k];
+            for (uint32_t j = k; j < bodies; j++) a[i][j] -= part * a[k][j];
+            x[i] -= part * x[k];
         }
-        fibrad_copy(v, next, sizeof v);
     }
+    for (uint32_t k = bodies; k-- > 0;) {
+        for (uint32_t j = k + 1; j < bodies; j++) x[k] -= a[k][j] * x[j];
+        x[k] = a[k][k] > 1e-12 ? x[k] / a[k][k] : 0;
+    }
+}
+
+/* Finds v with v_b (fixed_b + sum over c of D_bc v_c) = wanted_b, by Newton's method for the logarithms of v, of which
+ * that is the minimum of a convex function. Plain iterations take for ever where two bodies see little but each other.
+ */
+static void balance_bodies(const fibrad_matrix *m, const double fixed[], const double wanted[], double v[]) {
+    for (int step = 0; step < OWN_STEPS; step++) {
+        double a[FIBRAD_WALLS][FIBRAD_WALLS] = {{0}}, x[FIBRAD_WALLS] = {0}, worst = 0;
+        for (uint32_t b = 0; b < m->bodies; b++) {
+            a[b][b] = 1;
+            if (m->length[b] == 0) continue;
+            double sum = v[b] * fixed[b];
+            for (uint32_t c = 0; c < m->bodies; c++) {
+                const double part = v[b] * *between(m, b, c) * v[c];
+                sum += part;
+                a[b][c] = m->length[c] > 0 ? part : 0;
+            }
+            a[b][b] += sum;
+            x[b] = wanted[b] - sum;
+            worst = fibrad_max(worst, fibrad_abs(x[b]));
+        }
+        if (worst <= CLOSED_TO / 8) return;
+        solve_linear(m->bodies, a, x);
+        for (uint32_t b = 0; b < m->bodies; b++) v[b] = x[b] > 0 ? v[b] * (1 + fibrad_min(x[b], 1)) : v[b] / (1 - x[b]);
+    }
+}
+
+static void scale_bodies(fibrad_matrix *m, const double v[]) {
     for (uint32_t b = 0; b < m->bodies; b++) {
         for (uint32_t c = 0; c < m->bodies; c++) *between(m, b, c) *= v[b] * v[c];
         m->body_escaped[b] *= v[b];
     }
 }
 
-/* One step towards sums of 1 from factors u of spheres and v of bodies to the next ones; returns the worst sum's
- * distance from 1. */
-static double closing_step(const fibrad_matrix *m, const double *u, const double v[], double *u_next, double v_next[]) {
+/* What bodies send to spheres that are scaled by u, and to the surroundings. */
+static void sum_outside(const fibrad_matrix *m, const double *u, double outside[]) {
+    for (uint32_t b = 0; b < m->bodies; b++) outside[b] = m->body_escaped[b];
+    for (uint32_t i = 0; i < m->result.n; i++)
+        for (uint32_t b = 0; b < m->bodies; b++)
+            if (m->length[b] > 0) outside[b] += m->body[(size_t)i * m->bodies + b] * over_body(m, i, b) * u[i];
+}
+
+/* One step of the spheres towards sums of 1, from factors u and, of bodies, v; returns by how much the worst is off. */
+static double closing_step(const fibrad_matrix *m, const double *u, const double v[], double *next) {
     const fibrad_sparse *rows = &m->result;
-    double worst = 0, of_body[FIBRAD_WALLS] = {0};
+    double worst = 0;
     for (uint32_t i = 0; i < rows->n; i++) {
         const double *body = m->body + (size_t)i * m->bodies;
         double sum = m->escaped[i] + m->beyond[i];
-        u_next[i] = 1;
+        next[i] = 1;
         if (m->r[i] == 0) continue;
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum += rows->f[k] * u[rows->col[k]];
-        for (uint32_t b = 0; b < m->bodies; b++) {
-            sum += body[b] * v[b];
-            if (m->length[b] > 0) of_body[b] += body[b] * over_body(m, i, b) * u[i];
-        }
+        for (uint32_t b = 0; b < m->bodies; b++) sum += body[b] * v[b];
         worst = fibrad_max(worst, fibrad_abs(1 - u[i] * sum));
-        u_next[i] = fibrad_sqrt(u[i] / sum);
-    }
-    for (uint32_t b = 0; b < m->bodies; b++) {
-        double sum = of_body[b] + m->body_escaped[b];
-        v_next[b] = 1;
-        if (m->length[b] == 0) continue;
-        for (uint32_t c = 0; c < m->bodies; c++) sum += *between(m, b, c) * v[c];
-        worst = fibrad_max(worst, fibrad_abs(1 - v[b] * sum));
-        v_next[b] = sum > 0 ? fibrad_sqrt(v[b] / sum) : 1;
+        next[i] = fibrad_sqrt(u[i] / sum);
     }
     return worst;
 }
@@ -109,22 +131,21 @@ static double closing_step(const fibrad_matrix *m, const double *u, const double
 /* Brings all sums to 1. */
 static void close_all(fibrad_matrix *m) {
     const fibrad_sparse *rows = &m->result;
-    double *u = m->scratch, *u_next = u + rows->n, v[FIBRAD_WALLS], v_next[FIBRAD_WALLS];
+    double *u = m->scratch, *next = u + rows->n, v[FIBRAD_WALLS], one[FIBRAD_WALLS], outside[FIBRAD_WALLS];
     for (uint32_t i = 0; i < rows->n; i++) u[i] = 1;
-    for (uint32_t b = 0; b < m->bodies; b++) v[b] = 1;
-    for (int step = 0; step < JOINT_STEPS && closing_step(m, u, v, u_next, v_next) > CLOSED_TO; step++) {
-        fibrad_copy(u, u_next, rows->n * sizeof *u);
-        fibrad_copy(v, v_next, sizeof v);
+    for (uint32_t b = 0; b < m->bodies; b++) v[b] = one[b] = 1;
+    for (int step = 0; step < JOINT_STEPS; step++) {
+        sum_outside(m, u, outside);
+        balance_bodies(m, outside, one, v);
+        if (closing_step(m, u, v, next) <= CLOSED_TO) break;
+        fibrad_copy(u, next, rows->n * sizeof *u);
     }
     for (uint32_t i = 0; i < rows->n; i++) {
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= u[i] * u[rows->col[k]];
         for (uint32_t b = 0; b < m->bodies; b++) m->body[(size_t)i * m->bodies + b] *= u[i] * v[b];
         m->escaped[i] *= u[i], m->beyond[i] *= u[i];
     }
-    for (uint32_t b = 0; b < m->bodies; b++) {
-        for (uint32_t c = 0; c < m->bodies; c++) *between(m, b, c) *= v[b] * v[c];
-        m->body_escaped[b] *= v[b];
-    }
+    scale_bodies(m, v);
 }
 
 void fibrad_matrix_take_bodies(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_matrix_rule *rule) {
@@ -141,7 +162,7 @@ void fibrad_matrix_take_bodies(fibrad_matrix *m, const fibrad_scene *scene, cons
 }
 
 void fibrad_matrix_enclose(fibrad_matrix *m) {
-    double before[FIBRAD_WALLS][FIBRAD_WALLS + 1] = {{0}}, wanted[FIBRAD_WALLS] = {0}, most = 0;
+    double before[FIBRAD_WALLS][FIBRAD_WALLS + 1] = {{0}}, wanted[FIBRAD_WALLS] = {0}, v[FIBRAD_WALLS], most = 0;
     for (uint32_t b = 0; b < m->bodies; b++) most = fibrad_max(most, m->length[b]);
     if (most == 0) return;
     for (uint32_t b = 0; b < m->bodies; b++) {
@@ -151,7 +172,9 @@ void fibrad_matrix_enclose(fibrad_matrix *m) {
     join_ways(m);
     for (uint32_t b = 0; b < m->bodies; b++)
         if (m->length[b] > 0) wanted[b] = rest_wanted(m, b);
-    scale_bodies(m, wanted);
+    for (uint32_t b = 0; b < m->bodies; b++) v[b] = 1;
+    balance_bodies(m, m->body_escaped, wanted, v);
+    scale_bodies(m, v);
     close_all(m);
     for (uint32_t b = 0; b < m->bodies; b++) { /* by how much that has changed a row is an error, too */
         double square = 0, difference = before[b][m->bodies] - m->body_escaped[b];
