@@ -12,7 +12,7 @@
 #define FEW_ERROR   .25 /* times sqrt(1 - eps), over beams per patch: patches that few leave send back along each */
 #define SAMPLES     3   /* with fewer of a kind, those of the other kind make up for them */
 
-static double square_of(double x) { return x * x; }
+static double heat_square(double x) { return x * x; }
 
 /* Areas of patches, and how their radiosities are spread. */
 typedef struct heat_spread {
@@ -36,7 +36,7 @@ static heat_spread spread_over(const fibrad_heat *heat, uint32_t begin, uint32_t
     for (uint32_t a = begin; a < end; a++) s.area += heat->area[a], s.mean += heat->area[a] * heat->radiosity[a];
     if (!(s.area > 0)) return s;
     s.mean /= s.area;
-    for (uint32_t a = begin; a < end; a++) s.variance += heat->area[a] / s.area * square_of(heat->radiosity[a] - s.mean);
+    for (uint32_t a = begin; a < end; a++) s.variance += heat->area[a] / s.area * heat_square(heat->radiosity[a] - s.mean);
     return s;
 }
 
@@ -47,7 +47,7 @@ static heat_spread spread_of(const fibrad_heat *heat, uint32_t b) {
 /* Emissivity times area times how far the radiosities of all are from the body's own. */
 static double exchange_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const heat_spread own = spread_of(heat, b);
-    return heat->emissivity[b] * own.area * fibrad_sqrt(errors->all.variance + square_of(own.mean - errors->all.mean));
+    return heat->emissivity[b] * own.area * fibrad_sqrt(errors->all.variance + heat_square(own.mean - errors->all.mean));
 }
 
 double fibrad_heat_beam_error(const fibrad_heat *heat, uint32_t b) {
@@ -68,8 +68,8 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
     const double eps = heat->emissivity[b];
     const double few = b < heat->spheres ? errors->few * heat->power[b] : 0;
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
-    return square_of(fibrad_heat_beam_error(heat, b)) + square_of(patch_error(heat, b)) + (1 - eps) * square_of(few) +
-           square_of(seen * errors->walls);
+    return heat_square(fibrad_heat_beam_error(heat, b)) + heat_square(patch_error(heat, b)) + (1 - eps) * heat_square(few) +
+           heat_square(seen * errors->walls);
 }
 
 static heat_errors errors_of(const fibrad_heat *heat) {
@@ -77,13 +77,13 @@ static heat_errors errors_of(const fibrad_heat *heat) {
     heat_errors errors = {.all = spread_over(heat, 0, heat->first[end])};
     if (heat->group == 1) errors.few = FEW_ERROR * heat->config.patches / (2.0 * heat->beams);
     for (uint32_t b = heat->spheres; b < end; b++)
-        errors.walls += square_of((1 - heat->emissivity[b]) * BEAM_ERROR * heat->halves[b]);
+        errors.walls += heat_square((1 - heat->emissivity[b]) * BEAM_ERROR * heat->halves[b]);
     errors.walls = fibrad_sqrt(errors.walls);
     for (uint32_t b = 0; b < end; b++) {
         heat_pool *pool = &errors.pool[b >= heat->spheres];
         const double exchange = exchange_of(heat, &errors, b);
         if (!(exchange > 0) || heat->hold[b] >= 0) continue;
-        pool->samples++, pool->errors += own_error(heat, &errors, b), pool->exchanges += square_of(exchange);
+        pool->samples++, pool->errors += own_error(heat, &errors, b), pool->exchanges += heat_square(exchange);
     }
     return errors;
 }
@@ -100,7 +100,7 @@ static double power_error_of(const fibrad_heat *heat, const heat_errors *errors,
         const double weight = kind == own ? pool->samples : fibrad_max(0, SAMPLES - errors->pool[own].samples);
         sum += weight * pool->errors / pool->exchanges, samples += weight;
     }
-    const double pooled = samples > 0 ? sum / samples * square_of(exchange) : 0;
+    const double pooled = samples > 0 ? sum / samples * heat_square(exchange) : 0;
     return exchange > 0 ? (own_error(heat, errors, b) + pooled) / 2 : 0;
 }
 
@@ -111,7 +111,7 @@ void fibrad_heat_read_errors(const fibrad_heat *heat, fibrad_heat_result *result
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const double square = power_error_of(heat, &errors, b);
         if (result->power_error != NULL) result->power_error[heat->order[b]] = fibrad_sqrt(square);
-        if (square > 0) patches += square_of(patch_error(heat, b));
+        if (square > 0) patches += heat_square(patch_error(heat, b));
         all += square;
     }
     for (uint32_t k = 0; k < heat->given_bodies && result->body_error != NULL; k++)
