@@ -25,8 +25,8 @@ typedef struct fibrad_heat_config {
     uint32_t patches;    /* of a sphere: 24, 96 or 384; 0: 96 */
     uint32_t parts;      /* [1, 1024] of a sweep, for as many threads; last bits depend on it; 0: 8 */
     double cutoff;       /* 0: none; else, as with a known region, FIBRAD_E_UNSUPPORTED */
-    uint32_t wall_rays;  /* up to 2^30, from all walls together; 0: 262144, 8 for each of their patches, or
-                          * 6 directions points, whichever is most */
+    uint32_t wall_rays;  /* from all walls together at the least, up to 2^30; 0: 262144, 6 directions points, or 8
+                          * for each patch of a wall, whichever is most */
 } fibrad_heat_config;
 
 typedef struct fibrad_heat fibrad_heat; /* beams, patches and radiosities of a scene */
@@ -92,10 +92,11 @@ typedef struct fibrad_heat_result {
     double *temperature, *body_temperature; /* [spheres], [bodies] out; may be NULL */
     double *power_error, *body_error;       /* [spheres], [bodies] out: estimated errors of powers; may be NULL */
     double *temperature_error, *body_temperature_error; /* likewise of temperatures, 0 of those given; may be NULL */
-    double error_patches; /* out: estimated error of the powers, root mean square over the spheres, from patches */
-    double error_beams;   /* out: ... and from beams: take the root of the sum of squares of both */
-    double residual;      /* out: that of the radiosities, as in `tolerance` */
-    uint32_t sweeps;      /* out */
+    double error_patches;  /* out: estimated error of the powers, root mean square over the spheres, from patches */
+    double error_beams;    /* out: ... and from beams: take the root of the sum of squares of both */
+    double residual;       /* out: that of the radiosities, as in `tolerance` */
+    uint32_t sweeps;       /* out */
+    double *body_absorbed; /* [bodies] out: what they take of what arrives, of endless walls near the bed; or NULL */
 } fibrad_heat_result;
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 

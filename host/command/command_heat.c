@@ -258,7 +258,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     struct walls *walls = &request->problem.walls;
     fibrad_heat_sources *sources = &request->problem.sources;
     struct given given = {0};
-    double *emissivity = NULL, of_walls[5][WALLS_MAX] = {{0}};
+    double *emissivity = NULL, of_walls[6][WALLS_MAX] = {{0}};
     const char *file = request->bed.name;
     int status = walls_of(&request->bed.walls, bed, file, walls);
     if (!status) status = given_values(&request->given, bed, file, walls, &given);
@@ -274,6 +274,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
         sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
         request->problem.emissivity = emissivity, request->problem.of_emissivity = &request->emissivity;
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
+        report.result.body_absorbed = of_walls[5];
         report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
         status = heat_solve(request, bed, &report);
     }

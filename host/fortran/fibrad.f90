@@ -137,6 +137,7 @@ module fibrad
         type(c_ptr) :: temperature_error = c_null_ptr, body_temperature_error = c_null_ptr
         real(c_double) :: error_patches = 0, error_beams = 0, residual = 0
         integer(c_int32_t) :: sweeps = 0
+        type(c_ptr) :: body_absorbed = c_null_ptr
     end type c_heat_result
 
     interface

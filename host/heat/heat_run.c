@@ -8,6 +8,19 @@
 #include "cli/memory.h"
 #include "cli/message.h"
 
+/* Walls whose power is less than this of what they absorb need not know it to the error asked for. */
+#define WALL_SHARE 0.05
+
+/* The largest error of a wall, over the larger of its power and a share of what it absorbs. */
+static double heat_wall_error(const fibrad_heat_result *result, uint32_t walls) {
+    double worst = 0;
+    for (uint32_t k = 0; k < walls; ++k)
+        if (result->body_error[k] > 0)
+            worst = fmax(worst, result->body_error[k] /
+                                    fmax(fabs(result->body_power[k]), WALL_SHARE * result->body_absorbed[k]));
+    return worst;
+}
+
 static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sources, uint32_t walls,
                            struct heat_report *report) {
     const fibrad_heat_result *result = &report->result;
@@ -37,6 +50,7 @@ static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sou
     report->throughput = sqrt(squares / bed->n);
     report->balance_of_emission = throughput > 0 ? report->balance / throughput : 0;
     report->error = hypot(result->error_patches, result->error_beams);
+    report->wall_error = heat_wall_error(result, walls);
 }
 
 /* Of the spheres whose temperatures were found. */
@@ -85,7 +99,11 @@ static int heat_unsolvable(const struct bed_options *asked, const struct heat_pr
 static void heat_scale(const struct bed *bed, uint32_t walls, double square_metres, fibrad_heat_result *result) {
     if (square_metres == 1) return;
     for (uint32_t i = 0; i < bed->n; ++i) result->power[i] *= square_metres, result->power_error[i] *= square_metres;
-    for (uint32_t k = 0; k < walls; ++k) result->body_power[k] *= square_metres, result->body_error[k] *= square_metres;
+    for (uint32_t k = 0; k < walls; ++k) {
+        result->body_power[k] *= square_metres;
+        result->body_error[k] *= square_metres;
+        result->body_absorbed[k] *= square_metres;
+    }
     result->surroundings_power *= square_metres;
     result->error_patches *= square_metres;
     result->error_beams *= square_metres;
@@ -94,7 +112,8 @@ static void heat_scale(const struct bed *bed, uint32_t walls, double square_metr
 /* Whether a problem of this kind will fit into memory. Source: fibrad_heat_size. */
 static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) {
     const double beams = 4. * config->directions * config->points, patches = 8. * config->patches * (8 + 16);
-    return memory_check(bed->n * (beams + patches), "fewer --directions, --points or --patches take less");
+    const double rays = config->wall_rays * (double)sizeof(double[3]);
+    return memory_check(bed->n * (beams + patches) + rays, "fewer --directions, --points or --patches take less");
 }
 
 /* What emissivities follow. */
@@ -143,8 +162,12 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     return STATUS_OK;
 }
 
-/* More of what makes the larger part of the error. False: there is no more. */
-static bool heat_refine(struct heat_report *report) {
+/* Rays between walls by default, and the most. Source: fibrad_heat_config. */
+#define WALL_RAYS     262144u
+#define WALL_RAYS_MAX (1u << 26)
+
+/* More beams, or patches, by which makes the larger part of the spheres' error. False: there is no more. */
+static bool heat_refine_spheres(struct heat_report *report) {
     fibrad_heat_config *config = &report->config;
     const bool beams = report->result.error_beams > report->result.error_patches;
     if ((beams || config->patches == 384) && config->directions <= FIBRAD_DIRECTIONS_MAX / 4)
@@ -156,9 +179,38 @@ static bool heat_refine(struct heat_report *report) {
     return true;
 }
 
+/* As many more rays as the walls' error, `ratio` times what is allowed, calls for. */
+static bool heat_refine_rays(struct heat_report *report, double ratio) {
+    const uint32_t rays = report->config.wall_rays > 0 ? report->config.wall_rays : WALL_RAYS;
+    report->config.wall_rays = (uint32_t)fmin(rays * fmin(fmax(ratio * ratio, 2), 16), WALL_RAYS_MAX);
+    return report->config.wall_rays > rays;
+}
+
 /* The error that --error allows [W]; powers that nearly cancel need not be known to E of themselves. */
 static double heat_allowed(const struct heat_problem *problem, const struct heat_report *report) {
     return problem->error * fmax(report->power_rms, 1e-3 * report->throughput);
+}
+
+/* Solves it again and again until spheres and walls err by no more than is allowed. Rays that have not helped a wall
+ * much were not what it lacks: then it gets beams and patches like the spheres. */
+static int heat_improve(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
+                        struct heat_report *report) {
+    double last = INFINITY;
+    for (;;) {
+        const double walls = report->wall_error / problem->error;
+        const bool spheres = report->error > heat_allowed(problem, report);
+        bool more = false;
+        if (!spheres && walls <= 1) return STATUS_OK;
+        if (spheres || (walls > 1 && walls > .6 * last)) more = heat_refine_spheres(report);
+        if (walls > 1) more = heat_refine_rays(report, walls) || more;
+        if (!more) break;
+        last = walls;
+        const int status = heat_once(asked, problem, bed, report);
+        if (status) return status;
+    }
+    return message_at(STATUS_OK, asked->name, 0,
+                      "warning: the estimated error is %.3g of the powers of spheres, %.3g of a wall's",
+                      report->error / report->power_rms, report->wall_error);
 }
 
 int heat_run(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
@@ -166,13 +218,7 @@ int heat_run(struct bed_options *asked, const struct heat_problem *problem, cons
     const double begun = progress_clock();
     report->config = problem->config;
     int status = heat_once(asked, problem, bed, report);
-    if (problem->error > 0) {
-        while (!status && report->error > heat_allowed(problem, report) && heat_refine(report))
-            status = heat_once(asked, problem, bed, report);
-        if (!status && report->error > heat_allowed(problem, report))
-            message_at(STATUS_OK, asked->name, 0, "warning: the estimated error is %.3g of the powers",
-                       report->error / report->power_rms);
-    }
+    if (!status && problem->error > 0) status = heat_improve(asked, problem, bed, report);
     report->seconds = progress_clock() - begun;
     return status;
 }

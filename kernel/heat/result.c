@@ -46,6 +46,15 @@ static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result 
     return found;
 }
 
+/* What a wall takes of what arrives at its patches; radiosities are counted from that of the surroundings. */
+static double absorbed_by(const fibrad_heat *heat, uint32_t b) {
+    const double black = heat->sigma * squared(squared(heat->surroundings));
+    double arrives = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        arrives += heat->area[a] * (heat->radiosity[a] + black) + heat->net[a];
+    return heat->emissivity[b] * arrives;
+}
+
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
     if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
@@ -56,6 +65,7 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         const uint32_t k = heat->slot[b], beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
         result->body_power[b] = heat->power[fibrad_heat_wall_body(heat, k)];
+        if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, fibrad_heat_wall_body(heat, k));
         if (a == heat->first[beyond + 1]) continue;
         /* beyond its patches the wall takes eps of what comes and reflects the rest to the surroundings */
         const double less = heat->radiosity[a] - heat->wall_emission[k];

@@ -9,7 +9,7 @@
  * those of the spheres. What spheres and walls exchange is known from the beams of the spheres, which are spread far
  * more evenly than rays; rays of walls tell what walls exchange with each other. Where there is a bed between them that
  * is little, so that a few of each patch do, but RAYS_MIN in all, and RAYS_PER_BEAM for each beam of one sphere: so
- * what walls exchange gets better, too, where more beams are asked for; or as many as the configuration has. */
+ * what walls exchange gets better, too, where more beams are asked for; and where more rays are. */
 #define FEW            16.0 /* times the patches of a sphere */
 #define RAYS_PER_PATCH 8.0
 #define RAYS_MIN       262144.0
@@ -77,9 +77,9 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
     const double of_spheres = (double)heat->spheres * heat->config.patches,
                  most = FEW * heat->config.patches + of_spheres / 4;
     const double square = fibrad_sqrt(fibrad_max(surface / of_spheres, area / most));
-    const double rays = fibrad_max(RAYS_MIN, RAYS_PER_BEAM * heat->beams);
-    const double all = fibrad_max(RAYS_PER_PATCH * area / (square * square), rays);
-    const double density = (heat->config.wall_rays > 0 ? heat->config.wall_rays : all) / area;
+    const double least = fibrad_max(RAYS_MIN, heat->config.wall_rays);
+    const double rays = fibrad_max(least, RAYS_PER_BEAM * heat->beams);
+    const double density = fibrad_max(RAYS_PER_PATCH / (square * square), rays / area);
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         fibrad_heat_wall *wall = &heat->wall[k];
         if (!(scene->wall_area[k] > 0)) continue;

@@ -62,7 +62,8 @@ HeatSources = _structure("heat_sources", ("temperature emissivity power hold ref
 HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surroundings_power", c_double),
                         ("temperature body_temperature power_error body_error", DOUBLES),
                         ("temperature_error body_temperature_error", DOUBLES),
-                        ("error_patches error_beams residual", c_double), ("sweeps", c_uint32))
+                        ("error_patches error_beams residual", c_double), ("sweeps", c_uint32),
+                        ("body_absorbed", DOUBLES))
 
 
 def _declare(library: ctypes.CDLL) -> None:
