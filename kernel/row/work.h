@@ -7,6 +7,7 @@
 #define FIBRAD_ROW_WORK_H
 
 #include "row/row_sum.h"
+#include "row/wall_sum.h"
 #include "scene/surroundings.h"
 #include "window/areas.h"
 #include "window/discs.h"
@@ -63,6 +64,8 @@ typedef struct fibrad_workspace {
     double farthest;           /* no sphere is farther from i; infinity with periodic axes */
     double clear;              /* no window has its horizon nearer than this */
     bool cut;                  /* whether lines are cut: there is a cutoff, or a known region */
+    fibrad_wall_view view;     /* of a beam row among walls, and what its windows give to them */
+    fibrad_wall_sums walls;
     double wall[FIBRAD_EXITS]; /* what meets each wall, escapes, or is beyond: areas, points or rays, then factors */
 } fibrad_workspace;
 

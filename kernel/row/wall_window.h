@@ -1,0 +1,32 @@
+/* wall_window.h - a window as walls see it: the disc of directions it stands for. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_ROW_WALL_WINDOW_H
+#define FIBRAD_ROW_WALL_WINDOW_H
+
+#include "row/work.h"
+
+typedef struct fibrad_wall_window {
+    const double *frame; /* its axes */
+    uint32_t k, n;       /* window k of n */
+    double open, hidden; /* parts of it, areas or points */
+    double slope[2];     /* how fast the open part grows as the direction turns towards the axes, per radian */
+    double wide;         /* radius of the disc of directions, ... */
+    double spread;       /* ... and of the part of it that is needed among walls as near as these */
+    double soft, length; /* half widths over which lines change from wall to wall, as an angle and as a length */
+} fibrad_wall_window;
+
+/* Completes a window of which frame, k, n, open, hidden and slope are set. turned: the directions have been. */
+void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view);
+
+/* Adds a window that all goes to one wall, or of which one number tells the shares, to the regions. False: neither, so
+ * lines must tell. turned: whether the directions have been turned. */
+bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, bool turned,
+                               fibrad_wall_sums *sums);
+
+/* Whether lines of the window lie in an octant. */
+bool fibrad_wall_window_has(const fibrad_wall_window *window, const fibrad_wall_view *view, uint32_t octant);
+
+/* Adds to a region of it the open area or points, and the share that the region would have if nothing were hidden. */
+void fibrad_wall_window_add(const fibrad_wall_window *window, uint32_t region, double open, double share,
+                            fibrad_wall_sums *sums);
+
+#endif
