@@ -57,9 +57,8 @@ static vd quotient(vd a, vd b) {
 }
 
 /* The share of the first of two walls, between 0 and 1 where lines pass close to the edge between them. */
-static vd share_at_edge(const fibrad_wall_window *window, vd passing, vd square) {
-    vd wide = vd_sqrt(square * (window->soft * window->soft) + window->length * window->length);
-    return 0.5 + 0.5 * vd_max(vd_set1(-1), vd_min(vd_set1(1), passing / wide));
+static vd share_at_edge(vd passing, double sharpness) {
+    return 0.5 + 0.5 * vd_max(vd_set1(-1), vd_min(vd_set1(1), passing * sharpness));
 }
 
 /* Between the end of a cylinder and the cylinder. */
@@ -67,31 +66,29 @@ static void share_round(const fibrad_wall_window *window, const fibrad_wall_view
     const vd zero = vd_set1(0), away = lines->away[2], rate = lines->rate[2];
     vd x = lines->origin[0] - view->axis[0], y = lines->origin[1] - view->axis[1];
     vd along = x * rate + lines->w[0] * away, across = y * rate + lines->w[1] * away;
-    vd size = vd_max(vd_sqrt(along * along + across * across), vd_set1(1e-300));
-    vd clear = view->radius - (along * x + across * y) / size;
-    vd end = share_at_edge(window, view->radius * rate - size, away * away + clear * clear);
+    vd end = share_at_edge(view->radius * rate - vd_sqrt(along * along + across * across), window->sharpness[2]);
     lines->share[0] = lines->share[1] = zero;
     lines->share[2] = vd_select(vd_lt(away, vd_set1(FAR_AWAY)), end, zero);
     lines->share[3] = 1 - lines->share[2];
 }
 
-/* Between three planes: what comes before both others, where one is not there the others do. */
+/* Between three planes: what comes before both others; near a corner something is left, for all of them. Where a wall
+ * is not there the others come first. */
 static void share_planes(const fibrad_wall_window *window, wall_lines *lines) {
-    const vd zero = vd_set1(0), far = vd_set1(FAR_AWAY), *away = lines->away, *rate = lines->rate;
-    vd first[3], sum = zero; /* of axis a before axis a + 1 */
+    const vd zero = vd_set1(0), half = vd_set1(0.5), one = vd_set1(1), far = vd_set1(FAR_AWAY);
+    const vd *away = lines->away, *rate = lines->rate;
+    vd first[3], left = one; /* of axis a before axis a + 1 */
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3;
         vm a_far = vd_le(far, away[a]), b_far = vd_le(far, away[b]);
-        vd share =
-            share_at_edge(window, away[b] * rate[a] - away[a] * rate[b], away[a] * away[a] + away[b] * away[b]);
-        vd half = vd_set1(0.5), one = vd_set1(1);
+        vd share = share_at_edge(away[b] * rate[a] - away[a] * rate[b], window->sharpness[a]);
         first[a] = vd_select(a_far, vd_select(b_far, half, zero), vd_select(b_far, one, share));
     }
     for (int a = 0; a < 3; a++) {
         lines->share[a] = first[a] * (1 - first[(a + 2) % 3]);
-        sum += lines->share[a];
+        left = left - lines->share[a];
     }
-    for (int a = 0; a < 3; a++) lines->share[a] = lines->share[a] / sum;
+    for (int a = 0; a < 3; a++) lines->share[a] += left * (1.0 / 3);
     lines->share[3] = zero;
 }
 
@@ -199,13 +196,23 @@ static vd on_side(vd x, uint32_t octant, uint32_t axis) {
     return vd_select(vd_lt(x, vd_set1(0)), vd_set1(1 - up), vd_set1(up));
 }
 
-/* Adds the lines of an octant: which wall they meet depends on w, but along other axes than the wall's it is wide that
- * decides the octant, so that walls close by have both. */
-static void add_octant(const wall_lines *lines, bool round, vd weight, uint32_t place, octant_sums *part) {
+/* Adds the lines of an octant, one of several: which wall they meet depends on w, but along other axes than the wall's
+ * it is wide that decides the octant, so that walls close by have both. */
+static void add_octant(const wall_lines *lines, bool round, bool several, vd weight, uint32_t place,
+                       octant_sums *part) {
+    vd own[3], wide[3];
+    for (uint32_t axis = 0; axis < 3; axis++) {
+        own[axis] = on_side(lines->w[axis], part->octant, axis);
+        wide[axis] = on_side(lines->wide[axis], part->octant, axis);
+    }
     for (uint32_t n = round ? 2 : 0; n < (round ? 4u : 3u); n++) {
         vd all = lines->share[n];
-        for (uint32_t axis = round ? 2 : 0; axis < 3; axis++)
-            all = all * on_side(axis == n ? lines->w[axis] : lines->wide[axis], part->octant, axis);
+        for (uint32_t axis = round ? 2 : 0; axis < 3 && several; axis++) {
+            if (axis == n)
+                all = all * own[axis];
+            else
+                all = all * wide[axis];
+        }
         vd open = all * weight;
         add_lanes(part->all[n] + place, all);
         add_lanes(part->open[n] + place, open);
@@ -263,7 +270,7 @@ static void follow_points(const fibrad_points *points, const fibrad_wall_view *v
                 weight = vd_select(cut, vd_set1(0), weight);
             }
             for (uint32_t part = 0; part < sums->octants; part++)
-                add_octant(&lines, view->round, weight, lane % 8, &sums->part[part]);
+                add_octant(&lines, view->round, sums->octants > 1, weight, lane % 8, &sums->part[part]);
         }
     }
 }

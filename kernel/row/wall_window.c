@@ -77,13 +77,25 @@ static double needed_of(const fibrad_wall_view *view, const double w[3], double 
     return sum / weights;
 }
 
+/* What passing by an edge, distance times sine of the angle, is to be multiplied by to change by one over half the width
+ * in which lines change from wall to wall. */
+static double sharpness_of(const fibrad_wall_window *window, double first, double second) {
+    const double soft = WALL_SOFT * window->spread, length = WALL_SOFT * fibrad_min(1, 15 / fibrad_sqrt(window->n));
+    return 1 / fibrad_sqrt(soft * soft * (first * first + second * second) + length * length);
+}
+
 void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view) {
-    const double step = 1 / fibrad_sqrt(window->n);
-    window->wide = WALL_SPREAD * step;
-    window->spread = window->wide * fibrad_sqrt(needed_of(view, window->frame + 6, window->wide));
-    window->soft = WALL_SOFT * window->spread;
-    window->length = WALL_SOFT * fibrad_min(1, 15 * step);
+    const double *w = window->frame + 6;
+    window->wide = WALL_SPREAD / fibrad_sqrt(window->n);
+    window->spread = window->wide * fibrad_sqrt(needed_of(view, w, window->wide));
     for (int axis = 0; axis < 2; axis++) window->slope[axis] *= WALL_SLOPE;
+    wall_course course = course_of(view, w);
+    for (int axis = 0; axis < 3; axis++) /* lines on both sides: not too soft for the nearer */
+        if (course.rate[axis] < window->wide)
+            course.ahead[axis] = fibrad_min(course.ahead[axis], course.behind[axis]);
+    for (int axis = 0; axis < 3; axis++)
+        window->sharpness[axis] = sharpness_of(window, course.ahead[axis], course.ahead[(axis + 1) % 3]);
+    if (view->round) window->sharpness[2] = sharpness_of(window, course.ahead[2], view->radius);
 }
 
 bool fibrad_wall_window_has(const fibrad_wall_window *window, const fibrad_wall_view *view, uint32_t octant) {
@@ -139,8 +151,8 @@ static void add_band(const fibrad_wall_window *window, int axis, bool turned, fi
 
 /* Whether all lines of the window meet the first wall of an edge, 1, or the second, -1; 0: neither, or not surely. */
 static int sole_at(const fibrad_wall_window *window, const wall_edge *edge) {
-    const double reach = window->spread + window->soft, far = fibrad_sqrt(edge->square) + 1;
-    const double margin = reach * far + 1 + window->length;
+    const double reach = (1 + WALL_SOFT) * window->spread, far = fibrad_sqrt(edge->square) + 1;
+    const double margin = reach * far + 1 + WALL_SOFT;
     return edge->passing > margin ? 1 : edge->passing < -margin ? -1 : 0;
 }
 

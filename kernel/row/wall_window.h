@@ -11,7 +11,8 @@ typedef struct fibrad_wall_window {
     double slope[2];     /* how fast the open part grows as the direction turns towards the axes, per radian */
     double wide;         /* radius of the disc of directions, ... */
     double spread;       /* ... and of the part of it that is needed among walls as near as these */
-    double soft, length; /* half widths over which lines change from wall to wall, as an angle and as a length */
+    double sharpness[3]; /* of the edge between the planes across axes a and a + 1, or, [2], of a cylinder's end: one
+                            over what passing by, distance times sine of the angle, changes by over that half width */
 } fibrad_wall_window;
 
 /* Completes a window of which frame, k, n, open, hidden and slope are set. turned: the directions have been. */
