@@ -13,7 +13,8 @@
 #include "sample/direction.h"
 #include "window/points_lanes.h"
 
-#define WALL_POINTS 128u
+#define WALL_POINTS   128u
+#define HIDDEN_POINTS 64u /* of windows of which nothing is open */
 #define FAR_AWAY    1e30 /* [radii] where walls are that there are not */
 
 /* Rotates the axes u, v of a frame; coordinates in it rotate the other way. */
@@ -25,21 +26,21 @@ static void rotate_frame(double frame[9], double cos, double sin) {
 }
 
 /* The points of a window, all of them open. */
-static fibrad_points all_points(uint32_t count) {
-    fibrad_points points = {.count = count, .open = count, .seen = {UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX}};
-    (void)fibrad_disc_points_get(count, &points.set);
-    return points;
+static void all_points(uint32_t count, fibrad_points *points) {
+    points->count = points->open = count;
+    for (uint32_t word = 0; word < count / 64; word++) points->seen[word] = UINT64_MAX;
+    (void)fibrad_disc_points_get(count, &points->set);
 }
 
 /* The points of the window that no disc of `work` covers; all of them if there is none. */
-static fibrad_points open_points_of(const fibrad_workspace *work, double cos, double sin) {
-    fibrad_points points = all_points(WALL_POINTS);
+static void open_points(const fibrad_workspace *work, double cos, double sin, fibrad_points *points) {
     const fibrad_discs *disc = &work->disc;
-    for (uint32_t k = 0; k < disc->count && points.open > 0; k++) {
+    all_points(WALL_POINTS, points);
+    for (uint32_t k = 0; k < disc->count && points->open > 0; k++) {
         double u = disc->u[k], v = disc->v[k];
-        LANED(fibrad_points_disc)(&points, cos * u + sin * v, cos * v - sin * u, disc->r[k]);
+        LANED(fibrad_points_disc)(points, cos * u + sin * v, cos * v - sin * u, disc->r[k]);
     }
-    return points.open > 0 ? points : all_points(WALL_POINTS);
+    if (points->open == 0) all_points(WALL_POINTS, points);
 }
 
 /* Lines in the frame of sphere i. */
@@ -74,7 +75,7 @@ static void share_round(const fibrad_wall_window *window, const fibrad_wall_view
 
 /* Between three planes: what comes before both others; near a corner something is left, for all of them. Where a wall
  * is not there the others come first. */
-static void share_planes(const fibrad_wall_window *window, wall_lines *lines) {
+FIBRAD_INLINE void share_planes(const fibrad_wall_window *window, wall_lines *lines) {
     const vd zero = vd_set1(0), half = vd_set1(0.5), one = vd_set1(1), far = vd_set1(FAR_AWAY);
     const vd *away = lines->away, *rate = lines->rate;
     vd first[3], left = one; /* of axis a before axis a + 1 */
@@ -104,18 +105,20 @@ static vd exit_cylinder(const fibrad_wall_view *view, const wall_lines *lines) {
 }
 
 /* Which walls lines meet. */
-static void meet_walls(const fibrad_wall_window *window, const fibrad_wall_view *view, wall_lines *lines) {
+FIBRAD_INLINE void meet_walls(const fibrad_wall_window *window, const fibrad_wall_view *view, bool round,
+                              wall_lines *lines) {
     for (int axis = 0; axis < 3; axis++) {
         vd w = lines->w[axis], o = lines->origin[axis];
         vd away = vd_select(vd_lt(w, vd_set1(0)), o - view->low[axis], view->high[axis] - o);
         lines->rate[axis] = vd_abs(w), lines->away[axis] = vd_min(vd_set1(FAR_AWAY), away);
     }
-    if (view->round)
+    if (round)
         share_round(window, view, lines);
     else
         share_planes(window, lines);
     if (!view->cut) return;
-    lines->nearest = view->round ? exit_cylinder(view, lines) : vd_set1(__builtin_inf());
+    lines->nearest = vd_set1(__builtin_inf());
+    if (round) lines->nearest = exit_cylinder(view, lines);
     for (int axis = 0; axis < 3; axis++) {
         vd length = quotient(lines->away[axis], lines->rate[axis]);
         lines->nearest = vd_min(length, lines->nearest);
@@ -197,24 +200,27 @@ static vd on_side(vd x, uint32_t octant, uint32_t axis) {
 }
 
 /* Adds the lines of an octant, one of several: which wall they meet depends on w, but along other axes than the wall's
- * it is wide that decides the octant, so that walls close by have both. */
-static void add_octant(const wall_lines *lines, bool round, bool several, vd weight, uint32_t place,
-                       octant_sums *part) {
+ * it is wide that decides the octant, so that walls close by have both. hidden: `all` alone. */
+FIBRAD_INLINE void add_octant(const wall_lines *lines, bool round, bool several, bool hidden, vd weight, uint32_t place,
+                              octant_sums *part) {
+    const uint32_t begin = round ? 2 : 0, end = round ? 4 : 3;
     vd own[3], wide[3];
-    for (uint32_t axis = 0; axis < 3; axis++) {
+    for (uint32_t axis = begin; axis < 3 && several; axis++) {
         own[axis] = on_side(lines->w[axis], part->octant, axis);
         wide[axis] = on_side(lines->wide[axis], part->octant, axis);
     }
-    for (uint32_t n = round ? 2 : 0; n < (round ? 4u : 3u); n++) {
+#pragma GCC unroll 3
+    for (uint32_t n = begin; n < end; n++) {
         vd all = lines->share[n];
-        for (uint32_t axis = round ? 2 : 0; axis < 3 && several; axis++) {
+        for (uint32_t axis = begin; axis < 3 && several; axis++) {
             if (axis == n)
                 all = all * own[axis];
             else
                 all = all * wide[axis];
         }
-        vd open = all * weight;
         add_lanes(part->all[n] + place, all);
+        if (hidden) continue;
+        vd open = all * weight;
         add_lanes(part->open[n] + place, open);
         add_lanes(part->u[n] + place, open * lines->u);
         add_lanes(part->v[n] + place, open * lines->v);
@@ -241,15 +247,23 @@ static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint
     }
 }
 
+/* Takes open lines that are cut out of the weight, and counts them. */
+static vd weight_uncut(const fibrad_wall_view *view, const wall_lines *lines, vd weight, cut_lines *cuts) {
+    vm cut = vd_lt(exit_known(view, lines->origin, lines->w), lines->nearest);
+    add_cuts(view, lines, vm_bits(cut & vd_lt(vd_set1(0), weight)), cuts);
+    return vd_select(cut, vd_set1(0), weight);
+}
+
 /* Traces the points of a window in directions from its disc. */
-static void follow_points(const fibrad_points *points, const fibrad_wall_view *view, const double frame[9],
-                          const fibrad_wall_window *window, point_sums *sums) {
+FIBRAD_INLINE void follow_points(const fibrad_points *points, const fibrad_wall_view *view, bool round,
+                                 const double frame[9], const fibrad_wall_window *window, point_sums *sums) {
+    const bool hidden = window->open == 0, several = sums->octants > 1;
     for (uint32_t word = 0; word < points->count / 64; word++) {
         _Alignas(64) float a[64], b[64], open[64];
         for (uint32_t lane = 0; lane < 64; lane++) {
             const uint32_t q = fibrad_points_partner(points->count, 64 * word + lane, window->k);
             a[lane] = points->set.x[q], b[lane] = points->set.y[q];
-            open[lane] = (float)(points->seen[word] >> lane & 1);
+            open[lane] = (float)(int32_t)(points->seen[word] >> lane & 1);
         }
         for (uint32_t lane = 0; lane < 64; lane += VD_LANES) {
             const uint32_t p = 64 * word + lane;
@@ -263,14 +277,10 @@ static void follow_points(const fibrad_points *points, const fibrad_wall_view *v
                 lines.w[axis] = frame[6 + axis] + aside * window->spread;
                 lines.wide[axis] = frame[6 + axis] + aside * window->wide;
             }
-            meet_walls(window, view, &lines);
-            if (view->cut) {
-                vm cut = vd_lt(exit_known(view, lines.origin, lines.w), lines.nearest);
-                add_cuts(view, &lines, vm_bits(cut & vd_lt(vd_set1(0), weight)), &sums->cuts);
-                weight = vd_select(cut, vd_set1(0), weight);
-            }
+            meet_walls(window, view, round, &lines);
+            if (view->cut) weight = weight_uncut(view, &lines, weight, &sums->cuts);
             for (uint32_t part = 0; part < sums->octants; part++)
-                add_octant(&lines, view->round, sums->octants > 1, weight, lane % 8, &sums->part[part]);
+                add_octant(&lines, round, several, hidden, weight, lane % 8, &sums->part[part]);
         }
     }
 }
@@ -302,24 +312,29 @@ static void add_points(fibrad_workspace *work, const fibrad_points *points, cons
 
 /* Shares a window by lines. */
 static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, const fibrad_wall_window *window) {
+    const fibrad_wall_view *view = &work->view;
     double axes[9], cos = 1, sin = 0;
-    fibrad_points own = *points;
+    fibrad_points own;
     fibrad_copy(axes, window->frame, sizeof axes);
     if (points->count == 0) {
         fibrad_azimuth(5 * window->k % FIBRAD_DIRECTIONS_MAX, &cos, &sin);
         rotate_frame(axes, cos, sin);
-        own = window->open > 0 ? open_points_of(work, cos, sin) : all_points(WALL_POINTS);
+        open_points(work, cos, sin, &own);
+        points = &own;
     }
     const double slope[2] = {cos * window->slope[0] + sin * window->slope[1],
                              cos * window->slope[1] - sin * window->slope[0]};
     point_sums sums;
-    begin_sums(window, &work->view, &sums);
-    follow_points(&own, &work->view, axes, window, &sums);
-    add_points(work, &own, window, slope, &sums);
+    begin_sums(window, view, &sums);
+    if (view->round)
+        follow_points(points, view, true, axes, window, &sums);
+    else
+        follow_points(points, view, false, axes, window, &sums);
+    add_points(work, points, window, slope, &sums);
     for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) {
         if (sums.cuts.count[wall] == 0) continue; /* the way of one decides for all that would meet the same wall */
         const wall_line *first = &sums.cuts.first[wall];
-        work->wall[fibrad_work_met(work, first->origin, first->w)] += window->open * sums.cuts.count[wall] / own.open;
+        work->wall[fibrad_work_met(work, first->origin, first->w)] += window->open * sums.cuts.count[wall] / points->open;
     }
 }
 
@@ -340,14 +355,14 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
 
 /* Adds to the regions what there would be to see in windows that are hidden. */
 static void add_hidden(fibrad_workspace *work, const fibrad_beam_rule *rule) {
-    const uint32_t points = rule->points > 0 ? rule->points : WALL_POINTS;
-    const fibrad_points all = all_points(points);
+    fibrad_points all;
     double turn[9];
+    all_points(HIDDEN_POINTS, &all);
     if (rule->turn != 0) fibrad_rotation(rule->turn, turn);
     for (uint32_t k = 0; k < rule->directions; k++) {
         if ((work->walls.hidden[k / 64] >> k % 64 & 1) == 0) continue;
         double frame[9];
-        fibrad_beam_frame(k, rule->directions, points, frame);
+        fibrad_beam_frame(k, rule->directions, HIDDEN_POINTS, frame);
         if (rule->turn != 0) fibrad_rotate_axes(turn, frame);
         fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .hidden = 1};
         fibrad_wall_window_begin(&window, &work->view);
