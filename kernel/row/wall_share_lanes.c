@@ -345,8 +345,9 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         return;
     }
     const double whole = points->count > 0 ? points->count : FIBRAD_PI;
-    fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .open = rest};
+    fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .open = rest, .part = 1};
     window.hidden = fibrad_max(0, whole - rest);
+    if (points->count > 0) window.part = 0.4 + 0.6 * rest / whole;
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     fibrad_wall_window_begin(&window, &work->view);
     if (!fibrad_wall_window_simple(&window, &work->view, rule->turn != 0, &work->walls))
@@ -364,7 +365,7 @@ static void add_hidden(fibrad_workspace *work, const fibrad_beam_rule *rule) {
         double frame[9];
         fibrad_beam_frame(k, rule->directions, HIDDEN_POINTS, frame);
         if (rule->turn != 0) fibrad_rotate_axes(turn, frame);
-        fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .hidden = 1};
+        fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .hidden = 1, .part = 1};
         fibrad_wall_window_begin(&window, &work->view);
         if (!fibrad_wall_window_simple(&window, &work->view, rule->turn != 0, &work->walls))
             share_by_lines(work, &all, &window);

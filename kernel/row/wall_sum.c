@@ -4,6 +4,7 @@
 #include "base/elementary.h"
 
 #define FAR_AWAY 1e30 /* [radii] where walls are that there are not */
+#define HARDLY   1e-4 /* of a window, in a region that lines have hardly met */
 
 /* The only axis with walls, or 3. */
 static int only_axis(const fibrad_container *c) {
@@ -103,22 +104,36 @@ static uint32_t slot_of_region(const fibrad_wall_view *view, uint32_t region) {
 
 static double sum_of_parts(const double part[4]) { return (part[0] + part[2]) + (part[1] + part[3]); }
 
+/* The open part of each region over what there would be: where hardly a line has met it, that of its octant. */
+static void open_means(const fibrad_wall_sums *sums, double mean[FIBRAD_REGIONS]) {
+    for (uint32_t octant = 0; octant < FIBRAD_REGIONS; octant += 4) {
+        double open = 0, there = 0;
+        for (uint32_t region = octant; region < octant + 4; region++)
+            open += sum_of_parts(sums->open[region]), there += sum_of_parts(sums->all[region]);
+        const double prior = there > 0 ? open / there : 0;
+        for (uint32_t region = octant; region < octant + 4; region++)
+            mean[region] = (fibrad_max(0, sum_of_parts(sums->open[region])) + HARDLY * prior) /
+                           (fibrad_max(0, sum_of_parts(sums->all[region])) + HARDLY);
+    }
+}
+
 void fibrad_wall_factors(const fibrad_wall_sums *sums, const fibrad_wall_view *view, uint32_t windows, double apart,
                          double wall[FIBRAD_EXITS], double parts[2]) {
-    double sky[FIBRAD_REGIONS], got[FIBRAD_REGIONS], rest[FIBRAD_WALLS + 1][4], open = 0, sum = 0, mixed = 0, whole = 0;
+    double sky[FIBRAD_REGIONS], mean[FIBRAD_REGIONS], got[FIBRAD_REGIONS], rest[FIBRAD_WALLS + 1][4];
+    double open = 0, sum = 0, mixed = 0, whole = 0;
     fibrad_wall_sky(view, sky);
+    open_means(sums, mean);
     fibrad_zero(rest, sizeof rest);
     for (uint32_t region = 0; region < FIBRAD_REGIONS; region++) {
-        const double *part = sums->open[region], *all = sums->all[region];
-        const double opened = sum_of_parts(part), there = sum_of_parts(all), mean = there > 0 ? opened / there : 0;
-        const double ratio = there > 0 ? 1 + apart * (windows * sky[region] / there - 1) : 0;
-        got[region] = opened * ratio;
+        const double *part = sums->open[region], *all = sums->all[region], opened = sum_of_parts(part);
+        got[region] = opened + apart * (windows * sky[region] * mean[region] - opened);
         open += opened, sum += got[region], mixed += sums->mixed[region];
         for (int p = 0; p < 4; p++) /* what the solid angle knows is no error */
-            rest[slot_of_region(view, region)][p] += ratio * (part[p] - apart * mean * all[p]);
+            rest[slot_of_region(view, region)][p] += part[p] - apart * mean[region] * all[p];
     }
     for (uint32_t region = 0; region < FIBRAD_REGIONS; region++) {
-        if (mixed > 0) got[region] = fibrad_max(0, got[region] + (open - sum) * (sums->mixed[region] / mixed));
+        const double left = mixed > 0 ? (open - sum) * (sums->mixed[region] / mixed) : 0;
+        got[region] = fibrad_max(0, got[region] + left);
         whole += got[region];
     }
     for (uint32_t region = 0; region < FIBRAD_REGIONS && whole > 0; region++)

@@ -86,7 +86,7 @@ static double sharpness_of(const fibrad_wall_window *window, double first, doubl
 
 void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view) {
     const double *w = window->frame + 6;
-    window->wide = WALL_SPREAD / fibrad_sqrt(window->n);
+    window->wide = window->part * WALL_SPREAD / fibrad_sqrt(window->n);
     window->spread = window->wide * fibrad_sqrt(needed_of(view, w, window->wide));
     for (int axis = 0; axis < 2; axis++) window->slope[axis] *= WALL_SLOPE;
     wall_course course = course_of(view, w);
@@ -129,7 +129,8 @@ void fibrad_wall_window_add(const fibrad_wall_window *window, uint32_t region, d
 static double rising_share(double slope, double width) {
     if (!(fibrad_abs(slope) < width)) return slope > 0 ? 1 : slope < 0 ? 0 : 0.5;
     double x = slope / width, square = x * x;
-    return 0.5 + 15.0 / 16 * x * (1 - square * (2.0 / 3 - square / 5));
+    const double share = 0.5 + 15.0 / 16 * x * (1 - square * (2.0 / 3 - square / 5));
+    return fibrad_max(0, fibrad_min(1, share));
 }
 
 /* Planes across one axis: a band tells. Across z none is needed: directions pair off, but for the one that lies level,

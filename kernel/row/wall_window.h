@@ -8,6 +8,7 @@ typedef struct fibrad_wall_window {
     const double *frame; /* its axes */
     uint32_t k, n;       /* window k of n */
     double open, hidden; /* parts of it, areas or points */
+    double part;         /* of its disc of directions: 1, or less if the slope is not known */
     double slope[2];     /* how fast the open part grows as the direction turns towards the axes, per radian */
     double wide;         /* radius of the disc of directions, ... */
     double spread;       /* ... and of the part of it that is needed among walls as near as these */
@@ -15,7 +16,7 @@ typedef struct fibrad_wall_window {
                             over what passing by, distance times sine of the angle, changes by over that half width */
 } fibrad_wall_window;
 
-/* Completes a window of which frame, k, n, open, hidden and slope are set. turned: the directions have been. */
+/* Completes a window of which the fields down to slope are set. */
 void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view);
 
 /* Adds a window that all goes to one wall, or of which one number tells the shares, to the regions. False: neither, so
