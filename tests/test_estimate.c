@@ -167,7 +167,8 @@ static uint32_t walls_about(const struct bed *bed, const struct scene_in_walls *
         }
     for (int axis = 0; axis < 3; axis++) high[axis] = low[axis] + of->room * (high[axis] - low[axis]);
     uint32_t bodies = 0;
-    for (int k = of->round ? 4 : 0; k < 6; k++) body[bodies++] = plane_at(k / 2, k % 2, k % 2 ? high[k / 2] : low[k / 2]);
+    for (int k = of->round ? 4 : 0; k < 6; k++)
+        body[bodies++] = plane_at(k / 2, k % 2, k % 2 ? high[k / 2] : low[k / 2]);
     const double x = (low[0] + high[0]) / 2, y = (low[1] + high[1]) / 2;
     if (of->round) body[bodies++] = cylinder_at(x, y, hypot(high[0] - x, high[1] - y));
     return bodies;

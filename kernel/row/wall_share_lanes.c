@@ -9,13 +9,13 @@
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "row/wall_share_lanes.h"
-#include "row/wall_window.h"
+#include "sky/wall_window.h"
 #include "sample/direction.h"
 #include "window/points_lanes.h"
 
 #define WALL_POINTS   128u
-#define HIDDEN_POINTS 64u /* of windows of which nothing is open */
-#define FAR_AWAY    1e30 /* [radii] where walls are that there are not */
+#define HIDDEN_POINTS 64u  /* of windows of which nothing is open */
+#define FAR_AWAY      1e30 /* [radii] where walls are that there are not */
 
 /* Rotates the axes u, v of a frame; coordinates in it rotate the other way. */
 static void rotate_frame(double frame[9], double cos, double sin) {
@@ -268,7 +268,8 @@ FIBRAD_INLINE void follow_points(const fibrad_points *points, const fibrad_wall_
         for (uint32_t lane = 0; lane < 64; lane += VD_LANES) {
             const uint32_t p = 64 * word + lane;
             vd u = vd_load_float(points->set.x + p), v = vd_load_float(points->set.y + p);
-            vd aside_u = vd_load_float(a + lane), aside_v = vd_load_float(b + lane), weight = vd_load_float(open + lane);
+            vd aside_u = vd_load_float(a + lane), aside_v = vd_load_float(b + lane),
+               weight = vd_load_float(open + lane);
             wall_lines lines = {.u = aside_u * window->spread, .v = aside_v * window->spread};
             for (int axis = 0; axis < 3; axis++) {
                 vd along_u = vd_set1(frame[axis]), along_v = vd_set1(frame[3 + axis]);
@@ -334,7 +335,8 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
     for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) {
         if (sums.cuts.count[wall] == 0) continue; /* the way of one decides for all that would meet the same wall */
         const wall_line *first = &sums.cuts.first[wall];
-        work->wall[fibrad_work_met(work, first->origin, first->w)] += window->open * sums.cuts.count[wall] / points->open;
+        work->wall[fibrad_work_met(work, first->origin, first->w)] +=
+            window->open * sums.cuts.count[wall] / points->open;
     }
 }
 

@@ -1,16 +1,16 @@
 /* wall_sum.h - what the windows of a row give to walls, by regions of the sky, and the factors that come of it.
  * SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_ROW_WALL_SUM_H
-#define FIBRAD_ROW_WALL_SUM_H
+#ifndef FIBRAD_SKY_WALL_SUM_H
+#define FIBRAD_SKY_WALL_SUM_H
 
 #include "scene/surroundings.h"
 
 /* The walls, and where lines are cut, in the frame of a sphere: in units of its radius, from its centre. */
 typedef struct fibrad_wall_view {
-    double low[3], high[3], axis[2], radius; /* infinite where there is none */
-    int only;                                /* the axis across which all walls are planes, or 3 */
-    bool round;                              /* there is a cylinder */
-    bool cut;                                /* lines are cut, ... */
+    double low[3], high[3], axis[2], radius;  /* infinite where there is none */
+    int only;                                 /* the axis across which all walls are planes, or 3 */
+    bool round;                               /* there is a cylinder */
+    bool cut;                                 /* lines are cut, ... */
     double known_low[3], known_high[3], ball; /* ... where they leave this box, or a ball of this radius */
 } fibrad_wall_view;
 
@@ -35,9 +35,9 @@ void fibrad_wall_sky(const fibrad_wall_view *view, double sky[FIBRAD_REGIONS]);
 /* How much these solid angles count: 1 if no wall cuts the sphere, 0 if one does deeply, or if lines are cut. */
 double fibrad_wall_apart(const fibrad_wall_view *view);
 
-/* Adds to wall[] what each wall gets, or escapes: the open part of each region, over the windows it has, times the solid
- * angle it has. The sum is what was open, so what is left over goes to regions that are hidden in part. parts: the
- * squared distances of the sums over even and odd windows, and over every fourth, as of fibrad_entries_gain. */
+/* Adds to wall[] what each wall gets, or escapes: the open part of each region, over the windows it has, times the
+ * solid angle it has. The sum is what was open, so what is left over goes to regions that are hidden in part. parts:
+ * the squared distances of the sums over even and odd windows, and over every fourth, as of fibrad_entries_gain. */
 void fibrad_wall_factors(const fibrad_wall_sums *sums, const fibrad_wall_view *view, uint32_t windows, double apart,
                          double wall[FIBRAD_EXITS], double parts[2]);
 

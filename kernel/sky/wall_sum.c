@@ -1,5 +1,5 @@
 /* wall_sum.c - solid angles of walls, seen from within, and factors to them. SPDX-License-Identifier: MIT */
-#include "row/wall_sum.h"
+#include "sky/wall_sum.h"
 #include "base/constants.h"
 #include "base/elementary.h"
 
@@ -77,8 +77,7 @@ void fibrad_wall_sky(const fibrad_wall_view *view, double sky[FIBRAD_REGIONS]) {
         if (view->only < 3) {
             if (octant == 0 || octant == 1 << view->only) of[view->only] = 0.5;
         } else if (!view->round) {
-            for (int n = 0; n < 3; n++)
-                of[n] = corner_angle(d[n], d[(n + 1) % 3], d[(n + 2) % 3]) / (4 * FIBRAD_PI);
+            for (int n = 0; n < 3; n++) of[n] = corner_angle(d[n], d[(n + 1) % 3], d[(n + 2) % 3]) / (4 * FIBRAD_PI);
         } else if (octant == 0 || octant == 4) {
             of[2] = d[2] < FAR_AWAY ? disc_sky(d[2], off_axis(view), view->radius) : 0;
             of[3] = 0.5 - of[2];
@@ -102,18 +101,18 @@ static uint32_t slot_of_region(const fibrad_wall_view *view, uint32_t region) {
     return away < __builtin_inf() ? 2 * axis + up : FIBRAD_ESCAPED;
 }
 
-static double sum_of_parts(const double part[4]) { return (part[0] + part[2]) + (part[1] + part[3]); }
+static double all_parts(const double part[4]) { return (part[0] + part[2]) + (part[1] + part[3]); }
 
 /* The open part of each region over what there would be: where hardly a line has met it, that of its octant. */
 static void open_means(const fibrad_wall_sums *sums, double mean[FIBRAD_REGIONS]) {
     for (uint32_t octant = 0; octant < FIBRAD_REGIONS; octant += 4) {
         double open = 0, there = 0;
         for (uint32_t region = octant; region < octant + 4; region++)
-            open += sum_of_parts(sums->open[region]), there += sum_of_parts(sums->all[region]);
+            open += all_parts(sums->open[region]), there += all_parts(sums->all[region]);
         const double prior = there > 0 ? open / there : 0;
         for (uint32_t region = octant; region < octant + 4; region++)
-            mean[region] = (fibrad_max(0, sum_of_parts(sums->open[region])) + HARDLY * prior) /
-                           (fibrad_max(0, sum_of_parts(sums->all[region])) + HARDLY);
+            mean[region] = (fibrad_max(0, all_parts(sums->open[region])) + HARDLY * prior) /
+                           (fibrad_max(0, all_parts(sums->all[region])) + HARDLY);
     }
 }
 
@@ -125,7 +124,7 @@ void fibrad_wall_factors(const fibrad_wall_sums *sums, const fibrad_wall_view *v
     open_means(sums, mean);
     fibrad_zero(rest, sizeof rest);
     for (uint32_t region = 0; region < FIBRAD_REGIONS; region++) {
-        const double *part = sums->open[region], *all = sums->all[region], opened = sum_of_parts(part);
+        const double *part = sums->open[region], *all = sums->all[region], opened = all_parts(part);
         got[region] = opened + apart * (windows * sky[region] * mean[region] - opened);
         open += opened, sum += got[region], mixed += sums->mixed[region];
         for (int p = 0; p < 4; p++) /* what the solid angle knows is no error */

@@ -1,5 +1,5 @@
 /* wall_window.c - a window as walls see it: the disc of directions it stands for. SPDX-License-Identifier: MIT */
-#include "row/wall_window.h"
+#include "sky/wall_window.h"
 
 /* Radius of the disc of directions times sqrt n; it would be 2 for discs as large as the share of a direction. */
 #define WALL_SPREAD 1.8
@@ -77,8 +77,8 @@ static double needed_of(const fibrad_wall_view *view, const double w[3], double 
     return sum / weights;
 }
 
-/* What passing by an edge, distance times sine of the angle, is to be multiplied by to change by one over half the width
- * in which lines change from wall to wall. */
+/* What passing by an edge, distance times sine of the angle, is to be multiplied by to change by one over half the
+ * width in which lines change from wall to wall. */
 static double sharpness_of(const fibrad_wall_window *window, double first, double second) {
     const double soft = WALL_SOFT * window->spread, length = WALL_SOFT * fibrad_min(1, 15 / fibrad_sqrt(window->n));
     return 1 / fibrad_sqrt(soft * soft * (first * first + second * second) + length * length);
@@ -91,8 +91,7 @@ void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view
     for (int axis = 0; axis < 2; axis++) window->slope[axis] *= WALL_SLOPE;
     wall_course course = course_of(view, w);
     for (int axis = 0; axis < 3; axis++) /* lines on both sides: not too soft for the nearer */
-        if (course.rate[axis] < window->wide)
-            course.ahead[axis] = fibrad_min(course.ahead[axis], course.behind[axis]);
+        if (course.rate[axis] < window->wide) course.ahead[axis] = fibrad_min(course.ahead[axis], course.behind[axis]);
     for (int axis = 0; axis < 3; axis++)
         window->sharpness[axis] = sharpness_of(window, course.ahead[axis], course.ahead[(axis + 1) % 3]);
     if (view->round) window->sharpness[2] = sharpness_of(window, course.ahead[2], view->radius);
