@@ -350,6 +350,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
     fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .open = rest, .part = 1};
     window.hidden = fibrad_max(0, whole - rest);
     if (points->count > 0) window.part = 0.4 + 0.6 * rest / whole;
+    if (work->view.cut) window.part *= 1.25; /* no solid angle mends what the discs cover unevenly */
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     fibrad_wall_window_begin(&window, &work->view);
     if (!fibrad_wall_window_simple(&window, &work->view, rule->turn != 0, &work->walls))

@@ -14,14 +14,25 @@ static int only_axis(const fibrad_container *c) {
     return axes == 1 ? only : 3;
 }
 
+/* Whether no line is cut before it meets a wall: the sphere and all within the walls lie in the ball and the box. */
+static bool all_known(const fibrad_wall_view *view) {
+    double farthest = 0;
+    bool within = true;
+    for (int axis = 0; axis < 3; axis++) {
+        const bool round = view->round && axis < 2;
+        const double low = fibrad_min(-1, round ? view->axis[axis] - view->radius : view->low[axis]);
+        const double high = fibrad_max(1, round ? view->axis[axis] + view->radius : view->high[axis]);
+        const double far = fibrad_max(-low, high);
+        within = within && low >= view->known_low[axis] && high <= view->known_high[axis];
+        farthest += far * far;
+    }
+    return within && farthest <= view->ball * view->ball && fibrad_finite(farthest);
+}
+
 fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, bool cut, double ball) {
     const fibrad_container *c = &scene->container;
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]}, inverse = 1 / scene->r[place];
-    fibrad_wall_view view = {.radius = c->radius * inverse,
-                             .only = cut ? 3 : only_axis(c),
-                             .round = c->radius < __builtin_inf(),
-                             .cut = cut,
-                             .ball = ball};
+    fibrad_wall_view view = {.radius = c->radius * inverse, .round = c->radius < __builtin_inf(), .ball = ball};
     for (int axis = 0; axis < 3; axis++) {
         view.low[axis] = (c->low[axis] - centre[axis]) * inverse;
         view.high[axis] = (c->high[axis] - centre[axis]) * inverse;
@@ -30,6 +41,8 @@ fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, 
         if (!(view.known_low[axis] <= 0 && view.known_high[axis] >= 0)) view.ball = 0; /* i lies outside itself */
     }
     for (int axis = 0; axis < 2; axis++) view.axis[axis] = (c->axis[axis] - centre[axis]) * inverse;
+    view.cut = cut && !all_known(&view);
+    view.only = view.cut ? 3 : only_axis(c);
     return view;
 }
 

@@ -10,10 +10,11 @@ typedef struct fibrad_wall_view {
     double low[3], high[3], axis[2], radius;  /* infinite where there is none */
     int only;                                 /* the axis across which all walls are planes, or 3 */
     bool round;                               /* there is a cylinder */
-    bool cut;                                 /* lines are cut, ... */
+    bool cut;                                 /* lines may be cut, ... */
     double known_low[3], known_high[3], ball; /* ... where they leave this box, or a ball of this radius */
 } fibrad_wall_view;
 
+/* cut: whether there is a known region, or a cutoff, at `ball` radii. */
 fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, bool cut, double ball);
 
 /* Regions of the sky: what a line meets, by the octant of its direction. Region 4 octant + n is met through the plane

@@ -8,7 +8,7 @@ typedef struct fibrad_wall_window {
     const double *frame; /* its axes */
     uint32_t k, n;       /* window k of n */
     double open, hidden; /* parts of it, areas or points */
-    double part;         /* of its disc of directions: 1, or less if the slope is not known */
+    double part;         /* of its disc of directions: 1; less if the slope is not known */
     double slope[2];     /* how fast the open part grows as the direction turns towards the axes, per radian */
     double wide;         /* radius of the disc of directions, ... */
     double spread;       /* ... and of the part of it that is needed among walls as near as these */
