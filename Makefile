@@ -75,6 +75,8 @@ KERNEL = \
     kernel/row/beam.c \
     kernel/row/row.c \
     kernel/row/row_sum.c \
+    kernel/sky/wall_sum.c \
+    kernel/sky/wall_window.c \
     kernel/row/work.c \
     kernel/matrix/average.c \
     kernel/matrix/enclose.c \

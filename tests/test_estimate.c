@@ -137,6 +137,100 @@ START_TEST(rows_by_themselves) {
 }
 END_TEST
 
+/* Scenes among walls: spheres of a packing, in a box or a cylinder of `room` times their extent. */
+static const struct scene_in_walls {
+    const char *name;
+    uint32_t spheres;
+    double low, high, fraction, room;
+    bool round;
+} scenes_in_walls[] = {{"dense box", 200, .8, 1.2, .5, 1, false},
+                       {"dense cylinder", 200, .8, 1.2, .5, 1.5, true},
+                       {"dilute box", 100, .8, 1.2, .05, 1, false},
+                       {"dilute cylinder", 100, .8, 1.2, .05, 1.5, true},
+                       {"large and small in a box", 200, .25, 1, .45, 1, false},
+                       {"large and small in a cylinder", 150, .2, 1, .4, 1.5, true},
+                       {"a heap in a wide box", 100, .8, 1.2, .5, 6, false},
+                       {"a heap in a wide cylinder", 60, .8, 1.2, .5, 8, true},
+                       {"few in a box", 6, .5, 1, .2, 1.2, false},
+                       {"few in a cylinder", 5, .5, 1, .2, 2, true},
+                       {"two in a box", 2, .5, 1, .2, 3, false},
+                       {"one in a box", 1, 1, 1, .1, 2, false}};
+enum { SCENES = sizeof scenes_in_walls / sizeof *scenes_in_walls };
+
+/* The walls about a bed. */
+static uint32_t walls_about(const struct bed *bed, const struct scene_in_walls *of, fibrad_body body[6]) {
+    double low[3] = {1e9, 1e9, 1e9}, high[3] = {-1e9, -1e9, -1e9};
+    for (uint32_t i = 0; i < bed->n; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const double c = axis == 0 ? bed->x[i] : axis == 1 ? bed->y[i] : bed->z[i];
+            least_of(&low[axis], c - bed->r[i]), worst_of(&high[axis], c + bed->r[i]);
+        }
+    for (int axis = 0; axis < 3; axis++) high[axis] = low[axis] + of->room * (high[axis] - low[axis]);
+    uint32_t bodies = 0;
+    for (int k = of->round ? 4 : 0; k < 6; k++)
+        body[bodies++] = plane_at(k / 2, k % 2, k % 2 ? high[k / 2] : low[k / 2]);
+    const double x = (low[0] + high[0]) / 2, y = (low[1] + high[1]) / 2;
+    if (of->round) body[bodies++] = cylinder_at(x, y, hypot(high[0] - x, high[1] - y));
+    return bodies;
+}
+
+static double distance_with_walls(const fibrad_row *a, const fibrad_row *b, uint32_t bodies) {
+    double square = pow(row_distance(a, b), 2);
+    for (uint32_t k = 0; k < bodies; k++) square += pow(a->body[k] - b->body[k], 2);
+    return sqrt(square);
+}
+
+static fibrad_bed_factors *rows_among(const struct bed *bed, const fibrad_scene_config *config,
+                                      const fibrad_beam_rule *rule, bool raw, const unsigned char *wanted) {
+    const fibrad_spheres spheres = bed_spheres(bed);
+    const fibrad_bed_options options = {.beam = rule, .wanted = wanted, .raw = raw};
+    fibrad_run run = {.threads = 1};
+    fibrad_bed_factors *factors = NULL;
+    ck_assert_int_eq(fibrad_view_factors(config, &spheres, &options, &run, &factors), FIBRAD_OK);
+    return factors;
+}
+
+/* Estimates count walls: the true error lies above twice the estimate in 5 % of rows at most, and the estimate on the
+ * median not above five times the error. Tolerances are met likewise. */
+START_TEST(estimates_count_walls) {
+    const struct scene_in_walls *of = &scenes_in_walls[_i];
+    struct bed bed = packing(of->spheres, of->low, of->high, of->fraction, 5 + (uint64_t)_i, false);
+    fibrad_body body[6];
+    const fibrad_scene_config config = {.body = body, .bodies = walls_about(&bed, of, body)};
+    unsigned char wanted[1000] = {0};
+    for (uint32_t k = 0; k < ROWS; k++) wanted[bed.n * (2 * k + 1) / (2 * ROWS)] = 1;
+    fibrad_bed_factors *truth = rows_among(&bed, &config, &(fibrad_beam_rule){.directions = 20000}, true, wanted);
+    for (int raw = 0; raw < 2; raw++) {
+        double ratio[4 * ROWS];
+        uint32_t count = 0, above = 0;
+        for (int step = 0; step < 4; step++) {
+            const fibrad_beam_rule rule = {.directions = 61u << 2 * step, .tolerance = step == 3 ? 1e-3 : 0};
+            const fibrad_beam_rule tolerant = {.tolerance = of->fraction > .1 ? 3e-3 : 1e-2};
+            fibrad_bed_factors *factors = rows_among(&bed, &config, step < 3 ? &rule : &tolerant, raw, NULL);
+            for (uint32_t i = 0; i < bed.n; i++) {
+                if (!wanted[i]) continue;
+                const fibrad_row here = matrix_row(&factors->matrix, i), there = matrix_row(&truth->matrix, i);
+                const double error = distance_with_walls(&here, &there, config.bodies);
+                if (step == 3) ck_assert_double_le(here.error, tolerant.tolerance);
+                if (error < 1e-12 && here.error < 1e-12) continue; /* what the solid angles know */
+                above += error > 2 * here.error;
+                ratio[count++] = here.error / error;
+            }
+            fibrad_bed_free(factors);
+        }
+        if (bed.n == 1) ck_assert_uint_eq(count, 0);
+        if (count == 0) continue;
+        qsort(ratio, count, sizeof *ratio, ascending);
+        printf("%s, %s: estimate over error %.2f %.2f %.2f, %u of %u too low\n", of->name, raw ? "raw" : "averaged",
+               ratio[count / 20], ratio[count / 2], ratio[count - 1 - count / 20], above, count);
+        ck_assert_uint_le(20 * above, count + 19);
+        ck_assert_double_le(ratio[count / 2], 5);
+    }
+    fibrad_bed_free(truth);
+    bed_free(&bed);
+}
+END_TEST
+
 /* Where no number of directions does, the most there is. */
 START_TEST(out_of_reach) {
     struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1, 2, 3, 1}});
@@ -162,6 +256,7 @@ int main(void) {
     TCase *tcase = suite_case(suite, "estimate");
     tcase_add_loop_test(tcase, estimates_are_honest, 0, count);
     tcase_add_loop_test(tcase, tolerance_is_met, 0, count);
+    tcase_add_loop_test(tcase, estimates_count_walls, 0, SCENES);
     tcase_add_test(tcase, rows_by_themselves);
     tcase_add_test(tcase, out_of_reach);
     return suite_run(suite);

@@ -64,4 +64,15 @@ static inline void fibrad_sincos_turn(double u, double *sine, double *cosine) {
     if ((quarter + 1) & 2) *cosine = -*cosine;
 }
 
+/* The angle in [0, pi/2] of the point (x, y), x, y >= 0, not both 0 and neither above 1e150. Two halvings bring the
+ * smaller of the angles to the axes to pi/16, where the series of atan ends at u^25. */
+static inline double fibrad_quarter_angle(double x, double y) {
+    double u = y < x ? y / x : x / y;
+    u = u / (1 + fibrad_sqrt(1 + u * u));
+    u = u / (1 + fibrad_sqrt(1 + u * u));
+    double u2 = u * u, sum = 1.0 / 25;
+    for (int n = 23; n > 0; n -= 2) sum = 1.0 / n - u2 * sum; /* constants, once unrolled */
+    return y < x ? 4 * (u * sum) : 0x1.921fb54442d18p0 - 4 * (u * sum);
+}
+
 #endif

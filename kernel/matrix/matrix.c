@@ -292,7 +292,8 @@ static void close_rows(fibrad_matrix *m) {
         if (m->r[i] > 0) share_out(m, i, fibrad_max(0, 1 - fibrad_sparse_sum(&m->result, i)), all);
 }
 
-/* The error of each row, from how far its mean is off the raw row, whose columns are among those of the mean. */
+/* The error of each row, from how far its mean is off the raw row, whose columns are among those of the mean. How walls
+ * share what they get is that of the raw row: the more they get, the more of its error counts. */
 static void estimate_errors(fibrad_matrix *m) {
     for (uint32_t i = 0; i < m->result.n; i++) {
         const fibrad_record *raw = m->row[i];
@@ -307,7 +308,9 @@ static void estimate_errors(fibrad_matrix *m) {
             square += difference * difference;
         }
         const double factor = m->exchange ? EXCHANGE_ERROR : VIEW_ERROR;
-        m->error[i] = fibrad_max(factor * fibrad_sqrt(square), RAW_PART * m->error[i]);
+        double met = 0;
+        for (uint32_t b = 0; b < m->bodies; b++) met += m->body[(size_t)i * m->bodies + b];
+        m->error[i] = fibrad_max(factor * fibrad_sqrt(square), RAW_PART * (1 + met) * m->error[i]);
     }
 }
 

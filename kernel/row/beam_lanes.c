@@ -20,7 +20,11 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     work->areas.overflow = false;
     work->areas.fallbacks = 0;
     fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
-    double open[2] = {0, 0}, turn[9];
+    double open[2] = {0, 0}, turn[9], parts[2] = {0, 0};
+    if (scene->container.walls) {
+        work->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
+        fibrad_zero(&work->walls, sizeof work->walls);
+    }
     if (rule->turn != 0) fibrad_rotation(rule->turn, turn);
     for (uint32_t k = 0; k < directions; k++) {
         double frame[9];
@@ -30,7 +34,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         double rest = LANED(fibrad_beam_window)(work, frame, &window, k);
         if (work->disc.count > work->disc.capacity || work->areas.overflow) return fibrad_work_discs_missed(work);
         if (scene->container.walls)
-            LANED(fibrad_walls_share)(work, frame, &window, k, directions, rule->turn != 0, rest);
+            LANED(fibrad_walls_share)(work, frame, &window, k, rule, rest);
         else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6) == FIBRAD_BEYOND)
             work->wall[FIBRAD_BEYOND] += rest;
         else
@@ -40,11 +44,13 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     double scale = points > 0 ? 1.0 / ((double)directions * points) : 1 / (directions * FIBRAD_PI);
     int status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
+    if (scene->container.walls) LANED(fibrad_walls_complete)(work, rule, parts);
     row->escaped = (open[0] + open[1] + work->wall[FIBRAD_ESCAPED]) * scale;
     row->beyond = work->wall[FIBRAD_BEYOND] * scale;
     for (int wall = 0; wall < FIBRAD_WALLS; wall++) work->wall[wall] = fibrad_max(0, work->wall[wall]) * scale;
     fibrad_row_bodies(scene, work->wall, row);
-    row->error *= fibrad_entries_gain(&work->entries);
+    if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
+    row->error *= fibrad_entries_gain(&work->entries, parts);
     row->directions = directions;
     row->fallbacks = work->areas.fallbacks;
     row->symmetric = 0;

@@ -49,9 +49,9 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
 /* Where the error falls by the same ratio from fourths to halves as from halves to the whole, it is halves^2/fourths.
  * The bounds are measured, docs/accuracy.md: the factor where many windows see each sphere, and that of independent
  * windows. */
-double fibrad_entries_gain(const fibrad_entries *entries) {
+double fibrad_entries_gain(const fibrad_entries *entries, const double parts[2]) {
     const double least = 0.5, most = 1.1;
-    double halves = 0, fourths = 0;
+    double halves = parts[0], fourths = parts[1];
     for (uint32_t k = 0; k < entries->length; k++) {
         const double *part = entries->part[k];
         double half = part[0] + part[2] - part[1] - part[3], even = part[0] - part[2], odd = part[1] - part[3];

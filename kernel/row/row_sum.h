@@ -44,6 +44,6 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
 
 /* The error of a beam row over that distance, from how much the sums over every fourth window differ, docs/methods.md
  * section 3. */
-double fibrad_entries_gain(const fibrad_entries *entries);
+double fibrad_entries_gain(const fibrad_entries *entries, const double parts[2]);
 
 #endif

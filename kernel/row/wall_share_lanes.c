@@ -4,39 +4,18 @@
  * A window has one direction, but stands for all that are nearer to its own than to others. Far walls differ by
  * direction alone: with one direction their factors would jump, and err as n^-0.75. Therefore each open point of the
  * window is traced in a direction of its own, from a disc about that of the window; such discs cover the sphere about
- * once. Where spheres hide part of a window, its neighbours are hidden in part too, and the disc is smaller, or walls
- * would be visible that are hidden. The open area does not depend on this. docs/methods.md section 9. */
+ * once. What is open of a window changes with the direction, to first order as its slope says: a wall gets the open
+ * part times its share of the lines, and the slope times what their mean is off. docs/methods.md section 9. */
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "row/wall_share_lanes.h"
+#include "sky/wall_window.h"
 #include "sample/direction.h"
-#include "scene/walls.h"
 #include "window/points_lanes.h"
 
-#define WALL_POINTS 128u
-
-/* Radius of the disc of directions, times sqrt n, if the window is open; for discs as large as the share of a direction
- * in the sphere it would be 2. */
-#define WALL_SPREAD 2.25
-
-/* Half width of the band, likewise. F to a plane across x or y then errs by 4e-4 at n = 233. */
-#define WALL_BAND 4.0
-
-/* Walls across one axis only, and a window that stands for a band of directions of some half width: the share of the
- * band that rises along the axis, with weights (1 - x^2)^2 over it. */
-static double rising_share(double slope, double width) {
-    if (!(fibrad_abs(slope) < width)) return slope > 0 ? 1 : slope < 0 ? 0 : 0.5;
-    double x = slope / width, square = x * x;
-    return 0.5 + 15.0 / 16 * x * (1 - square * (2.0 / 3 - square / 5));
-}
-
-/* The only axis with walls, or 3. */
-static int only_axis(const fibrad_container *c) {
-    int only = 3, axes = c->radius < __builtin_inf() ? 2 : 0;
-    for (int axis = 0; axis < 3; axis++)
-        if (c->low[axis] > -__builtin_inf() || c->high[axis] < __builtin_inf()) only = axis, axes++;
-    return axes == 1 ? only : 3;
-}
+#define WALL_POINTS   128u
+#define HIDDEN_POINTS 64u  /* of windows of which nothing is open */
+#define FAR_AWAY      1e30 /* [radii] where walls are that there are not */
 
 /* Rotates the axes u, v of a frame; coordinates in it rotate the other way. */
 static void rotate_frame(double frame[9], double cos, double sin) {
@@ -46,74 +25,108 @@ static void rotate_frame(double frame[9], double cos, double sin) {
     }
 }
 
+/* The points of a window, all of them open. */
+static void all_points(uint32_t count, fibrad_points *points) {
+    points->count = points->open = count;
+    for (uint32_t word = 0; word < count / 64; word++) points->seen[word] = UINT64_MAX;
+    (void)fibrad_disc_points_get(count, &points->set);
+}
+
 /* The points of the window that no disc of `work` covers; all of them if there is none. */
-static fibrad_points open_points_of(const fibrad_workspace *work, double cos, double sin) {
-    fibrad_points points = {.count = WALL_POINTS, .open = WALL_POINTS, .seen = {UINT64_MAX, UINT64_MAX}};
-    (void)fibrad_disc_points_get(WALL_POINTS, &points.set);
+static void open_points(const fibrad_workspace *work, double cos, double sin, fibrad_points *points) {
     const fibrad_discs *disc = &work->disc;
-    for (uint32_t k = 0; k < disc->count && points.open > 0; k++) {
+    all_points(WALL_POINTS, points);
+    for (uint32_t k = 0; k < disc->count && points->open > 0; k++) {
         double u = disc->u[k], v = disc->v[k];
-        LANED(fibrad_points_disc)(&points, cos * u + sin * v, cos * v - sin * u, disc->r[k]);
+        LANED(fibrad_points_disc)(points, cos * u + sin * v, cos * v - sin * u, disc->r[k]);
     }
-    if (points.open == 0) points.open = WALL_POINTS, points.seen[0] = points.seen[1] = UINT64_MAX;
-    return points;
+    if (points->open == 0) all_points(WALL_POINTS, points);
 }
 
-/* The walls, and where lines are cut, in the frame of sphere i: in units of its radius, from its centre. */
-typedef struct wall_view {
-    double low[3], high[3], axis[2], radius;
-    bool cut;
-    double known_low[3], known_high[3], ball; /* the radius of the latter */
-} wall_view;
+/* Lines in the frame of sphere i. */
+typedef struct wall_lines {
+    vd origin[3], w[3];
+    vd wide[3];           /* directions that fill the whole disc, for octants */
+    vd u, v;              /* how far w is from the direction of the window */
+    vd away[3], rate[3];  /* how far the walls ahead are, and how fast lines approach them */
+    vd share[4], nearest; /* of the planes across the axes and the cylinder; the length to the nearest */
+} wall_lines;
 
-static wall_view wall_view_of(const fibrad_workspace *work) {
-    const fibrad_scene *scene = work->scene;
-    const fibrad_container *c = &scene->container;
-    wall_view view = {.radius = c->radius * work->inverse, .cut = work->cut, .ball = work->reach};
-    for (int axis = 0; axis < 3; axis++) {
-        view.low[axis] = (c->low[axis] - work->centre[axis]) * work->inverse;
-        view.high[axis] = (c->high[axis] - work->centre[axis]) * work->inverse;
-        view.known_low[axis] = (scene->known_low[axis] - work->centre[axis]) * work->inverse;
-        view.known_high[axis] = (scene->known_high[axis] - work->centre[axis]) * work->inverse;
-        if (!(view.known_low[axis] <= 0 && view.known_high[axis] >= 0)) view.ball = 0; /* i lies outside itself */
-    }
-    for (int axis = 0; axis < 2; axis++) view.axis[axis] = (c->axis[axis] - work->centre[axis]) * work->inverse;
-    return view;
+static vd quotient(vd a, vd b) {
+    vm none = vd_le(b, vd_set1(0));
+    return vd_select(none, vd_set1(__builtin_inf()), a / vd_select(none, vd_set1(1), b));
 }
 
-/* How far lines go along an axis until they leave [low, high]. */
-static vd exit_slab(double low, double high, vd origin, vd w) {
+/* The share of the first of two walls, between 0 and 1 where lines pass close to the edge between them. */
+static vd share_at_edge(vd passing, double sharpness) {
+    return 0.5 + 0.5 * vd_max(vd_set1(-1), vd_min(vd_set1(1), passing * sharpness));
+}
+
+/* Between the end of a cylinder and the cylinder. */
+static void share_round(const fibrad_wall_window *window, const fibrad_wall_view *view, wall_lines *lines) {
+    const vd zero = vd_set1(0), away = lines->away[2], rate = lines->rate[2];
+    vd x = lines->origin[0] - view->axis[0], y = lines->origin[1] - view->axis[1];
+    vd along = x * rate + lines->w[0] * away, across = y * rate + lines->w[1] * away;
+    vd end = share_at_edge(view->radius * rate - vd_sqrt(along * along + across * across), window->sharpness[2]);
+    lines->share[0] = lines->share[1] = zero;
+    lines->share[2] = vd_select(vd_lt(away, vd_set1(FAR_AWAY)), end, zero);
+    lines->share[3] = 1 - lines->share[2];
+}
+
+/* Between three planes: what comes before both others; near a corner something is left, for all of them. Where a wall
+ * is not there the others come first. */
+FIBRAD_INLINE void share_planes(const fibrad_wall_window *window, wall_lines *lines) {
+    const vd zero = vd_set1(0), half = vd_set1(0.5), one = vd_set1(1), far = vd_set1(FAR_AWAY);
+    const vd *away = lines->away, *rate = lines->rate;
+    vd first[3], left = one; /* of axis a before axis a + 1 */
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3;
+        vm a_far = vd_le(far, away[a]), b_far = vd_le(far, away[b]);
+        vd share = share_at_edge(away[b] * rate[a] - away[a] * rate[b], window->sharpness[a]);
+        first[a] = vd_select(a_far, vd_select(b_far, half, zero), vd_select(b_far, one, share));
+    }
+    for (int a = 0; a < 3; a++) {
+        lines->share[a] = first[a] * (1 - first[(a + 2) % 3]);
+        left = left - lines->share[a];
+    }
+    for (int a = 0; a < 3; a++) lines->share[a] += left * (1.0 / 3);
+    lines->share[3] = zero;
+}
+
+/* The length of lines within the cylinder. */
+static vd exit_cylinder(const fibrad_wall_view *view, const wall_lines *lines) {
     const vd zero = vd_set1(0);
-    vm level = vd_le(vd_abs(w), zero);
-    vd at = vd_select(vd_lt(w, zero), vd_set1(low), vd_set1(high));
-    return vd_select(level, vd_set1(__builtin_inf()), (at - origin) / vd_select(level, vd_set1(1), w));
-}
-
-/* The walls through which lines leave, as fibrad_walls_exit has it for one, and how far it is to them. */
-static vd exit_walls(const wall_view *view, const vd origin[3], const vd w[3], vd *distance) {
-    const vd zero = vd_set1(0);
-    vd least = vd_set1(__builtin_inf()), wall = vd_set1(FIBRAD_WALLS);
-    for (int axis = 0; axis < 3; axis++) {
-        vd t = exit_slab(view->low[axis], view->high[axis], origin[axis], w[axis]);
-        vm nearer = vd_lt(t, least);
-        vd number = vd_select(vd_lt(w[axis], zero), vd_set1(2 * axis), vd_set1(2 * axis + 1));
-        least = vd_select(nearer, t, least), wall = vd_select(nearer, number, wall);
-    }
-    *distance = least;
-    if (!(view->radius < __builtin_inf())) return wall;
-    vd x = origin[0] - view->axis[0], y = origin[1] - view->axis[1];
-    vd across = w[0] * w[0] + w[1] * w[1], along = x * w[0] + y * w[1];
+    vd x = lines->origin[0] - view->axis[0], y = lines->origin[1] - view->axis[1];
+    vd across = lines->w[0] * lines->w[0] + lines->w[1] * lines->w[1], along = x * lines->w[0] + y * lines->w[1];
     vd inside = view->radius * view->radius - (x * x + y * y);
     vd root = vd_sqrt(vd_max(along * along + across * inside, zero));
-    vm away = vd_lt(zero, along), level = vd_le(across, zero);
-    vd t = vd_select(away, inside, root - along) / vd_select(away, along + root, across);
-    vm nearer = vd_lt(vd_select(level, vd_set1(__builtin_inf()), t), least);
-    *distance = vd_select(nearer, t, least);
-    return vd_select(nearer, vd_set1(FIBRAD_CYLINDER), wall);
+    vm ahead = vd_lt(zero, along);
+    return quotient(vd_select(ahead, inside, root - along), vd_select(ahead, along + root, across));
+}
+
+/* Which walls lines meet. */
+FIBRAD_INLINE void meet_walls(const fibrad_wall_window *window, const fibrad_wall_view *view, bool round,
+                              wall_lines *lines) {
+    for (int axis = 0; axis < 3; axis++) {
+        vd w = lines->w[axis], o = lines->origin[axis];
+        vd away = vd_select(vd_lt(w, vd_set1(0)), o - view->low[axis], view->high[axis] - o);
+        lines->rate[axis] = vd_abs(w), lines->away[axis] = vd_min(vd_set1(FAR_AWAY), away);
+    }
+    if (round)
+        share_round(window, view, lines);
+    else
+        share_planes(window, lines);
+    if (!view->cut) return;
+    lines->nearest = vd_set1(__builtin_inf());
+    if (round) lines->nearest = exit_cylinder(view, lines);
+    for (int axis = 0; axis < 3; axis++) {
+        vd length = quotient(lines->away[axis], lines->rate[axis]);
+        lines->nearest = vd_min(length, lines->nearest);
+    }
 }
 
 /* How far it is to where lines leave the ball and the known region. */
-static vd exit_known(const wall_view *view, const vd origin[3], const vd w[3]) {
+static vd exit_known(const fibrad_wall_view *view, const vd origin[3], const vd w[3]) {
     const vd zero = vd_set1(0);
     vd least = vd_set1(__builtin_inf());
     if (view->ball < __builtin_inf()) {
@@ -123,8 +136,9 @@ static vd exit_known(const wall_view *view, const vd origin[3], const vd w[3]) {
         least = (vd_sqrt(vd_max(along * along + square * inside, zero)) - along) / square;
     }
     for (int axis = 0; axis < 3; axis++) {
-        vd t = exit_slab(view->known_low[axis], view->known_high[axis], origin[axis], w[axis]);
-        least = vd_select(vd_lt(t, least), t, least);
+        vd end = vd_select(vd_lt(w[axis], zero), origin[axis] - view->known_low[axis],
+                           view->known_high[axis] - origin[axis]);
+        least = vd_min(quotient(end, vd_abs(w[axis])), least);
     }
     return vd_max(least, zero);
 }
@@ -135,93 +149,239 @@ typedef struct wall_line {
 } wall_line;
 
 /* One of the lines in lanes. */
-static wall_line line_of_lane(const vd origin[3], const vd w[3], int lane) {
+static wall_line line_of_lane(const wall_lines *lines, int lane) {
     _Alignas(64) double at[VD_LANES], along[VD_LANES];
     wall_line line;
     for (int axis = 0; axis < 3; axis++) {
-        vd_store(at, origin[axis]);
-        vd_store(along, w[axis]);
+        vd_store(at, lines->origin[axis]);
+        vd_store(along, lines->w[axis]);
         line.origin[axis] = at[lane], line.w[axis] = along[lane];
     }
     return line;
 }
 
-/* Lines that are cut before they meet a wall, by the wall they would meet: how many, and the first of them. */
+/* Sums over the points of a window in one octant: by wall, eight apart so that their order is the same in every
+ * instruction set. */
+typedef struct octant_sums {
+    _Alignas(64) double all[4][8], open[4][8], u[4][8], v[4][8]; /* shares; those of open points; times u; times v */
+    uint32_t octant;
+} octant_sums;
+
+/* Open lines that are cut before they meet a wall, by the wall they would meet: how many, and the first of them. */
 typedef struct cut_lines {
     uint32_t count[FIBRAD_WALLS + 1];
     wall_line first[FIBRAD_WALLS + 1];
 } cut_lines;
 
-/* Traces the open points of window k, in directions from a disc of radius `spread`, and counts the walls they meet. */
-static void follow_wall_points(const fibrad_points *points, const wall_view *view, const double frame[9], double spread,
-                               uint32_t k, uint32_t count[FIBRAD_WALLS + 1], cut_lines *cuts) {
-    for (uint32_t word = 0; word < points->count / 64; word++) {
-        if (points->seen[word] == 0) continue;
-        _Alignas(64) float a[64], b[64];
-        for (uint32_t lane = 0; lane < 64; lane++) {
-            const uint32_t q = fibrad_points_partner(points->count, 64 * word + lane, k);
-            a[lane] = points->set.x[q], b[lane] = points->set.y[q];
+/* Sums over the points of a window. */
+typedef struct point_sums {
+    octant_sums part[8];
+    uint32_t octants;
+    cut_lines cuts;
+} point_sums;
+
+static void begin_sums(const fibrad_wall_window *window, const fibrad_wall_view *view, point_sums *sums) {
+    sums->octants = 0;
+    for (uint32_t octant = 0; octant < 8; octant++) {
+        if (!fibrad_wall_window_has(window, view, octant)) continue;
+        octant_sums *part = &sums->part[sums->octants++];
+        fibrad_zero(part, sizeof *part);
+        part->octant = octant;
+    }
+    for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) sums->cuts.count[wall] = 0;
+}
+
+static inline void add_lanes(double *at, vd x) { vd_store(at, vd_load(at) + x); }
+
+/* 1 where x has the sign of an octant along an axis, else 0. */
+static vd on_side(vd x, uint32_t octant, uint32_t axis) {
+    const uint32_t up = octant >> axis & 1;
+    return vd_select(vd_lt(x, vd_set1(0)), vd_set1(1 - up), vd_set1(up));
+}
+
+/* Adds the lines of an octant, one of several: which wall they meet depends on w, but along other axes than the wall's
+ * it is wide that decides the octant, so that walls close by have both. hidden: `all` alone. */
+FIBRAD_INLINE void add_octant(const wall_lines *lines, bool round, bool several, bool hidden, vd weight, uint32_t place,
+                              octant_sums *part) {
+    const uint32_t begin = round ? 2 : 0, end = round ? 4 : 3;
+    vd own[3], wide[3];
+    for (uint32_t axis = begin; axis < 3 && several; axis++) {
+        own[axis] = on_side(lines->w[axis], part->octant, axis);
+        wide[axis] = on_side(lines->wide[axis], part->octant, axis);
+    }
+#pragma GCC unroll 3
+    for (uint32_t n = begin; n < end; n++) {
+        vd all = lines->share[n];
+        for (uint32_t axis = begin; axis < 3 && several; axis++) {
+            if (axis == n)
+                all = all * own[axis];
+            else
+                all = all * wide[axis];
         }
-        uint64_t packed = 0; /* eight counts of at most 64 */
+        add_lanes(part->all[n] + place, all);
+        if (hidden) continue;
+        vd open = all * weight;
+        add_lanes(part->open[n] + place, open);
+        add_lanes(part->u[n] + place, open * lines->u);
+        add_lanes(part->v[n] + place, open * lines->v);
+    }
+}
+
+/* Counts the lines given by bits, which are cut. */
+static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint32_t bits, cut_lines *cuts) {
+    for (; bits != 0; bits &= bits - 1) {
+        const int lane = __builtin_ctz(bits);
+        const wall_line line = line_of_lane(lines, lane);
+        uint32_t wall = FIBRAD_WALLS;
+        double most = 0;
+        for (uint32_t n = 0; n < 4; n++) {
+            _Alignas(64) double share[VD_LANES];
+            vd_store(share, lines->share[n]);
+            if (!(share[lane] > most)) continue;
+            const bool up = n < 3 && line.w[n] >= 0;
+            const bool there = n == 3 || (up ? view->high[n] : -view->low[n]) < __builtin_inf();
+            most = share[lane];
+            wall = n == 3 ? FIBRAD_CYLINDER : there ? 2 * n + up : FIBRAD_WALLS;
+        }
+        if (cuts->count[wall]++ == 0) cuts->first[wall] = line;
+    }
+}
+
+/* Takes open lines that are cut out of the weight, and counts them. */
+static vd weight_uncut(const fibrad_wall_view *view, const wall_lines *lines, vd weight, cut_lines *cuts) {
+    vm cut = vd_lt(exit_known(view, lines->origin, lines->w), lines->nearest);
+    add_cuts(view, lines, vm_bits(cut & vd_lt(vd_set1(0), weight)), cuts);
+    return vd_select(cut, vd_set1(0), weight);
+}
+
+/* Traces the points of a window in directions from its disc. */
+FIBRAD_INLINE void follow_points(const fibrad_points *points, const fibrad_wall_view *view, bool round,
+                                 const double frame[9], const fibrad_wall_window *window, point_sums *sums) {
+    const bool hidden = window->open == 0, several = sums->octants > 1;
+    for (uint32_t word = 0; word < points->count / 64; word++) {
+        _Alignas(64) float a[64], b[64], open[64];
+        for (uint32_t lane = 0; lane < 64; lane++) {
+            const uint32_t q = fibrad_points_partner(points->count, 64 * word + lane, window->k);
+            a[lane] = points->set.x[q], b[lane] = points->set.y[q];
+            open[lane] = (float)(int32_t)(points->seen[word] >> lane & 1);
+        }
         for (uint32_t lane = 0; lane < 64; lane += VD_LANES) {
-            uint32_t p = 64 * word + lane, bits = (uint32_t)(points->seen[word] >> lane) & ((1u << VD_LANES) - 1);
-            if (bits == 0) continue;
-            vd u = vd_load_float(points->set.x + p), v = vd_load_float(points->set.y + p), origin[3], w[3];
-            vd du = vd_load_float(a + lane) * spread;
-            vd dv = vd_load_float(b + lane) * spread;
+            const uint32_t p = 64 * word + lane;
+            vd u = vd_load_float(points->set.x + p), v = vd_load_float(points->set.y + p);
+            vd aside_u = vd_load_float(a + lane), aside_v = vd_load_float(b + lane),
+               weight = vd_load_float(open + lane);
+            wall_lines lines = {.u = aside_u * window->spread, .v = aside_v * window->spread};
             for (int axis = 0; axis < 3; axis++) {
                 vd along_u = vd_set1(frame[axis]), along_v = vd_set1(frame[3 + axis]);
-                origin[axis] = u * along_u + v * along_v;
-                w[axis] = frame[6 + axis] + (du * along_u + dv * along_v);
+                vd aside = aside_u * along_u + aside_v * along_v;
+                lines.origin[axis] = u * along_u + v * along_v;
+                lines.w[axis] = frame[6 + axis] + aside * window->spread;
+                lines.wide[axis] = frame[6 + axis] + aside * window->wide;
             }
-            _Alignas(64) double wall[VD_LANES];
-            vd distance;
-            vd_store(wall, exit_walls(view, origin, w, &distance));
-            if (view->cut) {
-                uint32_t cut = bits & vm_bits(vd_lt(exit_known(view, origin, w), distance));
-                bits &= ~cut;
-                for (; cut != 0; cut &= cut - 1) {
-                    const int at = __builtin_ctz(cut), number = (int)wall[at];
-                    if (cuts->count[number]++ == 0) cuts->first[number] = line_of_lane(origin, w, at);
-                }
-            }
-            for (; bits != 0; bits &= bits - 1) packed += UINT64_C(1) << 8 * (int)wall[__builtin_ctz(bits)];
+            meet_walls(window, view, round, &lines);
+            if (view->cut) weight = weight_uncut(view, &lines, weight, &sums->cuts);
+            for (uint32_t part = 0; part < sums->octants; part++)
+                add_octant(&lines, round, several, hidden, weight, lane % 8, &sums->part[part]);
         }
-        for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) count[wall] += (uint32_t)(packed >> 8 * wall & 255);
+    }
+}
+
+static double of_eight(const double *s) { return ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7])); }
+
+/* Adds to the regions what the points of a window say: the open part in proportion to open points, and the slope times
+ * what the mean direction of a wall's points is off that of all, as far as no point gets less than nothing. */
+static void add_points(fibrad_workspace *work, const fibrad_points *points, const fibrad_wall_window *window,
+                       const double slope[2], const point_sums *sums) {
+    double shares = 0, mean_u = 0, mean_v = 0;
+    for (uint32_t part = 0; part < sums->octants; part++)
+        for (int n = 0; n < 4; n++) {
+            shares += of_eight(sums->part[part].open[n]);
+            mean_u += of_eight(sums->part[part].u[n]), mean_v += of_eight(sums->part[part].v[n]);
+        }
+    if (shares > 0) mean_u /= shares, mean_v /= shares;
+    const double steepest = 1.5 * window->spread * fibrad_sqrt(slope[0] * slope[0] + slope[1] * slope[1]);
+    const double counts = steepest > window->open ? window->open / steepest : 1, each = 1.0 / points->open;
+    for (uint32_t part = 0; part < sums->octants; part++)
+        for (uint32_t n = work->view.round ? 2 : 0; n < (work->view.round ? 4u : 3u); n++) {
+            const octant_sums *of = &sums->part[part];
+            const double open = of_eight(of->open[n]), all = of_eight(of->all[n]) / points->count;
+            const double u = of_eight(of->u[n]) - open * mean_u, v = of_eight(of->v[n]) - open * mean_v;
+            const double got = (window->open * open + counts * (slope[0] * u + slope[1] * v)) * each;
+            fibrad_wall_window_add(window, 4 * of->octant + n, got, all, &work->walls);
+        }
+}
+
+/* Shares a window by lines. */
+static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, const fibrad_wall_window *window) {
+    const fibrad_wall_view *view = &work->view;
+    double axes[9], cos = 1, sin = 0;
+    fibrad_points own;
+    fibrad_copy(axes, window->frame, sizeof axes);
+    if (points->count == 0) {
+        fibrad_azimuth(5 * window->k % FIBRAD_DIRECTIONS_MAX, &cos, &sin);
+        rotate_frame(axes, cos, sin);
+        open_points(work, cos, sin, &own);
+        points = &own;
+    }
+    const double slope[2] = {cos * window->slope[0] + sin * window->slope[1],
+                             cos * window->slope[1] - sin * window->slope[0]};
+    point_sums sums;
+    begin_sums(window, view, &sums);
+    if (view->round)
+        follow_points(points, view, true, axes, window, &sums);
+    else
+        follow_points(points, view, false, axes, window, &sums);
+    add_points(work, points, window, slope, &sums);
+    for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) {
+        if (sums.cuts.count[wall] == 0) continue; /* the way of one decides for all that would meet the same wall */
+        const wall_line *first = &sums.cuts.first[wall];
+        work->wall[fibrad_work_met(work, first->origin, first->w)] +=
+            window->open * sums.cuts.count[wall] / points->open;
     }
 }
 
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
-                               uint32_t n, bool turned, double rest) {
-    if (rest == 0) return;
-    const fibrad_container *container = &work->scene->container;
-    const double open = rest / (points->count > 0 ? points->count : FIBRAD_PI), step = open / fibrad_sqrt(n);
-    const int only = work->cut ? 3 : only_axis(container);
-    if (only < 3) {
-        /* across z no band is needed: directions pair off, but for the one that lies level, if they are not turned */
-        const double band = only == 2 && !turned ? 0 : WALL_BAND * step;
-        const double up = rest * rising_share(frame[6 + only], band), down = rest - up;
-        work->wall[container->high[only] < __builtin_inf() ? 2 * only + 1 : FIBRAD_WALLS] += up;
-        work->wall[container->low[only] > -__builtin_inf() ? 2 * only : FIBRAD_WALLS] += down;
+                               const fibrad_beam_rule *rule, double rest) {
+    if (rest == 0) {
+        work->walls.hidden[k / 64] |= UINT64_C(1) << k % 64;
         return;
     }
-    double axes[9], cos, sin;
-    fibrad_copy(axes, frame, sizeof axes);
-    fibrad_points own = *points;
-    if (points->count == 0) {
-        fibrad_azimuth(5 * k % FIBRAD_DIRECTIONS_MAX, &cos, &sin);
-        rotate_frame(axes, cos, sin);
-        own = open_points_of(work, cos, sin);
+    const double whole = points->count > 0 ? points->count : FIBRAD_PI;
+    fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .open = rest, .part = 1};
+    window.hidden = fibrad_max(0, whole - rest);
+    if (points->count > 0) window.part = 0.4 + 0.6 * rest / whole;
+    if (work->view.cut) window.part *= 1.25; /* no solid angle mends what the discs cover unevenly */
+    if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
+    fibrad_wall_window_begin(&window, &work->view);
+    if (!fibrad_wall_window_simple(&window, &work->view, rule->turn != 0, &work->walls))
+        share_by_lines(work, points, &window);
+}
+
+/* Adds to the regions what there would be to see in windows that are hidden. */
+static void add_hidden(fibrad_workspace *work, const fibrad_beam_rule *rule) {
+    fibrad_points all;
+    double turn[9];
+    all_points(HIDDEN_POINTS, &all);
+    if (rule->turn != 0) fibrad_rotation(rule->turn, turn);
+    for (uint32_t k = 0; k < rule->directions; k++) {
+        if ((work->walls.hidden[k / 64] >> k % 64 & 1) == 0) continue;
+        double frame[9];
+        fibrad_beam_frame(k, rule->directions, HIDDEN_POINTS, frame);
+        if (rule->turn != 0) fibrad_rotate_axes(turn, frame);
+        fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .hidden = 1, .part = 1};
+        fibrad_wall_window_begin(&window, &work->view);
+        if (!fibrad_wall_window_simple(&window, &work->view, rule->turn != 0, &work->walls))
+            share_by_lines(work, &all, &window);
     }
-    const wall_view view = wall_view_of(work);
-    uint32_t count[FIBRAD_WALLS + 1] = {0};
-    cut_lines cuts;
-    for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) cuts.count[wall] = 0;
-    follow_wall_points(&own, &view, axes, WALL_SPREAD * step, k, count, &cuts);
-    for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) {
-        work->wall[wall] += rest * count[wall] / own.open;
-        if (cuts.count[wall] == 0) continue; /* the way of one decides for all that would meet the same wall */
-        const wall_line *first = &cuts.first[wall];
-        work->wall[fibrad_work_met(work, first->origin, first->w)] += rest * cuts.count[wall] / own.open;
-    }
+}
+
+void LANED(fibrad_walls_complete)(fibrad_workspace *work, const fibrad_beam_rule *rule, double parts[2]) {
+    double open = 0;
+    for (uint32_t region = 0; region < FIBRAD_REGIONS; region++)
+        for (int part = 0; part < 4; part++) open += work->walls.open[region][part];
+    parts[0] = parts[1] = 0;
+    if (!(open > 0)) return;
+    const double apart = fibrad_wall_apart(&work->view);
+    if (apart > 0) add_hidden(work, rule);
+    fibrad_wall_factors(&work->walls, &work->view, rule->directions, apart, work->wall, parts);
 }

@@ -106,7 +106,10 @@ static uint32_t resolve_discs(fibrad_workspace *work, fibrad_points *points, uin
         }
     }
     if (*open)
-        for (uint32_t d = from; d < to; d++) disc.depth[disc.order[d]] = -1;
+        for (uint32_t d = from; d < to; d++) {
+            const uint32_t k = disc.order[d];
+            disc.resolved[k] = disc.depth[k], disc.depth[k] = -1;
+        }
     return to;
 }
 

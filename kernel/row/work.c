@@ -44,6 +44,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     disc->u = fibrad_arena_take(arena, discs, sizeof(double));
     disc->v = fibrad_arena_take(arena, discs, sizeof(double));
     disc->r = fibrad_arena_take(arena, discs, sizeof(double));
+    disc->resolved = fibrad_arena_take(arena, discs, sizeof(double));
     disc->fu = fibrad_arena_take(arena, discs, sizeof(float));
     disc->fv = fibrad_arena_take(arena, discs, sizeof(float));
     disc->square = fibrad_arena_take(arena, discs, sizeof(float));

@@ -7,6 +7,7 @@
 #define FIBRAD_ROW_WORK_H
 
 #include "row/row_sum.h"
+#include "sky/wall_sum.h"
 #include "scene/surroundings.h"
 #include "window/areas.h"
 #include "window/discs.h"
@@ -55,14 +56,16 @@ typedef struct fibrad_workspace {
     uint64_t extra_owner; /* whose contents `extra` has, 0: nobody's; methods have numbers of their own */
     /* the row in hand */
     const fibrad_scene *scene;
-    uint32_t place;            /* of sphere i in the scene */
-    double unit, inverse;      /* its radius [L], and 1/radius */
-    double centre[3];          /* [L] */
-    double reach;              /* the cutoff; infinity if there is none */
-    double step, growth;       /* depth of the first shell, and the ratio of each next one to it */
-    double farthest;           /* no sphere is farther from i; infinity with periodic axes */
-    double clear;              /* no window has its horizon nearer than this */
-    bool cut;                  /* whether lines are cut: there is a cutoff, or a known region */
+    uint32_t place;        /* of sphere i in the scene */
+    double unit, inverse;  /* its radius [L], and 1/radius */
+    double centre[3];      /* [L] */
+    double reach;          /* the cutoff; infinity if there is none */
+    double step, growth;   /* depth of the first shell, and the ratio of each next one to it */
+    double farthest;       /* no sphere is farther from i; infinity with periodic axes */
+    double clear;          /* no window has its horizon nearer than this */
+    bool cut;              /* whether lines are cut: there is a cutoff, or a known region */
+    fibrad_wall_view view; /* of a beam row among walls, and what its windows give to them */
+    fibrad_wall_sums walls;
     double wall[FIBRAD_EXITS]; /* what meets each wall, escapes, or is beyond: areas, points or rays, then factors */
 } fibrad_workspace;
 

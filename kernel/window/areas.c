@@ -47,3 +47,24 @@ void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t disc
     areas->boundary = fibrad_arena_take(arena, 1, sizeof *areas->boundary);
     lay_out_arrangement(&areas->arrangement, arena, discs, circles);
 }
+
+/* Adds what an arc from p to q of a disc's circle contributes: the integral of the normal along it, times the depth. */
+static void add_slope(const fibrad_areas *areas, const double *depth, double circle, double dx, double dy,
+                      double slope[2]) {
+    const uint32_t k = (uint32_t)circle;
+    if (k == 0) return; /* the window's own circle stays */
+    const double t = depth[areas->whose[k]];
+    slope[0] += t * dy, slope[1] -= t * dx;
+}
+
+void fibrad_areas_slope(const fibrad_areas *areas, const double *depth, double slope[2]) {
+    const fibrad_boundary *b = areas->boundary;
+    const fibrad_arcs *open = &areas->arrangement.open;
+    slope[0] = slope[1] = 0;
+    for (uint32_t k = 0; k < open->count && areas->degenerate; k++)
+        add_slope(areas, depth, open->circle[k], open->qx[k] - open->px[k], open->qy[k] - open->py[k], slope);
+    for (uint64_t bits = areas->degenerate ? 0 : b->alive; bits != 0; bits &= bits - 1) {
+        const uint32_t k = (uint32_t)__builtin_ctzll(bits);
+        add_slope(areas, depth, b->circle[k], b->qx[k] - b->px[k], b->qy[k] - b->py[k], slope);
+    }
+}

@@ -78,6 +78,11 @@ typedef struct fibrad_areas {
 
 void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t discs);
 
+/* How fast the open area of a completed window grows as the window's direction turns: slope[0] towards u, slope[1]
+ * towards v, per radian. A disc at depth t then moves by -t; what its open rim passes over is covered. depth: of the
+ * discs, by the caller's numbers. */
+void fibrad_areas_slope(const fibrad_areas *areas, const double *depth, double slope[2]);
+
 /* Appends a circle. */
 static inline void fibrad_areas_add_circle(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
     uint32_t k = areas->circles;

@@ -379,9 +379,10 @@ bool LANED(fibrad_arrangement_disc)(fibrad_areas *areas, uint32_t whose, double 
 }
 
 double LANED(fibrad_arrangement_end)(fibrad_areas *areas) {
-    uint32_t rest = areas->circles;
+    const uint32_t rest = areas->circles, arcs = areas->arrangement.open.count;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     hide_list(areas, &areas->arrangement.open, rest);
     LANED(fibrad_areas_integrate)(areas);
+    areas->arrangement.open.count = arcs; /* for fibrad_areas_slope */
     return areas->area[rest];
 }

@@ -8,7 +8,8 @@
 
 /* Discs before the current window: the shadows of spheres, u and v being their centres across the direction. */
 typedef struct fibrad_discs {
-    double *depth, *u, *v, *r; /* [capacity + FIBRAD_LANES_MAX]; the depth is -1 once a disc is resolved */
+    double *depth, *u, *v, *r; /* [capacity + FIBRAD_LANES_MAX]; the depth is -1 once a disc is resolved, ... */
+    double *resolved;          /* [same] ... and then stands here */
     float *fu, *fv, *square;   /* [same] position and r^2 for points */
     uint32_t *near;            /* [same, and room for all near spheres] position in the near list */
     uint32_t *order;           /* [same] which is the first, the second ... from front to back */

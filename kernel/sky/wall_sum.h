@@ -1,0 +1,45 @@
+/* wall_sum.h - what the windows of a row give to walls, by regions of the sky, and the factors that come of it.
+ * SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_SKY_WALL_SUM_H
+#define FIBRAD_SKY_WALL_SUM_H
+
+#include "scene/surroundings.h"
+
+/* The walls, and where lines are cut, in the frame of a sphere: in units of its radius, from its centre. */
+typedef struct fibrad_wall_view {
+    double low[3], high[3], axis[2], radius;  /* infinite where there is none */
+    int only;                                 /* the axis across which all walls are planes, or 3 */
+    bool round;                               /* there is a cylinder */
+    bool cut;                                 /* lines may be cut, ... */
+    double known_low[3], known_high[3], ball; /* ... where they leave this box, or a ball of this radius */
+} fibrad_wall_view;
+
+/* cut: whether there is a known region, or a cutoff, at `ball` radii. */
+fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, bool cut, double ball);
+
+/* Regions of the sky: what a line meets, by the octant of its direction. Region 4 octant + n is met through the plane
+ * across axis n or, n = 3, through the cylinder; bit b of an octant: lines rise along axis b. With a cylinder octants
+ * 0 and 4 stand for all below and above, with planes across one axis 0 and that of its bit. */
+#define FIBRAD_REGIONS 32
+
+/* Sums over the windows of a row. */
+typedef struct fibrad_wall_sums {
+    double open[FIBRAD_REGIONS][4];              /* what is open, areas or points, in parts as in fibrad_entries */
+    double all[FIBRAD_REGIONS][4];               /* what there would be if nothing were hidden, in windows */
+    double mixed[FIBRAD_REGIONS];                /* open times hidden part */
+    uint64_t hidden[FIBRAD_DIRECTIONS_MAX / 64]; /* bit k: window k is hidden, and not counted in `all` */
+} fibrad_wall_sums;
+
+/* How much of `all` a region should have, as a part of all windows: solid angles over 4 pi, from the centre. */
+void fibrad_wall_sky(const fibrad_wall_view *view, double sky[FIBRAD_REGIONS]);
+
+/* How much these solid angles count: 1 if no wall cuts the sphere, 0 if one does deeply, or if lines are cut. */
+double fibrad_wall_apart(const fibrad_wall_view *view);
+
+/* Adds to wall[] what each wall gets, or escapes: the open part of each region, over the windows it has, times the
+ * solid angle it has. The sum is what was open, so what is left over goes to regions that are hidden in part. parts:
+ * the squared distances of the sums over even and odd windows, and over every fourth, as of fibrad_entries_gain. */
+void fibrad_wall_factors(const fibrad_wall_sums *sums, const fibrad_wall_view *view, uint32_t windows, double apart,
+                         double wall[FIBRAD_EXITS], double parts[2]);
+
+#endif

@@ -1,0 +1,203 @@
+/* wall_window.c - a window as walls see it: the disc of directions it stands for. SPDX-License-Identifier: MIT */
+#include "sky/wall_window.h"
+
+/* Radius of the disc of directions times sqrt n; it would be 2 for discs as large as the share of a direction. */
+#define WALL_SPREAD 1.8
+
+/* Lines from all of the window pass by an edge at distance D over an angle 1/D; where that is enough, directions need
+ * no disc. */
+#define WALL_NEAR 1.3
+
+/* Half width of the band of directions for walls across one axis, times sqrt n. */
+#define WALL_BAND 4.0
+
+/* Lines near an edge are shared by both walls, over a tenth of the disc and of the window: 128 points are not many. */
+#define WALL_SOFT 0.1
+
+/* The part of the slope that counts. With half of it the means over all places of an edge among the directions agree
+ * to second order; a little more is better, since the part is bounded. */
+#define WALL_SLOPE 0.6
+
+#define FAR_AWAY 1e30 /* [radii] where walls are that there are not */
+
+/* The walls that the direction of a window approaches, and those behind it. */
+typedef struct wall_course {
+    double ahead[3], behind[3], rate[3];
+} wall_course;
+
+static wall_course course_of(const fibrad_wall_view *view, const double w[3]) {
+    wall_course course;
+    for (int axis = 0; axis < 3; axis++) {
+        const double low = fibrad_min(FAR_AWAY, -view->low[axis]), high = fibrad_min(FAR_AWAY, view->high[axis]);
+        course.rate[axis] = fibrad_abs(w[axis]);
+        course.ahead[axis] = w[axis] < 0 ? low : high, course.behind[axis] = w[axis] < 0 ? high : low;
+    }
+    return course;
+}
+
+/* How the line from the centre passes by the edge between two planes: beyond 0 it meets the first of them. passing/
+ * distance is the sine of the angle to the edge. */
+typedef struct wall_edge {
+    double passing, square; /* square of the distance of the edge */
+} wall_edge;
+
+static wall_edge edge_of_planes(double first, double first_rate, double second, double second_rate) {
+    return (wall_edge){second * first_rate - first * second_rate, first * first + second * second};
+}
+
+/* The same for the end of a cylinder ahead, and the cylinder. */
+static wall_edge edge_of_end(const fibrad_wall_view *view, const wall_course *course, const double w[3]) {
+    const double x = -view->axis[0], y = -view->axis[1], away = course->ahead[2], rate = course->rate[2];
+    const double along = x * rate + w[0] * away, across = y * rate + w[1] * away;
+    const double size = fibrad_max(fibrad_sqrt(along * along + across * across), 1e-300);
+    const double clear = view->radius - (along * x + across * y) / size;
+    return (wall_edge){view->radius * rate - size, away * away + clear * clear};
+}
+
+/* How much of the disc of directions is needed at an edge: the angle over which lines from the window pass it and the
+ * disc add up to the whole disc, as squares. */
+static double needed_at(const wall_edge *edge, double wide) {
+    return fibrad_max(0, 1 - WALL_NEAR * WALL_NEAR / (edge->square * wide * wide));
+}
+
+/* The same for a window: mostly that of the nearest edge. */
+static double needed_of(const fibrad_wall_view *view, const double w[3], double wide) {
+    const wall_course course = course_of(view, w);
+    double sum = 0, weights = 0;
+    if (view->round) {
+        const wall_edge edge = edge_of_end(view, &course, w);
+        return needed_at(&edge, wide);
+    }
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3;
+        const wall_edge edge = edge_of_planes(course.ahead[a], course.rate[a], course.ahead[b], course.rate[b]);
+        const double angle = edge.passing * edge.passing / edge.square + wide * wide, weight = 1 / (angle * angle);
+        sum += weight * needed_at(&edge, wide), weights += weight;
+    }
+    return sum / weights;
+}
+
+/* What passing by an edge, distance times sine of the angle, is to be multiplied by to change by one over half the
+ * width in which lines change from wall to wall. */
+static double sharpness_of(const fibrad_wall_window *window, double first, double second) {
+    const double soft = WALL_SOFT * window->spread, length = WALL_SOFT * fibrad_min(1, 15 / fibrad_sqrt(window->n));
+    return 1 / fibrad_sqrt(soft * soft * (first * first + second * second) + length * length);
+}
+
+void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view) {
+    const double *w = window->frame + 6;
+    window->wide = window->part * WALL_SPREAD / fibrad_sqrt(window->n);
+    window->spread = window->wide * fibrad_sqrt(needed_of(view, w, window->wide));
+    for (int axis = 0; axis < 2; axis++) window->slope[axis] *= WALL_SLOPE;
+    wall_course course = course_of(view, w);
+    for (int axis = 0; axis < 3; axis++) /* lines on both sides: not too soft for the nearer */
+        if (course.rate[axis] < window->wide) course.ahead[axis] = fibrad_min(course.ahead[axis], course.behind[axis]);
+    for (int axis = 0; axis < 3; axis++)
+        window->sharpness[axis] = sharpness_of(window, course.ahead[axis], course.ahead[(axis + 1) % 3]);
+    if (view->round) window->sharpness[2] = sharpness_of(window, course.ahead[2], view->radius);
+}
+
+bool fibrad_wall_window_has(const fibrad_wall_window *window, const fibrad_wall_view *view, uint32_t octant) {
+    if (view->round && octant % 4 != 0) return false;
+    for (int axis = view->round ? 2 : 0; axis < 3; axis++) {
+        const double w = window->frame[6 + axis];
+        if (octant >> axis & 1 ? w <= -window->wide : w >= window->wide) return false;
+    }
+    return true;
+}
+
+/* The first and the last window count half in differences of parts, as in fibrad_entries_add. */
+static void add_part(double part[4], const fibrad_wall_window *window, double share) {
+    const uint32_t k = window->k;
+    if (k == 0 || k == window->n - 1) {
+        part[k % 4 ^ 1] += share / 4;
+        share -= share / 4;
+    }
+    part[k % 4] += share;
+}
+
+void fibrad_wall_window_add(const fibrad_wall_window *window, uint32_t region, double open, double share,
+                            fibrad_wall_sums *sums) {
+    add_part(sums->open[region], window, open);
+    add_part(sums->all[region], window, share);
+    sums->mixed[region] += window->open * window->hidden * share;
+}
+
+/* The share of a band of directions that rises along an axis, with weights (1 - x^2)^2 over its half width; `slope`:
+ * of the middle. */
+static double rising_share(double slope, double width) {
+    if (!(fibrad_abs(slope) < width)) return slope > 0 ? 1 : slope < 0 ? 0 : 0.5;
+    double x = slope / width, square = x * x;
+    const double share = 0.5 + 15.0 / 16 * x * (1 - square * (2.0 / 3 - square / 5));
+    return fibrad_max(0, fibrad_min(1, share));
+}
+
+/* Planes across one axis: a band tells. Across z none is needed: directions pair off, but for the one that lies level,
+ * if they are not turned. */
+static void add_band(const fibrad_wall_window *window, int axis, bool turned, fibrad_wall_sums *sums) {
+    const double *frame = window->frame, level = frame[6 + axis];
+    const double band = axis == 2 && !turned ? 0 : WALL_BAND / fibrad_sqrt(window->n);
+    const double up = rising_share(level, band);
+    double more = 0;
+    if (fibrad_abs(level) < band) { /* the mean of what rises lies above the direction */
+        const double x = level / band, part = 1 - x * x, rise = 5.0 / 32 * band * part * part * part;
+        more = rise * (window->slope[0] * frame[axis] + window->slope[1] * frame[3 + axis]);
+        more = fibrad_max(-window->open * up, fibrad_min(window->open * (1 - up), more));
+    }
+    const uint32_t low = (uint32_t)axis, high = low + (4u << axis);
+    fibrad_wall_window_add(window, high, window->open * up + more, up, sums);
+    fibrad_wall_window_add(window, low, window->open * (1 - up) - more, 1 - up, sums);
+}
+
+/* Whether all lines of the window meet the first wall of an edge, 1, or the second, -1; 0: neither, or not surely. */
+static int sole_at(const fibrad_wall_window *window, const wall_edge *edge) {
+    const double reach = (1 + WALL_SOFT) * window->spread, far = fibrad_sqrt(edge->square) + 1;
+    const double margin = reach * far + 1 + WALL_SOFT;
+    return edge->passing > margin ? 1 : edge->passing < -margin ? -1 : 0;
+}
+
+/* The axis of the plane that all lines of the window meet, 3 for the cylinder; 4: not only one. */
+static uint32_t sole_wall(const fibrad_wall_window *window, const fibrad_wall_view *view) {
+    const wall_course course = course_of(view, window->frame + 6);
+    const double *ahead = course.ahead, *rate = course.rate;
+    if (view->round) {
+        const bool open = ahead[2] >= FAR_AWAY, open_too = course.behind[2] >= FAR_AWAY;
+        if (rate[2] < window->wide) return open && open_too ? 3 : 4;
+        if (open) return 3;
+        wall_edge edge = edge_of_end(view, &course, window->frame + 6);
+        edge.square = fibrad_max(edge.square, 4 * view->radius * view->radius + ahead[2] * ahead[2]);
+        const int sole = sole_at(window, &edge);
+        return sole > 0 ? 2 : sole < 0 ? 3 : 4;
+    }
+    uint32_t a = ahead[1] * rate[0] < ahead[0] * rate[1] ? 1 : 0;
+    if (ahead[2] * rate[a] < ahead[a] * rate[2]) a = 2;
+    if (rate[a] < window->wide || ahead[a] >= FAR_AWAY) return 4;
+    for (uint32_t b = 0; b < 3; b++) {
+        const wall_edge to = edge_of_planes(ahead[a], rate[a], ahead[b], rate[b]);
+        const wall_edge back = edge_of_planes(ahead[a], rate[a], course.behind[b], 0);
+        if (b == a) continue;
+        if (ahead[b] < FAR_AWAY && sole_at(window, &to) < 1) return 4;
+        if (rate[b] < window->wide && course.behind[b] < FAR_AWAY && sole_at(window, &back) < 1) return 4;
+    }
+    return a;
+}
+
+bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, bool turned,
+                               fibrad_wall_sums *sums) {
+    if (view->only < 3) {
+        add_band(window, view->only, turned, sums);
+        return true;
+    }
+    const uint32_t sole = view->cut ? 4 : sole_wall(window, view);
+    if (sole == 4) return false;
+    for (uint32_t octant = 0; octant < 8; octant++) {
+        if (!fibrad_wall_window_has(window, view, octant)) continue;
+        double share = 1;
+        for (uint32_t axis = view->round ? 2 : 0; axis < 3; axis++) {
+            const double w = window->frame[6 + axis], up = rising_share(w, axis == sole ? 0 : window->wide);
+            share *= octant >> axis & 1 ? up : 1 - up;
+        }
+        fibrad_wall_window_add(window, 4 * octant + sole, window->open * share, share, sums);
+    }
+    return true;
+}
