@@ -74,7 +74,7 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
         result->surroundings_power += heat->power[beyond] - absorbed;
     }
     /* patches that few beams leave send too much back along each; not so if there is one radiosity per body */
-    const double each = heat->group == 1 ? 2.0 * heat->beams / heat->config.patches : __builtin_inf();
+    const double each = heat->group == 1 ? 2.0 * heat->beams / heat->thin / heat->config.patches : __builtin_inf();
     const double few = FEW_ERROR / each * fibrad_sqrt(reflected / fibrad_max(1, spheres));
     result->error_patches = PATCH_ERROR * fibrad_sqrt(patches / fibrad_max(1, spheres));
     result->error_beams = fibrad_sqrt((BEAM_ERROR * BEAM_ERROR * beams + few * few * square) / fibrad_max(1, spheres));
