@@ -89,6 +89,7 @@ KERNEL = \
     kernel/exchange/flow.c \
     kernel/heat/errors.c \
     kernel/heat/heat.c \
+    kernel/heat/pencils.c \
     kernel/heat/result.c \
     kernel/heat/solve.c \
     kernel/heat/sources.c \
