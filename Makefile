@@ -31,7 +31,7 @@ WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wshadow -Wvla $(WERROR)
 COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
 # tables of addresses would be data in position independent code
 KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
-SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp $(PIC)
+SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp -fno-math-errno -fno-trapping-math $(PIC)
 HOST_FLAGS   = $(COMMON) -D_XOPEN_SOURCE=700 -fopenmp -Ihost $(GSL_CFLAGS) $(ZLIB_CFLAGS)
 TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 
@@ -123,9 +123,12 @@ SIMPLE = \
     host/simple/factors.c \
     host/simple/heap.c \
     host/simple/job.c \
+    host/simple/march.c \
+    host/simple/network.c \
     host/simple/radiation.c \
     host/simple/team.c \
-    host/simple/tolerance.c
+    host/simple/tolerance.c \
+    host/simple/transient.c
 
 # the program, besides main.c
 HOST = \
@@ -237,6 +240,7 @@ TESTS = \
     tests/test_surface.c \
     tests/test_surface_row.c \
     tests/test_tables.c \
+    tests/test_transient.c \
     tests/test_trace.c \
     tests/test_walls.c \
     tests/test_work.c \
