@@ -269,7 +269,7 @@ START_TEST(patches_as_factors) {
         }
         fibrad_transient_free(t);
     }
-    for (int i = 0; i < N; i++) ck_assert_double_eq_tol(temperature[0][i], temperature[1][i], 3);
+    for (int i = 0; i < N; i++) ck_assert_double_eq_tol(temperature[0][i], temperature[1][i], 6);
     bed_free(&f.bed);
 }
 END_TEST
