@@ -185,6 +185,7 @@ HOST = \
     host/plot/plot_furnace.c \
     host/plot/plot_heat.c \
     host/plot/plot_slice.c \
+    host/plot/plot_time.c \
     host/reference/exact_gsl.c \
     host/reference/reference.c \
     host/reproduce/reproduce_beds.c \
@@ -203,6 +204,7 @@ HOST = \
     host/command/command_pair.c \
     host/command/command_reproduce.c \
     host/heat/heat_given.c \
+    host/heat/heat_march.c \
     host/heat/heat_run.c \
     host/heat/steady.c
 

@@ -159,6 +159,14 @@ int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config
  * others. After an error the bed is that of before, or, if tracing its beams has failed, FIBRAD_E_STATE. */
 int fibrad_transient_move(fibrad_transient *transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres);
 
+/* Powers at given temperatures, of spheres and, by factors, of bodies; result as of fibrad_radiation_solve. Errors: as
+ * fibrad_transient_advance. */
+int fibrad_transient_powers(fibrad_transient *transient, const fibrad_heat_sources *sources,
+                            fibrad_heat_result *result);
+
+/* Called after each step with the time since the beginning of the span and the temperatures [spheres] there. */
+typedef void fibrad_observe(void *context, double time, const double *temperature);
+
 /* A span of time, in seconds if powers are in watts and capacities in J/K. Zeroed but for the first three. */
 typedef struct fibrad_span {
     double *temperature;            /* [spheres] > 0; in: at the beginning; out: at the end */
@@ -172,6 +180,8 @@ typedef struct fibrad_span {
     double surroundings_power;      /* out: likewise */
     double *body_energy;            /* [bodies] out: what radiation has brought; may be NULL */
     double surroundings_energy;     /* out: likewise */
+    fibrad_observe *observe;        /* NULL: none */
+    void *context;                  /* handed to observe */
     double error;                   /* out: the largest estimate of a step, as `tolerance` */
     uint64_t steps, refused;        /* out: taken; tried besides */
     uint64_t sweeps;                /* out: over all beams or factors */

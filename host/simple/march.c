@@ -204,6 +204,7 @@ static int march(struct march *m) {
         }
         take_step(m, step, error);
         time = parts > 1 ? time + step : span->duration;
+        if (span->observe) span->observe(span->context, time, t->now);
         if (!fixed) next = smaller(wanted, larger(GROWTH * step, next));
     }
     if (!fixed) t->step = next;
@@ -213,8 +214,7 @@ static int march(struct march *m) {
 /* Whether a span is sound; t->fault has the sphere that is not. */
 static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const fibrad_span *span) {
     t->fault = (fibrad_fault){t->n, t->n};
-    if (t->n > 0 && (!span->temperature || !span->capacity || !s->emissivity)) return FIBRAD_E_ARGUMENT;
-    if (t->bodies > 0 && (!s->body_temperature || !s->body_emissivity)) return FIBRAD_E_ARGUMENT;
+    if (t->n > 0 && (!span->temperature || !span->capacity)) return FIBRAD_E_ARGUMENT;
     if (!(span->duration > 0 && span->duration <= 1e300 && span->step >= 0 && span->tolerance >= 0 &&
           span->tolerance < 1))
         return FIBRAD_E_ARGUMENT;
@@ -222,11 +222,17 @@ static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const f
         t->fault = (fibrad_fault){i, i};
         if (!(span->temperature[i] > 0 && span->temperature[i] <= 1e20)) return FIBRAD_E_ARGUMENT;
         if (!(span->capacity[i] > 0 && span->capacity[i] <= 1e300)) return FIBRAD_E_ARGUMENT;
-        if (!(s->emissivity[i] >= 0 && s->emissivity[i] <= 1)) return FIBRAD_E_ARGUMENT;
         if (s->power && !(fabs(s->power[i]) <= 1e300)) return FIBRAD_E_ARGUMENT;
     }
     t->fault = (fibrad_fault){t->n, t->n};
     return FIBRAD_OK;
+}
+
+/* Whether arrays of sources are there, and emissivities are. */
+static bool surfaces_given(const fibrad_transient *t, const fibrad_heat_sources *s) {
+    bool given = (t->n == 0 || s->emissivity) && (t->bodies == 0 || (s->body_temperature && s->body_emissivity));
+    for (uint32_t i = 0; i < t->n && given; ++i) given = s->emissivity[i] >= 0 && s->emissivity[i] <= 1;
+    return given;
 }
 
 /* By factors the temperatures of bodies are to be given. */
@@ -239,8 +245,18 @@ static bool outside_known(const fibrad_transient *t, const fibrad_heat_sources *
     return known;
 }
 
+int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
+    if (!t || !sources || !result || !surfaces_given(t, sources) || !outside_known(t, sources))
+        return FIBRAD_E_ARGUMENT;
+    if (t->n > 0 && (!sources->temperature || !result->power)) return FIBRAD_E_ARGUMENT;
+    for (uint32_t i = 0; i < t->n; ++i)
+        if (!(sources->temperature[i] >= 0 && sources->temperature[i] <= 1e20)) return FIBRAD_E_ARGUMENT;
+    const int status = fibrad_transient_prepare(t, sources);
+    return status ? status : fibrad_transient_solve(t, sources, result);
+}
+
 int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_span *span) {
-    if (!t || !sources || !span) return FIBRAD_E_ARGUMENT;
+    if (!t || !sources || !span || !surfaces_given(t, sources)) return FIBRAD_E_ARGUMENT;
     int status = check_span(t, sources, span);
     if (!status && !outside_known(t, sources)) status = FIBRAD_E_ARGUMENT;
     if (!status) status = fibrad_transient_prepare(t, sources);

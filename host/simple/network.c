@@ -157,8 +157,9 @@ static void read_powers(const fibrad_network *w, const fibrad_heat_sources *s, f
 static int read_temperatures(const fibrad_network *w, const fibrad_heat_sources *s, fibrad_heat_result *result) {
     int status = FIBRAD_OK;
     for (uint32_t i = 0; i < w->factors->matrix.n; ++i) {
-        result->temperature[i] = isnan(s->temperature[i]) ? sqrt(sqrt(w->emission[i] / s->sigma)) : s->temperature[i];
-        if (isnan(result->temperature[i])) status = FIBRAD_E_UNSOLVABLE;
+        const double t = isnan(s->temperature[i]) ? sqrt(sqrt(w->emission[i] / s->sigma)) : s->temperature[i];
+        if (isnan(t)) status = FIBRAD_E_UNSOLVABLE;
+        if (result->temperature) result->temperature[i] = t;
     }
     return status;
 }
