@@ -123,7 +123,7 @@ static void furnace_init(struct furnace *f) {
 START_TEST(energy_is_kept) {
     struct furnace f;
     furnace_init(&f);
-    for (int method = 0; method < 2; method++) {
+    for (int method = 0; method < 3; method++) {
         const fibrad_transient_config config = {
             .method = method, .exchange.tolerance = .03, .heat = {.directions = 16, .patches = 24}};
         fibrad_transient *t = transient_of(&f.bed, &f.scene, &config);
@@ -180,7 +180,7 @@ START_TEST(bed_against_runge_kutta) {
     furnace_init(&f);
     const fibrad_exchange_rule rule = {
         .emissivity = f.emissivity, .body_emissivity = f.wall_emissivity, .tolerance = .03};
-    const fibrad_transient_config config = {.exchange.tolerance = .03};
+    const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS, .exchange.tolerance = .03};
     const fibrad_spheres spheres = spheres_of(&f.bed);
     const double end[2] = {800, f.wall[1]}, duration = 30;
     fibrad_bed_factors *factors;
@@ -211,7 +211,8 @@ START_TEST(motes_are_no_limit) {
     uint64_t steps[2] = {0, 0};
     for (uint32_t n = 2; n <= 4; n += 2) {
         struct bed bed = bed_of(n, place);
-        const fibrad_transient_config config = {.exchange = {.directions = 4000, .paths = 4000}};
+        const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS,
+                                                .exchange = {.directions = 4000, .paths = 4000}};
         fibrad_transient *t = transient_of(&bed, NULL, &config);
         double temperature[] = {1200, 900, 300, 300}, capacity[4], power[4] = {0};
         for (uint32_t i = 0; i < n; i++) capacity[i] = 3e6 * 4 / 3 * M_PI * pow(bed.r[i], 3);
@@ -255,9 +256,9 @@ END_TEST
 START_TEST(patches_as_factors) {
     struct furnace f;
     furnace_init(&f);
-    double temperature[2][N];
-    for (int method = 0; method < 2; method++) {
-        const fibrad_transient_config config = {.method = method, .exchange = {.directions = 400, .paths = 4000}};
+    double temperature[3][N];
+    for (int method = 0; method < 3; method++) {
+        const fibrad_transient_config config = {.method = method, .exchange.tolerance = method == 2 ? .003 : 0};
         fibrad_transient *t = transient_of(&f.bed, &f.scene, &config);
         memcpy(temperature[method], f.temperature, sizeof f.temperature);
         for (int k = 0; k < 2; k++) {
@@ -269,7 +270,10 @@ START_TEST(patches_as_factors) {
         }
         fibrad_transient_free(t);
     }
-    for (int i = 0; i < N; i++) ck_assert_double_eq_tol(temperature[0][i], temperature[1][i], 6);
+    for (int i = 0; i < N; i++) {
+        ck_assert_double_eq_tol(temperature[0][i], temperature[1][i], 1);
+        ck_assert_double_eq_tol(temperature[2][i], temperature[1][i], 6);
+    }
     bed_free(&f.bed);
 }
 END_TEST
@@ -304,7 +308,7 @@ START_TEST(what_is_refused) {
     fibrad_fault fault;
     const fibrad_span good = {f.temperature, f.capacity, .duration = 1e-3};
     fibrad_span span = good;
-    ck_assert_int_eq(fibrad_transient_new(&t, &f.scene, &spheres, &(fibrad_transient_config){.method = 2}, NULL),
+    ck_assert_int_eq(fibrad_transient_new(&t, &f.scene, &spheres, &(fibrad_transient_config){.method = 3}, NULL),
                      FIBRAD_E_ARGUMENT);
     ck_assert_ptr_null(t);
     t = transient_of(&f.bed, &f.scene, &(fibrad_transient_config){.exchange.tolerance = .1});

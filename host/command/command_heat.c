@@ -35,7 +35,8 @@ static const struct option heat_table[] = {
     {OPTION_TEMPERATURE_UNIT},
     {KEY_MODEL, "model", "NAME",
      "patches: reflected light goes from point to point; spheres: one radiosity each, for emissivities near 1; with "
-     "--until also factors: exchange factors, once for all steps [patches; with --until factors]"},
+     "--until also factors, once for all steps, which differ by some percent [patches; with --until factors that are "
+     "corrected by patches where that changes something]"},
     {KEY_PATCHES, "patches", "P", "of a sphere: 24, 96 or 384 [96]"},
     {KEY_DIRECTIONS, "directions", "N", "of beams, 8 to 65536 [168]"},
     {KEY_POINTS, "points", "M", "beams per direction: 64, 128 or 256 [64]"},

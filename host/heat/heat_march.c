@@ -133,7 +133,7 @@ struct marching {
     const struct march_table *of_wall[WALLS_MAX], *of_surroundings; /* NULL: constant */
     double wall[WALLS_MAX], wall_energy[WALLS_MAX], energy[WALLS_MAX], surroundings_energy;
     double now;
-    uint64_t steps, refused, sweeps;
+    uint64_t steps, refused, sweeps, corrections;
     double error;
     struct time_point *point; /* [points] of the picture */
     size_t points, room;
@@ -232,13 +232,17 @@ static int find_capacities(struct marching *m, double metres, double **capacity)
                                  capacity);
     if (!status)
         status = quantity_values(&m->options->density, &m->bed, m->asked->name, "density", 0, 1e-12, 1e12, &density);
-    for (uint32_t i = 0; i < m->bed.n && !status; ++i)
+    for (uint32_t i = 0; i < m->bed.n && !status; ++i) {
+        if (!(m->span.temperature[i] > 0))
+            status = message_at(STATUS_INPUT, m->asked->name, m->bed.line[i],
+                                "the temperature is %g K; to begin with it must be above 0", m->span.temperature[i]);
         (*capacity)[i] *= density[i] * (4. / 3 * M_PI) * gsl_pow_3(m->bed.r[i] * metres);
+    }
     free(density);
     return status;
 }
 
-/* Factors, unless a wall's temperature is wanted. */
+/* Corrected factors, unless a wall's temperature is wanted. */
 static int choose_model(struct marching *m) {
     const struct heat_problem *problem = m->problem;
     m->by_patches = problem->by_patches;
@@ -288,6 +292,7 @@ static int advance(struct marching *m, double time) {
     const int status = fibrad_transient_advance(m->transient, &m->sources, &m->span);
     if (status) return library_status(m, status);
     m->steps += m->span.steps, m->refused += m->span.refused, m->sweeps += m->span.sweeps;
+    m->corrections += m->span.corrections;
     m->error = fmax(m->error, m->span.error);
     for (uint32_t k = 0; k < m->problem->walls.count; ++k) m->energy[k] += m->wall_energy[k];
     m->surroundings_energy += m->span.surroundings_energy;
@@ -362,7 +367,7 @@ static void march_print(struct marching *m, const double *before, double seconds
     fibrad_transient_describe(m->transient, &facts, NULL);
     bed_options_report(m->asked, m->source, walls, &facts);
     report_value(report, "until_s", o->until, 9);
-    report_text(report, "model", m->by_patches ? "patches" : "factors");
+    report_text(report, "model", m->by_patches ? "patches" : m->problem->by_factors ? "factors" : "corrected");
     quantity_report(m->problem->of_emissivity, "emissivity", report);
     quantity_report(&o->capacity, "heat_capacity_J_kgK", report);
     quantity_report(&o->density, "density_kg_m3", report);
@@ -374,6 +379,7 @@ static void march_print(struct marching *m, const double *before, double seconds
     report_count(report, "steps", m->steps);
     report_count(report, "steps_refused", m->refused);
     report_count(report, "sweeps", m->sweeps);
+    report_count(report, "corrections", m->corrections);
     report_value(report, "step_error", m->error, 2);
     report_value(report, "temperature_min_K", end.least, 6);
     report_value(report, "temperature_mean_K", end.mean, 6);
@@ -391,7 +397,9 @@ static int march_bed(struct marching *m, double *before, const struct output *pi
     const fibrad_scene_config scene = bed_scene(&m->bed, &m->problem->walls);
     const fibrad_spheres spheres = bed_spheres(&m->bed);
     const fibrad_transient_config config = {
-        .method = m->by_patches ? FIBRAD_TRANSIENT_PATCHES : FIBRAD_TRANSIENT_FACTORS,
+        .method = m->by_patches              ? FIBRAD_TRANSIENT_PATCHES
+                  : m->problem->by_factors ? FIBRAD_TRANSIENT_FACTORS
+                                           : FIBRAD_TRANSIENT_CORRECTED,
         .heat = m->problem->config};
     const double begun = progress_clock();
     fibrad_run run = bed_options_run(m->asked);

@@ -139,11 +139,12 @@ void fibrad_radiation_free(fibrad_radiation *radiation);
 typedef struct fibrad_transient fibrad_transient;
 
 typedef enum fibrad_transient_method {
-    FIBRAD_TRANSIENT_FACTORS = 0, /* exchange factors, made by the first step in a place: for some steps in each */
-    FIBRAD_TRANSIENT_PATCHES = 1  /* a fibrad_radiation: for a step or two in a place, and walls of unknown temperature */
+    FIBRAD_TRANSIENT_CORRECTED = 0, /* exchange factors, made by the first step in a place, and what patches add */
+    FIBRAD_TRANSIENT_PATCHES = 1,   /* patches for each stage: a step or two in a place, walls of unknown temperature */
+    FIBRAD_TRANSIENT_FACTORS = 2    /* exchange factors alone: without beams, powers to some percent */
 } fibrad_transient_method;
 
-/* Zeroed: factors whose rows have errors of 0.01. */
+/* Zeroed: corrected factors, whose rows have errors of 0.03; alone 0.01. */
 typedef struct fibrad_transient_config {
     int method;                    /* a fibrad_transient_method */
     fibrad_exchange_rule exchange; /* of factors; its emissivities are not used: those of the sources are */
@@ -159,8 +160,8 @@ int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config
  * others. After an error the bed is that of before, or, if tracing its beams has failed, FIBRAD_E_STATE. */
 int fibrad_transient_move(fibrad_transient *transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres);
 
-/* Powers at given temperatures, of spheres and, by factors, of bodies; result as of fibrad_radiation_solve. Errors: as
- * fibrad_transient_advance. */
+/* Powers at given temperatures of spheres, by patches if there are beams; result as of fibrad_radiation_solve. Errors:
+ * as fibrad_transient_advance. */
 int fibrad_transient_powers(fibrad_transient *transient, const fibrad_heat_sources *sources,
                             fibrad_heat_result *result);
 
@@ -184,13 +185,15 @@ typedef struct fibrad_span {
     void *context;                  /* handed to observe */
     double error;                   /* out: the largest estimate of a step, as `tolerance` */
     uint64_t steps, refused;        /* out: taken; tried besides */
-    uint64_t sweeps;                /* out: over all beams or factors */
+    uint64_t sweeps;                /* out: over all beams, or else over all factors */
+    uint64_t corrections;           /* out: solutions by patches that correct factors */
 } fibrad_span;
 
 /* Advances temperatures by a span: an L-stable scheme of second order, for which small spheres among large ones are no
  * limit. What spheres lose is what bodies and surroundings get, to rounding. Of sources, power, emissivities, body_power
  * and insulated are used and constant; temperature, hold and reference are not; body_temperature and surroundings are
- * those at the beginning. By factors bodies have temperatures and gain from spheres alone. Errors: _ARGUMENT, with
+ * those at the beginning. Only by patches may bodies be of unknown temperature; by factors alone they gain from spheres
+ * alone. Errors: _ARGUMENT, with
  * the sphere in fault; as fibrad_exchange_factors or fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below
  * zero. Then temperatures are as before. Cost: two or three solutions a step, some milliseconds for 1e4 spheres by
  * factors. */

@@ -183,6 +183,15 @@ static double first_step(const struct march *m) {
     return step;
 }
 
+/* Factors against patches at the temperatures there are. */
+static int compare(struct march *m, double time) {
+    fibrad_heat_sources now = *m->given;
+    set_outside(m, time);
+    now.temperature = m->t->now;
+    now.body_temperature = m->t->wall, now.surroundings = m->sources.surroundings;
+    return fibrad_transient_compare(m->t, &now, &m->span->corrections);
+}
+
 static int march(struct march *m) {
     fibrad_transient *t = m->t;
     fibrad_span *span = m->span;
@@ -194,6 +203,7 @@ static int march(struct march *m) {
         const uint64_t parts = (uint64_t)(rest / next * (1 - 1e-9)) + 1; /* of the rest: none is much smaller */
         const double step = rest / (double)parts;
         int status = fibrad_team_report(&t->team, "steps", span->steps, 0);
+        if (!status) status = compare(m, time);
         if (!status) status = try_step(m, time, step, &error);
         if (status && (fixed || status != FIBRAD_E_UNSOLVABLE)) return status;
         const double wanted = status ? step / GROWTH : SAFETY * step * sqrt(m->tolerance / larger(error, 1e-300));
@@ -252,7 +262,9 @@ int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sour
     for (uint32_t i = 0; i < t->n; ++i)
         if (!(sources->temperature[i] >= 0 && sources->temperature[i] <= 1e20)) return FIBRAD_E_ARGUMENT;
     const int status = fibrad_transient_prepare(t, sources);
-    return status ? status : fibrad_transient_solve(t, sources, result);
+    if (status) return status;
+    return t->radiation ? fibrad_radiation_solve(t->radiation, sources, result)
+                        : fibrad_network_solve(t->network, &t->team, sources, t->allowed, result);
 }
 
 int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_span *span) {
@@ -272,7 +284,7 @@ int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sou
     m.sources.hold = t->hold, m.sources.reference = t->guess;
     m.sources.body_temperature = t->wall;
     span->surroundings_energy = span->error = 0;
-    span->steps = span->refused = span->sweeps = 0;
+    span->steps = span->refused = span->sweeps = span->corrections = 0;
     for (uint32_t b = 0; b < t->bodies && span->body_energy; ++b) span->body_energy[b] = 0;
     memcpy(t->now, span->temperature, t->n * sizeof *t->now);
     status = march(&m);

@@ -22,7 +22,12 @@ struct fibrad_transient {
     double *area;                         /* [n] */
     double *emissivity, *body_emissivity; /* [n], [bodies] of the network */
     fibrad_network *network;              /* NULL: none yet */
-    fibrad_radiation *radiation;          /* of patches; NULL: factors */
+    fibrad_radiation *radiation;          /* of patches; NULL: factors alone */
+    /* what powers by patches have more than by factors, when they were compared */
+    bool corrected;
+    double *correction, *compared, *by_patches;          /* [n]; the powers then by factors; by patches */
+    double *wall_correction, *wall_compared, *wall_power; /* [bodies] likewise */
+    double surroundings_correction;
     /* of steps, march.c; [n] each */
     double step;                      /* proposed; 0: none */
     double *now;                      /* temperatures */
@@ -36,6 +41,10 @@ struct fibrad_transient {
 
 /* Makes sure that there are beams or factors for these sources. Errors: as fibrad_exchange_factors. */
 int fibrad_transient_prepare(fibrad_transient *transient, const fibrad_heat_sources *sources);
+
+/* Compares factors with patches at the temperatures of the sources, all given, if powers have changed much since it was
+ * done last; *corrections counts how often. Errors: as fibrad_radiation_solve. */
+int fibrad_transient_compare(fibrad_transient *transient, const fibrad_heat_sources *sources, uint64_t *corrections);
 
 /* Powers and temperatures of sources whose spheres have a hold, by factors or patches; t->allowed as in network.h. */
 int fibrad_transient_solve(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_heat_result *result);
