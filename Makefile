@@ -31,7 +31,7 @@ WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wshadow -Wvla $(WERROR)
 COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
 # tables of addresses would be data in position independent code
 KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
-SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp $(PIC)
+SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp -fno-math-errno -fno-trapping-math $(PIC)
 HOST_FLAGS   = $(COMMON) -D_XOPEN_SOURCE=700 -fopenmp -Ihost $(GSL_CFLAGS) $(ZLIB_CFLAGS)
 TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 
@@ -91,6 +91,7 @@ KERNEL = \
     kernel/exchange/flow.c \
     kernel/heat/errors.c \
     kernel/heat/heat.c \
+    kernel/heat/pencils.c \
     kernel/heat/result.c \
     kernel/heat/solve.c \
     kernel/heat/sources.c \
@@ -124,9 +125,12 @@ SIMPLE = \
     host/simple/factors.c \
     host/simple/heap.c \
     host/simple/job.c \
+    host/simple/march.c \
+    host/simple/network.c \
     host/simple/radiation.c \
     host/simple/team.c \
-    host/simple/tolerance.c
+    host/simple/tolerance.c \
+    host/simple/transient.c
 
 # the program, besides main.c
 HOST = \
@@ -183,6 +187,7 @@ HOST = \
     host/plot/plot_furnace.c \
     host/plot/plot_heat.c \
     host/plot/plot_slice.c \
+    host/plot/plot_time.c \
     host/reference/exact_gsl.c \
     host/reference/reference.c \
     host/reproduce/reproduce_beds.c \
@@ -201,6 +206,7 @@ HOST = \
     host/command/command_pair.c \
     host/command/command_reproduce.c \
     host/heat/heat_given.c \
+    host/heat/heat_march.c \
     host/heat/heat_run.c \
     host/heat/steady.c
 
@@ -238,6 +244,7 @@ TESTS = \
     tests/test_surface.c \
     tests/test_surface_row.c \
     tests/test_tables.c \
+    tests/test_transient.c \
     tests/test_trace.c \
     tests/test_walls.c \
     tests/test_work.c \

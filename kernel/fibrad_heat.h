@@ -32,7 +32,8 @@ typedef struct fibrad_heat_config {
 typedef struct fibrad_heat fibrad_heat; /* beams, patches and radiosities of a scene */
 
 /* Makes a heat problem in memory[size]. The scene stays as it is until fibrad_heat_move. config: NULL is all defaults.
- * Bytes: about spheres times (4 directions points + 8 patches (8 + parts)). Errors: _ARGUMENT, _SIZE, _UNSUPPORTED. */
+ * Bytes: about spheres times (directions points + 60 patches + 6000), with room for what most beds take; a larger size
+ * is all room for beams. Errors: _ARGUMENT, _SIZE, _UNSUPPORTED. */
 size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene);
 int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene);
@@ -43,7 +44,8 @@ int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene);
 
 /* Tasks that the beams are divided into, one per sphere and some for the walls; parts of a sweep (NULL: 0). _trace: the
  * beams of a task [0, tasks), each task once, by several threads at once. Errors: _ARGUMENT, _WORK, _MEMORY (then call
- * again), _STATE. Cost: about 1 microsecond per direction of 64 points. */
+ * again), _STATE, _SIZE: spheres see so many others that the room for beams is too small; give _init twice the size.
+ * Cost: about 1 microsecond per direction of 64 points. */
 uint32_t fibrad_heat_tasks(const fibrad_heat *heat);
 uint32_t fibrad_heat_parts(const fibrad_heat *heat);
 int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);

@@ -9,6 +9,7 @@
 #include "frames/bed_options.h"
 #include "command/commands.h"
 #include "heat/heat_given.h"
+#include "heat/heat_march.h"
 #include "heat/heat_run.h"
 #include "plot/plot_heat.h"
 
@@ -33,14 +34,16 @@ static const struct option heat_table[] = {
     {OPTION_WALL_EMISSIVITY},
     {OPTION_TEMPERATURE_UNIT},
     {KEY_MODEL, "model", "NAME",
-     "patches: reflected light goes from point to point; spheres: one radiosity each, for emissivities near 1 "
-     "[patches]"},
+     "patches: reflected light goes from point to point; spheres: one radiosity each, for emissivities near 1; with "
+     "--until also factors, once for all steps, which differ by some percent [patches; with --until factors that are "
+     "corrected by patches where that changes something]"},
     {KEY_PATCHES, "patches", "P", "of a sphere: 24, 96 or 384 [96]"},
     {KEY_DIRECTIONS, "directions", "N", "of beams, 8 to 65536 [168]"},
     {KEY_POINTS, "points", "M", "beams per direction: 64, 128 or 256 [64]"},
     {KEY_ERROR, "error", "E",
      "as many directions and patches as bring the estimated error of the powers to E times their root mean square or "
      "less, 1e-5 to 1; at the least to 1e-3 E of what is emitted [none]"},
+    OPTIONS_MARCH,
     OPTIONS_INPUT,
     {'o', "output", "OUT", "powers: .csv .dump (OVITO) .vtp (ParaView) .json; - [summary only]"},
     {OPTION_FORMAT},
@@ -51,6 +54,7 @@ static const struct option heat_table[] = {
 struct heat_request {
     struct bed_options bed;
     struct given_options given;
+    struct march_options march;
     const char *plot, *wall_emissivity;
     struct quantity emissivity;
     bool counted; /* --directions, --points or --patches was given */
@@ -73,6 +77,10 @@ static int heat_help(void) {
          "Powers given (--power, --wall-power) are given off from inside, > 0, so that q is their negative. With "
          "columns\n"
          "and lists by type each sphere has either a temperature or a power.\n"
+         "With --until temperatures are those to begin with. Each sphere stores heat-capacity times density times its\n"
+         "volume; powers given heat it. @TABLE, two columns of seconds and temperatures, may stand for the temperature\n"
+         "of a wall or of the surroundings: zmin=@TABLE. The .csv has the time in its first column; a series of .vtp\n"
+         "comes with a .pvd, which is what ParaView opens.\n"
          "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a "
          "*.\n"
          "Standard output ends with a summary of each, one `key value` a line. In it balance and error are relative to "
@@ -85,6 +93,8 @@ static int heat_help(void) {
          "      --wall-temperature zmin=1200,insulated -o q.csv\n"
          "  fibrad heat spheres.csv --length-unit mm --emissivity eps --temperature T --temperature-unit C \\\n"
          "      --wall box --wall-temperature zmin=900,20 -o q.csv\n"
+         "  fibrad heat packing.dump --emissivity 0.8 --temperature 1200 --ambient @room.csv --until 3600 \\\n"
+         "      --heat-capacity 800 --density 2500 --every 60 -o 'cool.*.vtp' -o cool.csv --plot cool.png\n"
          "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --wall zmin,cylinder:0,0,0.48 \\\n"
          "      --wall-temperature zmin=1200,cylinder=600 --wall-emissivity cylinder=0.4 --ambient 300 --error 0.005 "
          "-o q.vtp");
@@ -98,10 +108,12 @@ static int take_patches(const char *text, uint32_t *patches) {
     return status;
 }
 
-static int take_model(const char *text, int *uniform) {
-    *uniform = strcmp(text, "spheres") == 0;
-    if (*uniform || strcmp(text, "patches") == 0) return STATUS_OK;
-    return message(STATUS_USAGE, "--model: '%.40s' is neither patches nor spheres", text);
+static int take_model(const char *text, struct heat_problem *problem) {
+    problem->sources.uniform = strcmp(text, "spheres") == 0;
+    problem->by_patches = problem->sources.uniform || strcmp(text, "patches") == 0;
+    problem->by_factors = strcmp(text, "factors") == 0;
+    if (problem->by_patches || problem->by_factors) return STATUS_OK;
+    return message(STATUS_USAGE, "--model: '%.40s' is none of patches, spheres and factors", text);
 }
 
 static int take_beams(struct heat_request *request, const char *text, int key) {
@@ -137,7 +149,7 @@ static int heat_take(struct heat_request *request, const struct options *options
         request->wall_emissivity = value;
         return STATUS_OK;
     case KEY_MODEL:
-        return take_model(value, &request->problem.sources.uniform);
+        return take_model(value, &request->problem);
     case KEY_PATCHES:
         request->counted = true;
         return take_patches(value, &request->problem.config.patches);
@@ -149,14 +161,30 @@ static int heat_take(struct heat_request *request, const struct options *options
     case KEY_PLOT:
         request->plot = value;
         return STATUS_OK;
+    case KEY_UNTIL:
+    case KEY_CAPACITY:
+    case KEY_DENSITY:
+    case KEY_STEP:
+    case KEY_TIMES:
+    case KEY_EVERY:
+        return march_option(key, value, &request->march);
     default:
         return bed_options_take(&request->bed, options, key);
     }
 }
 
 static int heat_check_request(struct heat_request *request) {
+    request->bed.timed = request->given.timed = request->march.until > 0;
+    request->march.zero = request->given.zero;
     int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT, request->plot);
     if (status) return status;
+    if (request->given.timed && request->problem.error > 0)
+        return message(STATUS_USAGE, "--error is for powers at one time, not for --until");
+    if (!request->given.timed && request->problem.by_factors)
+        return message(STATUS_USAGE, "--model factors is for --until");
+    for (int k = 0; k < QUANTITY_TYPES_MAX && request->given.timed; ++k)
+        if (request->emissivity.curve[k].n > 0)
+            return message(STATUS_USAGE, "--until: emissivities are numbers, not tables of temperatures");
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (request->problem.error > 0 && request->counted)
         return message(STATUS_USAGE,
@@ -166,7 +194,9 @@ static int heat_check_request(struct heat_request *request) {
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
     if (request->problem.error > 0) request->problem.config.directions = 72;
-    status = given_check(&request->given, &request->bed);
+    status =
+        march_check(&request->march, &request->bed, &request->given.wall_temperature, &request->given.ambient);
+    if (!status) status = given_check(&request->given, &request->bed);
     return status ? status : given_ambient(&request->given, &request->problem.sources.surroundings);
 }
 
@@ -266,17 +296,20 @@ static int heat_frame(void *heat_request, struct bed *bed) {
         status = message(STATUS_USAGE, "which --ambient? the bed is open: its surroundings need a temperature");
     if (!status) status = wall_emissivities(request->wall_emissivity, walls, of_walls[0]);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
-    if (!status) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);
+    if (!status && !request->given.timed) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);
     if (!status) status = bed_options_metres(&request->bed, bed, &report.metres);
     if (!status) status = heat_arrays(&report.result, bed->n);
     if (!status) {
-        given_heat_sources(&given, bed->n, report.metres, sources);
+        given_heat_sources(&given, bed->n, request->given.timed ? 1 : report.metres, sources);
         sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
         request->problem.emissivity = emissivity, request->problem.of_emissivity = &request->emissivity;
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_absorbed = of_walls[5];
         report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
-        status = heat_solve(request, bed, &report);
+        status = request->given.timed ? heat_march(&request->bed, &request->march, &request->problem, bed,
+                                                   report.metres, &report.result,
+                                                   request->plot ? &request->picture : NULL)
+                                      : heat_solve(request, bed, &report);
     }
     free(emissivity);
     given_free(&given);
@@ -298,6 +331,7 @@ int command_heat(int argc, char **argv) {
         status = output_close(&request.picture, status);
     }
     quantity_free(&request.emissivity);
+    march_free(&request.march);
     bed_options_free(&request.bed);
     return status;
 }

@@ -157,9 +157,11 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
     if (picture && bed_options_series(asked))
         return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
+    if (asked->timed && bed_options_series(asked))
+        return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
     asked->outputs.picture = picture;
     return outputs_check(&asked->outputs, content, (const char *const *)asked->file, asked->files,
-                         bed_options_series(asked));
+                         bed_options_series(asked) || asked->timed);
 }
 
 /* What the options say of a bed that was read. */

@@ -49,6 +49,7 @@ struct bed_options {
     size_t files;
     struct frames frames;
     bool range;    /* of frames: there may be several in a file */
+    bool timed;    /* results at several times are made of one frame */
     bool periodic; /* --periodic was given */
     double period[3];
     bool positions;

@@ -19,10 +19,11 @@ int given_power_option(const char *text, struct given_options *options) {
 int given_check(struct given_options *options, struct bed_options *bed) {
     struct quantity *t = &options->temperature, *p = &options->power;
     if (!t->given && !p->given) return message(STATUS_USAGE, "which --temperature, or --power? see fibrad heat --help");
-    if (t->given && !t->column && p->given && !p->column)
+    if (options->timed && !t->given) return message(STATUS_USAGE, "--until: which --temperature to begin with?");
+    if (!options->timed && t->given && !t->column && p->given && !p->column)
         return message(STATUS_USAGE, "--temperature and --power: a sphere has the one or the other given");
     if (t->value < -options->zero) return message(STATUS_USAGE, "--temperature: %g is below absolute zero", t->value);
-    t->some = p->given;
+    t->some = p->given && !options->timed;
     p->some = true;
     t->place = bed_options_column(bed, t->column, options->zero > 0 ? "C" : "K");
     p->place = bed_options_column(bed, p->column, "W");
@@ -94,7 +95,9 @@ int given_values(const struct given_options *options, const struct bed *bed, con
         status = quantity_values(&options->temperature, bed, file, "temperature in kelvins", options->zero, 0,
                                  TEMPERATURE_MAX, &given->temperature);
     if (!status) status = quantity_values(&options->power, bed, file, "power", 0, -POWER_MAX, POWER_MAX, &given->power);
-    return status ? status : given_spheres(bed, file, given);
+    for (uint32_t i = 0; i < bed->n && !status && options->timed; ++i)
+        if (isnan(given->power[i])) given->power[i] = 0;
+    return status || options->timed ? status : given_spheres(bed, file, given);
 }
 
 void given_free(struct given *given) {

@@ -23,6 +23,7 @@ struct given_options {
     struct quantity temperature, power;
     const char *ambient, *wall_temperature, *wall_power; /* NULL: not given */
     double zero;                                         /* 0 of the unit of temperature [K] */
+    bool timed; /* temperatures are those to begin with: all spheres have one, and may have a power */
 };
 
 /* What follows for one bed; NaN where it is not given. */

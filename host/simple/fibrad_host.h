@@ -5,6 +5,7 @@
  *   run       fibrad_run: threads, progress, cancelling
  *   factors   fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_displacements
  *   heat      fibrad_radiation_new, _move, _solve, _settle, _describe, _free
+ *   time      fibrad_transient_new, _move, _powers, _advance, _describe, _free
  *   kernel    fibrad_heap_resize, fibrad_host_sizeof
  *
  * Typical  fibrad_bed_factors *bed;
@@ -30,8 +31,8 @@ extern "C" {
 /* ---- run ------------------------------------------------------------------------------------------------------- */
 
 /* Called by the thread that made the call, at the beginning and the end of each stage ("walls", "rows", "beams",
- * "sweeps") and up to 20 times a second in between: `done` of `total` things are done; total 0: unknown. Not 0: stop,
- * which the call then returns as FIBRAD_E_CANCELLED. */
+ * "sweeps", "steps") and up to 20 times a second in between: `done` of `total` things are done; total 0: unknown. Not
+ * 0: stop, which the call then returns as FIBRAD_E_CANCELLED. */
 typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uint64_t total);
 
 /* How a call is run. NULL or zeroed: OpenMP's threads, no progress. */
@@ -131,6 +132,76 @@ void fibrad_radiation_describe(const fibrad_radiation *radiation, fibrad_scene_f
 
 /* Frees it. NULL: nothing. No errors. */
 void fibrad_radiation_free(fibrad_radiation *radiation);
+
+/* ---- time ------------------------------------------------------------------------------------------------------ */
+
+/* A bed whose temperatures change with time: C dT/dt = power + what radiation brings. Source: docs/heat.md. */
+typedef struct fibrad_transient fibrad_transient;
+
+typedef enum fibrad_transient_method {
+    FIBRAD_TRANSIENT_CORRECTED = 0, /* exchange factors, made by the first step in a place, and what patches add */
+    FIBRAD_TRANSIENT_PATCHES = 1,   /* patches for each stage: a step or two in a place, walls of unknown temperature */
+    FIBRAD_TRANSIENT_FACTORS = 2    /* exchange factors alone: without beams, powers to some percent */
+} fibrad_transient_method;
+
+/* Zeroed: corrected factors, whose rows have errors of 0.03; alone 0.01. */
+typedef struct fibrad_transient_config {
+    int method;                    /* a fibrad_transient_method */
+    fibrad_exchange_rule exchange; /* of factors; its emissivities are not used: those of the sources are */
+    fibrad_heat_config heat;       /* of patches, as fibrad_radiation_new has it */
+} fibrad_transient_config;
+
+/* Makes it for a bed, which is copied. config: NULL: defaults; run as in fibrad_radiation_new. Free it with
+ * fibrad_transient_free. Errors: _ARGUMENT; as fibrad_scene_init; of patches as fibrad_radiation_new. */
+int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres,
+                         const fibrad_transient_config *config, fibrad_run *run);
+
+/* Goes on to as many spheres and the same kinds of bodies at other places. Errors: as fibrad_transient_new; _ARGUMENT:
+ * others. After an error the bed is that of before, or, if tracing its beams has failed, FIBRAD_E_STATE. */
+int fibrad_transient_move(fibrad_transient *transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres);
+
+/* Powers at given temperatures of spheres, by patches if there are beams; result as of fibrad_radiation_solve. Errors:
+ * as fibrad_transient_advance. */
+int fibrad_transient_powers(fibrad_transient *transient, const fibrad_heat_sources *sources,
+                            fibrad_heat_result *result);
+
+/* Called after each step with the time since the beginning of the span and the temperatures [spheres] there. */
+typedef void fibrad_observe(void *context, double time, const double *temperature);
+
+/* A span of time, in seconds if powers are in watts and capacities in J/K. Zeroed but for the first three. */
+typedef struct fibrad_span {
+    double *temperature;            /* [spheres] > 0; in: at the beginning; out: at the end */
+    const double *capacity;         /* [spheres] > 0, heat that warms a sphere by 1 K */
+    double duration;                /* > 0 */
+    const double *body_temperature; /* [bodies] at the end, linear in between; NULL: as at the beginning */
+    const double *surroundings;     /* likewise, one number */
+    double step;                    /* > 0: of this length at most, all alike; 0: automatic, first as proposed last */
+    double tolerance;               /* of automatic steps, of a temperature, relative; 0: 1e-4 */
+    double *power, *body_power;     /* [spheres], [bodies] out: net radiative powers at the end; may be NULL */
+    double surroundings_power;      /* out: likewise */
+    double *body_energy;            /* [bodies] out: what radiation has brought; may be NULL */
+    double surroundings_energy;     /* out: likewise */
+    fibrad_observe *observe;        /* NULL: none */
+    void *context;                  /* handed to observe */
+    double error;                   /* out: the largest estimate of a step, as `tolerance` */
+    uint64_t steps, refused;        /* out: taken; tried besides */
+    uint64_t sweeps;                /* out: over all beams, or else over all factors */
+    uint64_t corrections;           /* out: solutions by patches that correct factors */
+} fibrad_span;
+
+/* Advances temperatures by a span: an L-stable scheme of second order, for which small spheres among large ones are no
+ * limit. What spheres lose is what bodies and surroundings get, to rounding. Of sources, power, emissivities, body_power
+ * and insulated are used and constant; temperature, hold and reference are not; body_temperature and surroundings are
+ * those at the beginning. Only by patches may bodies be of unknown temperature; by factors alone they gain from spheres
+ * alone. Errors: _ARGUMENT, with
+ * the sphere in fault; as fibrad_exchange_factors or fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below
+ * zero. Then temperatures are as before. Cost: two or three solutions a step, some milliseconds for 1e4 spheres by
+ * factors. */
+int fibrad_transient_advance(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_span *span);
+
+/* As fibrad_radiation_describe, _free. */
+void fibrad_transient_describe(const fibrad_transient *transient, fibrad_scene_facts *facts, fibrad_fault *fault);
+void fibrad_transient_free(fibrad_transient *transient);
 
 /* ---- kernel ---------------------------------------------------------------------------------------------------- */
 

@@ -13,6 +13,7 @@ struct fibrad_radiation {
     fibrad_heat_config config;
     fibrad_heat *heat; /* NULL: none yet */
     void *heat_block;
+    size_t heat_size; /* of it; 0: none */
     fibrad_scene *scene;
     void *scene_block;
     uint32_t n;
@@ -24,11 +25,12 @@ static int trace_beams(void *radiation, int thread, uint32_t task) {
     return fibrad_heat_trace(r->heat, &r->team.work[thread], task);
 }
 
-/* Another problem in the place of the one there is. */
-static int replace_heat(fibrad_radiation *r, const fibrad_scene *scene) {
+/* Another problem in the place of the one there is, in as many bytes at least. */
+static int replace_heat(fibrad_radiation *r, const fibrad_scene *scene, size_t at_least) {
     fibrad_heat *heat;
-    const size_t size = fibrad_heat_size(&r->config, scene);
+    size_t size = fibrad_heat_size(&r->config, scene);
     if (!size) return FIBRAD_E_ARGUMENT;
+    if (size < at_least) size = at_least;
     void *block = malloc(size);
     if (!block) return FIBRAD_E_MEMORY;
     const int status = fibrad_heat_init(&heat, block, size, &r->config, scene);
@@ -39,13 +41,25 @@ static int replace_heat(fibrad_radiation *r, const fibrad_scene *scene) {
     free(r->heat_block);
     r->heat = heat;
     r->heat_block = block;
+    r->heat_size = size;
     return FIBRAD_OK;
 }
 
 /* The same problem in another scene; walls that have moved far may ask for more room than there is. */
 static int move_heat(fibrad_radiation *r, const fibrad_scene *scene) {
     const int status = r->heat ? fibrad_heat_move(r->heat, scene) : FIBRAD_E_SIZE;
-    return status == FIBRAD_E_SIZE ? replace_heat(r, scene) : status;
+    return status == FIBRAD_E_SIZE ? replace_heat(r, scene, 0) : status;
+}
+
+/* Follows all beams; spheres may see more others than there is room for. */
+static int trace_all(fibrad_radiation *r) {
+    for (;;) {
+        const uint32_t tasks = fibrad_heat_tasks(r->heat);
+        int status = fibrad_team_run(&r->team, "beams", tasks, TASKS_AT_ONCE, trace_beams, r, NULL);
+        if (status != FIBRAD_E_SIZE) return status;
+        status = replace_heat(r, r->scene, 2 * r->heat_size);
+        if (status) return status;
+    }
 }
 
 int fibrad_radiation_move(fibrad_radiation *r, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
@@ -64,7 +78,7 @@ int fibrad_radiation_move(fibrad_radiation *r, const fibrad_scene_config *config
     r->scene = scene;
     r->scene_block = block;
     r->n = spheres->n;
-    return fibrad_team_run(&r->team, "beams", fibrad_heat_tasks(r->heat), TASKS_AT_ONCE, trace_beams, r, NULL);
+    return trace_all(r);
 }
 
 int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config *config, const fibrad_spheres *spheres,

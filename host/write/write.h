@@ -28,6 +28,7 @@ struct contents {
                                   is one is known */
     const char *file;          /* the bed's, a column where several files go into one output; NULL: there is one */
     bool series;               /* several frames may go into one output: columns frame and timestep */
+    const double *time;        /* [s] a column where several times go into one output; NULL: there is one */
 
     const fibrad_bed_factors *factors;
     const unsigned char *wanted;      /* [n] not 0: this row was computed; NULL: all were */

@@ -48,13 +48,14 @@ static void begin_csv(struct csv *csv, FILE *file, const struct contents *what, 
     csv->file = file;
     csv->what = what;
     if (first)
-        fprintf(file, "%s%s%s%s\n", what->file ? "file," : "", what->series ? "frame,timestep," : "", names,
-                csv->named ? ",body" : "");
+        fprintf(file, "%s%s%s%s%s\n", what->file ? "file," : "", what->series ? "frame,timestep," : "",
+                what->time ? "time_s," : "", names, csv->named ? ",body" : "");
     if (what->file) at = put_comma(put_text(at, what->file));
     if (what->series) {
         at = put_comma(text_whole(at, bed->frame));
         at = put_comma(bed->timestep < 0 ? at : text_whole(at, bed->timestep));
     }
+    if (what->time) at = put_comma(text_real(at, *what->time));
     csv->columns = (size_t)(at - csv->line);
 }
 

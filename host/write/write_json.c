@@ -47,6 +47,7 @@ static void json_frame(FILE *file, const struct contents *what, const char *kind
         fputs("null", file);
     else
         json_whole(file, bed->timestep);
+    if (what->time) json_entry(file, "time_s", *what->time);
 }
 
 /* The same, and the names of its spheres. */

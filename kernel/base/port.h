@@ -38,6 +38,11 @@ static inline double fibrad_abs(double x) { return __builtin_fabs(x); }
 static inline double fibrad_min(double a, double b) { return a < b ? a : b; }
 static inline double fibrad_max(double a, double b) { return a > b ? a : b; }
 
+/* Adds to a sum that several threads add to at once; returns what it was before. */
+static inline size_t fibrad_add_at_once(size_t *sum, size_t more) {
+    return __atomic_fetch_add(sum, more, __ATOMIC_SEQ_CST);
+}
+
 /* False for NaN and the infinities. */
 static inline bool fibrad_finite(double x) { return x - x == 0; }
 

@@ -75,7 +75,7 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
 static heat_errors errors_of(const fibrad_heat *heat) {
     const uint32_t end = heat->spheres + FIBRAD_WALLS; /* of bodies that have patches of their own */
     heat_errors errors = {.all = spread_over(heat, 0, heat->first[end])};
-    if (heat->group == 1) errors.few = FEW_ERROR * heat->config.patches / (2.0 * heat->beams);
+    if (heat->group == 1) errors.few = FEW_ERROR * heat->config.patches * heat->thin / (2.0 * heat->beams);
     for (uint32_t b = heat->spheres; b < end; b++)
         errors.walls += heat_square((1 - heat->emissivity[b]) * BEAM_ERROR * heat->halves[b]);
     errors.walls = fibrad_sqrt(errors.walls);

@@ -4,6 +4,7 @@
 #include "base/constants.h"
 #include "base/dispatch.h"
 #include "heat/hits_lanes.h"
+#include "heat/pencils.h"
 #include "heat/sphere_patch.h"
 #include "heat/wall_patch.h"
 #include "sample/direction.h"
@@ -14,6 +15,8 @@
 #define HEAT_PARTS      8u
 #define HEAT_PARTS_MAX  1024u
 #define HEAT_RAYS_MAX   (1u << 30)
+#define HEAT_THIN_MAX   2u
+#define HEAT_KEPT       36u   /* beams of each patch that are not to be thinned out */
 #define HEAT_RADIUS_MIN 1e-30 /* and its inverse the largest */
 
 static fibrad_heat_config heat_config_of(const fibrad_heat_config *config) {
@@ -53,6 +56,7 @@ static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const
     heat->given_bodies = scene->facts.bodies;
     fibrad_copy(heat->slot, scene->slot, sizeof heat->slot);
     heat->beams = config->directions * config->points;
+    heat->thin = heat->beams / HEAT_THIN_MAX < HEAT_KEPT * config->patches ? 1 : HEAT_THIN_MAX;
     heat->side = side_of(config->patches);
     heat->bodies = spheres + 2 * FIBRAD_WALLS + 1;
     heat->patches = spheres * config->patches + 1;
@@ -79,21 +83,31 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     const uint32_t spheres = heat->spheres, patches = heat->patches_capacity;
     heat->first = fibrad_arena_take(arena, heat->bodies + 1, sizeof *heat->first);
     heat->leave = fibrad_arena_take(arena, heat->beams, sizeof *heat->leave);
-    heat->hit = fibrad_arena_take(arena, (size_t)spheres * heat->beams, sizeof *heat->hit);
     heat->ray = fibrad_arena_take(arena, heat->rays_capacity, sizeof *heat->ray);
-    heat->source = fibrad_arena_take(arena, patches, sizeof *heat->source);
-    heat->gathered = fibrad_arena_take(arena, (size_t)patches * heat->config.parts, sizeof(double));
-    double **const of_patches[] = {&heat->area, &heat->radiosity, &heat->detail, &heat->net, &heat->direction};
+    heat->brought = fibrad_arena_take(arena, (size_t)(patches - fibrad_heat_others(heat)) * heat->config.parts,
+                                      sizeof *heat->brought);
+    double **const of_patches[] = {&heat->source,    &heat->gathered, &heat->area,     &heat->net,
+                                   &heat->radiosity, &heat->detail,   &heat->direction};
     for (size_t k = 0; k < sizeof of_patches / sizeof *of_patches; k++)
         *of_patches[k] = fibrad_arena_take(arena, patches, sizeof(double));
     double **const of_bodies[] = {&heat->emissivity,      &heat->emission,    &heat->drive, &heat->hold,  &heat->coarse,
                                   &heat->coarse_emission, &heat->temperature, &heat->power, &heat->halves};
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
         *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
+    heat->density = fibrad_arena_take(arena, spheres, sizeof(double));
+    heat->row = fibrad_arena_take(arena, spheres, sizeof *heat->row);
+    heat->first_link = fibrad_arena_take(arena, spheres + 2, sizeof *heat->first_link);
     heat->order = fibrad_arena_take(arena, spheres, sizeof *heat->order);
     heat->traced = fibrad_arena_take(arena, tasks_for(spheres, heat->rays_capacity), 1);
     heat->swept = fibrad_arena_take(arena, heat->config.parts, 1);
+    heat->pool = fibrad_arena_take(arena, heat->room, 1);
     return place;
+}
+
+/* Leaves room for a bed that moves, and for the beams. */
+static void make_room(fibrad_heat *heat) {
+    add_room(heat);
+    heat->room = fibrad_heat_room(heat);
 }
 
 /* The bytes that a problem of these numbers takes. */
@@ -108,26 +122,25 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
     if (heat_check(&c, scene) != FIBRAD_OK) return 0;
     fibrad_heat fields = {0};
     dimension(&fields, &c, scene);
-    add_room(&fields);
+    make_room(&fields);
     return heat_bytes(fields);
 }
 
-/* Numbers the patches through and tells each how many beams leave its surface per area. */
+/* Numbers the patches through, and tells how many beams leave each sphere per area. */
 static void number_patches(fibrad_heat *heat) {
     const fibrad_scene *scene = heat->scene;
     uint32_t a = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const uint32_t wall = b - heat->spheres; /* only if not a sphere */
         uint32_t count = 1;
-        double density = 0;
         if (b < heat->spheres)
-            count = heat->config.patches, density = heat->beams / (4 * FIBRAD_PI * scene->r[b] * scene->r[b]);
+            count = heat->config.patches, heat->density[b] = heat->beams / (4 * FIBRAD_PI * scene->r[b] * scene->r[b]);
         else if (wall < FIBRAD_WALLS)
             count = heat->wall[wall].squares[0] * heat->wall[wall].squares[1];
         else if (wall < 2 * FIBRAD_WALLS)
             count = heat->wall[wall - FIBRAD_WALLS].unbounded;
         heat->first[b] = a;
-        for (uint32_t end = a + count; a < end; a++) heat->source[a].density = density;
+        a += count;
     }
     heat->first[heat->bodies] = a;
 }
@@ -153,6 +166,7 @@ static void forget_beams(fibrad_heat *heat) {
     number_patches(heat);
     fibrad_copy(heat->order, heat->scene->order, heat->spheres * sizeof *heat->order);
     fibrad_zero(heat->traced, fibrad_heat_tasks(heat));
+    heat->used = heat->links = 0;
     heat->areas = false;
     heat->phase = FIBRAD_HEAT_IDLE;
 }
@@ -166,9 +180,11 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     int status = heat_check(&c, scene);
     if (status != FIBRAD_OK) return status;
     dimension(&fields, &c, scene);
-    add_room(&fields);
-    status = fibrad_arena_open(&arena, memory, size, heat_bytes(fields));
+    make_room(&fields);
+    const size_t least = heat_bytes(fields);
+    status = fibrad_arena_open(&arena, memory, size, least);
     if (status != FIBRAD_OK) return status;
+    fields.room += (size - least) / FIBRAD_ALIGNMENT * FIBRAD_ALIGNMENT;
     fibrad_heat *heat = heat_layout(&arena, &fields);
     *heat = fields;
     find_origins(heat);
@@ -240,8 +256,9 @@ uint32_t fibrad_heat_parts(const fibrad_heat *heat) { return heat != NULL ? heat
 int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task) {
     if (heat == NULL || work == NULL || task >= fibrad_heat_tasks(heat)) return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat) || heat->traced[task]) return FIBRAD_E_STATE;
+    const size_t scratch = fibrad_heat_scratch(heat);
     fibrad_workspace *space;
-    int status = fibrad_work_open(work, 0, 0, &space);
+    int status = fibrad_work_open(work, scratch, scratch, &space);
     while (status == FIBRAD_OK) {
         status = FIBRAD_VERSION_OF(fibrad_heat_follow, heat->scene->facts.isa)(heat, space, task);
         if (status != FIBRAD_E_WORK) break;

@@ -2,6 +2,7 @@
  * set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "heat/hits_lanes.h"
+#include "heat/pencils.h"
 #include "heat/sphere_patch.h"
 #include "heat/wall_patch.h"
 #include "ray/tracer.h"
@@ -14,7 +15,8 @@
 struct hit_window {
     _Alignas(64) double u[HIT_POINTS], v[HIT_POINTS], w[HIT_POINTS]; /* normals in the frame of the window */
     _Alignas(64) double face[HIT_POINTS], x[HIT_POINTS], y[HIT_POINTS];
-    uint32_t disc[HIT_POINTS]; /* FIBRAD_NONE: no sphere is met */
+    uint32_t point[HIT_POINTS], disc[HIT_POINTS];
+    uint32_t count;
 };
 
 /* Patch numbers, 0 to 6 side^2 - 1, of the normals of all points. */
@@ -22,7 +24,7 @@ static void number_patches_of(struct hit_window *p, const double frame[9], uint3
     const vd zero = vd_set1(0), one = vd_set1(1), half = vd_set1(.5 * side);
     double axes[9];
     fibrad_patch_turn(frame, axes);
-    for (uint32_t k = 0; k < HIT_POINTS; k += VD_LANES) {
+    for (uint32_t k = 0; k < p->count; k += VD_LANES) {
         vd u = vd_load(p->u + k), v = vd_load(p->v + k), w = vd_load(p->w + k), n[3], size[3];
         for (int axis = 0; axis < 3; axis++) {
             n[axis] = u * axes[axis] + v * axes[3 + axis] + w * axes[6 + axis];
@@ -42,15 +44,21 @@ static void number_patches_of(struct hit_window *p, const double frame[9], uint3
         vd_store(p->x + k, vd_max(a + one, zero) * half);
         vd_store(p->y + k, vd_max(b + one, zero) * half);
     }
-    for (uint32_t k = 0; k < HIT_POINTS; k++)
+    for (uint32_t k = 0; k < p->count; k++)
         patch[k] = (uint16_t)fibrad_patch_number((uint32_t)p->face[k], (uint32_t)p->x[k], (uint32_t)p->y[k], side);
 }
 
-/* Which disc hides each point of a word: the first that covers it. */
-static void find_hit_discs(const fibrad_workspace *work, const fibrad_points *points, uint32_t word,
-                           struct hit_window *p) {
+/* The points of word `word` of window k that are kept, if they meet a sphere. */
+static uint64_t kept_points(uint32_t k, uint32_t word, uint32_t thin) {
+    return thin == 1 ? UINT64_MAX : (uint64_t)0x5555555555555555 << (HIT_POINTS * word + k) % thin;
+}
+
+/* Lists points of a word that are kept and the discs that hide them, the first that covers each: those in `kept`, and
+ * one of each sphere that is seen for the first time, whose entry is `known` or later. */
+static void find_hit_discs(const fibrad_workspace *work, const fibrad_points *points, uint32_t word, uint64_t kept,
+                           uint32_t known, struct hit_window *p) {
     uint64_t left = ~points->seen[word];
-    for (uint32_t k = 0; k < HIT_POINTS; k++) p->disc[k] = FIBRAD_NONE;
+    p->count = 0;
     for (uint32_t t = 0; left != 0; t++) {
         const uint32_t k = points->occluder[t];
         const double r = work->disc.r[k];
@@ -61,21 +69,24 @@ static void find_hit_discs(const fibrad_workspace *work, const fibrad_points *po
             vf dy = vf_load(points->set.y + HIT_POINTS * word + lane) - v;
             hidden |= (uint64_t)vf_lt_bits(dx * dx + dy * dy, square) << lane;
         }
-        for (uint64_t bits = hidden & left; bits != 0; bits &= bits - 1) p->disc[__builtin_ctzll(bits)] = k;
+        hidden &= left;
         left &= ~hidden;
+        uint64_t bits = hidden & kept;
+        if (bits == 0 && work->near.entry[work->disc.near[k]] >= known) bits = hidden & (0 - hidden);
+        for (; bits != 0; bits &= bits - 1)
+            p->point[p->count] = (uint32_t)__builtin_ctzll(bits), p->disc[p->count++] = k;
     }
 }
 
 /* Normals where the points x, y meet their discs. */
 static void find_hit_normals(const fibrad_workspace *work, const float *x, const float *y, struct hit_window *p) {
-    for (uint32_t k = 0; k < HIT_POINTS; k++) {
+    for (uint32_t k = 0; k < p->count; k++) {
         const uint32_t d = p->disc[k];
-        p->u[k] = p->v[k] = 0;
-        if (d == FIBRAD_NONE) continue;
         const double inverse = 1 / work->disc.r[d];
-        p->u[k] = (x[k] - work->disc.u[d]) * inverse, p->v[k] = (y[k] - work->disc.v[d]) * inverse;
+        p->u[k] = (x[p->point[k]] - work->disc.u[d]) * inverse, p->v[k] = (y[p->point[k]] - work->disc.v[d]) * inverse;
     }
-    for (uint32_t k = 0; k < HIT_POINTS; k += VD_LANES) {
+    for (uint32_t k = p->count; k % VD_LANES != 0; k++) p->u[k] = p->v[k] = 0;
+    for (uint32_t k = 0; k < p->count; k += VD_LANES) {
         vd u = vd_load(p->u + k), v = vd_load(p->v + k);
         vd square = vd_max(vd_set1(0), 1 - (u * u + v * v));
         vd_store(p->w + k, 0 - vd_sqrt(square));
@@ -109,32 +120,61 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
     return fibrad_heat_leaves(heat, origin, w);
 }
 
-static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t place) {
-    fibrad_points points = {.count = heat->config.points};
+/* Keeps the beams of a word of window k that meet spheres; returns where the next ones go. */
+static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, const fibrad_workspace *work, const double frame[9],
+                                   const fibrad_points *points, uint32_t k, uint32_t word, uint32_t known,
+                                   fibrad_heat_beam *beam) {
     struct hit_window window;
     uint16_t patch[HIT_POINTS];
+    const uint16_t *leave = heat->leave + (size_t)k * points->count + HIT_POINTS * word;
+    find_hit_discs(work, points, word, kept_points(k, word, heat->thin), known, &window);
+    find_hit_normals(work, points->set.x + HIT_POINTS * word, points->set.y + HIT_POINTS * word, &window);
+    number_patches_of(&window, frame, heat->side, patch);
+    for (uint32_t p = 0; p < window.count; p++)
+        *beam++ =
+            (fibrad_heat_beam){work->near.entry[work->disc.near[window.disc[p]]], leave[window.point[p]], patch[p], 1};
+    return beam;
+}
+
+/* The same of those that meet none: all of them where there are walls. */
+static fibrad_heat_beam *keep_escapes(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
+                                      const fibrad_points *points, uint32_t k, uint32_t word, fibrad_heat_beam *beam) {
+    const uint16_t *leave = heat->leave + (size_t)k * points->count + HIT_POINTS * word;
+    const uint32_t first = fibrad_heat_others(heat), thin = heat->scene->container.walls ? 1 : heat->thin;
+    const uint64_t kept = kept_points(k, word, thin);
+    for (uint64_t bits = points->seen[word]; bits != 0; bits &= bits - 1) {
+        const uint32_t p = (uint32_t)__builtin_ctzll(bits), known = work->entries.length;
+        const uint32_t patch = escape_patch(heat, work, frame, points, k, HIT_POINTS * word + p) - first;
+        const uint32_t entry = fibrad_entries_of(&work->entries, heat->spheres + patch / FIBRAD_HEAT_BLOCK);
+        fibrad_entries_add(&work->entries, entry, k, 1);
+        if ((kept >> p & 1) != 0 || entry == known)
+            *beam++ = (fibrad_heat_beam){entry, leave[p], (uint16_t)(patch % FIBRAD_HEAT_BLOCK), 1};
+    }
+    return beam;
+}
+
+static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t place) {
+    fibrad_heat_beam *const first = work->extra, *beam = first;
+    fibrad_points points = {.count = heat->config.points};
     fibrad_disc_points_get(points.count, &points.set);
     work->areas.overflow = false;
+    work->extra_owner = 0;
     fibrad_work_begin(work, heat->scene, place, 0, FIBRAD_BEAM_STRIDE);
     for (uint32_t k = 0; k < heat->config.directions; k++) {
+        const uint32_t known = work->entries.length;
         double frame[9];
         fibrad_beam_frame(k, heat->config.directions, points.count, frame);
-        LANED(fibrad_beam_window)(work, frame, &points, 0);
+        work->entries.end = k == 0 || k + 1 == heat->config.directions;
+        LANED(fibrad_beam_window)(work, frame, &points, k);
         if (work->disc.count > work->disc.capacity) return fibrad_work_discs_missed(work);
-        uint32_t *hit = heat->hit + (size_t)place * heat->beams + (size_t)k * points.count;
-        for (uint32_t word = 0; word < points.count / HIT_POINTS; word++, hit += HIT_POINTS) {
-            find_hit_discs(work, &points, word, &window);
-            find_hit_normals(work, points.set.x + HIT_POINTS * word, points.set.y + HIT_POINTS * word, &window);
-            number_patches_of(&window, frame, heat->side, patch);
-            for (uint32_t p = 0; p < HIT_POINTS; p++) {
-                if (window.disc[p] == FIBRAD_NONE)
-                    hit[p] = escape_patch(heat, work, frame, &points, k, HIT_POINTS * word + p);
-                else
-                    hit[p] = fibrad_work_sphere(work, window.disc[p]) * heat->config.patches + patch[p];
-            }
+        for (uint32_t word = 0; word < points.count / HIT_POINTS; word++) {
+            beam = keep_hits(heat, work, frame, &points, k, word, known, beam);
+            beam = keep_escapes(heat, work, frame, &points, k, word, beam);
         }
     }
-    return FIBRAD_OK;
+    if (work->entries.missed == 0) return fibrad_heat_keep(heat, work, place, (uint32_t)(beam - first));
+    work->needed.entries = work->entries.capacity + work->entries.missed;
+    return FIBRAD_E_WORK;
 }
 
 static void follow_wall_rays(fibrad_heat *heat, uint32_t task) {
@@ -160,7 +200,7 @@ static void follow_wall_rays(fibrad_heat *heat, uint32_t task) {
 
 int LANED(fibrad_heat_follow)(fibrad_heat *heat, fibrad_workspace *work, uint32_t task) {
     const fibrad_scene *scene = heat->scene;
-    if (task < scene->facts.spheres) return follow_beams_of(heat, work, scene->place[task]);
+    if (task < scene->facts.spheres) return follow_beams_of(heat, work, task);
     follow_wall_rays(heat, task - scene->facts.spheres);
     return FIBRAD_OK;
 }

@@ -6,8 +6,8 @@
 #include "heat/problem.h"
 #include "row/work.h"
 
-/* Fills heat->hit of sphere `task`; from the number of spheres on, a part of heat->ray. FIBRAD_E_WORK: the work
- * memory is too small. */
+/* Keeps the beams of the sphere at place `task`; from the number of spheres on, fills a part of heat->ray.
+ * FIBRAD_E_WORK: the work memory is too small; _SIZE: that of the beams is. */
 typedef int fibrad_heat_follow_function(fibrad_heat *heat, fibrad_workspace *work, uint32_t task);
 
 FIBRAD_DECLARE_VERSIONS(fibrad_heat_follow_function, fibrad_heat_follow);

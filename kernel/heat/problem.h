@@ -13,11 +13,26 @@
 #define FIBRAD_HEAT_PATCHES_MAX 384   /* of a sphere */
 #define FIBRAD_HEAT_TASK        1024u /* rays of a wall that are followed at a time */
 
-/* What a sweep reads of a patch: side by side, since beams come to patches in no order. */
-typedef struct fibrad_heat_source {
-    double value;
-    double density; /* beams that a sphere's surface sends out, per area; 0: not a sphere */
-} fibrad_heat_source;
+#define FIBRAD_HEAT_BLOCK 256u /* patches of walls that may share a pencil */
+
+/* Beams from one sphere to another, or to a block of patches that belong to no sphere. Of those followed some are kept;
+ * after this follow the patches that they leave and meet, the latter counted from the first of the other end, and how
+ * many do: three numbers of 8 bits, or of 16 where spheres have more patches than that; then padding to whole fours of
+ * bytes. */
+typedef struct fibrad_heat_pencil {
+    uint32_t body; /* the other sphere, or the number of spheres and that of the block */
+    float share;   /* beams followed for each kept one */
+    uint16_t count;
+    int16_t tilt; /* 32767 times how many more of them had even directions than odd ones, over all followed */
+} fibrad_heat_pencil;
+
+/* Where the pencils of a sphere are in heat->pool, and one that ends on a sphere [fours of bytes after these]. */
+typedef struct fibrad_heat_row {
+    size_t begin, bytes;
+} fibrad_heat_row;
+typedef struct fibrad_heat_link {
+    uint32_t sphere, at;
+} fibrad_heat_link;
 
 /* The part of a wall that is cut into patches, a rectangle: of a plane across axis a along the axes a + 1 and a + 2
  * (modulo 3), of the cylinder around [turns, or fourths of the square that goes around] and along z. */
@@ -52,6 +67,7 @@ struct fibrad_heat {
     uint32_t spheres;                          /* of it */
     uint32_t given_bodies, slot[FIBRAD_WALLS]; /* of it */
     uint32_t beams;                            /* of one sphere: directions times points */
+    uint32_t thin;                             /* 2: of those that meet spheres every second one is kept; 1: all */
     uint32_t side;                             /* patches of a sphere along an edge of its cube */
     uint32_t bodies;                           /* spheres, FIBRAD_WALLS twice, 1 */
     uint32_t patches;                          /* all of them */
@@ -63,11 +79,18 @@ struct fibrad_heat {
     unsigned char *traced; /* [tasks of rays_capacity] 1: this task is */
     unsigned char *swept;  /* [parts] 1: this part is */
     uint16_t *leave;       /* [beams] which patch of its sphere each beam leaves: the same for all spheres */
-    uint32_t *hit;         /* [spheres][beams] the patch it meets */
     fibrad_heat_ray *ray;  /* [rays] */
+    unsigned char *pool;   /* [room] the pencils of all spheres; then, aligned, links by the sphere they end on */
+    size_t room;           /* bytes */
+    size_t used, links;    /* bytes of pencils, and how many end on spheres; several threads at once add to them */
+    fibrad_heat_row *row;  /* [spheres] */
+    fibrad_heat_link *link;
+    size_t *first_link; /* [spheres + 2] */
 
-    fibrad_heat_source *source;    /* [patches] of the sweep in hand */
-    double *gathered;              /* [parts][patches] what the beams of each part bring */
+    double *density;               /* [spheres] beams that its surface sends out, per area */
+    double *source;                /* [patches] what they send in the sweep in hand */
+    double *gathered;              /* [patches] what beams bring */
+    double *brought;               /* [parts][patches that are not of spheres] what those of each part bring */
     double *area;                  /* [patches] as the beams have it [L2] */
     double *radiosity, *net;       /* [patches] J, and the net flow N J */
     double *detail;                /* [patches] J less that of the coarser level */
@@ -94,12 +117,25 @@ struct fibrad_heat {
     uint32_t sweeps, limit;
 };
 
-/* The body beyond the patches of wall k, and the surroundings. */
+/* The patches of wall k, what is beyond them; the first patch that is not of a sphere, and the surroundings. */
 static inline uint32_t fibrad_heat_wall_body(const fibrad_heat *heat, uint32_t wall) { return heat->spheres + wall; }
 static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall) {
     return heat->spheres + FIBRAD_WALLS + wall;
 }
+static inline uint32_t fibrad_heat_others(const fibrad_heat *heat) { return heat->spheres * heat->config.patches; }
 static inline uint32_t fibrad_heat_open(const fibrad_heat *heat) { return heat->patches - 1; }
+
+/* Bytes of each number in pencils. */
+static inline size_t fibrad_heat_number_bytes(const fibrad_heat *heat) {
+    return heat->config.patches > FIBRAD_HEAT_BLOCK ? 2 : 1;
+}
+
+static inline const fibrad_heat_pencil *fibrad_heat_pencil_at(const unsigned char *at) { return (const void *)at; }
+
+/* Bytes of a pencil with its beams. */
+static inline size_t fibrad_heat_pencil_bytes(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
+    return (sizeof *pencil + 3 * pencil->count * fibrad_heat_number_bytes(heat) + 3) & ~(size_t)3;
+}
 
 /* Whether the scene is still the one the beams were followed in. */
 static inline bool fibrad_heat_scene_kept(const fibrad_heat *heat) { return heat->scene->hash == heat->hash; }

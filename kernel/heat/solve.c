@@ -18,6 +18,7 @@
  * which divides by eps or rho: their mean r = eps (S - h <J>)/D + q/A, changed by r/(1 + eps h/D), and the rest,
  * changed as that of other bodies about the mean. A black body sends J = E all over. */
 #include "heat/solve.h"
+#include "heat/pencils.h"
 #include "heat/sweep.h"
 
 /* A body of unknown temperature: its area, the means of J and of N J per area, and D. */
@@ -189,8 +190,10 @@ static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
 void fibrad_heat_start(fibrad_heat *heat) {
     if (heat->areas)
         send_radiosities(heat, FIBRAD_HEAT_FIRST);
-    else
+    else {
+        fibrad_heat_link_pencils(heat);
         heat->phase = FIBRAD_HEAT_AREA;
+    }
 }
 
 double fibrad_heat_temperature(const fibrad_heat *heat, double emission) {

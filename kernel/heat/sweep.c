@@ -1,67 +1,137 @@
 /* sweep.c - net flows between patches, a sweep over all beams. SPDX-License-Identifier: MIT
  *
- * Each beam gives to one end what it takes from the other: flows add up to zero whatever is sent, and are zero where
- * all send alike. */
+ * A beam brings one end what it takes from the other: flows add up to zero whatever is sent, and are zero where all
+ * send alike. Each sphere sums what its own beams bring it, then what those of others do that end on it: each beam is
+ * gone through twice, but no sum is anybody else's. */
 #include "heat/sweep.h"
 
+#define AHEAD  8
 #define BEYOND (FIBRAD_WALLS + 1)
 
 /* Halves of rays are independent, so that by how much they differ is their error; those of directions differ by more.
  */
 #define RAYS_WEIGHT 2.5
+/* What a pencil says of beams k: the patches of their two ends, 0 being that of its owner, and how many they are. */
+enum { NUMBERS = 3, HOW_MANY = 2 };
+FIBRAD_INLINE uint32_t number_of(const fibrad_heat_pencil *pencil, uint32_t k, uint32_t which, bool wide) {
+    const void *numbers = pencil + 1;
+    const uint32_t at = NUMBERS * k + which;
+    return wide ? ((const uint16_t *)numbers)[at] : ((const uint8_t *)numbers)[at];
+}
 
 /* A beam stands for the area 1/(n + m) if its two surfaces send out n and m beams per area: so the beams either way
- * together tell what the two exchange, those of the denser one counting as much more as there are more of them. */
-static double beam_area(const fibrad_heat_source *a, const fibrad_heat_source *b) {
-    return 1 / (a->density + b->density);
+ * together tell what the two exchange, those of the denser one counting as much more as there are more of them. One
+ * that is kept stands for several. In the sweep for the error those by even directions count more than odd ones. */
+static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil) {
+    const double other = pencil->body < heat->spheres ? heat->density[pencil->body] : 0;
+    const double share = heat->phase == FIBRAD_HEAT_CHECK ? pencil->share * (pencil->tilt / 32767.) : pencil->share;
+    return share / (heat->density[owner] + other);
+}
+
+/* Adds what the beams of a pencil bring one of its ends from the other. */
+FIBRAD_INLINE void bring_beams(double *own, const double *mine, const double *other, const fibrad_heat_pencil *pencil,
+                               uint32_t end, double area, bool wide) {
+    for (uint32_t k = 0; k < pencil->count; k++) {
+        const uint32_t a = number_of(pencil, k, end, wide), b = number_of(pencil, k, 1 - end, wide);
+        own[a] += area * number_of(pencil, k, HOW_MANY, wide) * (other[b] - mine[a]);
+    }
+}
+
+static void bring(const fibrad_heat *heat, double *own, const double *mine, const double *other,
+                  const fibrad_heat_pencil *pencil, uint32_t end, double area) {
+    if (fibrad_heat_number_bytes(heat) == 2)
+        bring_beams(own, mine, other, pencil, end, area, true);
+    else if (end == 0)
+        bring_beams(own, mine, other, pencil, 0, area, false);
+    else
+        bring_beams(own, mine, other, pencil, 1, area, false);
+}
+
+/* Where the patches of the other end of a pencil begin. */
+static size_t other_end(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
+    const uint32_t spheres = heat->spheres, body = pencil->body;
+    return body < spheres ? (size_t)body * heat->config.patches
+                          : fibrad_heat_others(heat) + (size_t)(body - spheres) * FIBRAD_HEAT_BLOCK;
 }
 
 /* Many beams meet the few patches that lie beyond the walls and their patches; one sum of all would lose digits. So
  * what has come to them lately is moved to a longer sum. */
 static void set_aside(const fibrad_heat *heat, double *to, double sum[BEYOND]) {
-    const uint32_t first = heat->first[fibrad_heat_beyond(heat, 0)];
-    for (uint32_t b = first; b < heat->patches; b++) sum[b - first] += to[b], to[b] = 0;
+    const uint32_t first = heat->first[fibrad_heat_beyond(heat, 0)], others = fibrad_heat_others(heat);
+    for (uint32_t b = first; b < heat->patches; b++) sum[b - first] += to[b - others], to[b - others] = 0;
 }
 
-/* What flows count for by direction k of n, or ray k: 1, but in the sweep for the error that much more by even ones
- * than by odd ones. The first and the last direction are halved, or the even ones would lean to one side. */
-static double half_sign(const fibrad_heat *heat, uint32_t k, uint32_t n) {
-    if (heat->phase != FIBRAD_HEAT_CHECK) return 1;
-    return (k % 2 == 0 ? 1 : -1) * (k == 0 || k + 1 == n ? .5 : 1);
-}
+/* What sweeps of a part have in common: where it gathers what patches that are not of spheres are brought; and, in the
+ * first sweep of all, whose sums are areas, what the ends of beams then send. */
+struct gathering {
+    bool areas;
+    double *walls, away[BEYOND];
+    double none[FIBRAD_HEAT_PATCHES_MAX], one[FIBRAD_HEAT_PATCHES_MAX];
+};
 
-/* Adds what the beams of one sphere bring to its own patches, and to those they meet; or, in the first sweep of all,
- * the areas they stand for. */
-static void sweep_sphere(const fibrad_heat *heat, uint32_t place, double *to, double away[BEYOND]) {
-    const uint32_t *hit = heat->hit + (size_t)place * heat->beams, patches = heat->config.patches;
-    const fibrad_heat_source *source = heat->source, *mine = source + (size_t)place * patches;
-    const bool areas = heat->phase == FIBRAD_HEAT_AREA;
-    double own[FIBRAD_HEAT_PATCHES_MAX] = {0}, sum[BEYOND] = {0};
-    for (uint32_t direction = 0; direction < heat->config.directions; direction++) {
-        const double sign = half_sign(heat, direction, heat->config.directions);
-        const uint32_t begin = direction * heat->config.points;
-        for (uint32_t k = begin; k < begin + heat->config.points; k++) {
-            const uint32_t a = heat->leave[k], b = hit[k];
-            const double area = sign * beam_area(mine, &source[b]);
-            const double flow = areas ? area : area * (source[b].value - mine[a].value);
-            own[a] += flow;
-            to[b] += areas ? flow : -flow;
-        }
-        set_aside(heat, to, sum);
+/* Takes from walls and what is beyond what the beams of a pencil bring its owner. */
+static void take_from_walls(const fibrad_heat *heat, const double *mine, const double *other,
+                            const fibrad_heat_pencil *pencil, double area, struct gathering *g) {
+    double *to = g->walls + (other_end(heat, pencil) - fibrad_heat_others(heat));
+    const bool wide = fibrad_heat_number_bytes(heat) == 2;
+    for (uint32_t k = 0; k < pencil->count; k++) {
+        const uint32_t a = number_of(pencil, k, 0, wide), b = number_of(pencil, k, 1, wide);
+        const double all = area * number_of(pencil, k, HOW_MANY, wide);
+        to[b] += g->areas ? all : -(all * (other[b] - mine[a]));
     }
-    for (uint32_t a = 0; a < patches; a++) to[(size_t)place * patches + a] += own[a];
-    for (int b = 0; b < BEYOND; b++) away[b] += sum[b];
+    set_aside(heat, g->walls, g->away);
 }
 
-static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, double *to, double away[BEYOND]) {
-    const bool areas = heat->phase == FIBRAD_HEAT_AREA;
+static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, const double *mine, double *own,
+                            struct gathering *g) {
+    const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
+    while (at < end) {
+        const fibrad_heat_pencil *pencil = fibrad_heat_pencil_at(at);
+        const double *other = g->areas ? g->one : heat->source + other_end(heat, pencil);
+        const double area = beam_area(heat, place, pencil);
+        bring(heat, own, mine, other, pencil, 0, area);
+        if (pencil->body >= heat->spheres) take_from_walls(heat, mine, other, pencil, area, g);
+        at += fibrad_heat_pencil_bytes(heat, pencil);
+    }
+}
+
+static void sweep_beams_of_others(const fibrad_heat *heat, uint32_t place, const double *mine, double *own,
+                                  const struct gathering *g) {
+    for (size_t l = heat->first_link[place]; l < heat->first_link[place + 1]; l++) {
+        if (l + AHEAD < heat->first_link[place + 1]) {
+            const fibrad_heat_link *next = &heat->link[l + AHEAD];
+            const unsigned char *soon = heat->pool + heat->row[next->sphere].begin + 4 * (size_t)next->at;
+            __builtin_prefetch(soon);
+            __builtin_prefetch(soon + 64);
+        }
+        const uint32_t owner = heat->link[l].sphere;
+        const unsigned char *row = heat->pool + heat->row[owner].begin;
+        const fibrad_heat_pencil *pencil = fibrad_heat_pencil_at(row + 4 * (size_t)heat->link[l].at);
+        const double *other = g->areas ? g->one : heat->source + (size_t)owner * heat->config.patches;
+        bring(heat, own, mine, other, pencil, 1, beam_area(heat, owner, pencil));
+    }
+}
+
+static void sweep_sphere(const fibrad_heat *heat, uint32_t place, struct gathering *g) {
+    const size_t first = (size_t)place * heat->config.patches;
+    const double *mine = g->areas ? g->none : heat->source + first;
+    double *own = heat->gathered + first;
+    fibrad_zero(own, heat->config.patches * sizeof *own);
+    sweep_own_beams(heat, place, mine, own, g);
+    sweep_beams_of_others(heat, place, mine, own, g);
+}
+
+static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, struct gathering *g) {
+    const double *source = heat->source;
+    const uint32_t others = fibrad_heat_others(heat);
     for (uint32_t k = begin; k < end; k++) {
         const fibrad_heat_ray ray = heat->ray[k];
+        if (ray.area == 0) continue;
         const double area = (heat->phase == FIBRAD_HEAT_CHECK ? RAYS_WEIGHT * (1 - 2 * (double)(k % 2)) : 1) * ray.area;
-        const double flow = areas ? area : area * (heat->source[ray.to].value - heat->source[ray.from].value);
-        to[ray.from] += flow;
-        to[ray.to] += areas ? flow : -flow;
-        if (k % 64 == 63) set_aside(heat, to, away);
+        const double flow = g->areas ? area : area * (source[ray.to] - source[ray.from]);
+        g->walls[ray.from - others] += flow;
+        g->walls[ray.to - others] += g->areas ? flow : -flow;
+        if (k % 64 == 63) set_aside(heat, g->walls, g->away);
     }
 }
 
@@ -72,15 +142,16 @@ static uint32_t part_begin(const fibrad_heat *heat, uint32_t n, uint32_t part) {
 
 /* All of a part but the note that it is done. */
 static void sweep_part(fibrad_heat *heat, uint32_t part) {
-    const uint32_t spheres = heat->spheres;
+    const uint32_t spheres = heat->spheres, others = fibrad_heat_others(heat), of_walls = heat->patches - others;
     const uint32_t begin = part_begin(heat, spheres, part), end = part_begin(heat, spheres, part + 1);
-    double *to = heat->gathered + (size_t)part * heat->patches, away[BEYOND] = {0};
-    fibrad_zero(to, heat->patches * sizeof *to);
-    for (uint32_t place = begin; place < end; place++) sweep_sphere(heat, place, to, away);
-    sweep_rays(heat, part_begin(heat, heat->rays, part), part_begin(heat, heat->rays, part + 1), to, away);
-    set_aside(heat, to, away);
+    struct gathering g = {heat->phase == FIBRAD_HEAT_AREA, heat->brought + (size_t)part * of_walls, {0}, {0}, {0}};
+    for (uint32_t a = 0; a < FIBRAD_HEAT_PATCHES_MAX; a++) g.one[a] = 1;
+    fibrad_zero(g.walls, of_walls * sizeof *g.walls);
+    for (uint32_t place = begin; place < end; place++) sweep_sphere(heat, place, &g);
+    sweep_rays(heat, part_begin(heat, heat->rays, part), part_begin(heat, heat->rays, part + 1), &g);
+    set_aside(heat, g.walls, g.away);
     const uint32_t few = heat->first[fibrad_heat_beyond(heat, 0)];
-    fibrad_copy(to + few, away, (heat->patches - few) * sizeof *to);
+    fibrad_copy(g.walls + (few - others), g.away, (heat->patches - few) * sizeof *g.walls);
 }
 
 int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
@@ -92,10 +163,12 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
 }
 
 const double *fibrad_heat_gathered(fibrad_heat *heat) {
-    double *sum = heat->gathered;
-    for (uint32_t part = 1; part < heat->config.parts; part++) {
-        const double *from = heat->gathered + (size_t)part * heat->patches;
-        for (uint32_t a = 0; a < heat->patches; a++) sum[a] += from[a];
+    const uint32_t others = fibrad_heat_others(heat), of_walls = heat->patches - others;
+    double *sum = heat->gathered + others;
+    fibrad_zero(sum, of_walls * sizeof *sum);
+    for (uint32_t part = 0; part < heat->config.parts; part++) {
+        const double *from = heat->brought + (size_t)part * of_walls;
+        for (uint32_t a = 0; a < of_walls; a++) sum[a] += from[a];
     }
-    return sum;
+    return heat->gathered;
 }

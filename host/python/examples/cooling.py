@@ -1,16 +1,15 @@
 #!/usr/bin/env python3
-# cooling.py - a bed of hot spheres cools on a floor: explicit steps that keep the energy. SPDX-License-Identifier: MIT
-"""Usage: cooling.py [STEPS]. Each step needs the net powers alone: m c dT/dt = power."""
+# cooling.py - a bed of hot spheres cools on a floor. SPDX-License-Identifier: MIT
+"""Usage: cooling.py [TIMES]. Temperatures every ten seconds; steps choose themselves, and the energy is kept."""
 import sys
 
 import numpy as np
 
 import fibrad
 
-STEPS = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+TIMES = int(sys.argv[1]) if len(sys.argv) > 1 else 20
 RADIUS, DENSITY, CAPACITY, EMISSIVITY = 0.005, 2500.0, 800.0, 0.8  # m, kg/m3, J/(kg K)
 SURROUNDINGS, FLOOR = 300.0, 350.0  # K
-STEP = 2.0  # s
 
 # 8 x 8 x 4 spheres, nearly touching, on a floor
 place = np.indices((8, 8, 4)).reshape(3, -1).T
@@ -19,14 +18,14 @@ heat_capacity = 4 / 3 * np.pi * RADIUS**3 * DENSITY * CAPACITY  # J/K, of a sphe
 temperature = np.full(len(x), 1200.0)
 given_away = 0.0  # J, to floor and surroundings
 
-with fibrad.Heat(x, RADIUS, walls={"zmin": 0.0}) as heat:
-    for step in range(1, STEPS + 1):
-        powers = heat.solve(temperature, EMISSIVITY, surroundings=SURROUNDINGS, wall_temperature={"zmin": FLOOR},
-                            wall_emissivity={"zmin": 0.9})
-        temperature += STEP * powers.spheres / heat_capacity
-        given_away += STEP * (powers.surroundings + powers.walls["zmin"])
-        if step % 5 == 0:
-            print(f"{step * STEP:6.1f} s  {temperature.min():7.1f} to {temperature.max():7.1f} K")
+with fibrad.Transient(x, RADIUS, walls={"zmin": 0.0}) as bed:
+    for time in range(1, TIMES + 1):
+        end = bed.advance(temperature, 10.0, capacity=heat_capacity, emissivity=EMISSIVITY, surroundings=SURROUNDINGS,
+                          wall_temperature={"zmin": FLOOR}, wall_emissivity={"zmin": 0.9})
+        temperature = end.temperatures
+        given_away += end.surroundings + end.walls["zmin"]
+        if time % 5 == 0:
+            print(f"{10 * time:4d} s  {temperature.min():7.1f} to {temperature.max():7.1f} K, {end.steps} steps")
 
 lost = heat_capacity * (1200.0 * len(x) - temperature.sum())
 print(f"lost by the spheres {lost:.6f} J, gained by floor and surroundings {given_away:.6f} J")

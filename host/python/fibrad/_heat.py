@@ -4,24 +4,22 @@ from __future__ import annotations
 import ctypes
 import dataclasses
 import math
-import threading
-import weakref
 from collections.abc import Callable, Collection, Mapping
 from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._bed import Bed, heat_config
 from ._call import Call, Progress
-from ._errors import StateError
-from ._library import Fault, HeatConfig, HeatResult, HeatSources, library
-from ._scene import Container, Packing, Walls, pointer
+from ._library import HeatResult, HeatSources, library
+from ._scene import Walls, pointer
 from ._values import per_sphere, real, refuse, whole
 
 STEFAN_BOLTZMANN = 5.670374419e-8
 """W/(m2 K4)"""
 
-_HOTTEST, _STRONGEST = 1e20, 1e100
+HOTTEST, STRONGEST = 1e20, 1e100
 _SETTLE_MAX, _EMISSIVITY_CHANGE = 100, 1e-5
 
 
@@ -64,13 +62,7 @@ class Powers:
         return math.fsum([*self.spheres, *self.walls.values(), self.surroundings])
 
 
-def _choice(name: str, value: Optional[int], choices: tuple[int, ...]) -> int:
-    if value is not None and value not in choices:
-        raise refuse(f"{name} = {value} is none of {', '.join(map(str, choices))}")
-    return value or 0
-
-
-class Heat:
+class Heat(Bed):
     """Radiation between grey diffuse spheres, walls and surroundings of given temperatures or powers.
 
     The beams between all surfaces are traced once; `solve` gives the net powers for any temperatures and emissivities,
@@ -107,70 +99,12 @@ class Heat:
     True
     """
 
+    _kind = "radiation"
+
     def __init__(self, x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None, walls: Optional[Walls] = None,
                  directions: Optional[int] = None, points: Optional[int] = None, patches: Optional[int] = None,
                  ids: Optional[ArrayLike] = None, threads: Optional[int] = None, progress: Optional[Progress] = None):
-        self._packing = Packing(x, r, ids)
-        self._container = Container(box, walls)
-        config = HeatConfig(directions=whole("directions", directions, 8, 65536),
-                            points=_choice("points", points, (64, 128, 256)),
-                            patches=_choice("patches", patches, (24, 96, 384)))
-        self._call = Call(threads, progress)
-        self._busy = threading.Lock()
-        self._handle = ctypes.c_void_p()
-        self._free = weakref.finalize(self, _free, self._handle)
-        status = self._call(library.fibrad_radiation_new, self._handle, self._container.config, self._packing.spheres,
-                            config, self._call.run)
-        if status:
-            raise self._packing.error(status, self._call.run.fault)
-
-    @property
-    def n(self) -> int:
-        """Spheres."""
-        return self._packing.n
-
-    def _use(self, function: Any, packing: Packing, *arguments: Any) -> None:
-        if not self._busy.acquire(blocking=False):
-            raise StateError("this Heat is in use by another call; one thread at a time may use it")
-        try:
-            if not self._handle:
-                raise StateError("this Heat is closed")
-            status = self._call(function, self._handle, *arguments)
-            if status:
-                fault = Fault()
-                library.fibrad_radiation_describe(self._handle, None, fault)
-                raise packing.error(status, fault)
-        finally:
-            self._busy.release()
-
-    def move(self, x: ArrayLike, r: Optional[ArrayLike] = None, *, box: Optional[ArrayLike] = None,
-             walls: Optional[Walls] = None) -> None:
-        """Goes on to the same spheres and the same kinds of walls at other places.
-
-        Parameters
-        ----------
-        x : (n, 3) array
-            Centres [m].
-        r : (n,) array or float, optional
-            Radii [m]. Default: those there are.
-        box, walls : optional
-            As of `Heat`. Default: those there are.
-
-        Raises
-        ------
-        InputError
-            Also another number of spheres or other walls. The bed of before then stays.
-        """
-        if np.shape(x)[:1] != (self.n,):
-            raise refuse(f"x has the shape {np.shape(x)}; this Heat has {self.n} spheres")
-        packing = Packing(x, self._packing.r if r is None else r, self._packing.ids)
-        container = Container(self._container.period if box is None else box,
-                              self._container.walls if walls is None else walls)
-        if container.names != self._container.names:
-            now, before = (", ".join(names) or "none" for names in (container.names, self._container.names))
-            raise refuse(f"the walls are {now}; they were {before}")
-        self._use(library.fibrad_radiation_move, packing, container.config, packing.spheres)
-        self._packing, self._container = packing, container
+        super().__init__(x, r, box, walls, ids, heat_config(directions, points, patches), Call(threads, progress))
 
     def solve(self, temperature: Optional[ArrayLike], emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]], *,
               power: Optional[ArrayLike] = None, surroundings: Optional[float] = None, wall_temperature: Any = None,
@@ -223,13 +157,13 @@ class Heat:
             raise refuse(f"there is no wall {', '.join(map(repr, sorted(wrong)))}")
         if isinstance(wall_temperature, Mapping) and walls_off & set(wall_temperature):
             raise refuse(f"{', '.join(sorted(walls_off & set(wall_temperature)))}: its temperature is to be found")
-        kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, _HOTTEST, names,
+        kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, HOTTEST, names,
                              power is not None)
         arrays = {"temperature": kelvins,
-                  "power": None if power is None else per_sphere("power", power, n, -_STRONGEST, _STRONGEST, names, True),
-                  "body_temperature": container.per_wall("wall_temperature", wall_temperature, 0, _HOTTEST, walls_off),
+                  "power": None if power is None else per_sphere("power", power, n, -STRONGEST, STRONGEST, names, True),
+                  "body_temperature": container.per_wall("wall_temperature", wall_temperature, 0, HOTTEST, walls_off),
                   "body_emissivity": container.per_wall("wall_emissivity", wall_emissivity, 0, 1, frozenset(insulated)),
-                  "body_power": container.per_wall("wall_power", powers, -_STRONGEST, _STRONGEST,
+                  "body_power": container.per_wall("wall_power", powers, -STRONGEST, STRONGEST,
                                                    frozenset(container.names)) if powers else None}
         arrays["body_emissivity"] = np.nan_to_num(arrays["body_emissivity"])
         if surroundings is None and not container.closed():
@@ -237,7 +171,7 @@ class Heat:
         law = emissivity if callable(emissivity) else lambda found: emissivity
         shares = per_sphere("emissivity", law(np.where(np.isnan(kelvins), surroundings or 300., kelvins)), n, 0, 1, names)
         closed = np.array([wall in insulated for wall in container.names], np.uint8)
-        sources = HeatSources(surroundings=real("surroundings", surroundings, 0, _HOTTEST),
+        sources = HeatSources(surroundings=real("surroundings", surroundings, 0, HOTTEST),
                               sigma=real("sigma", sigma, 1e-30, 1e30), tolerance=real("tolerance", tolerance, 0, 1),
                               uniform=bool(uniform), insulated=pointer(closed, ctypes.POINTER(ctypes.c_ubyte)),
                               **{name: pointer(array) for name, array in arrays.items() if array is not None})
@@ -262,21 +196,3 @@ class Heat:
                       temperature_errors=of_spheres["temperature_error"],
                       error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,
                       error_beams=result.error_beams, residual=result.residual, sweeps=result.sweeps)
-
-    def close(self) -> None:
-        """Frees the memory; after that the object is of no use."""
-        if not self._busy.acquire(blocking=False):
-            raise StateError("this Heat is in use by another call")
-        self._free()
-        self._busy.release()
-
-    def __enter__(self) -> "Heat":
-        return self
-
-    def __exit__(self, *exception: Any) -> None:
-        self.close()
-
-
-def _free(handle: ctypes.c_void_p) -> None:
-    library.fibrad_radiation_free(handle)
-    handle.value = None

@@ -65,6 +65,13 @@ HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surround
                         ("error_patches error_beams residual", c_double), ("sweeps", c_uint32),
                         ("body_absorbed", DOUBLES))
 
+TransientConfig = _structure("transient_config", ("method", c_int), ("exchange", ExchangeRule), ("heat", HeatConfig))
+Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_double),
+                  ("body_temperature surroundings", DOUBLES), ("step tolerance", c_double),
+                  ("power body_power", DOUBLES), ("surroundings_power", c_double), ("body_energy", DOUBLES),
+                  ("surroundings_energy", c_double), ("observe context", c_void_p), ("error", c_double),
+                  ("steps refused sweeps corrections", c_uint64))
+
 
 def _declare(library: ctypes.CDLL) -> None:
     """Types of what is called, so that no pointer is cut to an int."""
@@ -81,8 +88,13 @@ def _declare(library: ctypes.CDLL) -> None:
     library.fibrad_radiation_solve.argtypes = [c_void_p, POINTER(HeatSources), POINTER(HeatResult)]
     library.fibrad_radiation_describe.argtypes = [c_void_p, c_void_p, POINTER(Fault)]
     library.fibrad_radiation_free.argtypes = [c_void_p]
+    library.fibrad_transient_new.argtypes = [POINTER(c_void_p), *bed, POINTER(TransientConfig), POINTER(Run)]
+    library.fibrad_transient_move.argtypes = [c_void_p, *bed]
+    library.fibrad_transient_advance.argtypes = [c_void_p, POINTER(HeatSources), POINTER(Span)]
+    library.fibrad_transient_describe.argtypes = [c_void_p, c_void_p, POINTER(Fault)]
+    library.fibrad_transient_free.argtypes = [c_void_p]
     library.fibrad_bed_free.argtypes = [POINTER(BedFactors)]
-    for name in ("radiation_describe", "radiation_free", "bed_free"):
+    for name in ("radiation_describe", "radiation_free", "transient_describe", "transient_free", "bed_free"):
         getattr(library, f"fibrad_{name}").restype = None
 
 

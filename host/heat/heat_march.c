@@ -1,0 +1,450 @@
+/* heat_march.c - temperatures of one bed in time. SPDX-License-Identifier: MIT */
+#include "heat/heat_march.h"
+
+#include <gsl/gsl_math.h>
+#include <gsl/gsl_sort.h>
+#include <limits.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bed/bed_scene.h"
+#include "cli/message.h"
+#include "plot/plot_time.h"
+
+
+#define SECONDS_MAX 1e15
+enum { TIMES_MAX = 10000 };
+
+static int take_step(const char *text, double *step) {
+    *step = 0;
+    return strcmp(text, "auto") == 0 ? STATUS_OK : options_number("--step", text, 1 / SECONDS_MAX, SECONDS_MAX, step);
+}
+
+int march_option(int key, const char *text, struct march_options *march) {
+    switch (key) {
+    case KEY_UNTIL:
+        return options_number("--until", text, 1 / SECONDS_MAX, SECONDS_MAX, &march->until);
+    case KEY_CAPACITY:
+        return quantity_option("--heat-capacity", text, 1e-12, 1e12, &march->capacity);
+    case KEY_DENSITY:
+        return quantity_option("--density", text, 1e-12, 1e12, &march->density);
+    case KEY_STEP:
+        return take_step(text, &march->step);
+    case KEY_EVERY:
+        return options_number("--every", text, 1 / SECONDS_MAX, SECONDS_MAX, &march->every);
+    default:
+        march->times = text;
+        return STATUS_OK;
+    }
+}
+
+/* Reads a table, of the wall of this name or of the surroundings, "". */
+static int add_table(struct march_options *march, const char *name, size_t length, const char *path, size_t end) {
+    struct march_table *table = &march->table[march->tables];
+    if (march->tables == WALLS_MAX + 1 || length >= sizeof table->name)
+        return message(STATUS_USAGE, "--wall-temperature: too many tables, or no such wall");
+    char *file = strndup(path, end);
+    if (!file) return message_memory();
+    snprintf(table->name, sizeof table->name, "%.*s", (int)length, name);
+    const int status = curve_read(file, "temperature", 0 - march->zero, TEMPERATURE_MAX, &table->curve);
+    free(file);
+    ++march->tables;
+    return status;
+}
+
+/* zmin=@TABLE,zmax=300: with the table's value at 0 s in its place. */
+static int read_wall_tables(struct march_options *march, const char **walls) {
+    const char *text = *walls;
+    const size_t room = strlen(text) * 16 + 1;
+    size_t used = 0;
+    march->walls = malloc(room);
+    if (!march->walls) return message_memory();
+    for (bool first = true; first || *text++ == ','; first = false) {
+        const size_t length = strcspn(text, ","), name = strcspn(text, "=,");
+        const bool table = text[name] == '=' && text[name + 1] == '@';
+        if (*text == '@')
+            return message(STATUS_USAGE, "--wall-temperature: a table needs its wall: zmin=%.*s", (int)length, text);
+        int status = table ? add_table(march, text, name, text + name + 2, length - name - 2) : STATUS_OK;
+        if (status) return status;
+        if (!first) march->walls[used++] = ',';
+        if (table)
+            used += (size_t)snprintf(march->walls + used, room - used, "%.*s=%.17g", (int)name, text,
+                                     curve_at(&march->table[march->tables - 1].curve, 0));
+        else
+            used += (size_t)snprintf(march->walls + used, room - used, "%.*s", (int)length, text);
+        text += length;
+    }
+    *walls = march->walls;
+    return STATUS_OK;
+}
+
+static int read_ambient_table(struct march_options *march, const char **ambient) {
+    enum { NUMBER = 40 };
+    march->ambient = malloc(NUMBER);
+    if (!march->ambient) return message_memory();
+    const int status = add_table(march, "", 0, *ambient + 1, strlen(*ambient + 1));
+    if (!status) snprintf(march->ambient, NUMBER, "%.17g", curve_at(&march->table[march->tables - 1].curve, 0));
+    *ambient = march->ambient;
+    return status;
+}
+
+int march_check(struct march_options *march, struct bed_options *bed, const char **walls, const char **ambient) {
+    const struct quantity *c = &march->capacity, *rho = &march->density;
+    if (!(march->until > 0)) {
+        const char *needs = c->given         ? "--heat-capacity"
+                            : rho->given     ? "--density"
+                            : march->times   ? "--times"
+                            : march->every   ? "--every"
+                            : march->step    ? "--step"
+                                             : NULL;
+        return needs ? message(STATUS_USAGE, "%s: needs --until", needs) : STATUS_OK;
+    }
+    if (!c->given) return message(STATUS_USAGE, "--until: which --heat-capacity?");
+    if (!rho->given) return message(STATUS_USAGE, "--until: which --density?");
+    if (march->times && march->every > 0) return message(STATUS_USAGE, "--times and --every: the one or the other");
+    if (march->every > 0 && march->until / march->every > TIMES_MAX)
+        return message(STATUS_USAGE, "--every: more than %d times", TIMES_MAX);
+    march->capacity.place = bed_options_column(bed, c->column, NULL);
+    march->density.place = bed_options_column(bed, rho->column, NULL);
+    int status = *walls && strchr(*walls, '@') ? read_wall_tables(march, walls) : STATUS_OK;
+    if (!status && *ambient && **ambient == '@') status = read_ambient_table(march, ambient);
+    return status;
+}
+
+void march_free(struct march_options *march) {
+    for (size_t k = 0; k < march->tables; ++k) curve_free(&march->table[k].curve);
+    free(march->walls);
+    free(march->ambient);
+}
+
+/* A march under way. */
+struct marching {
+    struct bed_options *asked;
+    const struct march_options *options;
+    const struct heat_problem *problem;
+    const struct bed *source;
+    struct bed bed; /* the same, but its frame is the number of the output in hand */
+    bool by_patches;
+    fibrad_transient *transient;
+    fibrad_heat_sources sources;
+    fibrad_heat_result *result;
+    fibrad_span span;
+    const struct march_table *of_wall[WALLS_MAX], *of_surroundings; /* NULL: constant */
+    double wall[WALLS_MAX], wall_energy[WALLS_MAX], energy[WALLS_MAX], surroundings_energy;
+    double now;
+    uint64_t steps, refused, sweeps, corrections;
+    double error;
+    struct time_point *point; /* [points] of the picture */
+    size_t points, room;
+    bool failed; /* no memory for more of them */
+};
+
+static struct time_point point_of(const struct marching *m, double time, const double *temperature) {
+    struct time_point point = {time, 0, INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < m->bed.n; ++i) {
+        point.mean += temperature[i] / m->bed.n;
+        point.least = fmin(point.least, temperature[i]), point.most = fmax(point.most, temperature[i]);
+    }
+    return point;
+}
+
+static void add_point(void *marching, double time, const double *temperature) {
+    struct marching *m = marching;
+    if (m->points == m->room) {
+        const size_t room = 2 * m->room + 64;
+        struct time_point *point = realloc(m->point, room * sizeof *point);
+        m->failed = m->failed || !point;
+        if (!point) return;
+        m->point = point, m->room = room;
+    }
+    m->point[m->points++] = point_of(m, m->now + time, temperature);
+}
+
+static double table_at(const struct marching *m, const struct march_table *table, double time) {
+    return curve_at(&table->curve, time) + m->options->zero;
+}
+
+/* Whose tables there are. */
+static void find_tables(struct marching *m) {
+    const struct walls *walls = &m->problem->walls;
+    for (size_t j = 0; j < m->options->tables; ++j) {
+        const struct march_table *table = &m->options->table[j];
+        for (uint32_t k = 0; k < walls->count; ++k)
+            if (strcmp(wall_name(&walls->body[k]), table->name) == 0) m->of_wall[k] = table;
+        if (!table->name[0]) m->of_surroundings = table;
+    }
+}
+
+/* Walls and surroundings at a time. */
+static void outside_at(const struct marching *m, double time, double wall[WALLS_MAX], double *surroundings) {
+    const fibrad_heat_sources *s = &m->problem->sources;
+    for (uint32_t k = 0; k < m->problem->walls.count; ++k)
+        wall[k] = m->of_wall[k] ? table_at(m, m->of_wall[k], time) : s->body_temperature[k];
+    *surroundings = m->of_surroundings        ? table_at(m, m->of_surroundings, time)
+                    : isnan(s->surroundings) ? 0 /* closed: nothing gets there */
+                                             : s->surroundings;
+}
+
+/* Times of output, ascending, and when tables bend, the ends of spans: [count] in *times, output[k] says which. */
+static int find_times(const struct marching *m, double **times, bool **output, size_t *count) {
+    const struct march_options *o = m->options;
+    const size_t every = o->every > 0 ? (size_t)ceil(o->until / o->every * (1 - 1e-12)) : 0;
+    size_t room = every + TIMES_MAX + 2, n = 0, asked;
+    for (size_t j = 0; j < o->tables; ++j) room += o->table[j].curve.n;
+    double *t = *times = malloc(room * sizeof *t);
+    *output = calloc(room, sizeof **output);
+    if (!t || !*output) return message_memory();
+    for (; n < every; ++n) t[n] = o->every * (double)n;
+    int listed = 0, status = o->times ? options_numbers("--times", o->times, TIMES_MAX, t, &listed) : STATUS_OK;
+    if (status) return status;
+    n += (size_t)listed;
+    for (size_t k = 0; k < n; ++k)
+        if (!(t[k] >= 0 && t[k] <= o->until && (k == 0 || t[k] > t[k - 1])))
+            return message(STATUS_USAGE, "--times: %g does not lie above the one before, within 0 and %g s", t[k],
+                           o->until);
+    if (!o->times && (n == 0 || t[n - 1] < o->until)) t[n++] = o->until;
+    asked = n;
+    double *wanted = malloc(asked * sizeof *wanted);
+    if (!wanted) return message_memory();
+    memcpy(wanted, t, asked * sizeof *wanted);
+    if (t[n - 1] < o->until) t[n++] = o->until;
+    for (size_t j = 0; j < o->tables; ++j)
+        for (size_t k = 0; k < o->table[j].curve.n; ++k)
+            if (o->table[j].curve.x[k] > 0 && o->table[j].curve.x[k] < o->until) t[n++] = o->table[j].curve.x[k];
+    gsl_sort(t, 1, n);
+    *count = 0;
+    for (size_t k = 0, next = 0; k < n; ++k) {
+        if (*count > 0 && t[k] == t[*count - 1]) continue;
+        t[*count] = t[k];
+        (*output)[*count] = next < asked && wanted[next] == t[k];
+        next += (*output)[*count];
+        ++*count;
+    }
+    free(wanted);
+    return STATUS_OK;
+}
+
+/* Heat that warms each sphere by 1 K. */
+static int find_capacities(struct marching *m, double metres, double **capacity) {
+    double *density = NULL;
+    int status = quantity_values(&m->options->capacity, &m->bed, m->asked->name, "heat capacity", 0, 1e-12, 1e12,
+                                 capacity);
+    if (!status)
+        status = quantity_values(&m->options->density, &m->bed, m->asked->name, "density", 0, 1e-12, 1e12, &density);
+    for (uint32_t i = 0; i < m->bed.n && !status; ++i) {
+        if (!(m->span.temperature[i] > 0))
+            status = message_at(STATUS_INPUT, m->asked->name, m->bed.line[i],
+                                "the temperature is %g K; to begin with it must be above 0", m->span.temperature[i]);
+        (*capacity)[i] *= density[i] * (4. / 3 * M_PI) * gsl_pow_3(m->bed.r[i] * metres);
+    }
+    free(density);
+    return status;
+}
+
+/* Corrected factors, unless a wall's temperature is wanted. */
+static int choose_model(struct marching *m) {
+    const struct heat_problem *problem = m->problem;
+    m->by_patches = problem->by_patches;
+    for (uint32_t k = 0; k < problem->walls.count; ++k) {
+        if (!isnan(problem->sources.body_temperature[k])) continue;
+        m->by_patches = true;
+        if (problem->by_factors)
+            return message(STATUS_USAGE, "--model factors: %s has no temperature given; patches find it",
+                           wall_name(&problem->walls.body[k]));
+    }
+    return STATUS_OK;
+}
+
+static int library_status(struct marching *m, int status) {
+    fibrad_fault fault;
+    fibrad_transient_describe(m->transient, NULL, &fault);
+    if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(m->asked, &m->bed, status, &fault);
+    progress_stop(&m->asked->progress);
+    return message_at(STATUS_INPUT, m->asked->name, 0, "after %g s no steps keep all temperatures above 0 K%s", m->now,
+                      m->options->step > 0 ? "; --step auto takes shorter ones" : "");
+}
+
+/* Powers at the time in hand, and all outputs. */
+static int write_state(struct marching *m) {
+    const uint32_t walls = m->problem->walls.count;
+    fibrad_heat_sources shown = m->sources;
+    shown.temperature = m->span.temperature;
+    int status = library_status(m, fibrad_transient_powers(m->transient, &shown, m->result));
+    if (status) return status;
+    for (uint32_t k = 0; k < walls; ++k)
+        if (!isnan(m->wall[k])) m->result->body_temperature[k] = m->wall[k];
+    memcpy(m->result->temperature, m->span.temperature, m->bed.n * sizeof *m->span.temperature);
+    if (isnan(m->problem->sources.surroundings)) shown.surroundings = NAN;
+    const struct contents what = {
+        .bed = &m->bed, .walls = &m->problem->walls, .time = &m->now, .sources = &shown, .result = m->result};
+    status = outputs_write(&m->asked->outputs, &what, m->bed.frame);
+    ++m->bed.frame;
+    return status;
+}
+
+/* Up to another time. */
+static int advance(struct marching *m, double time) {
+    double wall[WALLS_MAX], surroundings;
+    outside_at(m, time, wall, &surroundings);
+    m->span.duration = time - m->now;
+    m->span.body_temperature = wall, m->span.surroundings = &surroundings;
+    const int status = fibrad_transient_advance(m->transient, &m->sources, &m->span);
+    if (status) return library_status(m, status);
+    m->steps += m->span.steps, m->refused += m->span.refused, m->sweeps += m->span.sweeps;
+    m->corrections += m->span.corrections;
+    m->error = fmax(m->error, m->span.error);
+    for (uint32_t k = 0; k < m->problem->walls.count; ++k) m->energy[k] += m->wall_energy[k];
+    m->surroundings_energy += m->span.surroundings_energy;
+    memcpy(m->wall, wall, sizeof wall);
+    m->sources.surroundings = surroundings;
+    m->now = time;
+    return STATUS_OK;
+}
+
+/* NAME.pvd beside NAME.*.vtp, which tells ParaView the time of each. */
+static int write_collection(const char *path, const char *star, const double *times, const bool *output,
+                            size_t count) {
+    const char *slash = strrchr(path, '/'), *begin = slash ? slash + 1 : path;
+    size_t length = (size_t)(star - path);
+    char name[PATH_MAX];
+    struct output file = {0};
+    int64_t number = 0;
+    while (length > (size_t)(begin - path) && strchr("._-", path[length - 1])) --length;
+    if (snprintf(name, sizeof name, "%.*s.pvd", (int)length, path) >= (int)sizeof name || slash > star)
+        return message_at(STATUS_FILE, path, 0, "no name for its .pvd");
+    int status = output_open(&file, name);
+    if (status) return status;
+    fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n", file.file);
+    for (size_t k = 0; k < count; ++k)
+        if (output[k])
+            fprintf(file.file, "<DataSet timestep=\"%.17g\" file=\"%.*s%lld%s\"/>\n", times[k], (int)(star - begin),
+                    begin, (long long)number++, star + 1);
+    fputs("</Collection>\n</VTKFile>\n", file.file);
+    return output_close(&file, status);
+}
+
+static int write_collections(const struct marching *m, const double *times, const bool *output, size_t count) {
+    const struct outputs *outputs = &m->asked->outputs;
+    int status = STATUS_OK;
+    for (size_t k = 0; k < outputs->count && !status; ++k)
+        if (outputs->to[k].star && strcmp(outputs->to[k].format->name, "vtp") == 0)
+            status = write_collection(outputs->to[k].path, outputs->to[k].star, times, output, count);
+    return status;
+}
+
+static int march_all(struct marching *m) {
+    double *times = NULL;
+    bool *output = NULL;
+    size_t count = 0;
+    int status = find_times(m, &times, &output, &count);
+    if (!status) add_point(m, 0, m->span.temperature);
+    for (size_t k = 0; k < count && !status; ++k) {
+        if (times[k] > 0) status = advance(m, times[k]);
+        if (!status && output[k]) status = write_state(m);
+    }
+    if (!status && m->failed) status = message_memory();
+    if (!status) status = write_collections(m, times, output, count);
+    free(times);
+    free(output);
+    return status;
+}
+
+static void march_print(struct marching *m, const double *before, double seconds) {
+    const struct march_options *o = m->options;
+    const struct walls *walls = &m->problem->walls;
+    struct report *report = &m->asked->report;
+    fibrad_scene_facts facts;
+    double supplied = 0, stored = 0, exchanged = 0;
+    const struct time_point end = point_of(m, o->until, m->span.temperature);
+    for (uint32_t i = 0; i < m->bed.n; ++i) {
+        const double change = m->span.capacity[i] * (m->span.temperature[i] - before[i]);
+        stored += change, exchanged += fabs(change);
+        supplied += o->until * m->sources.power[i];
+    }
+    double balance = stored - supplied + m->surroundings_energy;
+    for (uint32_t k = 0; k < walls->count; ++k) balance += m->energy[k];
+    fibrad_transient_describe(m->transient, &facts, NULL);
+    bed_options_report(m->asked, m->source, walls, &facts);
+    report_value(report, "until_s", o->until, 9);
+    report_text(report, "model", m->by_patches ? "patches" : m->problem->by_factors ? "factors" : "corrected");
+    quantity_report(m->problem->of_emissivity, "emissivity", report);
+    quantity_report(&o->capacity, "heat_capacity_J_kgK", report);
+    quantity_report(&o->density, "density_kg_m3", report);
+    if (!isnan(m->problem->sources.surroundings)) report_value(report, "surroundings_K", m->sources.surroundings, 6);
+    wall_values_report(walls, m->wall, "_K", 6, report);
+    wall_values_report(walls, m->sources.body_emissivity, "_emissivity", 6, report);
+    report_count(report, "threads", (uint64_t)(m->asked->threads ? m->asked->threads : omp_get_max_threads()));
+    report_value(report, "seconds", seconds, 3);
+    report_count(report, "steps", m->steps);
+    report_count(report, "steps_refused", m->refused);
+    report_count(report, "sweeps", m->sweeps);
+    report_count(report, "corrections", m->corrections);
+    report_value(report, "step_error", m->error, 2);
+    report_value(report, "temperature_min_K", end.least, 6);
+    report_value(report, "temperature_mean_K", end.mean, 6);
+    report_value(report, "temperature_max_K", end.most, 6);
+    report_value(report, "supplied_J", supplied, 6);
+    report_value(report, "stored_J", stored, 6);
+    if (!isnan(m->problem->sources.surroundings)) report_value(report, "surroundings_J", m->surroundings_energy, 6);
+    wall_values_report(walls, m->energy, "_J", 6, report);
+    report_value(report, "balance_of_stored", exchanged > 0 ? balance / exchanged : 0, 2);
+    report_end(report);
+}
+
+/* The march of a bed whose arrays are there. */
+static int march_bed(struct marching *m, double *before, const struct output *picture) {
+    const fibrad_scene_config scene = bed_scene(&m->bed, &m->problem->walls);
+    const fibrad_spheres spheres = bed_spheres(&m->bed);
+    const fibrad_transient_config config = {
+        .method = m->by_patches              ? FIBRAD_TRANSIENT_PATCHES
+                  : m->problem->by_factors ? FIBRAD_TRANSIENT_FACTORS
+                                           : FIBRAD_TRANSIENT_CORRECTED,
+        .heat = m->problem->config};
+    const double begun = progress_clock();
+    fibrad_run run = bed_options_run(m->asked);
+    int status = fibrad_transient_new(&m->transient, &scene, &spheres, &config, &run);
+    status = bed_options_status(m->asked, &m->bed, status, &run.fault);
+    if (status) return status;
+    outside_at(m, 0, m->wall, &m->sources.surroundings);
+    memcpy(before, m->span.temperature, m->bed.n * sizeof *before);
+    status = march_all(m);
+    progress_stop(&m->asked->progress);
+    if (!status && picture) status = plot_time(picture, m->asked->name, m->point, m->points);
+    if (!status) march_print(m, before, progress_clock() - begun);
+    fibrad_transient_free(m->transient);
+    return status;
+}
+
+int heat_march(struct bed_options *asked, const struct march_options *march, const struct heat_problem *problem,
+               const struct bed *bed, double metres, fibrad_heat_result *result, const struct output *picture) {
+    struct marching m = {.asked = asked,
+                         .options = march,
+                         .problem = problem,
+                         .source = bed,
+                         .bed = *bed,
+                         .sources = problem->sources,
+                         .result = result};
+    double *capacity = NULL, *before = malloc(bed->n * sizeof *before);
+    int status = before ? STATUS_OK : message_memory();
+    m.bed.frame = 0, m.bed.timestep = -1;
+    m.sources.sigma *= metres * metres; /* areas are in the file's unit, powers in watts */
+    m.sources.body_temperature = m.wall;
+    m.span = (fibrad_span){.temperature = (double *)problem->sources.temperature,
+                           .step = march->step,
+                           .body_energy = m.wall_energy,
+                           .observe = add_point,
+                           .context = &m};
+    for (uint32_t i = 0; i < bed->n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
+    for (uint32_t k = 0; k < problem->walls.count; ++k)
+        result->body_error[k] = result->body_temperature_error[k] = NAN;
+    find_tables(&m);
+    if (!status) status = choose_model(&m);
+    if (!status) status = find_capacities(&m, metres, &capacity);
+    m.span.capacity = capacity;
+    if (!status) status = march_bed(&m, before, picture);
+    free(before);
+    free(capacity);
+    free(m.point);
+    return status;
+}

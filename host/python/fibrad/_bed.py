@@ -1,0 +1,119 @@
+# _bed.py - an object of the library that holds a bed and may be moved. SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import ctypes
+import threading
+import weakref
+from typing import Any, Optional, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._call import Call
+from ._errors import StateError
+from ._library import Fault, HeatConfig, library
+from ._scene import Container, Packing, Walls
+from ._values import refuse, whole
+
+
+def _choice(name: str, value: Optional[int], choices: tuple[int, ...]) -> int:
+    if value is not None and value not in choices:
+        raise refuse(f"{name} = {value} is none of {', '.join(map(str, choices))}")
+    return value or 0
+
+
+def heat_config(directions: Optional[int], points: Optional[int], patches: Optional[int]) -> Any:
+    return HeatConfig(directions=whole("directions", directions, 8, 65536),
+                      points=_choice("points", points, (64, 128, 256)),
+                      patches=_choice("patches", patches, (24, 96, 384)))
+
+
+_Self = TypeVar("_Self", bound="Bed")
+
+
+class Bed:
+    """What `Heat` and `Transient` have in common; `_kind` is what their functions of the library are called."""
+
+    _kind: str
+
+    def __init__(self, x: ArrayLike, r: ArrayLike, box: Optional[ArrayLike], walls: Optional[Walls],
+                 ids: Optional[ArrayLike], config: Any, call: Call):
+        self._packing = Packing(x, r, ids)
+        self._container = Container(box, walls)
+        self._call = call
+        self._busy = threading.Lock()
+        self._handle = ctypes.c_void_p()
+        self._free = weakref.finalize(self, _free, self._kind, self._handle)
+        status = self._call(self._function("new"), self._handle, self._container.config, self._packing.spheres,
+                            config, self._call.run)
+        if status:
+            raise self._packing.error(status, self._call.run.fault)
+
+    def _function(self, verb: str) -> Any:
+        return getattr(library, f"fibrad_{self._kind}_{verb}")
+
+    @property
+    def n(self) -> int:
+        """Spheres."""
+        return self._packing.n
+
+    def _use(self, function: Any, packing: Packing, *arguments: Any) -> None:
+        if not self._busy.acquire(blocking=False):
+            raise StateError(f"this {type(self).__name__} is in use by another call; one thread at a time may use it")
+        try:
+            if not self._handle:
+                raise StateError(f"this {type(self).__name__} is closed")
+            status = self._call(function, self._handle, *arguments)
+            if status:
+                fault = Fault()
+                self._function("describe")(self._handle, None, fault)
+                raise packing.error(status, fault)
+        finally:
+            self._busy.release()
+
+    def move(self, x: ArrayLike, r: Optional[ArrayLike] = None, *, box: Optional[ArrayLike] = None,
+             walls: Optional[Walls] = None) -> None:
+        """Goes on to the same spheres and the same kinds of walls at other places.
+
+        Parameters
+        ----------
+        x : (n, 3) array
+            Centres [m].
+        r : (n,) array or float, optional
+            Radii [m]. Default: those there are.
+        box, walls : optional
+            As at the beginning. Default: those there are.
+
+        Raises
+        ------
+        InputError
+            Also another number of spheres or other walls. The bed of before then stays.
+        """
+        if np.shape(x)[:1] != (self.n,):
+            raise refuse(f"x has the shape {np.shape(x)}; this {type(self).__name__} has {self.n} spheres")
+        packing = Packing(x, self._packing.r if r is None else r, self._packing.ids)
+        container = Container(self._container.period if box is None else box,
+                              self._container.walls if walls is None else walls)
+        if container.names != self._container.names:
+            now, before = (", ".join(names) or "none" for names in (container.names, self._container.names))
+            raise refuse(f"the walls are {now}; they were {before}")
+        self._use(self._function("move"), packing, container.config, packing.spheres)
+        self._packing, self._container = packing, container
+
+    def close(self) -> None:
+        """Frees the memory; after that the object is of no use."""
+        if not self._busy.acquire(blocking=False):
+            raise StateError(f"this {type(self).__name__} is in use by another call")
+        self._free()
+        self._busy.release()
+
+    def __enter__(self: _Self) -> _Self:
+        return self
+
+    def __exit__(self, *exception: Any) -> None:
+        self.close()
+
+
+def _free(kind: str, handle: ctypes.c_void_p) -> None:
+    getattr(library, f"fibrad_{kind}_free")(handle)
+    handle.value = None

@@ -1,0 +1,297 @@
+/* march.c - temperatures by implicit steps that keep the energy. SPDX-License-Identifier: MIT
+ *
+ * The scheme is the singly diagonally implicit one of two stages and second order that is L-stable and stiffly accurate
+ * (R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006): with g = 1 - sqrt(1/2) and f = (power + q(T))/C
+ *
+ *     T1 = T + g h f(T1),    T' = T + (1 - g) h f(T1) + g h f(T').
+ *
+ * Each stage is C (T - base)/(g h) = power + q, base being what is known. Newton's method makes it linear in E = sigma
+ * T^4: a sphere gives off power + C (base - T*)/(g h) - hold (E - E*), hold = C/(g h dE/dT). Temperatures then follow
+ * from the powers q as they were found: what the spheres' sum misses is shared out, so that they lose what bodies and
+ * surroundings gain whatever the solution's tolerance. The difference from the embedded solution of first order, g h
+ * |f(T') - f(T1)|, is kept below the tolerance; the error of second order sums up to about that. docs/heat.md. */
+#include <math.h>
+#include <string.h>
+
+#include "simple/transient.h"
+
+#define GAMMA     0.29289321881345247560 /* 1 - sqrt(1/2) */
+#define TOLERANCE 1e-4
+#define SOLVED    1e-2 /* error of a stage's solution over the tolerance */
+#define GROWTH    5.0  /* the most, from a step to the next */
+#define SAFETY    0.9
+#define SMALLEST  1e-12 /* step over the span */
+enum { NEWTON_MAX = 40 };
+
+struct march {
+    fibrad_transient *t;
+    const fibrad_heat_sources *given;
+    fibrad_span *span;
+    double tolerance;
+    fibrad_heat_sources sources; /* of a stage */
+    fibrad_heat_result result;
+    double *stage_walls[2], to_surroundings[2]; /* powers of both stages */
+};
+
+/* No library of mathematics for these. */
+static double larger(double a, double b) { return a > b ? a : b; }
+static double smaller(double a, double b) { return a < b ? a : b; }
+
+static double power_of(const struct march *m, uint32_t i) { return m->given->power ? m->given->power[i] : 0; }
+
+static double between(double from, double to, double share) { return from + share * (to - from); }
+
+/* Temperatures of bodies and surroundings at a time. */
+static void set_outside(struct march *m, double time) {
+    const double share = time / m->span->duration;
+    const fibrad_span *span = m->span;
+    for (uint32_t b = 0; b < m->t->bodies; ++b)
+        m->t->wall[b] = span->body_temperature
+                            ? between(m->given->body_temperature[b], span->body_temperature[b], share)
+                            : m->given->body_temperature[b];
+    m->sources.surroundings =
+        span->surroundings ? between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
+}
+
+/* The linear problem about t->guess. One that reflects all has no part in it. */
+static void linearise(struct march *m, double length) {
+    fibrad_transient *t = m->t;
+    for (uint32_t i = 0; i < t->n; ++i) {
+        const double at = t->guess[i], rate = m->span->capacity[i] / length;
+        const bool reflects = m->given->emissivity[i] == 0;
+        t->given[i] = reflects ? at : NAN;
+        t->hold[i] = reflects ? 0 : rate / (4 * m->given->sigma * at * at * at);
+        t->source[i] = reflects ? 0 : power_of(m, i) + rate * (t->base[i] - at);
+        t->allowed[i] = SOLVED * m->tolerance * rate * at;
+    }
+}
+
+/* Takes the solution of the linear problem: t->solution has the temperatures that keep the energy, t->guess those to
+ * go on from. Whether they agree. */
+static bool accept_solution(struct march *m, double length) {
+    fibrad_transient *t = m->t;
+    bool agree = true;
+    for (uint32_t i = 0; i < t->n; ++i) {
+        const double at = t->guess[i], warmed = t->base[i] + length * power_of(m, i) / m->span->capacity[i];
+        const bool reflects = m->given->emissivity[i] == 0;
+        const double found = reflects ? warmed : t->found[i], ratio = found / at;
+        t->solution[i] = reflects ? warmed : at + 0.25 * at * (ratio * ratio * ratio * ratio - 1);
+        t->guess[i] = found > at / 2 ? found : at / 2;
+        agree = agree && t->guess[i] == found && fabs(found - t->solution[i]) <= SOLVED * m->tolerance * found;
+    }
+    return agree;
+}
+
+/* What the powers say of the temperatures: all of it where a sphere is slow, little where it follows its neighbours at
+ * once; the rest is shared out. */
+static void balance_energy(struct march *m, double length) {
+    fibrad_transient *t = m->t;
+    double left = -m->result.surroundings_power, capacity = 0;
+    for (uint32_t b = 0; b < t->bodies; ++b) left -= m->result.body_power[b];
+    for (uint32_t i = 0; i < t->n; ++i) {
+        const double rate = m->span->capacity[i] / length, at = t->solution[i];
+        const double stiff = 4 * m->given->sigma * at * at * at * t->area[i] * m->given->emissivity[i];
+        const double missing = power_of(m, i) + t->power[i] - rate * (at - t->base[i]);
+        t->solution[i] += missing / (rate + stiff);
+        left += power_of(m, i) - rate * (t->solution[i] - t->base[i]);
+        capacity += m->span->capacity[i];
+    }
+    for (uint32_t i = 0; i < t->n; ++i) t->solution[i] += left * length / capacity;
+}
+
+static bool all_positive(const double *values, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i)
+        if (!(values[i] > 0)) return false;
+    return true;
+}
+
+/* Solves a stage that ends at `time`, from t->base, about t->guess, into t->solution. FIBRAD_E_UNSOLVABLE: a sphere
+ * would be below zero. */
+static int solve_stage(struct march *m, int stage, double time, double length) {
+    fibrad_transient *t = m->t;
+    set_outside(m, time);
+    m->result.body_power = m->stage_walls[stage];
+    for (int k = 0; k < NEWTON_MAX; ++k) {
+        linearise(m, length);
+        const int status = fibrad_transient_solve(t, &m->sources, &m->result);
+        if (status && status != FIBRAD_E_UNSOLVABLE) return status;
+        m->span->sweeps += m->result.sweeps;
+        if (!accept_solution(m, length) || status) continue;
+        balance_energy(m, length);
+        m->to_surroundings[stage] = m->result.surroundings_power;
+        return all_positive(t->solution, t->n) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
+    }
+    return FIBRAD_E_UNSOLVABLE;
+}
+
+/* A guess no farther than a factor of two from a temperature. */
+static double near_to(double guess, double temperature) {
+    return guess < temperature / 2 ? temperature / 2 : guess > 2 * temperature ? 2 * temperature : guess;
+}
+
+/* Tries a step: t->solution, and its error. */
+static int try_step(struct march *m, double time, double step, double *error) {
+    fibrad_transient *t = m->t;
+    const double length = GAMMA * step;
+    for (uint32_t i = 0; i < t->n; ++i) {
+        t->base[i] = t->now[i];
+        t->guess[i] = near_to(t->now[i] + length * t->slope[i], t->now[i]);
+    }
+    int status = solve_stage(m, 0, time + length, length);
+    if (status) return status;
+    for (uint32_t i = 0; i < t->n; ++i) {
+        const double change = t->solution[i] - t->now[i];
+        t->first[i] = change;
+        t->base[i] = t->now[i] + (1 - GAMMA) / GAMMA * change;
+        t->guess[i] = near_to(t->now[i] + change / GAMMA, t->solution[i]);
+    }
+    status = solve_stage(m, 1, time + step, length);
+    *error = 0;
+    for (uint32_t i = 0; i < t->n && !status; ++i)
+        *error = larger(*error, fabs(t->solution[i] - t->base[i] - t->first[i]) / t->solution[i]);
+    return status;
+}
+
+static void take_step(struct march *m, double step, double error) {
+    fibrad_transient *t = m->t;
+    fibrad_span *span = m->span;
+    const double share[2] = {(1 - GAMMA) * step, GAMMA * step};
+    for (uint32_t i = 0; i < t->n; ++i) {
+        t->slope[i] = (t->solution[i] - t->base[i]) / (GAMMA * step);
+        t->now[i] = t->solution[i];
+    }
+    for (int stage = 0; stage < 2; ++stage) {
+        for (uint32_t b = 0; b < t->bodies && span->body_energy; ++b)
+            span->body_energy[b] += share[stage] * m->stage_walls[stage][b];
+        span->surroundings_energy += share[stage] * m->to_surroundings[stage];
+    }
+    span->error = larger(span->error, error);
+    ++span->steps;
+}
+
+/* A first step: short beside the time in which the hottest there is would warm any sphere by its temperature. */
+static double first_step(const struct march *m) {
+    const fibrad_transient *t = m->t;
+    double hottest = m->given->surroundings, step = m->span->duration;
+    for (uint32_t b = 0; b < t->bodies; ++b) hottest = larger(hottest, m->given->body_temperature[b]);
+    for (uint32_t i = 0; i < t->n; ++i) hottest = larger(hottest, t->now[i]);
+    const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
+    for (uint32_t i = 0; i < t->n; ++i) {
+        const double rate = t->area[i] * m->given->emissivity[i] * emission + fabs(power_of(m, i));
+        if (rate > 0) step = smaller(step, sqrt(m->tolerance) * m->span->capacity[i] * t->now[i] / rate);
+    }
+    return step;
+}
+
+/* Factors against patches at the temperatures there are. */
+static int compare(struct march *m, double time) {
+    fibrad_heat_sources now = *m->given;
+    set_outside(m, time);
+    now.temperature = m->t->now;
+    now.body_temperature = m->t->wall, now.surroundings = m->sources.surroundings;
+    return fibrad_transient_compare(m->t, &now, &m->span->corrections);
+}
+
+static int march(struct march *m) {
+    fibrad_transient *t = m->t;
+    fibrad_span *span = m->span;
+    const bool fixed = span->step > 0;
+    double next = fixed ? span->step : t->step > 0 ? t->step : first_step(m), time = 0, error;
+    while (time < span->duration) {
+        if (!(next > SMALLEST * span->duration)) return FIBRAD_E_UNSOLVABLE;
+        const double rest = span->duration - time;
+        const uint64_t parts = (uint64_t)(rest / next * (1 - 1e-9)) + 1; /* of the rest: none is much smaller */
+        const double step = rest / (double)parts;
+        int status = fibrad_team_report(&t->team, "steps", span->steps, 0);
+        if (!status) status = compare(m, time);
+        if (!status) status = try_step(m, time, step, &error);
+        if (status && (fixed || status != FIBRAD_E_UNSOLVABLE)) return status;
+        const double wanted = status ? step / GROWTH : SAFETY * step * sqrt(m->tolerance / larger(error, 1e-300));
+        if (status || (!fixed && error > m->tolerance)) {
+            ++span->refused;
+            next = larger(wanted, step / GROWTH);
+            continue;
+        }
+        take_step(m, step, error);
+        time = parts > 1 ? time + step : span->duration;
+        if (span->observe) span->observe(span->context, time, t->now);
+        if (!fixed) next = smaller(wanted, larger(GROWTH * step, next));
+    }
+    if (!fixed) t->step = next;
+    return FIBRAD_OK;
+}
+
+/* Whether a span is sound; t->fault has the sphere that is not. */
+static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const fibrad_span *span) {
+    t->fault = (fibrad_fault){t->n, t->n};
+    if (t->n > 0 && (!span->temperature || !span->capacity)) return FIBRAD_E_ARGUMENT;
+    if (!(span->duration > 0 && span->duration <= 1e300 && span->step >= 0 && span->tolerance >= 0 &&
+          span->tolerance < 1))
+        return FIBRAD_E_ARGUMENT;
+    for (uint32_t i = 0; i < t->n; ++i) {
+        t->fault = (fibrad_fault){i, i};
+        if (!(span->temperature[i] > 0 && span->temperature[i] <= 1e20)) return FIBRAD_E_ARGUMENT;
+        if (!(span->capacity[i] > 0 && span->capacity[i] <= 1e300)) return FIBRAD_E_ARGUMENT;
+        if (s->power && !(fabs(s->power[i]) <= 1e300)) return FIBRAD_E_ARGUMENT;
+    }
+    t->fault = (fibrad_fault){t->n, t->n};
+    return FIBRAD_OK;
+}
+
+/* Whether arrays of sources are there, and emissivities are. */
+static bool surfaces_given(const fibrad_transient *t, const fibrad_heat_sources *s) {
+    bool given = (t->n == 0 || s->emissivity) && (t->bodies == 0 || (s->body_temperature && s->body_emissivity));
+    for (uint32_t i = 0; i < t->n && given; ++i) given = s->emissivity[i] >= 0 && s->emissivity[i] <= 1;
+    return given;
+}
+
+/* By factors the temperatures of bodies are to be given. */
+static bool outside_known(const fibrad_transient *t, const fibrad_heat_sources *s) {
+    if (t->config.method == FIBRAD_TRANSIENT_PATCHES) return true;
+    bool known = s->surroundings >= 0 && s->surroundings <= 1e20;
+    for (uint32_t b = 0; b < t->bodies; ++b)
+        known = known && s->body_temperature[b] >= 0 && s->body_temperature[b] <= 1e20 &&
+                !(s->insulated && s->insulated[b]);
+    return known;
+}
+
+int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
+    if (!t || !sources || !result || !surfaces_given(t, sources) || !outside_known(t, sources))
+        return FIBRAD_E_ARGUMENT;
+    if (t->n > 0 && (!sources->temperature || !result->power)) return FIBRAD_E_ARGUMENT;
+    for (uint32_t i = 0; i < t->n; ++i)
+        if (!(sources->temperature[i] >= 0 && sources->temperature[i] <= 1e20)) return FIBRAD_E_ARGUMENT;
+    const int status = fibrad_transient_prepare(t, sources);
+    if (status) return status;
+    return t->radiation ? fibrad_radiation_solve(t->radiation, sources, result)
+                        : fibrad_network_solve(t->network, &t->team, sources, t->allowed, result);
+}
+
+int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_span *span) {
+    if (!t || !sources || !span || !surfaces_given(t, sources)) return FIBRAD_E_ARGUMENT;
+    int status = check_span(t, sources, span);
+    if (!status && !outside_known(t, sources)) status = FIBRAD_E_ARGUMENT;
+    if (!status) status = fibrad_transient_prepare(t, sources);
+    if (status) return status;
+    struct march m = {.t = t,
+                      .given = sources,
+                      .span = span,
+                      .tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE,
+                      .sources = *sources,
+                      .result = {.power = t->power, .temperature = t->found},
+                      .stage_walls = {t->wall + t->bodies, t->wall + 2 * (size_t)t->bodies}};
+    m.sources.temperature = t->given, m.sources.power = t->source;
+    m.sources.hold = t->hold, m.sources.reference = t->guess;
+    m.sources.body_temperature = t->wall;
+    span->surroundings_energy = span->error = 0;
+    span->steps = span->refused = span->sweeps = span->corrections = 0;
+    for (uint32_t b = 0; b < t->bodies && span->body_energy; ++b) span->body_energy[b] = 0;
+    memcpy(t->now, span->temperature, t->n * sizeof *t->now);
+    status = march(&m);
+    if (status) return status;
+    memcpy(span->temperature, t->now, t->n * sizeof *t->now);
+    if (span->power) memcpy(span->power, t->power, t->n * sizeof *t->power);
+    for (uint32_t b = 0; b < t->bodies && span->body_power; ++b) span->body_power[b] = m.stage_walls[1][b];
+    span->surroundings_power = m.to_surroundings[1];
+    return FIBRAD_OK;
+}

@@ -1,0 +1,229 @@
+/* transient.c - a bed whose temperatures change with time: what it is made of. SPDX-License-Identifier: MIT */
+#include "simple/transient.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "simple/heap.h"
+
+#define FACTORS_TOLERANCE 0.01
+#define ROUGH_TOLERANCE   0.03 /* of factors that are corrected */
+#define CHANGED           0.15 /* of powers, relative, since they were compared */
+#define SMALL             1e-3 /* powers over emission that need not be compared */
+#define PI                3.14159265358979323846
+
+/* Sweeps of many solutions are no progress; steps are. */
+static int forward_progress(void *transient, const char *stage, uint64_t done, uint64_t total) {
+    const fibrad_transient *t = transient;
+    if (strcmp(stage, "sweeps") == 0 || !t->run.progress) return 0;
+    return t->run.progress(t->run.context, stage, done, total);
+}
+
+static fibrad_run run_of(fibrad_transient *t) {
+    return (fibrad_run){.threads = t->run.threads, .progress = forward_progress, .context = t};
+}
+
+/* Whether this many doubles can be had, zeroed. */
+static bool take(double **array, size_t count) {
+    *array = calloc(count + 1, sizeof **array);
+    return *array != NULL;
+}
+
+static int take_arrays(fibrad_transient *t) {
+    double **const of_spheres[] = {&t->at[0], &t->at[1], &t->at[2], &t->at[3],   &t->area,    &t->emissivity,
+                                   &t->now, &t->slope, &t->base,  &t->first, &t->guess,   &t->hold,    &t->source,
+                                   &t->found, &t->power, &t->given, &t->allowed, &t->solution, &t->correction, &t->compared, &t->by_patches};
+    bool taken = take(&t->body_emissivity, t->bodies) && take(&t->wall, 3 * (size_t)t->bodies) &&
+                 take(&t->wall_correction, t->bodies) && take(&t->wall_compared, t->bodies) &&
+                 take(&t->wall_power, t->bodies);
+    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k) taken = take(of_spheres[k], t->n) && taken;
+    t->body = calloc((size_t)t->bodies + 1, sizeof *t->body);
+    t->id = calloc((size_t)t->n + 1, sizeof *t->id);
+    return taken && t->body && t->id ? FIBRAD_OK : FIBRAD_E_MEMORY;
+}
+
+static void copy_bed(fibrad_transient *t, const fibrad_scene_config *scene, const fibrad_spheres *s) {
+    const size_t stride = s->stride ? s->stride : 1, stride_r = s->stride_r ? s->stride_r : 1;
+    for (size_t i = 0; i < s->n; ++i) {
+        t->at[0][i] = s->x[i * stride], t->at[1][i] = s->y[i * stride], t->at[2][i] = s->z[i * stride];
+        t->at[3][i] = s->r[i * stride_r];
+        t->area[i] = 4 * PI * t->at[3][i] * t->at[3][i];
+        if (s->id) t->id[i] = s->id[i];
+    }
+    t->named = s->id != NULL;
+    if (scene) t->scene = *scene;
+    for (uint32_t b = 0; b < t->bodies; ++b) t->body[b] = scene->body[b];
+    t->scene.body = t->body;
+}
+
+/* Whether a scene can be made of a bed; its facts. */
+static int check_bed(fibrad_transient *t, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
+    fibrad_scene *scene;
+    void *block;
+    t->fault = (fibrad_fault){spheres->n, spheres->n};
+    const int status = fibrad_heap_scene(&scene, &block, config, spheres, &t->fault);
+    if (!status) fibrad_scene_describe(scene, &t->facts);
+    free(block);
+    return status;
+}
+
+/* Beams, or nothing yet; and the bed. */
+static int place(fibrad_transient *t, const fibrad_scene_config *scene, const fibrad_spheres *spheres) {
+    int status = check_bed(t, scene, spheres);
+    if (!status && t->config.method != FIBRAD_TRANSIENT_FACTORS) {
+        fibrad_run run = run_of(t);
+        if (t->radiation)
+            status = fibrad_radiation_move(t->radiation, scene, spheres);
+        else
+            status = fibrad_radiation_new(&t->radiation, scene, spheres, &t->config.heat, &run);
+    }
+    if (status) return status;
+    fibrad_network_free(t->network);
+    t->network = NULL;
+    t->corrected = false;
+    copy_bed(t, scene, spheres);
+    return FIBRAD_OK;
+}
+
+int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres,
+                         const fibrad_transient_config *config, fibrad_run *run) {
+    if (!transient) return FIBRAD_E_ARGUMENT;
+    *transient = NULL;
+    if (!spheres || (scene && scene->bodies > 0 && !scene->body)) return FIBRAD_E_ARGUMENT;
+    fibrad_transient *t = calloc(1, sizeof *t);
+    if (!t) return FIBRAD_E_MEMORY;
+    if (config) t->config = *config;
+    if (t->config.exchange.tolerance == 0 && t->config.exchange.directions == 0 && t->config.exchange.paths == 0)
+        t->config.exchange.tolerance =
+            t->config.method == FIBRAD_TRANSIENT_FACTORS ? FACTORS_TOLERANCE : ROUGH_TOLERANCE;
+    if (run) t->run = *run;
+    t->n = spheres->n;
+    t->bodies = scene ? scene->bodies : 0;
+    const fibrad_run own = run_of(t);
+    int status = t->config.method >= FIBRAD_TRANSIENT_CORRECTED && t->config.method <= FIBRAD_TRANSIENT_FACTORS
+                     ? fibrad_team_open(&t->team, &own)
+                     : FIBRAD_E_ARGUMENT;
+    if (!status) status = take_arrays(t);
+    if (!status) status = place(t, scene, spheres);
+    if (run) run->fault = t->fault;
+    if (status)
+        fibrad_transient_free(t);
+    else
+        *transient = t;
+    return status;
+}
+
+int fibrad_transient_move(fibrad_transient *t, const fibrad_scene_config *scene, const fibrad_spheres *spheres) {
+    if (!t || !spheres || spheres->n != t->n || (scene ? scene->bodies : 0) != t->bodies) return FIBRAD_E_ARGUMENT;
+    if (t->bodies > 0 && !scene->body) return FIBRAD_E_ARGUMENT;
+    return place(t, scene, spheres);
+}
+
+/* Whether the factors there are, if any, are those of these emissivities. */
+static bool same_surfaces(const fibrad_transient *t, const fibrad_heat_sources *s) {
+    return t->network && memcmp(t->emissivity, s->emissivity, t->n * sizeof *t->emissivity) == 0 &&
+           (t->bodies == 0 ||
+            memcmp(t->body_emissivity, s->body_emissivity, t->bodies * sizeof *t->body_emissivity) == 0);
+}
+
+/* Factors of the bed for the emissivities of the sources. */
+static int make_network(fibrad_transient *t, const fibrad_heat_sources *s) {
+    const fibrad_spheres spheres = {t->at[0], t->at[1], t->at[2], t->at[3], .n = t->n, .id = t->named ? t->id : NULL};
+    fibrad_run run = run_of(t);
+    fibrad_bed_factors *factors;
+    fibrad_exchange_rule rule = t->config.exchange;
+    rule.emissivity = s->emissivity;
+    rule.body_emissivity = s->body_emissivity;
+    fibrad_network_free(t->network);
+    t->network = NULL;
+    t->corrected = false;
+    int status = fibrad_exchange_factors(&t->scene, &spheres, &rule, NULL, &run, &factors);
+    t->fault = run.fault;
+    if (status) return status;
+    status = fibrad_network_new(&t->network, factors, s->emissivity, t->area);
+    if (status) fibrad_bed_free(factors);
+    memcpy(t->emissivity, s->emissivity, t->n * sizeof *t->emissivity);
+    for (uint32_t b = 0; b < t->bodies; ++b) t->body_emissivity[b] = s->body_emissivity[b];
+    return status;
+}
+
+int fibrad_transient_prepare(fibrad_transient *t, const fibrad_heat_sources *sources) {
+    if (t->config.method == FIBRAD_TRANSIENT_PATCHES || same_surfaces(t, sources)) return FIBRAD_OK;
+    return make_network(t, sources);
+}
+
+static double square_of(const double *values, uint32_t n) {
+    double sum = 0;
+    for (uint32_t i = 0; i < n; ++i) sum += values[i] * values[i];
+    return sum;
+}
+
+/* Whether powers by factors, in t->power and t->wall_power, have changed much since they were compared. */
+static bool powers_changed(const fibrad_transient *t, const fibrad_heat_sources *s) {
+    double change = 0, emitted = 0;
+    for (uint32_t i = 0; i < t->n; ++i) {
+        const double square = s->temperature[i] * s->temperature[i], less = t->power[i] - t->compared[i];
+        const double emission = t->area[i] * s->emissivity[i] * s->sigma * square * square;
+        change += less * less, emitted += emission * emission;
+    }
+    for (uint32_t b = 0; b < t->bodies; ++b) {
+        const double less = t->wall_power[b] - t->wall_compared[b];
+        change += less * less;
+    }
+    const double most = square_of(t->power, t->n) + square_of(t->wall_power, t->bodies) + SMALL * SMALL * emitted;
+    return change > CHANGED * CHANGED * most;
+}
+
+int fibrad_transient_compare(fibrad_transient *t, const fibrad_heat_sources *s, uint64_t *corrections) {
+    if (t->config.method != FIBRAD_TRANSIENT_CORRECTED) return FIBRAD_OK;
+    fibrad_heat_result factors = {.power = t->power, .body_power = t->wall_power};
+    fibrad_heat_result patches = {.power = t->by_patches, .body_power = t->wall_correction};
+    int status = fibrad_network_solve(t->network, &t->team, s, t->allowed, &factors);
+    if (status || (t->corrected && !powers_changed(t, s))) return status;
+    status = fibrad_radiation_solve(t->radiation, s, &patches);
+    if (status) return status;
+    for (uint32_t i = 0; i < t->n; ++i) {
+        t->correction[i] = t->by_patches[i] - t->power[i];
+        t->compared[i] = t->power[i];
+    }
+    for (uint32_t b = 0; b < t->bodies; ++b) {
+        t->wall_correction[b] -= t->wall_power[b];
+        t->wall_compared[b] = t->wall_power[b];
+    }
+    t->surroundings_correction = patches.surroundings_power - factors.surroundings_power;
+    t->corrected = true;
+    ++*corrections;
+    return FIBRAD_OK;
+}
+
+int fibrad_transient_solve(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
+    if (t->config.method == FIBRAD_TRANSIENT_PATCHES) return fibrad_radiation_solve(t->radiation, sources, result);
+    for (uint32_t i = 0; i < t->n && t->corrected; ++i) t->source[i] += t->correction[i];
+    const int status = fibrad_network_solve(t->network, &t->team, sources, t->allowed, result);
+    for (uint32_t i = 0; i < t->n && t->corrected; ++i) result->power[i] += t->correction[i];
+    for (uint32_t b = 0; b < t->bodies && t->corrected; ++b) result->body_power[b] += t->wall_correction[b];
+    if (t->corrected) result->surroundings_power += t->surroundings_correction;
+    return status;
+}
+
+void fibrad_transient_describe(const fibrad_transient *t, fibrad_scene_facts *facts, fibrad_fault *fault) {
+    if (!t) return;
+    if (facts) *facts = t->facts;
+    if (fault) *fault = t->fault;
+}
+
+void fibrad_transient_free(fibrad_transient *t) {
+    if (!t) return;
+    double *const arrays[] = {t->at[0], t->at[1], t->at[2], t->at[3], t->area,    t->emissivity, t->body_emissivity,
+                              t->slope, t->base,  t->first, t->guess, t->hold,    t->source,     t->found,
+                              t->power, t->given, t->wall,  t->allowed, t->solution, t->correction, t->compared, t->by_patches, t->wall_correction,
+                              t->wall_compared, t->wall_power};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) free(arrays[k]);
+    free(t->body);
+    free(t->id);
+    fibrad_network_free(t->network);
+    fibrad_radiation_free(t->radiation);
+    fibrad_team_close(&t->team);
+    free(t);
+}

@@ -1,0 +1,357 @@
+/* test_transient.c - temperatures in time, against closed forms, quadrature and each other. SPDX-License-Identifier: MIT */
+#include "scenes.h"
+#include "simple/fibrad_host.h"
+#include "suite.h"
+
+#define SIGMA FIBRAD_STEFAN_BOLTZMANN
+
+static fibrad_heat_sources sources_about(const double *emissivity, double surroundings) {
+    fibrad_heat_sources sources;
+    fibrad_heat_sources_init(&sources);
+    sources.emissivity = emissivity;
+    sources.surroundings = surroundings;
+    return sources;
+}
+
+static fibrad_transient *transient_of(const struct bed *bed, const fibrad_scene_config *scene,
+                                      const fibrad_transient_config *config) {
+    const fibrad_spheres spheres = spheres_of(bed);
+    fibrad_transient *transient;
+    ck_assert_int_eq(fibrad_transient_new(&transient, scene, &spheres, config, NULL), FIBRAD_OK);
+    return transient;
+}
+
+/* Time in which a body of loss factor a = A e sigma/C goes from T0 to T in black surroundings at Ts. */
+static double time_between(double a, double from, double to, double ts) {
+    const double turn = 2 * (atan(to / ts) - atan(from / ts));
+    return (log(fabs((to + ts) / (to - ts))) - log(fabs((from + ts) / (from - ts))) + turn) / (4 * a * ts * ts * ts);
+}
+
+/* The temperature after a time, by bisection. */
+static double temperature_after(double a, double from, double ts, double time) {
+    double low = fmin(from, ts), high = fmax(from, ts);
+    for (int k = 0; k < 200; k++) {
+        const double middle = (low + high) / 2;
+        const bool later = time_between(a, from, middle, ts) > time;
+        if (later == (from > ts))
+            low = middle;
+        else
+            high = middle;
+    }
+    return (low + high) / 2;
+}
+
+/* One sphere in black surroundings, automatic steps: cooling and heating, in spans of any length. */
+START_TEST(one_sphere_cools) {
+    static const double begin[] = {1500, 300, 310}, around[] = {300, 1500, 300};
+    const double r = .01, eps = .7, capacity = 25;
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
+    fibrad_transient *t = transient_of(&bed, NULL, NULL);
+    const double a = 4 * M_PI * r * r * eps * SIGMA / capacity;
+    for (int k = 0; k < 3; k++) {
+        const fibrad_heat_sources sources = sources_about(&eps, around[k]);
+        const double unit = 1 / (a * pow(fmax(begin[k], around[k]), 3));
+        double temperature = begin[k], time = 0;
+        for (int part = 0; part < 10; part++) {
+            fibrad_span span = {&temperature, &capacity, .duration = unit * pow(10, part / 4. - 1)};
+            ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+            time += span.duration;
+            const double expected = temperature_after(a, begin[k], around[k], time);
+            ck_assert_double_le(fabs(temperature - expected), 1e-4 * expected);
+            ck_assert_uint_lt(span.steps, 120);
+        }
+    }
+    fibrad_transient_free(t);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Errors at steps of h, h/2, h/4 are as 16, 4, 1. */
+START_TEST(second_order) {
+    const double r = .01, eps = .7, capacity = 25, a = 4 * M_PI * r * r * eps * SIGMA / capacity;
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
+    fibrad_transient *t = transient_of(&bed, NULL, NULL);
+    const fibrad_heat_sources sources = sources_about(&eps, 300);
+    const double duration = .5 / (a * pow(1200, 3)), expected = temperature_after(a, 1200, 300, duration);
+    double error[4];
+    for (int k = 0; k < 4; k++) {
+        double temperature = 1200;
+        fibrad_span span = {
+            &temperature, &capacity, .duration = duration, .step = duration / (16 << k), .tolerance = 1e-9};
+        ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+        ck_assert_uint_eq(span.steps, 16u << k);
+        error[k] = fabs(temperature - expected);
+    }
+    for (int k = 0; k < 3; k++) ck_assert_double_eq_tol(error[k] / error[k + 1], 4, .3);
+    ck_assert_double_lt(error[3], 1e-2);
+    fibrad_transient_free(t);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A bed on a hot floor, under a roof, periodic sideways. */
+enum { N = 60 };
+struct furnace {
+    struct bed bed;
+    fibrad_body body[2];
+    fibrad_scene_config scene;
+    double temperature[N], emissivity[N], capacity[N], power[N], wall[2], wall_emissivity[2];
+    fibrad_heat_sources sources;
+};
+
+static void furnace_init(struct furnace *f) {
+    f->bed = packing(N, .8, 1.2, .5, 3, true);
+    f->bed.period[2] = 0;
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < N; i++) {
+        low = fmin(low, f->bed.z[i] - f->bed.r[i]), high = fmax(high, f->bed.z[i] + f->bed.r[i]);
+        f->temperature[i] = 600 + 10 * i, f->emissivity[i] = .3 + .01 * i;
+        f->capacity[i] = 1e5 * pow(f->bed.r[i], 3);
+        f->power[i] = i % 7 == 0 ? 2e4 : 0;
+    }
+    f->body[0] = plane_at(2, 0, low), f->body[1] = plane_at(2, 1, high + 1);
+    f->scene = (fibrad_scene_config){
+        .period = {f->bed.period[0], f->bed.period[1], 0}, .body = f->body, .bodies = 2};
+    f->wall[0] = 1200, f->wall[1] = 500, f->wall_emissivity[0] = .8, f->wall_emissivity[1] = .4;
+    f->sources = sources_about(f->emissivity, 300);
+    f->sources.power = f->power;
+    f->sources.body_temperature = f->wall, f->sources.body_emissivity = f->wall_emissivity;
+}
+
+/* What spheres lose, less their powers, is what walls and surroundings get: by factors and by patches, at loose and at
+ * tight tolerances, whether steps are long or short. */
+START_TEST(energy_is_kept) {
+    struct furnace f;
+    furnace_init(&f);
+    for (int method = 0; method < 3; method++) {
+        const fibrad_transient_config config = {
+            .method = method, .exchange.tolerance = .03, .heat = {.directions = 16, .patches = 24}};
+        fibrad_transient *t = transient_of(&f.bed, &f.scene, &config);
+        for (int k = 0; k < 3; k++) {
+            double temperature[N], energy[2], balance = 0, exchanged = 0;
+            memcpy(temperature, f.temperature, sizeof temperature);
+            fibrad_span span = {temperature, f.capacity, .duration = k == 2 ? 400 : 20, .body_energy = energy};
+            span.tolerance = k == 0 ? 1e-2 : 1e-3, span.step = k == 2 ? 200 : 0;
+            f.sources.tolerance = 1e-2;
+            ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
+            for (int i = 0; i < N; i++) {
+                const double change = f.capacity[i] * (temperature[i] - f.temperature[i]);
+                balance += change - span.duration * f.power[i];
+                exchanged += fabs(change);
+            }
+            balance += energy[0] + energy[1] + span.surroundings_energy;
+            ck_assert_double_lt(fabs(balance), 1e-12 * exchanged);
+        }
+        fibrad_transient_free(t);
+    }
+    bed_free(&f.bed);
+}
+END_TEST
+
+/* The same by Runge and Kutta's explicit scheme, from the factors themselves. */
+static void slopes(const struct furnace *f, const fibrad_factors *d, double time, double duration, const double *t,
+                   double *slope) {
+    const double floor = SIGMA * pow(f->wall[0] + (800 - f->wall[0]) * time / duration, 4);
+    const double roof = SIGMA * pow(f->wall[1], 4), sky = SIGMA * pow(300, 4);
+    for (int i = 0; i < N; i++) {
+        const double own = SIGMA * pow(t[i], 4);
+        double sum = d->escaped[i] * (sky - own) + d->body[2 * i] * (floor - own) + d->body[2 * i + 1] * (roof - own);
+        for (uint64_t k = d->start[i]; k < d->start[i + 1]; k++) sum += d->f[k] * (SIGMA * pow(t[d->col[k]], 4) - own);
+        slope[i] = (f->power[i] + 4 * M_PI * f->bed.r[i] * f->bed.r[i] * f->emissivity[i] * sum) / f->capacity[i];
+    }
+}
+
+static void runge_kutta(const struct furnace *f, const fibrad_factors *d, double duration, int steps, double *t) {
+    const double h = duration / steps;
+    double k[4][N], at[N];
+    for (int step = 0; step < steps; step++) {
+        for (int stage = 0; stage < 4; stage++) {
+            const double share = stage == 0 ? 0 : stage == 3 ? 1 : .5;
+            for (int i = 0; i < N; i++) at[i] = t[i] + (stage > 0 ? share * h * k[stage - 1][i] : 0);
+            slopes(f, d, (step + share) * h, duration, at, k[stage]);
+        }
+        for (int i = 0; i < N; i++) t[i] += h / 6 * (k[0][i] + 2 * k[1][i] + 2 * k[2][i] + k[3][i]);
+    }
+}
+
+/* Powers and a wall that cools while the spheres do; the powers at the end go with the temperatures. */
+START_TEST(bed_against_runge_kutta) {
+    struct furnace f;
+    furnace_init(&f);
+    const fibrad_exchange_rule rule = {
+        .emissivity = f.emissivity, .body_emissivity = f.wall_emissivity, .tolerance = .03};
+    const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS, .exchange.tolerance = .03};
+    const fibrad_spheres spheres = spheres_of(&f.bed);
+    const double end[2] = {800, f.wall[1]}, duration = 30;
+    fibrad_bed_factors *factors;
+    ck_assert_int_eq(fibrad_exchange_factors(&f.scene, &spheres, &rule, NULL, NULL, &factors), FIBRAD_OK);
+    double expected[N], temperature[N], power[N], slope[N];
+    memcpy(expected, f.temperature, sizeof expected);
+    memcpy(temperature, f.temperature, sizeof temperature);
+    runge_kutta(&f, &factors->matrix, duration, 20000, expected);
+    fibrad_transient *t = transient_of(&f.bed, &f.scene, &config);
+    fibrad_span span = {temperature, f.capacity, duration, .body_temperature = end, .power = power};
+    ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
+    slopes(&f, &factors->matrix, duration, duration, temperature, slope);
+    for (int i = 0; i < N; i++) {
+        ck_assert_double_le(fabs(temperature[i] - expected[i]), 1e-4 * expected[i]);
+        ck_assert_double_eq_tol(power[i], slope[i] * f.capacity[i] - f.power[i], 100);
+    }
+    fibrad_transient_free(t);
+    fibrad_bed_free(factors);
+    bed_free(&f.bed);
+}
+END_TEST
+
+/* A mote between two large spheres follows them at once; steps are those of the large ones. */
+START_TEST(motes_are_no_limit) {
+    enum { MOTE = 2 };
+    static const double place[][4] = {{0, 0, 0, 1}, {3, 0, 0, 1}, {1.5, 0, 0, 1e-3}, {1.5, .1, 0, 1e-2}};
+    const double emissivity[] = {.8, .6, .5, .5};
+    uint64_t steps[2] = {0, 0};
+    for (uint32_t n = 2; n <= 4; n += 2) {
+        struct bed bed = bed_of(n, place);
+        const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS,
+                                                .exchange = {.directions = 4000, .paths = 4000}};
+        fibrad_transient *t = transient_of(&bed, NULL, &config);
+        double temperature[] = {1200, 900, 300, 300}, capacity[4], power[4] = {0};
+        for (uint32_t i = 0; i < n; i++) capacity[i] = 3e6 * 4 / 3 * M_PI * pow(bed.r[i], 3);
+        const fibrad_heat_sources sources = sources_about(emissivity, 400);
+        fibrad_span span = {temperature, capacity, .duration = 1e5, .power = power};
+        ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+        for (int k = 0; k < 5; k++) { /* the motes are warm; they follow the others' slow change */
+            ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+            steps[n == 4] += span.steps + span.refused;
+            const double emitted = 4 * M_PI * 1e-6 * .5 * SIGMA * pow(temperature[MOTE], 4);
+            if (n == 4) ck_assert_double_lt(fabs(power[MOTE]), 2e-3 * emitted);
+        }
+        fibrad_transient_free(t);
+        bed_free(&bed);
+    }
+    ck_assert_uint_le(steps[1], steps[0] + 2);
+}
+END_TEST
+
+/* Reflecting all, a sphere has its power and nothing else. A power that is drawn makes it as cold as it goes. */
+START_TEST(powers_alone) {
+    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}});
+    const double capacity[] = {2, 4}, power[] = {10, -20}, emissivity[] = {0, 0};
+    double temperature[] = {300, 300};
+    fibrad_heat_sources sources = sources_about(emissivity, 1000);
+    sources.power = power;
+    fibrad_transient *t = transient_of(&bed, NULL, NULL);
+    fibrad_span span = {temperature, capacity, .duration = 20};
+    ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+    ck_assert_double_eq_tol(temperature[0], 400, 1e-9);
+    ck_assert_double_eq_tol(temperature[1], 200, 1e-9);
+    span.duration = 50;
+    ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_E_UNSOLVABLE);
+    ck_assert_double_eq_tol(temperature[0], 400, 1e-9);
+    fibrad_transient_free(t);
+    bed_free(&bed);
+}
+END_TEST
+
+/* By patches as by factors, and a move in between. */
+START_TEST(patches_as_factors) {
+    struct furnace f;
+    furnace_init(&f);
+    double temperature[3][N];
+    for (int method = 0; method < 3; method++) {
+        const fibrad_transient_config config = {.method = method, .exchange.tolerance = method == 2 ? .003 : 0};
+        fibrad_transient *t = transient_of(&f.bed, &f.scene, &config);
+        memcpy(temperature[method], f.temperature, sizeof f.temperature);
+        for (int k = 0; k < 2; k++) {
+            fibrad_span span = {temperature[method], f.capacity, .duration = 20, .tolerance = 1e-3};
+            ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
+            for (int i = 0; i < N; i++) f.bed.z[i] += k == 0 ? .5 : -.5;
+            const fibrad_spheres spheres = spheres_of(&f.bed);
+            ck_assert_int_eq(fibrad_transient_move(t, &f.scene, &spheres), FIBRAD_OK);
+        }
+        fibrad_transient_free(t);
+    }
+    for (int i = 0; i < N; i++) {
+        ck_assert_double_eq_tol(temperature[0][i], temperature[1][i], 1);
+        ck_assert_double_eq_tol(temperature[2][i], temperature[1][i], 6);
+    }
+    bed_free(&f.bed);
+}
+END_TEST
+
+/* Any number of threads: the same bits. */
+START_TEST(threads_change_nothing) {
+    struct furnace f;
+    furnace_init(&f);
+    const fibrad_spheres spheres = spheres_of(&f.bed);
+    double first[N];
+    for (int threads = 1; threads < 5; threads += 3) {
+        fibrad_run run = {.threads = threads};
+        fibrad_transient *t;
+        double temperature[N];
+        memcpy(temperature, f.temperature, sizeof temperature);
+        fibrad_span span = {temperature, f.capacity, .duration = 20};
+        ck_assert_int_eq(fibrad_transient_new(&t, &f.scene, &spheres, NULL, &run), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
+        if (threads == 1) memcpy(first, temperature, sizeof first);
+        ck_assert_mem_eq(first, temperature, sizeof first);
+        fibrad_transient_free(t);
+    }
+    bed_free(&f.bed);
+}
+END_TEST
+
+START_TEST(what_is_refused) {
+    struct furnace f;
+    furnace_init(&f);
+    const fibrad_spheres spheres = spheres_of(&f.bed), fewer = {f.bed.x, f.bed.y, f.bed.z, f.bed.r, N - 1, 0, 0, NULL};
+    fibrad_transient *t;
+    fibrad_fault fault;
+    const fibrad_span good = {f.temperature, f.capacity, .duration = 1e-3};
+    fibrad_span span = good;
+    ck_assert_int_eq(fibrad_transient_new(&t, &f.scene, &spheres, &(fibrad_transient_config){.method = 3}, NULL),
+                     FIBRAD_E_ARGUMENT);
+    ck_assert_ptr_null(t);
+    t = transient_of(&f.bed, &f.scene, &(fibrad_transient_config){.exchange.tolerance = .1});
+    ck_assert_int_eq(fibrad_transient_move(t, &f.scene, &fewer), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_transient_move(t, NULL, &spheres), FIBRAD_E_ARGUMENT);
+    static const double bad[] = {0, -1, NAN, INFINITY};
+    for (int k = 0; k < 4; k++) {
+        double kept = f.capacity[7];
+        f.capacity[7] = bad[k];
+        ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_E_ARGUMENT);
+        fibrad_transient_describe(t, NULL, &fault);
+        ck_assert_uint_eq(fault.first, 7);
+        f.capacity[7] = kept, kept = f.temperature[5], f.temperature[5] = bad[k];
+        ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_E_ARGUMENT);
+        fibrad_transient_describe(t, NULL, &fault);
+        ck_assert_uint_eq(fault.first, 5);
+        f.temperature[5] = kept, span.duration = bad[k];
+        ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_E_ARGUMENT);
+        span = good;
+    }
+    f.sources.surroundings = NAN;
+    ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_E_ARGUMENT);
+    f.sources.surroundings = 300, f.wall[1] = NAN;
+    ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_E_ARGUMENT);
+    f.wall[1] = 500;
+    ck_assert_int_eq(fibrad_transient_advance(t, &f.sources, &span), FIBRAD_OK);
+    fibrad_transient_free(t);
+    fibrad_transient_free(NULL);
+    bed_free(&f.bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("transient");
+    TCase *tcase = suite_case(suite, "transient");
+    tcase_add_test(tcase, one_sphere_cools);
+    tcase_add_test(tcase, second_order);
+    tcase_add_test(tcase, energy_is_kept);
+    tcase_add_test(tcase, bed_against_runge_kutta);
+    tcase_add_test(tcase, motes_are_no_limit);
+    tcase_add_test(tcase, powers_alone);
+    tcase_add_test(tcase, patches_as_factors);
+    tcase_add_test(tcase, threads_change_nothing);
+    tcase_add_test(tcase, what_is_refused);
+    return suite_run(suite);
+}
