@@ -36,7 +36,8 @@ static heat_spread spread_over(const fibrad_heat *heat, uint32_t begin, uint32_t
     for (uint32_t a = begin; a < end; a++) s.area += heat->area[a], s.mean += heat->area[a] * heat->radiosity[a];
     if (!(s.area > 0)) return s;
     s.mean /= s.area;
-    for (uint32_t a = begin; a < end; a++) s.variance += heat->area[a] / s.area * heat_square(heat->radiosity[a] - s.mean);
+    for (uint32_t a = begin; a < end; a++)
+        s.variance += heat->area[a] / s.area * heat_square(heat->radiosity[a] - s.mean);
     return s;
 }
 
@@ -47,7 +48,8 @@ static heat_spread spread_of(const fibrad_heat *heat, uint32_t b) {
 /* Emissivity times area times how far the radiosities of all are from the body's own. */
 static double exchange_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const heat_spread own = spread_of(heat, b);
-    return heat->emissivity[b] * own.area * fibrad_sqrt(errors->all.variance + heat_square(own.mean - errors->all.mean));
+    return heat->emissivity[b] * own.area *
+           fibrad_sqrt(errors->all.variance + heat_square(own.mean - errors->all.mean));
 }
 
 double fibrad_heat_beam_error(const fibrad_heat *heat, uint32_t b) {
@@ -68,8 +70,8 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
     const double eps = heat->emissivity[b];
     const double few = b < heat->spheres ? errors->few * heat->power[b] : 0;
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
-    return heat_square(fibrad_heat_beam_error(heat, b)) + heat_square(patch_error(heat, b)) + (1 - eps) * heat_square(few) +
-           heat_square(seen * errors->walls);
+    return heat_square(fibrad_heat_beam_error(heat, b)) + heat_square(patch_error(heat, b)) +
+           (1 - eps) * heat_square(few) + heat_square(seen * errors->walls);
 }
 
 static heat_errors errors_of(const fibrad_heat *heat) {

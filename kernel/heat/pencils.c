@@ -10,8 +10,11 @@
  * spheres 0.75 at solid fraction 0.6, 1.1 at 0.2, of which there is room for more. */
 #define ROOM_PENCILS 1.3
 
-/* Beams that are left when those of the same patches are joined, at solid fraction 1/2 and above: 0.51 and more. */
-#define ROOM_JOINED .6
+/* Pairs of patches that a sphere's beams may connect, over the square of its patches, at solid fraction 1/2 and above;
+ * and how much more of N beams than 1/(1 + N/(2 pairs)), which is above (1 - exp(-N/pairs)) pairs/N, are left when
+ * those of the same patches are joined. 168 directions of 64 points, 96 patches: 0.51. */
+#define ROOM_PAIRS  .75
+#define ROOM_JOINED 1.1
 
 /* Beams that meet walls are all kept; by reciprocity they are as many as the walls are large. */
 size_t fibrad_heat_room(const fibrad_heat *heat) {
@@ -31,7 +34,9 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     const double fraction = fibrad_min(1, solid / (n * spacing * spacing * spacing));
     const double pencils = fibrad_min(fibrad_min(n + blocks, beams), 16 + ROOM_PENCILS * fibrad_sqrt(beams) / fraction);
     const double of_walls = scene->container.walls ? beams * fibrad_min(1, 1.5 * walls / surface) : 0;
-    const double joined = 1 - (1 - ROOM_JOINED) * fibrad_min(1, 2 * fraction);
+    const double pairs = ROOM_PAIRS * heat->config.patches * heat->config.patches;
+    const double left = fibrad_min(1, ROOM_JOINED / (1 + beams / heat->thin / (2 * pairs)));
+    const double joined = 1 - (1 - left) * fibrad_min(1, 2 * fraction);
     const double kept = fibrad_min(beams, joined * beams / heat->thin + pencils + of_walls);
     const double pencil = sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_link) + 2;
     return (size_t)(n * (3 * kept * (double)fibrad_heat_number_bytes(heat) + pencils * pencil)) + 4096;
