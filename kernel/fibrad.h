@@ -236,8 +236,8 @@ typedef struct fibrad_beam_rule {
 } fibrad_beam_rule;
 
 /* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + sum of body +
- * escaped + beyond = 1, to rounding with exact areas, as exact counts with points. With exact areas the error falls as
- * directions^-1.5, that of body about so, too; where nothing hides a wall, body is its solid angle. rule: NULL is all
+ * escaped + beyond = 1 to rounding; with points, all but body are exact counts. With exact areas the error of f falls as
+ * directions^-1.5, that of body a little slower; where nothing hides a wall, it is its solid angle. rule: NULL is all
  * defaults. Beams end after 100 periods; periodic images of one sphere share an entry, and i may see its own. Errors:
  * _ARGUMENT, _TABLE (points), _CAPACITY, _WORK, _MEMORY. Cost: some microseconds per direction with ten discs in the
  * window; it grows with the square of their number. Source: docs/methods.md sections 3 and 4. */
