@@ -211,16 +211,16 @@ typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
 /* One row of a matrix of factors: in the caller's arrays, or appended to a collection of rows, into which col, f and
  * body then point until the next row is appended. */
 typedef struct fibrad_row {
-    uint32_t *col;     /* [capacity] out: the spheres seen, ascending */
-    double *f;         /* [capacity] out: factor from sphere i to sphere col[.], all > 0 */
-    double *body;      /* [bodies of the scene] out: factor to each; may be NULL if there are none */
-    uint32_t capacity; /* in; 0 after a row was appended to `rows` */
-    fibrad_rows *rows; /* in: NULL, or the row is appended to these, and capacity is not used */
-    uint32_t sphere;   /* out: i */
-    uint32_t length;   /* out: entries; after FIBRAD_E_CAPACITY: the entries there would be */
-    double escaped;    /* out: the fraction that meets no sphere and no body, measured */
-    double beyond;     /* out: the fraction that leaves what is known, cutoff or region: fibrad_part.h */
-    double error;      /* out: Euclidean error of f, estimated: on the median twice the true one, seldom less than it */
+    uint32_t *col;       /* [capacity] out: the spheres seen, ascending */
+    double *f;           /* [capacity] out: factor from sphere i to sphere col[.], all > 0 */
+    double *body;        /* [bodies of the scene] out: factor to each; may be NULL if there are none */
+    uint32_t capacity;   /* in; 0 after a row was appended to `rows` */
+    fibrad_rows *rows;   /* in: NULL, or the row is appended to these, and capacity is not used */
+    uint32_t sphere;     /* out: i */
+    uint32_t length;     /* out: entries; after FIBRAD_E_CAPACITY: the entries there would be */
+    double escaped;      /* out: the fraction that meets no sphere and no body, measured */
+    double beyond;       /* out: the fraction that leaves what is known, cutoff or region: fibrad_part.h */
+    double error;        /* out: Euclidean error of f and body together, estimated: on the median twice the true one */
     uint32_t directions; /* out, beams only: how many were taken */
     uint32_t fallbacks;  /* out, beams only: windows whose exact areas the fast method left to the robust one */
     int symmetric;       /* out: 1 if the method makes A_i F_ij = A_j F_ji by itself, so that averaging adds nothing */
@@ -236,11 +236,11 @@ typedef struct fibrad_beam_rule {
 } fibrad_beam_rule;
 
 /* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + sum of body +
- * escaped + beyond = 1, to rounding with exact areas, as exact counts with points. With exact areas the error falls as
- * directions^-1.5, that of the sharing between walls about as directions^-1 (5e-4 each at 233). rule: NULL is all
- * defaults. Beams end after 100 periods; periodic images of one sphere share an entry, and i may see its own. Errors:
- * _ARGUMENT, _TABLE (points), _CAPACITY, _WORK, _MEMORY. Cost: some microseconds per direction with ten discs in the
- * window; it grows with the square of their number. Source: docs/methods.md sections 3 and 4. */
+ * escaped + beyond = 1 to rounding; with points, all but body are exact counts. With exact areas the error of f falls
+ * as directions^-1.5, that of body a little slower; where nothing hides a wall, it is its solid angle. rule: NULL is
+ * all defaults. Beams end after 100 periods; periodic images of one sphere share an entry, and i may see its own.
+ * Errors: _ARGUMENT, _TABLE (points), _CAPACITY, _WORK, _MEMORY. Cost: some microseconds per direction with ten discs
+ * in the window; it grows with the square of their number. Source: docs/methods.md sections 3 and 4. */
 int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row);
 

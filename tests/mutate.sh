@@ -34,7 +34,7 @@ LINE
     */points_*) tests="beam cast $tests" ;;
     kernel/window/*) tests="areas beam $tests" ;;
     */surface_row*) tests="surface_row $tests" ;;
-    */walls.* | */wall_share*) tests="walls part $tests" ;;
+    */walls.* | */wall_share* | kernel/sky/*) tests="walls part estimate $tests" ;;
     kernel/surface/*) tests="surface $tests" ;;
     */work.*) tests="work beam cast $tests" ;;
     kernel/row/*) tests="beam cast protocol $tests" ;;

@@ -366,6 +366,48 @@ START_TEST(doubts) {
 }
 END_TEST
 
+/* What is open of a window of random discs at depths of their own, its direction turned by (du, dv). */
+static double open_turned(fibrad_areas *areas, const struct method *method, const struct window *w, const double *depth,
+                          double du, double dv) {
+    method->begin(areas);
+    bool open = true;
+    for (uint32_t k = 0; k < w->n && open; k++)
+        open = method->disc(areas, k, w->u[k] - depth[k] * du, w->v[k] - depth[k] * dv, w->r[k]);
+    return open ? method->end(areas) : 0;
+}
+
+/* The slope of the open area is its derivative. */
+START_TEST(slope_of_the_open_area) {
+    fibrad_areas areas = areas_make();
+    uint32_t there = 0;
+    for (uint64_t seed = 0; seed < 200; seed++) {
+        const struct method *method = seed % 2 == 0 ? &both : &arrangement;
+        struct window w = {0};
+        double depth[8], slope[2];
+        for (uint64_t k = 0; k < 2 + seed % 6; k++) {
+            const double r = .2 + .8 * bed_make_random(seed, 4 * k),
+                         place = .3 + 1.2 * bed_make_random(seed, 4 * k + 1);
+            const double turn = 6.28 * bed_make_random(seed, 4 * k + 2);
+            depth[k] = 1 + (double)k + bed_make_random(seed, 4 * k + 3);
+            put(&w, place * cos(turn), place * sin(turn), r);
+        }
+        const double h = 1e-6, open = open_turned(&areas, method, &w, depth, 0, 0);
+        if (open == 0) continue;
+        if (method == &arrangement) areas.degenerate = true; /* as the caller of both would have it */
+        fibrad_areas_slope(&areas, depth, slope);
+        for (int axis = 0; axis < 2; axis++) {
+            const double u = axis == 0 ? h : 0, v = axis == 1 ? h : 0;
+            const double after = open_turned(&areas, method, &w, depth, u, v);
+            const double before = open_turned(&areas, method, &w, depth, -u, -v);
+            ck_assert_double_eq_tol(slope[axis], (after - before) / (2 * h), 1e-4 * (1 + fabs(slope[axis])));
+            there += fabs(slope[axis]) > .1;
+        }
+    }
+    ck_assert_uint_gt(there, 200);
+    areas_free(&areas);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("areas");
     TCase *tcase = suite_case(suite, "areas");
@@ -377,5 +419,6 @@ int main(void) {
     tcase_add_test(tcase, clipping_against_accounts);
     tcase_add_test(tcase, bits_of_windows);
     tcase_add_test(tcase, doubts);
+    tcase_add_test(tcase, slope_of_the_open_area);
     return suite_run(suite);
 }
