@@ -91,12 +91,12 @@ static int read_ambient_table(struct march_options *march, const char **ambient)
 int march_check(struct march_options *march, struct bed_options *bed, const char **walls, const char **ambient) {
     const struct quantity *c = &march->capacity, *rho = &march->density;
     if (!(march->until > 0)) {
-        const char *needs = c->given       ? "--heat-capacity"
-                            : rho->given   ? "--density"
-                            : march->times ? "--times"
-                            : march->every ? "--every"
-                            : march->step  ? "--step"
-                                           : NULL;
+        const char *needs = c->given           ? "--heat-capacity"
+                            : rho->given       ? "--density"
+                            : march->times     ? "--times"
+                            : march->every > 0 ? "--every"
+                            : march->step > 0  ? "--step"
+                                               : NULL;
         return needs ? message(STATUS_USAGE, "%s: needs --until", needs) : STATUS_OK;
     }
     if (!c->given) return message(STATUS_USAGE, "--until: which --heat-capacity?");
