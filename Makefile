@@ -265,6 +265,7 @@ SCRIPTS = \
     tests/check_python.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
+    tests/check_time.sh \
     tests/check_written.sh \
     tests/freestanding/check_freestanding.sh \
     tests/package/check_package.sh

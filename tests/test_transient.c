@@ -1,4 +1,5 @@
-/* test_transient.c - temperatures in time, against closed forms, quadrature and each other. SPDX-License-Identifier: MIT */
+/* test_transient.c - temperatures in time, against closed forms, quadrature and each other. SPDX-License-Identifier:
+ * MIT */
 #include "scenes.h"
 #include "simple/fibrad_host.h"
 #include "suite.h"
@@ -76,8 +77,8 @@ START_TEST(second_order) {
     double error[4];
     for (int k = 0; k < 4; k++) {
         double temperature = 1200;
-        fibrad_span span = {
-            &temperature, &capacity, .duration = duration, .step = duration / (16 << k), .tolerance = 1e-9};
+        fibrad_span span = {&temperature, &capacity, .duration = duration, .step = duration / (16 << k),
+                            .tolerance = 1e-9};
         ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
         ck_assert_uint_eq(span.steps, 16u << k);
         error[k] = fabs(temperature - expected);
@@ -110,8 +111,7 @@ static void furnace_init(struct furnace *f) {
         f->power[i] = i % 7 == 0 ? 2e4 : 0;
     }
     f->body[0] = plane_at(2, 0, low), f->body[1] = plane_at(2, 1, high + 1);
-    f->scene = (fibrad_scene_config){
-        .period = {f->bed.period[0], f->bed.period[1], 0}, .body = f->body, .bodies = 2};
+    f->scene = (fibrad_scene_config){.period = {f->bed.period[0], f->bed.period[1], 0}, .body = f->body, .bodies = 2};
     f->wall[0] = 1200, f->wall[1] = 500, f->wall_emissivity[0] = .8, f->wall_emissivity[1] = .4;
     f->sources = sources_about(f->emissivity, 300);
     f->sources.power = f->power;

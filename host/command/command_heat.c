@@ -69,35 +69,36 @@ static int heat_help(void) {
          "positive where heat is gained; and the temperature of those whose power is given. Temperatures in kelvins,\n"
          "lengths in the unit of the file.\n");
     options_print(heat_table);
-    puts("\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,T_K,q_W,body,q_error_W,T_error_K: spheres by name, the "
-         "surroundings i = -1, walls i = -2, -3\n"
-         "... with their names in the column `body`; errors as estimated. All q add up to zero. Spheres of emissivity "
-         "0\n"
-         "reflect all, gain nothing and have no temperature.\n"
-         "Powers given (--power, --wall-power) are given off from inside, > 0, so that q is their negative. With "
-         "columns\n"
-         "and lists by type each sphere has either a temperature or a power.\n"
-         "With --until temperatures are those to begin with. Each sphere stores heat-capacity times density times its\n"
-         "volume; powers given heat it. @TABLE, two columns of seconds and temperatures, may stand for the temperature\n"
-         "of a wall or of the surroundings: zmin=@TABLE. The .csv has the time in its first column; a series of .vtp\n"
-         "comes with a .pvd, which is what ParaView opens.\n"
-         "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a "
-         "*.\n"
-         "Standard output ends with a summary of each, one `key value` a line. In it balance and error are relative to "
-         "what\n"
-         "the spheres emit, or to what they absorb where that is more.\n\n"
-         "Examples:\n"
-         "  fibrad heat packing.dump --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
-         "  fibrad heat 'bed.*.dump.gz' --frame all --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
-         "  fibrad heat packing.dump --emissivity 0.8 --power 40 --ambient 300 --wall box \\\n"
-         "      --wall-temperature zmin=1200,insulated -o q.csv\n"
-         "  fibrad heat spheres.csv --length-unit mm --emissivity eps --temperature T --temperature-unit C \\\n"
-         "      --wall box --wall-temperature zmin=900,20 -o q.csv\n"
-         "  fibrad heat packing.dump --emissivity 0.8 --temperature 1200 --ambient @room.csv --until 3600 \\\n"
-         "      --heat-capacity 800 --density 2500 --every 60 -o 'cool.*.vtp' -o cool.csv --plot cool.png\n"
-         "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --wall zmin,cylinder:0,0,0.48 \\\n"
-         "      --wall-temperature zmin=1200,cylinder=600 --wall-emissivity cylinder=0.4 --ambient 300 --error 0.005 "
-         "-o q.vtp");
+    puts(
+        "\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,T_K,q_W,body,q_error_W,T_error_K: spheres by name, the "
+        "surroundings i = -1, walls i = -2, -3\n"
+        "... with their names in the column `body`; errors as estimated. All q add up to zero. Spheres of emissivity "
+        "0\n"
+        "reflect all, gain nothing and have no temperature.\n"
+        "Powers given (--power, --wall-power) are given off from inside, > 0, so that q is their negative. With "
+        "columns\n"
+        "and lists by type each sphere has either a temperature or a power.\n"
+        "With --until temperatures are those to begin with. Each sphere stores heat-capacity times density times its\n"
+        "volume; powers given heat it. @TABLE, two columns of seconds and temperatures, may stand for the temperature\n"
+        "of a wall or of the surroundings: zmin=@TABLE. The .csv has the time in its first column; a series of .vtp\n"
+        "comes with a .pvd, which is what ParaView opens.\n"
+        "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a "
+        "*.\n"
+        "Standard output ends with a summary of each, one `key value` a line. In it balance and error are relative to "
+        "what\n"
+        "the spheres emit, or to what they absorb where that is more.\n\n"
+        "Examples:\n"
+        "  fibrad heat packing.dump --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
+        "  fibrad heat 'bed.*.dump.gz' --frame all --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
+        "  fibrad heat packing.dump --emissivity 0.8 --power 40 --ambient 300 --wall box \\\n"
+        "      --wall-temperature zmin=1200,insulated -o q.csv\n"
+        "  fibrad heat spheres.csv --length-unit mm --emissivity eps --temperature T --temperature-unit C \\\n"
+        "      --wall box --wall-temperature zmin=900,20 -o q.csv\n"
+        "  fibrad heat packing.dump --emissivity 0.8 --temperature 1200 --ambient @room.csv --until 3600 \\\n"
+        "      --heat-capacity 800 --density 2500 --every 60 -o 'cool.*.vtp' -o cool.csv --plot cool.png\n"
+        "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --wall zmin,cylinder:0,0,0.48 \\\n"
+        "      --wall-temperature zmin=1200,cylinder=600 --wall-emissivity cylinder=0.4 --ambient 300 --error 0.005 "
+        "-o q.vtp");
     return STATUS_OK;
 }
 
@@ -194,8 +195,7 @@ static int heat_check_request(struct heat_request *request) {
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
     if (request->problem.error > 0) request->problem.config.directions = 72;
-    status =
-        march_check(&request->march, &request->bed, &request->given.wall_temperature, &request->given.ambient);
+    status = march_check(&request->march, &request->bed, &request->given.wall_temperature, &request->given.ambient);
     if (!status) status = given_check(&request->given, &request->bed);
     return status ? status : given_ambient(&request->given, &request->problem.sources.surroundings);
 }
@@ -306,10 +306,10 @@ static int heat_frame(void *heat_request, struct bed *bed) {
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_absorbed = of_walls[5];
         report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
-        status = request->given.timed ? heat_march(&request->bed, &request->march, &request->problem, bed,
-                                                   report.metres, &report.result,
-                                                   request->plot ? &request->picture : NULL)
-                                      : heat_solve(request, bed, &report);
+        status = request->given.timed
+                     ? heat_march(&request->bed, &request->march, &request->problem, bed, report.metres, &report.result,
+                                  request->plot ? &request->picture : NULL)
+                     : heat_solve(request, bed, &report);
     }
     free(emissivity);
     given_free(&given);

@@ -12,11 +12,10 @@
 #include "cli/message.h"
 #include "plot/plot_time.h"
 
-
 #define SECONDS_MAX 1e15
 enum { TIMES_MAX = 10000 };
 
-static int take_step(const char *text, double *step) {
+static int march_step_option(const char *text, double *step) {
     *step = 0;
     return strcmp(text, "auto") == 0 ? STATUS_OK : options_number("--step", text, 1 / SECONDS_MAX, SECONDS_MAX, step);
 }
@@ -30,7 +29,7 @@ int march_option(int key, const char *text, struct march_options *march) {
     case KEY_DENSITY:
         return quantity_option("--density", text, 1e-12, 1e12, &march->density);
     case KEY_STEP:
-        return take_step(text, &march->step);
+        return march_step_option(text, &march->step);
     case KEY_EVERY:
         return options_number("--every", text, 1 / SECONDS_MAX, SECONDS_MAX, &march->every);
     default:
@@ -92,12 +91,12 @@ static int read_ambient_table(struct march_options *march, const char **ambient)
 int march_check(struct march_options *march, struct bed_options *bed, const char **walls, const char **ambient) {
     const struct quantity *c = &march->capacity, *rho = &march->density;
     if (!(march->until > 0)) {
-        const char *needs = c->given         ? "--heat-capacity"
-                            : rho->given     ? "--density"
-                            : march->times   ? "--times"
-                            : march->every   ? "--every"
-                            : march->step    ? "--step"
-                                             : NULL;
+        const char *needs = c->given           ? "--heat-capacity"
+                            : rho->given       ? "--density"
+                            : march->times     ? "--times"
+                            : march->every > 0 ? "--every"
+                            : march->step > 0  ? "--step"
+                                               : NULL;
         return needs ? message(STATUS_USAGE, "%s: needs --until", needs) : STATUS_OK;
     }
     if (!c->given) return message(STATUS_USAGE, "--until: which --heat-capacity?");
@@ -149,7 +148,7 @@ static struct time_point point_of(const struct marching *m, double time, const d
     return point;
 }
 
-static void add_point(void *marching, double time, const double *temperature) {
+static void note_point(void *marching, double time, const double *temperature) {
     struct marching *m = marching;
     if (m->points == m->room) {
         const size_t room = 2 * m->room + 64;
@@ -181,7 +180,7 @@ static void outside_at(const struct marching *m, double time, double wall[WALLS_
     const fibrad_heat_sources *s = &m->problem->sources;
     for (uint32_t k = 0; k < m->problem->walls.count; ++k)
         wall[k] = m->of_wall[k] ? table_at(m, m->of_wall[k], time) : s->body_temperature[k];
-    *surroundings = m->of_surroundings        ? table_at(m, m->of_surroundings, time)
+    *surroundings = m->of_surroundings       ? table_at(m, m->of_surroundings, time)
                     : isnan(s->surroundings) ? 0 /* closed: nothing gets there */
                                              : s->surroundings;
 }
@@ -228,8 +227,8 @@ static int find_times(const struct marching *m, double **times, bool **output, s
 /* Heat that warms each sphere by 1 K. */
 static int find_capacities(struct marching *m, double metres, double **capacity) {
     double *density = NULL;
-    int status = quantity_values(&m->options->capacity, &m->bed, m->asked->name, "heat capacity", 0, 1e-12, 1e12,
-                                 capacity);
+    int status =
+        quantity_values(&m->options->capacity, &m->bed, m->asked->name, "heat capacity", 0, 1e-12, 1e12, capacity);
     if (!status)
         status = quantity_values(&m->options->density, &m->bed, m->asked->name, "density", 0, 1e-12, 1e12, &density);
     for (uint32_t i = 0; i < m->bed.n && !status; ++i) {
@@ -303,8 +302,7 @@ static int advance(struct marching *m, double time) {
 }
 
 /* NAME.pvd beside NAME.*.vtp, which tells ParaView the time of each. */
-static int write_collection(const char *path, const char *star, const double *times, const bool *output,
-                            size_t count) {
+static int write_collection(const char *path, const char *star, const double *times, const bool *output, size_t count) {
     const char *slash = strrchr(path, '/'), *begin = slash ? slash + 1 : path;
     size_t length = (size_t)(star - path);
     char name[PATH_MAX];
@@ -338,7 +336,7 @@ static int march_all(struct marching *m) {
     bool *output = NULL;
     size_t count = 0;
     int status = find_times(m, &times, &output, &count);
-    if (!status) add_point(m, 0, m->span.temperature);
+    if (!status) note_point(m, 0, m->span.temperature);
     for (size_t k = 0; k < count && !status; ++k) {
         if (times[k] > 0) status = advance(m, times[k]);
         if (!status && output[k]) status = write_state(m);
@@ -396,11 +394,10 @@ static void march_print(struct marching *m, const double *before, double seconds
 static int march_bed(struct marching *m, double *before, const struct output *picture) {
     const fibrad_scene_config scene = bed_scene(&m->bed, &m->problem->walls);
     const fibrad_spheres spheres = bed_spheres(&m->bed);
-    const fibrad_transient_config config = {
-        .method = m->by_patches              ? FIBRAD_TRANSIENT_PATCHES
-                  : m->problem->by_factors ? FIBRAD_TRANSIENT_FACTORS
-                                           : FIBRAD_TRANSIENT_CORRECTED,
-        .heat = m->problem->config};
+    const fibrad_transient_config config = {.method = m->by_patches            ? FIBRAD_TRANSIENT_PATCHES
+                                                      : m->problem->by_factors ? FIBRAD_TRANSIENT_FACTORS
+                                                                               : FIBRAD_TRANSIENT_CORRECTED,
+                                            .heat = m->problem->config};
     const double begun = progress_clock();
     fibrad_run run = bed_options_run(m->asked);
     int status = fibrad_transient_new(&m->transient, &scene, &spheres, &config, &run);
@@ -433,11 +430,10 @@ int heat_march(struct bed_options *asked, const struct march_options *march, con
     m.span = (fibrad_span){.temperature = (double *)problem->sources.temperature,
                            .step = march->step,
                            .body_energy = m.wall_energy,
-                           .observe = add_point,
+                           .observe = note_point,
                            .context = &m};
     for (uint32_t i = 0; i < bed->n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
-    for (uint32_t k = 0; k < problem->walls.count; ++k)
-        result->body_error[k] = result->body_temperature_error[k] = NAN;
+    for (uint32_t k = 0; k < problem->walls.count; ++k) result->body_error[k] = result->body_temperature_error[k] = NAN;
     find_tables(&m);
     if (!status) status = choose_model(&m);
     if (!status) status = find_capacities(&m, metres, &capacity);

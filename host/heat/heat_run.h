@@ -11,8 +11,9 @@ struct heat_problem {
     fibrad_heat_sources sources; /* [K]; surroundings NaN: nothing gets there */
     double *emissivity;          /* [spheres] as in sources; in and out where it follows the temperature, by */
     const struct quantity *of_emissivity;
-    bool by_patches, by_factors; /* asked for; in time only: neither is factors, unless a wall's temperature is wanted */
-    double error; /* wanted of the powers, over their root mean square; 0: config as it is */
+    bool by_patches,
+        by_factors; /* asked for; in time only: neither is factors, unless a wall's temperature is wanted */
+    double error;   /* wanted of the powers, over their root mean square; 0: config as it is */
 };
 
 /* Powers, and what is said of them. */

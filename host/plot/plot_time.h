@@ -8,8 +8,8 @@
 
 /* What the spheres have in common at a time. */
 struct time_point {
-    double time;               /* [s] */
-    double mean, least, most;  /* temperatures [K] */
+    double time;              /* [s] */
+    double mean, least, most; /* temperatures [K] */
 };
 
 /* Mean and extremes over time. Status as plot_heat. */

@@ -34,12 +34,12 @@ struct march {
 };
 
 /* No library of mathematics for these. */
-static double larger(double a, double b) { return a > b ? a : b; }
-static double smaller(double a, double b) { return a < b ? a : b; }
+static double larger_one(double a, double b) { return a > b ? a : b; }
+static double smaller_one(double a, double b) { return a < b ? a : b; }
 
 static double power_of(const struct march *m, uint32_t i) { return m->given->power ? m->given->power[i] : 0; }
 
-static double between(double from, double to, double share) { return from + share * (to - from); }
+static double share_between(double from, double to, double share) { return from + share * (to - from); }
 
 /* Temperatures of bodies and surroundings at a time. */
 static void set_outside(struct march *m, double time) {
@@ -47,10 +47,10 @@ static void set_outside(struct march *m, double time) {
     const fibrad_span *span = m->span;
     for (uint32_t b = 0; b < m->t->bodies; ++b)
         m->t->wall[b] = span->body_temperature
-                            ? between(m->given->body_temperature[b], span->body_temperature[b], share)
+                            ? share_between(m->given->body_temperature[b], span->body_temperature[b], share)
                             : m->given->body_temperature[b];
     m->sources.surroundings =
-        span->surroundings ? between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
+        span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
 }
 
 /* The linear problem about t->guess. One that reflects all has no part in it. */
@@ -148,11 +148,11 @@ static int try_step(struct march *m, double time, double step, double *error) {
     status = solve_stage(m, 1, time + step, length);
     *error = 0;
     for (uint32_t i = 0; i < t->n && !status; ++i)
-        *error = larger(*error, fabs(t->solution[i] - t->base[i] - t->first[i]) / t->solution[i]);
+        *error = larger_one(*error, fabs(t->solution[i] - t->base[i] - t->first[i]) / t->solution[i]);
     return status;
 }
 
-static void take_step(struct march *m, double step, double error) {
+static void accept_step(struct march *m, double step, double error) {
     fibrad_transient *t = m->t;
     fibrad_span *span = m->span;
     const double share[2] = {(1 - GAMMA) * step, GAMMA * step};
@@ -165,7 +165,7 @@ static void take_step(struct march *m, double step, double error) {
             span->body_energy[b] += share[stage] * m->stage_walls[stage][b];
         span->surroundings_energy += share[stage] * m->to_surroundings[stage];
     }
-    span->error = larger(span->error, error);
+    span->error = larger_one(span->error, error);
     ++span->steps;
 }
 
@@ -173,12 +173,12 @@ static void take_step(struct march *m, double step, double error) {
 static double first_step(const struct march *m) {
     const fibrad_transient *t = m->t;
     double hottest = m->given->surroundings, step = m->span->duration;
-    for (uint32_t b = 0; b < t->bodies; ++b) hottest = larger(hottest, m->given->body_temperature[b]);
-    for (uint32_t i = 0; i < t->n; ++i) hottest = larger(hottest, t->now[i]);
+    for (uint32_t b = 0; b < t->bodies; ++b) hottest = larger_one(hottest, m->given->body_temperature[b]);
+    for (uint32_t i = 0; i < t->n; ++i) hottest = larger_one(hottest, t->now[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
     for (uint32_t i = 0; i < t->n; ++i) {
         const double rate = t->area[i] * m->given->emissivity[i] * emission + fabs(power_of(m, i));
-        if (rate > 0) step = smaller(step, sqrt(m->tolerance) * m->span->capacity[i] * t->now[i] / rate);
+        if (rate > 0) step = smaller_one(step, sqrt(m->tolerance) * m->span->capacity[i] * t->now[i] / rate);
     }
     return step;
 }
@@ -206,16 +206,16 @@ static int march(struct march *m) {
         if (!status) status = compare(m, time);
         if (!status) status = try_step(m, time, step, &error);
         if (status && (fixed || status != FIBRAD_E_UNSOLVABLE)) return status;
-        const double wanted = status ? step / GROWTH : SAFETY * step * sqrt(m->tolerance / larger(error, 1e-300));
+        const double wanted = status ? step / GROWTH : SAFETY * step * sqrt(m->tolerance / larger_one(error, 1e-300));
         if (status || (!fixed && error > m->tolerance)) {
             ++span->refused;
-            next = larger(wanted, step / GROWTH);
+            next = larger_one(wanted, step / GROWTH);
             continue;
         }
-        take_step(m, step, error);
+        accept_step(m, step, error);
         time = parts > 1 ? time + step : span->duration;
         if (span->observe) span->observe(span->context, time, t->now);
-        if (!fixed) next = smaller(wanted, larger(GROWTH * step, next));
+        if (!fixed) next = smaller_one(wanted, larger_one(GROWTH * step, next));
     }
     if (!fixed) t->step = next;
     return FIBRAD_OK;

@@ -1,9 +1,9 @@
 /* network.c - radiation by exchange factors, as a network of conductances. SPDX-License-Identifier: MIT
  *
- * A_i e_i D_ij is a conductance between sphere i and body j for E = sigma T^4. With L the conductances' matrix and H the
- * holds, (H + L) (E - E*) = what is missing of the powers at E*: symmetric and positive definite. Conjugate gradients
- * with the diagonal as preconditioner solve it. Only products with L are shared out to the threads, row by row, so
- * that these change no bit. */
+ * A_i e_i D_ij is a conductance between sphere i and body j for E = sigma T^4. With L the conductances' matrix and H
+ * the holds, (H + L) (E - E*) = what is missing of the powers at E*: symmetric and positive definite. Conjugate
+ * gradients with the diagonal as preconditioner solve it. Only products with L are shared out to the threads, row by
+ * row, so that these change no bit. */
 #include "simple/network.h"
 
 #include <math.h>
@@ -14,9 +14,9 @@ enum { ROWS = 128, ITERATIONS_MAX = 2000 };
 
 struct fibrad_network {
     fibrad_bed_factors *factors;
-    double *weight;   /* [n] A e */
-    double *diagonal; /* [n] of L */
-    double *outside;  /* [n] conductance to walls and surroundings */
+    double *weight;                                           /* [n] A e */
+    double *diagonal;                                         /* [n] of L */
+    double *outside;                                          /* [n] conductance to walls and surroundings */
     double *emission, *hold, *residual, *direction, *product; /* [n] each, of the solution in hand */
 };
 
@@ -76,14 +76,14 @@ static int multiply(fibrad_network *w, fibrad_team *team) {
     return fibrad_team_run(team, NULL, (w->factors->matrix.n + ROWS - 1) / ROWS, 1, multiply_rows, w, NULL);
 }
 
-static double emission_of(const fibrad_heat_sources *s, double t) { return s->sigma * (t * t) * (t * t); }
+static double emission_at(const fibrad_heat_sources *s, double t) { return s->sigma * (t * t) * (t * t); }
 
 /* What walls and surroundings send to sphere i, as if it sent nothing. */
-static double received(const fibrad_network *w, const fibrad_heat_sources *s, uint32_t i) {
+static double received_outside(const fibrad_network *w, const fibrad_heat_sources *s, uint32_t i) {
     const fibrad_factors *d = &w->factors->matrix;
-    double sum = d->escaped[i] * emission_of(s, s->surroundings);
+    double sum = d->escaped[i] * emission_at(s, s->surroundings);
     for (uint32_t b = 0; b < d->bodies; ++b)
-        sum += d->body[(size_t)i * d->bodies + b] * emission_of(s, s->body_temperature[b]);
+        sum += d->body[(size_t)i * d->bodies + b] * emission_at(s, s->body_temperature[b]);
     return w->weight[i] * sum;
 }
 
@@ -92,14 +92,14 @@ static int begin(fibrad_network *w, fibrad_team *team, const fibrad_heat_sources
     const uint32_t n = w->factors->matrix.n;
     for (uint32_t i = 0; i < n; ++i) {
         w->hold[i] = 0;
-        w->emission[i] = emission_of(s, isnan(s->temperature[i]) ? s->reference[i] : s->temperature[i]);
+        w->emission[i] = emission_at(s, isnan(s->temperature[i]) ? s->reference[i] : s->temperature[i]);
         w->direction[i] = w->emission[i];
     }
     const int status = multiply(w, team);
     for (uint32_t i = 0; i < n; ++i) {
         const bool unknown = isnan(s->temperature[i]);
         w->hold[i] = unknown ? s->hold[i] : 0;
-        w->residual[i] = unknown ? s->power[i] + received(w, s, i) - w->product[i] : 0;
+        w->residual[i] = unknown ? s->power[i] + received_outside(w, s, i) - w->product[i] : 0;
     }
     return status;
 }
@@ -144,17 +144,16 @@ static void read_powers(const fibrad_network *w, const fibrad_heat_sources *s, f
     result->surroundings_power = 0;
     for (uint32_t b = 0; b < d->bodies; ++b) result->body_power[b] = 0;
     for (uint32_t i = 0; i < d->n; ++i) {
-        result->power[i] = received(w, s, i) - w->product[i];
+        result->power[i] = received_outside(w, s, i) - w->product[i];
         for (uint32_t b = 0; b < d->bodies; ++b)
             result->body_power[b] += w->weight[i] * d->body[(size_t)i * d->bodies + b] *
-                                     (w->emission[i] - emission_of(s, s->body_temperature[b]));
-        result->surroundings_power +=
-            w->weight[i] * d->escaped[i] * (w->emission[i] - emission_of(s, s->surroundings));
+                                     (w->emission[i] - emission_at(s, s->body_temperature[b]));
+        result->surroundings_power += w->weight[i] * d->escaped[i] * (w->emission[i] - emission_at(s, s->surroundings));
     }
 }
 
 /* Temperatures; FIBRAD_E_UNSOLVABLE if one of them is below zero, NaN then. */
-static int read_temperatures(const fibrad_network *w, const fibrad_heat_sources *s, fibrad_heat_result *result) {
+static int find_temperatures(const fibrad_network *w, const fibrad_heat_sources *s, fibrad_heat_result *result) {
     int status = FIBRAD_OK;
     for (uint32_t i = 0; i < w->factors->matrix.n; ++i) {
         const double t = isnan(s->temperature[i]) ? sqrt(sqrt(w->emission[i] / s->sigma)) : s->temperature[i];
@@ -177,6 +176,6 @@ int fibrad_network_solve(fibrad_network *w, fibrad_team *team, const fibrad_heat
     if (!status) status = multiply(w, team);
     if (status) return status;
     read_powers(w, s, result);
-    status = read_temperatures(w, s, result);
+    status = find_temperatures(w, s, result);
     return missing ? FIBRAD_E_UNSOLVABLE : status;
 }

@@ -9,7 +9,7 @@
 
 #define FACTORS_TOLERANCE 0.01
 #define ROUGH_TOLERANCE   0.03 /* of factors that are corrected */
-#define CHANGED           0.15 /* of powers, relative, since they were compared */
+#define CHANGED           0.1  /* of powers, relative, since they were compared */
 #define SMALL             1e-3 /* powers over emission that need not be compared */
 #define PI                3.14159265358979323846
 
@@ -25,19 +25,21 @@ static fibrad_run run_of(fibrad_transient *t) {
 }
 
 /* Whether this many doubles can be had, zeroed. */
-static bool take(double **array, size_t count) {
+static bool take_doubles(double **array, size_t count) {
     *array = calloc(count + 1, sizeof **array);
     return *array != NULL;
 }
 
 static int take_arrays(fibrad_transient *t) {
-    double **const of_spheres[] = {&t->at[0], &t->at[1], &t->at[2], &t->at[3],   &t->area,    &t->emissivity,
-                                   &t->now, &t->slope, &t->base,  &t->first, &t->guess,   &t->hold,    &t->source,
-                                   &t->found, &t->power, &t->given, &t->allowed, &t->solution, &t->correction, &t->compared, &t->by_patches};
-    bool taken = take(&t->body_emissivity, t->bodies) && take(&t->wall, 3 * (size_t)t->bodies) &&
-                 take(&t->wall_correction, t->bodies) && take(&t->wall_compared, t->bodies) &&
-                 take(&t->wall_power, t->bodies);
-    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k) taken = take(of_spheres[k], t->n) && taken;
+    double **const of_spheres[] = {&t->at[0],      &t->at[1],    &t->at[2],     &t->at[3], &t->area,    &t->emissivity,
+                                   &t->now,        &t->slope,    &t->base,      &t->first, &t->guess,   &t->hold,
+                                   &t->source,     &t->found,    &t->power,     &t->given, &t->allowed, &t->solution,
+                                   &t->correction, &t->compared, &t->by_patches};
+    bool taken = take_doubles(&t->body_emissivity, t->bodies) && take_doubles(&t->wall, 3 * (size_t)t->bodies) &&
+                 take_doubles(&t->wall_correction, t->bodies) && take_doubles(&t->wall_compared, t->bodies) &&
+                 take_doubles(&t->wall_power, t->bodies);
+    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k)
+        taken = take_doubles(of_spheres[k], t->n) && taken;
     t->body = calloc((size_t)t->bodies + 1, sizeof *t->body);
     t->id = calloc((size_t)t->n + 1, sizeof *t->id);
     return taken && t->body && t->id ? FIBRAD_OK : FIBRAD_E_MEMORY;
@@ -58,7 +60,7 @@ static void copy_bed(fibrad_transient *t, const fibrad_scene_config *scene, cons
 }
 
 /* Whether a scene can be made of a bed; its facts. */
-static int check_bed(fibrad_transient *t, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
+static int check_placed(fibrad_transient *t, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
     fibrad_scene *scene;
     void *block;
     t->fault = (fibrad_fault){spheres->n, spheres->n};
@@ -70,7 +72,7 @@ static int check_bed(fibrad_transient *t, const fibrad_scene_config *config, con
 
 /* Beams, or nothing yet; and the bed. */
 static int place(fibrad_transient *t, const fibrad_scene_config *scene, const fibrad_spheres *spheres) {
-    int status = check_bed(t, scene, spheres);
+    int status = check_placed(t, scene, spheres);
     if (!status && t->config.method != FIBRAD_TRANSIENT_FACTORS) {
         fibrad_run run = run_of(t);
         if (t->radiation)
@@ -153,7 +155,7 @@ int fibrad_transient_prepare(fibrad_transient *t, const fibrad_heat_sources *sou
     return make_network(t, sources);
 }
 
-static double square_of(const double *values, uint32_t n) {
+static double sum_of_squares(const double *values, uint32_t n) {
     double sum = 0;
     for (uint32_t i = 0; i < n; ++i) sum += values[i] * values[i];
     return sum;
@@ -171,7 +173,8 @@ static bool powers_changed(const fibrad_transient *t, const fibrad_heat_sources 
         const double less = t->wall_power[b] - t->wall_compared[b];
         change += less * less;
     }
-    const double most = square_of(t->power, t->n) + square_of(t->wall_power, t->bodies) + SMALL * SMALL * emitted;
+    const double most =
+        sum_of_squares(t->power, t->n) + sum_of_squares(t->wall_power, t->bodies) + SMALL * SMALL * emitted;
     return change > CHANGED * CHANGED * most;
 }
 
@@ -215,10 +218,13 @@ void fibrad_transient_describe(const fibrad_transient *t, fibrad_scene_facts *fa
 
 void fibrad_transient_free(fibrad_transient *t) {
     if (!t) return;
-    double *const arrays[] = {t->at[0], t->at[1], t->at[2], t->at[3], t->area,    t->emissivity, t->body_emissivity,
-                              t->slope, t->base,  t->first, t->guess, t->hold,    t->source,     t->found,
-                              t->power, t->given, t->wall,  t->allowed, t->solution, t->correction, t->compared, t->by_patches, t->wall_correction,
-                              t->wall_compared, t->wall_power};
+    double *const arrays[] = {t->at[0],     t->at[1],      t->at[2],           t->at[3],
+                              t->area,      t->emissivity, t->body_emissivity, t->slope,
+                              t->base,      t->first,      t->guess,           t->hold,
+                              t->source,    t->found,      t->power,           t->given,
+                              t->wall,      t->allowed,    t->solution,        t->correction,
+                              t->compared,  t->by_patches, t->wall_correction, t->wall_compared,
+                              t->wall_power};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) free(arrays[k]);
     free(t->body);
     free(t->id);

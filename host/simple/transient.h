@@ -25,7 +25,7 @@ struct fibrad_transient {
     fibrad_radiation *radiation;          /* of patches; NULL: factors alone */
     /* what powers by patches have more than by factors, when they were compared */
     bool corrected;
-    double *correction, *compared, *by_patches;          /* [n]; the powers then by factors; by patches */
+    double *correction, *compared, *by_patches;           /* [n]; the powers then by factors; by patches */
     double *wall_correction, *wall_compared, *wall_power; /* [bodies] likewise */
     double surroundings_correction;
     /* of steps, march.c; [n] each */
