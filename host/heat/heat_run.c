@@ -133,6 +133,9 @@ static void heat_emissivities(void *law, const double *temperature, const double
     }
 }
 
+/* Radiosities need to be as good as this, over the error asked for, not to add to it. */
+#define SOLVED 5e-3
+
 static int heat_once(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
                      struct heat_report *report) {
     const fibrad_scene_config scene = bed_scene(bed, &problem->walls);
@@ -140,6 +143,7 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     fibrad_heat_sources sources = problem->sources;
     fibrad_run run = bed_options_run(asked);
     fibrad_radiation *radiation;
+    if (problem->error > 0) sources.tolerance = fmin(1e-5, SOLVED * problem->error);
     if (isnan(sources.surroundings)) sources.surroundings = 0; /* closed: nothing gets there */
     int status = heat_memory(bed, &report->config);
     if (status) return status;
@@ -164,16 +168,17 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
 
 /* Rays between walls by default, and the most. Source: fibrad_heat_config. */
 #define WALL_RAYS     262144u
-#define WALL_RAYS_MAX (1u << 26)
+#define WALL_RAYS_MAX (1u << 23)
 
-/* More beams, or patches, by which makes the larger part of the spheres' error. False: there is no more. */
-static bool heat_refine_spheres(struct heat_report *report) {
+#define HELPED 0.6 /* what is left of an error, at the most, by something that helps */
+
+/* More beams, or patches. False: there is no more. */
+static bool heat_refine(struct heat_report *report, bool beams) {
     fibrad_heat_config *config = &report->config;
-    const bool beams = report->result.error_beams > report->result.error_patches;
     if ((beams || config->patches == 384) && config->directions <= FIBRAD_DIRECTIONS_MAX / 4)
         config->directions *= 2;
     else if (config->patches < 384)
-        config->patches *= 4;
+        config->patches *= 4, config->directions *= 2; /* which few beams leave otherwise */
     else
         return false;
     return true;
@@ -182,7 +187,7 @@ static bool heat_refine_spheres(struct heat_report *report) {
 /* As many more rays as the walls' error, `ratio` times what is allowed, calls for. */
 static bool heat_refine_rays(struct heat_report *report, double ratio) {
     const uint32_t rays = report->config.wall_rays > 0 ? report->config.wall_rays : WALL_RAYS;
-    report->config.wall_rays = (uint32_t)fmin(rays * fmin(fmax(ratio * ratio, 2), 16), WALL_RAYS_MAX);
+    report->config.wall_rays = (uint32_t)fmin(rays * fmin(fmax(ratio * ratio, 2), 4), WALL_RAYS_MAX);
     return report->config.wall_rays > rays;
 }
 
@@ -191,8 +196,8 @@ static double heat_allowed(const struct heat_problem *problem, const struct heat
     return problem->error * fmax(report->power_rms, 1e-3 * report->throughput);
 }
 
-/* Solves it again and again until spheres and walls err by no more than is allowed. Rays that have not helped a wall
- * much were not what it lacks: then it gets beams and patches like the spheres. */
+/* Solves it again and again until spheres and walls err by no more than is allowed: with more of what makes the larger
+ * part of the spheres' error, and with more rays between walls as long as these help a wall much, then more beams. */
 static int heat_improve(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
                         struct heat_report *report) {
     double last = INFINITY;
@@ -200,9 +205,21 @@ static int heat_improve(struct bed_options *asked, const struct heat_problem *pr
         const double walls = report->wall_error / problem->error;
         const bool spheres = report->error > heat_allowed(problem, report);
         bool more = false;
+        fprintf(stderr, "dirs %u patches %u rays %u: spheres %.3g (beams %.3g patches %.3g) walls %.3g:",
+                report->config.directions, report->config.patches, report->config.wall_rays,
+                report->error / report->power_rms, report->result.error_beams / report->power_rms,
+                report->result.error_patches / report->power_rms, report->wall_error);
+        for (uint32_t k = 0; k < problem->walls.count; ++k)
+            fprintf(stderr, " %.2g",
+                    report->result.body_error[k] /
+                        fmax(fabs(report->result.body_power[k]), .05 * report->result.body_absorbed[k]));
+        fprintf(stderr, "\n");
         if (!spheres && walls <= 1) return STATUS_OK;
-        if (spheres || (walls > 1 && walls > .6 * last)) more = heat_refine_spheres(report);
-        if (walls > 1) more = heat_refine_rays(report, walls) || more;
+        if (walls > 1 && walls <= HELPED * last) more = heat_refine_rays(report, walls);
+        if (spheres)
+            more = heat_refine(report, report->result.error_beams > report->result.error_patches) || more;
+        else if (!more)
+            more = heat_refine(report, true);
         if (!more) break;
         last = walls;
         const int status = heat_once(asked, problem, bed, report);

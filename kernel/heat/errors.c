@@ -1,16 +1,18 @@
 /* errors.c - what errors the powers of a solution may have. SPDX-License-Identifier: MIT
  *
- * What the patches of a body, and even and odd beams, tell of the error of its power is one sample of that error, and
- * may be small by chance. Errors of bodies of one kind turn out to be as what they exchange, times a normal number. So
- * the estimate is, in squares, one half what the body's own sample says, one half what all samples together say. */
+ * By how much even and odd beams of a body differ, and what patches change of the power of a sphere, is one sample of
+ * the error of its power, and may be small by chance. Errors of bodies of one kind turn out to be as what they
+ * exchange, times a normal number. So the estimate is, in squares, one half what the body's own sample says, one half
+ * what all samples together say. What patches change of the power of a wall is smooth, and stands for itself. */
 #include "heat/errors.h"
 
 /* Errors over what they are told from, as measured: docs/heat.md. */
-#define PATCH_ERROR .2 /* with PATCHES */
-#define PATCHES     96.0
-#define BEAM_ERROR  .7
-#define FEW_ERROR   .25 /* times sqrt(1 - eps), over beams per patch: patches that few leave send back along each */
-#define SAMPLES     3   /* with fewer of a kind, those of the other kind make up for them */
+#define PATCH_ERROR  .2 /* with PATCHES */
+#define PATCHES      96.0
+#define WALL_PATCHES .5 /* of walls over that of spheres */
+#define BEAM_ERROR   .7
+#define FEW_ERROR    .25 /* times sqrt(1 - eps), over beams per patch: patches that few leave send back along each */
+#define SAMPLES      3   /* with fewer of a kind, those of the other kind make up for them */
 
 static double heat_square(double x) { return x * x; }
 
@@ -62,7 +64,8 @@ double fibrad_heat_patch_error(const fibrad_heat *heat, double change) {
 }
 
 static double patch_error(const fibrad_heat *heat, uint32_t b) {
-    return fibrad_heat_patch_error(heat, heat->power[b] - heat->coarse[b]);
+    const double change = heat->power[b] - heat->coarse[b];
+    return (b < heat->spheres ? 1 : WALL_PATCHES) * fibrad_heat_patch_error(heat, change);
 }
 
 /* Square of the error that a body's own beams and patches tell, and the walls it sees. */
@@ -70,8 +73,9 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
     const double eps = heat->emissivity[b];
     const double few = b < heat->spheres ? errors->few * heat->power[b] : 0;
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
-    return heat_square(fibrad_heat_beam_error(heat, b)) + heat_square(patch_error(heat, b)) +
-           (1 - eps) * heat_square(few) + heat_square(seen * errors->walls);
+    const double patches = b < heat->spheres ? patch_error(heat, b) : 0;
+    return heat_square(fibrad_heat_beam_error(heat, b)) + heat_square(patches) + (1 - eps) * heat_square(few) +
+           heat_square(seen * errors->walls);
 }
 
 static heat_errors errors_of(const fibrad_heat *heat) {
@@ -103,7 +107,8 @@ static double power_error_of(const fibrad_heat *heat, const heat_errors *errors,
         sum += weight * pool->errors / pool->exchanges, samples += weight;
     }
     const double pooled = samples > 0 ? sum / samples * heat_square(exchange) : 0;
-    return exchange > 0 ? (own_error(heat, errors, b) + pooled) / 2 : 0;
+    const double smooth = b < heat->spheres ? 0 : patch_error(heat, b);
+    return exchange > 0 ? heat_square(smooth) + (own_error(heat, errors, b) + pooled) / 2 : 0;
 }
 
 void fibrad_heat_read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {

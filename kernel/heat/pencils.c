@@ -35,7 +35,8 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     const double pencils = fibrad_min(fibrad_min(n + blocks, beams), 16 + ROOM_PENCILS * fibrad_sqrt(beams) / fraction);
     const double of_walls = scene->container.walls ? beams * fibrad_min(1, 1.5 * walls / surface) : 0;
     const double pairs = ROOM_PAIRS * heat->config.patches * heat->config.patches;
-    const double left = fibrad_min(1, ROOM_JOINED / (1 + beams / heat->thin / (2 * pairs)));
+    const bool wide = fibrad_heat_number_bytes(heat) > 1; /* many patches: beams hardly ever connect the same */
+    const double left = wide ? 1 : fibrad_min(1, ROOM_JOINED / (1 + beams / heat->thin / (2 * pairs)));
     const double joined = 1 - (1 - left) * fibrad_min(1, 2 * fraction);
     const double kept = fibrad_min(beams, joined * beams / heat->thin + pencils + of_walls);
     const double pencil = sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_link) + 2;

@@ -13,7 +13,7 @@
 #define RAYS_WEIGHT 2.5
 /* What a pencil says of beams k: the patches of their two ends, 0 being that of its owner, and how many they are. */
 enum { NUMBERS = 3, HOW_MANY = 2 };
-FIBRAD_INLINE uint32_t number_of(const fibrad_heat_pencil *pencil, uint32_t k, uint32_t which, bool wide) {
+FIBRAD_INLINE uint32_t beam_number(const fibrad_heat_pencil *pencil, uint32_t k, uint32_t which, bool wide) {
     const void *numbers = pencil + 1;
     const uint32_t at = NUMBERS * k + which;
     return wide ? ((const uint16_t *)numbers)[at] : ((const uint8_t *)numbers)[at];
@@ -32,8 +32,8 @@ static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_he
 FIBRAD_INLINE void bring_beams(double *own, const double *mine, const double *other, const fibrad_heat_pencil *pencil,
                                uint32_t end, double area, bool wide) {
     for (uint32_t k = 0; k < pencil->count; k++) {
-        const uint32_t a = number_of(pencil, k, end, wide), b = number_of(pencil, k, 1 - end, wide);
-        own[a] += area * number_of(pencil, k, HOW_MANY, wide) * (other[b] - mine[a]);
+        const uint32_t a = beam_number(pencil, k, end, wide), b = beam_number(pencil, k, 1 - end, wide);
+        own[a] += area * beam_number(pencil, k, HOW_MANY, wide) * (other[b] - mine[a]);
     }
 }
 
@@ -75,8 +75,8 @@ static void take_from_walls(const fibrad_heat *heat, const double *mine, const d
     double *to = g->walls + (other_end(heat, pencil) - fibrad_heat_others(heat));
     const bool wide = fibrad_heat_number_bytes(heat) == 2;
     for (uint32_t k = 0; k < pencil->count; k++) {
-        const uint32_t a = number_of(pencil, k, 0, wide), b = number_of(pencil, k, 1, wide);
-        const double all = area * number_of(pencil, k, HOW_MANY, wide);
+        const uint32_t a = beam_number(pencil, k, 0, wide), b = beam_number(pencil, k, 1, wide);
+        const double all = area * beam_number(pencil, k, HOW_MANY, wide);
         to[b] += g->areas ? all : -(all * (other[b] - mine[a]));
     }
     set_aside(heat, g->walls, g->away);
