@@ -10,11 +10,11 @@
  * spheres 0.75 at solid fraction 0.6, 1.1 at 0.2, of which there is room for more. */
 #define ROOM_PENCILS 1.3
 
-/* Pairs of patches that a sphere's beams may connect, over the square of its patches, at solid fraction 1/2 and above;
- * and how much more of N beams than 1/(1 + N/(2 pairs)), which is above (1 - exp(-N/pairs)) pairs/N, are left when
- * those of the same patches are joined. 168 directions of 64 points, 96 patches: 0.51. */
-#define ROOM_PAIRS  .75
-#define ROOM_JOINED 1.1
+/* Patches that each patch of a sphere may see, over the patches of a sphere and besides, at solid fraction 1/2 and
+ * above. Of N beams on so many pairs (1 - exp(-N/pairs)) pairs/N are left when those of the same patches are joined,
+ * which is below 1/(1 + N/(2 pairs)): with 168 directions of 64 points and 96 patches 0.51 of them. */
+#define ROOM_SEEN .75
+#define ROOM_MORE 30.0
 
 /* Beams that meet walls are all kept; by reciprocity they are as many as the walls are large. */
 size_t fibrad_heat_room(const fibrad_heat *heat) {
@@ -34,9 +34,9 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     const double fraction = fibrad_min(1, solid / (n * spacing * spacing * spacing));
     const double pencils = fibrad_min(fibrad_min(n + blocks, beams), 16 + ROOM_PENCILS * fibrad_sqrt(beams) / fraction);
     const double of_walls = scene->container.walls ? beams * fibrad_min(1, 1.5 * walls / surface) : 0;
-    const double pairs = ROOM_PAIRS * heat->config.patches * heat->config.patches;
+    const double pairs = heat->config.patches * (ROOM_SEEN * heat->config.patches + ROOM_MORE);
     const bool wide = fibrad_heat_number_bytes(heat) > 1; /* many patches: beams hardly ever connect the same */
-    const double left = wide ? 1 : fibrad_min(1, ROOM_JOINED / (1 + beams / heat->thin / (2 * pairs)));
+    const double left = wide ? 1 : 1 / (1 + beams / heat->thin / (2 * pairs));
     const double joined = 1 - (1 - left) * fibrad_min(1, 2 * fraction);
     const double kept = fibrad_min(beams, joined * beams / heat->thin + pencils + of_walls);
     const double pencil = sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_link) + 2;
