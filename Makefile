@@ -89,7 +89,6 @@ KERNEL = \
     kernel/exchange/body_row.c \
     kernel/exchange/exchange.c \
     kernel/exchange/flow.c \
-    kernel/heat/errors.c \
     kernel/heat/heat.c \
     kernel/heat/pencils.c \
     kernel/heat/result.c \

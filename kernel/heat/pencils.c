@@ -40,7 +40,7 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     const double joined = 1 - (1 - left) * fibrad_min(1, 2 * fraction);
     const double kept = fibrad_min(beams, joined * beams / heat->thin + pencils + of_walls);
     const double pencil = sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_link) + 2;
-    return (size_t)(n * (3 * kept * (double)fibrad_heat_number_bytes(heat) + pencils * pencil)) + 4096;
+    return (size_t)(1.1 * n * (3 * kept * (double)fibrad_heat_number_bytes(heat) + pencils * pencil)) + 4096;
 }
 
 /* Patches that the other end of a beam may have, at the most. */
