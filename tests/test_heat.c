@@ -1137,6 +1137,37 @@ START_TEST(work_memory_may_be_too_small) {
 }
 END_TEST
 
+/* The room for beams is what the block has: too little of it is told by the tasks that find none; more than enough
+ * changes no bit. */
+START_TEST(the_room_for_beams_may_be_too_small) {
+    struct problem p = problem_of(packing(100, 1, 1, .55, 5, true), 1, .5);
+    double power[2][100];
+    p.temperature[0] = 2, p.config.directions = 24;
+    build_scene(&p);
+    const size_t size = fibrad_heat_size(&p.config, p.scene);
+    for (size_t times = 1; times <= 2; times++) {
+        ck_assert_int_eq(fibrad_heat_init(&p.heat, block_of(times * size), times * size, &p.config, p.scene),
+                         FIBRAD_OK);
+        trace_beams(&p);
+        solve(&p);
+        memcpy(power[times - 1], p.result.power, sizeof power[0]);
+        ck_assert_uint_le(p.heat->used + p.heat->links * sizeof(fibrad_heat_link), p.heat->room);
+        if (times == 1) free(p.heat);
+    }
+    ck_assert_mem_eq(power[0], power[1], sizeof power[0]);
+
+    fibrad_work work = work_growing();
+    int status = FIBRAD_OK;
+    ck_assert_int_eq(fibrad_heat_move(p.heat, p.scene), FIBRAD_OK);
+    p.heat->room = p.heat->used + p.heat->links * sizeof(fibrad_heat_link) + 1000;
+    for (uint32_t task = 0; task < 100 && status == FIBRAD_OK; task++) status = fibrad_heat_trace(p.heat, &work, task);
+    ck_assert_int_eq(status, FIBRAD_E_SIZE);
+    ck_assert_int_eq(fibrad_heat_begin(p.heat, &p.sources), FIBRAD_E_STATE);
+    work_free(&work);
+    free_problem(&p);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("heat");
     TCase *closed = suite_case(suite, "closed forms"), *paths = suite_case(suite, "paths");
@@ -1176,5 +1207,6 @@ int main(void) {
     TCase *arguments = suite_case(suite, "arguments");
     tcase_add_test(arguments, arguments_are_checked);
     tcase_add_test(arguments, work_memory_may_be_too_small);
+    tcase_add_test(arguments, the_room_for_beams_may_be_too_small);
     return suite_run(suite);
 }

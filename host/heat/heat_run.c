@@ -111,9 +111,11 @@ static void heat_scale(const struct bed *bed, uint32_t walls, double square_metr
 
 /* Whether a problem of this kind will fit into memory. Source: fibrad_heat_size. */
 static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) {
-    const double beams = 4. * config->directions * config->points, patches = 8. * config->patches * (8 + 16);
-    const double rays = config->wall_rays * (double)sizeof(double[3]);
-    return memory_check(bed->n * (beams + patches) + rays, "fewer --directions, --points or --patches take less");
+    const double beams = (double)config->directions * config->points, patches = config->patches;
+    const double kept = fmin(beams, 4 * sqrt(beams / 2 * patches)), number = patches > 96 ? 2 : 1;
+    const double others = 4000; /* that a sphere sees */
+    return memory_check(bed->n * (3 * number * kept + 8 * 7 * patches + others),
+                        "fewer --directions, --points or --patches take less");
 }
 
 /* What emissivities follow. */

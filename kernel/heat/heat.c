@@ -15,7 +15,7 @@
 #define HEAT_PARTS      8u
 #define HEAT_PARTS_MAX  1024u
 #define HEAT_RAYS_MAX   (1u << 30)
-#define HEAT_THIN_MAX   1u
+#define HEAT_THIN_MAX   2u
 #define HEAT_KEPT       36u   /* beams of each patch that are not to be thinned out */
 #define HEAT_RADIUS_MIN 1e-30 /* and its inverse the largest */
 

@@ -1,6 +1,7 @@
 /* hits_lanes.c - the patches that the beams of a sphere and the rays of walls connect. Compiled once per instruction
  * set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
+#include "base/random.h"
 #include "heat/hits_lanes.h"
 #include "heat/pencils.h"
 #include "heat/sphere_patch.h"
@@ -48,9 +49,11 @@ static void number_patches_of(struct hit_window *p, const double frame[9], uint3
         patch[k] = (uint16_t)fibrad_patch_number((uint32_t)p->face[k], (uint32_t)p->x[k], (uint32_t)p->y[k], side);
 }
 
-/* The points of word `word` of window k that are kept, if they meet a sphere. */
-static uint64_t kept_points(uint32_t k, uint32_t word, uint32_t thin) {
-    return thin == 1 ? UINT64_MAX : (uint64_t)0x5555555555555555 << (HIT_POINTS * word + k) % thin;
+/* The points of a word that are kept: all, or half of them, by turns those whose numbers have an even number of ones
+ * (Thue, Morse) and the others. */
+static uint64_t kept_points(uint32_t turn, uint32_t thin) {
+    const uint64_t half = 0x9669699669969669;
+    return thin == 1 ? UINT64_MAX : turn % 2 == 0 ? half : ~half;
 }
 
 /* Lists points of a word that are kept and the discs that hide them, the first that covers each: those in `kept`, and
@@ -122,12 +125,12 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
 
 /* Keeps the beams of a word of window k that meet spheres; returns where the next ones go. */
 static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, const fibrad_workspace *work, const double frame[9],
-                                   const fibrad_points *points, uint32_t k, uint32_t word, uint32_t known,
-                                   fibrad_heat_beam *beam) {
+                                   const fibrad_points *points, uint32_t k, uint32_t word, uint64_t kept,
+                                   uint32_t known, fibrad_heat_beam *beam) {
     struct hit_window window;
     uint16_t patch[HIT_POINTS];
     const uint16_t *leave = heat->leave + (size_t)k * points->count + HIT_POINTS * word;
-    find_hit_discs(work, points, word, kept_points(k, word, heat->thin), known, &window);
+    find_hit_discs(work, points, word, kept, known, &window);
     find_hit_normals(work, points->set.x + HIT_POINTS * word, points->set.y + HIT_POINTS * word, &window);
     number_patches_of(&window, frame, heat->side, patch);
     for (uint32_t p = 0; p < window.count; p++)
@@ -138,10 +141,11 @@ static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, const fibrad_workspa
 
 /* The same of those that meet none: all of them where there are walls. */
 static fibrad_heat_beam *keep_escapes(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
-                                      const fibrad_points *points, uint32_t k, uint32_t word, fibrad_heat_beam *beam) {
+                                      const fibrad_points *points, uint32_t k, uint32_t word, uint64_t kept,
+                                      fibrad_heat_beam *beam) {
     const uint16_t *leave = heat->leave + (size_t)k * points->count + HIT_POINTS * word;
-    const uint32_t first = fibrad_heat_others(heat), thin = heat->scene->container.walls ? 1 : heat->thin;
-    const uint64_t kept = kept_points(k, word, thin);
+    const uint32_t first = fibrad_heat_others(heat);
+    if (heat->scene->container.walls) kept = UINT64_MAX;
     for (uint64_t bits = points->seen[word]; bits != 0; bits &= bits - 1) {
         const uint32_t p = (uint32_t)__builtin_ctzll(bits), known = work->entries.length;
         const uint32_t patch = escape_patch(heat, work, frame, points, k, HIT_POINTS * word + p) - first;
@@ -160,6 +164,8 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
     work->areas.overflow = false;
     work->extra_owner = 0;
     fibrad_work_begin(work, heat->scene, place, 0, FIBRAD_BEAM_STRIDE);
+    /* spheres of a lattice, which are all alike, do not all keep the same half */
+    const uint32_t turn = (uint32_t)(fibrad_mix(fibrad_scene_rank(heat->scene, place)) & 1);
     for (uint32_t k = 0; k < heat->config.directions; k++) {
         const uint32_t known = work->entries.length;
         double frame[9];
@@ -168,8 +174,9 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
         LANED(fibrad_beam_window)(work, frame, &points, k);
         if (work->disc.count > work->disc.capacity) return fibrad_work_discs_missed(work);
         for (uint32_t word = 0; word < points.count / HIT_POINTS; word++) {
-            beam = keep_hits(heat, work, frame, &points, k, word, known, beam);
-            beam = keep_escapes(heat, work, frame, &points, k, word, beam);
+            const uint64_t kept = kept_points(turn + k + word, heat->thin);
+            beam = keep_hits(heat, work, frame, &points, k, word, kept, known, beam);
+            beam = keep_escapes(heat, work, frame, &points, k, word, kept, beam);
         }
     }
     if (work->entries.missed == 0) return fibrad_heat_keep(heat, work, place, (uint32_t)(beam - first));

@@ -10,11 +10,10 @@
  * spheres 0.75 at solid fraction 0.6, 1.1 at 0.2, of which there is room for more. */
 #define ROOM_PENCILS 1.3
 
-/* Patches that each patch of a sphere may see, over the patches of a sphere and besides, at solid fraction 1/2 and
- * above. Of N beams on so many pairs (1 - exp(-N/pairs)) pairs/N are left when those of the same patches are joined,
- * which is below 1/(1 + N/(2 pairs)): with 168 directions of 64 points and 96 patches 0.51 of them. */
-#define ROOM_SEEN .75
-#define ROOM_MORE 30.0
+/* Beams that are left of N when those of the same patches, P, are joined, over sqrt(N P), at solid fraction 1/2 and
+ * above: 2.1 to 2.8 at P = 24, 3.4 to 3.9 at 96, up to 6.3 at 384, for N from 1,000 to 128,000. */
+#define ROOM_JOINED      4.5
+#define ROOM_JOINED_WIDE 6.8
 
 /* Beams that meet walls are all kept; by reciprocity they are as many as the walls are large. */
 size_t fibrad_heat_room(const fibrad_heat *heat) {
@@ -34,11 +33,11 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     const double fraction = fibrad_min(1, solid / (n * spacing * spacing * spacing));
     const double pencils = fibrad_min(fibrad_min(n + blocks, beams), 16 + ROOM_PENCILS * fibrad_sqrt(beams) / fraction);
     const double of_walls = scene->container.walls ? beams * fibrad_min(1, 1.5 * walls / surface) : 0;
-    const double pairs = heat->config.patches * (ROOM_SEEN * heat->config.patches + ROOM_MORE);
-    const bool wide = fibrad_heat_number_bytes(heat) > 1; /* many patches: beams hardly ever connect the same */
-    const double left = wide ? 1 : 1 / (1 + beams / heat->thin / (2 * pairs));
-    const double joined = 1 - (1 - left) * fibrad_min(1, 2 * fraction);
-    const double kept = fibrad_min(beams, joined * beams / heat->thin + pencils + of_walls);
+    const double thinned = beams / heat->thin;
+    const double most = (fibrad_heat_number_bytes(heat) == 2 ? ROOM_JOINED_WIDE : ROOM_JOINED) *
+                        fibrad_sqrt(thinned * heat->config.patches);
+    const double joined = fibrad_min(thinned, most + (thinned - most) * fibrad_max(0, 1 - 2 * fraction));
+    const double kept = fibrad_min(beams, joined + pencils + of_walls);
     const double pencil = sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_link) + 2;
     return (size_t)(1.1 * n * (3 * kept * (double)fibrad_heat_number_bytes(heat) + pencils * pencil)) + 4096;
 }
