@@ -28,7 +28,15 @@ static double f[] = {0.1, 1.0 / 3, 5e-324, 0.75586818421612400e-1};
 static const unsigned char wanted[] = {1, 0, 1};
 static double row_sum[] = {0.1 + 1.0 / 3, 0, 0.0755868184216124}, escaped[] = {0.5, 0, 0.25}, error[] = {0.03, 0, 0.04};
 static double wall[3][2] = {{0.0625, 0.25}, {0, 0.125}, {0}}, area[] = {100, INFINITY};
-static const fibrad_bed_factors factors = {.matrix = {3, 2, start, col, f, escaped, (double[3]){0}, error, &wall[0][0]},
+static const fibrad_bed_factors factors = {.matrix = {.n = 3,
+                                                      .bodies = 2,
+                                                      .start = start,
+                                                      .col = col,
+                                                      .f = f,
+                                                      .escaped = escaped,
+                                                      .beyond = (double[3]){0},
+                                                      .error = error,
+                                                      .body = &wall[0][0]},
                                            .body_area = area};
 static const struct walls walls = {
     2, {{.kind = FIBRAD_BODY_CYLINDER, .cylinder = {0, 0, 9}}, {.kind = FIBRAD_BODY_PLANE, .plane = {2, 0, -9}}}};
