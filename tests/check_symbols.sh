@@ -45,7 +45,7 @@ if test -e "$library"; then # it needs OpenMP, which not every machine has
     fault "functions of the header that are missing" "$(functions host/simple/fibrad_host.h | comm -23 - "$work/host")"
     fault "symbols but of a heap, strings and OpenMP" "$(nm -g --undefined-only "$library" | awk '$1 == "U" {print $2}' |
         sort -u | comm -23 - "$work/host" | comm -23 - "$work/defined" |
-        grep -vxE '(malloc|calloc|realloc|free|qsort|strcmp|mem[a-z]*|_GLOBAL_OFFSET_TABLE_|omp_.*|GOMP_.*|__kmpc_.*)')"
+        grep -vxE '(malloc|calloc|realloc|free|qsort|strcmp|bcmp|mem[a-z]*|_GLOBAL_OFFSET_TABLE_|omp_.*|GOMP_.*|__kmpc_.*)')"
     fault "variables (data, bss)" "$(size -A "$library" | awk '/^\.(data|bss) / && $2 > 0 {print $1 ": " $2 " bytes"}')"
 fi
 exit $faults
