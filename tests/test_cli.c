@@ -77,7 +77,7 @@ static const struct {
     {{"heat", MONO, "--emissivity", ".5"}, "which --temperature"},
     {{"heat", MONO, "--emissivity=.5", "--temperature", "-3"}, "--temperature: -3 is below absolute zero"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--patches=100"}, "--patches: 100 is not built in"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--model=fine"}, "'fine' is neither patches nor spheres"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--model=fine"}, "'fine' is none of patches, spheres and factors"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--error=.1", "--points=64"}, "leave out --directions"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall-temperature=3,4"}, "there are no walls"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--temperature-unit=F"}, "'F' is neither K nor C"},

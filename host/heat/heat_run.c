@@ -2,7 +2,6 @@
 #include "heat/heat_run.h"
 
 #include <gsl/gsl_math.h>
-#include <stdio.h>
 
 #include "bed/bed_scene.h"
 #include "cli/memory.h"
@@ -207,15 +206,6 @@ static int heat_improve(struct bed_options *asked, const struct heat_problem *pr
         const double walls = report->wall_error / problem->error;
         const bool spheres = report->error > heat_allowed(problem, report);
         bool more = false;
-        fprintf(stderr, "dirs %u patches %u rays %u: spheres %.3g (beams %.3g patches %.3g) walls %.3g:",
-                report->config.directions, report->config.patches, report->config.wall_rays,
-                report->error / report->power_rms, report->result.error_beams / report->power_rms,
-                report->result.error_patches / report->power_rms, report->wall_error);
-        for (uint32_t k = 0; k < problem->walls.count; ++k)
-            fprintf(stderr, " %.2g",
-                    report->result.body_error[k] /
-                        fmax(fabs(report->result.body_power[k]), .05 * report->result.body_absorbed[k]));
-        fprintf(stderr, "\n");
         if (!spheres && walls <= 1) return STATUS_OK;
         if (walls > 1 && walls <= HELPED * last) more = heat_refine_rays(report, walls);
         if (spheres)
