@@ -205,6 +205,7 @@ FIBRAD_INLINE void add_octant(const wall_lines *lines, bool round, bool several,
                               octant_sums *part) {
     const uint32_t begin = round ? 2 : 0, end = round ? 4 : 3;
     vd own[3], wide[3];
+    for (uint32_t axis = 0; axis < 3; axis++) own[axis] = wide[axis] = vd_set1(1);
     for (uint32_t axis = begin; axis < 3 && several; axis++) {
         own[axis] = on_side(lines->w[axis], part->octant, axis);
         wide[axis] = on_side(lines->wide[axis], part->octant, axis);
