@@ -20,7 +20,8 @@ const char *fibrad_status_text(int status) { return ""; }
 size_t fibrad_host_sizeof(const char *name) { return %d; }
 """
 FUNCTIONS = ("view_factors exchange_factors displacements radiation_new radiation_move radiation_solve "
-             "radiation_describe radiation_free bed_free").split()
+             "radiation_describe radiation_free bed_free transient_new transient_move transient_powers "
+             "transient_advance transient_describe transient_free").split()
 
 
 @pytest.fixture(name="backend")
