@@ -24,25 +24,23 @@ static fibrad_run run_of(fibrad_transient *t) {
     return (fibrad_run){.threads = t->run.threads, .progress = forward_progress, .context = t};
 }
 
-/* Whether this many doubles can be had, zeroed. */
-static bool take_doubles(double **array, size_t count) {
-    *array = calloc(count + 1, sizeof **array);
-    return *array != NULL;
-}
-
+/* All arrays of doubles are parts of one block. */
 static int take_arrays(fibrad_transient *t) {
     double **const of_spheres[] = {&t->at[0],      &t->at[1],    &t->at[2],     &t->at[3], &t->area,    &t->emissivity,
                                    &t->now,        &t->slope,    &t->base,      &t->first, &t->guess,   &t->hold,
                                    &t->source,     &t->found,    &t->power,     &t->given, &t->allowed, &t->solution,
                                    &t->correction, &t->compared, &t->by_patches};
-    bool taken = take_doubles(&t->body_emissivity, t->bodies) && take_doubles(&t->wall, 3 * (size_t)t->bodies) &&
-                 take_doubles(&t->wall_correction, t->bodies) && take_doubles(&t->wall_compared, t->bodies) &&
-                 take_doubles(&t->wall_power, t->bodies);
-    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k)
-        taken = take_doubles(of_spheres[k], t->n) && taken;
+    double **const of_bodies[] = {&t->body_emissivity, &t->wall_correction, &t->wall_compared, &t->wall_power,
+                                  &t->wall}; /* the last: three a body */
+    const size_t spheres = sizeof of_spheres / sizeof *of_spheres, bodies = sizeof of_bodies / sizeof *of_bodies;
+    double *next = calloc(spheres * t->n + (bodies + 2) * t->bodies + 1, sizeof *next);
+    t->doubles = next;
     t->body = calloc((size_t)t->bodies + 1, sizeof *t->body);
     t->id = calloc((size_t)t->n + 1, sizeof *t->id);
-    return taken && t->body && t->id ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    if (!next || !t->body || !t->id) return FIBRAD_E_MEMORY;
+    for (size_t k = 0; k < spheres; ++k, next += t->n) *of_spheres[k] = next;
+    for (size_t k = 0; k < bodies; ++k, next += t->bodies) *of_bodies[k] = next;
+    return FIBRAD_OK;
 }
 
 static void copy_bed(fibrad_transient *t, const fibrad_scene_config *scene, const fibrad_spheres *s) {
@@ -218,14 +216,7 @@ void fibrad_transient_describe(const fibrad_transient *t, fibrad_scene_facts *fa
 
 void fibrad_transient_free(fibrad_transient *t) {
     if (!t) return;
-    double *const arrays[] = {t->at[0],     t->at[1],      t->at[2],           t->at[3],
-                              t->area,      t->emissivity, t->body_emissivity, t->slope,
-                              t->base,      t->first,      t->guess,           t->hold,
-                              t->source,    t->found,      t->power,           t->given,
-                              t->wall,      t->allowed,    t->solution,        t->correction,
-                              t->compared,  t->by_patches, t->wall_correction, t->wall_compared,
-                              t->wall_power};
-    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) free(arrays[k]);
+    free(t->doubles);
     free(t->body);
     free(t->id);
     fibrad_network_free(t->network);

@@ -18,6 +18,7 @@ struct fibrad_transient {
     double *at[4];     /* [n] x, y, z, r */
     uint64_t *id;      /* [n] if named */
     bool named;
+    double *doubles; /* all arrays of doubles here and below */
     fibrad_scene_facts facts;
     double *area;                         /* [n] */
     double *emissivity, *body_emissivity; /* [n], [bodies] of the network */
