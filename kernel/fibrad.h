@@ -14,8 +14,8 @@
  *                                                       _reciprocity
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   absorbed after reflections (grey)        fibrad_exchange_row, _body, _body_mean, _displacement
- * fibrad_heat.h has net powers and temperatures, fibrad_part.h parts of beds, fibrad_surface.h the method of Bao, Gao
- * and Tan, fibrad_furnace.h a furnace.
+ * fibrad_heat.h has net powers and temperatures, fibrad_mesh.h walls of triangles, fibrad_part.h parts of beds,
+ * fibrad_surface.h the method of Bao, Gao and Tan, fibrad_furnace.h a furnace.
  *
  * One row   fibrad_scene_init, fibrad_beam_row. All rows: per thread a fibrad_work and a fibrad_rows; fibrad_beam_row
  *           for every sphere; fibrad_matrix_init, _close, _read. docs/embedding.md has complete programs.
@@ -60,7 +60,8 @@ typedef enum fibrad_status {
     FIBRAD_E_UNSUPPORTED = -10, /* a valid request that this version does not compute */
     FIBRAD_E_MEMORY = -11,      /* a resize function or the heap had no more memory */
     FIBRAD_E_CANCELLED = -12,   /* a progress function asked to stop */
-    FIBRAD_E_UNSOLVABLE = -13   /* no temperatures give bodies the powers that were asked for */
+    FIBRAD_E_UNSOLVABLE = -13,  /* no temperatures give bodies the powers that were asked for */
+    FIBRAD_E_BACK = -14         /* a side of a triangle was seen that no body has; its number is written */
 } fibrad_status;                /* the numbers never change their meaning */
 
 /* One English sentence for any number, never NULL; FIBRAD_VERSION of the library linked in. No errors. */
@@ -126,12 +127,12 @@ typedef struct fibrad_spheres {
 typedef enum fibrad_body_kind {
     FIBRAD_BODY_PLANE = 1,    /* a wall across an axis; the scene lies on its inner side */
     FIBRAD_BODY_CYLINDER = 2, /* a wall around the z axis; the scene lies inside */
-    FIBRAD_BODY_MESH = 3      /* triangles: FIBRAD_E_UNSUPPORTED */
+    FIBRAD_BODY_MESH = 3      /* triangles: those of fibrad_scene_config.triangles that name it */
 } fibrad_body_kind;
 
-/* A body that is not a sphere, known by its index in fibrad_scene_config.body. Walls bound a convex container, so that
- * no wall hides one sphere from another: at most two planes an axis, one of them `upper`, none on a periodic axis, the
- * lower below the upper; at most one cylinder, with x and y open and without planes across them. */
+/* A body that is not a sphere, known by its index in fibrad_scene_config.body. Planes and the cylinder bound a convex
+ * container, so that none hides one sphere from another: at most two planes an axis, one of them `upper`, none on a
+ * periodic axis, the lower below the upper; at most one cylinder, with x and y open and without planes across them. */
 typedef struct fibrad_body {
     int kind; /* a fibrad_body_kind */
     struct {
@@ -143,7 +144,7 @@ typedef struct fibrad_body {
     } cylinder;              /* of FIBRAD_BODY_CYLINDER */
 } fibrad_body;
 
-#define FIBRAD_BODIES_MAX 7
+#define FIBRAD_BODIES_MAX 32
 
 /* What a scene is made for. Zeroed: open on all sides, no bodies but spheres, the best instruction set. */
 typedef struct fibrad_scene_config {
@@ -153,6 +154,7 @@ typedef struct fibrad_scene_config {
     uint32_t bodies;                    /* [0, FIBRAD_BODIES_MAX], else FIBRAD_E_UNSUPPORTED */
     double known_low[3], known_high[3]; /* [L] spheres beyond may be missing; equal (zeroed): none, along the axis */
     const struct fibrad_occupancy *occupancy; /* fibrad_part.h: where such spheres may be; NULL: not told; not copied */
+    const struct fibrad_triangles *triangles; /* fibrad_mesh.h; NULL: none */
 } fibrad_scene_config;
 
 typedef struct fibrad_scene fibrad_scene; /* spheres copied in the order of cells of a grid; immutable once made */
@@ -160,12 +162,13 @@ typedef struct fibrad_scene fibrad_scene; /* spheres copied in the order of cell
 /* Where fibrad_scene_init found a fault: the two spheres concerned, equal if it is one, n if it is none of them. */
 typedef struct fibrad_fault {
     uint32_t first, second;
+    uint32_t triangle; /* the triangle; UINT32_MAX: none */
 } fibrad_fault;
 
-/* Bytes that fibrad_scene_init needs for n spheres, 44 each and 4 KB (ids: 1 if spheres.id is set, 8 more each).
+/* Bytes that fibrad_scene_init needs for n spheres, 44 each and 5 KB (ids: 1 if spheres.id is set, 8 more each).
  * Errors: 0 if n is above FIBRAD_SPHERES_MAX. An upper bound without ids, for static memory: */
 size_t fibrad_scene_size(uint32_t n, int ids);
-#define FIBRAD_SCENE_BYTES(n) (5248 + (size_t)(n)*64)
+#define FIBRAD_SCENE_BYTES(n) (6144 + (size_t)(n)*64)
 
 /* Makes a scene in memory[size]. config: NULL is all defaults. On periodic axes centres are moved into the box. Spheres
  * may overlap each other and the walls, as in settled beds, but no centre may lie inside another sphere or beyond a
@@ -182,6 +185,7 @@ typedef struct fibrad_scene_facts {
     double radius_min, radius_max; /* [L]; 0 without spheres */
     double overlap_max;            /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
     uint32_t overlap_pair[2];      /* the spheres of the largest overlap */
+    uint32_t triangles;
 } fibrad_scene_facts;
 
 /* The facts of a scene (null pointers: nothing). Area [L^2] of the part of a body inside all others, per period of
@@ -198,7 +202,8 @@ uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k);
  * FIBRAD_E_WORK; with any block of memory.needed bytes the call succeeds, or gets past this need to a next one. */
 typedef struct fibrad_work {
     fibrad_memory memory;
-    void *inside; /* the kernel's own; NULL at first */
+    void *inside;      /* the kernel's own; NULL at first */
+    uint32_t triangle; /* out, after FIBRAD_E_BACK: which one */
 } fibrad_work;
 
 /* Bytes for beam rows with up to `discs` spheres met in one window, hidden ones included (a packed bed: 64), and

@@ -89,7 +89,7 @@ typedef struct fibrad_insitu_state {
 /* Sums over all ranks, the same on all; powers > 0 where heat is gained. They add up to 0, to rounding. */
 typedef struct fibrad_insitu_totals {
     double particles, surroundings;
-    double body[7]; /* [bodies of the rows] */
+    double body[FIBRAD_BODIES_MAX]; /* [bodies of the rows] */
 } fibrad_insitu_totals;
 
 /* What the last rows were, over all ranks. */

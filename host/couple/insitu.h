@@ -7,8 +7,6 @@
 #include "couple/fibrad_couple.h"
 #include "couple/halo.h"
 
-#define FIBRAD_BODIES_MAX 7
-
 /* The rows of one step, which stay with the ranks that owned the particles then: their homes. */
 typedef struct fibrad_insitu_set {
     fibrad_rows *rows; /* [threads] of the particles [0, own); columns [0, columns) */

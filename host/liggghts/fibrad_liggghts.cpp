@@ -44,7 +44,7 @@ struct Driver {
     fibrad_insitu_totals totals;                  /* of the powers in use */
     bool radiates;                                /* there are such */
     LAMMPS_NS::bigint since;                      /* first step that they heat */
-    double heat, heat_surroundings, heat_body[7]; /* what they have brought until then */
+    double heat, heat_surroundings, heat_body[FIBRAD_BODIES_MAX]; /* what they have brought until then */
 };
 
 int rank() {

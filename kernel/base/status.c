@@ -31,6 +31,8 @@ const char *fibrad_status_text(int status) {
         return "stopped on request";
     case FIBRAD_E_UNSOLVABLE:
         return "no temperatures give bodies the powers that were asked for";
+    case FIBRAD_E_BACK:
+        return "a side of a triangle is seen that belongs to no body";
     default:
         return "no known status";
     }

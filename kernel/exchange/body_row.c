@@ -8,7 +8,7 @@
 
 /* Checks the arguments. */
 static int body_begin(const fibrad_scene *scene, uint32_t body, const fibrad_exchange_rule *rule, uint32_t part,
-                      double wall_emissivity[FIBRAD_WALLS]) {
+                      double wall_emissivity[FIBRAD_SLOTS]) {
     if (scene == NULL || rule == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     if (body >= scene->facts.bodies || part >= FIBRAD_BODY_PARTS || rule->paths > FIBRAD_PATHS_MAX)
@@ -24,7 +24,7 @@ static int body_begin(const fibrad_scene *scene, uint32_t body, const fibrad_exc
 
 int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
                          uint32_t part, fibrad_body_row *row) {
-    double wall_emissivity[FIBRAD_WALLS] = {0};
+    double wall_emissivity[FIBRAD_SLOTS] = {0};
     fibrad_workspace *space;
     int status = body_begin(scene, body, rule, part, wall_emissivity);
     if (status == FIBRAD_OK && (work == NULL || row == NULL)) status = FIBRAD_E_ARGUMENT;
@@ -48,7 +48,7 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
                           .first = true};
     FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa)(&paths, 0, count);
     double sum = paths.absorbed + paths.escaped + paths.beyond; /* the number of paths, but for Russian roulette */
-    for (int k = 0; k < FIBRAD_WALLS; k++) sum += paths.wall[k];
+    for (int k = 0; k < FIBRAD_SLOTS; k++) sum += paths.wall[k];
     if (!fibrad_finite(sum)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
     row->rays = paths.rays;
     if (sum == 0) {
@@ -65,7 +65,7 @@ int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fib
     if (part == NULL || mean == NULL) return FIBRAD_E_ARGUMENT;
     fibrad_body_row sum = {0};
     for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++) {
-        for (uint32_t b = 0; b < FIBRAD_WALLS; b++) sum.body[b] += part[p].body[b] / FIBRAD_BODY_PARTS;
+        for (uint32_t b = 0; b < FIBRAD_BODIES_MAX; b++) sum.body[b] += part[p].body[b] / FIBRAD_BODY_PARTS;
         sum.spheres += part[p].spheres / FIBRAD_BODY_PARTS;
         sum.escaped += part[p].escaped / FIBRAD_BODY_PARTS;
         sum.rays += part[p].rays;
@@ -74,7 +74,7 @@ int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fib
     for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++) {
         const double escaped = part[p].escaped - sum.escaped, spheres = part[p].spheres - sum.spheres;
         square += escaped * escaped + spheres * spheres;
-        for (uint32_t b = 0; b < FIBRAD_WALLS; b++) {
+        for (uint32_t b = 0; b < FIBRAD_BODIES_MAX; b++) {
             const double difference = part[p].body[b] - sum.body[b];
             square += difference * difference;
         }

@@ -19,7 +19,7 @@
 /* A rule, with the emissivities of walls by slot, and what comes out of it besides the row. */
 typedef struct exchange_task {
     const fibrad_exchange_rule *rule;
-    double wall_emissivity[FIBRAD_WALLS];
+    double wall_emissivity[FIBRAD_SLOTS];
     uint64_t rays;
 } exchange_task;
 
@@ -78,7 +78,7 @@ static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_
 
 /* How much of the first leg is reflected; wall: factors by slot. NaN: an emissivity is not valid. What spheres reflect
  * is summed in whole numbers, so that the order of columns, the caller's, plays no part. */
-static double reflected_of(const exchange_task *task, const fibrad_row *row, const double wall[FIBRAD_WALLS]) {
+static double reflected_of(const exchange_task *task, const fibrad_row *row, const double wall[FIBRAD_SLOTS]) {
     uint64_t units = 0;
     for (uint32_t k = 0; k < row->length; k++) {
         const double part = row->f[k] * (1 - task->rule->emissivity[row->col[k]]);
@@ -86,14 +86,14 @@ static double reflected_of(const exchange_task *task, const fibrad_row *row, con
         units += (uint64_t)(part * 0x1p60);
     }
     double sum = (double)units * 0x1p-60;
-    for (int slot = 0; slot < FIBRAD_WALLS; slot++) sum += wall[slot] * (1 - task->wall_emissivity[slot]);
+    for (int slot = 0; slot < FIBRAD_SLOTS; slot++) sum += wall[slot] * (1 - task->wall_emissivity[slot]);
     return sum;
 }
 
 /* All that the paths have put down. */
 static double sum_of_paths(const fibrad_paths *paths) {
     double sum = paths->absorbed + paths->escaped + paths->beyond;
-    for (int wall = 0; wall < FIBRAD_WALLS; wall++) sum += paths->wall[wall];
+    for (int wall = 0; wall < FIBRAD_SLOTS; wall++) sum += paths->wall[wall];
     return sum;
 }
 
@@ -154,7 +154,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
                             fibrad_row *row) {
     exchange_task *task = *(exchange_task *const *)of;
     const fibrad_exchange_rule *rule = task->rule;
-    double beam_error, wall[FIBRAD_WALLS], scale = 0;
+    double beam_error, wall[FIBRAD_SLOTS], scale = 0;
     if (rule->emissivity[i] == 0) return empty_row(scene, row);
     int status = first_leg(scene, space, i, rule, row, &beam_error);
     if (status != FIBRAD_OK) return status;
@@ -182,7 +182,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     if (!fibrad_finite(row->error + scale)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
     row->escaped += paths.escaped * scale;
     row->beyond += paths.beyond * scale;
-    for (int slot = 0; slot < FIBRAD_WALLS; slot++)
+    for (int slot = 0; slot < FIBRAD_SLOTS; slot++)
         wall[slot] = wall[slot] * task->wall_emissivity[slot] + paths.wall[slot] * scale;
     fibrad_row_bodies(scene, wall, row);
     task->rays = paths.rays;

@@ -22,11 +22,11 @@ typedef struct fibrad_paths {
     bool cut;                      /* whether they end beyond a cutoff or a known region */
     double cutoff;                 /* from its centre, in its radii; infinity: none */
     const double *emissivity;      /* [spheres], in the caller's order; NULL: all are black */
-    const double *wall_emissivity; /* [FIBRAD_WALLS] by slot */
+    const double *wall_emissivity; /* [FIBRAD_SLOTS] by slot */
     fibrad_random stream;          /* all numbers of path k come from it and k */
     bool first;                    /* whether what the first surface absorbs counts */
     fibrad_entries *entries;       /* out: what each sphere absorbs, path k in part k mod 4; NULL: not asked for */
-    double wall[FIBRAD_WALLS];     /* out: what each wall absorbs */
+    double wall[FIBRAD_SLOTS];     /* out: what each wall absorbs */
     double escaped, beyond;        /* out: what leaves, for good or beyond cutoff or known region */
     double absorbed;               /* out: what all spheres absorb */
     double square[FIBRAD_DISPLACEMENT_PARTS]

@@ -65,7 +65,7 @@ struct fibrad_heat {
     const fibrad_scene *scene;
     uint64_t hash;                             /* of its contents */
     uint32_t spheres;                          /* of it */
-    uint32_t given_bodies, slot[FIBRAD_WALLS]; /* of it */
+    uint32_t given_bodies, slot[FIBRAD_BODIES_MAX]; /* of it */
     uint32_t beams;                            /* of one sphere: directions times points */
     uint32_t thin;                             /* 2: of those that meet spheres every second one is kept; 1: all */
     uint32_t side;                             /* patches of a sphere along an edge of its cube */

@@ -56,18 +56,18 @@ static double rest_wanted(fibrad_matrix *m, uint32_t b) {
     return fibrad_max(wanted, 0.5 * rest);
 }
 
-/* Solves the equations of `bodies` unknowns in place; rows that depend on those before are left out. */
-static void solve_linear(uint32_t bodies, double a[FIBRAD_WALLS][FIBRAD_WALLS], double x[FIBRAD_WALLS]) {
-    for (uint32_t k = 0; k < bodies; k++) {
-        for (uint32_t i = k + 1; i < bodies && a[k][k] > 1e-12; i++) {
-            const double part = a[i][k] / a[k][k];
-            for (uint32_t j = k; j < bodies; j++) a[i][j] -= part * a[k][j];
+/* Solves equations of n unknowns, a [n][n], in place; rows that depend on those before are left out. */
+static void solve_linear(uint32_t n, double *a, double *x) {
+    for (uint32_t k = 0; k < n; k++) {
+        for (uint32_t i = k + 1; i < n && a[k * n + k] > 1e-12; i++) {
+            const double part = a[i * n + k] / a[k * n + k];
+            for (uint32_t j = k; j < n; j++) a[i * n + j] -= part * a[k * n + j];
             x[i] -= part * x[k];
         }
     }
-    for (uint32_t k = bodies; k-- > 0;) {
-        for (uint32_t j = k + 1; j < bodies; j++) x[k] -= a[k][j] * x[j];
-        x[k] = a[k][k] > 1e-12 ? x[k] / a[k][k] : 0;
+    for (uint32_t k = n; k-- > 0;) {
+        for (uint32_t j = k + 1; j < n; j++) x[k] -= a[k * n + j] * x[j];
+        x[k] = a[k * n + k] > 1e-12 ? x[k] / a[k * n + k] : 0;
     }
 }
 
@@ -76,17 +76,18 @@ static void solve_linear(uint32_t bodies, double a[FIBRAD_WALLS][FIBRAD_WALLS], 
  */
 static void balance_bodies(const fibrad_matrix *m, const double fixed[], const double wanted[], double v[]) {
     for (int step = 0; step < OWN_STEPS; step++) {
-        double a[FIBRAD_WALLS][FIBRAD_WALLS] = {{0}}, x[FIBRAD_WALLS] = {0}, worst = 0;
+        double *a = m->newton, x[FIBRAD_BODIES_MAX] = {0}, worst = 0;
+        fibrad_zero(a, m->bodies * m->bodies * sizeof *a);
         for (uint32_t b = 0; b < m->bodies; b++) {
-            a[b][b] = 1;
+            a[b * m->bodies + b] = 1;
             if (m->length[b] == 0) continue;
             double sum = v[b] * fixed[b];
             for (uint32_t c = 0; c < m->bodies; c++) {
                 const double part = v[b] * *between(m, b, c) * v[c];
                 sum += part;
-                a[b][c] = m->length[c] > 0 ? part : 0;
+                a[b * m->bodies + c] = m->length[c] > 0 ? part : 0;
             }
-            a[b][b] += sum;
+            a[b * m->bodies + b] += sum;
             x[b] = wanted[b] - sum;
             worst = fibrad_max(worst, fibrad_abs(x[b]));
         }
@@ -131,7 +132,7 @@ static double closing_step(const fibrad_matrix *m, const double *u, const double
 /* Brings all sums to 1. */
 static void close_all(fibrad_matrix *m) {
     const fibrad_sparse *rows = &m->result;
-    double *u = m->scratch, *next = u + rows->n, v[FIBRAD_WALLS], one[FIBRAD_WALLS], outside[FIBRAD_WALLS];
+    double *u = m->scratch, *next = u + rows->n, v[FIBRAD_BODIES_MAX], one[FIBRAD_BODIES_MAX], outside[FIBRAD_BODIES_MAX];
     for (uint32_t i = 0; i < rows->n; i++) u[i] = 1;
     for (uint32_t b = 0; b < m->bodies; b++) v[b] = one[b] = 1;
     for (int step = 0; step < JOINT_STEPS; step++) {
@@ -162,12 +163,13 @@ void fibrad_matrix_take_bodies(fibrad_matrix *m, const fibrad_scene *scene, cons
 }
 
 void fibrad_matrix_enclose(fibrad_matrix *m) {
-    double before[FIBRAD_WALLS][FIBRAD_WALLS + 1] = {{0}}, wanted[FIBRAD_WALLS] = {0}, v[FIBRAD_WALLS], most = 0;
+    const uint32_t wide = m->bodies + 1;
+    double *before = m->before, wanted[FIBRAD_BODIES_MAX] = {0}, v[FIBRAD_BODIES_MAX], most = 0;
     for (uint32_t b = 0; b < m->bodies; b++) most = fibrad_max(most, m->length[b]);
     if (most == 0) return;
     for (uint32_t b = 0; b < m->bodies; b++) {
-        for (uint32_t c = 0; c < m->bodies; c++) before[b][c] = *between(m, b, c);
-        before[b][m->bodies] = m->body_escaped[b];
+        for (uint32_t c = 0; c < m->bodies; c++) before[b * wide + c] = *between(m, b, c);
+        before[b * wide + m->bodies] = m->body_escaped[b];
     }
     join_ways(m);
     for (uint32_t b = 0; b < m->bodies; b++)
@@ -177,10 +179,10 @@ void fibrad_matrix_enclose(fibrad_matrix *m) {
     scale_bodies(m, v);
     close_all(m);
     for (uint32_t b = 0; b < m->bodies; b++) { /* by how much that has changed a row is an error, too */
-        double square = 0, difference = before[b][m->bodies] - m->body_escaped[b];
+        double square = 0, difference = before[b * wide + m->bodies] - m->body_escaped[b];
         square += difference * difference;
         for (uint32_t c = 0; c < m->bodies; c++) {
-            difference = before[b][c] - *between(m, b, c);
+            difference = before[b * wide + c] - *between(m, b, c);
             square += difference * difference;
         }
         m->body_error[b] = fibrad_max(m->body_error[b], fibrad_sqrt(square));

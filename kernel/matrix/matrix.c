@@ -77,6 +77,8 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     m->between = fibrad_arena_take(arena, m->enclosed ? m->bodies * m->bodies : 0, sizeof *m->between);
     m->body_escaped = fibrad_arena_take(arena, m->enclosed ? m->bodies : 0, sizeof *m->body_escaped);
     m->body_error = fibrad_arena_take(arena, m->enclosed ? m->bodies : 0, sizeof *m->body_error);
+    m->newton = fibrad_arena_take(arena, m->enclosed ? m->bodies * (m->bodies + 1) : 0, sizeof *m->newton);
+    m->before = fibrad_arena_take(arena, m->enclosed ? m->bodies * (m->bodies + 1) : 0, sizeof *m->before);
     m->r = fibrad_arena_take(arena, n, sizeof *m->r);
     m->place = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->place);
     m->scratch = fibrad_arena_take(arena, m->raw ? 0 : 3 * n, sizeof *m->scratch);
@@ -280,7 +282,7 @@ static void share_out(fibrad_matrix *m, uint32_t i, double rest, const double al
 /* Brings what rows meet besides spheres up to what the row sums leave of 1. What a row is short of 1 is as good a
  * measure of it, from the opposite directions, as the raw row's. Rows of spheres that reflect all stay empty. */
 static void close_rows(fibrad_matrix *m) {
-    double all[FIBRAD_WALLS + 2] = {0}, largest = 0;
+    double all[FIBRAD_BODIES_MAX + 2] = {0}, largest = 0;
     const uint32_t n = m->result.n, bodies = m->bodies;
     for (uint32_t i = 0; i < n; i++) largest = fibrad_max(largest, m->r[i]);
     for (uint32_t i = 0; i < n && largest > 0; i++) {

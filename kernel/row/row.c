@@ -5,7 +5,7 @@
 /* Entries for which an empty collection asks for room at first. */
 #define FIRST_ENTRIES 256u
 
-void fibrad_row_bodies(const fibrad_scene *scene, const double wall[FIBRAD_WALLS], fibrad_row *row) {
+void fibrad_row_bodies(const fibrad_scene *scene, const double wall[FIBRAD_SLOTS], fibrad_row *row) {
     for (uint32_t b = 0; b < scene->facts.bodies; b++) row->body[b] = wall[scene->slot[b]];
 }
 

@@ -22,6 +22,6 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
                    fibrad_row *row);
 
 /* The factors to bodies from those by slot. */
-void fibrad_row_bodies(const fibrad_scene *scene, const double wall[FIBRAD_WALLS], fibrad_row *row);
+void fibrad_row_bodies(const fibrad_scene *scene, const double wall[FIBRAD_SLOTS], fibrad_row *row);
 
 #endif

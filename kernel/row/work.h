@@ -66,7 +66,7 @@ typedef struct fibrad_workspace {
     bool cut;              /* whether lines are cut: there is a cutoff, or a known region */
     fibrad_wall_view view; /* of a beam row among walls, and what its windows give to them */
     fibrad_wall_sums walls;
-    double wall[FIBRAD_EXITS]; /* what meets each wall, escapes, or is beyond: areas, points or rays, then factors */
+    double wall[FIBRAD_SLOTS]; /* what meets each wall, escapes, or is beyond: areas, points or rays, then factors */
 } fibrad_workspace;
 
 /* Lays work memory out, or finds it laid out, with `extra_min` extra bytes at least and `extra_best` at best.
@@ -102,7 +102,7 @@ static inline bool fibrad_near_pays(fibrad_near *near) {
     return true;
 }
 
-/* What the line from a place along w meets, if it meets no sphere: of FIBRAD_EXITS. */
+/* What the line from a place along w meets, if it meets no sphere: a slot. */
 uint32_t fibrad_work_met(const fibrad_workspace *work, const double from[3], const double w[3]);
 
 /* No sphere comes before the window of direction w deeper than this. */

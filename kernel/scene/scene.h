@@ -4,13 +4,18 @@
 
 #include "base/port.h"
 #include "fibrad_part.h"
+#include "mesh/mesh.h"
 
 #define FIBRAD_NONE UINT32_MAX
 
-/* Walls have slots: 0 to 5 are planes across the axes, x low, x high, y low, y high, z low, z high; 6 is the cylinder.
- */
-#define FIBRAD_WALLS    FIBRAD_BODIES_MAX
+/* What a ray meets that meets no sphere has a slot: 0 to 5 are planes across the axes, x low, x high, y low, y high, z
+ * low, z high; 6 is the cylinder; 7 is nothing, 8 what is not known; from 9 on come meshes, in the order of bodies. */
+#define FIBRAD_WALLS    7u
 #define FIBRAD_CYLINDER 6u
+#define FIBRAD_ESCAPED  7u
+#define FIBRAD_BEYOND   8u
+#define FIBRAD_MESHES   9u
+#define FIBRAD_SLOTS    (FIBRAD_MESHES + FIBRAD_BODIES_MAX)
 
 /* Spheres whose radii differ by less than a factor two share a level, a grid of its own with cells to their measure:
  * a small sphere among large ones does not search cells as wide as the large ones need. */
@@ -42,8 +47,8 @@ struct fibrad_scene {
     bool region;                        /* whether a known region was given */
     double known_low[3], known_high[3]; /* [L] infinite where it is open */
     fibrad_occupancy occupancy;         /* the caller's, or one cell */
-    uint32_t slot[FIBRAD_WALLS];        /* [facts.bodies] of each body */
-    double wall_area[FIBRAD_WALLS];     /* [L^2] by slot, as fibrad_scene_body_area; 0: no such wall */
+    uint32_t slot[FIBRAD_BODIES_MAX];   /* [facts.bodies] of each body */
+    double wall_area[FIBRAD_SLOTS];     /* [L^2] by slot, as fibrad_scene_body_area; 0: no such wall */
     uint64_t hash;                      /* of all that was handed over; 0: the scene is not complete */
     double spacing;                     /* cube root of the volume per sphere [L] */
     uint32_t levels;
@@ -53,7 +58,15 @@ struct fibrad_scene {
     uint32_t *place;                   /* [n] where the caller's sphere i stands */
     uint32_t *start;                   /* [cells + 1] */
     uint64_t *id;                      /* [n] by the caller's index; NULL: that is the id */
+    fibrad_mesh mesh;
+    float *clear; /* [n] distance to the nearest triangle over the radius, or less; NULL: there are no triangles */
 };
+
+/* The slot of a side of the mesh; FIBRAD_NONE: it belongs to no body. */
+static inline uint32_t fibrad_scene_slot(const fibrad_scene *scene, uint32_t side) {
+    const uint8_t mesh = scene->mesh.mesh[side / 2][side % 2];
+    return mesh != FIBRAD_NO_MESH ? FIBRAD_MESHES + mesh : FIBRAD_NONE;
+}
 
 /* Whether there is a complete scene. */
 static inline bool fibrad_scene_ready(const fibrad_scene *scene) { return scene != NULL && scene->hash != 0; }

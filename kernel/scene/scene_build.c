@@ -12,17 +12,21 @@
 /* Cells a level may have beyond one per sphere. */
 #define SPARE_CELLS 8u
 
-static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids) {
+static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uint32_t triangles) {
     fibrad_scene *scene = fibrad_arena_take(arena, 1, sizeof *scene);
     double *x = fibrad_arena_take(arena, n, sizeof *x), *y = fibrad_arena_take(arena, n, sizeof *y);
     double *z = fibrad_arena_take(arena, n, sizeof *z), *r = fibrad_arena_take(arena, n, sizeof *r);
     uint32_t *order = fibrad_arena_take(arena, n, sizeof *order), *place = fibrad_arena_take(arena, n, sizeof *place);
     uint32_t *start = fibrad_arena_take(arena, (size_t)n + FIBRAD_LEVELS * SPARE_CELLS + 1, sizeof *start);
     uint64_t *id = ids ? fibrad_arena_take(arena, n, sizeof *id) : NULL;
+    fibrad_mesh mesh = {0};
+    if (triangles > 0) fibrad_mesh_layout(arena, &mesh, triangles);
+    float *clear = triangles > 0 ? fibrad_arena_take(arena, n, sizeof *clear) : NULL;
     if (arena->base != NULL) {
         fibrad_zero(scene, sizeof *scene);
         scene->x = x, scene->y = y, scene->z = z, scene->r = r;
         scene->order = order, scene->place = place, scene->start = start, scene->id = id;
+        scene->mesh = mesh, scene->clear = clear;
     }
     return scene;
 }
@@ -41,12 +45,12 @@ static int check_config(const fibrad_scene_config *config) {
 size_t fibrad_scene_size(uint32_t n, int ids) {
     if (n > FIBRAD_SPHERES_MAX) return 0;
     fibrad_arena arena = {0};
-    scene_layout(&arena, n, ids != 0);
+    scene_layout(&arena, n, ids != 0, 0);
     return fibrad_arena_total(&arena);
 }
 
 static int scene_fault(int status, fibrad_fault *fault, uint32_t first, uint32_t second) {
-    if (fault != NULL) fault->first = first, fault->second = second;
+    if (fault != NULL) *fault = (fibrad_fault){first, second, UINT32_MAX};
     return status;
 }
 
@@ -115,6 +119,14 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
             hash ^= hash >> 32;
         }
         if (s->id != NULL) hash = (hash ^ s->id[i]) * 0x9e3779b97f4a7c15u;
+    }
+    for (uint32_t t = 0; t < scene->mesh.triangles; t++) {
+        for (int k = 0; k < 9; k++) {
+            fibrad_copy(&word, &scene->mesh.corner[t][k / 3][k % 3], sizeof word);
+            hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+            hash ^= hash >> 32;
+        }
+        hash = (hash ^ (scene->mesh.mesh[t][0] + 256u * scene->mesh.mesh[t][1])) * 0x9e3779b97f4a7c15u;
     }
     return fibrad_mix(hash) | 1;
 }
@@ -319,6 +331,34 @@ static double spacing_of(const fibrad_scene *scene) {
     return longest * cube_root(volume / scene->facts.spheres, 1);
 }
 
+/* Builds the mesh, and how far each sphere is from it, which cannot change by more than the way to the next sphere. */
+static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fibrad_fault *fault) {
+    uint8_t mesh_of[FIBRAD_BODIES_MAX] = {0};
+    const uint32_t n = scene->facts.spheres;
+    uint32_t triangle;
+    for (uint32_t b = 0; b < config->bodies; b++)
+        mesh_of[b] = scene->slot[b] < FIBRAD_MESHES ? FIBRAD_NO_MESH : (uint8_t)(scene->slot[b] - FIBRAD_MESHES);
+    const int status = fibrad_mesh_build(&scene->mesh, config->triangles, scene->period, mesh_of, config->bodies, &triangle);
+    if (status != FIBRAD_OK) {
+        if (fault != NULL) *fault = (fibrad_fault){n, n, triangle};
+        return status;
+    }
+    const fibrad_mesh *mesh = &scene->mesh;
+    for (uint32_t b = 0; b < config->bodies; b++)
+        if (mesh_of[b] != FIBRAD_NO_MESH) scene->wall_area[scene->slot[b]] = fibrad_mesh_area(mesh, mesh_of[b]);
+    double before[3], distance = 0;
+    fibrad_copy(before, mesh->high, sizeof before); /* a corner of the box: the box is as far as its diagonal */
+    for (int axis = 0; axis < 3; axis++) distance += mesh->high[axis] - mesh->low[axis];
+    for (uint32_t i = 0; i < n; i++) {
+        const double at[3] = {scene->x[i], scene->y[i], scene->z[i]};
+        for (int axis = 0; axis < 3; axis++) distance += fibrad_abs(at[axis] - before[axis]);
+        distance = fibrad_mesh_distance(mesh, at, distance * (1 + 1e-6) + mesh->grain);
+        fibrad_copy(before, at, sizeof before);
+        scene->clear[i] = (float)fibrad_min((distance - mesh->grain) / scene->r[i] * (1 - 1e-6), 1e30);
+    }
+    return FIBRAD_OK;
+}
+
 int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibrad_scene_config *given,
                       const fibrad_spheres *spheres, fibrad_fault *fault) {
     const fibrad_scene_config config = given != NULL ? *given : (fibrad_scene_config){0};
@@ -327,17 +367,22 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
     if (n > 0 && (spheres->x == NULL || spheres->y == NULL || spheres->z == NULL || spheres->r == NULL))
         return scene_fault(FIBRAD_E_ARGUMENT, fault, n, n);
     fibrad_arena arena;
-    int status = check_config(&config);
-    if (status == FIBRAD_OK)
-        status = fibrad_arena_open(&arena, memory, size, fibrad_scene_size(n, spheres->id != NULL));
+    const uint32_t triangles = config.triangles != NULL ? config.triangles->n : 0;
+    int status = triangles > FIBRAD_TRIANGLES_MAX ? FIBRAD_E_ARGUMENT : check_config(&config);
+    if (status == FIBRAD_OK) {
+        size_t needed = fibrad_scene_size(n, spheres->id != NULL);
+        if (needed > 0 && triangles > 0) needed += fibrad_triangles_size(triangles, n);
+        status = fibrad_arena_open(&arena, memory, size, needed);
+    }
     if (status != FIBRAD_OK) return scene_fault(status, fault, n, n);
 
     const fibrad_spheres s = with_strides(spheres);
     fibrad_scene *scene =
-        scene_layout(&arena, n, s.id != NULL); /* hash 0: whoever kept the scene that was here sees it */
+        scene_layout(&arena, n, s.id != NULL, triangles); /* hash 0: whoever kept the scene that was here sees it */
     scene->facts.spheres = n;
     scene->facts.bodies = config.bodies;
     scene->facts.isa = fibrad_isa_choose(config.isa);
+    scene->facts.triangles = triangles;
     fibrad_copy(scene->period, config.period, sizeof scene->period);
     fibrad_walls_build(scene, config.body, config.bodies);
     status = measure_spheres(scene, &s, fault);
@@ -350,6 +395,10 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
         sort_into_cells(scene, &s);
         if (s.id != NULL) fibrad_copy(scene->id, s.id, n * sizeof *s.id);
         status = check_overlaps(scene, fault);
+        if (status != FIBRAD_OK) return status;
+    }
+    if (triangles > 0) {
+        status = build_mesh(scene, &config, fault);
         if (status != FIBRAD_OK) return status;
     }
     fibrad_surroundings_build(scene, &config);

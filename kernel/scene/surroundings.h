@@ -5,11 +5,6 @@
 
 #include "scene/scene.h"
 
-/* What a ray meets that meets no sphere: a wall's slot, or one of these. */
-#define FIBRAD_ESCAPED FIBRAD_WALLS
-#define FIBRAD_BEYOND  (FIBRAD_WALLS + 1)
-#define FIBRAD_EXITS   (FIBRAD_WALLS + 2)
-
 /* Whether known region and occupancy of a configuration are valid; FIBRAD_E_ARGUMENT. */
 int fibrad_surroundings_check(const fibrad_scene_config *config);
 

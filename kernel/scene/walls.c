@@ -8,7 +8,7 @@
 
 static bool wall_length_valid(double length) { return fibrad_abs(length) <= WALL_LENGTH_MAX; }
 
-/* The slot of a body; FIBRAD_WALLS: it is not valid. */
+/* The slot of a plane or a cylinder; FIBRAD_WALLS: it is not valid. */
 static uint32_t slot_of_body(const fibrad_body *body) {
     if (body->kind == FIBRAD_BODY_CYLINDER) {
         const bool valid = wall_length_valid(body->cylinder.x) && wall_length_valid(body->cylinder.y) &&
@@ -24,10 +24,9 @@ static uint32_t slot_of_body(const fibrad_body *body) {
 int fibrad_walls_check(const fibrad_scene_config *config) {
     const fibrad_body *found[FIBRAD_WALLS] = {NULL};
     if (config->bodies > 0 && config->body == NULL) return FIBRAD_E_ARGUMENT;
-    for (uint32_t b = 0; b < config->bodies; b++)
-        if (config->body[b].kind == FIBRAD_BODY_MESH) return FIBRAD_E_UNSUPPORTED;
-    if (config->bodies > FIBRAD_WALLS) return FIBRAD_E_UNSUPPORTED;
+    if (config->bodies > FIBRAD_BODIES_MAX) return FIBRAD_E_UNSUPPORTED;
     for (uint32_t b = 0; b < config->bodies; b++) {
+        if (config->body[b].kind == FIBRAD_BODY_MESH) continue;
         const uint32_t slot = slot_of_body(&config->body[b]);
         if (slot == FIBRAD_WALLS || found[slot] != NULL) return FIBRAD_E_ARGUMENT;
         if (slot < FIBRAD_CYLINDER && config->period[slot / 2] > 0) return FIBRAD_E_ARGUMENT;
@@ -57,12 +56,15 @@ static double wall_area_of(const fibrad_scene *scene, uint32_t slot) {
 
 void fibrad_walls_build(fibrad_scene *scene, const fibrad_body *body, uint32_t bodies) {
     fibrad_container *c = &scene->container;
-    c->walls = bodies > 0;
     for (int axis = 0; axis < 3; axis++) c->low[axis] = -INFINITE, c->high[axis] = INFINITE;
     c->axis[0] = c->axis[1] = 0;
     c->radius = INFINITE;
+    uint32_t meshes = 0;
     for (uint32_t b = 0; b < bodies; b++) {
-        const uint32_t slot = scene->slot[b] = slot_of_body(&body[b]);
+        const bool mesh = body[b].kind == FIBRAD_BODY_MESH;
+        const uint32_t slot = scene->slot[b] = mesh ? FIBRAD_MESHES + meshes++ : slot_of_body(&body[b]);
+        if (mesh) continue;
+        c->walls = true;
         if (slot == FIBRAD_CYLINDER)
             c->axis[0] = body[b].cylinder.x, c->axis[1] = body[b].cylinder.y, c->radius = body[b].cylinder.radius;
         else if (slot % 2 == 0)
@@ -70,7 +72,8 @@ void fibrad_walls_build(fibrad_scene *scene, const fibrad_body *body, uint32_t b
         else
             c->high[slot / 2] = body[b].plane.at;
     }
-    for (uint32_t b = 0; b < bodies; b++) scene->wall_area[scene->slot[b]] = wall_area_of(scene, scene->slot[b]);
+    for (uint32_t b = 0; b < bodies; b++)
+        if (scene->slot[b] < FIBRAD_WALLS) scene->wall_area[scene->slot[b]] = wall_area_of(scene, scene->slot[b]);
 }
 
 bool fibrad_walls_hold(const fibrad_container *c, const double at[3]) {

@@ -130,7 +130,7 @@ static void open_means(const fibrad_wall_sums *sums, double mean[FIBRAD_REGIONS]
 }
 
 void fibrad_wall_factors(const fibrad_wall_sums *sums, const fibrad_wall_view *view, uint32_t windows, double apart,
-                         double wall[FIBRAD_EXITS], double parts[2]) {
+                         double wall[FIBRAD_SLOTS], double parts[2]) {
     double sky[FIBRAD_REGIONS], mean[FIBRAD_REGIONS], got[FIBRAD_REGIONS], rest[FIBRAD_WALLS + 1][4];
     double open = 0, sum = 0, mixed = 0, whole = 0;
     fibrad_wall_sky(view, sky);

@@ -40,6 +40,6 @@ double fibrad_wall_apart(const fibrad_wall_view *view);
  * solid angle it has. The sum is what was open, so what is left over goes to regions that are hidden in part. parts:
  * the squared distances of the sums over even and odd windows, and over every fourth, as of fibrad_entries_gain. */
 void fibrad_wall_factors(const fibrad_wall_sums *sums, const fibrad_wall_view *view, uint32_t windows, double apart,
-                         double wall[FIBRAD_EXITS], double parts[2]);
+                         double wall[FIBRAD_SLOTS], double parts[2]);
 
 #endif

@@ -1,0 +1,57 @@
+/* fibrad_mesh.h - walls of any shape: triangles in a scene.
+ *
+ * Index: fibrad_triangles, fibrad_triangles_size, fibrad_triangle_ray. Conventions are those of fibrad.h.
+ *
+ * Sides    Seen from its front a triangle's corners go counter-clockwise. Each side belongs to a body of kind
+ *          FIBRAD_BODY_MESH, or to none: then it must not be seen, and whatever sees it ends with FIBRAD_E_BACK and
+ *          the number of the triangle. Triangles block, receive, emit and reflect on both sides alike.
+ * Spheres  may be cut by triangles, as in settled beds: what a sphere emits where its surface lies beyond a triangle,
+ *          as seen from its centre, meets that triangle at once.
+ * Edges    Triangles share an edge if their corners there have equal coordinates; then nothing passes between them.
+ * Walls    Planes and the cylinder bound the scene as ever; what of a triangle lies beyond them plays no part.
+ * Periods  On periodic axes triangles are repeated with the period, wherever their corners are.
+ *
+ * SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_MESH_H
+#define FIBRAD_MESH_H
+
+#include "fibrad.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define FIBRAD_TRIANGLES_MAX 100000000u
+#define FIBRAD_NO_BODY       UINT32_MAX
+
+/* All triangles of a scene, of all its meshes; fibrad_scene_config.triangles. Copied. */
+struct fibrad_triangles {
+    const double *x, *y, *z; /* [L] vertex v is at x[v stride], y[v stride], z[v stride]; bounds as of spheres */
+    uint32_t stride;         /* in doubles; 0: 1 */
+    uint32_t vertices;
+    const uint32_t *corner; /* [n][3] vertices; triangles without area are never met */
+    const uint32_t *front;  /* [n] body of the front side, FIBRAD_NO_BODY: none */
+    const uint32_t *back;   /* [n] likewise; NULL: no triangle's back may be seen */
+    uint32_t n;             /* [0, FIBRAD_TRIANGLES_MAX] */
+};
+
+/* Bytes that n triangles add to fibrad_scene_size(spheres, ids), 150 each and 4 a sphere. Errors: 0 if there are too
+ * many. */
+size_t fibrad_triangles_size(uint32_t n, uint32_t spheres);
+
+/* What a ray meets first. */
+typedef struct fibrad_triangle_hit {
+    uint32_t triangle; /* the caller's number; UINT32_MAX: the ray meets none */
+    int back;          /* 1: its back */
+    double distance;   /* [L] */
+} fibrad_triangle_hit;
+
+/* The first triangle that a ray from `origin` [L] along the unit vector w meets within the length [L], spheres and
+ * other walls apart; images along periodic axes count. Errors: _ARGUMENT, _STATE. Cost: below a microsecond. */
+int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const double w[3], double length,
+                        fibrad_triangle_hit *hit);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,78 @@
+/* mesh.h - triangles in a tree of boxes. SPDX-License-Identifier: MIT
+ *
+ * Side 2 t is the front of triangle t, a place in the order of the tree, and 2 t + 1 its back. Whether a line meets a
+ * triangle is decided by the signs of three areas in the plane across it, each of which is exactly the opposite for the
+ * two triangles at an edge: nothing passes between them. Triangles that are seen edge-on are not met. */
+#ifndef FIBRAD_MESH_MESH_H
+#define FIBRAD_MESH_MESH_H
+
+#include "base/arena.h"
+#include "base/port.h"
+#include "fibrad_mesh.h"
+
+#define FIBRAD_NO_SIDE UINT32_MAX
+#define FIBRAD_NO_MESH UINT8_MAX
+
+/* A box about some of the triangles, in a tree that is listed depth first. Bounds are relative to mesh->middle and
+ * rounded outwards. */
+typedef struct fibrad_mesh_node {
+    float low[3], high[3];
+    uint32_t skip; /* the node after all below this one */
+    uint32_t leaf; /* of a leaf: its first triangle times 8 and how many; of others 0 */
+} fibrad_mesh_node;
+
+/* Meshes are numbered as their bodies come. */
+typedef struct fibrad_mesh {
+    uint32_t triangles, nodes;
+    double period[3];               /* [L] 0: the axis is open */
+    double low[3], high[3];         /* [L] of all triangles */
+    double middle[3];               /* [L] */
+    double grain;                   /* [L] lengths below this may be rounding */
+    fibrad_mesh_node *node;         /* [nodes] */
+    double (*corner)[3][3];         /* [triangles] corner by corner [L] */
+    uint32_t *number;               /* [triangles] the caller's */
+    uint8_t (*mesh)[2];             /* [triangles] whose front and back are; FIBRAD_NO_MESH: nobody's */
+    uint32_t *side;                 /* [2 triangles] the sides of the first mesh, then those of the second ... */
+    double *area;                   /* [2 triangles] of the mesh's sides up to this one [L^2] */
+    uint32_t first[FIBRAD_BODIES_MAX + 1]; /* where those of each mesh begin */
+} fibrad_mesh;
+
+/* Takes the arrays of so many triangles from the arena. */
+void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangles);
+
+/* Fills a mesh that is laid out. mesh_of [bodies]: which mesh a body is, or FIBRAD_NO_MESH. FIBRAD_E_ARGUMENT: *fault
+ * is the triangle, UINT32_MAX if it is none. */
+int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, const double period[3],
+                      const uint8_t *mesh_of, uint32_t bodies, uint32_t *fault);
+
+/* Area of a mesh [L^2], both sides if both are its own. */
+double fibrad_mesh_area(const fibrad_mesh *mesh, uint32_t number);
+
+/* The distance [L] from a point to the nearest triangle, or its image, not more than `most`, rounded down. */
+double fibrad_mesh_distance(const fibrad_mesh *mesh, const double point[3], double most);
+
+/* The images of a mesh whose boxes meet a box [L]: shifts by whole periods, first[axis] to last[axis]. */
+typedef struct fibrad_mesh_images {
+    int32_t first[3], last[3];
+} fibrad_mesh_images;
+fibrad_mesh_images fibrad_mesh_images_in(const fibrad_mesh *mesh, const double low[3], const double high[3]);
+
+/* What a ray meets. */
+typedef struct fibrad_mesh_hit {
+    uint32_t side;   /* FIBRAD_NO_SIDE: nothing */
+    double distance; /* [L] */
+} fibrad_mesh_hit;
+
+/* The first side that a ray from `origin` [L] along the unit vector w meets within the length `to`, which may be
+ * infinite. Fronts count from a grain behind the origin on, backs from a grain after it; `except`: a triangle that does
+ * not count, or FIBRAD_NO_SIDE. */
+fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3], const double w[3], double to,
+                                  uint32_t except);
+
+/* The outward unit normal of a side. */
+void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]);
+
+/* An even point [L] on a mesh for two numbers in [0, 1); returns its side. */
+uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const double share[2], double point[3]);
+
+#endif

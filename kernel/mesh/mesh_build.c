@@ -1,0 +1,261 @@
+/* mesh_build.c - puts triangles into a tree of boxes, in fixed memory. SPDX-License-Identifier: MIT
+ *
+ * From the top down, boxes are cut where the sum over both parts of surface times number is least among sixteen places
+ * along the longest axis: large triangles come apart from small ones. Source: I. Wald, IEEE Symposium on Interactive
+ * Ray Tracing (2007) 33. */
+#include "mesh/mesh.h"
+
+#define LEAF       3u /* triangles that stay together */
+#define BINS       16
+#define DEPTH      64 /* of the tree: BY_SURFACE, then halves */
+#define BY_SURFACE 32
+#define LENGTH_MAX 1e150
+
+void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangles) {
+    const size_t n = triangles;
+    mesh->triangles = triangles;
+    mesh->node = fibrad_arena_take(arena, 2 * n, sizeof *mesh->node);
+    mesh->corner = fibrad_arena_take(arena, n, sizeof *mesh->corner);
+    mesh->number = fibrad_arena_take(arena, n, sizeof *mesh->number);
+    mesh->mesh = fibrad_arena_take(arena, n, sizeof *mesh->mesh);
+    mesh->side = fibrad_arena_take(arena, 2 * n, sizeof *mesh->side);
+    mesh->area = fibrad_arena_take(arena, 2 * n, sizeof *mesh->area);
+}
+
+size_t fibrad_triangles_size(uint32_t n, uint32_t spheres) {
+    fibrad_arena arena = {0};
+    fibrad_mesh mesh;
+    if (n > FIBRAD_TRIANGLES_MAX) return 0;
+    fibrad_mesh_layout(&arena, &mesh, n);
+    fibrad_arena_take(&arena, spheres, sizeof(float));
+    return fibrad_arena_total(&arena);
+}
+
+typedef struct mesh_box {
+    double low[3], high[3];
+} mesh_box;
+
+static const mesh_box no_box = {{__builtin_inf(), __builtin_inf(), __builtin_inf()},
+                                {-__builtin_inf(), -__builtin_inf(), -__builtin_inf()}};
+
+static void box_add(mesh_box *box, const mesh_box *other) {
+    for (int axis = 0; axis < 3; axis++) {
+        box->low[axis] = fibrad_min(box->low[axis], other->low[axis]);
+        box->high[axis] = fibrad_max(box->high[axis], other->high[axis]);
+    }
+}
+
+static mesh_box box_of_triangle(double corner[3][3]) {
+    mesh_box box;
+    for (int axis = 0; axis < 3; axis++) {
+        box.low[axis] = fibrad_min(corner[0][axis], fibrad_min(corner[1][axis], corner[2][axis]));
+        box.high[axis] = fibrad_max(corner[0][axis], fibrad_max(corner[1][axis], corner[2][axis]));
+    }
+    return box;
+}
+
+/* Half the surface of a box over a length squared, so that it is finite. */
+static double surface_of(const mesh_box *box, double length) {
+    double edge[3];
+    for (int axis = 0; axis < 3; axis++) {
+        edge[axis] = (box->high[axis] - box->low[axis]) / length;
+        if (!(edge[axis] >= 0)) return 0;
+    }
+    return edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0];
+}
+
+static double middle_of(double corner[3][3], int axis) {
+    const mesh_box box = box_of_triangle(corner);
+    return 0.5 * box.low[axis] + 0.5 * box.high[axis];
+}
+
+static void swap_triangles(fibrad_mesh *mesh, uint32_t a, uint32_t b) {
+    double corner[3][3];
+    fibrad_copy(corner, mesh->corner[a], sizeof corner);
+    fibrad_copy(mesh->corner[a], mesh->corner[b], sizeof corner);
+    fibrad_copy(mesh->corner[b], corner, sizeof corner);
+    const uint32_t number = mesh->number[a];
+    mesh->number[a] = mesh->number[b], mesh->number[b] = number;
+}
+
+/* Triangles [begin, end), a box to be cut. */
+typedef struct mesh_part {
+    uint32_t begin, end, depth;
+} mesh_part;
+
+/* The bin of a coordinate between low and high. */
+static int bin_of(double at, double low, double high) {
+    const double share = (at - low) / (high - low) * BINS;
+    return share >= BINS - 1 ? BINS - 1 : (int)fibrad_max(0, share);
+}
+
+/* Brings those whose bin is not above `cut` to the front; returns where the others begin. */
+static uint32_t divide(fibrad_mesh *mesh, const mesh_part *part, int axis, double low, double high, int cut) {
+    uint32_t to = part->begin;
+    for (uint32_t t = part->begin; t < part->end; t++)
+        if (bin_of(middle_of(mesh->corner[t], axis), low, high) <= cut) swap_triangles(mesh, t, to++);
+    return to;
+}
+
+/* Where a part is cut in two; `end`: it stays whole. */
+static uint32_t cut_part(fibrad_mesh *mesh, const mesh_part *part, const mesh_box *box) {
+    const uint32_t count = part->end - part->begin;
+    mesh_box middles = no_box, bin[BINS], right[BINS];
+    uint32_t in_bin[BINS] = {0}, on_right = 0, on_left = 0;
+    if (count <= LEAF) return part->end;
+    for (uint32_t t = part->begin; t < part->end; t++)
+        for (int axis = 0; axis < 3; axis++) {
+            const double at = middle_of(mesh->corner[t], axis);
+            middles.low[axis] = fibrad_min(middles.low[axis], at);
+            middles.high[axis] = fibrad_max(middles.high[axis], at);
+        }
+    int axis = 0, best = -1;
+    for (int a = 1; a < 3; a++)
+        if (middles.high[a] - middles.low[a] > middles.high[axis] - middles.low[axis]) axis = a;
+    const double low = middles.low[axis], high = middles.high[axis];
+    if (!(high > low) || part->depth >= BY_SURFACE) return part->begin + count / 2;
+    for (int b = 0; b < BINS; b++) bin[b] = no_box;
+    for (uint32_t t = part->begin; t < part->end; t++) {
+        const int b = bin_of(middle_of(mesh->corner[t], axis), low, high);
+        const mesh_box own = box_of_triangle(mesh->corner[t]);
+        box_add(&bin[b], &own);
+        in_bin[b]++;
+    }
+    right[BINS - 1] = bin[BINS - 1];
+    for (int b = BINS - 1; b-- > 0;) right[b] = bin[b], box_add(&right[b], &right[b + 1]);
+    double least = __builtin_inf(), length = 0;
+    for (int a = 0; a < 3; a++) length = fibrad_max(length, box->high[a] - box->low[a]);
+    mesh_box left = no_box;
+    on_right = count;
+    for (int b = 0; b + 1 < BINS; b++) {
+        box_add(&left, &bin[b]);
+        on_left += in_bin[b], on_right -= in_bin[b];
+        if (on_left == 0 || on_right == 0) continue;
+        const double cost = on_left * surface_of(&left, length) + on_right * surface_of(&right[b + 1], length);
+        if (cost < least) least = cost, best = b;
+    }
+    return best < 0 ? part->begin + count / 2 : divide(mesh, part, axis, low, high, best);
+}
+
+static void set_bounds(const fibrad_mesh *mesh, fibrad_mesh_node *node, const mesh_box *box) {
+    for (int axis = 0; axis < 3; axis++) {
+        const double low = box->low[axis] - mesh->middle[axis], high = box->high[axis] - mesh->middle[axis];
+        const double wide = 2e-7 * fibrad_max(fibrad_abs(low), fibrad_abs(high)) + 2 * mesh->grain;
+        node->low[axis] = low - wide < -FLT_MAX ? -__builtin_inff() : (float)(low - wide);
+        node->high[axis] = high + wide > FLT_MAX ? __builtin_inff() : (float)(high + wide);
+    }
+}
+
+/* Builds the tree depth first; parts to the right wait. */
+static void build_tree(fibrad_mesh *mesh) {
+    mesh_part wait[DEPTH], part = {0, mesh->triangles, 0};
+    uint32_t waiting = 0;
+    for (mesh->nodes = 0; mesh->triangles > 0;) {
+        mesh_box box = no_box;
+        for (uint32_t t = part.begin; t < part.end; t++) {
+            const mesh_box own = box_of_triangle(mesh->corner[t]);
+            box_add(&box, &own);
+        }
+        fibrad_mesh_node *node = &mesh->node[mesh->nodes++];
+        set_bounds(mesh, node, &box);
+        const uint32_t cut = cut_part(mesh, &part, &box);
+        node->leaf = cut == part.end ? part.begin * 8 + (part.end - part.begin) : 0;
+        if (cut < part.end) {
+            wait[waiting++] = (mesh_part){cut, part.end, part.depth + 1};
+            part = (mesh_part){part.begin, cut, part.depth + 1};
+        } else if (waiting > 0) {
+            part = wait[--waiting];
+        } else {
+            break;
+        }
+    }
+    for (uint32_t k = mesh->nodes; k-- > 0;) /* the left child comes next, the right one after all of it */
+        mesh->node[k].skip = mesh->node[k].leaf != 0 ? k + 1 : mesh->node[mesh->node[k + 1].skip].skip;
+}
+
+static double area_of_triangle(double corner[3][3]) {
+    double a[3], b[3];
+    for (int axis = 0; axis < 3; axis++)
+        a[axis] = corner[1][axis] - corner[0][axis], b[axis] = corner[2][axis] - corner[0][axis];
+    const double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    return 0.5 * fibrad_sqrt(x * x + y * y + z * z);
+}
+
+/* Lists the sides of each mesh, with their areas added up. */
+static void list_sides(fibrad_mesh *mesh) {
+    uint32_t end[FIBRAD_BODIES_MAX + 1] = {0};
+    for (uint32_t s = 0; s < 2 * mesh->triangles; s++)
+        if (mesh->mesh[s / 2][s % 2] != FIBRAD_NO_MESH) end[mesh->mesh[s / 2][s % 2] + 1]++;
+    for (uint32_t m = 0; m < FIBRAD_BODIES_MAX; m++) end[m + 1] += end[m];
+    fibrad_copy(mesh->first, end, sizeof mesh->first);
+    for (uint32_t s = 0; s < 2 * mesh->triangles; s++) {
+        const uint8_t m = mesh->mesh[s / 2][s % 2];
+        if (m == FIBRAD_NO_MESH) continue;
+        const uint32_t at = end[m]++;
+        mesh->side[at] = s;
+        mesh->area[at] = area_of_triangle(mesh->corner[s / 2]) + (at > mesh->first[m] ? mesh->area[at - 1] : 0);
+    }
+}
+
+double fibrad_mesh_area(const fibrad_mesh *mesh, uint32_t number) {
+    const uint32_t end = mesh->first[number + 1];
+    return end > mesh->first[number] ? mesh->area[end - 1] : 0;
+}
+
+/* Copies a triangle; false: it is not valid. */
+static bool take_triangle(fibrad_mesh *mesh, const struct fibrad_triangles *given, uint32_t t) {
+    const size_t stride = given->stride > 0 ? given->stride : 1;
+    for (int k = 0; k < 3; k++) {
+        const size_t v = given->corner[3 * (size_t)t + (size_t)k];
+        if (v >= given->vertices) return false;
+        const double at[3] = {given->x[v * stride], given->y[v * stride], given->z[v * stride]};
+        for (int axis = 0; axis < 3; axis++) {
+            if (!(fibrad_abs(at[axis]) <= LENGTH_MAX)) return false;
+            mesh->corner[t][k][axis] = at[axis];
+            mesh->low[axis] = fibrad_min(mesh->low[axis], at[axis]);
+            mesh->high[axis] = fibrad_max(mesh->high[axis], at[axis]);
+        }
+    }
+    mesh->number[t] = t;
+    return true;
+}
+
+/* The mesh of a side; false: its body is none. */
+static bool mesh_of_side(uint32_t body, const uint8_t *mesh_of, uint32_t bodies, uint8_t *number) {
+    *number = FIBRAD_NO_MESH;
+    if (body == FIBRAD_NO_BODY) return true;
+    if (body >= bodies || mesh_of[body] == FIBRAD_NO_MESH) return false;
+    *number = mesh_of[body];
+    return true;
+}
+
+int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, const double period[3],
+                      const uint8_t *mesh_of, uint32_t bodies, uint32_t *fault) {
+    const bool arrays = given->x != NULL && given->y != NULL && given->z != NULL && given->corner != NULL;
+    *fault = UINT32_MAX;
+    if (given->n > 0 && (!arrays || given->front == NULL)) return FIBRAD_E_ARGUMENT;
+    fibrad_copy(mesh->period, period, sizeof mesh->period);
+    for (int axis = 0; axis < 3; axis++) mesh->low[axis] = __builtin_inf(), mesh->high[axis] = -__builtin_inf();
+    for (uint32_t t = 0; t < given->n; t++) {
+        uint8_t ignored;
+        *fault = t;
+        if (!take_triangle(mesh, given, t) || !mesh_of_side(given->front[t], mesh_of, bodies, &ignored) ||
+            (given->back != NULL && !mesh_of_side(given->back[t], mesh_of, bodies, &ignored)))
+            return FIBRAD_E_ARGUMENT;
+    }
+    double longest = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        mesh->middle[axis] = 0.5 * mesh->low[axis] + 0.5 * mesh->high[axis];
+        const double far = fibrad_max(fibrad_abs(mesh->low[axis]), fibrad_abs(mesh->high[axis]));
+        longest = fibrad_max(longest, far + (mesh->high[axis] - mesh->low[axis]));
+    }
+    mesh->grain = 1e-11 * longest;
+    build_tree(mesh);
+    for (uint32_t t = 0; t < mesh->triangles; t++) { /* in the order of the tree */
+        mesh_of_side(given->front[mesh->number[t]], mesh_of, bodies, &mesh->mesh[t][0]);
+        mesh_of_side(given->back != NULL ? given->back[mesh->number[t]] : FIBRAD_NO_BODY, mesh_of, bodies,
+                     &mesh->mesh[t][1]);
+    }
+    list_sides(mesh);
+    return FIBRAD_OK;
+}

@@ -1,0 +1,252 @@
+/* mesh_ray.c - what of a mesh a ray meets first, and what is near a point. SPDX-License-Identifier: MIT */
+#include "mesh/mesh.h"
+
+fibrad_mesh_images fibrad_mesh_images_in(const fibrad_mesh *mesh, const double low[3], const double high[3]) {
+    fibrad_mesh_images images = {{0}, {0}};
+    for (int axis = 0; axis < 3; axis++) {
+        if (!(mesh->period[axis] > 0)) continue;
+        const double inverse = 1 / mesh->period[axis], grain = mesh->grain * inverse;
+        images.first[axis] = (int32_t)-fibrad_floor((mesh->high[axis] - low[axis]) * inverse + grain);
+        images.last[axis] = (int32_t)fibrad_floor((high[axis] - mesh->low[axis]) * inverse + grain);
+    }
+    return images;
+}
+
+/* A ray in the frame of one image: coordinates are exchanged so that w is longest along the last, and sheared so that
+ * the ray is that axis. Source: S. Woop, C. Benthin, I. Wald, J. Comput. Graph. Tech. 2 (2013) 65. */
+typedef struct sheared_ray {
+    int axis[3];
+    double origin[3], shear[2], inverse; /* of w along the last axis */
+    double middle[3], over[3];           /* origin from the middle of the mesh; 1/w, for boxes */
+    double begin;                        /* minus a grain */
+    uint32_t except;
+} sheared_ray;
+
+static sheared_ray shear_ray(const fibrad_mesh *mesh, const double w[3], uint32_t except) {
+    sheared_ray ray = {.begin = -mesh->grain, .except = except};
+    int last = fibrad_abs(w[1]) > fibrad_abs(w[0]) ? 1 : 0;
+    if (fibrad_abs(w[2]) > fibrad_abs(w[last])) last = 2;
+    const int turned = w[last] < 0; /* then two are exchanged, which keeps the sense of rotation */
+    ray.axis[0] = (last + 1 + turned) % 3, ray.axis[1] = (last + 2 - turned) % 3, ray.axis[2] = last;
+    ray.inverse = 1 / w[last];
+    for (int k = 0; k < 2; k++) ray.shear[k] = w[ray.axis[k]] * ray.inverse;
+    for (int axis = 0; axis < 3; axis++) ray.over[axis] = 1 / w[axis];
+    return ray;
+}
+
+static void place_ray(const fibrad_mesh *mesh, const double origin[3], const double shift[3], sheared_ray *ray) {
+    for (int axis = 0; axis < 3; axis++) {
+        ray->origin[axis] = origin[axis] - shift[axis];
+        ray->middle[axis] = ray->origin[axis] - mesh->middle[axis];
+    }
+}
+
+/* The best so far; a back is as far as a grain behind it, so that fronts come first at edges. */
+typedef struct first_side {
+    double distance, key; /* key: the distance, of backs and a grain more */
+    uint32_t side, number;
+} first_side;
+
+static void meet_triangle(const fibrad_mesh *mesh, const sheared_ray *ray, uint32_t t, first_side *first) {
+    double at[3][2], along[3];
+    for (int k = 0; k < 3; k++) {
+        const double *c = mesh->corner[t][k];
+        along[k] = c[ray->axis[2]] - ray->origin[ray->axis[2]];
+        for (int a = 0; a < 2; a++) at[k][a] = c[ray->axis[a]] - ray->origin[ray->axis[a]] - ray->shear[a] * along[k];
+    }
+    const double a = at[1][0] * at[2][1] - at[1][1] * at[2][0], b = at[2][0] * at[0][1] - at[2][1] * at[0][0];
+    const double c = at[0][0] * at[1][1] - at[0][1] * at[1][0], sum = a + b + c;
+    if (!((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0)) || sum == 0) return;
+    const double distance = (a * along[0] + b * along[1] + c * along[2]) / sum * ray->inverse;
+    const uint32_t back = sum > 0;
+    const double key = back ? distance + mesh->grain : distance;
+    if (!(distance > (back ? mesh->grain : ray->begin)) || t == ray->except) return;
+    if (key > first->key || (key == first->key && mesh->number[t] >= first->number)) return;
+    *first = (first_side){fibrad_max(0, distance), key, 2 * t + back, mesh->number[t]};
+}
+
+/* Whether the ray meets a box before the first side so far. */
+static bool meets_box(const fibrad_mesh_node *node, const sheared_ray *ray, double to) {
+    double from = ray->begin;
+    for (int axis = 0; axis < 3; axis++) {
+        const double low = node->low[axis] - ray->middle[axis], high = node->high[axis] - ray->middle[axis];
+        if (low > 0 || high < 0) { /* else it begins within the slab, and 0 times infinity plays no part */
+            const double enter = (low > 0 ? low : high) * ray->over[axis];
+            if (!(enter >= 0)) return false;
+            from = fibrad_max(from, enter);
+        }
+        const double leave = (ray->over[axis] > 0 ? high : low) * ray->over[axis];
+        if (leave < to) to = leave;
+    }
+    return from <= to;
+}
+
+static void meet_image(const fibrad_mesh *mesh, const sheared_ray *ray, first_side *first) {
+    for (uint32_t k = 0; k < mesh->nodes;) {
+        const fibrad_mesh_node *node = &mesh->node[k];
+        if (!meets_box(node, ray, first->key)) {
+            k = node->skip;
+            continue;
+        }
+        const uint32_t begin = node->leaf / 8, end = begin + node->leaf % 8;
+        for (uint32_t t = begin; t < end; t++) meet_triangle(mesh, ray, t, first);
+        k++;
+    }
+}
+
+/* Nothing is looked for farther than this many periods along any periodic axis. */
+#define MESH_PERIODS 100.0
+
+/* How far to look at once: all the way without periodic axes, else a period at a time, so that images are few. */
+static double stretch_along(const fibrad_mesh *mesh, const double w[3], double *to) {
+    double stretch = *to;
+    for (int axis = 0; axis < 3; axis++) {
+        if (!(mesh->period[axis] > 0)) continue;
+        stretch = fibrad_min(stretch, mesh->period[axis]);
+        if (w[axis] != 0) *to = fibrad_min(*to, MESH_PERIODS * mesh->period[axis] / fibrad_abs(w[axis]));
+    }
+    return stretch;
+}
+
+fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3], const double w[3], double to,
+                                  uint32_t except) {
+    sheared_ray ray = shear_ray(mesh, w, except);
+    first_side first = {to, to, FIBRAD_NO_SIDE, 0};
+    const double stretch = stretch_along(mesh, w, &to);
+    double from = 0;
+    for (bool more = true; more;) {
+        double low[3], high[3];
+        const double until = fibrad_min(from + stretch, to);
+        for (int axis = 0; axis < 3; axis++) {
+            const double a = w[axis] == 0 ? 0 : from * w[axis], b = w[axis] == 0 ? 0 : until * w[axis];
+            low[axis] = origin[axis] + fibrad_min(a, b), high[axis] = origin[axis] + fibrad_max(a, b);
+        }
+        const fibrad_mesh_images images = fibrad_mesh_images_in(mesh, low, high);
+        for (int32_t z = images.first[2]; z <= images.last[2]; z++)
+            for (int32_t y = images.first[1]; y <= images.last[1]; y++)
+                for (int32_t x = images.first[0]; x <= images.last[0]; x++) {
+                    const double shift[3] = {x * mesh->period[0], y * mesh->period[1], z * mesh->period[2]};
+                    place_ray(mesh, origin, shift, &ray);
+                    meet_image(mesh, &ray, &first);
+                }
+        more = until > from && until < to && until < first.key;
+        from = until;
+    }
+    return (fibrad_mesh_hit){first.side, first.distance};
+}
+
+void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]) {
+    double a[3], b[3], square = 0, longest = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        a[axis] = mesh->corner[side / 2][1][axis] - mesh->corner[side / 2][0][axis];
+        b[axis] = mesh->corner[side / 2][2][axis] - mesh->corner[side / 2][0][axis];
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+        normal[axis] = a[next] * b[last] - a[last] * b[next];
+        longest = fibrad_max(longest, fibrad_abs(normal[axis]));
+    }
+    for (int axis = 0; axis < 3; axis++) normal[axis] /= longest, square += normal[axis] * normal[axis];
+    const double scale = (side % 2 == 0 ? 1 : -1) / fibrad_sqrt(square);
+    for (int axis = 0; axis < 3; axis++) normal[axis] *= scale;
+}
+
+uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const double share[2], double point[3]) {
+    const uint32_t first = mesh->first[number];
+    const double all = fibrad_mesh_area(mesh, number), at = share[0] * all;
+    uint32_t low = first, high = mesh->first[number + 1] - 1;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (mesh->area[middle] > at)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    const double before = low > first ? mesh->area[low - 1] : 0, own = mesh->area[low] - before;
+    const double root = fibrad_sqrt(own > 0 ? fibrad_max(0, fibrad_min(1, (at - before) / own)) : 0);
+    const double part[3] = {1 - root, root * (1 - share[1]), root * share[1]};
+    const uint32_t side = mesh->side[low];
+    for (int axis = 0; axis < 3; axis++) {
+        const double origin = mesh->corner[side / 2][0][axis];
+        point[axis] = origin + part[1] * (mesh->corner[side / 2][1][axis] - origin) +
+                      part[2] * (mesh->corner[side / 2][2][axis] - origin);
+    }
+    return side;
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static double clamp_share(double above, double below) {
+    return below > 0 ? fibrad_max(0, fibrad_min(1, above / below)) : 0;
+}
+
+/* Square of the distance from the origin to a segment. */
+static double square_to_segment(const double a[3], const double b[3]) {
+    double along[3], at[3];
+    for (int axis = 0; axis < 3; axis++) along[axis] = b[axis] - a[axis];
+    const double share = clamp_share(-dot(a, along), dot(along, along));
+    for (int axis = 0; axis < 3; axis++) at[axis] = a[axis] + share * along[axis];
+    return dot(at, at);
+}
+
+/* Square of the distance from the origin to a triangle: to its plane, if the foot lies inside, or to its edges. */
+static double square_to_triangle(double c[3][3]) {
+    double e[3][3], n[3];
+    for (int k = 0; k < 3; k++)
+        for (int axis = 0; axis < 3; axis++) e[k][axis] = c[(k + 1) % 3][axis] - c[k][axis];
+    for (int axis = 0; axis < 3; axis++) {
+        const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+        n[axis] = e[0][next] * e[1][last] - e[0][last] * e[1][next];
+    }
+    const double square = dot(n, n), height = dot(n, c[0]);
+    bool inside = square > 0;
+    for (int k = 0; k < 3 && inside; k++) {
+        const double out[3] = {e[k][1] * n[2] - e[k][2] * n[1], e[k][2] * n[0] - e[k][0] * n[2],
+                               e[k][0] * n[1] - e[k][1] * n[0]};
+        inside = dot(out, c[k]) >= 0;
+    }
+    if (inside) return height * height / square;
+    return fibrad_min(square_to_segment(c[0], c[1]),
+                      fibrad_min(square_to_segment(c[1], c[2]), square_to_segment(c[2], c[0])));
+}
+
+/* Lessens the distance `least` from a point in the frame of an image. */
+static double nearest_in_image(const fibrad_mesh *mesh, const double at[3], double least) {
+    for (uint32_t k = 0; k < mesh->nodes;) {
+        const fibrad_mesh_node *node = &mesh->node[k];
+        double square = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            const double place = at[axis] - mesh->middle[axis];
+            const double away = fibrad_max(0, fibrad_max(node->low[axis] - place, place - node->high[axis])) / least;
+            square += away * away;
+        }
+        if (!(square < 1)) {
+            k = node->skip;
+            continue;
+        }
+        const uint32_t begin = node->leaf / 8, end = begin + node->leaf % 8;
+        for (uint32_t t = begin; t < end; t++) {
+            double c[3][3];
+            for (int corner = 0; corner < 3; corner++)
+                for (int axis = 0; axis < 3; axis++) c[corner][axis] = (mesh->corner[t][corner][axis] - at[axis]) / least;
+            const double ratio = square_to_triangle(c);
+            if (ratio < 1) least *= fibrad_max(fibrad_sqrt(ratio), 1e-12);
+        }
+        k++;
+    }
+    return least;
+}
+
+double fibrad_mesh_distance(const fibrad_mesh *mesh, const double point[3], double most) {
+    double low[3], high[3], least = most;
+    for (int axis = 0; axis < 3; axis++) low[axis] = point[axis] - most, high[axis] = point[axis] + most;
+    const fibrad_mesh_images images = fibrad_mesh_images_in(mesh, low, high);
+    for (int32_t z = images.first[2]; z <= images.last[2]; z++)
+        for (int32_t y = images.first[1]; y <= images.last[1]; y++)
+            for (int32_t x = images.first[0]; x <= images.last[0]; x++) {
+                const double at[3] = {point[0] - x * mesh->period[0], point[1] - y * mesh->period[1],
+                                      point[2] - z * mesh->period[2]};
+                least = nearest_in_image(mesh, at, least);
+            }
+    return least * (1 - 1e-9);
+}
