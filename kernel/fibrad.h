@@ -127,7 +127,7 @@ typedef struct fibrad_spheres {
 typedef enum fibrad_body_kind {
     FIBRAD_BODY_PLANE = 1,    /* a wall across an axis; the scene lies on its inner side */
     FIBRAD_BODY_CYLINDER = 2, /* a wall around the z axis; the scene lies inside */
-    FIBRAD_BODY_MESH = 3      /* triangles: those of fibrad_scene_config.triangles that name it */
+    FIBRAD_BODY_MESH = 3      /* triangles: those of fibrad_scene_config.triangles that name it, one at least */
 } fibrad_body_kind;
 
 /* A body that is not a sphere, known by its index in fibrad_scene_config.body. Planes and the cylinder bound a convex

@@ -43,6 +43,7 @@ typedef struct fibrad_met {
     float aside[2][FIBRAD_MET_POINTS];            /* of the line's direction, along u and v, if spread */
     uint32_t side[FIBRAD_MET_POINTS];             /* of the mesh; FIBRAD_NO_SIDE: no triangle */
     fibrad_points points;                         /* which they are; of windows by areas also what is open */
+    uint32_t deepest;                             /* the side that the deepest line meets */
     bool any, spread;                             /* whether there are such points in the window in hand */
 } fibrad_met;
 
