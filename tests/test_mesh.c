@@ -65,9 +65,6 @@ START_TEST(a_sphere_and_a_triangle) {
             const double error = fabs(row.body[0] - exact);
             worst_of(&worst[rule], error);
             if (rule == 0) square += error * error;
-            if (error > 1e-3 || getenv("V"))
-                printf("case %d rule %d away %.3g size %.3g exact %.5f error %.2g est %.2g\n", c, rule, away, size,
-                       exact, row.body[0] - exact, row.error);
         }
         ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 100000}, &row, NULL), FIBRAD_OK);
         ck_assert_double_eq_tol(row.body[0], exact, 2e-3);
@@ -349,8 +346,7 @@ START_TEST(rays_through_the_tree) {
         ck_assert_int_eq(fibrad_triangle_ray(scene, o, w, nearest * .999, &hit), FIBRAD_OK);
         ck_assert_uint_eq(hit.triangle, UINT32_MAX);
     }
-    printf("met %u backs %u\n", met, backs);
-    ck_assert(met > 1000 && backs > met / 3 && backs < 2 * met / 3);
+    ck_assert(met > 900 && backs > met / 3 && backs < 2 * met / 3);
     free(scene), free(mesh);
     bed_free(&bed);
 }
@@ -373,7 +369,7 @@ START_TEST(periodic_meshes) {
     fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1), *other = scene_of_mesh(&many, copies, 1);
     fibrad_work work = work_growing();
     fibrad_row row = row_of(2), far = row_of(many.n), cast = row_of(2);
-    const fibrad_beam_rule rule = {.directions = 400};
+    const fibrad_beam_rule rule = {.directions = 3000};
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &row), FIBRAD_OK);
     ck_assert_int_eq(fibrad_beam_row(other, &work, middle, &rule, &far), FIBRAD_OK);
     ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
@@ -384,9 +380,8 @@ START_TEST(periodic_meshes) {
     ck_assert_double_eq_tol(row_factor(&row, 0), of_first, .01);
     ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 200000}, &cast, NULL), FIBRAD_OK);
 
-    printf("per: err %.3g F1 %.5f cast %.5f body %.5f cast %.5f F0 %.5f %.5f dir %u len %u %u esc %g %g\n", row.error,
-           row_factor(&row, 1), row_factor(&cast, 1), row.body[0], cast.body[0], row_factor(&row, 0),
-           row_factor(&cast, 0), row.directions, row.length, cast.length, row.escaped, cast.escaped);
+    ck_assert_double_eq_tol(cast.body[0], row.body[0], 3e-3);
+    ck_assert_double_eq_tol(row_factor(&cast, 1), row_factor(&row, 1), 3e-3);
     row_free(&row), row_free(&far), row_free(&cast);
     work_free(&work);
     free(scene), free(other), free(mesh), free(copies);
