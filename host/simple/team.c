@@ -59,7 +59,7 @@ static void run_tasks(fibrad_team *team, const char *stage, uint32_t tasks, int 
 #pragma omp atomic capture
             count = ++done;
             uint32_t at = k;
-            if (!status && thread == 0 && omp_get_wtime() - reported > INTERVAL) {
+            if (!status && thread == 0 && count < tasks && omp_get_wtime() - reported > INTERVAL) {
                 status = fibrad_team_report(team, stage, count, tasks);
                 if (status) at = 0;
                 reported = omp_get_wtime();
