@@ -86,6 +86,7 @@ module fibrad
         integer(c_int) :: raw = 0
         real(c_double) :: drop = 0
         integer(c_int) :: bodies = 1
+        type(c_ptr) :: scratch = c_null_ptr
     end type c_bed_options
 
     type, bind(C) :: c_factors

@@ -55,6 +55,9 @@ typedef struct fibrad_bed_options {
     double drop;                        /* as in fibrad_matrix_rule */
     int bodies; /* 1: rows of bodies, too, unless there is a cutoff or only some rows are wanted; what spheres exchange
                    then changes within its error, as all is closed together */
+    const char *scratch; /* a folder: rows and matrix are kept in files there, without names, instead of in memory: the
+                            same to the bit, at the disk's speed where they are more than memory; 24 to 36 bytes an
+                            entry of the raw rows, and 24 of the matrix. NULL: in memory */
 } fibrad_bed_options;
 
 /* A matrix, and what else is known of it. */
