@@ -378,6 +378,44 @@ START_TEST(rays) {
 }
 END_TEST
 
+/* A file of the test's folder, whatever its bytes. */
+static char *read_bytes(const char *name, size_t *size) {
+    struct stat there;
+    ck_assert_int_eq(stat(in_folder(name), &there), 0);
+    *size = (size_t)there.st_size;
+    return read_file(in_folder(name));
+}
+
+/* What is kept in files is written as what is kept in memory, and nothing else is left. */
+START_TEST(rows_in_files) {
+    static const char *const names[2][3] = {{"a.csv", "a.npz", "a.json"}, {"b.csv", "b.npz", "b.json"}};
+    const char *scratch = in_folder("scratch");
+    ck_assert_int_eq(mkdir(scratch, 0777), 0);
+    SUCCEED("exchange", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin",
+            "--wall-emissivity=.5", "-o", in_folder(names[0][0]), "-o", in_folder(names[0][1]), "-o",
+            in_folder(names[0][2]));
+    SUCCEED("exchange", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin",
+            "--wall-emissivity=.5", "-o", in_folder(names[1][0]), "-o", in_folder(names[1][1]), "-o",
+            in_folder(names[1][2]), "--scratch", scratch);
+    ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
+    for (int k = 0; k < 3; ++k) {
+        size_t first, second;
+        char *kept = read_bytes(names[0][k], &first), *filed = read_bytes(names[1][k], &second);
+        ck_assert_uint_eq(first, second);
+        ck_assert_int_eq(memcmp(kept, filed, first), 0);
+        free(kept);
+        free(filed);
+    }
+    ck_assert_int_eq(rmdir(scratch), 0); /* empty */
+    remove_files(0);
+    ck_assert_int_eq(RUN("bed", MONO, "--scratch", scratch), 4);
+    expect_message(scratch, "No such file or directory");
+    ck_assert_int_eq(RUN("exchange", MONO, "--emissivity=.5", "--scratch", PERIODIC, "-o", in_folder("D.csv")),
+                     STATUS_FILE);
+    ck_assert_int_eq(remove_files(0), 0);
+}
+END_TEST
+
 START_TEST(targets_and_formats) {
     const char *all = in_folder("all.csv"), *some = in_folder("some.csv"), *matrix = in_folder("all.mtx");
     SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", all);
@@ -1015,6 +1053,7 @@ int main(void) {
     tcase_add_test(beds, same_bytes_for_any_threads);
     tcase_add_test(beds, walls);
     tcase_add_test(beds, rays);
+    tcase_add_test(beds, rows_in_files);
     tcase_add_test(beds, targets_and_formats);
     tcase_add_test(beds, frames_periods_and_ids);
     tcase_add_test(beds, exchange_factors);
