@@ -282,6 +282,7 @@ BENCHES = \
     bench/bench_heat.c \
     bench/bench_moved.c \
     bench/bench_pair.c \
+    bench/bench_powers.c \
     bench/bench_read.c \
     bench/bench_scale.c \
     bench/bench_sizes.c \
