@@ -127,7 +127,6 @@ SIMPLE = \
     host/simple/march.c \
     host/simple/network.c \
     host/simple/radiation.c \
-    host/simple/scratch.c \
     host/simple/team.c \
     host/simple/tolerance.c \
     host/simple/transient.c

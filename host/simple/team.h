@@ -2,7 +2,7 @@
 #ifndef FIBRAD_SIMPLE_TEAM_H
 #define FIBRAD_SIMPLE_TEAM_H
 
-#include "simple/scratch.h"
+#include "simple/heap.h"
 
 /* Error of the lowest task that failed in a thread. */
 typedef struct fibrad_team_error {
