@@ -39,7 +39,7 @@ int fibrad_scratch_open(fibrad_scratch *scratch, const char *folder) {
     const size_t length = strlen(folder);
     char *path = malloc(length + sizeof name);
     if (!path) return FIBRAD_E_MEMORY;
-    memcpy(path, folder, length);
+    memcpy(path, folder, length + 1);
     memcpy(path + length, name, sizeof name);
     scratch->file = mkstemp(path);
     scratch->filed = scratch->file >= 0;
