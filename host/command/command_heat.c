@@ -38,11 +38,12 @@ static const struct option heat_table[] = {
      "--until also factors, once for all steps, which differ by some percent [patches; with --until factors that are "
      "corrected by patches where that changes something]"},
     {KEY_PATCHES, "patches", "P", "of a sphere: 24, 96 or 384 [96]"},
-    {KEY_DIRECTIONS, "directions", "N", "of beams, 8 to 65536 [168]"},
+    {KEY_DIRECTIONS, "directions", "N", "of beams, 8 to 65536 [168; 112 where the mean emissivity is 0.35 or less]"},
     {KEY_POINTS, "points", "M", "beams per direction: 64, 128 or 256 [64]"},
     {KEY_ERROR, "error", "E",
      "as many directions and patches as bring the estimated error of the powers to E times their root mean square or "
-     "less, 1e-5 to 1; at the least to 1e-3 E of what is emitted [none]"},
+     "less, 1e-5 to 1; at the least to 1e-3 E of what is emitted; of temperatures that are found, T^4 to E of its root "
+     "mean square; of walls each [none]"},
     OPTIONS_MARCH,
     OPTIONS_INPUT,
     {'o', "output", "OUT", "powers: .csv .dump (OVITO) .vtp (ParaView) .json; - [summary only]"},
@@ -194,7 +195,6 @@ static int heat_check_request(struct heat_request *request) {
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
-    if (request->problem.error > 0) request->problem.config.directions = 72;
     status = march_check(&request->march, &request->bed, &request->given.wall_temperature, &request->given.ambient);
     if (!status) status = given_check(&request->given, &request->bed);
     return status ? status : given_ambient(&request->given, &request->problem.sources.surroundings);
@@ -202,7 +202,7 @@ static int heat_check_request(struct heat_request *request) {
 
 static int heat_parse(struct heat_request *request, int argc, char **argv) {
     struct options options = {.command = "heat", .table = heat_table, .argc = argc, .argv = argv};
-    *request = (struct heat_request){.problem.config = {.directions = 168, .points = 64, .patches = 96}};
+    *request = (struct heat_request){.problem.config = {.points = 64, .patches = 96}};
     fibrad_heat_sources_init(&request->problem.sources);
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = heat_take(request, &options, key);
