@@ -173,7 +173,8 @@ static void accept_step(struct march *m, double step, double error) {
 static double first_step(const struct march *m) {
     const fibrad_transient *t = m->t;
     double hottest = m->given->surroundings, step = m->span->duration;
-    for (uint32_t b = 0; b < t->bodies; ++b) hottest = larger_one(hottest, m->given->body_temperature[b]);
+    for (uint32_t b = 0; b < t->bodies; ++b)
+        hottest = larger_one(m->given->body_temperature[b], hottest); /* NaN, not known: as it was */
     for (uint32_t i = 0; i < t->n; ++i) hottest = larger_one(hottest, t->now[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
     for (uint32_t i = 0; i < t->n; ++i) {
