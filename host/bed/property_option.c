@@ -85,6 +85,12 @@ const struct curve *quantity_curve(const struct quantity *quantity, const struct
     return quantity->curve[k].n > 0 ? &quantity->curve[k] : NULL;
 }
 
+bool quantity_curves(const struct quantity *quantity) {
+    for (int k = 0; k < QUANTITY_TYPES_MAX; ++k)
+        if (quantity->curve[k].n > 0) return true;
+    return false;
+}
+
 /* The value of sphere i; NaN: its type has none. */
 static double value_of_sphere(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
     if (!quantity->given) return NAN;

@@ -48,6 +48,9 @@ void quantity_free(struct quantity *quantity);
 /* The table that the value of sphere i comes from; NULL: it is a number. */
 const struct curve *quantity_curve(const struct quantity *quantity, const struct bed *bed, uint32_t i);
 
+/* Whether there are any. */
+bool quantity_curves(const struct quantity *quantity);
+
 /* The values of all spheres [n], to be freed also after an error; `file` is the bed's name and `what` that of the
  * quantity in messages. offset is added. Status 0, STATUS_INPUT naming the line of one that is not in [low, high], or
  * STATUS_MEMORY. Without the option, and where quantity->some: NaN;

@@ -81,7 +81,7 @@ static int heat_help(void) {
         "and lists by type each sphere has either a temperature or a power.\n"
         "With --until temperatures are those to begin with. Each sphere stores heat-capacity times density times its\n"
         "volume; powers given heat it. @TABLE, two columns of seconds and temperatures, may stand for the temperature\n"
-        "of a wall or of the surroundings: zmin=@TABLE. The .csv has the time in its first column; a series of .vtp\n"
+        "of a wall or of the surroundings: zmin=@TABLE; --emissivity @TABLE is of temperatures. The .csv has the time in its first column; a series of .vtp\n"
         "comes with a .pvd, which is what ParaView opens.\n"
         "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a "
         "*.\n"
@@ -184,9 +184,6 @@ static int heat_check_request(struct heat_request *request) {
         return message(STATUS_USAGE, "--error is for powers at one time, not for --until");
     if (!request->given.timed && request->problem.by_factors)
         return message(STATUS_USAGE, "--model factors is for --until");
-    for (int k = 0; k < QUANTITY_TYPES_MAX && request->given.timed; ++k)
-        if (request->emissivity.curve[k].n > 0)
-            return message(STATUS_USAGE, "--until: emissivities are numbers, not tables of temperatures");
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (request->problem.error > 0 && request->counted)
         return message(STATUS_USAGE,

@@ -241,10 +241,23 @@ static int find_capacities(struct marching *m, double metres, double **capacity)
     return status;
 }
 
-/* Corrected factors, unless a wall's temperature is wanted. */
+/* Emissivities in a stage. */
+static void march_follow(void *marching, const double *temperature, const double *wall_temperature, double *emissivity,
+                         double *wall_emissivity) {
+    const struct marching *m = marching;
+    (void)wall_temperature;
+    (void)wall_emissivity;
+    heat_emissivities(m->problem, &m->bed, temperature, emissivity);
+}
+
+/* Corrected factors, unless a wall's temperature is wanted or emissivities change. */
 static int choose_model(struct marching *m) {
     const struct heat_problem *problem = m->problem;
-    m->by_patches = problem->by_patches;
+    const bool follow = quantity_curves(problem->of_emissivity);
+    m->by_patches = problem->by_patches || follow;
+    m->span.law = follow ? march_follow : NULL;
+    if (follow && problem->by_factors)
+        return message(STATUS_USAGE, "--model factors: emissivities follow temperatures; patches let them");
     for (uint32_t k = 0; k < problem->walls.count; ++k) {
         if (!isnan(problem->sources.body_temperature[k])) continue;
         m->by_patches = true;
@@ -269,6 +282,7 @@ static int write_state(struct marching *m) {
     const uint32_t walls = m->problem->walls.count;
     fibrad_heat_sources shown = m->sources;
     shown.temperature = m->span.temperature;
+    heat_emissivities(m->problem, &m->bed, shown.temperature, m->problem->emissivity);
     int status = library_status(m, fibrad_transient_powers(m->transient, &shown, m->result));
     if (status) return status;
     for (uint32_t k = 0; k < walls; ++k)

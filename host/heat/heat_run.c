@@ -142,21 +142,26 @@ static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) 
                         "fewer --directions, --points or --patches take less");
 }
 
+void heat_emissivities(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
+                       double *emissivity) {
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const struct curve *curve = quantity_curve(problem->of_emissivity, bed, i);
+        if (curve && !isnan(temperature[i])) emissivity[i] = curve_at(curve, temperature[i]);
+    }
+}
+
 /* What emissivities follow. */
 struct heat_law {
-    const struct quantity *emissivity;
+    const struct heat_problem *problem;
     const struct bed *bed;
 };
 
-static void heat_emissivities(void *law, const double *temperature, const double *wall_temperature, double *emissivity,
-                              double *wall_emissivity) {
+static void heat_follow(void *law, const double *temperature, const double *wall_temperature, double *emissivity,
+                        double *wall_emissivity) {
     const struct heat_law *how = law;
     (void)wall_temperature;
     (void)wall_emissivity;
-    for (uint32_t i = 0; i < how->bed->n; ++i) {
-        const struct curve *curve = quantity_curve(how->emissivity, how->bed, i);
-        if (curve && !isnan(temperature[i])) emissivity[i] = curve_at(curve, temperature[i]);
-    }
+    heat_emissivities(how->problem, how->bed, temperature, emissivity);
 }
 
 /* Radiosities need to be as good as this, over the error asked for, not to add to it. */
@@ -175,9 +180,8 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     if (status) return status;
     status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
     if (!status)
-        status = fibrad_radiation_settle(radiation, &sources, heat_emissivities,
-                                         &(struct heat_law){problem->of_emissivity, bed}, problem->emissivity,
-                                         (double *)sources.body_emissivity, &report->result);
+        status = fibrad_radiation_settle(radiation, &sources, heat_follow, &(struct heat_law){problem, bed},
+                                         problem->emissivity, (double *)sources.body_emissivity, &report->result);
     fibrad_radiation_describe(radiation, &report->facts, &run.fault);
     fibrad_radiation_free(radiation);
     if (status == FIBRAD_E_UNSOLVABLE) {

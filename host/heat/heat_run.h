@@ -38,6 +38,10 @@ struct heat_report {
 /* Its configuration with directions for the emissivities of a bed. */
 fibrad_heat_config heat_config(const struct heat_problem *problem, const struct bed *bed);
 
+/* Emissivities of the spheres that follow temperatures [K], at these; NaN: left as they are. */
+void heat_emissivities(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
+                       double *emissivity);
+
 /* Solves it for a bed, more and more accurately if an error is wanted; report->result has arrays of the caller, all
  * of them. Status 0, STATUS_INPUT if no temperatures have the powers given, STATUS_MEMORY, or as bed_options_status. */
 int heat_run(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
