@@ -111,8 +111,13 @@ START_TEST(emissivity_follows) {
     int calls = 0;
     for (int k = 0; k < 4; k++) {
         double temperature = 1200;
-        fibrad_span span = {&temperature, &capacity, .duration = duration, .step = k < 3 ? duration / (32 << k) : 0,
-                            .tolerance = k < 3 ? 1e-9 : 0, .law = proportional, .context = &calls};
+        fibrad_span span = {&temperature,
+                            &capacity,
+                            .duration = duration,
+                            .step = k < 3 ? duration / (32 << k) : 0,
+                            .tolerance = k < 3 ? 1e-9 : 0,
+                            .law = proportional,
+                            .context = &calls};
         ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
         ck_assert_int_gt(calls, 0);
         ck_assert_double_le(fabs(capacity * (1200 - temperature) - span.surroundings_energy), 1e-12 * capacity * 1200);

@@ -226,9 +226,9 @@ static double heat_allowed(const struct heat_problem *problem, const struct heat
     return problem->error * fmax(report->power_rms, 1e-3 * report->throughput);
 }
 
-/* Solves it again and again until powers and temperatures of spheres and walls err by no more than is allowed: with more
- * of what makes the larger part of the spheres' error, with more patches where beams do not help temperatures, and with
- * more rays between walls as long as these help a wall much, then more beams. */
+/* Solves it again and again until powers and temperatures of spheres and walls err by no more than is allowed: with
+ * more of what makes the larger part of the spheres' error, with more patches where beams do not help temperatures, and
+ * with more rays between walls as long as these help a wall much, then more beams. */
 static int heat_improve(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
                         struct heat_report *report) {
     double last = INFINITY, last_emission = INFINITY;

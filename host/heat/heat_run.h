@@ -32,7 +32,7 @@ struct heat_report {
     double balance_of_emission;                                   /* over the sum of what the spheres emit or absorb */
     uint32_t unknown;                                             /* spheres whose temperatures were found; */
     double coldest, hottest, temperature_mean, temperature_error; /* the latter root mean square [K] */
-    double emission_error; /* of their sigma T^4, both root mean square */
+    double emission_error;                                        /* of their sigma T^4, both root mean square */
 };
 
 /* Its configuration with directions for the emissivities of a bed. */

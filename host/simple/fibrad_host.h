@@ -192,11 +192,11 @@ typedef struct fibrad_span {
 
 /* Advances temperatures by a span: an L-stable scheme of second order, for which small spheres among large ones are no
  * limit. What spheres lose is what bodies and surroundings get, to rounding. Of sources, power, emissivities (where a
- * law leaves them), body_power and insulated are used and constant; temperature, hold and reference are not; body_temperature and
- * surroundings are those at the beginning. Only by patches may bodies be of unknown temperature; by factors alone they
- * gain from spheres alone. Errors: _ARGUMENT, with the sphere in fault; as fibrad_exchange_factors or
- * fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below zero. Then temperatures are as before. Cost: two or
- * three solutions a step, some milliseconds for 1e4 spheres by factors. */
+ * law leaves them), body_power and insulated are used and constant; temperature, hold and reference are not;
+ * body_temperature and surroundings are those at the beginning. Only by patches may bodies be of unknown temperature;
+ * by factors alone they gain from spheres alone. Errors: _ARGUMENT, with the sphere in fault; as
+ * fibrad_exchange_factors or fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below zero. Then temperatures are
+ * as before. Cost: two or three solutions a step, some milliseconds for 1e4 spheres by factors. */
 int fibrad_transient_advance(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_span *span);
 
 /* As fibrad_radiation_describe, _free. */

@@ -156,7 +156,7 @@ typedef struct heat_level {
     double changed;   /* mean square error of spheres from extrapolation, which insulated walls share */
 } heat_level;
 
-static heat_level level_of(const fibrad_heat *heat, const heat_errors *errors) {
+static heat_level level_found(const fibrad_heat *heat, const heat_errors *errors) {
     heat_level level = {0, 0, {0, 0}, 0};
     double powers = 0, square = 0, distances[2] = {0, 0}, spheres = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -190,9 +190,10 @@ static double temperature_error_of(const fibrad_heat *heat, const heat_errors *e
     const double share = held > 0 ? eps * own.area / (eps * own.area + held) : 1;
     const double emission = is_insulated(heat, b) ? own.mean : heat->emission[b];
     const double changed = is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b));
-    const double missed = (missed_emission(heat, b, own.area) +
-                           level->missed[b >= heat->spheres] * distance_of(errors, &own)) / 2;
-    const double together = (squared(level->error) + (1 - eps) * squared(errors->few)) * squared(emission - level->given);
+    const double missed =
+        (missed_emission(heat, b, own.area) + level->missed[b >= heat->spheres] * distance_of(errors, &own)) / 2;
+    const double together =
+        (squared(level->error) + (1 - eps) * squared(errors->few)) * squared(emission - level->given);
     const double walls = squared(errors->walls / errors->all.area);
     return fibrad_sqrt(changed + squared(share) * (missed + together + walls)) / slope;
 }
@@ -208,7 +209,7 @@ static double insulated_temperature(const fibrad_heat *heat, uint32_t b) {
 /* Temperatures and their errors. Returns whether all that are unknown were found. */
 static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result *result) {
     const heat_errors errors = errors_of(heat);
-    const heat_level level = level_of(heat, &errors);
+    const heat_level level = level_found(heat, &errors);
     bool found = true;
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const uint32_t i = heat->order[b];
