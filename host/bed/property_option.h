@@ -65,10 +65,11 @@ struct wall_list {
     double others;           /* NaN: there is no bare number */
 };
 
-/* Takes such a list of values in [low, high], or the word (NULL: none), which is INFINITY. text NULL: no list. Status
- * 0, or STATUS_USAGE naming the wall that is not there. */
+/* Takes such a list of values in [low, high], or the word (NULL: none), which is INFINITY. text NULL: no list. curve,
+ * unless NULL: [WALLS_MAX] out, to be freed also after an error: NAME=@TABLE may stand for a value, which is that at 0.
+ * Status 0, STATUS_USAGE naming the wall that is not there, or as curve_read. */
 int wall_list(const char *option, const char *text, const char *word, double low, double high,
-              const struct walls *walls, struct wall_list *list);
+              const struct walls *walls, struct curve *curve, struct wall_list *list);
 
 /* Spreads such a list over the walls, `otherwise` where there is neither name nor bare number. Status 0, or
  * STATUS_USAGE naming the wall that is not there or has no value, `otherwise` being NaN. */

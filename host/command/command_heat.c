@@ -178,7 +178,7 @@ static int heat_take(struct heat_request *request, const struct options *options
 
 static int heat_check_request(struct heat_request *request) {
     request->bed.timed = request->given.timed = request->march.until > 0;
-    request->march.zero = request->given.zero;
+    request->problem.zero = request->given.zero;
     int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT, request->plot);
     if (status) return status;
     if (request->given.timed && request->problem.error > 0)
@@ -193,7 +193,7 @@ static int heat_check_request(struct heat_request *request) {
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
-    status = march_check(&request->march, &request->bed, &request->given.wall_temperature, &request->given.ambient);
+    status = march_check(&request->march, &request->bed);
     if (!status) status = given_check(&request->given, &request->bed);
     return status ? status : given_ambient(&request->given, &request->problem.sources.surroundings);
 }
@@ -300,6 +300,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status) {
         given_heat_sources(&given, bed->n, request->given.timed ? 1 : report.metres, sources);
         sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
+        request->problem.wall_curve = given.wall_curve, request->problem.ambient_curve = &request->given.ambient_curve;
         request->problem.emissivity = emissivity, request->problem.of_emissivity = &request->emissivity;
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_absorbed = of_walls[5];
@@ -329,7 +330,7 @@ int command_heat(int argc, char **argv) {
         status = output_close(&request.picture, status);
     }
     quantity_free(&request.emissivity);
-    march_free(&request.march);
+    curve_free(&request.given.ambient_curve);
     bed_options_free(&request.bed);
     return status;
 }

@@ -9,7 +9,10 @@ struct heat_problem {
     struct walls walls;
     fibrad_heat_config config;   /* directions 0: by emissivities, or to begin with if an error is wanted */
     fibrad_heat_sources sources; /* [K]; surroundings NaN: nothing gets there */
-    double *emissivity;          /* [spheres] as in sources; in and out where it follows the temperature, by */
+    /* in time only: tables that walls [walls.count] and surroundings follow, n = 0: none; 0 of their unit [K] */
+    const struct curve *wall_curve, *ambient_curve;
+    double zero;
+    double *emissivity; /* [spheres] as in sources; in and out where it follows the temperature, by */
     const struct quantity *of_emissivity;
     bool by_patches,
         by_factors; /* asked for; in time only: neither is factors, unless a wall's temperature is wanted */
