@@ -125,7 +125,7 @@ int quantity_values(const struct quantity *quantity, const struct bed *bed, cons
 }
 
 /* The number of the wall of this name, or -1. */
-static int wall_named(const struct walls *walls, const char *name, size_t length) {
+static int number_of_wall(const struct walls *walls, const char *name, size_t length) {
     for (uint32_t k = 0; k < walls->count; ++k) {
         const char *known = wall_name(&walls->body[k]);
         if (strlen(known) == length && strncmp(known, name, length) == 0) return (int)k;
@@ -138,7 +138,7 @@ static int take_wall_value(const char *option, const char **text, const char *wo
                            int *wall, double *value) {
     const size_t length = strcspn(*text, "=,");
     const bool named = (*text)[length] == '=';
-    *wall = named ? wall_named(walls, *text, length) : -1;
+    *wall = named ? number_of_wall(walls, *text, length) : -1;
     if (named && *wall < 0)
         return message(STATUS_USAGE, "%s: there is no wall %.*s", option, length > 40 ? 40 : (int)length, *text);
     const char *number = named ? *text + length + 1 : *text;
@@ -155,7 +155,7 @@ static int take_wall_value(const char *option, const char **text, const char *wo
 static int take_wall_curve(const char *option, const char **text, double low, double high, const struct walls *walls,
                            struct curve *curve, int *wall, double *value) {
     const size_t length = strcspn(*text, "=");
-    *wall = wall_named(walls, *text, length);
+    *wall = number_of_wall(walls, *text, length);
     if (*wall < 0)
         return message(STATUS_USAGE, "%s: there is no wall %.*s", option, length > 40 ? 40 : (int)length, *text);
     if (curve[*wall].n > 0)
