@@ -69,7 +69,7 @@ TransientConfig = _structure("transient_config", ("method", c_int), ("exchange",
 Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_double),
                   ("body_temperature surroundings", DOUBLES), ("step tolerance", c_double),
                   ("power body_power", DOUBLES), ("surroundings_power", c_double), ("body_energy", DOUBLES),
-                  ("surroundings_energy", c_double), ("observe context", c_void_p), ("error", c_double),
+                  ("surroundings_energy", c_double), ("observe law context", c_void_p), ("error", c_double),
                   ("steps refused sweeps corrections", c_uint64))
 
 
