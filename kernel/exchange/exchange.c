@@ -206,7 +206,8 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     fibrad_workspace *space;
     int status = exchange_begin(&task, scene, i, rule);
     if (status == FIBRAD_OK && (work == NULL || displacement == NULL)) status = FIBRAD_E_ARGUMENT;
-    if (status == FIBRAD_OK) status = fibrad_work_open(work, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
+    if (status == FIBRAD_OK)
+        status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
     if (status != FIBRAD_OK) return status;
     if (rule->emissivity[i] == 0) {
         *displacement = (fibrad_displacement){0};

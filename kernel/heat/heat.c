@@ -258,7 +258,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task) {
     if (!fibrad_heat_scene_kept(heat) || heat->traced[task]) return FIBRAD_E_STATE;
     const size_t scratch = fibrad_heat_scratch(heat);
     fibrad_workspace *space;
-    int status = fibrad_work_open(work, scratch, scratch, &space);
+    int status = fibrad_work_open(work, heat->scene, scratch, scratch, &space);
     while (status == FIBRAD_OK) {
         status = FIBRAD_VERSION_OF(fibrad_heat_follow, heat->scene->facts.isa)(heat, space, task);
         if (status != FIBRAD_E_WORK) break;
