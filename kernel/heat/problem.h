@@ -101,6 +101,7 @@ struct fibrad_heat {
     double *coarse_emission; /* [bodies] E at the coarser level */
     double *temperature;     /* [bodies] given, or found; NaN: none */
     double *halves;          /* [bodies] by how much the power by even directions exceeds that by odd ones */
+    double *reflected;       /* [spheres] of the beams of each, what bodies reflect that they meet */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_WALLS];                                      /* likewise */
 

@@ -12,7 +12,7 @@
 #define PATCHES      96.0
 #define WALL_PATCHES .5 /* of walls over that of spheres */
 #define BEAM_ERROR   .7
-#define FEW_ERROR    .25 /* times sqrt(1 - eps), over beams per patch: patches that few leave send back along each */
+#define FEW_ERROR    .25 /* over beams per patch: patches that few leave send back along each */
 #define SAMPLES      3   /* with fewer of a kind, those of the other kind make up for them */
 
 static double squared(double x) { return x * x; }
@@ -29,7 +29,7 @@ typedef struct heat_pool {
 
 typedef struct heat_errors {
     heat_spread all;
-    double few;        /* error over power and sqrt(1 - eps) */
+    double few;        /* error over power, where all that a sphere sends out meets what reflects all */
     double walls;      /* error of what walls send out */
     heat_pool pool[2]; /* of spheres, of walls */
 } heat_errors;
@@ -71,9 +71,10 @@ static double patch_error(const fibrad_heat *heat, uint32_t b) {
 static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const double eps = heat->emissivity[b];
     const double few = b < heat->spheres ? errors->few * heat->power[b] : 0;
+    const double back = b < heat->spheres ? heat->reflected[b] / heat->beams : 0;
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double patches = b < heat->spheres ? patch_error(heat, b) : 0;
-    return squared(beam_error(heat, b)) + squared(patches) + (1 - eps) * squared(few) + squared(seen * errors->walls);
+    return squared(beam_error(heat, b)) + squared(patches) + back * squared(few) + squared(seen * errors->walls);
 }
 
 static heat_errors errors_of(const fibrad_heat *heat) {

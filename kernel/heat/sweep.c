@@ -82,6 +82,22 @@ static void take_from_walls(const fibrad_heat *heat, const double *mine, const d
     set_aside(heat, g->walls, g->away);
 }
 
+/* What bodies reflect of the beams of a pencil. */
+static double reflected_beams(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
+    const bool wide = fibrad_heat_number_bytes(heat) == 2, to_sphere = pencil->body < heat->spheres;
+    uint32_t body = to_sphere ? pencil->body : heat->spheres;
+    const size_t first = other_end(heat, pencil);
+    double beams = 0;
+    if (to_sphere && heat->emissivity[body] == 1) return 0;
+    for (uint32_t k = 0; k < pencil->count; k++) {
+        const size_t patch = first + beam_number(pencil, k, 1, wide);
+        if (!to_sphere && !(heat->first[body] <= patch && patch < heat->first[body + 1]))
+            for (body = heat->spheres; heat->first[body + 1] <= patch;) body++;
+        beams += beam_number(pencil, k, HOW_MANY, wide) * (1 - heat->emissivity[body]);
+    }
+    return pencil->share * beams;
+}
+
 static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, const double *mine, double *own,
                             struct gathering *g) {
     const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
@@ -91,6 +107,7 @@ static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, const doubl
         const double area = beam_area(heat, place, pencil);
         bring(heat, own, mine, other, pencil, 0, area);
         if (pencil->body >= heat->spheres) take_from_walls(heat, mine, other, pencil, area, g);
+        if (heat->phase == FIBRAD_HEAT_CHECK) heat->reflected[place] += reflected_beams(heat, pencil);
         at += fibrad_heat_pencil_bytes(heat, pencil);
     }
 }
@@ -117,6 +134,7 @@ static void sweep_sphere(const fibrad_heat *heat, uint32_t place, struct gatheri
     const double *mine = g->areas ? g->none : heat->source + first;
     double *own = heat->gathered + first;
     fibrad_zero(own, heat->config.patches * sizeof *own);
+    heat->reflected[place] = 0;
     sweep_own_beams(heat, place, mine, own, g);
     sweep_beams_of_others(heat, place, mine, own, g);
 }
