@@ -50,8 +50,7 @@ static void bring(const fibrad_heat *heat, double *own, const double *mine, cons
 /* Where the patches of the other end of a pencil begin. */
 static size_t other_end(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
     const uint32_t spheres = heat->spheres, body = pencil->body;
-    return body < spheres ? (size_t)body * heat->config.patches
-                          : fibrad_heat_others(heat) + (size_t)(body - spheres) * FIBRAD_HEAT_BLOCK;
+    return body < spheres ? (size_t)body * heat->config.patches : fibrad_heat_other_block(heat, body);
 }
 
 /* Many beams meet the few patches that lie beyond the walls and their patches; one sum of all would lose digits. So
@@ -82,20 +81,14 @@ static void take_from_walls(const fibrad_heat *heat, const double *mine, const d
     set_aside(heat, g->walls, g->away);
 }
 
-/* What bodies reflect of the beams of a pencil. */
+/* What the other end of a pencil reflects of its beams. */
 static double reflected_beams(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
-    const bool wide = fibrad_heat_number_bytes(heat) == 2, to_sphere = pencil->body < heat->spheres;
-    uint32_t body = to_sphere ? pencil->body : heat->spheres;
-    const size_t first = other_end(heat, pencil);
-    double beams = 0;
-    if (to_sphere && heat->emissivity[body] == 1) return 0;
-    for (uint32_t k = 0; k < pencil->count; k++) {
-        const size_t patch = first + beam_number(pencil, k, 1, wide);
-        if (!to_sphere && !(heat->first[body] <= patch && patch < heat->first[body + 1]))
-            for (body = heat->spheres; heat->first[body + 1] <= patch;) body++;
-        beams += beam_number(pencil, k, HOW_MANY, wide) * (1 - heat->emissivity[body]);
-    }
-    return pencil->share * beams;
+    const uint32_t body = pencil->body < heat->spheres ? pencil->body : fibrad_heat_other_body(heat, pencil->body);
+    const double part = (1 - heat->emissivity[body]) * pencil->share;
+    const bool wide = fibrad_heat_number_bytes(heat) == 2;
+    uint32_t beams = 0;
+    for (uint32_t k = 0; k < pencil->count && part > 0; k++) beams += beam_number(pencil, k, HOW_MANY, wide);
+    return part * beams;
 }
 
 static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, const double *mine, double *own,
