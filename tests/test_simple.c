@@ -428,6 +428,47 @@ START_TEST(radiation_moves) {
 END_TEST
 
 /* A wall that moves so far that its patches need more room. */
+/* How often beams were begun again. */
+struct returns {
+    uint64_t done, count;
+};
+
+static int count_returns(void *context, const char *stage, uint64_t done, uint64_t total) {
+    struct returns *returns = context;
+    if (total == 0 || strcmp(stage, "beams") != 0) return 0;
+    returns->count += done < returns->done;
+    returns->done = done;
+    return 0;
+}
+
+/* A bed that comes apart sees more others than there is room for: it gets more, and all is as if it had begun so. */
+START_TEST(radiation_gets_more_room) {
+    enum { MANY = 1500 };
+    struct bed bed = packing(MANY, 1, 1, .6, 3, false);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    const fibrad_heat_config config = {.patches = 24};
+    double temperature[MANY], emissivity[MANY], moved[MANY], begun[MANY];
+    for (int i = 0; i < MANY; i++) temperature[i] = 300 + i, emissivity[i] = 1;
+    const fibrad_heat_sources sources = sources_of(temperature, emissivity);
+    struct returns returns = {0};
+    fibrad_run run = {.threads = 1, .progress = count_returns, .context = &returns};
+    fibrad_radiation *radiation;
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run), FIBRAD_OK);
+    ck_assert_uint_eq(returns.count, 0);
+    returns.done = 0;
+    for (int i = 0; i < MANY; i++) bed.x[i] *= 2, bed.y[i] *= 2, bed.z[i] *= 2;
+    ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_OK);
+    ck_assert_uint_ge(returns.count, 1);
+    powers(radiation, &sources, moved);
+    fibrad_radiation_free(radiation);
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run), FIBRAD_OK);
+    powers(radiation, &sources, begun);
+    ck_assert_mem_eq(moved, begun, sizeof moved);
+    fibrad_radiation_free(radiation);
+    bed_free(&bed);
+}
+END_TEST
+
 START_TEST(radiation_with_walls) {
     struct bed bed = packing(N, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -472,6 +513,7 @@ int main(void) {
     tcase_add_test(errors, arguments);
     tcase_add_test(errors, progress_and_cancelling);
     tcase_add_test(heat, radiation_moves);
+    tcase_add_test(heat, radiation_gets_more_room);
     tcase_add_test(heat, radiation_with_walls);
     return suite_run(suite);
 }

@@ -12,7 +12,7 @@
 #define PATCHES      96.0
 #define WALL_PATCHES .5 /* of walls over that of spheres */
 #define BEAM_ERROR   .7
-#define FEW_ERROR    .25 /* times sqrt(1 - eps), over beams per patch: patches that few leave send back along each */
+#define FEW_ERROR    .25 /* over beams per patch: patches that few leave send back along each */
 #define SAMPLES      3   /* with fewer of a kind, those of the other kind make up for them */
 
 static double squared(double x) { return x * x; }
@@ -29,7 +29,7 @@ typedef struct heat_pool {
 
 typedef struct heat_errors {
     heat_spread all;
-    double few;        /* error over power and sqrt(1 - eps) */
+    double few;        /* error over power, where all that a sphere sends out meets what reflects all */
     double walls;      /* error of what walls send out */
     heat_pool pool[2]; /* of spheres, of walls */
 } heat_errors;
@@ -71,9 +71,10 @@ static double patch_error(const fibrad_heat *heat, uint32_t b) {
 static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const double eps = heat->emissivity[b];
     const double few = b < heat->spheres ? errors->few * heat->power[b] : 0;
+    const double back = b < heat->spheres ? heat->reflected[b] / heat->beams : 0;
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double patches = b < heat->spheres ? patch_error(heat, b) : 0;
-    return squared(beam_error(heat, b)) + squared(patches) + (1 - eps) * squared(few) + squared(seen * errors->walls);
+    return squared(beam_error(heat, b)) + squared(patches) + back * squared(few) + squared(seen * errors->walls);
 }
 
 static heat_errors errors_of(const fibrad_heat *heat) {
@@ -238,6 +239,20 @@ static double absorbed_by(const fibrad_heat *heat, uint32_t b) {
     return heat->emissivity[b] * arrives;
 }
 
+/* Adds to a wall what it takes of what arrives beyond its patches, and the rest to what it faces. */
+static void read_beyond(const fibrad_heat *heat, uint32_t b, fibrad_heat_result *result) {
+    const uint32_t k = heat->slot[b], beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
+    if (a == heat->first[beyond + 1]) return;
+    const double less = heat->radiosity[a] - heat->wall_emission[k];
+    const double taken = fibrad_heat_taken_beyond(heat, k) * (heat->net[a] + heat->area[a] * less);
+    const uint32_t facing = fibrad_heat_facing(heat, k);
+    double *other = &result->surroundings_power;
+    for (uint32_t c = 0; c < heat->given_bodies; c++)
+        if (heat->slot[c] == facing) other = &result->body_power[c];
+    result->body_power[b] += taken;
+    *other += heat->power[beyond] - taken;
+}
+
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
     if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
@@ -246,16 +261,11 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     for (uint32_t b = 0; b < spheres; b++) result->power[heat->order[b]] = heat->power[b];
     result->surroundings_power = heat->power[open];
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
-        const uint32_t k = heat->slot[b], beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
+        const uint32_t k = heat->slot[b];
         result->body_power[b] = heat->power[fibrad_heat_wall_body(heat, k)];
         if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, fibrad_heat_wall_body(heat, k));
-        if (a == heat->first[beyond + 1]) continue;
-        /* beyond its patches the wall takes eps of what comes and reflects the rest to the surroundings */
-        const double less = heat->radiosity[a] - heat->wall_emission[k];
-        const double absorbed = heat->wall_emissivity[k] * (heat->net[a] + heat->area[a] * less);
-        result->body_power[b] += absorbed;
-        result->surroundings_power += heat->power[beyond] - absorbed;
     }
+    for (uint32_t b = 0; b < heat->given_bodies; b++) read_beyond(heat, b, result);
     read_errors(heat, result);
     result->sweeps = heat->sweeps;
     result->residual = heat->scale > 0 ? fibrad_sqrt(heat->slope / heat->scale) : 0;

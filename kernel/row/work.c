@@ -18,7 +18,7 @@
 #define LEAST_COUNT 4u
 
 /* Takes the arrays of `work` from the arena; the object itself is to be copied to the address returned.
- * FIBRAD_WORK_BYTES in fibrad.h must be kept above what this takes. */
+ * FIBRAD_WORK_BYTES and _WALLS in fibrad.h must be kept above what this takes. */
 static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan *plan, fibrad_workspace *work) {
     fibrad_workspace *place = fibrad_arena_take(arena, 1, sizeof *work);
     work->plan = work->needed = *plan;
@@ -66,6 +66,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     entries->angles = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
+    if (plan->walls > 0) work->walls = fibrad_arena_take(arena, 1, sizeof *work->walls);
     work->extra = fibrad_arena_take(arena, plan->extra, 1);
     return place;
 }
@@ -132,7 +133,7 @@ static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t
 /* Lays out a plan in the block, in a larger one, or as much of it as there is room for, but no less than `least`. */
 static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan *least, fibrad_workspace **space) {
     fibrad_memory *memory = &work->memory;
-    const fibrad_work_plan wanted = {least->near, plan.discs, plan.entries, least->extra};
+    const fibrad_work_plan wanted = {plan.walls, least->near, plan.discs, plan.entries, least->extra};
     size_t bytes = bytes_of(&plan);
     if (bytes == 0) return FIBRAD_E_ARGUMENT;
     work->inside = NULL;
@@ -150,24 +151,27 @@ static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan 
     return *space != NULL ? FIBRAD_OK : FIBRAD_E_WORK;
 }
 
-int fibrad_work_open(fibrad_work *work, size_t extra_min, size_t extra_best, fibrad_workspace **space) {
+int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_min, size_t extra_best,
+                     fibrad_workspace **space) {
+    const uint32_t walls = scene->container.walls;
     if (work->memory.block != NULL && work->memory.size == 0) return FIBRAD_E_ARGUMENT;
     fibrad_workspace *inside = inside_of(work);
-    fibrad_work_plan plan = {USUAL_NEAR, USUAL_DISCS, USUAL_ENTRIES, extra_best};
-    const fibrad_work_plan least = {LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min};
-    if (inside != NULL && inside->plan.extra >= extra_min) {
+    fibrad_work_plan plan = {walls, USUAL_NEAR, USUAL_DISCS, USUAL_ENTRIES, extra_best};
+    const fibrad_work_plan least = {walls, LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min};
+    if (inside != NULL && inside->plan.extra >= extra_min && inside->plan.walls >= walls) {
         inside->least = least;
         *space = inside;
         return FIBRAD_OK;
     }
     if (inside != NULL) {
         plan = inside->plan;
+        plan.walls = walls;
         plan.extra = extra_best;
     }
     const int status = fit(work, plan, &least, space);
     if (status == FIBRAD_OK) (*space)->least = least;
     if (status == FIBRAD_E_WORK) { /* what most rows of a packed bed take, not what is fastest */
-        const fibrad_work_plan enough = {LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min};
+        const fibrad_work_plan enough = {walls, LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min};
         work->memory.needed = bytes_of(&enough);
     }
     return status;
@@ -176,6 +180,7 @@ int fibrad_work_open(fibrad_work *work, size_t extra_min, size_t extra_best, fib
 int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     const fibrad_workspace *now = *space;
     fibrad_work_plan plan = now->plan, least = now->least;
+    plan.walls = least.walls;
     const fibrad_work_plan needed = now->needed;
     /* what has been too small once in this call must not shrink again */
     if (needed.near > plan.near) plan.near = least.near = needed.near;

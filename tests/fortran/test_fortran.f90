@@ -89,7 +89,7 @@ contains
         call heat%solve([900.0_dp], [0.3_dp], 400.0_dp, power, status, surroundings_power=outside, error=error)
         expected = 4 * pi * 0.02_dp**2 * 0.3_dp * sigma * (400.0_dp**4 - 900.0_dp**4)
         call expect(near(power(1), expected, 1e-9_dp) .and. near(outside, -expected, 1e-9_dp), 'one sphere')
-        call expect(error >= 0 .and. error < 3e-3_dp * abs(expected), 'error')
+        call expect(error >= 0 .and. error < 1e-3_dp * abs(expected), 'error')
         call heat%move([1.0_dp], [2.0_dp], [5.0_dp], [0.04_dp], status)
         call heat%solve([900.0_dp], [0.3_dp], 400.0_dp, power, status)
         call expect(near(power(1), 4 * expected, 1e-9_dp), 'one sphere, larger')
