@@ -31,7 +31,7 @@ WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wshadow -Wvla $(WERROR)
 COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
 # tables of addresses would be data in position independent code
 KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
-SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp -fno-math-errno -fno-trapping-math $(PIC)
+SIMPLE_FLAGS = $(COMMON) -D_XOPEN_SOURCE=700 -D_FILE_OFFSET_BITS=64 -Ihost -fopenmp -fno-math-errno -fno-trapping-math $(PIC)
 HOST_FLAGS   = $(COMMON) -D_XOPEN_SOURCE=700 -fopenmp -Ihost $(GSL_CFLAGS) $(ZLIB_CFLAGS)
 TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 
@@ -285,6 +285,7 @@ BENCHES = \
     bench/bench_heat.c \
     bench/bench_moved.c \
     bench/bench_pair.c \
+    bench/bench_powers.c \
     bench/bench_read.c \
     bench/bench_scale.c \
     bench/bench_sizes.c \

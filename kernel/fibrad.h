@@ -207,8 +207,10 @@ typedef struct fibrad_work {
 } fibrad_work;
 
 /* Bytes for beam rows with up to `discs` spheres met in one window, hidden ones included (a packed bed: 64), and
- * `entries` spheres seen by one row (200): a constant expression, for static memory. */
-#define FIBRAD_WORK_BYTES(discs, entries) (40960 + (size_t)(discs)*768 + (size_t)(entries)*96)
+ * `entries` spheres seen by one row (200): a constant expression, for static memory. In scenes with walls add
+ * FIBRAD_WORK_WALLS. */
+#define FIBRAD_WORK_BYTES(discs, entries) (28672 + (size_t)(discs)*768 + (size_t)(entries)*96)
+#define FIBRAD_WORK_WALLS                 21504
 
 /* ---- row ------------------------------------------------------------------------------------------------------- */
 typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */

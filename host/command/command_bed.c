@@ -36,6 +36,7 @@ static const struct option bed_table[] = {
     {'o', "output", "OUT", "the matrix: .csv .mtx .npz (SciPy) .json; the spheres: .vtp; - [summary only]"},
     {OPTION_FORMAT},
     {KEY_PLOT, "plot", "OUT", "a picture, .svg or .png, by gnuplot [none]"},
+    {OPTION_SCRATCH},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
@@ -154,6 +155,7 @@ static int bed_check(struct bed_request *request) {
     int status = bed_options_check(&request->bed, "bed", CONTENT_MATRIX, request->plot);
     if (status) return status;
     if (request->targets) request->options.raw = 1;
+    request->options.scratch = request->bed.scratch;
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw or --targets");
     return bed_choose(request);

@@ -26,6 +26,7 @@ static const struct option exchange_table[] = {
     OPTIONS_INPUT,
     {'o', "output", "OUT", "the factors: .csv .mtx .npz (SciPy) .json; - [summary only]"},
     {OPTION_FORMAT},
+    {OPTION_SCRATCH},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
@@ -98,6 +99,7 @@ static int exchange_check(struct exchange_request *request) {
         return message(STATUS_USAGE, "--error finds rays and directions itself; leave out --rays and --directions");
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
+    request->options.scratch = request->bed.scratch;
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
     return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX, NULL);
 }

@@ -33,6 +33,11 @@
         OPTION_HELP                                                                                                    \
     }
 
+/* Of commands that make matrices. */
+#define OPTION_SCRATCH                                                                                                 \
+    KEY_SCRATCH, "scratch", "FOLDER",                                                                                  \
+        "keep rows and matrix in files of this folder, gone when all is done; the same factors [in memory]"
+
 /* What --help says below of the files. */
 #define FILES_MORE                                                                                                     \
     "FILE: LAMMPS and LIGGGHTS dumps and data files, CSV with a header, extended XYZ, VTK (.vtp, .vtk), YADE and\n"    \
@@ -59,7 +64,8 @@ struct bed_options {
     const char *unit[BED_COLUMNS_MAX];   /* and their units; NULL: none */
     size_t columns;
     struct wall_options walls;
-    int threads; /* 0: all cores */
+    int threads;         /* 0: all cores */
+    const char *scratch; /* a folder for rows and matrix; NULL: in memory */
     struct outputs outputs;
     bool quiet;
     struct progress progress;
@@ -106,8 +112,8 @@ int bed_options_status(struct bed_options *asked, const struct bed *bed, int sta
 /* Computes the factors of a bed as a request says. Returns a status, a message being out. */
 typedef int bed_options_compute(void *request, const struct bed *bed, fibrad_bed_factors **factors);
 
-/* Whether all rows will fit into memory, judged by a few, which `compute` makes with options->wanted. Status 0;
- * STATUS_MEMORY; that of compute. Small beds and lists of targets are not asked. */
+/* Whether all rows will fit into memory, or onto the disk of options->scratch, judged by a few, which `compute` makes
+ * with options->wanted. Status 0; STATUS_MEMORY; that of compute. Small beds and lists of targets are not asked. */
 int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute, void *request);
 
 /* Metres of the bed's unit of length, for what comes in watts, with a word where it is assumed and looks wrong. Status
