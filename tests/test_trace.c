@@ -35,7 +35,7 @@ static fibrad_tracer *tracer_of(const fibrad_scene *scene, int lists, fibrad_wor
     fibrad_workspace *space = NULL;
     const size_t extra = lists == FEW ? fibrad_tracer_least() : fibrad_tracer_best(scene);
     *work = work_growing();
-    ck_assert_int_eq(fibrad_work_open(work, extra, extra, &space), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_work_open(work, scene, extra, extra, &space), FIBRAD_OK);
     fibrad_tracer *tracer = fibrad_tracer_of(space, scene);
     if (lists == EACH) ck_assert_uint_ge(tracer->lists, scene->facts.spheres);
     return tracer;
@@ -303,7 +303,7 @@ START_TEST(lists_belong_to_contents) {
         bool kept;
         ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &spheres, NULL), FIBRAD_OK);
         const size_t extra = fibrad_tracer_least();
-        ck_assert_int_eq(fibrad_work_open(&work, extra, extra, &space), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_work_open(&work, scene, extra, extra, &space), FIBRAD_OK);
         ck_assert_double_eq(length_along_x(fibrad_tracer_of(space, scene), &kept), distances[k] - 2);
         ck_assert_int_eq(kept, k % 2 == 1);
         bed_free(&bed);
@@ -321,7 +321,7 @@ START_TEST(memory) {
     unsigned char small[64];
     memset(small, 0x5a, sizeof small);
     fibrad_work work = work_fixed(small, sizeof small);
-    ck_assert_int_eq(fibrad_work_open(&work, extra, extra, &space), FIBRAD_E_WORK);
+    ck_assert_int_eq(fibrad_work_open(&work, scene, extra, extra, &space), FIBRAD_E_WORK);
     ck_assert_ptr_null(space);
     ck_assert_uint_gt(work.memory.needed, extra);
     for (size_t k = 0; k < sizeof small; k++) ck_assert_uint_eq(small[k], 0x5a);
@@ -331,7 +331,7 @@ START_TEST(memory) {
     for (size_t shift = 0; shift < 64; shift += 7) {
         memset(block, 0x5a, size + 128);
         work = work_fixed(block + shift, size);
-        ck_assert_int_eq(fibrad_work_open(&work, extra, extra, &space), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_work_open(&work, scene, extra, extra, &space), FIBRAD_OK);
         fibrad_tracer *tracer = fibrad_tracer_of(space, scene);
         ck_assert_uint_ge((uintptr_t)tracer, (uintptr_t)work.memory.block);
         fibrad_hit hit;
