@@ -190,7 +190,7 @@ START_TEST(one_sphere_and_its_images) {
     follow(&bed, &versions[0], FEW, 12, 200, 5);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_hit hit;
-    fibrad_trace_point_scalar(scene, (const double[3]){1.3, 1.65, 0}, (const double[3]){0, 0, 1}, &hit);
+    fibrad_trace_point_scalar(scene, (const double[3]){1.3, 1.65, 0}, (const double[3]){0, 0, 1}, FIBRAD_NO_SIDE, &hit);
     ck_assert_uint_eq(hit.sphere, FIBRAD_NONE);
     free(scene);
     bed_free(&bed);
@@ -216,10 +216,10 @@ START_TEST(stray) {
     uint32_t seen = 0;
     for (uint32_t k = 0; k < 20; k++) {
         double point[3] = {4e6, bed.y[k], bed.z[k]};
-        fibrad_trace_point_scalar(scene, point, left, &hit);
+        fibrad_trace_point_scalar(scene, point, left, FIBRAD_NO_SIDE, &hit);
         ck_assert_uint_eq(scene->order[hit.sphere], 200); /* it starts inside */
         point[0] = 3e6;
-        fibrad_trace_point_scalar(scene, point, left, &hit);
+        fibrad_trace_point_scalar(scene, point, left, FIBRAD_NO_SIDE, &hit);
         seen += hit.sphere != FIBRAD_NONE;
     }
     ck_assert_uint_eq(seen, 20);
@@ -239,7 +239,7 @@ START_TEST(from_points) {
             even(&random, w);
             for (int axis = 0; axis < 3; axis++) o[axis] = (fibrad_random_next(&random) * 1.6 - .3) * bed.high[axis];
             fibrad_hit hit, truth = try_all(&bed, FIBRAD_NONE, o, w, 3);
-            fibrad_trace_point_scalar(scene, o, w, &hit);
+            fibrad_trace_point_scalar(scene, o, w, FIBRAD_NO_SIDE, &hit);
             ck_assert_int_eq(hit.sphere == FIBRAD_NONE, truth.sphere == FIBRAD_NONE);
             if (hit.sphere == FIBRAD_NONE) continue;
             ck_assert_uint_eq(scene->order[hit.sphere], truth.sphere);
@@ -271,7 +271,7 @@ START_TEST(same_bits_everywhere) {
             fibrad_hit again = {0};
             versions[v].trace(tracers[1], k % bed.n, n, w, &again);
             ck_assert_mem_eq(&hit, &again, sizeof hit);
-            versions[v].trace_point(scene, n, w, &third);
+            versions[v].trace_point(scene, n, w, FIBRAD_NO_SIDE, &third);
             ck_assert_mem_eq(&other, &third, sizeof other);
         }
     }
@@ -366,7 +366,7 @@ START_TEST(ids_decide_what_is_met_first) {
             fibrad_hit hit;
             fibrad_trace_scalar(tracer, scene->place[2], w, w, &hit);
             ck_assert_double_eq(hit.centre[1], first);
-            fibrad_trace_point_scalar(scene, (const double[3]){1, 0, 0}, w, &hit);
+            fibrad_trace_point_scalar(scene, (const double[3]){1, 0, 0}, w, FIBRAD_NO_SIDE, &hit);
             ck_assert_double_eq(hit.centre[1], first);
             work_free(&work);
             free(block);
