@@ -265,7 +265,7 @@ START_TEST(same_bits_everywhere) {
         if (dot(n, w) < 0) continue;
         fibrad_hit hit = {0}, other = {0}, third = {0};
         fibrad_trace_scalar(tracers[0], k % bed.n, n, w, &hit);
-        fibrad_trace_point_scalar(scene, n, w, &other);
+        fibrad_trace_point_scalar(scene, n, w, FIBRAD_NO_SIDE, &other);
         for (size_t v = 0; v < sizeof versions / sizeof *versions; v++) {
             if (versions[v].isa > (int)fibrad_isa_best()) continue;
             fibrad_hit again = {0};

@@ -167,7 +167,7 @@ START_TEST(bad_walls_are_refused) {
                {2, {x_low, can}},
                {2, {can, y_high}}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-        fault = (fibrad_fault){9, 9};
+        fault = (fibrad_fault){9, 9, UINT32_MAX};
         ck_assert_msg(init(&scene, &bed, bad[k].count, bad[k].body, &fault) == FIBRAD_E_ARGUMENT, "bodies %zu", k);
         ck_assert(fault.first == 3 && fault.second == 3); /* none of the spheres */
         ck_assert_int_eq(init(&scene, &bed, bad[k].count, bad[k].body, NULL), FIBRAD_E_ARGUMENT);
@@ -181,7 +181,7 @@ START_TEST(bad_walls_are_refused) {
                   {cylinder_at(5, 5, 2.5), 1},
                   {plane_at(2, 0, -1e20), 3}}; /* too far for the digits of coordinates: none of the spheres */
     for (size_t k = 0; k < 4; k++) {
-        fault = (fibrad_fault){9, 9};
+        fault = (fibrad_fault){9, 9, UINT32_MAX};
         ck_assert_int_eq(init(&scene, &bed, 1, &beyond[k].body, &fault), FIBRAD_E_ARGUMENT);
         ck_assert_uint_eq(fault.first, beyond[k].whose);
         ck_assert_uint_eq(fault.second, beyond[k].whose);
