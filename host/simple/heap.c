@@ -2,6 +2,7 @@
  */
 #include "simple/heap.h"
 
+#include "fibrad_mesh.h"
 #include "fibrad_part.h"
 
 #include <fcntl.h>
@@ -95,7 +96,7 @@ size_t fibrad_host_sizeof(const char *name) {
         STRUCTURE(fibrad_exchange_rule), STRUCTURE(fibrad_displacement), STRUCTURE(fibrad_heat_config),
         STRUCTURE(fibrad_heat_sources),  STRUCTURE(fibrad_heat_result),  STRUCTURE(fibrad_run),
         STRUCTURE(fibrad_bed_options),   STRUCTURE(fibrad_bed_factors),  STRUCTURE(fibrad_transient_config),
-        STRUCTURE(fibrad_span),          STRUCTURE(fibrad_body_row),
+        STRUCTURE(fibrad_span),          STRUCTURE(fibrad_body_row),     STRUCTURE(fibrad_triangles),
     };
     for (size_t k = 0; name && k < sizeof structures / sizeof *structures; ++k)
         if (strcmp(name, structures[k].name) == 0) return structures[k].size;
