@@ -119,7 +119,7 @@ static int take_wall_value(const char *option, const char **text, const char *wo
     const bool named = (*text)[length] == '=';
     *wall = -1;
     for (uint32_t k = 0; k < walls->count && named; ++k) {
-        const char *name = wall_name(&walls->body[k]);
+        const char *name = wall_name(walls, k);
         if (strlen(name) == length && strncmp(name, *text, length) == 0) *wall = (int)k;
     }
     if (named && *wall < 0)
@@ -149,7 +149,7 @@ int wall_list(const char *option, const char *text, const char *word, double low
             return message(STATUS_USAGE,
                            wall < 0 ? "%s: one number for all others; name the walls, such as %s=%g"
                                     : "%s: %s has two values, the second %g",
-                           option, wall_name(&walls->body[wall < 0 ? 0 : wall]), value);
+                           option, wall_name(walls, wall < 0 ? 0 : (uint32_t)wall), value);
         if (wall < 0)
             list->others = value;
         else
@@ -168,7 +168,7 @@ int wall_values(const char *option, const char *text, double otherwise, double l
         values[k] = list.named[k] ? list.value[k] : otherwise;
         if (isnan(values[k]))
             return message(STATUS_USAGE, "%s: none for %s; give %s=NUMBER, or one number for all", option,
-                           wall_name(&walls->body[k]), wall_name(&walls->body[k]));
+                           wall_name(walls, k), wall_name(walls, k));
     }
     return STATUS_OK;
 }
@@ -194,8 +194,8 @@ void quantity_report(const struct quantity *quantity, const char *key, struct re
 void wall_values_report(const struct walls *walls, const double *values, const char *ending, int digits,
                         struct report *report) {
     for (uint32_t k = 0; k < walls->count; ++k) {
-        char key[60];
-        snprintf(key, sizeof key, "wall_%s%.30s", wall_name(&walls->body[k]), ending);
+        char key[80];
+        snprintf(key, sizeof key, "wall_%s%.30s", wall_name(walls, k), ending);
         report_value(report, key, values[k], digits);
     }
 }

@@ -106,7 +106,7 @@ static int join_scene(const struct joined *joined, fibrad_scene **scene, void **
     for (uint32_t k = 0; k < joined->bodies && joined->n > 0; ++k)
         body[k] = wall_beside(joined, (int)k / 2, (int)k % 2);
     const fibrad_scene_config config = {.body = body, .bodies = joined->n > 0 ? joined->bodies : 0};
-    fibrad_fault fault = {joined->n, joined->n};
+    fibrad_fault fault = {joined->n, joined->n, UINT32_MAX};
     const int status = fibrad_heap_scene(scene, block, &config, &spheres, &fault);
     if (status == FIBRAD_OK) return STATUS_OK;
     if (status == FIBRAD_E_MEMORY) return message_memory();

@@ -227,6 +227,7 @@ int bed_options_frames(struct bed_options *asked, const char *command, bed_optio
 void bed_options_free(struct bed_options *asked) {
     for (size_t k = 0; k < asked->files; ++k) free(asked->file[k]);
     free(asked->file);
+    walls_free(&asked->walls);
 }
 
 fibrad_run bed_options_run(struct bed_options *asked) {
@@ -235,6 +236,8 @@ fibrad_run bed_options_run(struct bed_options *asked) {
 
 int bed_options_status(struct bed_options *asked, const struct bed *bed, int status, const fibrad_fault *fault) {
     progress_stop(&asked->progress);
+    if (status && asked->walls.walls.meshes && fault->triangle != UINT32_MAX)
+        return meshes_refuse(asked->walls.walls.meshes, status, fault->triangle);
     return bed_status(bed, asked->name, status, fault);
 }
 
@@ -301,11 +304,22 @@ int bed_options_write(struct bed_options *asked, const struct bed *bed, struct c
     return outputs_write(&asked->outputs, what, asked->files > 1 ? asked->frames_done : bed->frame);
 }
 
-static void report_wall(struct report *report, const fibrad_body *wall) {
-    const char *name = wall_name(wall);
-    char key[40];
-    snprintf(key, sizeof key, "wall_%s_at", name);
-    if (wall->kind == FIBRAD_BODY_CYLINDER)
+static void report_mesh(struct report *report, const struct walls *walls, uint32_t k) {
+    const struct mesh *mesh = mesh_of_body(walls->meshes, k);
+    char key[60];
+    snprintf(key, sizeof key, "wall_%s_file", wall_name(walls, k));
+    report_text(report, key, mesh->file);
+    snprintf(key, sizeof key, "wall_%s_triangles", wall_name(walls, k));
+    report_count(report, key, mesh_triangles(mesh, k));
+}
+
+static void report_wall(struct report *report, const struct walls *walls, uint32_t k) {
+    const fibrad_body *wall = &walls->body[k];
+    char key[60];
+    snprintf(key, sizeof key, "wall_%s_at", wall_name(walls, k));
+    if (wall->kind == FIBRAD_BODY_MESH)
+        report_mesh(report, walls, k);
+    else if (wall->kind == FIBRAD_BODY_CYLINDER)
         report_vector(report, key, (const double[]){wall->cylinder.x, wall->cylinder.y, wall->cylinder.radius});
     else
         report_value(report, key, wall->plane.at, 9);
@@ -342,6 +356,6 @@ void bed_options_report(struct bed_options *asked, const struct bed *bed, const 
         report_vector(report, "box_high", bed->high);
     }
     report_vector(report, "periods", bed->period);
-    for (uint32_t k = 0; k < walls->count; ++k) report_wall(report, &walls->body[k]);
+    for (uint32_t k = 0; k < walls->count; ++k) report_wall(report, walls, k);
     if (facts) report_text(report, "instruction_set", fibrad_isa_name(facts->isa));
 }

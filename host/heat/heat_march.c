@@ -170,7 +170,7 @@ static void find_tables(struct marching *m) {
     for (size_t j = 0; j < m->options->tables; ++j) {
         const struct march_table *table = &m->options->table[j];
         for (uint32_t k = 0; k < walls->count; ++k)
-            if (strcmp(wall_name(&walls->body[k]), table->name) == 0) m->of_wall[k] = table;
+            if (strcmp(wall_name(walls, k), table->name) == 0) m->of_wall[k] = table;
         if (!table->name[0]) m->of_surroundings = table;
     }
 }
@@ -250,7 +250,7 @@ static int choose_model(struct marching *m) {
         m->by_patches = true;
         if (problem->by_factors)
             return message(STATUS_USAGE, "--model factors: %s has no temperature given; patches find it",
-                           wall_name(&problem->walls.body[k]));
+                           wall_name(&problem->walls, k));
     }
     return STATUS_OK;
 }

@@ -1,6 +1,7 @@
 /* heap.c - the kernel's blocks on the heap, and the sizes of its structures. SPDX-License-Identifier: MIT */
 #include "simple/heap.h"
 
+#include "fibrad_mesh.h"
 #include "fibrad_part.h"
 
 #include <stdlib.h>
@@ -15,8 +16,11 @@ int fibrad_heap_scene(fibrad_scene **scene, void **block, const fibrad_scene_con
                       const fibrad_spheres *spheres, fibrad_fault *fault) {
     *block = NULL;
     if (!spheres) return FIBRAD_E_ARGUMENT;
-    const size_t size = fibrad_scene_size(spheres->n, spheres->id != NULL);
-    if (!size) return FIBRAD_E_ARGUMENT;
+    const uint32_t triangles = config && config->triangles ? config->triangles->n : 0;
+    const size_t of_spheres = fibrad_scene_size(spheres->n, spheres->id != NULL);
+    const size_t of_triangles = triangles ? fibrad_triangles_size(triangles, spheres->n) : 0;
+    if (!of_spheres || (triangles && !of_triangles)) return FIBRAD_E_ARGUMENT;
+    const size_t size = of_spheres + of_triangles;
     *block = malloc(size);
     if (!*block) return FIBRAD_E_MEMORY;
     const int status = fibrad_scene_init(scene, *block, size, config, spheres, fault);

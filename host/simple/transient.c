@@ -61,7 +61,7 @@ static void copy_bed(fibrad_transient *t, const fibrad_scene_config *scene, cons
 static int check_placed(fibrad_transient *t, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
     fibrad_scene *scene;
     void *block;
-    t->fault = (fibrad_fault){spheres->n, spheres->n};
+    t->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX};
     const int status = fibrad_heap_scene(&scene, &block, config, spheres, &t->fault);
     if (!status) fibrad_scene_describe(scene, &t->facts);
     free(block);

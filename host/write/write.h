@@ -54,7 +54,7 @@ write_function write_heat_csv, write_heat_vtp, write_heat_json, write_heat_dump;
 bool contents_outside(const struct contents *what);
 
 /* What a body is called: "zmin" and the like, "wall_1" and the like if its place is not known. */
-enum { BODY_NAME = 16 };
+enum { BODY_NAME = MESH_NAME };
 const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]);
 
 /* What the rows that were computed have in common. */
