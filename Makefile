@@ -55,7 +55,7 @@ CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
 CHECK_LIBS   = $(shell $(PKG_CONFIG) --libs check)
 
 # the public headers, and sed that finds their functions
-HEADERS   = kernel/fibrad.h kernel/fibrad_heat.h kernel/fibrad_part.h kernel/fibrad_surface.h kernel/fibrad_furnace.h host/simple/fibrad_host.h
+HEADERS   = kernel/fibrad.h kernel/fibrad_heat.h kernel/fibrad_mesh.h kernel/fibrad_part.h kernel/fibrad_surface.h kernel/fibrad_furnace.h host/simple/fibrad_host.h
 FUNCTIONS = '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1;/p'
 
 # ---- sources --------------------------------------------------------------------------------------------------------
@@ -65,6 +65,8 @@ KERNEL = \
     kernel/base/status.c \
     kernel/sample/direction.c \
     kernel/pair/exact.c \
+    kernel/mesh/mesh_build.c \
+    kernel/mesh/mesh_ray.c \
     kernel/scene/drift.c \
     kernel/scene/grid_walk.c \
     kernel/scene/scene_build.c \
@@ -110,6 +112,7 @@ LANED = \
     kernel/window/clip_lanes.c \
     kernel/window/points_lanes.c \
     kernel/row/beam_lanes.c \
+    kernel/row/mesh_share_lanes.c \
     kernel/row/neighbours_lanes.c \
     kernel/row/wall_share_lanes.c \
     kernel/row/window_lanes.c \

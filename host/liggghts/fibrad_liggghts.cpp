@@ -38,12 +38,12 @@ struct Driver {
     double sigma; /* in the script's units */
     std::vector<fibrad_body> body;
     std::vector<double> body_temperature, body_emissivity;
-    Fix *temperature, *source, *power, *capacity; /* properties of particles; of types */
-    std::vector<uint64_t> id;                     /* [own] */
-    std::vector<double> emissivity, gain;         /* [own] */
-    fibrad_insitu_totals totals;                  /* of the powers in use */
-    bool radiates;                                /* there are such */
-    LAMMPS_NS::bigint since;                      /* first step that they heat */
+    Fix *temperature, *source, *power, *capacity;                 /* properties of particles; of types */
+    std::vector<uint64_t> id;                                     /* [own] */
+    std::vector<double> emissivity, gain;                         /* [own] */
+    fibrad_insitu_totals totals;                                  /* of the powers in use */
+    bool radiates;                                                /* there are such */
+    LAMMPS_NS::bigint since;                                      /* first step that they heat */
     double heat, heat_surroundings, heat_body[FIBRAD_BODIES_MAX]; /* what they have brought until then */
 };
 

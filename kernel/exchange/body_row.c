@@ -45,10 +45,13 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
                           .emissivity = rule->emissivity,
                           .wall_emissivity = wall_emissivity,
                           .stream = fibrad_random_start(rule->seed, UINT64_MAX - own),
-                          .first = true};
+                          .first = true,
+                          .back = UINT32_MAX};
     FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa)(&paths, 0, count);
+    work->triangle = paths.back;
+    if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
     double sum = paths.absorbed + paths.escaped + paths.beyond; /* the number of paths, but for Russian roulette */
-    for (int k = 0; k < FIBRAD_SLOTS; k++) sum += paths.wall[k];
+    for (uint32_t k = 0; k < FIBRAD_SLOTS; k++) sum += paths.wall[k];
     if (!fibrad_finite(sum)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
     row->rays = paths.rays;
     if (sum == 0) {

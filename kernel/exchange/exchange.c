@@ -53,7 +53,8 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
                           .cutoff = task->rule->cutoff > 0 ? task->rule->cutoff / scene->r[place] : __builtin_inf(),
                           .emissivity = task->rule->emissivity,
                           .wall_emissivity = task->wall_emissivity,
-                          .stream = fibrad_random_start(task->rule->seed, fibrad_scene_id(scene, i))};
+                          .stream = fibrad_random_start(task->rule->seed, fibrad_scene_id(scene, i)),
+                          .back = UINT32_MAX};
 }
 
 /* The first leg: a beam row, and the error of what it makes spheres absorb. */
@@ -86,14 +87,15 @@ static double reflected_of(const exchange_task *task, const fibrad_row *row, con
         units += (uint64_t)(part * 0x1p60);
     }
     double sum = (double)units * 0x1p-60;
-    for (int slot = 0; slot < FIBRAD_SLOTS; slot++) sum += wall[slot] * (1 - task->wall_emissivity[slot]);
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
+        if (fibrad_slot_of_body(slot)) sum += wall[slot] * (1 - task->wall_emissivity[slot]);
     return sum;
 }
 
 /* All that the paths have put down. */
 static double sum_of_paths(const fibrad_paths *paths) {
     double sum = paths->absorbed + paths->escaped + paths->beyond;
-    for (int wall = 0; wall < FIBRAD_SLOTS; wall++) sum += paths->wall[wall];
+    for (uint32_t wall = 0; wall < FIBRAD_SLOTS; wall++) sum += paths->wall[wall];
     return sum;
 }
 
@@ -168,6 +170,8 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     if (carried > 0) { /* what no path has found counts as escaped or, with a cutoff, beyond, and as an error */
         double left = rule->tolerance * rule->tolerance - beam_error * beam_error, least = 0.5 * rule->tolerance;
         follow_paths(&paths, rule, carried, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
+        space->back = paths.back;
+        if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
         double sum = sum_of_paths(&paths);
         scale = sum > 0 ? carried / sum : 0;
         if (sum == 0) *(paths.cut ? &paths.beyond : &paths.escaped) = carried, scale = 1, beam_error += carried;
@@ -182,7 +186,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     if (!fibrad_finite(row->error + scale)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
     row->escaped += paths.escaped * scale;
     row->beyond += paths.beyond * scale;
-    for (int slot = 0; slot < FIBRAD_SLOTS; slot++)
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
         wall[slot] = wall[slot] * task->wall_emissivity[slot] + paths.wall[slot] * scale;
     fibrad_row_bodies(scene, wall, row);
     task->rays = paths.rays;
@@ -216,6 +220,8 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     const uint32_t count = rule->paths > 0 ? rule->paths : FIRST_PATHS;
     paths.first = true;
     FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa)(&paths, 0, count);
+    work->triangle = paths.back;
+    if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
     if (!fibrad_finite(paths.absorbed)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
     for (int axis = 0; axis < 3; axis++) {
         double sum = 0, square = 0;

@@ -15,13 +15,13 @@
 
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
-    uint32_t place;                /* of the sphere they leave; FIBRAD_NONE: they leave a wall, and are not cut */
-    uint32_t from;                 /* then: its slot */
-    const fibrad_sobol *sobol;     /* then: even points */
-    double inverse;                /* 1/radius of the sphere */
-    bool cut;                      /* whether they end beyond a cutoff or a known region */
-    double cutoff;                 /* from its centre, in its radii; infinity: none */
-    const double *emissivity;      /* [spheres], in the caller's order; NULL: all are black */
+    uint32_t place;            /* of the sphere they leave; FIBRAD_NONE: they leave a wall or a mesh, and are not cut */
+    uint32_t from;             /* then: its slot */
+    const fibrad_sobol *sobol; /* then: even points */
+    double inverse;            /* 1/radius of the sphere */
+    bool cut;                  /* whether they end beyond a cutoff or a known region */
+    double cutoff;             /* from its centre, in its radii; infinity: none */
+    const double *emissivity;  /* [spheres], in the caller's order; NULL: all are black */
     const double *wall_emissivity; /* [FIBRAD_SLOTS] by slot */
     fibrad_random stream;          /* all numbers of path k come from it and k */
     bool first;                    /* whether what the first surface absorbs counts */
@@ -33,6 +33,7 @@ typedef struct fibrad_paths {
                  [3]; /* out: sum over what spheres absorb times the squares of their centre's
  distance along each axis [L^2] from that of the sphere left, path k in part k mod that */
     uint64_t rays;    /* out: traced in all */
+    uint32_t back;    /* out: a triangle that was seen from a side that is nobody's; UINT32_MAX: none; set it so */
 } fibrad_paths;
 
 /* Adds paths [begin, end). */

@@ -29,6 +29,7 @@ struct grey_path {
     double n[3];
     uint32_t place;    /* of the sphere; FIBRAD_NONE: it is at a wall */
     double point[3];   /* [L] then: where */
+    uint32_t triangle; /* then: on which; FIBRAD_NO_SIDE: at a plane or a cylinder */
     uint32_t used;     /* how many of all its points are used up */
     uint32_t sobol[8]; /* of a path from a wall */
 };
@@ -124,8 +125,8 @@ static bool is_known(const fibrad_paths *paths, const struct grey_path *path, co
     return length <= fibrad_region_exit(scene, point, w);
 }
 
-/* Traces one ray, to a sphere (FIBRAD_NONE) or to a wall, whose slot is returned; FIBRAD_ESCAPED, FIBRAD_BEYOND: it
- * meets neither. */
+/* Traces one ray, to a sphere (FIBRAD_NONE) or to a wall or a mesh, whose slot is returned; FIBRAD_ESCAPED,
+ * FIBRAD_BEYOND: it meets none of them, or what is nobody's. */
 static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3]) {
     const fibrad_scene *scene = paths->tracer->scene;
     fibrad_hit hit;
@@ -134,7 +135,7 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
     if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
     else
-        LANED(fibrad_trace_point)(scene, path->point, w, &hit);
+        LANED(fibrad_trace_point)(scene, path->point, w, path->triangle, &hit);
     if (hit.sphere != FIBRAD_NONE && is_known(paths, path, w, hit.distance)) {
         for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
         for (int axis = 0; axis < 3; axis++) {
@@ -146,8 +147,14 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
     }
     find_point(scene, path, centre, point);
     const double ball = paths->cut ? ball_length(paths, path, w) : __builtin_inf();
-    const uint32_t met = fibrad_surroundings_met(scene, point, w, ball, &distance);
-    if (met >= FIBRAD_WALLS) return met;
+    const bool meshed = hit.sphere == FIBRAD_NONE && hit.side != FIBRAD_NO_SIDE;
+    const uint32_t met = meshed ? fibrad_surroundings_side(scene, point, w, ball, hit.side, hit.distance, &distance)
+                                : fibrad_surroundings_met(scene, point, w, ball, &distance);
+    if (met == FIBRAD_NONE) {
+        paths->back = scene->mesh.number[hit.side / 2];
+        return FIBRAD_BEYOND;
+    }
+    if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) return met;
     for (int axis = 0; axis < 3; axis++) {
         path->centre[axis] -= centre[axis];
         path->point[axis] = point[axis] + distance * w[axis];
@@ -157,7 +164,11 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
         path->point[axis] -= whole;
         path->centre[axis] += whole;
     }
-    fibrad_wall_normal(scene, met, path->point, path->n);
+    path->triangle = met < FIBRAD_WALLS ? FIBRAD_NO_SIDE : hit.side / 2;
+    if (met < FIBRAD_WALLS)
+        fibrad_wall_normal(scene, met, path->point, path->n);
+    else
+        fibrad_mesh_normal(&scene->mesh, hit.side, path->n);
     path->place = FIBRAD_NONE;
     return met;
 }
@@ -193,6 +204,12 @@ static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
     const double share[2] = {path_coordinate(paths, path, 0), path_coordinate(paths, path, 1)};
     const bool round = c->radius < __builtin_inf();
     double low[3], size[3], sine, cosine;
+    if (paths->from >= FIBRAD_MESHES) {
+        const uint32_t side = fibrad_mesh_point(&scene->mesh, paths->from - FIBRAD_MESHES, share, path->point);
+        fibrad_mesh_normal(&scene->mesh, side, path->n);
+        path->triangle = side / 2;
+        return;
+    }
     for (int axis = 0; axis < 3; axis++) {
         low[axis] = scene->period[axis] > 0 ? 0 : c->low[axis];
         size[axis] = scene->period[axis] > 0 ? scene->period[axis] : c->high[axis] - c->low[axis];
@@ -216,8 +233,11 @@ static void start_at_wall(const fibrad_paths *paths, struct grey_path *path) {
 }
 
 static void follow_path(fibrad_paths *paths, uint64_t k) {
-    struct grey_path path = {
-        .k = k, .own = {fibrad_random_ahead(paths->stream, 8 + k)}, .weight = 1, .place = paths->place};
+    struct grey_path path = {.k = k,
+                             .own = {fibrad_random_ahead(paths->stream, 8 + k)},
+                             .weight = 1,
+                             .place = paths->place,
+                             .triangle = FIBRAD_NO_SIDE};
     if (path.place == FIBRAD_NONE) fibrad_sobol_point(paths->sobol, (uint32_t)k, path.sobol);
     next_sphere_point(paths, &path, path.n);
     if (path.place == FIBRAD_NONE) start_at_wall(paths, &path);

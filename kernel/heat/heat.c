@@ -43,7 +43,7 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
                        c->cutoff >= 0 && c->wall_rays <= HEAT_RAYS_MAX &&
                        (scene->facts.spheres == 0 ||
                         (scene->facts.radius_min >= HEAT_RADIUS_MIN && scene->facts.radius_max <= 1 / HEAT_RADIUS_MIN));
-    return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 || scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+    return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 || scene->region || scene->mesh.triangles > 0 ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
 }
 
 /* The numbers that follow from a valid configuration and a scene. */
@@ -205,7 +205,7 @@ static void reorder(double *value, uint32_t each, const fibrad_scene *scene, con
 /* Whether the patches of all walls are as many as before. */
 static bool same_patches(const fibrad_heat *a, const fibrad_heat *b) {
     bool same = true;
-    for (int k = 0; k < FIBRAD_WALLS; k++) {
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         const fibrad_heat_wall *x = &a->wall[k], *y = &b->wall[k];
         same = same && x->squares[0] == y->squares[0] && x->squares[1] == y->squares[1] && x->unbounded == y->unbounded;
     }

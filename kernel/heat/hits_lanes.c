@@ -196,7 +196,7 @@ static void follow_wall_rays(fibrad_heat *heat, uint32_t task) {
             fibrad_hit hit;
             *ray = (fibrad_heat_ray){0, 0, 0};
             if (!fibrad_heat_wall_ray(heat, wall, k - part->first_ray, origin, w)) continue;
-            LANED(fibrad_trace_point)(heat->scene, origin, w, &hit);
+            LANED(fibrad_trace_point)(heat->scene, origin, w, FIBRAD_NO_SIDE, &hit);
             if (hit.sphere != FIBRAD_NONE) continue;
             ray->from = fibrad_heat_wall_patch(heat, wall, origin);
             ray->to = fibrad_heat_leaves(heat, origin, w);

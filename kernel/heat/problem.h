@@ -63,15 +63,15 @@ typedef enum fibrad_heat_phase {
 struct fibrad_heat {
     fibrad_heat_config config;
     const fibrad_scene *scene;
-    uint64_t hash;                             /* of its contents */
-    uint32_t spheres;                          /* of it */
+    uint64_t hash;                                  /* of its contents */
+    uint32_t spheres;                               /* of it */
     uint32_t given_bodies, slot[FIBRAD_BODIES_MAX]; /* of it */
-    uint32_t beams;                            /* of one sphere: directions times points */
-    uint32_t thin;                             /* 2: of those that meet spheres every second one is kept; 1: all */
-    uint32_t side;                             /* patches of a sphere along an edge of its cube */
-    uint32_t bodies;                           /* spheres, FIBRAD_WALLS twice, 1 */
-    uint32_t patches;                          /* all of them */
-    uint32_t rays;                             /* of all walls */
+    uint32_t beams;                                 /* of one sphere: directions times points */
+    uint32_t thin;                                  /* 2: of those that meet spheres every second one is kept; 1: all */
+    uint32_t side;                                  /* patches of a sphere along an edge of its cube */
+    uint32_t bodies;                                /* spheres, FIBRAD_WALLS twice, 1 */
+    uint32_t patches;                               /* all of them */
+    uint32_t rays;                                  /* of all walls */
     uint32_t patches_capacity, rays_capacity;
     fibrad_heat_wall wall[FIBRAD_WALLS];
     uint32_t *first;       /* [bodies + 1] */

@@ -132,7 +132,8 @@ static double closing_step(const fibrad_matrix *m, const double *u, const double
 /* Brings all sums to 1. */
 static void close_all(fibrad_matrix *m) {
     const fibrad_sparse *rows = &m->result;
-    double *u = m->scratch, *next = u + rows->n, v[FIBRAD_BODIES_MAX], one[FIBRAD_BODIES_MAX], outside[FIBRAD_BODIES_MAX];
+    double *u = m->scratch, *next = u + rows->n, v[FIBRAD_BODIES_MAX], one[FIBRAD_BODIES_MAX],
+           outside[FIBRAD_BODIES_MAX];
     for (uint32_t i = 0; i < rows->n; i++) u[i] = 1;
     for (uint32_t b = 0; b < m->bodies; b++) v[b] = one[b] = 1;
     for (int step = 0; step < JOINT_STEPS; step++) {

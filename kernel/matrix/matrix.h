@@ -39,10 +39,10 @@ struct fibrad_matrix {
     bool enclosed;   /* whether bodies have rows, too; else what follows is not used */
     double *between; /* [bodies][bodies] */
     double *body_escaped, *body_error;
-    double *newton, *before;     /* [bodies][bodies + 1] scratch */
+    double *newton, *before;          /* [bodies][bodies + 1] scratch */
     double length[FIBRAD_BODIES_MAX]; /* as r of spheres; 0: no row */
-    double correction;           /* the largest distance of a body's sum from 1, before all were closed */
-    fibrad_matrix_part *part;    /* [tasks] */
+    double correction;                /* the largest distance of a body's sum from 1, before all were closed */
+    fibrad_matrix_part *part;         /* [tasks] */
 };
 
 /* Averages the rows of a part. */

@@ -24,16 +24,16 @@ typedef struct fibrad_mesh_node {
 /* Meshes are numbered as their bodies come. */
 typedef struct fibrad_mesh {
     uint32_t triangles, nodes;
-    double period[3];               /* [L] 0: the axis is open */
-    double low[3], high[3];         /* [L] of all triangles */
-    double middle[3];               /* [L] */
-    double grain;                   /* [L] lengths below this may be rounding */
-    fibrad_mesh_node *node;         /* [nodes] */
-    double (*corner)[3][3];         /* [triangles] corner by corner [L] */
-    uint32_t *number;               /* [triangles] the caller's */
-    uint8_t (*mesh)[2];             /* [triangles] whose front and back are; FIBRAD_NO_MESH: nobody's */
-    uint32_t *side;                 /* [2 triangles] the sides of the first mesh, then those of the second ... */
-    double *area;                   /* [2 triangles] of the mesh's sides up to this one [L^2] */
+    double period[3];                      /* [L] 0: the axis is open */
+    double low[3], high[3];                /* [L] of all triangles */
+    double middle[3];                      /* [L] */
+    double grain;                          /* [L] lengths below this may be rounding */
+    fibrad_mesh_node *node;                /* [nodes] */
+    double (*corner)[3][3];                /* [triangles] corner by corner [L] */
+    uint32_t *number;                      /* [triangles] the caller's */
+    uint8_t (*mesh)[2];                    /* [triangles] whose front and back are; FIBRAD_NO_MESH: nobody's */
+    uint32_t *side;                        /* [2 triangles] the sides of the first mesh, then those of the second ... */
+    double *area;                          /* [2 triangles] of the mesh's sides up to this one [L^2] */
     uint32_t first[FIBRAD_BODIES_MAX + 1]; /* where those of each mesh begin */
 } fibrad_mesh;
 

@@ -228,7 +228,8 @@ static double nearest_in_image(const fibrad_mesh *mesh, const double at[3], doub
         for (uint32_t t = begin; t < end; t++) {
             double c[3][3];
             for (int corner = 0; corner < 3; corner++)
-                for (int axis = 0; axis < 3; axis++) c[corner][axis] = (mesh->corner[t][corner][axis] - at[axis]) / least;
+                for (int axis = 0; axis < 3; axis++)
+                    c[corner][axis] = (mesh->corner[t][corner][axis] - at[axis]) / least;
             const double ratio = square_to_triangle(c);
             if (ratio < 1) least *= fibrad_max(fibrad_sqrt(ratio), 1e-12);
         }

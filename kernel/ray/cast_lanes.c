@@ -159,12 +159,33 @@ static double angle_of_tangent(double y, double x) {
     return 8 * t * sum;
 }
 
-/* Counts a ray that meets no sphere: by where it leaves. */
-static void count_exit(fibrad_workspace *work, const struct cast_ray *ray) {
-    const double *w = ray->frame + 6;
-    double from[3];
-    for (int axis = 0; axis < 3; axis++) from[axis] = ray->cosine * w[axis] - ray->sine * ray->frame[3 + axis];
-    work->wall[fibrad_work_met(work, from, w)]++;
+/* Counts a ray that meets no sphere: by where it leaves. from: in radii from the centre. */
+static void count_exit(fibrad_workspace *work, const struct cast_ray *ray, const double from[3]) {
+    work->wall[fibrad_work_met(work, from, ray->frame + 6)]++;
+}
+
+/* Counts a ray that meets a triangle before a sphere at some distance [radii]; false: it does not. */
+static bool count_side(fibrad_workspace *work, const struct cast_ray *ray, const double from[3], double sphere,
+                       uint32_t k) {
+    const fibrad_scene *scene = work->scene;
+    double origin[3], length;
+    if (!(sphere + 1 >= work->clear_mesh)) return false;
+    fibrad_mesh_hit met = {FIBRAD_NO_SIDE, 0};
+    if (work->clear_mesh < 1) /* its surface may lie beyond a triangle */
+        met = fibrad_mesh_first(&scene->mesh, work->centre, from, work->unit, FIBRAD_NO_SIDE);
+    if (met.side != FIBRAD_NO_SIDE) met.distance = 0;
+    for (int axis = 0; axis < 3; axis++) origin[axis] = work->centre[axis] + work->unit * from[axis];
+    if (met.side == FIBRAD_NO_SIDE)
+        met = fibrad_mesh_first(&scene->mesh, origin, ray->frame + 6, sphere * work->unit, FIBRAD_NO_SIDE);
+    if (met.side == FIBRAD_NO_SIDE) return false;
+    const double ball = fibrad_ball_exit(from, ray->frame + 6, work->reach) * work->unit;
+    const uint32_t slot =
+        fibrad_surroundings_side(scene, origin, ray->frame + 6, ball, met.side, met.distance, &length);
+    if (slot == FIBRAD_NONE)
+        work->back = scene->mesh.number[met.side / 2];
+    else
+        fibrad_entries_add(&work->entries, fibrad_entries_of(&work->entries, scene->facts.spheres + slot), k, 1);
+    return true;
 }
 
 /* Counts a hit. */
@@ -209,17 +230,24 @@ int LANED(fibrad_cast_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         }
         struct cast_hit first = {.distance = __builtin_inf()};
         if (!follow_cast_ray(work, &ray, &first)) return fibrad_work_discs_missed(work);
+        double from[3];
+        for (int axis = 0; axis < 3; axis++)
+            from[axis] = ray.cosine * ray.frame[6 + axis] - ray.sine * ray.frame[3 + axis];
+        if (scene->clear != NULL && count_side(work, &ray, from, first.distance, k)) continue;
         if (first.distance < __builtin_inf())
             count_hit(work, &first, k, means != NULL);
         else
-            count_exit(work, &ray);
+            count_exit(work, &ray, from);
     }
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
+    if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
+    fibrad_entries_slots(&work->entries, scene, work->wall);
     int status = fibrad_entries_row(&work->entries, scene, 1.0 / rule->rays, row);
     if (status != FIBRAD_OK) return status;
     row->escaped = work->wall[FIBRAD_ESCAPED] * (1.0 / rule->rays);
     row->beyond = work->wall[FIBRAD_BEYOND] * (1.0 / rule->rays);
-    for (int wall = 0; wall < FIBRAD_WALLS; wall++) work->wall[wall] *= 1.0 / rule->rays;
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
+        if (fibrad_slot_of_body(slot)) work->wall[slot] *= 1.0 / rule->rays;
     fibrad_row_bodies(scene, work->wall, row);
     row->directions = row->fallbacks = 0;
     row->symmetric = 0;

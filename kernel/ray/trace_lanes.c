@@ -143,7 +143,7 @@ static void march_ray(const struct trace_ray *ray, double from, struct trace_fir
 }
 
 static void write_hit(const struct trace_ray *ray, const struct trace_first *first, fibrad_hit *hit) {
-    hit->sphere = FIBRAD_NONE;
+    hit->sphere = FIBRAD_NONE, hit->side = FIBRAD_NO_SIDE;
     if (!(first->distance < __builtin_inf())) return;
     hit->sphere = first->sphere;
     hit->distance = first->distance * ray->unit;
@@ -152,6 +152,32 @@ static void write_hit(const struct trace_ray *ray, const struct trace_first *fir
         hit->centre[axis] = first->c[axis] * ray->unit;
         hit->normal[axis] = -(first->across[axis] + first->root * ray->w[axis]) * scale;
     }
+}
+
+/* The triangle that a ray from a point meets before its sphere. */
+static void meet_mesh_before(const fibrad_scene *scene, const double origin[3], const double w[3], uint32_t except,
+                             fibrad_hit *hit) {
+    const double length = hit->sphere != FIBRAD_NONE ? hit->distance : __builtin_inf();
+    const fibrad_mesh_hit met = fibrad_mesh_first(&scene->mesh, origin, w, length, except);
+    if (met.side == FIBRAD_NO_SIDE) return;
+    hit->side = met.side, hit->distance = met.distance, hit->sphere = FIBRAD_NONE;
+}
+
+/* The same for a ray from a sphere, which ends at once where the surface lies beyond a triangle. */
+static void meet_mesh_from(const fibrad_scene *scene, uint32_t place, const double n[3], const double w[3],
+                           fibrad_hit *hit) {
+    const double r = scene->r[place], centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
+    const double clear = scene->clear[place];
+    if (clear < 1) {
+        const fibrad_mesh_hit cut = fibrad_mesh_first(&scene->mesh, centre, n, r, FIBRAD_NO_SIDE);
+        if (cut.side != FIBRAD_NO_SIDE) {
+            hit->side = cut.side, hit->distance = 0, hit->sphere = FIBRAD_NONE;
+            return;
+        }
+    }
+    if (hit->sphere != FIBRAD_NONE && hit->distance < (clear - 1) * r) return;
+    const double origin[3] = {centre[0] + r * n[0], centre[1] + r * n[1], centre[2] + r * n[2]};
+    meet_mesh_before(scene, origin, w, FIBRAD_NO_SIDE, hit);
 }
 
 void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3], const double w[3], fibrad_hit *hit) {
@@ -175,6 +201,7 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
     double from = known >= 0 ? known : -(n[0] * w[0] + n[1] * w[1] + n[2] * w[2]);
     if (!(first.distance < known)) march_ray(&ray, from, &first);
     write_hit(&ray, &first, hit);
+    if (scene->clear != NULL) meet_mesh_from(scene, place, n, w, hit);
 }
 
 /* The largest power of two not above x, which is normal. */
@@ -186,14 +213,20 @@ static double power_of_two_below(double x) {
     return x;
 }
 
-void LANED(fibrad_trace_point)(const fibrad_scene *scene, const double point[3], const double w[3], fibrad_hit *hit) {
+/* The sphere that a ray from a point meets. */
+static void trace_spheres(const fibrad_scene *scene, const double point[3], const double w[3], fibrad_hit *hit) {
     static const double origin[3] = {0, 0, 0};
-    hit->sphere = FIBRAD_NONE;
-    if (scene->facts.spheres == 0) return;
     /* a power of two, which rounds nothing: the same bits whatever other spheres there are */
     const double unit = power_of_two_below(scene->spacing);
     struct trace_ray ray = {scene, origin, w, {point[0], point[1], point[2]}, unit, 1 / unit, FIBRAD_NONE};
     struct trace_first first = {.distance = __builtin_inf()};
     march_ray(&ray, 0, &first);
     write_hit(&ray, &first, hit);
+}
+
+void LANED(fibrad_trace_point)(const fibrad_scene *scene, const double point[3], const double w[3], uint32_t except,
+                               fibrad_hit *hit) {
+    hit->sphere = FIBRAD_NONE, hit->side = FIBRAD_NO_SIDE;
+    if (scene->facts.spheres > 0) trace_spheres(scene, point, w, hit);
+    if (scene->clear != NULL) meet_mesh_before(scene, point, w, except, hit);
 }

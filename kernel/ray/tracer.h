@@ -47,10 +47,11 @@ size_t fibrad_tracer_best(const fibrad_scene *scene);
  * kept if they were made for the same contents of a scene. */
 fibrad_tracer *fibrad_tracer_of(fibrad_workspace *space, const fibrad_scene *scene);
 
-/* The first sphere that a ray meets. */
+/* The first sphere or triangle that a ray meets. */
 typedef struct fibrad_hit {
-    uint32_t sphere;  /* its place; FIBRAD_NONE: it meets none, and nothing else is told */
-    double distance;  /* [L] at least 0 */
+    uint32_t side;   /* of the mesh; FIBRAD_NO_SIDE: no triangle */
+    uint32_t sphere; /* its place; FIBRAD_NONE: it meets none, and of what follows only a triangle's distance is told */
+    double distance; /* [L] at least 0 */
     double centre[3]; /* [L] from where the ray is told from (sphere or point) to the centre of the image met */
     double normal[3]; /* of the sphere where the ray enters it, outwards */
 } fibrad_hit;
@@ -65,9 +66,10 @@ typedef void fibrad_trace_function(fibrad_tracer *tracer, uint32_t place, const 
                                    fibrad_hit *hit);
 FIBRAD_DECLARE_VERSIONS(fibrad_trace_function, fibrad_trace);
 
-/* Follows the ray from any point [L] in direction w. A sphere that holds the point is met at distance 0. */
+/* Follows the ray from any point [L] in direction w. A sphere that holds the point is met at distance 0; `except`, a
+ * triangle on which it lies, or FIBRAD_NO_SIDE, is not met. */
 typedef void fibrad_trace_point_function(const fibrad_scene *scene, const double point[3], const double w[3],
-                                         fibrad_hit *hit);
+                                         uint32_t except, fibrad_hit *hit);
 FIBRAD_DECLARE_VERSIONS(fibrad_trace_point_function, fibrad_trace_point);
 
 #endif

@@ -4,6 +4,7 @@
 #include "base/constants.h"
 #include "sample/direction.h"
 #include "row/beam_lanes.h"
+#include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
@@ -17,8 +18,10 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         int built_in = fibrad_disc_points_get(points, &window.set);
         if (built_in != FIBRAD_OK) return built_in;
     }
+    if (fibrad_work_met_missed(work, scene) != FIBRAD_OK) return FIBRAD_E_WORK;
     work->areas.overflow = false;
     work->areas.fallbacks = 0;
+    work->windows = directions;
     fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
     double open[2] = {0, 0}, turn[9], parts[2] = {0, 0};
     if (scene->container.walls) {
@@ -33,21 +36,26 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         work->entries.end = k == 0 || k == directions - 1;
         double rest = LANED(fibrad_beam_window)(work, frame, &window, k);
         if (work->disc.count > work->disc.capacity || work->areas.overflow) return fibrad_work_discs_missed(work);
+        const bool meets = work->met != NULL && work->met->any;
+        if (meets) LANED(fibrad_mesh_count)(work, frame, k);
         if (scene->container.walls)
-            LANED(fibrad_walls_share)(work, frame, &window, k, rule, rest);
+            LANED(fibrad_walls_share)(work, frame, meets && points == 0 ? &work->met->points : &window, k, rule, rest);
         else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6) == FIBRAD_BEYOND)
             work->wall[FIBRAD_BEYOND] += rest;
         else
             open[k % 2] += rest;
     }
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
+    if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
     double scale = points > 0 ? 1.0 / ((double)directions * points) : 1 / (directions * FIBRAD_PI);
     int status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
     if (scene->container.walls) LANED(fibrad_walls_complete)(work, rule, parts);
+    fibrad_entries_slots(&work->entries, scene, work->wall);
     row->escaped = (open[0] + open[1] + work->wall[FIBRAD_ESCAPED]) * scale;
     row->beyond = work->wall[FIBRAD_BEYOND] * scale;
-    for (int wall = 0; wall < FIBRAD_WALLS; wall++) work->wall[wall] = fibrad_max(0, work->wall[wall]) * scale;
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
+        if (fibrad_slot_of_body(slot)) work->wall[slot] = fibrad_max(0, work->wall[slot]) * scale;
     fibrad_row_bodies(scene, work->wall, row);
     if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
     row->error *= fibrad_entries_gain(&work->entries, parts);

@@ -45,6 +45,7 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
             status = fibrad_rows_reserve(rows, own.length, scene->facts.bodies);
     }
     if (status == FIBRAD_E_CAPACITY && rows == NULL) row->length = own.length;
+    if (status == FIBRAD_E_BACK) work->triangle = space->back;
     if (status != FIBRAD_OK) return status;
     own.sphere = i;
     if (rows != NULL) fibrad_rows_commit(rows, scene->hash, scene->facts.bodies, &own);

@@ -23,25 +23,33 @@ uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere) {
     return entries->at[hash_slot_of(entries, sphere)];
 }
 
+static double sum_of_parts(const double part[4]) { return part[0] + part[2] + (part[1] + part[3]); }
+
+void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]) {
+    const uint32_t spheres = scene->facts.spheres;
+    for (uint32_t k = 0; k < entries->length && scene->mesh.triangles > 0; k++)
+        if (entries->sphere[k] >= spheres) wall[entries->sphere[k] - spheres] += sum_of_parts(entries->part[k]);
+}
+
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row) {
-    uint32_t n = entries->length;
-    row->length = n;
-    if (n > row->capacity) return FIBRAD_E_CAPACITY;
+    uint32_t n = 0;
     double square = 0;
-    for (uint32_t k = 0; k < n; k++) {
+    for (uint32_t k = 0; k < entries->length; k++) {
         const double *part = entries->part[k];
         double difference = (part[0] + part[2] - part[1] - part[3]) * scale;
         square += difference * difference;
-        entries->key[0][k] = (uint64_t)scene->order[entries->sphere[k]] << 32 | k;
+        if (entries->sphere[k] >= scene->facts.spheres || sum_of_parts(part) == 0) continue;
+        entries->key[0][n++] = (uint64_t)scene->order[entries->sphere[k]] << 32 | k;
     }
+    row->length = n;
+    if (n > row->capacity) return FIBRAD_E_CAPACITY;
     row->error = fibrad_sqrt(square);
 
     const uint64_t *key = fibrad_sort_keys(entries->key[0], entries->key[1], n, 32, scene->facts.spheres - 1);
     for (uint32_t k = 0; k < n; k++) {
         uint32_t entry = (uint32_t)key[k];
         row->col[k] = (uint32_t)(key[k] >> 32);
-        const double *part = entries->part[entry];
-        row->f[k] = (part[0] + part[2] + (part[1] + part[3])) * scale;
+        row->f[k] = sum_of_parts(entries->part[entry]) * scale;
     }
     return FIBRAD_OK;
 }

@@ -38,8 +38,11 @@ static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, u
 /* The entry of a sphere; FIBRAD_NONE if it has found no room. */
 uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);
 
+/* Adds the entries that follow those of spheres, spheres + slot, to what slots have. */
+void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]);
+
 /* Writes the row: entries times `scale`, columns ascending, and as its error the distance of the sums over even and odd
- * windows. */
+ * windows. Those of slots are errors alone; those of spheres that triangles have hidden again are left out. */
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row);
 
 /* The error of a beam row over that distance, from how much the sums over every fourth window differ, docs/methods.md

@@ -347,7 +347,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         work->walls.hidden[k / 64] |= UINT64_C(1) << k % 64;
         return;
     }
-    const double whole = points->count > 0 ? points->count : FIBRAD_PI;
+    const double whole = rule->points > 0 ? rule->points : FIBRAD_PI;
     fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .open = rest, .part = 1};
     window.hidden = fibrad_max(0, whole - rest);
     if (points->count > 0) window.part = 0.4 + 0.6 * rest / whole;

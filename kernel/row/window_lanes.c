@@ -5,6 +5,7 @@
  * of their depth. Most windows are covered before a second shell is needed. */
 #include FIBRAD_LANES_HEADER
 #include "base/sort.h"
+#include "row/mesh_share_lanes.h"
 #include "row/neighbours_lanes.h"
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
@@ -138,8 +139,12 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
         sort_discs(work, resolved);
         resolved = resolve_discs(work, points, k, resolved, known < horizon ? known : __builtin_inf(), &open);
     }
-    if (points->count > 0) return points->open;
+    const bool near = fibrad_mesh_near(work, open ? __builtin_inf() : known);
+    if (work->met != NULL) work->met->any = false;
+    if (points->count > 0) return near ? LANED(fibrad_mesh_share)(work, frame, points, k, points->open) : points->open;
     double rest = LANED(fibrad_areas_end)(&work->areas);
+    if (near) rest = LANED(fibrad_mesh_share)(work, frame, points, k, rest);
+    if (near && work->met->any) return rest;
     for (uint32_t c = 1; c < work->areas.circles; c++)
         if (work->areas.area[c] > 0) fibrad_work_accumulate(work, work->areas.whose[c], k, work->areas.area[c]);
     return rest;

@@ -66,6 +66,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     entries->angles = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
+    work->met = fibrad_arena_take(arena, plan->met, sizeof *work->met);
     work->extra = fibrad_arena_take(arena, plan->extra, 1);
     return place;
 }
@@ -132,7 +133,7 @@ static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t
 /* Lays out a plan in the block, in a larger one, or as much of it as there is room for, but no less than `least`. */
 static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan *least, fibrad_workspace **space) {
     fibrad_memory *memory = &work->memory;
-    const fibrad_work_plan wanted = {least->near, plan.discs, plan.entries, least->extra};
+    const fibrad_work_plan wanted = {least->near, plan.discs, plan.entries, least->extra, least->met};
     size_t bytes = bytes_of(&plan);
     if (bytes == 0) return FIBRAD_E_ARGUMENT;
     work->inside = NULL;
@@ -153,8 +154,8 @@ static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan 
 int fibrad_work_open(fibrad_work *work, size_t extra_min, size_t extra_best, fibrad_workspace **space) {
     if (work->memory.block != NULL && work->memory.size == 0) return FIBRAD_E_ARGUMENT;
     fibrad_workspace *inside = inside_of(work);
-    fibrad_work_plan plan = {USUAL_NEAR, USUAL_DISCS, USUAL_ENTRIES, extra_best};
-    const fibrad_work_plan least = {LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min};
+    fibrad_work_plan plan = {USUAL_NEAR, USUAL_DISCS, USUAL_ENTRIES, extra_best, 0};
+    const fibrad_work_plan least = {LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min, 0};
     if (inside != NULL && inside->plan.extra >= extra_min) {
         inside->least = least;
         *space = inside;
@@ -167,7 +168,7 @@ int fibrad_work_open(fibrad_work *work, size_t extra_min, size_t extra_best, fib
     const int status = fit(work, plan, &least, space);
     if (status == FIBRAD_OK) (*space)->least = least;
     if (status == FIBRAD_E_WORK) { /* what most rows of a packed bed take, not what is fastest */
-        const fibrad_work_plan enough = {LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min};
+        const fibrad_work_plan enough = {LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min, 0};
         work->memory.needed = bytes_of(&enough);
     }
     return status;
@@ -182,6 +183,7 @@ int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     if (needed.discs > plan.discs) least.discs = plan.discs + 1, plan.discs = needed.discs;
     if (needed.entries > plan.entries) least.entries = plan.entries + 1, plan.entries = needed.entries;
     if (needed.extra > plan.extra) plan.extra = least.extra = needed.extra;
+    if (needed.met > plan.met) plan.met = least.met = needed.met;
     const int status = fit(work, plan, &least, space);
     if (status == FIBRAD_OK) (*space)->least = least;
     return status;
@@ -198,6 +200,13 @@ int fibrad_work_entries_missed(fibrad_workspace *space) {
 int fibrad_work_discs_missed(fibrad_workspace *space) {
     const uint32_t met = space->disc.count, room = space->disc.capacity;
     space->needed.discs = met > 2 * room ? met : 2 * room;
+    return FIBRAD_E_WORK;
+}
+
+int fibrad_work_met_missed(fibrad_workspace *space, const fibrad_scene *scene) {
+    if (scene->mesh.triangles == 0 || space->plan.met > 0) return FIBRAD_OK;
+    space->needed = space->plan;
+    space->needed.met = 1;
     return FIBRAD_E_WORK;
 }
 
@@ -237,6 +246,9 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     for (int axis = 0; axis < 3; axis++)
         for (int sense = -1; sense <= 1; sense += 2)
             work->clear = fibrad_min(work->clear, extent_along(work, axis, sense));
+    work->clear_mesh = scene->clear != NULL ? scene->clear[place] : __builtin_inf();
+    work->back = UINT32_MAX;
+    if (work->met != NULL) work->met->any = false;
     work->near.shells = 0;
     work->near.full = false;
     work->near.asked = 0;

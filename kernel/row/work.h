@@ -11,6 +11,7 @@
 #include "scene/surroundings.h"
 #include "window/areas.h"
 #include "window/discs.h"
+#include "window/points.h"
 
 #define FIBRAD_SHELLS 8
 /* Near spheres in shells by their minimum depth: the least depth at which a sphere can come before a window, in any
@@ -32,6 +33,19 @@ typedef struct fibrad_near {
     uint32_t asked;              /* how many windows have asked for one more than there are */
 } fibrad_near;
 
+/* Points of a window that meet triangles. */
+#define FIBRAD_MET_POINTS 256
+typedef struct fibrad_met {
+    _Alignas(64) double depth[FIBRAD_MET_POINTS]; /* along the line, from the plane through the centre; of points beyond
+                                                     a triangle that cuts sphere i below -1 */
+    double exit[FIBRAD_MET_POINTS];               /* where the line leaves sphere i */
+    double weight[FIBRAD_MET_POINTS];             /* area or number of points that goes to the triangle */
+    float aside[2][FIBRAD_MET_POINTS];            /* of the line's direction, along u and v, if spread */
+    uint32_t side[FIBRAD_MET_POINTS];             /* of the mesh; FIBRAD_NO_SIDE: no triangle */
+    fibrad_points points;                         /* which they are; of windows by areas also what is open */
+    bool any, spread;                             /* whether there are such points in the window in hand */
+} fibrad_met;
+
 #define FIBRAD_WORK_MAX (1u << 28)
 
 /* What work memory is laid out for, or is asked for. */
@@ -40,6 +54,7 @@ typedef struct fibrad_work_plan {
     uint32_t discs;   /* spheres met in one window, hidden ones included */
     uint32_t entries; /* different spheres seen by one row */
     size_t extra;     /* bytes for what other methods keep */
+    uint32_t met;     /* 1: windows meet triangles */
 } fibrad_work_plan;
 
 /* The inside of a fibrad_work. Nothing but `extra` outlives a call. */
@@ -52,6 +67,7 @@ typedef struct fibrad_workspace {
     fibrad_discs disc;
     fibrad_areas areas;
     fibrad_entries entries;
+    fibrad_met *met;      /* [plan.met] */
     void *extra;          /* [plan.extra] */
     uint64_t extra_owner; /* whose contents `extra` has, 0: nobody's; methods have numbers of their own */
     /* the row in hand */
@@ -63,6 +79,9 @@ typedef struct fibrad_workspace {
     double step, growth;   /* depth of the first shell, and the ratio of each next one to it */
     double farthest;       /* no sphere is farther from i; infinity with periodic axes */
     double clear;          /* no window has its horizon nearer than this */
+    double clear_mesh;     /* no triangle is nearer to the centre than this */
+    uint32_t windows;      /* of a beam row */
+    uint32_t back;         /* a triangle that was seen from a side that is nobody's; UINT32_MAX: none */
     bool cut;              /* whether lines are cut: there is a cutoff, or a known region */
     fibrad_wall_view view; /* of a beam row among walls, and what its windows give to them */
     fibrad_wall_sums walls;
@@ -82,6 +101,9 @@ int fibrad_work_entries_missed(fibrad_workspace *space);
 
 /* Notes that more discs are needed, by what the window in hand has met, and returns FIBRAD_E_WORK. */
 int fibrad_work_discs_missed(fibrad_workspace *space);
+
+/* FIBRAD_E_WORK, as above, if a scene has triangles and there is no room for points that meet them; else FIBRAD_OK. */
+int fibrad_work_met_missed(fibrad_workspace *space, const fibrad_scene *scene);
 
 /* Depth of the shells: the first one `first` mean spacings, the spacing being the cube root of the volume per
  * sphere, each next one `growth` times as deep. A matter of speed alone. */

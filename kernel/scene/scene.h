@@ -17,6 +17,9 @@
 #define FIBRAD_MESHES   9u
 #define FIBRAD_SLOTS    (FIBRAD_MESHES + FIBRAD_BODIES_MAX)
 
+/* Whether a slot is that of a wall or a mesh. */
+static inline bool fibrad_slot_of_body(uint32_t slot) { return slot < FIBRAD_WALLS || slot >= FIBRAD_MESHES; }
+
 /* Spheres whose radii differ by less than a factor two share a level, a grid of its own with cells to their measure:
  * a small sphere among large ones does not search cells as wide as the large ones need. */
 #define FIBRAD_LEVELS 32

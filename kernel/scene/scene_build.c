@@ -338,7 +338,8 @@ static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fi
     uint32_t triangle;
     for (uint32_t b = 0; b < config->bodies; b++)
         mesh_of[b] = scene->slot[b] < FIBRAD_MESHES ? FIBRAD_NO_MESH : (uint8_t)(scene->slot[b] - FIBRAD_MESHES);
-    const int status = fibrad_mesh_build(&scene->mesh, config->triangles, scene->period, mesh_of, config->bodies, &triangle);
+    const int status =
+        fibrad_mesh_build(&scene->mesh, config->triangles, scene->period, mesh_of, config->bodies, &triangle);
     if (status != FIBRAD_OK) {
         if (fault != NULL) *fault = (fibrad_fault){n, n, triangle};
         return status;

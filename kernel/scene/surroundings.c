@@ -150,3 +150,28 @@ uint32_t fibrad_surroundings_met(const fibrad_scene *scene, const double origin[
     if (!clear) return FIBRAD_BEYOND;
     return wall == FIBRAD_NONE ? FIBRAD_ESCAPED : wall;
 }
+
+uint32_t fibrad_surroundings_side(const fibrad_scene *scene, const double origin[3], const double w[3], double ball,
+                                  uint32_t side, double length, double *distance) {
+    const uint32_t wall = fibrad_walls_exit(scene, origin, w, distance);
+    const bool before = wall == FIBRAD_NONE || length < *distance;
+    if (before) *distance = length;
+    if (*distance > fibrad_max(0, fibrad_min(ball, fibrad_region_exit(scene, origin, w)))) return FIBRAD_BEYOND;
+    return before ? fibrad_scene_slot(scene, side) : wall;
+}
+
+int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const double w[3], double length,
+                        fibrad_triangle_hit *hit) {
+    if (scene == NULL || origin == NULL || w == NULL || hit == NULL || !(length >= 0)) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
+    double square = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        if (!fibrad_finite(origin[axis]) || !fibrad_finite(w[axis])) return FIBRAD_E_ARGUMENT;
+        square += w[axis] * w[axis];
+    }
+    if (!(fibrad_abs(square - 1) < 1e-6)) return FIBRAD_E_ARGUMENT;
+    const fibrad_mesh_hit met = fibrad_mesh_first(&scene->mesh, origin, w, length, FIBRAD_NO_SIDE);
+    *hit = (fibrad_triangle_hit){.triangle = UINT32_MAX, .distance = met.distance};
+    if (met.side != FIBRAD_NO_SIDE) hit->triangle = scene->mesh.number[met.side / 2], hit->back = met.side % 2;
+    return FIBRAD_OK;
+}

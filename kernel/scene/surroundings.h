@@ -26,4 +26,10 @@ double fibrad_region_exit(const fibrad_scene *scene, const double o[3], const do
 uint32_t fibrad_surroundings_met(const fibrad_scene *scene, const double origin[3], const double w[3], double ball,
                                  double *distance);
 
+/* The same for a ray along the unit vector w that meets a triangle at some length before any sphere: the slot of its
+ * side, a wall's if that comes first, FIBRAD_BEYOND if it is not known so far, or FIBRAD_NONE if the side is nobody's.
+ */
+uint32_t fibrad_surroundings_side(const fibrad_scene *scene, const double origin[3], const double w[3], double ball,
+                                  uint32_t side, double length, double *distance);
+
 #endif

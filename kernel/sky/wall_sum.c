@@ -151,7 +151,7 @@ void fibrad_wall_factors(const fibrad_wall_sums *sums, const fibrad_wall_view *v
     for (uint32_t region = 0; region < FIBRAD_REGIONS && whole > 0; region++)
         wall[slot_of_region(view, region)] += got[region] * (open / whole);
     parts[0] = parts[1] = 0;
-    for (int slot = 0; slot < FIBRAD_WALLS; slot++) {
+    for (uint32_t slot = 0; slot < FIBRAD_WALLS; slot++) {
         const double *p = rest[slot], half = p[0] + p[2] - p[1] - p[3], even = p[0] - p[2], odd = p[1] - p[3];
         parts[0] += half * half, parts[1] += even * even + odd * odd;
     }

@@ -17,6 +17,10 @@ static inline uint64_t points_within(const float *x, const float *y, float at_x,
     return bits;
 }
 
+uint64_t LANED(fibrad_points_within)(const fibrad_points *points, uint32_t word, double x, double y, double r) {
+    return points_within(points->set.x + 64 * word, points->set.y + 64 * word, (float)x, (float)y, (float)(r * r));
+}
+
 void LANED(fibrad_points_disc)(fibrad_points *points, double x, double y, double r) {
     points->open = 0;
     for (uint32_t word = 0; word < points->count / 64; word++) {
