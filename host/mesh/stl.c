@@ -165,8 +165,7 @@ static int read_either(struct stl *stl, struct lines *lines) {
     if (status) return status;
     if (size == 0) return message_at(STATUS_INPUT, lines->name, 0, "the file is empty");
     const uint32_t count = size >= HEAD ? word_of(bytes + HEAD - 4) : 0;
-    if (size >= HEAD && size - HEAD == (uint64_t)count * RECORD)
-        return read_records(stl, lines->name, bytes, count);
+    if (size >= HEAD && size - HEAD == (uint64_t)count * RECORD) return read_records(stl, lines->name, bytes, count);
     stl->text = is_text(bytes, size);
     if (stl->text) {
         lines_return(lines);

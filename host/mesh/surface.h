@@ -19,15 +19,15 @@ struct surface {
     uint32_t *solid;       /* [n] */
     /* of surface_find_parts */
     uint32_t parts;
-    struct part *part;    /* [parts] */
-    uint32_t *in_parts;   /* [n] triangles, part by part */
+    struct part *part;     /* [parts] */
+    uint32_t *in_parts;    /* [n] triangles, part by part */
     unsigned char *turned; /* [n] 1: wound the other way than the most of its part */
     /* what was met */
-    uint32_t snapped;  /* corners moved to one that is nearly the same */
-    uint32_t flat;     /* triangles without area; those of two equal corners are left out */
-    uint32_t twice;    /* triangles left out, being there already */
-    uint32_t open;     /* edges of one triangle; */
-    uint32_t crowded;  /* of more than two */
+    uint32_t snapped; /* corners moved to one that is nearly the same */
+    uint32_t flat;    /* triangles without area; those of two equal corners are left out */
+    uint32_t twice;   /* triangles left out, being there already */
+    uint32_t open;    /* edges of one triangle; */
+    uint32_t crowded; /* of more than two */
     double mean_edge;
 };
 

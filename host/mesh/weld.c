@@ -1,7 +1,7 @@
 /* weld.c - corners of triangles that are the same, triangles that are none or there twice. SPDX-License-Identifier: MIT
  *
- * Points lie in cells of a grid, by a table of heads of lists; cells are much wider than what is joined, so that a point
- * is near one or two of them along each axis. */
+ * Points lie in cells of a grid, by a table of heads of lists; cells are much wider than what is joined, so that a
+ * point is near one or two of them along each axis. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@
 
 /* A table of lists: of points by their cells, or of triangles by their corners. */
 struct table {
-    uint32_t size; /* a power of 2 */
+    uint32_t size;  /* a power of 2 */
     uint32_t *head; /* [size] */
     uint32_t *next; /* [things] */
 };
@@ -61,7 +61,8 @@ static bool is_near(const double a[3], const double b[3], double distance) {
 }
 
 /* A vertex at a point, or near it; NONE: there is none yet. */
-static uint32_t find_near(const struct surface *surface, const struct table *table, const double point[3], double near) {
+static uint32_t find_near(const struct surface *surface, const struct table *table, const double point[3],
+                          double near) {
     double cell[2][3];
     uint32_t found = NONE;
     for (int axis = 0; axis < 3; ++axis) {

@@ -93,7 +93,8 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
         struct row_tasks tasks = {job, row, rule, order, error, part};
         const uint32_t count = list_spheres(job, wanted, order);
         status = fibrad_team_run(team, "rows", count, ROWS_AT_ONCE, run_row, &tasks, &failed);
-        if (status && job->run && failed < count) job->run->fault = (fibrad_fault){order[failed], order[failed], UINT32_MAX};
+        if (status && job->run && failed < count)
+            job->run->fault = (fibrad_fault){order[failed], order[failed], team->triangle};
     }
     for (int t = 0; t < team->threads && !status; ++t) {
         report->rows += part[t].rows;

@@ -56,6 +56,7 @@ static int trace_all(fibrad_radiation *r) {
     for (;;) {
         const uint32_t tasks = fibrad_heat_tasks(r->heat);
         int status = fibrad_team_run(&r->team, "beams", tasks, TASKS_AT_ONCE, trace_beams, r, NULL);
+        r->fault.triangle = r->team.triangle;
         if (status != FIBRAD_E_SIZE) return status;
         status = replace_heat(r, r->scene, 2 * r->heat_size);
         if (status) return status;

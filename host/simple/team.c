@@ -8,7 +8,7 @@
 #define INTERVAL    0.05 /* between two calls of the progress function [s] */
 
 int fibrad_team_open(fibrad_team *team, const fibrad_run *run) {
-    *team = (fibrad_team){.threads = omp_get_max_threads()};
+    *team = (fibrad_team){.threads = omp_get_max_threads(), .triangle = UINT32_MAX};
     if (run && (run->threads < 0 || run->threads > THREADS_MAX)) return FIBRAD_E_ARGUMENT;
     if (run && run->threads) team->threads = run->threads;
     if (run) team->progress = run->progress, team->context = run->context;
@@ -65,8 +65,8 @@ static void run_tasks(fibrad_team *team, const char *stage, uint32_t tasks, int 
                 reported = omp_get_wtime();
             }
             if (!status || error->status == FIBRAD_E_CANCELLED || (error->status && error->task < at)) continue;
-            *error = (fibrad_team_error){
-                at, status, status == FIBRAD_E_BACK ? team->work[thread].triangle : UINT32_MAX};
+            *error =
+                (fibrad_team_error){at, status, status == FIBRAD_E_BACK ? team->work[thread].triangle : UINT32_MAX};
 #pragma omp atomic write
             end = at;
         }
