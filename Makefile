@@ -145,12 +145,14 @@ HOST = \
     host/cli/targets.c \
     host/bed/bed.c \
     host/bed/bed_scene.c \
+    host/bed/beyond.c \
     host/bed/conduction.c \
     host/bed/moving_rows.c \
     host/bed/packing.c \
     host/bed/property_option.c \
     host/bed/units.c \
     host/bed/wall_option.c \
+    host/mesh/enclosing.c \
     host/mesh/facing.c \
     host/mesh/meshes.c \
     host/mesh/parts.c \

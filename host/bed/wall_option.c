@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bed/bed_scene.h"
+#include "bed/beyond.h"
 #include "cli/message.h"
 #include "cli/options.h"
 
@@ -217,7 +218,7 @@ static bool is_closed(const struct walls *walls, const struct bed *bed, int axis
 }
 
 bool walls_closed(const struct walls *walls, const struct bed *bed) {
-    if (walls->meshes && walls->meshes->enclose) return true;
+    if (walls->meshes && walls->meshes->enclosing > 0) return true;
     return is_closed(walls, bed, 0) && is_closed(walls, bed, 1) && is_closed(walls, bed, 2);
 }
 
@@ -256,7 +257,8 @@ int walls_of(const struct wall_options *options, const struct bed *bed, const ch
     status = check_axes(walls, bed);
     if (!status) status = check_centres(walls, bed, file);
     const fibrad_spheres spheres = bed_spheres(bed);
-    return status || !walls->meshes ? status : meshes_face(walls->meshes, &spheres, bed->period);
+    if (!status && walls->meshes) status = meshes_face(walls->meshes, &spheres, bed->period);
+    return status ? status : warn_beyond(bed, walls, file);
 }
 
 void walls_free(struct wall_options *options) {

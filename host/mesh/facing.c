@@ -92,10 +92,24 @@ static void try_triangle(const struct surface *surface, uint32_t triangle, const
     }
 }
 
-static struct ball *balls_of(const struct surface *surface) {
-    struct ball *ball = malloc(((size_t)surface->n + 1) * sizeof *ball);
-    for (uint32_t t = 0; t < surface->n && ball; ++t) ball[t] = ball_of(surface, t);
-    return ball;
+/* The nearest triangles of a part; ball [n]: of all triangles, NULL: not known. */
+static struct nearest nearest_of(const struct surface *surface, const struct part *part, const struct ball *ball,
+                                 const double point[3], const double period[3]) {
+    struct nearest best = {.square = INFINITY};
+    for (uint32_t k = part->first; k < part->first + part->n; ++k) {
+        const uint32_t t = surface->in_parts[k];
+        const struct ball about = ball ? ball[t] : ball_of(surface, t);
+        try_triangle(surface, t, &about, point, period, &best);
+    }
+    if (best.edge) best.side = 0;
+    return best;
+}
+
+double facing_distance(const struct surface *surface, const struct part *part, const double point[3],
+                       const double period[3], int *side) {
+    const struct nearest best = nearest_of(surface, part, NULL, point, period);
+    *side = best.side;
+    return sqrt(best.square);
 }
 
 static uint32_t voters_of(const struct surface *surface, uint32_t spheres) {
@@ -105,33 +119,20 @@ static uint32_t voters_of(const struct surface *surface, uint32_t spheres) {
 
 int facing_votes(const struct surface *surface, const fibrad_spheres *spheres, const double period[3], double *votes) {
     const uint32_t voters = voters_of(surface, spheres->n);
-    struct ball *ball = balls_of(surface);
+    struct ball *ball = malloc(((size_t)surface->n + 1) * sizeof *ball);
     if (!ball) return message_memory();
+    for (uint32_t t = 0; t < surface->n; ++t) ball[t] = ball_of(surface, t);
     for (uint32_t part = 0; part < surface->parts; ++part) {
-        const struct part *of = &surface->part[part];
         votes[part] = 0;
         for (uint32_t voter = 0; voter < voters; ++voter) {
             const uint32_t i = (uint32_t)((uint64_t)spheres->n * voter / voters);
             const double centre[3] = {spheres->x[i], spheres->y[i], spheres->z[i]}, r = spheres->r[i];
-            struct nearest best = {.square = INFINITY};
-            for (uint32_t k = of->first; k < of->first + of->n; ++k) {
-                const uint32_t t = surface->in_parts[k];
-                try_triangle(surface, t, &ball[t], centre, period, &best);
-            }
-            if (!best.edge) votes[part] += best.side * fmin(r * r / best.square, 1);
+            const struct nearest best = nearest_of(surface, &surface->part[part], ball, centre, period);
+            if (best.side != 0) votes[part] += best.side * fmin(r * r / best.square, 1);
         }
     }
     free(ball);
     return STATUS_OK;
-}
-
-double facing_distance(const struct surface *surface, const double point[3], const double period[3]) {
-    struct nearest best = {.square = INFINITY};
-    for (uint32_t t = 0; t < surface->n; ++t) {
-        const struct ball ball = ball_of(surface, t);
-        try_triangle(surface, t, &ball, point, period, &best);
-    }
-    return sqrt(best.square);
 }
 
 double facing_volume(const struct surface *surface, const struct part *part) {

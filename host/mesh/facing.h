@@ -11,8 +11,10 @@
  * votes [parts] out. Status 0 or STATUS_MEMORY. */
 int facing_votes(const struct surface *surface, const fibrad_spheres *spheres, const double period[3], double *votes);
 
-/* The square of the distance from a point to the nearest triangle. */
-double facing_distance(const struct surface *surface, const double point[3], const double period[3]);
+/* The distance from a point to a part; *side: 1 if the point is before triangles that are not turned, -1 behind them,
+ * 0 if nothing tells. */
+double facing_distance(const struct surface *surface, const struct part *part, const double point[3],
+                       const double period[3], int *side);
 
 /* Volume that a closed part bounds, above 0 if triangles that are not turned have their fronts outside. */
 double facing_volume(const struct surface *surface, const struct part *part);

@@ -143,8 +143,6 @@ static int face_spheres(struct meshes *meshes, const struct mesh *mesh, const fi
             const bool back = surface->turned[t] != behind;
             give_sides(meshes, mesh, t, !back || part->twisted, back || part->twisted);
         }
-        const double volume = facing_volume(surface, part);
-        if (part->closed && !part->twisted && (behind ? volume > 0 : volume < 0)) meshes->enclose = true;
     }
     free(votes);
     return status;
@@ -152,13 +150,13 @@ static int face_spheres(struct meshes *meshes, const struct mesh *mesh, const fi
 
 int meshes_face(struct meshes *meshes, const fibrad_spheres *spheres, const double period[3]) {
     int status = STATUS_OK;
-    meshes->enclose = false;
     for (uint32_t m = 0; m < meshes->count && !status; ++m) {
         const struct mesh *mesh = &meshes->mesh[m];
         if (mesh->sides == SIDES_AUTO) status = face_spheres(meshes, mesh, spheres, period);
         for (uint32_t t = 0; t < mesh->surface.n && mesh->sides != SIDES_AUTO; ++t)
             give_sides(meshes, mesh, t, true, mesh->sides == SIDES_BOTH);
     }
+    meshes->enclosing = status ? 0 : meshes_enclosing(meshes);
     return status;
 }
 

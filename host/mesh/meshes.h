@@ -35,7 +35,7 @@ struct meshes {
     struct mesh *mesh;
     char name[FIBRAD_BODIES_MAX][MESH_NAME]; /* of bodies that are meshes */
     struct fibrad_triangles triangles;       /* all of them; sides are those of the last meshes_face */
-    bool enclose;                            /* spheres of that lie in one that is closed */
+    uint32_t enclosing;                      /* parts that are closed and whose inner sides alone are walls, then */
     /* what `triangles` has */
     double *vertex;
     uint32_t *corner, *front, *back;
@@ -50,6 +50,19 @@ int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t bod
 
 /* Finds out which sides these spheres are on. Status 0 or STATUS_MEMORY. */
 int meshes_face(struct meshes *meshes, const fibrad_spheres *spheres, const double period[3]);
+
+/* How many parts are closed, with one side that is a body, and it is the inner one. Sets part.inner of all: 1 if of a
+ * closed part the fronts of triangles that are not turned and the backs of the others are bodies, -1 if it is their
+ * other sides, else 0. */
+uint32_t meshes_enclosing(struct meshes *meshes);
+
+/* 1 if this side of a triangle is a body's, of a closed part that has one such side, -1 if it is the other one of such
+ * a part, else 0. */
+int meshes_side(const struct meshes *meshes, uint32_t triangle, bool back);
+
+/* The name of the body, of a closed part with one such side, beyond which a sphere lies with all of it; NULL: there is
+ * none. Cost: a look at each triangle. */
+const char *meshes_beyond(const struct meshes *meshes, const double centre[3], double r, const double period[3]);
 
 /* The mesh of a triangle or body; NULL: it is of none. */
 const struct mesh *mesh_of_triangle(const struct meshes *meshes, uint32_t triangle);

@@ -53,7 +53,8 @@ static int find_partners(struct surface *surface, uint32_t *partner) {
 /* Follows partners from a seed that is the last one listed; those found are listed behind it. */
 static void gather_part(struct surface *surface, const uint32_t *partner, bool *met, struct part *part) {
     uint32_t *list = surface->in_parts;
-    for (uint32_t k = part->first; k < part->first + part->n; ++k)
+    for (uint32_t k = part->first; k < part->first + part->n; ++k) {
+        surface->part_of[list[k]] = surface->parts - 1;
         for (uint32_t half = 3 * list[k]; half < 3 * list[k] + 3; ++half) {
             const uint32_t other = partner[half];
             if (other == NONE) {
@@ -70,6 +71,7 @@ static void gather_part(struct surface *surface, const uint32_t *partner, bool *
                 part->twisted = true;
             }
         }
+    }
 }
 
 /* Turned are those, not the others, that have the smaller area. */
@@ -108,8 +110,10 @@ int surface_find_parts(struct surface *surface) {
     uint32_t *partner = malloc((3 * (size_t)surface->n + 1) * sizeof *partner);
     bool *met = calloc((size_t)surface->n + 1, sizeof *met);
     surface->in_parts = malloc(((size_t)surface->n + 1) * sizeof *surface->in_parts);
+    surface->part_of = malloc(((size_t)surface->n + 1) * sizeof *surface->part_of);
     surface->turned = calloc((size_t)surface->n + 1, sizeof *surface->turned);
-    int status = partner && met && surface->in_parts && surface->turned ? STATUS_OK : message_memory();
+    const bool room = partner && met && surface->in_parts && surface->part_of && surface->turned;
+    int status = room ? STATUS_OK : message_memory();
     if (!status) status = find_partners(surface, partner);
     if (!status) status = gather_parts(surface, partner, met);
     free(partner);

@@ -9,6 +9,7 @@ struct part {
     uint32_t first, n; /* in surface.in_parts */
     bool closed;       /* all its edges are edges of two */
     bool twisted;      /* they cannot */
+    int inner;         /* meshes_enclosing */
 };
 
 struct surface {
@@ -21,6 +22,7 @@ struct surface {
     uint32_t parts;
     struct part *part;     /* [parts] */
     uint32_t *in_parts;    /* [n] triangles, part by part */
+    uint32_t *part_of;     /* [n] */
     unsigned char *turned; /* [n] 1: wound the other way than the most of its part */
     /* what was met */
     uint32_t snapped; /* corners moved to one that is nearly the same */

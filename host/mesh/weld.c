@@ -213,6 +213,7 @@ void surface_free(struct surface *surface) {
     free(surface->solid);
     free(surface->part);
     free(surface->in_parts);
+    free(surface->part_of);
     free(surface->turned);
     *surface = (struct surface){0};
 }
