@@ -16,7 +16,7 @@ void LANED(fibrad_mesh_count)(fibrad_workspace *work, const double frame[9], uin
 
 /* Whether a triangle may come before what is seen down to a depth. */
 static inline bool fibrad_mesh_near(const fibrad_workspace *work, double depth) {
-    return work->met != NULL && !(depth * depth + 1 < work->clear_mesh * work->clear_mesh);
+    return work->clear_mesh < __builtin_inf() && !(depth * depth + 1 < work->clear_mesh * work->clear_mesh);
 }
 
 #endif

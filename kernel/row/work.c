@@ -66,7 +66,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     entries->angles = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
-    work->met = fibrad_arena_take(arena, plan->met, sizeof *work->met);
+    work->met = plan->met > 0 ? fibrad_arena_take(arena, 1, sizeof *work->met) : NULL;
     work->extra = fibrad_arena_take(arena, plan->extra, 1);
     return place;
 }

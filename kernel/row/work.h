@@ -67,7 +67,7 @@ typedef struct fibrad_workspace {
     fibrad_discs disc;
     fibrad_areas areas;
     fibrad_entries entries;
-    fibrad_met *met;      /* [plan.met] */
+    fibrad_met *met;      /* NULL unless plan.met */
     void *extra;          /* [plan.extra] */
     uint64_t extra_owner; /* whose contents `extra` has, 0: nobody's; methods have numbers of their own */
     /* the row in hand */
