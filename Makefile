@@ -182,11 +182,13 @@ HOST = \
     host/report/report.c \
     host/write/outputs.c \
     host/write/summary.c \
+    host/write/vtp_array.c \
     host/write/write.c \
     host/write/write_csv.c \
     host/write/write_dump.c \
     host/write/write_furnace.c \
     host/write/write_json.c \
+    host/write/write_mesh_vtp.c \
     host/write/write_mtx.c \
     host/write/write_npz.c \
     host/write/write_vtp.c \

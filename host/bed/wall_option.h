@@ -30,6 +30,8 @@ struct wall_options {
     KEY_WALL, "wall", "LIST",                                                                                          \
         "walls: auto (box of the file, open axes), box (all six sides), xmin, xmax ... zmax, cylinder:X,Y,R "          \
         "(axis along z), mesh:FILE (STL) [none]"
+#define OPTION_WALL_VTP                                                                                                \
+    KEY_WALL_VTP, "wall-vtp", "OUT", "triangles of the walls of mesh:FILE, a .vtp for ParaView [none]"
 #define WALLS_MORE                                                                                                     \
     "Walls: a LIST parted by commas. A side is xmin=VALUE, or without =VALUE the end of the file's box, or else of "   \
     "the\n"                                                                                                            \

@@ -32,6 +32,7 @@ static const struct option bed_table[] = {
     {KEY_RAW, "raw", NULL, "do not average F_ij and F_ji [averaged: A_i F_ij = A_j F_ji]"},
     {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},
     {OPTION_WALL},
+    {OPTION_WALL_VTP},
     OPTIONS_INPUT,
     {'o', "output", "OUT", "the matrix: .csv .mtx .npz (SciPy) .json; the spheres: .vtp; - [summary only]"},
     {OPTION_FORMAT},

@@ -19,6 +19,7 @@ static const struct option exchange_table[] = {
      "as many of both as bring the estimated Euclidean error of a row to E (of the worst to 1.3 E or so), 1e-5 to 1 "
      "[none]"},
     {OPTION_WALL},
+    {OPTION_WALL_VTP},
     {OPTION_WALL_EMISSIVITY},
     {KEY_RAW, "raw", NULL, "do not average D_ij and D_ji [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
     {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},

@@ -115,6 +115,9 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
         return take_frames(value, asked);
     case KEY_WALL:
         return walls_option(value, &asked->walls);
+    case KEY_WALL_VTP:
+        asked->wall_vtp = true;
+        return outputs_add_meshes(&asked->outputs, value);
     case KEY_THREADS:
         return options_threads(value, &asked->threads);
     case KEY_POSITIONS:
@@ -159,6 +162,8 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
         return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
     if (asked->timed && bed_options_series(asked))
         return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
+    if (asked->wall_vtp && !asked->walls.walls.meshes)
+        return message(STATUS_USAGE, "--wall-vtp: there is no --wall mesh:FILE");
     asked->outputs.picture = picture;
     return outputs_check(&asked->outputs, content, (const char *const *)asked->file, asked->files,
                          bed_options_series(asked) || asked->timed);

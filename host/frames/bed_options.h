@@ -59,7 +59,8 @@ struct bed_options {
     const char *unit[BED_COLUMNS_MAX];   /* and their units; NULL: none */
     size_t columns;
     struct wall_options walls;
-    int threads; /* 0: all cores */
+    bool wall_vtp; /* an output has their triangles */
+    int threads;   /* 0: all cores */
     struct outputs outputs;
     bool quiet;
     struct progress progress;
@@ -72,8 +73,8 @@ struct bed_options {
     struct report report;
 };
 
-/* Takes FILE, -o, --wall and all options of this header; a key that it does not know is OPTIONS_BAD. Status 0,
- * STATUS_HELP, STATUS_USAGE or STATUS_MEMORY. */
+/* Takes FILE, -o, --wall, --wall-vtp and all options of this header; a key that it does not know is OPTIONS_BAD. Status
+ * 0, STATUS_HELP, STATUS_USAGE or STATUS_MEMORY. */
 int bed_options_take(struct bed_options *asked, const struct options *options, int key);
 
 /* Asks for a column of the file, whose unit is to be this one (NULL: it has none); returns its place in bed->extra.

@@ -1,5 +1,4 @@
 /* parts.c - edges of triangles, and parts that hang together by them, wound alike. SPDX-License-Identifier: MIT */
-#include <math.h>
 #include <stdlib.h>
 
 #include "cli/message.h"
@@ -76,11 +75,9 @@ static void gather_part(struct surface *surface, const uint32_t *partner, bool *
 
 /* Turned are those, not the others, that have the smaller area. */
 static void keep_majority(struct surface *surface, const struct part *part) {
-    double area[2] = {0, 0}, normal[3];
-    for (uint32_t k = part->first; k < part->first + part->n; ++k) {
-        surface_normal(surface, surface->in_parts[k], normal);
-        area[surface->turned[surface->in_parts[k]]] += hypot(hypot(normal[0], normal[1]), normal[2]);
-    }
+    double area[2] = {0, 0};
+    for (uint32_t k = part->first; k < part->first + part->n; ++k)
+        area[surface->turned[surface->in_parts[k]]] += surface_area(surface, surface->in_parts[k]);
     for (uint32_t k = part->first; k < part->first + part->n && area[1] > area[0]; ++k)
         surface->turned[surface->in_parts[k]] ^= 1;
 }

@@ -42,8 +42,9 @@ int surface_find_parts(struct surface *surface);
 
 void surface_free(struct surface *surface);
 
-/* Corner k of a triangle; its normal, as long as twice its area. */
+/* Corner k of a triangle; its normal, as long as twice its area; this. */
 const double *surface_corner(const struct surface *surface, uint32_t triangle, int k);
 void surface_normal(const struct surface *surface, uint32_t triangle, double normal[3]);
+double surface_area(const struct surface *surface, uint32_t triangle);
 
 #endif

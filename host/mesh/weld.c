@@ -182,15 +182,20 @@ void surface_normal(const struct surface *surface, uint32_t triangle, double nor
     }
 }
 
+double surface_area(const struct surface *surface, uint32_t triangle) {
+    double normal[3];
+    surface_normal(surface, triangle, normal);
+    return hypot(hypot(normal[0], normal[1]), normal[2]) / 2;
+}
+
 /* Whether a triangle of three corners has no area. */
 static bool is_flat(const struct surface *surface, uint32_t triangle) {
-    double normal[3], longest = 0;
-    surface_normal(surface, triangle, normal);
+    double longest = 0;
     for (int k = 0; k < 3; ++k) {
         const double *a = surface_corner(surface, triangle, k), *b = surface_corner(surface, triangle, (k + 1) % 3);
         longest = fmax(longest, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
     }
-    return hypot(hypot(normal[0], normal[1]), normal[2]) <= FLAT * longest * longest;
+    return 2 * surface_area(surface, triangle) <= FLAT * longest * longest;
 }
 
 int surface_weld(struct surface *surface, const struct stl *stl, double scale) {
