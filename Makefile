@@ -239,6 +239,7 @@ TESTS = \
     tests/test_furnace.c \
     tests/test_heat.c \
     tests/test_matrix.c \
+    tests/test_mesh_files.c \
     tests/test_part.c \
     tests/test_plot.c \
     tests/test_protocol.c \

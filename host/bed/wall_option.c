@@ -123,34 +123,32 @@ static bool is_reserved(const char *name) {
     return found;
 }
 
-/* FILE:WORD:WORD, up to the next comma; *text moves behind it. name NULL: none is given. */
-static int take_mesh(const char *name, const char **text, struct wall_options *options) {
-    struct mesh_file file = {.name = name, .scale = 1};
-    char *item = strndup(*text, strcspn(*text, ","));
-    if (!item) return message_memory();
-    *text += strlen(item);
+/* FILE:WORD:WORD, in pieces. */
+static int take_words(char *item, struct mesh_file *file) {
     char *next = strchr(item, ':');
     int status = STATUS_OK;
-    if (name && (!mesh_name(name) || is_reserved(name)))
-        status = message(STATUS_USAGE, "--wall: a wall cannot be called '%.40s'", name);
-    for (file.path = item; next && !status;) {
+    for (file->path = item; next && !status;) {
         char *word = next + 1;
         *next = 0;
         next = strchr(word, ':');
         if (next) *next = 0;
-        status = take_mesh_word(word, &file);
+        status = take_mesh_word(word, file);
     }
-    if (!status && *file.path == 0) status = message(STATUS_USAGE, "--wall: mesh:FILE needs a file");
-    if (!status) status = add_mesh(options, &file);
-    free(item);
+    if (!status && *item == 0) status = message(STATUS_USAGE, "--wall: mesh:FILE needs a file");
     return status;
 }
 
-/* NAME=mesh:FILE, or mesh:FILE with a length of 0. */
-static int take_named_mesh(const char *word, size_t length, const char **text, struct wall_options *options) {
-    char *name = strndup(word, length);
-    if (!name) return message_memory();
-    const int status = take_mesh(length ? name : NULL, text, options);
+/* NAME=mesh:FILE:WORD:WORD up to the next comma, of which *text is FILE and moves behind it; word NULL: no name. */
+static int take_mesh(const char *word, size_t length, const char **text, struct wall_options *options) {
+    char *item = strndup(*text, strcspn(*text, ",")), *name = word ? strndup(word, length) : NULL;
+    struct mesh_file file = {.name = name, .scale = 1};
+    int status = item && (name || !word) ? STATUS_OK : message_memory();
+    *text += strcspn(*text, ",");
+    if (!status && name && (!mesh_name(name) || is_reserved(name)))
+        status = message(STATUS_USAGE, "--wall: a wall cannot be called '%.40s'", name);
+    if (!status) status = take_words(item, &file);
+    if (!status) status = add_mesh(options, &file);
+    free(item);
     free(name);
     return status;
 }
@@ -166,10 +164,10 @@ int walls_option(const char *text, struct wall_options *options) {
             status = take_cylinder(&text, options);
         } else if (begins_with(word, "mesh:")) {
             ++text;
-            status = take_named_mesh(word, 0, &text, options);
+            status = take_mesh(NULL, 0, &text, options);
         } else if (begins_with(text, "=mesh:")) {
             text += strlen("=mesh:");
-            status = take_named_mesh(word, length, &text, options);
+            status = take_mesh(word, length, &text, options);
         } else if (is_word(word, length, "auto")) {
             options->automatic = true;
         } else if (is_word(word, length, "box")) {

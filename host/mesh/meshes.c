@@ -46,8 +46,8 @@ static void name_bodies(struct meshes *meshes, const struct mesh_file *file, con
 static void warn_of_surface(const char *file, const struct surface *s) {
     if (s->flat || s->twice || s->snapped)
         message_at(STATUS_OK, file, 0,
-                   "warning: %u triangles without area and %u that are there twice are left out, %u corners moved to "
-                   "one less than 1e-6 of an edge away",
+                   "warning: mended: %u triangles without area, %u there twice, %u corners less than 1e-6 of an edge "
+                   "from others",
                    s->flat, s->twice, s->snapped);
     if (s->open || s->crowded)
         message_at(STATUS_OK, file, 0,
