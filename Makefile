@@ -31,7 +31,7 @@ WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wshadow -Wvla $(WERROR)
 COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
 # tables of addresses would be data in position independent code
 KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
-SIMPLE_FLAGS = $(COMMON) -Ihost -fopenmp -fno-math-errno -fno-trapping-math $(PIC)
+SIMPLE_FLAGS = $(COMMON) -D_XOPEN_SOURCE=700 -D_FILE_OFFSET_BITS=64 -Ihost -fopenmp -fno-math-errno -fno-trapping-math $(PIC)
 HOST_FLAGS   = $(COMMON) -D_XOPEN_SOURCE=700 -fopenmp -Ihost $(GSL_CFLAGS) $(ZLIB_CFLAGS)
 TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 
@@ -145,7 +145,6 @@ HOST = \
     host/cli/targets.c \
     host/bed/bed.c \
     host/bed/bed_scene.c \
-    host/bed/beyond.c \
     host/bed/conduction.c \
     host/bed/moving_rows.c \
     host/bed/packing.c \
@@ -208,6 +207,7 @@ HOST = \
     host/reproduce/reproduce_rays.c \
     host/reproduce/reproduce_rows.c \
     host/frames/bed_options.c \
+    host/frames/beyond.c \
     host/command/command_bed.c \
     host/command/command_conductivity.c \
     host/command/command_exchange.c \
@@ -239,6 +239,7 @@ TESTS = \
     tests/test_furnace.c \
     tests/test_heat.c \
     tests/test_matrix.c \
+    tests/test_mesh.c \
     tests/test_mesh_files.c \
     tests/test_part.c \
     tests/test_plot.c \
@@ -294,6 +295,7 @@ BENCHES = \
     bench/bench_heat.c \
     bench/bench_moved.c \
     bench/bench_pair.c \
+    bench/bench_powers.c \
     bench/bench_read.c \
     bench/bench_scale.c \
     bench/bench_sizes.c \

@@ -127,7 +127,7 @@ typedef struct fibrad_spheres {
 typedef enum fibrad_body_kind {
     FIBRAD_BODY_PLANE = 1,    /* a wall across an axis; the scene lies on its inner side */
     FIBRAD_BODY_CYLINDER = 2, /* a wall around the z axis; the scene lies inside */
-    FIBRAD_BODY_MESH = 3      /* triangles: those of fibrad_scene_config.triangles that name it */
+    FIBRAD_BODY_MESH = 3      /* triangles: those of fibrad_scene_config.triangles that name it, one at least */
 } fibrad_body_kind;
 
 /* A body that is not a sphere, known by its index in fibrad_scene_config.body. Planes and the cylinder bound a convex
@@ -207,8 +207,10 @@ typedef struct fibrad_work {
 } fibrad_work;
 
 /* Bytes for beam rows with up to `discs` spheres met in one window, hidden ones included (a packed bed: 64), and
- * `entries` spheres seen by one row (200): a constant expression, for static memory. */
-#define FIBRAD_WORK_BYTES(discs, entries) (40960 + (size_t)(discs)*768 + (size_t)(entries)*96)
+ * `entries` spheres seen by one row (200): a constant expression, for static memory. In scenes with walls add
+ * FIBRAD_WORK_WALLS. */
+#define FIBRAD_WORK_BYTES(discs, entries) (28672 + (size_t)(discs)*768 + (size_t)(entries)*96)
+#define FIBRAD_WORK_WALLS                 21504
 
 /* ---- row ------------------------------------------------------------------------------------------------------- */
 typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */

@@ -17,6 +17,12 @@ rm -rf "$work"
 "$python" -m venv --system-site-packages "$work"
 BUILD=$build CC=$CC "$work/bin/pip" install -q --no-index --disable-pip-version-check ./host/python
 
+if command -v mypy >/dev/null; then
+    mypy --strict --ignore-missing-imports --cache-dir /dev/null host/python/fibrad >"$work/types" || { cat "$work/types" && exit 1; }
+else
+    echo "SKIP types: no mypy"
+fi
+
 # elsewhere, so that only the installed package is found
 cd "$work"
 status=0

@@ -1,7 +1,7 @@
 #!/bin/sh
 # check_symbols.sh - libfibrad.a defines only fibrad_*, asks for nothing but copying and clearing of memory, and has no
-# variables and no constructors; libfibrad_host.a defines only fibrad_*, asks for a heap and OpenMP besides, and has no
-# variables. SPDX-License-Identifier: MIT
+# variables and no constructors; libfibrad_host.a defines only fibrad_*, asks for a heap, mapped files and OpenMP besides, and
+# has no variables. SPDX-License-Identifier: MIT
 set -u
 library=${BUILD:=build}/libfibrad.a
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
@@ -43,9 +43,10 @@ if test -e "$library"; then # it needs OpenMP, which not every machine has
     nm -g --defined-only "$library" | awk 'NF == 3 {print $3}' | sort -u >"$work/host"
     fault "symbols that do not begin with fibrad_" "$(grep -v '^fibrad_' "$work/host")"
     fault "functions of the header that are missing" "$(functions host/simple/fibrad_host.h | comm -23 - "$work/host")"
-    fault "symbols but of a heap, strings and OpenMP" "$(nm -g --undefined-only "$library" | awk '$1 == "U" {print $2}' |
+    fault "symbols but of a heap, strings, mapped files and OpenMP" "$(nm -g --undefined-only "$library" | awk '$1 == "U" {print $2}' |
         sort -u | comm -23 - "$work/host" | comm -23 - "$work/defined" |
-        grep -vxE '(malloc|calloc|realloc|free|qsort|strcmp|bcmp|mem[a-z]*|_GLOBAL_OFFSET_TABLE_|omp_.*|GOMP_.*|__kmpc_.*)')"
+        grep -vxE '(malloc|calloc|realloc|free|qsort|strcmp|strlen|bcmp|mem[a-z]*|_GLOBAL_OFFSET_TABLE_|omp_.*|GOMP_.*|__kmpc_.*)' |
+        grep -vxE '(mkstemp|unlink|fcntl|posix_fallocate|mmap)(64)?|munmap|close')"
     fault "variables (data, bss)" "$(size -A "$library" | awk '/^\.(data|bss) / && $2 > 0 {print $1 ": " $2 " bytes"}')"
 fi
 exit $faults

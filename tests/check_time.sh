@@ -33,6 +33,18 @@ test "$(grep -c 'file="cool\.[0-3]\.vtp"' "$work/cool.pvd")" = 4 || fault "cool.
 test -s "$work/cool.3.vtp" || fault "no cool.3.vtp"
 test ! -e "$work/cool.4.vtp" || fault "one .vtp too many"
 
+# Emissivity T/2000 by a table: 1/T^4 grows by four times 3 sigma/(2000 density c r) a second; by type, too.
+printf '0,0\n2000,1\n' >"$work/eps.csv"
+printf 'id,x,y,z,r,type\n5,0,0,0,20,1\n' >"$work/type.csv"
+end=$(awk 'BEGIN { print (1200^-4 + 4 * 3 * 5.670374419e-8 / (2000 * 800 * 2500 * 0.02) * 600)^(-1/4) }')
+for law in "@$work/eps.csv" "1:@$work/eps.csv"; do
+    march "$work/type.csv" --length-unit mm --temperature 1200 --ambient 0 --until 600 --emissivity "$law" \
+        -o "$work/law.csv" || fault "$(cat "$work/errors")"
+    is "$(value temperature_mean_K)" "$end" 0.05 || fault "with $law it ends at $(value temperature_mean_K) K, not $end K"
+    awk -F , -v t="$end" '$2 == 5 { q = 5.670374419e-8 * 16e-4 * atan2(0, -1) * t^5 / 2000 }
+        $2 == 5 && ($4 + q > 1e-3 * q || $4 + q < -1e-3 * q) { exit 1 }' "$work/law.csv" || fault "$law: powers of another emissivity"
+done
+
 # In a closed black box that follows a table a mote follows the walls; tables bend at their times, in their unit.
 printf '# seconds, degrees\ntime,T\n0,27\n100,827\n500,827\n' >"$work/ramp.csv"
 printf '0,0,0,0.001,300\n' | sed '1i x,y,z,r,T' >"$work/mote.csv"
@@ -81,6 +93,7 @@ refused 2 '3 does not lie above' "$@" --temperature T --times 5,3
 refused 2 '90 does not lie above the one before, within 0 and 60' "$@" --temperature T --times 90
 refused 2 'the one or the other' "$@" --temperature T --times 5 --every 3
 refused 2 'put \* into its name' "$@" --temperature T -o "$work/x.vtp"
+refused 2 'model factors: emissivities follow' "$@" --temperature T --emissivity "@$work/eps.csv" --model factors
 refused 2 'not for --until' "$@" --temperature T --error 0.01
 refused 2 'one frame' "$@" --temperature T --frame all
 refused 3 'above 0 K' "$@" --temperature T --power=-1e6

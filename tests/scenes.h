@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "bed/packing.h"
-#include "fibrad.h"
+#include "fibrad_mesh.h"
 #include "worst.h"
 
 static inline void *block_of(size_t size) {
@@ -127,8 +127,9 @@ static inline int scene_try(fibrad_scene **scene, const struct bed *bed, const f
     fibrad_scene_config whole = config != NULL ? *config : (fibrad_scene_config){0};
     memcpy(whole.period, bed->period, sizeof whole.period);
     const fibrad_spheres spheres = spheres_of(bed);
-    const size_t size = fibrad_scene_size(bed->n, 0);
+    size_t size = fibrad_scene_size(bed->n, 0);
     ck_assert_uint_gt(size, 0);
+    if (whole.triangles != NULL) size += fibrad_triangles_size(whole.triangles->n, bed->n);
     fibrad_scene *made = NULL;
     void *block = block_of(size);
     const int status = fibrad_scene_init(&made, block, size, &whole, &spheres, fault);
@@ -216,7 +217,7 @@ static inline void rows_free(fibrad_rows *rows) {
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
 
-#define BODIES_MOST 7
+#define BODIES_MOST FIBRAD_BODIES_MAX
 
 static inline fibrad_row row_of(uint32_t capacity) {
     return (fibrad_row){.col = calloc((size_t)capacity + 1, sizeof(uint32_t)),

@@ -378,6 +378,43 @@ START_TEST(rays) {
 }
 END_TEST
 
+/* A file of the test's folder, whatever its bytes. */
+static char *read_bytes(const char *name, size_t *size) {
+    struct stat there;
+    ck_assert_int_eq(stat(in_folder(name), &there), 0);
+    *size = (size_t)there.st_size;
+    return read_file(in_folder(name));
+}
+
+/* What is kept in files is written as what is kept in memory, and nothing else is left. */
+START_TEST(rows_in_files) {
+    static const char *const names[2][3] = {{"a.csv", "a.npz", "a.json"}, {"b.csv", "b.npz", "b.json"}};
+    const char *scratch = in_folder("scratch");
+    ck_assert_int_eq(mkdir(scratch, 0777), 0);
+    SUCCEED("exchange", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin",
+            "--wall-emissivity=.5", "-o", in_folder(names[0][0]), "-o", in_folder(names[0][1]), "-o",
+            in_folder(names[0][2]));
+    SUCCEED("exchange", PERIODIC, "--emissivity=.5", "--directions=8", "--rays=9", "--wall=zmin",
+            "--wall-emissivity=.5", "-o", in_folder(names[1][0]), "-o", in_folder(names[1][1]), "-o",
+            in_folder(names[1][2]), "--scratch", scratch);
+    ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
+    for (int k = 0; k < 3; ++k) {
+        size_t first, second;
+        char *kept = read_bytes(names[0][k], &first), *filed = read_bytes(names[1][k], &second);
+        ck_assert_uint_eq(first, second);
+        ck_assert_int_eq(memcmp(kept, filed, first), 0);
+        free(kept);
+        free(filed);
+    }
+    ck_assert_int_eq(rmdir(scratch), 0); /* empty */
+    remove_files(0);
+    ck_assert_int_eq(RUN("bed", MONO, "--scratch", scratch), 4);
+    expect_message(scratch, "No such file or directory");
+    ck_assert_int_eq(RUN("exchange", MONO, "--emissivity=.5", "--scratch", PERIODIC, "-o", in_folder("D.csv")), 4);
+    ck_assert_int_eq(remove_files(0), 0);
+}
+END_TEST
+
 START_TEST(targets_and_formats) {
     const char *all = in_folder("all.csv"), *some = in_folder("some.csv"), *matrix = in_folder("all.mtx");
     SUCCEED("bed", PERIODIC, "--positions", "--directions", "21", "--raw", "-o", all);
@@ -524,6 +561,48 @@ START_TEST(temperatures) {
 }
 END_TEST
 
+/* Root mean square difference of T^4 of the spheres of two .csv, over that of the first. */
+static double emission_difference(const char *path, const char *other) {
+    char *text[2] = {read_file(path), read_file(other)}, *line[2];
+    double difference = 0, all = 0;
+    for (int k = 0; k < 2; ++k) line[k] = strchr(text[k], '\n') + 1;
+    while (*line[0] && *line[1] && *line[0] != '-') {
+        double t[2];
+        for (int k = 0; k < 2; ++k) {
+            ck_assert_int_eq(sscanf(line[k], "%*d,%lf", &t[k]), 1);
+            line[k] = strchr(line[k], '\n') + 1;
+        }
+        difference += pow(pow(t[0], 4) - pow(t[1], 4), 2), all += pow(t[0], 8);
+    }
+    free(text[0]), free(text[1]);
+    return sqrt(difference / all);
+}
+
+/* --error holds for temperatures that are found, too, of spheres and walls. */
+START_TEST(temperatures_to_an_error) {
+    enum { SIDE = 3 };
+    char bed[2000] = "x,y,z,r\n";
+    for (int i = 0; i < SIDE * SIDE * SIDE; ++i)
+        snprintf(bed + strlen(bed), 60, "%d,%d,%d,%g\n", 2 * (i % 3), 2 * (i / 3 % 3), 2 * (i / 9), .95 - .2 * (i % 4));
+    const char *file = write_file("found.csv", bed), *out = in_folder("found.out.csv"), *fine = in_folder("fine.csv");
+    double sum, largest, wall[2], q;
+    for (int k = 0; k < 4; ++k) { /* finely, then to an error; open, then in a box */
+        const char *to = k % 2 ? out : fine;
+        SUCCEED("heat", file, "--length-unit", "m", "--emissivity", ".4", "--power", "4000", "--ambient=300",
+                k % 2 ? "--error=.002" : "--directions=1500", k % 2 ? "--threads=2" : "--patches=384", "-o", to,
+                k < 2 ? "--threads=2" : "--wall=box",
+                k < 2 ? "--threads=2" : "--wall-temperature=ymax=insulated,zmin=900,400",
+                k < 2 ? "--threads=2" : "--wall-power=xmin=20000", k < 2 ? "--threads=2" : "--wall-emissivity=.4");
+        ck_assert_str_eq(said, "");
+        if (k >= 2) read_powers(to, &sum, &largest, -2, &wall[k % 2], &q);
+        if (k % 2 == 0) continue;
+        ck_assert_double_gt(value_of("directions"), 72);
+        ck_assert_double_le(emission_difference(fine, out), .002);
+    }
+    ck_assert_double_le(4 * fabs(wall[1] / wall[0] - 1), .002);
+}
+END_TEST
+
 START_TEST(powers) {
     const char *file = write_file("hot.csv", "x,y,z,r,eps,T\n0,0,0,1,.5,600\n2,0,0,1,.8,300\n0,2.5,0,.7,1,450\n");
     const char *out = in_folder("q.csv");
@@ -574,6 +653,9 @@ START_TEST(powers) {
     ck_assert(strstr(vtp, "Name=\"power_W\"") && strstr(vtp, "Name=\"temperature_K\"") && strstr(vtp, "</VTKFile>"));
     free(vtp);
     SUCCEED("heat", file, "--emissivity", ".3", "--temperature", "T", "--ambient", "0", "--model", "spheres");
+    ck_assert_double_eq(value_of("directions"), 112); /* fewer where patches err more */
+    SUCCEED("heat", file, "--emissivity", ".5", "--temperature", "T", "--ambient", "0");
+    ck_assert_double_eq(value_of("directions"), 168);
     ck_assert_int_eq(RUN("heat", file, "--emissivity", "eps", "--temperature", "missing", "--ambient", "0"), 3);
     const char *cold = write_file("cold.csv", "x,y,z,r,T\n0,0,0,1,-1\n");
     ck_assert_int_eq(RUN("heat", cold, "--emissivity", "1", "--temperature", "T", "--ambient", "0"), 3);
@@ -1015,11 +1097,13 @@ int main(void) {
     tcase_add_test(beds, same_bytes_for_any_threads);
     tcase_add_test(beds, walls);
     tcase_add_test(beds, rays);
+    tcase_add_test(beds, rows_in_files);
     tcase_add_test(beds, targets_and_formats);
     tcase_add_test(beds, frames_periods_and_ids);
     tcase_add_test(beds, exchange_factors);
     tcase_add_test(beds, powers);
     tcase_add_test(beds, temperatures);
+    tcase_add_test(beds, temperatures_to_an_error);
     tcase_add_test(beds, conductivity);
     tcase_add_test(beds, points_and_cutoff);
     tcase_add_test(beds, paraview_and_picture);

@@ -75,6 +75,31 @@ START_TEST(one_and_two_spheres) {
 }
 END_TEST
 
+/* What black walls absorb at once has all the error of the beams, however little the spheres absorb, and counts for the
+ * tolerance. */
+START_TEST(walls_count_for_the_first_leg) {
+    const double e[2] = {.5, .02}, walls_e[6] = {1, 1, 1, 1, 1, 1};
+    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {2.2, .5, .3, 1}});
+    fibrad_body walls[6];
+    for (int k = 0; k < 6; k++) walls[k] = plane_at(k / 2, k % 2, k % 2 ? 4 : -2);
+    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 6});
+    fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = walls_e, .directions = 50, .paths = 20000};
+    fibrad_row row = exchange_in(scene, 2, 0, &rule), beam = row_of(2);
+    fibrad_work work = work_growing();
+    const fibrad_beam_rule first = {.directions = 50, .points = 256};
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &first, &beam), FIBRAD_OK);
+    ck_assert_double_ge(row.error, beam.error);
+    rule.tolerance = beam.error;
+    fibrad_row finer = exchange_in(scene, 2, 0, &rule);
+    ck_assert_uint_gt(finer.directions, 50);
+    ck_assert_double_le(finer.error, 1.05 * rule.tolerance);
+    work_free(&work);
+    row_free(&row), row_free(&beam), row_free(&finer);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
 /* Two so far apart that hardly a path meets the other: rows end, closed, and say how much is not known. */
 START_TEST(hardly_seen) {
     const double e[2] = {.3, .6};
@@ -575,6 +600,7 @@ int main(void) {
     TCase *cases = suite_case(suite, "exchange");
     tcase_add_test(cases, black_is_the_beam_row);
     tcase_add_test(cases, one_and_two_spheres);
+    tcase_add_test(cases, walls_count_for_the_first_leg);
     tcase_add_test(cases, hardly_seen);
     tcase_add_test(cases, sphere_in_a_grey_box);
     tcase_add_loop_test(cases, against_plain_paths, 0, 4);

@@ -246,17 +246,60 @@ START_TEST(two_parallel_grey_walls) {
 }
 END_TEST
 
+/* Half of the 10,752 beams meet the plane, but for 6. Estimates are made of one sample each: they hold on the mean. */
 START_TEST(a_black_sphere_touches_a_black_plane) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, 1);
+    double estimate[FIBRAD_WALLS], errors = 0, estimates = 0;
+    p.result.body_error = estimate;
     for (uint32_t wall = 0; wall < 6; wall++) {
         p.walls = (struct walls){.planes = 1u << wall};
         p.walls.at[wall] = wall % 2 ? 1 : -1;
         trace_and_solve(&p);
-        assert_near(p.wall_power[wall], 16 * 2 * PI, 2e-3);
-        assert_near(p.result.surroundings_power, 16 * 2 * PI, 2e-3);
+        const double error = p.wall_power[wall] / (16 * 2 * PI) - 1;
+        ck_assert_double_le(fabs(error), 1.2e-3);
+        assert_near(p.result.surroundings_power, 16 * 2 * PI, 1.2e-3);
+        errors += error * error / 6, estimates += pow(estimate[0] / (16 * 2 * PI), 2) / 6;
         free_heat(&p);
     }
+    ck_assert_double_le(sqrt(errors), 1e-3);
+    ck_assert(errors < 4 * estimates && estimates < 4 * errors);
     p.scene = NULL, p.heat = NULL;
+    free_problem(&p);
+}
+END_TEST
+
+/* Between endless plates without a period, and far from the ends of a tube, light goes to and fro: a mote sees the
+ * radiosities of plates that have only each other, and in a tube that of a black body. */
+START_TEST(a_mote_between_endless_walls) {
+    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, .01}}), 2, .5);
+    p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
+    p.wall_temperature[4] = 3, p.wall_emissivity[4] = .8;
+    p.wall_temperature[5] = 1, p.wall_emissivity[5] = .5;
+    p.sources.surroundings = 1.5;
+    trace_and_solve(&p);
+    const double low = (.8 * 81 + .2 * .5 * 1) / (1 - .2 * .5), high = .5 * 1 + .5 * low;
+    assert_near(p.result.power[0], .5 * 4e-4 * PI * ((low + high) / 2 - 16), 1e-3);
+    double largest;
+    ck_assert_double_le(fabs(sum_of_powers(&p, &largest)), 1e-12 * largest);
+    free_heat(&p);
+    p.walls = (struct walls){.cylinder = {0, 0, .5}};
+    p.wall_temperature[FIBRAD_CYLINDER] = 3, p.wall_emissivity[FIBRAD_CYLINDER] = .1;
+    trace_and_solve(&p);
+    assert_near(p.result.power[0], .5 * 4e-4 * PI * (81 - 16), 1e-2);
+    free_problem(&p);
+}
+END_TEST
+
+/* Plates with a period, as in closed form, whatever the mote is. */
+START_TEST(a_mote_between_periodic_plates) {
+    struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, .01}}), 2, .5);
+    p.bed.period[0] = p.bed.period[1] = 1;
+    p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
+    p.wall_temperature[4] = 3, p.wall_emissivity[4] = .8;
+    p.wall_temperature[5] = 1, p.wall_emissivity[5] = .5;
+    trace_and_solve(&p);
+    assert_near(p.wall_power[5], (81 - 1) / (1 / .8 + 1 / .5 - 1), 1e-3);
+    assert_near(p.wall_power[4], -p.wall_power[5], 1e-3);
     free_problem(&p);
 }
 END_TEST
@@ -556,7 +599,8 @@ START_TEST(a_patch_of_a_sphere_is_one_place) {
         static uint32_t met[13][10752];
         uint32_t followed[13] = {0};
         memset(met, 0, sizeof met);
-        for (uint32_t body = 0; body <= 12; body++) pencil[body] = pencil_to(heat, place, body);
+        for (uint32_t body = 0; body < 12; body++) pencil[body] = pencil_to(heat, place, body);
+        pencil[12] = pencil_to(heat, place, fibrad_heat_other(heat, fibrad_heat_open(heat)));
         for (uint32_t b = 0; b < heat->beams; b++) {
             const uint32_t i = p.scene->order[place];
             beam(&p, i, b / points, b % points, o, w, n);
@@ -1177,6 +1221,8 @@ int main(void) {
     tcase_add_test(closed, a_grey_sphere_in_a_large_grey_box);
     tcase_add_test(closed, two_parallel_grey_walls);
     tcase_add_test(closed, a_black_sphere_touches_a_black_plane);
+    tcase_add_test(closed, a_mote_between_endless_walls);
+    tcase_add_test(closed, a_mote_between_periodic_plates);
     tcase_add_test(closed, white_walls_take_nothing);
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cube);
     tcase_add_test(closed, walls_exchange_better_with_more_beams);

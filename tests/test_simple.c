@@ -1,5 +1,9 @@
 /* test_simple.c - the simple layer: what it returns is what the kernel returns, for any number of threads; faults,
  * cancelling, and beds that move. SPDX-License-Identifier: MIT */
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include "scenes.h"
 #include "simple/fibrad_host.h"
 #include "suite.h"
@@ -167,6 +171,75 @@ START_TEST(reflectors_have_empty_rows) {
 }
 END_TEST
 
+/* Whether an address is in a file of the folder; so it is where the system does not say. */
+static bool is_filed(const void *address, const char *folder) {
+    char line[1000];
+    FILE *maps = fopen("/proc/self/maps", "r");
+    bool found = maps == NULL;
+    while (maps && fgets(line, sizeof line, maps)) {
+        unsigned long long first, last;
+        if (sscanf(line, "%llx-%llx", &first, &last) == 2 && first <= (uintptr_t)address && (uintptr_t)address < last)
+            found = strstr(line, folder) && strstr(line, "(deleted)");
+    }
+    if (maps) fclose(maps);
+    return found;
+}
+
+/* Rows and matrix in files are those in memory, walls and all, for any number of threads; nothing is left behind. */
+START_TEST(factors_in_files) {
+    char folder[] = "/tmp/fibrad_filed_XXXXXX";
+    struct bed bed = packing(300, .8, 1.2, .5, 3, false);
+    const fibrad_body body[] = {plane_at(2, 0, -20), cylinder_at(10, 10, 60)};
+    const fibrad_scene_config config = {.body = body, .bodies = 2};
+    const fibrad_spheres spheres = spheres_of(&bed);
+    double emissivity[300], wall_emissivity[] = {.5, .9};
+    for (int i = 0; i < 300; i++) emissivity[i] = .3 + i / 500.;
+    const fibrad_exchange_rule rule = {
+        .emissivity = emissivity, .body_emissivity = wall_emissivity, .directions = 20, .paths = 50};
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    for (int k = 0; k < 3; k++) {
+        const fibrad_bed_options kept = {.bodies = 1, .raw = k == 1, .drop = k == 2 ? 1e-3 : 0};
+        fibrad_bed_options filed = kept;
+        fibrad_bed_factors *here, *there;
+        fibrad_run run = {.threads = threads[k]};
+        filed.scratch = folder;
+        ck_assert_int_eq(fibrad_exchange_factors(&config, &spheres, &rule, &kept, NULL, &here), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_exchange_factors(&config, &spheres, &rule, &filed, &run, &there), FIBRAD_OK);
+        ck_assert(same_factors(&here->matrix, &there->matrix));
+        ck_assert(here->reciprocity_error == there->reciprocity_error && here->closure_error == there->closure_error);
+        ck_assert(is_filed(there->matrix.f, folder));
+        fibrad_bed_free(here);
+        fibrad_bed_free(there);
+    }
+    ck_assert_int_eq(rmdir(folder), 0); /* empty */
+    fibrad_bed_factors *none;
+    ck_assert_int_eq(
+        fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.scratch = folder}, NULL, &none),
+        FIBRAD_E_ARGUMENT);
+    ck_assert_ptr_null(none);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A file that may not grow any more is an error. */
+START_TEST(full_disk) {
+    struct bed bed = packing(300, .8, 1.2, .5, 3, false);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    struct rlimit limit;
+    fibrad_bed_factors *none;
+    ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &limit), 0);
+    limit.rlim_cur = 100000;
+    signal(SIGXFSZ, SIG_IGN);
+    ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    const int status = fibrad_view_factors(NULL, &spheres, &(fibrad_bed_options){.scratch = "/tmp"}, NULL, &none);
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_FSIZE, &limit); /* for what the test itself writes */
+    ck_assert_int_eq(status, FIBRAD_E_MEMORY);
+    ck_assert_ptr_null(none);
+    bed_free(&bed);
+}
+END_TEST
+
 /* ---- errors ------------------------------------------------------------------------------------------------------ */
 
 START_TEST(faults_name_spheres) {
@@ -187,7 +260,7 @@ START_TEST(faults_name_spheres) {
         /* a displacement of spheres whose paths may not meet those of no emissivity is refused, too */
         static fibrad_displacement moved[100];
         unsigned char wanted[100] = {[50] = 1};
-        run.fault = (fibrad_fault){0, 0};
+        run.fault = (fibrad_fault){0, 0, 0};
         ck_assert_int_eq(fibrad_displacements(NULL, &spheres, &rule, wanted, &run, moved, NULL), FIBRAD_E_ARGUMENT);
         ck_assert(run.fault.first == first && run.fault.second == first);
     }
@@ -355,6 +428,47 @@ START_TEST(radiation_moves) {
 END_TEST
 
 /* A wall that moves so far that its patches need more room. */
+/* How often beams were begun again. */
+struct returns {
+    uint64_t done, count;
+};
+
+static int count_returns(void *context, const char *stage, uint64_t done, uint64_t total) {
+    struct returns *returns = context;
+    if (total == 0 || strcmp(stage, "beams") != 0) return 0;
+    returns->count += done < returns->done;
+    returns->done = done;
+    return 0;
+}
+
+/* A bed that comes apart sees more others than there is room for: it gets more, and all is as if it had begun so. */
+START_TEST(radiation_gets_more_room) {
+    enum { MANY = 1500 };
+    struct bed bed = packing(MANY, 1, 1, .6, 3, false);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    const fibrad_heat_config config = {.patches = 24};
+    double temperature[MANY], emissivity[MANY], moved[MANY], begun[MANY];
+    for (int i = 0; i < MANY; i++) temperature[i] = 300 + i, emissivity[i] = 1;
+    const fibrad_heat_sources sources = sources_of(temperature, emissivity);
+    struct returns returns = {0};
+    fibrad_run run = {.threads = 1, .progress = count_returns, .context = &returns};
+    fibrad_radiation *radiation;
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run), FIBRAD_OK);
+    ck_assert_uint_eq(returns.count, 0);
+    returns.done = 0;
+    for (int i = 0; i < MANY; i++) bed.x[i] *= 2, bed.y[i] *= 2, bed.z[i] *= 2;
+    ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_OK);
+    ck_assert_uint_ge(returns.count, 1);
+    powers(radiation, &sources, moved);
+    fibrad_radiation_free(radiation);
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run), FIBRAD_OK);
+    powers(radiation, &sources, begun);
+    ck_assert_mem_eq(moved, begun, sizeof moved);
+    fibrad_radiation_free(radiation);
+    bed_free(&bed);
+}
+END_TEST
+
 START_TEST(radiation_with_walls) {
     struct bed bed = packing(N, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -393,10 +507,13 @@ int main(void) {
     tcase_add_test(factors, nothing_depends_on_threads);
     tcase_add_test(factors, exchange_does_not_depend_on_threads);
     tcase_add_test(factors, reflectors_have_empty_rows);
+    tcase_add_test(factors, factors_in_files);
+    tcase_add_test(errors, full_disk);
     tcase_add_test(errors, faults_name_spheres);
     tcase_add_test(errors, arguments);
     tcase_add_test(errors, progress_and_cancelling);
     tcase_add_test(heat, radiation_moves);
+    tcase_add_test(heat, radiation_gets_more_room);
     tcase_add_test(heat, radiation_with_walls);
     return suite_run(suite);
 }

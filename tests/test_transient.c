@@ -90,6 +90,48 @@ START_TEST(second_order) {
 }
 END_TEST
 
+/* T/2000, counting how often it is asked. */
+static void proportional(void *calls, const double *temperature, const double *body_temperature, double *emissivity,
+                         double *body_emissivity) {
+    (void)body_temperature;
+    (void)body_emissivity;
+    emissivity[0] = temperature[0] / 2000;
+    ++*(int *)calls;
+}
+
+/* Emissivity T/2000 at 0 K: 1/T^4 grows by 4 A sigma/(2000 C) a second; by automatic steps, and of second order. */
+START_TEST(emissivity_follows) {
+    const double r = .01, capacity = 25, first = .6, rate = 4 * M_PI * r * r * SIGMA / (2000 * capacity);
+    const double duration = 2 / (4 * rate * pow(1200, 4)), expected = pow(pow(1200, -4) + 4 * rate * duration, -.25);
+    const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_PATCHES};
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, r}});
+    fibrad_transient *t = transient_of(&bed, NULL, &config), *factors = transient_of(&bed, NULL, NULL);
+    const fibrad_heat_sources sources = sources_about(&first, 0);
+    double error[3];
+    int calls = 0;
+    for (int k = 0; k < 4; k++) {
+        double temperature = 1200;
+        fibrad_span span = {&temperature,
+                            &capacity,
+                            .duration = duration,
+                            .step = k < 3 ? duration / (32 << k) : 0,
+                            .tolerance = k < 3 ? 1e-9 : 0,
+                            .law = proportional,
+                            .context = &calls};
+        ck_assert_int_eq(fibrad_transient_advance(t, &sources, &span), FIBRAD_OK);
+        ck_assert_int_gt(calls, 0);
+        ck_assert_double_le(fabs(capacity * (1200 - temperature) - span.surroundings_energy), 1e-12 * capacity * 1200);
+        if (k < 3) error[k] = fabs(temperature - expected);
+        if (k == 3) ck_assert_double_le(fabs(temperature - expected), 1e-4 * expected);
+        ck_assert_int_eq(fibrad_transient_advance(factors, &sources, &span), FIBRAD_E_ARGUMENT);
+    }
+    for (int k = 0; k < 2; k++) ck_assert_double_eq_tol(error[k] / error[k + 1], 4, .6);
+    fibrad_transient_free(t);
+    fibrad_transient_free(factors);
+    bed_free(&bed);
+}
+END_TEST
+
 /* A bed on a hot floor, under a roof, periodic sideways. */
 enum { N = 60 };
 struct furnace {
@@ -345,6 +387,7 @@ int main(void) {
     Suite *suite = suite_create("transient");
     TCase *tcase = suite_case(suite, "transient");
     tcase_add_test(tcase, one_sphere_cools);
+    tcase_add_test(tcase, emissivity_follows);
     tcase_add_test(tcase, second_order);
     tcase_add_test(tcase, energy_is_kept);
     tcase_add_test(tcase, bed_against_runge_kutta);

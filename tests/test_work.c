@@ -17,7 +17,8 @@ struct output {
     uint64_t rays;
 };
 
-#define MOST 2048
+#define MOST  2048
+#define WALLS 2
 
 static struct output output_of(void) { return (struct output){.row = row_of(MOST)}; }
 
@@ -26,8 +27,12 @@ static void output_free(struct output *out) { row_free(&out->row); }
 static int call(int function, const fibrad_scene *scene, fibrad_work *work, uint32_t i, struct output *out) {
     static double grey[MOST];
     for (uint32_t k = 0; k < MOST; k++) grey[k] = .6 + .001 * (k % 100);
-    const fibrad_exchange_rule exchange = {.emissivity = grey, .directions = 34, .paths = 100};
+    const fibrad_exchange_rule exchange = {.emissivity = grey, .body_emissivity = grey, .directions = 34, .paths = 100};
     fibrad_row *row = &out->row;
+    fibrad_scene_facts facts;
+    fibrad_scene_describe(scene, &facts);
+    if (function == SURFACE && facts.bodies > 0) function = BEAM; /* there are none among walls */
+    memset(row->body, 0, WALLS * sizeof *row->body);
     switch (function) {
     case BEAM:
         return fibrad_beam_row(scene, work, i, &(fibrad_beam_rule){.directions = 55}, row);
@@ -48,19 +53,29 @@ static int call(int function, const fibrad_scene *scene, fibrad_work *work, uint
 
 static bool same_output(int function, const struct output *a, const struct output *b) {
     if (function == DISPLACEMENT) return memcmp(&a->displacement, &b->displacement, sizeof a->displacement) == 0;
-    return same_bits(&a->row, &b->row) && (function != EXCHANGE || a->rays == b->rays) &&
+    return same_bits_with(&a->row, &b->row, WALLS) && (function != EXCHANGE || a->rays == b->rays) &&
            a->row.sphere == b->row.sphere && a->row.directions == b->row.directions &&
            a->row.fallbacks == b->row.fallbacks && a->row.symmetric == b->row.symmetric;
 }
 
-/* Packed, periodic, of mixed sizes, and all but empty. */
-enum { SCENES = 4 };
+/* Packed, periodic, of mixed sizes, all but empty, and between two walls. */
+enum { SCENES = 5 };
+
+static struct bed between_walls(void) {
+    return bed_of(3, (const double[][4]){{1, 1, 0, 1}, {2, 3, 2, 1}, {3, 1, 3, 1}});
+}
 
 static struct bed bed_number(int k) {
     return k == 0   ? packing(150, .8, 1.2, .55, 7, false)
            : k == 1 ? packing(100, .5, 1.5, .5, 8, true)
            : k == 2 ? strewn(200, 42)
-                    : bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1, 2, 3, 1}});
+           : k == 3 ? bed_of(2, (const double[][4]){{0, 0, 0, 1}, {1, 2, 3, 1}})
+                    : between_walls();
+}
+
+static fibrad_scene *scene_number(int k, const struct bed *bed) {
+    const fibrad_body walls[WALLS] = {plane_at(2, 0, -1), plane_at(2, 1, 5)};
+    return scene_with(bed, &(fibrad_scene_config){.body = walls, .bodies = k == SCENES - 1 ? WALLS : 0});
 }
 
 /* The output with memory that is new and plentiful. */
@@ -80,7 +95,7 @@ static struct output expected(int function, const fibrad_scene *scene, uint32_t 
 START_TEST(fixed_memory_step_by_step) {
     struct bed bed = bed_number(_i / FUNCTIONS);
     const int function = _i % FUNCTIONS;
-    fibrad_scene *scene = scene_of(&bed, 0);
+    fibrad_scene *scene = scene_number(_i / FUNCTIONS, &bed);
     for (uint32_t i = 0; i < bed.n; i += 49) {
         struct output truth = expected(function, scene, i), out = output_of();
         out.row.length = 77;
@@ -115,7 +130,7 @@ END_TEST
 START_TEST(any_scenes_and_functions_in_turn) {
     struct bed bed[SCENES];
     fibrad_scene *scene[SCENES];
-    for (int k = 0; k < SCENES; k++) bed[k] = bed_number(k), scene[k] = scene_of(&bed[k], 0);
+    for (int k = 0; k < SCENES; k++) bed[k] = bed_number(k), scene[k] = scene_number(k, &bed[k]);
     const size_t size = 8u << 20;
     void *block = malloc(size);
     memset(block, 0xff, size);
@@ -124,7 +139,7 @@ START_TEST(any_scenes_and_functions_in_turn) {
     uint32_t at = 0;
     for (int round = 0; round < 300; round++) {
         at = at * 1664525u + 1013904223u;
-        const int k = (int)(at >> 30), function = (int)((at >> 20) % FUNCTIONS);
+        const int k = (int)((at >> 29) % SCENES), function = (int)((at >> 20) % FUNCTIONS);
         const uint32_t i = (at >> 8) % bed[k].n;
         struct output truth = expected(function, scene[k], i);
         ck_assert_int_eq(call(function, scene[k], &growing, i, &out), FIBRAD_OK);
@@ -255,32 +270,35 @@ END_TEST
  * a window, and for one that meets six. */
 START_TEST(bytes_that_are_enough) {
     static unsigned char packed[FIBRAD_WORK_BYTES(64, 200) + 64], hundreds[FIBRAD_WORK_BYTES(1000, 1000) + 64],
-        six[FIBRAD_WORK_BYTES(6, 6) + 64];
+        six[FIBRAD_WORK_BYTES(6, 6) + 64], walls[FIBRAD_WORK_BYTES(64, 3) + FIBRAD_WORK_WALLS + 64];
     struct bed bed = packing(600, .8, 1.2, .6, 7, true), around = bed_of(1, (const double[][4]){{0, 0, 0, 4}});
-    struct bed lone = lattice('p', 2);
+    struct bed lone = lattice('p', 2), between = between_walls();
     for (uint32_t k = 0; k < 1000; k++) {
         double w[3];
         fibrad_direction(k, 1000, w);
         add_sphere(&around, 5 * w[0], 5 * w[1], 5 * w[2], .2);
     }
-    fibrad_scene *scenes[3] = {scene_of(&bed, 0), scene_of(&around, 0), scene_of(&lone, 0)};
+    fibrad_scene *scenes[4] = {scene_of(&bed, 0), scene_of(&around, 0), scene_of(&lone, 0),
+                               scene_number(SCENES - 1, &between)};
     struct output out = output_of();
     for (size_t offset = 0; offset < 64; offset += 7) {
-        fibrad_work works[3] = {work_fixed(packed + offset, FIBRAD_WORK_BYTES(64, 200)),
+        fibrad_work works[4] = {work_fixed(packed + offset, FIBRAD_WORK_BYTES(64, 200)),
                                 work_fixed(hundreds + offset, FIBRAD_WORK_BYTES(1000, 1000)),
-                                work_fixed(six + offset, FIBRAD_WORK_BYTES(6, 6))};
+                                work_fixed(six + offset, FIBRAD_WORK_BYTES(6, 6)),
+                                work_fixed(walls + offset, FIBRAD_WORK_BYTES(64, 3) + FIBRAD_WORK_WALLS)};
         for (int function = BEAM; function <= POINTS; function++) {
             for (uint32_t i = 0; i < bed.n; i += 7)
                 ck_assert_int_eq(call(function, scenes[0], &works[0], i, &out), FIBRAD_OK);
             ck_assert_int_eq(call(function, scenes[1], &works[1], 0, &out), FIBRAD_OK);
             for (uint32_t i = 0; i < lone.n; i++)
                 ck_assert_int_eq(call(function, scenes[2], &works[2], i, &out), FIBRAD_OK);
+            ck_assert_uint_eq(out.row.length, 1 + 4);
+            ck_assert_int_eq(call(function, scenes[3], &works[3], 0, &out), FIBRAD_OK);
         }
     }
-    ck_assert_uint_eq(out.row.length, 1 + 4);
     output_free(&out);
-    for (int k = 0; k < 3; k++) free(scenes[k]);
-    bed_free(&bed), bed_free(&around), bed_free(&lone);
+    for (int k = 0; k < 4; k++) free(scenes[k]);
+    bed_free(&bed), bed_free(&around), bed_free(&lone), bed_free(&between);
 }
 END_TEST
 

@@ -11,6 +11,16 @@
 #include "cli/message.h"
 #include "cli/options.h"
 
+/* The table @PATH of an item of a list; *text moves behind it. */
+static int take_curve(const char *what, const char **text, double low, double high, struct curve *curve) {
+    const size_t length = strcspn(++*text, ",");
+    char *path = strndup(*text, length);
+    *text += length;
+    const int status = path ? curve_read(path, what, low, high, curve) : message_memory();
+    free(path);
+    return status;
+}
+
 /* A number, or @TABLE where that may be; *text moves behind it. */
 static int take_value(const char *what, const char **text, double low, double high, struct quantity *quantity,
                       struct curve *curve, double *value) {
@@ -23,11 +33,7 @@ static int take_value(const char *what, const char **text, double low, double hi
         if (*value >= low && *value <= high) return STATUS_OK;
         return message(STATUS_USAGE, "%s: %g is not within %g and %g", what, *value, low, high);
     }
-    const size_t length = strcspn(++*text, ",");
-    char *path = strndup(*text, length);
-    *text += length;
-    const int status = path ? curve_read(path, what + strlen("--"), low, high, curve) : message_memory();
-    free(path);
+    const int status = take_curve(what + strlen("--"), text, low, high, curve);
     if (!status) *value = curve->y[curve->n / 2];
     return status;
 }
@@ -85,6 +91,12 @@ const struct curve *quantity_curve(const struct quantity *quantity, const struct
     return quantity->curve[k].n > 0 ? &quantity->curve[k] : NULL;
 }
 
+bool quantity_curves(const struct quantity *quantity) {
+    for (int k = 0; k < QUANTITY_TYPES_MAX; ++k)
+        if (quantity->curve[k].n > 0) return true;
+    return false;
+}
+
 /* The value of sphere i; NaN: its type has none. */
 static double value_of_sphere(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
     if (!quantity->given) return NAN;
@@ -112,16 +124,21 @@ int quantity_values(const struct quantity *quantity, const struct bed *bed, cons
     return STATUS_OK;
 }
 
+/* The number of the wall of this name, or -1. */
+static int number_of_wall(const struct walls *walls, const char *name, size_t length) {
+    for (uint32_t k = 0; k < walls->count; ++k) {
+        const char *known = wall_name(walls, k);
+        if (strlen(known) == length && strncmp(known, name, length) == 0) return (int)k;
+    }
+    return -1;
+}
+
 /* One item of a list: NAME=VALUE or VALUE; `wall`: the number of the wall named, or -1. *text moves behind it. */
 static int take_wall_value(const char *option, const char **text, const char *word, const struct walls *walls,
                            int *wall, double *value) {
     const size_t length = strcspn(*text, "=,");
     const bool named = (*text)[length] == '=';
-    *wall = -1;
-    for (uint32_t k = 0; k < walls->count && named; ++k) {
-        const char *name = wall_name(walls, k);
-        if (strlen(name) == length && strncmp(name, *text, length) == 0) *wall = (int)k;
-    }
+    *wall = named ? number_of_wall(walls, *text, length) : -1;
     if (named && *wall < 0)
         return message(STATUS_USAGE, "%s: there is no wall %.*s", option, length > 40 ? 40 : (int)length, *text);
     const char *number = named ? *text + length + 1 : *text;
@@ -134,14 +151,33 @@ static int take_wall_value(const char *option, const char **text, const char *wo
     return STATUS_OK;
 }
 
+/* NAME=@TABLE instead of a number. */
+static int take_wall_curve(const char *option, const char **text, double low, double high, const struct walls *walls,
+                           struct curve *curve, int *wall, double *value) {
+    const size_t length = strcspn(*text, "=");
+    *wall = number_of_wall(walls, *text, length);
+    if (*wall < 0)
+        return message(STATUS_USAGE, "%s: there is no wall %.*s", option, length > 40 ? 40 : (int)length, *text);
+    if (curve[*wall].n > 0)
+        return message(STATUS_USAGE, "%s: %s has two values", option, wall_name(walls, (uint32_t)*wall));
+    *text += length + 1;
+    const int status = take_curve("temperature", text, low, high, &curve[*wall]);
+    if (!status) *value = curve_at(&curve[*wall], 0);
+    if (**text == ',') ++*text;
+    return status;
+}
+
 int wall_list(const char *option, const char *text, const char *word, double low, double high,
-              const struct walls *walls, struct wall_list *list) {
+              const struct walls *walls, struct curve *curve, struct wall_list *list) {
     *list = (struct wall_list){.others = NAN};
     if (text && walls->count == 0) return message(STATUS_USAGE, "%s: there are no walls", option);
     while (text && *text) {
         int wall;
         double value = 0;
-        const int status = take_wall_value(option, &text, word, walls, &wall, &value);
+        const bool table = curve && text[strcspn(text, "@,")] == '@';
+        if (table && *text == '@') return message(STATUS_USAGE, "%s: a table needs its wall: zmin=%.60s", option, text);
+        const int status = table ? take_wall_curve(option, &text, low, high, walls, curve, &wall, &value)
+                                 : take_wall_value(option, &text, word, walls, &wall, &value);
         if (status) return status;
         if (!(value >= low && value <= high) && !(word && isinf(value)))
             return message(STATUS_USAGE, "%s: %g is not within %g and %g", option, value, low, high);
@@ -161,7 +197,7 @@ int wall_list(const char *option, const char *text, const char *word, double low
 int wall_values(const char *option, const char *text, double otherwise, double low, double high,
                 const struct walls *walls, double values[WALLS_MAX]) {
     struct wall_list list;
-    const int status = wall_list(option, text, NULL, low, high, walls, &list);
+    const int status = wall_list(option, text, NULL, low, high, walls, NULL, &list);
     if (status) return status;
     if (!isnan(list.others)) otherwise = list.others;
     for (uint32_t k = 0; k < walls->count; ++k) {

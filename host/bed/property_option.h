@@ -48,6 +48,9 @@ void quantity_free(struct quantity *quantity);
 /* The table that the value of sphere i comes from; NULL: it is a number. */
 const struct curve *quantity_curve(const struct quantity *quantity, const struct bed *bed, uint32_t i);
 
+/* Whether there are any. */
+bool quantity_curves(const struct quantity *quantity);
+
 /* The values of all spheres [n], to be freed also after an error; `file` is the bed's name and `what` that of the
  * quantity in messages. offset is added. Status 0, STATUS_INPUT naming the line of one that is not in [low, high], or
  * STATUS_MEMORY. Without the option, and where quantity->some: NaN;
@@ -62,10 +65,11 @@ struct wall_list {
     double others;           /* NaN: there is no bare number */
 };
 
-/* Takes such a list of values in [low, high], or the word (NULL: none), which is INFINITY. text NULL: no list. Status
- * 0, or STATUS_USAGE naming the wall that is not there. */
+/* Takes such a list of values in [low, high], or the word (NULL: none), which is INFINITY. text NULL: no list. curve,
+ * unless NULL: [WALLS_MAX] out, to be freed also after an error: NAME=@TABLE may stand for a value, which is that at 0.
+ * Status 0, STATUS_USAGE naming the wall that is not there, or as curve_read. */
 int wall_list(const char *option, const char *text, const char *word, double low, double high,
-              const struct walls *walls, struct wall_list *list);
+              const struct walls *walls, struct curve *curve, struct wall_list *list);
 
 /* Spreads such a list over the walls, `otherwise` where there is neither name nor bare number. Status 0, or
  * STATUS_USAGE naming the wall that is not there or has no value, `otherwise` being NaN. */

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed/bed_scene.h"
-#include "bed/beyond.h"
 #include "cli/message.h"
 #include "cli/options.h"
 
@@ -124,7 +122,7 @@ static bool is_reserved(const char *name) {
 }
 
 /* FILE:WORD:WORD, in pieces. */
-static int take_words(char *item, struct mesh_file *file) {
+static int take_mesh_words(char *item, struct mesh_file *file) {
     char *next = strchr(item, ':');
     int status = STATUS_OK;
     for (file->path = item; next && !status;) {
@@ -146,7 +144,7 @@ static int take_mesh(const char *word, size_t length, const char **text, struct 
     *text += strcspn(*text, ",");
     if (!status && name && (!mesh_name(name) || is_reserved(name)))
         status = message(STATUS_USAGE, "--wall: a wall cannot be called '%.40s'", name);
-    if (!status) status = take_words(item, &file);
+    if (!status) status = take_mesh_words(item, &file);
     if (!status) status = add_mesh(options, &file);
     free(item);
     free(name);
@@ -253,10 +251,7 @@ int walls_of(const struct wall_options *options, const struct bed *bed, const ch
         if (!all.placed[k]) wall->plane.at = bed_end(bed, wall->plane.axis, wall->plane.upper);
     }
     status = check_axes(walls, bed);
-    if (!status) status = check_centres(walls, bed, file);
-    const fibrad_spheres spheres = bed_spheres(bed);
-    if (!status && walls->meshes) status = meshes_face(walls->meshes, &spheres, bed->period);
-    return status ? status : warn_beyond(bed, walls, file);
+    return status ? status : check_centres(walls, bed, file);
 }
 
 void walls_free(struct wall_options *options) {

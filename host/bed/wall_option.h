@@ -49,8 +49,8 @@ int walls_option(const char *text, struct wall_options *options);
 void walls_free(struct wall_options *options);
 
 /* Places the walls about a bed whose periods are settled; `file` is its name in messages. Status 0, STATUS_USAGE if
- * walls and periodic axes do not agree, STATUS_INPUT naming the line if a centre lies beyond a plane or cylinder,
- * STATUS_MEMORY. Sides of meshes are those of the last bed. */
+ * walls and periodic axes do not agree, STATUS_INPUT naming the line if a centre lies beyond a plane or cylinder.
+ * Sides of meshes are for meshes_face to find. */
 int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, struct walls *walls);
 
 /* Whether nothing can escape: each axis is periodic or has both planes, or the cylinder stands about it; or a mesh of

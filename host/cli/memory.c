@@ -1,9 +1,10 @@
-/* memory.c - whether there is memory enough, before the work begins. SPDX-License-Identifier: MIT */
+/* memory.c - whether there is memory, or disk, enough, before the work begins. SPDX-License-Identifier: MIT */
 #include "cli/memory.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <sys/resource.h>
+#include <sys/statvfs.h>
 
 #include "cli/message.h"
 
@@ -30,4 +31,16 @@ int memory_check(double bytes, const char *what_would_help) {
     if (bytes <= left) return STATUS_OK;
     return message(STATUS_MEMORY, "out of memory: %.3g GB are wanted, %.3g GB are left; %s", bytes / 1e9, left / 1e9,
                    what_would_help);
+}
+
+double disk_left(const char *folder) {
+    struct statvfs disk;
+    return statvfs(folder, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : INFINITY;
+}
+
+int disk_check(const char *folder, double bytes) {
+    const double left = disk_left(folder);
+    if (bytes <= left) return STATUS_OK;
+    return message_at(STATUS_FILE, folder, 0, "no room on this disk: %.3g GB are wanted, %.3g GB are left", bytes / 1e9,
+                      left / 1e9);
 }

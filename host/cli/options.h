@@ -46,6 +46,7 @@ enum {
     KEY_FORMAT,
     KEY_PLOT,
     KEY_PROGRESS,
+    KEY_SCRATCH,
     KEY_OWN
 };
 

@@ -37,6 +37,7 @@ static const struct option bed_table[] = {
     {'o', "output", "OUT", "the matrix: .csv .mtx .npz (SciPy) .json; the spheres: .vtp; - [summary only]"},
     {OPTION_FORMAT},
     {KEY_PLOT, "plot", "OUT", "a picture, .svg or .png, by gnuplot [none]"},
+    {OPTION_SCRATCH},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
@@ -155,6 +156,7 @@ static int bed_check(struct bed_request *request) {
     int status = bed_options_check(&request->bed, "bed", CONTENT_MATRIX, request->plot);
     if (status) return status;
     if (request->targets) request->options.raw = 1;
+    request->options.scratch = request->bed.scratch;
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw or --targets");
     return bed_choose(request);
@@ -224,7 +226,7 @@ static int bed_frame(void *bed_request, struct bed *bed) {
     const bool periodic = bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0;
     if (request->method == METHOD_SURFACE && request->cutoff == 0 && periodic)
         return message(STATUS_USAGE, "--method surface needs a --cutoff in a periodic box");
-    int status = walls_of(&request->bed.walls, bed, request->bed.name, &request->walls);
+    int status = bed_options_walls(&request->bed, bed, &request->walls);
     if (status) return status;
     if (request->method == METHOD_SURFACE && request->walls.count > 0)
         return message(STATUS_USAGE, "--wall is for the methods beam, cast and mc");

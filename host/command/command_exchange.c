@@ -27,6 +27,7 @@ static const struct option exchange_table[] = {
     OPTIONS_INPUT,
     {'o', "output", "OUT", "the factors: .csv .mtx .npz (SciPy) .json; - [summary only]"},
     {OPTION_FORMAT},
+    {OPTION_SCRATCH},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
@@ -99,6 +100,7 @@ static int exchange_check(struct exchange_request *request) {
         return message(STATUS_USAGE, "--error finds rays and directions itself; leave out --rays and --directions");
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
+    request->options.scratch = request->bed.scratch;
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
     return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX, NULL);
 }
@@ -155,7 +157,7 @@ static int exchange_frame(void *exchange_request, struct bed *bed) {
     struct exchange_request *request = exchange_request;
     double *emissivity = NULL, wall_emissivity[WALLS_MAX];
     const char *file = request->bed.name;
-    int status = walls_of(&request->bed.walls, bed, file, &request->walls);
+    int status = bed_options_walls(&request->bed, bed, &request->walls);
     if (!status) status = wall_emissivities(request->wall_emissivity, &request->walls, wall_emissivity);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     request->rule.emissivity = emissivity;

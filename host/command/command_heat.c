@@ -39,11 +39,12 @@ static const struct option heat_table[] = {
      "--until also factors, once for all steps, which differ by some percent [patches; with --until factors that are "
      "corrected by patches where that changes something]"},
     {KEY_PATCHES, "patches", "P", "of a sphere: 24, 96 or 384 [96]"},
-    {KEY_DIRECTIONS, "directions", "N", "of beams, 8 to 65536 [168]"},
+    {KEY_DIRECTIONS, "directions", "N", "of beams, 8 to 65536 [168; 112 where the mean emissivity is 0.35 or less]"},
     {KEY_POINTS, "points", "M", "beams per direction: 64, 128 or 256 [64]"},
     {KEY_ERROR, "error", "E",
      "as many directions and patches as bring the estimated error of the powers to E times their root mean square or "
-     "less, 1e-5 to 1; at the least to 1e-3 E of what is emitted [none]"},
+     "less, 1e-5 to 1; at the least to 1e-3 E of what is emitted; of temperatures that are found, T^4 to E of its root "
+     "mean square; of walls each [none]"},
     OPTIONS_MARCH,
     OPTIONS_INPUT,
     {'o', "output", "OUT", "powers: .csv .dump (OVITO) .vtp (ParaView) .json; - [summary only]"},
@@ -81,7 +82,8 @@ static int heat_help(void) {
         "and lists by type each sphere has either a temperature or a power.\n"
         "With --until temperatures are those to begin with. Each sphere stores heat-capacity times density times its\n"
         "volume; powers given heat it. @TABLE, two columns of seconds and temperatures, may stand for the temperature\n"
-        "of a wall or of the surroundings: zmin=@TABLE. The .csv has the time in its first column; a series of .vtp\n"
+        "of a wall or of the surroundings: zmin=@TABLE; --emissivity @TABLE is of temperatures. The .csv has the time "
+        "in its first column; a series of .vtp\n"
         "comes with a .pvd, which is what ParaView opens.\n"
         "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a "
         "*.\n"
@@ -177,16 +179,13 @@ static int heat_take(struct heat_request *request, const struct options *options
 
 static int heat_check_request(struct heat_request *request) {
     request->bed.timed = request->given.timed = request->march.until > 0;
-    request->march.zero = request->given.zero;
+    request->problem.zero = request->given.zero;
     int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT, request->plot);
     if (status) return status;
     if (request->given.timed && request->problem.error > 0)
         return message(STATUS_USAGE, "--error is for powers at one time, not for --until");
     if (!request->given.timed && request->problem.by_factors)
         return message(STATUS_USAGE, "--model factors is for --until");
-    for (int k = 0; k < QUANTITY_TYPES_MAX && request->given.timed; ++k)
-        if (request->emissivity.curve[k].n > 0)
-            return message(STATUS_USAGE, "--until: emissivities are numbers, not tables of temperatures");
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (request->problem.error > 0 && request->counted)
         return message(STATUS_USAGE,
@@ -195,15 +194,14 @@ static int heat_check_request(struct heat_request *request) {
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
-    if (request->problem.error > 0) request->problem.config.directions = 72;
-    status = march_check(&request->march, &request->bed, &request->given.wall_temperature, &request->given.ambient);
+    status = march_check(&request->march, &request->bed);
     if (!status) status = given_check(&request->given, &request->bed);
     return status ? status : given_ambient(&request->given, &request->problem.sources.surroundings);
 }
 
 static int heat_parse(struct heat_request *request, int argc, char **argv) {
     struct options options = {.command = "heat", .table = heat_table, .argc = argc, .argv = argv};
-    *request = (struct heat_request){.problem.config = {.directions = 168, .points = 64, .patches = 96}};
+    *request = (struct heat_request){.problem.config = {.points = 64, .patches = 96}};
     fibrad_heat_sources_init(&request->problem.sources);
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = heat_take(request, &options, key);
@@ -291,7 +289,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     struct given given = {0};
     double *emissivity = NULL, of_walls[6][WALLS_MAX] = {{0}};
     const char *file = request->bed.name;
-    int status = walls_of(&request->bed.walls, bed, file, walls);
+    int status = bed_options_walls(&request->bed, bed, walls);
     if (!status) status = given_values(&request->given, bed, file, walls, &given);
     if (!status && !request->given.ambient && !walls_closed(walls, bed))
         status = message(STATUS_USAGE, "which --ambient? the bed is open: its surroundings need a temperature");
@@ -303,6 +301,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status) {
         given_heat_sources(&given, bed->n, request->given.timed ? 1 : report.metres, sources);
         sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
+        request->problem.wall_curve = given.wall_curve, request->problem.ambient_curve = &request->given.ambient_curve;
         request->problem.emissivity = emissivity, request->problem.of_emissivity = &request->emissivity;
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_absorbed = of_walls[5];
@@ -332,7 +331,7 @@ int command_heat(int argc, char **argv) {
         status = output_close(&request.picture, status);
     }
     quantity_free(&request.emissivity);
-    march_free(&request.march);
+    curve_free(&request.given.ambient_curve);
     bed_options_free(&request.bed);
     return status;
 }

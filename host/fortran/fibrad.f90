@@ -2,7 +2,8 @@
 !
 ! Index    fibrad_plane, fibrad_cylinder                     walls
 !          fibrad_view_factors, fibrad_exchange_factors      matrices of factors
-!          fibrad_heat: new, move, solve, free               net powers, step after step
+!          fibrad_heat: new, move, solve, settle, free       net powers, and temperatures, step after step
+!          fibrad_transient: new, move, advance, free        temperatures in time
 !          fibrad_status_text, fibrad_version, fibrad_layouts_agree
 !
 ! Arguments  Centres are three arrays x, y, z, radii one, all of one length; for positions (n, 3) pass at(:, 1), at(:, 2),
@@ -86,6 +87,7 @@ module fibrad
         integer(c_int) :: raw = 0
         real(c_double) :: drop = 0
         integer(c_int) :: bodies = 1
+        type(c_ptr) :: scratch = c_null_ptr
     end type c_bed_options
 
     type, bind(C) :: c_factors
@@ -139,6 +141,42 @@ module fibrad
         integer(c_int32_t) :: sweeps = 0
         type(c_ptr) :: body_absorbed = c_null_ptr
     end type c_heat_result
+
+    type, bind(C) :: c_transient_config
+        integer(c_int) :: method = 0
+        type(c_exchange_rule) :: exchange
+        type(c_heat_config) :: heat
+    end type c_transient_config
+
+    type, bind(C) :: c_span
+        type(c_ptr) :: temperature = c_null_ptr, capacity = c_null_ptr
+        real(c_double) :: duration = 0
+        type(c_ptr) :: body_temperature = c_null_ptr, surroundings = c_null_ptr
+        real(c_double) :: step = 0, tolerance = 0
+        type(c_ptr) :: power = c_null_ptr, body_power = c_null_ptr
+        real(c_double) :: surroundings_power = 0
+        type(c_ptr) :: body_energy = c_null_ptr
+        real(c_double) :: surroundings_energy = 0
+        type(c_funptr) :: observe = c_null_funptr, law = c_null_funptr
+        type(c_ptr) :: context = c_null_ptr
+        real(c_double) :: error = 0
+        integer(c_int64_t) :: steps = 0, refused = 0, sweeps = 0, corrections = 0
+    end type c_span
+
+    abstract interface
+        ! Emissivities (n) of spheres at these temperatures [K]; NaN: not known yet, leave it.
+        subroutine fibrad_law(temperature, emissivity)
+            import :: c_double
+            real(c_double), intent(in) :: temperature(:)
+            real(c_double), intent(inout) :: emissivity(:)
+        end subroutine fibrad_law
+    end interface
+    public :: fibrad_law
+
+    type :: law_of_spheres ! what C hands back to follow_law
+        procedure(fibrad_law), pointer, nopass :: law => null()
+        integer :: n = 0
+    end type law_of_spheres
 
     interface
         function c_status_text(status) bind(C, name="fibrad_status_text")
@@ -210,6 +248,53 @@ module fibrad
             integer(c_int) :: c_radiation_solve
         end function c_radiation_solve
 
+        function c_radiation_settle(radiation, sources, law, context, emissivity, body_emissivity, result) &
+            bind(C, name="fibrad_radiation_settle")
+            import :: c_int, c_ptr, c_funptr, c_heat_sources, c_heat_result
+            type(c_ptr), value :: radiation, context, emissivity, body_emissivity
+            type(c_funptr), value :: law
+            type(c_heat_sources), intent(in) :: sources
+            type(c_heat_result), intent(inout) :: result
+            integer(c_int) :: c_radiation_settle
+        end function c_radiation_settle
+
+        function c_transient_new(transient, config, spheres, transient_config, run) bind(C, name="fibrad_transient_new")
+            import :: c_int, c_ptr, c_scene_config, c_spheres, c_transient_config, c_run
+            type(c_ptr), intent(out) :: transient
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            type(c_transient_config), intent(in) :: transient_config
+            type(c_run), intent(inout) :: run
+            integer(c_int) :: c_transient_new
+        end function c_transient_new
+
+        function c_transient_move(transient, config, spheres) bind(C, name="fibrad_transient_move")
+            import :: c_int, c_ptr, c_scene_config, c_spheres
+            type(c_ptr), value :: transient
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            integer(c_int) :: c_transient_move
+        end function c_transient_move
+
+        function c_transient_advance(transient, sources, span) bind(C, name="fibrad_transient_advance")
+            import :: c_int, c_ptr, c_heat_sources, c_span
+            type(c_ptr), value :: transient
+            type(c_heat_sources), intent(in) :: sources
+            type(c_span), intent(inout) :: span
+            integer(c_int) :: c_transient_advance
+        end function c_transient_advance
+
+        subroutine c_transient_describe(transient, facts, fault) bind(C, name="fibrad_transient_describe")
+            import :: c_ptr, c_fault
+            type(c_ptr), value :: transient, facts
+            type(c_fault), intent(inout) :: fault
+        end subroutine c_transient_describe
+
+        subroutine c_transient_free(transient) bind(C, name="fibrad_transient_free")
+            import :: c_ptr
+            type(c_ptr), value :: transient
+        end subroutine c_transient_free
+
         subroutine c_radiation_describe(radiation, facts, fault) bind(C, name="fibrad_radiation_describe")
             import :: c_ptr, c_fault
             type(c_ptr), value :: radiation, facts
@@ -250,8 +335,22 @@ module fibrad
         procedure, public :: new => heat_new
         procedure, public :: move => heat_move
         procedure, public :: solve => heat_solve
+        procedure, public :: settle => heat_settle
         procedure, public :: free => heat_free
     end type fibrad_heat
+
+    ! A bed whose temperatures change with time. Not to be copied: free gives back what it has.
+    integer, parameter, public :: fibrad_corrected = 0, fibrad_patches = 1, fibrad_factors_alone = 2
+    type, public :: fibrad_transient
+        private
+        type(c_ptr) :: transient = c_null_ptr
+        integer :: spheres = 0, walls = 0
+    contains
+        procedure, public :: new => transient_new
+        procedure, public :: move => transient_move
+        procedure, public :: advance => transient_advance
+        procedure, public :: free => transient_free
+    end type fibrad_transient
 
 contains
 
@@ -416,6 +515,184 @@ contains
         if (present(error)) error = hypot(result%error_patches, result%error_beams)
     end subroutine heat_solve
 
+    ! Net powers [W] and temperatures [K] where some of these are unknown, NaN: such a sphere gives off its source [W]
+    ! from inside, and such a wall its wall_source. Emissivities follow the law; before: those to begin with where
+    ! temperatures are unknown. Walls that are insulated have no source.
+    subroutine heat_settle(heat, temperature, source, law, emissivity, surroundings, power, status, wall_temperature, &
+                           wall_emissivity, wall_source, insulated, wall_power, surroundings_power, temperature_error)
+        class(fibrad_heat), intent(inout) :: heat
+        real(c_double), intent(inout), contiguous, target :: temperature(:), emissivity(:), power(:)
+        real(c_double), intent(in), contiguous, target :: source(:)
+        procedure(fibrad_law) :: law
+        real(c_double), intent(in) :: surroundings
+        integer, intent(out) :: status
+        real(c_double), intent(inout), optional, contiguous, target :: wall_temperature(:)
+        real(c_double), intent(in), optional, contiguous, target :: wall_emissivity(:), wall_source(:)
+        logical, intent(in), optional :: insulated(:)
+        real(c_double), intent(inout), optional :: wall_power(:), surroundings_power
+        real(c_double), intent(inout), optional, contiguous, target :: temperature_error(:)
+        type(c_heat_sources) :: sources
+        type(c_heat_result) :: result
+        type(law_of_spheres), target :: follows
+        real(c_double), target :: given(size(temperature))
+        real(c_double), dimension(max(1, heat%walls)), target :: walls_given, walls_found, walls_power, walls_emit
+        integer(c_signed_char), target :: closed(max(1, heat%walls))
+        status = check_sizes(heat%spheres, size(temperature), size(emissivity), size(power), size(source))
+        if (status == fibrad_ok) status = check_sizes(heat%walls, count_values(wall_temperature), &
+                                                      count_values(wall_emissivity))
+        if (status == fibrad_ok .and. present(wall_power)) status = check_sizes(heat%walls, size(wall_power))
+        if (status == fibrad_ok .and. present(wall_source)) status = check_sizes(heat%walls, size(wall_source))
+        if (status == fibrad_ok .and. present(insulated)) status = check_sizes(heat%walls, size(insulated))
+        if (status == fibrad_ok .and. present(temperature_error)) status = check_sizes(heat%spheres, size(temperature_error))
+        if (status /= fibrad_ok) return
+        given = temperature
+        sources%temperature = c_loc(given)
+        sources%power = c_loc(source)
+        sources%surroundings = surroundings
+        if (present(wall_temperature)) walls_given(1:heat%walls) = wall_temperature
+        if (present(wall_emissivity)) walls_emit(1:heat%walls) = wall_emissivity
+        if (heat%walls > 0) sources%body_temperature = c_loc(walls_given)
+        if (present(wall_source)) sources%body_power = c_loc(wall_source)
+        if (present(insulated)) then
+            closed(1:heat%walls) = merge(1_c_signed_char, 0_c_signed_char, insulated)
+            sources%insulated = c_loc(closed)
+        end if
+        follows%law => law
+        follows%n = heat%spheres
+        result%power = c_loc(power)
+        result%temperature = c_loc(temperature)
+        result%body_power = c_loc(walls_power)
+        result%body_temperature = c_loc(walls_found)
+        if (present(temperature_error)) result%temperature_error = c_loc(temperature_error)
+        status = c_radiation_settle(heat%radiation, sources, c_funloc(follow_law), c_loc(follows), c_loc(emissivity), &
+                                    c_loc(walls_emit), result)
+        if (status /= fibrad_ok) return
+        if (present(wall_temperature)) wall_temperature = walls_found(1:heat%walls)
+        if (present(wall_power)) wall_power = walls_power(1:heat%walls)
+        if (present(surroundings_power)) surroundings_power = result%surroundings_power
+    end subroutine heat_settle
+
+    ! Asks a law for emissivities; those of walls stay.
+    subroutine follow_law(context, temperature, body_temperature, emissivity, body_emissivity) bind(C)
+        type(c_ptr), value :: context, temperature, body_temperature, emissivity, body_emissivity
+        type(law_of_spheres), pointer :: follows
+        real(c_double), pointer :: kelvins(:), shares(:)
+        associate (unused => body_temperature, stay => body_emissivity)
+        end associate
+        call c_f_pointer(context, follows)
+        call c_f_pointer(temperature, kelvins, [follows%n])
+        call c_f_pointer(emissivity, shares, [follows%n])
+        call follows%law(kelvins, shares)
+    end subroutine follow_law
+
+    ! Makes it for a bed. method: fibrad_corrected if absent, fibrad_patches or fibrad_factors_alone; tolerance: error of
+    ! the rows of exchange factors, 0.03 if absent, alone 0.01; directions, points, patches as of fibrad_heat.
+    subroutine transient_new(transient, x, y, z, r, status, box, walls, method, tolerance, directions, points, patches, &
+                             threads, fault)
+        class(fibrad_transient), intent(inout) :: transient
+        real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
+        integer, intent(out) :: status
+        real(c_double), intent(in), optional :: box(3), tolerance
+        type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
+        integer, intent(in), optional :: method, directions, points, patches, threads
+        integer, intent(out), optional :: fault(2)
+        type(c_transient_config) :: config
+        type(c_run) :: run
+        call transient%free()
+        call set_run(run, threads, fault)
+        status = check_sizes(size(x), size(y), size(z), size(r))
+        if (status /= fibrad_ok) return
+        if (present(method)) config%method = int(method, c_int)
+        if (present(tolerance)) config%exchange%tolerance = tolerance
+        if (present(directions)) config%heat%directions = int(directions, c_int32_t)
+        if (present(points)) config%heat%points = int(points, c_int32_t)
+        if (present(patches)) config%heat%patches = int(patches, c_int32_t)
+        status = c_transient_new(transient%transient, scene_of(box, walls), spheres_of(x, y, z, r), config, run)
+        call tell_fault(run%fault, size(x), fault)
+        transient%spheres = size(x)
+        transient%walls = count_walls(walls)
+    end subroutine transient_new
+
+    ! Goes on to the same spheres and walls at other places; box and walls as in new.
+    subroutine transient_move(transient, x, y, z, r, status, box, walls, fault)
+        class(fibrad_transient), intent(inout) :: transient
+        real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
+        integer, intent(out) :: status
+        real(c_double), intent(in), optional :: box(3)
+        type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
+        integer, intent(out), optional :: fault(2)
+        type(c_fault) :: found
+        if (present(fault)) fault = 0
+        status = check_sizes(size(x), size(y), size(z), size(r))
+        if (status /= fibrad_ok) return
+        status = c_transient_move(transient%transient, scene_of(box, walls), spheres_of(x, y, z, r))
+        call c_transient_describe(transient%transient, c_null_ptr, found)
+        if (c_associated(transient%transient)) call tell_fault(found, size(x), fault)
+    end subroutine transient_move
+
+    ! Temperatures [K] after a time [s], in place. capacity: heat that warms a sphere by 1 K [J/K]; source: what heats it
+    ! from inside [W]; *_end: at the end, linear in between; step: of this length at most [s], else automatic steps to a
+    ! relative tolerance of 1e-4 or as given. power: net radiative powers at the end [W]; *_energy: what radiation has
+    ! brought [J].
+    subroutine transient_advance(transient, temperature, duration, capacity, emissivity, surroundings, status, source, &
+                                 wall_temperature, wall_emissivity, wall_temperature_end, surroundings_end, step, &
+                                 tolerance, power, wall_energy, surroundings_energy, steps, fault)
+        class(fibrad_transient), intent(inout) :: transient
+        real(c_double), intent(inout), contiguous, target :: temperature(:)
+        real(c_double), intent(in) :: duration, surroundings
+        real(c_double), intent(in), contiguous, target :: capacity(:), emissivity(:)
+        integer, intent(out) :: status
+        real(c_double), intent(in), optional, contiguous, target :: source(:), wall_temperature(:), wall_emissivity(:), &
+                                                                    wall_temperature_end(:)
+        real(c_double), intent(in), optional :: step, tolerance
+        real(c_double), intent(in), optional, target :: surroundings_end
+        real(c_double), intent(inout), optional, contiguous, target :: power(:), wall_energy(:)
+        real(c_double), intent(inout), optional :: surroundings_energy
+        integer, intent(out), optional :: steps, fault(2)
+        type(c_heat_sources) :: sources
+        type(c_span) :: span
+        type(c_fault) :: found
+        if (present(fault)) fault = 0
+        status = check_sizes(transient%spheres, size(temperature), size(capacity), size(emissivity))
+        if (status == fibrad_ok) status = check_sizes(transient%walls, count_values(wall_temperature), &
+                                                      count_values(wall_emissivity))
+        if (status == fibrad_ok .and. present(source)) status = check_sizes(transient%spheres, size(source))
+        if (status == fibrad_ok .and. present(power)) status = check_sizes(transient%spheres, size(power))
+        if (status == fibrad_ok .and. present(wall_energy)) status = check_sizes(transient%walls, size(wall_energy))
+        if (status == fibrad_ok .and. present(wall_temperature_end)) status = check_sizes(transient%walls, &
+                                                                                         size(wall_temperature_end))
+        if (status /= fibrad_ok) return
+        sources%emissivity = c_loc(emissivity)
+        sources%surroundings = surroundings
+        if (present(source)) sources%power = c_loc(source)
+        if (present(wall_temperature)) sources%body_temperature = c_loc(wall_temperature)
+        if (present(wall_emissivity)) sources%body_emissivity = c_loc(wall_emissivity)
+        span%temperature = c_loc(temperature)
+        span%capacity = c_loc(capacity)
+        span%duration = duration
+        if (present(wall_temperature_end)) span%body_temperature = c_loc(wall_temperature_end)
+        if (present(surroundings_end)) span%surroundings = c_loc(surroundings_end)
+        if (present(step)) span%step = step
+        if (present(tolerance)) span%tolerance = tolerance
+        if (present(power)) span%power = c_loc(power)
+        if (present(wall_energy)) span%body_energy = c_loc(wall_energy)
+        status = c_transient_advance(transient%transient, sources, span)
+        call c_transient_describe(transient%transient, c_null_ptr, found)
+        if (status /= fibrad_ok .and. c_associated(transient%transient)) call tell_fault(found, size(temperature), fault)
+        if (status /= fibrad_ok) return
+        if (present(surroundings_energy)) surroundings_energy = span%surroundings_energy
+        if (present(steps)) steps = int(span%steps)
+    end subroutine transient_advance
+
+    ! Gives the memory back; new may follow.
+    subroutine transient_free(transient)
+        class(fibrad_transient), intent(inout) :: transient
+        call c_transient_free(transient%transient)
+        transient%transient = c_null_ptr
+        transient%spheres = 0
+        transient%walls = 0
+    end subroutine transient_free
+
     ! Gives the memory back; new may follow.
     subroutine heat_free(heat)
         class(fibrad_heat), intent(inout) :: heat
@@ -453,6 +730,8 @@ contains
         type(c_heat_config) :: heat_config
         type(c_heat_sources) :: heat_sources
         type(c_heat_result) :: heat_result
+        type(c_transient_config) :: transient_config
+        type(c_span) :: span
         fibrad_layouts_agree = all([ &
             agrees('spheres', c_sizeof(spheres)), agrees('body', c_sizeof(body)), &
             agrees('scene_config', c_sizeof(scene_config)), agrees('fault', c_sizeof(fault)), &
@@ -460,7 +739,8 @@ contains
             agrees('beam_rule', c_sizeof(beam_rule)), agrees('bed_options', c_sizeof(bed_options)), &
             agrees('factors', c_sizeof(factors)), agrees('bed_factors', c_sizeof(bed_factors)), &
             agrees('exchange_rule', c_sizeof(exchange_rule)), agrees('heat_config', c_sizeof(heat_config)), &
-            agrees('heat_sources', c_sizeof(heat_sources)), agrees('heat_result', c_sizeof(heat_result))])
+            agrees('heat_sources', c_sizeof(heat_sources)), agrees('heat_result', c_sizeof(heat_result)), &
+            agrees('transient_config', c_sizeof(transient_config)), agrees('span', c_sizeof(span))])
     end function fibrad_layouts_agree
 
     logical function agrees(name, bytes)

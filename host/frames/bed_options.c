@@ -1,15 +1,18 @@
 /* bed_options.c - what all commands about beds are asked. SPDX-License-Identifier: MIT */
 #include "frames/bed_options.h"
 
+#include <errno.h>
 #include <glob.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "bed/bed_scene.h"
 #include "cli/memory.h"
 #include "cli/message.h"
+#include "frames/beyond.h"
 #include "plot/gnuplot.h"
 
 /* A mean radius above this is hardly one of a particle in metres. */
@@ -101,6 +104,14 @@ static int take_length_unit(const char *text, struct bed_options *asked) {
     return STATUS_OK;
 }
 
+static int take_scratch(const char *folder, struct bed_options *asked) {
+    struct stat there;
+    asked->scratch = folder;
+    if (stat(folder, &there) != 0 || access(folder, W_OK | X_OK) != 0)
+        return message_at(STATUS_FILE, folder, 0, "%s", strerror(errno));
+    return S_ISDIR(there.st_mode) ? STATUS_OK : message_at(STATUS_FILE, folder, 0, "is no folder");
+}
+
 int bed_options_take(struct bed_options *asked, const struct options *options, int key) {
     const char *value = options->value;
     switch (key) {
@@ -127,6 +138,8 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
         return quantity_option("--radius", value, 1e-150, 1e150, &asked->radius);
     case KEY_LENGTH_UNIT:
         return take_length_unit(value, asked);
+    case KEY_SCRATCH:
+        return take_scratch(value, asked);
     case KEY_JSON:
         asked->outputs.summary = value;
         return STATUS_OK;
@@ -243,6 +256,8 @@ int bed_options_status(struct bed_options *asked, const struct bed *bed, int sta
     progress_stop(&asked->progress);
     if (status && asked->walls.walls.meshes && fault->triangle != UINT32_MAX)
         return meshes_refuse(asked->walls.walls.meshes, status, fault->triangle);
+    if (status == FIBRAD_E_MEMORY && asked->scratch)
+        return message_at(STATUS_MEMORY, asked->scratch, 0, "there is no more room on this disk, or in memory");
     return bed_status(bed, asked->name, status, fault);
 }
 
@@ -250,16 +265,20 @@ int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_o
                        void *request) {
     enum { SAMPLE = 16, ENTRIES_MANY = 2000, ENTRY_BYTES = 48 }; /* the last while rows are averaged */
     fibrad_bed_factors *factors = NULL;
-    if (options->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < memory_left()) return STATUS_OK;
+    const double left = options->scratch ? disk_left(options->scratch) : memory_left();
+    if (options->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < left) return STATUS_OK;
     unsigned char *marks = calloc(bed->n, 1);
     if (!marks) return message_memory();
     for (uint32_t k = 0; k < SAMPLE; ++k) marks[(uint64_t)bed->n * k / SAMPLE] = 1;
     options->wanted = marks;
     int status = compute(request, bed, &factors);
     options->wanted = NULL;
+    const double bytes = status ? 0 : (double)factors->matrix.start[bed->n] / SAMPLE * bed->n * ENTRY_BYTES;
     if (!status)
-        status = memory_check((double)factors->matrix.start[bed->n] / SAMPLE * bed->n * ENTRY_BYTES,
-                              "--cutoff, fewer directions or rays, or --targets take less");
+        status = options->scratch
+                     ? disk_check(options->scratch, bytes)
+                     : memory_check(
+                           bytes, "--cutoff, fewer directions or rays, or --targets take less; --scratch takes a disk");
     fibrad_bed_free(factors);
     free(marks);
     return status;
@@ -307,6 +326,14 @@ int bed_options_write(struct bed_options *asked, const struct bed *bed, struct c
     what->file = asked->files > 1 ? asked->name : NULL;
     what->series = bed_options_series(asked);
     return outputs_write(&asked->outputs, what, asked->files > 1 ? asked->frames_done : bed->frame);
+}
+
+int bed_options_walls(const struct bed_options *asked, const struct bed *bed, struct walls *walls) {
+    const fibrad_spheres spheres = bed_spheres(bed);
+    const int status = walls_of(&asked->walls, bed, asked->name, walls);
+    if (status || !walls->meshes) return status;
+    const int faced = meshes_face(walls->meshes, &spheres, bed->period);
+    return faced ? faced : warn_beyond(bed, walls, asked->name);
 }
 
 static void report_mesh(struct report *report, const struct walls *walls, uint32_t k) {

@@ -33,6 +33,11 @@
         OPTION_HELP                                                                                                    \
     }
 
+/* Of commands that make matrices. */
+#define OPTION_SCRATCH                                                                                                 \
+    KEY_SCRATCH, "scratch", "FOLDER",                                                                                  \
+        "keep rows and matrix in files of this folder, gone when all is done; the same factors [in memory]"
+
 /* What --help says below of the files. */
 #define FILES_MORE                                                                                                     \
     "FILE: LAMMPS and LIGGGHTS dumps and data files, CSV with a header, extended XYZ, VTK (.vtp, .vtk), YADE and\n"    \
@@ -59,8 +64,9 @@ struct bed_options {
     const char *unit[BED_COLUMNS_MAX];   /* and their units; NULL: none */
     size_t columns;
     struct wall_options walls;
-    bool wall_vtp; /* an output has their triangles */
-    int threads;   /* 0: all cores */
+    bool wall_vtp;       /* an output has their triangles */
+    int threads;         /* 0: all cores */
+    const char *scratch; /* a folder for rows and matrix; NULL: in memory */
     struct outputs outputs;
     bool quiet;
     struct progress progress;
@@ -107,8 +113,8 @@ int bed_options_status(struct bed_options *asked, const struct bed *bed, int sta
 /* Computes the factors of a bed as a request says. Returns a status, a message being out. */
 typedef int bed_options_compute(void *request, const struct bed *bed, fibrad_bed_factors **factors);
 
-/* Whether all rows will fit into memory, judged by a few, which `compute` makes with options->wanted. Status 0;
- * STATUS_MEMORY; that of compute. Small beds and lists of targets are not asked. */
+/* Whether all rows will fit into memory, or onto the disk of options->scratch, judged by a few, which `compute` makes
+ * with options->wanted. Status 0; STATUS_MEMORY; that of compute. Small beds and lists of targets are not asked. */
 int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute, void *request);
 
 /* Metres of the bed's unit of length, for what comes in watts, with a word where it is assumed and looks wrong. Status
@@ -117,6 +123,10 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
 
 /* Writes the frame in hand to all outputs. what: all but bed, file and series. */
 int bed_options_write(struct bed_options *asked, const struct bed *bed, struct contents *what);
+
+/* Places the walls about a bed, finds which sides of meshes are walls, and warns of spheres beyond them. Status as
+ * walls_of, or STATUS_MEMORY. */
+int bed_options_walls(const struct bed_options *asked, const struct bed *bed, struct walls *walls);
 
 /* Begins the report of a frame: file, frame, box, radii, units, walls. facts NULL: none. */
 void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,

@@ -30,10 +30,17 @@ int given_check(struct given_options *options, struct bed_options *bed) {
     return STATUS_OK;
 }
 
-int given_ambient(const struct given_options *options, double *ambient) {
+int given_ambient(struct given_options *options, double *ambient) {
+    const double low = 0 - options->zero;
+    int status;
     *ambient = NAN;
     if (!options->ambient) return STATUS_OK;
-    const int status = options_number("--ambient", options->ambient, 0 - options->zero, TEMPERATURE_MAX, ambient);
+    if (options->timed && *options->ambient == '@') {
+        status = curve_read(options->ambient + 1, "temperature", low, TEMPERATURE_MAX, &options->ambient_curve);
+        if (!status) *ambient = curve_at(&options->ambient_curve, 0);
+    } else {
+        status = options_number("--ambient", options->ambient, low, TEMPERATURE_MAX, ambient);
+    }
     *ambient += options->zero;
     return status;
 }
@@ -43,8 +50,8 @@ static int given_walls(const struct given_options *options, const struct bed *be
                        struct given *given) {
     struct wall_list t, p;
     int status = wall_list("--wall-temperature", options->wall_temperature, "insulated", 0 - options->zero,
-                           TEMPERATURE_MAX, walls, &t);
-    if (!status) status = wall_list("--wall-power", options->wall_power, NULL, -POWER_MAX, POWER_MAX, walls, &p);
+                           TEMPERATURE_MAX, walls, options->timed ? given->wall_curve : NULL, &t);
+    if (!status) status = wall_list("--wall-power", options->wall_power, NULL, -POWER_MAX, POWER_MAX, walls, NULL, &p);
     for (uint32_t k = 0; k < walls->count && !status; ++k) {
         const char *name = wall_name(walls, k);
         if (t.named[k] && p.named[k])
@@ -103,6 +110,7 @@ int given_values(const struct given_options *options, const struct bed *bed, con
 void given_free(struct given *given) {
     free(given->temperature);
     free(given->power);
+    for (int k = 0; k < WALLS_MAX; ++k) curve_free(&given->wall_curve[k]);
 }
 
 void given_heat_sources(struct given *given, uint32_t n, double metres, fibrad_heat_sources *sources) {

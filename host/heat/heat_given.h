@@ -23,7 +23,9 @@ struct given_options {
     struct quantity temperature, power;
     const char *ambient, *wall_temperature, *wall_power; /* NULL: not given */
     double zero;                                         /* 0 of the unit of temperature [K] */
-    bool timed; /* temperatures are those to begin with: all spheres have one, and may have a power */
+    bool timed; /* temperatures are those to begin with: all spheres have one, and may have a power; @TABLE of
+                 * seconds may stand for those of walls and surroundings */
+    struct curve ambient_curve; /* n = 0: a number */
 };
 
 /* What follows for one bed; NaN where it is not given. */
@@ -32,6 +34,7 @@ struct given {
     double *power;       /* [spheres] [W] */
     double wall_temperature[WALLS_MAX], wall_power[WALLS_MAX];
     unsigned char insulated[WALLS_MAX];
+    struct curve wall_curve[WALLS_MAX]; /* unit of temperature over seconds; n = 0: a number */
 };
 
 /* Takes the arguments of --temperature and --power. Status 0 or STATUS_USAGE. */
@@ -41,8 +44,9 @@ int given_power_option(const char *text, struct given_options *options);
 /* Checks the options, once all are read, and finds their columns. Status 0 or STATUS_USAGE. */
 int given_check(struct given_options *options, struct bed_options *bed);
 
-/* The temperature of the surroundings [K], NaN if it was not given. Status 0 or STATUS_USAGE. */
-int given_ambient(const struct given_options *options, double *ambient);
+/* The temperature of the surroundings [K], of a table that at 0 s, NaN if it was not given. Its table is to be freed.
+ * Status 0, STATUS_USAGE, or as curve_read. */
+int given_ambient(struct given_options *options, double *ambient);
 
 /* What is given of a bed and its walls; arrays are to be freed by given_free also after an error. Status 0,
  * STATUS_USAGE naming a wall, STATUS_INPUT naming the line of a sphere, of which neither or both are given, or

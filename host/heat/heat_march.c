@@ -38,57 +38,7 @@ int march_option(int key, const char *text, struct march_options *march) {
     }
 }
 
-/* Reads a table, of the wall of this name or of the surroundings, "". */
-static int add_table(struct march_options *march, const char *name, size_t length, const char *path, size_t end) {
-    struct march_table *table = &march->table[march->tables];
-    if (march->tables == WALLS_MAX + 1 || length >= sizeof table->name)
-        return message(STATUS_USAGE, "--wall-temperature: too many tables, or no such wall");
-    char *file = strndup(path, end);
-    if (!file) return message_memory();
-    snprintf(table->name, sizeof table->name, "%.*s", (int)length, name);
-    const int status = curve_read(file, "temperature", 0 - march->zero, TEMPERATURE_MAX, &table->curve);
-    free(file);
-    ++march->tables;
-    return status;
-}
-
-/* zmin=@TABLE,zmax=300: with the table's value at 0 s in its place. */
-static int read_wall_tables(struct march_options *march, const char **walls) {
-    const char *text = *walls;
-    const size_t room = strlen(text) * 16 + 1;
-    size_t used = 0;
-    march->walls = malloc(room);
-    if (!march->walls) return message_memory();
-    for (bool first = true; first || *text++ == ','; first = false) {
-        const size_t length = strcspn(text, ","), name = strcspn(text, "=,");
-        const bool table = text[name] == '=' && text[name + 1] == '@';
-        if (*text == '@')
-            return message(STATUS_USAGE, "--wall-temperature: a table needs its wall: zmin=%.*s", (int)length, text);
-        int status = table ? add_table(march, text, name, text + name + 2, length - name - 2) : STATUS_OK;
-        if (status) return status;
-        if (!first) march->walls[used++] = ',';
-        if (table)
-            used += (size_t)snprintf(march->walls + used, room - used, "%.*s=%.17g", (int)name, text,
-                                     curve_at(&march->table[march->tables - 1].curve, 0));
-        else
-            used += (size_t)snprintf(march->walls + used, room - used, "%.*s", (int)length, text);
-        text += length;
-    }
-    *walls = march->walls;
-    return STATUS_OK;
-}
-
-static int read_ambient_table(struct march_options *march, const char **ambient) {
-    enum { NUMBER = 40 };
-    march->ambient = malloc(NUMBER);
-    if (!march->ambient) return message_memory();
-    const int status = add_table(march, "", 0, *ambient + 1, strlen(*ambient + 1));
-    if (!status) snprintf(march->ambient, NUMBER, "%.17g", curve_at(&march->table[march->tables - 1].curve, 0));
-    *ambient = march->ambient;
-    return status;
-}
-
-int march_check(struct march_options *march, struct bed_options *bed, const char **walls, const char **ambient) {
+int march_check(struct march_options *march, struct bed_options *bed) {
     const struct quantity *c = &march->capacity, *rho = &march->density;
     if (!(march->until > 0)) {
         const char *needs = c->given           ? "--heat-capacity"
@@ -106,15 +56,7 @@ int march_check(struct march_options *march, struct bed_options *bed, const char
         return message(STATUS_USAGE, "--every: more than %d times", TIMES_MAX);
     march->capacity.place = bed_options_column(bed, c->column, NULL);
     march->density.place = bed_options_column(bed, rho->column, NULL);
-    int status = *walls && strchr(*walls, '@') ? read_wall_tables(march, walls) : STATUS_OK;
-    if (!status && *ambient && **ambient == '@') status = read_ambient_table(march, ambient);
-    return status;
-}
-
-void march_free(struct march_options *march) {
-    for (size_t k = 0; k < march->tables; ++k) curve_free(&march->table[k].curve);
-    free(march->walls);
-    free(march->ambient);
+    return STATUS_OK;
 }
 
 /* A march under way. */
@@ -129,7 +71,6 @@ struct marching {
     fibrad_heat_sources sources;
     fibrad_heat_result *result;
     fibrad_span span;
-    const struct march_table *of_wall[WALLS_MAX], *of_surroundings; /* NULL: constant */
     double wall[WALLS_MAX], wall_energy[WALLS_MAX], energy[WALLS_MAX], surroundings_energy;
     double now;
     uint64_t steps, refused, sweeps, corrections;
@@ -160,29 +101,25 @@ static void note_point(void *marching, double time, const double *temperature) {
     m->point[m->points++] = point_of(m, m->now + time, temperature);
 }
 
-static double table_at(const struct marching *m, const struct march_table *table, double time) {
-    return curve_at(&table->curve, time) + m->options->zero;
+/* A temperature at a time, by its table if it has one. */
+static double temperature_at(const struct marching *m, const struct curve *curve, double time, double otherwise) {
+    return curve->n > 0 ? curve_at(curve, time) + m->problem->zero : otherwise;
 }
 
-/* Whose tables there are. */
-static void find_tables(struct marching *m) {
-    const struct walls *walls = &m->problem->walls;
-    for (size_t j = 0; j < m->options->tables; ++j) {
-        const struct march_table *table = &m->options->table[j];
-        for (uint32_t k = 0; k < walls->count; ++k)
-            if (strcmp(wall_name(walls, k), table->name) == 0) m->of_wall[k] = table;
-        if (!table->name[0]) m->of_surroundings = table;
-    }
-}
-
-/* Walls and surroundings at a time. */
+/* Walls and surroundings at a time; nothing gets to those of a closed bed, NaN. */
 static void outside_at(const struct marching *m, double time, double wall[WALLS_MAX], double *surroundings) {
     const fibrad_heat_sources *s = &m->problem->sources;
     for (uint32_t k = 0; k < m->problem->walls.count; ++k)
-        wall[k] = m->of_wall[k] ? table_at(m, m->of_wall[k], time) : s->body_temperature[k];
-    *surroundings = m->of_surroundings       ? table_at(m, m->of_surroundings, time)
-                    : isnan(s->surroundings) ? 0 /* closed: nothing gets there */
-                                             : s->surroundings;
+        wall[k] = temperature_at(m, &m->problem->wall_curve[k], time, s->body_temperature[k]);
+    *surroundings = temperature_at(m, m->problem->ambient_curve, time, isnan(s->surroundings) ? 0 : s->surroundings);
+}
+
+/* When a table bends within the time there is, into t; how many times. */
+static size_t take_bends(const struct curve *curve, double until, double *t) {
+    size_t n = 0;
+    for (size_t k = 0; k < curve->n; ++k)
+        if (curve->x[k] > 0 && curve->x[k] < until) t[n++] = curve->x[k];
+    return n;
 }
 
 /* Times of output, ascending, and when tables bend, the ends of spans: [count] in *times, output[k] says which. */
@@ -190,7 +127,9 @@ static int find_times(const struct marching *m, double **times, bool **output, s
     const struct march_options *o = m->options;
     const size_t every = o->every > 0 ? (size_t)ceil(o->until / o->every * (1 - 1e-12)) : 0;
     size_t room = every + TIMES_MAX + 2, n = 0, asked;
-    for (size_t j = 0; j < o->tables; ++j) room += o->table[j].curve.n;
+    const struct heat_problem *problem = m->problem;
+    for (uint32_t k = 0; k < problem->walls.count; ++k) room += problem->wall_curve[k].n;
+    room += problem->ambient_curve->n;
     double *t = *times = malloc(room * sizeof *t);
     *output = calloc(room, sizeof **output);
     if (!t || !*output) return message_memory();
@@ -208,9 +147,8 @@ static int find_times(const struct marching *m, double **times, bool **output, s
     if (!wanted) return message_memory();
     memcpy(wanted, t, asked * sizeof *wanted);
     if (t[n - 1] < o->until) t[n++] = o->until;
-    for (size_t j = 0; j < o->tables; ++j)
-        for (size_t k = 0; k < o->table[j].curve.n; ++k)
-            if (o->table[j].curve.x[k] > 0 && o->table[j].curve.x[k] < o->until) t[n++] = o->table[j].curve.x[k];
+    for (uint32_t k = 0; k < problem->walls.count; ++k) n += take_bends(&problem->wall_curve[k], o->until, t + n);
+    n += take_bends(problem->ambient_curve, o->until, t + n);
     gsl_sort(t, 1, n);
     *count = 0;
     for (size_t k = 0, next = 0; k < n; ++k) {
@@ -241,10 +179,23 @@ static int find_capacities(struct marching *m, double metres, double **capacity)
     return status;
 }
 
-/* Corrected factors, unless a wall's temperature is wanted. */
+/* Emissivities in a stage. */
+static void march_follow(void *marching, const double *temperature, const double *wall_temperature, double *emissivity,
+                         double *wall_emissivity) {
+    const struct marching *m = marching;
+    (void)wall_temperature;
+    (void)wall_emissivity;
+    heat_emissivities(m->problem, &m->bed, temperature, emissivity);
+}
+
+/* Corrected factors, unless a wall's temperature is wanted or emissivities change. */
 static int choose_model(struct marching *m) {
     const struct heat_problem *problem = m->problem;
-    m->by_patches = problem->by_patches;
+    const bool follow = quantity_curves(problem->of_emissivity);
+    m->by_patches = problem->by_patches || follow;
+    m->span.law = follow ? march_follow : NULL;
+    if (follow && problem->by_factors)
+        return message(STATUS_USAGE, "--model factors: emissivities follow temperatures; patches let them");
     for (uint32_t k = 0; k < problem->walls.count; ++k) {
         if (!isnan(problem->sources.body_temperature[k])) continue;
         m->by_patches = true;
@@ -269,6 +220,7 @@ static int write_state(struct marching *m) {
     const uint32_t walls = m->problem->walls.count;
     fibrad_heat_sources shown = m->sources;
     shown.temperature = m->span.temperature;
+    heat_emissivities(m->problem, &m->bed, shown.temperature, m->problem->emissivity);
     int status = library_status(m, fibrad_transient_powers(m->transient, &shown, m->result));
     if (status) return status;
     for (uint32_t k = 0; k < walls; ++k)
@@ -397,7 +349,7 @@ static int march_bed(struct marching *m, double *before, const struct output *pi
     const fibrad_transient_config config = {.method = m->by_patches            ? FIBRAD_TRANSIENT_PATCHES
                                                       : m->problem->by_factors ? FIBRAD_TRANSIENT_FACTORS
                                                                                : FIBRAD_TRANSIENT_CORRECTED,
-                                            .heat = m->problem->config};
+                                            .heat = heat_config(m->problem, m->source)};
     const double begun = progress_clock();
     fibrad_run run = bed_options_run(m->asked);
     int status = fibrad_transient_new(&m->transient, &scene, &spheres, &config, &run);
@@ -434,7 +386,6 @@ int heat_march(struct bed_options *asked, const struct march_options *march, con
                            .context = &m};
     for (uint32_t i = 0; i < bed->n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
     for (uint32_t k = 0; k < problem->walls.count; ++k) result->body_error[k] = result->body_temperature_error[k] = NAN;
-    find_tables(&m);
     if (!status) status = choose_model(&m);
     if (!status) status = find_capacities(&m, metres, &capacity);
     m.span.capacity = capacity;

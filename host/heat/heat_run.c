@@ -10,13 +10,17 @@
 /* Walls whose power is less than this of what they absorb need not know it to the error asked for. */
 #define WALL_SHARE 0.05
 
-/* The largest error of a wall, over the larger of its power and a share of what it absorbs. */
+/* The largest error of a wall: over the larger of its power and a share of what it absorbs, or of sigma T^4, relative,
+ * where its temperature was found. */
 static double heat_wall_error(const fibrad_heat_result *result, uint32_t walls) {
     double worst = 0;
-    for (uint32_t k = 0; k < walls; ++k)
+    for (uint32_t k = 0; k < walls; ++k) {
         if (result->body_error[k] > 0)
             worst = fmax(worst, result->body_error[k] /
                                     fmax(fabs(result->body_power[k]), WALL_SHARE * result->body_absorbed[k]));
+        if (result->body_temperature_error[k] > 0)
+            worst = fmax(worst, 4 * result->body_temperature_error[k] / result->body_temperature[k]);
+    }
     return worst;
 }
 
@@ -55,18 +59,21 @@ static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sou
 /* Of the spheres whose temperatures were found. */
 static void heat_temperatures(const struct bed *bed, const fibrad_heat_sources *sources, struct heat_report *report) {
     const fibrad_heat_result *result = &report->result;
-    double sum = 0, square = 0;
+    double sum = 0, square = 0, errors = 0, emissions = 0;
     report->unknown = 0;
     report->coldest = INFINITY, report->hottest = -INFINITY;
     for (uint32_t i = 0; i < bed->n; ++i) {
         if (!isnan(sources->temperature[i]) || !(sources->emissivity[i] > 0)) continue;
         report->unknown++;
-        sum += result->temperature[i], square += gsl_pow_2(result->temperature_error[i]);
+        const double t = result->temperature[i], error = result->temperature_error[i];
+        sum += t, square += error * error;
+        errors += gsl_pow_2(4 * gsl_pow_3(t) * error), emissions += gsl_pow_8(t);
         report->coldest = fmin(report->coldest, result->temperature[i]);
         report->hottest = fmax(report->hottest, result->temperature[i]);
     }
     report->temperature_mean = sum / report->unknown;
     report->temperature_error = sqrt(square / report->unknown);
+    report->emission_error = emissions > 0 ? sqrt(errors / emissions) : 0;
 }
 
 /* Why there are no temperatures with the powers given. */
@@ -108,6 +115,24 @@ static void heat_scale(const struct bed *bed, uint32_t walls, double square_metr
     result->error_beams *= square_metres;
 }
 
+/* Where to begin with an error wanted, by default, and up to which mean emissivity patches err more than the fewest
+ * directions that have half of their beams left out. Source: docs/heat.md, Directions by default. */
+enum { DIRECTIONS_BEGIN = 72, DIRECTIONS_DARK = 168, DIRECTIONS_BRIGHT = 112, PATCHES_BRIGHT = 96 };
+#define BRIGHT 0.35
+
+fibrad_heat_config heat_config(const struct heat_problem *problem, const struct bed *bed) {
+    fibrad_heat_config config = problem->config;
+    double areas = 0, sum = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        areas += bed->r[i] * bed->r[i];
+        sum += bed->r[i] * bed->r[i] * problem->emissivity[i];
+    }
+    const bool bright = sum <= BRIGHT * areas && config.patches <= PATCHES_BRIGHT;
+    if (!config.directions)
+        config.directions = problem->error > 0 ? DIRECTIONS_BEGIN : bright ? DIRECTIONS_BRIGHT : DIRECTIONS_DARK;
+    return config;
+}
+
 /* Whether a problem of this kind will fit into memory. Source: fibrad_heat_size. */
 static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) {
     const double beams = (double)config->directions * config->points, patches = config->patches;
@@ -117,21 +142,26 @@ static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) 
                         "fewer --directions, --points or --patches take less");
 }
 
+void heat_emissivities(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
+                       double *emissivity) {
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const struct curve *curve = quantity_curve(problem->of_emissivity, bed, i);
+        if (curve && !isnan(temperature[i])) emissivity[i] = curve_at(curve, temperature[i]);
+    }
+}
+
 /* What emissivities follow. */
 struct heat_law {
-    const struct quantity *emissivity;
+    const struct heat_problem *problem;
     const struct bed *bed;
 };
 
-static void heat_emissivities(void *law, const double *temperature, const double *wall_temperature, double *emissivity,
-                              double *wall_emissivity) {
+static void heat_follow(void *law, const double *temperature, const double *wall_temperature, double *emissivity,
+                        double *wall_emissivity) {
     const struct heat_law *how = law;
     (void)wall_temperature;
     (void)wall_emissivity;
-    for (uint32_t i = 0; i < how->bed->n; ++i) {
-        const struct curve *curve = quantity_curve(how->emissivity, how->bed, i);
-        if (curve && !isnan(temperature[i])) emissivity[i] = curve_at(curve, temperature[i]);
-    }
+    heat_emissivities(how->problem, how->bed, temperature, emissivity);
 }
 
 /* Radiosities need to be as good as this, over the error asked for, not to add to it. */
@@ -150,9 +180,8 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     if (status) return status;
     status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
     if (!status)
-        status = fibrad_radiation_settle(radiation, &sources, heat_emissivities,
-                                         &(struct heat_law){problem->of_emissivity, bed}, problem->emissivity,
-                                         (double *)sources.body_emissivity, &report->result);
+        status = fibrad_radiation_settle(radiation, &sources, heat_follow, &(struct heat_law){problem, bed},
+                                         problem->emissivity, (double *)sources.body_emissivity, &report->result);
     fibrad_radiation_describe(radiation, &report->facts, &run.fault);
     fibrad_radiation_free(radiation);
     if (status == FIBRAD_E_UNSOLVABLE) {
@@ -197,35 +226,40 @@ static double heat_allowed(const struct heat_problem *problem, const struct heat
     return problem->error * fmax(report->power_rms, 1e-3 * report->throughput);
 }
 
-/* Solves it again and again until spheres and walls err by no more than is allowed: with more of what makes the larger
- * part of the spheres' error, and with more rays between walls as long as these help a wall much, then more beams. */
+/* Solves it again and again until powers and temperatures of spheres and walls err by no more than is allowed: with
+ * more of what makes the larger part of the spheres' error, with more patches where beams do not help temperatures, and
+ * with more rays between walls as long as these help a wall much, then more beams. */
 static int heat_improve(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
                         struct heat_report *report) {
-    double last = INFINITY;
+    double last = INFINITY, last_emission = INFINITY;
     for (;;) {
-        const double walls = report->wall_error / problem->error;
+        const double walls = report->wall_error / problem->error, emission = report->emission_error / problem->error;
         const bool spheres = report->error > heat_allowed(problem, report);
         bool more = false;
-        if (!spheres && walls <= 1) return STATUS_OK;
+        if (!spheres && walls <= 1 && emission <= 1) return STATUS_OK;
         if (walls > 1 && walls <= HELPED * last) more = heat_refine_rays(report, walls);
         if (spheres)
             more = heat_refine(report, report->result.error_beams > report->result.error_patches) || more;
+        else if (emission > 1)
+            more = heat_refine(report, emission <= HELPED * last_emission) || more;
         else if (!more)
             more = heat_refine(report, true);
         if (!more) break;
-        last = walls;
+        last = walls, last_emission = emission;
         const int status = heat_once(asked, problem, bed, report);
         if (status) return status;
     }
     return message_at(STATUS_OK, asked->name, 0,
-                      "warning: the estimated error is %.3g of the powers of spheres, %.3g of a wall's",
-                      report->error / report->power_rms, report->wall_error);
+                      "warning: the estimated error is %.3g of the powers of spheres, %.3g of a wall's, %.3g of the "
+                      "T^4 that were found",
+                      report->power_rms > 0 ? report->error / report->power_rms : 0, report->wall_error,
+                      report->emission_error);
 }
 
 int heat_run(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
              struct heat_report *report) {
     const double begun = progress_clock();
-    report->config = problem->config;
+    report->config = heat_config(problem, bed);
     int status = heat_once(asked, problem, bed, report);
     if (!status && problem->error > 0) status = heat_improve(asked, problem, bed, report);
     report->seconds = progress_clock() - begun;

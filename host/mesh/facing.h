@@ -3,7 +3,7 @@
 #define FACING_H
 
 #include "fibrad.h"
-#include "mesh/surface.h"
+#include "mesh/welded.h"
 
 /* For each part: above 0 where spheres are before the side that is the front of triangles that are not turned, below 0
  * where they are behind it, 0 where nothing tells. Spheres, not all of them if they are many, vote by the side that

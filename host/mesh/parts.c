@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "cli/message.h"
-#include "mesh/surface.h"
+#include "mesh/welded.h"
 
 #define NONE UINT32_MAX
 
@@ -82,7 +82,7 @@ static void keep_majority(struct surface *surface, const struct part *part) {
         surface->turned[surface->in_parts[k]] ^= 1;
 }
 
-static int gather_parts(struct surface *surface, const uint32_t *partner, bool *met) {
+static int gather_all_parts(struct surface *surface, const uint32_t *partner, bool *met) {
     uint32_t room = 0;
     for (uint32_t t = 0, listed = 0; t < surface->n; ++t) {
         if (met[t]) continue;
@@ -112,7 +112,7 @@ int surface_find_parts(struct surface *surface) {
     const bool room = partner && met && surface->in_parts && surface->part_of && surface->turned;
     int status = room ? STATUS_OK : message_memory();
     if (!status) status = find_partners(surface, partner);
-    if (!status) status = gather_parts(surface, partner, met);
+    if (!status) status = gather_all_parts(surface, partner, met);
     free(partner);
     free(met);
     return status;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "mesh/surface.h"
+#include "mesh/welded.h"
 
 #define NEAR 1e-6  /* of the mean edge: corners closer than this are one */
 #define WIDE 1e3   /* of that: a cell */

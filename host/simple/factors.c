@@ -93,6 +93,7 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
     if (!options) options = &defaults;
     int status = fibrad_job_open(&job, config, spheres, run);
     if (!status) status = check_options(options, 1);
+    if (!status) status = fibrad_job_scratch(&job, options->scratch);
     if (!status) status = run_options(&job, options, factors);
     fibrad_job_close(&job);
     return status;
@@ -136,6 +137,7 @@ int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_sphe
     if (!options) options = &defaults;
     int status = fibrad_job_open(&job, config, spheres, run);
     if (!status) status = check_options(options, 0);
+    if (!status) status = fibrad_job_scratch(&job, options->scratch);
     if (!status) status = check_emissivities(&job, rule);
     if (!status) status = run_exchange(&job, rule, options, factors);
     fibrad_job_close(&job);

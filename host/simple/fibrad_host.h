@@ -55,6 +55,9 @@ typedef struct fibrad_bed_options {
     double drop;                        /* as in fibrad_matrix_rule */
     int bodies; /* 1: rows of bodies, too, unless there is a cutoff or only some rows are wanted; what spheres exchange
                    then changes within its error, as all is closed together */
+    const char *scratch; /* a folder: rows and matrix are kept in files there, without names, instead of in memory: the
+                            same to the bit, at the disk's speed where they are more than memory; 24 to 36 bytes an
+                            entry of the raw rows, and 24 of the matrix. NULL: in memory */
 } fibrad_bed_options;
 
 /* A matrix, and what else is known of it. */
@@ -182,7 +185,8 @@ typedef struct fibrad_span {
     double *body_energy;            /* [bodies] out: what radiation has brought; may be NULL */
     double surroundings_energy;     /* out: likewise */
     fibrad_observe *observe;        /* NULL: none */
-    void *context;                  /* handed to observe */
+    fibrad_emissivity_law *law;     /* NULL: emissivities are constant; else by patches alone: asked in each stage */
+    void *context;                  /* handed to observe and law */
     double error;                   /* out: the largest estimate of a step, as `tolerance` */
     uint64_t steps, refused;        /* out: taken; tried besides */
     uint64_t sweeps;                /* out: over all beams, or else over all factors */
@@ -190,12 +194,12 @@ typedef struct fibrad_span {
 } fibrad_span;
 
 /* Advances temperatures by a span: an L-stable scheme of second order, for which small spheres among large ones are no
- * limit. What spheres lose is what bodies and surroundings get, to rounding. Of sources, power, emissivities,
- * body_power and insulated are used and constant; temperature, hold and reference are not; body_temperature and
- * surroundings are those at the beginning. Only by patches may bodies be of unknown temperature; by factors alone they
- * gain from spheres alone. Errors: _ARGUMENT, with the sphere in fault; as fibrad_exchange_factors or
- * fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below zero. Then temperatures are as before. Cost: two or
- * three solutions a step, some milliseconds for 1e4 spheres by factors. */
+ * limit. What spheres lose is what bodies and surroundings get, to rounding. Of sources, power, emissivities (where a
+ * law leaves them), body_power and insulated are used and constant; temperature, hold and reference are not;
+ * body_temperature and surroundings are those at the beginning. Only by patches may bodies be of unknown temperature;
+ * by factors alone they gain from spheres alone. Errors: _ARGUMENT, with the sphere in fault; as
+ * fibrad_exchange_factors or fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below zero. Then temperatures are
+ * as before. Cost: two or three solutions a step, some milliseconds for 1e4 spheres by factors. */
 int fibrad_transient_advance(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_span *span);
 
 /* As fibrad_radiation_describe, _free. */

@@ -10,6 +10,8 @@
 
 #define ROWS_AT_ONCE 16 /* that a thread takes: few enough to share out a bed, enough to share a neighbourhood */
 #define AVERAGES_MAX 16 /* tasks of averaging: each reads all entries */
+#define FILED_MAX    256
+#define FILED_BYTES  ((uint64_t)1 << 28) /* that a task of averaging writes, in no order, where they are in a file */
 
 int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fibrad_spheres *spheres,
                     fibrad_run *run) {
@@ -22,6 +24,11 @@ int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fi
     if (status && run) run->fault = fault;
     if (!status) fibrad_scene_describe(job->scene, &job->facts);
     return status;
+}
+
+int fibrad_job_scratch(fibrad_job *job, const char *folder) {
+    job->scratch = folder;
+    return fibrad_team_scratch(&job->team, folder);
 }
 
 void fibrad_job_close(fibrad_job *job) {
@@ -113,16 +120,28 @@ static int run_average(void *matrix, int thread, uint32_t task) {
     return fibrad_matrix_average(matrix, task);
 }
 
-static int make_matrix(fibrad_job *job, const fibrad_matrix_rule *rule, fibrad_matrix **matrix, void **block) {
+/* As many as there are threads; in a file so many more that what each writes stays in memory meanwhile. */
+static uint32_t average_tasks(const fibrad_job *job) {
+    const fibrad_team *team = &job->team;
+    const uint32_t tasks = team->threads < AVERAGES_MAX ? (uint32_t)team->threads : AVERAGES_MAX;
+    uint64_t bytes = 0;
+    for (int t = 0; t < team->threads && job->scratch; ++t)
+        bytes += 2 * team->rows[t].entries * (sizeof(double) + sizeof(uint32_t));
+    const uint64_t more = bytes / FILED_BYTES < FILED_MAX ? bytes / FILED_BYTES : FILED_MAX;
+    return more > tasks ? (uint32_t)more : tasks;
+}
+
+static int make_matrix(fibrad_job *job, const fibrad_matrix_rule *rule, fibrad_matrix **matrix, fibrad_scratch *store) {
     fibrad_team *team = &job->team;
     fibrad_matrix_rule divided = *rule;
-    divided.tasks = team->threads < AVERAGES_MAX ? (uint32_t)team->threads : AVERAGES_MAX;
+    divided.tasks = average_tasks(job);
     const size_t size = fibrad_matrix_size(job->scene, team->rows, (uint32_t)team->threads, &divided);
     if (!size) return FIBRAD_E_ARGUMENT;
-    *block = malloc(size);
-    if (!*block) return FIBRAD_E_MEMORY;
-    int status =
-        fibrad_matrix_init(matrix, *block, size, job->scene, team->rows, (uint32_t)team->threads, &divided, NULL);
+    int status = fibrad_scratch_open(store, job->scratch);
+    if (status) return status;
+    if (!fibrad_scratch_resize(store, NULL, size)) return FIBRAD_E_MEMORY;
+    status =
+        fibrad_matrix_init(matrix, store->block, size, job->scene, team->rows, (uint32_t)team->threads, &divided, NULL);
     if (!status && !divided.raw) status = fibrad_team_run(team, NULL, divided.tasks, 1, run_average, *matrix, NULL);
     return status ? status : fibrad_matrix_close(*matrix);
 }
@@ -130,13 +149,13 @@ static int make_matrix(fibrad_job *job, const fibrad_matrix_rule *rule, fibrad_m
 /* Factors with what they own. */
 struct owned_factors {
     fibrad_bed_factors factors; /* first, so that its address is that of the whole */
-    void *block;                /* of the matrix */
+    fibrad_scratch store;       /* of the matrix */
     double area[];
 };
 
 void fibrad_bed_free(fibrad_bed_factors *factors) {
     if (!factors) return;
-    free(((struct owned_factors *)factors)->block);
+    fibrad_scratch_close(&((struct owned_factors *)factors)->store);
     free(factors);
 }
 
@@ -146,7 +165,7 @@ int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fi
     struct owned_factors *owned = calloc(1, sizeof *owned + bodies * sizeof *owned->area);
     fibrad_matrix *matrix;
     if (!owned) return FIBRAD_E_MEMORY;
-    int status = make_matrix(job, rule, &matrix, &owned->block);
+    int status = make_matrix(job, rule, &matrix, &owned->store);
     if (!status) status = fibrad_matrix_read(matrix, &owned->factors.matrix);
     if (status) {
         fibrad_bed_free(&owned->factors);

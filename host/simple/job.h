@@ -12,11 +12,15 @@ typedef struct fibrad_job {
     fibrad_scene_facts facts;
     fibrad_team team;
     fibrad_run *run;
-    double begun; /* [s] */
+    const char *scratch; /* a folder for rows and matrix; NULL: in memory */
+    double begun;        /* [s] */
 } fibrad_job;
 
 /* Makes a scene and a team. Close it also after an error. Errors: as fibrad_view_factors; run->fault is set. */
 int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fibrad_spheres *spheres, fibrad_run *run);
+
+/* Rows and matrix go into files of a folder; NULL: they stay in memory. Errors: as fibrad_scratch_open. */
+int fibrad_job_scratch(fibrad_job *job, const char *folder);
 void fibrad_job_close(fibrad_job *job);
 
 /* Row i by some method; into row->rows or elsewhere. A status. */

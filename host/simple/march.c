@@ -53,12 +53,18 @@ static void set_outside(struct march *m, double time) {
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
 }
 
+/* Emissivities at t->guess, which is as far from the solution as the scheme's second order allows. */
+static void set_surfaces(struct march *m) {
+    const fibrad_transient *t = m->t;
+    if (m->span->law) m->span->law(m->span->context, t->guess, t->wall, t->emissivity, t->body_emissivity);
+}
+
 /* The linear problem about t->guess. One that reflects all has no part in it. */
 static void linearise(struct march *m, double length) {
     fibrad_transient *t = m->t;
     for (uint32_t i = 0; i < t->n; ++i) {
         const double at = t->guess[i], rate = m->span->capacity[i] / length;
-        const bool reflects = m->given->emissivity[i] == 0;
+        const bool reflects = m->sources.emissivity[i] == 0;
         t->given[i] = reflects ? at : NAN;
         t->hold[i] = reflects ? 0 : rate / (4 * m->given->sigma * at * at * at);
         t->source[i] = reflects ? 0 : power_of(m, i) + rate * (t->base[i] - at);
@@ -73,7 +79,7 @@ static bool accept_solution(struct march *m, double length) {
     bool agree = true;
     for (uint32_t i = 0; i < t->n; ++i) {
         const double at = t->guess[i], warmed = t->base[i] + length * power_of(m, i) / m->span->capacity[i];
-        const bool reflects = m->given->emissivity[i] == 0;
+        const bool reflects = m->sources.emissivity[i] == 0;
         const double found = reflects ? warmed : t->found[i], ratio = found / at;
         t->solution[i] = reflects ? warmed : at + 0.25 * at * (ratio * ratio * ratio * ratio - 1);
         t->guess[i] = found > at / 2 ? found : at / 2;
@@ -90,7 +96,7 @@ static void balance_energy(struct march *m, double length) {
     for (uint32_t b = 0; b < t->bodies; ++b) left -= m->result.body_power[b];
     for (uint32_t i = 0; i < t->n; ++i) {
         const double rate = m->span->capacity[i] / length, at = t->solution[i];
-        const double stiff = 4 * m->given->sigma * at * at * at * t->area[i] * m->given->emissivity[i];
+        const double stiff = 4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i];
         const double missing = power_of(m, i) + t->power[i] - rate * (at - t->base[i]);
         t->solution[i] += missing / (rate + stiff);
         left += power_of(m, i) - rate * (t->solution[i] - t->base[i]);
@@ -112,6 +118,7 @@ static int solve_stage(struct march *m, int stage, double time, double length) {
     set_outside(m, time);
     m->result.body_power = m->stage_walls[stage];
     for (int k = 0; k < NEWTON_MAX; ++k) {
+        set_surfaces(m);
         linearise(m, length);
         const int status = fibrad_transient_solve(t, &m->sources, &m->result);
         if (status && status != FIBRAD_E_UNSOLVABLE) return status;
@@ -173,7 +180,8 @@ static void accept_step(struct march *m, double step, double error) {
 static double first_step(const struct march *m) {
     const fibrad_transient *t = m->t;
     double hottest = m->given->surroundings, step = m->span->duration;
-    for (uint32_t b = 0; b < t->bodies; ++b) hottest = larger_one(hottest, m->given->body_temperature[b]);
+    for (uint32_t b = 0; b < t->bodies; ++b)
+        hottest = larger_one(m->given->body_temperature[b], hottest); /* NaN, not known: as it was */
     for (uint32_t i = 0; i < t->n; ++i) hottest = larger_one(hottest, t->now[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
     for (uint32_t i = 0; i < t->n; ++i) {
@@ -271,6 +279,7 @@ int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sou
     if (!t || !sources || !span || !surfaces_given(t, sources)) return FIBRAD_E_ARGUMENT;
     int status = check_span(t, sources, span);
     if (!status && !outside_known(t, sources)) status = FIBRAD_E_ARGUMENT;
+    if (!status && span->law && t->config.method != FIBRAD_TRANSIENT_PATCHES) status = FIBRAD_E_ARGUMENT;
     if (!status) status = fibrad_transient_prepare(t, sources);
     if (status) return status;
     struct march m = {.t = t,
@@ -283,6 +292,11 @@ int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sou
     m.sources.temperature = t->given, m.sources.power = t->source;
     m.sources.hold = t->hold, m.sources.reference = t->guess;
     m.sources.body_temperature = t->wall;
+    if (span->law) {
+        memcpy(t->emissivity, sources->emissivity, t->n * sizeof *t->emissivity);
+        for (uint32_t b = 0; b < t->bodies; ++b) t->body_emissivity[b] = sources->body_emissivity[b];
+        m.sources.emissivity = t->emissivity, m.sources.body_emissivity = t->body_emissivity;
+    }
     span->surroundings_energy = span->error = 0;
     span->steps = span->refused = span->sweeps = span->corrections = 0;
     for (uint32_t b = 0; b < t->bodies && span->body_energy; ++b) span->body_energy[b] = 0;

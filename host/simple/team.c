@@ -14,22 +14,32 @@ int fibrad_team_open(fibrad_team *team, const fibrad_run *run) {
     if (run) team->progress = run->progress, team->context = run->context;
     team->work = calloc((size_t)team->threads, sizeof *team->work);
     team->rows = calloc((size_t)team->threads, sizeof *team->rows);
+    team->store = calloc((size_t)team->threads, sizeof *team->store);
     team->error = calloc((size_t)team->threads, sizeof *team->error);
-    if (!team->work || !team->rows || !team->error) return FIBRAD_E_MEMORY;
-    for (int t = 0; t < team->threads; ++t)
-        team->work[t].memory.resize = team->rows[t].memory.resize = fibrad_heap_resize;
+    if (!team->work || !team->rows || !team->store || !team->error) return FIBRAD_E_MEMORY;
+    for (int t = 0; t < team->threads; ++t) {
+        team->work[t].memory.resize = fibrad_heap_resize;
+        team->rows[t].memory = (fibrad_memory){.resize = fibrad_scratch_resize, .context = &team->store[t]};
+    }
     return FIBRAD_OK;
 }
 
 void fibrad_team_close(fibrad_team *team) {
     for (int t = 0; t < team->threads; ++t) {
         if (team->work) free(team->work[t].memory.block);
-        if (team->rows) free(team->rows[t].memory.block);
+        if (team->store) fibrad_scratch_close(&team->store[t]);
     }
     free(team->work);
     free(team->rows);
+    free(team->store);
     free(team->error);
     *team = (fibrad_team){0};
+}
+
+int fibrad_team_scratch(fibrad_team *team, const char *folder) {
+    int status = FIBRAD_OK;
+    for (int t = 0; t < team->threads && !status; ++t) status = fibrad_scratch_open(&team->store[t], folder);
+    return status;
 }
 
 int fibrad_team_report(const fibrad_team *team, const char *stage, uint64_t done, uint64_t total) {
@@ -59,7 +69,7 @@ static void run_tasks(fibrad_team *team, const char *stage, uint32_t tasks, int 
 #pragma omp atomic capture
             count = ++done;
             uint32_t at = k;
-            if (!status && thread == 0 && omp_get_wtime() - reported > INTERVAL) {
+            if (!status && thread == 0 && count < tasks && omp_get_wtime() - reported > INTERVAL) {
                 status = fibrad_team_report(team, stage, count, tasks);
                 if (status) at = 0;
                 reported = omp_get_wtime();

@@ -2,7 +2,7 @@
 #ifndef FIBRAD_SIMPLE_TEAM_H
 #define FIBRAD_SIMPLE_TEAM_H
 
-#include "simple/fibrad_host.h"
+#include "simple/heap.h"
 
 /* Error of the lowest task that failed in a thread. */
 typedef struct fibrad_team_error {
@@ -17,6 +17,7 @@ typedef struct fibrad_team {
     void *context;
     fibrad_work *work;        /* [threads] growing */
     fibrad_rows *rows;        /* [threads] growing */
+    fibrad_scratch *store;    /* [threads] of the rows */
     fibrad_team_error *error; /* [threads] */
     uint32_t triangle;        /* of the last run that failed: the one whose back was seen, or UINT32_MAX */
 } fibrad_team;
@@ -24,6 +25,10 @@ typedef struct fibrad_team {
 /* Makes the team that `run` (NULL: defaults) asks for. Close it also after an error. Errors: _ARGUMENT, _MEMORY. */
 int fibrad_team_open(fibrad_team *team, const fibrad_run *run);
 void fibrad_team_close(fibrad_team *team);
+
+/* Rows, of which there are none yet, go into files of a folder; NULL: they stay on the heap. Errors: as
+ * fibrad_scratch_open. */
+int fibrad_team_scratch(fibrad_team *team, const char *folder);
 
 /* Task `task` by thread `thread`, whose work and rows no other one uses. A status. */
 typedef int fibrad_team_task(void *job, int thread, uint32_t task);

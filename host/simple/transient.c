@@ -71,9 +71,9 @@ static int check_placed(fibrad_transient *t, const fibrad_scene_config *config, 
 
 /* Beams, or nothing yet; and the bed. */
 static int place(fibrad_transient *t, const fibrad_scene_config *scene, const fibrad_spheres *spheres) {
-    struct fibrad_heap_triangles mesh = {.block = NULL};
+    fibrad_triangle_copy mesh = {.block = NULL};
     int status = check_placed(t, scene, spheres);
-    if (!status) status = fibrad_heap_copy(&mesh, scene ? scene->triangles : NULL);
+    if (!status) status = fibrad_heap_triangles(&mesh, scene ? scene->triangles : NULL);
     if (!status && t->config.method != FIBRAD_TRANSIENT_FACTORS) {
         fibrad_run run = run_of(t);
         if (t->radiation) {

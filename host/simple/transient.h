@@ -16,7 +16,7 @@ struct fibrad_transient {
     /* the bed: copies, since factors are made when emissivities are known */
     fibrad_scene_config scene;
     fibrad_body *body; /* [bodies] */
-    struct fibrad_heap_triangles mesh;
+    fibrad_triangle_copy mesh;
     double *at[4]; /* [n] x, y, z, r */
     uint64_t *id;  /* [n] if named */
     bool named;

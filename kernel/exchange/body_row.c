@@ -28,7 +28,8 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     fibrad_workspace *space;
     int status = body_begin(scene, body, rule, part, wall_emissivity);
     if (status == FIBRAD_OK && (work == NULL || row == NULL)) status = FIBRAD_E_ARGUMENT;
-    if (status == FIBRAD_OK) status = fibrad_work_open(work, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
+    if (status == FIBRAD_OK)
+        status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
     if (status != FIBRAD_OK) return status;
     *row = (fibrad_body_row){0};
     if (wall_emissivity[scene->slot[body]] == 0) return FIBRAD_OK;

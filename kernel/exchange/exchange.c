@@ -57,7 +57,7 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
                           .back = UINT32_MAX};
 }
 
-/* The first leg: a beam row, and the error of what it makes spheres absorb. */
+/* The first leg: a beam row, and the error of what it makes spheres and walls absorb. */
 static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_exchange_rule *rule,
                      fibrad_row *row, double *error) {
     fibrad_beam_rule beam = {.directions = rule->directions > 0 ? rule->directions : FIRST_DIRECTIONS,
@@ -70,6 +70,8 @@ static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_
         if (status != FIBRAD_OK) return status;
         double most = 0;
         for (uint32_t k = 0; k < row->length; k++) most = fibrad_max(most, rule->emissivity[row->col[k]]);
+        for (uint32_t b = 0; b < scene->facts.bodies; b++)
+            if (row->body[b] > 0) most = fibrad_max(most, rule->body_emissivity[b]);
         *error = most * row->error;
         double wanted = BEAM_SHARE * rule->tolerance;
         if (!(wanted > 0 && *error > wanted) || beam.directions == FIBRAD_DIRECTIONS_MAX) return FIBRAD_OK;
@@ -210,7 +212,8 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     fibrad_workspace *space;
     int status = exchange_begin(&task, scene, i, rule);
     if (status == FIBRAD_OK && (work == NULL || displacement == NULL)) status = FIBRAD_E_ARGUMENT;
-    if (status == FIBRAD_OK) status = fibrad_work_open(work, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
+    if (status == FIBRAD_OK)
+        status = fibrad_work_open(work, scene, fibrad_tracer_least(), fibrad_tracer_best(scene), &space);
     if (status != FIBRAD_OK) return status;
     if (rule->emissivity[i] == 0) {
         *displacement = (fibrad_displacement){0};

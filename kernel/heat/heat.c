@@ -95,6 +95,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
         *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
     heat->density = fibrad_arena_take(arena, spheres, sizeof(double));
+    heat->reflected = fibrad_arena_take(arena, spheres, sizeof(double));
     heat->row = fibrad_arena_take(arena, spheres, sizeof *heat->row);
     heat->first_link = fibrad_arena_take(arena, spheres + 2, sizeof *heat->first_link);
     heat->order = fibrad_arena_take(arena, spheres, sizeof *heat->order);
@@ -258,7 +259,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task) {
     if (!fibrad_heat_scene_kept(heat) || heat->traced[task]) return FIBRAD_E_STATE;
     const size_t scratch = fibrad_heat_scratch(heat);
     fibrad_workspace *space;
-    int status = fibrad_work_open(work, scratch, scratch, &space);
+    int status = fibrad_work_open(work, heat->scene, scratch, scratch, &space);
     while (status == FIBRAD_OK) {
         status = FIBRAD_VERSION_OF(fibrad_heat_follow, heat->scene->facts.isa)(heat, space, task);
         if (status != FIBRAD_E_WORK) break;

@@ -148,11 +148,11 @@ static fibrad_heat_beam *keep_escapes(const fibrad_heat *heat, fibrad_workspace 
     if (heat->scene->container.walls) kept = UINT64_MAX;
     for (uint64_t bits = points->seen[word]; bits != 0; bits &= bits - 1) {
         const uint32_t p = (uint32_t)__builtin_ctzll(bits), known = work->entries.length;
-        const uint32_t patch = escape_patch(heat, work, frame, points, k, HIT_POINTS * word + p) - first;
-        const uint32_t entry = fibrad_entries_of(&work->entries, heat->spheres + patch / FIBRAD_HEAT_BLOCK);
+        const uint32_t patch = escape_patch(heat, work, frame, points, k, HIT_POINTS * word + p);
+        const uint32_t entry = fibrad_entries_of(&work->entries, fibrad_heat_other(heat, patch));
         fibrad_entries_add(&work->entries, entry, k, 1);
         if ((kept >> p & 1) != 0 || entry == known)
-            *beam++ = (fibrad_heat_beam){entry, leave[p], (uint16_t)(patch % FIBRAD_HEAT_BLOCK), 1};
+            *beam++ = (fibrad_heat_beam){entry, leave[p], (uint16_t)((patch - first) % FIBRAD_HEAT_BLOCK), 1};
     }
     return beam;
 }

@@ -29,7 +29,7 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
         if (scene->wall_area[k] > 0)
             walls += heat->wall[k].size[0] * heat->wall[k].size[1] *
                      (k == FIBRAD_CYLINDER ? 2 * FIBRAD_PI * scene->container.radius : 1);
-    const double blocks = 1 + (double)(heat->patches - fibrad_heat_others(heat)) / FIBRAD_HEAT_BLOCK;
+    const double blocks = FIBRAD_HEAT_OTHERS + (double)(heat->patches - fibrad_heat_others(heat)) / FIBRAD_HEAT_BLOCK;
     const double fraction = fibrad_min(1, solid / (n * spacing * spacing * spacing));
     const double pencils = fibrad_min(fibrad_min(n + blocks, beams), 16 + ROOM_PENCILS * fibrad_sqrt(beams) / fraction);
     const double of_walls = scene->container.walls ? beams * fibrad_min(1, 1.5 * walls / surface) : 0;

@@ -13,14 +13,15 @@
 #define FIBRAD_HEAT_PATCHES_MAX 384   /* of a sphere */
 #define FIBRAD_HEAT_TASK        1024u /* rays of a wall that are followed at a time */
 
-#define FIBRAD_HEAT_BLOCK 256u /* patches of walls that may share a pencil */
+#define FIBRAD_HEAT_BLOCK  256u /* patches of a wall that may share a pencil */
+#define FIBRAD_HEAT_OTHERS 16u  /* bodies that are no spheres, rounded up */
 
-/* Beams from one sphere to another, or to a block of patches that belong to no sphere. Of those followed some are kept;
- * after this follow the patches that they leave and meet, the latter counted from the first of the other end, and how
- * many do: three numbers of 8 bits, or of 16 where spheres have more patches than that; then padding to whole fours of
- * bytes. */
+/* Beams from one sphere to another, or to those of a block of patches that belong to one body, no sphere. Of those
+ * followed some are kept; after this follow the patches that they leave and meet, the latter counted from the first of
+ * the other end, and how many do: three numbers of 8 bits, or of 16 where spheres have more patches than that; then
+ * padding to whole fours of bytes. */
 typedef struct fibrad_heat_pencil {
-    uint32_t body; /* the other sphere, or the number of spheres and that of the block */
+    uint32_t body; /* the other sphere, or what fibrad_heat_other says */
     float share;   /* beams followed for each kept one */
     uint16_t count;
     int16_t tilt; /* 32767 times how many more of them had even directions than odd ones, over all followed */
@@ -101,6 +102,7 @@ struct fibrad_heat {
     double *coarse_emission; /* [bodies] E at the coarser level */
     double *temperature;     /* [bodies] given, or found; NaN: none */
     double *halves;          /* [bodies] by how much the power by even directions exceeds that by odd ones */
+    double *reflected;       /* [spheres] of the beams of each, what bodies reflect that they meet */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_WALLS];                                      /* likewise */
 
@@ -124,6 +126,34 @@ static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall
 }
 static inline uint32_t fibrad_heat_others(const fibrad_heat *heat) { return heat->spheres * heat->config.patches; }
 static inline uint32_t fibrad_heat_open(const fibrad_heat *heat) { return heat->patches - 1; }
+
+/* The number by which pencils go to a patch that is no sphere's; its body, and the first patch of its block. */
+static inline uint32_t fibrad_heat_other(const fibrad_heat *heat, uint32_t patch) {
+    uint32_t body = 0;
+    while (heat->first[heat->spheres + body + 1] <= patch) body++;
+    return heat->spheres + (patch - fibrad_heat_others(heat)) / FIBRAD_HEAT_BLOCK * FIBRAD_HEAT_OTHERS + body;
+}
+static inline uint32_t fibrad_heat_other_body(const fibrad_heat *heat, uint32_t other) {
+    return heat->spheres + (other - heat->spheres) % FIBRAD_HEAT_OTHERS;
+}
+static inline size_t fibrad_heat_other_block(const fibrad_heat *heat, uint32_t other) {
+    return fibrad_heat_others(heat) + (size_t)(other - heat->spheres) / FIBRAD_HEAT_OTHERS * FIBRAD_HEAT_BLOCK;
+}
+
+/* What reflects beyond the patches of wall k does so to the plane that faces it, or in an endless cylinder to itself;
+ * FIBRAD_WALLS: to the surroundings. Between white walls nothing is emitted, and all comes from the surroundings. */
+static inline uint32_t fibrad_heat_facing(const fibrad_heat *heat, uint32_t k) {
+    const uint32_t other = k == FIBRAD_CYLINDER ? k : k ^ 1;
+    const bool white = heat->wall_emissivity[k] == 0 && heat->wall_emissivity[other] == 0;
+    return heat->wall[other].unbounded && !white ? other : FIBRAD_WALLS;
+}
+
+/* What wall k takes of the light that arrives there, reflected any number of times. */
+static inline double fibrad_heat_taken_beyond(const fibrad_heat *heat, uint32_t k) {
+    const uint32_t facing = fibrad_heat_facing(heat, k);
+    const double eps = heat->wall_emissivity[k], other = facing < FIBRAD_WALLS ? heat->wall_emissivity[facing] : 1;
+    return eps / (1 - (1 - eps) * (1 - other));
+}
 
 /* Bytes of each number in pencils. */
 static inline size_t fibrad_heat_number_bytes(const fibrad_heat *heat) {

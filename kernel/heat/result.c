@@ -12,7 +12,7 @@
 #define PATCHES      96.0
 #define WALL_PATCHES .5 /* of walls over that of spheres */
 #define BEAM_ERROR   .7
-#define FEW_ERROR    .25 /* times sqrt(1 - eps), over beams per patch: patches that few leave send back along each */
+#define FEW_ERROR    .25 /* over beams per patch: patches that few leave send back along each */
 #define SAMPLES      3   /* with fewer of a kind, those of the other kind make up for them */
 
 static double squared(double x) { return x * x; }
@@ -29,7 +29,7 @@ typedef struct heat_pool {
 
 typedef struct heat_errors {
     heat_spread all;
-    double few;        /* error over power and sqrt(1 - eps) */
+    double few;        /* error over power, where all that a sphere sends out meets what reflects all */
     double walls;      /* error of what walls send out */
     heat_pool pool[2]; /* of spheres, of walls */
 } heat_errors;
@@ -71,9 +71,10 @@ static double patch_error(const fibrad_heat *heat, uint32_t b) {
 static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const double eps = heat->emissivity[b];
     const double few = b < heat->spheres ? errors->few * heat->power[b] : 0;
+    const double back = b < heat->spheres ? heat->reflected[b] / heat->beams : 0;
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double patches = b < heat->spheres ? patch_error(heat, b) : 0;
-    return squared(beam_error(heat, b)) + squared(patches) + (1 - eps) * squared(few) + squared(seen * errors->walls);
+    return squared(beam_error(heat, b)) + squared(patches) + back * squared(few) + squared(seen * errors->walls);
 }
 
 static heat_errors errors_of(const fibrad_heat *heat) {
@@ -81,7 +82,7 @@ static heat_errors errors_of(const fibrad_heat *heat) {
     heat_errors errors = {.all = spread_over(heat, 0, heat->first[end])};
     if (heat->group == 1) errors.few = FEW_ERROR * heat->config.patches * heat->thin / (2.0 * heat->beams);
     for (uint32_t b = heat->spheres; b < end; b++)
-        errors.walls += squared((1 - heat->emissivity[b]) * BEAM_ERROR * heat->halves[b]);
+        errors.walls += squared((heat->hold[b] >= 0 ? 1 : 1 - heat->emissivity[b]) * BEAM_ERROR * heat->halves[b]);
     errors.walls = fibrad_sqrt(errors.walls);
     for (uint32_t b = 0; b < end; b++) {
         heat_pool *pool = &errors.pool[b >= heat->spheres];
@@ -126,16 +127,76 @@ static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
     result->error_beams = fibrad_sqrt((all - patches) / spheres);
 }
 
-/* Estimated error of the temperature of a body whose power is given: what extrapolation changed of its emission, and
- * what its beams miss, over what it would then emit more. */
-static double temperature_error_of(const fibrad_heat *heat, uint32_t b, double power_error) {
-    const double t = heat->temperature[b], slope = 4 * heat->sigma * t * t * t;
-    if (!(heat->hold[b] >= 0) || !(slope > 0)) return 0;
-    double area = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) area += heat->area[a];
-    const double change = extrapolation_error(heat, heat->emission[b] - heat->coarse_emission[b]);
-    const double missed = power_error / (heat->emissivity[b] * area + heat->hold[b]);
-    return fibrad_sqrt(squared(change) + squared(missed)) / slope;
+/* Whether a body is a wall that is insulated. */
+static bool is_insulated(const fibrad_heat *heat, uint32_t b) {
+    return b >= heat->spheres && b < heat->spheres + FIBRAD_WALLS && heat->insulated[b - heat->spheres];
+}
+
+static bool is_found(const fibrad_heat *heat, uint32_t b) { return heat->hold[b] >= 0 || is_insulated(heat, b); }
+
+/* Squares of what beams miss of the emission of a body, as its own sample says, and of how far it is from all others'
+ * radiosities. */
+static double missed_emission(const fibrad_heat *heat, uint32_t b, double area) {
+    return squared(BEAM_ERROR * heat->halves[b] / area);
+}
+
+/* What extrapolation has changed of it may be wrong by this. */
+static double changed_emission(const fibrad_heat *heat, uint32_t b) {
+    return extrapolation_error(heat, heat->emission[b] - heat->coarse_emission[b]);
+}
+
+static double distance_of(const heat_errors *errors, const heat_spread *own) {
+    return errors->all.variance + squared(own->mean - errors->all.mean);
+}
+
+/* All emissions that are found rise and fall together, as far above those that are given as the powers of these are
+ * wrong: the mean of the latter by power, and the relative error. */
+typedef struct heat_level {
+    double given, error;
+    double missed[2]; /* of spheres, of walls: mean square of what beams miss, over that of distances */
+    double changed;   /* mean square error of spheres from extrapolation, which insulated walls share */
+} heat_level;
+
+static heat_level level_found(const fibrad_heat *heat, const heat_errors *errors) {
+    heat_level level = {0, 0, {0, 0}, 0};
+    double powers = 0, square = 0, distances[2] = {0, 0}, spheres = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const heat_spread own = spread_of(heat, b);
+        if (!(own.area > 0)) continue;
+        if (is_found(heat, b)) {
+            const int kind = b >= heat->spheres;
+            level.missed[kind] += missed_emission(heat, b, own.area), distances[kind] += distance_of(errors, &own);
+            if (kind == 0) level.changed += squared(changed_emission(heat, b)), spheres++;
+        } else {
+            const double power = fibrad_abs(heat->power[b]);
+            level.given += power * heat->emission[b], powers += power;
+            if (b < heat->spheres + FIBRAD_WALLS) square += power_error_of(heat, errors, b);
+        }
+    }
+    if (spheres > 0) level.changed /= spheres;
+    if (powers > 0) level.given /= powers, level.error = fibrad_sqrt(square) / powers;
+    for (int kind = 0; kind < 2; kind++)
+        if (distances[kind] > 0) level.missed[kind] /= distances[kind];
+    return level;
+}
+
+/* Estimated error of a temperature that was found: what extrapolation changed of its emission, what beams miss of it,
+ * one half as its own say and one half as all do, what walls send out wrongly, and what it has in common with all. */
+static double temperature_error_of(const fibrad_heat *heat, const heat_errors *errors, const heat_level *level,
+                                   uint32_t b, double temperature) {
+    const double slope = 4 * heat->sigma * temperature * temperature * temperature;
+    const heat_spread own = spread_of(heat, b);
+    if (!is_found(heat, b) || !(slope > 0) || !(own.area > 0)) return 0;
+    const double eps = heat->emissivity[b], held = fibrad_max(0, heat->hold[b]);
+    const double share = held > 0 ? eps * own.area / (eps * own.area + held) : 1;
+    const double emission = is_insulated(heat, b) ? own.mean : heat->emission[b];
+    const double changed = is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b));
+    const double missed =
+        (missed_emission(heat, b, own.area) + level->missed[b >= heat->spheres] * distance_of(errors, &own)) / 2;
+    const double together =
+        (squared(level->error) + (1 - eps) * squared(errors->few)) * squared(emission - level->given);
+    const double walls = squared(errors->walls / errors->all.area);
+    return fibrad_sqrt(changed + squared(share) * (missed + together + walls)) / slope;
 }
 
 /* The temperature at which an insulated wall would emit what it sends back. */
@@ -148,21 +209,23 @@ static double insulated_temperature(const fibrad_heat *heat, uint32_t b) {
 
 /* Temperatures and their errors. Returns whether all that are unknown were found. */
 static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result *result) {
+    const heat_errors errors = errors_of(heat);
+    const heat_level level = level_found(heat, &errors);
     bool found = true;
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const uint32_t i = heat->order[b];
         if (heat->hold[b] >= 0) found = found && heat->temperature[b] >= 0;
         if (result->temperature != NULL) result->temperature[i] = heat->temperature[b];
         if (result->temperature_error != NULL)
-            result->temperature_error[i] = temperature_error_of(heat, b, beam_error(heat, b));
+            result->temperature_error[i] = temperature_error_of(heat, &errors, &level, b, heat->temperature[b]);
     }
     for (uint32_t k = 0; k < heat->given_bodies; k++) {
         const uint32_t slot = heat->slot[k], b = fibrad_heat_wall_body(heat, slot);
         if (heat->hold[b] >= 0) found = found && heat->temperature[b] >= 0;
-        if (result->body_temperature != NULL)
-            result->body_temperature[k] = heat->insulated[slot] ? insulated_temperature(heat, b) : heat->temperature[b];
+        const double t = heat->insulated[slot] ? insulated_temperature(heat, b) : heat->temperature[b];
+        if (result->body_temperature != NULL) result->body_temperature[k] = t;
         if (result->body_temperature_error != NULL)
-            result->body_temperature_error[k] = temperature_error_of(heat, b, 0);
+            result->body_temperature_error[k] = temperature_error_of(heat, &errors, &level, b, t);
     }
     return found;
 }
@@ -176,6 +239,20 @@ static double absorbed_by(const fibrad_heat *heat, uint32_t b) {
     return heat->emissivity[b] * arrives;
 }
 
+/* Adds to a wall what it takes of what arrives beyond its patches, and the rest to what it faces. */
+static void read_beyond(const fibrad_heat *heat, uint32_t b, fibrad_heat_result *result) {
+    const uint32_t k = heat->slot[b], beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
+    if (a == heat->first[beyond + 1]) return;
+    const double less = heat->radiosity[a] - heat->wall_emission[k];
+    const double taken = fibrad_heat_taken_beyond(heat, k) * (heat->net[a] + heat->area[a] * less);
+    const uint32_t facing = fibrad_heat_facing(heat, k);
+    double *other = &result->surroundings_power;
+    for (uint32_t c = 0; c < heat->given_bodies; c++)
+        if (heat->slot[c] == facing) other = &result->body_power[c];
+    result->body_power[b] += taken;
+    *other += heat->power[beyond] - taken;
+}
+
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
     if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
@@ -184,16 +261,11 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     for (uint32_t b = 0; b < spheres; b++) result->power[heat->order[b]] = heat->power[b];
     result->surroundings_power = heat->power[open];
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
-        const uint32_t k = heat->slot[b], beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
+        const uint32_t k = heat->slot[b];
         result->body_power[b] = heat->power[fibrad_heat_wall_body(heat, k)];
         if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, fibrad_heat_wall_body(heat, k));
-        if (a == heat->first[beyond + 1]) continue;
-        /* beyond its patches the wall takes eps of what comes and reflects the rest to the surroundings */
-        const double less = heat->radiosity[a] - heat->wall_emission[k];
-        const double absorbed = heat->wall_emissivity[k] * (heat->net[a] + heat->area[a] * less);
-        result->body_power[b] += absorbed;
-        result->surroundings_power += heat->power[beyond] - absorbed;
     }
+    for (uint32_t b = 0; b < heat->given_bodies; b++) read_beyond(heat, b, result);
     read_errors(heat, result);
     result->sweeps = heat->sweeps;
     result->residual = heat->scale > 0 ? fibrad_sqrt(heat->slope / heat->scale) : 0;

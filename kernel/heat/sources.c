@@ -125,8 +125,15 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
     heat->drive[b] = source->power + (source->hold > 0 ? source->hold * emission_of(s, source->reference) : 0);
 }
 
-/* What lies beyond the patches of a wall receives no more than the surroundings send, its area being infinite; so it is
- * like a black body of that radiosity. */
+/* What lies beyond the patches of a wall receives no more than the surroundings send, or what it faces, its area being
+ * infinite; so it is like a black body of that radiosity. */
+static double radiosity_beyond(const fibrad_heat *heat, uint32_t k) {
+    const uint32_t facing = fibrad_heat_facing(heat, k);
+    const double taken = fibrad_heat_taken_beyond(heat, k),
+                 other = facing < FIBRAD_WALLS ? heat->wall_emission[facing] : 0;
+    return taken * heat->wall_emission[k] + (1 - taken) * other;
+}
+
 static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double middle) {
     static const radiator absent = {0, 0, 0, 0, 0};
     radiator source[FIBRAD_WALLS];
@@ -140,8 +147,9 @@ static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double mi
         heat->wall_emissivity[k] = source[k].emissivity;
         heat->wall_emission[k] = emits ? emission_of(s, source[k].temperature) : 0;
         set_body(heat, s, middle, fibrad_heat_wall_body(heat, k), &source[k]);
-        set_emission(heat, s, fibrad_heat_beyond(heat, k), 1, heat->wall_emissivity[k] * heat->wall_emission[k]);
     }
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
+        set_emission(heat, s, fibrad_heat_beyond(heat, k), 1, radiosity_beyond(heat, k));
     set_emission(heat, s, heat->bodies - 1, 1, 0);
 }
 

@@ -50,8 +50,7 @@ static void bring(const fibrad_heat *heat, double *own, const double *mine, cons
 /* Where the patches of the other end of a pencil begin. */
 static size_t other_end(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
     const uint32_t spheres = heat->spheres, body = pencil->body;
-    return body < spheres ? (size_t)body * heat->config.patches
-                          : fibrad_heat_others(heat) + (size_t)(body - spheres) * FIBRAD_HEAT_BLOCK;
+    return body < spheres ? (size_t)body * heat->config.patches : fibrad_heat_other_block(heat, body);
 }
 
 /* Many beams meet the few patches that lie beyond the walls and their patches; one sum of all would lose digits. So
@@ -82,6 +81,16 @@ static void take_from_walls(const fibrad_heat *heat, const double *mine, const d
     set_aside(heat, g->walls, g->away);
 }
 
+/* What the other end of a pencil reflects of its beams. */
+static double reflected_beams(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
+    const uint32_t body = pencil->body < heat->spheres ? pencil->body : fibrad_heat_other_body(heat, pencil->body);
+    const double part = (1 - heat->emissivity[body]) * pencil->share;
+    const bool wide = fibrad_heat_number_bytes(heat) == 2;
+    uint32_t beams = 0;
+    for (uint32_t k = 0; k < pencil->count && part > 0; k++) beams += beam_number(pencil, k, HOW_MANY, wide);
+    return part * beams;
+}
+
 static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, const double *mine, double *own,
                             struct gathering *g) {
     const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
@@ -91,6 +100,7 @@ static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, const doubl
         const double area = beam_area(heat, place, pencil);
         bring(heat, own, mine, other, pencil, 0, area);
         if (pencil->body >= heat->spheres) take_from_walls(heat, mine, other, pencil, area, g);
+        if (heat->phase == FIBRAD_HEAT_CHECK) heat->reflected[place] += reflected_beams(heat, pencil);
         at += fibrad_heat_pencil_bytes(heat, pencil);
     }
 }
@@ -117,6 +127,7 @@ static void sweep_sphere(const fibrad_heat *heat, uint32_t place, struct gatheri
     const double *mine = g->areas ? g->none : heat->source + first;
     double *own = heat->gathered + first;
     fibrad_zero(own, heat->config.patches * sizeof *own);
+    heat->reflected[place] = 0;
     sweep_own_beams(heat, place, mine, own, g);
     sweep_beams_of_others(heat, place, mine, own, g);
 }

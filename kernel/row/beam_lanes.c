@@ -18,15 +18,14 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         int built_in = fibrad_disc_points_get(points, &window.set);
         if (built_in != FIBRAD_OK) return built_in;
     }
-    if (fibrad_work_met_missed(work, scene) != FIBRAD_OK) return FIBRAD_E_WORK;
     work->areas.overflow = false;
     work->areas.fallbacks = 0;
     work->windows = directions;
     fibrad_work_begin(work, scene, scene->place[i], rule->cutoff, FIBRAD_BEAM_STRIDE);
     double open[2] = {0, 0}, turn[9], parts[2] = {0, 0};
     if (scene->container.walls) {
-        work->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
-        fibrad_zero(&work->walls, sizeof work->walls);
+        work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
+        fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
     }
     if (rule->turn != 0) fibrad_rotation(rule->turn, turn);
     for (uint32_t k = 0; k < directions; k++) {

@@ -22,6 +22,7 @@ typedef struct mesh_beam {
     double from, to;  /* depths that are looked at */
     double wide;      /* how fast it widens with depth */
     double grain;     /* lengths that may be rounding */
+    double nearest;   /* about the least depth of triangles that come before the window, widened */
     bool spread, cut; /* whether lines have directions of their own; whether triangles may cut sphere i */
 } mesh_beam;
 
@@ -135,9 +136,22 @@ static void cut_surface(fibrad_workspace *work, const fibrad_points *points, con
     }
 }
 
-static void meet_face(fibrad_workspace *work, const mesh_beam *beam, const fibrad_points *points, uint32_t t) {
+/* How deep the middle of the window meets the plane of a face, as far as the face goes. */
+static double depth_of_face(const mesh_face *face) {
+    double n[3];
+    const double *u = face->u, *v = face->v, *z = face->z;
+    n[0] = (v[1] - v[0]) * (z[2] - z[0]) - (z[1] - z[0]) * (v[2] - v[0]);
+    n[1] = (z[1] - z[0]) * (u[2] - u[0]) - (u[1] - u[0]) * (z[2] - z[0]);
+    n[2] = (u[1] - u[0]) * (v[2] - v[0]) - (v[1] - v[0]) * (u[2] - u[0]);
+    const double least = fibrad_max(0, fibrad_min(z[0], fibrad_min(z[1], z[2])));
+    const double depth = n[2] != 0 ? (n[0] * u[0] + n[1] * v[0] + n[2] * z[0]) / n[2] : 0;
+    return fibrad_max(least, fibrad_min(depth, fibrad_max(z[0], fibrad_max(z[1], z[2]))));
+}
+
+static void meet_face(fibrad_workspace *work, mesh_beam *beam, const fibrad_points *points, uint32_t t) {
     const mesh_face face = face_of(work, beam, t);
     if (!face_before(&face, beam)) return;
+    if (beam->wide > 0 && !beam->spread) beam->nearest = fibrad_min(beam->nearest, depth_of_face(&face));
     if (beam->spread)
         meet_lines(work, beam, points, &face, true);
     else
@@ -162,7 +176,7 @@ static bool box_before(const fibrad_mesh_node *node, const mesh_beam *beam, cons
     return !(fibrad_abs(along[0]) - extent[0] > wide || fibrad_abs(along[1]) - extent[1] > wide);
 }
 
-static void meet_tree(fibrad_workspace *work, const mesh_beam *beam, const fibrad_points *points) {
+static void meet_tree(fibrad_workspace *work, mesh_beam *beam, const fibrad_points *points) {
     const fibrad_mesh *mesh = &work->scene->mesh;
     double middle[3];
     for (int axis = 0; axis < 3; axis++) middle[axis] = beam->centre[axis] - mesh->middle[axis];
@@ -281,7 +295,7 @@ static void share_disc(fibrad_workspace *work, fibrad_points *points, uint32_t d
 /* How wide the directions of open lines spread, if the nearest of what they meet is at some depth. */
 static double spread_at(double depth, uint32_t n) {
     const double wide = MESH_SPREAD / fibrad_sqrt(n), ratio = MESH_NEAR / fibrad_max(depth * wide, 1e-300);
-    return ratio < 1 ? wide * fibrad_sqrt(1 - ratio * ratio) : 0;
+    return ratio < 1 && depth < __builtin_inf() ? wide * fibrad_sqrt(1 - ratio * ratio) : 0;
 }
 
 /* Gives open lines directions of their own, and looks what these meet. */
@@ -309,13 +323,9 @@ static void spread_lines(fibrad_workspace *work, mesh_beam *beam, const fibrad_p
 static double share_open(fibrad_workspace *work, mesh_beam *beam, fibrad_points *points, uint32_t k, uint32_t n,
                          double open) {
     fibrad_met *met = work->met;
-    double nearest = __builtin_inf();
     uint64_t taken[4] = {0};
     uint32_t own = 0, lost = 0;
-    for (uint32_t p = 0; p < points->count; p++)
-        if ((points->seen[p / 64] >> p % 64 & 1) != 0 && met->side[p] != FIBRAD_NO_SIDE)
-            nearest = fibrad_min(nearest, met->depth[p]);
-    const double spread = spread_at(nearest, n);
+    const double spread = spread_at(beam->nearest, n);
     if (spread > 0) spread_lines(work, beam, points, k, spread);
     for (uint32_t p = 0; p < points->count; p++) {
         if ((points->seen[p / 64] >> p % 64 & 1) == 0) continue;
@@ -326,7 +336,14 @@ static double share_open(fibrad_workspace *work, mesh_beam *beam, fibrad_points 
         else
             met->side[p] = FIBRAD_NO_SIDE;
     }
-    if (own == 0) return open;
+    if (own == 0) { /* too little for points: where the deepest line ends */
+        const uint32_t slot =
+            met->deepest != FIBRAD_NO_SIDE ? fibrad_scene_slot(work->scene, met->deepest) : FIBRAD_NONE;
+        if (slot == FIBRAD_NONE) return open;
+        const uint32_t entry = fibrad_entries_of(&work->entries, work->scene->facts.spheres + slot);
+        fibrad_entries_add(&work->entries, entry, k, open);
+        return 0;
+    }
     for (uint32_t word = 0; word < 4; word++) points->seen[word] &= ~taken[word];
     points->open = own - lost;
     set_weights(met, taken, open / own);
@@ -350,6 +367,15 @@ static double deepest_of(const fibrad_workspace *work, const fibrad_points *poin
     return deepest;
 }
 
+/* The side that the deepest of all lines meets. */
+static void note_deepest(fibrad_met *met, uint32_t count) {
+    double deepest = -__builtin_inf();
+    met->deepest = FIBRAD_NO_SIDE;
+    for (uint32_t p = 0; p < count; p++)
+        if (met->side[p] != FIBRAD_NO_SIDE && met->depth[p] > deepest)
+            deepest = met->depth[p], met->deepest = met->side[p];
+}
+
 double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k,
                                 double open) {
     fibrad_met *met = work->met;
@@ -358,8 +384,10 @@ double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], f
     const uint32_t n = work->windows;
     const double deepest = deepest_of(work, points, open);
     mesh_beam beam = {.frame = frame,
-                      .cut = work->clear_mesh<1, .wide = open> 0 ? 1.0001 * MESH_SPREAD / fibrad_sqrt(n) : 0,
+                      .cut = work->clear_mesh < 1,
+                      .nearest = __builtin_inf(),
                       .grain = work->scene->mesh.grain * work->inverse};
+    if (open > 0) beam.wide = 1.0001 * MESH_SPREAD / fibrad_sqrt(n);
     met->spread = false;
     met->any = fibrad_mesh_near(work, deepest);
     if (!met->any) return open;
@@ -371,8 +399,8 @@ double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], f
         met->depth[p] = __builtin_inf(), met->side[p] = FIBRAD_NO_SIDE;
     }
     meet_mesh(work, &beam, used, deepest);
-    met->any = false;
-    for (uint32_t p = 0; p < used->count; p++) met->any = met->any || met->side[p] != FIBRAD_NO_SIDE;
+    note_deepest(met, used->count);
+    met->any = met->deepest != FIBRAD_NO_SIDE || (open > 0 && spread_at(beam.nearest, n) > 0);
     if (!met->any) return open;
     for (uint32_t word = 0; word < used->count / 64; word++) used->seen[word] = UINT64_MAX;
     for (uint32_t c = 1; by_areas && c < work->areas.circles; c++)

@@ -35,7 +35,7 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
     fibrad_row own = *row;
     fibrad_workspace *space;
     own.beyond = 0;
-    int status = fibrad_work_open(work, method->extra_min, method->extra_best, &space);
+    int status = fibrad_work_open(work, scene, method->extra_min, method->extra_best, &space);
     while (status == FIBRAD_OK) {
         status = attempt(scene, space, i, method, rows, &own);
         if (status == FIBRAD_OK) break;

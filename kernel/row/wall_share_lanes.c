@@ -143,15 +143,10 @@ static vd exit_known(const fibrad_wall_view *view, const vd origin[3], const vd 
     return vd_max(least, zero);
 }
 
-/* A line in the frame of sphere i. */
-typedef struct wall_line {
-    double origin[3], w[3];
-} wall_line;
-
 /* One of the lines in lanes. */
-static wall_line line_of_lane(const wall_lines *lines, int lane) {
+static fibrad_wall_line line_of_lane(const wall_lines *lines, int lane) {
     _Alignas(64) double at[VD_LANES], along[VD_LANES];
-    wall_line line;
+    fibrad_wall_line line;
     for (int axis = 0; axis < 3; axis++) {
         vd_store(at, lines->origin[axis]);
         vd_store(along, lines->w[axis]);
@@ -160,35 +155,15 @@ static wall_line line_of_lane(const wall_lines *lines, int lane) {
     return line;
 }
 
-/* Sums over the points of a window in one octant: by wall, eight apart so that their order is the same in every
- * instruction set. */
-typedef struct octant_sums {
-    _Alignas(64) double all[4][8], open[4][8], u[4][8], v[4][8]; /* shares; those of open points; times u; times v */
-    uint32_t octant;
-} octant_sums;
-
-/* Open lines that are cut before they meet a wall, by the wall they would meet: how many, and the first of them. */
-typedef struct cut_lines {
-    uint32_t count[FIBRAD_WALLS + 1];
-    wall_line first[FIBRAD_WALLS + 1];
-} cut_lines;
-
-/* Sums over the points of a window. */
-typedef struct point_sums {
-    octant_sums part[8];
-    uint32_t octants;
-    cut_lines cuts;
-} point_sums;
-
-static void begin_sums(const fibrad_wall_window *window, const fibrad_wall_view *view, point_sums *sums) {
+static void begin_sums(const fibrad_wall_window *window, const fibrad_wall_view *view, fibrad_point_sums *sums) {
     sums->octants = 0;
     for (uint32_t octant = 0; octant < 8; octant++) {
         if (!fibrad_wall_window_has(window, view, octant)) continue;
-        octant_sums *part = &sums->part[sums->octants++];
+        fibrad_octant_sums *part = &sums->part[sums->octants++];
         fibrad_zero(part, sizeof *part);
         part->octant = octant;
     }
-    for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) sums->cuts.count[wall] = 0;
+    for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) sums->cuts[wall] = 0;
 }
 
 static inline void add_lanes(double *at, vd x) { vd_store(at, vd_load(at) + x); }
@@ -202,7 +177,7 @@ static vd on_side(vd x, uint32_t octant, uint32_t axis) {
 /* Adds the lines of an octant, one of several: which wall they meet depends on w, but along other axes than the wall's
  * it is wide that decides the octant, so that walls close by have both. hidden: `all` alone. */
 FIBRAD_INLINE void add_octant(const wall_lines *lines, bool round, bool several, bool hidden, vd weight, uint32_t place,
-                              octant_sums *part) {
+                              fibrad_octant_sums *part) {
     const uint32_t begin = round ? 2 : 0, end = round ? 4 : 3;
     vd own[3], wide[3];
     for (uint32_t axis = 0; axis < 3; axis++) own[axis] = wide[axis] = vd_set1(1);
@@ -229,10 +204,10 @@ FIBRAD_INLINE void add_octant(const wall_lines *lines, bool round, bool several,
 }
 
 /* Counts the lines given by bits, which are cut. */
-static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint32_t bits, cut_lines *cuts) {
+static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint32_t bits, fibrad_point_sums *sums) {
     for (; bits != 0; bits &= bits - 1) {
         const int lane = __builtin_ctz(bits);
-        const wall_line line = line_of_lane(lines, lane);
+        const fibrad_wall_line line = line_of_lane(lines, lane);
         uint32_t wall = FIBRAD_WALLS;
         double most = 0;
         for (uint32_t n = 0; n < 4; n++) {
@@ -244,20 +219,20 @@ static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint
             most = share[lane];
             wall = n == 3 ? FIBRAD_CYLINDER : there ? 2 * n + up : FIBRAD_WALLS;
         }
-        if (cuts->count[wall]++ == 0) cuts->first[wall] = line;
+        if (sums->cuts[wall]++ == 0) sums->first_cut[wall] = line;
     }
 }
 
 /* Takes open lines that are cut out of the weight, and counts them. */
-static vd weight_uncut(const fibrad_wall_view *view, const wall_lines *lines, vd weight, cut_lines *cuts) {
+static vd weight_uncut(const fibrad_wall_view *view, const wall_lines *lines, vd weight, fibrad_point_sums *sums) {
     vm cut = vd_lt(exit_known(view, lines->origin, lines->w), lines->nearest);
-    add_cuts(view, lines, vm_bits(cut & vd_lt(vd_set1(0), weight)), cuts);
+    add_cuts(view, lines, vm_bits(cut & vd_lt(vd_set1(0), weight)), sums);
     return vd_select(cut, vd_set1(0), weight);
 }
 
 /* Traces the points of a window in directions from its disc. */
 FIBRAD_INLINE void follow_points(const fibrad_points *points, const fibrad_wall_view *view, bool round,
-                                 const double frame[9], const fibrad_wall_window *window, point_sums *sums) {
+                                 const double frame[9], const fibrad_wall_window *window, fibrad_point_sums *sums) {
     const bool hidden = window->open == 0, several = sums->octants > 1;
     for (uint32_t word = 0; word < points->count / 64; word++) {
         _Alignas(64) float a[64], b[64], open[64];
@@ -280,7 +255,7 @@ FIBRAD_INLINE void follow_points(const fibrad_points *points, const fibrad_wall_
                 lines.wide[axis] = frame[6 + axis] + aside * window->wide;
             }
             meet_walls(window, view, round, &lines);
-            if (view->cut) weight = weight_uncut(view, &lines, weight, &sums->cuts);
+            if (view->cut) weight = weight_uncut(view, &lines, weight, sums);
             for (uint32_t part = 0; part < sums->octants; part++)
                 add_octant(&lines, round, several, hidden, weight, lane % 8, &sums->part[part]);
         }
@@ -291,8 +266,9 @@ static double of_eight(const double *s) { return ((s[0] + s[4]) + (s[1] + s[5]))
 
 /* Adds to the regions what the points of a window say: the open part in proportion to open points, and the slope times
  * what the mean direction of a wall's points is off that of all, as far as no point gets less than nothing. */
-static void add_points(fibrad_workspace *work, const fibrad_points *points, const fibrad_wall_window *window,
-                       const double slope[2], const point_sums *sums) {
+static void add_points(fibrad_wall_room *walls, const fibrad_points *points, const fibrad_wall_window *window,
+                       const double slope[2]) {
+    const fibrad_point_sums *sums = &walls->window;
     double shares = 0, mean_u = 0, mean_v = 0;
     for (uint32_t part = 0; part < sums->octants; part++)
         for (int n = 0; n < 4; n++) {
@@ -303,86 +279,84 @@ static void add_points(fibrad_workspace *work, const fibrad_points *points, cons
     const double steepest = 1.5 * window->spread * fibrad_sqrt(slope[0] * slope[0] + slope[1] * slope[1]);
     const double counts = steepest > window->open ? window->open / steepest : 1, each = 1.0 / points->open;
     for (uint32_t part = 0; part < sums->octants; part++)
-        for (uint32_t n = work->view.round ? 2 : 0; n < (work->view.round ? 4u : 3u); n++) {
-            const octant_sums *of = &sums->part[part];
+        for (uint32_t n = walls->view.round ? 2 : 0; n < (walls->view.round ? 4u : 3u); n++) {
+            const fibrad_octant_sums *of = &sums->part[part];
             const double open = of_eight(of->open[n]), all = of_eight(of->all[n]) / points->count;
             const double u = of_eight(of->u[n]) - open * mean_u, v = of_eight(of->v[n]) - open * mean_v;
             const double got = (window->open * open + counts * (slope[0] * u + slope[1] * v)) * each;
-            fibrad_wall_window_add(window, 4 * of->octant + n, got, all, &work->walls);
+            fibrad_wall_window_add(window, 4 * of->octant + n, got, all, &walls->sums);
         }
 }
 
 /* Shares a window by lines. */
 static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, const fibrad_wall_window *window) {
-    const fibrad_wall_view *view = &work->view;
+    fibrad_wall_room *walls = work->walls;
+    fibrad_point_sums *sums = &walls->window;
     double axes[9], cos = 1, sin = 0;
-    fibrad_points own;
     fibrad_copy(axes, window->frame, sizeof axes);
     if (points->count == 0) {
         fibrad_azimuth(5 * window->k % FIBRAD_DIRECTIONS_MAX, &cos, &sin);
         rotate_frame(axes, cos, sin);
-        open_points(work, cos, sin, &own);
-        points = &own;
+        open_points(work, cos, sin, &walls->points);
+        points = &walls->points;
     }
     const double slope[2] = {cos * window->slope[0] + sin * window->slope[1],
                              cos * window->slope[1] - sin * window->slope[0]};
-    point_sums sums;
-    begin_sums(window, view, &sums);
-    if (view->round)
-        follow_points(points, view, true, axes, window, &sums);
+    begin_sums(window, &walls->view, sums);
+    if (walls->view.round)
+        follow_points(points, &walls->view, true, axes, window, sums);
     else
-        follow_points(points, view, false, axes, window, &sums);
-    add_points(work, points, window, slope, &sums);
+        follow_points(points, &walls->view, false, axes, window, sums);
+    add_points(walls, points, window, slope);
     for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) {
-        if (sums.cuts.count[wall] == 0) continue; /* the way of one decides for all that would meet the same wall */
-        const wall_line *first = &sums.cuts.first[wall];
-        work->wall[fibrad_work_met(work, first->origin, first->w)] +=
-            window->open * sums.cuts.count[wall] / points->open;
+        if (sums->cuts[wall] == 0) continue; /* the way of one decides for all that would meet the same wall */
+        const fibrad_wall_line *first = &sums->first_cut[wall];
+        work->wall[fibrad_work_met(work, first->origin, first->w)] += window->open * sums->cuts[wall] / points->open;
     }
 }
 
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
                                const fibrad_beam_rule *rule, double rest) {
     if (rest == 0) {
-        work->walls.hidden[k / 64] |= UINT64_C(1) << k % 64;
+        work->walls->sums.hidden[k / 64] |= UINT64_C(1) << k % 64;
         return;
     }
     const double whole = rule->points > 0 ? rule->points : FIBRAD_PI;
     fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .open = rest, .part = 1};
     window.hidden = fibrad_max(0, whole - rest);
     if (points->count > 0) window.part = 0.4 + 0.6 * rest / whole;
-    if (work->view.cut) window.part *= 1.25; /* no solid angle mends what the discs cover unevenly */
+    if (work->walls->view.cut) window.part *= 1.25; /* no solid angle mends what the discs cover unevenly */
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
-    fibrad_wall_window_begin(&window, &work->view);
-    if (!fibrad_wall_window_simple(&window, &work->view, rule->turn != 0, &work->walls))
+    fibrad_wall_window_begin(&window, &work->walls->view);
+    if (!fibrad_wall_window_simple(&window, &work->walls->view, rule->turn != 0, &work->walls->sums))
         share_by_lines(work, points, &window);
 }
 
 /* Adds to the regions what there would be to see in windows that are hidden. */
 static void add_hidden(fibrad_workspace *work, const fibrad_beam_rule *rule) {
-    fibrad_points all;
+    fibrad_points *all = &work->walls->points;
     double turn[9];
-    all_points(HIDDEN_POINTS, &all);
+    all_points(HIDDEN_POINTS, all);
     if (rule->turn != 0) fibrad_rotation(rule->turn, turn);
     for (uint32_t k = 0; k < rule->directions; k++) {
-        if ((work->walls.hidden[k / 64] >> k % 64 & 1) == 0) continue;
+        if ((work->walls->sums.hidden[k / 64] >> k % 64 & 1) == 0) continue;
         double frame[9];
         fibrad_beam_frame(k, rule->directions, HIDDEN_POINTS, frame);
         if (rule->turn != 0) fibrad_rotate_axes(turn, frame);
         fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .hidden = 1, .part = 1};
-        fibrad_wall_window_begin(&window, &work->view);
-        if (!fibrad_wall_window_simple(&window, &work->view, rule->turn != 0, &work->walls))
-            share_by_lines(work, &all, &window);
+        fibrad_wall_window_begin(&window, &work->walls->view);
+        if (!fibrad_wall_window_simple(&window, &work->walls->view, rule->turn != 0, &work->walls->sums))
+            share_by_lines(work, all, &window);
     }
 }
 
 void LANED(fibrad_walls_complete)(fibrad_workspace *work, const fibrad_beam_rule *rule, double parts[2]) {
     double open = 0;
     for (uint32_t region = 0; region < FIBRAD_REGIONS; region++)
-        for (int part = 0; part < 4; part++) open += work->walls.open[region][part];
+        for (int part = 0; part < 4; part++) open += work->walls->sums.open[region][part];
     parts[0] = parts[1] = 0;
     if (!(open > 0)) return;
-    const double apart = fibrad_wall_apart(&work->view);
+    const double apart = fibrad_wall_apart(&work->walls->view);
     if (apart > 0) add_hidden(work, rule);
-    fibrad_wall_factors(&work->walls, &work->view, rule->directions, apart, work->wall, parts);
+    fibrad_wall_factors(&work->walls->sums, &work->walls->view, rule->directions, apart, work->wall, parts);
 }

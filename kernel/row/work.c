@@ -18,7 +18,7 @@
 #define LEAST_COUNT 4u
 
 /* Takes the arrays of `work` from the arena; the object itself is to be copied to the address returned.
- * FIBRAD_WORK_BYTES in fibrad.h must be kept above what this takes. */
+ * FIBRAD_WORK_BYTES and _WALLS in fibrad.h must be kept above what this takes. */
 static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan *plan, fibrad_workspace *work) {
     fibrad_workspace *place = fibrad_arena_take(arena, 1, sizeof *work);
     work->plan = work->needed = *plan;
@@ -66,7 +66,8 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     entries->angles = fibrad_arena_take(arena, entries->capacity, sizeof(double));
     for (int list = 0; list < 2; list++)
         entries->key[list] = fibrad_arena_take(arena, entries->capacity, sizeof(uint64_t));
-    work->met = plan->met > 0 ? fibrad_arena_take(arena, 1, sizeof *work->met) : NULL;
+    if (plan->walls > 0) work->walls = fibrad_arena_take(arena, 1, sizeof *work->walls);
+    if (plan->met > 0) work->met = fibrad_arena_take(arena, 1, sizeof *work->met);
     work->extra = fibrad_arena_take(arena, plan->extra, 1);
     return place;
 }
@@ -133,7 +134,7 @@ static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t
 /* Lays out a plan in the block, in a larger one, or as much of it as there is room for, but no less than `least`. */
 static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan *least, fibrad_workspace **space) {
     fibrad_memory *memory = &work->memory;
-    const fibrad_work_plan wanted = {least->near, plan.discs, plan.entries, least->extra, least->met};
+    const fibrad_work_plan wanted = {plan.walls, plan.met, least->near, plan.discs, plan.entries, least->extra};
     size_t bytes = bytes_of(&plan);
     if (bytes == 0) return FIBRAD_E_ARGUMENT;
     work->inside = NULL;
@@ -151,24 +152,27 @@ static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan 
     return *space != NULL ? FIBRAD_OK : FIBRAD_E_WORK;
 }
 
-int fibrad_work_open(fibrad_work *work, size_t extra_min, size_t extra_best, fibrad_workspace **space) {
+int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_min, size_t extra_best,
+                     fibrad_workspace **space) {
+    const uint32_t walls = scene->container.walls, met = scene->mesh.triangles > 0;
     if (work->memory.block != NULL && work->memory.size == 0) return FIBRAD_E_ARGUMENT;
     fibrad_workspace *inside = inside_of(work);
-    fibrad_work_plan plan = {USUAL_NEAR, USUAL_DISCS, USUAL_ENTRIES, extra_best, 0};
-    const fibrad_work_plan least = {LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min, 0};
-    if (inside != NULL && inside->plan.extra >= extra_min) {
+    fibrad_work_plan plan = {walls, met, USUAL_NEAR, USUAL_DISCS, USUAL_ENTRIES, extra_best};
+    const fibrad_work_plan least = {walls, met, LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min};
+    if (inside != NULL && inside->plan.extra >= extra_min && inside->plan.walls >= walls && inside->plan.met >= met) {
         inside->least = least;
         *space = inside;
         return FIBRAD_OK;
     }
     if (inside != NULL) {
         plan = inside->plan;
+        plan.walls = walls;
         plan.extra = extra_best;
     }
     const int status = fit(work, plan, &least, space);
     if (status == FIBRAD_OK) (*space)->least = least;
     if (status == FIBRAD_E_WORK) { /* what most rows of a packed bed take, not what is fastest */
-        const fibrad_work_plan enough = {LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min, 0};
+        const fibrad_work_plan enough = {walls, met, LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min};
         work->memory.needed = bytes_of(&enough);
     }
     return status;
@@ -177,13 +181,13 @@ int fibrad_work_open(fibrad_work *work, size_t extra_min, size_t extra_best, fib
 int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     const fibrad_workspace *now = *space;
     fibrad_work_plan plan = now->plan, least = now->least;
+    plan.walls = least.walls;
     const fibrad_work_plan needed = now->needed;
     /* what has been too small once in this call must not shrink again */
     if (needed.near > plan.near) plan.near = least.near = needed.near;
     if (needed.discs > plan.discs) least.discs = plan.discs + 1, plan.discs = needed.discs;
     if (needed.entries > plan.entries) least.entries = plan.entries + 1, plan.entries = needed.entries;
     if (needed.extra > plan.extra) plan.extra = least.extra = needed.extra;
-    if (needed.met > plan.met) plan.met = least.met = needed.met;
     const int status = fit(work, plan, &least, space);
     if (status == FIBRAD_OK) (*space)->least = least;
     return status;
@@ -200,13 +204,6 @@ int fibrad_work_entries_missed(fibrad_workspace *space) {
 int fibrad_work_discs_missed(fibrad_workspace *space) {
     const uint32_t met = space->disc.count, room = space->disc.capacity;
     space->needed.discs = met > 2 * room ? met : 2 * room;
-    return FIBRAD_E_WORK;
-}
-
-int fibrad_work_met_missed(fibrad_workspace *space, const fibrad_scene *scene) {
-    if (scene->mesh.triangles == 0 || space->plan.met > 0) return FIBRAD_OK;
-    space->needed = space->plan;
-    space->needed.met = 1;
     return FIBRAD_E_WORK;
 }
 

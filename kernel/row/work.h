@@ -43,18 +43,28 @@ typedef struct fibrad_met {
     float aside[2][FIBRAD_MET_POINTS];            /* of the line's direction, along u and v, if spread */
     uint32_t side[FIBRAD_MET_POINTS];             /* of the mesh; FIBRAD_NO_SIDE: no triangle */
     fibrad_points points;                         /* which they are; of windows by areas also what is open */
+    uint32_t deepest;                             /* the side that the deepest line meets */
     bool any, spread;                             /* whether there are such points in the window in hand */
 } fibrad_met;
 
 #define FIBRAD_WORK_MAX (1u << 28)
 
+/* What a beam row among walls takes: the walls, what its windows give to them, and the window in hand. */
+typedef struct fibrad_wall_room {
+    fibrad_wall_view view;
+    fibrad_wall_sums sums;
+    fibrad_point_sums window;
+    fibrad_points points; /* of the window, if the row has none */
+} fibrad_wall_room;
+
 /* What work memory is laid out for, or is asked for. */
 typedef struct fibrad_work_plan {
+    uint32_t walls;   /* 1: rows may be among walls */
+    uint32_t met;     /* 1: among triangles */
     uint32_t near;    /* near spheres kept per row for all its directions; a matter of speed alone for beams and rays */
     uint32_t discs;   /* spheres met in one window, hidden ones included */
     uint32_t entries; /* different spheres seen by one row */
     size_t extra;     /* bytes for what other methods keep */
-    uint32_t met;     /* 1: windows meet triangles */
 } fibrad_work_plan;
 
 /* The inside of a fibrad_work. Nothing but `extra` outlives a call. */
@@ -72,25 +82,25 @@ typedef struct fibrad_workspace {
     uint64_t extra_owner; /* whose contents `extra` has, 0: nobody's; methods have numbers of their own */
     /* the row in hand */
     const fibrad_scene *scene;
-    uint32_t place;        /* of sphere i in the scene */
-    double unit, inverse;  /* its radius [L], and 1/radius */
-    double centre[3];      /* [L] */
-    double reach;          /* the cutoff; infinity if there is none */
-    double step, growth;   /* depth of the first shell, and the ratio of each next one to it */
-    double farthest;       /* no sphere is farther from i; infinity with periodic axes */
-    double clear;          /* no window has its horizon nearer than this */
-    double clear_mesh;     /* no triangle is nearer to the centre than this */
-    uint32_t windows;      /* of a beam row */
-    uint32_t back;         /* a triangle that was seen from a side that is nobody's; UINT32_MAX: none */
-    bool cut;              /* whether lines are cut: there is a cutoff, or a known region */
-    fibrad_wall_view view; /* of a beam row among walls, and what its windows give to them */
-    fibrad_wall_sums walls;
+    uint32_t place;            /* of sphere i in the scene */
+    double unit, inverse;      /* its radius [L], and 1/radius */
+    double centre[3];          /* [L] */
+    double reach;              /* the cutoff; infinity if there is none */
+    double step, growth;       /* depth of the first shell, and the ratio of each next one to it */
+    double farthest;           /* no sphere is farther from i; infinity with periodic axes */
+    double clear;              /* no window has its horizon nearer than this */
+    double clear_mesh;         /* no triangle is nearer to the centre than this */
+    uint32_t windows;          /* of a beam row */
+    uint32_t back;             /* a triangle that was seen from a side that is nobody's; UINT32_MAX: none */
+    bool cut;                  /* whether lines are cut: there is a cutoff, or a known region */
+    fibrad_wall_room *walls;   /* NULL: there is no room for any */
     double wall[FIBRAD_SLOTS]; /* what meets each wall, escapes, or is beyond: areas, points or rays, then factors */
 } fibrad_workspace;
 
-/* Lays work memory out, or finds it laid out, with `extra_min` extra bytes at least and `extra_best` at best.
- * Errors: FIBRAD_E_ARGUMENT, _WORK (memory.needed is written), _MEMORY. */
-int fibrad_work_open(fibrad_work *work, size_t extra_min, size_t extra_best, fibrad_workspace **space);
+/* Lays work memory out for a scene, or finds it laid out, with `extra_min` extra bytes at least and `extra_best` at
+ * best. Errors: FIBRAD_E_ARGUMENT, _WORK (memory.needed is written), _MEMORY. */
+int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_min, size_t extra_best,
+                     fibrad_workspace **space);
 
 /* Lays it out anew after the kernel's own FIBRAD_E_WORK, for what (*space)->needed asks. Errors: _WORK, _MEMORY. */
 int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space);
@@ -101,9 +111,6 @@ int fibrad_work_entries_missed(fibrad_workspace *space);
 
 /* Notes that more discs are needed, by what the window in hand has met, and returns FIBRAD_E_WORK. */
 int fibrad_work_discs_missed(fibrad_workspace *space);
-
-/* FIBRAD_E_WORK, as above, if a scene has triangles and there is no room for points that meet them; else FIBRAD_OK. */
-int fibrad_work_met_missed(fibrad_workspace *space, const fibrad_scene *scene);
 
 /* Depth of the shells: the first one `first` mean spacings, the spacing being the cube root of the volume per
  * sphere, each next one `growth` times as deep. A matter of speed alone. */

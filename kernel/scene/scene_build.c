@@ -345,8 +345,11 @@ static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fi
         return status;
     }
     const fibrad_mesh *mesh = &scene->mesh;
-    for (uint32_t b = 0; b < config->bodies; b++)
-        if (mesh_of[b] != FIBRAD_NO_MESH) scene->wall_area[scene->slot[b]] = fibrad_mesh_area(mesh, mesh_of[b]);
+    for (uint32_t b = 0; b < config->bodies; b++) {
+        if (mesh_of[b] == FIBRAD_NO_MESH) continue;
+        const double area = scene->wall_area[scene->slot[b]] = fibrad_mesh_area(mesh, mesh_of[b]);
+        if (!(area > 0 && fibrad_finite(area))) return scene_fault(FIBRAD_E_ARGUMENT, fault, n, n);
+    }
     double before[3], distance = 0;
     fibrad_copy(before, mesh->high, sizeof before); /* a corner of the box: the box is as far as its diagonal */
     for (int axis = 0; axis < 3; axis++) distance += mesh->high[axis] - mesh->low[axis];

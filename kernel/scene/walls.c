@@ -26,7 +26,10 @@ int fibrad_walls_check(const fibrad_scene_config *config) {
     if (config->bodies > 0 && config->body == NULL) return FIBRAD_E_ARGUMENT;
     if (config->bodies > FIBRAD_BODIES_MAX) return FIBRAD_E_UNSUPPORTED;
     for (uint32_t b = 0; b < config->bodies; b++) {
-        if (config->body[b].kind == FIBRAD_BODY_MESH) continue;
+        if (config->body[b].kind == FIBRAD_BODY_MESH) {
+            if (config->triangles == NULL || config->triangles->n == 0) return FIBRAD_E_ARGUMENT;
+            continue;
+        }
         const uint32_t slot = slot_of_body(&config->body[b]);
         if (slot == FIBRAD_WALLS || found[slot] != NULL) return FIBRAD_E_ARGUMENT;
         if (slot < FIBRAD_CYLINDER && config->period[slot / 2] > 0) return FIBRAD_E_ARGUMENT;

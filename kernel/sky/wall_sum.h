@@ -30,6 +30,26 @@ typedef struct fibrad_wall_sums {
     uint64_t hidden[FIBRAD_DIRECTIONS_MAX / 64]; /* bit k: window k is hidden, and not counted in `all` */
 } fibrad_wall_sums;
 
+/* Sums over the points of a window in one octant: by wall, eight apart so that their order is the same in every
+ * instruction set. */
+typedef struct fibrad_octant_sums {
+    _Alignas(64) double all[4][8], open[4][8], u[4][8], v[4][8]; /* shares; those of open points; times u; times v */
+    uint32_t octant;
+} fibrad_octant_sums;
+
+/* A line in the frame of a sphere. */
+typedef struct fibrad_wall_line {
+    double origin[3], w[3];
+} fibrad_wall_line;
+
+/* Sums over the points of a window; and open lines that are cut before they meet a wall, by the wall they would meet:
+ * how many, and the first of them. */
+typedef struct fibrad_point_sums {
+    fibrad_octant_sums part[8];
+    uint32_t octants, cuts[FIBRAD_WALLS + 1];
+    fibrad_wall_line first_cut[FIBRAD_WALLS + 1];
+} fibrad_point_sums;
+
 /* How much of `all` a region should have, as a part of all windows: solid angles over 4 pi, from the centre. */
 void fibrad_wall_sky(const fibrad_wall_view *view, double sky[FIBRAD_REGIONS]);
 

@@ -84,7 +84,8 @@ static void make(const struct scene *s) {
 
 /* ---- what is hashed --------------------------------------------------------------------------------------------- */
 
-static unsigned char scene_memory[FIBRAD_SCENE_BYTES(SPHERES)], work_memory[FIBRAD_WORK_BYTES(DISCS, SPHERES)];
+static unsigned char scene_memory[FIBRAD_SCENE_BYTES(SPHERES)],
+    work_memory[FIBRAD_WORK_BYTES(DISCS, SPHERES) + FIBRAD_WORK_WALLS];
 static unsigned char rows_memory[SPHERES * (12 * SPHERES + 128)], matrix_memory[SPHERES * (36 * SPHERES + 512)];
 static fibrad_work work = {.memory = {.block = work_memory, .size = sizeof work_memory}}; /* of all that follows */
 static fibrad_rows rows = {.memory = {.block = rows_memory, .size = sizeof rows_memory}};

@@ -153,6 +153,13 @@ def test_cutoff_and_drop(small):
     assert len(dropped.data) < 0.9 * len(fibrad.view_factors(small.x, small.r).data) and sums(dropped) == pytest.approx(1, abs=1e-12)
 
 
+def test_scratch(small, tmp_path):
+    kept = fibrad.exchange_factors(small.x, small.r, 0.5, paths=20, directions=8)
+    filed = fibrad.exchange_factors(small.x, small.r, 0.5, paths=20, directions=8, scratch=tmp_path)
+    assert same(kept, filed) and not list(tmp_path.iterdir())
+    assert same(fibrad.view_factors(small.x, small.r), fibrad.view_factors(small.x, small.r, scratch=str(tmp_path)))
+
+
 def test_walls():
     """An infinite plane takes one half of what a sphere sends, a side of a cube about it a sixth."""
     plane = fibrad.view_factors([[0, 0, 3]], 1, walls={"zmin": 0})
@@ -266,7 +273,7 @@ def test_beds_that_cannot_be(x, r, text, spheres):
 @pytest.mark.parametrize("options, text", [
     ({"directions": 7}, r"directions = 7 is not in \[8, 65536\]"), ({"points": 65}, "neither 64, 128 nor 256"),
     ({"tolerance": -1}, "tolerance"), ({"threads": -1}, "threads"), ({"threads": 2000}, "threads"),
-    ({"cutoff": np.nan}, "cutoff"), ({"drop": 2}, "drop"), ({"seed": -1, "method": "mc"}, "seed"),
+    ({"cutoff": np.nan}, "cutoff"), ({"drop": 2}, "drop"), ({"scratch": "/no/folder"}, "is no folder"), ({"seed": -1, "method": "mc"}, "seed"),
     ({"method": "magic"}, "no method 'magic'; there are beam"), ({"rays": 5}, "rays: not of the method 'beam'"),
     ({"method": "surface", "nodes": 54}, "not built in"), ({"box": [1, 2]}, "three lengths"),
     ({"box": [-1, 2, 3]}, "three lengths"), ({"box": [0.1, 0, 0]}, "smaller than a sphere's radius"),

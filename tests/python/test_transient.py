@@ -36,6 +36,33 @@ def test_powers_walls_and_a_move(small):
         assert stored + gone == pytest.approx(10 * power.sum(), abs=1e-9 * abs(stored))
 
 
+def test_walls_of_unknown_temperature():
+    """A wall that gives off 900 W, one that is insulated; in the end the bed is as Heat finds it."""
+    box = {side: value for side, value in zip(("xmin", "xmax", "ymin", "ymax", "zmin", "zmax"), (-9, 9) * 3)}
+    x, walls = [[0, 0, 0], [3, 0, 0]], dict(wall_temperature=500, wall_emissivity=0.8, wall_power={"zmax": 9e5},
+                                            insulated=["xmin"])
+    with fibrad.Transient(x, 1, walls=box, method="patches") as bed:
+        short = bed.advance(400, 60, capacity=5e4, emissivity=0.5, power=[0, 1e4], **walls)
+        end = bed.advance(short.temperatures, 1e5, capacity=5e4, emissivity=0.5, power=[0, 1e4], **walls)
+    with fibrad.Heat(x, 1, walls=box) as heat:
+        steady = heat.solve(None, 0.5, power=[0, 1e4], **walls)
+    assert short.walls["zmax"] == pytest.approx(-60 * 9e5, rel=1e-9)
+    assert abs(short.walls["xmin"]) < 1e-6 * 60 * 9e5
+    assert end.temperatures == pytest.approx(steady.temperatures, rel=1e-4)
+    assert np.all(end.temperatures > 510)
+
+
+@pytest.mark.parametrize("options, text", [
+    ({"wall_power": {"zmin": 1.0}}, "zmin: walls of unknown temperature need method='patches'"),
+    ({"insulated": ["zmin"]}, "zmin: walls of unknown temperature need method='patches'"),
+    ({"insulated": ["zmax"]}, "there is no wall 'zmax'"),
+    ({"insulated": ["zmin"], "wall_temperature": {"zmin": 3.0}}, "zmin: its temperature is to be found"),
+])
+def test_walls_that_cannot_be(options, text):
+    with fibrad.Transient([[0, 0, 0]], 1.0, walls={"zmin": -2.0}) as bed, pytest.raises(fibrad.InputError, match=text):
+        bed.advance(300, 1, capacity=1, emissivity=0.5, surroundings=300, wall_emissivity=1, **options)
+
+
 def test_refusals():
     bed = fibrad.Transient([[0, 0, 0], [3, 0, 0]], 1.0, ids=[7, 9])
     good = dict(capacity=1.0, emissivity=0.5, surroundings=300)

@@ -4,16 +4,17 @@ from __future__ import annotations
 import ctypes
 import threading
 import weakref
+from collections.abc import Collection, Mapping
 from typing import Any, Optional, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ._call import Call
 from ._errors import StateError
 from ._library import Fault, HeatConfig, library
 from ._scene import Container, Packing, Walls
-from ._values import refuse, whole
+from ._values import HOTTEST, STRONGEST, refuse, whole
 
 
 def _choice(name: str, value: Optional[int], choices: tuple[int, ...]) -> int:
@@ -56,6 +57,26 @@ class Bed:
     def n(self) -> int:
         """Spheres."""
         return self._packing.n
+
+    def _walls(self, temperature: Any, emissivity: Any, power: Optional[Mapping[str, float]],
+               insulated: Collection[str]) -> dict[str, NDArray[Any]]:
+        """What sources say of walls. Those with a power and those insulated have no temperature: NaN."""
+        container, powers = self._container, dict(power or {})
+        found = frozenset([*powers, *insulated])
+        wrong = found - set(container.names)
+        if wrong:
+            raise refuse(f"there is no wall {', '.join(map(repr, sorted(wrong)))}")
+        if isinstance(temperature, Mapping) and found & set(temperature):
+            raise refuse(f"{', '.join(sorted(found & set(temperature)))}: its temperature is to be found")
+        shares = container.per_wall("wall_emissivity", emissivity, 0, 1, frozenset(insulated))
+        arrays: dict[str, NDArray[Any]] = {
+            "body_temperature": container.per_wall("wall_temperature", temperature, 0, HOTTEST, found),
+            "body_emissivity": np.nan_to_num(shares),
+            "insulated": np.array([wall in insulated for wall in container.names], np.uint8)}
+        if powers:
+            arrays["body_power"] = container.per_wall("wall_power", powers, -STRONGEST, STRONGEST,
+                                                      frozenset(container.names))
+        return arrays
 
     def _use(self, function: Any, packing: Packing, *arguments: Any) -> None:
         if not self._busy.acquire(blocking=False):

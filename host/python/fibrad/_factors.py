@@ -3,8 +3,9 @@ from __future__ import annotations
 
 import ctypes
 import dataclasses
+import os
 import warnings
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +14,8 @@ from ._call import Call, Progress
 from ._library import BeamRule, BedFactors, BedOptions, CastRule, Displacement, ExchangeRule, SurfaceRule, library
 from ._scene import Container, Packing, Walls, pointer
 from ._values import marks, per_sphere, real, refuse, whole
+
+Folder = Union[str, "os.PathLike[str]"]
 
 _DIRECTIONS = (8, 65536)
 _SEED = (0, 2**64 - 1)
@@ -194,6 +197,14 @@ def _beam_rule(values: dict[str, Any], cutoff: float) -> Any:
     return BeamRule(directions=directions, points=points, cutoff=cutoff, tolerance=tolerance)
 
 
+def _folder(scratch: Optional[Folder]) -> Optional[bytes]:
+    if scratch is None:
+        return None
+    if not (os.path.isdir(scratch) and os.access(scratch, os.W_OK | os.X_OK)):
+        raise refuse(f"scratch = {os.fspath(scratch)!r} is no folder that can be written")
+    return os.fsencode(scratch)
+
+
 def _method_options(method: str, values: dict[str, Any], cutoff: Optional[float]) -> dict[str, Any]:
     """The rule of the method, a field of fibrad_bed_options; values of other methods are refused."""
     if method not in _METHODS:
@@ -215,7 +226,7 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
                  method: str = "beam", nodes: Optional[int] = None, rays: Optional[int] = None,
                  seed: Optional[int] = None, cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None,
                  raw: bool = False, drop: float = 0.0, ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
-                 progress: Optional[Progress] = None) -> Factors:
+                 scratch: Optional[Folder] = None, progress: Optional[Progress] = None) -> Factors:
     """View factors between all spheres of a bed.
 
     Parameters
@@ -254,6 +265,9 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
         Names of the spheres, for messages, for the seeds of random paths and the order among equals.
     threads : int, optional
         Default: all processors, or ``OMP_NUM_THREADS``. No bit depends on it.
+    scratch : path, optional
+        A folder for files that hold rows and matrix, which may then be larger than memory; they have no names and are
+        gone with the result. No bit depends on it. Default: in memory.
     progress : callable, optional
         Called as ``progress(stage, done, total)`` up to 20 times a second; if it returns something true, the call
         ends with `Cancelled`.
@@ -273,7 +287,8 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
               "seed": seed}
     rule = _method_options(method, values, cutoff)
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
-    options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1), **rule)
+    options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1),
+                         scratch=_folder(scratch), **rule)
     return job.factors(library.fibrad_view_factors, tolerance, options)
 
 
@@ -282,13 +297,13 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
                      directions: Optional[int] = None, paths: Optional[int] = None, seed: Optional[int] = None,
                      cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None, raw: bool = False,
                      drop: float = 0.0, ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
-                     progress: Optional[Progress] = None) -> Factors:
+                     scratch: Optional[Folder] = None, progress: Optional[Progress] = None) -> Factors:
     """Exchange factors of grey diffuse spheres: the fraction of what sphere i emits that sphere j absorbs, directly
     or after reflections. The net power to i is ``sum_j A_i e_i D_ij sigma (T_j**4 - T_i**4)``.
 
     Parameters
     ----------
-    x, r, box, walls, cutoff, wanted, raw, drop, ids, threads, progress
+    x, r, box, walls, cutoff, wanted, raw, drop, ids, threads, scratch, progress
         As of `view_factors`.
     emissivity : (n,) array or float
         Of the spheres, 0 to 1.
@@ -311,7 +326,8 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
     rule = job.exchange_rule(emissivity, wall_emissivity, directions=whole("directions", directions, *_DIRECTIONS),
                              paths=whole("paths", paths, 1, 2**28), seed=whole("seed", seed, *_SEED),
                              cutoff=real("cutoff", cutoff, *_FAR), tolerance=real("tolerance", tolerance, 0, 1))
-    options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1))
+    options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1),
+                         scratch=_folder(scratch))
     return job.factors(library.fibrad_exchange_factors, tolerance, rule, options)
 
 

@@ -13,14 +13,21 @@ from numpy.typing import ArrayLike, NDArray
 from ._bed import Bed, heat_config
 from ._call import Call, Progress
 from ._library import HeatResult, HeatSources, library
-from ._scene import Walls, pointer
-from ._values import per_sphere, real, refuse, whole
+from ._scene import Walls, pointer, pointers
+from ._values import HOTTEST, STRONGEST, per_sphere, real, refuse
 
 STEFAN_BOLTZMANN = 5.670374419e-8
 """W/(m2 K4)"""
 
-HOTTEST, STRONGEST = 1e20, 1e100
 _SETTLE_MAX, _EMISSIVITY_CHANGE = 100, 1e-5
+
+
+def _law(emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]]) -> Callable[[Any], ArrayLike]:
+    if callable(emissivity):
+        function: Callable[[Any], ArrayLike] = emissivity
+        return function
+    given: ArrayLike = emissivity
+    return lambda found: given
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -151,30 +158,18 @@ class Heat(Bed):
         StateError, OutOfMemory
         """
         container, names, n = self._container, self._packing.names, self.n
-        powers, walls_off = dict(wall_power or {}), frozenset([*(wall_power or {}), *insulated])
-        wrong = walls_off - set(container.names)
-        if wrong:
-            raise refuse(f"there is no wall {', '.join(map(repr, sorted(wrong)))}")
-        if isinstance(wall_temperature, Mapping) and walls_off & set(wall_temperature):
-            raise refuse(f"{', '.join(sorted(walls_off & set(wall_temperature)))}: its temperature is to be found")
         kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, HOTTEST, names,
                              power is not None)
-        arrays = {"temperature": kelvins,
-                  "power": None if power is None else per_sphere("power", power, n, -STRONGEST, STRONGEST, names, True),
-                  "body_temperature": container.per_wall("wall_temperature", wall_temperature, 0, HOTTEST, walls_off),
-                  "body_emissivity": container.per_wall("wall_emissivity", wall_emissivity, 0, 1, frozenset(insulated)),
-                  "body_power": container.per_wall("wall_power", powers, -STRONGEST, STRONGEST,
-                                                   frozenset(container.names)) if powers else None}
-        arrays["body_emissivity"] = np.nan_to_num(arrays["body_emissivity"])
+        powers = None if power is None else per_sphere("power", power, n, -STRONGEST, STRONGEST, names, True)
+        of_bodies = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
-        law = emissivity if callable(emissivity) else lambda found: emissivity
+        law = _law(emissivity)
         shares = per_sphere("emissivity", law(np.where(np.isnan(kelvins), surroundings or 300., kelvins)), n, 0, 1, names)
-        closed = np.array([wall in insulated for wall in container.names], np.uint8)
         sources = HeatSources(surroundings=real("surroundings", surroundings, 0, HOTTEST),
                               sigma=real("sigma", sigma, 1e-30, 1e30), tolerance=real("tolerance", tolerance, 0, 1),
-                              uniform=bool(uniform), insulated=pointer(closed, ctypes.POINTER(ctypes.c_ubyte)),
-                              **{name: pointer(array) for name, array in arrays.items() if array is not None})
+                              uniform=bool(uniform), temperature=pointer(kelvins), power=pointer(powers),
+                              **pointers(of_bodies))
         of_spheres = {name: np.zeros(n) for name in ("power", "temperature", "power_error", "temperature_error")}
         of_walls = {name: np.zeros(len(container.names)) for name in ("body_power", "body_temperature", "body_error")}
         result = HeatResult(**{name: pointer(array) for name, array in (of_spheres | of_walls).items()})

@@ -44,7 +44,7 @@ SurfaceRule = _structure("surface_rule", ("nodes flags", c_uint32), ("cutoff", c
 CastRule = _structure("cast_rule", ("rays", c_uint32), ("random", c_int), ("seed", c_uint64), ("cutoff", c_double))
 BedOptions = _structure("bed_options", ("beam", POINTER(BeamRule)), ("surface", POINTER(SurfaceRule)),
                         ("cast", POINTER(CastRule)), ("wanted", POINTER(c_ubyte)), ("raw", c_int), ("drop", c_double),
-                        ("bodies", c_int))
+                        ("bodies", c_int), ("scratch", c_char_p))
 Matrix = _structure("factors", ("n bodies", c_uint32), ("start", POINTER(c_uint64)), ("col", POINTER(c_uint32)),
                     ("f escaped beyond error body body_body body_escaped body_error", DOUBLES),
                     ("body_correction", c_double))
@@ -69,7 +69,7 @@ TransientConfig = _structure("transient_config", ("method", c_int), ("exchange",
 Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_double),
                   ("body_temperature surroundings", DOUBLES), ("step tolerance", c_double),
                   ("power body_power", DOUBLES), ("surroundings_power", c_double), ("body_energy", DOUBLES),
-                  ("surroundings_energy", c_double), ("observe context", c_void_p), ("error", c_double),
+                  ("surroundings_energy", c_double), ("observe law context", c_void_p), ("error", c_double),
                   ("steps refused sweeps corrections", c_uint64))
 
 

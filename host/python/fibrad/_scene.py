@@ -20,11 +20,18 @@ _STRIDE_MAX = 2**32 - 1
 _LENGTH_MAX = 1e150
 
 Walls = Union[Mapping[str, Any], Sequence[tuple[str, Any]]]
+MARKS: Any = ctypes.POINTER(ctypes.c_ubyte)
 
 
 def pointer(array: Optional[NDArray[Any]], kind: Any = DOUBLES) -> Any:
     """None: NULL."""
     return None if array is None else ctypes.cast(array.ctypes.data, kind)
+
+
+def pointers(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
+    """Fields of a structure by their names: doubles, or marks, which are bytes."""
+    return {name: pointer(array, DOUBLES if array.dtype == np.float64 else MARKS)
+            for name, array in arrays.items()}
 
 
 def _stride(array: NDArray[np.float64]) -> int:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import ctypes
 import dataclasses
+from collections.abc import Collection, Mapping
 from typing import Any, Optional
 
 import numpy as np
@@ -10,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._bed import Bed, heat_config
 from ._call import Call, Progress
-from ._heat import HOTTEST, STEFAN_BOLTZMANN, STRONGEST
+from ._heat import STEFAN_BOLTZMANN
 from ._library import ExchangeRule, HeatSources, Span, TransientConfig, library
-from ._scene import Walls, pointer
-from ._values import per_sphere, real, refuse
+from ._scene import Walls, pointer, pointers
+from ._values import HOTTEST, STRONGEST, per_sphere, real, refuse
 
 _METHODS = {"corrected": 0, "patches": 1, "factors": 2}
 
@@ -80,12 +81,14 @@ class Transient(Bed):
         config = TransientConfig(method=_METHODS[method],
                                  exchange=ExchangeRule(tolerance=real("error", error, 1e-6, 1)),
                                  heat=heat_config(directions, points, patches))
+        self._method = method
         super().__init__(x, r, box, walls, ids, config, Call(threads, progress))
 
     def advance(self, temperature: ArrayLike, duration: float, *, capacity: ArrayLike, emissivity: ArrayLike,
                 power: Optional[ArrayLike] = None, surroundings: Optional[float] = None,
                 surroundings_end: Optional[float] = None, wall_temperature: Any = None, wall_emissivity: Any = None,
-                wall_temperature_end: Any = None, step: Optional[float] = None, tolerance: Optional[float] = None,
+                wall_temperature_end: Any = None, wall_power: Optional[Mapping[str, float]] = None,
+                insulated: Collection[str] = (), step: Optional[float] = None, tolerance: Optional[float] = None,
                 sigma: float = STEFAN_BOLTZMANN) -> Advance:
         """Temperatures after a span of time.
 
@@ -105,6 +108,8 @@ class Transient(Bed):
             As of `Heat.solve`, at the beginning.
         surroundings_end, wall_temperature_end : optional
             At the end [K], linear in between. Default: constant.
+        wall_power, insulated : optional
+            As of `Heat.solve`: walls of unknown temperature, which have no capacity. Only with ``method="patches"``.
         step : float, optional
             Steps of this length at most [s], all alike. Default: automatic.
         tolerance : float, optional
@@ -123,18 +128,18 @@ class Transient(Bed):
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
         now = per_sphere("temperature", temperature, n, 0, HOTTEST, names).copy()
         heat = per_sphere("capacity", capacity, n, 0, STRONGEST, names)
-        begin = container.per_wall("wall_temperature", wall_temperature, 0, HOTTEST)
-        end = begin if wall_temperature_end is None else container.per_wall("wall_temperature_end",
-                                                                            wall_temperature_end, 0, HOTTEST)
+        walls = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
+        found = frozenset([*(wall_power or {}), *insulated])
+        if found and self._method != "patches":
+            raise refuse(f"{', '.join(sorted(found))}: walls of unknown temperature need method='patches'")
+        end = walls["body_temperature"] if wall_temperature_end is None else container.per_wall(
+            "wall_temperature_end", wall_temperature_end, 0, HOTTEST, found)
         shares = per_sphere("emissivity", emissivity, n, 0, 1, names)
-        wall_shares = container.per_wall("wall_emissivity", wall_emissivity, 0, 1)
         given = None if power is None else per_sphere("power", power, n, -STRONGEST, STRONGEST, names)
         around = ctypes.c_double(real("surroundings_end", surroundings if surroundings_end is None else surroundings_end,
                                       0, HOTTEST))
-        sources = HeatSources(emissivity=pointer(shares), body_temperature=pointer(begin),
-                              body_emissivity=pointer(wall_shares), power=pointer(given),
-                              surroundings=real("surroundings", surroundings, 0, HOTTEST),
-                              sigma=real("sigma", sigma, 1e-30, 1e30))
+        sources = HeatSources(emissivity=pointer(shares), power=pointer(given), sigma=real("sigma", sigma, 1e-30, 1e30),
+                              surroundings=real("surroundings", surroundings, 0, HOTTEST), **pointers(walls))
         flow, energy = np.zeros(n), np.zeros(len(container.names))
         span = Span(temperature=pointer(now), capacity=pointer(heat), duration=real("duration", duration, 0, 1e300),
                     body_temperature=pointer(end), surroundings=ctypes.pointer(around),

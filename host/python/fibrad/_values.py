@@ -9,6 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._errors import ARGUMENT, InputError
 
+HOTTEST, STRONGEST = 1e20, 1e100
+"""Bounds of temperatures [K] and powers [W]."""
+
 
 def refuse(text: str, *spheres: int) -> InputError:
     return InputError(text, ARGUMENT, spheres)

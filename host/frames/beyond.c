@@ -2,7 +2,7 @@
  *
  * A ray from where all is right leaves each mesh that encloses the bed once more, through its inner side, than it comes
  * back, and enters others as often as it leaves them. */
-#include "bed/beyond.h"
+#include "frames/beyond.h"
 
 #include <math.h>
 #include <stdlib.h>

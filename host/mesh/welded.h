@@ -1,6 +1,6 @@
-/* surface.h - triangles that share corners and edges. SPDX-License-Identifier: MIT */
-#ifndef SURFACE_H
-#define SURFACE_H
+/* welded.h - triangles that share corners and edges. SPDX-License-Identifier: MIT */
+#ifndef WELDED_H
+#define WELDED_H
 
 #include "mesh/stl.h"
 

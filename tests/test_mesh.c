@@ -1,0 +1,505 @@
+/* test_mesh.c - triangles in a scene: closed forms, planes and cylinders made of triangles, closure, soups.
+ * SPDX-License-Identifier: MIT */
+#include "scenes.h"
+#include "meshes.h"
+#include "sample/direction.h"
+#include "suite.h"
+
+#define PI 3.14159265358979323846
+
+static double uniform(double low, double high) { return low + (high - low) * (rand() / (RAND_MAX + 1.0)); }
+
+static fibrad_scene *scene_of_mesh(const struct bed *bed, const struct mesh *mesh, uint32_t bodies) {
+    return scene_with(bed, &(fibrad_scene_config){.body = mesh->body, .bodies = bodies, .triangles = &mesh->triangles});
+}
+
+/* The sum of a row with its bodies. */
+static double total_of(const fibrad_row *row, uint32_t bodies) {
+    double sum = row_sum(row) + row->escaped + row->beyond;
+    for (uint32_t b = 0; b < bodies; b++) sum += row->body[b];
+    return sum;
+}
+
+/* ---- closed forms ------------------------------------------------------------------------------------------------ */
+
+/* The solid angle of a triangle from the origin. Source: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30
+ * (1983) 125. */
+static double solid_angle(double v[3][3]) {
+    double r[3], dot[3], n[3];
+    for (int k = 0; k < 3; k++) {
+        const double *a = v[k], *b = v[(k + 1) % 3];
+        r[k] = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+        dot[k] = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    }
+    for (int a = 0; a < 3; a++) n[a] = v[1][(a + 1) % 3] * v[2][(a + 2) % 3] - v[1][(a + 2) % 3] * v[2][(a + 1) % 3];
+    const double volume = v[0][0] * n[0] + v[0][1] * n[1] + v[0][2] * n[2];
+    return 2 * fabs(atan2(volume, r[0] * r[1] * r[2] + dot[0] * r[2] + dot[1] * r[0] + dot[2] * r[1]));
+}
+
+/* A triangle whose plane does not cut the sphere: F is its solid angle over 4 pi. */
+START_TEST(a_sphere_and_a_triangle) {
+    double square = 0, worst[3] = {0};
+    const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    enum { CASES = 60 };
+    srand(7);
+    for (int c = 0; c < CASES; c++) {
+        struct mesh *mesh = mesh_new();
+        const double away = exp(uniform(log(1.05), log(30))), size = exp(uniform(log(.3), log(30)));
+        double rotation[9], v[3][3];
+        fibrad_rotation((uint64_t)c + 1, rotation);
+        for (int k = 0; k < 3; k++) {
+            v[k][0] = uniform(-size, size), v[k][1] = uniform(-size, size), v[k][2] = away;
+            turn_point(rotation, v[k]);
+            mesh_vertex(mesh, v[k][0], v[k][1], v[k][2]);
+        }
+        mesh_triangle(mesh, 0, 1, 2, 0, 0);
+        fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
+        fibrad_work work = work_growing();
+        fibrad_row row = row_of(1);
+        const double exact = solid_angle(v) / (4 * PI);
+        const fibrad_beam_rule rules[3] = {
+            {.directions = 233}, {.directions = 233, .points = 128}, {.directions = 2000}};
+        for (int rule = 0; rule < 3; rule++) {
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rules[rule], &row), FIBRAD_OK);
+            ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
+            const double error = fabs(row.body[0] - exact);
+            worst_of(&worst[rule], error);
+            if (rule == 0) square += error * error;
+        }
+        ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 100000}, &row, NULL), FIBRAD_OK);
+        ck_assert_double_eq_tol(row.body[0], exact, 2e-3);
+        row_free(&row);
+        work_free(&work);
+        free(scene);
+        free(mesh);
+    }
+    printf("    triangles: rms %.2g, worst %.2g, points %.2g, 2000 directions %.2g\n", sqrt(square / CASES), worst[0],
+           worst[1], worst[2]);
+    ck_assert_double_le(sqrt(square / CASES), 1e-3);
+    ck_assert_double_le(worst[0], 4e-3);
+    ck_assert_double_le(worst[2], 4e-4);
+    struct bed own = bed;
+    bed_free(&own);
+}
+END_TEST
+
+/* ---- containers -------------------------------------------------------------------------------------------------- */
+
+static struct bed crowd(uint32_t n, uint64_t seed) {
+    struct bed bed = bed_of(0, NULL);
+    for (uint64_t at = 0; bed.n < n && at < 4000 * (uint64_t)n; at += 4) {
+        double c[3], r = .05 + .07 * bed_make_random(seed, at);
+        bool fits = true;
+        for (uint64_t axis = 0; axis < 3; axis++)
+            c[axis] = .98 * r + (1 - 1.96 * r) * bed_make_random(seed, at + 1 + axis);
+        for (uint32_t j = 0; j < bed.n && fits; j++)
+            fits = hypot(hypot(c[0] - bed.x[j], c[1] - bed.y[j]), c[2] - bed.z[j]) > r + bed.r[j];
+        if (fits) add_sphere(&bed, c[0], c[1], c[2], r);
+    }
+    return bed;
+}
+
+/* A box of twelve triangles is a box of planes; spheres are cut by it by 2 %. */
+START_TEST(a_box_of_triangles) {
+    static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
+    struct bed bed = crowd(60, 3);
+    struct mesh *mesh = mesh_new();
+    fibrad_body plane[6];
+    mesh_box(mesh, low, high, 0);
+    for (int k = 0; k < 6; k++) plane[k] = plane_at(k / 2, k % 2, k % 2);
+    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 6),
+                 *other = scene_with(&bed, &(fibrad_scene_config){.body = plane, .bodies = 6});
+    fibrad_work work = work_growing();
+    fibrad_row row = row_of(bed.n), of_planes = row_of(bed.n);
+    double spheres = 0, walls = 0, estimate = 0;
+    for (int k = 0; k < 6; k++) ck_assert_double_eq_tol(fibrad_scene_body_area(scene, (uint32_t)k), 1, 1e-15);
+    for (uint32_t points = 0; points <= 256; points += 256)
+        for (uint32_t i = 0; i < bed.n; i++) {
+            const fibrad_beam_rule rule = {.directions = 600, .points = points};
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_beam_row(other, &work, i, &rule, &of_planes), FIBRAD_OK);
+            ck_assert_double_eq_tol(total_of(&row, 6), 1, 1e-12);
+            ck_assert(row.escaped == 0 && row.beyond == 0);
+            const double distance = row_distance(&row, &of_planes);
+            spheres += distance * distance / bed.n;
+            estimate += row.error * row.error / bed.n;
+            for (int k = 0; k < 6; k++) walls += pow(row.body[k] - of_planes.body[k], 2) / bed.n;
+        }
+    printf("    box: spheres differ by %.2g, walls by %.2g, estimate %.2g\n", sqrt(spheres), sqrt(walls),
+           sqrt(estimate));
+    ck_assert_double_le(sqrt(spheres), 5e-4);
+    ck_assert_double_le(sqrt(walls), 1.2e-3);
+    row_free(&row), row_free(&of_planes);
+    work_free(&work);
+    free(scene), free(other), free(mesh);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A tube with two lids of facets is nearly a cylinder with two planes; along x as along z. */
+START_TEST(a_drum) {
+    struct bed bed = bed_of(0, NULL);
+    srand(11);
+    while (bed.n < 40) {
+        const double r = uniform(.06, .12), angle = uniform(0, 2 * PI), away = sqrt(uniform(0, 1)) * (.5 - r);
+        const double c[3] = {away * cos(angle), away * sin(angle), uniform(r, 1 - r)};
+        bool fits = true;
+        for (uint32_t j = 0; j < bed.n; j++)
+            fits = fits && hypot(hypot(c[0] - bed.x[j], c[1] - bed.y[j]), c[2] - bed.z[j]) > r + bed.r[j];
+        if (fits) add_sphere(&bed, c[0], c[1], c[2], r);
+    }
+    static const double turn[3][9] = {
+        {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 1, 1, 0, 0, 0, 1, 0}, {.6, -.8, 0, .8, .6, 0, 0, 0, 1}};
+    const fibrad_body round[3] = {cylinder_at(0, 0, .5), plane_at(2, 0, 0), plane_at(2, 1, 1)};
+    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = round, .bodies = 3});
+    fibrad_work work = work_growing();
+    fibrad_row row = row_of(bed.n), exact = row_of(bed.n);
+    for (int t = 0; t < 3; t++) {
+        struct mesh *mesh = mesh_new();
+        struct bed turned = bed_of(0, NULL);
+        enum { FACETS = 200 };
+        double square = 0;
+        mesh_tube(mesh, 0, 0, .5, 0, 1, FACETS, 4, false, 0, FIBRAD_NO_BODY);
+        for (uint32_t lid = 0; lid < 2; lid++) {
+            const uint32_t middle = mesh_vertex(mesh, 0, 0, lid), rim = lid * 4 * FACETS;
+            for (uint32_t k = 0; k < FACETS; k++) {
+                const uint32_t a = rim + k, b = rim + (k + 1) % FACETS;
+                mesh_triangle(mesh, middle, lid ? b : a, lid ? a : b, 1 + lid, FIBRAD_NO_BODY);
+            }
+        }
+        mesh_turn(mesh, turn[t]);
+        for (uint32_t i = 0; i < bed.n; i++) {
+            double c[3] = {bed.x[i], bed.y[i], bed.z[i]};
+            turn_point(turn[t], c);
+            add_sphere(&turned, c[0], c[1], c[2], bed.r[i]);
+        }
+        fibrad_scene *drum = scene_of_mesh(&turned, mesh, 3);
+        for (uint32_t i = 0; i < bed.n; i++) {
+            const fibrad_beam_rule rule = {.directions = 600};
+            ck_assert_int_eq(fibrad_beam_row(drum, &work, i, &rule, &row), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 4000}, &exact),
+                             FIBRAD_OK);
+            ck_assert(row.escaped == 0);
+            ck_assert_double_eq_tol(total_of(&row, 3), 1, 1e-12);
+            for (int k = 0; k < 3; k++) square += pow(row.body[k] - exact.body[k], 2) / bed.n;
+        }
+        printf("    drum %d: walls differ by %.2g\n", t, sqrt(square));
+        ck_assert_double_le(sqrt(square), 1.5e-3);
+        free(drum), free(mesh);
+        bed_free(&turned);
+    }
+    row_free(&row), row_free(&exact);
+    work_free(&work);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A plane within a box that poles of a mesh stand through: what is beyond plays no part. */
+START_TEST(tubes_through_walls) {
+    const struct bed bed = bed_of(2, (const double[][4]){{.2, .5, .5, .1}, {.75, .5, .4, .12}});
+    fibrad_scene *scene[2];
+    fibrad_row row[2];
+    fibrad_work work = work_growing();
+    for (int k = 0; k < 2; k++) {
+        struct mesh *mesh = mesh_new();
+        fibrad_body body[7];
+        mesh_tube(mesh, .47, .45, .1, k ? -5 : 0, k ? 6 : 1, 24, 1, true, 6, FIBRAD_NO_BODY);
+        for (int b = 0; b < 6; b++) body[b] = plane_at(b / 2, b % 2, b % 2);
+        body[6] = mesh->body[0];
+        scene[k] = scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 7, .triangles = &mesh->triangles});
+        row[k] = row_of(2);
+        ck_assert_int_eq(fibrad_beam_row(scene[k], &work, 0, &(fibrad_beam_rule){.directions = 2000}, &row[k]),
+                         FIBRAD_OK);
+        ck_assert_double_eq_tol(total_of(&row[k], 7), 1, 1e-12);
+        ck_assert(row[k].escaped == 0);
+        free(mesh);
+    }
+    for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[0].body[b], row[1].body[b], 3e-4);
+    ck_assert_double_gt(row[0].body[6], .05);
+    fibrad_row cast = row_of(2);
+    ck_assert_int_eq(fibrad_cast_row(scene[1], &work, 0, &(fibrad_cast_rule){.rays = 400000}, &cast, NULL), FIBRAD_OK);
+    for (int b = 0; b < 7; b++) ck_assert_double_eq_tol(row[1].body[b], cast.body[b], 1.5e-3);
+    ck_assert_double_eq_tol(row_factor(&row[1], 1), row_factor(&cast, 1), 1.5e-3);
+    for (int k = 0; k < 2; k++) row_free(&row[k]), free(scene[k]);
+    row_free(&cast);
+    work_free(&work);
+    struct bed own = bed;
+    bed_free(&own);
+}
+END_TEST
+
+/* ---- sides ------------------------------------------------------------------------------------------------------- */
+
+/* A plate that nobody's back faces a sphere ends the row and is named; with a body of its own it takes its part. */
+START_TEST(sides_of_nobody) {
+    const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    struct mesh *mesh = mesh_new();
+    fibrad_work work = work_growing();
+    fibrad_row row = row_of(1);
+    uint64_t rays;
+    const double emissivity = .5, of_body[2] = {.5, .5};
+    fibrad_body_row body_row;
+    mesh_vertex(mesh, 0, 9, -3), mesh_vertex(mesh, 9, 9, -3), mesh_vertex(mesh, 0, 9, 3); /* seen from the front */
+    mesh_vertex(mesh, -4, -4, 2), mesh_vertex(mesh, 4, -4, 2), mesh_vertex(mesh, 0, 5, 2);
+    mesh_triangle(mesh, 0, 1, 2, 0, FIBRAD_NO_BODY);
+    mesh_triangle(mesh, 3, 4, 5, 1, FIBRAD_NO_BODY); /* its normal is +z, away from the sphere */
+    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 2);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_E_BACK);
+    ck_assert_uint_eq(work.triangle, 1);
+    work.triangle = 77;
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, NULL, &row, NULL), FIBRAD_E_BACK);
+    ck_assert_uint_eq(work.triangle, 1);
+    const fibrad_exchange_rule rule = {.emissivity = &emissivity, .body_emissivity = of_body};
+    work.triangle = 77;
+    ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, &rays), FIBRAD_E_BACK);
+    ck_assert_uint_eq(work.triangle, 1);
+    work.triangle = 77;
+    ck_assert_int_eq(fibrad_exchange_body(scene, &work, 0, &rule, 0, &body_row), FIBRAD_E_BACK);
+    ck_assert_uint_eq(work.triangle, 1);
+    free(scene);
+    mesh->back[1] = 0;
+    scene = scene_of_mesh(&bed, mesh, 2);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, NULL, &row), FIBRAD_OK);
+    ck_assert_double_gt(row.body[0], .1);
+    ck_assert_double_eq(row.body[1], 0);
+    ck_assert_double_eq_tol(fibrad_scene_body_area(scene, 0), 27 + 36, 1e-12);
+    free(scene), free(mesh);
+    row_free(&row);
+    work_free(&work);
+    struct bed own = bed;
+    bed_free(&own);
+}
+END_TEST
+
+START_TEST(bad_triangles_are_named) {
+    const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    struct mesh *mesh = mesh_new();
+    const double low[3] = {-2, -2, -2}, high[3] = {2, 2, 2};
+    mesh_box(mesh, low, high, 0);
+    const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
+    fibrad_scene *scene = NULL;
+    fibrad_fault fault;
+    mesh->at[3][1] = NAN;
+    ck_assert_int_eq(scene_try(&scene, &bed, &config, &fault), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_lt(fault.triangle, 12);
+    mesh->at[3][1] = 2;
+    mesh->corner[7][2] = 8;
+    ck_assert_int_eq(scene_try(&scene, &bed, &config, &fault), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(fault.triangle, 7);
+    mesh->corner[7][2] = 7, mesh->front[5] = 6;
+    ck_assert_int_eq(scene_try(&scene, &bed, &config, &fault), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(fault.triangle, 5);
+    mesh->front[5] = FIBRAD_NO_BODY, mesh->front[4] = FIBRAD_NO_BODY; /* body 2 has no triangle */
+    ck_assert_int_eq(scene_try(&scene, &bed, &config, &fault), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(fault.triangle, UINT32_MAX);
+    free(mesh);
+    struct bed own = bed;
+    bed_free(&own);
+}
+END_TEST
+
+/* ---- rays, periods, bits ------------------------------------------------------------------------------------------
+ */
+
+/* The nearest triangle of many, by the tree and one by one. */
+START_TEST(rays_through_the_tree) {
+    struct mesh *mesh = mesh_new();
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, .01}});
+    srand(5);
+    for (uint32_t t = 0; t < 3000; t++) {
+        const double size = t % 100 == 0 ? 2 : .1, c[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+        uint32_t v[3];
+        for (int k = 0; k < 3; k++)
+            v[k] = mesh_vertex(mesh, c[0] + uniform(-size, size), c[1] + uniform(-size, size),
+                               c[2] + uniform(-size, size));
+        mesh_triangle(mesh, v[0], v[1], v[2], 0, 0);
+    }
+    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
+    uint32_t met = 0, backs = 0;
+    for (int ray = 0; ray < 2000; ray++) {
+        double w[3], o[3], nearest = INFINITY;
+        uint32_t first = UINT32_MAX;
+        fibrad_direction((uint32_t)ray, 2000, w);
+        for (int a = 0; a < 3; a++) o[a] = uniform(-2, 2);
+        for (uint32_t t = 0; t < mesh->triangles.n; t++) { /* Moeller and Trumbore */
+            const double *p = mesh->at[mesh->corner[t][0]], *q = mesh->at[mesh->corner[t][1]],
+                         *r = mesh->at[mesh->corner[t][2]];
+            double e[3], f[3], s[3], h[3], g[3];
+            for (int a = 0; a < 3; a++) e[a] = q[a] - p[a], f[a] = r[a] - p[a], s[a] = o[a] - p[a];
+            for (int a = 0; a < 3; a++) {
+                h[a] = w[(a + 1) % 3] * f[(a + 2) % 3] - w[(a + 2) % 3] * f[(a + 1) % 3];
+                g[a] = s[(a + 1) % 3] * e[(a + 2) % 3] - s[(a + 2) % 3] * e[(a + 1) % 3];
+            }
+            const double det = e[0] * h[0] + e[1] * h[1] + e[2] * h[2];
+            const double u = (s[0] * h[0] + s[1] * h[1] + s[2] * h[2]) / det,
+                         v = (w[0] * g[0] + w[1] * g[1] + w[2] * g[2]) / det;
+            const double length = (f[0] * g[0] + f[1] * g[1] + f[2] * g[2]) / det;
+            if (u >= 0 && v >= 0 && u + v <= 1 && length > 0 && length < nearest) nearest = length, first = t;
+        }
+        fibrad_triangle_hit hit;
+        ck_assert_int_eq(fibrad_triangle_ray(scene, o, w, INFINITY, &hit), FIBRAD_OK);
+        ck_assert_uint_eq(hit.triangle, first);
+        if (first == UINT32_MAX) continue;
+        ck_assert_double_eq_tol(hit.distance, nearest, 1e-9);
+        met++, backs += (uint32_t)hit.back;
+        ck_assert_int_eq(fibrad_triangle_ray(scene, o, w, nearest * .999, &hit), FIBRAD_OK);
+        ck_assert_uint_eq(hit.triangle, UINT32_MAX);
+    }
+    ck_assert(met > 900 && backs > met / 3 && backs < 2 * met / 3);
+    free(scene), free(mesh);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A periodic bed with a tube is one of many copies of both. */
+START_TEST(periodic_meshes) {
+    struct bed bed = bed_of(2, (const double[][4]){{.2, .2, .3, .19}, {.25, .75, .7, .2}}), many = bed_of(0, NULL);
+    struct mesh *mesh = mesh_new(), *copies = mesh_new();
+    enum { FAR = 6 };
+    mesh_tube(mesh, .65 + 3, .5 - 2, .2, 5, 6, 12, 1, true, 0, FIBRAD_NO_BODY); /* wherever it is */
+    for (int x = -FAR; x <= FAR; x++)
+        for (int y = -FAR; y <= FAR; y++) {
+            mesh_tube(copies, x + .65, y + .5, .2, -15, 15, 12, 1, true, 0, FIBRAD_NO_BODY);
+            for (int z = -FAR; z <= FAR; z++)
+                for (uint32_t i = 0; i < 2; i++) add_sphere(&many, x + bed.x[i], y + bed.y[i], z + bed.z[i], bed.r[i]);
+        }
+    for (int axis = 0; axis < 3; axis++) bed.period[axis] = 1;
+    const uint32_t middle = (FAR * (2 * FAR + 1) * (2 * FAR + 1) + FAR * (2 * FAR + 1) + FAR) * 2;
+    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1), *other = scene_of_mesh(&many, copies, 1);
+    fibrad_work work = work_growing();
+    fibrad_row row = row_of(2), far = row_of(many.n), cast = row_of(2);
+    const fibrad_beam_rule rule = {.directions = 3000};
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &row), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_beam_row(other, &work, middle, &rule, &far), FIBRAD_OK);
+    ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
+    ck_assert_double_gt(row.body[0], .2);
+    ck_assert_double_eq_tol(row.body[0] + row.escaped, far.body[0] + far.escaped, .02); /* spheres farther than FAR */
+    double of_first = 0;
+    for (uint32_t k = 0; k < far.length; k++) of_first += far.col[k] % 2 == 0 ? far.f[k] : 0;
+    ck_assert_double_eq_tol(row_factor(&row, 0), of_first, .01);
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 200000}, &cast, NULL), FIBRAD_OK);
+
+    ck_assert_double_eq_tol(cast.body[0], row.body[0], 3e-3);
+    ck_assert_double_eq_tol(row_factor(&cast, 1), row_factor(&row, 1), 3e-3);
+    row_free(&row), row_free(&far), row_free(&cast);
+    work_free(&work);
+    free(scene), free(other), free(mesh), free(copies);
+    bed_free(&bed), bed_free(&many);
+}
+END_TEST
+
+/* Soups of triangles and spheres, slivers, doubled and coplanar ones, corners on spheres: sums are 1, beams and rays
+ * agree, and bits are the same in every instruction set and for triangles in any order. */
+START_TEST(soups) {
+    srand(9);
+    int isa[ISAS_MOST];
+    const int isas = isas_there(isa);
+    for (int soup = 0; soup < 12; soup++) {
+        struct mesh *mesh = mesh_new();
+        struct bed bed = crowd(20, 100 + (uint64_t)soup);
+        for (uint32_t t = 0; t < 80; t++) {
+            uint32_t v[3];
+            for (int k = 0; k < 3; k++) v[k] = mesh_vertex(mesh, uniform(0, 1), uniform(0, 1), uniform(0, 1));
+            double *a = mesh->at[v[0]], *b = mesh->at[v[1]], *c = mesh->at[v[2]];
+            for (int axis = 0; axis < 3; axis++) {
+                if (t % 8 == 1) c[axis] = .5 * (a[axis] + b[axis]) + 1e-13 * uniform(-1, 1); /* a sliver */
+                if (t % 8 == 2) c[axis] = a[axis];                                           /* no area */
+                if (t % 8 == 3)
+                    a[axis] = b[axis] + .1 * (a[axis] - b[axis]), c[axis] = b[axis] + .1 * (c[axis] - b[axis]);
+            }
+            if (t % 8 == 4) a[2] = b[2] = c[2] = .5; /* all in one plane */
+            if (t % 8 == 5) a[0] = bed.x[t % 20] + bed.r[t % 20], a[1] = bed.y[t % 20], a[2] = bed.z[t % 20];
+            mesh_triangle(mesh, v[0], v[1], v[2], t % 8 == 4 ? 0 : t % 3, t % 8 == 4 ? 0 : (t + 1) % 3);
+            if (t % 8 == 6) mesh_triangle(mesh, v[0], v[1], v[2], t % 3, (t + 1) % 3); /* twice */
+        }
+        fibrad_row row = row_of(bed.n), again = row_of(bed.n), cast = row_of(bed.n);
+        fibrad_work work = work_growing();
+        for (int set = 0; set < isas; set++) {
+            fibrad_scene *scene =
+                scene_with(&bed, &(fibrad_scene_config){
+                                     .isa = isa[set], .body = mesh->body, .bodies = 3, .triangles = &mesh->triangles});
+            for (uint32_t i = 0; i < 4; i++) {
+                const fibrad_beam_rule rule = {.directions = 300, .points = soup % 2 ? 128 : 0};
+                ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+                ck_assert_double_eq_tol(total_of(&row, 3), 1, 1e-12);
+                for (uint32_t k = 0; k < row.length; k++) ck_assert(row.f[k] > 0 && row.f[k] <= 1);
+                if (i == 3 && set > 0) ck_assert(same_bits_with(&row, &again, 3));
+                if (i == 3 && set == 0) {
+                    memcpy(again.col, row.col, row.length * sizeof *row.col),
+                        memcpy(again.f, row.f, row.length * sizeof *row.f);
+                    memcpy(again.body, row.body, 3 * sizeof *row.body);
+                    again.length = row.length, again.escaped = row.escaped, again.error = row.error,
+                    again.beyond = row.beyond;
+                }
+                if (set > 0) continue;
+                ck_assert_int_eq(fibrad_cast_row(scene, &work, i, &(fibrad_cast_rule){.rays = 30000}, &cast, NULL),
+                                 FIBRAD_OK);
+                ck_assert_double_le(row_distance(&row, &cast), .01);
+                for (int b = 0; b < 3; b++) ck_assert_double_eq_tol(row.body[b], cast.body[b], .012);
+            }
+            free(scene);
+        }
+        row_free(&row), row_free(&again), row_free(&cast);
+        work_free(&work);
+        free(mesh);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
+/* Exchange in a closed grey box of triangles is that of planes, and rows of meshes are. */
+START_TEST(grey_meshes) {
+    static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, wall[6] = {.8, .3, .5, 1, .2, .6};
+    struct bed bed = crowd(30, 8);
+    struct mesh *mesh = mesh_new();
+    fibrad_body plane[6];
+    double emissivity[30];
+    mesh_box(mesh, low, high, 0);
+    for (int k = 0; k < 6; k++) plane[k] = plane_at(k / 2, k % 2, k % 2);
+    for (int i = 0; i < 30; i++) emissivity[i] = .2 + .02 * i;
+    fibrad_scene *scene[2] = {scene_of_mesh(&bed, mesh, 6),
+                              scene_with(&bed, &(fibrad_scene_config){.body = plane, .bodies = 6})};
+    fibrad_work work = work_growing();
+    fibrad_row row[2] = {row_of(30), row_of(30)};
+    fibrad_exchange_rule rule = {.emissivity = emissivity, .body_emissivity = wall, .directions = 400, .paths = 40000};
+    for (uint32_t i = 0; i < 3; i++) {
+        for (int k = 0; k < 2; k++) {
+            ck_assert_int_eq(fibrad_exchange_row(scene[k], &work, i, &rule, &row[k], NULL), FIBRAD_OK);
+            ck_assert_double_eq_tol(total_of(&row[k], 6), 1, 1e-12);
+        }
+        ck_assert_double_le(row_distance(&row[0], &row[1]), 2e-3);
+        for (int b = 0; b < 6; b++) ck_assert_double_eq_tol(row[0].body[b], row[1].body[b], 2e-3);
+    }
+    fibrad_body_row part[2][FIBRAD_BODY_PARTS], mean[2];
+    rule.paths = 80000;
+    for (int k = 0; k < 2; k++) {
+        for (uint32_t p = 0; p < FIBRAD_BODY_PARTS; p++)
+            ck_assert_int_eq(fibrad_exchange_body(scene[k], &work, 1, &rule, p, &part[k][p]), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_exchange_body_mean(part[k], &mean[k]), FIBRAD_OK);
+    }
+    ck_assert(mean[0].escaped == 0);
+    const double error = 5 * (mean[0].error + mean[1].error);
+    for (int b = 0; b < 6; b++) ck_assert_double_eq_tol(mean[0].body[b], mean[1].body[b], error);
+    for (int k = 0; k < 2; k++) free(scene[k]), row_free(&row[k]);
+    work_free(&work);
+    free(mesh);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("mesh");
+    TCase *tests = suite_case(suite, "mesh");
+    tcase_add_test(tests, a_sphere_and_a_triangle);
+    tcase_add_test(tests, a_box_of_triangles);
+    tcase_add_test(tests, a_drum);
+    tcase_add_test(tests, tubes_through_walls);
+    tcase_add_test(tests, sides_of_nobody);
+    tcase_add_test(tests, bad_triangles_are_named);
+    tcase_add_test(tests, rays_through_the_tree);
+    tcase_add_test(tests, periodic_meshes);
+    tcase_add_test(tests, soups);
+    tcase_add_test(tests, grey_meshes);
+    return suite_run(suite);
+}
