@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: MIT */
 #include "bed/wall_option.h"
 #include "mesh/meshes.h"
+#include "plot/plot_slice.h"
 #include "soups.h"
 #include "vtk/vtk_grid.h"
 
@@ -336,6 +337,42 @@ START_TEST(rows_in_a_closed_mesh) {
 }
 END_TEST
 
+/* A cube in the slice of a picture: its outline, in pieces of the triangles. */
+START_TEST(slice_through_a_mesh) {
+    const struct soup soup = cube();
+    struct wall_options options = {0};
+    struct bed bed;
+    struct plot_slice slice;
+    const double value = 1;
+    char line[200];
+    double end[2][2], length = 0;
+    int pieces = 0, ends = 0;
+    ck_assert_int_eq(walls_option(wall_of("mesh:", write_solid("box.stl", &soup), ""), &options), 0);
+    bed_init(&bed);
+    ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.x = 1, .y = .3, .r = 3.5}), 0);
+    plot_slice_of(&slice, &bed, &options.walls, 0);
+    ck_assert(slice.low[0] == -4 && slice.high[2] == 4);
+    FILE *script = tmpfile();
+    plot_slice_draw(script, &slice, &value, NULL, NULL);
+    rewind(script);
+    while (fgets(line, sizeof line, script) && strncmp(line, "$walls", 6) != 0) {}
+    while (fgets(line, sizeof line, script) && strncmp(line, "END", 3) != 0) {
+        const bool found = sscanf(line, "%lf %lf", &end[ends][0], &end[ends][1]) == 2;
+        ends = found ? ends + 1 : 0;
+        if (ends < 2) continue;
+        ends = 0;
+        ++pieces;
+        length += hypot(end[1][0] - end[0][0], end[1][1] - end[0][1]);
+        for (int e = 0; e < 2; ++e) ck_assert_double_eq_tol(fmax(fabs(end[e][0]), fabs(end[e][1])), 4, 1e-6);
+    }
+    ck_assert_int_eq(pieces, 8);
+    ck_assert_double_eq_tol(length, 32, 1e-5);
+    fclose(script);
+    bed_free(&bed);
+    walls_free(&options);
+}
+END_TEST
+
 /* What is seen from behind, and what lies there. */
 START_TEST(backs_of_meshes) {
     struct soup soup = {0};
@@ -378,6 +415,7 @@ int main(void) {
     tcase_add_test(sides, sides_that_are_asked_for);
     tcase_add_test(option, names_of_meshes);
     tcase_add_test(option, rows_in_a_closed_mesh);
+    tcase_add_test(option, slice_through_a_mesh);
     tcase_add_test(option, backs_of_meshes);
     return suite_run(suite);
 }
