@@ -151,6 +151,12 @@ HOST = \
     host/bed/property_option.c \
     host/bed/units.c \
     host/bed/wall_option.c \
+    host/mesh/enclosing.c \
+    host/mesh/facing.c \
+    host/mesh/meshes.c \
+    host/mesh/parts.c \
+    host/mesh/stl.c \
+    host/mesh/weld.c \
     host/text/read_curve.c \
     host/text/read_lines.c \
     host/text/read_number.c \
@@ -175,11 +181,13 @@ HOST = \
     host/report/report.c \
     host/write/outputs.c \
     host/write/summary.c \
+    host/write/vtp_array.c \
     host/write/write.c \
     host/write/write_csv.c \
     host/write/write_dump.c \
     host/write/write_furnace.c \
     host/write/write_json.c \
+    host/write/write_mesh_vtp.c \
     host/write/write_mtx.c \
     host/write/write_npz.c \
     host/write/write_vtp.c \
@@ -199,6 +207,7 @@ HOST = \
     host/reproduce/reproduce_rays.c \
     host/reproduce/reproduce_rows.c \
     host/frames/bed_options.c \
+    host/frames/beyond.c \
     host/command/command_bed.c \
     host/command/command_conductivity.c \
     host/command/command_exchange.c \
@@ -231,6 +240,7 @@ TESTS = \
     tests/test_heat.c \
     tests/test_matrix.c \
     tests/test_mesh.c \
+    tests/test_mesh_files.c \
     tests/test_part.c \
     tests/test_plot.c \
     tests/test_protocol.c \

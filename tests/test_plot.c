@@ -104,7 +104,7 @@ START_TEST(where_heat_goes) {
     struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3}});
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
     const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
-    const struct walls walls = {2, {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
+    const struct walls walls = {.count = 2, .body = {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
     struct heat_shown what = {&bed, &walls, 1, temperature, power, wall_temperature, wall_power, 293, -.125};
     char *svg = drawn(draw_heat, &what);
     assert_texts_inside(svg);

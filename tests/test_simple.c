@@ -260,7 +260,7 @@ START_TEST(faults_name_spheres) {
         /* a displacement of spheres whose paths may not meet those of no emissivity is refused, too */
         static fibrad_displacement moved[100];
         unsigned char wanted[100] = {[50] = 1};
-        run.fault = (fibrad_fault){0, 0, UINT32_MAX};
+        run.fault = (fibrad_fault){0, 0, 0};
         ck_assert_int_eq(fibrad_displacements(NULL, &spheres, &rule, wanted, &run, moved, NULL), FIBRAD_E_ARGUMENT);
         ck_assert(run.fault.first == first && run.fault.second == first);
     }

@@ -167,7 +167,7 @@ START_TEST(bad_walls_are_refused) {
                {2, {x_low, can}},
                {2, {can, y_high}}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-        fault = (fibrad_fault){9, 9, UINT32_MAX};
+        fault = (fibrad_fault){9, 9, 9};
         ck_assert_msg(init(&scene, &bed, bad[k].count, bad[k].body, &fault) == FIBRAD_E_ARGUMENT, "bodies %zu", k);
         ck_assert(fault.first == 3 && fault.second == 3); /* none of the spheres */
         ck_assert_int_eq(init(&scene, &bed, bad[k].count, bad[k].body, NULL), FIBRAD_E_ARGUMENT);
@@ -181,7 +181,7 @@ START_TEST(bad_walls_are_refused) {
                   {cylinder_at(5, 5, 2.5), 1},
                   {plane_at(2, 0, -1e20), 3}}; /* too far for the digits of coordinates: none of the spheres */
     for (size_t k = 0; k < 4; k++) {
-        fault = (fibrad_fault){9, 9, UINT32_MAX};
+        fault = (fibrad_fault){9, 9, 9};
         ck_assert_int_eq(init(&scene, &bed, 1, &beyond[k].body, &fault), FIBRAD_E_ARGUMENT);
         ck_assert_uint_eq(fault.first, beyond[k].whose);
         ck_assert_uint_eq(fault.second, beyond[k].whose);
@@ -694,13 +694,13 @@ static void assert_walls(const struct wall_options *options, const struct bed *b
             ck_assert_int_eq(body->kind, FIBRAD_BODY_CYLINDER);
             ck_assert(body->cylinder.x == cylinder[0] && body->cylinder.y == cylinder[1]);
             ck_assert(body->cylinder.radius == cylinder[2]);
-            ck_assert_str_eq(wall_name(body), "cylinder");
+            ck_assert_str_eq(wall_name(&walls, k), "cylinder");
         } else {
             static const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
             ck_assert_int_eq(body->kind, FIBRAD_BODY_PLANE);
             ck_assert_int_eq(2 * body->plane.axis + body->plane.upper, (int)place[k]);
             ck_assert(body->plane.at == at[place[k]]);
-            ck_assert_str_eq(wall_name(body), names[place[k]]);
+            ck_assert_str_eq(wall_name(&walls, k), names[place[k]]);
         }
     }
 }

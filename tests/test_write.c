@@ -39,7 +39,8 @@ static const fibrad_bed_factors factors = {.matrix = {.n = 3,
                                                       .body = &wall[0][0]},
                                            .body_area = area};
 static const struct walls walls = {
-    2, {{.kind = FIBRAD_BODY_CYLINDER, .cylinder = {0, 0, 9}}, {.kind = FIBRAD_BODY_PLANE, .plane = {2, 0, -9}}}};
+    .count = 2,
+    .body = {{.kind = FIBRAD_BODY_CYLINDER, .cylinder = {0, 0, 9}}, {.kind = FIBRAD_BODY_PLANE, .plane = {2, 0, -9}}}};
 
 static char text[20000]; /* what a writer wrote */
 

@@ -127,7 +127,7 @@ int quantity_values(const struct quantity *quantity, const struct bed *bed, cons
 /* The number of the wall of this name, or -1. */
 static int number_of_wall(const struct walls *walls, const char *name, size_t length) {
     for (uint32_t k = 0; k < walls->count; ++k) {
-        const char *known = wall_name(&walls->body[k]);
+        const char *known = wall_name(walls, k);
         if (strlen(known) == length && strncmp(known, name, length) == 0) return (int)k;
     }
     return -1;
@@ -159,7 +159,7 @@ static int take_wall_curve(const char *option, const char **text, double low, do
     if (*wall < 0)
         return message(STATUS_USAGE, "%s: there is no wall %.*s", option, length > 40 ? 40 : (int)length, *text);
     if (curve[*wall].n > 0)
-        return message(STATUS_USAGE, "%s: %s has two values", option, wall_name(&walls->body[*wall]));
+        return message(STATUS_USAGE, "%s: %s has two values", option, wall_name(walls, (uint32_t)*wall));
     *text += length + 1;
     const int status = take_curve("temperature", text, low, high, &curve[*wall]);
     if (!status) *value = curve_at(&curve[*wall], 0);
@@ -185,7 +185,7 @@ int wall_list(const char *option, const char *text, const char *word, double low
             return message(STATUS_USAGE,
                            wall < 0 ? "%s: one number for all others; name the walls, such as %s=%g"
                                     : "%s: %s has two values, the second %g",
-                           option, wall_name(&walls->body[wall < 0 ? 0 : wall]), value);
+                           option, wall_name(walls, wall < 0 ? 0 : (uint32_t)wall), value);
         if (wall < 0)
             list->others = value;
         else
@@ -204,7 +204,7 @@ int wall_values(const char *option, const char *text, double otherwise, double l
         values[k] = list.named[k] ? list.value[k] : otherwise;
         if (isnan(values[k]))
             return message(STATUS_USAGE, "%s: none for %s; give %s=NUMBER, or one number for all", option,
-                           wall_name(&walls->body[k]), wall_name(&walls->body[k]));
+                           wall_name(walls, k), wall_name(walls, k));
     }
     return STATUS_OK;
 }
@@ -230,8 +230,8 @@ void quantity_report(const struct quantity *quantity, const char *key, struct re
 void wall_values_report(const struct walls *walls, const double *values, const char *ending, int digits,
                         struct report *report) {
     for (uint32_t k = 0; k < walls->count; ++k) {
-        char key[60];
-        snprintf(key, sizeof key, "wall_%s%.30s", wall_name(&walls->body[k]), ending);
+        char key[80];
+        snprintf(key, sizeof key, "wall_%s%.30s", wall_name(walls, k), ending);
         report_value(report, key, values[k], digits);
     }
 }

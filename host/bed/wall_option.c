@@ -1,4 +1,4 @@
-/* wall_option.c - the option --wall: planes and a cylinder about a bed. SPDX-License-Identifier: MIT */
+/* wall_option.c - the option --wall: planes, a cylinder and meshes about a bed. SPDX-License-Identifier: MIT */
 #include "bed/wall_option.h"
 
 #include <math.h>
@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "cli/options.h"
 
 enum { PLANES = 6 };
 
@@ -17,7 +18,11 @@ static fibrad_body plane_at(int number, double at) {
 
 static bool is_cylinder(const fibrad_body *wall) { return wall->kind == FIBRAD_BODY_CYLINDER; }
 
-const char *wall_name(const fibrad_body *wall) {
+static bool is_mesh(const fibrad_body *wall) { return wall->kind == FIBRAD_BODY_MESH; }
+
+const char *wall_name(const struct walls *walls, uint32_t k) {
+    const fibrad_body *wall = &walls->body[k];
+    if (is_mesh(wall)) return walls->meshes->name[k];
     return is_cylinder(wall) ? "cylinder" : plane_names[2 * wall->plane.axis + wall->plane.upper];
 }
 
@@ -25,19 +30,25 @@ static bool is_word(const char *word, size_t length, const char *name) {
     return strlen(name) == length && strncmp(word, name, length) == 0;
 }
 
+/* Whether a text begins with another one. */
+static bool begins_with(const char *text, const char *begin) { return strncmp(text, begin, strlen(begin)) == 0; }
+
 /* The wall of a name; NULL: there is none. */
 static const fibrad_body *wall_named(const struct walls *walls, const char *name) {
     for (uint32_t k = 0; k < walls->count; ++k)
-        if (strcmp(wall_name(&walls->body[k]), name) == 0) return &walls->body[k];
+        if (strcmp(wall_name(walls, k), name) == 0) return &walls->body[k];
     return NULL;
 }
 
 static int add_wall(struct wall_options *options, fibrad_body wall, bool placed) {
     struct walls *walls = &options->walls;
-    if (wall_named(walls, wall_name(&wall)))
-        return message(STATUS_USAGE, "--wall: %s is named twice", wall_name(&wall));
-    options->placed[walls->count] = placed;
-    walls->body[walls->count++] = wall;
+    const uint32_t k = walls->count;
+    if (k == WALLS_MAX) return message(STATUS_USAGE, "--wall: more than %d walls", WALLS_MAX);
+    options->placed[k] = placed;
+    walls->body[k] = wall;
+    const char *name = wall_name(walls, k);
+    if (wall_named(walls, name)) return message(STATUS_USAGE, "--wall: %s is named twice", name);
+    ++walls->count;
     return STATUS_OK;
 }
 
@@ -69,7 +80,75 @@ static int take_plane(const char *word, size_t length, const char **text, struct
             return message(STATUS_USAGE, "--wall: %s= needs a number", plane_names[k]);
         return add_wall(options, plane_at(k, at), placed);
     }
-    return message(STATUS_USAGE, "--wall: '%.40s' is neither auto, box, xmin ... zmax nor cylinder:X,Y,R", word);
+    return message(STATUS_USAGE,
+                   "--wall: '%.40s' is none of auto, box, xmin ... zmax, cylinder:X,Y,R, mesh:FILE and NAME=mesh:FILE",
+                   word);
+}
+
+/* One of the words behind the file of a mesh. */
+static int take_mesh_word(const char *word, struct mesh_file *file) {
+    if (strcmp(word, "solids") == 0)
+        file->solids = true;
+    else if (strcmp(word, "both") == 0)
+        file->sides = SIDES_BOTH;
+    else if (strcmp(word, "normals") == 0)
+        file->sides = SIDES_NORMALS;
+    else if (begins_with(word, "scale="))
+        return options_number("--wall: scale", word + strlen("scale="), 1e-12, 1e12, &file->scale);
+    else if (strcmp(word, "auto") != 0)
+        return message(STATUS_USAGE, "--wall: '%.40s' is none of both, normals, auto, solids, scale=S", word);
+    return STATUS_OK;
+}
+
+/* Reads the file of a mesh and adds its bodies. */
+static int add_mesh(struct wall_options *options, const struct mesh_file *file) {
+    struct walls *walls = &options->walls;
+    if (!walls->meshes) walls->meshes = calloc(1, sizeof *walls->meshes);
+    if (!walls->meshes) return message_memory();
+    int status = meshes_add(walls->meshes, file, walls->count);
+    const uint32_t bodies = walls->meshes->mesh ? walls->meshes->mesh[walls->meshes->count - 1].bodies : 0;
+    for (uint32_t k = 0; k < bodies && !status; ++k)
+        status = add_wall(options, (fibrad_body){.kind = FIBRAD_BODY_MESH}, true);
+    return status;
+}
+
+/* Names that have a meaning of their own in options and outputs. */
+static bool is_reserved(const char *name) {
+    static const char *const others[] = {"auto", "box", "mesh", "cylinder", "surroundings", "beyond"};
+    bool found = false;
+    for (int k = 0; k < PLANES; ++k) found = found || strcmp(name, plane_names[k]) == 0;
+    for (size_t k = 0; k < sizeof others / sizeof *others; ++k) found = found || strcmp(name, others[k]) == 0;
+    return found;
+}
+
+/* FILE:WORD:WORD, in pieces. */
+static int take_mesh_words(char *item, struct mesh_file *file) {
+    char *next = strchr(item, ':');
+    int status = STATUS_OK;
+    for (file->path = item; next && !status;) {
+        char *word = next + 1;
+        *next = 0;
+        next = strchr(word, ':');
+        if (next) *next = 0;
+        status = take_mesh_word(word, file);
+    }
+    if (!status && *item == 0) status = message(STATUS_USAGE, "--wall: mesh:FILE needs a file");
+    return status;
+}
+
+/* NAME=mesh:FILE:WORD:WORD up to the next comma, of which *text is FILE and moves behind it; word NULL: no name. */
+static int take_mesh(const char *word, size_t length, const char **text, struct wall_options *options) {
+    char *item = strndup(*text, strcspn(*text, ",")), *name = word ? strndup(word, length) : NULL;
+    struct mesh_file file = {.name = name, .scale = 1};
+    int status = item && (name || !word) ? STATUS_OK : message_memory();
+    *text += strcspn(*text, ",");
+    if (!status && name && (!mesh_name(name) || is_reserved(name)))
+        status = message(STATUS_USAGE, "--wall: a wall cannot be called '%.40s'", name);
+    if (!status) status = take_mesh_words(item, &file);
+    if (!status) status = add_mesh(options, &file);
+    free(item);
+    free(name);
+    return status;
 }
 
 int walls_option(const char *text, struct wall_options *options) {
@@ -81,6 +160,12 @@ int walls_option(const char *text, struct wall_options *options) {
         if (is_word(word, length, "cylinder") && *text == ':') {
             ++text;
             status = take_cylinder(&text, options);
+        } else if (begins_with(word, "mesh:")) {
+            ++text;
+            status = take_mesh(NULL, 0, &text, options);
+        } else if (begins_with(text, "=mesh:")) {
+            text += strlen("=mesh:");
+            status = take_mesh(word, length, &text, options);
         } else if (is_word(word, length, "auto")) {
             options->automatic = true;
         } else if (is_word(word, length, "box")) {
@@ -129,16 +214,18 @@ static bool is_closed(const struct walls *walls, const struct bed *bed, int axis
 }
 
 bool walls_closed(const struct walls *walls, const struct bed *bed) {
+    if (walls->meshes && walls->meshes->enclosing > 0) return true;
     return is_closed(walls, bed, 0) && is_closed(walls, bed, 1) && is_closed(walls, bed, 2);
 }
 
 bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_body *wall) {
-    for (int axis = 0; axis < 3; ++axis)
+    for (int axis = 0; axis < 3 && !is_mesh(wall); ++axis)
         if (!(is_cylinder(wall) ? axis < 2 : axis == wall->plane.axis) && !is_closed(walls, bed, axis)) return true;
     return false;
 }
 
 static bool is_beyond(const fibrad_body *wall, const double centre[3]) {
+    if (is_mesh(wall)) return false;
     if (is_cylinder(wall))
         return hypot(centre[0] - wall->cylinder.x, centre[1] - wall->cylinder.y) > wall->cylinder.radius;
     const double c = centre[wall->plane.axis];
@@ -150,7 +237,7 @@ static int check_centres(const struct walls *walls, const struct bed *bed, const
         for (uint32_t k = 0; k < walls->count; ++k)
             if (is_beyond(&walls->body[k], (const double[]){bed->x[i], bed->y[i], bed->z[i]}))
                 return message_at(STATUS_INPUT, file, bed->line[i], "the centre of sphere %lld lies beyond the wall %s",
-                                  (long long)bed_name(bed, i), wall_name(&walls->body[k]));
+                                  (long long)bed_name(bed, i), wall_name(walls, k));
     return STATUS_OK;
 }
 
@@ -161,8 +248,13 @@ int walls_of(const struct wall_options *options, const struct bed *bed, const ch
     *walls = all.walls;
     for (uint32_t k = 0; k < walls->count; ++k) {
         fibrad_body *wall = &walls->body[k];
-        if (!is_cylinder(wall) && !all.placed[k]) wall->plane.at = bed_end(bed, wall->plane.axis, wall->plane.upper);
+        if (!all.placed[k]) wall->plane.at = bed_end(bed, wall->plane.axis, wall->plane.upper);
     }
     status = check_axes(walls, bed);
     return status ? status : check_centres(walls, bed, file);
+}
+
+void walls_free(struct wall_options *options) {
+    if (options->walls.meshes) meshes_free(options->walls.meshes);
+    free(options->walls.meshes);
 }

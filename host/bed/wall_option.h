@@ -1,4 +1,4 @@
-/* wall_option.h - the option --wall: planes and a cylinder about a bed. SPDX-License-Identifier: MIT */
+/* wall_option.h - the option --wall: planes, a cylinder and meshes about a bed. SPDX-License-Identifier: MIT */
 #ifndef WALL_OPTION_H
 #define WALL_OPTION_H
 
@@ -7,16 +7,18 @@
 
 #include "bed/bed.h"
 #include "fibrad.h"
+#include "mesh/meshes.h"
 
-enum { WALLS_MAX = 7 }; /* six planes and a cylinder */
+enum { WALLS_MAX = FIBRAD_BODIES_MAX };
 
 /* Walls in the order given, those of auto and box last: body[k] is j = -2 - k in a matrix. */
 struct walls {
     uint32_t count;
     fibrad_body body[WALLS_MAX];
+    struct meshes *meshes; /* of the option; NULL: none */
 };
 
-/* What --wall asks for; several such options add up. Zeroed: no walls. */
+/* What --wall asks for; several such options add up. Zeroed: no walls; to be freed by walls_free. */
 struct wall_options {
     struct walls walls;
     bool placed[WALLS_MAX]; /* whether its place was given */
@@ -27,23 +29,32 @@ struct wall_options {
 #define OPTION_WALL                                                                                                    \
     KEY_WALL, "wall", "LIST",                                                                                          \
         "walls: auto (box of the file, open axes), box (all six sides), xmin, xmax ... zmax, cylinder:X,Y,R "          \
-        "(axis along z) [none]"
+        "(axis along z), mesh:FILE (STL) [none]"
+#define OPTION_WALL_VTP                                                                                                \
+    KEY_WALL_VTP, "wall-vtp", "OUT", "triangles of the walls of mesh:FILE, a .vtp for ParaView [none]"
 #define WALLS_MORE                                                                                                     \
     "Walls: a LIST parted by commas. A side is xmin=VALUE, or without =VALUE the end of the file's box, or else of "   \
     "the\n"                                                                                                            \
-    "spheres. Sides named besides auto or box stand where they say.\n"
+    "spheres. Sides named besides auto or box stand where they say. mesh:FILE or NAME=mesh:FILE is a wall of "         \
+    "triangles,\n"                                                                                                     \
+    "called after its file or NAME, in the bed's unit of length. Its sides that spheres are on are the wall; no\n"     \
+    "others may be seen. Words behind FILE, parted by colons: both (sides), normals (the file's outer sides),\n"       \
+    "solids (a wall of each), scale=S (coordinates times S).\n"
 
-/* "xmin" ... "zmax", "cylinder". */
-const char *wall_name(const fibrad_body *wall);
+/* "xmin" ... "zmax", "cylinder", the name of a mesh. */
+const char *wall_name(const struct walls *walls, uint32_t k);
 
-/* Takes one argument of --wall. Status 0 or STATUS_USAGE. */
+/* Takes one argument of --wall, and reads its meshes. Status 0, STATUS_USAGE, or as meshes_add. */
 int walls_option(const char *text, struct wall_options *options);
+void walls_free(struct wall_options *options);
 
 /* Places the walls about a bed whose periods are settled; `file` is its name in messages. Status 0, STATUS_USAGE if
- * walls and periodic axes do not agree, STATUS_INPUT naming the line if a centre lies beyond a wall. */
+ * walls and periodic axes do not agree, STATUS_INPUT naming the line if a centre lies beyond a plane or cylinder.
+ * Sides of meshes are for meshes_face to find. */
 int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, struct walls *walls);
 
-/* Whether nothing can escape: each axis is periodic or has both planes, or the cylinder stands about it. */
+/* Whether nothing can escape: each axis is periodic or has both planes, or the cylinder stands about it; or a mesh of
+ * one side encloses the bed. */
 bool walls_closed(const struct walls *walls, const struct bed *bed);
 
 /* Whether a wall goes on for ever along an axis. */

@@ -32,6 +32,7 @@ static const struct option bed_table[] = {
     {KEY_RAW, "raw", NULL, "do not average F_ij and F_ji [averaged: A_i F_ij = A_j F_ji]"},
     {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},
     {OPTION_WALL},
+    {OPTION_WALL_VTP},
     OPTIONS_INPUT,
     {'o', "output", "OUT", "the matrix: .csv .mtx .npz (SciPy) .json; the spheres: .vtp; - [summary only]"},
     {OPTION_FORMAT},
@@ -225,7 +226,7 @@ static int bed_frame(void *bed_request, struct bed *bed) {
     const bool periodic = bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0;
     if (request->method == METHOD_SURFACE && request->cutoff == 0 && periodic)
         return message(STATUS_USAGE, "--method surface needs a --cutoff in a periodic box");
-    int status = walls_of(&request->bed.walls, bed, request->bed.name, &request->walls);
+    int status = bed_options_walls(&request->bed, bed, &request->walls);
     if (status) return status;
     if (request->method == METHOD_SURFACE && request->walls.count > 0)
         return message(STATUS_USAGE, "--wall is for the methods beam, cast and mc");

@@ -19,6 +19,7 @@ static const struct option exchange_table[] = {
      "as many of both as bring the estimated Euclidean error of a row to E (of the worst to 1.3 E or so), 1e-5 to 1 "
      "[none]"},
     {OPTION_WALL},
+    {OPTION_WALL_VTP},
     {OPTION_WALL_EMISSIVITY},
     {KEY_RAW, "raw", NULL, "do not average D_ij and D_ji [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
     {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},
@@ -156,7 +157,7 @@ static int exchange_frame(void *exchange_request, struct bed *bed) {
     struct exchange_request *request = exchange_request;
     double *emissivity = NULL, wall_emissivity[WALLS_MAX];
     const char *file = request->bed.name;
-    int status = walls_of(&request->bed.walls, bed, file, &request->walls);
+    int status = bed_options_walls(&request->bed, bed, &request->walls);
     if (!status) status = wall_emissivities(request->wall_emissivity, &request->walls, wall_emissivity);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     request->rule.emissivity = emissivity;

@@ -29,6 +29,7 @@ static const struct option heat_table[] = {
     {KEY_POWER, OPTION_POWER},
     {KEY_AMBIENT, OPTION_AMBIENT},
     {OPTION_WALL},
+    {OPTION_WALL_VTP},
     {KEY_WALL_TEMPERATURE, OPTION_WALL_TEMPERATURE},
     {KEY_WALL_POWER, OPTION_WALL_POWER},
     {OPTION_WALL_EMISSIVITY},
@@ -288,7 +289,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     struct given given = {0};
     double *emissivity = NULL, of_walls[6][WALLS_MAX] = {{0}};
     const char *file = request->bed.name;
-    int status = walls_of(&request->bed.walls, bed, file, walls);
+    int status = bed_options_walls(&request->bed, bed, walls);
     if (!status) status = given_values(&request->given, bed, file, walls, &given);
     if (!status && !request->given.ambient && !walls_closed(walls, bed))
         status = message(STATUS_USAGE, "which --ambient? the bed is open: its surroundings need a temperature");

@@ -12,6 +12,7 @@
 #include "bed/bed_scene.h"
 #include "cli/memory.h"
 #include "cli/message.h"
+#include "frames/beyond.h"
 #include "plot/gnuplot.h"
 
 /* A mean radius above this is hardly one of a particle in metres. */
@@ -125,6 +126,9 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
         return take_frames(value, asked);
     case KEY_WALL:
         return walls_option(value, &asked->walls);
+    case KEY_WALL_VTP:
+        asked->wall_vtp = true;
+        return outputs_add_meshes(&asked->outputs, value);
     case KEY_THREADS:
         return options_threads(value, &asked->threads);
     case KEY_POSITIONS:
@@ -171,6 +175,8 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
         return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
     if (asked->timed && bed_options_series(asked))
         return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
+    if (asked->wall_vtp && !asked->walls.walls.meshes)
+        return message(STATUS_USAGE, "--wall-vtp: there is no --wall mesh:FILE");
     asked->outputs.picture = picture;
     return outputs_check(&asked->outputs, content, (const char *const *)asked->file, asked->files,
                          bed_options_series(asked) || asked->timed);
@@ -239,6 +245,7 @@ int bed_options_frames(struct bed_options *asked, const char *command, bed_optio
 void bed_options_free(struct bed_options *asked) {
     for (size_t k = 0; k < asked->files; ++k) free(asked->file[k]);
     free(asked->file);
+    walls_free(&asked->walls);
 }
 
 fibrad_run bed_options_run(struct bed_options *asked) {
@@ -247,6 +254,8 @@ fibrad_run bed_options_run(struct bed_options *asked) {
 
 int bed_options_status(struct bed_options *asked, const struct bed *bed, int status, const fibrad_fault *fault) {
     progress_stop(&asked->progress);
+    if (status && asked->walls.walls.meshes && fault->triangle != UINT32_MAX)
+        return meshes_refuse(asked->walls.walls.meshes, status, fault->triangle);
     if (status == FIBRAD_E_MEMORY && asked->scratch)
         return message_at(STATUS_MEMORY, asked->scratch, 0, "there is no more room on this disk, or in memory");
     return bed_status(bed, asked->name, status, fault);
@@ -319,11 +328,30 @@ int bed_options_write(struct bed_options *asked, const struct bed *bed, struct c
     return outputs_write(&asked->outputs, what, asked->files > 1 ? asked->frames_done : bed->frame);
 }
 
-static void report_wall(struct report *report, const fibrad_body *wall) {
-    const char *name = wall_name(wall);
-    char key[40];
-    snprintf(key, sizeof key, "wall_%s_at", name);
-    if (wall->kind == FIBRAD_BODY_CYLINDER)
+int bed_options_walls(const struct bed_options *asked, const struct bed *bed, struct walls *walls) {
+    const fibrad_spheres spheres = bed_spheres(bed);
+    const int status = walls_of(&asked->walls, bed, asked->name, walls);
+    if (status || !walls->meshes) return status;
+    const int faced = meshes_face(walls->meshes, &spheres, bed->period);
+    return faced ? faced : warn_beyond(bed, walls, asked->name);
+}
+
+static void report_mesh(struct report *report, const struct walls *walls, uint32_t k) {
+    const struct mesh *mesh = mesh_of_body(walls->meshes, k);
+    char key[60];
+    snprintf(key, sizeof key, "wall_%s_file", wall_name(walls, k));
+    report_text(report, key, mesh->file);
+    snprintf(key, sizeof key, "wall_%s_triangles", wall_name(walls, k));
+    report_count(report, key, mesh_triangles(mesh, k));
+}
+
+static void report_wall(struct report *report, const struct walls *walls, uint32_t k) {
+    const fibrad_body *wall = &walls->body[k];
+    char key[60];
+    snprintf(key, sizeof key, "wall_%s_at", wall_name(walls, k));
+    if (wall->kind == FIBRAD_BODY_MESH)
+        report_mesh(report, walls, k);
+    else if (wall->kind == FIBRAD_BODY_CYLINDER)
         report_vector(report, key, (const double[]){wall->cylinder.x, wall->cylinder.y, wall->cylinder.radius});
     else
         report_value(report, key, wall->plane.at, 9);
@@ -360,6 +388,6 @@ void bed_options_report(struct bed_options *asked, const struct bed *bed, const 
         report_vector(report, "box_high", bed->high);
     }
     report_vector(report, "periods", bed->period);
-    for (uint32_t k = 0; k < walls->count; ++k) report_wall(report, &walls->body[k]);
+    for (uint32_t k = 0; k < walls->count; ++k) report_wall(report, walls, k);
     if (facts) report_text(report, "instruction_set", fibrad_isa_name(facts->isa));
 }

@@ -64,6 +64,7 @@ struct bed_options {
     const char *unit[BED_COLUMNS_MAX];   /* and their units; NULL: none */
     size_t columns;
     struct wall_options walls;
+    bool wall_vtp;       /* an output has their triangles */
     int threads;         /* 0: all cores */
     const char *scratch; /* a folder for rows and matrix; NULL: in memory */
     struct outputs outputs;
@@ -78,8 +79,8 @@ struct bed_options {
     struct report report;
 };
 
-/* Takes FILE, -o, --wall and all options of this header; a key that it does not know is OPTIONS_BAD. Status 0,
- * STATUS_HELP, STATUS_USAGE or STATUS_MEMORY. */
+/* Takes FILE, -o, --wall, --wall-vtp and all options of this header; a key that it does not know is OPTIONS_BAD. Status
+ * 0, STATUS_HELP, STATUS_USAGE or STATUS_MEMORY. */
 int bed_options_take(struct bed_options *asked, const struct options *options, int key);
 
 /* Asks for a column of the file, whose unit is to be this one (NULL: it has none); returns its place in bed->extra.
@@ -122,6 +123,10 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
 
 /* Writes the frame in hand to all outputs. what: all but bed, file and series. */
 int bed_options_write(struct bed_options *asked, const struct bed *bed, struct contents *what);
+
+/* Places the walls about a bed, finds which sides of meshes are walls, and warns of spheres beyond them. Status as
+ * walls_of, or STATUS_MEMORY. */
+int bed_options_walls(const struct bed_options *asked, const struct bed *bed, struct walls *walls);
 
 /* Begins the report of a frame: file, frame, box, radii, units, walls. facts NULL: none. */
 void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,

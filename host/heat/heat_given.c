@@ -53,7 +53,7 @@ static int given_walls(const struct given_options *options, const struct bed *be
                            TEMPERATURE_MAX, walls, options->timed ? given->wall_curve : NULL, &t);
     if (!status) status = wall_list("--wall-power", options->wall_power, NULL, -POWER_MAX, POWER_MAX, walls, NULL, &p);
     for (uint32_t k = 0; k < walls->count && !status; ++k) {
-        const char *name = wall_name(&walls->body[k]);
+        const char *name = wall_name(walls, k);
         if (t.named[k] && p.named[k])
             return message(STATUS_USAGE, "%s has both a temperature and a power; give the one or the other", name);
         const double temperature = t.named[k] ? t.value[k] : p.named[k] ? NAN : t.others;
@@ -85,7 +85,7 @@ int given_reflectors(const struct given *given, const double *emissivity, const 
                      const double *wall_emissivity, const struct bed *bed, const char *file) {
     for (uint32_t k = 0; k < walls->count; ++k)
         if (wall_emissivity[k] == 0 && !isnan(given->wall_power[k]) && given->wall_power[k] != 0)
-            return message(STATUS_USAGE, "--wall-power: %s reflects all (emissivity 0)", wall_name(&walls->body[k]));
+            return message(STATUS_USAGE, "--wall-power: %s reflects all (emissivity 0)", wall_name(walls, k));
     for (uint32_t i = 0; i < bed->n; ++i)
         if (emissivity[i] == 0 && !isnan(given->power[i]) && given->power[i] != 0)
             return message_at(STATUS_INPUT, file, bed->line[i],

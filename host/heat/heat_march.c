@@ -201,7 +201,7 @@ static int choose_model(struct marching *m) {
         m->by_patches = true;
         if (problem->by_factors)
             return message(STATUS_USAGE, "--model factors: %s has no temperature given; patches find it",
-                           wall_name(&problem->walls.body[k]));
+                           wall_name(&problem->walls, k));
     }
     return STATUS_OK;
 }

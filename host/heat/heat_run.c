@@ -95,7 +95,7 @@ static int heat_unsolvable(const struct bed_options *asked, const struct heat_pr
         sum += sources->body_power[k] * square_metres;
         if (isnan(report->result.body_temperature[k]))
             return message_at(STATUS_INPUT, asked->name, 0, "wall %s: no temperature above 0 K gives off %g W here",
-                              wall_name(&problem->walls.body[k]), sources->body_power[k] * square_metres);
+                              wall_name(&problem->walls, k), sources->body_power[k] * square_metres);
     }
     return message_at(STATUS_INPUT, asked->name, 0,
                       "no temperature is given in this closed bed, and its powers add up to %g W, not to 0", sum);

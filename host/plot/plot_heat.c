@@ -140,7 +140,7 @@ static void print_bars(FILE *script, const struct heat_shown *what) {
     print_bar(script, bars++, "spheres\\nthat gain", NAN, all.gained);
     print_bar(script, bars++, "spheres\\nthat lose", NAN, -all.lost);
     for (uint32_t k = 0; k < what->walls->count; ++k)
-        print_bar(script, bars++, wall_name(&what->walls->body[k]), what->wall_temperature[k], what->wall_power[k]);
+        print_bar(script, bars++, wall_name(what->walls, k), what->wall_temperature[k], what->wall_power[k]);
     if (open)
         print_bar(script, bars++, many ? "surroun-\\ndings" : "surroundings", what->surroundings_temperature,
                   what->surroundings_power);

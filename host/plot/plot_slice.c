@@ -4,6 +4,7 @@
 #include "plot/plot_slice.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Walls farther off than this part of the bed's extent are not shown: they would leave it little room. */
 #define FAR_WALL 0.3
@@ -18,8 +19,9 @@ static void bounds(const double *centre, const double *r, uint32_t n, double *lo
     }
 }
 
-/* Along axis 0 or 2, the places where walls stand in the plane. Returns how many, at most 2. */
+/* Along axis 0 or 2, the places where walls stand in the plane. Returns how many, at most 2; 0 of a mesh. */
 static int wall_places(const struct plot_slice *slice, const fibrad_body *wall, int *axis, double place[2]) {
+    if (wall->kind == FIBRAD_BODY_MESH) return 0;
     *axis = wall->kind == FIBRAD_BODY_PLANE ? wall->plane.axis : 0;
     if (wall->kind == FIBRAD_BODY_PLANE) {
         place[0] = wall->plane.at;
@@ -33,20 +35,62 @@ static int wall_places(const struct plot_slice *slice, const fibrad_body *wall, 
 
 static uint32_t walls_shown(const struct plot_slice *slice) { return slice->walls ? slice->walls->count : 0; }
 
+/* Where the plane cuts a triangle: x and z of both ends [2][2]. False: nowhere. */
+static bool cut_of(const struct plot_slice *slice, const struct surface *surface, uint32_t triangle, double end[2][2]) {
+    int ends = 0;
+    for (int k = 0; k < 3 && ends < 2; ++k) {
+        const double *a = surface_corner(surface, triangle, k), *b = surface_corner(surface, triangle, (k + 1) % 3);
+        if ((a[1] < slice->y) == (b[1] < slice->y)) continue;
+        const double part = (slice->y - a[1]) / (b[1] - a[1]);
+        for (int axis = 0; axis < 2; ++axis) end[ends][axis] = a[2 * axis] + part * (b[2 * axis] - a[2 * axis]);
+        ++ends;
+    }
+    return ends == 2;
+}
+
+/* Shows what is done with the cut of a triangle of body k. */
+typedef void cut_seen(void *context, double end[2][2], uint32_t k);
+
+static void cut_meshes(const struct plot_slice *slice, cut_seen *seen, void *context) {
+    const struct meshes *meshes = slice->walls ? slice->walls->meshes : NULL;
+    double end[2][2];
+    for (uint32_t m = 0; meshes && m < meshes->count; ++m)
+        for (uint32_t t = 0; t < meshes->mesh[m].surface.n; ++t)
+            if (cut_of(slice, &meshes->mesh[m].surface, t, end)) seen(context, end, mesh_body(&meshes->mesh[m], t));
+}
+
+/* The range without walls, and where it becomes wider. */
+struct widening {
+    struct plot_slice *slice;
+    double low[3], high[3];
+};
+
+static void include_place(struct widening *widening, int axis, double place) {
+    struct plot_slice *slice = widening->slice;
+    const double low = widening->low[axis], high = widening->high[axis], away = FAR_WALL * (high - low);
+    if (place < low - away || place > high + away) return;
+    slice->low[axis] = fmin(slice->low[axis], place);
+    slice->high[axis] = fmax(slice->high[axis], place);
+}
+
+static void include_cut(void *widening, double end[2][2], uint32_t k) {
+    (void)k;
+    for (int e = 0; e < 2; ++e)
+        for (int axis = 0; axis < 2; ++axis) include_place(widening, 2 * axis, end[e][axis]);
+}
+
 /* Widens the range shown to walls that are near. */
 static void include_walls(struct plot_slice *slice) {
-    const double low[] = {slice->low[0], 0, slice->low[2]}, high[] = {slice->high[0], 0, slice->high[2]};
+    struct widening widening = {.slice = slice};
+    memcpy(widening.low, slice->low, sizeof widening.low);
+    memcpy(widening.high, slice->high, sizeof widening.high);
     for (uint32_t k = 0; k < walls_shown(slice); ++k) {
         int axis;
         double place[2];
         const int places = wall_places(slice, &slice->walls->body[k], &axis, place);
-        for (int p = 0; p < places; ++p) {
-            const double away = FAR_WALL * (high[axis] - low[axis]);
-            if (place[p] < low[axis] - away || place[p] > high[axis] + away) continue;
-            slice->low[axis] = fmin(slice->low[axis], place[p]);
-            slice->high[axis] = fmax(slice->high[axis], place[p]);
-        }
+        for (int p = 0; p < places; ++p) include_place(&widening, axis, place[p]);
     }
+    cut_meshes(slice, include_cut, &widening);
 }
 
 /* Numbers of millimetres and the like stay short: a thousandth, a thousand, ... where the largest asks for it. */
@@ -81,8 +125,26 @@ void plot_slice_of(struct plot_slice *slice, const struct bed *bed, const struct
     choose_scale(slice, metres);
 }
 
+/* Lines in the making. */
+struct wall_lines {
+    FILE *script;
+    double scale;
+    const double *value; /* of walls; NULL: none */
+};
+
+static void print_end(const struct wall_lines *lines, double x, double z, uint32_t k) {
+    fprintf(lines->script, "%.9g %.9g %.6g\n", x / lines->scale, z / lines->scale, lines->value ? lines->value[k] : 0);
+}
+
+static void print_cut(void *wall_lines, double end[2][2], uint32_t k) {
+    const struct wall_lines *lines = wall_lines;
+    for (int e = 0; e < 2; ++e) print_end(lines, end[e][0], end[e][1], k);
+    fputs("\n", lines->script);
+}
+
 /* Lines of the walls: their ends and a value, parted by empty lines. */
 static void print_walls(FILE *script, const struct plot_slice *slice, const double *wall_value) {
+    struct wall_lines lines = {script, slice->scale, wall_value};
     fputs("$walls << END\n", script);
     for (uint32_t k = 0; k < walls_shown(slice); ++k) {
         int axis;
@@ -93,12 +155,12 @@ static void print_walls(FILE *script, const struct plot_slice *slice, const doub
                 double at[3];
                 at[axis] = place[p];
                 at[2 - axis] = end ? slice->high[2 - axis] : slice->low[2 - axis];
-                fprintf(script, "%.9g %.9g %.6g\n", at[0] / slice->scale, at[2] / slice->scale,
-                        wall_value ? wall_value[k] : 0);
+                print_end(&lines, at[0], at[2], k);
             }
             fputs("\n", script);
         }
     }
+    cut_meshes(slice, print_cut, &lines);
     fputs("NaN NaN NaN\nEND\n", script); /* a block without a line is an error */
 }
 

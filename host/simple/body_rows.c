@@ -47,6 +47,7 @@ int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_
     }
     for (bool again = true; again && !status;) {
         status = fibrad_team_run(&job->team, "walls", bodies * FIBRAD_BODY_PARTS, 1, run_part, &tasks, NULL);
+        if (job->run) job->run->fault.triangle = job->team.triangle;
         again = false;
         for (uint32_t b = 0; b < bodies && !status; ++b) {
             if (tasks.paths[b] == 0) continue;

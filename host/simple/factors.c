@@ -108,7 +108,7 @@ static int check_emissivities(fibrad_job *job, const fibrad_exchange_rule *rule)
     if (!rule || (!rule->emissivity && job->facts.spheres > 0)) return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < job->facts.spheres; ++i)
         if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1)) {
-            if (job->run) job->run->fault = (fibrad_fault){i, i};
+            if (job->run) job->run->fault = (fibrad_fault){i, i, UINT32_MAX};
             return FIBRAD_E_ARGUMENT;
         }
     return FIBRAD_OK;

@@ -40,7 +40,7 @@ typedef struct fibrad_run {
     int threads;               /* [0, 1024]; 0: as OpenMP has it: OMP_NUM_THREADS, else all processors */
     fibrad_progress *progress; /* NULL: none */
     void *context;             /* handed to progress */
-    fibrad_fault fault;        /* out, of an error: the spheres concerned; their number n: none of them */
+    fibrad_fault fault;        /* out, of an error: the spheres concerned, their number n: none of them; the triangle */
 } fibrad_run;
 
 /* ---- factors --------------------------------------------------------------------------------------------------- */
@@ -154,8 +154,8 @@ typedef struct fibrad_transient_config {
     fibrad_heat_config heat;       /* of patches, as fibrad_radiation_new has it */
 } fibrad_transient_config;
 
-/* Makes it for a bed, which is copied. config: NULL: defaults; run as in fibrad_radiation_new. Free it with
- * fibrad_transient_free. Errors: _ARGUMENT; as fibrad_scene_init; of patches as fibrad_radiation_new. */
+/* Makes it for a bed, which is copied, triangles included. config: NULL: defaults; run as in fibrad_radiation_new. Free
+ * it with fibrad_transient_free. Errors: _ARGUMENT; as fibrad_scene_init; of patches as fibrad_radiation_new. */
 int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres,
                          const fibrad_transient_config *config, fibrad_run *run);
 

@@ -20,8 +20,11 @@ int fibrad_heap_scene(fibrad_scene **scene, void **block, const fibrad_scene_con
                       const fibrad_spheres *spheres, fibrad_fault *fault) {
     *block = NULL;
     if (!spheres) return FIBRAD_E_ARGUMENT;
-    const size_t size = fibrad_scene_size(spheres->n, spheres->id != NULL);
-    if (!size) return FIBRAD_E_ARGUMENT;
+    const uint32_t triangles = config && config->triangles ? config->triangles->n : 0;
+    const size_t of_spheres = fibrad_scene_size(spheres->n, spheres->id != NULL);
+    const size_t of_triangles = triangles ? fibrad_triangles_size(triangles, spheres->n) : 0;
+    if (!of_spheres || (triangles && !of_triangles)) return FIBRAD_E_ARGUMENT;
+    const size_t size = of_spheres + of_triangles;
     *block = malloc(size);
     if (!*block) return FIBRAD_E_MEMORY;
     const int status = fibrad_scene_init(scene, *block, size, config, spheres, fault);
@@ -79,6 +82,34 @@ void *fibrad_scratch_resize(void *context, void *block, size_t size) {
     return larger;
 }
 
+int fibrad_heap_triangles(fibrad_triangle_copy *copy, const struct fibrad_triangles *given) {
+    *copy = (fibrad_triangle_copy){.block = NULL};
+    if (!given || given->n == 0) return FIBRAD_OK;
+    const size_t n = given->n, vertices = given->vertices, stride = given->stride ? given->stride : 1;
+    const size_t sides = given->back ? 2 : 1;
+    copy->block = malloc(3 * vertices * sizeof(double) + (3 + sides) * n * sizeof(uint32_t));
+    if (!copy->block) return FIBRAD_E_MEMORY;
+    double *x = copy->block;
+    uint32_t *corner = (uint32_t *)(x + 3 * vertices);
+    for (size_t v = 0; v < vertices; ++v)
+        x[3 * v] = given->x[v * stride], x[3 * v + 1] = given->y[v * stride], x[3 * v + 2] = given->z[v * stride];
+    memcpy(corner, given->corner, 3 * n * sizeof *corner);
+    memcpy(corner + 3 * n, given->front, n * sizeof *corner);
+    if (given->back) memcpy(corner + 4 * n, given->back, n * sizeof *corner);
+    copy->triangles = (struct fibrad_triangles){.x = x,
+                                                .y = x + 1,
+                                                .z = x + 2,
+                                                .stride = 3,
+                                                .vertices = given->vertices,
+                                                .corner = corner,
+                                                .front = corner + 3 * n,
+                                                .back = given->back ? corner + 4 * n : NULL,
+                                                .n = given->n};
+    return FIBRAD_OK;
+}
+
+typedef struct fibrad_triangles fibrad_triangles;
+
 #define STRUCTURE(name)                                                                                                \
     { #name, sizeof(name) }
 
@@ -97,6 +128,7 @@ size_t fibrad_host_sizeof(const char *name) {
         STRUCTURE(fibrad_heat_sources),  STRUCTURE(fibrad_heat_result),  STRUCTURE(fibrad_run),
         STRUCTURE(fibrad_bed_options),   STRUCTURE(fibrad_bed_factors),  STRUCTURE(fibrad_transient_config),
         STRUCTURE(fibrad_span),          STRUCTURE(fibrad_body_row),     STRUCTURE(fibrad_triangles),
+        STRUCTURE(fibrad_triangle_hit),
     };
     for (size_t k = 0; name && k < sizeof structures / sizeof *structures; ++k)
         if (strcmp(name, structures[k].name) == 0) return structures[k].size;

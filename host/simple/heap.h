@@ -4,11 +4,21 @@
 
 #include <stdbool.h>
 
+#include "fibrad_mesh.h"
 #include "simple/fibrad_host.h"
 
 /* Makes a scene in *block, which is to be freed; NULL after an error. Errors: as fibrad_scene_init, _MEMORY. */
 int fibrad_heap_scene(fibrad_scene **scene, void **block, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
+
+/* Triangles in a block, which is to be freed. */
+typedef struct fibrad_triangle_copy {
+    struct fibrad_triangles triangles;
+    void *block;
+} fibrad_triangle_copy;
+
+/* Copies triangles; NULL: none. The block is NULL then and after an error. Errors: _MEMORY. */
+int fibrad_heap_triangles(fibrad_triangle_copy *copy, const struct fibrad_triangles *given);
 
 /* A block; zeroed: empty and on the heap. */
 typedef struct fibrad_scratch {

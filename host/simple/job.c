@@ -16,7 +16,7 @@
 int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fibrad_spheres *spheres,
                     fibrad_run *run) {
     const uint32_t n = spheres ? spheres->n : 0;
-    fibrad_fault fault = {n, n};
+    fibrad_fault fault = {n, n, UINT32_MAX};
     *job = (fibrad_job){.run = run, .begun = omp_get_wtime()};
     if (run) run->fault = fault;
     int status = fibrad_team_open(&job->team, run);
@@ -100,7 +100,8 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
         struct row_tasks tasks = {job, row, rule, order, error, part};
         const uint32_t count = list_spheres(job, wanted, order);
         status = fibrad_team_run(team, "rows", count, ROWS_AT_ONCE, run_row, &tasks, &failed);
-        if (status && job->run && failed < count) job->run->fault = (fibrad_fault){order[failed], order[failed]};
+        if (status && job->run && failed < count)
+            job->run->fault = (fibrad_fault){order[failed], order[failed], team->triangle};
     }
     for (int t = 0; t < team->threads && !status; ++t) {
         report->rows += part[t].rows;

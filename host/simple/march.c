@@ -231,18 +231,18 @@ static int march(struct march *m) {
 
 /* Whether a span is sound; t->fault has the sphere that is not. */
 static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const fibrad_span *span) {
-    t->fault = (fibrad_fault){t->n, t->n};
+    t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX};
     if (t->n > 0 && (!span->temperature || !span->capacity)) return FIBRAD_E_ARGUMENT;
     if (!(span->duration > 0 && span->duration <= 1e300 && span->step >= 0 && span->tolerance >= 0 &&
           span->tolerance < 1))
         return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < t->n; ++i) {
-        t->fault = (fibrad_fault){i, i};
+        t->fault = (fibrad_fault){i, i, UINT32_MAX};
         if (!(span->temperature[i] > 0 && span->temperature[i] <= 1e20)) return FIBRAD_E_ARGUMENT;
         if (!(span->capacity[i] > 0 && span->capacity[i] <= 1e300)) return FIBRAD_E_ARGUMENT;
         if (s->power && !(fabs(s->power[i]) <= 1e300)) return FIBRAD_E_ARGUMENT;
     }
-    t->fault = (fibrad_fault){t->n, t->n};
+    t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX};
     return FIBRAD_OK;
 }
 

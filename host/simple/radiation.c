@@ -56,6 +56,7 @@ static int trace_all(fibrad_radiation *r) {
     for (;;) {
         const uint32_t tasks = fibrad_heat_tasks(r->heat);
         int status = fibrad_team_run(&r->team, "beams", tasks, TASKS_AT_ONCE, trace_beams, r, NULL);
+        r->fault.triangle = r->team.triangle;
         if (status != FIBRAD_E_SIZE) return status;
         status = replace_heat(r, r->scene, 2 * r->heat_size);
         if (status) return status;
@@ -66,7 +67,7 @@ int fibrad_radiation_move(fibrad_radiation *r, const fibrad_scene_config *config
     fibrad_scene *scene;
     void *block;
     if (!r || !spheres) return FIBRAD_E_ARGUMENT;
-    r->fault = (fibrad_fault){spheres->n, spheres->n};
+    r->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX};
     if (r->heat && spheres->n != r->n) return FIBRAD_E_ARGUMENT;
     int status = fibrad_heap_scene(&scene, &block, config, spheres, &r->fault);
     if (!status) status = move_heat(r, scene);
@@ -87,7 +88,7 @@ int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config
     fibrad_radiation *r = calloc(1, sizeof *r);
     *radiation = NULL;
     if (!r) return FIBRAD_E_MEMORY;
-    if (spheres) r->fault = (fibrad_fault){spheres->n, spheres->n};
+    if (spheres) r->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX};
     if (heat_config) r->config = *heat_config;
     r->config.parts = PARTS;
     int status = fibrad_team_open(&r->team, run);
@@ -108,7 +109,7 @@ static int sweep_beams(void *heat, int thread, uint32_t part) {
 int fibrad_radiation_solve(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
     if (!r) return FIBRAD_E_ARGUMENT;
     if (!r->heat) return FIBRAD_E_STATE;
-    r->fault = (fibrad_fault){r->n, r->n};
+    r->fault = (fibrad_fault){r->n, r->n, UINT32_MAX};
     int solved = 0, status = fibrad_heat_begin(r->heat, sources);
     for (uint64_t sweeps = 0; !status && !solved; ++sweeps) {
         status = fibrad_team_report(&r->team, "sweeps", sweeps, 0);

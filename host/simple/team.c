@@ -8,7 +8,7 @@
 #define INTERVAL    0.05 /* between two calls of the progress function [s] */
 
 int fibrad_team_open(fibrad_team *team, const fibrad_run *run) {
-    *team = (fibrad_team){.threads = omp_get_max_threads()};
+    *team = (fibrad_team){.threads = omp_get_max_threads(), .triangle = UINT32_MAX};
     if (run && (run->threads < 0 || run->threads > THREADS_MAX)) return FIBRAD_E_ARGUMENT;
     if (run && run->threads) team->threads = run->threads;
     if (run) team->progress = run->progress, team->context = run->context;
@@ -75,7 +75,8 @@ static void run_tasks(fibrad_team *team, const char *stage, uint32_t tasks, int 
                 reported = omp_get_wtime();
             }
             if (!status || error->status == FIBRAD_E_CANCELLED || (error->status && error->task < at)) continue;
-            *error = (fibrad_team_error){at, status};
+            *error =
+                (fibrad_team_error){at, status, status == FIBRAD_E_BACK ? team->work[thread].triangle : UINT32_MAX};
 #pragma omp atomic write
             end = at;
         }
@@ -87,13 +88,15 @@ int fibrad_team_run(fibrad_team *team, const char *stage, uint32_t tasks, int ch
     uint32_t lowest = tasks;
     int status = fibrad_team_report(team, stage, 0, tasks);
     if (failed) *failed = tasks;
+    team->triangle = UINT32_MAX;
     if (status) return status;
     for (int t = 0; t < team->threads; ++t) team->error[t] = (fibrad_team_error){0};
     run_tasks(team, stage, tasks, chunk, task, job);
     for (int t = 0; t < team->threads; ++t) {
         const fibrad_team_error *error = &team->error[t];
         if (error->status == FIBRAD_E_CANCELLED) return FIBRAD_E_CANCELLED;
-        if (error->status && error->task < lowest) lowest = error->task, status = error->status;
+        if (error->status && error->task < lowest)
+            lowest = error->task, status = error->status, team->triangle = error->triangle;
     }
     if (failed) *failed = lowest;
     return status ? status : fibrad_team_report(team, stage, tasks, tasks);

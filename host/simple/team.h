@@ -8,6 +8,7 @@
 typedef struct fibrad_team_error {
     uint32_t task;
     int status;
+    uint32_t triangle; /* of FIBRAD_E_BACK; else UINT32_MAX */
 } fibrad_team_error;
 
 typedef struct fibrad_team {
@@ -18,6 +19,7 @@ typedef struct fibrad_team {
     fibrad_rows *rows;        /* [threads] growing */
     fibrad_scratch *store;    /* [threads] of the rows */
     fibrad_team_error *error; /* [threads] */
+    uint32_t triangle;        /* of the last run that failed: the one whose back was seen, or UINT32_MAX */
 } fibrad_team;
 
 /* Makes the team that `run` (NULL: defaults) asks for. Close it also after an error. Errors: _ARGUMENT, _MEMORY. */

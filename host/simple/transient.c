@@ -55,13 +55,14 @@ static void copy_bed(fibrad_transient *t, const fibrad_scene_config *scene, cons
     if (scene) t->scene = *scene;
     for (uint32_t b = 0; b < t->bodies; ++b) t->body[b] = scene->body[b];
     t->scene.body = t->body;
+    t->scene.triangles = &t->mesh.triangles;
 }
 
 /* Whether a scene can be made of a bed; its facts. */
 static int check_placed(fibrad_transient *t, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
     fibrad_scene *scene;
     void *block;
-    t->fault = (fibrad_fault){spheres->n, spheres->n};
+    t->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX};
     const int status = fibrad_heap_scene(&scene, &block, config, spheres, &t->fault);
     if (!status) fibrad_scene_describe(scene, &t->facts);
     free(block);
@@ -70,15 +71,25 @@ static int check_placed(fibrad_transient *t, const fibrad_scene_config *config, 
 
 /* Beams, or nothing yet; and the bed. */
 static int place(fibrad_transient *t, const fibrad_scene_config *scene, const fibrad_spheres *spheres) {
+    fibrad_triangle_copy mesh = {.block = NULL};
     int status = check_placed(t, scene, spheres);
+    if (!status) status = fibrad_heap_triangles(&mesh, scene ? scene->triangles : NULL);
     if (!status && t->config.method != FIBRAD_TRANSIENT_FACTORS) {
         fibrad_run run = run_of(t);
-        if (t->radiation)
+        if (t->radiation) {
             status = fibrad_radiation_move(t->radiation, scene, spheres);
-        else
+            fibrad_radiation_describe(t->radiation, NULL, &t->fault);
+        } else {
             status = fibrad_radiation_new(&t->radiation, scene, spheres, &t->config.heat, &run);
+            t->fault = run.fault;
+        }
     }
-    if (status) return status;
+    if (status) {
+        free(mesh.block);
+        return status;
+    }
+    free(t->mesh.block);
+    t->mesh = mesh;
     fibrad_network_free(t->network);
     t->network = NULL;
     t->corrected = false;
@@ -218,6 +229,7 @@ void fibrad_transient_free(fibrad_transient *t) {
     if (!t) return;
     free(t->doubles);
     free(t->body);
+    free(t->mesh.block);
     free(t->id);
     fibrad_network_free(t->network);
     fibrad_radiation_free(t->radiation);

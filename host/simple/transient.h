@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "simple/heap.h"
 #include "simple/network.h"
 
 struct fibrad_transient {
@@ -15,8 +16,9 @@ struct fibrad_transient {
     /* the bed: copies, since factors are made when emissivities are known */
     fibrad_scene_config scene;
     fibrad_body *body; /* [bodies] */
-    double *at[4];     /* [n] x, y, z, r */
-    uint64_t *id;      /* [n] if named */
+    fibrad_triangle_copy mesh;
+    double *at[4]; /* [n] x, y, z, r */
+    uint64_t *id;  /* [n] if named */
     bool named;
     double *doubles; /* all arrays of doubles here and below */
     fibrad_scene_facts facts;

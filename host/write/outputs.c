@@ -50,6 +50,13 @@ int outputs_add(struct outputs *outputs, const char *path) {
     return STATUS_OK;
 }
 
+int outputs_add_meshes(struct outputs *outputs, const char *path) {
+    static const struct format meshes = {"vtp", {write_mesh_vtp, write_mesh_vtp}, false};
+    const int status = outputs_add(outputs, path);
+    if (!status) outputs->to[outputs->count - 1].format = &meshes;
+    return status;
+}
+
 int outputs_format(struct outputs *outputs, const char *name) {
     if (outputs->format) return message(STATUS_USAGE, "--format: there can be one only");
     for (int k = 0; k < FORMATS; ++k)

@@ -41,8 +41,9 @@ struct outputs {
 /* Rows of a table of options, without braces. */
 #define OPTION_FORMAT KEY_FORMAT, "format", "NAME", "of each -o whose ending tells none, such as -o - [by the ending]"
 
-/* Takes the argument of -o or --format. Status 0 or STATUS_USAGE. */
+/* Takes the argument of -o, --wall-vtp or --format. Status 0 or STATUS_USAGE. */
 int outputs_add(struct outputs *outputs, const char *path);
+int outputs_add_meshes(struct outputs *outputs, const char *path);
 int outputs_format(struct outputs *outputs, const char *name);
 
 /* Can all that be written? `inputs`, which are not to be replaced, stay the caller's until outputs_close; series:

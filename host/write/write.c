@@ -4,8 +4,7 @@
 bool contents_outside(const struct contents *what) { return what->walls && (what->walls->count > 0 || what->grey); }
 
 const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]) {
-    const fibrad_body *body = &what->walls->body[k];
-    if (body->kind) return wall_name(body);
+    if (what->walls->body[k].kind) return wall_name(what->walls, k);
     snprintf(name, BODY_NAME, "wall_%u", k + 1);
     return name;
 }

@@ -36,6 +36,9 @@ struct contents {
     const struct array *array;        /* [arrays] that a .npz has besides its own, at most ARRAYS_MAX */
     size_t arrays;
 
+    const struct array *of_triangle; /* [of_triangles] values on all triangles of the meshes, by names without .npy */
+    size_t of_triangles;
+
     const fibrad_heat_sources *sources; /* kelvins; surroundings NaN: there are none, the geometry is closed */
     const fibrad_heat_result *result;   /* watts, kelvins; has all arrays */
 
@@ -48,13 +51,14 @@ typedef int write_function(FILE *file, const struct contents *what, bool first);
 
 write_function write_csv, write_mtx, write_npz, write_vtp, write_json;
 write_function write_conduction_csv, write_conduction_json;
+write_function write_mesh_vtp; /* has walls with meshes */
 write_function write_heat_csv, write_heat_vtp, write_heat_json, write_heat_dump;
 
 /* Whether walls and surroundings of a matrix are written. */
 bool contents_outside(const struct contents *what);
 
 /* What a body is called: "zmin" and the like, "wall_1" and the like if its place is not known. */
-enum { BODY_NAME = 16 };
+enum { BODY_NAME = MESH_NAME };
 const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]);
 
 /* What the rows that were computed have in common. */

@@ -178,21 +178,30 @@ static int add_spheres(struct arrays *arrays, const struct bed *bed) {
     return STATUS_OK;
 }
 
+/* Names of walls side by side, each of 8 bytes, or BODY_NAME where one is longer. */
+static struct array wall_names(const struct contents *what, char names[WALLS_MAX * BODY_NAME]) {
+    const uint32_t walls = what->walls->count;
+    char name[BODY_NAME];
+    size_t width = 8;
+    for (uint32_t k = 0; k < walls; ++k)
+        if (strlen(contents_body(what, k, name)) > width) width = BODY_NAME;
+    for (uint32_t k = 0; k < walls; ++k) strncpy(names + k * width, contents_body(what, k, name), width);
+    return (struct array){"wall_names.npy", width > 8 ? "S32" : "S8", names, walls, 0};
+}
+
 /* What is known of the rows besides the matrix. */
-static void add_rows(struct arrays *arrays, const struct contents *what, char wall[WALLS_MAX][8]) {
+static void add_rows(struct arrays *arrays, const struct contents *what, char names[WALLS_MAX * BODY_NAME]) {
     const fibrad_factors *matrix = &what->factors->matrix;
     const uint64_t n = matrix->n;
     const uint32_t walls = what->walls ? what->walls->count : 0;
-    char name[BODY_NAME];
     add_array(arrays, (struct array){"escaped.npy", "f8", matrix->escaped, n, 0});
     add_array(arrays, (struct array){"beyond.npy", "f8", matrix->beyond, n, 0});
     add_array(arrays, (struct array){"error.npy", "f8", matrix->error, n, 0});
     add_array(arrays, (struct array){"computed.npy", "u1", what->wanted, n, 0});
     if (what->grey) add_array(arrays, (struct array){"emissivity.npy", "f8", what->grey->emissivity, n, 0});
     if (walls == 0) return;
-    for (uint32_t k = 0; k < walls; ++k) strncpy(wall[k], contents_body(what, k, name), 8);
     add_array(arrays, (struct array){"body.npy", "f8", matrix->body, n, walls});
-    add_array(arrays, (struct array){"wall_names.npy", "S8", wall, walls, 0});
+    add_array(arrays, wall_names(what, names));
     if (!matrix->body_body) return;
     add_array(arrays, (struct array){"wall_area.npy", "f8", what->factors->body_area, walls, 0});
     add_array(arrays, (struct array){"wall_wall.npy", "f8", matrix->body_body, walls, walls});
@@ -228,11 +237,11 @@ int write_npz(FILE *file, const struct contents *what, bool first) {
                                      {"shape.npy", "i8", shape, 2, 0},
                                      {"data.npy", "f8", matrix->f, entries, 0}},
                             .count = 5};
-    char wall[WALLS_MAX][8];
+    char names[WALLS_MAX * BODY_NAME];
     (void)first;
     for (size_t k = 0; k < what->arrays; ++k) add_array(&arrays, what->array[k]);
     int status = add_spheres(&arrays, what->bed);
-    if (!status) add_rows(&arrays, what, wall);
+    if (!status) add_rows(&arrays, what, names);
     if (!status) status = write_archive(file, &arrays);
     free(arrays.position);
     free(arrays.x);

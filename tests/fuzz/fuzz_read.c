@@ -12,6 +12,7 @@
 #include "read/read.h"
 #include "boxes/read_furnace.h"
 #include "cli/targets.h"
+#include "mesh/meshes.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -53,6 +54,31 @@ static void read_frames(const char *path, uint8_t asked, size_t size) {
     bed_free(&bed);
 }
 
+/* As a mesh: corners are there, triangles have three of them, each is in one part. */
+static void read_mesh(const char *path, uint8_t asked) {
+    static const double at[2] = {0, 1}, r[2] = {1, .5}, period[3] = {0};
+    const fibrad_spheres spheres = {.x = at, .y = at, .z = at, .r = r, .n = 2};
+    const struct mesh_file file = {
+        .path = path, .sides = asked % 3, .solids = (asked & 4) != 0, .scale = asked & 8 ? 1e-3 : 1};
+    struct meshes meshes = {0};
+    if (meshes_add(&meshes, &file, asked >> 4) == 0) {
+        const struct surface *s = &meshes.mesh[0].surface;
+        uint32_t listed = 0;
+        for (uint32_t t = 0; t < s->n; t++) {
+            const uint32_t *c = s->corner[t];
+            if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0] || s->part_of[t] >= s->parts) abort();
+            for (int k = 0; k < 9; k++)
+                if (c[k / 3] >= s->vertices || !isfinite(s->vertex[c[k / 3]][k % 3])) abort();
+        }
+        for (uint32_t p = 0; p < s->parts; p++) listed += s->part[p].n;
+        if (s->n == 0 || listed != s->n || meshes_face(&meshes, &spheres, period) != 0) abort();
+        for (uint32_t t = 0; t < s->n; t++)
+            if (meshes.front[t] == FIBRAD_NO_BODY && meshes.back[t] == FIBRAD_NO_BODY) abort();
+        (void)meshes_beyond(&meshes, (const double[]){3, 3, 3}, 1, period);
+    }
+    meshes_free(&meshes);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static int file = -1;
     char path[40];
@@ -62,6 +88,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     snprintf(path, sizeof path, "/proc/self/fd/%d", file);
 
     read_frames(path, data[0], size);
+    read_mesh(path, data[0]);
 
     fibrad_furnace_config furnace;
     if (read_furnace(path, &furnace) == 0) {

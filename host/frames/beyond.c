@@ -1,0 +1,72 @@
+/* beyond.c - spheres that lie beyond a closed mesh. SPDX-License-Identifier: MIT
+ *
+ * A ray from where all is right leaves each mesh that encloses the bed once more, through its inner side, than it comes
+ * back, and enters others as often as it leaves them. */
+#include "frames/beyond.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "bed/bed_scene.h"
+#include "cli/message.h"
+#include "simple/heap.h"
+
+enum { CROSSINGS_MOST = 10000 };
+#define STEP_BEHIND 1e-6 /* of an edge: where a ray goes on behind what it has met */
+
+/* A direction across no periodic axis. False: there is none. */
+static bool open_direction(const struct bed *bed, double w[3]) {
+    const double any[3] = {0.4330127, 0.5590170, 0.7071068};
+    double square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        w[axis] = bed->period[axis] > 0 ? 0 : any[axis];
+        square += w[axis] * w[axis];
+    }
+    for (int axis = 0; axis < 3; ++axis) w[axis] /= sqrt(square);
+    return square > 0;
+}
+
+/* How often a ray leaves closed meshes through their inner sides more than it comes in. */
+static int64_t times_left(const fibrad_scene *scene, const struct meshes *meshes, const double from[3],
+                          const double w[3]) {
+    double at[3] = {from[0], from[1], from[2]};
+    fibrad_triangle_hit hit;
+    int64_t times = 0;
+    for (int k = 0; k < CROSSINGS_MOST; ++k) {
+        if (fibrad_triangle_ray(scene, at, w, INFINITY, &hit) || hit.triangle == UINT32_MAX) break;
+        const double on = hit.distance + STEP_BEHIND * mesh_of_triangle(meshes, hit.triangle)->surface.mean_edge;
+        times += meshes_side(meshes, hit.triangle, hit.back);
+        for (int axis = 0; axis < 3; ++axis) at[axis] += on * w[axis];
+    }
+    return times;
+}
+
+static void look_for_one(const struct bed *bed, const struct meshes *meshes, const fibrad_scene *scene,
+                         const double w[3], const char *file) {
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double centre[3] = {bed->x[i], bed->y[i], bed->z[i]};
+        if (times_left(scene, meshes, centre, w) == meshes->enclosing) continue;
+        const char *name = meshes_beyond(meshes, centre, bed->r[i], bed->period);
+        if (!name) continue;
+        message_at(STATUS_OK, file, bed->line[i], "warning: sphere %lld lies beyond wall %s with all of it",
+                   (long long)bed_name(bed, i), name);
+        return;
+    }
+}
+
+int warn_beyond(const struct bed *bed, const struct walls *walls, const char *file) {
+    const fibrad_scene_config config = bed_scene(bed, walls);
+    const fibrad_spheres none = {.n = 0};
+    bool any = false;
+    double w[3];
+    fibrad_scene *scene;
+    void *block;
+    for (uint32_t t = 0; walls->meshes && t < walls->meshes->triangles.n && !any; ++t)
+        any = meshes_side(walls->meshes, t, false) != 0;
+    if (!any || !open_direction(bed, w)) return STATUS_OK;
+    const int status = fibrad_heap_scene(&scene, &block, &config, &none, NULL);
+    if (status == FIBRAD_E_MEMORY) return message_memory();
+    if (!status) look_for_one(bed, walls->meshes, scene, w, file);
+    free(block);
+    return STATUS_OK; /* other errors come with the bed itself */
+}

@@ -1,0 +1,149 @@
+/* facing.c - which side of a surface spheres are on. SPDX-License-Identifier: MIT
+ *
+ * At an edge or corner the nearest point is that of several triangles, which have to agree; at the edge of one triangle
+ * nothing tells. */
+#include "mesh/facing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "cli/message.h"
+
+#define TIED 1e-9 /* of squares of distances */
+enum { VOTERS_MOST = 1000, VOTERS_LEAST = 50 };
+#define VOTES_MOST 2e7 /* of all triangles */
+
+static double product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* What is known of a triangle in advance: a ball about it. */
+struct ball {
+    double centre[3], radius;
+};
+
+/* The nearest triangles so far. */
+struct nearest {
+    double square; /* of the distance */
+    int side;      /* 1: before them, -1: behind them, 0: they do not agree */
+    bool edge;     /* it is one triangle, and its edge */
+};
+
+static struct ball ball_of(const struct surface *surface, uint32_t triangle) {
+    struct ball ball = {.radius = 0};
+    for (int k = 0; k < 3; ++k)
+        for (int axis = 0; axis < 3; ++axis) ball.centre[axis] += surface_corner(surface, triangle, k)[axis] / 3;
+    for (int k = 0; k < 3; ++k) {
+        const double *c = surface_corner(surface, triangle, k);
+        ball.radius =
+            fmax(ball.radius, hypot(hypot(c[0] - ball.centre[0], c[1] - ball.centre[1]), c[2] - ball.centre[2]));
+    }
+    return ball;
+}
+
+/* The square of the distance from a point to the line from a to b. */
+static double to_line(const double p[3], const double a[3], const double b[3]) {
+    const double ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, ap[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    const double square = product(ab, ab), along = square > 0 ? fmin(fmax(product(ap, ab) / square, 0), 1) : 0;
+    const double off[3] = {ap[0] - along * ab[0], ap[1] - along * ab[1], ap[2] - along * ab[2]};
+    return product(off, off);
+}
+
+/* The square of the distance from a point to a triangle, whether its edge is nearest, and the side; false: it has no
+ * area. */
+static bool to_triangle(const struct surface *surface, uint32_t triangle, const double p[3], struct nearest *found) {
+    double normal[3];
+    const double *c[3];
+    for (int k = 0; k < 3; ++k) c[k] = surface_corner(surface, triangle, k);
+    surface_normal(surface, triangle, normal);
+    const double square = product(normal, normal);
+    const double height = product(normal, (const double[]){p[0] - c[0][0], p[1] - c[0][1], p[2] - c[0][2]});
+    *found = (struct nearest){.side = height > 0 ? 1 : height < 0 ? -1 : 0};
+    for (int k = 0; k < 3; ++k) { /* beyond an edge? */
+        const double *a = c[k], *b = c[(k + 1) % 3];
+        const double ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, ap[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+        const double across[3] = {ab[1] * ap[2] - ab[2] * ap[1], ab[2] * ap[0] - ab[0] * ap[2],
+                                  ab[0] * ap[1] - ab[1] * ap[0]};
+        found->edge = found->edge || product(across, normal) < 0;
+    }
+    if (found->edge)
+        found->square = fmin(fmin(to_line(p, c[0], c[1]), to_line(p, c[1], c[2])), to_line(p, c[2], c[0]));
+    else
+        found->square = height * height / square;
+    return square > 0;
+}
+
+/* Takes a triangle into account for a point, whose image next to it counts. */
+static void try_triangle(const struct surface *surface, uint32_t triangle, const struct ball *ball,
+                         const double point[3], const double period[3], struct nearest *best) {
+    double p[3], away = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        p[axis] = point[axis];
+        if (period[axis] > 0) p[axis] -= period[axis] * round((p[axis] - ball->centre[axis]) / period[axis]);
+        away += (p[axis] - ball->centre[axis]) * (p[axis] - ball->centre[axis]);
+    }
+    struct nearest found;
+    const double reach = sqrt(best->square) * (1 + TIED) + ball->radius;
+    if (away > reach * reach || !to_triangle(surface, triangle, p, &found)) return;
+    if (surface->turned[triangle]) found.side = -found.side;
+    if (found.square < best->square * (1 - TIED)) {
+        *best = found;
+    } else if (found.square <= best->square * (1 + TIED)) {
+        best->edge = false;
+        if (found.side != best->side) best->side = 0;
+    }
+}
+
+/* The nearest triangles of a part; ball [n]: of all triangles, NULL: not known. */
+static struct nearest nearest_of(const struct surface *surface, const struct part *part, const struct ball *ball,
+                                 const double point[3], const double period[3]) {
+    struct nearest best = {.square = INFINITY};
+    for (uint32_t k = part->first; k < part->first + part->n; ++k) {
+        const uint32_t t = surface->in_parts[k];
+        const struct ball about = ball ? ball[t] : ball_of(surface, t);
+        try_triangle(surface, t, &about, point, period, &best);
+    }
+    if (best.edge) best.side = 0;
+    return best;
+}
+
+double facing_distance(const struct surface *surface, const struct part *part, const double point[3],
+                       const double period[3], int *side) {
+    const struct nearest best = nearest_of(surface, part, NULL, point, period);
+    *side = best.side;
+    return sqrt(best.square);
+}
+
+static uint32_t voters_of(const struct surface *surface, uint32_t spheres) {
+    const double voters = fmin(fmax(VOTES_MOST / surface->n, VOTERS_LEAST), VOTERS_MOST);
+    return voters < spheres ? (uint32_t)voters : spheres;
+}
+
+int facing_votes(const struct surface *surface, const fibrad_spheres *spheres, const double period[3], double *votes) {
+    const uint32_t voters = voters_of(surface, spheres->n);
+    struct ball *ball = malloc(((size_t)surface->n + 1) * sizeof *ball);
+    if (!ball) return message_memory();
+    for (uint32_t t = 0; t < surface->n; ++t) ball[t] = ball_of(surface, t);
+    for (uint32_t part = 0; part < surface->parts; ++part) {
+        votes[part] = 0;
+        for (uint32_t voter = 0; voter < voters; ++voter) {
+            const uint32_t i = (uint32_t)((uint64_t)spheres->n * voter / voters);
+            const double centre[3] = {spheres->x[i], spheres->y[i], spheres->z[i]}, r = spheres->r[i];
+            const struct nearest best = nearest_of(surface, &surface->part[part], ball, centre, period);
+            if (best.side != 0) votes[part] += best.side * fmin(r * r / best.square, 1);
+        }
+    }
+    free(ball);
+    return STATUS_OK;
+}
+
+double facing_volume(const struct surface *surface, const struct part *part) {
+    const double *from = surface_corner(surface, surface->in_parts[part->first], 0);
+    double volume = 0, normal[3];
+    for (uint32_t k = part->first; k < part->first + part->n; ++k) {
+        const uint32_t t = surface->in_parts[k];
+        const double *at = surface_corner(surface, t, 0);
+        surface_normal(surface, t, normal);
+        const double six = product(normal, (const double[]){at[0] - from[0], at[1] - from[1], at[2] - from[2]});
+        volume += (surface->turned[t] ? -six : six) / 6;
+    }
+    return volume;
+}

@@ -1,0 +1,203 @@
+/* meshes.c - walls of triangles from files, as the library takes them. SPDX-License-Identifier: MIT */
+#include "mesh/meshes.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "mesh/facing.h"
+
+bool mesh_name(const char *name) {
+    size_t length = 0;
+    while (isalnum((unsigned char)name[length]) || name[length] == '_') ++length;
+    return length > 0 && length < MESH_NAME && name[length] == 0;
+}
+
+/* A valid name: of a path without folders and endings, with _ for what is no letter. */
+static void stem_of(const char *path, char name[MESH_NAME]) {
+    const char *slash = strrchr(path, '/'), *begin = slash ? slash + 1 : path;
+    size_t length = strcspn(begin, ".");
+    if (length == 0 || length >= MESH_NAME) length = length == 0 ? 0 : MESH_NAME - 1;
+    for (size_t k = 0; k < length; ++k) name[k] = isalnum((unsigned char)begin[k]) ? begin[k] : '_';
+    strcpy(name + length, length == 0 ? "mesh" : "");
+}
+
+/* NAME, or NAME_SOLID for each. */
+static void name_bodies(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t body) {
+    char name[MESH_NAME], solid[SOLID_NAME];
+    if (file->name)
+        snprintf(name, sizeof name, "%s", file->name);
+    else
+        stem_of(file->path, name);
+    for (uint32_t k = 0; k < (file->solids ? stl->solids : 1); ++k) {
+        char *to = meshes->name[body + k];
+        stem_of(stl->name[k], solid);
+        if (!file->solids)
+            memcpy(to, name, sizeof name);
+        else if (stl->name[k][0])
+            snprintf(to, MESH_NAME, "%.15s_%.15s", name, solid);
+        else
+            snprintf(to, MESH_NAME, "%.15s_%u", name, k + 1);
+    }
+}
+
+static void warn_of_surface(const char *file, const struct surface *s) {
+    if (s->flat || s->twice || s->snapped)
+        message_at(STATUS_OK, file, 0,
+                   "warning: mended: %u triangles without area, %u there twice, %u corners less than 1e-6 of an edge "
+                   "from others",
+                   s->flat, s->twice, s->snapped);
+    if (s->open || s->crowded)
+        message_at(STATUS_OK, file, 0,
+                   "warning: the mesh is %s: %u edges are of one triangle, %u of more than two, in %u parts",
+                   s->open ? "not closed" : "closed", s->open, s->crowded, s->parts);
+}
+
+/* Puts the triangles of the last mesh behind those of the others. */
+static int append(struct meshes *meshes) {
+    struct fibrad_triangles *all = &meshes->triangles;
+    const struct mesh *mesh = &meshes->mesh[meshes->count - 1];
+    const struct surface *s = &mesh->surface;
+    const size_t n = (size_t)all->n + s->n, vertices = (size_t)all->vertices + s->vertices;
+    if (n > FIBRAD_TRIANGLES_MAX) return message(STATUS_USAGE, "--wall: more than %u triangles", FIBRAD_TRIANGLES_MAX);
+    double *vertex = realloc(meshes->vertex, 3 * vertices * sizeof *vertex);
+    if (vertex) meshes->vertex = vertex;
+    uint32_t *corner = realloc(meshes->corner, 3 * n * sizeof *corner);
+    if (corner) meshes->corner = corner;
+    uint32_t *front = realloc(meshes->front, n * sizeof *front);
+    if (front) meshes->front = front;
+    uint32_t *back = realloc(meshes->back, n * sizeof *back);
+    if (back) meshes->back = back;
+    if (!vertex || !corner || !front || !back) return message_memory();
+    memcpy(vertex + 3 * (size_t)all->vertices, s->vertex, s->vertices * sizeof *s->vertex);
+    for (uint32_t t = 0; t < s->n; ++t)
+        for (int k = 0; k < 3; ++k) corner[3 * ((size_t)all->n + t) + (size_t)k] = all->vertices + s->corner[t][k];
+    *all = (struct fibrad_triangles){.x = vertex,
+                                     .y = vertex + 1,
+                                     .z = vertex + 2,
+                                     .stride = 3,
+                                     .vertices = (uint32_t)vertices,
+                                     .corner = corner,
+                                     .front = front,
+                                     .back = back,
+                                     .n = (uint32_t)n};
+    return STATUS_OK;
+}
+
+int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t body) {
+    struct stl stl;
+    struct mesh *mesh = realloc(meshes->mesh, (meshes->count + (size_t)1) * sizeof *mesh);
+    if (!mesh) return message_memory();
+    meshes->mesh = mesh;
+    mesh = &mesh[meshes->count++];
+    *mesh = (struct mesh){.file = strdup(file->path), .sides = file->sides, .body = body, .first = meshes->triangles.n};
+    if (!mesh->file) return message_memory();
+    int status = stl_read(&stl, file->path);
+    mesh->text = stl.text;
+    mesh->bodies = file->solids ? stl.solids : 1;
+    if (!status && mesh->bodies > FIBRAD_BODIES_MAX - body)
+        status = message_at(STATUS_USAGE, file->path, 0, "more than %d walls; without :solids the file is one",
+                            FIBRAD_BODIES_MAX);
+    if (!status) status = surface_weld(&mesh->surface, &stl, file->scale);
+    if (!status && mesh->surface.flat + mesh->surface.twice == stl.n)
+        status = message_at(STATUS_INPUT, file->path, 0, "no triangle of it has an area");
+    if (!status) status = surface_find_parts(&mesh->surface);
+    if (!status) {
+        warn_of_surface(file->path, &mesh->surface);
+        name_bodies(meshes, file, &stl, body);
+        status = append(meshes);
+    }
+    stl_free(&stl);
+    return status;
+}
+
+uint32_t mesh_body(const struct mesh *mesh, uint32_t own) {
+    return mesh->body + (mesh->bodies > 1 ? mesh->surface.solid[own] : 0);
+}
+
+uint32_t mesh_triangles(const struct mesh *mesh, uint32_t body) {
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < mesh->surface.n; ++t) count += mesh_body(mesh, t) == body;
+    return count;
+}
+
+/* The body's sides are the fronts, the backs, or both. */
+static void give_sides(struct meshes *meshes, const struct mesh *mesh, uint32_t own, bool front, bool back) {
+    const uint32_t body = mesh_body(mesh, own);
+    meshes->front[mesh->first + own] = front ? body : FIBRAD_NO_BODY;
+    meshes->back[mesh->first + own] = back ? body : FIBRAD_NO_BODY;
+}
+
+static int face_spheres(struct meshes *meshes, const struct mesh *mesh, const fibrad_spheres *spheres,
+                        const double period[3]) {
+    const struct surface *surface = &mesh->surface;
+    double *votes = malloc(surface->parts * sizeof *votes);
+    const int status = votes ? facing_votes(surface, spheres, period, votes) : message_memory();
+    for (uint32_t p = 0; p < surface->parts && !status; ++p) {
+        const struct part *part = &surface->part[p];
+        const bool behind = votes[p] < 0;
+        for (uint32_t k = part->first; k < part->first + part->n; ++k) {
+            const uint32_t t = surface->in_parts[k];
+            const bool back = surface->turned[t] != behind;
+            give_sides(meshes, mesh, t, !back || part->twisted, back || part->twisted);
+        }
+    }
+    free(votes);
+    return status;
+}
+
+int meshes_face(struct meshes *meshes, const fibrad_spheres *spheres, const double period[3]) {
+    int status = STATUS_OK;
+    for (uint32_t m = 0; m < meshes->count && !status; ++m) {
+        const struct mesh *mesh = &meshes->mesh[m];
+        if (mesh->sides == SIDES_AUTO) status = face_spheres(meshes, mesh, spheres, period);
+        for (uint32_t t = 0; t < mesh->surface.n && mesh->sides != SIDES_AUTO; ++t)
+            give_sides(meshes, mesh, t, true, mesh->sides == SIDES_BOTH);
+    }
+    meshes->enclosing = status ? 0 : meshes_enclosing(meshes);
+    return status;
+}
+
+const struct mesh *mesh_of_triangle(const struct meshes *meshes, uint32_t triangle) {
+    for (uint32_t m = 0; m < meshes->count; ++m) {
+        const struct mesh *mesh = &meshes->mesh[m];
+        if (triangle >= mesh->first && triangle - mesh->first < mesh->surface.n) return mesh;
+    }
+    return NULL;
+}
+
+const struct mesh *mesh_of_body(const struct meshes *meshes, uint32_t body) {
+    for (uint32_t m = 0; m < meshes->count; ++m)
+        if (body >= meshes->mesh[m].body && body - meshes->mesh[m].body < meshes->mesh[m].bodies)
+            return &meshes->mesh[m];
+    return NULL;
+}
+
+int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle) {
+    const struct mesh *mesh = mesh_of_triangle(meshes, triangle);
+    char said[STL_PLACE];
+    if (!mesh) return message(STATUS_INPUT, "triangle %u: %s", triangle, fibrad_status_text(status));
+    const uint64_t place = mesh->surface.place[triangle - mesh->first];
+    const char *name = meshes->name[mesh_body(mesh, triangle - mesh->first)];
+    stl_place(mesh->text, place, said);
+    if (status != FIBRAD_E_BACK)
+        return message_at(STATUS_INPUT, mesh->file, 0, "%s, wall %s: %s", said, name, fibrad_status_text(status));
+    return message_at(STATUS_INPUT, mesh->file, mesh->text ? place : 0,
+                      "the back of wall %s is seen, of %s; mesh:%s:both makes both sides the wall", name, said,
+                      mesh->file);
+}
+
+void meshes_free(struct meshes *meshes) {
+    for (uint32_t m = 0; m < meshes->count; ++m) {
+        free(meshes->mesh[m].file);
+        surface_free(&meshes->mesh[m].surface);
+    }
+    free(meshes->mesh);
+    free(meshes->vertex);
+    free(meshes->corner);
+    free(meshes->front);
+    free(meshes->back);
+    *meshes = (struct meshes){0};
+}

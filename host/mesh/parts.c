@@ -1,0 +1,119 @@
+/* parts.c - edges of triangles, and parts that hang together by them, wound alike. SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+
+#include "cli/message.h"
+#include "mesh/welded.h"
+
+#define NONE UINT32_MAX
+
+/* Side k of triangle t, half = 3 t + k: from corner k to the next one. */
+struct half_edge {
+    uint32_t low, high; /* vertices */
+    uint32_t half;
+};
+
+static int compare_edges(const void *a, const void *b) {
+    const struct half_edge *one = a, *other = b;
+    if (one->low != other->low) return one->low < other->low ? -1 : 1;
+    if (one->high != other->high) return one->high < other->high ? -1 : 1;
+    return one->half < other->half ? -1 : one->half > other->half;
+}
+
+static struct half_edge edge_of(const struct surface *surface, uint32_t half) {
+    const uint32_t *corner = surface->corner[half / 3], a = corner[half % 3], b = corner[(half % 3 + 1) % 3];
+    return (struct half_edge){a < b ? a : b, a < b ? b : a, half};
+}
+
+/* Whether it goes from its lower vertex to the higher one. */
+static bool goes_up(const struct surface *surface, uint32_t half) {
+    return surface->corner[half / 3][half % 3] == edge_of(surface, half).low;
+}
+
+/* partner [3 n]: the other one of an edge of two, or NONE. */
+static int find_partners(struct surface *surface, uint32_t *partner) {
+    const uint64_t count = 3 * (uint64_t)surface->n;
+    struct half_edge *edge = malloc((size_t)count * sizeof *edge);
+    if (!edge) return message_memory();
+    for (uint32_t half = 0; half < count; ++half) edge[half] = edge_of(surface, half);
+    qsort(edge, (size_t)count, sizeof *edge, compare_edges);
+    for (uint64_t k = 0, end; k < count; k = end) {
+        for (end = k + 1; end < count && edge[end].low == edge[k].low && edge[end].high == edge[k].high;) ++end;
+        for (uint64_t e = k; e < end; ++e) partner[edge[e].half] = NONE;
+        surface->open += end - k == 1;
+        surface->crowded += end - k > 2;
+        if (end - k != 2) continue;
+        partner[edge[k].half] = edge[k + 1].half;
+        partner[edge[k + 1].half] = edge[k].half;
+    }
+    free(edge);
+    return STATUS_OK;
+}
+
+/* Follows partners from a seed that is the last one listed; those found are listed behind it. */
+static void gather_part(struct surface *surface, const uint32_t *partner, bool *met, struct part *part) {
+    uint32_t *list = surface->in_parts;
+    for (uint32_t k = part->first; k < part->first + part->n; ++k) {
+        surface->part_of[list[k]] = surface->parts - 1;
+        for (uint32_t half = 3 * list[k]; half < 3 * list[k] + 3; ++half) {
+            const uint32_t other = partner[half];
+            if (other == NONE) {
+                part->closed = false;
+                continue;
+            }
+            const bool alike = goes_up(surface, half) != goes_up(surface, other);
+            const unsigned char turned = surface->turned[list[k]] ^ !alike;
+            if (!met[other / 3]) {
+                met[other / 3] = true;
+                surface->turned[other / 3] = turned;
+                list[part->first + part->n++] = other / 3;
+            } else if (surface->turned[other / 3] != turned) {
+                part->twisted = true;
+            }
+        }
+    }
+}
+
+/* Turned are those, not the others, that have the smaller area. */
+static void keep_majority(struct surface *surface, const struct part *part) {
+    double area[2] = {0, 0};
+    for (uint32_t k = part->first; k < part->first + part->n; ++k)
+        area[surface->turned[surface->in_parts[k]]] += surface_area(surface, surface->in_parts[k]);
+    for (uint32_t k = part->first; k < part->first + part->n && area[1] > area[0]; ++k)
+        surface->turned[surface->in_parts[k]] ^= 1;
+}
+
+static int gather_all_parts(struct surface *surface, const uint32_t *partner, bool *met) {
+    uint32_t room = 0;
+    for (uint32_t t = 0, listed = 0; t < surface->n; ++t) {
+        if (met[t]) continue;
+        if (surface->parts == room) {
+            room = room ? 2 * room : 16;
+            struct part *part = realloc(surface->part, room * sizeof *part);
+            if (!part) return message_memory();
+            surface->part = part;
+        }
+        struct part *part = &surface->part[surface->parts++];
+        *part = (struct part){.first = listed, .n = 1, .closed = true};
+        met[t] = true;
+        surface->in_parts[listed] = t;
+        gather_part(surface, partner, met, part);
+        keep_majority(surface, part);
+        listed += part->n;
+    }
+    return STATUS_OK;
+}
+
+int surface_find_parts(struct surface *surface) {
+    uint32_t *partner = malloc((3 * (size_t)surface->n + 1) * sizeof *partner);
+    bool *met = calloc((size_t)surface->n + 1, sizeof *met);
+    surface->in_parts = malloc(((size_t)surface->n + 1) * sizeof *surface->in_parts);
+    surface->part_of = malloc(((size_t)surface->n + 1) * sizeof *surface->part_of);
+    surface->turned = calloc((size_t)surface->n + 1, sizeof *surface->turned);
+    const bool room = partner && met && surface->in_parts && surface->part_of && surface->turned;
+    int status = room ? STATUS_OK : message_memory();
+    if (!status) status = find_partners(surface, partner);
+    if (!status) status = gather_all_parts(surface, partner, met);
+    free(partner);
+    free(met);
+    return status;
+}

@@ -1,0 +1,189 @@
+/* stl.c - triangles of an STL file, text or binary, packed by gzip or not. SPDX-License-Identifier: MIT
+ *
+ * Binary: 80 bytes, the number of triangles, 50 bytes for each: normal, corners, two bytes without meaning. The length
+ * tells it from text, since its first bytes may be "solid", too. */
+#include "mesh/stl.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "cli/message.h"
+#include "fibrad_mesh.h"
+#include "text/read_lines.h"
+
+enum { HEAD = 84, RECORD = 50, NORMAL = 12 };
+#define COORDINATE_LARGEST 1e150 /* Source: fibrad_triangles */
+
+const char *stl_place(bool text, uint64_t place, char said[STL_PLACE]) {
+    snprintf(said, STL_PLACE, "%s %llu", text ? "line" : "triangle", (unsigned long long)place);
+    return said;
+}
+
+void stl_free(struct stl *stl) {
+    free(stl->corner);
+    free(stl->place);
+    free(stl->solid);
+    free(stl->name);
+    *stl = (struct stl){0};
+}
+
+static bool stl_grow(struct stl *stl, uint32_t capacity) {
+    void *corner = realloc(stl->corner, capacity * sizeof *stl->corner);
+    if (corner) stl->corner = corner;
+    void *place = realloc(stl->place, capacity * sizeof *stl->place);
+    if (place) stl->place = place;
+    void *solid = realloc(stl->solid, capacity * sizeof *stl->solid);
+    if (solid) stl->solid = solid;
+    if (corner && place && solid) stl->capacity = capacity;
+    return corner && place && solid;
+}
+
+/* A further triangle of the last solid; its corners are for the caller to fill in. */
+static int add_triangle(struct stl *stl, const char *file, uint64_t place) {
+    if (stl->n == FIBRAD_TRIANGLES_MAX)
+        return message_at(STATUS_INPUT, file, 0, "more than %u triangles", FIBRAD_TRIANGLES_MAX);
+    if (stl->n == stl->capacity && !stl_grow(stl, stl->capacity ? 2 * stl->capacity : 1024)) return message_memory();
+    stl->place[stl->n] = place;
+    stl->solid[stl->n++] = stl->solids - 1;
+    return STATUS_OK;
+}
+
+static int add_solid(struct stl *stl, const char *name) {
+    char(*names)[SOLID_NAME] = realloc(stl->name, (stl->solids + (size_t)1) * sizeof *names);
+    if (!names) return message_memory();
+    stl->name = names;
+    snprintf(names[stl->solids++], SOLID_NAME, "%.*s", SOLID_NAME - 1, name);
+    return STATUS_OK;
+}
+
+/* ---- binary ----------------------------------------------------------------------------------------------------- */
+
+/* Four bytes, the lowest first. */
+static uint32_t word_of(const char *bytes) {
+    const unsigned char *b = (const unsigned char *)bytes;
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+static int read_records(struct stl *stl, const char *file, const char *bytes, uint32_t count) {
+    int status = add_solid(stl, "");
+    for (uint32_t t = 0; t < count && !status; ++t) {
+        status = add_triangle(stl, file, t);
+        const char *record = bytes + HEAD + (size_t)t * RECORD + NORMAL;
+        for (int k = 0; k < 9 && !status; ++k) {
+            const uint32_t bits = word_of(record + 4 * (size_t)k);
+            float value;
+            memcpy(&value, &bits, sizeof value);
+            if (!isfinite(value))
+                return message_at(STATUS_INPUT, file, 0, "triangle %u: a coordinate is not finite", t);
+            stl->corner[t][k / 3][k % 3] = (double)value;
+        }
+    }
+    return status;
+}
+
+/* ---- text ------------------------------------------------------------------------------------------------------- */
+
+/* What a line may begin with, where, and what then comes. */
+enum { OUTSIDE, SOLID, FACET, CORNER, CORNERS_DONE = CORNER + 3, LOOP_DONE };
+static const struct {
+    const char *word;
+    int at, then;
+} words[] = {{"solid", OUTSIDE, SOLID},
+             {"facet", SOLID, FACET},
+             {"outer", FACET, CORNER},
+             {"vertex", CORNER, CORNER + 1},
+             {"vertex", CORNER + 1, CORNER + 2},
+             {"vertex", CORNER + 2, CORNERS_DONE},
+             {"endloop", CORNERS_DONE, LOOP_DONE},
+             {"endfacet", LOOP_DONE, SOLID},
+             {"endsolid", SOLID, OUTSIDE}};
+enum { WORDS = sizeof words / sizeof *words };
+
+static int read_corner(const struct lines *lines, const struct fields *fields, double corner[3]) {
+    if (fields->n != 4)
+        return message_at(STATUS_INPUT, lines->name, lines->number, "a vertex has three coordinates, not %zu",
+                          fields->n - 1);
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const int status = lines_number(lines, "the coordinate", fields->at[axis + 1], &corner[axis]);
+        if (status) return status;
+        if (fabs(corner[axis]) > COORDINATE_LARGEST)
+            return message_at(STATUS_INPUT, lines->name, lines->number, "the coordinate %g is too large", corner[axis]);
+    }
+    return STATUS_OK;
+}
+
+/* One line that is not blank. */
+static int read_line(struct stl *stl, const struct lines *lines, const struct fields *fields, int *state) {
+    const char *first = fields->at[0];
+    bool known = false;
+    for (int k = 0; k < WORDS; ++k) {
+        if (strcasecmp(first, words[k].word) != 0) continue;
+        known = true;
+        if (words[k].at != *state) continue;
+        const int before = *state;
+        *state = words[k].then;
+        if (before == OUTSIDE) return add_solid(stl, fields->n > 1 ? fields->at[1] : "");
+        if (*state == FACET) return add_triangle(stl, lines->name, lines->number);
+        if (before >= CORNER && before < CORNERS_DONE)
+            return read_corner(lines, fields, stl->corner[stl->n - 1][before - CORNER]);
+        return STATUS_OK;
+    }
+    return message_at(STATUS_INPUT, lines->name, lines->number,
+                      known ? "'%.40s' is out of place" : "'%.40s' is no word of an STL file", first);
+}
+
+static int read_text(struct stl *stl, struct lines *lines) {
+    struct fields fields = {0};
+    int state = OUTSIDE, status = STATUS_OK;
+    for (bool more = true; !status;) {
+        status = lines_next(lines, &more);
+        if (status || !more) break;
+        status = fields_split_blanks(&fields, lines->text);
+        if (!status && fields.n > 0) status = read_line(stl, lines, &fields, &state);
+    }
+    if (!status && (state != OUTSIDE || lines->truncated))
+        status = message_at(STATUS_INPUT, lines->name, lines->number, "the file ends within a solid");
+    free(fields.at);
+    return status;
+}
+
+/* ---- either ----------------------------------------------------------------------------------------------------- */
+
+/* Whether it can only be text: "solid" and no byte that text has not. */
+static bool is_text(const char *bytes, size_t size) {
+    const char *begin = bytes + strspn(bytes, " \t\r\n\v\f");
+    return strncasecmp(begin, "solid", 5) == 0 && !memchr(bytes, 0, size < 512 ? size : 512);
+}
+
+static int read_either(struct stl *stl, struct lines *lines) {
+    char *bytes;
+    size_t size;
+    const int status = lines_rest(lines, &bytes, &size);
+    if (status) return status;
+    if (size == 0) return message_at(STATUS_INPUT, lines->name, 0, "the file is empty");
+    const uint32_t count = size >= HEAD ? word_of(bytes + HEAD - 4) : 0;
+    if (size >= HEAD && size - HEAD == (uint64_t)count * RECORD) return read_records(stl, lines->name, bytes, count);
+    stl->text = is_text(bytes, size);
+    if (stl->text) {
+        lines_return(lines);
+        lines_drop(lines);
+        return read_text(stl, lines);
+    }
+    if (size < HEAD) return message_at(STATUS_INPUT, lines->name, 0, "this is no STL file");
+    return message_at(STATUS_INPUT, lines->name, 0,
+                      "the file has %zu bytes; a binary STL file of %u triangles has %llu", size, count,
+                      (unsigned long long)HEAD + (unsigned long long)count * RECORD);
+}
+
+int stl_read(struct stl *stl, const char *path) {
+    struct lines lines;
+    *stl = (struct stl){0};
+    int status = lines_open(&lines, path);
+    if (!status) status = read_either(stl, &lines);
+    if (!status && stl->n == 0) status = message_at(STATUS_INPUT, lines.name, 0, "there are no triangles in it");
+    lines_close(&lines);
+    return status;
+}

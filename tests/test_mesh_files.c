@@ -1,0 +1,421 @@
+/* test_mesh_files.c - walls of triangles from files: read, welded, which side is which, --wall mesh:FILE.
+ * SPDX-License-Identifier: MIT */
+#include "bed/wall_option.h"
+#include "mesh/meshes.h"
+#include "plot/plot_slice.h"
+#include "soups.h"
+#include "vtk/vtk_grid.h"
+
+static struct soup cube(void) {
+    struct soup soup = {0};
+    soup_cube(&soup, 4);
+    return soup;
+}
+
+/* ---- files ------------------------------------------------------------------------------------------------------ */
+
+static void assert_cube(const char *path, bool text) {
+    const struct soup soup = cube();
+    struct stl stl;
+    ck_assert_int_eq(stl_read(&stl, path), 0);
+    ck_assert_uint_eq(stl.n, 12);
+    ck_assert(stl.text == text && stl.solids == 1);
+    for (uint32_t t = 0; t < 12; ++t) {
+        ck_assert_uint_eq(stl.place[t], text ? 2 + 7 * t : t);
+        for (int k = 0; k < 9; ++k) ck_assert_double_eq(stl.corner[t][k / 3][k % 3], soup.corner[t][k / 3][k % 3]);
+    }
+    stl_free(&stl);
+}
+
+START_TEST(the_same_in_every_form) {
+    const struct soup soup = cube();
+    const char *text = write_solid("a.stl", &soup), *binary = write_binary("b.stl", &soup, "made by a test", 0);
+    assert_cube(text, true);
+    assert_cube(binary, false);
+    assert_cube(write_binary("c.stl", &soup, "solid is how some binary files begin", 0), false);
+    assert_cube(pack_file("a.stl.gz", text), true);
+    assert_cube(pack_file("b.stl.gz", binary), false);
+    FILE *file = fopen(in_folder("d.stl"), "w");
+    print_solid(file, "", &soup, "\r\n", 9);
+    fclose(file);
+    assert_cube(in_folder("d.stl"), true);
+}
+END_TEST
+
+#define FACET(corners) "solid s\nfacet normal 0 0 1\nouter loop\n" corners "endloop\nendfacet\nendsolid s\n"
+
+static const struct {
+    const char *text, *line, *reason;
+} broken[] = {{"", "", "is empty"},
+              {"solid s\nendsolid s\n", "", "no triangles"},
+              {"nothing of the kind\n", "", "no STL file"},
+              {FACET("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 nan\n"), ":6", "the coordinate is not finite: 'nan'"},
+              {FACET("vertex 0 0 0\nvertex inf 0 0\nvertex 0 1 0\n"), ":5", "the coordinate is not finite: 'inf'"},
+              {FACET("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1e200 0\n"), ":6", "too large"},
+              {FACET("vertex 0 0 0\nvertex 1 0 x\nvertex 0 1 0\n"), ":5", "the coordinate is not a number: 'x'"},
+              {FACET("vertex 0 0 0\nvertex 1 0\nvertex 0 1 0\n"), ":5", "three coordinates, not 2"},
+              {FACET("vertex 0 0 0\nvertex 1 0 0\nvortex 0 1 0\n"), ":6", "'vortex' is no word of an STL file"},
+              {FACET("vertex 0 0 0\nvertex 1 0 0\n"), ":6", "'endloop' is out of place"},
+              {FACET("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 1 1 0\n"), ":7", "'vertex' is out of place"},
+              {"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", ":4", "ends within a solid"},
+              {FACET("vertex 0 0 0\nvertex 1 0 0\nvertex 2 0 0\n"), "", "no triangle of it has an area"},
+              {FACET("vertex 0 0 0\nvertex 1 0 0\nvertex 1 0 0\n"), "", "no triangle of it has an area"}};
+
+static void refuse(const char *path, const char *line, const char *reason) {
+    char wall[400], place[340];
+    snprintf(wall, sizeof wall, "mesh:%s", path);
+    snprintf(place, sizeof place, "%.300s%s: ", path, line);
+    ck_assert_int_eq(RUN("bed", MONO, "--wall", wall), 3);
+    expect_message(place, reason);
+}
+
+START_TEST(broken_text_is_refused) { refuse(write_file("x.stl", broken[_i].text), broken[_i].line, broken[_i].reason); }
+END_TEST
+
+START_TEST(broken_binaries_are_refused) {
+    struct soup soup = cube();
+    refuse(write_binary("x.stl", &soup, "", 1), "", "685 bytes; a binary STL file of 12 triangles has 684");
+    refuse(write_binary("x.stl", &soup, "solid", -50), "", "634 bytes");
+    refuse(write_binary("x.stl", &soup, "", -620), "", "no STL file");
+    soup.corner[7][1][2] = NAN;
+    refuse(write_binary("x.stl", &soup, "", 0), "", "triangle 7: a coordinate is not finite");
+    soup.n = 0;
+    refuse(write_binary("x.stl", &soup, "", 0), "", "no triangles");
+    ck_assert_int_eq(RUN("bed", MONO, "--wall", "mesh:nothing.stl"), 4);
+    expect_message("nothing.stl: ", "No such file");
+}
+END_TEST
+
+/* ---- surfaces --------------------------------------------------------------------------------------------------- */
+
+static struct surface surface_of(const struct soup *soup, double scale) {
+    struct stl stl;
+    struct surface surface;
+    ck_assert_int_eq(stl_read(&stl, write_solid("s.stl", soup)), 0);
+    ck_assert_int_eq(surface_weld(&surface, &stl, scale), 0);
+    ck_assert_int_eq(surface_find_parts(&surface), 0);
+    stl_free(&stl);
+    return surface;
+}
+
+START_TEST(corners_are_welded) {
+    struct soup soup = cube();
+    for (int trial = 0; trial < 50; ++trial) {
+        for (uint32_t t = 0; t < soup.n && trial > 0; ++t)
+            for (int k = 0; k < 9; ++k) {
+                double *c = &soup.corner[t][k / 3][k % 3];
+                *c = copysign(4 + 1e-6 * (rand() / (double)RAND_MAX), *c);
+            }
+        struct surface s = surface_of(&soup, 1000);
+        ck_assert_uint_eq(s.vertices, 8);
+        ck_assert_uint_eq(s.parts, 1);
+        ck_assert(s.part[0].closed && !s.part[0].twisted && s.open == 0 && s.crowded == 0);
+        ck_assert_uint_eq(s.snapped, trial > 0 ? 28 : 0);
+        ck_assert_double_eq_tol(fabs(s.vertex[5][1]), 4000, 2e-3);
+        surface_free(&s);
+    }
+}
+END_TEST
+
+START_TEST(what_is_not_sound_is_counted) {
+    struct soup soup = cube();
+    const double a[3] = {-4, -4, -4}, b[3] = {4, -4, -4}, middle[3] = {0, -4, -4}, far[3] = {0, -9, 0};
+    soup_add(&soup, a, b, b);      /* no corner of its own */
+    soup_add(&soup, a, middle, b); /* no area */
+    soup_add(&soup, soup.corner[3][1], soup.corner[3][0], soup.corner[3][2]);
+    soup_add(&soup, a, b, far); /* a fin at an edge of two */
+    struct surface s = surface_of(&soup, 1);
+    ck_assert_uint_eq(s.flat, 2);
+    ck_assert_uint_eq(s.twice, 1);
+    ck_assert_uint_eq(s.n, 14);
+    ck_assert_uint_eq(s.crowded, 1);
+    ck_assert_uint_eq(s.open, 4);
+    surface_free(&s);
+}
+END_TEST
+
+/* ---- sides ------------------------------------------------------------------------------------------------------ */
+
+/* Meshes of one soup, with sides for a bed of spheres of radius 0.4. */
+static struct meshes faced(const struct soup *soup, enum mesh_sides sides, uint32_t n, double centre[3][8]) {
+    static double r[8] = {.4, .4, .4, .4, .4, .4, .4, .4};
+    const struct mesh_file file = {.path = write_solid("m.stl", soup), .sides = sides, .scale = 1};
+    struct meshes meshes = {0};
+    ck_assert_int_eq(meshes_add(&meshes, &file, 0), 0);
+    const fibrad_spheres spheres = {.x = centre[0], .y = centre[1], .z = centre[2], .r = r, .n = n};
+    ck_assert_int_eq(meshes_face(&meshes, &spheres, (const double[]){0, 0, 0}), 0);
+    return meshes;
+}
+
+/* Whether the side of a triangle that a point is on is the body's, and the other is none. */
+static void assert_side(const struct meshes *meshes, uint32_t t, const double point[3]) {
+    const struct surface *s = &meshes->mesh[0].surface;
+    const double *at = surface_corner(s, t, 0);
+    double normal[3], height = 0;
+    surface_normal(s, t, normal);
+    for (int axis = 0; axis < 3; ++axis) height += normal[axis] * (point[axis] - at[axis]);
+    ck_assert_uint_eq(meshes->front[t], height > 0 ? 0 : FIBRAD_NO_BODY);
+    ck_assert_uint_eq(meshes->back[t], height > 0 ? FIBRAD_NO_BODY : 0);
+}
+
+/* A cube whose triangles are wound at random; spheres within, or around it. */
+START_TEST(sides_of_a_cube) {
+    for (int trial = 0; trial < 40; ++trial) {
+        struct soup soup = cube();
+        if (trial > 0) soup_flip(&soup, trial == 1);
+        double inside[3][8], outside[3][8];
+        for (int k = 0; k < 24; ++k) inside[k / 8][k % 8] = 7 * (rand() / (double)RAND_MAX) - 3.5;
+        for (int k = 0; k < 24; ++k) outside[k / 8][k % 8] = k / 8 == k % 3 ? 5 : inside[k / 8][k % 8];
+        struct meshes within = faced(&soup, SIDES_AUTO, 8, inside);
+        for (uint32_t t = 0; t < 12; ++t) assert_side(&within, t, (const double[]){0, 0, 0});
+        ck_assert_uint_eq(within.enclosing, 1);
+        ck_assert_ptr_null(meshes_beyond(&within, (const double[]){3.9, 0, 0}, .4, (const double[]){0, 0, 0}));
+        ck_assert_ptr_null(meshes_beyond(&within, (const double[]){4.3, 0, 0}, .4, (const double[]){0, 0, 0}));
+        ck_assert_str_eq(meshes_beyond(&within, (const double[]){4.5, 0, 0}, .4, (const double[]){0, 0, 0}), "m");
+        meshes_free(&within);
+        struct meshes about = faced(&soup, SIDES_AUTO, 8, outside);
+        for (uint32_t t = 0; t < 12; ++t) {
+            const struct surface *s = &about.mesh[0].surface;
+            double normal[3], far[3];
+            surface_normal(s, t, normal);
+            for (int axis = 0; axis < 3; ++axis) {
+                const double *c[3] = {surface_corner(s, t, 0), surface_corner(s, t, 1), surface_corner(s, t, 2)};
+                far[axis] = (c[0][axis] + c[1][axis] + c[2][axis]) * 10;
+            }
+            assert_side(&about, t, far);
+        }
+        ck_assert_uint_eq(about.enclosing, 0);
+        ck_assert_str_eq(meshes_beyond(&about, (const double[]){0, 0, 3.5}, .4, (const double[]){0, 0, 0}), "m");
+        meshes_free(&about);
+    }
+}
+END_TEST
+
+START_TEST(sides_of_a_funnel) {
+    for (int trial = 0; trial < 20; ++trial) {
+        struct soup soup = {0};
+        soup_cone(&soup, 1, 2, (const double[]){0, 5}, (const double[]){1, 4}, 24);
+        soup_flip(&soup, 0);
+        double centre[3][8] = {{1, 1.5, 3, -1, 1, 1, 1, 2}, {2, 2, 2, 2, 4, 0, 2, 2}, {2, 1, 4, 4, 4, 4, 6, -1}};
+        struct meshes meshes = faced(&soup, SIDES_AUTO, 8, centre); /* one above it, one below its end, too */
+        for (uint32_t t = 0; t < soup.n; ++t) assert_side(&meshes, t, (const double[]){1, 2, 2.5});
+        ck_assert_uint_eq(meshes.mesh[0].surface.parts, 1);
+        ck_assert_uint_eq(meshes.mesh[0].surface.open, 48);
+        meshes_free(&meshes);
+    }
+}
+END_TEST
+
+/* A tube in a box, of one file: its outside, the box's inside. */
+START_TEST(sides_of_a_tube_in_a_box) {
+    for (int trial = 0; trial < 20; ++trial) {
+        struct soup soup = cube();
+        soup_cone(&soup, 1, 0, (const double[]){-3.9, 3.9}, (const double[]){.5, .5}, 12);
+        soup_flip(&soup, 0);
+        double centre[3][8] = {{2, 0, 1, -3, 3, 1, 2, -2}, {0, 0, 1, 3, -3, -1, 2, 0}, {0, 1, 2, 3, -3, -2, -1, 3}};
+        struct meshes meshes = faced(&soup, SIDES_AUTO, 8, centre);
+        const struct surface *s = &meshes.mesh[0].surface;
+        ck_assert_uint_eq(s->parts, 2);
+        for (uint32_t t = 0; t < soup.n; ++t) {
+            const double *at = surface_corner(s, t, 0);
+            assert_side(&meshes, t,
+                        t < 12 ? (const double[]){0, 0, 0}
+                               : (const double[]){1 + 9 * (at[0] - 1 + surface_corner(s, t, 1)[0] - 1),
+                                                  9 * (at[1] + surface_corner(s, t, 1)[1]), 0});
+        }
+        ck_assert_uint_eq(meshes.enclosing, 1);
+        meshes_free(&meshes);
+    }
+}
+END_TEST
+
+START_TEST(sides_that_are_asked_for) {
+    struct soup soup = cube();
+    double centre[3][8] = {{0}, {0}, {0}};
+    struct meshes both = faced(&soup, SIDES_BOTH, 1, centre), normals = faced(&soup, SIDES_NORMALS, 1, centre);
+    for (uint32_t t = 0; t < 12; ++t) {
+        ck_assert(both.front[t] == 0 && both.back[t] == 0);
+        ck_assert(normals.front[t] == 0 && normals.back[t] == FIBRAD_NO_BODY);
+    }
+    ck_assert_uint_eq(both.enclosing + normals.enclosing, 0);
+    meshes_free(&both);
+    meshes_free(&normals);
+    soup_flip(&soup, 1);
+    normals = faced(&soup, SIDES_NORMALS, 1, centre);
+    ck_assert_uint_eq(normals.enclosing, 1);
+    meshes_free(&normals);
+    soup.n = 0; /* a strip that is twisted once has one side */
+    for (int k = 0; k < 20; ++k) {
+        double p[4][3];
+        for (int c = 0; c < 4; ++c) {
+            const double angle = 2 * PI * (k + c % 2) / 20, off = (c / 2 ? .5 : -.5), turn = angle / 2;
+            p[c][0] = (3 + off * cos(turn)) * cos(angle), p[c][1] = (3 + off * cos(turn)) * sin(angle);
+            p[c][2] = off * sin(turn);
+        }
+        soup_add(&soup, p[0], p[1], p[3]);
+        soup_add(&soup, p[0], p[3], p[2]);
+    }
+    struct meshes strip = faced(&soup, SIDES_AUTO, 1, centre);
+    ck_assert_uint_eq(strip.mesh[0].surface.parts, 1);
+    ck_assert(strip.mesh[0].surface.part[0].twisted);
+    for (uint32_t t = 0; t < soup.n; ++t) ck_assert(strip.front[t] == 0 && strip.back[t] == 0);
+    meshes_free(&strip);
+}
+END_TEST
+
+/* ---- the option ------------------------------------------------------------------------------------------------- */
+
+/* "WORD FILE REST" without blanks. */
+static const char *wall_of(const char *before, const char *path, const char *after) {
+    static char text[4][500];
+    static int next;
+    next = (next + 1) % 4;
+    snprintf(text[next], sizeof text[next], "%s%s%s", before, path, after);
+    return text[next];
+}
+
+START_TEST(names_of_meshes) {
+    const struct soup soup = cube();
+    const char *path = write_solid("my-box.v2.stl", &soup), *two = in_folder("two.stl");
+    FILE *file = fopen(two, "w");
+    print_solid(file, "floor no 1", &soup, "\n", 9);
+    print_solid(file, "", &soup, "\n", 9);
+    fclose(file);
+    struct wall_options options = {0};
+    ck_assert_int_eq(walls_option(wall_of("zmin=-9,mesh:", path, ",zmax"), &options), 0);
+    ck_assert_int_eq(walls_option(wall_of("tub=mesh:", path, ":both:scale=0.5"), &options), 0);
+    ck_assert_int_eq(walls_option(wall_of("mesh:", two, ":solids"), &options), 0);
+    static const char *const names[] = {"zmin", "my_box", "zmax", "tub", "two_floor", "two_2"};
+    ck_assert_uint_eq(options.walls.count, 6);
+    for (uint32_t k = 0; k < 6; ++k) ck_assert_str_eq(wall_name(&options.walls, k), names[k]);
+    ck_assert_double_eq(fabs(options.walls.meshes->vertex[3 * 8]), 2);           /* the first of the second mesh */
+    ck_assert_int_eq(walls_option(wall_of("tub=mesh:", path, ""), &options), 2); /* twice */
+    walls_free(&options);
+    static const char *const wrong[][2] = {{"zmin=mesh:", ""},   {"a-b=mesh:", ""},      {"=mesh:", ""},
+                                           {"beyond=mesh:", ""}, {"mesh:", ":bothh"},    {"mesh:", ":scale=0"},
+                                           {"mesh:", ":"},       {"mesh:", ",zmin,zmin"}};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+        struct wall_options other = {0};
+        ck_assert_msg(walls_option(wall_of(wrong[k][0], path, wrong[k][1]), &other) == 2, "%s", wrong[k][0]);
+        walls_free(&other);
+    }
+    ck_assert_int_eq(walls_option("mesh:", &(struct wall_options){0}), 2);
+}
+END_TEST
+
+#define BED "x,y,z,r,T\n-1,0,0,1,500\n1.1,0,0,1,600\n0,2,1,.5,700\n"
+
+/* A closed mesh about a bed gets what six planes get; its triangles, as ParaView reads them. */
+START_TEST(rows_in_a_closed_mesh) {
+    struct soup soup = cube();
+    soup_flip(&soup, 0);
+    const char *bed = write_file("bed.csv", BED), *box = write_solid("box.stl", &soup), *out = in_folder("w.vtp");
+    SUCCEED("bed", bed, "--wall", "xmin=-4,xmax=4,ymin=-4,ymax=4,zmin=-4,zmax=4");
+    double planes = 0;
+    static const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
+    for (int k = 0; k < 6; ++k) {
+        char key[40];
+        snprintf(key, sizeof key, "wall_%s_F", names[k]);
+        planes += value_of(key);
+    }
+    SUCCEED("bed", bed, "--wall", wall_of("tub=mesh:", box, ""), "--wall-vtp", out);
+    ck_assert_double_eq_tol(value_of("wall_tub_F"), planes, 1e-3);
+    ck_assert_double_eq_tol(value_of("wall_tub_area"), 384, 1e-3);
+    ck_assert_double_eq(value_of("wall_tub_triangles"), 12);
+    ck_assert_str_eq(said, "");
+
+    char *text = read_file(out);
+    struct vtk_grid grid = {.file = out, .text = text, .end = text + strlen(text)};
+    ck_assert_int_eq(vtk_read_xml(&grid), 0);
+    ck_assert_uint_eq(grid.n, 8);
+    ck_assert_double_eq(fabs(grid.points[23]), 4);
+    ck_assert_ptr_nonnull(strstr(text, "NumberOfPolys=\"12\""));
+    free(grid.points);
+    free(text);
+    ck_assert_int_eq(RUN("bed", bed, "--wall-vtp", out), 2);
+    expect_message("--wall-vtp", "no --wall mesh:FILE");
+}
+END_TEST
+
+/* A cube in the slice of a picture: its outline, in pieces of the triangles. */
+START_TEST(slice_through_a_mesh) {
+    const struct soup soup = cube();
+    struct wall_options options = {0};
+    struct bed bed;
+    struct plot_slice slice;
+    const double value = 1;
+    char line[200];
+    double end[2][2], length = 0;
+    int pieces = 0, ends = 0;
+    ck_assert_int_eq(walls_option(wall_of("mesh:", write_solid("box.stl", &soup), ""), &options), 0);
+    bed_init(&bed);
+    ck_assert_int_eq(bed_add(&bed, &(struct bed_sphere){.x = 1, .y = .3, .r = 3.5}), 0);
+    plot_slice_of(&slice, &bed, &options.walls, 0);
+    ck_assert(slice.low[0] == -4 && slice.high[2] == 4);
+    FILE *script = tmpfile();
+    plot_slice_draw(script, &slice, &value, NULL, NULL);
+    rewind(script);
+    while (fgets(line, sizeof line, script) && strncmp(line, "$walls", 6) != 0) {}
+    while (fgets(line, sizeof line, script) && strncmp(line, "END", 3) != 0) {
+        const bool found = sscanf(line, "%lf %lf", &end[ends][0], &end[ends][1]) == 2;
+        ends = found ? ends + 1 : 0;
+        if (ends < 2) continue;
+        ends = 0;
+        ++pieces;
+        length += hypot(end[1][0] - end[0][0], end[1][1] - end[0][1]);
+        for (int e = 0; e < 2; ++e) ck_assert_double_eq_tol(fmax(fabs(end[e][0]), fabs(end[e][1])), 4, 1e-6);
+    }
+    ck_assert_int_eq(pieces, 8);
+    ck_assert_double_eq_tol(length, 32, 1e-5);
+    fclose(script);
+    bed_free(&bed);
+    walls_free(&options);
+}
+END_TEST
+
+/* What is seen from behind, and what lies there. */
+START_TEST(backs_of_meshes) {
+    struct soup soup = {0};
+    soup_box(&soup, (const double[]){-3, -3, -3}, (const double[]){0, 3, 3});
+    const char *bed = write_file("bed.csv", BED "5,0,0,1,300\n"), *text = write_solid("half.stl", &soup);
+    const char *binary = write_binary("half_b.stl", &soup, "", 0);
+    ck_assert_int_eq(RUN("bed", bed, "--wall", wall_of("mesh:", text, "")), 3);
+    ck_assert_ptr_nonnull(strstr(said, "the back of wall half is seen, of line "));
+    ck_assert_ptr_nonnull(strstr(said, "half.stl:both makes both sides the wall"));
+    ck_assert_ptr_nonnull(strstr(said, "bed.csv:3: warning: sphere 1 lies beyond wall half with all of it"));
+    ck_assert_int_eq(RUN("bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "1"), 3);
+    char first[sizeof said];
+    strcpy(first, said);
+    ck_assert_ptr_nonnull(strstr(said, "the back of wall half_b is seen, of triangle "));
+    ck_assert_int_eq(RUN("bed", bed, "--wall", wall_of("mesh:", binary, ""), "--method", "cast", "--threads", "2"), 3);
+    ck_assert_str_eq(said, first);
+    SUCCEED("bed", bed, "--wall", wall_of("mesh:", text, ":both"));
+    ck_assert_str_eq(said, "");
+    soup.n -= 2; /* no longer closed */
+    SUCCEED("bed", bed, "--wall", wall_of("mesh:", write_solid("half.stl", &soup), ":both"));
+    expect_message(text,
+                   "warning: the mesh is not closed: 4 edges are of one triangle, 0 of more than two, in 1 parts");
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("mesh_files");
+    TCase *files = suite_case(suite, "files"), *sides = suite_case(suite, "sides"),
+          *option = suite_case(suite, "option");
+    TCase *const cases[] = {files, sides, option};
+    for (int k = 0; k < 3; ++k) tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
+    tcase_add_test(files, the_same_in_every_form);
+    tcase_add_loop_test(files, broken_text_is_refused, 0, (int)(sizeof broken / sizeof *broken));
+    tcase_add_test(files, broken_binaries_are_refused);
+    tcase_add_test(files, corners_are_welded);
+    tcase_add_test(files, what_is_not_sound_is_counted);
+    tcase_add_test(sides, sides_of_a_cube);
+    tcase_add_test(sides, sides_of_a_funnel);
+    tcase_add_test(sides, sides_of_a_tube_in_a_box);
+    tcase_add_test(sides, sides_that_are_asked_for);
+    tcase_add_test(option, names_of_meshes);
+    tcase_add_test(option, rows_in_a_closed_mesh);
+    tcase_add_test(option, slice_through_a_mesh);
+    tcase_add_test(option, backs_of_meshes);
+    return suite_run(suite);
+}
