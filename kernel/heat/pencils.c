@@ -97,7 +97,7 @@ static uint32_t join_beams(const fibrad_heat *heat, const fibrad_heat_beam *beam
     uint32_t joined = 0;
     for (uint64_t k = 0; k < count; k++) {
         const uint32_t from = beam[k].from / FOUR, to = beam[k].to / FOUR;
-        const uint32_t pair = beam[k].from % FOUR * FOUR + beam[k].to % FOUR;
+        const uint32_t pair = beam[k].from % 4u * FOUR + beam[k].to % 4u;
         uint16_t *at = &scratch->seen[from * stride + to];
         if (*at == 0) {
             fours[joined] = (struct four_patches){(uint16_t)from, (uint16_t)to, 0, {0}};

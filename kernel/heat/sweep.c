@@ -24,29 +24,31 @@ static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_he
 struct pencil_ends {
     const double *owner, *other;
     double *to_owner, *to_other;
-    double back; /* -1: what one end is brought is taken from the other; 1: areas, which both ends have */
+    double area; /* of a beam */
 };
 
-static void bring_strands(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends, double area) {
+/* What beams bring one end they take from the other; both ends have their areas. */
+FIBRAD_INLINE void bring_strands(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends, bool areas) {
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     const uint8_t *strand = fibrad_heat_strands(pencil), *end = strand + pencil->strands;
-    const double *mine = ends->owner, *other = ends->other, back = ends->back;
-    double *own = ends->to_owner, *theirs = ends->to_other;
+    const double *mine = ends->owner, *other = ends->other;
+    double *own = ends->to_owner, *theirs = ends->to_other, all[FIBRAD_HEAT_STRAND];
+    for (uint32_t k = 0; k < FIBRAD_HEAT_STRAND; k++) all[k] = (k + 1) * ends->area;
     for (; strand < end; strand++) {
         const uint32_t bits = *strand, a = 4u * bundle->from + (bits >> 5 & 3), b = 4u * bundle->to + (bits >> 3 & 3);
-        const double flow = area * (int)((bits & 7) + 1) * (other[b] - mine[a]);
+        const double flow = all[bits & 7] * (other[b] - mine[a]);
         own[a] += flow;
-        theirs[b] += back * flow;
+        theirs[b] += areas ? flow : -flow;
         bundle += bits >> 7;
     }
 }
 
 /* The same where all patches of fours send alike. The first ones gather for all. */
-static void bring_bundles(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends, double area) {
+static void bring_bundles(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends) {
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     for (uint32_t k = 0; k < pencil->bundles; k++) {
         const uint32_t a = 4u * bundle[k].from, b = 4u * bundle[k].to;
-        const double flow = area * (int)bundle[k].count * (ends->other[b] - ends->owner[a]);
+        const double flow = ends->area * bundle[k].count * (ends->other[b] - ends->owner[a]);
         ends->to_owner[a] += flow;
         ends->to_other[b] -= flow;
     }
@@ -82,12 +84,14 @@ static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_hea
         .other = g->areas ? g->one : heat->source + other_end(heat, pencil),
         .to_owner = to_owner,
         .to_other = to_other,
-        .back = g->areas ? 1 : -1,
+        .area = beam_area(heat, owner, pencil),
     };
     if (g->coarse && pencil->body < heat->spheres)
-        bring_bundles(pencil, &ends, beam_area(heat, owner, pencil));
+        bring_bundles(pencil, &ends);
+    else if (g->areas)
+        bring_strands(pencil, &ends, true);
     else
-        bring_strands(pencil, &ends, beam_area(heat, owner, pencil));
+        bring_strands(pencil, &ends, false);
 }
 
 static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, double *own, struct gathering *g) {
