@@ -42,8 +42,9 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     return (size_t)(1.1 * n * (3 * kept + pencils * pencil)) + 4096;
 }
 
-/* Beams of an entry from four patches to four: how many by which of these, and a bit for each of which there are any. */
-enum { FOUR = 4, PAIRS = FOUR * FOUR };
+/* Beams of an entry from four patches to four: how many by which of these, and a bit for each of which there are any.
+ */
+#define PAIRS (FIBRAD_HEAT_FOUR * FIBRAD_HEAT_FOUR)
 struct four_patches {
     uint16_t from, to;
     uint32_t some, count[PAIRS];
@@ -68,11 +69,11 @@ struct row_scratch {
 
 /* Fours of patches that the other end of a beam may have, at the most, and pairs with those of a sphere. */
 static uint32_t fours_stride(const fibrad_heat *heat) {
-    return (heat->config.patches > FIBRAD_HEAT_BLOCK ? heat->config.patches : FIBRAD_HEAT_BLOCK) / FOUR;
+    return (heat->config.patches > FIBRAD_HEAT_BLOCK ? heat->config.patches : FIBRAD_HEAT_BLOCK) / FIBRAD_HEAT_FOUR;
 }
 
 static size_t fours_pairs(const fibrad_heat *heat) {
-    return (size_t)(heat->config.patches / FOUR) * fours_stride(heat);
+    return (size_t)(heat->config.patches / FIBRAD_HEAT_FOUR) * fours_stride(heat);
 }
 
 /* A pencil, bundle and strand of one beam take the most. */
@@ -96,8 +97,8 @@ static uint32_t join_beams(const fibrad_heat *heat, const fibrad_heat_beam *beam
     struct four_patches *fours = scratch->fours;
     uint32_t joined = 0;
     for (uint64_t k = 0; k < count; k++) {
-        const uint32_t from = beam[k].from / FOUR, to = beam[k].to / FOUR;
-        const uint32_t pair = beam[k].from % 4u * FOUR + beam[k].to % 4u;
+        const uint32_t from = beam[k].from / FIBRAD_HEAT_FOUR, to = beam[k].to / FIBRAD_HEAT_FOUR;
+        const uint32_t pair = beam[k].from % FIBRAD_HEAT_FOUR * FIBRAD_HEAT_FOUR + beam[k].to % FIBRAD_HEAT_FOUR;
         uint16_t *at = &scratch->seen[from * stride + to];
         if (*at == 0) {
             fours[joined] = (struct four_patches){(uint16_t)from, (uint16_t)to, 0, {0}};
@@ -171,7 +172,8 @@ static size_t divide_scratch(const fibrad_heat *heat, unsigned char *memory, str
     const size_t beams = heat->beams, pairs = fours_pairs(heat);
     size_t used = 0;
     *scratch = (struct row_scratch){0};
-    if (memory != NULL) scratch->beam = (void *)memory, scratch->sorted = (void *)(memory + beams * sizeof(fibrad_heat_beam));
+    if (memory != NULL)
+        scratch->beam = (void *)memory, scratch->sorted = (void *)(memory + beams * sizeof(fibrad_heat_beam));
     used += 2 * beams * sizeof(fibrad_heat_beam);
     if (memory != NULL) scratch->pencils = memory + used;
     used += beams * BEAM_BYTES;
@@ -219,8 +221,7 @@ void fibrad_heat_link_pencils(fibrad_heat *heat) {
     for (uint32_t i = 2; i < n + 2; i++) first[i] += first[i - 1];
     for (uint32_t place = 0; place < n; place++) {
         const unsigned char *begin = heat->pool + heat->row[place].begin, *end = begin + heat->row[place].bytes;
-        for (const unsigned char *at = begin; at < end;
-             at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
+        for (const unsigned char *at = begin; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
             const uint32_t other = fibrad_heat_pencil_at(at)->body;
             if (other < n && !fibrad_heat_same_part(heat, place, other))
                 heat->link[first[other + 1]++] = (fibrad_heat_link){place, (uint32_t)((size_t)(at - begin) / 4)};

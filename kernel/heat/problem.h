@@ -13,6 +13,7 @@
 #define FIBRAD_HEAT_PATCHES_MAX 384   /* of a sphere */
 #define FIBRAD_HEAT_TASK        1024u /* rays of a wall that are followed at a time */
 
+#define FIBRAD_HEAT_FOUR  4u   /* patches that make up one of the coarser level */
 #define FIBRAD_HEAT_BLOCK 256u /* patches of walls that may share a pencil */
 
 /* Beams from one sphere to another, or to a block of patches that belong to no sphere. Of those followed some are kept;
@@ -35,7 +36,8 @@ typedef struct fibrad_heat_bundle {
 #define FIBRAD_HEAT_STRAND  8u /* beams, the most */
 #define FIBRAD_HEAT_STRANDS UINT8_MAX
 
-/* Where the pencils of a sphere are in heat->pool, and one that ends on a sphere of another part [fours of bytes after these]. */
+/* Where the pencils of a sphere are in heat->pool, and one that ends on a sphere of another part [fours of bytes after
+ * these]. */
 typedef struct fibrad_heat_row {
     size_t begin, bytes;
 } fibrad_heat_row;

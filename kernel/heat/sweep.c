@@ -1,8 +1,8 @@
 /* sweep.c - net flows between patches, a sweep over all beams. SPDX-License-Identifier: MIT
  *
  * A beam brings one end what it takes from the other: flows add up to zero whatever is sent, and are zero where all
- * send alike. A part of the spheres goes through all beams that its spheres send out, and for both ends of those between
- * two of its own; beams that go from part to part are gone through by both. So no sum is anybody else's. */
+ * send alike. A part of the spheres goes through all beams that its spheres send out, and for both ends of those
+ * between two of its own; beams that go from part to part are gone through by both. So no sum is anybody else's. */
 #include "heat/sweep.h"
 
 #define AHEAD  8
@@ -35,7 +35,8 @@ FIBRAD_INLINE void bring_strands(const fibrad_heat_pencil *pencil, const struct 
     double *own = ends->to_owner, *theirs = ends->to_other, all[FIBRAD_HEAT_STRAND];
     for (uint32_t k = 0; k < FIBRAD_HEAT_STRAND; k++) all[k] = (k + 1) * ends->area;
     for (; strand < end; strand++) {
-        const uint32_t bits = *strand, a = 4u * bundle->from + (bits >> 5 & 3), b = 4u * bundle->to + (bits >> 3 & 3);
+        const uint32_t bits = *strand, a = FIBRAD_HEAT_FOUR * bundle->from + (bits >> 5 & 3),
+                       b = FIBRAD_HEAT_FOUR * bundle->to + (bits >> 3 & 3);
         const double flow = all[bits & 7] * (other[b] - mine[a]);
         own[a] += flow;
         theirs[b] += areas ? flow : -flow;
@@ -47,7 +48,7 @@ FIBRAD_INLINE void bring_strands(const fibrad_heat_pencil *pencil, const struct 
 static void bring_bundles(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends) {
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     for (uint32_t k = 0; k < pencil->bundles; k++) {
-        const uint32_t a = 4u * bundle[k].from, b = 4u * bundle[k].to;
+        const uint32_t a = FIBRAD_HEAT_FOUR * bundle[k].from, b = FIBRAD_HEAT_FOUR * bundle[k].to;
         const double flow = ends->area * bundle[k].count * (ends->other[b] - ends->owner[a]);
         ends->to_owner[a] += flow;
         ends->to_other[b] -= flow;
@@ -155,13 +156,16 @@ static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, st
 /* All of a part but the note that it is done. */
 static void sweep_part(fibrad_heat *heat, uint32_t part) {
     const uint32_t spheres = heat->spheres, others = fibrad_heat_others(heat), of_walls = heat->patches - others;
-    const uint32_t begin = fibrad_heat_part_begin(heat, spheres, part), end = fibrad_heat_part_begin(heat, spheres, part + 1);
+    const uint32_t begin = fibrad_heat_part_begin(heat, spheres, part),
+                   end = fibrad_heat_part_begin(heat, spheres, part + 1);
     const bool areas = heat->phase == FIBRAD_HEAT_AREA;
-    struct gathering g = {areas, !areas && heat->group > 1, heat->brought + (size_t)part * of_walls, {0}, {0}, {0}, {0}};
+    const bool coarse = heat->phase == FIBRAD_HEAT_CHECK || (heat->group > 1 && !areas);
+    struct gathering g = {areas, coarse, heat->brought + (size_t)part * of_walls, {0}, {0}, {0}, {0}};
     for (uint32_t a = 0; a < FIBRAD_HEAT_PATCHES_MAX; a++) g.one[a] = 1;
     fibrad_zero(g.walls, of_walls * sizeof *g.walls);
     sweep_spheres(heat, begin, end, &g);
-    sweep_rays(heat, fibrad_heat_part_begin(heat, heat->rays, part), fibrad_heat_part_begin(heat, heat->rays, part + 1), &g);
+    sweep_rays(heat, fibrad_heat_part_begin(heat, heat->rays, part), fibrad_heat_part_begin(heat, heat->rays, part + 1),
+               &g);
     set_aside(heat, g.walls, g.away);
     const uint32_t few = heat->first[fibrad_heat_beyond(heat, 0)];
     fibrad_copy(g.walls + (few - others), g.away, (heat->patches - few) * sizeof *g.walls);
