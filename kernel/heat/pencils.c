@@ -10,10 +10,18 @@
  * spheres 0.75 at solid fraction 0.6, 1.1 at 0.2, of which there is room for more. */
 #define ROOM_PENCILS 1.3
 
-/* Beams that are left of N when those of the same patches, P, are joined, over sqrt(N P), at solid fraction 1/2 and
- * above: 2.1 to 2.8 at P = 24, 3.4 to 3.9 at 96, up to 6.3 at 384, for N from 1,000 to 128,000. */
-#define ROOM_JOINED      4.5
-#define ROOM_JOINED_WIDE 6.8
+/* Strands that N beams make between P patches of each sphere, over sqrt(N P), besides one for each eight beams, and
+ * bundles over sqrt(N P/4), at solid fraction 1/2 and above: 2.9 to 3.9 and 1.6 to 2.8 up to P = 96, 4.8 and 4 at 384,
+ * for N from 1,000 to 50,000. */
+#define ROOM_STRANDS      4.5
+#define ROOM_BUNDLES      3.4
+#define ROOM_STRANDS_WIDE 6.8
+#define ROOM_BUNDLES_WIDE 5.0
+
+/* Of so many beams at the most those that are left when some are joined; none are at no solid fraction. */
+static double room_joined(double beams, double most, double fraction) {
+    return fibrad_min(beams, most + (beams - most) * fibrad_max(0, 1 - 2 * fraction));
+}
 
 /* Beams that meet walls are all kept; by reciprocity they are as many as the walls are large. */
 size_t fibrad_heat_room(const fibrad_heat *heat) {
@@ -33,13 +41,18 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     const double fraction = fibrad_min(1, solid / (n * spacing * spacing * spacing));
     const double pencils = fibrad_min(fibrad_min(n + blocks, beams), 16 + ROOM_PENCILS * fibrad_sqrt(beams) / fraction);
     const double of_walls = scene->container.walls ? beams * fibrad_min(1, 1.5 * walls / surface) : 0;
-    const double thinned = beams / heat->thin;
-    const double most = (heat->config.patches > FIBRAD_HEAT_BLOCK ? ROOM_JOINED_WIDE : ROOM_JOINED) *
-                        fibrad_sqrt(thinned * heat->config.patches);
-    const double joined = fibrad_min(thinned, most + (thinned - most) * fibrad_max(0, 1 - 2 * fraction));
-    const double kept = fibrad_min(beams, joined + pencils + of_walls);
-    const double pencil = sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_link) + 2;
-    return (size_t)(1.1 * n * (3 * kept + pencils * pencil)) + 4096;
+    const double thinned = beams / heat->thin, pairs = thinned * heat->config.patches;
+    const bool wide = heat->config.patches > FIBRAD_HEAT_BLOCK;
+    const double most_strands = (wide ? ROOM_STRANDS_WIDE : ROOM_STRANDS) * fibrad_sqrt(pairs);
+    const double most_bundles = (wide ? ROOM_BUNDLES_WIDE : ROOM_BUNDLES) * fibrad_sqrt(pairs / FIBRAD_HEAT_FOUR);
+    const double more = pencils + of_walls;
+    const double strands = room_joined(thinned, most_strands + thinned / FIBRAD_HEAT_STRAND, fraction) + more;
+    const double bundles = room_joined(thinned, most_bundles, fraction) + more;
+    const double each = sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_link) + 2;
+    return (size_t)(1.1 * n *
+                    (sizeof(fibrad_heat_bundle) * bundles + strands +
+                     (pencils + strands / FIBRAD_HEAT_STRANDS) * each)) +
+           4096;
 }
 
 /* Beams of an entry from four patches to four: how many by which of these, and a bit for each of which there are any.
