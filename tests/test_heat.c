@@ -554,6 +554,28 @@ static void strands_to(const fibrad_heat *heat, uint32_t place, uint32_t body, s
     }
 }
 
+/* Parts have as many spheres as each other, to one, and near each other: in a bed of a thousand few pencils, of which
+ * links are kept, go from part to part. More parts than spheres leave some empty. */
+START_TEST(parts_are_compact_and_even) {
+    for (uint32_t parts = 1; parts <= 64; parts *= 8) {
+        struct problem p = problem_of(packing(1000, .5, 10, .5, 3, false), 1, 1);
+        p.config.directions = 8, p.config.parts = parts;
+        trace(&p);
+        const fibrad_heat *heat = p.heat;
+        uint32_t count[64] = {0}, seen[1000] = {0}, pencils = 0;
+        for (uint32_t k = 0; k < p.bed.n; k++) {
+            count[heat->part[k]]++, seen[heat->sequence[k]]++;
+            const unsigned char *at = heat->pool + heat->row[k].begin, *end = at + heat->row[k].bytes;
+            for (; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) pencils++;
+        }
+        for (uint32_t k = 0; k < p.bed.n; k++) ck_assert_uint_eq(seen[k], 1);
+        for (uint32_t k = 0; k < parts; k++) ck_assert(count[k] == p.bed.n / parts || count[k] == p.bed.n / parts + 1);
+        ck_assert_uint_le(heat->links, parts == 1 ? 0 : parts == 8 ? pencils / 2 : pencils);
+        free_problem(&p);
+    }
+}
+END_TEST
+
 /* Beams leave and meet a sphere at the patch that is there: the places that they leave are about as many in each patch;
  * all of a patch, and those that they meet, lie within 20 degrees of their mean. Those kept are some of those followed,
  * and stand for all; bundles have as many as their strands. */
@@ -1205,6 +1227,7 @@ int main(void) {
     tcase_add_loop_test(paths, powers_are_those_of_paths, 0, 3);
     tcase_add_test(paths, powers_beside_the_wall_of_a_cylinder);
     TCase *patches = suite_case(suite, "patches");
+    tcase_add_test(patches, parts_are_compact_and_even);
     tcase_add_test(patches, a_patch_of_a_sphere_is_one_place);
     tcase_add_test(patches, a_patch_of_a_cylinder_is_one_place);
     TCase *conducting = suite_case(suite, "conduction");

@@ -4,9 +4,9 @@
 #include "base/constants.h"
 #include "base/dispatch.h"
 #include "heat/hits_lanes.h"
-#include "heat/parts.h"
 #include "heat/pencils.h"
 #include "heat/sphere_patch.h"
+#include "heat/sweep.h"
 #include "heat/wall_patch.h"
 #include "sample/direction.h"
 

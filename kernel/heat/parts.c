@@ -2,7 +2,7 @@
  *
  * The bed is halved across its longest extent again and again: so few beams go from part to part, and spheres that
  * follow each other are near each other. */
-#include "heat/parts.h"
+#include "heat/sweep.h"
 
 #define FEW_SPHERES 32u /* that need not be near each other in any sequence */
 #define HALVES_MAX  64  /* of ranges that wait */
