@@ -44,7 +44,9 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
                        c->cutoff >= 0 && c->wall_rays <= HEAT_RAYS_MAX &&
                        (scene->facts.spheres == 0 ||
                         (scene->facts.radius_min >= HEAT_RADIUS_MIN && scene->facts.radius_max <= 1 / HEAT_RADIUS_MIN));
-    return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 || scene->region || scene->mesh.triangles > 0 ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+    return !valid                                                        ? FIBRAD_E_ARGUMENT
+           : c->cutoff > 0 || scene->region || scene->mesh.triangles > 0 ? FIBRAD_E_UNSUPPORTED
+                                                                         : FIBRAD_OK;
 }
 
 /* The numbers that follow from a valid configuration and a scene. */
