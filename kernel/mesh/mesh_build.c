@@ -90,7 +90,7 @@ static int bin_of(double at, double low, double high) {
 }
 
 /* Brings those whose bin is not above `cut` to the front; returns where the others begin. */
-static uint32_t divide(fibrad_mesh *mesh, const mesh_part *part, int axis, double low, double high, int cut) {
+static uint32_t move_below(fibrad_mesh *mesh, const mesh_part *part, int axis, double low, double high, int cut) {
     uint32_t to = part->begin;
     for (uint32_t t = part->begin; t < part->end; t++)
         if (bin_of(middle_of(mesh->corner[t], axis), low, high) <= cut) swap_triangles(mesh, t, to++);
@@ -134,7 +134,7 @@ static uint32_t cut_part(fibrad_mesh *mesh, const mesh_part *part, const mesh_bo
         const double cost = on_left * surface_of(&left, length) + on_right * surface_of(&right[b + 1], length);
         if (cost < least) least = cost, best = b;
     }
-    return best < 0 ? part->begin + count / 2 : divide(mesh, part, axis, low, high, best);
+    return best < 0 ? part->begin + count / 2 : move_below(mesh, part, axis, low, high, best);
 }
 
 static void set_bounds(const fibrad_mesh *mesh, fibrad_mesh_node *node, const mesh_box *box) {
