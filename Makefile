@@ -76,10 +76,10 @@ KERNEL = \
     kernel/window/areas.c \
     kernel/row/beam.c \
     kernel/row/row.c \
-    kernel/row/row_sum.c \
+    kernel/work/row_sum.c \
     kernel/sky/wall_sum.c \
     kernel/sky/wall_window.c \
-    kernel/row/work.c \
+    kernel/work/work.c \
     kernel/matrix/average.c \
     kernel/matrix/enclose.c \
     kernel/matrix/matrix.c \
@@ -114,7 +114,7 @@ LANED = \
     kernel/window/points_lanes.c \
     kernel/row/beam_lanes.c \
     kernel/row/mesh_share_lanes.c \
-    kernel/row/neighbours_lanes.c \
+    kernel/work/neighbours_lanes.c \
     kernel/row/wall_share_lanes.c \
     kernel/row/window_lanes.c \
     kernel/ray/cast_lanes.c \
@@ -155,7 +155,7 @@ HOST = \
     host/mesh/enclosing.c \
     host/mesh/facing.c \
     host/mesh/meshes.c \
-    host/mesh/parts.c \
+    host/mesh/components.c \
     host/mesh/stl.c \
     host/mesh/weld.c \
     host/text/read_curve.c \

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "base/random.h"
-#include "row/work.h"
+#include "work/work.h"
 #include "scenes.h"
 #include "suite.h"
 

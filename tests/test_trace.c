@@ -5,7 +5,7 @@
 #include "base/elementary.h"
 #include "base/random.h"
 #include "ray/tracer.h"
-#include "row/work.h"
+#include "work/work.h"
 #include "scenes.h"
 #include "suite.h"
 

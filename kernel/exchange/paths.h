@@ -9,7 +9,7 @@
 #include "base/random.h"
 #include "base/sobol.h"
 #include "ray/tracer.h"
-#include "row/work.h"
+#include "work/work.h"
 
 #define FIBRAD_DISPLACEMENT_PARTS 16
 

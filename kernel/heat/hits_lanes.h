@@ -4,7 +4,7 @@
 
 #include "base/dispatch.h"
 #include "heat/problem.h"
-#include "row/work.h"
+#include "work/work.h"
 
 /* Keeps the beams of the sphere at place `task`; from the number of spheres on, fills a part of heat->ray.
  * FIBRAD_E_WORK: the work memory is too small; _SIZE: that of the beams is. */

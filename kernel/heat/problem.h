@@ -7,7 +7,7 @@
 #define FIBRAD_HEAT_PROBLEM_H
 
 #include "fibrad_heat.h"
-#include "row/work.h"
+#include "work/work.h"
 #include "scene/scene.h"
 
 #define FIBRAD_HEAT_PATCHES_MAX 384   /* of a sphere */

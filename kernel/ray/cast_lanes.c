@@ -8,7 +8,7 @@
 #include "base/lanes/turn.h"
 #include "base/random.h"
 #include "ray/cast_lanes.h"
-#include "row/neighbours_lanes.h"
+#include "work/neighbours_lanes.h"
 
 #define CAST_BATCH  (8 * VD_LANES) /* rays: 64 in AVX-512; fewer take less stack where there are no lanes */
 #define CAST_STRIDE ((fibrad_stride){3.0, 1.4}) /* shorter than that of windows: a ray ends sooner */

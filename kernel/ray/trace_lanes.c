@@ -4,7 +4,7 @@
  * doubles. */
 #include FIBRAD_LANES_HEADER
 #include "ray/tracer.h"
-#include "row/work.h"
+#include "work/work.h"
 #include "scene/grid_walk.h"
 
 /* A ray: positions relative to `base`, lengths in units of `unit`. */

@@ -87,7 +87,7 @@ static bool gather_candidates(fibrad_tracer *tracer, uint32_t place, double limi
 }
 
 /* Fills one place of a list. Floats err so that a sphere may be looked at in vain, but never the other way round, as in
- * row/neighbours_lanes.c; beyond the range of floats all are looked at. */
+ * work/neighbours_lanes.c; beyond the range of floats all are looked at. */
 static void enter_nearby(fibrad_nearby *list, uint32_t k, const fibrad_candidate *s) {
     double square = s->c[0] * s->c[0] + s->c[1] * s->c[1] + s->c[2] * s->c[2];
     double about = 1 + fibrad_abs(s->c[0]) + fibrad_abs(s->c[1]) + fibrad_abs(s->c[2]);

@@ -10,7 +10,7 @@
 
 #include "base/dispatch.h"
 #include "base/lanes/laned.h"
-#include "row/work.h"
+#include "work/work.h"
 
 #define FIBRAD_NEARBY 96 /* spheres of a list: whole groups */
 #define FIBRAD_GROUP  16

@@ -3,7 +3,7 @@
 #define FIBRAD_ROW_MESH_SHARE_LANES_H
 
 #include "base/lanes/laned.h"
-#include "row/work.h"
+#include "work/work.h"
 
 /* Looks which points of window k, whose spheres are resolved, meet a triangle first. points: of the window, or count 0:
  * then its areas are known, and `open` of them is. Takes from entries, or leaves out of them, what triangles hide, and

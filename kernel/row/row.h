@@ -3,7 +3,7 @@
 #ifndef FIBRAD_ROW_ROW_H
 #define FIBRAD_ROW_ROW_H
 
-#include "row/work.h"
+#include "work/work.h"
 
 /* Computes row i into the arrays of `row`: length, escaped, error, body and what else it fills in; beyond is 0 before
  * it. Errors: _CAPACITY (row->length), _WORK (space->needed), others. */

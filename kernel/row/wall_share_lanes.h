@@ -3,7 +3,7 @@
 #define FIBRAD_ROW_WALL_SHARE_LANES_H
 
 #include "base/lanes/laned.h"
-#include "row/work.h"
+#include "work/work.h"
 #include "window/points.h"
 
 /* Adds `rest`, the open part of window k of a row, which meets no sphere, to work->walls->sums by what it meets, or,

@@ -6,7 +6,7 @@
 #include FIBRAD_LANES_HEADER
 #include "base/sort.h"
 #include "row/mesh_share_lanes.h"
-#include "row/neighbours_lanes.h"
+#include "work/neighbours_lanes.h"
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
 #include "window/points_lanes.h"

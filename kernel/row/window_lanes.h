@@ -3,7 +3,7 @@
 #define FIBRAD_ROW_WINDOW_LANES_H
 
 #include "base/lanes/laned.h"
-#include "row/work.h"
+#include "work/work.h"
 #include "window/points.h"
 
 /* In packed beds the first shell then has 275 spheres, and two shells fit into the default memory. Of the pairs tried,

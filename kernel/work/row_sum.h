@@ -1,6 +1,6 @@
 /* row_sum.h - the entries of a row while they are summed. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_ROW_ROW_SUM_H
-#define FIBRAD_ROW_ROW_SUM_H
+#ifndef FIBRAD_WORK_ROW_SUM_H
+#define FIBRAD_WORK_ROW_SUM_H
 
 #include "scene/scene.h"
 

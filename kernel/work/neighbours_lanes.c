@@ -2,7 +2,7 @@
  * instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
-#include "row/neighbours_lanes.h"
+#include "work/neighbours_lanes.h"
 #include "scene/grid_walk.h"
 
 /* The floats of the culls, for spheres [from, to) of the list. A cull may pass a sphere that the exact test then

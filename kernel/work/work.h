@@ -3,10 +3,10 @@
  *
  * All lengths in here are in units of the radius of sphere i, whose row it is, and all places relative to its centre.
  */
-#ifndef FIBRAD_ROW_WORK_H
-#define FIBRAD_ROW_WORK_H
+#ifndef FIBRAD_WORK_WORK_H
+#define FIBRAD_WORK_WORK_H
 
-#include "row/row_sum.h"
+#include "work/row_sum.h"
 #include "sky/wall_sum.h"
 #include "scene/surroundings.h"
 #include "window/areas.h"

@@ -1,5 +1,5 @@
 /* row_sum.c - collects the entries of a row. SPDX-License-Identifier: MIT */
-#include "row/row_sum.h"
+#include "work/row_sum.h"
 #include "base/sort.h"
 
 static uint32_t hash_slot_of(const fibrad_entries *entries, uint32_t sphere) {

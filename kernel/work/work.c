@@ -3,7 +3,7 @@
  * The inside of work memory is a matter of the kernel's: it begins with what a packed bed takes, or as much of that as
  * the block has room for, and is laid out anew when a row asks for more: in the same block at the expense of what is
  * only a matter of speed, or in a larger one. Nothing is lost thereby, since rows begin with empty memory. */
-#include "row/work.h"
+#include "work/work.h"
 #include "base/arena.h"
 #include "base/random.h"
 

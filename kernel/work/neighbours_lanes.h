@@ -1,10 +1,10 @@
 /* neighbours_lanes.h - which spheres can come before the windows of a sphere: shells of near ones for all directions,
  * and a march along one direction for what lies beyond. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_ROW_NEIGHBOURS_LANES_H
-#define FIBRAD_ROW_NEIGHBOURS_LANES_H
+#ifndef FIBRAD_WORK_NEIGHBOURS_LANES_H
+#define FIBRAD_WORK_NEIGHBOURS_LANES_H
 
 #include "base/lanes/laned.h"
-#include "row/work.h"
+#include "work/work.h"
 
 /* Adds the next shell of near spheres, or sets near.full. */
 void LANED(fibrad_near_extend)(fibrad_workspace *work);
