@@ -92,6 +92,7 @@ KERNEL = \
     kernel/exchange/exchange.c \
     kernel/exchange/flow.c \
     kernel/heat/heat.c \
+    kernel/heat/parts.c \
     kernel/heat/pencils.c \
     kernel/heat/result.c \
     kernel/heat/solve.c \

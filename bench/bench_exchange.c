@@ -56,8 +56,8 @@ static void analog(struct bench *bench, uint32_t i, uint32_t paths, uint32_t dir
     fibrad_trace_function *trace = FIBRAD_VERSION_OF(fibrad_trace, bench->scene->facts.isa);
     fibrad_workspace *space;
     (void)directions;
-    bench_check("work",
-                fibrad_work_open(&bench->work, fibrad_tracer_least(), fibrad_tracer_best(bench->scene), &space));
+    bench_check("work", fibrad_work_open(&bench->work, bench->scene, fibrad_tracer_least(),
+                                         fibrad_tracer_best(bench->scene), &space));
     fibrad_tracer *tracer = fibrad_tracer_of(space, bench->scene);
     for (uint32_t k = 0; k < paths; ++k) {
         uint32_t place = bench->scene->place[i];

@@ -208,9 +208,10 @@ typedef struct fibrad_work {
 
 /* Bytes for beam rows with up to `discs` spheres met in one window, hidden ones included (a packed bed: 64), and
  * `entries` spheres seen by one row (200): a constant expression, for static memory. In scenes with walls add
- * FIBRAD_WORK_WALLS. */
+ * FIBRAD_WORK_WALLS, in those with triangles FIBRAD_WORK_TRIANGLES. */
 #define FIBRAD_WORK_BYTES(discs, entries) (28672 + (size_t)(discs)*768 + (size_t)(entries)*96)
 #define FIBRAD_WORK_WALLS                 21504
+#define FIBRAD_WORK_TRIANGLES             11264
 
 /* ---- row ------------------------------------------------------------------------------------------------------- */
 typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */

@@ -25,7 +25,7 @@ extern "C" {
 #define FIBRAD_NO_BODY       UINT32_MAX
 
 /* All triangles of a scene, of all its meshes; fibrad_scene_config.triangles. Copied. */
-struct fibrad_triangles {
+typedef struct fibrad_triangles {
     const double *x, *y, *z; /* [L] vertex v is at x[v stride], y[v stride], z[v stride]; bounds as of spheres */
     uint32_t stride;         /* in doubles; 0: 1 */
     uint32_t vertices;
@@ -33,7 +33,7 @@ struct fibrad_triangles {
     const uint32_t *front;  /* [n] body of the front side, FIBRAD_NO_BODY: none */
     const uint32_t *back;   /* [n] likewise; NULL: no triangle's back may be seen */
     uint32_t n;             /* [0, FIBRAD_TRIANGLES_MAX] */
-};
+} fibrad_triangles;
 
 /* Bytes that n triangles add to fibrad_scene_size(spheres, ids), 150 each and 4 a sphere. Errors: 0 if there are too
  * many. */

@@ -569,17 +569,59 @@ static double cosine_of(const double a[3], const double b[3]) {
     return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / sqrt(squares);
 }
 
-/* The pencil of the row of `place` that goes to a body; NULL: there is none. */
-static const fibrad_heat_pencil *pencil_to(const fibrad_heat *heat, uint32_t place, uint32_t body) {
+/* Strands of the row of `place` to a body: the patches that each leaves and meets, and its beams. */
+struct strands {
+    uint32_t count, sum, from[10752], to[10752], beams[10752];
+    double share;
+};
+
+static void strands_to(const fibrad_heat *heat, uint32_t place, uint32_t body, struct strands *s) {
     const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
-    while (at < end && fibrad_heat_pencil_at(at)->body != body)
-        at += fibrad_heat_pencil_bytes(heat, fibrad_heat_pencil_at(at));
-    return at < end ? fibrad_heat_pencil_at(at) : NULL;
+    s->count = s->sum = 0;
+    for (; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
+        const fibrad_heat_pencil *pencil = fibrad_heat_pencil_at(at);
+        const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
+        const uint8_t *strand = fibrad_heat_strands(pencil);
+        if (pencil->body != body) continue;
+        s->share = (double)pencil->share;
+        uint32_t of_bundle = 0;
+        for (uint32_t k = 0; k < pencil->strands; k++) {
+            const uint32_t n = s->count++;
+            s->from[n] = 4u * bundle->from + strand[k] / 32 % 4, s->to[n] = 4u * bundle->to + strand[k] / 8 % 4;
+            s->beams[n] = strand[k] % 8 + 1u;
+            s->sum += s->beams[n], of_bundle += s->beams[n];
+            if (strand[k] < FIBRAD_HEAT_LAST && k + 1 < pencil->strands) continue;
+            ck_assert_uint_eq(bundle++->count, of_bundle);
+            of_bundle = 0;
+        }
+    }
 }
+
+/* Parts have as many spheres as each other, to one, and near each other: in a bed of a thousand few pencils, of which
+ * links are kept, go from part to part. More parts than spheres leave some empty. */
+START_TEST(parts_are_compact_and_even) {
+    for (uint32_t parts = 1; parts <= 64; parts *= 8) {
+        struct problem p = problem_of(packing(1000, .5, 10, .5, 3, false), 1, 1);
+        p.config.directions = 8, p.config.parts = parts;
+        trace(&p);
+        const fibrad_heat *heat = p.heat;
+        uint32_t count[64] = {0}, seen[1000] = {0}, pencils = 0;
+        for (uint32_t k = 0; k < p.bed.n; k++) {
+            count[heat->part[k]]++, seen[heat->sequence[k]]++;
+            const unsigned char *at = heat->pool + heat->row[k].begin, *end = at + heat->row[k].bytes;
+            for (; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) pencils++;
+        }
+        for (uint32_t k = 0; k < p.bed.n; k++) ck_assert_uint_eq(seen[k], 1);
+        for (uint32_t k = 0; k < parts; k++) ck_assert(count[k] == p.bed.n / parts || count[k] == p.bed.n / parts + 1);
+        ck_assert_uint_le(heat->links, parts == 1 ? 0 : parts == 8 ? pencils / 2 : pencils);
+        free_problem(&p);
+    }
+}
+END_TEST
 
 /* Beams leave and meet a sphere at the patch that is there: the places that they leave are about as many in each patch;
  * all of a patch, and those that they meet, lie within 20 degrees of their mean. Those kept are some of those followed,
- * in the same order, and stand for all. */
+ * and stand for all; bundles have as many as their strands. */
 START_TEST(a_patch_of_a_sphere_is_one_place) {
     struct problem p = problem_of(packing(12, .5, 1.5, .5, 7, false), 1, 1);
     trace(&p);
@@ -595,34 +637,28 @@ START_TEST(a_patch_of_a_sphere_is_one_place) {
     }
     for (int k = 0; k < 96; k++) assert_near(beams[k], heat->beams / 96., .3);
     for (uint32_t place = 0; place < p.bed.n; place++) {
-        const fibrad_heat_pencil *pencil[13];
+        static struct strands strands[13];
         static uint32_t met[13][10752];
         uint32_t followed[13] = {0};
         memset(met, 0, sizeof met);
-        for (uint32_t body = 0; body < 12; body++) pencil[body] = pencil_to(heat, place, body);
-        pencil[12] = pencil_to(heat, place, fibrad_heat_other(heat, fibrad_heat_open(heat)));
+        for (uint32_t body = 0; body < 12; body++) strands_to(heat, place, body, &strands[body]);
+        strands_to(heat, place, fibrad_heat_other(heat, fibrad_heat_open(heat)), &strands[12]);
         for (uint32_t b = 0; b < heat->beams; b++) {
             const uint32_t i = p.scene->order[place];
             beam(&p, i, b / points, b % points, o, w, n);
             least_of(&leaving, cosine_of(mean[heat->leave[b]], n));
             const uint32_t j = first_met(&p, i, o, w, n), body = j == UINT32_MAX ? 12 : p.scene->place[j];
+            const struct strands *s = &strands[body];
             followed[body]++;
-            const uint8_t *numbers = pencil[body] != NULL ? (const uint8_t *)(pencil[body] + 1) : NULL;
-            for (uint32_t k = 0; numbers != NULL && k < pencil[body]->count; k++)
-                if (numbers[3 * k] == heat->leave[b] &&
-                    (body == 12 || cosine_of(mean[numbers[3 * k + 1]], n) > cos(PI / 9)))
+            for (uint32_t k = 0; k < s->count; k++)
+                if (s->from[k] == heat->leave[b] && (body == 12 || cosine_of(mean[s->to[k]], n) > cos(PI / 9)))
                     met[body][k]++;
         }
         for (uint32_t body = 0; body <= 12; body++) {
-            if (pencil[body] == NULL) continue;
-            const uint8_t *numbers = (const uint8_t *)(pencil[body] + 1);
-            uint32_t sum = 0;
-            for (uint32_t k = 0; k < pencil[body]->count; k++) {
-                sum += numbers[3 * k + 2];
-                missed += met[body][k] < numbers[3 * k + 2];
-            }
-            kept += sum;
-            ck_assert_double_eq_tol((double)pencil[body]->share * sum, followed[body], 3);
+            const struct strands *s = &strands[body];
+            for (uint32_t k = 0; k < s->count; k++) missed += met[body][k] < s->beams[k];
+            kept += s->sum;
+            if (s->count > 0) ck_assert_double_eq_tol(s->share * s->sum, followed[body], 3);
         }
     }
     ck_assert_uint_gt(kept, p.bed.n * heat->beams / 4);
@@ -1237,6 +1273,7 @@ int main(void) {
     tcase_add_loop_test(paths, powers_are_those_of_paths, 0, 3);
     tcase_add_test(paths, powers_beside_the_wall_of_a_cylinder);
     TCase *patches = suite_case(suite, "patches");
+    tcase_add_test(patches, parts_are_compact_and_even);
     tcase_add_test(patches, a_patch_of_a_sphere_is_one_place);
     tcase_add_test(patches, a_patch_of_a_cylinder_is_one_place);
     TCase *conducting = suite_case(suite, "conduction");

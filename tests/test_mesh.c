@@ -389,6 +389,26 @@ START_TEST(periodic_meshes) {
 }
 END_TEST
 
+/* What FIBRAD_WORK_TRIANGLES says is enough. */
+START_TEST(work_among_triangles) {
+    static unsigned char block[FIBRAD_WORK_BYTES(64, 64) + FIBRAD_WORK_TRIANGLES + 64];
+    static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
+    struct bed bed = crowd(20, 4);
+    struct mesh *mesh = mesh_new();
+    mesh_box(mesh, low, high, 0);
+    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 6);
+    fibrad_row row = row_of(bed.n);
+    for (size_t offset = 0; offset < 64; offset += 9) {
+        fibrad_work work = work_fixed(block + offset, sizeof block - 64);
+        for (uint32_t points = 0; points <= 256; points += 256)
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.points = points}, &row), FIBRAD_OK);
+    }
+    row_free(&row);
+    free(scene), free(mesh);
+    bed_free(&bed);
+}
+END_TEST
+
 /* Soups of triangles and spheres, slivers, doubled and coplanar ones, corners on spheres: sums are 1, beams and rays
  * agree, and bits are the same in every instruction set and for triangles in any order. */
 START_TEST(soups) {
@@ -499,6 +519,7 @@ int main(void) {
     tcase_add_test(tests, bad_triangles_are_named);
     tcase_add_test(tests, rays_through_the_tree);
     tcase_add_test(tests, periodic_meshes);
+    tcase_add_test(tests, work_among_triangles);
     tcase_add_test(tests, soups);
     tcase_add_test(tests, grey_meshes);
     return suite_run(suite);

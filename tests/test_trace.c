@@ -35,7 +35,7 @@ static fibrad_tracer *tracer_of(const fibrad_scene *scene, int lists, fibrad_wor
     fibrad_workspace *space = NULL;
     const size_t extra = lists == FEW ? fibrad_tracer_least() : fibrad_tracer_best(scene);
     *work = work_growing();
-    ck_assert_int_eq(fibrad_work_open(work, extra, extra, &space), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_work_open(work, scene, extra, extra, &space), FIBRAD_OK);
     fibrad_tracer *tracer = fibrad_tracer_of(space, scene);
     if (lists == EACH) ck_assert_uint_ge(tracer->lists, scene->facts.spheres);
     return tracer;
@@ -190,7 +190,7 @@ START_TEST(one_sphere_and_its_images) {
     follow(&bed, &versions[0], FEW, 12, 200, 5);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_hit hit;
-    fibrad_trace_point_scalar(scene, (const double[3]){1.3, 1.65, 0}, (const double[3]){0, 0, 1}, &hit);
+    fibrad_trace_point_scalar(scene, (const double[3]){1.3, 1.65, 0}, (const double[3]){0, 0, 1}, FIBRAD_NO_SIDE, &hit);
     ck_assert_uint_eq(hit.sphere, FIBRAD_NONE);
     free(scene);
     bed_free(&bed);
@@ -216,10 +216,10 @@ START_TEST(stray) {
     uint32_t seen = 0;
     for (uint32_t k = 0; k < 20; k++) {
         double point[3] = {4e6, bed.y[k], bed.z[k]};
-        fibrad_trace_point_scalar(scene, point, left, &hit);
+        fibrad_trace_point_scalar(scene, point, left, FIBRAD_NO_SIDE, &hit);
         ck_assert_uint_eq(scene->order[hit.sphere], 200); /* it starts inside */
         point[0] = 3e6;
-        fibrad_trace_point_scalar(scene, point, left, &hit);
+        fibrad_trace_point_scalar(scene, point, left, FIBRAD_NO_SIDE, &hit);
         seen += hit.sphere != FIBRAD_NONE;
     }
     ck_assert_uint_eq(seen, 20);
@@ -239,7 +239,7 @@ START_TEST(from_points) {
             even(&random, w);
             for (int axis = 0; axis < 3; axis++) o[axis] = (fibrad_random_next(&random) * 1.6 - .3) * bed.high[axis];
             fibrad_hit hit, truth = try_all(&bed, FIBRAD_NONE, o, w, 3);
-            fibrad_trace_point_scalar(scene, o, w, &hit);
+            fibrad_trace_point_scalar(scene, o, w, FIBRAD_NO_SIDE, &hit);
             ck_assert_int_eq(hit.sphere == FIBRAD_NONE, truth.sphere == FIBRAD_NONE);
             if (hit.sphere == FIBRAD_NONE) continue;
             ck_assert_uint_eq(scene->order[hit.sphere], truth.sphere);
@@ -265,13 +265,13 @@ START_TEST(same_bits_everywhere) {
         if (dot(n, w) < 0) continue;
         fibrad_hit hit = {0}, other = {0}, third = {0};
         fibrad_trace_scalar(tracers[0], k % bed.n, n, w, &hit);
-        fibrad_trace_point_scalar(scene, n, w, &other);
+        fibrad_trace_point_scalar(scene, n, w, FIBRAD_NO_SIDE, &other);
         for (size_t v = 0; v < sizeof versions / sizeof *versions; v++) {
             if (versions[v].isa > (int)fibrad_isa_best()) continue;
             fibrad_hit again = {0};
             versions[v].trace(tracers[1], k % bed.n, n, w, &again);
             ck_assert_mem_eq(&hit, &again, sizeof hit);
-            versions[v].trace_point(scene, n, w, &third);
+            versions[v].trace_point(scene, n, w, FIBRAD_NO_SIDE, &third);
             ck_assert_mem_eq(&other, &third, sizeof other);
         }
     }
@@ -303,7 +303,7 @@ START_TEST(lists_belong_to_contents) {
         bool kept;
         ck_assert_int_eq(fibrad_scene_init(&scene, memory, sizeof memory, NULL, &spheres, NULL), FIBRAD_OK);
         const size_t extra = fibrad_tracer_least();
-        ck_assert_int_eq(fibrad_work_open(&work, extra, extra, &space), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_work_open(&work, scene, extra, extra, &space), FIBRAD_OK);
         ck_assert_double_eq(length_along_x(fibrad_tracer_of(space, scene), &kept), distances[k] - 2);
         ck_assert_int_eq(kept, k % 2 == 1);
         bed_free(&bed);
@@ -321,7 +321,7 @@ START_TEST(memory) {
     unsigned char small[64];
     memset(small, 0x5a, sizeof small);
     fibrad_work work = work_fixed(small, sizeof small);
-    ck_assert_int_eq(fibrad_work_open(&work, extra, extra, &space), FIBRAD_E_WORK);
+    ck_assert_int_eq(fibrad_work_open(&work, scene, extra, extra, &space), FIBRAD_E_WORK);
     ck_assert_ptr_null(space);
     ck_assert_uint_gt(work.memory.needed, extra);
     for (size_t k = 0; k < sizeof small; k++) ck_assert_uint_eq(small[k], 0x5a);
@@ -331,7 +331,7 @@ START_TEST(memory) {
     for (size_t shift = 0; shift < 64; shift += 7) {
         memset(block, 0x5a, size + 128);
         work = work_fixed(block + shift, size);
-        ck_assert_int_eq(fibrad_work_open(&work, extra, extra, &space), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_work_open(&work, scene, extra, extra, &space), FIBRAD_OK);
         fibrad_tracer *tracer = fibrad_tracer_of(space, scene);
         ck_assert_uint_ge((uintptr_t)tracer, (uintptr_t)work.memory.block);
         fibrad_hit hit;
@@ -366,7 +366,7 @@ START_TEST(ids_decide_what_is_met_first) {
             fibrad_hit hit;
             fibrad_trace_scalar(tracer, scene->place[2], w, w, &hit);
             ck_assert_double_eq(hit.centre[1], first);
-            fibrad_trace_point_scalar(scene, (const double[3]){1, 0, 0}, w, &hit);
+            fibrad_trace_point_scalar(scene, (const double[3]){1, 0, 0}, w, FIBRAD_NO_SIDE, &hit);
             ck_assert_double_eq(hit.centre[1], first);
             work_free(&work);
             free(block);

@@ -40,7 +40,7 @@ static const struct option heat_table[] = {
      "corrected by patches where that changes something]"},
     {KEY_PATCHES, "patches", "P", "of a sphere: 24, 96 or 384 [96]"},
     {KEY_DIRECTIONS, "directions", "N", "of beams, 8 to 65536 [168; 112 where the mean emissivity is 0.35 or less]"},
-    {KEY_POINTS, "points", "M", "beams per direction: 64, 128 or 256 [64]"},
+    {KEY_POINTS, "points", "M", "beams per direction: 64, 128 or 256 [64; 128 in time]"},
     {KEY_ERROR, "error", "E",
      "as many directions and patches as bring the estimated error of the powers to E times their root mean square or "
      "less, 1e-5 to 1; at the least to 1e-3 E of what is emitted; of temperatures that are found, T^4 to E of its root "
@@ -201,7 +201,7 @@ static int heat_check_request(struct heat_request *request) {
 
 static int heat_parse(struct heat_request *request, int argc, char **argv) {
     struct options options = {.command = "heat", .table = heat_table, .argc = argc, .argv = argv};
-    *request = (struct heat_request){.problem.config = {.points = 64, .patches = 96}};
+    *request = (struct heat_request){.problem.config = {.patches = 96}};
     fibrad_heat_sources_init(&request->problem.sources);
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = heat_take(request, &options, key);

@@ -54,11 +54,11 @@ module fibrad
         type(c_ptr) :: body = c_null_ptr
         integer(c_int32_t) :: bodies = 0
         real(c_double) :: known_low(3) = 0, known_high(3) = 0
-        type(c_ptr) :: occupancy = c_null_ptr
+        type(c_ptr) :: occupancy = c_null_ptr, triangles = c_null_ptr
     end type c_scene_config
 
     type, bind(C) :: c_fault
-        integer(c_int32_t) :: first = 0, second = 0
+        integer(c_int32_t) :: first = 0, second = 0, triangle = -1
     end type c_fault
 
     type, bind(C) :: c_scene_facts
@@ -66,7 +66,7 @@ module fibrad
         integer(c_int) :: isa = 0
         integer(c_int32_t) :: cells = 0
         real(c_double) :: radius_min = 0, radius_max = 0, overlap_max = 0
-        integer(c_int32_t) :: overlap_pair(2) = 0
+        integer(c_int32_t) :: overlap_pair(2) = 0, triangles = 0
     end type c_scene_facts
 
     type, bind(C) :: c_run

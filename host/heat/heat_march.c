@@ -349,7 +349,7 @@ static int march_bed(struct marching *m, double *before, const struct output *pi
     const fibrad_transient_config config = {.method = m->by_patches            ? FIBRAD_TRANSIENT_PATCHES
                                                       : m->problem->by_factors ? FIBRAD_TRANSIENT_FACTORS
                                                                                : FIBRAD_TRANSIENT_CORRECTED,
-                                            .heat = heat_config(m->problem, m->source)};
+                                            .heat = m->problem->config};
     const double begun = progress_clock();
     fibrad_run run = bed_options_run(m->asked);
     int status = fibrad_transient_new(&m->transient, &scene, &spheres, &config, &run);

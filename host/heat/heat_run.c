@@ -119,6 +119,7 @@ static void heat_scale(const struct bed *bed, uint32_t walls, double square_metr
  * directions that have half of their beams left out. Source: docs/heat.md, Directions by default. */
 enum { DIRECTIONS_BEGIN = 72, DIRECTIONS_DARK = 168, DIRECTIONS_BRIGHT = 112, PATCHES_BRIGHT = 96 };
 #define BRIGHT 0.35
+#define POINTS 64
 
 fibrad_heat_config heat_config(const struct heat_problem *problem, const struct bed *bed) {
     fibrad_heat_config config = problem->config;
@@ -130,6 +131,7 @@ fibrad_heat_config heat_config(const struct heat_problem *problem, const struct 
     const bool bright = sum <= BRIGHT * areas && config.patches <= PATCHES_BRIGHT;
     if (!config.directions)
         config.directions = problem->error > 0 ? DIRECTIONS_BEGIN : bright ? DIRECTIONS_BRIGHT : DIRECTIONS_DARK;
+    if (!config.points) config.points = POINTS;
     return config;
 }
 

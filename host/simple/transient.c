@@ -9,6 +9,7 @@
 
 #define FACTORS_TOLERANCE 0.01
 #define ROUGH_TOLERANCE   0.03 /* of factors that are corrected */
+#define POINTS            128  /* of beams by which powers are compared: few solutions, so they may be better ones */
 #define CHANGED           0.1  /* of powers, relative, since they were compared */
 #define SMALL             1e-3 /* powers over emission that need not be compared */
 #define PI                3.14159265358979323846
@@ -105,6 +106,7 @@ int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config
     fibrad_transient *t = calloc(1, sizeof *t);
     if (!t) return FIBRAD_E_MEMORY;
     if (config) t->config = *config;
+    if (t->config.method == FIBRAD_TRANSIENT_CORRECTED && t->config.heat.points == 0) t->config.heat.points = POINTS;
     if (t->config.exchange.tolerance == 0 && t->config.exchange.directions == 0 && t->config.exchange.paths == 0)
         t->config.exchange.tolerance =
             t->config.method == FIBRAD_TRANSIENT_FACTORS ? FACTORS_TOLERANCE : ROUGH_TOLERANCE;

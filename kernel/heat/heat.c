@@ -6,6 +6,7 @@
 #include "heat/hits_lanes.h"
 #include "heat/pencils.h"
 #include "heat/sphere_patch.h"
+#include "heat/sweep.h"
 #include "heat/wall_patch.h"
 #include "sample/direction.h"
 
@@ -43,7 +44,9 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
                        c->cutoff >= 0 && c->wall_rays <= HEAT_RAYS_MAX &&
                        (scene->facts.spheres == 0 ||
                         (scene->facts.radius_min >= HEAT_RADIUS_MIN && scene->facts.radius_max <= 1 / HEAT_RADIUS_MIN));
-    return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 || scene->region || scene->mesh.triangles > 0 ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+    return !valid                                                        ? FIBRAD_E_ARGUMENT
+           : c->cutoff > 0 || scene->region || scene->mesh.triangles > 0 ? FIBRAD_E_UNSUPPORTED
+                                                                         : FIBRAD_OK;
 }
 
 /* The numbers that follow from a valid configuration and a scene. */
@@ -99,6 +102,8 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->row = fibrad_arena_take(arena, spheres, sizeof *heat->row);
     heat->first_link = fibrad_arena_take(arena, spheres + 2, sizeof *heat->first_link);
     heat->order = fibrad_arena_take(arena, spheres, sizeof *heat->order);
+    heat->sequence = fibrad_arena_take(arena, spheres, sizeof *heat->sequence);
+    heat->part = fibrad_arena_take(arena, spheres, sizeof *heat->part);
     heat->traced = fibrad_arena_take(arena, tasks_for(spheres, heat->rays_capacity), 1);
     heat->swept = fibrad_arena_take(arena, heat->config.parts, 1);
     heat->pool = fibrad_arena_take(arena, heat->room, 1);
@@ -165,6 +170,7 @@ static void find_origins(fibrad_heat *heat) {
 /* Begins with a scene: nothing is traced. */
 static void forget_beams(fibrad_heat *heat) {
     number_patches(heat);
+    fibrad_heat_divide(heat);
     fibrad_copy(heat->order, heat->scene->order, heat->spheres * sizeof *heat->order);
     fibrad_zero(heat->traced, fibrad_heat_tasks(heat));
     heat->used = heat->links = 0;

@@ -135,7 +135,7 @@ static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, const fibrad_workspa
     number_patches_of(&window, frame, heat->side, patch);
     for (uint32_t p = 0; p < window.count; p++)
         *beam++ =
-            (fibrad_heat_beam){work->near.entry[work->disc.near[window.disc[p]]], leave[window.point[p]], patch[p], 1};
+            (fibrad_heat_beam){work->near.entry[work->disc.near[window.disc[p]]], leave[window.point[p]], patch[p]};
     return beam;
 }
 
@@ -152,7 +152,7 @@ static fibrad_heat_beam *keep_escapes(const fibrad_heat *heat, fibrad_workspace 
         const uint32_t entry = fibrad_entries_of(&work->entries, fibrad_heat_other(heat, patch));
         fibrad_entries_add(&work->entries, entry, k, 1);
         if ((kept >> p & 1) != 0 || entry == known)
-            *beam++ = (fibrad_heat_beam){entry, leave[p], (uint16_t)((patch - first) % FIBRAD_HEAT_BLOCK), 1};
+            *beam++ = (fibrad_heat_beam){entry, leave[p], (uint16_t)((patch - first) % FIBRAD_HEAT_BLOCK)};
     }
     return beam;
 }

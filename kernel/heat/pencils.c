@@ -10,10 +10,18 @@
  * spheres 0.75 at solid fraction 0.6, 1.1 at 0.2, of which there is room for more. */
 #define ROOM_PENCILS 1.3
 
-/* Beams that are left of N when those of the same patches, P, are joined, over sqrt(N P), at solid fraction 1/2 and
- * above: 2.1 to 2.8 at P = 24, 3.4 to 3.9 at 96, up to 6.3 at 384, for N from 1,000 to 128,000. */
-#define ROOM_JOINED      4.5
-#define ROOM_JOINED_WIDE 6.8
+/* Strands that N beams make between P patches of each sphere, over sqrt(N P), besides one for each eight beams, and
+ * bundles over sqrt(N P/4), at solid fraction 1/2 and above: 2.9 to 3.9 and 1.6 to 2.8 up to P = 96, 4.8 and 4 at 384,
+ * for N from 1,000 to 50,000. */
+#define ROOM_STRANDS      4.5
+#define ROOM_BUNDLES      3.4
+#define ROOM_STRANDS_WIDE 6.8
+#define ROOM_BUNDLES_WIDE 5.0
+
+/* Of so many beams at the most those that are left when some are joined; none are at no solid fraction. */
+static double room_joined(double beams, double most, double fraction) {
+    return fibrad_min(beams, most + (beams - most) * fibrad_max(0, 1 - 2 * fraction));
+}
 
 /* Beams that meet walls are all kept; by reciprocity they are as many as the walls are large. */
 size_t fibrad_heat_room(const fibrad_heat *heat) {
@@ -33,19 +41,56 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     const double fraction = fibrad_min(1, solid / (n * spacing * spacing * spacing));
     const double pencils = fibrad_min(fibrad_min(n + blocks, beams), 16 + ROOM_PENCILS * fibrad_sqrt(beams) / fraction);
     const double of_walls = scene->container.walls ? beams * fibrad_min(1, 1.5 * walls / surface) : 0;
-    const double thinned = beams / heat->thin;
-    const double most = (fibrad_heat_number_bytes(heat) == 2 ? ROOM_JOINED_WIDE : ROOM_JOINED) *
-                        fibrad_sqrt(thinned * heat->config.patches);
-    const double joined = fibrad_min(thinned, most + (thinned - most) * fibrad_max(0, 1 - 2 * fraction));
-    const double kept = fibrad_min(beams, joined + pencils + of_walls);
-    const double pencil = sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_link) + 2;
-    return (size_t)(1.1 * n * (3 * kept * (double)fibrad_heat_number_bytes(heat) + pencils * pencil)) + 4096;
+    const double thinned = beams / heat->thin, pairs = thinned * heat->config.patches;
+    const bool wide = heat->config.patches > FIBRAD_HEAT_BLOCK;
+    const double most_strands = (wide ? ROOM_STRANDS_WIDE : ROOM_STRANDS) * fibrad_sqrt(pairs);
+    const double most_bundles = (wide ? ROOM_BUNDLES_WIDE : ROOM_BUNDLES) * fibrad_sqrt(pairs / FIBRAD_HEAT_FOUR);
+    const double more = pencils + of_walls;
+    const double strands = room_joined(thinned, most_strands + thinned / FIBRAD_HEAT_STRAND, fraction) + more;
+    const double bundles = room_joined(thinned, most_bundles, fraction) + more;
+    const double each = sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_link) + 2;
+    return (size_t)(1.1 * n *
+                    (sizeof(fibrad_heat_bundle) * bundles + strands +
+                     (pencils + strands / FIBRAD_HEAT_STRANDS) * each)) +
+           4096;
 }
 
-/* Patches that the other end of a beam may have, at the most. */
-static uint32_t pairs_stride(const fibrad_heat *heat) {
-    return heat->config.patches > FIBRAD_HEAT_BLOCK ? heat->config.patches : FIBRAD_HEAT_BLOCK;
+/* Beams of an entry from four patches to four: how many by which of these, and a bit for each of which there are any.
+ */
+#define PAIRS (FIBRAD_HEAT_FOUR * FIBRAD_HEAT_FOUR)
+struct four_patches {
+    uint16_t from, to;
+    uint32_t some, count[PAIRS];
+};
+
+/* A pencil that is being written, and where it goes. */
+struct pencil_draft {
+    fibrad_heat_pencil pencil;
+    fibrad_heat_bundle bundle[FIBRAD_HEAT_STRANDS];
+    uint8_t strand[FIBRAD_HEAT_STRANDS];
+    unsigned char *to;
+    uint32_t written;
+};
+
+/* What a row takes of work->extra. */
+struct row_scratch {
+    fibrad_heat_beam *beam, *sorted;
+    unsigned char *pencils;
+    struct four_patches *fours;
+    uint16_t *seen; /* which of `fours` connects each two, counted from 1 */
+};
+
+/* Fours of patches that the other end of a beam may have, at the most, and pairs with those of a sphere. */
+static uint32_t fours_stride(const fibrad_heat *heat) {
+    return (heat->config.patches > FIBRAD_HEAT_BLOCK ? heat->config.patches : FIBRAD_HEAT_BLOCK) / FIBRAD_HEAT_FOUR;
 }
+
+static size_t fours_pairs(const fibrad_heat *heat) {
+    return (size_t)(heat->config.patches / FIBRAD_HEAT_FOUR) * fours_stride(heat);
+}
+
+/* A pencil, bundle and strand of one beam take the most. */
+#define BEAM_BYTES (sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_bundle) + 1)
 
 /* Puts beams in the order of their entries; counts[e] is then how many those of entry e and before are. */
 static void sort_beams(const fibrad_heat_beam *beam, uint32_t count, fibrad_heat_beam *sorted, uint64_t *counts,
@@ -57,87 +102,120 @@ static void sort_beams(const fibrad_heat_beam *beam, uint32_t count, fibrad_heat
     for (uint32_t k = 0; k < count; k++) sorted[counts[beam[k].entry]++] = beam[k];
 }
 
-/* Joins beams of an entry that connect the same patches, in the order of first sight; returns how many are left. `seen`
- * is zero, and is so again: which one has each two patches, counted from 1. */
-static uint32_t join_beams(const fibrad_heat *heat, fibrad_heat_beam *beam, uint64_t count, uint32_t *seen) {
-    const uint32_t most = fibrad_heat_number_bytes(heat) == 1 ? UINT8_MAX : UINT16_MAX, to = pairs_stride(heat);
+/* Joins beams of an entry that connect the same fours of patches, in the order of first sight; returns how many such
+ * pairs there are. `seen` is zero, and is so again. */
+static uint32_t join_beams(const fibrad_heat *heat, const fibrad_heat_beam *beam, uint64_t count,
+                           const struct row_scratch *scratch) {
+    const uint32_t stride = fours_stride(heat);
+    struct four_patches *fours = scratch->fours;
     uint32_t joined = 0;
     for (uint64_t k = 0; k < count; k++) {
-        uint32_t *at = &seen[beam[k].from * to + beam[k].to];
-        if (*at != 0 && beam[*at - 1].count < most)
-            beam[*at - 1].count++;
-        else
-            beam[joined] = beam[k], *at = ++joined;
+        const uint32_t from = beam[k].from / FIBRAD_HEAT_FOUR, to = beam[k].to / FIBRAD_HEAT_FOUR;
+        const uint32_t pair = beam[k].from % FIBRAD_HEAT_FOUR * FIBRAD_HEAT_FOUR + beam[k].to % FIBRAD_HEAT_FOUR;
+        uint16_t *at = &scratch->seen[from * stride + to];
+        if (*at == 0) {
+            fours[joined] = (struct four_patches){(uint16_t)from, (uint16_t)to, 0, {0}};
+            *at = (uint16_t)++joined;
+        }
+        fours[*at - 1].some |= 1u << pair;
+        fours[*at - 1].count[pair]++;
     }
-    for (uint32_t k = 0; k < joined; k++) seen[beam[k].from * to + beam[k].to] = 0;
+    for (uint32_t k = 0; k < joined; k++) scratch->seen[fours[k].from * stride + fours[k].to] = 0;
     return joined;
 }
 
-/* Writes one pencil; without `to` it only counts the bytes. */
-static size_t write_pencil(const fibrad_heat *heat, fibrad_heat_pencil pencil, const fibrad_heat_beam *beam,
-                           unsigned char *to) {
-    const size_t bytes = fibrad_heat_pencil_bytes(heat, &pencil);
-    if (to == NULL) return bytes;
-    fibrad_heat_pencil *header = (void *)to;
-    uint8_t *narrow = (void *)(header + 1);
-    uint16_t *wide = (void *)(header + 1);
-    *header = pencil;
-    for (uint32_t k = 0; k < pencil.count; k++) {
-        const uint16_t number[3] = {beam[k].from, beam[k].to, beam[k].count};
-        for (uint32_t d = 0; d < 3; d++)
-            if (fibrad_heat_number_bytes(heat) == 1)
-                narrow[3 * k + d] = (uint8_t)number[d];
-            else
-                wide[3 * k + d] = number[d];
-    }
-    return bytes;
+/* Writes what there is of a pencil, and begins another one. */
+static void write_pencil(struct pencil_draft *draft) {
+    fibrad_heat_pencil *pencil = &draft->pencil;
+    const size_t bytes = pencil->bundles * sizeof *draft->bundle;
+    if (pencil->strands == 0) return;
+    fibrad_copy(draft->to, pencil, sizeof *pencil);
+    fibrad_copy(draft->to + sizeof *pencil, draft->bundle, bytes);
+    fibrad_copy(draft->to + sizeof *pencil + bytes, draft->strand, pencil->strands);
+    draft->to += fibrad_heat_pencil_bytes(pencil);
+    draft->written++;
+    pencil->bundles = pencil->strands = 0;
 }
 
-/* Writes the pencils of a row, one for each entry, more where that has more beams than one can count; without `to`
- * only counts bytes, and pencils that end on spheres. */
-static size_t write_row(const fibrad_heat *heat, const fibrad_entries *entries, const fibrad_heat_beam *beam,
-                        unsigned char *to, uint32_t *to_spheres) {
-    const uint64_t *end = entries->key[0], *joined = entries->key[1];
-    size_t bytes = 0;
-    uint64_t begin = 0;
-    *to_spheres = 0;
-    for (uint32_t e = 0; e < entries->length; begin = end[e++]) {
-        const double *part = entries->part[e], even = part[0] + part[2], odd = part[1] + part[3];
-        fibrad_heat_pencil pencil = {.body = entries->sphere[e],
-                                     .share = (float)((even + odd) / (double)(end[e] - begin)),
-                                     .tilt = (int16_t)(32767 * (even - odd) / (even + odd))};
-        for (uint64_t k = 0; k < joined[e]; k += pencil.count) {
-            pencil.count = (uint16_t)(joined[e] - k < UINT16_MAX ? joined[e] - k : UINT16_MAX);
-            bytes += write_pencil(heat, pencil, beam + begin + k, to != NULL ? to + bytes : NULL);
-            if (pencil.body < heat->spheres) ++*to_spheres;
+/* Adds a bundle, more where it has more beams than one can count. */
+static void write_bundle(struct pencil_draft *draft, const struct four_patches *fours) {
+    fibrad_heat_pencil *pencil = &draft->pencil;
+    fibrad_heat_bundle *bundle = NULL;
+    for (uint32_t some = fours->some; some != 0; some &= some - 1) {
+        const uint32_t pair = (uint32_t)__builtin_ctz(some);
+        for (uint32_t left = fours->count[pair], beams; left > 0; left -= beams) {
+            beams = left < FIBRAD_HEAT_STRAND ? left : FIBRAD_HEAT_STRAND;
+            if (pencil->strands == FIBRAD_HEAT_STRANDS) write_pencil(draft), bundle = NULL;
+            if (bundle == NULL || bundle->count + beams > UINT8_MAX) {
+                if (pencil->strands > 0) draft->strand[pencil->strands - 1] |= FIBRAD_HEAT_LAST;
+                bundle = &draft->bundle[pencil->bundles++];
+                *bundle = (fibrad_heat_bundle){(uint8_t)fours->from, (uint8_t)fours->to, 0};
+            }
+            draft->strand[pencil->strands++] = (uint8_t)(pair * FIBRAD_HEAT_STRAND + beams - 1);
+            bundle->count = (uint8_t)(bundle->count + beams);
         }
     }
-    return bytes;
+}
+
+/* Writes the pencils of a row, one for each entry, more where that has more strands than one can count. Returns how
+ * many end on spheres of other parts. */
+static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_entries *entries,
+                          const struct row_scratch *scratch, size_t *bytes) {
+    struct pencil_draft draft = {.to = scratch->pencils};
+    uint64_t begin = 0;
+    uint32_t links = 0;
+    for (uint32_t e = 0; e < entries->length; begin = entries->key[0][e++]) {
+        const double *part = entries->part[e], even = part[0] + part[2], odd = part[1] + part[3];
+        const uint64_t beams = entries->key[0][e] - begin;
+        const uint32_t body = entries->sphere[e], joined = join_beams(heat, scratch->sorted + begin, beams, scratch);
+        draft.pencil = (fibrad_heat_pencil){.body = body,
+                                            .share = (float)((even + odd) / (double)beams),
+                                            .tilt = (int16_t)(32767 * (even - odd) / (even + odd))};
+        draft.written = 0;
+        for (uint32_t k = 0; k < joined; k++) write_bundle(&draft, &scratch->fours[k]);
+        write_pencil(&draft);
+        if (body < heat->spheres && !fibrad_heat_same_part(heat, place, body)) links += draft.written;
+    }
+    *bytes = (size_t)(draft.to - scratch->pencils);
+    return links;
+}
+
+/* Divides memory, or without any only counts the bytes. */
+static size_t divide_scratch(const fibrad_heat *heat, unsigned char *memory, struct row_scratch *scratch) {
+    const size_t beams = heat->beams, pairs = fours_pairs(heat);
+    size_t used = 0;
+    *scratch = (struct row_scratch){0};
+    if (memory != NULL)
+        scratch->beam = (void *)memory, scratch->sorted = (void *)(memory + beams * sizeof(fibrad_heat_beam));
+    used += 2 * beams * sizeof(fibrad_heat_beam);
+    if (memory != NULL) scratch->pencils = memory + used;
+    used += beams * BEAM_BYTES;
+    if (memory != NULL) scratch->fours = (void *)(memory + used);
+    used += (pairs < beams ? pairs : beams) * sizeof(struct four_patches);
+    if (memory != NULL) scratch->seen = (void *)(memory + used);
+    return used + pairs * sizeof(uint16_t);
 }
 
 size_t fibrad_heat_scratch(const fibrad_heat *heat) {
-    const size_t pairs = (size_t)heat->config.patches * pairs_stride(heat);
-    return 2 * heat->beams * sizeof(fibrad_heat_beam) + pairs * sizeof(uint32_t);
+    struct row_scratch scratch;
+    return divide_scratch(heat, NULL, &scratch);
 }
 
 int fibrad_heat_keep(fibrad_heat *heat, const fibrad_workspace *work, uint32_t place, uint32_t count) {
     const fibrad_entries *entries = &work->entries;
-    fibrad_heat_beam *beam = work->extra, *sorted = beam + heat->beams;
-    uint32_t *seen = (uint32_t *)(void *)(sorted + heat->beams), pencils;
-    uint64_t *end = entries->key[0], begin = 0;
-    sort_beams(beam, count, sorted, end, entries->length);
-    fibrad_zero(seen, (size_t)heat->config.patches * pairs_stride(heat) * sizeof *seen);
-    for (uint32_t e = 0; e < entries->length; begin = end[e++])
-        entries->key[1][e] = join_beams(heat, sorted + begin, end[e] - begin, seen);
     fibrad_heat_row *row = &heat->row[place];
-    row->bytes = write_row(heat, entries, sorted, NULL, &pencils);
+    struct row_scratch scratch;
+    divide_scratch(heat, work->extra, &scratch);
+    sort_beams(scratch.beam, count, scratch.sorted, entries->key[0], entries->length);
+    fibrad_zero(scratch.seen, fours_pairs(heat) * sizeof *scratch.seen);
+    const uint32_t more = write_row(heat, place, entries, &scratch, &row->bytes);
     row->begin = fibrad_add_at_once(&heat->used, row->bytes);
-    const size_t links = fibrad_add_at_once(&heat->links, pencils) + pencils;
+    const size_t links = fibrad_add_at_once(&heat->links, more) + more;
     /* whoever adds to both last sees the sums */
     if (links > heat->room / sizeof(fibrad_heat_link) ||
         fibrad_add_at_once(&heat->used, 0) > heat->room - links * sizeof(fibrad_heat_link))
         return FIBRAD_E_SIZE;
-    write_row(heat, entries, sorted, heat->pool + row->begin, &pencils);
+    fibrad_copy(heat->pool + row->begin, scratch.pencils, row->bytes);
     return FIBRAD_OK;
 }
 
@@ -148,18 +226,17 @@ void fibrad_heat_link_pencils(fibrad_heat *heat) {
     heat->link = (void *)(heat->pool + (heat->used + FIBRAD_ALIGNMENT - 1) / FIBRAD_ALIGNMENT * FIBRAD_ALIGNMENT);
     for (uint32_t place = 0; place < n; place++) {
         const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
-        for (; at < end; at += fibrad_heat_pencil_bytes(heat, fibrad_heat_pencil_at(at))) {
+        for (; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
             const uint32_t other = fibrad_heat_pencil_at(at)->body;
-            if (other < n) first[other + 2]++;
+            if (other < n && !fibrad_heat_same_part(heat, place, other)) first[other + 2]++;
         }
     }
     for (uint32_t i = 2; i < n + 2; i++) first[i] += first[i - 1];
     for (uint32_t place = 0; place < n; place++) {
         const unsigned char *begin = heat->pool + heat->row[place].begin, *end = begin + heat->row[place].bytes;
-        for (const unsigned char *at = begin; at < end;
-             at += fibrad_heat_pencil_bytes(heat, fibrad_heat_pencil_at(at))) {
+        for (const unsigned char *at = begin; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
             const uint32_t other = fibrad_heat_pencil_at(at)->body;
-            if (other < n)
+            if (other < n && !fibrad_heat_same_part(heat, place, other))
                 heat->link[first[other + 1]++] = (fibrad_heat_link){place, (uint32_t)((size_t)(at - begin) / 4)};
         }
     }

@@ -8,7 +8,7 @@
  */
 typedef struct fibrad_heat_beam {
     uint32_t entry;
-    uint16_t from, to, count;
+    uint16_t from, to;
 } fibrad_heat_beam;
 
 /* Bytes for the pencils of all spheres and the links: enough for most beds. */
@@ -21,7 +21,7 @@ size_t fibrad_heat_scratch(const fibrad_heat *heat);
  * room. */
 int fibrad_heat_keep(fibrad_heat *heat, const fibrad_workspace *work, uint32_t place, uint32_t count);
 
-/* Lists for each sphere the pencils of others that end on it. */
+/* Lists for each sphere the pencils of other parts that end on it. */
 void fibrad_heat_link_pencils(fibrad_heat *heat);
 
 #endif

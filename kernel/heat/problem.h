@@ -13,21 +13,32 @@
 #define FIBRAD_HEAT_PATCHES_MAX 384   /* of a sphere */
 #define FIBRAD_HEAT_TASK        1024u /* rays of a wall that are followed at a time */
 
+#define FIBRAD_HEAT_FOUR   4u   /* patches that make up one of the coarser level */
 #define FIBRAD_HEAT_BLOCK  256u /* patches of a wall that may share a pencil */
 #define FIBRAD_HEAT_OTHERS 16u  /* bodies that are no spheres, rounded up */
 
 /* Beams from one sphere to another, or to those of a block of patches that belong to one body, no sphere. Of those
- * followed some are kept; after this follow the patches that they leave and meet, the latter counted from the first of
- * the other end, and how many do: three numbers of 8 bits, or of 16 where spheres have more patches than that; then
- * padding to whole fours of bytes. */
+ * followed some are kept; after this follow bundles, beams from four patches that make up one of the coarser level to
+ * four, and strands, those of a bundle from one patch to one: a byte each, in the order of their bundles; then padding
+ * to whole fours of bytes. */
 typedef struct fibrad_heat_pencil {
     uint32_t body; /* the other sphere, or what fibrad_heat_other says */
     float share;   /* beams followed for each kept one */
-    uint16_t count;
-    int16_t tilt; /* 32767 times how many more of them had even directions than odd ones, over all followed */
+    int16_t tilt;  /* 32767 times how many more of them had even directions than odd ones, over all followed */
+    uint8_t bundles, strands;
 } fibrad_heat_pencil;
+typedef struct fibrad_heat_bundle {
+    uint8_t from, to; /* fourths of the number of the first patch, the latter counted from the first of the other end */
+    uint8_t count;    /* beams */
+} fibrad_heat_bundle;
 
-/* Where the pencils of a sphere are in heat->pool, and one that ends on a sphere [fours of bytes after these]. */
+/* Bits of a strand: the last of its bundle; which of its four patches it leaves and meets; its beams less one. */
+#define FIBRAD_HEAT_LAST    0x80u
+#define FIBRAD_HEAT_STRAND  8u /* beams, the most */
+#define FIBRAD_HEAT_STRANDS UINT8_MAX
+
+/* Where the pencils of a sphere are in heat->pool, and one that ends on a sphere of another part [fours of bytes after
+ * these]. */
 typedef struct fibrad_heat_row {
     size_t begin, bytes;
 } fibrad_heat_row;
@@ -77,13 +88,15 @@ struct fibrad_heat {
     fibrad_heat_wall wall[FIBRAD_WALLS];
     uint32_t *first;       /* [bodies + 1] */
     uint32_t *order;       /* [spheres] the caller's index of each, as the scene had it */
+    uint32_t *sequence;    /* [spheres] of sweeps: those of each part, near each other */
+    uint16_t *part;        /* [spheres] which part each one is of */
     unsigned char *traced; /* [tasks of rays_capacity] 1: this task is */
     unsigned char *swept;  /* [parts] 1: this part is */
     uint16_t *leave;       /* [beams] which patch of its sphere each beam leaves: the same for all spheres */
     fibrad_heat_ray *ray;  /* [rays] */
     unsigned char *pool;   /* [room] the pencils of all spheres; then, aligned, links by the sphere they end on */
     size_t room;           /* bytes */
-    size_t used, links;    /* bytes of pencils, and how many end on spheres; several threads at once add to them */
+    size_t used, links;    /* bytes of pencils, and how many end in other parts; several threads at once add to them */
     fibrad_heat_row *row;  /* [spheres] */
     fibrad_heat_link *link;
     size_t *first_link; /* [spheres + 2] */
@@ -155,16 +168,28 @@ static inline double fibrad_heat_taken_beyond(const fibrad_heat *heat, uint32_t 
     return eps / (1 - (1 - eps) * (1 - other));
 }
 
-/* Bytes of each number in pencils. */
-static inline size_t fibrad_heat_number_bytes(const fibrad_heat *heat) {
-    return heat->config.patches > FIBRAD_HEAT_BLOCK ? 2 : 1;
-}
-
 static inline const fibrad_heat_pencil *fibrad_heat_pencil_at(const unsigned char *at) { return (const void *)at; }
 
+static inline const fibrad_heat_bundle *fibrad_heat_bundles(const fibrad_heat_pencil *pencil) {
+    return (const void *)(pencil + 1);
+}
+static inline const uint8_t *fibrad_heat_strands(const fibrad_heat_pencil *pencil) {
+    return (const void *)(fibrad_heat_bundles(pencil) + pencil->bundles);
+}
+
 /* Bytes of a pencil with its beams. */
-static inline size_t fibrad_heat_pencil_bytes(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
-    return (sizeof *pencil + 3 * pencil->count * fibrad_heat_number_bytes(heat) + 3) & ~(size_t)3;
+static inline size_t fibrad_heat_pencil_bytes(const fibrad_heat_pencil *pencil) {
+    return (sizeof *pencil + pencil->bundles * sizeof(fibrad_heat_bundle) + pencil->strands + 3) & ~(size_t)3;
+}
+
+/* Whether a body is a sphere of the same part as one of the spheres, so that a sweep may bring both ends of a beam. */
+static inline bool fibrad_heat_same_part(const fibrad_heat *heat, uint32_t sphere, uint32_t body) {
+    return body < heat->spheres && heat->part[sphere] == heat->part[body];
+}
+
+/* Where a part begins of n things. */
+static inline uint32_t fibrad_heat_part_begin(const fibrad_heat *heat, uint32_t n, uint32_t part) {
+    return (uint32_t)((uint64_t)n * part / heat->config.parts);
 }
 
 /* Whether the scene is still the one the beams were followed in. */

@@ -59,8 +59,10 @@ static double stiffness(const fibrad_heat *heat, uint32_t b, const free_body *bo
 }
 
 /* Patches from a on that share one J, up to `end`. */
+static uint32_t end_of_group(uint32_t a, uint32_t end, uint32_t group) { return end - a > group ? a + group : end; }
+
 static uint32_t group_end(const fibrad_heat *heat, uint32_t a, uint32_t end) {
-    return end - a > heat->group ? a + heat->group : end;
+    return end_of_group(a, end, heat->group);
 }
 
 /* What one Jacobi iteration would change of a body of given temperature. Returns the residual times that. */
@@ -187,6 +189,18 @@ static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
     heat->phase = phase;
 }
 
+/* Makes the next sweep the one for the error, which knows of no more than the coarser level does. */
+static void send_means(fibrad_heat *heat) {
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        for (uint32_t a = heat->first[b], next; a < heat->first[b + 1]; a = next) {
+            double sum = 0;
+            next = end_of_group(a, heat->first[b + 1], FIBRAD_HEAT_FOUR);
+            for (uint32_t k = a; k < next; k++) sum += heat->radiosity[k];
+            for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, sum / (next - a));
+        }
+    heat->phase = FIBRAD_HEAT_CHECK;
+}
+
 void fibrad_heat_start(fibrad_heat *heat) {
     if (heat->areas)
         send_radiosities(heat, FIBRAD_HEAT_FIRST);
@@ -230,7 +244,7 @@ static void finish_powers(fibrad_heat *heat) {
     }
     if (heat->group == 1)
         for (uint32_t a = 0; a < heat->patches; a++) heat->detail[a] += heat->radiosity[a];
-    send_radiosities(heat, FIBRAD_HEAT_CHECK);
+    send_means(heat);
 }
 
 /* Whether the radiosities of the level in hand are good enough. */
@@ -269,7 +283,7 @@ static void search_on(fibrad_heat *heat, bool restart) {
     heat->slope = find_residual(heat);
     if (restart) heat->smallest = fibrad_max(heat->smallest, ROUNDING * heat->slope);
     if (level_solved(heat)) {
-        if (heat->group == 4)
+        if (heat->group == FIBRAD_HEAT_FOUR)
             refine_patches(heat);
         else
             finish_powers(heat);

@@ -179,7 +179,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     set_walls(heat, sources, middle);
     for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->hold[b] == 0;
     heat->sigma = sources->sigma, heat->surroundings = sources->surroundings;
-    heat->group = sources->uniform ? UINT32_MAX : 4;
+    heat->group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
     heat->tolerance = sources->tolerance > 0 ? sources->tolerance : unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;
     heat->limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
     heat->sweeps = 0;

@@ -1,8 +1,8 @@
 /* sweep.c - net flows between patches, a sweep over all beams. SPDX-License-Identifier: MIT
  *
  * A beam brings one end what it takes from the other: flows add up to zero whatever is sent, and are zero where all
- * send alike. Each sphere sums what its own beams bring it, then what those of others do that end on it: each beam is
- * gone through twice, but no sum is anybody else's. */
+ * send alike. A part of the spheres goes through all beams that its spheres send out, and for both ends of those
+ * between two of its own; beams that go from part to part are gone through by both. So no sum is anybody else's. */
 #include "heat/sweep.h"
 
 #define AHEAD  8
@@ -11,14 +11,6 @@
 /* Halves of rays are independent, so that by how much they differ is their error; those of directions differ by more.
  */
 #define RAYS_WEIGHT 2.5
-/* What a pencil says of beams k: the patches of their two ends, 0 being that of its owner, and how many they are. */
-enum { NUMBERS = 3, HOW_MANY = 2 };
-FIBRAD_INLINE uint32_t beam_number(const fibrad_heat_pencil *pencil, uint32_t k, uint32_t which, bool wide) {
-    const void *numbers = pencil + 1;
-    const uint32_t at = NUMBERS * k + which;
-    return wide ? ((const uint16_t *)numbers)[at] : ((const uint8_t *)numbers)[at];
-}
-
 /* A beam stands for the area 1/(n + m) if its two surfaces send out n and m beams per area: so the beams either way
  * together tell what the two exchange, those of the denser one counting as much more as there are more of them. One
  * that is kept stands for several. In the sweep for the error those by even directions count more than odd ones. */
@@ -28,23 +20,39 @@ static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_he
     return share / (heat->density[owner] + other);
 }
 
-/* Adds what the beams of a pencil bring one of its ends from the other. */
-FIBRAD_INLINE void bring_beams(double *own, const double *mine, const double *other, const fibrad_heat_pencil *pencil,
-                               uint32_t end, double area, bool wide) {
-    for (uint32_t k = 0; k < pencil->count; k++) {
-        const uint32_t a = beam_number(pencil, k, end, wide), b = beam_number(pencil, k, 1 - end, wide);
-        own[a] += area * beam_number(pencil, k, HOW_MANY, wide) * (other[b] - mine[a]);
+/* What the owner of a pencil and its other end send, and where it is gathered what beams bring them. */
+struct pencil_ends {
+    const double *owner, *other;
+    double *to_owner, *to_other;
+    double area; /* of a beam */
+};
+
+/* What beams bring one end they take from the other; both ends have their areas. */
+FIBRAD_INLINE void bring_strands(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends, bool areas) {
+    const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
+    const uint8_t *strand = fibrad_heat_strands(pencil), *end = strand + pencil->strands;
+    const double *mine = ends->owner, *other = ends->other;
+    double *own = ends->to_owner, *theirs = ends->to_other, all[FIBRAD_HEAT_STRAND];
+    for (uint32_t k = 0; k < FIBRAD_HEAT_STRAND; k++) all[k] = (k + 1) * ends->area;
+    for (; strand < end; strand++) {
+        const uint32_t bits = *strand, a = FIBRAD_HEAT_FOUR * bundle->from + (bits >> 5 & 3),
+                       b = FIBRAD_HEAT_FOUR * bundle->to + (bits >> 3 & 3);
+        const double flow = all[bits & 7] * (other[b] - mine[a]);
+        own[a] += flow;
+        theirs[b] += areas ? flow : -flow;
+        bundle += bits >> 7;
     }
 }
 
-static void bring(const fibrad_heat *heat, double *own, const double *mine, const double *other,
-                  const fibrad_heat_pencil *pencil, uint32_t end, double area) {
-    if (fibrad_heat_number_bytes(heat) == 2)
-        bring_beams(own, mine, other, pencil, end, area, true);
-    else if (end == 0)
-        bring_beams(own, mine, other, pencil, 0, area, false);
-    else
-        bring_beams(own, mine, other, pencil, 1, area, false);
+/* The same where all patches of fours send alike. The first ones gather for all. */
+static void bring_bundles(const fibrad_heat_pencil *pencil, const struct pencil_ends *ends) {
+    const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
+    for (uint32_t k = 0; k < pencil->bundles; k++) {
+        const uint32_t a = FIBRAD_HEAT_FOUR * bundle[k].from, b = FIBRAD_HEAT_FOUR * bundle[k].to;
+        const double flow = ends->area * bundle[k].count * (ends->other[b] - ends->owner[a]);
+        ends->to_owner[a] += flow;
+        ends->to_other[b] -= flow;
+    }
 }
 
 /* Where the patches of the other end of a pencil begin. */
@@ -60,53 +68,60 @@ static void set_aside(const fibrad_heat *heat, double *to, double sum[BEYOND]) {
     for (uint32_t b = first; b < heat->patches; b++) sum[b - first] += to[b - others], to[b - others] = 0;
 }
 
-/* What sweeps of a part have in common: where it gathers what patches that are not of spheres are brought; and, in the
- * first sweep of all, whose sums are areas, what the ends of beams then send. */
+/* What sweeps of a part have in common: where it gathers what patches that are not of spheres are brought, and what is
+ * not its own to gather; and, in the first sweep of all, whose sums are areas, what the ends of beams then send. */
 struct gathering {
-    bool areas;
+    bool areas, coarse;
     double *walls, away[BEYOND];
-    double none[FIBRAD_HEAT_PATCHES_MAX], one[FIBRAD_HEAT_PATCHES_MAX];
+    double none[FIBRAD_HEAT_PATCHES_MAX], one[FIBRAD_HEAT_PATCHES_MAX], waste[FIBRAD_HEAT_PATCHES_MAX];
 };
 
-/* Takes from walls and what is beyond what the beams of a pencil bring its owner. */
-static void take_from_walls(const fibrad_heat *heat, const double *mine, const double *other,
-                            const fibrad_heat_pencil *pencil, double area, struct gathering *g) {
-    double *to = g->walls + (other_end(heat, pencil) - fibrad_heat_others(heat));
-    const bool wide = fibrad_heat_number_bytes(heat) == 2;
-    for (uint32_t k = 0; k < pencil->count; k++) {
-        const uint32_t a = beam_number(pencil, k, 0, wide), b = beam_number(pencil, k, 1, wide);
-        const double all = area * beam_number(pencil, k, HOW_MANY, wide);
-        to[b] += g->areas ? all : -(all * (other[b] - mine[a]));
-    }
-    set_aside(heat, g->walls, g->away);
+/* Brings its ends what the beams of a pencil do: those that this part gathers for. */
+static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil, double *to_owner,
+                       double *to_other, const struct gathering *g) {
+    const struct pencil_ends ends = {
+        .owner = g->areas ? g->none : heat->source + (size_t)owner * heat->config.patches,
+        .other = g->areas ? g->one : heat->source + other_end(heat, pencil),
+        .to_owner = to_owner,
+        .to_other = to_other,
+        .area = beam_area(heat, owner, pencil),
+    };
+    if (g->coarse && pencil->body < heat->spheres)
+        bring_bundles(pencil, &ends);
+    else if (g->areas)
+        bring_strands(pencil, &ends, true);
+    else
+        bring_strands(pencil, &ends, false);
 }
 
 /* What the other end of a pencil reflects of its beams. */
 static double reflected_beams(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
     const uint32_t body = pencil->body < heat->spheres ? pencil->body : fibrad_heat_other_body(heat, pencil->body);
     const double part = (1 - heat->emissivity[body]) * pencil->share;
-    const bool wide = fibrad_heat_number_bytes(heat) == 2;
+    const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     uint32_t beams = 0;
-    for (uint32_t k = 0; k < pencil->count && part > 0; k++) beams += beam_number(pencil, k, HOW_MANY, wide);
+    for (uint32_t k = 0; k < pencil->bundles && part > 0; k++) beams += bundle[k].count;
     return part * beams;
 }
 
-static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, const double *mine, double *own,
-                            struct gathering *g) {
+static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, double *own, struct gathering *g) {
     const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
     while (at < end) {
         const fibrad_heat_pencil *pencil = fibrad_heat_pencil_at(at);
-        const double *other = g->areas ? g->one : heat->source + other_end(heat, pencil);
-        const double area = beam_area(heat, place, pencil);
-        bring(heat, own, mine, other, pencil, 0, area);
-        if (pencil->body >= heat->spheres) take_from_walls(heat, mine, other, pencil, area, g);
+        if (pencil->body >= heat->spheres) {
+            double *walls = g->walls + (other_end(heat, pencil) - fibrad_heat_others(heat));
+            bring_ends(heat, place, pencil, own, walls, g);
+            set_aside(heat, g->walls, g->away);
+        } else {
+            const bool both = fibrad_heat_same_part(heat, place, pencil->body);
+            bring_ends(heat, place, pencil, own, both ? heat->gathered + other_end(heat, pencil) : g->waste, g);
+        }
         if (heat->phase == FIBRAD_HEAT_CHECK) heat->reflected[place] += reflected_beams(heat, pencil);
-        at += fibrad_heat_pencil_bytes(heat, pencil);
+        at += fibrad_heat_pencil_bytes(pencil);
     }
 }
 
-static void sweep_beams_of_others(const fibrad_heat *heat, uint32_t place, const double *mine, double *own,
-                                  const struct gathering *g) {
+static void sweep_beams_of_others(const fibrad_heat *heat, uint32_t place, double *own, struct gathering *g) {
     for (size_t l = heat->first_link[place]; l < heat->first_link[place + 1]; l++) {
         if (l + AHEAD < heat->first_link[place + 1]) {
             const fibrad_heat_link *next = &heat->link[l + AHEAD];
@@ -116,20 +131,24 @@ static void sweep_beams_of_others(const fibrad_heat *heat, uint32_t place, const
         }
         const uint32_t owner = heat->link[l].sphere;
         const unsigned char *row = heat->pool + heat->row[owner].begin;
-        const fibrad_heat_pencil *pencil = fibrad_heat_pencil_at(row + 4 * (size_t)heat->link[l].at);
-        const double *other = g->areas ? g->one : heat->source + (size_t)owner * heat->config.patches;
-        bring(heat, own, mine, other, pencil, 1, beam_area(heat, owner, pencil));
+        bring_ends(heat, owner, fibrad_heat_pencil_at(row + 4 * (size_t)heat->link[l].at), g->waste, own, g);
     }
 }
 
-static void sweep_sphere(const fibrad_heat *heat, uint32_t place, struct gathering *g) {
-    const size_t first = (size_t)place * heat->config.patches;
-    const double *mine = g->areas ? g->none : heat->source + first;
-    double *own = heat->gathered + first;
-    fibrad_zero(own, heat->config.patches * sizeof *own);
-    heat->reflected[place] = 0;
-    sweep_own_beams(heat, place, mine, own, g);
-    sweep_beams_of_others(heat, place, mine, own, g);
+static double *gathered_by(const fibrad_heat *heat, uint32_t place) {
+    return heat->gathered + (size_t)place * heat->config.patches;
+}
+
+static void sweep_spheres(const fibrad_heat *heat, uint32_t begin, uint32_t end, struct gathering *g) {
+    const uint32_t *place = heat->sequence;
+    for (uint32_t k = begin; k < end; k++) {
+        fibrad_zero(gathered_by(heat, place[k]), heat->config.patches * sizeof(double));
+        heat->reflected[place[k]] = 0;
+    }
+    for (uint32_t k = begin; k < end; k++) {
+        sweep_own_beams(heat, place[k], gathered_by(heat, place[k]), g);
+        sweep_beams_of_others(heat, place[k], gathered_by(heat, place[k]), g);
+    }
 }
 
 static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, struct gathering *g) {
@@ -146,20 +165,19 @@ static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, st
     }
 }
 
-/* Where a part begins of n things. */
-static uint32_t part_begin(const fibrad_heat *heat, uint32_t n, uint32_t part) {
-    return (uint32_t)((uint64_t)n * part / heat->config.parts);
-}
-
 /* All of a part but the note that it is done. */
 static void sweep_part(fibrad_heat *heat, uint32_t part) {
     const uint32_t spheres = heat->spheres, others = fibrad_heat_others(heat), of_walls = heat->patches - others;
-    const uint32_t begin = part_begin(heat, spheres, part), end = part_begin(heat, spheres, part + 1);
-    struct gathering g = {heat->phase == FIBRAD_HEAT_AREA, heat->brought + (size_t)part * of_walls, {0}, {0}, {0}};
+    const uint32_t begin = fibrad_heat_part_begin(heat, spheres, part),
+                   end = fibrad_heat_part_begin(heat, spheres, part + 1);
+    const bool areas = heat->phase == FIBRAD_HEAT_AREA;
+    const bool coarse = heat->phase == FIBRAD_HEAT_CHECK || (heat->group > 1 && !areas);
+    struct gathering g = {areas, coarse, heat->brought + (size_t)part * of_walls, {0}, {0}, {0}, {0}};
     for (uint32_t a = 0; a < FIBRAD_HEAT_PATCHES_MAX; a++) g.one[a] = 1;
     fibrad_zero(g.walls, of_walls * sizeof *g.walls);
-    for (uint32_t place = begin; place < end; place++) sweep_sphere(heat, place, &g);
-    sweep_rays(heat, part_begin(heat, heat->rays, part), part_begin(heat, heat->rays, part + 1), &g);
+    sweep_spheres(heat, begin, end, &g);
+    sweep_rays(heat, fibrad_heat_part_begin(heat, heat->rays, part), fibrad_heat_part_begin(heat, heat->rays, part + 1),
+               &g);
     set_aside(heat, g.walls, g.away);
     const uint32_t few = heat->first[fibrad_heat_beyond(heat, 0)];
     fibrad_copy(g.walls + (few - others), g.away, (heat->patches - few) * sizeof *g.walls);

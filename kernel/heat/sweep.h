@@ -4,6 +4,9 @@
 
 #include "heat/problem.h"
 
+/* Puts the spheres into the sequence of sweeps, and each into a part: parts.c. */
+void fibrad_heat_divide(fibrad_heat *heat);
+
 /* What patch a sends out in the next sweep, and what it was told to send. */
 static inline void fibrad_heat_send(fibrad_heat *heat, uint32_t a, double value) { heat->source[a] = value; }
 static inline double fibrad_heat_sent(const fibrad_heat *heat, uint32_t a) { return heat->source[a]; }

@@ -10,10 +10,10 @@
 
 /* What a ray meets that meets no sphere has a slot: 0 to 5 are planes across the axes, x low, x high, y low, y high, z
  * low, z high; 6 is the cylinder; 7 is nothing, 8 what is not known; from 9 on come meshes, in the order of bodies. */
-#define FIBRAD_WALLS    7u
+#define FIBRAD_WALLS    7
 #define FIBRAD_CYLINDER 6u
-#define FIBRAD_ESCAPED  7u
-#define FIBRAD_BEYOND   8u
+#define FIBRAD_ESCAPED  7
+#define FIBRAD_BEYOND   8
 #define FIBRAD_MESHES   9u
 #define FIBRAD_SLOTS    (FIBRAD_MESHES + FIBRAD_BODIES_MAX)
 

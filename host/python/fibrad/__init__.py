@@ -14,8 +14,9 @@ from . import _library
 from ._errors import Cancelled, Error, InputError, OutOfMemory, StateError
 from ._factors import Displacements, Factors, displacements, exchange_factors, view_factors
 from ._heat import STEFAN_BOLTZMANN, Heat, Powers
+from ._scene import Mesh
 from ._transient import Advance, Transient
 
 __version__: str = _library.library.fibrad_version().decode()
-__all__ = ["Advance", "Cancelled", "Displacements", "Error", "Factors", "Heat", "InputError", "OutOfMemory", "Powers",
-           "STEFAN_BOLTZMANN", "StateError", "Transient", "displacements", "exchange_factors", "view_factors"]
+__all__ = ["Advance", "Cancelled", "Displacements", "Error", "Factors", "Heat", "InputError", "Mesh", "OutOfMemory",
+           "Powers", "STEFAN_BOLTZMANN", "StateError", "Transient", "displacements", "exchange_factors", "view_factors"]

@@ -48,7 +48,7 @@ class Bed:
         status = self._call(self._function("new"), self._handle, self._container.config, self._packing.spheres,
                             config, self._call.run)
         if status:
-            raise self._packing.error(status, self._call.run.fault)
+            raise self._packing.error(status, self._call.run.fault, self._container)
 
     def _function(self, verb: str) -> Any:
         return getattr(library, f"fibrad_{self._kind}_{verb}")
@@ -88,7 +88,7 @@ class Bed:
             if status:
                 fault = Fault()
                 self._function("describe")(self._handle, None, fault)
-                raise packing.error(status, fault)
+                raise packing.error(status, fault, container)
         finally:
             self._busy.release()
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from ._library import library
 
-ARGUMENT, TABLE, GEOMETRY, UNSUPPORTED, MEMORY, CANCELLED, UNSOLVABLE = -1, -5, -6, -10, -11, -12, -13
+ARGUMENT, TABLE, GEOMETRY, UNSUPPORTED, MEMORY, CANCELLED, UNSOLVABLE, BACK = -1, -5, -6, -10, -11, -12, -13, -14
 
 
 class Error(Exception):
@@ -43,7 +43,7 @@ class OutOfMemory(Error, MemoryError):
 
 
 _KINDS = {MEMORY: OutOfMemory, CANCELLED: Cancelled, ARGUMENT: InputError, TABLE: InputError, GEOMETRY: InputError,
-          UNSUPPORTED: InputError, UNSOLVABLE: InputError}
+          UNSUPPORTED: InputError, UNSOLVABLE: InputError, BACK: InputError}
 
 
 def status_text(status: int) -> str:

@@ -164,7 +164,7 @@ class _Job:
     def call(self, function: Any, *arguments: Any) -> None:
         status = self._call(function, self.container.config, self.packing.spheres, *arguments)
         if status:
-            raise self.packing.error(status, self._call.run.fault)
+            raise self.packing.error(status, self._call.run.fault, self.container)
 
     @property
     def run(self) -> Any:

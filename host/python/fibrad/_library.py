@@ -33,11 +33,15 @@ def _structure(name: str, *fields: tuple[str, Any]) -> Any:
 
 Spheres = _structure("spheres", ("x y z r", DOUBLES), ("n stride stride_r", c_uint32), ("id", POINTER(c_uint64)))
 Body = _structure("body", ("kind", c_int), ("plane", _Plane), ("cylinder", _Cylinder))
+Triangles = _structure("triangles", ("x y z", DOUBLES), ("stride vertices", c_uint32),
+                       ("corner front back", POINTER(c_uint32)), ("n", c_uint32))
 SceneConfig = _structure("scene_config", ("isa", c_int), ("period", c_double * 3), ("body", POINTER(Body)),
-                         ("bodies", c_uint32), ("known_low known_high", c_double * 3), ("occupancy", c_void_p))
-Fault = _structure("fault", ("first second", c_uint32))
+                         ("bodies", c_uint32), ("known_low known_high", c_double * 3), ("occupancy", c_void_p),
+                         ("triangles", POINTER(Triangles)))
+Fault = _structure("fault", ("first second triangle", c_uint32))
 SceneFacts = _structure("scene_facts", ("spheres bodies", c_uint32), ("isa", c_int), ("cells", c_uint32),
-                        ("radius_min radius_max overlap_max", c_double), ("overlap_pair", c_uint32 * 2))
+                        ("radius_min radius_max overlap_max", c_double), ("overlap_pair", c_uint32 * 2),
+                        ("triangles", c_uint32))
 Run = _structure("run", ("threads", c_int), ("progress", PROGRESS), ("context", c_void_p), ("fault", Fault))
 BeamRule = _structure("beam_rule", ("directions points", c_uint32), ("cutoff tolerance", c_double), ("turn", c_uint64))
 SurfaceRule = _structure("surface_rule", ("nodes flags", c_uint32), ("cutoff", c_double), ("isa", c_int))

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import ARGUMENT, GEOMETRY, Error, error_of, status_text
-from ._library import DOUBLES, Body, SceneConfig, Spheres
+from ._library import DOUBLES, Body, SceneConfig, Spheres, Triangles
 from ._values import Names, doubles, real, refuse
 
 _AXES = "xyz"
 _PLANES = {f"{axis}{end}": (k, upper) for k, axis in enumerate(_AXES) for upper, end in enumerate(("min", "max"))}
-_PLANE, _CYLINDER = 1, 2
+_PLANE, _CYLINDER, _MESH = 1, 2, 3
+_NO_BODY = 2**32 - 1
 _STRIDE_MAX = 2**32 - 1
 _LENGTH_MAX = 1e150
 
@@ -78,19 +79,50 @@ class Packing:
             raise refuse(f"two spheres have the id {values[counts > 1][0]}")
         return np.ascontiguousarray(array, np.uint64)
 
-    def error(self, status: int, fault: Any) -> Error:
-        """What a call has returned, in words, with the spheres concerned."""
+    def error(self, status: int, fault: Any, container: Container) -> Error:
+        """What a call has returned, in words, with the spheres or the triangle concerned."""
         concerned = tuple(dict.fromkeys(i for i in (fault.first, fault.second) if i < self.n))
         text = status_text(status)
         if status == GEOMETRY and len(concerned) < 2:
             text = "the box is smaller than a sphere's radius along a periodic axis"
-        elif status == ARGUMENT and not concerned:
+        elif status == ARGUMENT and not concerned and not container.triangle(fault.triangle):
             text = f"this bed, box and walls cannot be computed: {text}"
         places = ", ".join(f"{self.names(i)} at {self.x[i].tolist()}, radius {self.r[i]}" for i in concerned)
+        places = places or container.triangle(fault.triangle)
         return error_of(status, f"{text}: {places}" if places else text, concerned)
 
 
+class Mesh:
+    """A wall of triangles, for the ``walls`` of all functions: ``walls={"hopper": Mesh(vertices, triangles)}``.
+
+    Parameters
+    ----------
+    vertices : (v, 3) array
+        Their places.
+    triangles : (t, 3) array of int
+        The three vertices of each, from 0, counter-clockwise seen from the front.
+    back : None, True or str
+        Whose the backs are: nobody's, so that they must not be seen; True: this wall's, too; else the wall's of that
+        name, a mesh.
+    """
+
+    def __init__(self, vertices: ArrayLike, triangles: ArrayLike, back: Union[None, bool, str] = None):
+        self.vertices = np.ascontiguousarray(doubles("vertices", vertices))
+        if self.vertices.ndim != 2 or self.vertices.shape[1] != 3:
+            raise refuse(f"vertices has the shape {self.vertices.shape}; (v, 3) is wanted")
+        corners = np.asarray(triangles)
+        if corners.ndim != 2 or corners.shape[1] != 3 or not len(corners) or corners.dtype.kind not in "iu":
+            raise refuse("triangles must be whole numbers, (t, 3): the vertices of t > 0 triangles")
+        if corners.min() < 0 or corners.max() >= len(self.vertices):
+            raise refuse(f"triangles name vertices from {corners.min()} to {corners.max()}; "
+                         f"there are {len(self.vertices)}")
+        self.triangles = np.ascontiguousarray(corners, np.uint32)
+        self.back = back
+
+
 def _body(name: str, value: Any) -> Any:
+    if isinstance(value, Mesh):
+        return Body(kind=_MESH)
     if name in _PLANES:
         axis, upper = _PLANES[name]
         return Body(kind=_PLANE, plane=(axis, upper, real(f"wall {name}", value, -_LENGTH_MAX, _LENGTH_MAX)))
@@ -99,7 +131,7 @@ def _body(name: str, value: Any) -> Any:
         if numbers.shape != (3,) or not np.isfinite(numbers).all() or numbers[2] <= 0:
             raise refuse("wall cylinder must be (x, y, radius), x and y of its axis along z")
         return Body(kind=_CYLINDER, cylinder=tuple(numbers))
-    raise refuse(f"there is no wall {name!r}; there are {', '.join(_PLANES)} and cylinder")
+    raise refuse(f"there is no wall {name!r}; there are {', '.join(_PLANES)}, cylinder, and any name for a Mesh")
 
 
 class Container:
@@ -115,6 +147,39 @@ class Container:
             raise refuse("a wall is named twice")
         self._bodies = (Body * len(pairs))(*(_body(name, value) for name, value in pairs))
         self.config = SceneConfig(period=tuple(self.period), body=self._bodies, bodies=len(pairs))
+        self._meshes = [(b, value) for b, (_, value) in enumerate(pairs) if isinstance(value, Mesh)]
+        if self._meshes:
+            self.config.triangles = ctypes.pointer(self._triangles())
+
+    def _back_of(self, body: int, mesh: Mesh) -> int:
+        if mesh.back is None or mesh.back is False:
+            return _NO_BODY
+        if mesh.back is True:
+            return body
+        numbers = [b for b, _ in self._meshes if self.names[b] == mesh.back]
+        if not numbers:
+            raise refuse(f"the back of wall {self.names[body]} is to be {mesh.back!r}, and no mesh has that name")
+        return numbers[0]
+
+    def _triangles(self) -> Any:
+        """All meshes in arrays, which stay as long as this does."""
+        first = np.cumsum([0] + [len(mesh.vertices) for _, mesh in self._meshes])
+        at = np.concatenate([mesh.vertices for _, mesh in self._meshes])
+        numbers = [np.concatenate(parts).astype(np.uint32) for parts in (
+            [(mesh.triangles + int(start)).ravel() for start, (_, mesh) in zip(first, self._meshes)],
+            [np.full(len(mesh.triangles), b) for b, mesh in self._meshes],
+            [np.full(len(mesh.triangles), self._back_of(b, mesh)) for b, mesh in self._meshes])]
+        self._arrays = [at, *numbers]
+        return Triangles(*(pointer(at[:, k]) for k in range(3)), 3, len(at),
+                         *(pointer(array, ctypes.POINTER(ctypes.c_uint32)) for array in numbers), len(numbers[1]))
+
+    def triangle(self, number: int) -> str:
+        """The triangle that a call names, or nothing."""
+        for b, mesh in self._meshes:
+            if number < len(mesh.triangles):
+                return f"triangle {number} of {self.names[b]}"
+            number -= len(mesh.triangles)
+        return ""
 
     def closed(self) -> bool:
         """Whether nothing can leave: each axis periodic, between two planes or within the cylinder."""
