@@ -1,4 +1,4 @@
-/* parts.c - edges of triangles, and parts that hang together by them, wound alike. SPDX-License-Identifier: MIT */
+/* edges.c - edges of triangles, and parts that hang together by them, wound alike. SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 
 #include "cli/message.h"
