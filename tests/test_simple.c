@@ -427,7 +427,6 @@ START_TEST(radiation_moves) {
 }
 END_TEST
 
-/* A wall that moves so far that its patches need more room. */
 /* How often beams were begun again. */
 struct returns {
     uint64_t done, count;
@@ -443,10 +442,10 @@ static int count_returns(void *context, const char *stage, uint64_t done, uint64
 
 /* A bed that comes apart sees more others than there is room for: it gets more, and all is as if it had begun so. */
 START_TEST(radiation_gets_more_room) {
-    enum { MANY = 1500 };
+    enum { MANY = 800 };
     struct bed bed = packing(MANY, 1, 1, .6, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
-    const fibrad_heat_config config = {.patches = 24};
+    const fibrad_heat_config config = {.patches = 96, .directions = 672};
     double temperature[MANY], emissivity[MANY], moved[MANY], begun[MANY];
     for (int i = 0; i < MANY; i++) temperature[i] = 300 + i, emissivity[i] = 1;
     const fibrad_heat_sources sources = sources_of(temperature, emissivity);

@@ -45,7 +45,7 @@ static void box_add(mesh_box *box, const mesh_box *other) {
     }
 }
 
-static mesh_box box_of_triangle(double corner[3][3]) {
+static mesh_box triangle_box(double corner[3][3]) {
     mesh_box box;
     for (int axis = 0; axis < 3; axis++) {
         box.low[axis] = fibrad_min(corner[0][axis], fibrad_min(corner[1][axis], corner[2][axis]));
@@ -65,7 +65,7 @@ static double surface_of(const mesh_box *box, double length) {
 }
 
 static double middle_of(double corner[3][3], int axis) {
-    const mesh_box box = box_of_triangle(corner);
+    const mesh_box box = triangle_box(corner);
     return 0.5 * box.low[axis] + 0.5 * box.high[axis];
 }
 
@@ -84,16 +84,16 @@ typedef struct mesh_part {
 } mesh_part;
 
 /* The bin of a coordinate between low and high. */
-static int bin_of(double at, double low, double high) {
+static int place_of_bin(double at, double low, double high) {
     const double share = (at - low) / (high - low) * BINS;
     return share >= BINS - 1 ? BINS - 1 : (int)fibrad_max(0, share);
 }
 
 /* Brings those whose bin is not above `cut` to the front; returns where the others begin. */
-static uint32_t divide(fibrad_mesh *mesh, const mesh_part *part, int axis, double low, double high, int cut) {
+static uint32_t move_below(fibrad_mesh *mesh, const mesh_part *part, int axis, double low, double high, int cut) {
     uint32_t to = part->begin;
     for (uint32_t t = part->begin; t < part->end; t++)
-        if (bin_of(middle_of(mesh->corner[t], axis), low, high) <= cut) swap_triangles(mesh, t, to++);
+        if (place_of_bin(middle_of(mesh->corner[t], axis), low, high) <= cut) swap_triangles(mesh, t, to++);
     return to;
 }
 
@@ -116,8 +116,8 @@ static uint32_t cut_part(fibrad_mesh *mesh, const mesh_part *part, const mesh_bo
     if (!(high > low) || part->depth >= BY_SURFACE) return part->begin + count / 2;
     for (int b = 0; b < BINS; b++) bin[b] = no_box;
     for (uint32_t t = part->begin; t < part->end; t++) {
-        const int b = bin_of(middle_of(mesh->corner[t], axis), low, high);
-        const mesh_box own = box_of_triangle(mesh->corner[t]);
+        const int b = place_of_bin(middle_of(mesh->corner[t], axis), low, high);
+        const mesh_box own = triangle_box(mesh->corner[t]);
         box_add(&bin[b], &own);
         in_bin[b]++;
     }
@@ -134,7 +134,7 @@ static uint32_t cut_part(fibrad_mesh *mesh, const mesh_part *part, const mesh_bo
         const double cost = on_left * surface_of(&left, length) + on_right * surface_of(&right[b + 1], length);
         if (cost < least) least = cost, best = b;
     }
-    return best < 0 ? part->begin + count / 2 : divide(mesh, part, axis, low, high, best);
+    return best < 0 ? part->begin + count / 2 : move_below(mesh, part, axis, low, high, best);
 }
 
 static void set_bounds(const fibrad_mesh *mesh, fibrad_mesh_node *node, const mesh_box *box) {
@@ -153,7 +153,7 @@ static void build_tree(fibrad_mesh *mesh) {
     for (mesh->nodes = 0; mesh->triangles > 0;) {
         mesh_box box = no_box;
         for (uint32_t t = part.begin; t < part.end; t++) {
-            const mesh_box own = box_of_triangle(mesh->corner[t]);
+            const mesh_box own = triangle_box(mesh->corner[t]);
             box_add(&box, &own);
         }
         fibrad_mesh_node *node = &mesh->node[mesh->nodes++];

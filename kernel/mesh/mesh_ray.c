@@ -174,7 +174,7 @@ uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const doubl
     return side;
 }
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double inner(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 static double clamp_share(double above, double below) {
     return below > 0 ? fibrad_max(0, fibrad_min(1, above / below)) : 0;
@@ -184,9 +184,9 @@ static double clamp_share(double above, double below) {
 static double square_to_segment(const double a[3], const double b[3]) {
     double along[3], at[3];
     for (int axis = 0; axis < 3; axis++) along[axis] = b[axis] - a[axis];
-    const double share = clamp_share(-dot(a, along), dot(along, along));
+    const double share = clamp_share(-inner(a, along), inner(along, along));
     for (int axis = 0; axis < 3; axis++) at[axis] = a[axis] + share * along[axis];
-    return dot(at, at);
+    return inner(at, at);
 }
 
 /* Square of the distance from the origin to a triangle: to its plane, if the foot lies inside, or to its edges. */
@@ -198,12 +198,12 @@ static double square_to_triangle(double c[3][3]) {
         const int next = (axis + 1) % 3, last = (axis + 2) % 3;
         n[axis] = e[0][next] * e[1][last] - e[0][last] * e[1][next];
     }
-    const double square = dot(n, n), height = dot(n, c[0]);
+    const double square = inner(n, n), height = inner(n, c[0]);
     bool inside = square > 0;
     for (int k = 0; k < 3 && inside; k++) {
         const double out[3] = {e[k][1] * n[2] - e[k][2] * n[1], e[k][2] * n[0] - e[k][0] * n[2],
                                e[k][0] * n[1] - e[k][1] * n[0]};
-        inside = dot(out, c[k]) >= 0;
+        inside = inner(out, c[k]) >= 0;
     }
     if (inside) return height * height / square;
     return fibrad_min(square_to_segment(c[0], c[1]),

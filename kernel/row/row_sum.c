@@ -23,12 +23,12 @@ uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere) {
     return entries->at[hash_slot_of(entries, sphere)];
 }
 
-static double sum_of_parts(const double part[4]) { return part[0] + part[2] + (part[1] + part[3]); }
+static double entry_sum(const double part[4]) { return part[0] + part[2] + (part[1] + part[3]); }
 
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]) {
     const uint32_t spheres = scene->facts.spheres;
     for (uint32_t k = 0; k < entries->length && scene->mesh.triangles > 0; k++)
-        if (entries->sphere[k] >= spheres) wall[entries->sphere[k] - spheres] += sum_of_parts(entries->part[k]);
+        if (entries->sphere[k] >= spheres) wall[entries->sphere[k] - spheres] += entry_sum(entries->part[k]);
 }
 
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row) {
@@ -38,7 +38,7 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
         const double *part = entries->part[k];
         double difference = (part[0] + part[2] - part[1] - part[3]) * scale;
         square += difference * difference;
-        if (entries->sphere[k] >= scene->facts.spheres || sum_of_parts(part) == 0) continue;
+        if (entries->sphere[k] >= scene->facts.spheres || entry_sum(part) == 0) continue;
         entries->key[0][n++] = (uint64_t)scene->order[entries->sphere[k]] << 32 | k;
     }
     row->length = n;
@@ -49,7 +49,7 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     for (uint32_t k = 0; k < n; k++) {
         uint32_t entry = (uint32_t)key[k];
         row->col[k] = (uint32_t)(key[k] >> 32);
-        row->f[k] = sum_of_parts(entries->part[entry]) * scale;
+        row->f[k] = entry_sum(entries->part[entry]) * scale;
     }
     return FIBRAD_OK;
 }
