@@ -152,10 +152,10 @@ HOST = \
     host/bed/property_option.c \
     host/bed/units.c \
     host/bed/wall_option.c \
+    host/mesh/edges.c \
     host/mesh/enclosing.c \
     host/mesh/facing.c \
     host/mesh/meshes.c \
-    host/mesh/components.c \
     host/mesh/stl.c \
     host/mesh/weld.c \
     host/text/read_curve.c \

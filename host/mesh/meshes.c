@@ -19,9 +19,10 @@ bool mesh_name(const char *name) {
 static void stem_of(const char *path, char name[MESH_NAME]) {
     const char *slash = strrchr(path, '/'), *begin = slash ? slash + 1 : path;
     size_t length = strcspn(begin, ".");
-    if (length == 0 || length >= MESH_NAME) length = length == 0 ? 0 : MESH_NAME - 1;
+    if (length == 0) begin = "none", length = strlen(begin);
+    if (length >= MESH_NAME) length = MESH_NAME - 1;
     for (size_t k = 0; k < length; ++k) name[k] = isalnum((unsigned char)begin[k]) ? begin[k] : '_';
-    strcpy(name + length, length == 0 ? "mesh" : "");
+    name[length] = 0;
 }
 
 /* NAME, or NAME_SOLID for each. */

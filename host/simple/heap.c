@@ -90,7 +90,7 @@ int fibrad_heap_triangles(fibrad_triangle_copy *copy, const struct fibrad_triang
     copy->block = malloc(3 * vertices * sizeof(double) + (3 + sides) * n * sizeof(uint32_t));
     if (!copy->block) return FIBRAD_E_MEMORY;
     double *x = copy->block;
-    uint32_t *corner = (uint32_t *)(x + 3 * vertices);
+    uint32_t *corner = (void *)(x + 3 * vertices);
     for (size_t v = 0; v < vertices; ++v)
         x[3 * v] = given->x[v * stride], x[3 * v + 1] = given->y[v * stride], x[3 * v + 2] = given->z[v * stride];
     memcpy(corner, given->corner, 3 * n * sizeof *corner);

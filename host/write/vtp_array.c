@@ -30,6 +30,8 @@ void base64_bytes(struct base64 *to, const void *data, size_t size) {
 
 void base64_double(struct base64 *to, double value) { base64_bytes(to, &value, sizeof value); }
 
+void base64_whole(struct base64 *to, int64_t value) { base64_bytes(to, &value, sizeof value); }
+
 struct base64 base64_begin(FILE *file, const char *type, const char *name, int components, uint64_t values) {
     struct base64 to = {.file = file};
     const uint64_t bytes = values * 8;
@@ -46,12 +48,12 @@ void base64_end(struct base64 *to) {
 
 void vtp_counts(FILE *file, const char *name, const int64_t *values, uint32_t n) {
     struct base64 to = base64_begin(file, "Int64", name, 1, n);
-    for (uint32_t i = 0; i < n; ++i) base64_bytes(&to, &values[i], sizeof values[i]);
+    for (uint32_t i = 0; i < n; ++i) base64_whole(&to, values[i]);
     base64_end(&to);
 }
 
 void vtp_ascending(FILE *file, const char *name, uint32_t n, int64_t first, int64_t step) {
     struct base64 to = base64_begin(file, "Int64", name, 1, n);
-    for (int64_t i = 0; i < n; ++i) base64_bytes(&to, &(int64_t){first + i * step}, sizeof(int64_t));
+    for (int64_t i = 0; i < n; ++i) base64_whole(&to, first + i * step);
     base64_end(&to);
 }

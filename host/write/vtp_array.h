@@ -23,6 +23,7 @@ struct base64 {
 struct base64 base64_begin(FILE *file, const char *type, const char *name, int components, uint64_t values);
 void base64_bytes(struct base64 *to, const void *data, size_t size);
 void base64_double(struct base64 *to, double value);
+void base64_whole(struct base64 *to, int64_t value);
 void base64_end(struct base64 *to);
 
 /* An array of whole numbers; of first, first + step ... */

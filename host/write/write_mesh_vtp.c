@@ -20,7 +20,7 @@ static void mesh_points(FILE *file, const struct fibrad_triangles *all) {
 
 static void mesh_corners(FILE *file, const struct fibrad_triangles *all) {
     struct base64 to = base64_begin(file, "Int64", "connectivity", 1, 3 * (uint64_t)all->n);
-    for (size_t k = 0; k < 3 * (size_t)all->n; ++k) base64_bytes(&to, &(int64_t){all->corner[k]}, sizeof(int64_t));
+    for (size_t k = 0; k < 3 * (size_t)all->n; ++k) base64_whole(&to, all->corner[k]);
     base64_end(&to);
     vtp_ascending(file, "offsets", all->n, 3, 3);
 }
@@ -50,7 +50,7 @@ static void mesh_counts(FILE *file, const char *name, const struct meshes *meshe
     struct base64 to = base64_begin(file, "Int64", name, 1, meshes->triangles.n);
     for (uint32_t m = 0; m < meshes->count; ++m)
         for (uint32_t t = 0; t < meshes->mesh[m].surface.n; ++t)
-            base64_bytes(&to, &(int64_t){count(&meshes->mesh[m], &meshes->triangles, t)}, sizeof(int64_t));
+            base64_whole(&to, count(&meshes->mesh[m], &meshes->triangles, t));
     base64_end(&to);
 }
 
