@@ -1,8 +1,4 @@
-<<<<<<<< HEAD:host/mesh/components.c
-/* components.c - edges of triangles, and parts that hang together by them, wound alike. SPDX-License-Identifier: MIT */
-========
 /* edges.c - edges of triangles, and parts that hang together by them, wound alike. SPDX-License-Identifier: MIT */
->>>>>>>> stl:host/mesh/edges.c
 #include <stdlib.h>
 
 #include "cli/message.h"
