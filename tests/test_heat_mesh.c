@@ -479,6 +479,39 @@ START_TEST(estimates_of_errors_are_honest) {
 }
 END_TEST
 
+/* Fluxes through triangles add up to the powers of their bodies; a plate that faces a hot sphere is lit most where it
+ * is nearest, and an insulated one hottest there. */
+START_TEST(fluxes_through_triangles) {
+    enum { CELLS = 16, PIECES = 2 * CELLS * CELLS };
+    const double origin[3] = {-3, -3, 1.5}, a[3] = {6, 0, 0}, b[3] = {0, 6, 0};
+    struct problem *p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .8);
+    double flux[2 * PIECES], temperature[2 * PIECES], sum = 0;
+    p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .7, p->config.directions = 2000;
+    add_sheet(p->mesh, origin, b, a, CELLS, 0, FIBRAD_NO_BODY); /* its front is below */
+    ck_assert_int_eq(fibrad_heat_read_sides(NULL, flux, temperature), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(p), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, temperature), FIBRAD_E_STATE);
+    solve(p);
+    ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, temperature), FIBRAD_OK);
+    const uint32_t middle = PIECES / 2 + CELLS;
+    for (uint32_t t = 0; t < PIECES; t++) {
+        sum += flux[2 * t] * 36 / PIECES;
+        ck_assert(isnan(flux[2 * t + 1]) && isnan(temperature[2 * t + 1]) && temperature[2 * t] == 1);
+    }
+    assert_near(sum, p->q[0], 1e-2);
+    /* above the centre a black sphere of radius 1 fills (1/1.5)^2 of the view */
+    assert_near(flux[2 * middle], .7 * (.8 * 16 / 2.25 - 1), .1);
+    ck_assert_double_lt(flux[0], .3 * flux[2 * middle]);
+
+    p->insulated[0] = 1;
+    solve(p);
+    ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, temperature), FIBRAD_OK);
+    ck_assert(flux[2 * middle] == 0);
+    ck_assert_double_gt(temperature[2 * middle], 1.3 * temperature[0]);
+    free_problem(p);
+}
+END_TEST
+
 /* ---- patches ---- */
 
 START_TEST(patches_have_the_area_of_the_mesh) {
@@ -565,6 +598,7 @@ int main(void) {
     tcase_add_test(tests, a_tilted_box_is_the_same);
     tcase_add_test(tests, a_mesh_moves);
     tcase_add_test(tests, estimates_of_errors_are_honest);
+    tcase_add_test(tests, fluxes_through_triangles);
     tcase_add_test(tests, patches_have_the_area_of_the_mesh);
     tcase_add_test(tests, a_back_that_is_seen_is_named);
     return suite_run(suite);

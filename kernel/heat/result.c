@@ -273,3 +273,46 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     result->residual = heat->scale > 0 ? fibrad_sqrt(heat->slope / heat->scale) : 0;
     return read_temperatures(heat, result) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
 }
+
+/* The patches of a side, and what they gain and how they radiate together. */
+typedef struct side_sum {
+    double area, net, radiosity;
+} side_sum;
+
+static side_sum sum_of_side(const fibrad_heat *heat, const fibrad_mesh_cut *cut) {
+    const uint32_t begin = heat->first[fibrad_heat_body(heat, FIBRAD_MESHES)] + cut->patch;
+    side_sum sum = {0, 0, 0};
+    for (uint32_t a = begin; a < begin + (UINT32_C(1) << cut->halvings); a++)
+        sum.area += heat->area[a], sum.net += heat->net[a], sum.radiosity += heat->area[a] * heat->radiosity[a];
+    return sum;
+}
+
+/* What a body gains per area beyond what its patches do: extrapolation, and what residuals leave. */
+static double flux_beyond_patches(const fibrad_heat *heat, uint32_t b) {
+    double area = 0, net = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) area += heat->area[a], net += heat->net[a];
+    return area > 0 ? (heat->power[b] - net) / area : 0;
+}
+
+int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature) {
+    double beyond[FIBRAD_BODIES_MAX];
+    if (heat == NULL) return FIBRAD_E_ARGUMENT;
+    if (heat->phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
+    const fibrad_mesh *mesh = &heat->scene->mesh;
+    for (uint32_t m = 0; m < heat->meshes; m++)
+        beyond[m] = flux_beyond_patches(heat, fibrad_heat_body(heat, FIBRAD_MESHES + m));
+    for (uint32_t s = 0; s < 2 * heat->triangles; s++) {
+        const fibrad_mesh_cut *cut = fibrad_mesh_cut_of(mesh, heat->cut, s);
+        const size_t to = (size_t)(cut - heat->cut);
+        double q = __builtin_nan(""), t = q;
+        const side_sum sum = cut->patch != UINT32_MAX ? sum_of_side(heat, cut) : (side_sum){0, 0, 0};
+        if (sum.area > 0) {
+            const uint32_t m = mesh->mesh[s / 2][s % 2], b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
+            q = heat->emissivity[b] > 0 ? sum.net / sum.area + beyond[m] : 0;
+            t = is_insulated(heat, b) ? fibrad_heat_temperature(heat, sum.radiosity / sum.area) : heat->temperature[b];
+        }
+        if (flux != NULL) flux[to] = q;
+        if (temperature != NULL) temperature[to] = t;
+    }
+    return FIBRAD_OK;
+}
