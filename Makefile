@@ -66,6 +66,7 @@ KERNEL = \
     kernel/sample/direction.c \
     kernel/pair/exact.c \
     kernel/mesh/mesh_build.c \
+    kernel/mesh/mesh_patch.c \
     kernel/mesh/mesh_ray.c \
     kernel/scene/drift.c \
     kernel/scene/grid_walk.c \
@@ -239,6 +240,7 @@ TESTS = \
     tests/test_exchange.c \
     tests/test_furnace.c \
     tests/test_heat.c \
+    tests/test_heat_mesh.c \
     tests/test_matrix.c \
     tests/test_mesh.c \
     tests/test_mesh_files.c \

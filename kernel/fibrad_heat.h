@@ -25,7 +25,7 @@ typedef struct fibrad_heat_config {
     uint32_t patches;    /* of a sphere: 24, 96 or 384; 0: 96 */
     uint32_t parts;      /* [1, 1024] of a sweep, for as many threads; last bits depend on it; 0: 8 */
     double cutoff;       /* 0: none; else, as with a known region, FIBRAD_E_UNSUPPORTED */
-    uint32_t wall_rays;  /* from all walls together at the least, up to 2^30; 0: 262144, 6 directions points, or 8
+    uint32_t wall_rays;  /* from all walls and meshes at the least, up to 2^30; 0: 262144, 6 directions points, or 8
                           * for each patch of a wall, whichever is most */
 } fibrad_heat_config;
 
@@ -38,13 +38,15 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
 int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene);
 
-/* Changes to another scene of as many spheres and the same kinds of bodies, or the same one rebuilt in place. All tasks
- * are traced again; the next solution starts from the last one. Errors: _ARGUMENT, _SIZE (walls have grown). */
+/* Changes to another scene of as many spheres, the same kinds of bodies and the same triangles, each of its bodies, or
+ * the same one rebuilt in place. All tasks are traced again; the next solution starts from the last one. Errors:
+ * _ARGUMENT, _SIZE (walls have grown). */
 int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene);
 
 /* Tasks that the beams are divided into, one per sphere and some for the walls; parts of a sweep (NULL: 0). _trace: the
  * beams of a task [0, tasks), each task once, by several threads at once. Errors: _ARGUMENT, _WORK, _MEMORY (then call
- * again), _STATE, _SIZE: spheres see so many others that the room for beams is too small; give _init twice the size.
+ * again), _STATE, _BACK (work->triangle has a side that is seen and nobody's), _SIZE: spheres see so many others that
+ * the room for beams is too small; give _init twice the size.
  * Cost: about 1 microsecond per direction of 64 points. */
 uint32_t fibrad_heat_tasks(const fibrad_heat *heat);
 uint32_t fibrad_heat_parts(const fibrad_heat *heat);
@@ -101,6 +103,13 @@ typedef struct fibrad_heat_result {
     double *body_absorbed; /* [bodies] out: what they take of what arrives, of endless walls near the bed; or NULL */
 } fibrad_heat_result;
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
+
+/* What sides of triangles gain per area, and their temperatures, [2 triangles] by the caller's numbers, fronts and
+ * backs in turn: means over the patches of each, or of all that share a patch; fluxes times areas add up to the powers
+ * of the bodies. NaN: the side is nobody's, or nothing reaches it. Either may be NULL. Errors: _ARGUMENT; _STATE: no
+ * solution.
+ */
+int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature);
 
 #ifdef __cplusplus
 }

@@ -44,12 +44,17 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
                        c->cutoff >= 0 && c->wall_rays <= HEAT_RAYS_MAX &&
                        (scene->facts.spheres == 0 ||
                         (scene->facts.radius_min >= HEAT_RADIUS_MIN && scene->facts.radius_max <= 1 / HEAT_RADIUS_MIN));
-    return !valid                                                        ? FIBRAD_E_ARGUMENT
-           : c->cutoff > 0 || scene->region || scene->mesh.triangles > 0 ? FIBRAD_E_UNSUPPORTED
-                                                                         : FIBRAD_OK;
+    return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 || scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
 }
 
-/* The numbers that follow from a valid configuration and a scene. */
+/* How many bodies of a scene are meshes. */
+static uint32_t meshes_of(const fibrad_scene *scene) {
+    uint32_t meshes = 0;
+    for (uint32_t b = 0; b < scene->facts.bodies; b++) meshes += scene->slot[b] >= FIBRAD_MESHES;
+    return meshes;
+}
+
+/* The numbers that follow from a valid configuration and a scene; how meshes are cut stays. */
 static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const fibrad_scene *scene) {
     const uint32_t spheres = scene->facts.spheres;
     heat->config = *config;
@@ -61,12 +66,14 @@ static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const
     heat->beams = config->directions * config->points;
     heat->thin = heat->beams / HEAT_THIN_MAX < HEAT_KEPT * config->patches ? 1 : HEAT_THIN_MAX;
     heat->side = side_of(config->patches);
-    heat->bodies = spheres + 2 * FIBRAD_WALLS + 1;
+    heat->meshes = meshes_of(scene), heat->triangles = scene->mesh.triangles;
+    heat->bodies = spheres + 2 * FIBRAD_WALLS + heat->meshes + 1;
     heat->patches = spheres * config->patches + 1;
     heat->rays = 0;
     fibrad_heat_cut_walls(heat);
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
         heat->patches += heat->wall[k].squares[0] * heat->wall[k].squares[1] + heat->wall[k].unbounded;
+    for (uint32_t m = 0; m < heat->meshes; m++) heat->patches += heat->of_mesh[m];
 }
 
 /* A fourth more patches and rays of walls than this scene has: when the bed moves they may become more. */
@@ -104,14 +111,18 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->order = fibrad_arena_take(arena, spheres, sizeof *heat->order);
     heat->sequence = fibrad_arena_take(arena, spheres, sizeof *heat->sequence);
     heat->part = fibrad_arena_take(arena, spheres, sizeof *heat->part);
+    heat->cut = fibrad_arena_take(arena, 2 * (size_t)heat->triangles, sizeof *heat->cut);
     heat->traced = fibrad_arena_take(arena, tasks_for(spheres, heat->rays_capacity), 1);
     heat->swept = fibrad_arena_take(arena, heat->config.parts, 1);
     heat->pool = fibrad_arena_take(arena, heat->room, 1);
     return place;
 }
 
-/* Leaves room for a bed that moves, and for the beams. */
-static void make_room(fibrad_heat *heat) {
+/* The numbers of a new problem, with room for a bed that moves, and for the beams. */
+static void dimension_anew(fibrad_heat *heat, const fibrad_heat_config *config, const fibrad_scene *scene) {
+    dimension(heat, config, scene);
+    fibrad_heat_cut_meshes(heat);
+    dimension(heat, config, scene);
     add_room(heat);
     heat->room = fibrad_heat_room(heat);
 }
@@ -127,28 +138,26 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
     const fibrad_heat_config c = heat_config_of(config);
     if (heat_check(&c, scene) != FIBRAD_OK) return 0;
     fibrad_heat fields = {0};
-    dimension(&fields, &c, scene);
-    make_room(&fields);
+    dimension_anew(&fields, &c, scene);
     return heat_bytes(fields);
+}
+
+/* How many patches a body has. */
+static uint32_t patches_of(const fibrad_heat *heat, uint32_t b) {
+    const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES), beyond = fibrad_heat_beyond(heat, 0);
+    if (b < heat->spheres) return heat->config.patches;
+    if (b < mesh) return heat->wall[b - heat->spheres].squares[0] * heat->wall[b - heat->spheres].squares[1];
+    if (b < beyond) return heat->of_mesh[b - mesh];
+    return b < beyond + FIBRAD_WALLS ? heat->wall[b - beyond].unbounded : 1;
 }
 
 /* Numbers the patches through, and tells how many beams leave each sphere per area. */
 static void number_patches(fibrad_heat *heat) {
     const fibrad_scene *scene = heat->scene;
-    uint32_t a = 0;
-    for (uint32_t b = 0; b < heat->bodies; b++) {
-        const uint32_t wall = b - heat->spheres; /* only if not a sphere */
-        uint32_t count = 1;
-        if (b < heat->spheres)
-            count = heat->config.patches, heat->density[b] = heat->beams / (4 * FIBRAD_PI * scene->r[b] * scene->r[b]);
-        else if (wall < FIBRAD_WALLS)
-            count = heat->wall[wall].squares[0] * heat->wall[wall].squares[1];
-        else if (wall < 2 * FIBRAD_WALLS)
-            count = heat->wall[wall - FIBRAD_WALLS].unbounded;
-        heat->first[b] = a;
-        a += count;
-    }
-    heat->first[heat->bodies] = a;
+    heat->first[0] = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) heat->first[b + 1] = heat->first[b] + patches_of(heat, b);
+    for (uint32_t b = 0; b < heat->spheres; b++)
+        heat->density[b] = heat->beams / (4 * FIBRAD_PI * scene->r[b] * scene->r[b]);
 }
 
 /* Which patch of its sphere each beam leaves. */
@@ -186,14 +195,14 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     fibrad_heat fields = {0};
     int status = heat_check(&c, scene);
     if (status != FIBRAD_OK) return status;
-    dimension(&fields, &c, scene);
-    make_room(&fields);
+    dimension_anew(&fields, &c, scene);
     const size_t least = heat_bytes(fields);
     status = fibrad_arena_open(&arena, memory, size, least);
     if (status != FIBRAD_OK) return status;
     fields.room += (size - least) / FIBRAD_ALIGNMENT * FIBRAD_ALIGNMENT;
     fibrad_heat *heat = heat_layout(&arena, &fields);
     *heat = fields;
+    fibrad_heat_cut_meshes(heat);
     find_origins(heat);
     forget_beams(heat);
     *out = heat;
@@ -228,16 +237,32 @@ static void carry_over(fibrad_heat *heat, const fibrad_heat *next) {
     reorder(heat->detail, each, next->scene, old_place, n, heat->gathered);
     reorder(heat->emission, 1, next->scene, old_place, n, heat->gathered);
     if (same_patches(heat, next)) return;
-    uint32_t a = n * each;
+    const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES), from = heat->first[mesh];
+    const size_t of_meshes = (heat->first[fibrad_heat_beyond(heat, 0)] - from) * sizeof *heat->radiosity;
+    fibrad_copy(heat->gathered, heat->radiosity + from, of_meshes);
+    fibrad_copy(heat->direction, heat->detail + from, of_meshes);
+    uint32_t a = n * each, to = a;
     for (uint32_t b = n; b < heat->bodies; b++) {
-        const uint32_t wall = b - n;
-        uint32_t count = 1;
-        if (wall < FIBRAD_WALLS)
-            count = next->wall[wall].squares[0] * next->wall[wall].squares[1];
-        else if (wall < 2 * FIBRAD_WALLS)
-            count = next->wall[wall - FIBRAD_WALLS].unbounded;
-        for (uint32_t end = a + count; a < end; a++) heat->radiosity[a] = heat->emission[b], heat->detail[a] = 0;
+        if (b == mesh) to = a;
+        for (uint32_t end = a + patches_of(next, b); a < end; a++)
+            heat->radiosity[a] = heat->emission[b], heat->detail[a] = 0;
     }
+    fibrad_copy(heat->radiosity + to, heat->gathered, of_meshes);
+    fibrad_copy(heat->detail + to, heat->direction, of_meshes);
+}
+
+/* Whether a scene has the same triangles, each of the same bodies. */
+static bool same_triangles(const fibrad_heat *heat, const fibrad_scene *scene) {
+    const fibrad_mesh *mesh = &scene->mesh;
+    const uint32_t *first = heat->first + fibrad_heat_body(heat, FIBRAD_MESHES);
+    bool same = mesh->triangles == heat->triangles;
+    for (uint32_t s = 0; same && s < 2 * mesh->triangles; s++) {
+        const uint32_t m = mesh->mesh[s / 2][s % 2], patch = heat->cut[2 * (size_t)mesh->number[s / 2] + s % 2].patch;
+        same = m == FIBRAD_NO_MESH || fibrad_mesh_area(mesh, m) == 0
+                   ? patch == UINT32_MAX
+                   : patch >= first[m] - first[0] && patch < first[m + 1] - first[0];
+    }
+    return same;
 }
 
 int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
@@ -247,6 +272,7 @@ int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
     if (scene->region) return FIBRAD_E_UNSUPPORTED;
     for (uint32_t b = 0; b < heat->given_bodies; b++)
         if (scene->slot[b] != heat->slot[b]) return FIBRAD_E_ARGUMENT;
+    if (!same_triangles(heat, scene)) return FIBRAD_E_ARGUMENT;
     fibrad_heat next = *heat;
     dimension(&next, &heat->config, scene);
     if (next.patches > heat->patches_capacity || next.rays > heat->rays_capacity) return FIBRAD_E_SIZE;
@@ -271,6 +297,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task) {
         if (status != FIBRAD_E_WORK) break;
         status = fibrad_work_grow(work, &space);
     }
+    if (status == FIBRAD_E_BACK) work->triangle = space->back;
     if (status == FIBRAD_OK) heat->traced[task] = 1;
     return status;
 }

@@ -7,6 +7,7 @@
 #include "heat/sphere_patch.h"
 #include "heat/wall_patch.h"
 #include "ray/tracer.h"
+#include "row/mesh_share_lanes.h"
 #include "sample/direction.h"
 #include "row/window_lanes.h"
 
@@ -56,11 +57,20 @@ static uint64_t kept_points(uint32_t turn, uint32_t thin) {
     return thin == 1 ? UINT64_MAX : turn % 2 == 0 ? half : ~half;
 }
 
+/* The points of a word that meet a triangle first. */
+static uint64_t meshed_points(const fibrad_workspace *work, uint32_t word) {
+    uint64_t bits = 0;
+    if (work->met == NULL || !work->met->any) return 0;
+    for (uint32_t p = 0; p < HIT_POINTS; p++)
+        bits |= (uint64_t)(work->met->side[HIT_POINTS * word + p] != FIBRAD_NO_SIDE) << p;
+    return bits;
+}
+
 /* Lists points of a word that are kept and the discs that hide them, the first that covers each: those in `kept`, and
  * one of each sphere that is seen for the first time, whose entry is `known` or later. */
 static void find_hit_discs(const fibrad_workspace *work, const fibrad_points *points, uint32_t word, uint64_t kept,
                            uint32_t known, struct hit_window *p) {
-    uint64_t left = ~points->seen[word];
+    uint64_t left = ~(points->seen[word] | meshed_points(work, word));
     p->count = 0;
     for (uint32_t t = 0; left != 0; t++) {
         const uint32_t k = points->occluder[t];
@@ -105,7 +115,12 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
 /* The patch that the beam of open point p of window k meets. */
 static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *work, const double frame[9],
                              const fibrad_points *points, uint32_t k, uint32_t p) {
+    double origin[3], w[3];
     if (!heat->scene->container.walls) return fibrad_heat_open(heat);
+    if (work->met != NULL && work->met->any && work->met->spread) { /* on the line that meets no triangle */
+        LANED(fibrad_mesh_line)(work, frame, p, origin, w);
+        return fibrad_heat_leaves(heat, origin, w);
+    }
     const uint32_t other = fibrad_points_partner(heat->config.points, p, k);
     const fibrad_disc_points *set = &points->set;
     const double x = set->x[p], y = set->y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
@@ -114,7 +129,6 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
     const double open = (double)points->open / points->count;
     const double spread = HIT_SPREAD * open / (fibrad_sqrt(heat->config.directions) * rare);
     const double du = spread * a, dv = spread * b;
-    double origin[3], w[3];
     for (int axis = 0; axis < 3; axis++) {
         const double e = frame[axis], f = frame[3 + axis], g = frame[6 + axis];
         origin[axis] = work->centre[axis] + work->unit * (x * e + y * f + up * g);
@@ -139,20 +153,43 @@ static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, const fibrad_workspa
     return beam;
 }
 
+/* Counts, and if it is kept or the first one keeps, a beam of window k to a patch that is of no sphere. */
+static fibrad_heat_beam *keep_other(const fibrad_heat *heat, fibrad_workspace *work, uint32_t k, uint16_t from,
+                                    uint32_t patch, bool kept, fibrad_heat_beam *beam) {
+    const uint32_t known = work->entries.length, to = (patch - fibrad_heat_others(heat)) % FIBRAD_HEAT_BLOCK;
+    const uint32_t entry = fibrad_entries_of(&work->entries, fibrad_heat_other(heat, patch));
+    fibrad_entries_add(&work->entries, entry, k, 1);
+    if (kept || entry == known) *beam++ = (fibrad_heat_beam){entry, from, (uint16_t)to};
+    return beam;
+}
+
+/* Keeps the beams of a word that meet triangles first, all of them. */
+static fibrad_heat_beam *keep_meshed(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9], uint32_t k,
+                                     uint32_t word, fibrad_heat_beam *beam) {
+    const uint16_t *leave = heat->leave + (size_t)k * heat->config.points + HIT_POINTS * word;
+    for (uint64_t bits = meshed_points(work, word); bits != 0; bits &= bits - 1) {
+        const uint32_t p = (uint32_t)__builtin_ctzll(bits), side = work->met->side[HIT_POINTS * word + p];
+        double at[3];
+        LANED(fibrad_mesh_place)(work, frame, HIT_POINTS * word + p, at);
+        const uint32_t patch = fibrad_heat_mesh_patch(heat, side, at);
+        if (patch == FIBRAD_NONE)
+            work->back = heat->scene->mesh.number[side / 2];
+        else
+            beam = keep_other(heat, work, k, leave[p], patch, true, beam);
+    }
+    return beam;
+}
+
 /* The same of those that meet none: all of them where there are walls. */
 static fibrad_heat_beam *keep_escapes(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
                                       const fibrad_points *points, uint32_t k, uint32_t word, uint64_t kept,
                                       fibrad_heat_beam *beam) {
     const uint16_t *leave = heat->leave + (size_t)k * points->count + HIT_POINTS * word;
-    const uint32_t first = fibrad_heat_others(heat);
     if (heat->scene->container.walls) kept = UINT64_MAX;
     for (uint64_t bits = points->seen[word]; bits != 0; bits &= bits - 1) {
-        const uint32_t p = (uint32_t)__builtin_ctzll(bits), known = work->entries.length;
+        const uint32_t p = (uint32_t)__builtin_ctzll(bits);
         const uint32_t patch = escape_patch(heat, work, frame, points, k, HIT_POINTS * word + p);
-        const uint32_t entry = fibrad_entries_of(&work->entries, fibrad_heat_other(heat, patch));
-        fibrad_entries_add(&work->entries, entry, k, 1);
-        if ((kept >> p & 1) != 0 || entry == known)
-            *beam++ = (fibrad_heat_beam){entry, leave[p], (uint16_t)((patch - first) % FIBRAD_HEAT_BLOCK)};
+        beam = keep_other(heat, work, k, leave[p], patch, (kept >> p & 1) != 0, beam);
     }
     return beam;
 }
@@ -162,12 +199,14 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
     fibrad_points points = {.count = heat->config.points};
     fibrad_disc_points_get(points.count, &points.set);
     work->areas.overflow = false;
+    work->windows = heat->config.directions;
     work->extra_owner = 0;
     fibrad_work_begin(work, heat->scene, place, 0, FIBRAD_BEAM_STRIDE);
     /* spheres of a lattice, which are all alike, do not all keep the same half */
     const uint32_t turn = (uint32_t)(fibrad_mix(fibrad_scene_rank(heat->scene, place)) & 1);
     for (uint32_t k = 0; k < heat->config.directions; k++) {
-        const uint32_t known = work->entries.length;
+        /* spheres that triangles have hidden so far are seen for the first time yet */
+        const uint32_t known = heat->triangles > 0 ? 0 : work->entries.length;
         double frame[9];
         fibrad_beam_frame(k, heat->config.directions, points.count, frame);
         work->entries.end = k == 0 || k + 1 == heat->config.directions;
@@ -176,38 +215,54 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
         for (uint32_t word = 0; word < points.count / HIT_POINTS; word++) {
             const uint64_t kept = kept_points(turn + k + word, heat->thin);
             beam = keep_hits(heat, work, frame, &points, k, word, kept, known, beam);
+            beam = keep_meshed(heat, work, frame, k, word, beam);
             beam = keep_escapes(heat, work, frame, &points, k, word, kept, beam);
         }
     }
+    if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
     if (work->entries.missed == 0) return fibrad_heat_keep(heat, work, place, (uint32_t)(beam - first));
     work->needed.entries = work->entries.capacity + work->entries.missed;
     return FIBRAD_E_WORK;
 }
 
-static void follow_wall_rays(fibrad_heat *heat, uint32_t task) {
-    for (uint32_t wall = 0; wall < FIBRAD_WALLS; wall++) {
-        const fibrad_heat_wall *part = &heat->wall[wall];
-        uint32_t from = task * FIBRAD_HEAT_TASK, to = from + FIBRAD_HEAT_TASK;
-        if (from < part->first_ray) from = part->first_ray;
-        if (to > part->first_ray + part->rays) to = part->first_ray + part->rays;
-        for (uint32_t k = from; k < to; k++) {
-            fibrad_heat_ray *ray = &heat->ray[k];
-            double origin[3], w[3];
-            fibrad_hit hit;
-            *ray = (fibrad_heat_ray){0, 0, 0};
-            if (!fibrad_heat_wall_ray(heat, wall, k - part->first_ray, origin, w)) continue;
-            LANED(fibrad_trace_point)(heat->scene, origin, w, FIBRAD_NO_SIDE, &hit);
-            if (hit.sphere != FIBRAD_NONE) continue;
-            ray->from = fibrad_heat_wall_patch(heat, wall, origin);
-            ray->to = fibrad_heat_leaves(heat, origin, w);
-            ray->area = 1 / (part->density + fibrad_heat_wall_density(heat, ray->to));
-        }
+/* Follows ray k of the wall or mesh of a slot; *ray: what it connects. */
+static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t slot, uint32_t k, double density,
+                      fibrad_heat_ray *ray) {
+    uint32_t side = FIBRAD_NO_SIDE;
+    double origin[3], w[3];
+    fibrad_hit hit;
+    *ray = (fibrad_heat_ray){0, 0, 0};
+    const bool starts = slot < FIBRAD_WALLS ? fibrad_heat_wall_ray(heat, slot, k, origin, w)
+                                            : fibrad_heat_mesh_ray(heat, slot - FIBRAD_MESHES, k, origin, w, &side);
+    if (!starts) return FIBRAD_OK;
+    LANED(fibrad_trace_point)(heat->scene, origin, w, side == FIBRAD_NO_SIDE ? side : side / 2, &hit);
+    if (hit.sphere != FIBRAD_NONE) return FIBRAD_OK;
+    ray->from =
+        slot < FIBRAD_WALLS ? fibrad_heat_wall_patch(heat, slot, origin) : fibrad_heat_mesh_patch(heat, side, origin);
+    ray->to = fibrad_heat_ends(heat, origin, w, hit.side, hit.distance);
+    if (ray->to == FIBRAD_NONE) {
+        work->back = heat->scene->mesh.number[hit.side / 2];
+        return FIBRAD_E_BACK;
     }
+    ray->area = 1 / (density + fibrad_heat_wall_density(heat, ray->to));
+    return FIBRAD_OK;
+}
+
+static int follow_wall_rays(fibrad_heat *heat, fibrad_workspace *work, uint32_t task) {
+    int status = FIBRAD_OK;
+    for (uint32_t slot = 0; slot < FIBRAD_MESHES + heat->meshes; slot++) {
+        const fibrad_heat_rays *sent = &heat->sent[slot];
+        uint32_t from = task * FIBRAD_HEAT_TASK, to = from + FIBRAD_HEAT_TASK;
+        if (from < sent->first) from = sent->first;
+        if (to > sent->first + sent->count) to = sent->first + sent->count;
+        for (uint32_t k = from; k < to && status == FIBRAD_OK; k++)
+            status = follow_ray(heat, work, slot, k - sent->first, sent->density, &heat->ray[k]);
+    }
+    return status;
 }
 
 int LANED(fibrad_heat_follow)(fibrad_heat *heat, fibrad_workspace *work, uint32_t task) {
     const fibrad_scene *scene = heat->scene;
     if (task < scene->facts.spheres) return follow_beams_of(heat, work, task);
-    follow_wall_rays(heat, task - scene->facts.spheres);
-    return FIBRAD_OK;
+    return follow_wall_rays(heat, work, task - scene->facts.spheres);
 }

@@ -37,10 +37,12 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
         if (scene->wall_area[k] > 0)
             walls += heat->wall[k].size[0] * heat->wall[k].size[1] *
                      (k == FIBRAD_CYLINDER ? 2 * FIBRAD_PI * scene->container.radius : 1);
-    const double blocks = FIBRAD_HEAT_OTHERS + (double)(heat->patches - fibrad_heat_others(heat)) / FIBRAD_HEAT_BLOCK;
+    for (uint32_t m = 0; m < heat->meshes; m++) walls += fibrad_mesh_area(&scene->mesh, m);
+    const double others = 2 * FIBRAD_WALLS + heat->meshes + 2;
+    const double blocks = others + (double)(heat->patches - fibrad_heat_others(heat)) / FIBRAD_HEAT_BLOCK;
     const double fraction = fibrad_min(1, solid / (n * spacing * spacing * spacing));
     const double pencils = fibrad_min(fibrad_min(n + blocks, beams), 16 + ROOM_PENCILS * fibrad_sqrt(beams) / fraction);
-    const double of_walls = scene->container.walls ? beams * fibrad_min(1, 1.5 * walls / surface) : 0;
+    const double of_walls = walls > 0 ? beams * fibrad_min(1, 1.5 * walls / surface) : 0;
     const double thinned = beams / heat->thin, pairs = thinned * heat->config.patches;
     const bool wide = heat->config.patches > FIBRAD_HEAT_BLOCK;
     const double most_strands = (wide ? ROOM_STRANDS_WIDE : ROOM_STRANDS) * fibrad_sqrt(pairs);
@@ -165,6 +167,7 @@ static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_
     uint64_t begin = 0;
     uint32_t links = 0;
     for (uint32_t e = 0; e < entries->length; begin = entries->key[0][e++]) {
+        if (entries->key[0][e] == begin) continue; /* seen, but a triangle hid it */
         const double *part = entries->part[e], even = part[0] + part[2], odd = part[1] + part[3];
         const uint64_t beams = entries->key[0][e] - begin;
         const uint32_t body = entries->sphere[e], joined = join_beams(heat, scratch->sorted + begin, beams, scratch);

@@ -1,21 +1,22 @@
 /* problem.h - the inside of a heat problem. SPDX-License-Identifier: MIT
  *
- * Bodies are the spheres in the order of the scene's places, then the walls by number, then what lies beyond the
- * patches of unbounded walls, then the surroundings. Each body has patches [first[b], first[b + 1]): none if it is not
- * there, four at a time making up a patch of the coarser level, and one alone beyond the walls. */
+ * Bodies are the spheres in the order of the scene's places, then the walls by number, then the meshes, then what lies
+ * beyond the patches of unbounded walls, then the surroundings. Each body has patches [first[b], first[b + 1]): none if
+ * it is not there, four at a time making up a patch of the coarser level, and one alone beyond the walls. */
 #ifndef FIBRAD_HEAT_PROBLEM_H
 #define FIBRAD_HEAT_PROBLEM_H
 
 #include "fibrad_heat.h"
-#include "work/work.h"
+#include "mesh/mesh_patch.h"
 #include "scene/scene.h"
+#include "work/work.h"
 
 #define FIBRAD_HEAT_PATCHES_MAX 384   /* of a sphere */
 #define FIBRAD_HEAT_TASK        1024u /* rays of a wall that are followed at a time */
 
 #define FIBRAD_HEAT_FOUR   4u   /* patches that make up one of the coarser level */
 #define FIBRAD_HEAT_BLOCK  256u /* patches of a wall that may share a pencil */
-#define FIBRAD_HEAT_OTHERS 16u  /* bodies that are no spheres, rounded up */
+#define FIBRAD_HEAT_OTHERS 64u  /* bodies that are no spheres, rounded up */
 
 /* Beams from one sphere to another, or to those of a block of patches that belong to one body, no sphere. Of those
  * followed some are kept; after this follow bundles, beams from four patches that make up one of the coarser level to
@@ -50,13 +51,17 @@ typedef struct fibrad_heat_link {
  * (modulo 3), of the cylinder around [turns, or fourths of the square that goes around] and along z. */
 typedef struct fibrad_heat_wall {
     double low[2], size[2]; /* [L] */
-    double density;         /* rays per area */
     uint32_t squares[2];
-    uint32_t first_ray, rays;
     bool unbounded;
 } fibrad_heat_wall;
 
-/* A ray from one patch of a wall to one of another wall or the surroundings, and the area it stands for [L2]; 0 if it
+/* The rays that a wall or a mesh sends out. */
+typedef struct fibrad_heat_rays {
+    double density; /* per area */
+    uint32_t first, count;
+} fibrad_heat_rays;
+
+/* A ray from one patch of a wall or a mesh to another or the surroundings, and the area it stands for [L2]; 0 if it
  * meets a sphere, or starts outside the container. */
 typedef struct fibrad_heat_ray {
     uint32_t from, to;
@@ -81,11 +86,16 @@ struct fibrad_heat {
     uint32_t beams;                                 /* of one sphere: directions times points */
     uint32_t thin;                                  /* 2: of those that meet spheres every second one is kept; 1: all */
     uint32_t side;                                  /* patches of a sphere along an edge of its cube */
-    uint32_t bodies;                                /* spheres, FIBRAD_WALLS twice, 1 */
+    uint32_t meshes, triangles;                     /* of it */
+    double patch_area;                              /* about that of the patches of walls and meshes [L^2] */
+    uint32_t bodies;                                /* spheres, FIBRAD_WALLS, meshes, FIBRAD_WALLS, 1 */
     uint32_t patches;                               /* all of them */
     uint32_t rays;                                  /* of all walls */
     uint32_t patches_capacity, rays_capacity;
     fibrad_heat_wall wall[FIBRAD_WALLS];
+    fibrad_heat_rays sent[FIBRAD_SLOTS]; /* by slot */
+    uint32_t of_mesh[FIBRAD_BODIES_MAX]; /* patches of each mesh */
+    fibrad_mesh_cut *cut;  /* [2 triangles] by the caller's numbers; patches counted from the first of all meshes */
     uint32_t *first;       /* [bodies + 1] */
     uint32_t *order;       /* [spheres] the caller's index of each, as the scene had it */
     uint32_t *sequence;    /* [spheres] of sweeps: those of each part, near each other */
@@ -117,7 +127,7 @@ struct fibrad_heat {
     double *halves;          /* [bodies] by how much the power by even directions exceeds that by odd ones */
     double *reflected;       /* [spheres] of the beams of each, what bodies reflect that they meet */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
-    bool insulated[FIBRAD_WALLS];                                      /* likewise */
+    bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first that is no sphere */
 
     fibrad_heat_phase phase;
     bool warm;                  /* the radiosities are those of a solution */
@@ -132,10 +142,13 @@ struct fibrad_heat {
     uint32_t sweeps, limit;
 };
 
-/* The patches of wall k, what is beyond them; the first patch that is not of a sphere, and the surroundings. */
-static inline uint32_t fibrad_heat_wall_body(const fibrad_heat *heat, uint32_t wall) { return heat->spheres + wall; }
+/* The patches of the wall or mesh of a slot, and what is beyond those of a wall; the first patch that is not of a
+ * sphere, and the surroundings. */
+static inline uint32_t fibrad_heat_body(const fibrad_heat *heat, uint32_t slot) {
+    return heat->spheres + (slot < FIBRAD_WALLS ? slot : FIBRAD_WALLS + (slot - FIBRAD_MESHES));
+}
 static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall) {
-    return heat->spheres + FIBRAD_WALLS + wall;
+    return heat->spheres + FIBRAD_WALLS + heat->meshes + wall;
 }
 static inline uint32_t fibrad_heat_others(const fibrad_heat *heat) { return heat->spheres * heat->config.patches; }
 static inline uint32_t fibrad_heat_open(const fibrad_heat *heat) { return heat->patches - 1; }

@@ -78,7 +78,7 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
 }
 
 static heat_errors errors_of(const fibrad_heat *heat) {
-    const uint32_t end = heat->spheres + FIBRAD_WALLS; /* of bodies that have patches of their own */
+    const uint32_t end = fibrad_heat_beyond(heat, 0); /* of bodies that have patches of their own */
     heat_errors errors = {.all = spread_over(heat, 0, heat->first[end])};
     if (heat->group == 1) errors.few = FEW_ERROR * heat->config.patches * heat->thin / (2.0 * heat->beams);
     for (uint32_t b = heat->spheres; b < end; b++)
@@ -121,15 +121,15 @@ static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
         all += square;
     }
     for (uint32_t k = 0; k < heat->given_bodies && result->body_error != NULL; k++)
-        result->body_error[k] = fibrad_sqrt(power_error_of(heat, &errors, fibrad_heat_wall_body(heat, heat->slot[k])));
+        result->body_error[k] = fibrad_sqrt(power_error_of(heat, &errors, fibrad_heat_body(heat, heat->slot[k])));
     patches = fibrad_min(patches, all);
     result->error_patches = fibrad_sqrt(patches / spheres);
     result->error_beams = fibrad_sqrt((all - patches) / spheres);
 }
 
-/* Whether a body is a wall that is insulated. */
+/* Whether a body is a wall or a mesh that is insulated. */
 static bool is_insulated(const fibrad_heat *heat, uint32_t b) {
-    return b >= heat->spheres && b < heat->spheres + FIBRAD_WALLS && heat->insulated[b - heat->spheres];
+    return b >= heat->spheres && heat->insulated[b - heat->spheres];
 }
 
 static bool is_found(const fibrad_heat *heat, uint32_t b) { return heat->hold[b] >= 0 || is_insulated(heat, b); }
@@ -170,7 +170,7 @@ static heat_level level_found(const fibrad_heat *heat, const heat_errors *errors
         } else {
             const double power = fibrad_abs(heat->power[b]);
             level.given += power * heat->emission[b], powers += power;
-            if (b < heat->spheres + FIBRAD_WALLS) square += power_error_of(heat, errors, b);
+            if (b < fibrad_heat_beyond(heat, 0)) square += power_error_of(heat, errors, b);
         }
     }
     if (spheres > 0) level.changed /= spheres;
@@ -220,9 +220,9 @@ static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result 
             result->temperature_error[i] = temperature_error_of(heat, &errors, &level, b, heat->temperature[b]);
     }
     for (uint32_t k = 0; k < heat->given_bodies; k++) {
-        const uint32_t slot = heat->slot[k], b = fibrad_heat_wall_body(heat, slot);
+        const uint32_t b = fibrad_heat_body(heat, heat->slot[k]);
         if (heat->hold[b] >= 0) found = found && heat->temperature[b] >= 0;
-        const double t = heat->insulated[slot] ? insulated_temperature(heat, b) : heat->temperature[b];
+        const double t = is_insulated(heat, b) ? insulated_temperature(heat, b) : heat->temperature[b];
         if (result->body_temperature != NULL) result->body_temperature[k] = t;
         if (result->body_temperature_error != NULL)
             result->body_temperature_error[k] = temperature_error_of(heat, &errors, &level, b, t);
@@ -241,7 +241,9 @@ static double absorbed_by(const fibrad_heat *heat, uint32_t b) {
 
 /* Adds to a wall what it takes of what arrives beyond its patches, and the rest to what it faces. */
 static void read_beyond(const fibrad_heat *heat, uint32_t b, fibrad_heat_result *result) {
-    const uint32_t k = heat->slot[b], beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
+    const uint32_t k = heat->slot[b];
+    if (k >= FIBRAD_WALLS) return; /* meshes are bounded */
+    const uint32_t beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
     if (a == heat->first[beyond + 1]) return;
     const double less = heat->radiosity[a] - heat->wall_emission[k];
     const double taken = fibrad_heat_taken_beyond(heat, k) * (heat->net[a] + heat->area[a] * less);
@@ -261,13 +263,56 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     for (uint32_t b = 0; b < spheres; b++) result->power[heat->order[b]] = heat->power[b];
     result->surroundings_power = heat->power[open];
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
-        const uint32_t k = heat->slot[b];
-        result->body_power[b] = heat->power[fibrad_heat_wall_body(heat, k)];
-        if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, fibrad_heat_wall_body(heat, k));
+        const uint32_t own = fibrad_heat_body(heat, heat->slot[b]);
+        result->body_power[b] = heat->power[own];
+        if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, own);
     }
     for (uint32_t b = 0; b < heat->given_bodies; b++) read_beyond(heat, b, result);
     read_errors(heat, result);
     result->sweeps = heat->sweeps;
     result->residual = heat->scale > 0 ? fibrad_sqrt(heat->slope / heat->scale) : 0;
     return read_temperatures(heat, result) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
+}
+
+/* The patches of a side, and what they gain and how they radiate together. */
+typedef struct side_sum {
+    double area, net, radiosity;
+} side_sum;
+
+static side_sum sum_of_side(const fibrad_heat *heat, const fibrad_mesh_cut *cut) {
+    const uint32_t begin = heat->first[fibrad_heat_body(heat, FIBRAD_MESHES)] + cut->patch;
+    side_sum sum = {0, 0, 0};
+    for (uint32_t a = begin; a < begin + (UINT32_C(1) << cut->halvings); a++)
+        sum.area += heat->area[a], sum.net += heat->net[a], sum.radiosity += heat->area[a] * heat->radiosity[a];
+    return sum;
+}
+
+/* What a body gains per area beyond what its patches do: extrapolation, and what residuals leave. */
+static double flux_beyond_patches(const fibrad_heat *heat, uint32_t b) {
+    double area = 0, net = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) area += heat->area[a], net += heat->net[a];
+    return area > 0 ? (heat->power[b] - net) / area : 0;
+}
+
+int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature) {
+    double beyond[FIBRAD_BODIES_MAX];
+    if (heat == NULL) return FIBRAD_E_ARGUMENT;
+    if (heat->phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
+    const fibrad_mesh *mesh = &heat->scene->mesh;
+    for (uint32_t m = 0; m < heat->meshes; m++)
+        beyond[m] = flux_beyond_patches(heat, fibrad_heat_body(heat, FIBRAD_MESHES + m));
+    for (uint32_t s = 0; s < 2 * heat->triangles; s++) {
+        const fibrad_mesh_cut *cut = fibrad_mesh_cut_of(mesh, heat->cut, s);
+        const size_t to = (size_t)(cut - heat->cut);
+        double q = __builtin_nan(""), t = q;
+        const side_sum sum = cut->patch != UINT32_MAX ? sum_of_side(heat, cut) : (side_sum){0, 0, 0};
+        if (sum.area > 0) {
+            const uint32_t m = mesh->mesh[s / 2][s % 2], b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
+            q = heat->emissivity[b] > 0 ? sum.net / sum.area + beyond[m] : 0;
+            t = is_insulated(heat, b) ? fibrad_heat_temperature(heat, sum.radiosity / sum.area) : heat->temperature[b];
+        }
+        if (flux != NULL) flux[to] = q;
+        if (temperature != NULL) temperature[to] = t;
+    }
+    return FIBRAD_OK;
 }

@@ -136,20 +136,24 @@ static double radiosity_beyond(const fibrad_heat *heat, uint32_t k) {
 
 static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double middle) {
     static const radiator absent = {0, 0, 0, 0, 0};
-    radiator source[FIBRAD_WALLS];
-    for (uint32_t k = 0; k < FIBRAD_WALLS; k++) source[k] = absent, heat->insulated[k] = false;
+    radiator source[FIBRAD_SLOTS];
+    for (uint32_t k = 0; k < FIBRAD_SLOTS; k++) source[k] = absent;
+    fibrad_zero(heat->insulated, sizeof heat->insulated);
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         source[heat->slot[b]] = of_body(s, b);
-        heat->insulated[heat->slot[b]] = s->insulated != NULL && s->insulated[b] != 0;
+        heat->insulated[fibrad_heat_body(heat, heat->slot[b]) - heat->spheres] =
+            s->insulated != NULL && s->insulated[b] != 0;
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         const bool emits = source[k].emissivity > 0 && is_given(source[k].temperature);
         heat->wall_emissivity[k] = source[k].emissivity;
         heat->wall_emission[k] = emits ? emission_of(s, source[k].temperature) : 0;
-        set_body(heat, s, middle, fibrad_heat_wall_body(heat, k), &source[k]);
+        set_body(heat, s, middle, fibrad_heat_body(heat, k), &source[k]);
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
         set_emission(heat, s, fibrad_heat_beyond(heat, k), 1, radiosity_beyond(heat, k));
+    for (uint32_t m = 0; m < heat->meshes; m++)
+        set_body(heat, s, middle, fibrad_heat_body(heat, FIBRAD_MESHES + m), &source[FIBRAD_MESHES + m]);
     set_emission(heat, s, heat->bodies - 1, 1, 0);
 }
 
@@ -158,8 +162,9 @@ static bool endless_unknown(const fibrad_heat *heat, const fibrad_heat_sources *
     bool found = false;
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         const radiator source = of_body(s, b);
-        found =
-            found || (heat->wall[heat->slot[b]].unbounded && source.emissivity > 0 && !is_given(source.temperature));
+        const uint32_t slot = heat->slot[b];
+        found = found || (slot < FIBRAD_WALLS && heat->wall[slot].unbounded && source.emissivity > 0 &&
+                          !is_given(source.temperature));
     }
     return found;
 }

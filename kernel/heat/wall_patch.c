@@ -1,4 +1,4 @@
-/* wall_patch.c - the patches of walls, and the rays that leave them. SPDX-License-Identifier: MIT */
+/* wall_patch.c - the patches of walls and meshes, and the rays that leave them. SPDX-License-Identifier: MIT */
 #include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
@@ -11,6 +11,7 @@
  * is little, so that a few of each patch do, but RAYS_MIN in all, and RAYS_PER_BEAM for each beam of one sphere: so
  * what walls exchange gets better, too, where more beams are asked for; and where more rays are. */
 #define FEW            16.0 /* times the patches of a sphere */
+#define OUTSIDE        4.0  /* times as many may lie on triangles beyond walls */
 #define RAYS_PER_PATCH 8.0
 #define RAYS_MIN       262144.0
 #define RAYS_PER_BEAM  6.0
@@ -59,12 +60,48 @@ static uint32_t squares(double length, double square) {
     return 2 * (uint32_t)fibrad_max(1, fibrad_floor(fibrad_min(length / square, 1e5) / 2 + .5));
 }
 
+/* Rays start where, and as, the points of a four-dimensional sequence lie: multiples of g^-1 ... g^-4 modulo 1, g^5 = g
+ * + 1 (source: base/random.h), from another point on for each wall. */
+static const uint64_t ray_step[4] = {0xdb4f0b9175ae2165u, 0xbbe0563303a4615fu, 0xa0f2ec75a1fe1575u,
+                                     0x89e182857d9ed689u};
+
+/* The coordinates of ray k of a slot. */
+static void ray_coordinates(uint32_t slot, uint32_t k, double x[4]) {
+    for (int d = 0; d < 4; d++)
+        x[d] = fibrad_fraction(k / 2 * ray_step[d] + fibrad_mix((2 * slot + k % 2) ^ ray_step[d]));
+}
+
+/* Has a wall or a mesh of some area send out rays, after those of all before it. */
+static void send_rays(fibrad_heat *heat, uint32_t slot, double area, double density) {
+    fibrad_heat_rays *sent = &heat->sent[slot];
+    *sent = (fibrad_heat_rays){.first = heat->rays};
+    if (!(area > 0)) return;
+    sent->count = (uint32_t)fibrad_min(1 + density * area, 0x1p30);
+    sent->density = sent->count / area;
+    heat->rays += sent->count;
+}
+
+/* Area of a mesh within the walls, by even points of it. */
+#define INSIDE_POINTS 1024u
+static double area_inside(const fibrad_scene *scene, uint32_t m) {
+    const double area = fibrad_mesh_area(&scene->mesh, m);
+    uint32_t inside = 0;
+    if (!scene->container.walls || area == 0) return area;
+    for (uint32_t k = 0; k < INSIDE_POINTS; k++) {
+        double x[4], at[3];
+        ray_coordinates(FIBRAD_MESHES + m, 2 * k, x);
+        fibrad_mesh_point(&scene->mesh, m, x, at);
+        inside += fibrad_walls_hold(&scene->container, at);
+    }
+    return area * inside / INSIDE_POINTS;
+}
+
 void fibrad_heat_cut_walls(fibrad_heat *heat) {
     const fibrad_scene *scene = heat->scene;
-    double area = 0, surface = 0;
+    double area = 0, surface = 0, meshes = 0;
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         fibrad_heat_wall *wall = &heat->wall[k];
-        *wall = (fibrad_heat_wall){0};
+        *wall = (fibrad_heat_wall){0}, heat->sent[k] = (fibrad_heat_rays){0};
         if (!(scene->wall_area[k] > 0)) continue;
         wall->size[0] = 1;
         for (uint32_t side = k == FIBRAD_CYLINDER; side < 2; side++)
@@ -72,6 +109,8 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
                 stretch(scene, k == FIBRAD_CYLINDER ? 2 : (k / 2 + 1 + side) % 3, &wall->low[side], &wall->size[side]);
         area += area_of(heat, k);
     }
+    for (uint32_t m = 0; m < heat->meshes; m++)
+        area += area_inside(scene, m), meshes += fibrad_mesh_area(&scene->mesh, m);
     if (area == 0) return;
     for (uint32_t i = 0; i < heat->spheres; i++) surface += 4 * FIBRAD_PI * scene->r[i] * scene->r[i];
     const double of_spheres = (double)heat->spheres * heat->config.patches,
@@ -80,17 +119,32 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
     const double least = fibrad_max(RAYS_MIN, heat->config.wall_rays);
     const double rays = fibrad_max(least, RAYS_PER_BEAM * heat->beams);
     const double density = fibrad_max(RAYS_PER_PATCH / (square * square), rays / area);
+    heat->patch_area = fibrad_max(square * square, meshes / (OUTSIDE * most));
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         fibrad_heat_wall *wall = &heat->wall[k];
         if (!(scene->wall_area[k] > 0)) continue;
         wall->squares[0] =
             squares(k == FIBRAD_CYLINDER ? 2 * FIBRAD_PI * scene->container.radius : wall->size[0], square);
         wall->squares[1] = squares(wall->size[1], square);
-        wall->first_ray = heat->rays;
-        wall->rays = (uint32_t)fibrad_min(1 + density * area_of(heat, k), 0x1p30);
-        wall->density = wall->rays / area_of(heat, k);
-        heat->rays += wall->rays;
+        send_rays(heat, k, area_of(heat, k), density);
     }
+    for (uint32_t m = 0; m < heat->meshes; m++)
+        send_rays(heat, FIBRAD_MESHES + m, fibrad_mesh_area(&scene->mesh, m), density);
+}
+
+void fibrad_heat_cut_meshes(fibrad_heat *heat) {
+    uint32_t first = 0;
+    for (uint32_t k = 0; heat->cut != NULL && k < 2 * heat->triangles; k++) heat->cut[k].patch = UINT32_MAX;
+    for (uint32_t m = 0; m < heat->meshes; m++) {
+        heat->of_mesh[m] = fibrad_mesh_cut_sides(&heat->scene->mesh, m, heat->patch_area, first, heat->cut);
+        first += heat->of_mesh[m];
+    }
+}
+
+uint32_t fibrad_heat_mesh_patch(const fibrad_heat *heat, uint32_t side, const double at[3]) {
+    if (fibrad_scene_slot(heat->scene, side) == FIBRAD_NONE) return FIBRAD_NONE;
+    return heat->first[fibrad_heat_body(heat, FIBRAD_MESHES)] +
+           fibrad_mesh_patch_at(&heat->scene->mesh, heat->cut, side, at);
 }
 
 /* Where on the square around the origin that leans on its corners, (1, 0) being 0, the other corners 1/4, 1/2, 3/4. */
@@ -115,38 +169,63 @@ uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const do
         const double place = fibrad_max(0, fibrad_min(share * w->squares[side], w->squares[side] - 1));
         cell[side] = (uint32_t)place;
     }
-    return heat->first[fibrad_heat_wall_body(heat, wall)] +
-           ((cell[0] >> 1) * (w->squares[1] >> 1) + (cell[1] >> 1)) * 4 + (cell[0] & 1) * 2 + (cell[1] & 1);
+    return heat->first[fibrad_heat_body(heat, wall)] + ((cell[0] >> 1) * (w->squares[1] >> 1) + (cell[1] >> 1)) * 4 +
+           (cell[0] & 1) * 2 + (cell[1] & 1);
 }
 
 double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch) {
-    for (uint32_t wall = 0; wall < FIBRAD_WALLS; wall++) {
-        const uint32_t *first = heat->first + fibrad_heat_wall_body(heat, wall);
-        if (patch >= first[0] && patch < first[1]) return heat->wall[wall].density;
+    for (uint32_t slot = 0; slot < FIBRAD_MESHES + heat->meshes; slot++) {
+        const uint32_t *first = heat->first + fibrad_heat_body(heat, slot);
+        if (fibrad_slot_of_body(slot) && patch >= first[0] && patch < first[1]) return heat->sent[slot].density;
     }
     return 0;
 }
 
-uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]) {
-    double distance, at[3];
+uint32_t fibrad_heat_ends(const fibrad_heat *heat, const double origin[3], const double w[3], uint32_t side,
+                          double length) {
+    double distance = __builtin_inf(), at[3];
     const uint32_t wall =
         heat->scene->container.walls ? fibrad_walls_exit(heat->scene, origin, w, &distance) : FIBRAD_NONE;
-    if (wall == FIBRAD_NONE) return fibrad_heat_open(heat);
-    for (int axis = 0; axis < 3; axis++) at[axis] = origin[axis] + distance * w[axis];
-    return fibrad_heat_wall_patch(heat, wall, at);
+    const bool meshed = side != FIBRAD_NO_SIDE && (wall == FIBRAD_NONE || length < distance);
+    if (!meshed && wall == FIBRAD_NONE) return fibrad_heat_open(heat);
+    for (int axis = 0; axis < 3; axis++) at[axis] = origin[axis] + (meshed ? length : distance) * w[axis];
+    return meshed ? fibrad_heat_mesh_patch(heat, side, at) : fibrad_heat_wall_patch(heat, wall, at);
 }
 
-/* Rays start where, and as, the points of a four-dimensional sequence lie: multiples of g^-1 ... g^-4 modulo 1, g^5 = g
- * + 1 (source: base/random.h), from another point on for each wall. */
-static const uint64_t ray_step[4] = {0xdb4f0b9175ae2165u, 0xbbe0563303a4615fu, 0xa0f2ec75a1fe1575u,
-                                     0x89e182857d9ed689u};
+uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]) {
+    return fibrad_heat_ends(heat, origin, w, FIBRAD_NO_SIDE, 0);
+}
+
+/* A direction by the cosine law, by two numbers, about a normal and two axes across it. */
+static void cosine_direction(const double x[2], const double normal[3], const double across[3], const double along[3],
+                             double w[3]) {
+    const double ring = fibrad_sqrt(x[0]), up = fibrad_sqrt(1 - x[0]);
+    double sine, cosine;
+    fibrad_sincos_turn(x[1], &sine, &cosine);
+    for (int a = 0; a < 3; a++) w[a] = ring * (cosine * across[a] + sine * along[a]) + up * normal[a];
+}
+
+bool fibrad_heat_mesh_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, double origin[3], double w[3],
+                          uint32_t *side) {
+    double x[4], n[3], across[3], along[3];
+    ray_coordinates(FIBRAD_MESHES + mesh, k, x);
+    *side = fibrad_mesh_point(&heat->scene->mesh, mesh, x, origin);
+    if (!fibrad_walls_hold(&heat->scene->container, origin)) return false;
+    fibrad_mesh_normal(&heat->scene->mesh, *side, n);
+    int least = fibrad_abs(n[1]) < fibrad_abs(n[0]) ? 1 : 0;
+    if (fibrad_abs(n[2]) < fibrad_abs(n[least])) least = 2;
+    const double scale = 1 / fibrad_sqrt(1 - n[least] * n[least]);
+    for (int a = 0; a < 3; a++) across[a] = ((a == least) - n[least] * n[a]) * scale;
+    for (int a = 0; a < 3; a++) along[a] = n[(a + 1) % 3] * across[(a + 2) % 3] - n[(a + 2) % 3] * across[(a + 1) % 3];
+    cosine_direction(x + 2, n, across, along, w);
+    return true;
+}
 
 bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, double origin[3], double w[3]) {
     const fibrad_heat_wall *part = &heat->wall[wall];
     const fibrad_container *c = &heat->scene->container;
     double x[4], normal[3], sine, cosine;
-    for (int d = 0; d < 4; d++)
-        x[d] = fibrad_fraction(k / 2 * ray_step[d] + fibrad_mix((2 * wall + k % 2) ^ ray_step[d]));
+    ray_coordinates(wall, k, x);
     if (wall == FIBRAD_CYLINDER) {
         fibrad_sincos_turn(x[0], &sine, &cosine);
         origin[0] = c->axis[0] + c->radius * cosine, origin[1] = c->axis[1] + c->radius * sine;
@@ -162,8 +241,6 @@ bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, do
     double across[3] = {-normal[1], normal[0], 0}, along[3] = {0, 0, 1};
     if (wall < FIBRAD_CYLINDER)
         for (uint32_t a = 0; a < 3; a++) across[a] = a == (wall / 2 + 1) % 3, along[a] = a == (wall / 2 + 2) % 3;
-    const double ring = fibrad_sqrt(x[2]), up = fibrad_sqrt(1 - x[2]); /* the cosine law */
-    fibrad_sincos_turn(x[3], &sine, &cosine);
-    for (int a = 0; a < 3; a++) w[a] = ring * (cosine * across[a] + sine * along[a]) + up * normal[a];
+    cosine_direction(x + 2, normal, across, along, w);
     return true;
 }

@@ -4,19 +4,35 @@
 
 #include "heat/problem.h"
 
-/* Chooses the patches and rays of all walls: heat->wall and heat->rays. Needs heat->config and heat->scene. */
+/* Chooses the patches and rays of all walls, and the rays of meshes: heat->wall, heat->patch_area, heat->rays. Needs
+ * heat->config, heat->scene and heat->meshes. */
 void fibrad_heat_cut_walls(fibrad_heat *heat);
+
+/* Cuts the meshes into patches of heat->patch_area: tells how many, and heat->cut if it is there. */
+void fibrad_heat_cut_meshes(fibrad_heat *heat);
 
 /* The patch of a wall at a place on it [L]. */
 uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]);
 
-/* Rays per area that leave the wall of a patch; 0 if it belongs to none. */
+/* The patch at a place [L] on a side of a mesh, or on an image of it; FIBRAD_NONE: the side is nobody's. */
+uint32_t fibrad_heat_mesh_patch(const fibrad_heat *heat, uint32_t side, const double at[3]);
+
+/* Rays per area that leave the wall or the mesh of a patch; 0 if it belongs to none. */
 double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch);
 
-/* The patch that a ray meets which meets no sphere: of a wall, or the surroundings. */
+/* The patch that a ray meets which meets no sphere and no triangle: of a wall, or the surroundings. */
 uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]);
+
+/* The patch that a ray along the unit vector w meets which meets no sphere before a side of a mesh, FIBRAD_NO_SIDE if
+ * it meets none, at some length; FIBRAD_NONE if that side is nobody's. */
+uint32_t fibrad_heat_ends(const fibrad_heat *heat, const double origin[3], const double w[3], uint32_t side,
+                          double length);
 
 /* Origin [L] and direction of ray k of a wall. False: it starts outside the container. */
 bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, double origin[3], double w[3]);
+
+/* The same of a mesh; *side: which it leaves. */
+bool fibrad_heat_mesh_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, double origin[3], double w[3],
+                          uint32_t *side);
 
 #endif

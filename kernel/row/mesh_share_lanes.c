@@ -412,6 +412,23 @@ double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], f
     return 0;
 }
 
+void LANED(fibrad_mesh_line)(const fibrad_workspace *work, const double frame[9], uint32_t p, double origin[3],
+                             double w[3]) {
+    line_of_point(work, frame, &work->met->points, p, origin, w);
+}
+
+void LANED(fibrad_mesh_place)(const fibrad_workspace *work, const double frame[9], uint32_t p, double at[3]) {
+    const fibrad_met *met = work->met;
+    const bool cut = met->depth[p] < -1; /* on the way from the centre to the surface */
+    double origin[3], w[3];
+    line_of_point(work, frame, &met->points, p, origin, w);
+    for (int axis = 0; axis < 3; axis++) {
+        const double centre = work->centre[axis];
+        at[axis] = cut ? centre + (met->depth[p] + 2) * (origin[axis] - centre)
+                       : origin[axis] + (met->depth[p] - met->exit[p]) * work->unit * w[axis];
+    }
+}
+
 /* Whether a line ends, by cutoff or known region, before it meets its triangle. */
 static bool beyond_known(const fibrad_workspace *work, const double frame[9], uint32_t p) {
     const fibrad_met *met = work->met;

@@ -1,0 +1,605 @@
+/* test_heat_mesh.c - net powers among triangles: against planes in their place, closed forms, and themselves under
+ * every setting that must not matter. SPDX-License-Identifier: MIT */
+#include "fibrad_heat.h"
+#include "mesh/mesh_patch.h"
+#include "scene/scene.h"
+#include "scenes.h"
+#include "meshes.h"
+#include "suite.h"
+
+#define PI   3.14159265358979323846
+#define MOST 16 /* bodies */
+
+/* A parallelogram seen from where a to b goes counter-clockwise, cut into cells of two triangles. */
+static void add_sheet(struct mesh *mesh, const double origin[3], const double a[3], const double b[3], uint32_t cells,
+                      uint32_t front, uint32_t back) {
+    const uint32_t first = mesh->triangles.vertices, wide = cells + 1;
+    for (uint32_t k = 0; k < wide * wide; k++) {
+        const double i = (double)(k % wide) / cells, j = (double)(k / wide) / cells;
+        mesh_vertex(mesh, origin[0] + a[0] * i + b[0] * j, origin[1] + a[1] * i + b[1] * j,
+                    origin[2] + a[2] * i + b[2] * j);
+    }
+    for (uint32_t k = 0; k < cells * cells; k++) {
+        const uint32_t v = first + k / cells * wide + k % cells;
+        mesh_quad(mesh, (const uint32_t[]){v, v + 1, v + wide + 1, v + wide}, front, back);
+    }
+}
+
+/* The six faces of a box seen from within, bodies 0 to 5, or all body 0. */
+static void add_box(struct mesh *mesh, double low, double high, uint32_t cells, bool one) {
+    const double size = high - low;
+    for (uint32_t axis = 0; axis < 3; axis++)
+        for (uint32_t upper = 0; upper < 2; upper++) {
+            double origin[3] = {low, low, low}, a[3] = {0}, b[3] = {0};
+            if (upper) origin[axis] = high;
+            a[(axis + 1 + upper) % 3] = size, b[(axis + 2 - upper) % 3] = size;
+            add_sheet(mesh, origin, a, b, cells, one ? 0 : 2 * axis + upper, FIBRAD_NO_BODY);
+        }
+}
+
+/* A bed, what is about it, and what came out. */
+struct problem {
+    struct bed bed;
+    struct mesh *mesh;
+    fibrad_body body[MOST];
+    uint32_t bodies;
+    double temperature[64], emissivity[64], wall_temperature[MOST], wall_emissivity[MOST], wall_power[MOST];
+    double power[64], q[MOST], error[64], q_error[MOST], found[MOST], absorbed[MOST];
+    unsigned char insulated[MOST];
+    fibrad_heat_config config;
+    fibrad_heat_sources sources;
+    fibrad_scene *scene;
+    fibrad_heat *heat;
+    fibrad_heat_result result;
+    uint32_t seen; /* a triangle whose back was */
+    bool backwards;
+    int isa;
+};
+
+static struct problem *problem_of(struct bed bed, double temperature, double emissivity) {
+    struct problem *p = calloc(1, sizeof *p);
+    ck_assert_ptr_nonnull(p);
+    ck_assert_uint_le(bed.n, 64);
+    p->bed = bed;
+    p->mesh = mesh_new();
+    for (uint32_t i = 0; i < bed.n; i++) p->temperature[i] = temperature, p->emissivity[i] = emissivity;
+    for (int b = 0; b < MOST; b++)
+        p->body[b].kind = FIBRAD_BODY_MESH, p->wall_emissivity[b] = 1, p->wall_power[b] = NAN;
+    fibrad_heat_sources_init(&p->sources);
+    p->sources.sigma = 1, p->sources.surroundings = 0;
+    p->sources.temperature = p->temperature, p->sources.emissivity = p->emissivity;
+    p->sources.body_temperature = p->wall_temperature, p->sources.body_emissivity = p->wall_emissivity;
+    p->sources.body_power = p->wall_power, p->sources.insulated = p->insulated;
+    p->result.power = p->power, p->result.body_power = p->q;
+    p->result.power_error = p->error, p->result.body_error = p->q_error;
+    p->result.body_temperature = p->found, p->result.body_absorbed = p->absorbed;
+    return p;
+}
+
+static void free_heat(struct problem *p) {
+    free(p->scene);
+    free(p->heat);
+    p->scene = NULL, p->heat = NULL;
+}
+
+static void free_problem(struct problem *p) {
+    free_heat(p);
+    bed_free(&p->bed);
+    free(p->mesh);
+    free(p);
+}
+
+static fibrad_scene *build_scene(const struct problem *p) {
+    return scene_with(
+        &p->bed,
+        &(fibrad_scene_config){.isa = p->isa, .body = p->body, .bodies = p->bodies, .triangles = &p->mesh->triangles});
+}
+
+static int trace_beams(struct problem *p) {
+    fibrad_work work = work_growing();
+    const uint32_t tasks = fibrad_heat_tasks(p->heat);
+    int status = FIBRAD_OK;
+    for (uint32_t k = 0; k < tasks && status == FIBRAD_OK; k++)
+        status = fibrad_heat_trace(p->heat, &work, p->backwards ? tasks - 1 - k : k);
+    p->seen = work.triangle;
+    work_free(&work);
+    return status;
+}
+
+static int trace(struct problem *p) {
+    p->scene = build_scene(p);
+    const size_t size = fibrad_heat_size(&p->config, p->scene);
+    ck_assert_uint_gt(size, 0);
+    ck_assert_int_eq(fibrad_heat_init(&p->heat, block_of(size), size, &p->config, p->scene), FIBRAD_OK);
+    return trace_beams(p);
+}
+
+static void solve(struct problem *p) {
+    const uint32_t parts = fibrad_heat_parts(p->heat);
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    for (int solved = 0; !solved;) {
+        for (uint32_t k = 0; k < parts; k++)
+            ck_assert_int_eq(fibrad_heat_sweep(p->heat, p->backwards ? parts - 1 - k : k), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+    }
+    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+}
+
+static void trace_and_solve(struct problem *p) {
+    ck_assert_int_eq(trace(p), FIBRAD_OK);
+    solve(p);
+}
+
+/* What all powers add up to, over the largest. */
+static double imbalance(const struct problem *p) {
+    double sum = p->result.surroundings_power, largest = fabs(sum);
+    for (uint32_t b = 0; b < p->bodies; b++) sum += p->q[b], worst_of(&largest, fabs(p->q[b]));
+    for (uint32_t i = 0; i < p->bed.n; i++) sum += p->power[i], worst_of(&largest, fabs(p->power[i]));
+    return fabs(sum) / largest;
+}
+
+static void assert_near(double value, double truth, double tolerance) {
+    ck_assert_msg(fabs(value - truth) <= tolerance * fabs(truth), "%.9g instead of %.9g, off by %.3g", value, truth,
+                  value / truth - 1);
+}
+
+/* Root mean square distance of two lists of powers over the root mean square of the second. */
+static double distance_of(const double *a, const double *b, uint32_t n) {
+    double square = 0, size = 0;
+    for (uint32_t k = 0; k < n; k++) square += (a[k] - b[k]) * (a[k] - b[k]), size += b[k] * b[k];
+    return sqrt(square / size);
+}
+
+static void make_planes(struct problem *p, double low, double high) {
+    p->bodies = 6;
+    for (int k = 0; k < 6; k++) p->body[k] = plane_at(k / 2, k % 2, k % 2 ? high : low);
+}
+
+static void make_box(struct problem *p, double low, double high, uint32_t cells) {
+    p->bodies = 6;
+    add_box(p->mesh, low, high, cells, false);
+}
+
+/* Thirty unequal spheres that do not touch, within the unit cube and .03 from its sides. */
+static struct bed thirty_spheres(void) {
+    struct bed bed = bed_of(0, NULL);
+    for (uint64_t at = 0; bed.n < 30; at += 4) {
+        const double r = bed.n < 5 ? .18 : .05 + .05 * bed_make_random(4, at);
+        double c[3];
+        bool fits = true;
+        for (uint64_t axis = 0; axis < 3; axis++) c[axis] = .03 + r + (.94 - 2 * r) * bed_make_random(4, at + 1 + axis);
+        for (uint32_t j = 0; j < bed.n && fits; j++)
+            fits = hypot(hypot(c[0] - bed.x[j], c[1] - bed.y[j]), c[2] - bed.z[j]) > r + bed.r[j];
+        if (fits) add_sphere(&bed, c[0], c[1], c[2], r);
+    }
+    return bed;
+}
+
+/* They and the walls about them have many temperatures and emissivities. */
+static struct problem *thirty(void) {
+    struct problem *p = problem_of(thirty_spheres(), 1, .5);
+    for (uint32_t i = 0; i < 30; i++)
+        p->temperature[i] = 1 + bed_make_random(5, i), p->emissivity[i] = .2 + .7 * bed_make_random(6, i);
+    for (int b = 0; b < 6; b++) p->wall_temperature[b] = .5 + .4 * ((b * 5) % 6), p->wall_emissivity[b] = .3 + .1 * b;
+    return p;
+}
+
+/* ---- against other walls, and closed forms ---- */
+
+START_TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
+    for (uint32_t cells = 1; cells <= 12; cells += 11) {
+        struct problem *planes = thirty(), *mesh = thirty();
+        planes->config = mesh->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 2000000};
+        make_planes(planes, 0, 1), make_box(mesh, 0, 1, cells);
+        trace_and_solve(planes), trace_and_solve(mesh);
+        const double spheres = distance_of(mesh->power, planes->power, 30), walls = distance_of(mesh->q, planes->q, 6);
+        ck_assert_double_le(spheres, 3e-3);
+        ck_assert_double_le(walls, 3e-3);
+        ck_assert_double_le(imbalance(mesh), 1e-12);
+        ck_assert(mesh->result.surroundings_power == 0);
+        free_problem(planes), free_problem(mesh);
+    }
+}
+END_TEST
+
+START_TEST(a_grey_sphere_in_a_black_cube) {
+    for (uint32_t cells = 1; cells <= 16; cells *= 4) {
+        struct problem *p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .5);
+        p->bodies = 1, p->wall_temperature[0] = 1;
+        add_box(p->mesh, -2, 2, cells, true);
+        trace_and_solve(p);
+        assert_near(p->power[0], .5 * 4 * PI * (1 - 16), 2e-3);
+        assert_near(p->q[0], -p->power[0], 1e-12);
+        free_problem(p);
+    }
+}
+END_TEST
+
+/* Between a sphere and the walls of a large box, which are lit evenly enough: as between concentric spheres. */
+START_TEST(a_grey_sphere_in_a_large_grey_cube) {
+    struct problem *p = problem_of(bed_of(1, (const double[][4]){{.1, .2, .3, 1}}), 2, .3);
+    p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .05;
+    add_box(p->mesh, -20, 20, 1, true);
+    trace_and_solve(p);
+    assert_near(p->power[0], 4 * PI * (1 - 16) / (1 / .3 + 4 * PI / 9600 * (1 / .05 - 1)), 2e-3);
+    free_problem(p);
+}
+END_TEST
+
+START_TEST(nothing_flows_at_one_temperature) {
+    struct problem *p = thirty();
+    make_box(p, 0, 1, 3);
+    for (uint32_t i = 0; i < 30; i++) p->temperature[i] = 3;
+    for (int b = 0; b < 6; b++) p->wall_temperature[b] = 3, p->wall_emissivity[b] = .2 * b;
+    trace_and_solve(p);
+    for (uint32_t i = 0; i < 30; i++) ck_assert_double_le(fabs(p->power[i]), 1e-10);
+    for (int b = 0; b < 6; b++) ck_assert_double_le(fabs(p->q[b]), 1e-9);
+    p->temperature[7] = 5, p->wall_temperature[3] = 1;
+    solve(p);
+    ck_assert_double_gt(fabs(p->power[7]), 1);
+    ck_assert_double_le(imbalance(p), 1e-12);
+    free_problem(p);
+}
+END_TEST
+
+/* Two plates without end, the upper one of triangles or a plane, and a sheet between them that has two sides and gives
+ * off nothing: a plate as its own shield. */
+static struct problem *plates(bool planes, uint32_t cells, bool shield) {
+    struct problem *p = problem_of(bed_of(1, (const double[][4]){{.2, .3, .5, 1e-4}}), 1, .5);
+    const double low[3] = {0, 0, 0}, middle[3] = {0, 0, 1. / 3}, high[3] = {0, 0, 1}, a[3] = {2, 0, 0},
+                 b[3] = {0, 2, 0};
+    p->bed.period[0] = p->bed.period[1] = 2;
+    p->bodies = 2 + shield;
+    add_sheet(p->mesh, low, a, b, cells, 0, FIBRAD_NO_BODY);
+    if (planes)
+        p->body[1] = plane_at(2, 1, 1);
+    else
+        add_sheet(p->mesh, high, b, a, cells, 1, FIBRAD_NO_BODY);
+    if (shield) add_sheet(p->mesh, middle, a, b, cells, 2, 2);
+    p->wall_temperature[0] = 3, p->wall_emissivity[0] = .3;
+    p->wall_temperature[1] = 2, p->wall_emissivity[1] = .6;
+    p->wall_temperature[2] = NAN, p->wall_power[2] = 0, p->wall_emissivity[2] = .2;
+    return p;
+}
+
+START_TEST(two_plates_and_a_shield) {
+    for (int planes = 0; planes < 2; planes++)
+        for (uint32_t cells = 1; cells <= 5; cells += 4) {
+            struct problem *p = plates(planes == 1, cells, false);
+            trace_and_solve(p);
+            assert_near(p->q[1], 4 * (81 - 16) / (1 / .3 + 1 / .6 - 1), 1e-3);
+            ck_assert_double_le(p->result.surroundings_power, 1e-4 * p->q[1]); /* what goes farther than is looked */
+            free_problem(p);
+
+            p = plates(planes == 1, cells, true);
+            trace_and_solve(p);
+            const double below = 1 / .3 + 1 / .2 - 1, above = 1 / .6 + 1 / .2 - 1;
+            assert_near(p->q[1], 4 * (81 - 16) / (below + above), 2e-3);
+            assert_near(pow(p->found[2], 4), 81 - (81 - 16) * below / (below + above), 1e-3);
+            ck_assert_double_le(fabs(p->q[2]), 1e-12);
+            ck_assert_double_le(imbalance(p), 1e-12);
+            free_problem(p);
+        }
+}
+END_TEST
+
+/* Patches of an insulated sheet, of one body, are at their own temperatures: they send back what they get. */
+START_TEST(an_insulated_sheet_lets_nothing_through) {
+    struct problem *p = plates(false, 2, true);
+    p->insulated[2] = 1;
+    trace_and_solve(p);
+    ck_assert_double_le(fabs(p->q[0]), 1e-4 * 4 * (81 - 16));
+    ck_assert_double_le(fabs(p->q[1]), 1e-4 * 4 * (81 - 16));
+    ck_assert(p->q[2] == 0);
+    assert_near(pow(p->found[2], 4), (81 + 16) / 2., 1e-3);
+    free_problem(p);
+}
+END_TEST
+
+/* A black sphere sees a square as its centre does, where no tangent plane cuts it. */
+START_TEST(a_black_sphere_sees_a_plate) {
+    const double distance[] = {1.5, 4, 25};
+    for (int k = 0; k < 3; k++) {
+        const double d = distance[k], origin[3] = {d, -d, -d}, a[3] = {0, 0, 2 * d}, b[3] = {0, 2 * d, 0};
+        struct problem *p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, 1);
+        p->bodies = 1, p->config.directions = 700;
+        add_sheet(p->mesh, origin, a, b, 1, 0, 0);
+        trace_and_solve(p);
+        assert_near(p->q[0], 16 * 4 * PI / 6, 5e-3); /* a side of a cube */
+        assert_near(p->result.surroundings_power, 16 * 4 * PI * 5 / 6, 1e-3);
+        free_problem(p);
+    }
+}
+END_TEST
+
+/* A box of planes in two halves by a sheet of two sides, which sticks out: each half is as alone. The planes are black,
+ * as their patches do not end at the sheet. */
+START_TEST(a_shelf_between_planes) {
+    struct problem *both = thirty(), *half = thirty();
+    const double origin[3] = {-.4, -.3, .5}, a[3] = {2, 0, 0}, b[3] = {0, 2, 0};
+    make_planes(both, 0, 1), make_planes(half, 0, 1);
+    both->bodies = 8, half->body[5].plane.at = .5;
+    both->config = half->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 2000000};
+    add_sheet(both->mesh, origin, a, b, 2, 6, 7);
+    for (uint32_t i = 0; i < 30; i++) {
+        both->bed.z[i] = .5 * both->bed.z[i] + (i < 8 ? .5 : 0), both->bed.r[i] *= .5; /* the first lie above it */
+        if (i < 8) continue;
+        const uint32_t to = i - 8; /* the others are alone below it */
+        half->bed.x[to] = both->bed.x[i], half->bed.y[to] = both->bed.y[i], half->bed.z[to] = both->bed.z[i];
+        half->bed.r[to] = both->bed.r[i];
+        half->temperature[to] = both->temperature[i], half->emissivity[to] = both->emissivity[i];
+    }
+    half->bed.n = 22;
+    both->wall_temperature[7] = half->wall_temperature[5] = 2.2;
+    both->wall_emissivity[7] = half->wall_emissivity[5] = .4;
+    both->wall_temperature[6] = 1;
+    for (int k = 0; k < 5; k++) both->wall_emissivity[k] = half->wall_emissivity[k] = 1;
+    trace_and_solve(both), trace_and_solve(half);
+    ck_assert_double_le(distance_of(both->power + 8, half->power, 22), 3e-3);
+    assert_near(both->q[4], half->q[4], 5e-3); /* the floor */
+    assert_near(both->q[7], half->q[5], 5e-3); /* the back of the sheet, and the ceiling in its place */
+    ck_assert(both->result.surroundings_power == 0);
+    ck_assert_double_le(imbalance(both), 1e-12);
+    free_problem(both), free_problem(half);
+}
+END_TEST
+
+/* ---- spheres cut by triangles ---- */
+
+START_TEST(spheres_that_triangles_cut) {
+    const double deep = .02;
+    struct problem *cut = problem_of(bed_of(8, (const double[][4]){{-1, -1, -1, 1},
+                                                                   {1, -1, -1, 1},
+                                                                   {-1, 1, -1, 1},
+                                                                   {1, 1, -1, 1},
+                                                                   {-1, -1, 1, 1},
+                                                                   {1, -1, 1, 1},
+                                                                   {-1, 1, 1, 1},
+                                                                   {1, 1, 1, 1}}),
+                                     2, .6);
+    for (uint32_t i = 0; i < 8; i++) cut->temperature[i] = 1 + .2 * i;
+    for (int b = 0; b < 6; b++) cut->wall_temperature[b] = 1 + .1 * b, cut->wall_emissivity[b] = .7;
+    cut->config.directions = 1000, cut->config.patches = 384;
+    make_box(cut, -2 + deep, 2 - deep, 1);
+    trace_and_solve(cut);
+    double power[8], q[6];
+    memcpy(power, cut->power, sizeof power), memcpy(q, cut->q, sizeof q);
+    ck_assert(cut->result.surroundings_power == 0);
+    ck_assert_double_le(imbalance(cut), 1e-12);
+    free_heat(cut);
+    free(cut->mesh), cut->mesh = mesh_new();
+    make_box(cut, -2, 2, 1); /* not cut: nearly the same */
+    trace_and_solve(cut);
+    ck_assert_double_le(distance_of(power, cut->power, 8), .05);
+    ck_assert_double_le(distance_of(q, cut->q, 6), .05);
+    for (uint32_t i = 0; i < 8; i++) cut->temperature[i] = 2;
+    for (int b = 0; b < 6; b++) cut->wall_temperature[b] = 2;
+    solve(cut);
+    for (uint32_t i = 0; i < 8; i++) ck_assert_double_le(fabs(cut->power[i]), 1e-8);
+    free_problem(cut);
+}
+END_TEST
+
+/* ---- what must not matter ---- */
+
+START_TEST(threads_and_instruction_sets_change_no_bit) {
+    int isa[ISAS_MOST];
+    const int sets = isas_there(isa);
+    double power[30], q[6];
+    for (int k = 0; k < sets; k++) {
+        struct problem *p = thirty();
+        p->isa = isa[k], p->backwards = k % 2 == 1;
+        p->config.directions = 100;
+        make_box(p, .02, .98, 4);
+        trace_and_solve(p);
+        if (k == 0) memcpy(power, p->power, sizeof power), memcpy(q, p->q, sizeof q);
+        ck_assert_mem_eq(p->power, power, sizeof power);
+        ck_assert_mem_eq(p->q, q, sizeof q);
+        free_problem(p);
+    }
+}
+END_TEST
+
+static const double tilt[9] = {4. / 9, -1. / 9, 8. / 9, 4. / 9, 8. / 9, -1. / 9, -7. / 9, 4. / 9, 4. / 9};
+
+static void turn_all(struct problem *p, const double turn[9]) {
+    mesh_turn(p->mesh, turn);
+    for (uint32_t i = 0; i < p->bed.n; i++) {
+        double at[3] = {p->bed.x[i], p->bed.y[i], p->bed.z[i]};
+        turn_point(turn, at);
+        p->bed.x[i] = at[0], p->bed.y[i] = at[1], p->bed.z[i] = at[2];
+    }
+}
+
+START_TEST(a_tilted_box_is_the_same) {
+    struct problem *p = thirty(), *turned = thirty();
+    p->config = turned->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 2000000};
+    make_box(p, 0, 1, 2), make_box(turned, 0, 1, 2);
+    turn_all(turned, tilt);
+    trace_and_solve(p), trace_and_solve(turned);
+    ck_assert_double_le(distance_of(turned->power, p->power, 30), 3e-3);
+    ck_assert_double_le(distance_of(turned->q, p->q, 6), 3e-3);
+    free_problem(p), free_problem(turned);
+}
+END_TEST
+
+/* A mesh that moves: the next solution begins where the last one ended, whatever the order of its triangles. */
+START_TEST(a_mesh_moves) {
+    struct problem *p = thirty();
+    make_box(p, 0, 1, 9);
+    trace_and_solve(p);
+    const uint32_t cold = p->result.sweeps;
+    double power[30];
+    memcpy(power, p->power, sizeof power);
+    turn_all(p, tilt);
+    fibrad_scene *next = build_scene(p);
+    ck_assert_int_eq(fibrad_heat_move(p->heat, next), FIBRAD_OK);
+    ck_assert_int_eq(trace_beams(p), FIBRAD_OK);
+    solve(p);
+    ck_assert_uint_lt(p->result.sweeps, cold);
+    ck_assert_double_le(distance_of(p->power, power, 30), 2e-2);
+    ck_assert_double_le(imbalance(p), 1e-12);
+
+    p->mesh->front[3] ^= 1; /* another body */
+    fibrad_scene *other = build_scene(p);
+    ck_assert_int_eq(fibrad_heat_move(p->heat, other), FIBRAD_E_ARGUMENT);
+    p->mesh->front[3] ^= 1, p->mesh->triangles.n--; /* a triangle less */
+    free(other), other = build_scene(p);
+    ck_assert_int_eq(fibrad_heat_move(p->heat, other), FIBRAD_E_ARGUMENT);
+    free(other), free(next);
+    free_problem(p);
+}
+END_TEST
+
+START_TEST(estimates_of_errors_are_honest) {
+    struct problem *truth = thirty();
+    uint32_t beyond = 0;
+    double errors[2] = {0}, estimates[2] = {0};
+    truth->config = (fibrad_heat_config){.directions = 8000, .patches = 384, .wall_rays = 4000000};
+    make_planes(truth, 0, 1);
+    trace_and_solve(truth);
+    for (uint32_t cells = 1; cells <= 16; cells *= 2) {
+        struct problem *p = thirty();
+        make_box(p, 0, 1, cells);
+        trace_and_solve(p);
+        for (uint32_t k = 0; k < 36; k++) {
+            const double error = k < 30 ? p->power[k] - truth->power[k] : p->q[k - 30] - truth->q[k - 30];
+            const double estimate = k < 30 ? p->error[k] : p->q_error[k - 30];
+            beyond += fabs(error) > 2 * estimate;
+            errors[k >= 30] += error * error, estimates[k >= 30] += estimate * estimate;
+        }
+        free_problem(p);
+    }
+    ck_assert_uint_le(beyond, 25);
+    for (int kind = 0; kind < 2; kind++) {
+        ck_assert_double_ge(sqrt(estimates[kind] / errors[kind]), .6);
+        ck_assert_double_le(sqrt(estimates[kind] / errors[kind]), 4);
+    }
+    free_problem(truth);
+}
+END_TEST
+
+/* Fluxes through triangles add up to the powers of their bodies; a plate that faces a hot sphere is lit most where it
+ * is nearest, and an insulated one hottest there. */
+START_TEST(fluxes_through_triangles) {
+    enum { CELLS = 16, PIECES = 2 * CELLS * CELLS };
+    const double origin[3] = {-3, -3, 1.5}, a[3] = {6, 0, 0}, b[3] = {0, 6, 0};
+    struct problem *p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, 1}}), 2, .8);
+    double flux[2 * PIECES], temperature[2 * PIECES], sum = 0;
+    p->bodies = 1, p->wall_temperature[0] = 1, p->wall_emissivity[0] = .7, p->config.directions = 2000;
+    add_sheet(p->mesh, origin, b, a, CELLS, 0, FIBRAD_NO_BODY); /* its front is below */
+    ck_assert_int_eq(fibrad_heat_read_sides(NULL, flux, temperature), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(p), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, temperature), FIBRAD_E_STATE);
+    solve(p);
+    ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, temperature), FIBRAD_OK);
+    const uint32_t middle = PIECES / 2 + CELLS;
+    for (uint32_t t = 0; t < PIECES; t++) {
+        sum += flux[2 * t] * 36 / PIECES;
+        ck_assert(isnan(flux[2 * t + 1]) && isnan(temperature[2 * t + 1]) && temperature[2 * t] == 1);
+    }
+    assert_near(sum, p->q[0], 1e-2);
+    /* above the centre a black sphere of radius 1 fills (1/1.5)^2 of the view */
+    assert_near(flux[2 * middle], .7 * (.8 * 16 / 2.25 - 1), .1);
+    ck_assert_double_lt(flux[0], .3 * flux[2 * middle]);
+
+    p->insulated[0] = 1;
+    solve(p);
+    ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, temperature), FIBRAD_OK);
+    ck_assert(flux[2 * middle] == 0);
+    ck_assert_double_gt(temperature[2 * middle], 1.3 * temperature[0]);
+    free_problem(p);
+}
+END_TEST
+
+/* ---- patches ---- */
+
+START_TEST(patches_have_the_area_of_the_mesh) {
+    struct problem *p = thirty();
+    const double origin[3] = {-3, 0, 5}, a[3] = {7, 0, 0}, b[3] = {.1, .2, 0};
+    make_box(p, 0, 1, 20);
+    add_sheet(p->mesh, origin, a, b, 1, 0, 0); /* large slivers of two sides, beside the small ones */
+    p->scene = build_scene(p);
+    const fibrad_mesh *mesh = &p->scene->mesh;
+    const uint32_t sides = 2 * mesh->triangles;
+    fibrad_mesh_cut *cut = calloc(sides, sizeof *cut);
+    ck_assert_ptr_nonnull(cut);
+    for (double area = 1e-3; area < 10; area *= 3) {
+        const uint32_t n = fibrad_mesh_cut_sides(mesh, 0, area, 5, cut);
+        ck_assert_uint_eq(fibrad_mesh_cut_sides(mesh, 0, area, 5, NULL), n);
+        double *own = calloc(n, sizeof *own), sum = 0;
+        uint32_t *points = calloc(n, sizeof *points);
+        for (uint32_t k = mesh->first[0]; k < mesh->first[1]; k++) {
+            const fibrad_mesh_cut *c = fibrad_mesh_cut_of(mesh, cut, mesh->side[k]);
+            const double whole = mesh->area[k] - (k > mesh->first[0] ? mesh->area[k - 1] : 0);
+            for (uint32_t part = 0; part < 1u << c->halvings; part++) {
+                ck_assert(c->patch >= 5 && c->patch + part < 5 + n);
+                own[c->patch + part - 5] += whole / (1u << c->halvings);
+            }
+        }
+        for (uint32_t k = 0; k < n; k++) {
+            ck_assert_double_gt(own[k], 0);
+            ck_assert_double_le(own[k], 2 * area);
+            sum += own[k];
+        }
+        assert_near(sum, fibrad_mesh_area(mesh, 0), 1e-12);
+        ck_assert_double_le(n, 4 * sum / area + 8);
+        for (uint32_t k = 0; k < 200000; k++) { /* each has its part of even points */
+            const double share[2] = {(k + .5) / 200000, fmod(k * .6180339887498949, 1)};
+            double at[3];
+            const uint32_t side = fibrad_mesh_point(mesh, 0, share, at);
+            const uint32_t patch = fibrad_mesh_patch_at(mesh, cut, side, at) - 5;
+            ck_assert_uint_lt(patch, n);
+            points[patch]++;
+        }
+        for (uint32_t k = 0; k < n; k++) {
+            const double due = 200000 * own[k] / sum;
+            ck_assert_double_le(fabs(points[k] - due), 5 * sqrt(due) + 3);
+        }
+        free(own), free(points);
+    }
+    free(cut);
+    free_problem(p);
+}
+END_TEST
+
+/* ---- what is refused ---- */
+
+START_TEST(a_back_that_is_seen_is_named) {
+    struct problem *p = thirty();
+    const double origin[3] = {-9, -9, .5}, a[3] = {20, 0, 0}, b[3] = {0, 20, 0};
+    make_planes(p, 0, 1);
+    p->bodies = 7;
+    add_sheet(p->mesh, origin, a, b, 1, 6, FIBRAD_NO_BODY); /* a shelf through the bed */
+    ck_assert_int_eq(trace(p), FIBRAD_E_BACK);
+    ck_assert_uint_lt(p->seen, 2);
+    free_heat(p);
+    p->mesh->back[0] = p->mesh->back[1] = 6;
+    trace_and_solve(p); /* what of it lies beyond the planes plays no part */
+    ck_assert_double_le(imbalance(p), 1e-12);
+    ck_assert(p->result.surroundings_power == 0);
+    free_problem(p);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("heat_mesh");
+    TCase *tests = suite_case(suite, "heat among triangles");
+    tcase_add_test(tests, a_box_of_twelve_triangles_is_a_box_of_planes);
+    tcase_add_test(tests, a_grey_sphere_in_a_black_cube);
+    tcase_add_test(tests, a_grey_sphere_in_a_large_grey_cube);
+    tcase_add_test(tests, nothing_flows_at_one_temperature);
+    tcase_add_test(tests, two_plates_and_a_shield);
+    tcase_add_test(tests, an_insulated_sheet_lets_nothing_through);
+    tcase_add_test(tests, a_black_sphere_sees_a_plate);
+    tcase_add_test(tests, a_shelf_between_planes);
+    tcase_add_test(tests, spheres_that_triangles_cut);
+    tcase_add_test(tests, threads_and_instruction_sets_change_no_bit);
+    tcase_add_test(tests, a_tilted_box_is_the_same);
+    tcase_add_test(tests, a_mesh_moves);
+    tcase_add_test(tests, estimates_of_errors_are_honest);
+    tcase_add_test(tests, fluxes_through_triangles);
+    tcase_add_test(tests, patches_have_the_area_of_the_mesh);
+    tcase_add_test(tests, a_back_that_is_seen_is_named);
+    return suite_run(suite);
+}
