@@ -677,7 +677,7 @@ START_TEST(a_patch_of_a_cylinder_is_one_place) {
     p.config.directions = 8;
     trace(&p);
     const fibrad_heat *heat = p.heat;
-    const uint32_t body = fibrad_heat_wall_body(heat, FIBRAD_CYLINDER), first = heat->first[body];
+    const uint32_t body = fibrad_heat_body(heat, FIBRAD_CYLINDER), first = heat->first[body];
     const uint32_t patches = heat->first[body + 1] - first, *squares = heat->wall[FIBRAD_CYLINDER].squares;
     double(*mean)[4] = calloc(patches, sizeof *mean), turning = 1, rising = 0;
     uint32_t missed = 0;
