@@ -189,7 +189,7 @@ static struct problem *thirty(void) {
 START_TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
         struct problem *planes = thirty(), *mesh = thirty();
-        planes->config = mesh->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 2000000};
+        planes->config = mesh->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 1000000};
         make_planes(planes, 0, 1), make_box(mesh, 0, 1, cells);
         trace_and_solve(planes), trace_and_solve(mesh);
         const double spheres = distance_of(mesh->power, planes->power, 30), walls = distance_of(mesh->q, planes->q, 6);
@@ -319,7 +319,7 @@ START_TEST(a_shelf_between_planes) {
     const double origin[3] = {-.4, -.3, .5}, a[3] = {2, 0, 0}, b[3] = {0, 2, 0};
     make_planes(both, 0, 1), make_planes(half, 0, 1);
     both->bodies = 8, half->body[5].plane.at = .5;
-    both->config = half->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 2000000};
+    both->config = half->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 1000000};
     add_sheet(both->mesh, origin, a, b, 2, 6, 7);
     for (uint32_t i = 0; i < 30; i++) {
         both->bed.z[i] = .5 * both->bed.z[i] + (i < 8 ? .5 : 0), both->bed.r[i] *= .5; /* the first lie above it */
@@ -413,7 +413,7 @@ static void turn_all(struct problem *p, const double turn[9]) {
 
 START_TEST(a_tilted_box_is_the_same) {
     struct problem *p = thirty(), *turned = thirty();
-    p->config = turned->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 2000000};
+    p->config = turned->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 1000000};
     make_box(p, 0, 1, 2), make_box(turned, 0, 1, 2);
     turn_all(turned, tilt);
     trace_and_solve(p), trace_and_solve(turned);
@@ -455,7 +455,7 @@ START_TEST(estimates_of_errors_are_honest) {
     struct problem *truth = thirty();
     uint32_t beyond = 0;
     double errors[2] = {0}, estimates[2] = {0};
-    truth->config = (fibrad_heat_config){.directions = 8000, .patches = 384, .wall_rays = 4000000};
+    truth->config = (fibrad_heat_config){.directions = 4000, .patches = 384, .wall_rays = 1000000};
     make_planes(truth, 0, 1);
     trace_and_solve(truth);
     for (uint32_t cells = 1; cells <= 16; cells *= 2) {
@@ -563,6 +563,43 @@ START_TEST(patches_have_the_area_of_the_mesh) {
 }
 END_TEST
 
+/* ---- soups ---- */
+
+/* Triangles at random, some without area, slivers, twice the same, through spheres and each other. */
+START_TEST(soups_have_finite_powers_that_add_up) {
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        struct problem *p = problem_of(thirty_spheres(), 1, .5);
+        for (int axis = 0; axis < 3; axis++) p->bed.period[axis] = seed == 7 && axis == 1;
+        p->bodies = 3;
+        const uint32_t pieces = 1 + (uint32_t)(60 * bed_make_random(seed, 0));
+        const double size = seed % 3 == 0 ? 2 : .2;
+        for (uint32_t t = 0; t < pieces; t++) {
+            uint32_t v[3];
+            double at[3], to[3];
+            for (uint64_t k = 0; k < 3; k++) at[k] = bed_make_random(seed, 100 * (t + 1) + k);
+            for (uint64_t c = 0; c < 3; c++) {
+                for (uint64_t k = 0; k < 3; k++)
+                    to[k] = at[k] + size * (bed_make_random(seed, 100 * (t + 1) + 10 * (c + 1) + k) - .5) *
+                                        (t % 5 == 1 && k > 0 ? 1e-9 : 1);
+                v[c] = mesh_vertex(p->mesh, to[0], to[1], to[2]);
+            }
+            if (t % 7 == 3) v[2] = v[1];
+            mesh_triangle(p->mesh, v[0], v[1], v[2], t % 3, (t + 1) % 3);
+            if (t % 11 == 5) mesh_triangle(p->mesh, v[0], v[1], v[2], t % 3, (t + 1) % 3);
+        }
+        for (uint32_t i = 0; i < 30; i++) p->temperature[i] = 1 + bed_make_random(5, i);
+        for (int b = 0; b < 3; b++) p->wall_temperature[b] = 1 + b, p->wall_emissivity[b] = .3 * (b + 1);
+        p->insulated[2] = seed % 2 == 0;
+        p->config.directions = 30, p->config.patches = 24;
+        trace_and_solve(p);
+        for (uint32_t i = 0; i < 30; i++) ck_assert(isfinite(p->power[i]) && isfinite(p->error[i]));
+        for (int b = 0; b < 3; b++) ck_assert(isfinite(p->q[b]) && isfinite(p->q_error[b]));
+        ck_assert_double_le(imbalance(p), 1e-11);
+        free_problem(p);
+    }
+}
+END_TEST
+
 /* ---- what is refused ---- */
 
 START_TEST(a_back_that_is_seen_is_named) {
@@ -600,6 +637,7 @@ int main(void) {
     tcase_add_test(tests, estimates_of_errors_are_honest);
     tcase_add_test(tests, fluxes_through_triangles);
     tcase_add_test(tests, patches_have_the_area_of_the_mesh);
+    tcase_add_test(tests, soups_have_finite_powers_that_add_up);
     tcase_add_test(tests, a_back_that_is_seen_is_named);
     return suite_run(suite);
 }

@@ -98,10 +98,14 @@ static void meet_image(const fibrad_mesh *mesh, const sheared_ray *ray, first_si
 #define MESH_PERIODS 100.0
 
 /* How far to look at once: all the way without periodic axes, else a period at a time, so that images are few. */
-static double stretch_along(const fibrad_mesh *mesh, const double w[3], double *to) {
+static double stretch_along(const fibrad_mesh *mesh, const double origin[3], const double w[3], double *to) {
     double stretch = *to;
     for (int axis = 0; axis < 3; axis++) {
-        if (!(mesh->period[axis] > 0)) continue;
+        if (!(mesh->period[axis] > 0)) { /* until the ray leaves the box about all triangles */
+            const double ahead = (w[axis] > 0 ? mesh->high[axis] : mesh->low[axis]) - origin[axis];
+            if (w[axis] != 0) *to = fibrad_min(*to, 1.0001 * fibrad_max(0, ahead / w[axis]) + mesh->grain);
+            continue;
+        }
         stretch = fibrad_min(stretch, mesh->period[axis]);
         if (w[axis] != 0) *to = fibrad_min(*to, MESH_PERIODS * mesh->period[axis] / fibrad_abs(w[axis]));
     }
@@ -112,7 +116,7 @@ fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3
                                   uint32_t except) {
     sheared_ray ray = shear_ray(mesh, w, except);
     first_side first = {to, to, FIBRAD_NO_SIDE, 0};
-    const double stretch = stretch_along(mesh, w, &to);
+    const double stretch = stretch_along(mesh, origin, w, &to);
     double from = 0;
     for (bool more = true; more;) {
         double low[3], high[3];

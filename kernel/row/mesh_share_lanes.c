@@ -198,7 +198,13 @@ static void meet_mesh(fibrad_workspace *work, mesh_beam *beam, const fibrad_poin
     double stretch = deepest + 1, from = -1;
     for (int axis = 0; axis < 3; axis++) {
         const double period = mesh->period[axis] * work->inverse, w = fibrad_abs(beam->frame[6 + axis]);
-        if (!(period > 0)) continue;
+        const double ahead =
+            beam->frame[6 + axis] > 0 ? mesh->high[axis] - work->centre[axis] : work->centre[axis] - mesh->low[axis];
+        if (!(period > 0)) { /* the window leaves the box about all triangles */
+            if (w > beam->wide)
+                deepest = fibrad_min(deepest, 1.0001 * (fibrad_max(0, ahead) * work->inverse + 1) / (w - beam->wide));
+            continue;
+        }
         stretch = fibrad_min(stretch, fibrad_max(2, period));
         if (w > 0) deepest = fibrad_min(deepest, FIBRAD_PERIODS * period / w);
     }
