@@ -283,6 +283,7 @@ BENCHES = \
     bench/bench_exchange.c \
     bench/bench_furnace.c \
     bench/bench_heat.c \
+    bench/bench_mesh.c \
     bench/bench_moved.c \
     bench/bench_pair.c \
     bench/bench_powers.c \
