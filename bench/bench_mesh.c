@@ -6,8 +6,8 @@
  * CSV on standard output, one thread, exact areas but where points are named. Time: a bed (20,000 spheres, solid
  * fraction 0.58) between six planes, between the same as 100,000 triangles, and open; processor time of rows of 100
  * directions, the least of rounds in which all take turns: all of every tenth row, and those rows that see no wall.
- * Errors, root mean square over rows: of a sphere and a triangle, whose factor is a solid angle; of a box of 12 triangles
- * and a cylinder of 2,000 facets, against planes and cylinder in many directions. */
+ * Errors, root mean square over rows: of a sphere and a triangle, whose factor is a solid angle; of a box of 12
+ * triangles and a cylinder of 2,000 facets, against planes and cylinder in many directions. */
 #include "bed/packing.h"
 #include "bench_triangles.h"
 #include "read/read.h"
@@ -69,8 +69,7 @@ static void time_rows(fibrad_scene *const scene[SCENES], const char *rows, const
     fibrad_work work = BENCH_GROWING;
     fibrad_row row = row_in(CAPACITY);
     for (int round = 0; round < rounds; ++round)
-        for (int s = 0; s < SCENES; ++s)
-            best[s] = fmin(best[s], rows_seconds(scene[s], &work, &row, list, count));
+        for (int s = 0; s < SCENES; ++s) best[s] = fmin(best[s], rows_seconds(scene[s], &work, &row, list, count));
     for (int s = 0; s < SCENES && count > 0; ++s)
         printf("%s,%u,%s,%.2f,%.3f,%.3f\n", rows, count, names[s], 1e6 * best[s] / count, best[s] / best[PLANES],
                best[s] / best[OPEN]);
@@ -131,14 +130,14 @@ static double solid_angle(double v[3][3]) {
 /* A triangle in a plane 1.05 to 30 radii away that may be seen near its edges; returns its factor. */
 static double random_triangle(struct bench_triangles *triangles, uint64_t seed) {
     double rotation[9], v[3][3];
-    const double away = 1.05 * pow(30 / 1.05, bed_make_random(seed, 0)), size = 0.3 * pow(100, bed_make_random(seed, 1));
+    const double away = 1.05 * pow(30 / 1.05, bed_make_random(seed, 0)),
+                 size = 0.3 * pow(100, bed_make_random(seed, 1));
     fibrad_rotation(seed + 1, rotation);
     for (uint64_t k = 0; k < 3; ++k) {
         const double p[3] = {size * (2 * bed_make_random(seed, 2 + k) - 1),
                              size * (2 * bed_make_random(seed, 5 + k) - 1), away};
         for (int axis = 0; axis < 3; ++axis)
-            v[k][axis] =
-                rotation[3 * axis] * p[0] + rotation[3 * axis + 1] * p[1] + rotation[3 * axis + 2] * p[2];
+            v[k][axis] = rotation[3 * axis] * p[0] + rotation[3 * axis + 1] * p[1] + rotation[3 * axis + 2] * p[2];
         bench_vertex(triangles, v[k][0], v[k][1], v[k][2]);
     }
     bench_triangle(triangles, 0, 1, 2, 0);
