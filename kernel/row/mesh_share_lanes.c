@@ -14,6 +14,7 @@
 
 #define MESH_SPREAD 1.8 /* radius of the disc of directions times root n, and how near edges need none: as of walls */
 #define MESH_NEAR   1.3
+#define MESH_SEEK   0.9 /* of the depth of the nearest triangle: others are not looked for beyond */
 
 /* The window as the tree sees it, in the frame of an image: lengths in radii of sphere i but for `centre`. */
 typedef struct mesh_beam {
@@ -22,9 +23,11 @@ typedef struct mesh_beam {
     double from, to;                               /* depths that are looked at */
     double low[2], high[2], least[2], most[2], at; /* bounds of its lines, as of each eight of them */
     double grain, slack;                           /* lengths that may be rounding; of bounds */
-    double nearest, shallow; /* of triangles before it: about the least depth of one, and what none is less deep than */
-    bool seek;               /* for the nearest triangle, not for those that lines meet */
-    bool spread, cut;        /* whether lines have directions of their own; whether triangles may cut sphere i */
+    double nearest;                                /* about the least depth of triangles before it */
+    double shallow;          /* none of them is less deep */
+    double near;                                   /* if some are nearer than this, it does not matter how near */
+    bool seek;                                     /* for the nearest triangle, not for those that lines meet */
+    bool spread, cut; /* whether lines have directions of their own; whether triangles may cut sphere i */
 } mesh_beam;
 
 /* A triangle in the frame of the window. */
@@ -48,7 +51,7 @@ static mesh_face face_of(const fibrad_workspace *work, const mesh_beam *beam, ui
 }
 
 /* Bounds of coordinate k of the lines of a beam between two depths. */
-static void bounds_between(const mesh_beam *beam, int k, double from, double to, double *low, double *high) {
+FIBRAD_INLINE void bounds_between(const mesh_beam *beam, int k, double from, double to, double *low, double *high) {
     const double a = beam->least[k] * (from - beam->at), b = beam->least[k] * (to - beam->at);
     const double c = beam->most[k] * (from - beam->at), d = beam->most[k] * (to - beam->at);
     *low = beam->low[k] + fibrad_min(fibrad_min(a, b), fibrad_min(c, d)) - beam->slack;
@@ -203,8 +206,8 @@ static void meet_face(fibrad_workspace *work, mesh_beam *beam, uint32_t t) {
     if (!face_before(&box, beam)) return;
     if (beam->seek) {
         beam->nearest = fibrad_min(beam->nearest, depth_of_face(&face));
-        beam->shallow = fibrad_min(beam->shallow, box.low[2]);
-        beam->to = fibrad_min(beam->to, beam->nearest);
+        beam->to = beam->nearest > beam->near ? fibrad_min(beam->to, MESH_SEEK * beam->nearest) : -__builtin_inf();
+        beam->shallow = fibrad_min(beam->shallow, fibrad_min(beam->to, box.low[2]));
         return;
     }
     if (beam->spread)
@@ -214,36 +217,49 @@ static void meet_face(fibrad_workspace *work, mesh_beam *beam, uint32_t t) {
     if (beam->cut && box.low[2] < 1) cut_surface(work, &face);
 }
 
+/* How boxes lie along one axis of the window: the corner that is farthest along it, and the opposite one. */
+typedef struct box_axis {
+    double f[3], shift; /* bound number far[axis] of a box times f[axis], all added up, and shift: in radii */
+    uint32_t far[3], near[3];
+} box_axis;
+
+static box_axis axis_of_boxes(const fibrad_workspace *work, const mesh_beam *beam, int k) {
+    box_axis of = {.shift = 0};
+    for (uint32_t axis = 0; axis < 3; axis++) {
+        const uint32_t up = beam->frame[3 * k + (int)axis] > 0;
+        of.f[axis] = beam->frame[3 * k + (int)axis] * work->inverse;
+        of.shift += of.f[axis] * (work->scene->mesh.middle[axis] - beam->centre[axis]);
+        of.far[axis] = axis + 3 * up, of.near[axis] = axis + 3 - 3 * up;
+    }
+    return of;
+}
+
+FIBRAD_INLINE double bound_of_box(const box_axis *of, const uint32_t number[3], const float bound[6]) {
+    return of->f[0] * bound[number[0]] + of->f[1] * bound[number[1]] + of->f[2] * bound[number[2]] + of->shift;
+}
+
 /* Whether a box may come before the window; bounds that are infinite make it so. */
-static bool box_before(const fibrad_mesh_node *node, const mesh_beam *beam, const double middle[3], double inverse) {
-    double at[3], half[3], along[3], extent[3];
-    for (int axis = 0; axis < 3; axis++) {
-        at[axis] = (0.5 * node->low[axis] + 0.5 * node->high[axis] - middle[axis]) * inverse;
-        half[axis] = (0.5 * node->high[axis] - 0.5 * node->low[axis]) * inverse;
-    }
-    for (int k = 0; k < 3; k++) {
-        const double *f = beam->frame + 3 * k;
-        along[k] = f[0] * at[0] + f[1] * at[1] + f[2] * at[2];
-        extent[k] = fibrad_abs(f[0]) * half[0] + fibrad_abs(f[1]) * half[1] + fibrad_abs(f[2]) * half[2];
-    }
-    if (along[2] + extent[2] < beam->from || along[2] - extent[2] > beam->to) return false;
-    const double from = fibrad_max(-1, along[2] - extent[2]),
-                 to = fibrad_min(along[2] + extent[2], fibrad_min(beam->to, 1e300));
+FIBRAD_INLINE bool box_before(const fibrad_mesh_node *node, const mesh_beam *beam, const box_axis of[3]) {
+    const double front = bound_of_box(&of[2], of[2].near, node->bound);
+    if (front > beam->to) return false;
+    const double behind = bound_of_box(&of[2], of[2].far, node->bound);
+    if (behind < beam->from) return false;
+    const double from = fibrad_max(-1, front), to = fibrad_min(behind, fibrad_min(beam->to, 1e300));
     for (int k = 0; k < 2; k++) {
         double low, high;
         bounds_between(beam, k, from, to, &low, &high);
-        if (along[k] - extent[k] > high || along[k] + extent[k] < low) return false;
+        if (bound_of_box(&of[k], of[k].near, node->bound) > high || bound_of_box(&of[k], of[k].far, node->bound) < low)
+            return false;
     }
     return true;
 }
 
 static void meet_tree(fibrad_workspace *work, mesh_beam *beam) {
     const fibrad_mesh *mesh = &work->scene->mesh;
-    double middle[3];
-    for (int axis = 0; axis < 3; axis++) middle[axis] = beam->centre[axis] - mesh->middle[axis];
-    for (uint32_t k = 0; k < mesh->nodes;) {
+    const box_axis of[3] = {axis_of_boxes(work, beam, 0), axis_of_boxes(work, beam, 1), axis_of_boxes(work, beam, 2)};
+    for (uint32_t k = 0; k < mesh->nodes && beam->to >= beam->from;) {
         const fibrad_mesh_node *node = &mesh->node[k];
-        if (!box_before(node, beam, middle, work->inverse)) {
+        if (!box_before(node, beam, of)) {
             k = node->skip;
             continue;
         }
@@ -600,7 +616,9 @@ double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], f
                       .grain = work->scene->mesh.grain * work->inverse,
                       .slack = work->scene->mesh.grain * work->inverse};
     if (!fibrad_mesh_near(work, deepest)) return open;
-    bound_window(&beam, open > 0 ? 1.0001 * MESH_SPREAD / fibrad_sqrt(work->windows) : 0);
+    const double wide = open > 0 ? 1.0001 * MESH_SPREAD / fibrad_sqrt(work->windows) : 0;
+    bound_window(&beam, wide);
+    beam.near = open > 0 ? MESH_NEAR / wide : __builtin_inf();
     meet_mesh(work, &beam, deepest);
     if (!(beam.nearest < __builtin_inf())) return open;
     const double spread = open > 0 ? spread_at(beam.nearest, work->windows) : 0;
