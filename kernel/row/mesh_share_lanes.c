@@ -24,7 +24,7 @@ typedef struct mesh_beam {
     double low[2], high[2], least[2], most[2], at; /* bounds of its lines, as of each eight of them */
     double grain, slack;                           /* lengths that may be rounding; of bounds */
     double nearest;                                /* about the least depth of triangles before it */
-    double shallow;          /* none of them is less deep */
+    double shallow;                                /* none of them is less deep */
     double near;                                   /* if some are nearer than this, it does not matter how near */
     bool seek;                                     /* for the nearest triangle, not for those that lines meet */
     bool spread, cut; /* whether lines have directions of their own; whether triangles may cut sphere i */
@@ -395,25 +395,28 @@ static double spread_at(double depth, uint32_t n) {
     return ratio < 1 && depth < __builtin_inf() ? wide * fibrad_sqrt(1 - ratio * ratio) : 0;
 }
 
-/* The line of a point of window k; where it is at a depth, and its cell of four by four over the window there. */
+/* The line of a point of window k. */
 typedef struct mesh_line {
-    double place[2], exit, aside[2], at[2];
-    uint32_t cell;
+    double place[2], exit, aside[2];
 } mesh_line;
 
-static mesh_line line_through(const fibrad_points *points, uint32_t p, uint32_t k, double spread, double depth) {
-    const uint32_t q = fibrad_points_partner(points->count, p, k);
-    const float *set[2] = {points->set.x, points->set.y};
-    mesh_line line = {.exit = exit_of_point(points, p)};
+static mesh_line line_through(const fibrad_points *points, uint32_t p, uint32_t k, double spread) {
+    mesh_line line = {.place = {points->set.x[p], points->set.y[p]}, .exit = exit_of_point(points, p)};
+    if (spread > 0) {
+        const uint32_t q = fibrad_points_partner(points->count, p, k);
+        line.aside[0] = (float)(points->set.x[q] * spread), line.aside[1] = (float)(points->set.y[q] * spread);
+    }
+    return line;
+}
+
+/* In which of four by four cells of a square about the window a line is, to and fro. */
+static uint8_t cell_of_line(const mesh_line *line, double depth, double over) {
     uint32_t cell[2];
     for (int axis = 0; axis < 2; axis++) {
-        line.place[axis] = set[axis][p];
-        if (spread > 0) line.aside[axis] = (float)(set[axis][q] * spread);
-        line.at[axis] = line.place[axis] + line.aside[axis] * (depth - line.exit);
-        cell[axis] = (uint32_t)fibrad_max(0, fibrad_min(3, 2 + 2 * line.at[axis] / (1 + spread * depth)));
+        const double at = line->place[axis] + line->aside[axis] * (depth - line->exit);
+        cell[axis] = (uint32_t)fibrad_max(0, fibrad_min(3, 2 + at * over));
     }
-    line.cell = 4 * cell[1] + (cell[1] % 2 == 0 ? cell[0] : 3 - cell[0]); /* to and fro */
-    return line;
+    return (uint8_t)(4 * cell[1] + (cell[1] % 2 == 0 ? cell[0] : 3 - cell[0]));
 }
 
 /* Bounds of each eight lines, and of all. */
@@ -447,33 +450,41 @@ static void bound_window(mesh_beam *beam, double spread) {
     beam->at = 0;
 }
 
+static void set_line(fibrad_lines *lines, uint32_t to, uint32_t point, mesh_line line, double depth) {
+    for (int axis = 0; axis < 2; axis++)
+        lines->place[axis][to] = line.place[axis], lines->aside[axis][to] = line.aside[axis];
+    lines->exit[to] = line.exit, lines->point[to] = point;
+    lines->depth[to] = depth, lines->side[to] = FIBRAD_NO_SIDE;
+}
+
 /* Looks which triangles the lines of chosen points meet first, down to depth[p] of each (NULL: any) and to `deepest`.
  * Returns how many lines there are. */
 static uint32_t meet_points(fibrad_workspace *work, mesh_beam *beam, const fibrad_points *points,
                             const uint64_t chosen[4], uint32_t k, double spread, double deepest, const double *depth) {
     fibrad_lines *lines = &work->met->lines;
     uint32_t start[17] = {0}, count = 0;
+    uint8_t cell[FIBRAD_MET_POINTS];
     lines->at = spread > 0 ? beam->nearest : 0;
-    for (uint32_t p = 0; p < points->count; p++)
-        if ((chosen[p / 64] >> p % 64 & 1) != 0)
-            start[line_through(points, p, k, spread, lines->at).cell + 1]++, count++;
-    if (count == 0) return 0;
-    for (uint32_t cell = 0; cell < 16; cell++) start[cell + 1] += start[cell];
-    lines->count = (count + FIBRAD_LINE_BLOCK - 1) / FIBRAD_LINE_BLOCK * FIBRAD_LINE_BLOCK;
-    for (uint32_t p = 0; p < points->count; p++) {
-        if ((chosen[p / 64] >> p % 64 & 1) == 0) continue;
-        const mesh_line line = line_through(points, p, k, spread, lines->at);
-        const uint32_t first = start[line.cell]++, last = first == count - 1 ? lines->count : first + 1;
-        for (uint32_t to = first; to < last; to++) {
-            for (int axis = 0; axis < 2; axis++)
-                lines->place[axis][to] = line.place[axis], lines->aside[axis][to] = line.aside[axis];
-            lines->exit[to] = line.exit, lines->point[to] = p;
-            lines->depth[to] = to > first      ? -__builtin_inf()
-                               : depth != NULL ? depth[p]
-                                               : __builtin_inf(),
-            lines->side[to] = FIBRAD_NO_SIDE;
+    const double over = 2 / (1 + spread * lines->at);
+    for (uint32_t word = 0; word < points->count / 64; word++)
+        for (uint64_t rest = chosen[word]; rest != 0; rest &= rest - 1) {
+            const uint32_t p = 64 * word + (uint32_t)__builtin_ctzll(rest);
+            const mesh_line line = line_through(points, p, k, spread);
+            cell[count] = cell_of_line(&line, lines->at, over);
+            start[cell[count++] + 1]++;
         }
-    }
+    if (count == 0) return 0;
+    for (uint32_t c = 0; c < 16; c++) start[c + 1] += start[c];
+    lines->count = (count + FIBRAD_LINE_BLOCK - 1) / FIBRAD_LINE_BLOCK * FIBRAD_LINE_BLOCK;
+    for (uint32_t word = 0, n = 0; word < points->count / 64; word++)
+        for (uint64_t rest = chosen[word]; rest != 0; rest &= rest - 1) {
+            const uint32_t p = 64 * word + (uint32_t)__builtin_ctzll(rest), to = start[cell[n++]]++;
+            set_line(lines, to, p, line_through(points, p, k, spread), depth != NULL ? depth[p] : __builtin_inf());
+        }
+    const mesh_line end = {{lines->place[0][count - 1], lines->place[1][count - 1]},
+                           lines->exit[count - 1],
+                           {lines->aside[0][count - 1], lines->aside[1][count - 1]}};
+    for (uint32_t to = count; to < lines->count; to++) set_line(lines, to, 0, end, -__builtin_inf());
     bound_lines(lines, beam);
     if (beam->cut) bound_window(beam, 1.0001 * spread);
     beam->spread = spread > 0, beam->seek = false;
@@ -582,13 +593,13 @@ static bool meet_window(fibrad_workspace *work, mesh_beam *beam, const fibrad_po
         if (seen_disc(work, given, c) != FIBRAD_NONE) limit_points(work, points, seen_disc(work, given, c));
     for (uint32_t word = 0; word < points->count / 64; word++)
         covered[word] = ~points->seen[word], own += fibrad_count_bits(points->seen[word]);
+    met->deepest = FIBRAD_NO_SIDE;
     if (beam->shallow <= deepest)
         meet += tell_points(met, meet_points(work, beam, points, covered, k, 0, deepest, met->depth));
-    met->deepest = FIBRAD_NO_SIDE;
     if (open && own > 0) {
         const uint32_t lines = meet_points(work, beam, points, points->seen, k, spread, __builtin_inf(), NULL);
         meet += tell_points(met, lines);
-    } else if (open) {
+    } else if (open) { /* too little for points: where the deepest line ends */
         meet_points(work, beam, points, covered, k, 0, __builtin_inf(), NULL);
         met->deepest = deepest_side(&met->lines);
     }
