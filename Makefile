@@ -296,7 +296,7 @@ BENCHES = \
     bench/bench_window.c
 
 # built and run where Embree 3 is found (Debian: libembree-dev)
-PEERS = bench/bench_embree.c
+PEERS = bench/bench_embree.c bench/bench_embree_mesh.c
 
 # linked with a library that counts its instructions, bench/count_cc.sh; built and run on x86-64
 COUNTED = bench/bench_instructions.c
