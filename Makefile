@@ -296,6 +296,7 @@ BENCHES = \
     bench/bench_exchange.c \
     bench/bench_furnace.c \
     bench/bench_heat.c \
+    bench/bench_mesh.c \
     bench/bench_moved.c \
     bench/bench_pair.c \
     bench/bench_powers.c \
@@ -308,7 +309,7 @@ BENCHES = \
     bench/bench_window.c
 
 # built and run where Embree 3 is found (Debian: libembree-dev)
-PEERS = bench/bench_embree.c
+PEERS = bench/bench_embree.c bench/bench_embree_mesh.c
 
 # linked with a library that counts its instructions, bench/count_cc.sh; built and run on x86-64
 COUNTED = bench/bench_instructions.c

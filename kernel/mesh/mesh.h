@@ -16,9 +16,9 @@
 /* A box about some of the triangles, in a tree that is listed depth first. Bounds are relative to mesh->middle and
  * rounded outwards. */
 typedef struct fibrad_mesh_node {
-    float low[3], high[3];
-    uint32_t skip; /* the node after all below this one */
-    uint32_t leaf; /* of a leaf: its first triangle times 8 and how many; of others 0 */
+    float bound[6]; /* lower ends, then upper ones */
+    uint32_t skip;  /* the node after all below this one */
+    uint32_t leaf;  /* of a leaf: its first triangle times 8 and how many; of others 0 */
 } fibrad_mesh_node;
 
 /* Meshes are numbered as their bodies come. */

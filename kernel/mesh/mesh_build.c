@@ -141,8 +141,8 @@ static void set_bounds(const fibrad_mesh *mesh, fibrad_mesh_node *node, const me
     for (int axis = 0; axis < 3; axis++) {
         const double low = box->low[axis] - mesh->middle[axis], high = box->high[axis] - mesh->middle[axis];
         const double wide = 2e-7 * fibrad_max(fibrad_abs(low), fibrad_abs(high)) + 2 * mesh->grain;
-        node->low[axis] = low - wide < -FLT_MAX ? -__builtin_inff() : (float)(low - wide);
-        node->high[axis] = high + wide > FLT_MAX ? __builtin_inff() : (float)(high + wide);
+        node->bound[axis] = low - wide < -FLT_MAX ? -__builtin_inff() : (float)(low - wide);
+        node->bound[3 + axis] = high + wide > FLT_MAX ? __builtin_inff() : (float)(high + wide);
     }
 }
 

@@ -69,7 +69,7 @@ static void meet_triangle(const fibrad_mesh *mesh, const sheared_ray *ray, uint3
 static bool meets_box(const fibrad_mesh_node *node, const sheared_ray *ray, double to) {
     double from = ray->begin;
     for (int axis = 0; axis < 3; axis++) {
-        const double low = node->low[axis] - ray->middle[axis], high = node->high[axis] - ray->middle[axis];
+        const double low = node->bound[axis] - ray->middle[axis], high = node->bound[3 + axis] - ray->middle[axis];
         if (low > 0 || high < 0) { /* else it begins within the slab, and 0 times infinity plays no part */
             const double enter = (low > 0 ? low : high) * ray->over[axis];
             if (!(enter >= 0)) return false;
@@ -221,7 +221,8 @@ static double nearest_in_image(const fibrad_mesh *mesh, const double at[3], doub
         double square = 0;
         for (int axis = 0; axis < 3; axis++) {
             const double place = at[axis] - mesh->middle[axis];
-            const double away = fibrad_max(0, fibrad_max(node->low[axis] - place, place - node->high[axis])) / least;
+            const double away =
+                fibrad_max(0, fibrad_max(node->bound[axis] - place, place - node->bound[3 + axis])) / least;
             square += away * away;
         }
         if (!(square < 1)) {

@@ -166,7 +166,7 @@ int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_
     }
     if (inside != NULL) {
         plan = inside->plan;
-        plan.walls = walls;
+        plan.walls = walls, plan.met = met;
         plan.extra = extra_best;
     }
     const int status = fit(work, plan, &least, space);
@@ -181,7 +181,7 @@ int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_
 int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     const fibrad_workspace *now = *space;
     fibrad_work_plan plan = now->plan, least = now->least;
-    plan.walls = least.walls;
+    plan.walls = least.walls, plan.met = least.met;
     const fibrad_work_plan needed = now->needed;
     /* what has been too small once in this call must not shrink again */
     if (needed.near > plan.near) plan.near = least.near = needed.near;

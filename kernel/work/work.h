@@ -33,18 +33,36 @@ typedef struct fibrad_near {
     uint32_t asked;              /* how many windows have asked for one more than there are */
 } fibrad_near;
 
+/* Lines of a window that look for triangles, one for a point, so ordered that eight by eight they are near each other
+ * at one depth. The last eight are filled up with lines that meet nothing. */
+#define FIBRAD_MET_POINTS  256
+#define FIBRAD_LINE_BLOCK  8
+#define FIBRAD_LINE_BLOCKS (FIBRAD_MET_POINTS / FIBRAD_LINE_BLOCK)
+typedef struct fibrad_lines {
+    _Alignas(64) double place[2][FIBRAD_MET_POINTS]; /* u, v where they leave sphere i, ... */
+    double exit[FIBRAD_MET_POINTS];                  /* ... and how deep that is */
+    double aside[2][FIBRAD_MET_POINTS];              /* of their directions, along u and v; 0 unless spread */
+    double depth[FIBRAD_MET_POINTS];                 /* of what they meet, or beyond which they do not look */
+    uint32_t side[FIBRAD_MET_POINTS];                /* of the mesh; FIBRAD_NO_SIDE: no triangle */
+    uint32_t point[FIBRAD_MET_POINTS];
+    /* Of each eight: bounds of u, v at depth `at`, and of `aside`. */
+    double low[2][FIBRAD_LINE_BLOCKS], high[2][FIBRAD_LINE_BLOCKS];
+    double least[2][FIBRAD_LINE_BLOCKS], most[2][FIBRAD_LINE_BLOCKS];
+    uint32_t count;
+    double at;
+} fibrad_lines;
+
 /* Points of a window that meet triangles. */
-#define FIBRAD_MET_POINTS 256
 typedef struct fibrad_met {
-    _Alignas(64) double depth[FIBRAD_MET_POINTS]; /* along the line, from the plane through the centre; of points beyond
-                                                     a triangle that cuts sphere i below -1 */
-    double exit[FIBRAD_MET_POINTS];               /* where the line leaves sphere i */
-    double weight[FIBRAD_MET_POINTS];             /* area or number of points that goes to the triangle */
-    float aside[2][FIBRAD_MET_POINTS];            /* of the line's direction, along u and v, if spread */
-    uint32_t side[FIBRAD_MET_POINTS];             /* of the mesh; FIBRAD_NO_SIDE: no triangle */
-    fibrad_points points;                         /* which they are; of windows by areas also what is open */
-    uint32_t deepest;                             /* the side that the deepest line meets */
-    bool any, spread;                             /* whether there are such points in the window in hand */
+    fibrad_lines lines;
+    double depth[FIBRAD_MET_POINTS];   /* along the line, from the plane through the centre; of points beyond a
+                                          triangle that cuts sphere i below -1 */
+    double weight[FIBRAD_MET_POINTS];  /* area or number of points that goes to the triangle */
+    float aside[2][FIBRAD_MET_POINTS]; /* of the line's direction, along u and v */
+    uint32_t side[FIBRAD_MET_POINTS];  /* of the mesh; FIBRAD_NO_SIDE: no triangle */
+    fibrad_points points;              /* which they are; of windows by areas also what is open */
+    uint32_t deepest;                  /* the side that the deepest line meets */
+    bool any;                          /* whether there are such points in the window in hand */
 } fibrad_met;
 
 #define FIBRAD_WORK_MAX (1u << 28)
