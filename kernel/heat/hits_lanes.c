@@ -117,7 +117,8 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
                              const fibrad_points *points, uint32_t k, uint32_t p) {
     double origin[3], w[3];
     if (!heat->scene->container.walls) return fibrad_heat_open(heat);
-    if (work->met != NULL && work->met->any && work->met->spread) { /* on the line that meets no triangle */
+    if (work->met != NULL && work->met->any &&
+        (work->met->aside[0][p] != 0 || work->met->aside[1][p] != 0)) { /* on the line that meets no triangle */
         LANED(fibrad_mesh_line)(work, frame, p, origin, w);
         return fibrad_heat_leaves(heat, origin, w);
     }

@@ -281,14 +281,15 @@ static bool look_deeper(const fibrad_workspace *work, const mesh_beam *beam, dou
 /* All triangles down to a depth, along periodic axes a period at a time. */
 static void meet_mesh(fibrad_workspace *work, mesh_beam *beam, double deepest) {
     const fibrad_mesh *mesh = &work->scene->mesh;
-    double stretch = deepest + 1, from = -1;
+    double stretch = deepest + 1, from = -1, wide = 0; /* of the directions of lines, at most */
+    for (int k = 0; k < 2; k++) wide += fibrad_max(beam->most[k], -beam->least[k]);
     for (int axis = 0; axis < 3; axis++) {
         const double period = mesh->period[axis] * work->inverse, w = fibrad_abs(beam->frame[6 + axis]);
         const double ahead =
             beam->frame[6 + axis] > 0 ? mesh->high[axis] - work->centre[axis] : work->centre[axis] - mesh->low[axis];
         if (!(period > 0)) { /* the window leaves the box about all triangles */
-            if (w > beam->wide)
-                deepest = fibrad_min(deepest, 1.0001 * (fibrad_max(0, ahead) * work->inverse + 1) / (w - beam->wide));
+            if (w > wide)
+                deepest = fibrad_min(deepest, 1.0001 * (fibrad_max(0, ahead) * work->inverse + 1) / (w - wide));
             continue;
         }
         stretch = fibrad_min(stretch, fibrad_max(2, period));
@@ -665,7 +666,7 @@ void LANED(fibrad_mesh_place)(const fibrad_workspace *work, const double frame[9
     for (int axis = 0; axis < 3; axis++) {
         const double centre = work->centre[axis];
         at[axis] = cut ? centre + (met->depth[p] + 2) * (origin[axis] - centre)
-                       : origin[axis] + (met->depth[p] - met->exit[p]) * work->unit * w[axis];
+                       : origin[axis] + (met->depth[p] - exit_of_point(&met->points, p)) * work->unit * w[axis];
     }
 }
 
