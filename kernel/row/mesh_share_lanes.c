@@ -552,15 +552,28 @@ static uint32_t seen_discs(const fibrad_workspace *work, const fibrad_points *po
     return points->count > 0 ? points->occluders : work->areas.circles;
 }
 
-/* The depth of the last disc that is seen. */
-static double deepest_of(const fibrad_workspace *work, const fibrad_points *points) {
+/* The deepest disc that is seen; FIBRAD_NONE: there is none. */
+static uint32_t deepest_disc(const fibrad_workspace *work, const fibrad_points *points) {
     const uint32_t discs = seen_discs(work, points);
-    double deepest = 0;
+    uint32_t deepest = FIBRAD_NONE;
     for (uint32_t c = 0; c < discs; c++) {
         const uint32_t disc = seen_disc(work, points, c);
-        if (disc != FIBRAD_NONE) deepest = fibrad_max(deepest, depth_of_disc(work, disc));
+        if (disc == FIBRAD_NONE) continue;
+        if (deepest == FIBRAD_NONE || depth_of_disc(work, disc) > depth_of_disc(work, deepest)) deepest = disc;
     }
     return deepest;
+}
+
+/* Whether no triangle comes before a window that sees nothing deeper than a disc: those parts of it that sphere i is
+ * not certainly nearer to than any triangle, the sphere of the disc is. */
+static bool clear_to_disc(const fibrad_workspace *work, uint32_t disc) {
+    const fibrad_discs *d = &work->disc;
+    const double own = work->clear_mesh * work->clear_mesh - 1, depth = depth_of_disc(work, disc);
+    const double aside = 1 + fibrad_sqrt(d->u[disc] * d->u[disc] + d->v[disc] * d->v[disc]);
+    const double clear = work->scene->clear[fibrad_work_sphere(work, disc)] * d->r[disc];
+    if (!(own > 0 && clear > 0)) return false;
+    const double left = fibrad_max(0, depth - fibrad_sqrt(own));
+    return left * left + aside * aside < clear * clear * (1 - 1e-9);
 }
 
 /* Gives the points of a disc that are still seen its depth; they are no longer seen. */
@@ -625,7 +638,9 @@ double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], f
     fibrad_met *met = work->met;
     const bool by_areas = points->count == 0;
     fibrad_points *used = by_areas ? &met->points : points;
-    const double last = deepest_of(work, points), deepest = open > 0 ? __builtin_inf() : last;
+    const uint32_t disc = deepest_disc(work, points);
+    const double last = disc != FIBRAD_NONE ? depth_of_disc(work, disc) : 0;
+    const double deepest = open > 0 ? __builtin_inf() : last;
     mesh_beam beam = {.frame = frame,
                       .cut = work->clear_mesh < 1,
                       .seek = true,
@@ -634,6 +649,7 @@ double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], f
                       .grain = work->scene->mesh.grain * work->inverse,
                       .slack = work->scene->mesh.grain * work->inverse};
     if (!fibrad_mesh_near(work, deepest)) return open;
+    if (!(open > 0) && disc != FIBRAD_NONE && clear_to_disc(work, disc)) return open;
     const double wide = open > 0 ? 1.0001 * MESH_SPREAD / fibrad_sqrt(work->windows) : 0;
     bound_window(&beam, wide);
     beam.near = open > 0 ? MESH_NEAR / wide : __builtin_inf();
