@@ -173,7 +173,8 @@ def test_what_is_closed_needs_no_surroundings(box, walls, closed):
         assert closed and powers.surroundings == 0
     except fibrad.InputError as error:  # few spheres in a periodic box let some beams through
         assert "surroundings is missing" in str(error) if not closed else "leave the bed after 100 periods" in str(error)
-        assert heat.solve(**state, surroundings=300).surroundings != 0
+        endless_tube = walls == {"cylinder": (0, 0, 3)}  # whose ends nothing reaches
+        assert (heat.solve(**state, surroundings=300).surroundings == 0) == endless_tube
 
 
 def test_configurations_that_cannot_be():

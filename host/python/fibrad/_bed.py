@@ -88,7 +88,7 @@ class Bed:
             if status:
                 fault = Fault()
                 self._function("describe")(self._handle, None, fault)
-                raise packing.error(status, fault, container)
+                raise packing.error(status, fault, self._container)
         finally:
             self._busy.release()
 

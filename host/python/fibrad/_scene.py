@@ -9,7 +9,7 @@ from typing import Any, Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._errors import ARGUMENT, GEOMETRY, Error, error_of, status_text
+from ._errors import ARGUMENT, BACK, GEOMETRY, Error, error_of, status_text
 from ._library import DOUBLES, Body, SceneConfig, Spheres, Triangles
 from ._values import Names, doubles, real, refuse
 
@@ -88,7 +88,8 @@ class Packing:
         elif status == ARGUMENT and not concerned and not container.triangle(fault.triangle):
             text = f"this bed, box and walls cannot be computed: {text}"
         places = ", ".join(f"{self.names(i)} at {self.x[i].tolist()}, radius {self.r[i]}" for i in concerned)
-        places = places or container.triangle(fault.triangle)
+        if status == BACK or not places:
+            places = container.triangle(fault.triangle)
         return error_of(status, f"{text}: {places}" if places else text, concerned)
 
 
