@@ -184,7 +184,7 @@ static void bench_container(const char *name, const struct bed *bed, fibrad_scen
     fibrad_row row = row_in(bed->n), *truth = bench_array(bed->n, sizeof *truth);
     for (uint32_t i = 0; i < bed->n; ++i) {
         truth[i] = row_in(bed->n);
-        const fibrad_beam_rule rule = {.directions = few < SETTINGS ? 2000 : 20000};
+        const fibrad_beam_rule rule = {.directions = few < SETTINGS ? 2000 : 10000};
         bench_check("row", fibrad_beam_row(smooth, &work, i, &rule, &truth[i]));
     }
     printf("# %s, %u spheres\ndirections,walls,spheres_rms,bodies_rms,estimate_rms,us_per_window\n", name, bed->n);
@@ -260,13 +260,13 @@ int main(int argc, char **argv) {
     bed_init(&bed), bed_init(&small);
     int status = argc == 2 && !quick ? read_bed(argv[1], &(struct read_options){0}, &bed)
                                      : bed_make_packing(&bed, quick ? 500 : 20000, 0.8, 1.2, 0.58, 1);
-    if (!status) status = bed_make_packing(&small, quick ? 60 : 300, 0.8, 1.2, 0.5, 1);
+    if (!status) status = bed_make_packing(&small, quick ? 60 : 100, 0.8, 1.2, 0.5, 1);
     if (status) return status;
     memset(bed.period, 0, sizeof bed.period);
     memset(small.period, 0, sizeof small.period);
     bench_preamble("bench_mesh: walls of triangles", 1);
     bench_time(&bed, quick);
-    bench_polygons(quick ? 10 : 200, quick ? 3 : SETTINGS);
+    bench_polygons(quick ? 10 : 100, quick ? 3 : SETTINGS);
     bench_boxes(&small, quick ? 2 : SETTINGS);
     bench_cylinders(&small, quick ? 2 : SETTINGS);
     bed_free(&bed);

@@ -113,6 +113,8 @@ START_TEST(a_box_of_triangles) {
     fibrad_row row = row_of(bed.n), of_planes = row_of(bed.n);
     double spheres = 0, walls = 0, estimate = 0;
     for (int k = 0; k < 6; k++) ck_assert_double_eq_tol(fibrad_scene_body_area(scene, (uint32_t)k), 1, 1e-15);
+    /* work memory that is laid out for no triangles is laid out anew */
+    ck_assert_int_eq(fibrad_beam_row(other, &work, 0, NULL, &of_planes), FIBRAD_OK);
     for (uint32_t points = 0; points <= 256; points += 256)
         for (uint32_t i = 0; i < bed.n; i++) {
             const fibrad_beam_rule rule = {.directions = 600, .points = points};
