@@ -55,9 +55,10 @@ int rank() {
 
 /* Ends the program on all ranks, which all come here, with one message. */
 [[noreturn]] void stop(int status, const std::string &message) {
-    if (rank() == 0) std::fprintf(stderr, "fibrad_liggghts: %s\n", message.c_str());
+    const bool tells = rank() == 0; /* the others end well: mpirun would end the one that tells before it is heard */
+    if (tells) std::fprintf(stderr, "fibrad_liggghts: %s\n", message.c_str());
     MPI_Finalize();
-    std::exit(status);
+    std::exit(tells ? status : 0);
 }
 
 void check(const Driver *driver, int status) {
