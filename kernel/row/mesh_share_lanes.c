@@ -363,10 +363,38 @@ static uint64_t before_disc(fibrad_workspace *work, const fibrad_points *points,
     return taken;
 }
 
-static void set_weights(fibrad_met *met, const uint64_t taken[4], double weight) {
+static void add_weights(fibrad_met *met, const uint64_t taken[4], double weight) {
     for (uint32_t word = 0; word < 4; word++)
         for (uint64_t rest = taken[word]; rest != 0; rest &= rest - 1)
-            met->weight[64 * word + (uint32_t)__builtin_ctzll(rest)] = weight;
+            met->weight[64 * word + (uint32_t)__builtin_ctzll(rest)] += weight;
+}
+
+/* Of points that belong to discs in front of a depth, given by bits in a word, those that meet a triangle. */
+static uint64_t before_others(const fibrad_met *met, uint32_t word, uint64_t bits) {
+    uint64_t taken = 0;
+    for (uint64_t rest = bits; rest != 0; rest &= rest - 1) {
+        const uint32_t p = (uint32_t)__builtin_ctzll(rest);
+        if (met->side[64 * word + p] != FIBRAD_NO_SIDE) taken |= UINT64_C(1) << p;
+    }
+    return taken;
+}
+
+/* What triangles take from a disc that is seen between points: by the points within it, all of which discs in front of
+ * it have, or if there are none by all those that discs in front have. */
+static void share_between(fibrad_workspace *work, const fibrad_points *points, uint32_t disc, uint32_t k, double area) {
+    uint64_t taken[4] = {0};
+    uint32_t all = 0, lost = 0;
+    for (int whole = 0; whole < 2 && all == 0; whole++)
+        for (uint32_t word = 0; word < points->count / 64; word++) {
+            uint64_t bits = ~points->seen[word];
+            if (!whole)
+                bits &= LANED(fibrad_points_within)(points, word, work->disc.u[disc], work->disc.v[disc],
+                                                    work->disc.r[disc]);
+            taken[word] = before_others(work->met, word, bits);
+            all += fibrad_count_bits(bits), lost += fibrad_count_bits(taken[word]);
+        }
+    if (lost > 0) add_weights(work->met, taken, area / all);
+    if (lost < all || all == 0) fibrad_work_accumulate(work, disc, k, lost > 0 ? area / all * (all - lost) : area);
 }
 
 /* What triangles take from one disc, of visible area `area`; 0: by points. Points of it are no longer seen. */
@@ -380,11 +408,13 @@ static void share_disc(fibrad_workspace *work, fibrad_points *points, uint32_t d
         taken[word] = before_disc(work, points, word, bits, disc);
         own += fibrad_count_bits(bits), lost += fibrad_count_bits(taken[word]);
     }
-    if (area > 0) {
-        set_weights(work->met, taken, own > 0 ? area / own : 0);
-        if (lost < own || own == 0) fibrad_work_accumulate(work, disc, k, lost > 0 ? area / own * (own - lost) : area);
+    if (area > 0 && own == 0) {
+        share_between(work, points, disc, k, area);
+    } else if (area > 0) {
+        add_weights(work->met, taken, area / own);
+        if (lost < own) fibrad_work_accumulate(work, disc, k, lost > 0 ? area / own * (own - lost) : area);
     } else if (lost > 0) {
-        set_weights(work->met, taken, 1);
+        add_weights(work->met, taken, 1);
         fibrad_work_accumulate(work, disc, k, -(double)lost);
     }
 }
@@ -531,7 +561,7 @@ static double share_open(fibrad_workspace *work, const double frame[9], fibrad_p
     }
     for (uint32_t word = 0; word < 4; word++) points->seen[word] &= ~taken[word];
     points->open = own - lost;
-    set_weights(met, taken, open / own);
+    add_weights(met, taken, open / own);
     return lost < own ? open / own * (own - lost) : 0;
 }
 
@@ -599,7 +629,7 @@ static bool meet_window(fibrad_workspace *work, mesh_beam *beam, const fibrad_po
     uint64_t covered[4] = {0};
     uint32_t own = 0, meet = 0;
     for (uint32_t p = 0; p < points->count; p++) {
-        met->depth[p] = __builtin_inf(), met->side[p] = FIBRAD_NO_SIDE;
+        met->depth[p] = __builtin_inf(), met->side[p] = FIBRAD_NO_SIDE, met->weight[p] = 0;
         met->aside[0][p] = met->aside[1][p] = 0;
     }
     for (uint32_t c = 0; c < discs; c++)
