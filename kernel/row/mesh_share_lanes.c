@@ -369,36 +369,30 @@ static void add_weights(fibrad_met *met, const uint64_t taken[4], double weight)
             met->weight[64 * word + (uint32_t)__builtin_ctzll(rest)] += weight;
 }
 
-/* Of points that belong to discs in front of a depth, given by bits in a word, those that meet a triangle. */
-static uint64_t before_others(const fibrad_met *met, uint32_t word, uint64_t bits) {
-    uint64_t taken = 0;
-    for (uint64_t rest = bits; rest != 0; rest &= rest - 1) {
-        const uint32_t p = (uint32_t)__builtin_ctzll(rest);
-        if (met->side[64 * word + p] != FIBRAD_NO_SIDE) taken |= UINT64_C(1) << p;
+/* The point nearest to the centre of a disc. */
+static uint32_t nearest_point(const fibrad_points *points, double u, double v) {
+    double least = __builtin_inf();
+    uint32_t nearest = 0;
+    for (uint32_t p = 0; p < points->count; p++) {
+        const double x = points->set.x[p] - u, y = points->set.y[p] - v, square = x * x + y * y;
+        if (square < least) least = square, nearest = p;
     }
-    return taken;
+    return nearest;
 }
 
-/* What triangles take from a disc that is seen between points: by the points within it, all of which discs in front of
- * it have, or if there are none by all those that discs in front have. */
+/* A disc that is seen between points goes with the point that is nearest to it, to the disc or the triangle there. */
 static void share_between(fibrad_workspace *work, const fibrad_points *points, uint32_t disc, uint32_t k, double area) {
-    uint64_t taken[4] = {0};
-    uint32_t all = 0, lost = 0;
-    for (int whole = 0; whole < 2 && all == 0; whole++)
-        for (uint32_t word = 0; word < points->count / 64; word++) {
-            uint64_t bits = ~points->seen[word];
-            if (!whole)
-                bits &= LANED(fibrad_points_within)(points, word, work->disc.u[disc], work->disc.v[disc],
-                                                    work->disc.r[disc]);
-            taken[word] = before_others(work->met, word, bits);
-            all += fibrad_count_bits(bits), lost += fibrad_count_bits(taken[word]);
-        }
-    if (lost > 0) add_weights(work->met, taken, area / all);
-    if (lost < all || all == 0) fibrad_work_accumulate(work, disc, k, lost > 0 ? area / all * (all - lost) : area);
+    const fibrad_met *met = work->met;
+    const uint32_t p = nearest_point(points, work->disc.u[disc], work->disc.v[disc]);
+    if (met->side[p] != FIBRAD_NO_SIDE && met->depth[p] < depth_of_disc(work, disc))
+        work->met->weight[p] += area;
+    else
+        fibrad_work_accumulate(work, disc, k, area);
 }
 
-/* What triangles take from one disc, of visible area `area`; 0: by points. Points of it are no longer seen. */
-static void share_disc(fibrad_workspace *work, fibrad_points *points, uint32_t disc, uint32_t k, double area) {
+/* What triangles take from one disc, of visible area `area`; 0: by points. Points of it are no longer seen. Returns how
+ * many there are; with none, nothing is done. */
+static uint32_t share_disc(fibrad_workspace *work, fibrad_points *points, uint32_t disc, uint32_t k, double area) {
     uint64_t taken[4] = {0};
     uint32_t own = 0, lost = 0;
     for (uint32_t word = 0; word < points->count / 64; word++) {
@@ -408,15 +402,14 @@ static void share_disc(fibrad_workspace *work, fibrad_points *points, uint32_t d
         taken[word] = before_disc(work, points, word, bits, disc);
         own += fibrad_count_bits(bits), lost += fibrad_count_bits(taken[word]);
     }
-    if (area > 0 && own == 0) {
-        share_between(work, points, disc, k, area);
-    } else if (area > 0) {
+    if (area > 0 && own > 0) {
         add_weights(work->met, taken, area / own);
         if (lost < own) fibrad_work_accumulate(work, disc, k, lost > 0 ? area / own * (own - lost) : area);
     } else if (lost > 0) {
         add_weights(work->met, taken, 1);
         fibrad_work_accumulate(work, disc, k, -(double)lost);
     }
+    return own;
 }
 
 /* How wide the directions of open lines spread, if the nearest of what they meet is at some depth. */
@@ -685,11 +678,16 @@ double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], f
     met->any = meet_window(work, &beam, points, used, k, spread, last, open > 0) || spread > 0;
     if (!met->any) return open;
     const uint32_t discs = seen_discs(work, points);
+    uint32_t *own = work->disc.hidden_points; /* of windows by points alone, else */
     see_all(used);
     for (uint32_t c = 0; c < discs; c++)
         if (seen_disc(work, points, c) != FIBRAD_NONE)
-            share_disc(work, used, seen_disc(work, points, c), k, by_areas ? work->areas.area[c] : 0);
-    return open > 0 ? share_open(work, frame, used, k, open) : 0;
+            own[c] = share_disc(work, used, seen_disc(work, points, c), k, by_areas ? work->areas.area[c] : 0);
+    const double rest = open > 0 ? share_open(work, frame, used, k, open) : 0;
+    for (uint32_t c = 0; by_areas && c < discs; c++)
+        if (seen_disc(work, points, c) != FIBRAD_NONE && own[c] == 0)
+            share_between(work, used, seen_disc(work, points, c), k, work->areas.area[c]);
+    return rest;
 }
 
 /* Whether a line ends, by cutoff or known region, before it meets its triangle. */
