@@ -188,16 +188,16 @@ static void cut_surface(fibrad_workspace *work, const mesh_face *face) {
     }
 }
 
-/* How deep the middle of the window meets the plane of a face, as far as the face goes. */
-static double depth_of_face(const mesh_face *face) {
+/* How deep the middle of the window meets the plane of a face, as far as the face goes. Windows that look a little away
+ * from a plane are treated as those that look as little towards it. */
+static double depth_of_face(const mesh_face *face, const face_box *box) {
     double n[3];
     const double *u = face->u, *v = face->v, *z = face->z;
     n[0] = (v[1] - v[0]) * (z[2] - z[0]) - (z[1] - z[0]) * (v[2] - v[0]);
     n[1] = (z[1] - z[0]) * (u[2] - u[0]) - (u[1] - u[0]) * (z[2] - z[0]);
     n[2] = (u[1] - u[0]) * (v[2] - v[0]) - (v[1] - v[0]) * (u[2] - u[0]);
-    const double least = fibrad_max(0, fibrad_min(z[0], fibrad_min(z[1], z[2])));
-    const double depth = n[2] != 0 ? (n[0] * u[0] + n[1] * v[0] + n[2] * z[0]) / n[2] : 0;
-    return fibrad_max(least, fibrad_min(depth, fibrad_max(z[0], fibrad_max(z[1], z[2]))));
+    const double depth = n[2] != 0 ? fibrad_abs((n[0] * u[0] + n[1] * v[0] + n[2] * z[0]) / n[2]) : __builtin_inf();
+    return fibrad_max(fibrad_max(0, box->low[2]), fibrad_min(depth, box->high[2]));
 }
 
 static void meet_face(fibrad_workspace *work, mesh_beam *beam, uint32_t t) {
@@ -205,7 +205,7 @@ static void meet_face(fibrad_workspace *work, mesh_beam *beam, uint32_t t) {
     const face_box box = box_of_face(&face);
     if (!face_before(&box, beam)) return;
     if (beam->seek) {
-        beam->nearest = fibrad_min(beam->nearest, depth_of_face(&face));
+        beam->nearest = fibrad_min(beam->nearest, depth_of_face(&face, &box));
         beam->to = beam->nearest > beam->near ? fibrad_min(beam->to, MESH_SEEK * beam->nearest) : -__builtin_inf();
         beam->shallow = fibrad_min(beam->shallow, fibrad_min(beam->to, box.low[2]));
         return;
