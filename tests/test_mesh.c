@@ -83,6 +83,32 @@ START_TEST(a_sphere_and_a_triangle) {
 }
 END_TEST
 
+/* Spheres behind a large screen are too small for points of the window; what is seen of them goes to the screen. */
+START_TEST(small_spheres_behind) {
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    struct mesh *mesh = mesh_new();
+    uint32_t v[4];
+    srand(5);
+    for (int k = 0; k < 300; k++) add_sphere(&bed, uniform(-3, 3), uniform(-3, 3), uniform(1.2, 3), uniform(.01, .05));
+    for (int k = 0; k < 4; k++) v[k] = mesh_vertex(mesh, k == 1 || k == 2 ? 500 : -500, k > 1 ? 500 : -500, 1.02);
+    mesh_quad(mesh, v, 0, 0);
+    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
+    fibrad_work work = work_growing();
+    fibrad_row row = row_of(bed.n);
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 600}, &row), FIBRAD_OK);
+    const double screen = .5 - 4 * sqrt(2) * 1.02 / 500 / (4 * PI); /* it ends a little above the horizon */
+    printf("    behind: %.2g is seen, the screen errs by %.2g\n", row_sum(&row), row.body[0] - screen);
+    ck_assert_double_eq_tol(row.body[0], screen, 1e-3);
+    ck_assert_double_le(row_sum(&row), 1e-5);
+    ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
+    row_free(&row);
+    work_free(&work);
+    free(scene);
+    free(mesh);
+    bed_free(&bed);
+}
+END_TEST
+
 /* ---- containers -------------------------------------------------------------------------------------------------- */
 
 static struct bed crowd(uint32_t n, uint64_t seed) {
@@ -514,6 +540,7 @@ int main(void) {
     Suite *suite = suite_create("mesh");
     TCase *tests = suite_case(suite, "mesh");
     tcase_add_test(tests, a_sphere_and_a_triangle);
+    tcase_add_test(tests, small_spheres_behind);
     tcase_add_test(tests, a_box_of_triangles);
     tcase_add_test(tests, a_drum);
     tcase_add_test(tests, tubes_through_walls);

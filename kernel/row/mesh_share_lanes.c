@@ -188,16 +188,16 @@ static void cut_surface(fibrad_workspace *work, const mesh_face *face) {
     }
 }
 
-/* How deep the middle of the window meets the plane of a face, as far as the face goes. */
-static double depth_of_face(const mesh_face *face) {
+/* How deep the middle of the window meets the plane of a face, as far as the face goes. Windows that look a little away
+ * from a plane are treated as those that look as little towards it. */
+static double depth_of_face(const mesh_face *face, const face_box *box) {
     double n[3];
     const double *u = face->u, *v = face->v, *z = face->z;
     n[0] = (v[1] - v[0]) * (z[2] - z[0]) - (z[1] - z[0]) * (v[2] - v[0]);
     n[1] = (z[1] - z[0]) * (u[2] - u[0]) - (u[1] - u[0]) * (z[2] - z[0]);
     n[2] = (u[1] - u[0]) * (v[2] - v[0]) - (v[1] - v[0]) * (u[2] - u[0]);
-    const double least = fibrad_max(0, fibrad_min(z[0], fibrad_min(z[1], z[2])));
-    const double depth = n[2] != 0 ? (n[0] * u[0] + n[1] * v[0] + n[2] * z[0]) / n[2] : 0;
-    return fibrad_max(least, fibrad_min(depth, fibrad_max(z[0], fibrad_max(z[1], z[2]))));
+    const double depth = n[2] != 0 ? fibrad_abs((n[0] * u[0] + n[1] * v[0] + n[2] * z[0]) / n[2]) : __builtin_inf();
+    return fibrad_max(fibrad_max(0, box->low[2]), fibrad_min(depth, box->high[2]));
 }
 
 static void meet_face(fibrad_workspace *work, mesh_beam *beam, uint32_t t) {
@@ -205,7 +205,7 @@ static void meet_face(fibrad_workspace *work, mesh_beam *beam, uint32_t t) {
     const face_box box = box_of_face(&face);
     if (!face_before(&box, beam)) return;
     if (beam->seek) {
-        beam->nearest = fibrad_min(beam->nearest, depth_of_face(&face));
+        beam->nearest = fibrad_min(beam->nearest, depth_of_face(&face, &box));
         beam->to = beam->nearest > beam->near ? fibrad_min(beam->to, MESH_SEEK * beam->nearest) : -__builtin_inf();
         beam->shallow = fibrad_min(beam->shallow, fibrad_min(beam->to, box.low[2]));
         return;
@@ -370,14 +370,36 @@ static uint64_t before_disc(fibrad_workspace *work, const fibrad_points *points,
     return taken;
 }
 
-static void set_weights(fibrad_met *met, const uint64_t taken[4], double weight) {
+static void add_weights(fibrad_met *met, const uint64_t taken[4], double weight) {
     for (uint32_t word = 0; word < 4; word++)
         for (uint64_t rest = taken[word]; rest != 0; rest &= rest - 1)
-            met->weight[64 * word + (uint32_t)__builtin_ctzll(rest)] = weight;
+            met->weight[64 * word + (uint32_t)__builtin_ctzll(rest)] += weight;
 }
 
-/* What triangles take from one disc, of visible area `area`; 0: by points. Points of it are no longer seen. */
-static void share_disc(fibrad_workspace *work, fibrad_points *points, uint32_t disc, uint32_t k, double area) {
+/* The point nearest to the centre of a disc. */
+static uint32_t nearest_point(const fibrad_points *points, double u, double v) {
+    double least = __builtin_inf();
+    uint32_t nearest = 0;
+    for (uint32_t p = 0; p < points->count; p++) {
+        const double x = points->set.x[p] - u, y = points->set.y[p] - v, square = x * x + y * y;
+        if (square < least) least = square, nearest = p;
+    }
+    return nearest;
+}
+
+/* A disc that is seen between points goes with the point that is nearest to it, to the disc or the triangle there. */
+static void share_between(fibrad_workspace *work, const fibrad_points *points, uint32_t disc, uint32_t k, double area) {
+    const fibrad_met *met = work->met;
+    const uint32_t p = nearest_point(points, work->disc.u[disc], work->disc.v[disc]);
+    if (met->side[p] != FIBRAD_NO_SIDE && met->depth[p] < depth_of_disc(work, disc))
+        work->met->weight[p] += area;
+    else
+        fibrad_work_accumulate(work, disc, k, area);
+}
+
+/* What triangles take from one disc, of visible area `area`; 0: by points. Points of it are no longer seen. Returns how
+ * many there are; with none, nothing is done. */
+static uint32_t share_disc(fibrad_workspace *work, fibrad_points *points, uint32_t disc, uint32_t k, double area) {
     uint64_t taken[4] = {0};
     uint32_t own = 0, lost = 0;
     for (uint32_t word = 0; word < points->count / 64; word++) {
@@ -387,13 +409,14 @@ static void share_disc(fibrad_workspace *work, fibrad_points *points, uint32_t d
         taken[word] = before_disc(work, points, word, bits, disc);
         own += fibrad_count_bits(bits), lost += fibrad_count_bits(taken[word]);
     }
-    if (area > 0) {
-        set_weights(work->met, taken, own > 0 ? area / own : 0);
-        if (lost < own || own == 0) fibrad_work_accumulate(work, disc, k, lost > 0 ? area / own * (own - lost) : area);
+    if (area > 0 && own > 0) {
+        add_weights(work->met, taken, area / own);
+        if (lost < own) fibrad_work_accumulate(work, disc, k, lost > 0 ? area / own * (own - lost) : area);
     } else if (lost > 0) {
-        set_weights(work->met, taken, 1);
+        add_weights(work->met, taken, 1);
         fibrad_work_accumulate(work, disc, k, -(double)lost);
     }
+    return own;
 }
 
 /* How wide the directions of open lines spread, if the nearest of what they meet is at some depth. */
@@ -538,7 +561,7 @@ static double share_open(fibrad_workspace *work, const double frame[9], fibrad_p
     }
     for (uint32_t word = 0; word < 4; word++) points->seen[word] &= ~taken[word];
     points->open = own - lost;
-    set_weights(met, taken, open / own);
+    add_weights(met, taken, open / own);
     return lost < own ? open / own * (own - lost) : 0;
 }
 
@@ -606,7 +629,7 @@ static bool meet_window(fibrad_workspace *work, mesh_beam *beam, const fibrad_po
     uint64_t covered[4] = {0};
     uint32_t own = 0, meet = 0;
     for (uint32_t p = 0; p < points->count; p++) {
-        met->depth[p] = __builtin_inf(), met->side[p] = FIBRAD_NO_SIDE;
+        met->depth[p] = __builtin_inf(), met->side[p] = FIBRAD_NO_SIDE, met->weight[p] = 0;
         met->aside[0][p] = met->aside[1][p] = 0;
     }
     for (uint32_t c = 0; c < discs; c++)
@@ -662,11 +685,16 @@ double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], f
     met->any = meet_window(work, &beam, points, used, k, spread, last, open > 0) || spread > 0;
     if (!met->any) return open;
     const uint32_t discs = seen_discs(work, points);
+    uint32_t *own = work->disc.hidden_points; /* of windows by points alone, else */
     see_all(used);
     for (uint32_t c = 0; c < discs; c++)
         if (seen_disc(work, points, c) != FIBRAD_NONE)
-            share_disc(work, used, seen_disc(work, points, c), k, by_areas ? work->areas.area[c] : 0);
-    return open > 0 ? share_open(work, frame, used, k, open) : 0;
+            own[c] = share_disc(work, used, seen_disc(work, points, c), k, by_areas ? work->areas.area[c] : 0);
+    const double rest = open > 0 ? share_open(work, frame, used, k, open) : 0;
+    for (uint32_t c = 0; by_areas && c < discs; c++)
+        if (seen_disc(work, points, c) != FIBRAD_NONE && own[c] == 0)
+            share_between(work, used, seen_disc(work, points, c), k, work->areas.area[c]);
+    return rest;
 }
 
 void LANED(fibrad_mesh_line)(const fibrad_workspace *work, const double frame[9], uint32_t p, double origin[3],
