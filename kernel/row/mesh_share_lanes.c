@@ -388,7 +388,7 @@ static uint32_t nearest_point(const fibrad_points *points, double u, double v) {
 }
 
 /* A disc that is seen between points goes with the point that is nearest to it, to the disc or the triangle there. */
-static void share_between(fibrad_workspace *work, const fibrad_points *points, uint32_t disc, uint32_t k, double area) {
+static void share_gap(fibrad_workspace *work, const fibrad_points *points, uint32_t disc, uint32_t k, double area) {
     const fibrad_met *met = work->met;
     const uint32_t p = nearest_point(points, work->disc.u[disc], work->disc.v[disc]);
     if (met->side[p] != FIBRAD_NO_SIDE && met->depth[p] < depth_of_disc(work, disc))
@@ -693,7 +693,7 @@ double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], f
     const double rest = open > 0 ? share_open(work, frame, used, k, open) : 0;
     for (uint32_t c = 0; by_areas && c < discs; c++)
         if (seen_disc(work, points, c) != FIBRAD_NONE && own[c] == 0)
-            share_between(work, used, seen_disc(work, points, c), k, work->areas.area[c]);
+            share_gap(work, used, seen_disc(work, points, c), k, work->areas.area[c]);
     return rest;
 }
 
