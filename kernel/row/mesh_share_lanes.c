@@ -654,7 +654,7 @@ static void see_all(fibrad_points *points) {
 }
 
 /* How many points serve a window by areas, if there are n windows. */
-static uint32_t points_of(uint32_t n) { return n <= 144 ? 64 : n <= 600 ? 128 : 256; }
+static uint32_t points_of(uint32_t n) { return n <= 600 ? 64 : n <= 1400 ? 128 : 256; }
 
 double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k,
                                 double open) {
