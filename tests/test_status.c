@@ -38,7 +38,7 @@ START_TEST(each_status_has_its_own_text) {
 END_TEST
 
 START_TEST(other_numbers_have_a_text) {
-    static const int others[] = {1, 1000, -14, -1000, -2147483647 - 1, 2147483647};
+    static const int others[] = {1, 1000, -15, -1000, -2147483647 - 1, 2147483647};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         ck_assert_ptr_nonnull(fibrad_status_text(others[i]));
         ck_assert_str_eq(fibrad_status_text(others[i]), fibrad_status_text(1));
