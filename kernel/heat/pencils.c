@@ -183,32 +183,36 @@ static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_
     return links;
 }
 
-/* Divides memory, or without any only counts the bytes. */
-static size_t divide_scratch(const fibrad_heat *heat, unsigned char *memory, struct row_scratch *scratch) {
+/* Bytes of beams as they come and in order, of pencils, of fours and of `seen`, which follow each other. */
+static void scratch_bytes(const fibrad_heat *heat, size_t bytes[4]) {
     const size_t beams = heat->beams, pairs = fours_pairs(heat);
-    size_t used = 0;
-    *scratch = (struct row_scratch){0};
-    if (memory != NULL)
-        scratch->beam = (void *)memory, scratch->sorted = (void *)(memory + beams * sizeof(fibrad_heat_beam));
-    used += 2 * beams * sizeof(fibrad_heat_beam);
-    if (memory != NULL) scratch->pencils = memory + used;
-    used += beams * BEAM_BYTES;
-    if (memory != NULL) scratch->fours = (void *)(memory + used);
-    used += (pairs < beams ? pairs : beams) * sizeof(struct four_patches);
-    if (memory != NULL) scratch->seen = (void *)(memory + used);
-    return used + pairs * sizeof(uint16_t);
+    bytes[0] = 2 * beams * sizeof(fibrad_heat_beam);
+    bytes[1] = beams * BEAM_BYTES;
+    bytes[2] = (pairs < beams ? pairs : beams) * sizeof(struct four_patches);
+    bytes[3] = pairs * sizeof(uint16_t);
 }
 
 size_t fibrad_heat_scratch(const fibrad_heat *heat) {
-    struct row_scratch scratch;
-    return divide_scratch(heat, NULL, &scratch);
+    size_t bytes[4];
+    scratch_bytes(heat, bytes);
+    return bytes[0] + bytes[1] + bytes[2] + bytes[3];
+}
+
+static struct row_scratch divide_scratch(const fibrad_heat *heat, unsigned char *memory) {
+    size_t bytes[4];
+    scratch_bytes(heat, bytes);
+    unsigned char *const pencils = memory + bytes[0], *const fours = pencils + bytes[1];
+    return (struct row_scratch){.beam = (void *)memory,
+                                .sorted = (void *)(memory + bytes[0] / 2),
+                                .pencils = pencils,
+                                .fours = (void *)fours,
+                                .seen = (void *)(fours + bytes[2])};
 }
 
 int fibrad_heat_keep(fibrad_heat *heat, const fibrad_workspace *work, uint32_t place, uint32_t count) {
     const fibrad_entries *entries = &work->entries;
     fibrad_heat_row *row = &heat->row[place];
-    struct row_scratch scratch;
-    divide_scratch(heat, work->extra, &scratch);
+    const struct row_scratch scratch = divide_scratch(heat, work->extra);
     sort_beams(scratch.beam, count, scratch.sorted, entries->key[0], entries->length);
     fibrad_zero(scratch.seen, fours_pairs(heat) * sizeof *scratch.seen);
     const uint32_t more = write_row(heat, place, entries, &scratch, &row->bytes);
