@@ -13,13 +13,17 @@
 #define FIBRAD_NO_SIDE UINT32_MAX
 #define FIBRAD_NO_MESH UINT8_MAX
 
-/* A box about some of the triangles, in a tree that is listed depth first. Bounds are relative to mesh->middle and
- * rounded outwards. */
+#define FIBRAD_MESH_WIDE  8u  /* boxes of a node, triangles of a leaf at most */
+#define FIBRAD_MESH_DEPTH 64u /* of the tree at most */
+
+/* Boxes about some of the triangles, side by side: their middles, from mesh->middle, and half their edges, rounded
+ * outwards; both in units of mesh->extent. Boxes that are not there have negative edges. */
 typedef struct fibrad_mesh_node {
-    float bound[6]; /* lower ends, then upper ones */
-    uint32_t skip;  /* the node after all below this one */
-    uint32_t leaf;  /* of a leaf: its first triangle times 8 and how many; of others 0 */
+    float middle[3][FIBRAD_MESH_WIDE], half[3][FIBRAD_MESH_WIDE];
+    uint32_t child[FIBRAD_MESH_WIDE]; /* a node times 16, or of a leaf its first triangle times 16 and how many */
 } fibrad_mesh_node;
+
+static inline uint32_t fibrad_mesh_leaf(uint32_t child) { return child % 16; } /* how many triangles; 0: a node */
 
 /* Meshes are numbered as their bodies come. */
 typedef struct fibrad_mesh {
@@ -27,15 +31,45 @@ typedef struct fibrad_mesh {
     double period[3];                      /* [L] 0: the axis is open */
     double low[3], high[3];                /* [L] of all triangles */
     double middle[3];                      /* [L] */
+    double extent;                         /* [L] from there to the farthest of low and high, along any axis */
     double grain;                          /* [L] lengths below this may be rounding */
     fibrad_mesh_node *node;                /* [nodes] */
-    double (*corner)[3][3];                /* [triangles] corner by corner [L] */
+    double *corner[3][3];                  /* [triangles] of each corner x, y, z [L]; whole eights can be read */
     uint32_t *number;                      /* [triangles] the caller's */
     uint8_t (*mesh)[2];                    /* [triangles] whose front and back are; FIBRAD_NO_MESH: nobody's */
     uint32_t *side;                        /* [2 triangles] the sides of the first mesh, then those of the second ... */
     double *area;                          /* [2 triangles] of the mesh's sides up to this one [L^2] */
     uint32_t first[FIBRAD_BODIES_MAX + 1]; /* where those of each mesh begin */
 } fibrad_mesh;
+
+static inline void fibrad_mesh_corners(const fibrad_mesh *mesh, uint32_t triangle, double corner[3][3]) {
+    for (int k = 0; k < 3; k++)
+        for (int axis = 0; axis < 3; axis++) corner[k][axis] = mesh->corner[k][axis][triangle];
+}
+
+/* A walk through the tree, nodes within nodes: which they are, and which of their boxes are still to be looked at. */
+typedef struct fibrad_mesh_walk {
+    uint32_t node[FIBRAD_MESH_DEPTH], boxes[FIBRAD_MESH_DEPTH], level;
+} fibrad_mesh_walk;
+
+/* Goes into a node, to its boxes given by bits. */
+static inline void fibrad_mesh_enter(fibrad_mesh_walk *walk, uint32_t node, uint32_t boxes) {
+    walk->node[walk->level] = node, walk->boxes[walk->level++] = boxes;
+}
+
+/* The next child; false: there is none left. */
+static inline bool fibrad_mesh_next(fibrad_mesh_walk *walk, const fibrad_mesh *mesh, uint32_t *child) {
+    while (walk->level > 0) {
+        uint32_t *boxes = &walk->boxes[walk->level - 1];
+        if (*boxes != 0) {
+            *child = mesh->node[walk->node[walk->level - 1]].child[__builtin_ctz(*boxes)];
+            *boxes &= *boxes - 1;
+            return true;
+        }
+        walk->level--;
+    }
+    return false;
+}
 
 /* Takes the arrays of so many triangles from the arena. */
 void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangles);

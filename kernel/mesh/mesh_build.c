@@ -1,21 +1,22 @@
 /* mesh_build.c - puts triangles into a tree of boxes, in fixed memory. SPDX-License-Identifier: MIT
  *
- * From the top down, boxes are cut where the sum over both parts of surface times number is least among sixteen places
- * along the longest axis: large triangles come apart from small ones. Source: I. Wald, IEEE Symposium on Interactive
+ * From the top down, the largest box of a node is cut until there are eight: where the sum over both parts of surface
+ * times number is least among sixteen places along the longest axis, so that large triangles come apart from small ones. Source: I. Wald, IEEE Symposium on Interactive
  * Ray Tracing (2007) 33. */
 #include "mesh/mesh.h"
 
-#define LEAF       3u /* triangles that stay together */
 #define BINS       16
-#define DEPTH      64 /* of the tree: BY_SURFACE, then halves */
-#define BY_SURFACE 32
+#define BY_SURFACE (FIBRAD_MESH_DEPTH / 2) /* how often; after so many cuts boxes are halved */
 #define LENGTH_MAX 1e150
+#define NO_BOX     (-1e30f)
 
 void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangles) {
     const size_t n = triangles;
     mesh->triangles = triangles;
-    mesh->node = fibrad_arena_take(arena, 2 * n, sizeof *mesh->node);
-    mesh->corner = fibrad_arena_take(arena, n, sizeof *mesh->corner);
+    mesh->node = fibrad_arena_take(arena, n / (FIBRAD_MESH_WIDE - 1) + 1, sizeof *mesh->node);
+    for (int k = 0; k < 3; k++)
+        for (int axis = 0; axis < 3; axis++)
+            mesh->corner[k][axis] = fibrad_arena_take(arena, n + FIBRAD_MESH_WIDE, sizeof(double));
     mesh->number = fibrad_arena_take(arena, n, sizeof *mesh->number);
     mesh->mesh = fibrad_arena_take(arena, n, sizeof *mesh->mesh);
     mesh->side = fibrad_arena_take(arena, 2 * n, sizeof *mesh->side);
@@ -45,11 +46,11 @@ static void box_add(mesh_box *box, const mesh_box *other) {
     }
 }
 
-static mesh_box triangle_box(double corner[3][3]) {
+static mesh_box triangle_box(const fibrad_mesh *mesh, uint32_t t) {
     mesh_box box;
     for (int axis = 0; axis < 3; axis++) {
-        box.low[axis] = fibrad_min(corner[0][axis], fibrad_min(corner[1][axis], corner[2][axis]));
-        box.high[axis] = fibrad_max(corner[0][axis], fibrad_max(corner[1][axis], corner[2][axis]));
+        const double a = mesh->corner[0][axis][t], b = mesh->corner[1][axis][t], c = mesh->corner[2][axis][t];
+        box.low[axis] = fibrad_min(a, fibrad_min(b, c)), box.high[axis] = fibrad_max(a, fibrad_max(b, c));
     }
     return box;
 }
@@ -64,24 +65,35 @@ static double surface_of(const mesh_box *box, double length) {
     return edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0];
 }
 
-static double middle_of(double corner[3][3], int axis) {
-    const mesh_box box = triangle_box(corner);
+static double middle_of(const fibrad_mesh *mesh, uint32_t t, int axis) {
+    const mesh_box box = triangle_box(mesh, t);
     return 0.5 * box.low[axis] + 0.5 * box.high[axis];
 }
 
 static void swap_triangles(fibrad_mesh *mesh, uint32_t a, uint32_t b) {
-    double corner[3][3];
-    fibrad_copy(corner, mesh->corner[a], sizeof corner);
-    fibrad_copy(mesh->corner[a], mesh->corner[b], sizeof corner);
-    fibrad_copy(mesh->corner[b], corner, sizeof corner);
+    for (int k = 0; k < 3; k++)
+        for (int axis = 0; axis < 3; axis++) {
+            double *corner = mesh->corner[k][axis], first = corner[a];
+            corner[a] = corner[b], corner[b] = first;
+        }
     const uint32_t number = mesh->number[a];
     mesh->number[a] = mesh->number[b], mesh->number[b] = number;
 }
 
-/* Triangles [begin, end), a box to be cut. */
+/* Triangles [begin, end), and their box after so many cuts. */
 typedef struct mesh_part {
     uint32_t begin, end, depth;
+    mesh_box box;
 } mesh_part;
+
+static mesh_part part_of(const fibrad_mesh *mesh, uint32_t begin, uint32_t end, uint32_t depth) {
+    mesh_part part = {begin, end, depth, no_box};
+    for (uint32_t t = begin; t < end; t++) {
+        const mesh_box own = triangle_box(mesh, t);
+        box_add(&part.box, &own);
+    }
+    return part;
+}
 
 /* The bin of a coordinate between low and high. */
 static int place_of_bin(double at, double low, double high) {
@@ -93,19 +105,18 @@ static int place_of_bin(double at, double low, double high) {
 static uint32_t move_below(fibrad_mesh *mesh, const mesh_part *part, int axis, double low, double high, int cut) {
     uint32_t to = part->begin;
     for (uint32_t t = part->begin; t < part->end; t++)
-        if (place_of_bin(middle_of(mesh->corner[t], axis), low, high) <= cut) swap_triangles(mesh, t, to++);
+        if (place_of_bin(middle_of(mesh, t, axis), low, high) <= cut) swap_triangles(mesh, t, to++);
     return to;
 }
 
-/* Where a part is cut in two; `end`: it stays whole. */
-static uint32_t cut_part(fibrad_mesh *mesh, const mesh_part *part, const mesh_box *box) {
+/* Where a part is cut in two. */
+static uint32_t cut_part(fibrad_mesh *mesh, const mesh_part *part) {
     const uint32_t count = part->end - part->begin;
     mesh_box middles = no_box, bin[BINS], right[BINS];
     uint32_t in_bin[BINS] = {0}, on_right = 0, on_left = 0;
-    if (count <= LEAF) return part->end;
     for (uint32_t t = part->begin; t < part->end; t++)
         for (int axis = 0; axis < 3; axis++) {
-            const double at = middle_of(mesh->corner[t], axis);
+            const double at = middle_of(mesh, t, axis);
             middles.low[axis] = fibrad_min(middles.low[axis], at);
             middles.high[axis] = fibrad_max(middles.high[axis], at);
         }
@@ -116,15 +127,15 @@ static uint32_t cut_part(fibrad_mesh *mesh, const mesh_part *part, const mesh_bo
     if (!(high > low) || part->depth >= BY_SURFACE) return part->begin + count / 2;
     for (int b = 0; b < BINS; b++) bin[b] = no_box;
     for (uint32_t t = part->begin; t < part->end; t++) {
-        const int b = place_of_bin(middle_of(mesh->corner[t], axis), low, high);
-        const mesh_box own = triangle_box(mesh->corner[t]);
+        const int b = place_of_bin(middle_of(mesh, t, axis), low, high);
+        const mesh_box own = triangle_box(mesh, t);
         box_add(&bin[b], &own);
         in_bin[b]++;
     }
     right[BINS - 1] = bin[BINS - 1];
     for (int b = BINS - 1; b-- > 0;) right[b] = bin[b], box_add(&right[b], &right[b + 1]);
     double least = __builtin_inf(), length = 0;
-    for (int a = 0; a < 3; a++) length = fibrad_max(length, box->high[a] - box->low[a]);
+    for (int a = 0; a < 3; a++) length = fibrad_max(length, part->box.high[a] - part->box.low[a]);
     mesh_box left = no_box;
     on_right = count;
     for (int b = 0; b + 1 < BINS; b++) {
@@ -137,40 +148,55 @@ static uint32_t cut_part(fibrad_mesh *mesh, const mesh_part *part, const mesh_bo
     return best < 0 ? part->begin + count / 2 : move_below(mesh, part, axis, low, high, best);
 }
 
-static void set_bounds(const fibrad_mesh *mesh, fibrad_mesh_node *node, const mesh_box *box) {
+static void set_box(const fibrad_mesh *mesh, fibrad_mesh_node *node, uint32_t place, const mesh_box *box) {
     for (int axis = 0; axis < 3; axis++) {
-        const double low = box->low[axis] - mesh->middle[axis], high = box->high[axis] - mesh->middle[axis];
-        const double wide = 2e-7 * fibrad_max(fibrad_abs(low), fibrad_abs(high)) + 2 * mesh->grain;
-        node->bound[axis] = low - wide < -FLT_MAX ? -__builtin_inff() : (float)(low - wide);
-        node->bound[3 + axis] = high + wide > FLT_MAX ? __builtin_inff() : (float)(high + wide);
+        const double low = (box->low[axis] - mesh->middle[axis]) / mesh->extent;
+        const double high = (box->high[axis] - mesh->middle[axis]) / mesh->extent;
+        const float middle = (float)(0.5 * low + 0.5 * high);
+        const double half = fibrad_max(high - (double)middle, (double)middle - low) + 2 * mesh->grain / mesh->extent;
+        node->middle[axis][place] = middle, node->half[axis][place] = (float)(half * (1 + 2e-7));
     }
 }
 
-/* Builds the tree depth first; parts to the right wait. */
+/* Cuts the largest box of those that are more than a leaf; false: there is none. */
+static bool cut_largest(fibrad_mesh *mesh, mesh_part *part, uint32_t *parts) {
+    double most = -1;
+    uint32_t largest = 0;
+    for (uint32_t k = 0; k < *parts; k++) {
+        const double surface = surface_of(&part[k].box, mesh->extent);
+        if (part[k].end - part[k].begin > FIBRAD_MESH_WIDE && surface > most) most = surface, largest = k;
+    }
+    if (most < 0) return false;
+    mesh_part *cut = &part[largest];
+    const uint32_t begin = cut->begin, end = cut->end, middle = cut_part(mesh, cut), depth = cut->depth + 1;
+    *cut = part_of(mesh, begin, middle, depth);
+    part[(*parts)++] = part_of(mesh, middle, end, depth);
+    return true;
+}
+
+/* Builds the tree level by level; a node that waits holds its triangles as child[0] to child[1], and child[2] cuts. A
+ * node has eight boxes, or only leaves, so that there is no more than one for seven triangles. */
 static void build_tree(fibrad_mesh *mesh) {
-    mesh_part wait[DEPTH], part = {0, mesh->triangles, 0};
-    uint32_t waiting = 0;
-    for (mesh->nodes = 0; mesh->triangles > 0;) {
-        mesh_box box = no_box;
-        for (uint32_t t = part.begin; t < part.end; t++) {
-            const mesh_box own = triangle_box(mesh->corner[t]);
-            box_add(&box, &own);
-        }
-        fibrad_mesh_node *node = &mesh->node[mesh->nodes++];
-        set_bounds(mesh, node, &box);
-        const uint32_t cut = cut_part(mesh, &part, &box);
-        node->leaf = cut == part.end ? part.begin * 8 + (part.end - part.begin) : 0;
-        if (cut < part.end) {
-            wait[waiting++] = (mesh_part){cut, part.end, part.depth + 1};
-            part = (mesh_part){part.begin, cut, part.depth + 1};
-        } else if (waiting > 0) {
-            part = wait[--waiting];
-        } else {
-            break;
+    mesh_part part[FIBRAD_MESH_WIDE];
+    mesh->nodes = mesh->triangles > 0;
+    if (mesh->nodes > 0) mesh->node[0] = (fibrad_mesh_node){.child = {0, mesh->triangles, 0}};
+    for (uint32_t k = 0; k < mesh->nodes; k++) {
+        fibrad_mesh_node *node = &mesh->node[k];
+        uint32_t parts = 1;
+        part[0] = part_of(mesh, node->child[0], node->child[1], node->child[2]);
+        while (parts < FIBRAD_MESH_WIDE && cut_largest(mesh, part, &parts)) {}
+        for (uint32_t place = 0; place < FIBRAD_MESH_WIDE; place++) {
+            const mesh_part *own = &part[place];
+            node->child[place] = 0;
+            for (int axis = 0; axis < 3; axis++) node->half[axis][place] = NO_BOX;
+            if (place >= parts) continue;
+            set_box(mesh, node, place, &own->box);
+            node->child[place] = own->begin * 16 + (own->end - own->begin);
+            if (own->end - own->begin <= FIBRAD_MESH_WIDE) continue;
+            node->child[place] = mesh->nodes * 16;
+            mesh->node[mesh->nodes++] = (fibrad_mesh_node){.child = {own->begin, own->end, own->depth}};
         }
     }
-    for (uint32_t k = mesh->nodes; k-- > 0;) /* the left child comes next, the right one after all of it */
-        mesh->node[k].skip = mesh->node[k].leaf != 0 ? k + 1 : mesh->node[mesh->node[k + 1].skip].skip;
 }
 
 static double area_of_triangle(double corner[3][3]) {
@@ -193,7 +219,9 @@ static void list_sides(fibrad_mesh *mesh) {
         if (m == FIBRAD_NO_MESH) continue;
         const uint32_t at = end[m]++;
         mesh->side[at] = s;
-        mesh->area[at] = area_of_triangle(mesh->corner[s / 2]) + (at > mesh->first[m] ? mesh->area[at - 1] : 0);
+        double corner[3][3];
+        fibrad_mesh_corners(mesh, s / 2, corner);
+        mesh->area[at] = area_of_triangle(corner) + (at > mesh->first[m] ? mesh->area[at - 1] : 0);
     }
 }
 
@@ -211,7 +239,7 @@ static bool take_triangle(fibrad_mesh *mesh, const struct fibrad_triangles *give
         const double at[3] = {given->x[v * stride], given->y[v * stride], given->z[v * stride]};
         for (int axis = 0; axis < 3; axis++) {
             if (!(fibrad_abs(at[axis]) <= LENGTH_MAX)) return false;
-            mesh->corner[t][k][axis] = at[axis];
+            mesh->corner[k][axis][t] = at[axis];
             mesh->low[axis] = fibrad_min(mesh->low[axis], at[axis]);
             mesh->high[axis] = fibrad_max(mesh->high[axis], at[axis]);
         }
@@ -244,11 +272,14 @@ int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, c
             return FIBRAD_E_ARGUMENT;
     }
     double longest = 0;
+    mesh->extent = 0;
     for (int axis = 0; axis < 3; axis++) {
         mesh->middle[axis] = 0.5 * mesh->low[axis] + 0.5 * mesh->high[axis];
         const double far = fibrad_max(fibrad_abs(mesh->low[axis]), fibrad_abs(mesh->high[axis]));
         longest = fibrad_max(longest, far + (mesh->high[axis] - mesh->low[axis]));
+        mesh->extent = fibrad_max(mesh->extent, 0.5 * (mesh->high[axis] - mesh->low[axis]));
     }
+    if (!(mesh->extent > 0)) mesh->extent = 1;
     mesh->grain = 1e-11 * longest;
     build_tree(mesh);
     for (uint32_t t = 0; t < mesh->triangles; t++) { /* in the order of the tree */

@@ -21,7 +21,8 @@ static uint32_t halvings_for(double own, double area) {
 }
 
 static void middle_of_side(const fibrad_mesh *mesh, uint32_t side, double middle[3]) {
-    double(*c)[3] = mesh->corner[side / 2];
+    double c[3][3];
+    fibrad_mesh_corners(mesh, side / 2, c);
     for (int axis = 0; axis < 3; axis++) middle[axis] = (c[0][axis] + c[1][axis] + c[2][axis]) / 3;
 }
 
@@ -89,8 +90,8 @@ uint32_t fibrad_mesh_cut_sides(const fibrad_mesh *mesh, uint32_t number, double 
 /* The shares that the corners of a triangle have of a place on it, none below 0. Images along periodic axes are taken
  * to the box about the triangle. */
 static void find_shares(const fibrad_mesh *mesh, uint32_t triangle, const double at[3], double share[3]) {
-    double(*c)[3] = mesh->corner[triangle];
-    double aa = 0, ab = 0, bb = 0, ad = 0, bd = 0;
+    double c[3][3], aa = 0, ab = 0, bb = 0, ad = 0, bd = 0;
+    fibrad_mesh_corners(mesh, triangle, c);
     for (int axis = 0; axis < 3; axis++) {
         const double low = fibrad_min(c[0][axis], fibrad_min(c[1][axis], c[2][axis]));
         const double high = fibrad_max(c[0][axis], fibrad_max(c[1][axis], c[2][axis]));
@@ -107,11 +108,11 @@ static void find_shares(const fibrad_mesh *mesh, uint32_t triangle, const double
 
 uint32_t fibrad_mesh_patch_at(const fibrad_mesh *mesh, const fibrad_mesh_cut *cut, uint32_t side, const double at[3]) {
     const fibrad_mesh_cut own = cut[2 * (size_t)mesh->number[side / 2] + side % 2];
-    double(*c)[3] = mesh->corner[side / 2];
-    double share[3], square[3] = {0, 0, 0}; /* the latter of the edge across from each corner */
+    double c[3][3], share[3], square[3] = {0, 0, 0}; /* the latter of the edge across from each corner */
     uint32_t number = 0;
     if (own.halvings == 0) return own.patch;
     find_shares(mesh, side / 2, at, share);
+    fibrad_mesh_corners(mesh, side / 2, c);
     for (int k = 0; k < 3; k++)
         for (int axis = 0; axis < 3; axis++) {
             const double edge = c[(k + 1) % 3][axis] - c[(k + 2) % 3][axis];

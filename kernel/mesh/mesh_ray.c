@@ -17,7 +17,7 @@ fibrad_mesh_images fibrad_mesh_images_in(const fibrad_mesh *mesh, const double l
 typedef struct sheared_ray {
     int axis[3];
     double origin[3], shear[2], inverse; /* of w along the last axis */
-    double middle[3], over[3];           /* origin from the middle of the mesh; 1/w, for boxes */
+    float middle[3], over[3], pad;       /* for boxes, in their units: origin; 1/w; what is rounded */
     double begin;                        /* minus a grain */
     uint32_t except;
 } sheared_ray;
@@ -30,15 +30,20 @@ static sheared_ray shear_ray(const fibrad_mesh *mesh, const double w[3], uint32_
     ray.axis[0] = (last + 1 + turned) % 3, ray.axis[1] = (last + 2 - turned) % 3, ray.axis[2] = last;
     ray.inverse = 1 / w[last];
     for (int k = 0; k < 2; k++) ray.shear[k] = w[ray.axis[k]] * ray.inverse;
-    for (int axis = 0; axis < 3; axis++) ray.over[axis] = 1 / w[axis];
+    for (int axis = 0; axis < 3; axis++) /* finite, and still so times any length in sight */
+        ray.over[axis] = (float)(fibrad_abs(w[axis]) > 1e-30 ? 1 / w[axis] : 1e30);
     return ray;
 }
 
 static void place_ray(const fibrad_mesh *mesh, const double origin[3], const double shift[3], sheared_ray *ray) {
+    double far = 1;
     for (int axis = 0; axis < 3; axis++) {
         ray->origin[axis] = origin[axis] - shift[axis];
-        ray->middle[axis] = ray->origin[axis] - mesh->middle[axis];
+        const double at = (ray->origin[axis] - mesh->middle[axis]) / mesh->extent;
+        ray->middle[axis] = (float)at;
+        far = fibrad_max(far, fibrad_abs(at));
     }
+    ray->pad = (float)(1e-6 * far);
 }
 
 /* The best so far; a back is as far as a grain behind it, so that fronts come first at edges. */
@@ -50,9 +55,10 @@ typedef struct first_side {
 static void meet_triangle(const fibrad_mesh *mesh, const sheared_ray *ray, uint32_t t, first_side *first) {
     double at[3][2], along[3];
     for (int k = 0; k < 3; k++) {
-        const double *c = mesh->corner[t][k];
-        along[k] = c[ray->axis[2]] - ray->origin[ray->axis[2]];
-        for (int a = 0; a < 2; a++) at[k][a] = c[ray->axis[a]] - ray->origin[ray->axis[a]] - ray->shear[a] * along[k];
+        double *const *c = mesh->corner[k];
+        along[k] = c[ray->axis[2]][t] - ray->origin[ray->axis[2]];
+        for (int a = 0; a < 2; a++)
+            at[k][a] = c[ray->axis[a]][t] - ray->origin[ray->axis[a]] - ray->shear[a] * along[k];
     }
     const double a = at[1][0] * at[2][1] - at[1][1] * at[2][0], b = at[2][0] * at[0][1] - at[2][1] * at[0][0];
     const double c = at[0][0] * at[1][1] - at[0][1] * at[1][0], sum = a + b + c;
@@ -65,32 +71,38 @@ static void meet_triangle(const fibrad_mesh *mesh, const sheared_ray *ray, uint3
     *first = (first_side){fibrad_max(0, distance), key, 2 * t + back, mesh->number[t]};
 }
 
-/* Whether the ray meets a box before the first side so far. */
-static bool meets_box(const fibrad_mesh_node *node, const sheared_ray *ray, double to) {
-    double from = ray->begin;
+/* The boxes of a node that a ray may meet within a length, in their units. */
+static uint32_t boxes_on_ray(const fibrad_mesh_node *node, const sheared_ray *ray, float to) {
+    float from[FIBRAD_MESH_WIDE], until[FIBRAD_MESH_WIDE];
+    uint32_t boxes = 0;
+    for (uint32_t k = 0; k < FIBRAD_MESH_WIDE; k++) from[k] = -ray->pad, until[k] = to;
     for (int axis = 0; axis < 3; axis++) {
-        const double low = node->bound[axis] - ray->middle[axis], high = node->bound[3 + axis] - ray->middle[axis];
-        if (low > 0 || high < 0) { /* else it begins within the slab, and 0 times infinity plays no part */
-            const double enter = (low > 0 ? low : high) * ray->over[axis];
-            if (!(enter >= 0)) return false;
-            from = fibrad_max(from, enter);
+        const float origin = ray->middle[axis], over = ray->over[axis], size = over < 0 ? -over : over;
+        for (uint32_t k = 0; k < FIBRAD_MESH_WIDE; k++) {
+            const float middle = (node->middle[axis][k] - origin) * over, half = (node->half[axis][k] + ray->pad) * size;
+            from[k] = middle - half > from[k] ? middle - half : from[k];
+            until[k] = middle + half < until[k] ? middle + half : until[k];
         }
-        const double leave = (ray->over[axis] > 0 ? high : low) * ray->over[axis];
-        if (leave < to) to = leave;
     }
-    return from <= to;
+    for (uint32_t k = 0; k < FIBRAD_MESH_WIDE; k++) boxes |= (uint32_t)(from[k] <= until[k]) << k;
+    return boxes;
+}
+
+/* A length in units of boxes, rounded up. */
+static float length_for_boxes(const fibrad_mesh *mesh, const sheared_ray *ray, double length) {
+    return (float)(fibrad_min(length / mesh->extent * 1.000001, 1e20) + (double)ray->pad);
 }
 
 static void meet_image(const fibrad_mesh *mesh, const sheared_ray *ray, first_side *first) {
-    for (uint32_t k = 0; k < mesh->nodes;) {
-        const fibrad_mesh_node *node = &mesh->node[k];
-        if (!meets_box(node, ray, first->key)) {
-            k = node->skip;
-            continue;
-        }
-        const uint32_t begin = node->leaf / 8, end = begin + node->leaf % 8;
-        for (uint32_t t = begin; t < end; t++) meet_triangle(mesh, ray, t, first);
-        k++;
+    fibrad_mesh_walk walk = {.level = 0};
+    if (mesh->nodes > 0)
+        fibrad_mesh_enter(&walk, 0, boxes_on_ray(mesh->node, ray, length_for_boxes(mesh, ray, first->key)));
+    for (uint32_t child; fibrad_mesh_next(&walk, mesh, &child);) {
+        const uint32_t place = child / 16, count = fibrad_mesh_leaf(child);
+        for (uint32_t t = place; t < place + count; t++) meet_triangle(mesh, ray, t, first);
+        if (count > 0) continue;
+        const float to = length_for_boxes(mesh, ray, first->key);
+        fibrad_mesh_enter(&walk, place, boxes_on_ray(&mesh->node[place], ray, to));
     }
 }
 
@@ -140,11 +152,9 @@ fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3
 }
 
 void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]) {
-    double a[3], b[3], square = 0, longest = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        a[axis] = mesh->corner[side / 2][1][axis] - mesh->corner[side / 2][0][axis];
-        b[axis] = mesh->corner[side / 2][2][axis] - mesh->corner[side / 2][0][axis];
-    }
+    double c[3][3], a[3], b[3], square = 0, longest = 0;
+    fibrad_mesh_corners(mesh, side / 2, c);
+    for (int axis = 0; axis < 3; axis++) a[axis] = c[1][axis] - c[0][axis], b[axis] = c[2][axis] - c[0][axis];
     for (int axis = 0; axis < 3; axis++) {
         const int next = (axis + 1) % 3, last = (axis + 2) % 3;
         normal[axis] = a[next] * b[last] - a[last] * b[next];
@@ -170,10 +180,11 @@ uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const doubl
     const double root = fibrad_sqrt(own > 0 ? fibrad_max(0, fibrad_min(1, (at - before) / own)) : 0);
     const double part[3] = {1 - root, root * (1 - share[1]), root * share[1]};
     const uint32_t side = mesh->side[low];
+    double c[3][3];
+    fibrad_mesh_corners(mesh, side / 2, c);
     for (int axis = 0; axis < 3; axis++) {
-        const double origin = mesh->corner[side / 2][0][axis];
-        point[axis] = origin + part[1] * (mesh->corner[side / 2][1][axis] - origin) +
-                      part[2] * (mesh->corner[side / 2][2][axis] - origin);
+        const double origin = c[0][axis];
+        point[axis] = origin + part[1] * (c[1][axis] - origin) + part[2] * (c[2][axis] - origin);
     }
     return side;
 }
@@ -214,31 +225,39 @@ static double square_to_triangle(double c[3][3]) {
                       fibrad_min(square_to_segment(c[1], c[2]), square_to_segment(c[2], c[0])));
 }
 
-/* Lessens the distance `least` from a point in the frame of an image. */
-static double nearest_in_image(const fibrad_mesh *mesh, const double at[3], double least) {
-    for (uint32_t k = 0; k < mesh->nodes;) {
-        const fibrad_mesh_node *node = &mesh->node[k];
+/* The boxes of a node that are nearer to a place, in their units, than a length. */
+static uint32_t boxes_near(const fibrad_mesh_node *node, const double place[3], double length) {
+    uint32_t boxes = 0;
+    for (uint32_t k = 0; k < FIBRAD_MESH_WIDE; k++) {
         double square = 0;
         for (int axis = 0; axis < 3; axis++) {
-            const double place = at[axis] - mesh->middle[axis];
-            const double away =
-                fibrad_max(0, fibrad_max(node->bound[axis] - place, place - node->bound[3 + axis])) / least;
+            const double from = fibrad_abs(place[axis] - (double)node->middle[axis][k]) - (double)node->half[axis][k];
+            const double away = fibrad_max(0, from) / length;
             square += away * away;
         }
-        if (!(square < 1)) {
-            k = node->skip;
-            continue;
-        }
-        const uint32_t begin = node->leaf / 8, end = begin + node->leaf % 8;
-        for (uint32_t t = begin; t < end; t++) {
+        boxes |= (uint32_t)(square < 1) << k;
+    }
+    return boxes;
+}
+
+/* Lessens the distance `least` from a point in the frame of an image. */
+static double nearest_in_image(const fibrad_mesh *mesh, const double at[3], double least) {
+    fibrad_mesh_walk walk = {.level = 0};
+    double place[3];
+    for (int axis = 0; axis < 3; axis++) place[axis] = (at[axis] - mesh->middle[axis]) / mesh->extent;
+    if (mesh->nodes > 0) fibrad_mesh_enter(&walk, 0, boxes_near(mesh->node, place, least / mesh->extent));
+    for (uint32_t child; fibrad_mesh_next(&walk, mesh, &child);) {
+        const uint32_t first = child / 16, count = fibrad_mesh_leaf(child);
+        for (uint32_t t = first; t < first + count; t++) {
             double c[3][3];
             for (int corner = 0; corner < 3; corner++)
                 for (int axis = 0; axis < 3; axis++)
-                    c[corner][axis] = (mesh->corner[t][corner][axis] - at[axis]) / least;
+                    c[corner][axis] = (mesh->corner[corner][axis][t] - at[axis]) / least;
             const double ratio = square_to_triangle(c);
             if (ratio < 1) least *= fibrad_max(fibrad_sqrt(ratio), 1e-12);
         }
-        k++;
+        if (count == 0)
+            fibrad_mesh_enter(&walk, first, boxes_near(&mesh->node[first], place, least / mesh->extent));
     }
     return least;
 }

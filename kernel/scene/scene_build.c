@@ -122,7 +122,7 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
     }
     for (uint32_t t = 0; t < scene->mesh.triangles; t++) {
         for (int k = 0; k < 9; k++) {
-            fibrad_copy(&word, &scene->mesh.corner[t][k / 3][k % 3], sizeof word);
+            fibrad_copy(&word, &scene->mesh.corner[k / 3][k % 3][t], sizeof word);
             hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
             hash ^= hash >> 32;
         }

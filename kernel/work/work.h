@@ -33,6 +33,16 @@ typedef struct fibrad_near {
     uint32_t asked;              /* how many windows have asked for one more than there are */
 } fibrad_near;
 
+/* Triangles that may come before a window, in its frame. */
+#define FIBRAD_FACES 128u
+typedef struct fibrad_faces {
+    double corner[3][3][FIBRAD_FACES + FIBRAD_LANES_MAX]; /* of each corner u, v and depth */
+    double low[FIBRAD_FACES + FIBRAD_LANES_MAX];          /* the least depth */
+    double plane[FIBRAD_FACES + FIBRAD_LANES_MAX];        /* at which the middle of the window meets its plane */
+    uint32_t triangle[FIBRAD_FACES + FIBRAD_LANES_MAX];   /* place in the mesh */
+    uint32_t count;
+} fibrad_faces;
+
 /* Lines of a window that look for triangles, one for a point, so ordered that eight by eight they are near each other
  * at one depth. The last eight are filled up with lines that meet nothing. */
 #define FIBRAD_MET_POINTS  256
@@ -43,17 +53,21 @@ typedef struct fibrad_lines {
     double exit[FIBRAD_MET_POINTS];                  /* ... and how deep that is */
     double aside[2][FIBRAD_MET_POINTS];              /* of their directions, along u and v; 0 unless spread */
     double depth[FIBRAD_MET_POINTS];                 /* of what they meet, or beyond which they do not look */
-    uint32_t side[FIBRAD_MET_POINTS];                /* of the mesh; FIBRAD_NO_SIDE: no triangle */
+    double side[FIBRAD_MET_POINTS];                  /* of the mesh, if they meet it, and ... */
+    double number[FIBRAD_MET_POINTS];                /* ... its triangle's, the caller's; infinite: none */
     uint32_t point[FIBRAD_MET_POINTS];
-    /* Of each eight: bounds of u, v at depth `at`, and of `aside`. */
+    /* Of each eight: bounds of u, v at depth `at`, and of `aside`; beyond which depth none of them looks. */
     double low[2][FIBRAD_LINE_BLOCKS], high[2][FIBRAD_LINE_BLOCKS];
     double least[2][FIBRAD_LINE_BLOCKS], most[2][FIBRAD_LINE_BLOCKS];
+    double last[FIBRAD_LINE_BLOCKS];
     uint32_t count;
+    uint32_t parallel; /* they are those of all of so many points; 0: others */
     double at;
 } fibrad_lines;
 
 /* Points of a window that meet triangles. */
 typedef struct fibrad_met {
+    _Alignas(64) fibrad_faces faces;
     fibrad_lines lines;
     double depth[FIBRAD_MET_POINTS];   /* along the line, from the plane through the centre; of points beyond a
                                           triangle that cuts sphere i below -1 */
