@@ -47,26 +47,32 @@ static inline void fibrad_mesh_corners(const fibrad_mesh *mesh, uint32_t triangl
         for (int axis = 0; axis < 3; axis++) corner[k][axis] = mesh->corner[k][axis][triangle];
 }
 
-/* A walk through the tree, nodes within nodes: which they are, and which of their boxes are still to be looked at. */
+/* A walk through the tree, nodes within nodes: which they are, and which of their boxes are left, the next one last. */
 typedef struct fibrad_mesh_walk {
-    uint32_t node[FIBRAD_MESH_DEPTH], boxes[FIBRAD_MESH_DEPTH], level;
+    uint32_t node[FIBRAD_MESH_DEPTH], level;
+    uint8_t box[FIBRAD_MESH_DEPTH][FIBRAD_MESH_WIDE], left[FIBRAD_MESH_DEPTH];
 } fibrad_mesh_walk;
 
-/* Goes into a node, to its boxes given by bits. */
-static inline void fibrad_mesh_enter(fibrad_mesh_walk *walk, uint32_t node, uint32_t boxes) {
-    walk->node[walk->level] = node, walk->boxes[walk->level++] = boxes;
+/* Goes into a node, to its boxes given by bits, in the order of their keys. */
+static inline void fibrad_mesh_enter(fibrad_mesh_walk *walk, uint32_t node, uint32_t boxes,
+                                     const float key[FIBRAD_MESH_WIDE]) {
+    uint8_t *box = walk->box[walk->level], count = 0;
+    for (; boxes != 0; boxes &= boxes - 1) {
+        const uint8_t own = (uint8_t)__builtin_ctz(boxes);
+        uint8_t to = count++;
+        for (; to > 0 && key[box[to - 1]] < key[own]; to--) box[to] = box[to - 1];
+        box[to] = own;
+    }
+    walk->node[walk->level] = node, walk->left[walk->level++] = count;
 }
 
 /* The next child; false: there is none left. */
 static inline bool fibrad_mesh_next(fibrad_mesh_walk *walk, const fibrad_mesh *mesh, uint32_t *child) {
-    while (walk->level > 0) {
-        uint32_t *boxes = &walk->boxes[walk->level - 1];
-        if (*boxes != 0) {
-            *child = mesh->node[walk->node[walk->level - 1]].child[__builtin_ctz(*boxes)];
-            *boxes &= *boxes - 1;
-            return true;
-        }
-        walk->level--;
+    for (; walk->level > 0; walk->level--) {
+        const uint32_t top = walk->level - 1;
+        if (walk->left[top] == 0) continue;
+        *child = mesh->node[walk->node[top]].child[walk->box[top][--walk->left[top]]];
+        return true;
     }
     return false;
 }

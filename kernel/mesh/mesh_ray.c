@@ -71,8 +71,10 @@ static void meet_triangle(const fibrad_mesh *mesh, const sheared_ray *ray, uint3
     *first = (first_side){fibrad_max(0, distance), key, 2 * t + back, mesh->number[t]};
 }
 
-/* The boxes of a node that a ray may meet within a length, in their units. */
-static uint32_t boxes_on_ray(const fibrad_mesh_node *node, const sheared_ray *ray, float to) {
+/* Goes into a node, to the boxes that a ray may meet within a length, in their units, the nearest first. */
+static void enter_on_ray(const fibrad_mesh *mesh, fibrad_mesh_walk *walk, uint32_t number, const sheared_ray *ray,
+                         float to) {
+    const fibrad_mesh_node *node = &mesh->node[number];
     float from[FIBRAD_MESH_WIDE], until[FIBRAD_MESH_WIDE];
     uint32_t boxes = 0;
     for (uint32_t k = 0; k < FIBRAD_MESH_WIDE; k++) from[k] = -ray->pad, until[k] = to;
@@ -85,7 +87,7 @@ static uint32_t boxes_on_ray(const fibrad_mesh_node *node, const sheared_ray *ra
         }
     }
     for (uint32_t k = 0; k < FIBRAD_MESH_WIDE; k++) boxes |= (uint32_t)(from[k] <= until[k]) << k;
-    return boxes;
+    fibrad_mesh_enter(walk, number, boxes, from);
 }
 
 /* A length in units of boxes, rounded up. */
@@ -95,14 +97,11 @@ static float length_for_boxes(const fibrad_mesh *mesh, const sheared_ray *ray, d
 
 static void meet_image(const fibrad_mesh *mesh, const sheared_ray *ray, first_side *first) {
     fibrad_mesh_walk walk = {.level = 0};
-    if (mesh->nodes > 0)
-        fibrad_mesh_enter(&walk, 0, boxes_on_ray(mesh->node, ray, length_for_boxes(mesh, ray, first->key)));
+    if (mesh->nodes > 0) enter_on_ray(mesh, &walk, 0, ray, length_for_boxes(mesh, ray, first->key));
     for (uint32_t child; fibrad_mesh_next(&walk, mesh, &child);) {
         const uint32_t place = child / 16, count = fibrad_mesh_leaf(child);
         for (uint32_t t = place; t < place + count; t++) meet_triangle(mesh, ray, t, first);
-        if (count > 0) continue;
-        const float to = length_for_boxes(mesh, ray, first->key);
-        fibrad_mesh_enter(&walk, place, boxes_on_ray(&mesh->node[place], ray, to));
+        if (count == 0) enter_on_ray(mesh, &walk, place, ray, length_for_boxes(mesh, ray, first->key));
     }
 }
 
@@ -225,19 +224,23 @@ static double square_to_triangle(double c[3][3]) {
                       fibrad_min(square_to_segment(c[1], c[2]), square_to_segment(c[2], c[0])));
 }
 
-/* The boxes of a node that are nearer to a place, in their units, than a length. */
-static uint32_t boxes_near(const fibrad_mesh_node *node, const double place[3], double length) {
+/* Goes into a node, to the boxes that are nearer to a place, in their units, than a length, the nearest first. */
+static void enter_near(const fibrad_mesh *mesh, fibrad_mesh_walk *walk, uint32_t number, const double place[3],
+                       double length) {
+    const fibrad_mesh_node *node = &mesh->node[number];
+    float square[FIBRAD_MESH_WIDE];
     uint32_t boxes = 0;
     for (uint32_t k = 0; k < FIBRAD_MESH_WIDE; k++) {
-        double square = 0;
+        double sum = 0;
         for (int axis = 0; axis < 3; axis++) {
             const double from = fibrad_abs(place[axis] - (double)node->middle[axis][k]) - (double)node->half[axis][k];
             const double away = fibrad_max(0, from) / length;
-            square += away * away;
+            sum += away * away;
         }
-        boxes |= (uint32_t)(square < 1) << k;
+        square[k] = (float)fibrad_min(sum, 1);
+        boxes |= (uint32_t)(sum < 1) << k;
     }
-    return boxes;
+    fibrad_mesh_enter(walk, number, boxes, square);
 }
 
 /* Lessens the distance `least` from a point in the frame of an image. */
@@ -245,7 +248,7 @@ static double nearest_in_image(const fibrad_mesh *mesh, const double at[3], doub
     fibrad_mesh_walk walk = {.level = 0};
     double place[3];
     for (int axis = 0; axis < 3; axis++) place[axis] = (at[axis] - mesh->middle[axis]) / mesh->extent;
-    if (mesh->nodes > 0) fibrad_mesh_enter(&walk, 0, boxes_near(mesh->node, place, least / mesh->extent));
+    if (mesh->nodes > 0) enter_near(mesh, &walk, 0, place, least / mesh->extent);
     for (uint32_t child; fibrad_mesh_next(&walk, mesh, &child);) {
         const uint32_t first = child / 16, count = fibrad_mesh_leaf(child);
         for (uint32_t t = first; t < first + count; t++) {
@@ -256,8 +259,7 @@ static double nearest_in_image(const fibrad_mesh *mesh, const double at[3], doub
             const double ratio = square_to_triangle(c);
             if (ratio < 1) least *= fibrad_max(fibrad_sqrt(ratio), 1e-12);
         }
-        if (count == 0)
-            fibrad_mesh_enter(&walk, first, boxes_near(&mesh->node[first], place, least / mesh->extent));
+        if (count == 0) enter_near(mesh, &walk, first, place, least / mesh->extent);
     }
     return least;
 }

@@ -9,8 +9,10 @@ FIBRAD_INLINE vd reach_at(const fibrad_face_search *search, vd depth) {
     return 1 + search->slack + search->wide * vd_max(vd_set1(0), depth);
 }
 
-/* The boxes of a node that may come before the window. */
-static uint32_t boxes_before(const fibrad_mesh_node *node, const fibrad_face_search *search) {
+/* Goes into a node, to the boxes that may come before the window, the nearest first. */
+static void enter_before(const fibrad_mesh *mesh, fibrad_face_search *search, uint32_t number) {
+    const fibrad_mesh_node *node = &mesh->node[number];
+    _Alignas(64) float key[FIBRAD_MESH_WIDE];
     const vd from = vd_set1(search->from), to = vd_set1(fibrad_min(search->to, search->deepest));
     uint32_t bits = 0;
     for (uint32_t k = 0; k < FIBRAD_MESH_WIDE; k += VD_LANES) {
@@ -27,15 +29,15 @@ static uint32_t boxes_before(const fibrad_mesh_node *node, const fibrad_face_sea
         const vm before = vd_le(front, to) & vd_le(from, behind) & vd_le(vd_abs(middle[0]), aside[0] + reach) &
                           vd_le(vd_abs(middle[1]), aside[1] + reach);
         bits |= vm_bits(before) << k;
+        vd_store_float(key + k, front);
     }
-    return bits;
+    fibrad_mesh_enter(&search->walk, number, bits, key);
 }
 
-/* Whether all lines pass the triangle on the outer side of an edge, from corner a to b; sum: the sign of its area. */
-FIBRAD_INLINE vm passed_outside(const vd a[3], const vd b[3], vd sum, vd reach) {
-    const vd u = b[0] - a[0], v = b[1] - a[1], e = a[0] * b[1] - a[1] * b[0];
-    const vm outside = (vd_lt(e, vd_set1(0)) & vd_lt(vd_set1(0), sum)) | (vd_lt(vd_set1(0), e) & vd_lt(sum, vd_set1(0)));
-    return outside & vd_lt(reach * reach * (u * u + v * v), e * e);
+/* Edges of triangles as they are seen: sums u edge[0] + v edge[1] + edge[2] have the sign of the area on their inner
+ * side. */
+FIBRAD_INLINE void edge_between(const vd a[3], const vd b[3], vd edge[3]) {
+    edge[0] = a[1] - b[1], edge[1] = b[0] - a[0], edge[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* How deep the middle of the window meets the plane of a triangle, as far as it goes. Windows that look a little away
@@ -55,6 +57,7 @@ static void add_faces(fibrad_workspace *work, fibrad_face_search *search, uint32
     fibrad_faces *faces = &work->met->faces;
     const double *f = search->frame;
     vd c[3][3];
+#pragma GCC unroll 3
     for (int k = 0; k < 3; k++) {
         vd at[3];
         for (int axis = 0; axis < 3; axis++)
@@ -63,16 +66,29 @@ static void add_faces(fibrad_workspace *work, fibrad_face_search *search, uint32
             c[k][axis] = f[3 * axis] * at[0] + f[3 * axis + 1] * at[1] + f[3 * axis + 2] * at[2];
     }
     const vd low = vd_min(c[0][2], vd_min(c[1][2], c[2][2])), high = vd_max(c[0][2], vd_max(c[1][2], c[2][2]));
-    const vd e[3] = {c[1][0] * c[2][1] - c[1][1] * c[2][0], c[2][0] * c[0][1] - c[2][1] * c[0][0],
-                     c[0][0] * c[1][1] - c[0][1] * c[1][0]};
-    const vd sum = e[0] + e[1] + e[2], reach = reach_at(search, vd_min(high, vd_set1(search->deepest)));
-    const vm passed = passed_outside(c[0], c[1], sum, reach) | passed_outside(c[1], c[2], sum, reach) |
-                      passed_outside(c[2], c[0], sum, reach);
-    const vm before = vd_le(low, vd_set1(search->deepest)) & vd_le(vd_set1(search->cut ? -1 : 0), high);
-    const uint32_t bits = vm_bits(before & vm_not(passed)) & vd_lanes_below(count), at = faces->count;
+    vd edge[3][3], most = vd_set1(0);
+    edge_between(c[1], c[2], edge[0]), edge_between(c[2], c[0], edge[1]), edge_between(c[0], c[1], edge[2]);
+    const vd sum = edge[0][2] + edge[1][2] + edge[2][2], reach = reach_at(search, vd_min(high, vd_set1(search->deepest)));
+    const vd sign = vd_select(vd_lt(sum, vd_set1(0)), vd_set1(-1), vd_set1(1));
+    vm before = vd_le(low, vd_set1(search->deepest)) & vd_le(vd_set1(search->cut ? -1 : 0), high);
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++) {
+        const vd square = edge[k][0] * edge[k][0] + edge[k][1] * edge[k][1], e = sign * edge[k][2];
+        before = before & vm_not(vd_lt(e, vd_set1(0)) & vd_lt(reach * reach * square, e * e));
+        most = vd_max(most, square);
+    }
+    const uint32_t bits = vm_bits(before) & vd_lanes_below(count), at = faces->count;
     if (bits == 0) return;
-    for (int k = 0; k < 3; k++)
+    const vm known = vd_lt(1e-9 * most, vd_abs(sum)); /* else it is seen edge-on, or nearly so */
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++) {
+        const vd rounding = search->slack * (vd_abs(edge[k][0]) + vd_abs(edge[k][1]));
+        const vd rest = vd_select(known, sign * edge[k][2] + rounding, vd_set1(__builtin_inf()));
+        vd_compress(faces->edge[k][0] + at, bits, sign * edge[k][0]);
+        vd_compress(faces->edge[k][1] + at, bits, sign * edge[k][1]);
+        vd_compress(faces->edge[k][2] + at, bits, rest);
         for (int axis = 0; axis < 3; axis++) vd_compress(faces->corner[k][axis] + at, bits, c[k][axis]);
+    }
     vd_compress(faces->low + at, bits, low);
     vd_compress(faces->plane + at, bits, depth_of_plane(c, low, high));
     faces->count += vd_compress_places(faces->triangle + at, bits, first);
@@ -96,7 +112,7 @@ static void enter_image(const fibrad_workspace *work, fibrad_face_search *search
         for (int axis = 0; axis < 3; axis++) search->box[c][axis] = f[axis] * mesh->extent * work->inverse;
         search->shift[c] = f[0] * from[0] + f[1] * from[1] + f[2] * from[2];
     }
-    if (mesh->nodes > 0) fibrad_mesh_enter(&search->walk, 0, boxes_before(mesh->node, search));
+    if (mesh->nodes > 0) enter_before(mesh, search, 0);
 }
 
 /* Turns to the next image of the stretch; false: there is none. */
@@ -168,7 +184,7 @@ bool LANED(fibrad_faces_next)(fibrad_workspace *work, fibrad_face_search *search
         while (fibrad_mesh_next(&search->walk, mesh, &child)) {
             const uint32_t place = child / 16, count = fibrad_mesh_leaf(child);
             for (uint32_t k = 0; k < count; k += VD_LANES) add_faces(work, search, place + k, count - k);
-            if (count == 0) fibrad_mesh_enter(&search->walk, place, boxes_before(&mesh->node[place], search));
+            if (count == 0) enter_before(mesh, search, place);
             if (faces->count > FIBRAD_FACES - FIBRAD_MESH_WIDE) return true;
         }
     } while (next_image(work, search));

@@ -30,7 +30,7 @@ typedef struct fibrad_face_search {
 void LANED(fibrad_faces_begin)(const fibrad_workspace *work, const double frame[9], double deepest, double wide,
                                double near, fibrad_face_search *search);
 
-/* Lists the next triangles in work->met->faces. False: there are no more. */
+/* Lists the next triangles, roughly from front to back, in work->met->faces. False: there are no more. */
 bool LANED(fibrad_faces_next)(fibrad_workspace *work, fibrad_face_search *search);
 
 #endif

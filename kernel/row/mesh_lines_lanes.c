@@ -77,8 +77,8 @@ uint32_t LANED(fibrad_lines_spread)(fibrad_met *met, const fibrad_points *points
     }
     for (uint32_t p = 0; p < lines->count; p++)
         lines->depth[p] = p < count ? __builtin_inf() : -__builtin_inf(), lines->number[p] = __builtin_inf();
-    for (uint32_t b = 0; b < lines->count / FIBRAD_LINE_BLOCK; b++) lines->last[b] = __builtin_inf();
     bound_lines(lines);
+    (void)LANED(fibrad_lines_last)(lines);
     return count;
 }
 
@@ -89,15 +89,11 @@ void LANED(fibrad_lines_parallel)(fibrad_met *met, const fibrad_points *points, 
         LANED(fibrad_lines_spread)(met, points, all, 0, 0, 0);
         lines->parallel = points->count;
     }
-    for (uint32_t b = 0; b < lines->count / FIBRAD_LINE_BLOCK; b++) {
-        double last = -__builtin_inf();
-        for (uint32_t p = FIBRAD_LINE_BLOCK * b; p < FIBRAD_LINE_BLOCK * (b + 1); p++) {
-            lines->depth[p] = depth != NULL ? depth[lines->point[p]] : __builtin_inf();
-            lines->number[p] = __builtin_inf();
-            last = fibrad_max(last, lines->depth[p]);
-        }
-        lines->last[b] = last;
+    for (uint32_t p = 0; p < lines->count; p++) {
+        lines->depth[p] = depth != NULL ? depth[lines->point[p]] : __builtin_inf();
+        lines->number[p] = __builtin_inf();
     }
+    (void)LANED(fibrad_lines_last)(lines);
 }
 
 uint32_t LANED(fibrad_lines_tell)(fibrad_met *met) {
@@ -113,10 +109,16 @@ uint32_t LANED(fibrad_lines_tell)(fibrad_met *met) {
     return meet;
 }
 
-double LANED(fibrad_lines_last)(const fibrad_lines *lines) {
-    double last = -__builtin_inf();
-    for (uint32_t p = 0; p < lines->count; p++) last = fibrad_max(last, lines->depth[p]);
-    return last;
+double LANED(fibrad_lines_last)(fibrad_lines *lines) {
+    double all = -__builtin_inf();
+    for (uint32_t b = 0; b < lines->count / FIBRAD_LINE_BLOCK; b++) {
+        double last = -__builtin_inf();
+        for (uint32_t p = FIBRAD_LINE_BLOCK * b; p < FIBRAD_LINE_BLOCK * (b + 1); p++)
+            last = fibrad_max(last, lines->depth[p]);
+        lines->last[b] = last;
+        all = fibrad_max(all, last);
+    }
+    return all;
 }
 
 uint32_t LANED(fibrad_lines_deepest)(const fibrad_lines *lines) {
@@ -161,6 +163,7 @@ FIBRAD_INLINE void meet_block(fibrad_lines *lines, const mesh_face *face, uint32
     for (uint32_t p = first; p < first + FIBRAD_LINE_BLOCK; p += VD_LANES) {
         const vd u = vd_load(lines->place[0] + p), v = vd_load(lines->place[1] + p), s = vd_load(lines->exit + p);
         vd x[3], y[3];
+#pragma GCC unroll 3
         for (int k = 0; k < 3; k++) {
             x[k] = face->u[k] - u, y[k] = face->v[k] - v;
             if (!spread) continue;
@@ -179,40 +182,24 @@ FIBRAD_INLINE void meet_block(fibrad_lines *lines, const mesh_face *face, uint32
     }
 }
 
-/* The eights of lines from b on that may meet a face, by bounds across three directions each; parallel ones. */
-typedef struct face_edges {
-    double u[3], v[3], most[3]; /* u and v of a point on the side of the face make a sum of at least -most */
-} face_edges;
-
-/* Of all three edges; false: the face is seen edge-on, or nearly so. */
-static bool edges_of_face(const mesh_face *face, double slack, face_edges *edges) {
-    const double *u = face->u, *v = face->v;
-    const double sum = (u[1] - u[0]) * (v[2] - v[0]) - (v[1] - v[0]) * (u[2] - u[0]), sign = sum > 0 ? 1 : -1;
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        const int a = (k + 1) % 3, b = (k + 2) % 3;
-        edges->u[k] = sign * (v[a] - v[b]), edges->v[k] = sign * (u[b] - u[a]);
-        edges->most[k] = sign * (u[a] * v[b] - v[a] * u[b]) + slack * (fibrad_abs(edges->u[k]) + fibrad_abs(edges->v[k]));
-        square = fibrad_max(square, edges->u[k] * edges->u[k] + edges->v[k] * edges->v[k]);
-    }
-    return fibrad_abs(sum) > 1e-9 * square;
-}
-
-FIBRAD_INLINE vm blocks_apart(const fibrad_lines *lines, const face_edges *edges, uint32_t b) {
+/* The eights of parallel lines from b on that all pass face number k on the outer side of one of its edges. */
+FIBRAD_INLINE vm blocks_apart(const fibrad_lines *lines, const fibrad_faces *faces, uint32_t k, uint32_t b) {
     vd sum[3];
-    for (int k = 0; k < 3; k++)
-        sum[k] = edges->u[k] * vd_load((edges->u[k] > 0 ? lines->high[0] : lines->low[0]) + b) +
-                 edges->v[k] * vd_load((edges->v[k] > 0 ? lines->high[1] : lines->low[1]) + b) + edges->most[k];
+#pragma GCC unroll 3
+    for (int e = 0; e < 3; e++) {
+        const double u = faces->edge[e][0][k], v = faces->edge[e][1][k];
+        sum[e] = u * vd_load((u > 0 ? lines->high[0] : lines->low[0]) + b) +
+                 v * vd_load((v > 0 ? lines->high[1] : lines->low[1]) + b) + faces->edge[e][2][k];
+    }
     return vd_lt(vd_min(sum[0], vd_min(sum[1], sum[2])), vd_set1(0));
 }
 
-static void meet_parallel(fibrad_lines *lines, const mesh_face *face, double grain, double slack) {
+static void meet_parallel(fibrad_lines *lines, const fibrad_faces *faces, uint32_t k, const mesh_face *face,
+                          double grain) {
     const uint32_t blocks = lines->count / FIBRAD_LINE_BLOCK;
-    face_edges edges;
-    const bool known = edges_of_face(face, slack, &edges);
     for (uint32_t b = 0; b < blocks; b += VD_LANES) {
-        uint32_t bits = vm_bits(vd_le(vd_set1(face->low), vd_load(lines->last + b))) & vd_lanes_below(blocks - b);
-        if (known) bits &= vm_bits(vm_not(blocks_apart(lines, &edges, b)));
+        const vm near = vd_le(vd_set1(face->low), vd_load(lines->last + b));
+        uint32_t bits = vm_bits(near & vm_not(blocks_apart(lines, faces, k, b))) & vd_lanes_below(blocks - b);
         for (; bits != 0; bits &= bits - 1)
             meet_block(lines, face, (b + (uint32_t)__builtin_ctz(bits)) * FIBRAD_LINE_BLOCK, grain, false);
     }
@@ -229,7 +216,7 @@ static void meet_spread(fibrad_lines *lines, const mesh_face *face, double grain
     const uint32_t blocks = lines->count / FIBRAD_LINE_BLOCK;
     const double from = fibrad_max(-1, low[2]) - lines->at, to = fibrad_max(-1, high[2]) - lines->at;
     for (uint32_t b = 0; b < blocks; b += VD_LANES) {
-        vm apart = vd_lt(vd_set1(0), vd_set1(0));
+        vm apart = vd_lt(vd_load(lines->last + b), vd_set1(low[2]));
         for (int k = 0; k < 2; k++) {
             const vd least = vd_load(lines->least[k] + b), most = vd_load(lines->most[k] + b);
             const vd least_side = vd_min(vd_min(least * from, least * to), vd_min(most * from, most * to));
@@ -275,7 +262,7 @@ void LANED(fibrad_lines_meet)(fibrad_workspace *work, double slack) {
     for (uint32_t k = 0; k < work->met->faces.count; k++) {
         const mesh_face face = face_of(work, k);
         if (lines->parallel > 0)
-            meet_parallel(lines, &face, grain, slack);
+            meet_parallel(lines, &work->met->faces, k, &face, grain);
         else
             meet_spread(lines, &face, grain, slack);
         if (work->clear_mesh < 1 && face.low < 1) cut_surface(lines, &face);

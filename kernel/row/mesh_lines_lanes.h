@@ -26,8 +26,8 @@ void LANED(fibrad_lines_meet)(fibrad_workspace *work, double slack);
 /* Tells their points what the lines meet. Returns how many meet anything. */
 uint32_t LANED(fibrad_lines_tell)(fibrad_met *met);
 
-/* Beyond which depth no line looks. */
-double LANED(fibrad_lines_last)(const fibrad_lines *lines);
+/* Beyond which depth no line looks, after what they have met so far. */
+double LANED(fibrad_lines_last)(fibrad_lines *lines);
 
 /* The side that the deepest of the lines meets; FIBRAD_NO_SIDE: they meet none. */
 uint32_t LANED(fibrad_lines_deepest)(const fibrad_lines *lines);

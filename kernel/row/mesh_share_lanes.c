@@ -196,21 +196,26 @@ static void limit_points(fibrad_workspace *work, fibrad_points *points, uint32_t
 /* What a search has found before the window. */
 typedef struct mesh_found {
     fibrad_face_search search;
-    bool listed;   /* whether all is in the list */
+    bool listed;   /* whether the list has the first of them, and ... */
+    bool more;     /* ... there may be more */
     double spread; /* how wide the directions of open lines spread, ... */
     double at;     /* ... and how deep what they meet is */
 } mesh_found;
 
 /* All triangles down to a depth meet the lines that are laid out. */
 static void meet_found(fibrad_workspace *work, mesh_found *found, double deepest) {
-    const fibrad_lines *lines = &work->met->lines;
+    fibrad_lines *lines = &work->met->lines;
     fibrad_face_search *search = &found->search;
     const double spread = lines->parallel > 0 ? 0 : found->spread, slack = search->slack * (1 + spread * found->at);
-    if (!found->listed) LANED(fibrad_faces_begin)(work, search->frame, deepest, 1.0001 * spread, 0, search);
-    for (bool more = true; more;) {
-        more = !found->listed && LANED(fibrad_faces_next)(work, search);
-        LANED(fibrad_lines_meet)(work, slack);
-        if (more) search->deepest = fibrad_min(search->deepest, LANED(fibrad_lines_last)(lines));
+    bool more = found->more;
+    if (!found->listed) {
+        LANED(fibrad_faces_begin)(work, search->frame, deepest, 1.0001 * spread, 0, search);
+        more = LANED(fibrad_faces_next)(work, search);
+    }
+    for (LANED(fibrad_lines_meet)(work, slack); more; LANED(fibrad_lines_meet)(work, slack)) {
+        search->deepest = fibrad_min(search->deepest, LANED(fibrad_lines_last)(lines));
+        more = LANED(fibrad_faces_next)(work, search);
+        found->listed = false;
     }
 }
 
@@ -255,14 +260,15 @@ static bool find_faces(fibrad_workspace *work, const double frame[9], double dee
     const double wide = open ? 1.0001 * MESH_SPREAD / fibrad_sqrt(work->windows) : 0;
     const double near = open ? MESH_NEAR / wide : __builtin_inf();
     LANED(fibrad_faces_begin)(work, frame, deepest, wide, near, search);
-    bool more = LANED(fibrad_faces_next)(work, search);
-    found->listed = !more;
-    while (more && !(search->nearest < near)) {
+    found->more = LANED(fibrad_faces_next)(work, search);
+    found->listed = true;
+    while (found->more && !(search->nearest < near)) {
         search->deepest = fibrad_min(search->deepest, search->nearest);
-        more = LANED(fibrad_faces_next)(work, search);
+        found->more = LANED(fibrad_faces_next)(work, search);
+        found->listed = false;
     }
     found->at = search->nearest, found->spread = open ? spread_at(search->nearest, work->windows) : 0;
-    if (!found->listed) search->shallow = -__builtin_inf();
+    if (found->more || !found->listed) search->shallow = -__builtin_inf();
     return search->nearest < __builtin_inf();
 }
 

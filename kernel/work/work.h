@@ -33,13 +33,16 @@ typedef struct fibrad_near {
     uint32_t asked;              /* how many windows have asked for one more than there are */
 } fibrad_near;
 
-/* Triangles that may come before a window, in its frame. */
-#define FIBRAD_FACES 128u
+/* Some of the triangles that may come before a window, in its frame. */
+#define FIBRAD_FACES      48u
+#define FIBRAD_FACES_ROOM (FIBRAD_FACES + FIBRAD_LANES_MAX)
 typedef struct fibrad_faces {
-    double corner[3][3][FIBRAD_FACES + FIBRAD_LANES_MAX]; /* of each corner u, v and depth */
-    double low[FIBRAD_FACES + FIBRAD_LANES_MAX];          /* the least depth */
-    double plane[FIBRAD_FACES + FIBRAD_LANES_MAX];        /* at which the middle of the window meets its plane */
-    uint32_t triangle[FIBRAD_FACES + FIBRAD_LANES_MAX];   /* place in the mesh */
+    double corner[3][3][FIBRAD_FACES_ROOM]; /* of each corner u, v and depth */
+    double low[FIBRAD_FACES_ROOM];          /* the least depth */
+    double plane[FIBRAD_FACES_ROOM];        /* at which the middle of the window meets its plane */
+    /* Of places u, v in the window that the triangle hides: u edge[k][0] + v edge[k][1] + edge[k][2] >= 0. */
+    double edge[3][3][FIBRAD_FACES_ROOM];
+    uint32_t triangle[FIBRAD_FACES_ROOM]; /* place in the mesh */
     uint32_t count;
 } fibrad_faces;
 
