@@ -131,54 +131,44 @@ uint32_t LANED(fibrad_lines_deepest)(const fibrad_lines *lines) {
 }
 
 /* ---- and a triangle ---------------------------------------------------------------------------------------------- */
-/* A triangle in the frame of the window. */
-typedef struct mesh_face {
-    double u[3], v[3], z[3], low, side, number;
-} mesh_face;
-
-static mesh_face face_of(const fibrad_workspace *work, uint32_t at) {
-    const fibrad_faces *faces = &work->met->faces;
-    const uint32_t t = faces->triangle[at];
-    mesh_face face = {.low = faces->low[at], .side = 2. * t, .number = work->scene->mesh.number[t]};
-    for (int k = 0; k < 3; k++) {
-        face.u[k] = faces->corner[k][0][at], face.v[k] = faces->corner[k][1][at], face.z[k] = faces->corner[k][2][at];
-    }
-    return face;
-}
-
-/* Notes the face in those of VD_LANES lines from p on that meet it by `key` no deeper than what they met before; of
- * equals, the lower number stays. */
-FIBRAD_INLINE void note_face(fibrad_lines *lines, const mesh_face *face, uint32_t p, vm meet, vm back, vd key) {
-    const vd depth = vd_load(lines->depth + p), number = vd_load(lines->number + p), own = vd_set1(face->number);
+/* Notes face number k in those of VD_LANES lines from p on that meet it by `key` no deeper than what they met before;
+ * of equals, the lower number stays. */
+FIBRAD_INLINE void note_face(fibrad_workspace *work, uint32_t k, uint32_t p, vm meet, vm back, vd key) {
+    fibrad_lines *lines = &work->met->lines;
+    const uint32_t t = work->met->faces.triangle[k];
+    const vd depth = vd_load(lines->depth + p), number = vd_load(lines->number + p);
+    const vd own = vd_set1(work->scene->mesh.number[t]), side = vd_select(back, vd_set1(2. * t + 1), vd_set1(2. * t));
     const vm nearer = meet & (vd_lt(key, depth) | (vd_le(key, depth) & vd_lt(own, number)));
     vd_store(lines->depth + p, vd_select(nearer, key, depth));
     vd_store(lines->number + p, vd_select(nearer, own, number));
-    const vd side = vd_select(back, vd_set1(face->side + 1), vd_set1(face->side));
     vd_store(lines->side + p, vd_select(nearer, side, vd_load(lines->side + p)));
 }
 
-/* Eight lines and a face. Of the depth, a grain more at backs, so that fronts come first at edges. */
-FIBRAD_INLINE void meet_block(fibrad_lines *lines, const mesh_face *face, uint32_t first, double grain, bool spread) {
+/* Eight lines and face number k. Of the depth, a grain more at backs, so that fronts come first at edges. */
+FIBRAD_INLINE void meet_block(fibrad_workspace *work, uint32_t k, uint32_t first, double grain, bool spread) {
+    const fibrad_lines *lines = &work->met->lines;
+    const fibrad_faces *faces = &work->met->faces;
     const vd zero = vd_set1(0), more = vd_set1(grain);
     for (uint32_t p = first; p < first + FIBRAD_LINE_BLOCK; p += VD_LANES) {
         const vd u = vd_load(lines->place[0] + p), v = vd_load(lines->place[1] + p), s = vd_load(lines->exit + p);
         vd x[3], y[3];
 #pragma GCC unroll 3
-        for (int k = 0; k < 3; k++) {
-            x[k] = face->u[k] - u, y[k] = face->v[k] - v;
+        for (int c = 0; c < 3; c++) {
+            x[c] = faces->corner[c][0][k] - u, y[c] = faces->corner[c][1][k] - v;
             if (!spread) continue;
-            const vd ahead = face->z[k] - s;
-            x[k] = x[k] - vd_load(lines->aside[0] + p) * ahead;
-            y[k] = y[k] - vd_load(lines->aside[1] + p) * ahead;
+            const vd ahead = faces->corner[c][2][k] - s;
+            x[c] = x[c] - vd_load(lines->aside[0] + p) * ahead;
+            y[c] = y[c] - vd_load(lines->aside[1] + p) * ahead;
         }
         const vd a = x[1] * y[2] - y[1] * x[2], b = x[2] * y[0] - y[2] * x[0], c = x[0] * y[1] - y[0] * x[1];
         const vm none = vd_lt(vd_min(a, vd_min(b, c)), zero), some = vd_lt(zero, vd_max(a, vd_max(b, c)));
         const vm inside = (some & vm_not(none)) | (none & vm_not(some)); /* all >= 0, or all <= 0, but not all 0 */
         if (vm_bits(inside) == 0) continue;
-        const vd sum = a + b + c, z = (a * face->z[0] + b * face->z[1] + c * face->z[2]) / sum;
+        const vd sum = a + b + c,
+                 z = (a * faces->corner[0][2][k] + b * faces->corner[1][2][k] + c * faces->corner[2][2][k]) / sum;
         const vm back = vd_lt(zero, sum);
         const vd grains = vd_select(back, more, zero), behind = s + vd_select(back, more, zero - more);
-        note_face(lines, face, p, inside & vd_lt(behind, z) & vd_le(z, vd_set1(1e300)), back, z + grains);
+        note_face(work, k, p, inside & vd_lt(behind, z) & vd_le(z, vd_set1(1e300)), back, z + grains);
     }
 }
 
@@ -194,55 +184,62 @@ FIBRAD_INLINE vm blocks_apart(const fibrad_lines *lines, const fibrad_faces *fac
     return vd_lt(vd_min(sum[0], vd_min(sum[1], sum[2])), vd_set1(0));
 }
 
-static void meet_parallel(fibrad_lines *lines, const fibrad_faces *faces, uint32_t k, const mesh_face *face,
-                          double grain) {
+static void meet_parallel(fibrad_workspace *work, uint32_t k, double grain) {
+    const fibrad_lines *lines = &work->met->lines;
+    const fibrad_faces *faces = &work->met->faces;
     const uint32_t blocks = lines->count / FIBRAD_LINE_BLOCK;
     for (uint32_t b = 0; b < blocks; b += VD_LANES) {
-        const vm near = vd_le(vd_set1(face->low), vd_load(lines->last + b));
-        uint32_t bits = vm_bits(near & vm_not(blocks_apart(lines, faces, k, b))) & vd_lanes_below(blocks - b);
+        uint32_t bits = vm_bits(vd_le(vd_set1(faces->low[k]), vd_load(lines->last + b))) & vd_lanes_below(blocks - b);
+        if (bits == 0) continue;
+        bits &= vm_bits(vm_not(blocks_apart(lines, faces, k, b)));
         for (; bits != 0; bits &= bits - 1)
-            meet_block(lines, face, (b + (uint32_t)__builtin_ctz(bits)) * FIBRAD_LINE_BLOCK, grain, false);
+            meet_block(work, k, (b + (uint32_t)__builtin_ctz(bits)) * FIBRAD_LINE_BLOCK, grain, false);
     }
 }
 
 /* Lines that spread: those eights that pass the box about the face. */
-static void meet_spread(fibrad_lines *lines, const mesh_face *face, double grain, double slack) {
-    const double *x[3] = {face->u, face->v, face->z};
+static void meet_spread(fibrad_workspace *work, uint32_t k, double grain, double slack) {
+    const fibrad_lines *lines = &work->met->lines;
     double low[3], high[3];
-    for (int k = 0; k < 3; k++) {
-        low[k] = fibrad_min(x[k][0], fibrad_min(x[k][1], x[k][2])) - slack;
-        high[k] = fibrad_max(x[k][0], fibrad_max(x[k][1], x[k][2])) + slack;
+    for (int axis = 0; axis < 3; axis++) {
+        const double a = work->met->faces.corner[0][axis][k], b = work->met->faces.corner[1][axis][k];
+        const double c = work->met->faces.corner[2][axis][k];
+        low[axis] = fibrad_min(a, fibrad_min(b, c)) - slack, high[axis] = fibrad_max(a, fibrad_max(b, c)) + slack;
     }
     const uint32_t blocks = lines->count / FIBRAD_LINE_BLOCK;
     const double from = fibrad_max(-1, low[2]) - lines->at, to = fibrad_max(-1, high[2]) - lines->at;
     for (uint32_t b = 0; b < blocks; b += VD_LANES) {
         vm apart = vd_lt(vd_load(lines->last + b), vd_set1(low[2]));
-        for (int k = 0; k < 2; k++) {
-            const vd least = vd_load(lines->least[k] + b), most = vd_load(lines->most[k] + b);
+        for (int axis = 0; axis < 2; axis++) {
+            const vd least = vd_load(lines->least[axis] + b), most = vd_load(lines->most[axis] + b);
             const vd least_side = vd_min(vd_min(least * from, least * to), vd_min(most * from, most * to));
             const vd most_side = vd_max(vd_max(least * from, least * to), vd_max(most * from, most * to));
-            apart = apart | vd_lt(vd_load(lines->high[k] + b) + most_side, vd_set1(low[k])) |
-                    vd_lt(vd_set1(high[k]), vd_load(lines->low[k] + b) + least_side);
+            apart = apart | vd_lt(vd_load(lines->high[axis] + b) + most_side, vd_set1(low[axis])) |
+                    vd_lt(vd_set1(high[axis]), vd_load(lines->low[axis] + b) + least_side);
         }
         uint32_t bits = vm_bits(vm_not(apart)) & vd_lanes_below(blocks - b);
         for (; bits != 0; bits &= bits - 1)
-            meet_block(lines, face, (b + (uint32_t)__builtin_ctz(bits)) * FIBRAD_LINE_BLOCK, grain, true);
+            meet_block(work, k, (b + (uint32_t)__builtin_ctz(bits)) * FIBRAD_LINE_BLOCK, grain, true);
     }
 }
 
 /* Where the surface of sphere i lies beyond a face, as seen from its centre: there lines end at once, before all that
  * others meet, nearest first. */
-static void cut_surface(fibrad_lines *lines, const mesh_face *face) {
+static void cut_surface(fibrad_workspace *work, uint32_t face) {
+    const fibrad_lines *lines = &work->met->lines;
     const vd zero = vd_set1(0), one = vd_set1(1);
-    double n[3][3], sum_n[3]; /* of the planes through the centre and each edge; of that of the face */
+    double x[3][3], n[3][3], sum_n[3]; /* corners; of the planes through the centre and each edge; of that of the face */
+    for (int k = 0; k < 3; k++)
+        for (int axis = 0; axis < 3; axis++) x[k][axis] = work->met->faces.corner[k][axis][face];
     for (int k = 0; k < 3; k++) {
         const int next = (k + 1) % 3, last = (k + 2) % 3;
-        n[k][0] = face->v[next] * face->z[last] - face->z[next] * face->v[last];
-        n[k][1] = face->z[next] * face->u[last] - face->u[next] * face->z[last];
-        n[k][2] = face->u[next] * face->v[last] - face->v[next] * face->u[last];
+        for (int axis = 0; axis < 3; axis++) {
+            const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+            n[k][axis] = x[next][a] * x[last][b] - x[next][b] * x[last][a];
+        }
     }
     for (int axis = 0; axis < 3; axis++) sum_n[axis] = n[0][axis] + n[1][axis] + n[2][axis];
-    const double volume = face->u[0] * n[0][0] + face->v[0] * n[0][1] + face->z[0] * n[0][2]; /* of six tetrahedra */
+    const double volume = x[0][0] * n[0][0] + x[0][1] * n[0][1] + x[0][2] * n[0][2]; /* of six tetrahedra */
     const double square = sum_n[0] * sum_n[0] + sum_n[1] * sum_n[1] + sum_n[2] * sum_n[2];
     if (volume * volume > square * (1 + 1e-9)) return; /* its plane passes the sphere */
     for (uint32_t p = 0; p < lines->count; p += VD_LANES) {
@@ -252,19 +249,18 @@ static void cut_surface(fibrad_lines *lines, const mesh_face *face) {
         const vd least = vd_min(e[0], vd_min(e[1], e[2])), most = vd_max(e[0], vd_max(e[1], e[2]));
         const vm inside = (vd_lt(zero, most) & vd_le(zero, least)) | (vd_lt(least, zero) & vd_le(most, zero));
         const vd sum = e[0] + e[1] + e[2], share = volume / sum; /* of the way from the centre to the surface */
-        note_face(lines, face, p, inside & vd_lt(zero, share) & vd_lt(share, one), vd_lt(zero, sum), share - 2);
+        note_face(work, face, p, inside & vd_lt(zero, share) & vd_lt(share, one), vd_lt(zero, sum), share - 2);
     }
 }
 
 void LANED(fibrad_lines_meet)(fibrad_workspace *work, double slack) {
-    fibrad_lines *lines = &work->met->lines;
+    const fibrad_faces *faces = &work->met->faces;
     const double grain = work->scene->mesh.grain * work->inverse;
-    for (uint32_t k = 0; k < work->met->faces.count; k++) {
-        const mesh_face face = face_of(work, k);
-        if (lines->parallel > 0)
-            meet_parallel(lines, &work->met->faces, k, &face, grain);
+    for (uint32_t k = 0; k < faces->count; k++) {
+        if (work->met->lines.parallel > 0)
+            meet_parallel(work, k, grain);
         else
-            meet_spread(lines, &face, grain, slack);
-        if (work->clear_mesh < 1 && face.low < 1) cut_surface(lines, &face);
+            meet_spread(work, k, grain, slack);
+        if (work->clear_mesh < 1 && faces->low[k] < 1) cut_surface(work, k);
     }
 }
