@@ -34,69 +34,102 @@ static void enter_before(const fibrad_mesh *mesh, fibrad_face_search *search, ui
     fibrad_mesh_enter(&search->walk, number, bits, key);
 }
 
-/* Edges of triangles as they are seen: sums u edge[0] + v edge[1] + edge[2] have the sign of the area on their inner
- * side. */
-FIBRAD_INLINE void edge_between(const vd a[3], const vd b[3], vd edge[3]) {
-    edge[0] = a[1] - b[1], edge[1] = b[0] - a[0], edge[2] = a[0] * b[1] - a[1] * b[0];
-}
+/* Triangles in lanes, in the frame of the window. */
+typedef struct face_lanes {
+    vd c[3][3], low, high;
+    vd n[3]; /* across them, as long as twice their areas */
+} face_lanes;
 
-/* How deep the middle of the window meets the plane of a triangle, as far as it goes. Windows that look a little away
- * from a plane are treated as those that look as little towards it. */
-FIBRAD_INLINE vd depth_of_plane(vd c[3][3], vd low, vd high) {
-    vd a[3], b[3];
-    for (int axis = 0; axis < 3; axis++) a[axis] = c[1][axis] - c[0][axis], b[axis] = c[2][axis] - c[0][axis];
-    const vd n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    const vd size = vd_abs(n[2]), height = vd_abs(n[0] * c[0][0] + n[1] * c[0][1] + n[2] * c[0][2]);
-    const vd depth = vd_select(vd_lt(vd_set1(0), size), height / size, vd_set1(__builtin_inf()));
-    return vd_max(vd_max(vd_set1(0), low), vd_min(depth, high));
-}
-
-/* Lists those of up to VD_LANES triangles that may come before the window. */
-static void add_faces(fibrad_workspace *work, fibrad_face_search *search, uint32_t first, uint32_t count) {
+FIBRAD_INLINE face_lanes load_faces(const fibrad_workspace *work, const fibrad_face_search *search, uint32_t first) {
     const fibrad_mesh *mesh = &work->scene->mesh;
-    fibrad_faces *faces = &work->met->faces;
     const double *f = search->frame;
-    vd c[3][3];
+    face_lanes of;
 #pragma GCC unroll 3
     for (int k = 0; k < 3; k++) {
         vd at[3];
         for (int axis = 0; axis < 3; axis++)
             at[axis] = (vd_loadu(mesh->corner[k][axis] + first) - search->centre[axis]) * work->inverse;
         for (int axis = 0; axis < 3; axis++)
-            c[k][axis] = f[3 * axis] * at[0] + f[3 * axis + 1] * at[1] + f[3 * axis + 2] * at[2];
+            of.c[k][axis] = f[3 * axis] * at[0] + f[3 * axis + 1] * at[1] + f[3 * axis + 2] * at[2];
     }
-    const vd low = vd_min(c[0][2], vd_min(c[1][2], c[2][2])), high = vd_max(c[0][2], vd_max(c[1][2], c[2][2]));
-    vd edge[3][3], most = vd_set1(0);
-    edge_between(c[1], c[2], edge[0]), edge_between(c[2], c[0], edge[1]), edge_between(c[0], c[1], edge[2]);
-    const vd sum = edge[0][2] + edge[1][2] + edge[2][2], reach = reach_at(search, vd_min(high, vd_set1(search->deepest)));
-    const vd sign = vd_select(vd_lt(sum, vd_set1(0)), vd_set1(-1), vd_set1(1));
-    vm before = vd_le(low, vd_set1(search->deepest)) & vd_le(vd_set1(search->cut ? -1 : 0), high);
+    of.low = vd_min(of.c[0][2], vd_min(of.c[1][2], of.c[2][2]));
+    of.high = vd_max(of.c[0][2], vd_max(of.c[1][2], of.c[2][2]));
+    vd a[3], b[3];
+    for (int axis = 0; axis < 3; axis++) a[axis] = of.c[1][axis] - of.c[0][axis], b[axis] = of.c[2][axis] - of.c[0][axis];
+    for (int axis = 0; axis < 3; axis++) {
+        const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+        of.n[axis] = a[next] * b[last] - a[last] * b[next];
+    }
+    return of;
+}
+
+/* How deep the middle of the window meets the plane of a triangle, as far as it goes. Windows that look a little away
+ * from a plane are treated as those that look as little towards it. */
+FIBRAD_INLINE vd depth_of_plane(const face_lanes *of) {
+    const vd size = vd_abs(of->n[2]), zero = vd_set1(0);
+    const vd height = vd_abs(of->n[0] * of->c[0][0] + of->n[1] * of->c[0][1] + of->n[2] * of->c[0][2]);
+    const vd depth = vd_select(vd_lt(zero, size), height / size, vd_set1(__builtin_inf()));
+    return vd_max(vd_max(zero, of->low), vd_min(depth, of->high));
+}
+
+/* Lists the triangles given by bits. */
+FIBRAD_INLINE void list_faces(fibrad_workspace *work, fibrad_face_search *search, const face_lanes *of, vd edge[3][3],
+                              uint32_t bits, uint32_t first) {
+    fibrad_faces *faces = &work->met->faces;
+    const uint32_t at = faces->count;
+    const vm front = vd_lt(of->n[2], vd_set1(0)); /* is seen: to be turned round */
+    const vd inverse = 1 / of->n[2], slope[2] = {0 - of->n[0] * inverse, 0 - of->n[1] * inverse};
+    vd most = vd_set1(0);
 #pragma GCC unroll 3
     for (int k = 0; k < 3; k++) {
-        const vd square = edge[k][0] * edge[k][0] + edge[k][1] * edge[k][1], e = sign * edge[k][2];
-        before = before & vm_not(vd_lt(e, vd_set1(0)) & vd_lt(reach * reach * square, e * e));
+        const vd square = edge[k][0] * edge[k][0] + edge[k][1] * edge[k][1];
         most = vd_max(most, square);
+        for (int axis = 0; axis < 3; axis++) {
+            const vd turned = k == 0 ? of->c[0][axis] : vd_select(front, of->c[3 - k][axis], of->c[k][axis]);
+            vd_compress(faces->corner[k][axis] + at, bits, turned);
+        }
     }
-    const uint32_t bits = vm_bits(before) & vd_lanes_below(count), at = faces->count;
-    if (bits == 0) return;
-    const vm known = vd_lt(1e-9 * most, vd_abs(sum)); /* else it is seen edge-on, or nearly so */
+    const vm known = vd_lt(1e-9 * most, vd_abs(of->n[2])); /* else they are seen edge-on, or nearly so */
 #pragma GCC unroll 3
     for (int k = 0; k < 3; k++) {
         const vd rounding = search->slack * (vd_abs(edge[k][0]) + vd_abs(edge[k][1]));
-        const vd rest = vd_select(known, sign * edge[k][2] + rounding, vd_set1(__builtin_inf()));
-        vd_compress(faces->edge[k][0] + at, bits, sign * edge[k][0]);
-        vd_compress(faces->edge[k][1] + at, bits, sign * edge[k][1]);
-        vd_compress(faces->edge[k][2] + at, bits, rest);
-        for (int axis = 0; axis < 3; axis++) vd_compress(faces->corner[k][axis] + at, bits, c[k][axis]);
+        vd_compress(faces->edge[k][0] + at, bits, edge[k][0]);
+        vd_compress(faces->edge[k][1] + at, bits, edge[k][1]);
+        vd_compress(faces->edge[k][2] + at, bits, vd_select(known, edge[k][2] + rounding, vd_set1(__builtin_inf())));
     }
-    vd_compress(faces->low + at, bits, low);
-    vd_compress(faces->plane + at, bits, depth_of_plane(c, low, high));
+    vd_compress(faces->low + at, bits, of->low);
+    vd_compress(faces->high + at, bits, of->high);
+    vd_compress(faces->plane[0] + at, bits, slope[0]);
+    vd_compress(faces->plane[1] + at, bits, slope[1]);
+    vd_compress(faces->plane[2] + at, bits, of->c[0][2] - slope[0] * of->c[0][0] - slope[1] * of->c[0][1]);
+    vd_compress(faces->middle + at, bits, depth_of_plane(of));
+    vd_compress(faces->side + at, bits, vd_select(front, vd_set1(0), vd_set1(1)));
     faces->count += vd_compress_places(faces->triangle + at, bits, first);
     for (uint32_t k = at; k < faces->count; k++) {
+        faces->side[k] += 2. * faces->triangle[k];
         search->shallow = fibrad_min(search->shallow, faces->low[k]);
-        search->nearest = fibrad_min(search->nearest, faces->plane[k]);
+        search->nearest = fibrad_min(search->nearest, faces->middle[k]);
     }
     if (search->nearest < search->near) search->wide = 0;
+}
+
+/* Lists those of up to VD_LANES triangles that may come before the window: that it does not pass outside one of their
+ * edges. */
+static void add_faces(fibrad_workspace *work, fibrad_face_search *search, uint32_t first, uint32_t count) {
+    const face_lanes of = load_faces(work, search, first);
+    const vd reach = reach_at(search, vd_min(of.high, vd_set1(search->deepest)));
+    const vd sign = vd_select(vd_lt(of.n[2], vd_set1(0)), vd_set1(-1), vd_set1(1));
+    vm before = vd_le(of.low, vd_set1(search->deepest)) & vd_le(vd_set1(search->cut ? -1 : 0), of.high);
+    vd edge[3][3];
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++) {
+        const vd *a = of.c[(k + 1) % 3], *b = of.c[(k + 2) % 3];
+        edge[k][0] = sign * (a[1] - b[1]), edge[k][1] = sign * (b[0] - a[0]), edge[k][2] = sign * (a[0] * b[1] - a[1] * b[0]);
+        const vd square = edge[k][0] * edge[k][0] + edge[k][1] * edge[k][1];
+        before = before & vm_not(vd_lt(edge[k][2], vd_set1(0)) & vd_lt(reach * reach * square, edge[k][2] * edge[k][2]));
+    }
+    const uint32_t bits = vm_bits(before) & vd_lanes_below(count);
+    if (bits != 0) list_faces(work, search, &of, edge, bits, first);
 }
 
 /* Turns to an image: the tree from its root. */

@@ -33,16 +33,17 @@ typedef struct fibrad_near {
     uint32_t asked;              /* how many windows have asked for one more than there are */
 } fibrad_near;
 
-/* Some of the triangles that may come before a window, in its frame. */
+/* Some of the triangles that may come before a window, in its frame. Seen along it their corners go round to the left. */
 #define FIBRAD_FACES      48u
 #define FIBRAD_FACES_ROOM (FIBRAD_FACES + FIBRAD_LANES_MAX)
 typedef struct fibrad_faces {
-    double corner[3][3][FIBRAD_FACES_ROOM]; /* of each corner u, v and depth */
-    double low[FIBRAD_FACES_ROOM];          /* the least depth */
-    double plane[FIBRAD_FACES_ROOM];        /* at which the middle of the window meets its plane */
-    /* Of places u, v in the window that the triangle hides: u edge[k][0] + v edge[k][1] + edge[k][2] >= 0. */
-    double edge[3][3][FIBRAD_FACES_ROOM];
-    uint32_t triangle[FIBRAD_FACES_ROOM]; /* place in the mesh */
+    double corner[3][3][FIBRAD_FACES_ROOM];                /* of each corner u, v and depth */
+    double low[FIBRAD_FACES_ROOM], high[FIBRAD_FACES_ROOM]; /* depths */
+    double plane[3][FIBRAD_FACES_ROOM];                    /* depth is u plane[0] + v plane[1] + plane[2] */
+    double middle[FIBRAD_FACES_ROOM];                      /* about the depth of that in the middle of the window */
+    double edge[3][3][FIBRAD_FACES_ROOM];                  /* u edge[k][0] + v edge[k][1] + edge[k][2] >= 0 inside */
+    double side[FIBRAD_FACES_ROOM];                        /* of the mesh, that is seen */
+    uint32_t triangle[FIBRAD_FACES_ROOM];                  /* place in the mesh */
     uint32_t count;
 } fibrad_faces;
 
@@ -51,13 +52,14 @@ typedef struct fibrad_faces {
 #define FIBRAD_MET_POINTS  256
 #define FIBRAD_LINE_BLOCK  8
 #define FIBRAD_LINE_BLOCKS (FIBRAD_MET_POINTS / FIBRAD_LINE_BLOCK)
+#define FIBRAD_PAIRS       64u
+#define FIBRAD_PAIRS_ROOM  (FIBRAD_PAIRS + FIBRAD_LINE_BLOCKS + FIBRAD_LANES_MAX)
 typedef struct fibrad_lines {
     _Alignas(64) double place[2][FIBRAD_MET_POINTS]; /* u, v where they leave sphere i, ... */
     double exit[FIBRAD_MET_POINTS];                  /* ... and how deep that is */
     double aside[2][FIBRAD_MET_POINTS];              /* of their directions, along u and v; 0 unless spread */
     double depth[FIBRAD_MET_POINTS];                 /* of what they meet, or beyond which they do not look */
-    double side[FIBRAD_MET_POINTS];                  /* of the mesh, if they meet it, and ... */
-    double number[FIBRAD_MET_POINTS];                /* ... its triangle's, the caller's; infinite: none */
+    double side[FIBRAD_MET_POINTS];                  /* of the mesh, that they meet; -1: none */
     uint32_t point[FIBRAD_MET_POINTS];
     /* Of each eight: bounds of u, v at depth `at`, and of `aside`; beyond which depth none of them looks. */
     double low[2][FIBRAD_LINE_BLOCKS], high[2][FIBRAD_LINE_BLOCKS];
@@ -66,6 +68,8 @@ typedef struct fibrad_lines {
     uint32_t count;
     uint32_t parallel; /* they are those of all of so many points; 0: others */
     double at;
+    uint32_t pair[FIBRAD_PAIRS_ROOM]; /* face times FIBRAD_LINE_BLOCKS and eight lines that may meet */
+    uint32_t pairs;
 } fibrad_lines;
 
 /* Points of a window that meet triangles. */
