@@ -1,8 +1,8 @@
 /* mesh_build.c - puts triangles into a tree of boxes, in fixed memory. SPDX-License-Identifier: MIT
  *
  * From the top down, the largest box of a node is cut until there are eight: where the sum over both parts of surface
- * times number is least among sixteen places along the longest axis, so that large triangles come apart from small ones. Source: I. Wald, IEEE Symposium on Interactive
- * Ray Tracing (2007) 33. */
+ * times number is least among sixteen places along the longest axis, so that large triangles come apart from small
+ * ones. Source: I. Wald, IEEE Symposium on Interactive Ray Tracing (2007) 33. */
 #include "mesh/mesh.h"
 
 #define BINS       16

@@ -81,7 +81,8 @@ static void enter_on_ray(const fibrad_mesh *mesh, fibrad_mesh_walk *walk, uint32
     for (int axis = 0; axis < 3; axis++) {
         const float origin = ray->middle[axis], over = ray->over[axis], size = over < 0 ? -over : over;
         for (uint32_t k = 0; k < FIBRAD_MESH_WIDE; k++) {
-            const float middle = (node->middle[axis][k] - origin) * over, half = (node->half[axis][k] + ray->pad) * size;
+            const float middle = (node->middle[axis][k] - origin) * over,
+                        half = (node->half[axis][k] + ray->pad) * size;
             from[k] = middle - half > from[k] ? middle - half : from[k];
             until[k] = middle + half < until[k] ? middle + half : until[k];
         }

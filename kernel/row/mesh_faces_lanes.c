@@ -55,7 +55,8 @@ FIBRAD_INLINE face_lanes load_faces(const fibrad_workspace *work, const fibrad_f
     of.low = vd_min(of.c[0][2], vd_min(of.c[1][2], of.c[2][2]));
     of.high = vd_max(of.c[0][2], vd_max(of.c[1][2], of.c[2][2]));
     vd a[3], b[3];
-    for (int axis = 0; axis < 3; axis++) a[axis] = of.c[1][axis] - of.c[0][axis], b[axis] = of.c[2][axis] - of.c[0][axis];
+    for (int axis = 0; axis < 3; axis++)
+        a[axis] = of.c[1][axis] - of.c[0][axis], b[axis] = of.c[2][axis] - of.c[0][axis];
     for (int axis = 0; axis < 3; axis++) {
         const int next = (axis + 1) % 3, last = (axis + 2) % 3;
         of.n[axis] = a[next] * b[last] - a[last] * b[next];
@@ -124,9 +125,11 @@ static void add_faces(fibrad_workspace *work, fibrad_face_search *search, uint32
 #pragma GCC unroll 3
     for (int k = 0; k < 3; k++) {
         const vd *a = of.c[(k + 1) % 3], *b = of.c[(k + 2) % 3];
-        edge[k][0] = sign * (a[1] - b[1]), edge[k][1] = sign * (b[0] - a[0]), edge[k][2] = sign * (a[0] * b[1] - a[1] * b[0]);
+        edge[k][0] = sign * (a[1] - b[1]), edge[k][1] = sign * (b[0] - a[0]),
+        edge[k][2] = sign * (a[0] * b[1] - a[1] * b[0]);
         const vd square = edge[k][0] * edge[k][0] + edge[k][1] * edge[k][1];
-        before = before & vm_not(vd_lt(edge[k][2], vd_set1(0)) & vd_lt(reach * reach * square, edge[k][2] * edge[k][2]));
+        before =
+            before & vm_not(vd_lt(edge[k][2], vd_set1(0)) & vd_lt(reach * reach * square, edge[k][2] * edge[k][2]));
     }
     const uint32_t bits = vm_bits(before) & vd_lanes_below(count);
     if (bits != 0) list_faces(work, search, &of, edge, bits, first);

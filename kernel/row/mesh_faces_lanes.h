@@ -8,14 +8,14 @@
 /* A search for them, image by image and stretch by stretch. Lengths are in radii of sphere i but for `centre`. */
 typedef struct fibrad_face_search {
     const double *frame;
-    double deepest;       /* depth beyond which nothing matters; may be lessened on the way */
-    double wide;          /* how far lines lead aside at most, per depth; may be lessened, too */
-    double near;          /* if some are nearer than this, lines do not lead aside */
-    double slack;         /* lengths that may be rounding */
-    bool cut;             /* whether triangles may cut sphere i */
-    double nearest;       /* about the least depth of those found, ... */
-    double shallow;       /* ... and none of them is less deep */
-    double stretch;       /* depths that are looked at together; the one in hand: */
+    double deepest; /* depth beyond which nothing matters; may be lessened on the way */
+    double wide;    /* how far lines lead aside at most, per depth; may be lessened, too */
+    double near;    /* if some are nearer than this, lines do not lead aside */
+    double slack;   /* lengths that may be rounding */
+    bool cut;       /* whether triangles may cut sphere i */
+    double nearest; /* about the least depth of those found, ... */
+    double shallow; /* ... and none of them is less deep */
+    double stretch; /* depths that are looked at together; the one in hand: */
     double from, to;
     bool inside;               /* whether some of it is left */
     fibrad_mesh_images images; /* that it meets */

@@ -76,7 +76,7 @@ uint32_t LANED(fibrad_lines_spread)(fibrad_met *met, const fibrad_points *points
         set_line(lines, lines->count, p, line_through(points, p, k, spread));
     }
     for (uint32_t p = 0; p < lines->count; p++)
-        lines->depth[p] = p < count ? __builtin_inf() : -__builtin_inf(), lines->number[p] = __builtin_inf();
+        lines->depth[p] = p < count ? __builtin_inf() : -__builtin_inf(), lines->side[p] = -1;
     bound_lines(lines);
     (void)LANED(fibrad_lines_last)(lines);
     return count;
@@ -91,7 +91,7 @@ void LANED(fibrad_lines_parallel)(fibrad_met *met, const fibrad_points *points, 
     }
     for (uint32_t p = 0; p < lines->count; p++) {
         lines->depth[p] = depth != NULL ? depth[lines->point[p]] : __builtin_inf();
-        lines->number[p] = __builtin_inf();
+        lines->side[p] = -1;
     }
     (void)LANED(fibrad_lines_last)(lines);
 }
@@ -100,7 +100,7 @@ uint32_t LANED(fibrad_lines_tell)(fibrad_met *met) {
     const fibrad_lines *lines = &met->lines;
     uint32_t meet = 0;
     for (uint32_t p = 0; p < lines->count; p++) {
-        if (!(lines->number[p] < __builtin_inf())) continue;
+        if (lines->side[p] < 0) continue;
         const uint32_t point = lines->point[p];
         met->depth[point] = lines->depth[p], met->side[point] = (uint32_t)lines->side[p];
         for (int axis = 0; axis < 2; axis++) met->aside[axis][point] = (float)lines->aside[axis][p];
@@ -125,40 +125,65 @@ uint32_t LANED(fibrad_lines_deepest)(const fibrad_lines *lines) {
     double deepest = -__builtin_inf();
     uint32_t side = FIBRAD_NO_SIDE;
     for (uint32_t p = 0; p < lines->count; p++)
-        if (lines->number[p] < __builtin_inf() && lines->depth[p] > deepest)
+        if (lines->side[p] >= 0 && lines->depth[p] > deepest)
             deepest = lines->depth[p], side = (uint32_t)lines->side[p];
     return side;
 }
 
-/* ---- and a triangle ---------------------------------------------------------------------------------------------- */
-/* Notes face number k in those of VD_LANES lines from p on that meet it by `key` no deeper than what they met before;
- * of equals, the lower number stays. */
-FIBRAD_INLINE void note_face(fibrad_workspace *work, uint32_t k, uint32_t p, vm meet, vm back, vd key) {
+/* ---- and triangles ----------------------------------------------------------------------------------------------- */
+/* Notes a side in those of VD_LANES lines from p on that meet it by `key` less deep than what they met before; of
+ * equals, the triangle of the lower number. */
+FIBRAD_INLINE void note_side(fibrad_workspace *work, uint32_t p, vm meet, vd side, vd key) {
     fibrad_lines *lines = &work->met->lines;
-    const uint32_t t = work->met->faces.triangle[k];
-    const vd depth = vd_load(lines->depth + p), number = vd_load(lines->number + p);
-    const vd own = vd_set1(work->scene->mesh.number[t]), side = vd_select(back, vd_set1(2. * t + 1), vd_set1(2. * t));
-    const vm nearer = meet & (vd_lt(key, depth) | (vd_le(key, depth) & vd_lt(own, number)));
+    const vd depth = vd_load(lines->depth + p), before = vd_load(lines->side + p);
+    uint32_t equal = vm_bits(meet & vd_le(key, depth) & vd_le(depth, key) & vd_le(vd_set1(0), before));
+    const vm nearer = meet & vd_lt(key, depth);
     vd_store(lines->depth + p, vd_select(nearer, key, depth));
-    vd_store(lines->number + p, vd_select(nearer, own, number));
-    vd_store(lines->side + p, vd_select(nearer, side, vd_load(lines->side + p)));
+    vd_store(lines->side + p, vd_select(nearer, side, before));
+    if (equal == 0) return;
+    _Alignas(64) double sides[VD_LANES];
+    vd_store(sides, side);
+    for (; equal != 0; equal &= equal - 1) {
+        const uint32_t *number = work->scene->mesh.number, lane = (uint32_t)__builtin_ctz(equal);
+        const uint32_t own = (uint32_t)sides[lane], other = (uint32_t)lines->side[p + lane];
+        if (number[own / 2] < number[other / 2]) lines->side[p + lane] = own;
+    }
 }
 
-/* Eight lines and face number k. Of the depth, a grain more at backs, so that fronts come first at edges. */
-FIBRAD_INLINE void meet_block(fibrad_workspace *work, uint32_t k, uint32_t first, double grain, bool spread) {
+/* Eight parallel lines and face number k. Of the depth, a grain more at backs, so that fronts come first at edges. */
+FIBRAD_INLINE void meet_parallel(fibrad_workspace *work, uint32_t k, uint32_t first, double grain) {
     const fibrad_lines *lines = &work->met->lines;
     const fibrad_faces *faces = &work->met->faces;
-    const vd zero = vd_set1(0), more = vd_set1(grain);
+    const bool back = (uint32_t)faces->side[k] % 2 == 1;
+    const double shift = back ? grain : -grain, more = back ? grain : 0;
+    for (uint32_t p = first; p < first + FIBRAD_LINE_BLOCK; p += VD_LANES) {
+        const vd u = vd_load(lines->place[0] + p), v = vd_load(lines->place[1] + p), s = vd_load(lines->exit + p);
+        vd x[3], y[3];
+#pragma GCC unroll 3
+        for (int c = 0; c < 3; c++) x[c] = faces->corner[c][0][k] - u, y[c] = faces->corner[c][1][k] - v;
+        const vd a = x[1] * y[2] - y[1] * x[2], b = x[2] * y[0] - y[2] * x[0], c = x[0] * y[1] - y[0] * x[1];
+        const vm inside = vd_le(vd_set1(0), vd_min(a, vd_min(b, c))) & vd_lt(vd_set1(0), vd_max(a, vd_max(b, c)));
+        const vd plane = u * faces->plane[0][k] + v * faces->plane[1][k] + faces->plane[2][k];
+        const vd z = vd_min(vd_max(plane, vd_set1(faces->low[k])), vd_set1(faces->high[k]));
+        note_side(work, p, inside & vd_lt(s + shift, z), vd_set1(faces->side[k]), z + more);
+    }
+}
+
+/* The same for lines that spread, which may see the other side than the axis of the window does. */
+FIBRAD_INLINE void meet_spread(fibrad_workspace *work, uint32_t k, uint32_t first, double grain) {
+    const fibrad_lines *lines = &work->met->lines;
+    const fibrad_faces *faces = &work->met->faces;
+    const double side = faces->side[k], other = 4. * faces->triangle[k] + 1 - side;
+    const bool back = other < side;
+    const vd zero = vd_set1(0);
     for (uint32_t p = first; p < first + FIBRAD_LINE_BLOCK; p += VD_LANES) {
         const vd u = vd_load(lines->place[0] + p), v = vd_load(lines->place[1] + p), s = vd_load(lines->exit + p);
         vd x[3], y[3];
 #pragma GCC unroll 3
         for (int c = 0; c < 3; c++) {
-            x[c] = faces->corner[c][0][k] - u, y[c] = faces->corner[c][1][k] - v;
-            if (!spread) continue;
             const vd ahead = faces->corner[c][2][k] - s;
-            x[c] = x[c] - vd_load(lines->aside[0] + p) * ahead;
-            y[c] = y[c] - vd_load(lines->aside[1] + p) * ahead;
+            x[c] = faces->corner[c][0][k] - u - vd_load(lines->aside[0] + p) * ahead;
+            y[c] = faces->corner[c][1][k] - v - vd_load(lines->aside[1] + p) * ahead;
         }
         const vd a = x[1] * y[2] - y[1] * x[2], b = x[2] * y[0] - y[2] * x[0], c = x[0] * y[1] - y[0] * x[1];
         const vm none = vd_lt(vd_min(a, vd_min(b, c)), zero), some = vd_lt(zero, vd_max(a, vd_max(b, c)));
@@ -166,78 +191,75 @@ FIBRAD_INLINE void meet_block(fibrad_workspace *work, uint32_t k, uint32_t first
         if (vm_bits(inside) == 0) continue;
         const vd sum = a + b + c,
                  z = (a * faces->corner[0][2][k] + b * faces->corner[1][2][k] + c * faces->corner[2][2][k]) / sum;
-        const vm back = vd_lt(zero, sum);
-        const vd grains = vd_select(back, more, zero), behind = s + vd_select(back, more, zero - more);
-        note_face(work, k, p, inside & vd_lt(behind, z) & vd_le(z, vd_set1(1e300)), back, z + grains);
+        const vm same = vd_lt(zero, sum);
+        const vd more = vd_select(same, vd_set1(back ? grain : 0), vd_set1(back ? 0 : grain));
+        const vd shift = vd_select(same, vd_set1(back ? grain : -grain), vd_set1(back ? -grain : grain));
+        note_side(work, p, inside & vd_lt(s + shift, z) & vd_le(z, vd_set1(1e300)),
+                  vd_select(same, vd_set1(side), vd_set1(other)), z + more);
     }
 }
 
-/* The eights of parallel lines from b on that all pass face number k on the outer side of one of its edges. */
-FIBRAD_INLINE vm blocks_apart(const fibrad_lines *lines, const fibrad_faces *faces, uint32_t k, uint32_t b) {
+static void meet_pairs(fibrad_workspace *work, double grain) {
+    fibrad_lines *lines = &work->met->lines;
+    for (uint32_t at = 0; at < lines->pairs; at++) {
+        const uint32_t pair = lines->pair[at], k = pair / FIBRAD_LINE_BLOCKS;
+        const uint32_t first = pair % FIBRAD_LINE_BLOCKS * FIBRAD_LINE_BLOCK;
+        if (lines->parallel > 0)
+            meet_parallel(work, k, first, grain);
+        else
+            meet_spread(work, k, first, grain);
+    }
+    lines->pairs = 0;
+}
+
+/* Those eights of parallel lines from b on that may meet face number k: that it neither lies behind nor has all of them
+ * on the outer side of one of its edges. */
+FIBRAD_INLINE vm parallel_before(const fibrad_lines *lines, const fibrad_faces *faces, uint32_t k, uint32_t b) {
+    const vd low[2] = {vd_load(lines->low[0] + b), vd_load(lines->low[1] + b)};
+    const vd high[2] = {vd_load(lines->high[0] + b), vd_load(lines->high[1] + b)};
     vd sum[3];
 #pragma GCC unroll 3
     for (int e = 0; e < 3; e++) {
-        const double u = faces->edge[e][0][k], v = faces->edge[e][1][k];
-        sum[e] = u * vd_load((u > 0 ? lines->high[0] : lines->low[0]) + b) +
-                 v * vd_load((v > 0 ? lines->high[1] : lines->low[1]) + b) + faces->edge[e][2][k];
+        const vd u = vd_set1(faces->edge[e][0][k]), v = vd_set1(faces->edge[e][1][k]);
+        sum[e] = vd_max(u * low[0], u * high[0]) + vd_max(v * low[1], v * high[1]) + faces->edge[e][2][k];
     }
-    return vd_lt(vd_min(sum[0], vd_min(sum[1], sum[2])), vd_set1(0));
+    return vd_le(vd_set1(0), vd_min(sum[0], vd_min(sum[1], sum[2]))) &
+           vd_le(vd_set1(faces->low[k]), vd_load(lines->last + b));
 }
 
-static void meet_parallel(fibrad_workspace *work, uint32_t k, double grain) {
+/* The same of lines that spread, by the box about the face. */
+static vm spread_before(const fibrad_lines *lines, const fibrad_faces *faces, uint32_t k, uint32_t b, double slack) {
+    const double from = fibrad_max(-1, faces->low[k]) - lines->at, to = fibrad_max(-1, faces->high[k]) - lines->at;
+    vm apart = vd_lt(vd_load(lines->last + b), vd_set1(faces->low[k]));
+    for (int axis = 0; axis < 2; axis++) {
+        const double x[3] = {faces->corner[0][axis][k], faces->corner[1][axis][k], faces->corner[2][axis][k]};
+        const double low = fibrad_min(x[0], fibrad_min(x[1], x[2])) - slack;
+        const double high = fibrad_max(x[0], fibrad_max(x[1], x[2])) + slack;
+        const vd least = vd_load(lines->least[axis] + b), most = vd_load(lines->most[axis] + b);
+        const vd least_side = vd_min(vd_min(least * from, least * to), vd_min(most * from, most * to));
+        const vd most_side = vd_max(vd_max(least * from, least * to), vd_max(most * from, most * to));
+        apart = apart | vd_lt(vd_load(lines->high[axis] + b) + most_side, vd_set1(low)) |
+                vd_lt(vd_set1(high), vd_load(lines->low[axis] + b) + least_side);
+    }
+    return vm_not(apart);
+}
+
+/* Where the surface of sphere i lies beyond face number k, as seen from its centre: there lines end at once, before all
+ * that others meet, nearest first. */
+static void cut_surface(fibrad_workspace *work, uint32_t k) {
     const fibrad_lines *lines = &work->met->lines;
     const fibrad_faces *faces = &work->met->faces;
-    const uint32_t blocks = lines->count / FIBRAD_LINE_BLOCK;
-    for (uint32_t b = 0; b < blocks; b += VD_LANES) {
-        uint32_t bits = vm_bits(vd_le(vd_set1(faces->low[k]), vd_load(lines->last + b))) & vd_lanes_below(blocks - b);
-        if (bits == 0) continue;
-        bits &= vm_bits(vm_not(blocks_apart(lines, faces, k, b)));
-        for (; bits != 0; bits &= bits - 1)
-            meet_block(work, k, (b + (uint32_t)__builtin_ctz(bits)) * FIBRAD_LINE_BLOCK, grain, false);
-    }
-}
-
-/* Lines that spread: those eights that pass the box about the face. */
-static void meet_spread(fibrad_workspace *work, uint32_t k, double grain, double slack) {
-    const fibrad_lines *lines = &work->met->lines;
-    double low[3], high[3];
-    for (int axis = 0; axis < 3; axis++) {
-        const double a = work->met->faces.corner[0][axis][k], b = work->met->faces.corner[1][axis][k];
-        const double c = work->met->faces.corner[2][axis][k];
-        low[axis] = fibrad_min(a, fibrad_min(b, c)) - slack, high[axis] = fibrad_max(a, fibrad_max(b, c)) + slack;
-    }
-    const uint32_t blocks = lines->count / FIBRAD_LINE_BLOCK;
-    const double from = fibrad_max(-1, low[2]) - lines->at, to = fibrad_max(-1, high[2]) - lines->at;
-    for (uint32_t b = 0; b < blocks; b += VD_LANES) {
-        vm apart = vd_lt(vd_load(lines->last + b), vd_set1(low[2]));
-        for (int axis = 0; axis < 2; axis++) {
-            const vd least = vd_load(lines->least[axis] + b), most = vd_load(lines->most[axis] + b);
-            const vd least_side = vd_min(vd_min(least * from, least * to), vd_min(most * from, most * to));
-            const vd most_side = vd_max(vd_max(least * from, least * to), vd_max(most * from, most * to));
-            apart = apart | vd_lt(vd_load(lines->high[axis] + b) + most_side, vd_set1(low[axis])) |
-                    vd_lt(vd_set1(high[axis]), vd_load(lines->low[axis] + b) + least_side);
-        }
-        uint32_t bits = vm_bits(vm_not(apart)) & vd_lanes_below(blocks - b);
-        for (; bits != 0; bits &= bits - 1)
-            meet_block(work, k, (b + (uint32_t)__builtin_ctz(bits)) * FIBRAD_LINE_BLOCK, grain, true);
-    }
-}
-
-/* Where the surface of sphere i lies beyond a face, as seen from its centre: there lines end at once, before all that
- * others meet, nearest first. */
-static void cut_surface(fibrad_workspace *work, uint32_t face) {
-    const fibrad_lines *lines = &work->met->lines;
     const vd zero = vd_set1(0), one = vd_set1(1);
-    double x[3][3], n[3][3], sum_n[3]; /* corners; of the planes through the centre and each edge; of that of the face */
-    for (int k = 0; k < 3; k++)
-        for (int axis = 0; axis < 3; axis++) x[k][axis] = work->met->faces.corner[k][axis][face];
-    for (int k = 0; k < 3; k++) {
-        const int next = (k + 1) % 3, last = (k + 2) % 3;
+    const vd side = vd_set1(faces->side[k]), other = vd_set1(4. * faces->triangle[k] + 1 - faces->side[k]);
+    double x[3][3], n[3][3],
+        sum_n[3]; /* corners; of the planes through the centre and each edge; of that of the face */
+    for (int c = 0; c < 3; c++)
+        for (int axis = 0; axis < 3; axis++) x[c][axis] = faces->corner[c][axis][k];
+    for (int c = 0; c < 3; c++)
         for (int axis = 0; axis < 3; axis++) {
-            const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-            n[k][axis] = x[next][a] * x[last][b] - x[next][b] * x[last][a];
+            const double *a = x[(c + 1) % 3], *b = x[(c + 2) % 3];
+            n[c][axis] = a[(axis + 1) % 3] * b[(axis + 2) % 3] - a[(axis + 2) % 3] * b[(axis + 1) % 3];
         }
-    }
     for (int axis = 0; axis < 3; axis++) sum_n[axis] = n[0][axis] + n[1][axis] + n[2][axis];
     const double volume = x[0][0] * n[0][0] + x[0][1] * n[0][1] + x[0][2] * n[0][2]; /* of six tetrahedra */
     const double square = sum_n[0] * sum_n[0] + sum_n[1] * sum_n[1] + sum_n[2] * sum_n[2];
@@ -245,22 +267,30 @@ static void cut_surface(fibrad_workspace *work, uint32_t face) {
     for (uint32_t p = 0; p < lines->count; p += VD_LANES) {
         const vd u = vd_load(lines->place[0] + p), v = vd_load(lines->place[1] + p), s = vd_load(lines->exit + p);
         vd e[3];
-        for (int k = 0; k < 3; k++) e[k] = n[k][0] * u + n[k][1] * v + n[k][2] * s;
+        for (int c = 0; c < 3; c++) e[c] = n[c][0] * u + n[c][1] * v + n[c][2] * s;
         const vd least = vd_min(e[0], vd_min(e[1], e[2])), most = vd_max(e[0], vd_max(e[1], e[2]));
         const vm inside = (vd_lt(zero, most) & vd_le(zero, least)) | (vd_lt(least, zero) & vd_le(most, zero));
         const vd sum = e[0] + e[1] + e[2], share = volume / sum; /* of the way from the centre to the surface */
-        note_face(work, face, p, inside & vd_lt(zero, share) & vd_lt(share, one), vd_lt(zero, sum), share - 2);
+        note_side(work, p, inside & vd_lt(zero, share) & vd_lt(share, one), vd_select(vd_lt(zero, sum), side, other),
+                  share - 2);
     }
 }
 
 void LANED(fibrad_lines_meet)(fibrad_workspace *work, double slack) {
     const fibrad_faces *faces = &work->met->faces;
+    fibrad_lines *lines = &work->met->lines;
     const double grain = work->scene->mesh.grain * work->inverse;
+    const uint32_t blocks = lines->count / FIBRAD_LINE_BLOCK;
+    lines->pairs = 0;
     for (uint32_t k = 0; k < faces->count; k++) {
-        if (work->met->lines.parallel > 0)
-            meet_parallel(work, k, grain);
-        else
-            meet_spread(work, k, grain, slack);
+        for (uint32_t b = 0; b < blocks; b += VD_LANES) {
+            const vm before =
+                lines->parallel > 0 ? parallel_before(lines, faces, k, b) : spread_before(lines, faces, k, b, slack);
+            const uint32_t bits = vm_bits(before) & vd_lanes_below(blocks - b);
+            lines->pairs += vd_compress_places(lines->pair + lines->pairs, bits, k * FIBRAD_LINE_BLOCKS + b);
+        }
+        if (lines->pairs >= FIBRAD_PAIRS) meet_pairs(work, grain);
         if (work->clear_mesh < 1 && faces->low[k] < 1) cut_surface(work, k);
     }
+    meet_pairs(work, grain);
 }

@@ -33,17 +33,18 @@ typedef struct fibrad_near {
     uint32_t asked;              /* how many windows have asked for one more than there are */
 } fibrad_near;
 
-/* Some of the triangles that may come before a window, in its frame. Seen along it their corners go round to the left. */
+/* Some of the triangles that may come before a window, in its frame. Seen along it their corners go round to the left.
+ */
 #define FIBRAD_FACES      48u
 #define FIBRAD_FACES_ROOM (FIBRAD_FACES + FIBRAD_LANES_MAX)
 typedef struct fibrad_faces {
-    double corner[3][3][FIBRAD_FACES_ROOM];                /* of each corner u, v and depth */
+    double corner[3][3][FIBRAD_FACES_ROOM];                 /* of each corner u, v and depth */
     double low[FIBRAD_FACES_ROOM], high[FIBRAD_FACES_ROOM]; /* depths */
-    double plane[3][FIBRAD_FACES_ROOM];                    /* depth is u plane[0] + v plane[1] + plane[2] */
-    double middle[FIBRAD_FACES_ROOM];                      /* about the depth of that in the middle of the window */
-    double edge[3][3][FIBRAD_FACES_ROOM];                  /* u edge[k][0] + v edge[k][1] + edge[k][2] >= 0 inside */
-    double side[FIBRAD_FACES_ROOM];                        /* of the mesh, that is seen */
-    uint32_t triangle[FIBRAD_FACES_ROOM];                  /* place in the mesh */
+    double plane[3][FIBRAD_FACES_ROOM];                     /* depth is u plane[0] + v plane[1] + plane[2] */
+    double middle[FIBRAD_FACES_ROOM];                       /* about the depth of that in the middle of the window */
+    double edge[3][3][FIBRAD_FACES_ROOM];                   /* u edge[k][0] + v edge[k][1] + edge[k][2] >= 0 inside */
+    double side[FIBRAD_FACES_ROOM];                         /* of the mesh, that is seen */
+    uint32_t triangle[FIBRAD_FACES_ROOM];                   /* place in the mesh */
     uint32_t count;
 } fibrad_faces;
 
