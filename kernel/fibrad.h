@@ -211,7 +211,7 @@ typedef struct fibrad_work {
  * FIBRAD_WORK_WALLS, in those with triangles FIBRAD_WORK_TRIANGLES. */
 #define FIBRAD_WORK_BYTES(discs, entries) (28672 + (size_t)(discs)*768 + (size_t)(entries)*96)
 #define FIBRAD_WORK_WALLS                 21504
-#define FIBRAD_WORK_TRIANGLES             11264
+#define FIBRAD_WORK_TRIANGLES             22848
 
 /* ---- row ------------------------------------------------------------------------------------------------------- */
 typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */

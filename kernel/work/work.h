@@ -35,7 +35,7 @@ typedef struct fibrad_near {
 
 /* Some of the triangles that may come before a window, in its frame. Seen along it their corners go round to the left.
  */
-#define FIBRAD_FACES      48u
+#define FIBRAD_FACES      32u
 #define FIBRAD_FACES_ROOM (FIBRAD_FACES + FIBRAD_LANES_MAX)
 typedef struct fibrad_faces {
     double corner[3][3][FIBRAD_FACES_ROOM];                 /* of each corner u, v and depth */
