@@ -10,6 +10,7 @@
  * Edges    Triangles share an edge if their corners there have equal coordinates; then nothing passes between them.
  * Walls    Planes and the cylinder bound the scene as ever; what of a triangle lies beyond them plays no part.
  * Periods  On periodic axes triangles are repeated with the period, wherever their corners are.
+ * Parts    Rows with a cutoff meet triangles beyond it where the occupancy of fibrad_part.h leaves their way clear.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_MESH_H
@@ -33,6 +34,7 @@ typedef struct fibrad_triangles {
     const uint32_t *front;  /* [n] body of the front side, FIBRAD_NO_BODY: none */
     const uint32_t *back;   /* [n] likewise; NULL: no triangle's back may be seen */
     uint32_t n;             /* [0, FIBRAD_TRIANGLES_MAX] */
+    double period[3]; /* [L] by which triangles alone are repeated, along open axes of the scene; 0: they are not */
 } fibrad_triangles;
 
 /* Bytes that n triangles add to fibrad_scene_size(spheres, ids), 150 each and 4 a sphere. Errors: 0 if there are too

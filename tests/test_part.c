@@ -6,6 +6,7 @@
 #include "scene/surroundings.h"
 #include "fibrad_surface.h"
 #include "scenes.h"
+#include "meshes.h"
 #include "suite.h"
 
 /* ---- beds with ids ---------------------------------------------------------------------------------------------- */
@@ -77,7 +78,8 @@ static fibrad_spheres part_spheres(const struct part *p) {
 
 static int part_scene_try(const struct part *p, fibrad_scene **scene) {
     const fibrad_spheres spheres = part_spheres(p);
-    const size_t size = fibrad_scene_size(p->n, 1);
+    const struct fibrad_triangles *triangles = p->config.triangles;
+    const size_t size = fibrad_scene_size(p->n, 1) + (triangles ? fibrad_triangles_size(triangles->n, p->n) : 0);
     void *block = block_of(size);
     const int status = fibrad_scene_init(scene, block, size, &p->config, &spheres, NULL);
     if (status != FIBRAD_OK) free(block);
@@ -196,20 +198,45 @@ struct kind {
     const char *name;
     char lattice;   /* 0: a packing */
     bool across, z; /* periodic across z, along z */
-    int walls;      /* 1: planes where an axis is open, 2: a cylinder and planes across z */
+    int walls;      /* 1: planes where an axis is open, 2: a cylinder and planes across z, 3: triangles */
 };
-static const struct kind kinds[] = {{"open", 0, false, false, 0},          {"box", 0, false, false, 1},
-                                    {"can", 0, false, false, 2},           {"slab", 0, true, false, 1},
-                                    {"periodic", 0, true, true, 0},        {"lattice", 'p', false, false, 0},
-                                    {"close-packed", 'f', false, false, 1}};
+static const struct kind kinds[] = {{"open", 0, false, false, 0},
+                                    {"box", 0, false, false, 1},
+                                    {"can", 0, false, false, 2},
+                                    {"slab", 0, true, false, 1},
+                                    {"periodic", 0, true, true, 0},
+                                    {"lattice", 'p', false, false, 0},
+                                    {"close-packed", 'f', false, false, 1},
+                                    {"vessel", 0, false, false, 3},
+                                    {"layer", 0, true, false, 3}};
 enum { KINDS = sizeof kinds / sizeof *kinds, BODIES = 7 };
 
 struct made {
     struct part part;
     fibrad_occupancy occupancy;
     fibrad_body body[BODIES];
+    struct mesh *mesh; /* NULL: none */
     double low[3], high[3];
 };
+
+/* A tube among the spheres; a high box about them, or, on periodic axes, the floor and the lid of one. */
+static void make_mesh(struct made *m, const double period[3], fibrad_scene_config *config) {
+    const double wide = period[0] > 0 ? 0 : .5;
+    const double low[3] = {m->low[0] - wide, m->low[1] - wide, m->low[2] - .5};
+    const double high[3] = {m->high[0] + wide, m->high[1] + wide, m->high[2] + 9};
+    m->mesh = mesh_new();
+    mesh_box(m->mesh, low, high, 0);
+    if (period[0] > 0) { /* without the sides, which come first */
+        m->mesh->triangles.n = 4;
+        memmove(m->mesh->corner, m->mesh->corner + 8, 4 * sizeof *m->mesh->corner);
+        for (uint32_t t = 0; t < 4; t++) m->mesh->front[t] = t;
+    }
+    const uint32_t tube = period[0] > 0 ? 4 : 6;
+    mesh_tube(m->mesh, 3, 4, .75, m->low[2], m->high[2], 12, 1, true, tube, tube);
+    memcpy(m->body, m->mesh->body, sizeof m->body);
+    config->bodies = tube + 1;
+    config->triangles = &m->mesh->triangles;
+}
 
 /* The made bed stays where it is: its scene's configuration points into it. */
 static void make_kind(struct made *m, const struct kind *k) {
@@ -229,10 +256,12 @@ static void make_kind(struct made *m, const struct kind *k) {
     }
     fibrad_scene_config config = {.body = m->body};
     for (int axis = 0; axis < 3; axis++) {
-        if (k->walls == 0 || bed.period[axis] > 0 || (k->walls == 2 && axis < 2)) continue;
+        if (k->walls == 0 || k->walls == 3 || bed.period[axis] > 0 || (k->walls == 2 && axis < 2)) continue;
         m->body[config.bodies++] = plane_at(axis, 0, m->low[axis]);
         m->body[config.bodies++] = plane_at(axis, 1, m->high[axis]);
     }
+    m->mesh = NULL;
+    if (k->walls == 3) make_mesh(m, bed.period, &config);
     if (k->walls == 2) m->body[config.bodies++] = cylinder_at(high / 2, high / 2, high);
     m->part = part_of(&bed, config);
     m->occupancy = occupancy_of(&m->part, m->low, m->high, 5);
@@ -243,6 +272,7 @@ static void make_kind(struct made *m, const struct kind *k) {
 static void free_made(struct made *m) {
     part_free(&m->part);
     free((void *)(uintptr_t)m->occupancy.mark);
+    free(m->mesh);
 }
 
 /* Rows depend on what is near, to the bit, whatever else there is and in whatever order. */
@@ -251,7 +281,7 @@ START_TEST(rows_depend_on_what_is_near) {
     make_kind(&m, &kinds[_i]);
     fibrad_scene *whole = part_scene(&m.part);
     const double cutoffs[] = {2.5, 4.25};
-    for (uint32_t i = 0; i < m.part.n; i += m.part.n / 9)
+    for (uint32_t i = 0; i < m.part.n; i += m.part.n / (m.mesh ? 2 : 9))
         for (int c = 0; c < 2; c++) {
             const double reach = (cutoffs[c] + radius_most(&m.part)) * (1 + 1e-9);
             uint32_t own = UINT32_MAX, again = UINT32_MAX;
@@ -354,6 +384,59 @@ START_TEST(images_are_spheres_of_the_same_id) {
     }
     free(periodic);
     free_made(&m);
+}
+END_TEST
+
+/* Triangles beyond the cutoff are met where no sphere is on the way. */
+START_TEST(far_triangles_are_met) {
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    struct mesh *mesh = mesh_new();
+    mesh_box(mesh, (const double[]){-30, -20, -10}, (const double[]){40, 50, 60}, 0);
+    const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
+    struct part alone = part_of(&bed, config);
+    fibrad_scene *scene = part_scene(&alone);
+    for (int method = 0; method < METHODS; method++) {
+        struct named_row all = row_by(&alone, scene, 0, method, 0), cut = row_by(&alone, scene, 0, method, 3);
+        expect_same_named(&all, &cut, 1, "box");
+        named_free(&all), named_free(&cut);
+    }
+    free(scene);
+    part_free(&alone);
+    free(mesh);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Triangles that repeat where spheres do not are as good as their copies. */
+START_TEST(triangles_repeat_alone) {
+    struct bed bed = bed_of(1, (const double[][4]){{.3, .4, 0, .45}});
+    double seen[2][METHODS];
+    enum { FAR = 40 };
+    for (int copies = 0; copies < 2; copies++) {
+        struct mesh *mesh = mesh_new();
+        for (int x = copies ? -FAR : 0; x <= (copies ? FAR : 0); x++)
+            for (int y = copies ? -FAR : 0; y <= (copies ? FAR : 0); y++) {
+                uint32_t v[4];
+                for (int k = 0; k < 4; k++) v[k] = mesh_vertex(mesh, x + (k == 1 || k == 2) * .5, y + (k > 1) * .5, -1);
+                mesh_quad(mesh, v, 0, FIBRAD_NO_BODY);
+            }
+        for (int axis = 0; axis < 2 && !copies; axis++) mesh->triangles.period[axis] = 1;
+        struct part p =
+            part_of(&bed, (fibrad_scene_config){.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles});
+        fibrad_scene *scene = part_scene(&p);
+        for (int method = 0; method < METHODS; method++) {
+            struct named_row row = row_by(&p, scene, 0, method, 0);
+            seen[copies][method] = row.row.body[0];
+            named_free(&row);
+        }
+        free(scene), free(mesh);
+        part_free(&p);
+    }
+    for (int method = 0; method < METHODS; method++) {
+        ck_assert_double_gt(seen[0][method], method < 4 ? .1 : .03);
+        ck_assert_double_eq_tol(seen[0][method], seen[1][method], .01); /* those farther than FAR */
+    }
+    bed_free(&bed);
 }
 END_TEST
 
@@ -986,6 +1069,8 @@ int main(void) {
     tcase_add_loop_test(near, rows_depend_on_what_is_near, 0, KINDS);
     tcase_add_test(near, displacements_depend_on_what_is_near);
     tcase_add_test(near, images_are_spheres_of_the_same_id);
+    tcase_add_test(near, far_triangles_are_met);
+    tcase_add_test(near, triangles_repeat_alone);
     tcase_add_loop_test(near, ids_decide_among_equals, 0, 3);
     tcase_add_loop_test(beyond, nothing_is_beyond_what_holds_all, 0, 2);
     tcase_add_test(beyond, cells_are_walked_one_by_one);

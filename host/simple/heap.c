@@ -104,7 +104,8 @@ int fibrad_heap_triangles(fibrad_triangle_copy *copy, const struct fibrad_triang
                                                 .corner = corner,
                                                 .front = corner + 3 * n,
                                                 .back = given->back ? corner + 4 * n : NULL,
-                                                .n = given->n};
+                                                .n = given->n,
+                                                .period = {given->period[0], given->period[1], given->period[2]}};
     return FIBRAD_OK;
 }
 

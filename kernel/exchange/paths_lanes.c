@@ -125,6 +125,14 @@ static bool is_known(const fibrad_paths *paths, const struct grey_path *path, co
     return length <= fibrad_region_exit(scene, point, w);
 }
 
+/* The triangle that a ray meets, whatever spheres there are before it. */
+static void look_past(const fibrad_scene *scene, const struct grey_path *path, const double point[3], const double w[3],
+                      fibrad_hit *hit) {
+    const uint32_t except = path->place != FIBRAD_NONE ? FIBRAD_NO_SIDE : path->triangle;
+    const fibrad_mesh_hit met = fibrad_mesh_first(&scene->mesh, point, w, __builtin_inf(), except);
+    hit->side = met.side, hit->distance = met.distance;
+}
+
 /* Traces one ray, to a sphere (FIBRAD_NONE) or to a wall or a mesh, whose slot is returned; FIBRAD_ESCAPED,
  * FIBRAD_BEYOND: it meets none of them, or what is nobody's. */
 static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3]) {
@@ -146,10 +154,11 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
         return FIBRAD_NONE;
     }
     find_point(scene, path, centre, point);
+    if (hit.sphere != FIBRAD_NONE && scene->clear != NULL) look_past(scene, path, point, w, &hit);
     const double ball = paths->cut ? ball_length(paths, path, w) : __builtin_inf();
-    const bool meshed = hit.sphere == FIBRAD_NONE && hit.side != FIBRAD_NO_SIDE;
-    const uint32_t met = meshed ? fibrad_surroundings_side(scene, point, w, ball, hit.side, hit.distance, &distance)
-                                : fibrad_surroundings_met(scene, point, w, ball, &distance);
+    const uint32_t met = hit.side != FIBRAD_NO_SIDE
+                             ? fibrad_surroundings_side(scene, point, w, ball, hit.side, hit.distance, &distance)
+                             : fibrad_surroundings_met(scene, point, w, ball, &distance);
     if (met == FIBRAD_NONE) {
         paths->back = scene->mesh.number[hit.side / 2];
         return FIBRAD_BEYOND;

@@ -262,7 +262,10 @@ int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, c
     const bool arrays = given->x != NULL && given->y != NULL && given->z != NULL && given->corner != NULL;
     *fault = UINT32_MAX;
     if (given->n > 0 && (!arrays || given->front == NULL)) return FIBRAD_E_ARGUMENT;
-    fibrad_copy(mesh->period, period, sizeof mesh->period);
+    for (int axis = 0; axis < 3; axis++) {
+        mesh->period[axis] = period[axis] > 0 ? period[axis] : given->period[axis];
+        if (!(mesh->period[axis] >= 0 && mesh->period[axis] <= LENGTH_MAX)) return FIBRAD_E_ARGUMENT;
+    }
     for (int axis = 0; axis < 3; axis++) mesh->low[axis] = __builtin_inf(), mesh->high[axis] = -__builtin_inf();
     for (uint32_t t = 0; t < given->n; t++) {
         uint8_t ignored;

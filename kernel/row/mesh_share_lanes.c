@@ -326,16 +326,16 @@ void LANED(fibrad_mesh_place)(const fibrad_workspace *work, const double frame[9
     }
 }
 
-/* Whether a line ends, by cutoff or known region, before it meets its triangle. */
-static bool beyond_known(const fibrad_workspace *work, const double frame[9], uint32_t p) {
+/* The slot of what a line meets, which may be beyond cutoff or known region. */
+static uint32_t slot_met(const fibrad_workspace *work, const double frame[9], uint32_t p) {
     const fibrad_met *met = work->met;
-    double origin[3], w[3], from[3];
-    if (!work->cut || met->depth[p] < -1) return false;
+    double origin[3], w[3], from[3], distance;
+    if (!work->cut || met->depth[p] < -1) return fibrad_scene_slot(work->scene, met->side[p]);
     line_of_point(work, frame, &met->points, p, origin, w);
     for (int axis = 0; axis < 3; axis++) from[axis] = (origin[axis] - work->centre[axis]) * work->inverse;
     const double length = (met->depth[p] - fibrad_point_exit(&met->points, p)) * work->unit;
-    return length > fibrad_ball_exit(from, w, work->reach) * work->unit ||
-           length > fibrad_region_exit(work->scene, origin, w);
+    const double ball = fibrad_ball_exit(from, w, work->reach) * work->unit;
+    return fibrad_surroundings_side(work->scene, origin, w, ball, met->side[p], length, &distance);
 }
 
 void LANED(fibrad_mesh_count)(fibrad_workspace *work, const double frame[9], uint32_t k) {
@@ -345,12 +345,11 @@ void LANED(fibrad_mesh_count)(fibrad_workspace *work, const double frame[9], uin
     for (uint32_t p = 0; p < points->count; p++) {
         const uint32_t side = met->side[p];
         if (side == FIBRAD_NO_SIDE) continue;
-        uint32_t slot = fibrad_scene_slot(scene, side);
+        const uint32_t slot = slot_met(work, frame, p);
         if (slot == FIBRAD_NONE) {
             work->back = scene->mesh.number[side / 2];
             continue;
         }
-        if (beyond_known(work, frame, p)) slot = FIBRAD_BEYOND;
         const uint32_t entry = fibrad_entries_of(&work->entries, scene->facts.spheres + slot);
         fibrad_entries_add(&work->entries, entry, k, met->weight[p]);
     }

@@ -120,6 +120,10 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
         }
         if (s->id != NULL) hash = (hash ^ s->id[i]) * 0x9e3779b97f4a7c15u;
     }
+    for (int axis = 0; axis < 3 && scene->mesh.triangles > 0; axis++) {
+        fibrad_copy(&word, &scene->mesh.period[axis], sizeof word);
+        hash = fibrad_mix(hash ^ word);
+    }
     for (uint32_t t = 0; t < scene->mesh.triangles; t++) {
         for (int k = 0; k < 9; k++) {
             fibrad_copy(&word, &scene->mesh.corner[k / 3][k % 3][t], sizeof word);

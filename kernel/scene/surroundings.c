@@ -156,7 +156,8 @@ uint32_t fibrad_surroundings_side(const fibrad_scene *scene, const double origin
     const uint32_t wall = fibrad_walls_exit(scene, origin, w, distance);
     const bool before = wall == FIBRAD_NONE || length < *distance;
     if (before) *distance = length;
-    if (*distance > fibrad_max(0, fibrad_min(ball, fibrad_region_exit(scene, origin, w)))) return FIBRAD_BEYOND;
+    const double known = fibrad_max(0, fibrad_min(ball, fibrad_region_exit(scene, origin, w)));
+    if (*distance > known && !way_is_clear(&scene->occupancy, origin, w, known, *distance)) return FIBRAD_BEYOND;
     return before ? fibrad_scene_slot(scene, side) : wall;
 }
 

@@ -27,8 +27,8 @@ uint32_t fibrad_surroundings_met(const fibrad_scene *scene, const double origin[
                                  double *distance);
 
 /* The same for a ray along the unit vector w that meets a triangle at some length before any sphere: the slot of its
- * side, a wall's if that comes first, FIBRAD_BEYOND if it is not known so far, or FIBRAD_NONE if the side is nobody's.
- */
+ * side, a wall's if that comes first, FIBRAD_BEYOND if its way there is neither known nor clear, or FIBRAD_NONE if the
+ * side is nobody's. */
 uint32_t fibrad_surroundings_side(const fibrad_scene *scene, const double origin[3], const double w[3], double ball,
                                   uint32_t side, double length, double *distance);
 

@@ -34,7 +34,7 @@ def _structure(name: str, *fields: tuple[str, Any]) -> Any:
 Spheres = _structure("spheres", ("x y z r", DOUBLES), ("n stride stride_r", c_uint32), ("id", POINTER(c_uint64)))
 Body = _structure("body", ("kind", c_int), ("plane", _Plane), ("cylinder", _Cylinder))
 Triangles = _structure("triangles", ("x y z", DOUBLES), ("stride vertices", c_uint32),
-                       ("corner front back", POINTER(c_uint32)), ("n", c_uint32))
+                       ("corner front back", POINTER(c_uint32)), ("n", c_uint32), ("period", c_double * 3))
 SceneConfig = _structure("scene_config", ("isa", c_int), ("period", c_double * 3), ("body", POINTER(Body)),
                          ("bodies", c_uint32), ("known_low known_high", c_double * 3), ("occupancy", c_void_p),
                          ("triangles", POINTER(Triangles)))
