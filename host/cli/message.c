@@ -4,13 +4,25 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+static void (*redirected)(void *context, const char *line);
+static void *redirected_context;
+
+void message_redirect(void (*to)(void *context, const char *line), void *context) {
+    redirected = to;
+    redirected_context = context;
+}
+
 /* Prints at most one line, whatever names and tokens it quotes. */
 static void print_line(const char *prefix, const char *format, va_list arguments) {
-    char text[1024];
-    vsnprintf(text, sizeof text, format, arguments);
+    char text[1536];
+    const int begun = snprintf(text, sizeof text, "%s", prefix);
+    vsnprintf(text + begun, sizeof text - (size_t)begun, format, arguments);
     for (char *c = text; *c; ++c)
         if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
-    fprintf(stderr, "fibrad: %s%s\n", prefix, text);
+    if (redirected)
+        redirected(redirected_context, text);
+    else
+        fprintf(stderr, "fibrad: %s\n", text);
 }
 
 int message(int status, const char *format, ...) {
@@ -27,8 +39,6 @@ int message_at(int status, const char *file, uint64_t line, const char *format, 
         snprintf(place, sizeof place, "%.480s:%llu: ", file, (unsigned long long)line);
     else
         snprintf(place, sizeof place, "%.480s: ", file);
-    for (char *c = place; *c; ++c)
-        if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
     va_list arguments;
     va_start(arguments, format);
     print_line(place, format, arguments);

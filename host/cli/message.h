@@ -24,4 +24,7 @@ int message_at(int status, const char *file, uint64_t line, const char *format, 
 /* `fibrad: out of memory`; returns STATUS_MEMORY. */
 int message_memory(void);
 
+/* Gives all further lines, without `fibrad: `, to a function instead of standard error; NULL: no longer. */
+void message_redirect(void (*to)(void *context, const char *line), void *context);
+
 #endif

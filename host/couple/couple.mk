@@ -15,6 +15,20 @@ COUPLE = \
     host/couple/powers.c \
     host/couple/write_rows.c
 
+# walls of triangles, for programs that read files of them; a library of its own, since it has names of the program
+COUPLE_MESH = \
+    host/couple/mesh_walls.c \
+    host/cli/interrupt.c \
+    host/cli/message.c \
+    host/mesh/edges.c \
+    host/mesh/enclosing.c \
+    host/mesh/facing.c \
+    host/mesh/meshes.c \
+    host/mesh/stl.c \
+    host/mesh/weld.c \
+    host/text/read_lines.c \
+    host/text/read_number.c
+
 # programs of one file each, with their own main
 COUPLE_PROGRAMS = host/couple/example.c
 
@@ -22,6 +36,8 @@ COUPLE_TESTS   = tests/couple/test_couple.c
 COUPLE_SCRIPTS = tests/couple/check_couple.sh
 
 COUPLE_OBJECTS = $(COUPLE:%.c=$(BUILD)/%.o)
+COUPLE_MESH_OBJECTS = $(COUPLE_MESH:%.c=$(BUILD)/couple/%.o)
+COUPLE_MESH_LIB     = $(BUILD)/couple/libmesh_walls.a
 COUPLE_LIBS    = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/libfibrad.a
 COUPLE_CXX     = $(CFLAGS) -pedantic -Wall -Wextra -Wshadow $(WERROR) -DOMPI_SKIP_MPICXX -Ikernel -Ihost -MMD -MP
 COUPLE_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(PIC)
@@ -48,6 +64,14 @@ $(COUPLE_OBJECTS): $(BUILD)/%.o: %.c | need-mpi
 	@mkdir -p $(@D)
 	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) -c $< -o $@
 
+$(COUPLE_MESH_LIB): $(COUPLE_MESH_OBJECTS)
+	rm -f $@
+	$(AR) rcs $@ $(COUPLE_MESH_OBJECTS)
+
+$(COUPLE_MESH_OBJECTS): $(BUILD)/couple/%.o: %.c | need-mpi
+	@mkdir -p $(@D)
+	$(MPICC) $(CFLAGS) $(COMMON) -D_XOPEN_SOURCE=700 -Ihost $(ZLIB_CFLAGS) $(PIC) -c $< -o $@
+
 $(BUILD)/couple/example: host/couple/example.c $(COUPLE_LIBS)
 	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
 
@@ -58,9 +82,9 @@ need-mpi:
 	@command -v $(MPICC) >/dev/null || { echo "Couplings need MPI: run 'make deps-couple' (Debian: openmpi-bin," \
 	    "libopenmpi-dev)." >&2; exit 1; }
 
-$(COUPLE_OBJECTS) $(COUPLE_PRODUCTS): Makefile host/couple/couple.mk
+$(COUPLE_OBJECTS) $(COUPLE_MESH_OBJECTS) $(COUPLE_PRODUCTS): Makefile host/couple/couple.mk
 
--include $(COUPLE_OBJECTS:.o=.d) $(BUILD)/couple/example.d $(BUILD)/couple/test_couple.d
+-include $(COUPLE_OBJECTS:.o=.d) $(COUPLE_MESH_OBJECTS:.o=.d) $(BUILD)/couple/example.d $(BUILD)/couple/test_couple.d
 
 ## test-couple: build and run the tests of the couplings; skips them, with a word, where packages are missing
 test-couple:
@@ -68,4 +92,4 @@ test-couple:
 
 ## deps-couple: install the Debian packages of the couplings: MPI, LAMMPS, LIGGGHTS
 deps-couple:
-	@.ci/deps openmpi-bin libopenmpi-dev lammps liblammps-dev liggghts libliggghts-dev
+	@.ci/deps zlib1g-dev openmpi-bin libopenmpi-dev lammps liblammps-dev liggghts libliggghts-dev

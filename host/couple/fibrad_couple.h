@@ -69,11 +69,13 @@ typedef struct fibrad_insitu_bed {
     const fibrad_body *body;       /* [bodies] walls, as in fibrad_scene_config: every centre inside of them */
     const double *body_emissivity; /* [bodies] [0, 1] */
     uint32_t bodies;
-    size_t n;                 /* particles that this rank owns */
-    const uint64_t *id;       /* [n] */
-    const double *x;          /* [n][3] [L] */
-    const double *radius;     /* [n] [L] */
-    const double *emissivity; /* [n] [0, 1]; 0 reflects all */
+    const struct fibrad_triangles *triangles; /* fibrad_mesh.h: all of bodies that are meshes, the same on all ranks;
+                                                 on periodic axes they repeat; NULL: none */
+    size_t n;                                 /* particles that this rank owns */
+    const uint64_t *id;                       /* [n] */
+    const double *x;                          /* [n][3] [L] */
+    const double *radius;                     /* [n] [L] */
+    const double *emissivity;                 /* [n] [0, 1]; 0 reflects all */
 } fibrad_insitu_bed;
 
 /* What radiates when powers are asked for. */
@@ -109,7 +111,7 @@ typedef struct fibrad_insitu_facts {
 int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu_config *config);
 
 /* Makes all rows anew. Errors: FIBRAD_E_ARGUMENT (a value out of its range, an id twice, a centre beyond a wall),
- * _GEOMETRY (a centre inside another particle), _MEMORY. */
+ * _GEOMETRY (a centre inside another particle), _BACK (a side of a triangle is seen that is no body's), _MEMORY. */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Net radiative power of each particle this rank owns now, power[n], > 0 where heat is gained. totals may be NULL.

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "couple/coarse_map.h"
+#include "fibrad_mesh.h"
 
 #define THREADS_MAX    1024
 #define CUTOFF_RADII   8  /* mean radii and a largest diameter: 1.4e-4 of what equal spheres emit leaves it at 0.8 */
@@ -131,8 +132,10 @@ static int check_bed(struct insitu_build *b) {
     char *message = b->s->message;
     unsigned char block[FIBRAD_SCENE_BYTES(0)];
     fibrad_scene *empty;
+    fibrad_body body[FIBRAD_BODIES_MAX]; /* but meshes, which bound nothing */
+    uint32_t bodies = 0;
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
-        (bed->bodies && !(bed->body && bed->body_emissivity)))
+        bed->bodies > FIBRAD_BODIES_MAX || (bed->bodies && !(bed->body && bed->body_emissivity)))
         return FIBRAD_E_ARGUMENT;
     for (int axis = 0; axis < 3; ++axis) {
         if (!bed->periodic[axis]) continue;
@@ -140,8 +143,10 @@ static int check_bed(struct insitu_build *b) {
         if (!(b->period[axis] > 0 && isfinite(b->period[axis])))
             return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "the periodic box has no extent along %c", "xyz"[axis]);
     }
+    for (uint32_t k = 0; k < bed->bodies; ++k)
+        if (bed->body[k].kind != FIBRAD_BODY_MESH) body[bodies++] = bed->body[k];
     const fibrad_scene_config config = {
-        .period = {b->period[0], b->period[1], b->period[2]}, .body = bed->body, .bodies = bed->bodies};
+        .period = {b->period[0], b->period[1], b->period[2]}, .body = body, .bodies = bodies};
     const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
     if (status) return fibrad_refuse(message, status, "the walls do not bound a box or a cylinder");
     for (uint32_t k = 0; k < bed->bodies; ++k)
@@ -251,6 +256,8 @@ static int link_present(struct insitu_build *b) {
 static int name_scene_fault(const struct insitu_build *b, int status, const uint64_t *id, size_t n,
                             fibrad_fault fault) {
     char *message = b->s->message;
+    if (b->bed->triangles && fault.triangle < b->bed->triangles->n)
+        return fibrad_refuse(message, status, "triangle %" PRIu32 " of the walls is not valid", fault.triangle);
     if (fault.first >= n || fault.second >= n) return status;
     const uint64_t first = id[fault.first], second = id[fault.second];
     if (fault.first == fault.second)
@@ -270,7 +277,10 @@ static int make_scene(struct insitu_build *b) {
     const size_t n = b->to->own + b->halo;
     const fibrad_particle *p = b->to->particle.at;
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
-    const size_t size = fibrad_scene_size((uint32_t)n, 1);
+    fibrad_triangles triangles = {0};
+    if (b->bed->triangles) triangles = *b->bed->triangles;
+    memcpy(triangles.period, b->period, sizeof triangles.period);
+    const size_t size = fibrad_scene_size((uint32_t)n, 1) + fibrad_triangles_size(triangles.n, (uint32_t)n);
     if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&b->to->id, n, sizeof(uint64_t)) ||
         fibrad_block_fit(&s->emissivity, n, sizeof(double)))
         return FIBRAD_E_MEMORY;
@@ -278,12 +288,24 @@ static int make_scene(struct insitu_build *b) {
     double *emissivity = s->emissivity.at;
     for (size_t i = 0; i < n; ++i) id[i] = p[i].id, emissivity[i] = p[i].emissivity;
     const fibrad_scene_config config = {
-        .body = b->bed->body, .bodies = b->bed->bodies, .occupancy = n ? &b->map : NULL};
+        .body = b->bed->body, .bodies = b->bed->bodies, .occupancy = n ? &b->map : NULL, .triangles = &triangles};
     const uint32_t stride = sizeof *p / sizeof(double);
     const fibrad_spheres spheres = {&p->x[0], &p->x[1], &p->x[2], &p->radius, (uint32_t)n, stride, stride, id};
     fibrad_fault fault;
     const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);
     return status ? name_scene_fault(b, status, id, n, fault) : FIBRAD_OK;
+}
+
+/* Says why there is no row of a particle. */
+static int name_row_fault(const struct insitu_build *b, int status, uint64_t id, const fibrad_work *work) {
+    const fibrad_triangles *t = b->bed->triangles;
+    if (status != FIBRAD_E_BACK || !t || work->triangle >= t->n)
+        return fibrad_refuse(b->s->message, status, "particle %" PRIu64 ": %s", id, fibrad_status_text(status));
+    const uint32_t front = t->front[work->triangle], body = front == FIBRAD_NO_BODY ? t->back[work->triangle] : front;
+    return fibrad_refuse(b->s->message, status,
+                         "particle %" PRIu64 " sees the back of wall %" PRIu32 ", of triangle %" PRIu32 ", which is no "
+                         "wall's",
+                         id, body + 1, work->triangle);
 }
 
 /* The particles of this rank in the order of the cells. */
@@ -329,8 +351,7 @@ static int compute_rows(struct insitu_build *b) {
         if (!status) {
 #pragma omp atomic write
             status = result;
-            fibrad_refuse(s->message, result, "particle %" PRIu64 ": %s", ((uint64_t *)b->to->id.at)[order[k]],
-                          fibrad_status_text(result));
+            name_row_fault(b, result, ((uint64_t *)b->to->id.at)[order[k]], &s->work[thread]);
         }
     }
     return status;

@@ -34,6 +34,12 @@ class FixFibrad::Words {
     Words(LAMMPS *lammps, int count, char **word) : lmp(lammps), words(word + 2, word + count) {}
     bool more() const { return at < words.size(); }
     bool next_is(const char *word) const { return more() && words[at] == word; }
+    // whether the next word is this one, which is then taken
+    bool take(const char *word) {
+        const bool is = next_is(word);
+        at += is;
+        return is;
+    }
     std::string next() {
         if (!more()) lmp->error->all(FLERR, "fix fibrad: a word is missing after `" + words.back() + "`");
         return words[at++];
@@ -58,8 +64,8 @@ class FixFibrad::Words {
 };
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
-    : Fix(lammps, narg, arg), temperature(), surroundings(-1), sigma(0), initial(0), config(), insitu(nullptr),
-      totals(), warned(false), cut_warned(false), begun(0), before(), rows_made(0), powers_found(0) {
+    : Fix(lammps, narg, arg), temperature(), surroundings(-1), sigma(0), initial(0), config(), meshes(),
+      insitu(nullptr), totals(), warned(false), cut_warned(false), begun(0), before(), rows_made(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // 0 would leave the directions of step 0 as they are, whose errors add up
@@ -139,6 +145,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
 FixFibrad::~FixFibrad() {
     atom->delete_callback(id, Atom::GROW);
     fibrad_insitu_free(insitu);
+    mesh_walls_free(&meshes);
 }
 
 // d_NAME, or LAMMPS' own: other words may name what is no vector of numbers
@@ -148,14 +155,16 @@ void FixFibrad::read_temperature(Words &words) {
         error->all(FLERR, "fix fibrad: `temperature` is followed by d_NAME, not `" + temperature + "`");
 }
 
-// wall FACE T e [at POS] | wall zcylinder R T e [at X Y]
+// wall FACE T e [at POS] | wall zcylinder R T e [at X Y] | wall mesh ...
 void FixFibrad::read_wall(Words &words) {
     static const char *const faces[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "zcylinder"};
     const std::string name = words.next();
     const int face = (int)(std::find(faces, faces + 7, name) - faces);
+    if (walls.size() == FIBRAD_BODIES_MAX)
+        error->all(FLERR, text("fix fibrad: there are at most %d walls", FIBRAD_BODIES_MAX));
+    if (name == "mesh") return read_mesh(words);
     if (face == 7)
-        error->all(FLERR, "fix fibrad: a wall is one of xlo xhi ylo yhi zlo zhi zcylinder, not `" + name + "`");
-    if (walls.size() == 7) error->all(FLERR, std::string("fix fibrad: there are at most 7 walls"));
+        error->all(FLERR, "fix fibrad: a wall is one of xlo xhi ylo yhi zlo zhi zcylinder mesh, not `" + name + "`");
 
     const double huge = 1e300;
     fibrad_body body = {};
@@ -181,6 +190,58 @@ void FixFibrad::read_wall(Words &words) {
     }
     walls.push_back(body);
     wall_face.push_back(at || face == 6 ? -1 : face);
+}
+
+// wall mesh FILE T e [name NAME] [both | normals | auto] [solids] [scale S]
+void FixFibrad::read_mesh(Words &words) {
+    const double huge = 1e300;
+    const std::string path = words.next();
+    const double t = words.number("a wall's temperature", 0, huge), e = words.number("a wall's emissivity", 0, 1);
+    const uint32_t first = (uint32_t)walls.size();
+    std::string name;
+    mesh_file file = {};
+    file.path = path.c_str();
+    file.scale = 1;
+    for (bool more = true; more;) {
+        if (words.take("both"))
+            file.sides = SIDES_BOTH;
+        else if (words.take("normals"))
+            file.sides = SIDES_NORMALS;
+        else if (words.take("auto"))
+            file.sides = SIDES_AUTO;
+        else if (words.take("solids"))
+            file.solids = true;
+        else if (words.take("scale"))
+            file.scale = words.number("the scale of a mesh", 1e-12, 1e12);
+        else if (words.take("name"))
+            name = words.next();
+        else
+            more = false;
+    }
+    if (!name.empty()) {
+        file.name = name.c_str();
+        if (!mesh_name(file.name))
+            error->all(FLERR, "fix fibrad: a wall cannot be called `" + name + "`: letters, digits and _, at most 31");
+    }
+    uint32_t bodies;
+    const int status = mesh_walls_add(&meshes, world, &file, nullptr, first, &bodies);
+    if (status) error->all(FLERR, std::string("fix fibrad: ") + (meshes.told[0] ? meshes.told : path.c_str()));
+    fibrad_body body = {};
+    body.kind = FIBRAD_BODY_MESH;
+    walls.insert(walls.end(), bodies, body);
+    wall_temperature.insert(wall_temperature.end(), bodies, t);
+    wall_emissivity.insert(wall_emissivity.end(), bodies, e);
+    wall_face.insert(wall_face.end(), bodies, -1);
+    if (comm->me == 0) tell_of_meshes(first, bodies, path);
+}
+
+// on rank 0, which alone knows: what was wrong with a file, and where in the output its walls are
+void FixFibrad::tell_of_meshes(uint32_t first, uint32_t bodies, const std::string &path) {
+    if (meshes.told[0]) error->warning(FLERR, std::string("fix fibrad: ") + meshes.told);
+    for (uint32_t k = first; k < first + bodies; k++)
+        say(text("fix fibrad: f_%s[%d] is of wall %s, %u triangles of ", id, 6 + (int)k, meshes.meshes.name[k],
+                 mesh_triangles(mesh_of_body(&meshes.meshes, k), k)) +
+            path);
 }
 
 // a number | type V1 V2 ... | d_NAME
@@ -320,13 +381,19 @@ void FixFibrad::make_rows() {
     bed.body = walls.data();
     bed.body_emissivity = wall_emissivity.data();
     bed.bodies = (uint32_t)walls.size();
+    bed.triangles = &meshes.meshes.triangles;
     bed.n = member.size();
     bed.id = tags.data();
     bed.x = x.data();
     bed.radius = radius.data();
     bed.emissivity = e.data();
     const bigint number = update->ntimestep / rows_every * rows_every;
-    check(fibrad_insitu_rows(insitu, &bed, (uint64_t)number));
+    if (mesh_walls_face(&meshes, world, &bed)) error->all(FLERR, std::string("fix fibrad: out of memory"));
+    const int status = fibrad_insitu_rows(insitu, &bed, (uint64_t)number);
+    if (status == FIBRAD_E_BACK)
+        error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) +
+                              "; with the word `both` both sides of a mesh are the wall");
+    check(status);
     rows_made++;
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);

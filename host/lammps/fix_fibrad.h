@@ -10,7 +10,7 @@
 
 #include "fix.h"
 
-#include "couple/fibrad_couple.h"
+#include "couple/mesh_walls.h"
 
 #include <string>
 #include <vector>
@@ -47,6 +47,8 @@ class FixFibrad : public Fix {
 
     class Words;
     void read_wall(Words &);
+    void read_mesh(Words &);
+    void tell_of_meshes(uint32_t first, uint32_t bodies, const std::string &path);
     void read_temperature(Words &);
     Property read_property(Words &);
     double *vector(const std::string &name);
@@ -68,6 +70,7 @@ class FixFibrad : public Fix {
     fibrad_insitu_config config;
     std::vector<fibrad_body> walls;
     std::vector<double> wall_temperature, wall_emissivity;
+    mesh_walls meshes;
     std::vector<int> wall_face; // 2 axis + upper where the wall is a face of the box, otherwise -1
 
     fibrad_insitu *insitu;

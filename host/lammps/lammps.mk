@@ -14,16 +14,16 @@ COUPLE_PRODUCTS += $(if $(LAMMPS_HERE),$(BUILD)/couple/fix_fibrad.so $(BUILD)/co
     $(if $(LAMMPS_SOURCE),$(BUILD)/couple/fibrad_plugin.so)
 
 # C++14: the headers of Debian's LAMMPS want no more
-$(BUILD)/couple/fix_fibrad.so: $(FIX) $(COUPLE_LIBS)
+$(BUILD)/couple/fix_fibrad.so: $(FIX) $(COUPLE_MESH_LIB) $(COUPLE_LIBS)
 	$(MPICXX) -std=c++14 $(LAMMPS_FLAGS) -isystem host/lammps/debian -isystem /usr/include/lammps $(LAMMPS_LINK) \
-	    $(FIX) $(COUPLE_LIBS) -llammps -o $@
+	    $(FIX) $(COUPLE_MESH_LIB) $(COUPLE_LIBS) $(ZLIB_LIBS) -llammps -o $@
 
 $(BUILD)/couple/fibrad.lmp: host/lammps/fibrad.lmp.in $(BUILD)/couple/fix_fibrad.so
 	sed 's|@FIX@|$(abspath $(@D))/fix_fibrad.so|' $< > $@
 
-$(BUILD)/couple/fibrad_plugin.so: $(FIX) host/lammps/fibrad_plugin.cpp $(COUPLE_LIBS)
+$(BUILD)/couple/fibrad_plugin.so: $(FIX) host/lammps/fibrad_plugin.cpp $(COUPLE_MESH_LIB) $(COUPLE_LIBS)
 	$(MPICXX) -std=c++17 $(LAMMPS_FLAGS) -isystem $(LAMMPS_SOURCE)/src $(LAMMPS_LINK) \
-	    $(FIX) host/lammps/fibrad_plugin.cpp $(COUPLE_LIBS) -o $@
+	    $(FIX) host/lammps/fibrad_plugin.cpp $(COUPLE_MESH_LIB) $(COUPLE_LIBS) $(ZLIB_LIBS) -o $@
 
 $(BUILD)/couple/fix_fibrad.so $(BUILD)/couple/fibrad_plugin.so: Makefile host/lammps/lammps.mk
 

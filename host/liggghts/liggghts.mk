@@ -11,8 +11,8 @@ $(LIGGGHTS_OBJECTS): $(BUILD)/couple/%.o: host/liggghts/%.cpp | need-mpi
 	@mkdir -p $(@D)
 	$(MPICXX) $(LIGGGHTS_FLAGS) -c $< -o $@
 
-$(BUILD)/couple/fibrad_liggghts: $(LIGGGHTS_OBJECTS) $(COUPLE_LIBS)
-	$(MPICXX) $(LDFLAGS) -fopenmp $(LIGGGHTS_OBJECTS) $(COUPLE_LIBS) -lliggghts -o $@
+$(BUILD)/couple/fibrad_liggghts: $(LIGGGHTS_OBJECTS) $(COUPLE_MESH_LIB) $(COUPLE_LIBS)
+	$(MPICXX) $(LDFLAGS) -fopenmp $(LIGGGHTS_OBJECTS) $(COUPLE_MESH_LIB) $(COUPLE_LIBS) $(ZLIB_LIBS) -lliggghts -o $@
 
 $(LIGGGHTS_OBJECTS): Makefile host/liggghts/liggghts.mk
 

@@ -87,29 +87,37 @@ static int append(struct meshes *meshes) {
     return STATUS_OK;
 }
 
-int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t body) {
-    struct stl stl;
+int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t body) {
     struct mesh *mesh = realloc(meshes->mesh, (meshes->count + (size_t)1) * sizeof *mesh);
     if (!mesh) return message_memory();
     meshes->mesh = mesh;
     mesh = &mesh[meshes->count++];
-    *mesh = (struct mesh){.file = strdup(file->path), .sides = file->sides, .body = body, .first = meshes->triangles.n};
+    *mesh = (struct mesh){.file = strdup(file->path),
+                          .text = stl->text,
+                          .sides = file->sides,
+                          .body = body,
+                          .bodies = file->solids ? stl->solids : 1,
+                          .first = meshes->triangles.n};
     if (!mesh->file) return message_memory();
-    int status = stl_read(&stl, file->path);
-    mesh->text = stl.text;
-    mesh->bodies = file->solids ? stl.solids : 1;
-    if (!status && mesh->bodies > FIBRAD_BODIES_MAX - body)
-        status = message_at(STATUS_USAGE, file->path, 0, "more than %d walls; without :solids the file is one",
-                            FIBRAD_BODIES_MAX);
-    if (!status) status = surface_weld(&mesh->surface, &stl, file->scale);
-    if (!status && mesh->surface.flat + mesh->surface.twice == stl.n)
+    if (mesh->bodies > FIBRAD_BODIES_MAX - body)
+        return message_at(STATUS_USAGE, file->path, 0, "more than %d walls; without :solids the file is one",
+                          FIBRAD_BODIES_MAX);
+    int status = surface_weld(&mesh->surface, stl, file->scale);
+    if (!status && mesh->surface.flat + mesh->surface.twice == stl->n)
         status = message_at(STATUS_INPUT, file->path, 0, "no triangle of it has an area");
     if (!status) status = surface_find_parts(&mesh->surface);
     if (!status) {
         warn_of_surface(file->path, &mesh->surface);
-        name_bodies(meshes, file, &stl, body);
+        name_bodies(meshes, file, stl, body);
         status = append(meshes);
     }
+    return status;
+}
+
+int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t body) {
+    struct stl stl;
+    int status = stl_read(&stl, file->path);
+    if (!status) status = meshes_take(meshes, file, &stl, body);
     stl_free(&stl);
     return status;
 }

@@ -48,6 +48,9 @@ bool mesh_name(const char *name);
  * many bodies; as stl_read. */
 int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t body);
 
+/* The same with triangles that are there, as if the file had them. Those stay the caller's. */
+int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t body);
+
 /* Finds out which sides these spheres are on. Status 0 or STATUS_MEMORY. */
 int meshes_face(struct meshes *meshes, const fibrad_spheres *spheres, const double period[3]);
 
