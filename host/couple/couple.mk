@@ -15,9 +15,10 @@ COUPLE = \
     host/couple/powers.c \
     host/couple/write_rows.c
 
+COUPLE_WALLS = host/couple/walls/mesh_walls.c
+
 # walls of triangles, for programs that read files of them; a library of its own, since it has names of the program
-COUPLE_MESH = \
-    host/couple/mesh_walls.c \
+COUPLE_MESH = $(COUPLE_WALLS) \
     host/cli/interrupt.c \
     host/cli/message.c \
     host/mesh/edges.c \

@@ -10,7 +10,7 @@
 
 #include "fix.h"
 
-#include "couple/mesh_walls.h"
+#include "couple/walls/mesh_walls.h"
 
 #include <string>
 #include <vector>

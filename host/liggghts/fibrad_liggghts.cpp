@@ -9,6 +9,7 @@
 #include <domain.h>
 #include <fix.h>
 #include <fix_external.h>
+#include <fix_mesh_surface.h>
 #include <lammps.h>
 #include <library.h>
 #include <modify.h>
@@ -31,12 +32,26 @@ namespace {
 
 enum { WRONG_USE = 2, WRONG_INPUT = 3 };
 
+/* A triangle of a mesh of the script. */
+struct script_triangle {
+    double corner[3][3];
+    int id;
+};
+
+struct script_mesh {
+    LAMMPS_NS::FixMeshSurface *fix;
+    std::vector<script_triangle> triangle; /* rank 0: all of them by id, when rows were made last */
+};
+
 struct Driver {
     liggghts_options options;
     LAMMPS *lmp;
     fibrad_insitu *radiation;
     double sigma; /* in the script's units */
     std::vector<fibrad_body> body;
+    std::vector<std::string> body_name;
+    std::vector<script_mesh> mesh; /* the last bodies */
+    mesh_walls triangles;          /* of them, when rows were made last */
     std::vector<double> body_temperature, body_emissivity;
     Fix *temperature, *source, *power, *capacity;                 /* properties of particles; of types */
     std::vector<uint64_t> id;                                     /* [own] */
@@ -112,8 +127,34 @@ void place_walls(Driver *driver) {
             wall.body.plane.at = upper ? domain->boxhi[axis] : domain->boxlo[axis];
         }
         driver->body.push_back(wall.body);
+        driver->body_name.push_back(wall.name);
         driver->body_temperature.push_back(wall.temperature);
         driver->body_emissivity.push_back(wall.emissivity);
+    }
+}
+
+/* The temperature that the script gives a mesh; NULL: none. */
+LAMMPS_NS::ScalarContainer<double> *mesh_temperature(LAMMPS_NS::FixMeshSurface *fix) {
+    return fix->triMesh()->prop().getGlobalProperty<LAMMPS_NS::ScalarContainer<double>>("Temp");
+}
+
+void find_meshes(Driver *driver) {
+    for (const radiant_mesh &mesh : driver->options.meshes) {
+        const int k = driver->lmp->modify->find_fix(mesh.id.c_str());
+        Fix *fix = k < 0 ? nullptr : driver->lmp->modify->fix[k];
+        if (fix == nullptr || std::strncmp(fix->style, "mesh/surface", 12) != 0)
+            stop(WRONG_INPUT, "--mesh " + mesh.id + ": the script has no such fix mesh/surface");
+        script_mesh found{static_cast<LAMMPS_NS::FixMeshSurface *>(fix), {}};
+        if (mesh.temperature < 0 && mesh_temperature(found.fix) == nullptr)
+            stop(WRONG_INPUT, "--mesh " + mesh.id + ": the script gives no temperature: say ID=T,E");
+        if (driver->body.size() == FIBRAD_BODIES_MAX) stop(WRONG_INPUT, "too many walls and meshes");
+        fibrad_body body{};
+        body.kind = FIBRAD_BODY_MESH;
+        driver->mesh.push_back(found);
+        driver->body.push_back(body);
+        driver->body_name.push_back(mesh.id);
+        driver->body_temperature.push_back(mesh.temperature);
+        driver->body_emissivity.push_back(mesh.emissivity);
     }
 }
 
@@ -160,6 +201,83 @@ void check_time_step(const Driver *driver) {
     stop(WRONG_INPUT, text);
 }
 
+/* All triangles of a mesh where they are now, on rank 0, by id. Ranks have parts of meshes, or all of small ones. */
+std::vector<script_triangle> gather_mesh(LAMMPS_NS::FixMeshSurface *fix) {
+    LAMMPS_NS::TriMesh *mesh = fix->triMesh();
+    const int own = mesh->sizeLocal();
+    int ranks;
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    std::vector<script_triangle> part((size_t)own), all;
+    for (int t = 0; t < own; ++t) {
+        for (int k = 0; k < 3; ++k) mesh->node(t, k, part[(size_t)t].corner[k]);
+        part[(size_t)t].id = mesh->id(t);
+    }
+    const int size = (int)sizeof(script_triangle), bytes = own * size;
+    std::vector<int> got((size_t)ranks), start((size_t)ranks + 1);
+    MPI_Gather(&bytes, 1, MPI_INT, got.data(), 1, MPI_INT, 0, MPI_COMM_WORLD);
+    for (size_t k = 0; k < got.size(); ++k) start[k + 1] = start[k] + got[k];
+    all.resize((size_t)(start.back() / size));
+    MPI_Gatherv(part.data(), bytes, MPI_BYTE, all.data(), got.data(), start.data(), MPI_BYTE, 0, MPI_COMM_WORLD);
+    const auto before = [](const script_triangle &a, const script_triangle &b) { return a.id < b.id; };
+    const auto same = [](const script_triangle &a, const script_triangle &b) { return a.id == b.id; };
+    std::sort(all.begin(), all.end(), before);
+    all.erase(std::unique(all.begin(), all.end(), same), all.end());
+    return all;
+}
+
+bool same_places(const std::vector<script_triangle> &a, const std::vector<script_triangle> &b) {
+    bool same = a.size() == b.size();
+    for (size_t t = 0; t < a.size() && same; ++t) same = std::memcmp(a[t].corner, b[t].corner, sizeof a[t].corner) == 0;
+    return same;
+}
+
+/* The triangles of one mesh as if read from a file. */
+void take_mesh(Driver *driver, const radiant_mesh &mesh, const std::vector<script_triangle> &triangle, uint32_t body) {
+    const size_t n = triangle.size();
+    std::vector<double> corner(9 * n);
+    std::vector<uint64_t> place(n);
+    std::vector<uint32_t> solid(n);
+    char name[1][SOLID_NAME] = {""};
+    for (size_t t = 0; t < n; ++t) {
+        std::memcpy(&corner[9 * t], triangle[t].corner, sizeof triangle[t].corner);
+        place[t] = (uint64_t)triangle[t].id;
+    }
+    struct stl stl {};
+    stl.n = (uint32_t)n;
+    stl.corner = reinterpret_cast<double(*)[3][3]>(corner.data());
+    stl.place = place.data();
+    stl.solid = solid.data();
+    stl.solids = 1;
+    stl.name = name;
+    const std::string path = "mesh " + mesh.id;
+    mesh_file file{};
+    file.path = path.c_str();
+    file.name = mesh.id.c_str();
+    file.sides = mesh.sides;
+    file.scale = 1;
+    const bool first = !driver->radiates;
+    uint32_t bodies;
+    const int status = mesh_walls_add(&driver->triangles, MPI_COMM_WORLD, &file, &stl, body, &bodies);
+    if (status != 0) stop(WRONG_INPUT, driver->triangles.told);
+    if (first && driver->triangles.told[0] != 0) std::fprintf(stderr, "fibrad_liggghts: %s\n", driver->triangles.told);
+}
+
+/* Brings the triangles to where the script's meshes are. */
+void follow_meshes(Driver *driver) {
+    int moved = 0;
+    for (script_mesh &mesh : driver->mesh) {
+        std::vector<script_triangle> now = gather_mesh(mesh.fix);
+        if (!same_places(now, mesh.triangle)) moved = 1;
+        mesh.triangle = std::move(now);
+    }
+    MPI_Bcast(&moved, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    if (moved == 0) return;
+    mesh_walls_free(&driver->triangles);
+    const size_t first = driver->body.size() - driver->mesh.size();
+    for (size_t m = 0; m < driver->mesh.size(); ++m)
+        take_mesh(driver, driver->options.meshes[m], driver->mesh[m].triangle, (uint32_t)(first + m));
+}
+
 void make_rows(Driver *driver) {
     const LAMMPS_NS::Atom *atom = driver->lmp->atom;
     const LAMMPS_NS::Domain *domain = driver->lmp->domain;
@@ -172,16 +290,23 @@ void make_rows(Driver *driver) {
     bed.body = driver->body.data();
     bed.body_emissivity = driver->body_emissivity.data();
     bed.bodies = (uint32_t)driver->body.size();
+    bed.triangles = &driver->triangles.meshes.triangles;
     bed.n = driver->id.size();
     bed.id = driver->id.data();
     bed.x = bed.n > 0 ? atom->x[0] : nullptr;
     bed.radius = atom->radius;
     bed.emissivity = driver->emissivity.data();
+    follow_meshes(driver);
+    if (mesh_walls_face(&driver->triangles, MPI_COMM_WORLD, &bed) != 0) stop(WRONG_INPUT, "out of memory");
     check(driver, fibrad_insitu_rows(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
 }
 
 /* Powers of the rows there are; of new ones where particles have come or gone since. */
 void make_powers(Driver *driver) {
+    const size_t first = driver->body.size() - driver->mesh.size();
+    for (size_t m = 0; m < driver->mesh.size(); ++m)
+        if (driver->options.meshes[m].temperature < 0)
+            driver->body_temperature[first + m] = (*mesh_temperature(driver->mesh[m].fix))(0);
     fibrad_insitu_state state{};
     state.sigma = driver->sigma;
     state.surroundings = driver->options.surroundings;
@@ -246,7 +371,7 @@ void print_summary(const Driver *driver, double before, double after, double sec
     std::printf("radiation_particles %.17g\n", driver->heat);
     std::printf("radiation_surroundings %.17g\n", driver->heat_surroundings);
     for (size_t k = 0; k < driver->body.size(); ++k)
-        std::printf("radiation_%s %.17g\n", driver->options.walls[k].name.c_str(), driver->heat_body[k]);
+        std::printf("radiation_%s %.17g\n", driver->body_name[k].c_str(), driver->heat_body[k]);
     std::printf("conduction_and_sources %.17g\n", after - before - driver->heat);
     std::printf("beyond_mean %.17g\nerror_rms %.17g\n", facts.beyond, facts.error);
     std::printf("seconds_rows %.17g\nseconds_powers %.17g\nseconds %.17g\n", facts.seconds_rows, facts.seconds_powers,
@@ -259,6 +384,7 @@ void run_script(Driver *driver) {
     find_units(driver);
     find_properties(driver);
     place_walls(driver);
+    find_meshes(driver);
     if (driver->lmp->atom->rmass == nullptr || driver->lmp->atom->radius == nullptr)
         stop(WRONG_INPUT, "the script's particles have no radius: atom_style granular");
     if (fibrad_insitu_new(&driver->radiation, MPI_COMM_WORLD, &driver->options.config) != FIBRAD_OK)
@@ -301,6 +427,7 @@ int main(int argc, char **argv) {
     run_script(&driver);
     run_steps(&driver);
     fibrad_insitu_free(driver.radiation);
+    mesh_walls_free(&driver.triangles);
     lammps_close(lmp);
     MPI_Finalize();
     return 0;

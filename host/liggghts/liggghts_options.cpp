@@ -15,6 +15,7 @@ const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"emissivity", required_argument, nullptr, 'e'},
                                {"surroundings", required_argument, nullptr, 'T'},
                                {"wall", required_argument, nullptr, 'w'},
+                               {"mesh", required_argument, nullptr, 'm'},
                                {"steps", required_argument, nullptr, 's'},
                                {"every", required_argument, nullptr, 'E'},
                                {"rows", required_argument, nullptr, 'R'},
@@ -87,9 +88,25 @@ bool wall(const char *text, radiant_wall *wall) {
     return false;
 }
 
+/* ID=E or ID=T,E, behind it :both or :normals. */
+bool mesh(const char *text, radiant_mesh *mesh) {
+    const char *equals = std::strchr(text, '=');
+    std::vector<double> values;
+    if (equals == nullptr || equals == text) return false;
+    const char *colon = std::strchr(equals, ':');
+    const std::string given(equals + 1, colon != nullptr ? colon : equals + std::strlen(equals));
+    if (!numbers(given.c_str(), 0, 1e9, &values) || values.size() > 2 || values.back() > 1) return false;
+    mesh->id.assign(text, equals);
+    mesh->temperature = values.size() == 2 ? values[0] : -1;
+    mesh->emissivity = values.back();
+    mesh->sides = colon == nullptr ? SIDES_AUTO : std::strcmp(colon, ":both") == 0 ? SIDES_BOTH : SIDES_NORMALS;
+    return mesh->sides != SIDES_NORMALS || std::strcmp(colon, ":normals") == 0;
+}
+
 /* What was wrong with an option's argument; NULL: nothing. */
 const char *take(int key, const char *text, liggghts_options *options) {
     radiant_wall one;
+    radiant_mesh triangles;
     switch (key) {
     case 'i':
         options->script = text;
@@ -104,6 +121,10 @@ const char *take(int key, const char *text, liggghts_options *options) {
     case 'w':
         if (!wall(text, &one)) return "is neither SIDE=T,E[,AT], SIDE one of xlo ... zhi, nor cylinder=T,E,X,Y,R";
         options->walls.push_back(one);
+        return nullptr;
+    case 'm':
+        if (!mesh(text, &triangles)) return "is neither ID=E nor ID=T,E, with :both or :normals behind it or nothing";
+        options->meshes.push_back(triangles);
         return nullptr;
     case 's':
         return whole(text, 0, &options->steps) ? nullptr : "is no number of steps";
@@ -170,6 +191,9 @@ void liggghts_options_help() {
         "  --wall SIDE=T,E[,AT]     a plane wall that radiates: xlo ... zhi, temperature [K], emissivity, place [fixed "
         "end of the box]\n"
         "  --wall cylinder=T,E,X,Y,R  a wall about the axis along z through X,Y\n"
+        "  --mesh ID=[T,]E          the script's fix mesh/surface ID radiates: temperature [the script's], emissivity; "
+        "behind\n"
+        "                           that :both or :normals for sides other than those that particles are on\n"
         "  --every N                powers anew every N steps [20]\n"
         "  --rows N                 exchange factors anew every N steps, a multiple of --every [1000]\n"
         "  --cutoff R               particles farther than R from another do not see it [8 mean radii, 10 below "

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "couple/fibrad_couple.h"
+#include "couple/walls/mesh_walls.h"
 
 /* A wall that radiates. */
 struct radiant_wall {
@@ -15,12 +15,20 @@ struct radiant_wall {
     double temperature, emissivity;
 };
 
+/* A mesh of the script that radiates. */
+struct radiant_mesh {
+    std::string id; /* of its fix mesh/surface */
+    mesh_sides sides;
+    double temperature, emissivity; /* temperature below 0: the script's */
+};
+
 struct liggghts_options {
     const char *script = nullptr;
     const char *rows_file = nullptr; /* --write */
     std::vector<double> emissivity;  /* one for all types, or one for each */
     double surroundings = -1;        /* below 0: not given */
     std::vector<radiant_wall> walls;
+    std::vector<radiant_mesh> meshes;
     long every = 20, rows = 1000, steps = -1; /* steps below 0: not given */
     fibrad_insitu_config config{};
 };

@@ -122,6 +122,49 @@ for bed in poly2000 monoper2000; do
     done
 done
 
+# ---- walls of triangles -------------------------------------------------------------------------------------------------
+# box HIGH: a box from 0 to 6.499 and HIGH as a text file, one solid for each side
+box() {
+    awk -v high="$1" '
+        function corner(k) { return (k%2 ? 6.499 : 0) " " (int(k/2)%2 ? 6.499 : 0) " " (k > 3 ? high : 0) }
+        function facet(a, b, c) {
+            print "facet normal 0 0 0\nouter loop\nvertex " corner(a) "\nvertex " corner(b) "\nvertex " corner(c) "\nendloop\nendfacet"
+        }
+        function side(name, a, b, c, d) { print "solid " name; facet(a, b, c); facet(a, c, d); print "endsolid" }
+        BEGIN {
+            side("xlo", 0, 4, 6, 2); side("xhi", 1, 3, 7, 5); side("ylo", 0, 1, 5, 4)
+            side("yhi", 2, 6, 7, 3); side("zlo", 0, 2, 3, 1); side("zhi", 4, 5, 7, 6)
+        }'
+}
+box 20 >"$work/box.stl"
+planes=
+for side in xlo xhi ylo yhi zlo zhi; do
+    case $side in *lo) at=0 ;; zhi) at=20 ;; *) at=6.499 ;; esac
+    planes="$planes wall $side 1000 0.9 at $at"
+done
+for np in 1 2 4; do
+    run $np mesh$np mesh.lmp data "$work/quarter.data" walls "wall mesh $work/box.stl 1000 0.9 solids name box"
+done
+run 1 planes mesh.lmp data "$work/quarter.data" walls "$planes"
+# walls NAME: step, the powers of particles and six walls, when the run begins
+walls() { awk '$1 == "Step" { getline; print; exit }' "$work/$1.log"; }
+test -n "$(walls mesh1)" && test "$(walls mesh1)" = "$(walls mesh2)" && test "$(walls mesh1)" = "$(walls mesh4)" &&
+    near "$work/mesh1.out" "$work/mesh4.out" 1e-10 "a box of triangles, np 1 and 4"
+verdict "walls of triangles, np 1, 2, 4: the same powers" $?
+found=$({ walls mesh1 && walls planes; } | awk 'NR == 1 { for (k = 2; k < 9; k++) p[k] = $k; next }
+    { all = $2/p[2] - 1; for (k = 3; k < 8; k++) { d = ($k - p[k])/$k; if (d < 0) d = -d; if (d > worst) worst = d } }
+    END { printf "particles %.2g, walls %.2g", all, worst; exit !(NR == 2 && all*all < 9e-6 && worst < .006) }')
+verdict "a box of triangles has the powers of planes ($found)" $?
+grep -q 'f_rad\[7\] is of wall box_xhi, 2 triangles' "$work/mesh2.log"
+verdict "walls of triangles are named" $?
+
+# the same row of particles, which the floor heats, across a periodic box, in the middle and at its ends
+box 20 | sed -n '/solid zlo/,/endsolid/p' >"$work/floor.stl"
+for np in 1 2; do
+    run $np floor$np mesh.lmp data "$work/quarter.data" walls "wall mesh $work/floor.stl 1000 0.9" boundary "p p f" solids 1
+done
+near "$work/floor1.out" "$work/floor2.out" 1e-10 "a floor of triangles across a periodic box"
+
 # ---- moving particles -------------------------------------------------------------------------------------------------
 run 2 moving moving.lmp hot 1000
 balance moving 20e-3 0 1e-3 1000 "energy of moving particles"
@@ -163,6 +206,13 @@ fails "atom 10 .*not set" "unset temperature" also "set atom 10 d_T 0"
 fails "NEVERY must be at most" "steps of heat too long" also "timestep 400" heat 20
 fails "particle.* 10 " "a centre inside another particle" also "set atom 10 diameter 2.5"
 fails "emissivity" "emissivity out of range" also "fix bad all fibrad 1 1 emissivity 1.5 surroundings 300 cp 1"
+fails "$work/none.stl: No such file" "a mesh that is not there" \
+    also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/none.stl 300 1"
+: >"$work/empty.stl"
+fails "empty.stl: the file is empty" "an empty mesh" \
+    also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/empty.stl 300 1"
+fails "sees the back of wall 1.*both" "the back of a mesh" \
+    also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/box.stl 300 1 normals"
 fails "property/atom d_none" "temperatures that are not there" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 temperature d_none"
 

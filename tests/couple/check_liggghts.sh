@@ -89,6 +89,55 @@ run none 2 'setforce 0 0 0' 200 -in bed
 echo "$(value own conduction_and_sources) $(value none conduction_and_sources)" |
     awk '{ printf "a source of 1.176 J brings %.4f J\n", $1 - $2; exit !($1 - $2 > 1.1 && $1 - $2 < 1.18) }' || complain "the own source is lost"
 
+# Meshes of the script. A box of triangles against planes in its place
+quad() { # NAME CORNER CORNER CORNER CORNER: two triangles
+    printf 'solid %s\n' "$1"
+    for third in "$3|$4" "$4|$5"; do
+        printf 'facet normal 0 0 0\nouter loop\nvertex %s\nvertex %s\nvertex %s\nendloop\nendfacet\n' \
+            "$2" "${third%|*}" "${third#*|}"
+    done
+    printf 'endsolid\n'
+}
+box() {
+    quad box "0 0 0" "0 0 .06" "0 .048 .06" "0 .048 0"
+    quad box ".048 0 0" ".048 .048 0" ".048 .048 .06" ".048 0 .06"
+    quad box "0 0 0" ".048 0 0" ".048 0 .06" "0 0 .06"
+    quad box "0 .048 0" "0 .048 .06" ".048 .048 .06" ".048 .048 0"
+    quad box "0 0 0" "0 .048 0" ".048 .048 0" ".048 0 0"
+    quad box "0 0 .06" ".048 0 .06" ".048 .048 .06" "0 .048 .06"
+}
+box | sed '/solid/d' | { echo solid box && cat && echo endsolid box; } >box.stl
+with_mesh() { awk -v fixes="$1" '/^fix heat/ { print fixes } { print }' bed; }
+with_mesh 'fix vessel all mesh/surface file box.stl type 1 temperature 1200' >meshed
+only_planes=$radiation
+for side in zhi xlo xhi ylo yhi; do only_planes="$only_planes --wall $side=1200,.9"; done
+radiation=$only_planes
+run planes 1 'setforce 0 0 0' 200 -in bed
+radiation='--emissivity 0.8 --surroundings 300'
+for ranks in 1 2; do run mesh$ranks $ranks 'setforce 0 0 0' 200 -in meshed --mesh vessel=0.9; done
+echo "$(value planes radiation_particles) $(value mesh1 radiation_particles) $(value mesh2 radiation_particles) \
+    $(value mesh1 radiation_vessel)" | awk '{
+    printf "six planes bring %.5f J, twelve triangles %.5f J\n", $1, $2
+    off = $2 / $1 - 1; ranks = $2 / $3 - 1; lost = $4 / $2 + 1
+    exit !(NF == 4 && off * off < 9e-6 && ranks * ranks < 1e-24 && lost * lost < 1e-24) }' || complain "a box of triangles is no box"
+
+# A lid that moves is where it is when rows are made
+lid() { quad lid ".004 .004 $1" ".04 .004 $1" ".04 .04 $1" ".004 .04 $1"; }
+lid .045 >low.stl
+lid .055 >high.stl
+with_mesh 'fix lid all mesh/surface file low.stl type 1
+fix lift all move/mesh mesh lid linear 0 0 5' >lifted
+with_mesh 'fix lid all mesh/surface file low.stl type 1' >low
+with_mesh 'fix lid all mesh/surface file high.stl type 1' >high
+for bed in low high lifted; do
+    run lid_$bed 2 'setforce 0 0 0' 100 -in $bed --every 100 --rows 100 --mesh lid=900,0.9:both --write $bed
+    "$fibrad" join $bed.0.rows $bed.1.rows --raw -o $bed.csv >joined_$bed || complain "$bed: no rows"
+done
+echo "$(value joined_low wall_1_F) $(value joined_high wall_1_F) $(value joined_lifted wall_1_F)" | awk '{
+    printf "the lid takes %.5f, higher %.5f, lifted %.5f\n", $1, $2, $3
+    off = $3 / $2 - 1; exit !(NF == 3 && $1 > 1.2 * $2 && off * off < 1e-8) }' || complain "rows do not follow a mesh that moves"
+radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+
 # Messages: exit status, words; one line of the driver's, whatever the number of ranks
 refuse() { # RANKS STATUS WORDS OPTIONS...
     ranks=$1 wanted=$2 words=$3
@@ -105,12 +154,19 @@ refuse 1 2 "which script" --emissivity 0.8 --surroundings 300 --steps 1
 refuse 1 2 "unknown option: --bad" -in bed --bad 3
 refuse 1 2 "'1.2' is no number from 0 to 1" -in bed --emissivity 1.2
 refuse 1 2 "neither SIDE=T,E" -in bed --wall floor=300,1
+refuse 1 2 "neither ID=E" -in bed --mesh lid=0.9:up
 refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
 refuse 2 3 "2 emissivities for 1 types" -in bed --emissivity .5,.6 --surroundings 300 --steps 1
 # shellcheck disable=SC2086
 refuse 2 3 "cools down in" -in bed $radiation --steps 1 --every 1000000 --rows 1000000
 # shellcheck disable=SC2086
 refuse 2 3 "step 0: .*wall" -in bed $radiation --wall zhi=300,1,0.02 --steps 1
+# shellcheck disable=SC2086
+refuse 2 3 "no such fix mesh/surface" -in bed $radiation --mesh lid=0.9 --steps 1
+# shellcheck disable=SC2086
+refuse 2 3 "gives no temperature" -in low $radiation --mesh lid=0.9 --steps 1
+# shellcheck disable=SC2086
+refuse 2 3 "sees the back" -in meshed $radiation --mesh vessel=0.9:normals --steps 1
 grep -v '^fix heat\|f_\|c_' bed >cold
 # shellcheck disable=SC2086
 refuse 2 3 "no fix heat/gran/conduction" -in cold $radiation --steps 1

@@ -1,5 +1,5 @@
 /* mesh_walls.c - walls of triangles that rank 0 reads and all ranks know. SPDX-License-Identifier: MIT */
-#include "couple/mesh_walls.h"
+#include "couple/walls/mesh_walls.h"
 
 #include <limits.h>
 #include <stdlib.h>
