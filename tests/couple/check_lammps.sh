@@ -158,13 +158,6 @@ verdict "a box of triangles has the powers of planes ($found)" $?
 grep -q 'f_rad\[7\] is of wall box_xhi, 2 triangles' "$work/mesh2.log"
 verdict "walls of triangles are named" $?
 
-# the same row of particles, which the floor heats, across a periodic box, in the middle and at its ends
-box 20 | sed -n '/solid zlo/,/endsolid/p' >"$work/floor.stl"
-for np in 1 2; do
-    run $np floor$np mesh.lmp data "$work/quarter.data" walls "wall mesh $work/floor.stl 1000 0.9" boundary "p p f" solids 1
-done
-near "$work/floor1.out" "$work/floor2.out" 1e-10 "a floor of triangles across a periodic box"
-
 # ---- moving particles -------------------------------------------------------------------------------------------------
 run 2 moving moving.lmp hot 1000
 balance moving 20e-3 0 1e-3 1000 "energy of moving particles"
