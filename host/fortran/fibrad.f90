@@ -1,6 +1,6 @@
 ! fibrad.f90 - view factors and thermal radiation of packed beds, in Fortran 2008, over libfibrad.so (fibrad_host.h).
 !
-! Index    fibrad_plane, fibrad_cylinder                     walls
+! Index    fibrad_plane, fibrad_cylinder, fibrad_mesh        walls; fibrad_triangles those of meshes
 !          fibrad_view_factors, fibrad_exchange_factors      matrices of factors
 !          fibrad_heat: new, move, solve, settle, free       net powers, and temperatures, step after step
 !          fibrad_transient: new, move, advance, free        temperatures in time
@@ -8,21 +8,24 @@
 !
 ! Arguments  Centres are three arrays x, y, z, radii one, all of one length; for positions (n, 3) pass at(:, 1), at(:, 2),
 !            at(:, 3), which are not copied. Spheres, rows and columns count from 1. box has the lengths of the periodic
-!            box, 0 along open axes; without it, or without walls, all is open.
+!            box, 0 along open axes; without it, or without walls, all is open. triangles: those of all walls that are
+!            fibrad_mesh(), needed where there are such; they may be elsewhere at each move.
 ! Units      One length unit for factors; metres, kelvins and watts for powers, which are positive where heat is gained.
-! Errors     status is 0 or one of fibrad_e_*, fault the one or two spheres concerned, 0 where there are none; after an
-!            error other results are not set. What an argument may be: fibrad.h, by the names of the C functions.
+! Errors     status is 0 or one of fibrad_e_*, fault the one or two spheres concerned, 0 where there are none, or minus
+!            the triangle; after an error other results are not set. What an argument may be: fibrad.h, by the names of
+!            the C functions.
 !
 ! SPDX-License-Identifier: MIT
 module fibrad
     use, intrinsic :: iso_c_binding
     implicit none
     private
-    public :: fibrad_plane, fibrad_cylinder, fibrad_view_factors, fibrad_exchange_factors
+    public :: fibrad_plane, fibrad_cylinder, fibrad_mesh, fibrad_view_factors, fibrad_exchange_factors
     public :: fibrad_status_text, fibrad_version, fibrad_layouts_agree
 
     integer, parameter, public :: fibrad_ok = 0, fibrad_e_argument = -1, fibrad_e_geometry = -6, fibrad_e_state = -8, &
-                                  fibrad_e_unsupported = -10, fibrad_e_memory = -11
+                                  fibrad_e_unsupported = -10, fibrad_e_memory = -11, &
+                                  fibrad_e_back = -14
     real(c_double), parameter, public :: fibrad_stefan_boltzmann = 5.670374419e-8_c_double
 
     ! ---- structures of C, as in the headers
@@ -41,7 +44,7 @@ module fibrad
         real(c_double) :: x = 0, y = 0, radius = 0
     end type c_cylinder
 
-    ! A wall, by fibrad_plane or fibrad_cylinder.
+    ! A wall, by fibrad_plane, fibrad_cylinder or fibrad_mesh.
     type, bind(C), public :: fibrad_wall
         integer(c_int) :: kind = 0
         type(c_plane) :: plane
@@ -56,6 +59,29 @@ module fibrad
         real(c_double) :: known_low(3) = 0, known_high(3) = 0
         type(c_ptr) :: occupancy = c_null_ptr, triangles = c_null_ptr
     end type c_scene_config
+
+    type, bind(C) :: c_triangles
+        type(c_ptr) :: x = c_null_ptr, y = c_null_ptr, z = c_null_ptr
+        integer(c_int32_t) :: stride = 3, vertices = 0
+        type(c_ptr) :: corner = c_null_ptr, front = c_null_ptr, back = c_null_ptr
+        integer(c_int32_t) :: n = 0
+        real(c_double) :: period(3) = 0
+    end type c_triangles
+
+    ! Triangles of all walls that are meshes. Seen from its front a triangle's corners go counter-clockwise; a side of
+    ! no wall must not be seen.
+    type, public :: fibrad_triangles
+        real(c_double), allocatable :: vertex(:, :)    ! (3, vertices)
+        integer(c_int32_t), allocatable :: corner(:, :) ! (3, triangles) vertices
+        integer(c_int32_t), allocatable :: front(:)     ! (triangles) the wall of the front, 0: none
+        integer(c_int32_t), allocatable :: back(:)      ! likewise; not allocated: none
+    end type fibrad_triangles
+
+    type :: triangles_of_c ! counted from 0, as C wants them for a call
+        real(c_double), allocatable :: vertex(:, :)
+        integer(c_int32_t), allocatable :: corner(:, :), front(:), back(:)
+        type(c_triangles) :: given
+    end type triangles_of_c
 
     type, bind(C) :: c_fault
         integer(c_int32_t) :: first = 0, second = 0, triangle = -1
@@ -377,24 +403,33 @@ contains
         wall%cylinder = c_cylinder(x, y, radius)
     end function fibrad_cylinder
 
+    ! A wall of triangles: those that name it.
+    pure function fibrad_mesh() result(wall)
+        type(fibrad_wall) :: wall
+        wall%kind = 3
+    end function fibrad_mesh
+
     ! View factors of all spheres by beams. directions: 8 to 65536, 233 if absent; tolerance: as many as bring the
     ! estimated error of each row down to it. raw: rows as they were computed, not averaged.
     subroutine fibrad_view_factors(x, y, z, r, factors, status, box, walls, directions, tolerance, cutoff, raw, threads, &
-                                   fault)
+                                   fault, triangles)
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
         type(fibrad_factors), intent(out) :: factors
         integer, intent(out) :: status
         real(c_double), intent(in), optional :: box(3), tolerance, cutoff
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
+        type(fibrad_triangles), intent(in), optional :: triangles
         integer, intent(in), optional :: directions, threads
         logical, intent(in), optional :: raw
         integer, intent(out), optional :: fault(2)
+        type(triangles_of_c), target :: mesh
         type(c_beam_rule), target :: rule
         type(c_bed_options) :: options
         type(c_run) :: run
         type(c_ptr) :: found
         call set_run(run, threads, fault)
         status = check_sizes(size(x), size(y), size(z), size(r))
+        if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         rule%directions = 233
         if (present(tolerance)) rule = c_beam_rule(tolerance=tolerance)
@@ -402,7 +437,7 @@ contains
         if (present(cutoff)) rule%cutoff = cutoff
         options%beam = c_loc(rule)
         options%raw = flag(raw)
-        status = c_view_factors(scene_of(box, walls), spheres_of(x, y, z, r), options, run, found)
+        status = c_view_factors(scene_of(box, walls, mesh), spheres_of(x, y, z, r), options, run, found)
         call tell_fault(run%fault, size(x), fault)
         if (status == fibrad_ok) call take_factors(found, factors)
     end subroutine fibrad_view_factors
@@ -410,16 +445,18 @@ contains
     ! Exchange factors of grey diffuse spheres: what sphere i emits and sphere j absorbs, reflections included.
     ! emissivity: (0, 1], wall_emissivity: [0, 1], needed where there are walls. directions, paths: 50, 400 if absent.
     subroutine fibrad_exchange_factors(x, y, z, r, emissivity, factors, status, box, walls, wall_emissivity, directions, &
-                                       paths, tolerance, cutoff, raw, threads, fault)
+                                       paths, tolerance, cutoff, raw, threads, fault, triangles)
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:), emissivity(:)
         type(fibrad_factors), intent(out) :: factors
         integer, intent(out) :: status
         real(c_double), intent(in), optional :: box(3), tolerance, cutoff
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
+        type(fibrad_triangles), intent(in), optional :: triangles
         real(c_double), intent(in), optional, contiguous, target :: wall_emissivity(:)
         integer, intent(in), optional :: directions, paths, threads
         logical, intent(in), optional :: raw
         integer, intent(out), optional :: fault(2)
+        type(triangles_of_c), target :: mesh
         type(c_exchange_rule) :: rule
         type(c_bed_options) :: options
         type(c_run) :: run
@@ -427,6 +464,7 @@ contains
         call set_run(run, threads, fault)
         status = check_sizes(size(x), size(y), size(z), size(r), size(emissivity))
         if (status == fibrad_ok) status = check_sizes(count_walls(walls), count_values(wall_emissivity))
+        if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         rule%emissivity = c_loc(emissivity)
         if (present(wall_emissivity)) rule%body_emissivity = c_loc(wall_emissivity)
@@ -435,48 +473,54 @@ contains
         if (present(tolerance)) rule%tolerance = tolerance
         if (present(cutoff)) rule%cutoff = cutoff
         options%raw = flag(raw)
-        status = c_exchange_factors(scene_of(box, walls), spheres_of(x, y, z, r), rule, options, run, found)
+        status = c_exchange_factors(scene_of(box, walls, mesh), spheres_of(x, y, z, r), rule, options, run, found)
         call tell_fault(run%fault, size(x), fault)
         if (status == fibrad_ok) call take_factors(found, factors)
     end subroutine fibrad_exchange_factors
 
     ! Makes the problem for a bed and traces its beams. directions, points, patches: 168, 64, 96 if absent.
-    subroutine heat_new(heat, x, y, z, r, status, box, walls, directions, points, patches, threads, fault)
+    subroutine heat_new(heat, x, y, z, r, status, box, walls, directions, points, patches, threads, fault, triangles)
         class(fibrad_heat), intent(inout) :: heat
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
         integer, intent(out) :: status
         real(c_double), intent(in), optional :: box(3)
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
+        type(fibrad_triangles), intent(in), optional :: triangles
         integer, intent(in), optional :: directions, points, patches, threads
         integer, intent(out), optional :: fault(2)
+        type(triangles_of_c), target :: mesh
         type(c_heat_config) :: config
         type(c_run) :: run
         call heat%free()
         call set_run(run, threads, fault)
         status = check_sizes(size(x), size(y), size(z), size(r))
+        if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         if (present(directions)) config%directions = int(directions, c_int32_t)
         if (present(points)) config%points = int(points, c_int32_t)
         if (present(patches)) config%patches = int(patches, c_int32_t)
-        status = c_radiation_new(heat%radiation, scene_of(box, walls), spheres_of(x, y, z, r), config, run)
+        status = c_radiation_new(heat%radiation, scene_of(box, walls, mesh), spheres_of(x, y, z, r), config, run)
         call tell_fault(run%fault, size(x), fault)
         heat%spheres = size(x)
         heat%walls = count_walls(walls)
     end subroutine heat_new
 
     ! Goes on to the same spheres and walls at other places; box and walls as in new.
-    subroutine heat_move(heat, x, y, z, r, status, box, walls, fault)
+    subroutine heat_move(heat, x, y, z, r, status, box, walls, fault, triangles)
         class(fibrad_heat), intent(inout) :: heat
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
         integer, intent(out) :: status
         real(c_double), intent(in), optional :: box(3)
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
+        type(fibrad_triangles), intent(in), optional :: triangles
         integer, intent(out), optional :: fault(2)
+        type(triangles_of_c), target :: mesh
         type(c_fault) :: found
         if (present(fault)) fault = 0
         status = check_sizes(size(x), size(y), size(z), size(r))
+        if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
-        status = c_radiation_move(heat%radiation, scene_of(box, walls), spheres_of(x, y, z, r))
+        status = c_radiation_move(heat%radiation, scene_of(box, walls, mesh), spheres_of(x, y, z, r))
         call c_radiation_describe(heat%radiation, c_null_ptr, found)
         if (c_associated(heat%radiation)) call tell_fault(found, size(x), fault)
     end subroutine heat_move
@@ -588,44 +632,50 @@ contains
     ! Makes it for a bed. method: fibrad_corrected if absent, fibrad_patches or fibrad_factors_alone; tolerance: error of
     ! the rows of exchange factors, 0.03 if absent, alone 0.01; directions, points, patches as of fibrad_heat.
     subroutine transient_new(transient, x, y, z, r, status, box, walls, method, tolerance, directions, points, patches, &
-                             threads, fault)
+                             threads, fault, triangles)
         class(fibrad_transient), intent(inout) :: transient
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
         integer, intent(out) :: status
         real(c_double), intent(in), optional :: box(3), tolerance
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
+        type(fibrad_triangles), intent(in), optional :: triangles
         integer, intent(in), optional :: method, directions, points, patches, threads
         integer, intent(out), optional :: fault(2)
+        type(triangles_of_c), target :: mesh
         type(c_transient_config) :: config
         type(c_run) :: run
         call transient%free()
         call set_run(run, threads, fault)
         status = check_sizes(size(x), size(y), size(z), size(r))
+        if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
         if (present(method)) config%method = int(method, c_int)
         if (present(tolerance)) config%exchange%tolerance = tolerance
         if (present(directions)) config%heat%directions = int(directions, c_int32_t)
         if (present(points)) config%heat%points = int(points, c_int32_t)
         if (present(patches)) config%heat%patches = int(patches, c_int32_t)
-        status = c_transient_new(transient%transient, scene_of(box, walls), spheres_of(x, y, z, r), config, run)
+        status = c_transient_new(transient%transient, scene_of(box, walls, mesh), spheres_of(x, y, z, r), config, run)
         call tell_fault(run%fault, size(x), fault)
         transient%spheres = size(x)
         transient%walls = count_walls(walls)
     end subroutine transient_new
 
     ! Goes on to the same spheres and walls at other places; box and walls as in new.
-    subroutine transient_move(transient, x, y, z, r, status, box, walls, fault)
+    subroutine transient_move(transient, x, y, z, r, status, box, walls, fault, triangles)
         class(fibrad_transient), intent(inout) :: transient
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
         integer, intent(out) :: status
         real(c_double), intent(in), optional :: box(3)
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
+        type(fibrad_triangles), intent(in), optional :: triangles
         integer, intent(out), optional :: fault(2)
+        type(triangles_of_c), target :: mesh
         type(c_fault) :: found
         if (present(fault)) fault = 0
         status = check_sizes(size(x), size(y), size(z), size(r))
+        if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
-        status = c_transient_move(transient%transient, scene_of(box, walls), spheres_of(x, y, z, r))
+        status = c_transient_move(transient%transient, scene_of(box, walls, mesh), spheres_of(x, y, z, r))
         call c_transient_describe(transient%transient, c_null_ptr, found)
         if (c_associated(transient%transient)) call tell_fault(found, size(x), fault)
     end subroutine transient_move
@@ -732,6 +782,7 @@ contains
         type(c_heat_result) :: heat_result
         type(c_transient_config) :: transient_config
         type(c_span) :: span
+        type(c_triangles) :: triangles
         fibrad_layouts_agree = all([ &
             agrees('spheres', c_sizeof(spheres)), agrees('body', c_sizeof(body)), &
             agrees('scene_config', c_sizeof(scene_config)), agrees('fault', c_sizeof(fault)), &
@@ -740,7 +791,8 @@ contains
             agrees('factors', c_sizeof(factors)), agrees('bed_factors', c_sizeof(bed_factors)), &
             agrees('exchange_rule', c_sizeof(exchange_rule)), agrees('heat_config', c_sizeof(heat_config)), &
             agrees('heat_sources', c_sizeof(heat_sources)), agrees('heat_result', c_sizeof(heat_result)), &
-            agrees('transient_config', c_sizeof(transient_config)), agrees('span', c_sizeof(span))])
+            agrees('transient_config', c_sizeof(transient_config)), agrees('span', c_sizeof(span)), &
+            agrees('triangles', c_sizeof(triangles))])
     end function fibrad_layouts_agree
 
     logical function agrees(name, bytes)
@@ -796,16 +848,47 @@ contains
         spheres = c_spheres(x=c_loc(x), y=c_loc(y), z=c_loc(z), r=c_loc(r), n=size(x, kind=c_int32_t))
     end function spheres_of
 
-    function scene_of(box, walls) result(config)
+    function scene_of(box, walls, mesh) result(config)
         real(c_double), intent(in), optional :: box(3)
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
+        type(triangles_of_c), intent(in), target :: mesh
         type(c_scene_config) :: config
         if (present(box)) config%period = box
         if (present(walls)) then
             config%body = c_loc(walls)
             config%bodies = size(walls, kind=c_int32_t)
         end if
+        if (mesh%given%n > 0) config%triangles = c_loc(mesh%given)
     end function scene_of
+
+    ! As C counts, for the length of a call.
+    integer function copy_triangles(triangles, mesh)
+        type(fibrad_triangles), intent(in), optional :: triangles
+        type(triangles_of_c), intent(inout), target :: mesh
+        integer :: n
+        copy_triangles = fibrad_ok
+        if (.not. present(triangles)) return
+        copy_triangles = fibrad_e_argument
+        if (.not. (allocated(triangles%vertex) .and. allocated(triangles%corner) .and. allocated(triangles%front))) return
+        n = size(triangles%front)
+        if (size(triangles%vertex, 1) /= 3 .or. any(shape(triangles%corner) /= [3, n])) return
+        mesh%vertex = triangles%vertex
+        mesh%corner = triangles%corner - 1
+        mesh%front = triangles%front - 1
+        mesh%given%x = c_loc(mesh%vertex(1, 1))
+        mesh%given%y = c_loc(mesh%vertex(2, 1))
+        mesh%given%z = c_loc(mesh%vertex(3, 1))
+        mesh%given%vertices = size(mesh%vertex, 2, kind=c_int32_t)
+        mesh%given%corner = c_loc(mesh%corner)
+        mesh%given%front = c_loc(mesh%front)
+        mesh%given%n = int(n, c_int32_t)
+        if (allocated(triangles%back)) then
+            if (size(triangles%back) /= n) return
+            mesh%back = triangles%back - 1
+            mesh%given%back = c_loc(mesh%back)
+        end if
+        copy_triangles = fibrad_ok
+    end function copy_triangles
 
     subroutine set_run(run, threads, fault)
         type(c_run), intent(inout) :: run
@@ -823,6 +906,7 @@ contains
         if (.not. present(fault)) return
         fault = [from%first, from%second] + 1
         where (fault > n) fault = 0
+        if (from%triangle >= 0) fault = [-from%triangle - 1, 0]
     end subroutine tell_fault
 
     ! Copies factors of C into arrays that count from 1, and frees them.

@@ -8,6 +8,7 @@ program test_fortran
     integer :: failures = 0
     call factors_of_pairs()
     call walls_and_boxes()
+    call meshes()
     call exchange_of_pairs()
     call powers()
     call found_temperatures()
@@ -66,6 +67,65 @@ contains
         call fibrad_view_factors([0.5_dp], [0.5_dp], [0.5_dp], [0.5_dp], found, status, box=[1.0_dp, 1.0_dp, 1.0_dp])
         call expect(size(found%f) == 1 .and. abs(found%f(1) - 1) < 1e-2_dp, 'it sees its own images')
     end subroutine walls_and_boxes
+
+    ! The box from -side to side about the origin: wall 1 is its floor, wall 2 all the rest. turned: about x, by an angle.
+    function box_of(side, turned) result(box)
+        real(dp), intent(in) :: side, turned
+        type(fibrad_triangles) :: box
+        integer, parameter :: quads(4, 6) = reshape( & ! fronts are outside
+            [1, 3, 4, 2, 5, 6, 8, 7, 1, 2, 6, 5, 3, 7, 8, 4, 1, 5, 7, 3, 2, 4, 8, 6], [4, 6])
+        integer :: k
+        allocate (box%vertex(3, 8), box%corner(3, 12), box%front(12), box%back(12))
+        do k = 0, 7
+            box%vertex(:, k + 1) = side * (2 * [mod(k, 2), mod(k / 2, 2), k / 4] - 1)
+            box%vertex(2:, k + 1) = [cos(turned) * box%vertex(2, k + 1) - sin(turned) * box%vertex(3, k + 1), &
+                                     sin(turned) * box%vertex(2, k + 1) + cos(turned) * box%vertex(3, k + 1)]
+        end do
+        do k = 1, 6
+            box%corner(:, 2 * k - 1) = quads([1, 2, 3], k)
+            box%corner(:, 2 * k) = quads([1, 3, 4], k)
+        end do
+        box%front = 0
+        box%back = 2
+        box%back(1:2) = 1
+    end function box_of
+
+    subroutine meshes()
+        type(fibrad_factors) :: found
+        type(fibrad_heat) :: heat
+        type(fibrad_triangles) :: box
+        real(dp) :: power(1), wall_power(2), expected
+        integer :: status, fault(2), turn
+        box = box_of(2.0_dp, 0.0_dp)
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], found, status, walls=[fibrad_mesh(), fibrad_mesh()], &
+                                 triangles=box)
+        call expect(status == fibrad_ok .and. near(found%wall(1, 1), 1 / 6.0_dp, 5e-3_dp), 'a sixth goes to one side of a cube')
+        call expect(abs(sum(found%wall(:, 1)) - 1) < 1e-12_dp .and. near(found%wall_area(2), 80.0_dp, 1e-12_dp), 'a closed mesh')
+        call heat%new([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], status, walls=[fibrad_mesh(), fibrad_mesh()], triangles=box)
+        expected = 4 * pi * 0.5_dp * sigma * (600.0_dp**4 - 1000.0_dp**4)
+        do turn = 0, 1
+            call heat%solve([1000.0_dp], [0.5_dp], 300.0_dp, power, status, wall_temperature=[600.0_dp, 600.0_dp], &
+                            wall_emissivity=[1.0_dp, 1.0_dp], wall_power=wall_power)
+            call expect(status == fibrad_ok .and. near(power(1), expected, 1e-9_dp), 'a sphere in a black cube of triangles')
+            call expect(near(sum(wall_power), -expected, 1e-9_dp) .and. near(wall_power(1), -expected / 6, 0.02_dp), 'the floor')
+            call heat%move([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], status, walls=[fibrad_mesh(), fibrad_mesh()], &
+                           triangles=box_of(2.0_dp, 0.7_dp))
+            call expect(status == fibrad_ok, 'a cube that turns')
+        end do
+        call heat%free()
+        box%back = 0
+        box%front = 2
+        box%front(1) = 1
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], found, status, walls=[fibrad_mesh(), fibrad_mesh()], &
+                                 triangles=box, fault=fault)
+        call expect(status == fibrad_e_back .and. fault(1) < 0 .and. fault(1) >= -12 .and. fault(2) == 0, 'backs are seen')
+        box%corner(2, 5) = 9
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], found, status, walls=[fibrad_mesh(), fibrad_mesh()], &
+                                 triangles=box, fault=fault)
+        call expect(status == fibrad_e_argument .and. all(fault == [-5, 0]), 'a corner that is none')
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], found, status, walls=[fibrad_mesh()], fault=fault)
+        call expect(status == fibrad_e_argument, 'a mesh without triangles')
+    end subroutine meshes
 
     subroutine exchange_of_pairs()
         type(fibrad_factors) :: found
