@@ -123,10 +123,10 @@ for bed in poly2000 monoper2000; do
 done
 
 # ---- walls of triangles -------------------------------------------------------------------------------------------------
-# box HIGH: a box from 0 to 6.499 and HIGH as a text file, one solid for each side
+# box WIDE HIGH: a box from 0 to WIDE and HIGH as a text file, one solid for each side
 box() {
-    awk -v high="$1" '
-        function corner(k) { return (k%2 ? 6.499 : 0) " " (int(k/2)%2 ? 6.499 : 0) " " (k > 3 ? high : 0) }
+    awk -v wide="$1" -v high="$2" '
+        function corner(k) { return (k%2 ? wide : 0) " " (int(k/2)%2 ? wide : 0) " " (k > 3 ? high : 0) }
         function facet(a, b, c) {
             print "facet normal 0 0 0\nouter loop\nvertex " corner(a) "\nvertex " corner(b) "\nvertex " corner(c) "\nendloop\nendfacet"
         }
@@ -136,7 +136,7 @@ box() {
             side("yhi", 2, 6, 7, 3); side("zlo", 0, 2, 3, 1); side("zhi", 4, 5, 7, 6)
         }'
 }
-box 20 >"$work/box.stl"
+box 6.499 20 >"$work/box.stl"
 planes=
 for side in xlo xhi ylo yhi zlo zhi; do
     case $side in *lo) at=0 ;; zhi) at=20 ;; *) at=6.499 ;; esac
@@ -155,6 +155,15 @@ found=$({ walls mesh1 && walls planes; } | awk 'NR == 1 { for (k = 2; k < 9; k++
     { all = $2/p[2] - 1; for (k = 3; k < 8; k++) { d = ($k - p[k])/$k; if (d < 0) d = -d; if (d > worst) worst = d } }
     END { printf "particles %.2g, walls %.2g", all, worst; exit !(NR == 2 && all*all < 9e-6 && worst < .006) }')
 verdict "a box of triangles has the powers of planes ($found)" $?
+# a floor that two triangles are, across a box that is periodic and twice as wide as the bed
+box 12 20 | sed -n '/solid zlo/,/endsolid/p' >"$work/floor.stl"
+for np in 1 2; do
+    run $np floor$np frozen.lmp data "$work/quarter.data" boundary "p p f" floor "mesh $work/floor.stl 1000 0.9" steps 5
+done
+near "$work/floor1.out" "$work/floor2.out" 1e-10 "a floor of triangles in a periodic box, np 1 and 2"
+run 1 flat frozen.lmp data "$work/quarter.data" boundary "p p f" steps 5
+found=$({ walls floor1 && walls flat; } | awk 'NR == 1 { p = $4; next } { d = $4/p - 1; printf "%.2g", d; exit !(d*d < 1e-4) }')
+verdict "a floor of triangles in a periodic box has the power of a plane ($found)" $?
 grep -q 'f_rad\[7\] is of wall box_xhi, 2 triangles' "$work/mesh2.log"
 verdict "walls of triangles are named" $?
 
