@@ -470,7 +470,7 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 check: symbols lists format house
 
 LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c $(COUPLE) $(COUPLE_WALLS) $(COUPLE_PROGRAMS) $(COUPLE_TESTS) $(COUPLE_SCRIPTS) kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
-FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c)) \
+FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c host/couple/*/*.c)) \
          $(wildcard tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
 
 lists:
@@ -486,7 +486,7 @@ house:
 symbols: lib lib-host
 	BUILD=$(BUILD) tests/check_symbols.sh
 
-FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/*/*.cpp tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
+FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/couple/*/*.[ch] host/*/*.cpp tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
 
 ## format: every source is formatted by .clang-format (to repair: clang-format -i FILE)
 format:

@@ -2,6 +2,7 @@
 #include "couple/walls/mesh_walls.h"
 
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,10 +14,8 @@ enum { VOTERS = 1000 };
 /* Keeps a line for the simulation to tell. */
 static void keep_line(void *context, const char *line) {
     struct mesh_walls *walls = context;
-    const size_t length = strlen(walls->told), more = strlen(line);
-    if (length + more + 2 > sizeof walls->told) return;
-    if (length) strcpy(walls->told + length, "\n");
-    strcat(walls->told, line);
+    const size_t length = strlen(walls->told);
+    snprintf(walls->told + length, sizeof walls->told - length, "%s%s", length ? "\n" : "", line);
 }
 
 static void listen(struct mesh_walls *walls) {
