@@ -163,27 +163,46 @@ static bool next_image(const fibrad_workspace *work, fibrad_face_search *search)
     return false;
 }
 
+/* How much of a length across the window lies along an axis at most. */
+static double share_along(const fibrad_face_search *search, int axis) {
+    const double w = search->frame[6 + axis];
+    return fibrad_sqrt(fibrad_max(0, 1 - w * w));
+}
+
+static uint64_t count_images(const fibrad_mesh_images *images) {
+    uint64_t count = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        const int64_t along = (int64_t)images->last[axis] - images->first[axis] + 1;
+        count *= along > 0 ? (uint64_t)along : 0;
+    }
+    return count;
+}
+
 /* Turns to the next stretch. False: there is none. */
 static bool enter_stretch(const fibrad_workspace *work, fibrad_face_search *search) {
     const double from = search->to, to = fibrad_min(from + search->stretch, search->deepest);
-    const double side = 1 + 2 * search->wide * fibrad_max(0, to);
+    const double aside = 1 + search->wide * (fibrad_max(0, to) + 2);
     double low[3], high[3];
-    bool none = false;
     if (!(from < to)) return false;
     for (int axis = 0; axis < 3; axis++) {
         const double w = search->frame[6 + axis], a = w == 0 ? 0 : from * w, b = w == 0 ? 0 : to * w;
+        const double side = aside * share_along(search, axis) + search->slack;
         low[axis] = work->centre[axis] + (fibrad_min(a, b) - side) * work->unit;
         high[axis] = work->centre[axis] + (fibrad_max(a, b) + side) * work->unit;
     }
     search->from = from, search->to = to;
     search->images = fibrad_mesh_images_in(&work->scene->mesh, low, high);
+    const uint64_t images = count_images(&search->images);
+    if (from > 0 && images > search->most) {
+        search->rest = from;
+        return false;
+    }
     for (int axis = 0; axis < 3; axis++) {
         search->at[axis] = search->images.first[axis];
-        none = none || search->images.first[axis] > search->images.last[axis];
+        if (images == 0) search->images.last[axis] = search->images.first[axis];
     }
-    for (int axis = 0; none && axis < 3; axis++) search->images.last[axis] = search->images.first[axis];
     search->inside = true;
-    if (!none) enter_image(work, search);
+    if (images > 0) enter_image(work, search);
     return true;
 }
 
@@ -193,15 +212,16 @@ void LANED(fibrad_faces_begin)(const fibrad_workspace *work, const double frame[
     search->frame = frame, search->wide = wide, search->near = near, search->cut = work->clear_mesh < 1;
     search->slack = mesh->grain * work->inverse + 1e-12;
     search->nearest = search->shallow = __builtin_inf();
+    search->most = UINT64_MAX, search->rest = __builtin_inf();
     search->stretch = deepest + 1, search->to = -1;
     search->walk.level = 0, search->inside = false;
     for (int axis = 0; axis < 3; axis++) {
         const double period = mesh->period[axis] * work->inverse, w = fibrad_abs(frame[6 + axis]);
         const double ahead =
             frame[6 + axis] > 0 ? mesh->high[axis] - work->centre[axis] : work->centre[axis] - mesh->low[axis];
-        if (!(period > 0)) { /* the window leaves the box about all triangles */
-            if (w > 2 * wide)
-                deepest = fibrad_min(deepest, 1.0001 * (fibrad_max(0, ahead) * work->inverse + 1) / (w - 2 * wide));
+        const double least = w - wide * share_along(search, axis); /* of a line, per depth */
+        if (!(period > 0)) {                                       /* the window leaves the box about all triangles */
+            if (least > 0) deepest = fibrad_min(deepest, 1.0001 * (fibrad_max(0, ahead) * work->inverse + 1) / least);
             continue;
         }
         search->stretch = fibrad_min(search->stretch, fibrad_max(2, period));

@@ -15,6 +15,8 @@ typedef struct fibrad_face_search {
     bool cut;       /* whether triangles may cut sphere i */
     double nearest; /* about the least depth of those found, ... */
     double shallow; /* ... and none of them is less deep */
+    uint64_t most;  /* if a stretch has more images than this, it and those behind it are left out, ... */
+    double rest;    /* ... and here they begin */
     double stretch; /* depths that are looked at together; the one in hand: */
     double from, to;
     bool inside;               /* whether some of it is left */

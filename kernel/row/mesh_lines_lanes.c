@@ -294,3 +294,25 @@ void LANED(fibrad_lines_meet)(fibrad_workspace *work, double slack) {
     }
     meet_pairs(work, grain);
 }
+
+void LANED(fibrad_lines_follow)(fibrad_workspace *work, const double frame[9], double from, double deepest) {
+    fibrad_lines *lines = &work->met->lines;
+    for (uint32_t p = 0; p < lines->count; p++) {
+        const double until = fibrad_min(lines->depth[p], deepest), way = from - lines->exit[p];
+        double origin[3], w[3], square = 0;
+        if (!(until > from)) continue;
+        for (int axis = 0; axis < 3; axis++) {
+            const double *f = frame + axis;
+            w[axis] = f[6] + lines->aside[0][p] * f[0] + lines->aside[1][p] * f[3];
+            square += w[axis] * w[axis];
+            origin[axis] = lines->place[0][p] * f[0] + lines->place[1][p] * f[3] + lines->exit[p] * f[6];
+            origin[axis] = work->centre[axis] + (origin[axis] + way * w[axis]) * work->unit;
+        }
+        const double length = fibrad_sqrt(square), unit = work->unit * length;
+        for (int axis = 0; axis < 3; axis++) w[axis] /= length;
+        const fibrad_mesh_hit met =
+            fibrad_mesh_first(&work->scene->mesh, origin, w, (until - from) * unit, FIBRAD_NO_SIDE);
+        if (met.side == FIBRAD_NO_SIDE) continue;
+        lines->depth[p] = from + met.distance / unit, lines->side[p] = met.side;
+    }
+}

@@ -23,6 +23,10 @@ uint32_t LANED(fibrad_lines_spread)(fibrad_met *met, const fibrad_points *points
  * rounding. */
 void LANED(fibrad_lines_meet)(fibrad_workspace *work, double slack);
 
+/* Follows the lines that have met nothing down to a depth one by one from there, to another depth: far away, more
+ * images lie beside a window than before its lines. */
+void LANED(fibrad_lines_follow)(fibrad_workspace *work, const double frame[9], double from, double deepest);
+
 /* Tells their points what the lines meet. Returns how many meet anything. */
 uint32_t LANED(fibrad_lines_tell)(fibrad_met *met);
 

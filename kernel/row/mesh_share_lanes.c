@@ -212,11 +212,13 @@ static void meet_found(fibrad_workspace *work, mesh_found *found, double deepest
         LANED(fibrad_faces_begin)(work, search->frame, deepest, 1.0001 * spread, 0, search);
         more = LANED(fibrad_faces_next)(work, search);
     }
+    search->most = lines->count / FIBRAD_LINE_BLOCK;
     for (LANED(fibrad_lines_meet)(work, slack); more; LANED(fibrad_lines_meet)(work, slack)) {
         search->deepest = fibrad_min(search->deepest, LANED(fibrad_lines_last)(lines));
         more = LANED(fibrad_faces_next)(work, search);
         found->listed = false;
     }
+    if (search->rest < search->deepest) LANED(fibrad_lines_follow)(work, search->frame, search->rest, search->deepest);
 }
 
 /* Looks what all points of a window meet, whose discs are those of `given`, the last at depth `last`. Returns whether
