@@ -112,6 +112,7 @@ LANED = \
     kernel/window/arc_lanes.c \
     kernel/window/arrangement_lanes.c \
     kernel/window/clip_lanes.c \
+    kernel/window/dense_lanes.c \
     kernel/window/points_lanes.c \
     kernel/row/beam_lanes.c \
     kernel/row/mesh_share_lanes.c \

@@ -52,6 +52,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     disc->order = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     disc->hidden_points = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     disc->occluder = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    for (int list = 0; list < 2; list++) disc->key[list] = fibrad_arena_take(arena, discs, sizeof(uint64_t));
     fibrad_areas_layout(&work->areas, arena, plan->discs);
 
     fibrad_entries *entries = &work->entries;
