@@ -23,7 +23,7 @@
 
 /* Cells over the radius of the window: as many as the mean radius of discs goes into it, times this; and not many more
  * than there are discs. */
-#define DENSE_FINENESS   1.5
+#define DENSE_FINENESS   1.0
 #define DENSE_CELLS      4u
 #define DENSE_CELLS_MOST 1024u
 
