@@ -336,7 +336,8 @@ static void begin_dense(fibrad_areas *areas, uint32_t circles) {
     for (uint32_t k = 1; k < circles; k++) sum += fibrad_min(areas->r[k], 1);
     uint32_t cells = DENSE_CELLS, enough = 4 * cells * cells;
     for (; circles > enough && cells < DENSE_CELLS_MOST; enough *= 16) cells *= 4;
-    const double finest = fibrad_max(DENSE_CELLS, DENSE_FINENESS * (circles - 1) / sum);
+    const double finest =
+        circles > 1 ? fibrad_max(DENSE_CELLS, DENSE_FINENESS * (circles - 1) / sum) : DENSE_CELLS_MOST;
     const bool coarse = cells < finest && cells < DENSE_CELLS_MOST;
     grid->cells = coarse ? cells : (uint32_t)fibrad_min(finest, cells);
     grid->enough = coarse ? enough : UINT32_MAX;
