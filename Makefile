@@ -76,6 +76,7 @@ KERNEL = \
     kernel/store/rows.c \
     kernel/window/areas.c \
     kernel/row/beam.c \
+    kernel/row/beam_part.c \
     kernel/row/row.c \
     kernel/work/row_sum.c \
     kernel/sky/wall_sum.c \
@@ -112,6 +113,7 @@ LANED = \
     kernel/window/arc_lanes.c \
     kernel/window/arrangement_lanes.c \
     kernel/window/clip_lanes.c \
+    kernel/window/dense_lanes.c \
     kernel/window/points_lanes.c \
     kernel/row/beam_lanes.c \
     kernel/row/mesh_faces_lanes.c \
@@ -254,6 +256,7 @@ TESTS = \
     tests/test_read.c \
     tests/test_reference.c \
     tests/test_reproduce.c \
+    tests/test_row_parts.c \
     tests/test_scene.c \
     tests/test_settled.c \
     tests/test_simple.c \

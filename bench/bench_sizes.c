@@ -4,7 +4,9 @@
  *
  * CSV on standard output. Periodic random beds, solid fraction 0.55, in which spheres of radius 1 and of radius `ratio`
  * take up equal volumes; 100 directions, exact areas, one thread. For each size: rows, entries of a row, processor time
- * of a row and of an entry; and its ratio to the time of an entry in the bed of equal spheres. */
+ * of a row and of an entry; and its ratio to the time of an entry in the bed of equal spheres. Then the seconds of all
+ * rows of a shell, averaged, 50 directions, by one thread and by two: a sphere of radius 1 and 20,000 of 5e-4, at
+ * random 0.6e-3 to 21e-3 above its surface. */
 #include "bed/packing.h"
 #include "bench_bed.h"
 
@@ -63,6 +65,42 @@ static int bench(double ratio, uint32_t large, uint32_t skip, double *equal) {
     return 0;
 }
 
+/* A sphere of radius 1, and `count` of radius 5e-4 about it that do not overlap. */
+static int make_shell(struct bed *bed, uint32_t count) {
+    const double r = 5e-4, low = 0.6e-3, high = 21e-3;
+    int status = bed_add(bed, &(struct bed_sphere){.r = 1});
+    for (uint64_t at = 0; bed->n <= count && !status; at += 3) {
+        const double z = 2 * bed_make_random(1, at) - 1, angle = 6.283185307179586 * bed_make_random(1, at + 1);
+        const double d = 1 + low + (high - low) * bed_make_random(1, at + 2), side = d * sqrt(1 - z * z);
+        const struct bed_sphere sphere = {.x = side * cos(angle), .y = side * sin(angle), .z = d * z, .r = r};
+        bool fits = true;
+        for (uint32_t j = 1; j < bed->n && fits; ++j) {
+            const double dx = bed->x[j] - sphere.x, dy = bed->y[j] - sphere.y, dz = bed->z[j] - sphere.z;
+            fits = dx * dx + dy * dy + dz * dz > 4 * r * r;
+        }
+        if (fits) status = bed_add(bed, &sphere);
+    }
+    return status;
+}
+
+static int bench_shell(uint32_t count) {
+    struct bed bed;
+    bed_init(&bed);
+    const int status = make_shell(&bed, count);
+    const fibrad_spheres spheres = bench_spheres(&bed);
+    const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = 50}};
+    puts("shell_of,threads,seconds");
+    for (int threads = 1; threads <= 2 && !status; ++threads) {
+        fibrad_run run = {.threads = threads};
+        fibrad_bed_factors *factors;
+        bench_check("shell", fibrad_view_factors(NULL, &spheres, &options, &run, &factors));
+        printf("%u,%d,%.2f\n", count, threads, factors->seconds);
+        fibrad_bed_free(factors);
+    }
+    bed_free(&bed);
+    return status;
+}
+
 int main(int argc, char **argv) {
     const bool quick = argc == 2 && strcmp(argv[1], "quick") == 0;
     bench_preamble("bench_sizes: periodic random beds, 100 directions, exact areas", 1);
@@ -71,5 +109,6 @@ int main(int argc, char **argv) {
     int status = bench(1, quick ? 200 : 2000, 1, &equal);
     if (!status) status = bench(4, quick ? 4 : 40, quick ? 4 : 2, &equal);
     if (!status && !quick) status = bench(10, 10, 10, &equal);
+    if (!status) status = bench_shell(quick ? 500 : 20000);
     return status;
 }

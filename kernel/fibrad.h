@@ -248,7 +248,7 @@ typedef struct fibrad_beam_rule {
  * as directions^-1.5, that of body a little slower; where nothing hides a wall, it is its solid angle. rule: NULL is
  * all defaults. Beams end after 100 periods; periodic images of one sphere share an entry, and i may see its own.
  * Errors: _ARGUMENT, _TABLE (points), _CAPACITY, _WORK, _MEMORY. Cost: some microseconds per direction with ten discs
- * in the window; it grows with the square of their number. Source: docs/methods.md sections 3 and 4. */
+ * in the window; it grows with their number. Source: docs/methods.md sections 3 and 4. */
 int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row);
 

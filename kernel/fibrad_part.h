@@ -1,6 +1,7 @@
 /* fibrad_part.h - beds divided over machines: scenes that know a part of a bed, and powers from the rows of a part.
  *
- * Index: fibrad_occupancy, fibrad_flow, fibrad_rows_flow, fibrad_rows_read. Conventions are those of fibrad.h.
+ * Index: fibrad_occupancy, fibrad_beam_part, fibrad_beam_join, fibrad_flow, fibrad_rows_flow, fibrad_rows_read.
+ * Conventions are those of fibrad.h.
  *
  * Beyond   A row with a cutoff knows spheres up to there from its sphere's centre; a scene may have a known region.
  *          What leaves either before it meets a sphere or a body is `beyond`: there may be spheres on its way that the
@@ -28,6 +29,24 @@ typedef struct fibrad_occupancy {
     int periodic[3];        /* 1: it repeats along the axis without end */
     const uint64_t *mark; /* [(cells + 63)/64] cell x + cells[0] (y + cells[1] z) is bit .%64 of word ./64; NULL: all */
 } fibrad_occupancy;
+
+/* What some directions of a beam row give. Set `memory` alone. */
+typedef struct fibrad_row_part {
+    fibrad_memory memory;         /* 16 bytes for each sphere that a window sees */
+    uint64_t key;                 /* the kernel's own, as all below: what it is a part of, 0: nothing */
+    size_t count;                 /* terms of the row's sums */
+    uint32_t from, to, fallbacks; /* its directions */
+} fibrad_row_part;
+
+/* A row divided over threads. _part: what directions [from, to) of fibrad_beam_row give, by a rule without a tolerance
+ * (else FIBRAD_E_UNSUPPORTED). _join: the row, from parts in order that together have all directions: to the bit the
+ * row that fibrad_beam_row returns. Work memory and `row` as there. Errors: as fibrad_beam_row; _STATE: a part is
+ * missing or of another row, rule or scene. Cost: as fibrad_beam_row; _join 20 ns for each sphere that a window sees.
+ */
+int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
+                     uint32_t from, uint32_t to, fibrad_row_part *part);
+int fibrad_beam_join(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
+                     const fibrad_row_part *part, uint32_t parts, fibrad_row *row);
 
 /* Emission and powers of a part. Power is in the unit of emission L^2, > 0 where heat is gained. */
 typedef struct fibrad_flow {

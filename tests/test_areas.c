@@ -5,6 +5,7 @@
 #define FIBRAD_ISA_SUFFIX _scalar
 #include "window/arrangement_lanes.h"
 #include "window/clip_lanes.h"
+#include "window/dense_lanes.h"
 #include "reference/reference.h"
 #include "scenes.h"
 #include "suite.h"
@@ -42,6 +43,14 @@ static bool disc_scalar(fibrad_areas *areas, uint32_t whose, double x, double y,
 static const struct method both = {fibrad_areas_begin_scalar, disc_scalar, fibrad_areas_end_scalar};
 static const struct method arrangement = {fibrad_arrangement_begin_scalar, fibrad_arrangement_disc_scalar,
                                           fibrad_arrangement_end_scalar};
+
+/* Clipping in the way of many discs, from the first one on. */
+static void begin_dense_scalar(fibrad_areas *areas) {
+    fibrad_areas_begin_scalar(areas);
+    ck_assert(fibrad_dense_resolve_scalar(areas, 1));
+}
+
+static const struct method dense = {begin_dense_scalar, disc_scalar, fibrad_areas_end_scalar};
 
 static uint32_t windows, fallbacks;
 
@@ -84,18 +93,20 @@ static double difference(uint32_t n, const double *a, const double *b) {
     return worst;
 }
 
-/* The largest difference of either method from slicing. */
+/* The largest difference of any method from slicing. */
 static double error_of(const struct window *w) {
     fibrad_areas areas = areas_make();
-    double mine[MOST + 1], robust[MOST + 1], expected[MOST + 1], rest;
+    double mine[MOST + 1], robust[MOST + 1], many[MOST + 1], expected[MOST + 1], rest;
     measure(&both, &areas, w, mine);
-    measure(&arrangement, &areas, w, robust);
     windows++, fallbacks += areas.fallbacks;
+    measure(&arrangement, &areas, w, robust);
+    measure(&dense, &areas, w, many);
     ck_assert_int_eq(reference_window(w->n, w->u, w->v, w->r, expected, &rest), REFERENCE_OK);
     expected[w->n] = rest;
     areas_free(&areas);
     double worst = difference(w->n + 1, mine, expected);
     worst_of(&worst, difference(w->n + 1, robust, expected));
+    worst_of(&worst, difference(w->n + 1, many, expected));
     return worst;
 }
 
@@ -125,7 +136,7 @@ START_TEST(random_windows) {
     }
     printf("random windows: %.2g\n", worst);
     ck_assert_double_lt(worst, 1e-12);
-    ck_assert_double_lt(fallbacks_part(), .05); /* for want of slots */
+    ck_assert_double_eq(fallbacks_part(), 0);
 }
 END_TEST
 
@@ -141,7 +152,7 @@ START_TEST(hundreds_of_discs) {
     }
     printf("hundreds of discs: %.2g\n", worst);
     ck_assert_double_lt(worst, 1e-12);
-    ck_assert_double_eq(fallbacks_part(), 1); /* no slots */
+    ck_assert_double_eq(fallbacks_part(), 0);
 }
 END_TEST
 
@@ -248,7 +259,8 @@ END_TEST
  * decides between the two. */
 START_TEST(clipping_against_accounts) {
     fibrad_areas areas = areas_make();
-    double worst = 0, clipped[MOST + 1], robust[MOST + 1];
+    double worst = 0, clipped[MOST + 1], robust[MOST + 1], many[MOST + 1];
+    uint32_t left[2] = {0, 0}; /* to arrangements, by clipping as usual and in the way of many discs */
     const int rounds = 60000;
     for (int round = 0; round < rounds; round++) {
         struct window w = {0};
@@ -260,14 +272,19 @@ START_TEST(clipping_against_accounts) {
                    dv = nudge * random_in(-1, 1);
             put(&w, u + du, v * (1 - turn * .13397459621556135) + dv, r);
         }
+        areas.fallbacks = 0;
         measure(&both, &areas, &w, clipped);
+        left[0] += areas.fallbacks, areas.fallbacks = 0;
+        measure(&dense, &areas, &w, many);
+        left[1] += areas.fallbacks;
         measure(&arrangement, &areas, &w, robust);
         worst_of(&worst, difference(n + 1, clipped, robust));
+        worst_of(&worst, difference(n + 1, many, robust));
     }
-    double part = (double)areas.fallbacks / rounds;
-    printf("clipping against arrangements: %.2g, left to arrangements %.3g\n", worst, part);
+    const double part[2] = {(double)left[0] / rounds, (double)left[1] / rounds};
+    printf("clipping against arrangements: %.2g, left to arrangements %.3g, %.3g\n", worst, part[0], part[1]);
     ck_assert_double_lt(worst, 1e-12);
-    ck_assert(part > .1 && part < .5); /* both have been tried */
+    for (int way = 0; way < 2; way++) ck_assert(part[way] > .05 && part[way] < .5); /* all have been tried */
     areas_free(&areas);
 }
 END_TEST
@@ -280,7 +297,13 @@ END_TEST
         fibrad_areas_discs_##isa(areas, whose, &(uint32_t){0}, 1, &x, &y, &r);                                         \
         return areas->open;                                                                                            \
     }                                                                                                                  \
-    static const struct method isa = {fibrad_areas_begin_##isa, disc_##isa, fibrad_areas_end_##isa};
+    bool fibrad_dense_resolve_##isa(fibrad_areas *areas, uint32_t circles);                                            \
+    static void begin_dense_##isa(fibrad_areas *areas) {                                                               \
+        fibrad_areas_begin_##isa(areas);                                                                               \
+        ck_assert(fibrad_dense_resolve_##isa(areas, 1));                                                               \
+    }                                                                                                                  \
+    static const struct method isa = {fibrad_areas_begin_##isa, disc_##isa, fibrad_areas_end_##isa};                   \
+    static const struct method dense_##isa = {begin_dense_##isa, disc_##isa, fibrad_areas_end_##isa};
 #ifdef FIBRAD_WITH_SSE2
 WIDER(sse2)
 #endif
@@ -291,27 +314,29 @@ WIDER(avx2)
 WIDER(avx512)
 #endif
 
-/* In all instruction sets the same windows are degenerate, and the areas have the same bits. */
+/* In all instruction sets the same windows are degenerate, and the areas have the same bits: [1] in the way of many
+ * discs. */
 START_TEST(bits_of_windows) {
-    const struct method *const methods[] = {
-        [FIBRAD_ISA_SCALAR] = &both,
+    const struct method *const methods[][2] = {
+        [FIBRAD_ISA_SCALAR] = {&both, &dense},
 #ifdef FIBRAD_WITH_SSE2
-        [FIBRAD_ISA_SSE2] = &sse2,
+        [FIBRAD_ISA_SSE2] = {&sse2, &dense_sse2},
 #endif
 #ifdef FIBRAD_WITH_AVX2
-        [FIBRAD_ISA_AVX2] = &avx2,
+        [FIBRAD_ISA_AVX2] = {&avx2, &dense_avx2},
 #endif
 #ifdef FIBRAD_WITH_AVX512
-        [FIBRAD_ISA_AVX512] = &avx512,
+        [FIBRAD_ISA_AVX512] = {&avx512, &dense_avx512},
 #endif
     };
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
     fibrad_areas areas = areas_make();
     double first[MOST + 1], other[MOST + 1];
-    for (int round = 0; round < 3000; round++) {
+    for (int round = 0; round < 6000; round++) {
         struct window w = {0};
-        uint32_t n = 1 + (uint32_t)random_in(0, round % 10 == 0 ? 100 : 16);
+        const int way = round % 2;
+        uint32_t n = 1 + (uint32_t)random_in(0, round % 10 < 2 ? 100 : 16);
         double grid = round % 3 == 0 ? 4 : 1e6, scale = pow(10, random_in(-1, 1));
         for (uint32_t k = 0; k < n; k++) {
             double r = ceil(grid * random_in(.1, 1)) / grid * scale, d = (1 + r) * sqrt(random_in(0, 1));
@@ -319,11 +344,11 @@ START_TEST(bits_of_windows) {
             put(&w, round % 3 == 0 ? floor(4 * d * cos(t)) / 4 : d * cos(t), d * sin(t), r);
         }
         areas.fallbacks = 0;
-        measure(&both, &areas, &w, first);
+        measure(methods[FIBRAD_ISA_SCALAR][way], &areas, &w, first);
         uint32_t doubts = areas.fallbacks;
         for (int s = 1; s < sets; s++) {
             areas.fallbacks = 0;
-            measure(methods[isa[s]], &areas, &w, other);
+            measure(methods[isa[s]][way], &areas, &w, other);
             ck_assert_uint_eq(areas.fallbacks, doubts);
             ck_assert_mem_eq(first, other, (n + 1) * sizeof *first);
         }
@@ -380,8 +405,8 @@ static double open_turned(fibrad_areas *areas, const struct method *method, cons
 START_TEST(slope_of_the_open_area) {
     fibrad_areas areas = areas_make();
     uint32_t there = 0;
-    for (uint64_t seed = 0; seed < 200; seed++) {
-        const struct method *method = seed % 2 == 0 ? &both : &arrangement;
+    for (uint64_t seed = 0; seed < 300; seed++) {
+        const struct method *const methods[] = {&both, &arrangement, &dense}, *method = methods[seed % 3];
         struct window w = {0};
         double depth[8], slope[2];
         for (uint64_t k = 0; k < 2 + seed % 6; k++) {
@@ -403,7 +428,7 @@ START_TEST(slope_of_the_open_area) {
             there += fabs(slope[axis]) > .1;
         }
     }
-    ck_assert_uint_gt(there, 200);
+    ck_assert_uint_gt(there, 300);
     areas_free(&areas);
 }
 END_TEST

@@ -76,6 +76,53 @@ START_TEST(view_factors_are_the_kernels) {
 }
 END_TEST
 
+struct calls {
+    uint64_t count, done, total, stop_at; /* stop_at: the call that asks to stop */
+    int ends;
+};
+
+static int count_calls(void *context, const char *stage, uint64_t done, uint64_t total) {
+    struct calls *calls = context;
+    ck_assert_ptr_nonnull(stage);
+    if (done > 0 && total > 0) ck_assert_uint_ge(done, calls->done);
+    ck_assert(total == 0 || done <= total);
+    calls->done = done, calls->total = total;
+    calls->ends += total > 0 && done == total;
+    return ++calls->count == calls->stop_at;
+}
+
+/* Rows of spheres far larger than most are divided over threads, and all rows where they are fewer than threads. */
+START_TEST(long_rows_are_divided) {
+    struct bed bed = strewn(300, 3);
+    const fibrad_body floor = plane_at(2, 0, -.3);
+    const fibrad_scene_config config = {.body = &floor, .bodies = 1};
+    const fibrad_spheres spheres = spheres_of(&bed);
+    const fibrad_beam_rule rule = {.directions = 60};
+    unsigned char two[300] = {[1] = 1, [200] = 1};
+    fibrad_factors expected;
+    void *block = kernel_matrix(&bed, &config, &rule, &expected);
+    fibrad_bed_factors *factors, *alone[3];
+    for (int t = 0; t < 3; t++) {
+        struct calls calls = {0};
+        fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
+        fibrad_bed_options options = {.beam = &rule};
+        ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options, &run, &factors), FIBRAD_OK);
+        ck_assert(same_factors(&factors->matrix, &expected));
+        ck_assert_uint_eq(factors->directions, 60);
+        ck_assert(calls.ends == 1 && calls.total == 300);
+        fibrad_bed_free(factors);
+        run.progress = NULL;
+        options.wanted = two;
+        ck_assert_int_eq(fibrad_view_factors(&config, &spheres, &options, &run, &alone[t]), FIBRAD_OK);
+        ck_assert(same_factors(&alone[t]->matrix, &alone[0]->matrix));
+    }
+    ck_assert_uint_gt(alone[0]->matrix.start[300], 100);
+    for (int t = 0; t < 3; t++) fibrad_bed_free(alone[t]);
+    free(block);
+    bed_free(&bed);
+}
+END_TEST
+
 /* Every other method and option: the same for any number of threads. */
 START_TEST(nothing_depends_on_threads) {
     struct bed bed = packing(200, .8, 1.2, .5, 3, true);
@@ -315,21 +362,6 @@ END_TEST
 
 /* ---- progress ---------------------------------------------------------------------------------------------------- */
 
-struct calls {
-    uint64_t count, done, total, stop_at; /* stop_at: the call that asks to stop */
-    int ends;
-};
-
-static int count_calls(void *context, const char *stage, uint64_t done, uint64_t total) {
-    struct calls *calls = context;
-    ck_assert_ptr_nonnull(stage);
-    if (done > 0 && total > 0) ck_assert_uint_ge(done, calls->done);
-    ck_assert(total == 0 || done <= total);
-    calls->done = done, calls->total = total;
-    calls->ends += total > 0 && done == total;
-    return ++calls->count == calls->stop_at;
-}
-
 START_TEST(progress_and_cancelling) {
     struct bed bed = packing(200, .8, 1.2, .5, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -503,6 +535,7 @@ int main(void) {
     TCase *factors = suite_case(suite, "factors"), *errors = suite_case(suite, "errors"),
           *heat = suite_case(suite, "heat");
     tcase_add_test(factors, view_factors_are_the_kernels);
+    tcase_add_test(factors, long_rows_are_divided);
     tcase_add_test(factors, nothing_depends_on_threads);
     tcase_add_test(factors, exchange_does_not_depend_on_threads);
     tcase_add_test(factors, reflectors_have_empty_rows);

@@ -3,12 +3,6 @@
 
 #include "simple/job.h"
 
-static int row_by_beams(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
-                        uint64_t *rays) {
-    (void)rays;
-    return fibrad_beam_row(scene, work, i, rule, row);
-}
-
 static int row_by_surface(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
                           uint64_t *rays) {
     (void)rays;
@@ -80,8 +74,8 @@ static int run_options(fibrad_job *job, const fibrad_bed_options *options, fibra
     if (options->surface) return run_rule(job, row_by_surface, options->surface, options, &how, factors);
     if (options->cast) return run_rule(job, row_by_rays, options->cast, options, &how, factors);
     if (beam && beam->tolerance > 0 && !options->raw && !options->wanted)
-        return fibrad_job_tolerance(job, row_by_beams, beam, &how, factors);
-    return run_rule(job, row_by_beams, beam, options, &how, factors);
+        return fibrad_job_tolerance(job, fibrad_job_beam_row, beam, &how, factors);
+    return run_rule(job, fibrad_job_beam_row, beam, options, &how, factors);
 }
 
 int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,

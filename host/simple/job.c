@@ -6,9 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fibrad_part.h"
 #include "simple/heap.h"
 
 #define ROWS_AT_ONCE 16 /* that a thread takes: few enough to share out a bed, enough to share a neighbourhood */
+#define LONG_RATIO   8  /* radius over the mean one from which on a row is divided over the threads */
+#define PARTS_EACH   4  /* parts of a row for each thread */
+#define PARTS_MAX    256
 #define AVERAGES_MAX 16 /* tasks of averaging: each reads all entries */
 #define FILED_MAX    256
 #define FILED_BYTES  ((uint64_t)1 << 28) /* that a task of averaging writes, in no order, where they are in a file */
@@ -17,7 +21,7 @@ int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fi
                     fibrad_run *run) {
     const uint32_t n = spheres ? spheres->n : 0;
     fibrad_fault fault = {n, n, UINT32_MAX};
-    *job = (fibrad_job){.run = run, .begun = omp_get_wtime()};
+    *job = (fibrad_job){.run = run, .spheres = spheres, .begun = omp_get_wtime()};
     if (run) run->fault = fault;
     int status = fibrad_team_open(&job->team, run);
     if (!status) status = fibrad_heap_scene(&job->scene, &job->block, config, spheres, &fault);
@@ -56,24 +60,109 @@ static double sum_of_row(const fibrad_row *row, uint32_t bodies) {
     return sum + row->beyond;
 }
 
+/* Notes what is known of a row that a thread has computed. */
+static void note_row(const struct row_tasks *rows, int thread, const fibrad_row *row) {
+    fibrad_job_report *report = &rows->report[thread];
+    if (rows->error) rows->error[row->sphere] = row->error;
+    ++report->rows;
+    report->directions = row->directions > report->directions ? row->directions : report->directions;
+    report->fallbacks += row->fallbacks;
+    const double sum = row->rows ? sum_of_row(row, rows->job->facts.bodies) : 0;
+    if (sum != 0) /* else there is no row, or that of a sphere that emits nothing */
+        report->closure_error = larger_of(report->closure_error, fabs(sum - 1));
+}
+
 static int run_row(void *tasks, int thread, uint32_t task) {
     const struct row_tasks *rows = tasks;
     fibrad_job *job = rows->job;
-    fibrad_job_report *report = &rows->report[thread];
     const uint32_t i = rows->order[task];
     fibrad_row row = {.rows = &job->team.rows[thread]};
     uint64_t rays = 0;
     const int status = rows->row(rows->rule, job->scene, &job->team.work[thread], i, &row, &rays);
     if (status) return status;
-    if (rows->error) rows->error[i] = row.error;
-    ++report->rows;
-    report->directions = row.directions > report->directions ? row.directions : report->directions;
-    report->fallbacks += row.fallbacks;
-    report->rays += rays;
-    const double sum = row.rows ? sum_of_row(&row, job->facts.bodies) : 0;
-    if (sum != 0) /* else there is no row, or that of a sphere that emits nothing */
-        report->closure_error = larger_of(report->closure_error, fabs(sum - 1));
+    row.sphere = i; /* of displacements, too */
+    note_row(rows, thread, &row);
+    rows->report[thread].rays += rays;
     return FIBRAD_OK;
+}
+
+int fibrad_job_beam_row(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
+                        uint64_t *rays) {
+    (void)rays;
+    return fibrad_beam_row(scene, work, i, rule, row);
+}
+
+/* A row in parts. */
+struct part_tasks {
+    fibrad_job *job;
+    fibrad_beam_rule rule;
+    uint32_t sphere, parts;
+    fibrad_row_part part[PARTS_MAX];
+};
+
+static int run_row_part(void *tasks, int thread, uint32_t task) {
+    struct part_tasks *t = tasks;
+    const uint32_t n = t->rule.directions;
+    const uint32_t from = (uint32_t)((uint64_t)n * task / t->parts),
+                   to = (uint32_t)((uint64_t)n * (task + 1) / t->parts);
+    return fibrad_beam_part(t->job->scene, &t->job->team.work[thread], t->sphere, &t->rule, from, to, &t->part[task]);
+}
+
+/* The row of the sphere of some part tasks, its parts by all threads. */
+static int run_divided(const struct row_tasks *rows, struct part_tasks *tasks) {
+    fibrad_team *team = &rows->job->team;
+    fibrad_row row = {.rows = &team->rows[0]};
+    int status = fibrad_team_run(team, NULL, tasks->parts, 1, run_row_part, tasks, NULL);
+    if (!status)
+        status = fibrad_beam_join(rows->job->scene, &team->work[0], tasks->sphere, &tasks->rule, tasks->part,
+                                  tasks->parts, &row);
+    if (!status) note_row(rows, 0, &row);
+    return status;
+}
+
+/* Computes the first `count` rows, one by one. *failed: the first that fails. */
+static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_t all, uint32_t *failed) {
+    const fibrad_beam_rule *rule = rows->rule;
+    fibrad_team *team = &rows->job->team;
+    struct part_tasks *tasks = calloc(1, sizeof *tasks);
+    int status = tasks ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    if (tasks) {
+        tasks->job = rows->job;
+        if (rule) tasks->rule = *rule;
+        if (!tasks->rule.directions) tasks->rule.directions = 233;
+        const uint32_t most = PARTS_EACH * (uint32_t)team->threads, n = tasks->rule.directions;
+        tasks->parts = most < PARTS_MAX ? most : PARTS_MAX;
+        if (tasks->parts > n) tasks->parts = n;
+        for (uint32_t p = 0; p < tasks->parts; ++p) tasks->part[p].memory.resize = fibrad_heap_resize;
+    }
+    for (uint32_t k = 0; k < count && !status; ++k) {
+        *failed = k;
+        tasks->sphere = rows->order[k];
+        status = fibrad_team_report(team, "rows", k, all);
+        if (!status) status = run_divided(rows, tasks);
+    }
+    for (uint32_t p = 0; tasks && p < tasks->parts; ++p) free(tasks->part[p].memory.block);
+    free(tasks);
+    return status;
+}
+
+/* How many rows are divided over the threads, which come to the front of the order: those of spheres far larger than
+ * most, whose windows have as many discs as is the square of that, and all if there are fewer than threads. */
+static uint32_t put_long_first(const fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule,
+                               uint32_t *order, uint32_t count) {
+    const fibrad_spheres *s = job->spheres;
+    const size_t stride = s && s->stride_r ? s->stride_r : 1;
+    uint32_t longs = 0;
+    double sum = 0;
+    if (row != fibrad_job_beam_row || job->team.threads == 1 || (rule && rule->tolerance > 0)) return 0;
+    if (count < (uint32_t)job->team.threads) return count;
+    for (uint32_t i = 0; i < s->n; ++i) sum += s->r[i * stride];
+    for (uint32_t k = 0; k < count; ++k)
+        if (s->r[order[k] * stride] * s->n > LONG_RATIO * sum) {
+            const uint32_t i = order[k];
+            order[k] = order[longs], order[longs++] = i;
+        }
+    return longs;
 }
 
 /* The spheres wanted, in the order of the cells. */
@@ -99,7 +188,16 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
     if (!status) {
         struct row_tasks tasks = {job, row, rule, order, error, part};
         const uint32_t count = list_spheres(job, wanted, order);
-        status = fibrad_team_run(team, "rows", count, ROWS_AT_ONCE, run_row, &tasks, &failed);
+        const uint32_t longs = put_long_first(job, row, rule, order, count);
+        failed = count;
+        if (longs > 0) status = run_all_divided(&tasks, longs, count, &failed);
+        if (!status) {
+            tasks.order += longs;
+            team->before = longs;
+            status = fibrad_team_run(team, "rows", count - longs, ROWS_AT_ONCE, run_row, &tasks, &failed);
+            team->before = 0;
+            failed += longs;
+        }
         if (status && job->run && failed < count)
             job->run->fault = (fibrad_fault){order[failed], order[failed], team->triangle};
     }

@@ -12,6 +12,7 @@ typedef struct fibrad_job {
     fibrad_scene_facts facts;
     fibrad_team team;
     fibrad_run *run;
+    const fibrad_spheres *spheres;
     const char *scratch; /* a folder for rows and matrix; NULL: in memory */
     double begun;        /* [s] */
 } fibrad_job;
@@ -26,6 +27,9 @@ void fibrad_job_close(fibrad_job *job);
 /* Row i by some method; into row->rows or elsewhere. A status. */
 typedef int fibrad_job_row(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
                            uint64_t *rays);
+
+/* Row i by a fibrad_beam_rule, the one kind that is divided over the threads where it is long. */
+fibrad_job_row fibrad_job_beam_row;
 
 /* What is known of rows besides the matrix. */
 typedef struct fibrad_job_report {

@@ -15,6 +15,7 @@ typedef struct fibrad_team {
     int threads;
     fibrad_progress *progress;
     void *context;
+    uint32_t before;          /* tasks done before those of the run in hand, for progress */
     fibrad_work *work;        /* [threads] growing */
     fibrad_rows *rows;        /* [threads] growing */
     fibrad_scratch *store;    /* [threads] of the rows */

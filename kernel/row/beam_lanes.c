@@ -10,7 +10,7 @@
 #include "window/clip_lanes.h"
 
 int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
-                             const fibrad_beam_rule *rule, fibrad_row *row) {
+                             const fibrad_beam_rule *rule, const fibrad_beam_range *range, fibrad_row *row) {
     static const double centre[3] = {0, 0, 0};
     const uint32_t directions = rule->directions, points = rule->points;
     fibrad_points window = {.count = points};
@@ -26,9 +26,12 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     if (scene->container.walls) {
         work->walls->view = fibrad_wall_view_of(scene, work->place, work->cut, work->reach);
         fibrad_zero(&work->walls->sums, sizeof work->walls->sums);
+        work->walls->sums.addends = range->addends;
     }
+    work->entries.addends = range->addends;
+    if (range->part != NULL) fibrad_beam_replay(work, range, directions, open);
     if (rule->turn != 0) fibrad_rotation(rule->turn, turn);
-    for (uint32_t k = 0; k < directions; k++) {
+    for (uint32_t k = range->from; k < range->to; k++) {
         double frame[9];
         fibrad_beam_frame(k, directions, points, frame);
         if (rule->turn != 0) fibrad_rotate_axes(turn, frame);
@@ -40,12 +43,17 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         if (scene->container.walls)
             LANED(fibrad_walls_share)(work, frame, meets && points == 0 ? &work->met->points : &window, k, rule, rest);
         else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6) == FIBRAD_BEYOND)
-            work->wall[FIBRAD_BEYOND] += rest;
+            fibrad_work_slot(work, FIBRAD_BEYOND, k, rest);
+        else if (range->addends != NULL)
+            fibrad_addends_put(range->addends, FIBRAD_ADD_OPEN, k, rest);
         else
             open[k % 2] += rest;
     }
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
+    row->fallbacks = work->areas.fallbacks;
+    row->length = 0;
+    if (range->addends != NULL) return FIBRAD_OK;
     double scale = points > 0 ? 1.0 / ((double)directions * points) : 1 / (directions * FIBRAD_PI);
     int status = fibrad_entries_row(&work->entries, scene, scale, row);
     if (status != FIBRAD_OK) return status;
@@ -59,7 +67,6 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
     row->error *= fibrad_entries_gain(&work->entries, parts);
     row->directions = directions;
-    row->fallbacks = work->areas.fallbacks;
     row->symmetric = 0;
     return FIBRAD_OK;
 }

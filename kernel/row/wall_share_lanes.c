@@ -311,7 +311,8 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
     for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) {
         if (sums->cuts[wall] == 0) continue; /* the way of one decides for all that would meet the same wall */
         const fibrad_wall_line *first = &sums->first_cut[wall];
-        work->wall[fibrad_work_met(work, first->origin, first->w)] += window->open * sums->cuts[wall] / points->open;
+        fibrad_work_slot(work, fibrad_work_met(work, first->origin, first->w), window->k,
+                         window->open * sums->cuts[wall] / points->open);
     }
 }
 
@@ -319,6 +320,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
                                const fibrad_beam_rule *rule, double rest) {
     if (rest == 0) {
         work->walls->sums.hidden[k / 64] |= UINT64_C(1) << k % 64;
+        if (work->entries.addends != NULL) fibrad_addends_put(work->entries.addends, FIBRAD_ADD_HIDDEN, k, 0);
         return;
     }
     const double whole = rule->points > 0 ? rule->points : FIBRAD_PI;

@@ -38,16 +38,42 @@ static bool disc_before(const fibrad_workspace *work, uint32_t k, uint32_t other
     return disc->u[k] != disc->u[other] ? disc->u[k] < disc->u[other] : disc->v[k] < disc->v[other];
 }
 
-static void sort_discs_by_insertion(fibrad_workspace *work) {
-    uint32_t *order = work->disc.order, count = work->disc.count;
-    for (uint32_t k = 0; k < count; k++) order[k] = k;
+/* Sorts places [from, to) of the order. */
+static void sort_discs_by_insertion(fibrad_workspace *work, uint32_t from, uint32_t to) {
+    uint32_t *order = work->disc.order + from;
+    const uint32_t count = to - from;
     for (uint64_t gap = fibrad_sort_first_gap(count); gap > 0; gap = fibrad_sort_next_gap(gap))
         for (uint64_t k = gap; k < count; k++) {
             uint32_t moving = order[k];
-            uint64_t to = k;
-            for (; to >= gap && disc_before(work, moving, order[to - gap]); to -= gap) order[to] = order[to - gap];
-            order[to] = moving;
+            uint64_t at = k;
+            for (; at >= gap && disc_before(work, moving, order[at - gap]); at -= gap) order[at] = order[at - gap];
+            order[at] = moving;
         }
+}
+
+/* Sorts many discs digit by digit of their depths in floats, whose bits ascend as they do, and those that are equal
+ * then by insertion. */
+static void sort_discs_by_digits(fibrad_workspace *work) {
+    const fibrad_discs *disc = &work->disc;
+    uint32_t resolved = 0, count = 0, largest = 0;
+    for (uint32_t k = 0; k < disc->count; k++) {
+        union {
+            float depth;
+            uint32_t bits;
+        } key = {(float)disc->depth[k] + 0.0f}; /* no negative zero */
+        if (disc->depth[k] < 0) {
+            disc->order[resolved++] = k;
+            continue;
+        }
+        disc->key[0][count++] = (uint64_t)key.bits << 32 | k;
+        if (key.bits > largest) largest = key.bits;
+    }
+    const uint64_t *key = fibrad_sort_keys(disc->key[0], disc->key[1], count, 32, largest);
+    for (uint32_t from = 0, to; from < count; from = to) {
+        for (to = from; to < count && key[to] >> 32 == key[from] >> 32; to++)
+            disc->order[resolved + to] = (uint32_t)key[to];
+        if (to > from + 1) sort_discs_by_insertion(work, resolved + from, resolved + to);
+    }
 }
 
 /* Lists all but the resolved discs in order. Up to DISCS_RANKED of them are sorted by counting, in lanes, how many lie
@@ -81,7 +107,7 @@ static void sort_discs(fibrad_workspace *work, uint32_t resolved) {
             }
         if (sum == (count * (count - 1) - resolved * (resolved - 1)) / 2 + (eights - count) * count) return;
     }
-    sort_discs_by_insertion(work);
+    sort_discs_by_digits(work);
 }
 
 /* Resolves discs [from, return) of the window, the ones down to `depth`: hides from the window what they cover. *open

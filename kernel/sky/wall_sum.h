@@ -3,6 +3,7 @@
 #ifndef FIBRAD_SKY_WALL_SUM_H
 #define FIBRAD_SKY_WALL_SUM_H
 
+#include "base/addends.h"
 #include "scene/surroundings.h"
 
 /* The walls, and where lines are cut, in the frame of a sphere: in units of its radius, from its centre. */
@@ -28,7 +29,18 @@ typedef struct fibrad_wall_sums {
     double all[FIBRAD_REGIONS][4];               /* what there would be if nothing were hidden, in windows */
     double mixed[FIBRAD_REGIONS];                /* open times hidden part */
     uint64_t hidden[FIBRAD_DIRECTIONS_MAX / 64]; /* bit k: window k is hidden, and not counted in `all` */
+    fibrad_addends *addends;                     /* NULL, or where what is added is listed instead */
 } fibrad_wall_sums;
+
+/* Adds what window k of n gives to parts k mod 4 of a sum. The first and the last window count half in differences of
+ * parts, as in fibrad_entries_add. */
+static inline void fibrad_wall_add(double part[4], uint32_t k, uint32_t n, double value) {
+    if (k == 0 || k == n - 1) {
+        part[k % 4 ^ 1] += value / 4;
+        value -= value / 4;
+    }
+    part[k % 4] += value;
+}
 
 /* Sums over the points of a window in one octant: by wall, eight apart so that their order is the same in every
  * instruction set. */

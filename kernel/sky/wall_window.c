@@ -106,21 +106,18 @@ bool fibrad_wall_window_has(const fibrad_wall_window *window, const fibrad_wall_
     return true;
 }
 
-/* The first and the last window count half in differences of parts, as in fibrad_entries_add. */
-static void add_part(double part[4], const fibrad_wall_window *window, double share) {
-    const uint32_t k = window->k;
-    if (k == 0 || k == window->n - 1) {
-        part[k % 4 ^ 1] += share / 4;
-        share -= share / 4;
-    }
-    part[k % 4] += share;
-}
-
 void fibrad_wall_window_add(const fibrad_wall_window *window, uint32_t region, double open, double share,
                             fibrad_wall_sums *sums) {
-    add_part(sums->open[region], window, open);
-    add_part(sums->all[region], window, share);
-    sums->mixed[region] += window->open * window->hidden * share;
+    const double mixed = window->open * window->hidden * share;
+    if (sums->addends != NULL) {
+        fibrad_addends_put(sums->addends, FIBRAD_ADD_REGION + region, window->k, open);
+        fibrad_addends_put(sums->addends, FIBRAD_ADD_SHARE + region, window->k, share);
+        fibrad_addends_put(sums->addends, FIBRAD_ADD_MIXED + region, window->k, mixed);
+        return;
+    }
+    fibrad_wall_add(sums->open[region], window->k, window->n, open);
+    fibrad_wall_add(sums->all[region], window->k, window->n, share);
+    sums->mixed[region] += mixed;
 }
 
 /* The share of a band of directions that rises along an axis, with weights (1 - x^2)^2 over its half width; `slope`:

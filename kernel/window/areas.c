@@ -36,6 +36,18 @@ static void lay_out_arrangement(fibrad_arrangement *arrangement, fibrad_arena *a
     arrangement->second[1] = take_arcs(arena, arrangement->seconds + AREA_LANES);
 }
 
+void fibrad_dense_layout(fibrad_dense *dense, fibrad_arena *arena, uint32_t discs) {
+    dense->cells_most = 4 * discs, dense->blocks_most = discs, dense->discs_most = 8 * discs,
+    dense->cuts_most = discs / 2 + 1;
+    dense->first_block = fibrad_arena_take(arena, dense->cells_most, sizeof(uint32_t));
+    dense->first_disc = fibrad_arena_take(arena, dense->cells_most, sizeof(uint32_t));
+    dense->block = fibrad_arena_take(arena, dense->blocks_most, sizeof *dense->block);
+    dense->alive = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    dense->next = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    dense->disc = fibrad_arena_take(arena, dense->discs_most, sizeof *dense->disc);
+    dense->cut = fibrad_arena_take(arena, dense->cuts_most, sizeof *dense->cut);
+}
+
 void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t discs) {
     size_t circles =
         (size_t)discs + 2 < 2 * AREA_LANES ? 2 * AREA_LANES : (size_t)discs + 2; /* lookups load two vectors */
@@ -45,7 +57,12 @@ void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t disc
     areas->whose = fibrad_arena_take(arena, circles, sizeof(uint32_t));
     areas->pieces = fibrad_arena_take(arena, 1, sizeof *areas->pieces);
     areas->boundary = fibrad_arena_take(arena, 1, sizeof *areas->boundary);
+    const size_t used = arena->used;
     lay_out_arrangement(&areas->arrangement, arena, discs, circles);
+    const size_t end = arena->used;
+    arena->used = used; /* a window is resolved by the one or the other */
+    fibrad_dense_layout(&areas->dense, arena, discs);
+    if (arena->used < end) arena->used = end;
 }
 
 /* Adds what an arc from p to q of a disc's circle contributes: the integral of the normal along it, times the depth. */
@@ -57,10 +74,24 @@ static void add_slope(const fibrad_areas *areas, const double *depth, double cir
     slope[0] += t * dy, slope[1] -= t * dx;
 }
 
+static void add_dense_slope(const fibrad_areas *areas, const double *depth, double slope[2]) {
+    const fibrad_dense *grid = &areas->dense;
+    for (uint32_t n = 0; n < grid->blocks; n++)
+        for (uint32_t bits = grid->alive[n]; bits != 0; bits &= bits - 1) {
+            const fibrad_dense_block *b = &grid->block[n];
+            const uint32_t k = (uint32_t)__builtin_ctz(bits);
+            add_slope(areas, depth, b->circle[k], b->qx[k] - b->px[k], b->qy[k] - b->py[k], slope);
+        }
+}
+
 void fibrad_areas_slope(const fibrad_areas *areas, const double *depth, double slope[2]) {
     const fibrad_boundary *b = areas->boundary;
     const fibrad_arcs *open = &areas->arrangement.open;
     slope[0] = slope[1] = 0;
+    if (areas->dense.on && !areas->degenerate) {
+        add_dense_slope(areas, depth, slope);
+        return;
+    }
     for (uint32_t k = 0; k < open->count && areas->degenerate; k++)
         add_slope(areas, depth, open->circle[k], open->qx[k] - open->px[k], open->qy[k] - open->py[k], slope);
     for (uint64_t bits = areas->degenerate ? 0 : b->alive; bits != 0; bits &= bits - 1) {

@@ -9,6 +9,7 @@
 
 #include "base/arena.h"
 #include "base/port.h"
+#include "window/dense.h"
 
 #define FIBRAD_PIECES 48 /* pieces summed at a time, about */
 
@@ -68,7 +69,8 @@ typedef struct fibrad_areas {
     uint32_t *whose;   /* [discs + 2] the caller's number of each */
     fibrad_pieces *pieces;
     fibrad_boundary *boundary;
-    fibrad_arrangement arrangement;
+    fibrad_arrangement arrangement; /* it and `dense` share memory */
+    fibrad_dense dense;
     double widest;      /* the largest radius so far */
     bool open;          /* something of the window is */
     bool degenerate;    /* the current window is resolved by the arrangement */

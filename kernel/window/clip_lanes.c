@@ -18,6 +18,7 @@
 #include "window/arc_lanes.h"
 #include "window/arrangement_lanes.h"
 #include "window/clip_lanes.h"
+#include "window/dense_lanes.h"
 
 #define SQRT_3_4     0.86602540378443865
 #define CLIP_CLOSURE 1e-12 /* errors of areas above this show that they are wrong */
@@ -271,9 +272,16 @@ FIBRAD_INLINE bool clip_disc_out(fibrad_areas *areas, uint32_t k, double x, doub
     return join_slots(b, b->window, (uint32_t)__builtin_ctzll(leaves), (uint32_t)__builtin_ctzll(enters), x, y, r, k);
 }
 
-/* Resolves the window again, up to its first `circles` circles, by the arrangement. */
+/* Whether dense clipping has resolved its discs. */
+static bool is_open_dense(const fibrad_areas *areas) { return areas->dense.live > 0 && !areas->overflow; }
+
+/* Resolves the window again, up to its first `circles` circles: by dense clipping if it was the slots that were too
+ * few, else by the arrangement. */
 static bool resolve_again(fibrad_areas *areas, uint32_t circles) {
     bool open = true;
+    if (!areas->dense.on && areas->boundary->alive == (UINT64_C(1) << FIBRAD_BOUNDARY) - 1 &&
+        LANED(fibrad_dense_resolve)(areas, circles))
+        return is_open_dense(areas);
     areas->degenerate = true;
     areas->fallbacks++;
     LANED(fibrad_arrangement_begin)(areas);
@@ -308,7 +316,7 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
     areas->widest = 1;
     areas->pieces->count = 0;
     areas->open = true;
-    areas->degenerate = areas->overflow = false;
+    areas->degenerate = areas->overflow = areas->dense.on = false;
     areas->circles = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
     areas->circles = 1;
@@ -319,7 +327,8 @@ FIBRAD_INLINE bool hide_disc(fibrad_areas *areas, uint32_t whose, double x, doub
     if (areas->degenerate) return LANED(fibrad_arrangement_disc)(areas, whose, x, y, r);
     uint32_t k = areas->circles;
     fibrad_areas_add_circle(areas, whose, x, y, r);
-    if (r > CLIP_RADIUS_MAX || !clip_disc_out(areas, k, x, y, r)) return resolve_again(areas, k + 1);
+    if (areas->dense.on && r <= CLIP_RADIUS_MAX && LANED(fibrad_dense_hide)(areas)) return is_open_dense(areas);
+    if (areas->dense.on || r > CLIP_RADIUS_MAX || !clip_disc_out(areas, k, x, y, r)) return resolve_again(areas, k + 1);
     if (areas->boundary->alive == 0) return false;
     close_up_slots(areas->boundary);
     return true;
@@ -341,7 +350,8 @@ static bool complete_areas(fibrad_areas *areas) {
     fibrad_boundary *b = areas->boundary;
     uint32_t rest = areas->circles;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
-    for (uint32_t o = 0; b->alive >> o != 0; o += VD_LANES) {
+    if (areas->dense.on) LANED(fibrad_dense_rest)(areas, rest);
+    for (uint32_t o = 0; !areas->dense.on && b->alive >> o != 0; o += VD_LANES) {
         fibrad_arc_lanes piece = {vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
                                   vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
         LANED(fibrad_arcs_add)(areas, (uint32_t)(b->alive >> o) & vd_lanes_below(VD_LANES), &piece, rest);
@@ -353,6 +363,7 @@ static bool complete_areas(fibrad_areas *areas) {
 }
 
 double LANED(fibrad_areas_end)(fibrad_areas *areas) {
+    if (areas->overflow) return 0;
     if (!areas->degenerate) {
         if (complete_areas(areas)) return areas->area[areas->circles];
         resolve_again(areas, areas->circles);

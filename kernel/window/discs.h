@@ -15,6 +15,7 @@ typedef struct fibrad_discs {
     uint32_t *order;           /* [same] which is the first, the second ... from front to back */
     uint32_t *hidden_points;   /* [same] number of points that the first, the second ... hides */
     uint32_t *occluder;        /* [same] which of them hide any */
+    uint64_t *key[2];          /* [same] scratch of the sort by depth */
     uint32_t capacity;
     uint32_t count; /* may exceed the capacity */
 } fibrad_discs;

@@ -2,6 +2,7 @@
 #ifndef FIBRAD_WORK_ROW_SUM_H
 #define FIBRAD_WORK_ROW_SUM_H
 
+#include "base/addends.h"
 #include "scene/scene.h"
 
 /* What has been seen of each sphere so far, in the order of first sight; the sum over each fourth direction or ray
@@ -15,6 +16,7 @@ typedef struct fibrad_entries {
     double *angles;    /* [capacity] between the rays and the line of centres, summed */
     uint64_t *key[2];  /* [capacity] scratch of the sort by columns */
     uint32_t slots, capacity, length, missed;
+    fibrad_addends *addends; /* NULL, or where what is added is listed instead */
     bool end; /* the window in hand is the first or the last: it counts half in differences of even and odd windows */
 } fibrad_entries;
 
@@ -25,6 +27,10 @@ uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere);
 static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, uint32_t k, double area) {
     if (entry == FIBRAD_NONE) {
         entries->missed++;
+        return;
+    }
+    if (entries->addends != NULL) {
+        fibrad_addends_put(entries->addends, entries->sphere[entry], k, area);
         return;
     }
     double *part = entries->part[entry];

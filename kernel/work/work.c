@@ -52,6 +52,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     disc->order = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     disc->hidden_points = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     disc->occluder = fibrad_arena_take(arena, discs, sizeof(uint32_t));
+    for (int list = 0; list < 2; list++) disc->key[list] = fibrad_arena_take(arena, discs, sizeof(uint64_t));
     fibrad_areas_layout(&work->areas, arena, plan->discs);
 
     fibrad_entries *entries = &work->entries;
@@ -220,6 +221,7 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     for (uint32_t k = 0; k < work->entries.length; k++) work->entries.at[work->entries.slot[k]] = FIBRAD_NONE;
     work->entries.length = work->entries.missed = 0;
     work->entries.end = false;
+    work->entries.addends = NULL;
     fibrad_zero(work->wall, sizeof work->wall);
     work->needed = work->plan;
     work->scene = scene;

@@ -190,6 +190,14 @@ static inline uint32_t fibrad_work_sphere(const fibrad_workspace *work, uint32_t
     return work->near.sphere[work->disc.near[disc]];
 }
 
+/* Adds what window k gives to a slot. */
+static inline void fibrad_work_slot(fibrad_workspace *work, uint32_t slot, uint32_t k, double value) {
+    if (work->entries.addends != NULL)
+        fibrad_addends_put(work->entries.addends, FIBRAD_ADD_SLOT + slot, k, value);
+    else
+        work->wall[slot] += value;
+}
+
 /* Adds what window k sees of a disc. */
 static inline void fibrad_work_accumulate(fibrad_workspace *work, uint32_t disc, uint32_t k, double area) {
     uint32_t *entry = &work->near.entry[work->disc.near[disc]];

@@ -1,0 +1,100 @@
+/* beam_part.c - rows in parts, each a range of windows, and the row that parts make. SPDX-License-Identifier: MIT
+ *
+ * A part lists what its windows add to the sums of the row, and the row adds it up in their order: so its bits are
+ * those of the row in one. */
+#include "fibrad_part.h"
+#include "base/random.h"
+#include "row/beam.h"
+#include "row/beam_lanes.h"
+
+/* What a part is a part of. */
+static uint64_t key_of(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule) {
+    uint64_t cutoff;
+    fibrad_copy(&cutoff, &rule->cutoff, sizeof cutoff);
+    const uint64_t number[] = {i, (uint64_t)rule->directions << 32 | rule->points, cutoff, rule->turn};
+    uint64_t key = scene->hash;
+    for (int k = 0; k < 4; k++) key = fibrad_mix(key ^ fibrad_mix(number[k] + (uint64_t)k));
+    return key;
+}
+
+typedef struct part_rule {
+    fibrad_beam_rule rule;
+    fibrad_beam_range range;
+} part_rule;
+
+static int compute_range(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *given,
+                         fibrad_row *row) {
+    const part_rule *part = given;
+    if (part->range.addends != NULL) part->range.addends->count = 0;
+    return FIBRAD_VERSION_OF(fibrad_beam_lanes, scene->facts.isa)(scene, space, i, &part->rule, &part->range, row);
+}
+
+int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *given,
+                     uint32_t from, uint32_t to, fibrad_row_part *part) {
+    part_rule how;
+    double body[FIBRAD_BODIES_MAX];
+    fibrad_row row = {.body = body};
+    const int checked = fibrad_beam_complete(given, &how.rule);
+    if (checked != FIBRAD_OK) return checked;
+    if (how.rule.tolerance > 0) return FIBRAD_E_UNSUPPORTED;
+    if (part == NULL || from >= to || to > how.rule.directions) return FIBRAD_E_ARGUMENT;
+    fibrad_addends addends = {&part->memory, 0};
+    how.range = (fibrad_beam_range){.from = from, .to = to, .addends = &addends};
+    part->key = 0;
+    const int status = fibrad_row_run(scene, work, i, &(fibrad_row_method){compute_range, &how, 0, 0}, &row);
+    if (status != FIBRAD_OK) return status;
+    part->memory.needed = addends.count * sizeof(fibrad_addend);
+    if (part->memory.needed > part->memory.size)
+        return part->memory.resize != NULL ? FIBRAD_E_MEMORY : FIBRAD_E_CAPACITY;
+    part->from = from, part->to = to;
+    part->count = addends.count;
+    part->fallbacks = row.fallbacks;
+    part->key = key_of(scene, i, &how.rule);
+    return FIBRAD_OK;
+}
+
+int fibrad_beam_join(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *given,
+                     const fibrad_row_part *part, uint32_t parts, fibrad_row *row) {
+    part_rule how;
+    const int checked = fibrad_beam_complete(given, &how.rule);
+    if (checked != FIBRAD_OK) return checked;
+    if (scene == NULL || part == NULL) return FIBRAD_E_ARGUMENT;
+    const uint64_t key = key_of(scene, i, &how.rule);
+    uint32_t to = 0;
+    for (uint32_t p = 0; p < parts; to = part[p++].to)
+        if (part[p].key != key || part[p].from != to) return FIBRAD_E_STATE;
+    if (to != how.rule.directions) return FIBRAD_E_STATE;
+    how.range = (fibrad_beam_range){.part = part, .parts = parts};
+    return fibrad_row_run(scene, work, i, &(fibrad_row_method){compute_range, &how, 0, 0}, row);
+}
+
+static void add_again(fibrad_workspace *work, const fibrad_addend *a, uint32_t windows, double open[2]) {
+    fibrad_wall_sums *sums = work->walls != NULL ? &work->walls->sums : NULL;
+    if (a->target < FIBRAD_ADD_OPEN)
+        fibrad_entries_add(&work->entries, fibrad_entries_of(&work->entries, a->target), a->window, a->value);
+    else if (a->target == FIBRAD_ADD_OPEN)
+        open[a->window % 2] += a->value;
+    else if (a->target == FIBRAD_ADD_HIDDEN)
+        sums->hidden[a->window / 64] |= UINT64_C(1) << a->window % 64;
+    else if (a->target < FIBRAD_ADD_REGION)
+        work->wall[a->target - FIBRAD_ADD_SLOT] += a->value;
+    else if (a->target < FIBRAD_ADD_SHARE)
+        fibrad_wall_add(sums->open[a->target - FIBRAD_ADD_REGION], a->window, windows, a->value);
+    else if (a->target < FIBRAD_ADD_MIXED)
+        fibrad_wall_add(sums->all[a->target - FIBRAD_ADD_SHARE], a->window, windows, a->value);
+    else
+        sums->mixed[a->target - FIBRAD_ADD_MIXED] += a->value;
+}
+
+void fibrad_beam_replay(fibrad_workspace *work, const fibrad_beam_range *range, uint32_t windows, double open[2]) {
+    for (uint32_t p = 0; p < range->parts; p++) {
+        const fibrad_row_part *part = &range->part[p];
+        for (size_t n = 0; n < part->count; n++) {
+            fibrad_addend addend;
+            fibrad_copy(&addend, (const unsigned char *)part->memory.block + n * sizeof addend, sizeof addend);
+            work->entries.end = addend.window == 0 || addend.window == windows - 1;
+            add_again(work, &addend, windows, open);
+        }
+        work->areas.fallbacks += part->fallbacks;
+    }
+}
