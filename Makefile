@@ -223,7 +223,8 @@ HOST = \
     host/heat/heat_given.c \
     host/heat/heat_march.c \
     host/heat/heat_run.c \
-    host/heat/steady.c
+    host/heat/steady.c \
+    host/heat/triangle_heat.c
 
 TESTS = \
     tests/test_accuracy.c \

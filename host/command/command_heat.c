@@ -261,8 +261,11 @@ static int heat_picture(const struct heat_request *request, const struct bed *be
 
 static int heat_solve(struct heat_request *request, struct bed *bed, struct heat_report *report) {
     int status = heat_run(&request->bed, &request->problem, bed, report);
-    struct contents what = {
-        .walls = &request->problem.walls, .sources = &request->problem.sources, .result = &report->result};
+    struct contents what = {.walls = &request->problem.walls,
+                            .sources = &request->problem.sources,
+                            .result = &report->result,
+                            .of_triangle = report->triangles.shown,
+                            .of_triangles = report->triangles.arrays};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->plot) status = heat_picture(request, bed, report);
     if (!status) heat_print(request, bed, report);
@@ -298,6 +301,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status && !request->given.timed) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);
     if (!status) status = bed_options_metres(&request->bed, bed, &report.metres);
     if (!status) status = heat_arrays(&report.result, bed->n);
+    if (!status && request->bed.wall_vtp) status = triangle_heat_begin(&report.triangles, walls);
     if (!status) {
         given_heat_sources(&given, bed->n, request->given.timed ? 1 : report.metres, sources);
         sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
@@ -306,10 +310,9 @@ static int heat_frame(void *heat_request, struct bed *bed) {
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_absorbed = of_walls[5];
         report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
-        status = request->given.timed
-                     ? heat_march(&request->bed, &request->march, &request->problem, bed, report.metres, &report.result,
-                                  request->plot ? &request->picture : NULL)
-                     : heat_solve(request, bed, &report);
+        status = request->given.timed ? heat_march(&request->bed, &request->march, &request->problem, bed, &report,
+                                                   request->plot ? &request->picture : NULL)
+                                      : heat_solve(request, bed, &report);
     }
     free(emissivity);
     given_free(&given);
@@ -317,6 +320,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     free(report.result.temperature);
     free(report.result.power_error);
     free(report.result.temperature_error);
+    triangle_heat_free(&report.triangles);
     return status;
 }
 

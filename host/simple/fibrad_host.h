@@ -4,8 +4,8 @@
  * Index
  *   run       fibrad_run: threads, progress, cancelling
  *   factors   fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_displacements
- *   heat      fibrad_radiation_new, _move, _solve, _settle, _describe, _free
- *   time      fibrad_transient_new, _move, _powers, _advance, _describe, _free
+ *   heat      fibrad_radiation_new, _move, _solve, _sides, _settle, _describe, _free
+ *   time      fibrad_transient_new, _move, _powers, _sides, _advance, _describe, _free
  *   kernel    fibrad_heap_resize, fibrad_host_sizeof
  *
  * Typical  fibrad_bed_factors *bed;
@@ -116,6 +116,10 @@ int fibrad_radiation_move(fibrad_radiation *radiation, const fibrad_scene_config
  * fibrad_heat_begin, fibrad_heat_read. Cost: its sweeps, over threads. */
 int fibrad_radiation_solve(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_heat_result *result);
 
+/* What the last _solve says of the sides of triangles, as fibrad_heat_read_sides; [2 triangles] each, or NULL. Errors:
+ * _ARGUMENT; _STATE: no solution of this bed. */
+int fibrad_radiation_sides(const fibrad_radiation *radiation, double *flux, double *temperature);
+
 /* Emissivities that follow temperatures: fills emissivity [spheres] and body_emissivity [bodies] for these temperatures
  * (NaN: not known yet, of insulated bodies, or of emissivity 0: leave them); called by the thread that made the call.
  */
@@ -168,6 +172,10 @@ int fibrad_transient_move(fibrad_transient *transient, const fibrad_scene_config
 int fibrad_transient_powers(fibrad_transient *transient, const fibrad_heat_sources *sources,
                             fibrad_heat_result *result);
 
+/* What the last _powers says of the sides of triangles, as fibrad_radiation_sides. Errors: as that; _STATE also by
+ * factors alone. */
+int fibrad_transient_sides(const fibrad_transient *transient, double *flux, double *temperature);
+
 /* Called after each step with the time since the beginning of the span and the temperatures [spheres] there. */
 typedef void fibrad_observe(void *context, double time, const double *temperature);
 
@@ -195,11 +203,12 @@ typedef struct fibrad_span {
 
 /* Advances temperatures by a span: an L-stable scheme of second order, for which small spheres among large ones are no
  * limit. What spheres lose is what bodies and surroundings get, to rounding. Of sources, power, emissivities (where a
- * law leaves them), body_power and insulated are used and constant; temperature, hold and reference are not;
- * body_temperature and surroundings are those at the beginning. Only by patches may bodies be of unknown temperature;
- * by factors alone they gain from spheres alone. Errors: _ARGUMENT, with the sphere in fault; as
- * fibrad_exchange_factors or fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below zero. Then temperatures are
- * as before. Cost: two or three solutions a step, some milliseconds for 1e4 spheres by factors. */
+ * law leaves them), body_power, insulated and, but by factors alone, side_temperature are used and constant;
+ * temperature, hold and reference are not; body_temperature and surroundings are those at the beginning. Only by
+ * patches may bodies be of unknown temperature; by factors alone they gain from spheres alone. Errors: _ARGUMENT, with
+ * the sphere in fault; as fibrad_exchange_factors or fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below
+ * zero. Then temperatures are as before. Cost: two or three solutions a step, some milliseconds for 1e4 spheres by
+ * factors. */
 int fibrad_transient_advance(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_span *span);
 
 /* As fibrad_radiation_describe, _free. */

@@ -85,6 +85,9 @@ void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangl
 int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, const double period[3],
                       const uint8_t *mesh_of, uint32_t bodies, uint32_t *fault);
 
+/* Area of a triangle [L^2]. */
+double fibrad_mesh_triangle_area(const fibrad_mesh *mesh, uint32_t triangle);
+
 /* Area of a mesh [L^2], both sides if both are its own. */
 double fibrad_mesh_area(const fibrad_mesh *mesh, uint32_t number);
 
