@@ -198,6 +198,8 @@ static int choose_model(struct marching *m) {
     m->span.law = follow ? march_follow : NULL;
     if (follow && problem->by_factors)
         return message(STATUS_USAGE, "--model factors: emissivities follow temperatures; patches let them");
+    if (problem->by_factors && problem->sources.side_temperature)
+        return message(STATUS_USAGE, "--model factors: triangles have temperatures of their own; patches know them");
     for (uint32_t k = 0; k < problem->walls.count; ++k) {
         if (!isnan(problem->sources.body_temperature[k])) continue;
         m->by_patches = true;
