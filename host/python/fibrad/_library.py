@@ -91,6 +91,7 @@ def _declare(library: ctypes.CDLL) -> None:
     library.fibrad_radiation_new.argtypes = [POINTER(c_void_p), *bed, POINTER(HeatConfig), POINTER(Run)]
     library.fibrad_radiation_move.argtypes = [c_void_p, *bed]
     library.fibrad_radiation_solve.argtypes = [c_void_p, POINTER(HeatSources), POINTER(HeatResult)]
+    library.fibrad_radiation_sides.argtypes = [c_void_p, DOUBLES, DOUBLES]
     library.fibrad_radiation_describe.argtypes = [c_void_p, c_void_p, POINTER(Fault)]
     library.fibrad_radiation_free.argtypes = [c_void_p]
     library.fibrad_transient_new.argtypes = [POINTER(c_void_p), *bed, POINTER(TransientConfig), POINTER(Run)]
