@@ -159,6 +159,7 @@ HOST = \
     host/mesh/enclosing.c \
     host/mesh/facing.c \
     host/mesh/meshes.c \
+    host/mesh/side_arrays.c \
     host/mesh/stl.c \
     host/mesh/weld.c \
     host/text/read_curve.c \

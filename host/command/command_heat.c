@@ -264,8 +264,7 @@ static int heat_solve(struct heat_request *request, struct bed *bed, struct heat
     struct contents what = {.walls = &request->problem.walls,
                             .sources = &request->problem.sources,
                             .result = &report->result,
-                            .of_triangle = report->triangles.shown,
-                            .of_triangles = report->triangles.arrays};
+                            .of_sides = &report->triangles};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->plot) status = heat_picture(request, bed, report);
     if (!status) heat_print(request, bed, report);
@@ -305,7 +304,8 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status) {
         given_heat_sources(&given, bed->n, request->given.timed ? 1 : report.metres, sources);
         sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
-        request->problem.wall_curve = given.tables.curve, request->problem.ambient_curve = &request->given.ambient_curve;
+        request->problem.wall_curve = given.tables.curve,
+        request->problem.ambient_curve = &request->given.ambient_curve;
         request->problem.emissivity = emissivity, request->problem.of_emissivity = &request->emissivity;
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_absorbed = of_walls[5];
@@ -320,7 +320,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     free(report.result.temperature);
     free(report.result.power_error);
     free(report.result.temperature_error);
-    triangle_heat_free(&report.triangles);
+    side_arrays_free(&report.triangles);
     return status;
 }
 

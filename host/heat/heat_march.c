@@ -70,7 +70,7 @@ struct marching {
     fibrad_transient *transient;
     fibrad_heat_sources sources;
     fibrad_heat_result *result;
-    struct triangle_heat *triangles;
+    struct side_arrays *triangles;
     double square_metres; /* of the bed's unit */
     fibrad_span span;
     double wall[WALLS_MAX], wall_energy[WALLS_MAX], energy[WALLS_MAX], surroundings_energy;
@@ -226,8 +226,9 @@ static int write_state(struct marching *m) {
     shown.temperature = m->span.temperature;
     heat_emissivities(m->problem, &m->bed, shown.temperature, m->problem->emissivity);
     int status = fibrad_transient_powers(m->transient, &shown, m->result);
-    if (!status && m->triangles->flux && !m->problem->by_factors) {
-        status = fibrad_transient_sides(m->transient, m->triangles->flux, m->triangles->temperature);
+    if (!status && m->triangles->count && !m->problem->by_factors) {
+        status = fibrad_transient_sides(m->transient, m->triangles->quantity[TRIANGLE_FLUX].side,
+                                        m->triangles->quantity[TRIANGLE_TEMPERATURE].side);
         triangle_heat_show(m->triangles, m->square_metres);
     }
     status = library_status(m, status);
@@ -241,8 +242,7 @@ static int write_state(struct marching *m) {
                                   .time = &m->now,
                                   .sources = &shown,
                                   .result = m->result,
-                                  .of_triangle = m->triangles->shown,
-                                  .of_triangles = m->problem->by_factors ? 0 : m->triangles->arrays};
+                                  .of_sides = m->problem->by_factors ? NULL : m->triangles};
     status = outputs_write(&m->asked->outputs, &what, m->bed.frame);
     ++m->bed.frame;
     return status;
