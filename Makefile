@@ -89,6 +89,7 @@ KERNEL = \
     kernel/surface/surface_row.c \
     kernel/ray/cast.c \
     kernel/ray/tracer.c \
+    kernel/ray/triangle_views.c \
     kernel/exchange/body_row.c \
     kernel/exchange/exchange.c \
     kernel/exchange/flow.c \

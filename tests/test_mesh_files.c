@@ -303,6 +303,37 @@ START_TEST(names_of_meshes) {
 }
 END_TEST
 
+/* An array of doubles of a .vtp, [n] at least. */
+static void vtp_array(const char *path, const char *name, double *values, size_t n) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    char key[60], *text = read_file(path);
+    snprintf(key, sizeof key, "Name=\"%s\"", name);
+    const char *at = strstr(text, key);
+    ck_assert_msg(at != NULL, "%s has no array %s", path, name);
+    at = strchr(at, '>') + 1;
+    unsigned char *bytes = calloc(8 + n * sizeof *values + 3, 1);
+    uint32_t bits = 0;
+    for (size_t k = 0, to = 0; to < 8 + n * sizeof *values; ++at) {
+        const char *digit = *at ? strchr(digits, *at) : NULL;
+        if (!digit) continue;
+        bits = bits << 6 | (uint32_t)(digit - digits);
+        if (++k % 4) continue;
+        for (int shift = 16; shift >= 0; shift -= 8) bytes[to++] = bits >> shift & 255;
+    }
+    memcpy(values, bytes + 8, n * sizeof *values);
+    free(bytes);
+    free(text);
+}
+
+/* The sum of fluxes, or what else is of an area, over n triangles from `first` on. */
+static double gain_of(const char *path, const char *name, size_t first, size_t n) {
+    double flux[200], area[200], sum = 0;
+    vtp_array(path, name, flux, first + n);
+    vtp_array(path, "area", area, first + n);
+    for (size_t t = first; t < first + n; ++t) sum += flux[t] * area[t];
+    return sum;
+}
+
 #define BED "x,y,z,r,T\n-1,0,0,1,500\n1.1,0,0,1,600\n0,2,1,.5,700\n"
 
 /* A closed mesh about a bed gets what six planes get; its triangles, as ParaView reads them. */
@@ -323,6 +354,9 @@ START_TEST(rows_in_a_closed_mesh) {
     ck_assert_double_eq_tol(value_of("wall_tub_area"), 384, 1e-3);
     ck_assert_double_eq(value_of("wall_tub_triangles"), 12);
     ck_assert_str_eq(said, "");
+    /* what it sees of spheres is what they see of it */
+    ck_assert_double_eq_tol(gain_of(out, "F_spheres", 0, 12) / 384, 1 - value_of("wall_tub_to_walls"), 1e-3);
+    ck_assert_double_eq(gain_of(out, "F_surroundings", 0, 12), 0);
 
     char *text = read_file(out);
     struct vtk_grid grid = {.file = out, .text = text, .end = text + strlen(text)};
@@ -399,37 +433,6 @@ START_TEST(backs_of_meshes) {
 END_TEST
 
 /* ---- heat of triangles ------------------------------------------------------------------------------------------ */
-
-/* An array of doubles of a .vtp, [n] at least. */
-static void vtp_array(const char *path, const char *name, double *values, size_t n) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    char key[60], *text = read_file(path);
-    snprintf(key, sizeof key, "Name=\"%s\"", name);
-    const char *at = strstr(text, key);
-    ck_assert_msg(at != NULL, "%s has no array %s", path, name);
-    at = strchr(at, '>') + 1;
-    unsigned char *bytes = calloc(8 + n * sizeof *values + 3, 1);
-    uint32_t bits = 0;
-    for (size_t k = 0, to = 0; to < 8 + n * sizeof *values; ++at) {
-        const char *digit = *at ? strchr(digits, *at) : NULL;
-        if (!digit) continue;
-        bits = bits << 6 | (uint32_t)(digit - digits);
-        if (++k % 4) continue;
-        for (int shift = 16; shift >= 0; shift -= 8) bytes[to++] = bits >> shift & 255;
-    }
-    memcpy(values, bytes + 8, n * sizeof *values);
-    free(bytes);
-    free(text);
-}
-
-/* The fluxes times areas of n triangles from `first` on. */
-static double gain_of(const char *path, const char *name, size_t first, size_t n) {
-    double flux[200], area[200], sum = 0;
-    vtp_array(path, name, flux, first + n);
-    vtp_array(path, "area", area, first + n);
-    for (size_t t = first; t < first + n; ++t) sum += flux[t] * area[t];
-    return sum;
-}
 
 /* A line of numbers for each of some triangles. */
 static const char *write_column(const char *name, const char *head, int n, double first, double step) {

@@ -3,7 +3,8 @@
  *
  * Index
  *   run       fibrad_run: threads, progress, cancelling
- *   factors   fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_displacements
+ *   factors   fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_side_views,
+ *             fibrad_displacements
  *   heat      fibrad_radiation_new, _move, _solve, _sides, _settle, _describe, _free
  *   time      fibrad_transient_new, _move, _powers, _sides, _advance, _describe, _free
  *   kernel    fibrad_heap_resize, fibrad_host_sizeof
@@ -22,6 +23,7 @@
 #define FIBRAD_HOST_H
 
 #include "fibrad_heat.h"
+#include "fibrad_mesh.h"
 #include "fibrad_surface.h"
 
 #ifdef __cplusplus
@@ -30,9 +32,9 @@ extern "C" {
 
 /* ---- run ------------------------------------------------------------------------------------------------------- */
 
-/* Called by the thread that made the call, at the beginning and the end of each stage ("walls", "rows", "beams",
- * "sweeps", "steps") and up to 20 times a second in between: `done` of `total` things are done; total 0: unknown. Not
- * 0: stop, which the call then returns as FIBRAD_E_CANCELLED. */
+/* Called by the thread that made the call, at the beginning and the end of each stage ("walls", "rows", "triangles",
+ * "beams", "sweeps", "steps") and up to 20 times a second in between: `done` of `total` things are done; total 0:
+ * unknown. Not 0: stop, which the call then returns as FIBRAD_E_CANCELLED. */
 typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uint64_t total);
 
 /* How a call is run. NULL or zeroed: OpenMP's threads, no progress. */
@@ -87,6 +89,11 @@ int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_sphe
 
 /* Frees factors. NULL: nothing. No errors. */
 void fibrad_bed_free(fibrad_bed_factors *factors);
+
+/* fibrad_triangle_views of all triangles of a bed, so many rays from each side; view [2 triangles]: fronts and backs in
+ * turn. Errors: as fibrad_scene_init, fibrad_triangle_views. */
+int fibrad_side_views(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t rays, fibrad_run *run,
+                      fibrad_side_view *view);
 
 /* fibrad_exchange_displacement of the spheres wanted ([spheres] not 0; NULL: all) into displacement [spheres], whose
  * other elements are left as they are; facts, unless NULL, of the scene. Errors: as fibrad_exchange_factors; then some

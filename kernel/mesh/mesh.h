@@ -115,6 +115,9 @@ fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3
 /* The outward unit normal of a side. */
 void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]);
 
+/* An even point [L] of a triangle for two numbers in [0, 1]. */
+void fibrad_mesh_triangle_point(const fibrad_mesh *mesh, uint32_t triangle, const double share[2], double point[3]);
+
 /* An even point [L] on a mesh for two numbers in [0, 1); returns its side. */
 uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const double share[2], double point[3]);
 
