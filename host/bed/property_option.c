@@ -159,7 +159,7 @@ static int take_wall_value(const char *option, const char **text, const char *wo
 #define TRIANGLES "triangles:"
 
 /* Whether an item is such a table, with or without NAME=. */
-static bool is_table(const char *text, const struct wall_tables *tables) {
+static bool names_table(const char *text, const struct wall_tables *tables) {
     const size_t length = strcspn(text, "=,");
     const char *value = text[length] == '=' ? text + length + 1 : text;
     return tables && ((tables->timed && *value == '@') || strncmp(value, TRIANGLES, strlen(TRIANGLES)) == 0);
@@ -195,7 +195,7 @@ int wall_list(const char *option, const char *text, const char *word, double low
     while (text && *text) {
         int wall = -1;
         double value = 0;
-        const int status = is_table(text, tables)
+        const int status = names_table(text, tables)
                                ? take_wall_table(option, &text, low, high, walls, tables, &wall, &value)
                                : take_wall_value(option, &text, word, walls, &wall, &value);
         if (status) return status;

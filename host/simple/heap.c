@@ -118,22 +118,17 @@ size_t fibrad_host_sizeof(const char *name) {
         char name[24];
         size_t size;
     } structures[] = {
-        STRUCTURE(fibrad_memory),        STRUCTURE(fibrad_spheres),
-        STRUCTURE(fibrad_body),          STRUCTURE(fibrad_scene_config),
-        STRUCTURE(fibrad_fault),         STRUCTURE(fibrad_scene_facts),
-        STRUCTURE(fibrad_work),          STRUCTURE(fibrad_row),
-        STRUCTURE(fibrad_rows),          STRUCTURE(fibrad_beam_rule),
-        STRUCTURE(fibrad_cast_rule),     STRUCTURE(fibrad_cast_means),
-        STRUCTURE(fibrad_occupancy),     STRUCTURE(fibrad_flow),
-        STRUCTURE(fibrad_surface_rule),  STRUCTURE(fibrad_surface_facts),
-        STRUCTURE(fibrad_matrix_rule),   STRUCTURE(fibrad_factors),
-        STRUCTURE(fibrad_exchange_rule), STRUCTURE(fibrad_displacement),
-        STRUCTURE(fibrad_heat_config),   STRUCTURE(fibrad_side_view),
-        STRUCTURE(fibrad_heat_sources),  STRUCTURE(fibrad_heat_result),
-        STRUCTURE(fibrad_run),           STRUCTURE(fibrad_bed_options),
-        STRUCTURE(fibrad_bed_factors),   STRUCTURE(fibrad_transient_config),
-        STRUCTURE(fibrad_span),          STRUCTURE(fibrad_body_row),
-        STRUCTURE(fibrad_triangles),     STRUCTURE(fibrad_triangle_hit),
+        STRUCTURE(fibrad_memory),        STRUCTURE(fibrad_spheres),      STRUCTURE(fibrad_body),
+        STRUCTURE(fibrad_scene_config),  STRUCTURE(fibrad_fault),        STRUCTURE(fibrad_scene_facts),
+        STRUCTURE(fibrad_work),          STRUCTURE(fibrad_row),          STRUCTURE(fibrad_rows),
+        STRUCTURE(fibrad_beam_rule),     STRUCTURE(fibrad_cast_rule),    STRUCTURE(fibrad_cast_means),
+        STRUCTURE(fibrad_occupancy),     STRUCTURE(fibrad_flow),         STRUCTURE(fibrad_surface_rule),
+        STRUCTURE(fibrad_surface_facts), STRUCTURE(fibrad_matrix_rule),  STRUCTURE(fibrad_factors),
+        STRUCTURE(fibrad_exchange_rule), STRUCTURE(fibrad_displacement), STRUCTURE(fibrad_heat_config),
+        STRUCTURE(fibrad_heat_sources),  STRUCTURE(fibrad_heat_result),  STRUCTURE(fibrad_run),
+        STRUCTURE(fibrad_bed_options),   STRUCTURE(fibrad_bed_factors),  STRUCTURE(fibrad_transient_config),
+        STRUCTURE(fibrad_span),          STRUCTURE(fibrad_body_row),     STRUCTURE(fibrad_triangles),
+        STRUCTURE(fibrad_triangle_hit),  STRUCTURE(fibrad_side_view),
     };
     for (size_t k = 0; name && k < sizeof structures / sizeof *structures; ++k)
         if (strcmp(name, structures[k].name) == 0) return structures[k].size;

@@ -56,8 +56,8 @@ static int column_number(const struct lines *lines, const struct fields *fields,
 typedef int take_line(const struct lines *lines, const struct fields *fields, const char *what, double low, double high,
                       struct curve *curve);
 
-static int read_table(const char *path, const char *what, double low, double high, struct curve *curve,
-                      take_line *take) {
+static int read_columns_of(const char *path, const char *what, double low, double high, struct curve *curve,
+                           take_line *take) {
     struct lines lines;
     struct fields fields = {0};
     *curve = (struct curve){0};
@@ -80,11 +80,11 @@ static int read_table(const char *path, const char *what, double low, double hig
 }
 
 int curve_read(const char *path, const char *what, double low, double high, struct curve *curve) {
-    return read_table(path, what, low, high, curve, curve_point);
+    return read_columns_of(path, what, low, high, curve, curve_point);
 }
 
 int column_read(const char *path, const char *what, double low, double high, struct curve *column) {
-    return read_table(path, what, low, high, column, column_number);
+    return read_columns_of(path, what, low, high, column, column_number);
 }
 
 void curve_free(struct curve *curve) {

@@ -295,7 +295,7 @@ typedef struct mesh_gain {
     bool whole; /* no plane or cylinder cuts it: areas are those of the triangles, else those the beams have */
 } mesh_gain;
 
-static bool is_inside(const fibrad_scene *scene, uint32_t triangle) {
+static bool is_within_walls(const fibrad_scene *scene, uint32_t triangle) {
     bool inside = true;
     for (int k = 0; k < 3 && scene->container.walls; k++)
         inside = inside && fibrad_walls_hold(&scene->container, scene->mesh.corner[triangle][k]);
@@ -309,7 +309,7 @@ static mesh_gain gain_of_mesh(const fibrad_heat *heat, uint32_t m) {
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
         const side_sum sum = sum_of_side(heat, fibrad_mesh_cut_of(mesh, heat->cut, mesh->side[k]));
         const double area = fibrad_mesh_triangle_area(mesh, mesh->side[k] / 2);
-        gain.whole = gain.whole && is_inside(heat->scene, mesh->side[k] / 2);
+        gain.whole = gain.whole && is_within_walls(heat->scene, mesh->side[k] / 2);
         if (sum.area > 0) gain.area += area, gain.net += area * (sum.net / sum.area);
     }
     if (!gain.whole) gain.area = gain.net = 0;
