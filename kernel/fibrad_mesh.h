@@ -61,8 +61,8 @@ typedef struct fibrad_side_view {
 
 /* The views of a triangle's front and back by `rays` [1, 2^30] quasi-random rays from even points of each; place [0,
  * triangles): which one in the order of the scene, so that those near each other follow each other. *triangle out: the
- * caller's number, of the one whose back is seen after FIBRAD_E_BACK. The same whatever else is asked. Error about
- * rays^-0.7. Errors: _ARGUMENT, _STATE, _BACK. Cost: about 0.5 microseconds a ray in a bed. */
+ * caller's number, of the one whose back is seen after FIBRAD_E_BACK. The same whatever else is asked. Error of
+ * spheres in a bed 0.007 with 256 rays. Errors: _ARGUMENT, _STATE, _BACK. Cost: about a microsecond a ray in a bed. */
 int fibrad_triangle_views(const fibrad_scene *scene, uint32_t place, uint32_t rays, uint32_t *triangle,
                           fibrad_side_view view[2]);
 

@@ -12,18 +12,18 @@ int side_arrays_begin(struct side_arrays *arrays, const struct fibrad_triangles 
     *arrays = (struct side_arrays){.n = triangles->n, .arrays = 1, .count = count};
     for (size_t t = 0; t < n; ++t)
         if (triangles->front[t] != FIBRAD_NO_BODY && triangles->back[t] != FIBRAD_NO_BODY) arrays->arrays = 3;
-    double *values = malloc((2 + arrays->arrays) * count * n * sizeof *values);
-    if (!values) return message_memory();
+    double *next = arrays->values = malloc((2 + arrays->arrays) * count * n * sizeof *next);
+    if (!next) return message_memory();
     for (size_t q = 0; q < count; ++q) {
         arrays->quantity[q] = quantity[q];
-        arrays->quantity[q].side = values, values += 2 * n;
-        for (size_t k = 0; k < arrays->arrays; ++k, values += n) arrays->quantity[q].shown[k] = values;
+        arrays->quantity[q].side = next, next += 2 * n;
+        for (size_t k = 0; k < arrays->arrays; ++k, next += n) arrays->quantity[q].shown[k] = next;
     }
     return STATUS_OK;
 }
 
 void side_arrays_free(struct side_arrays *arrays) {
-    free(arrays->quantity[0].side);
+    free(arrays->values);
     *arrays = (struct side_arrays){0};
 }
 

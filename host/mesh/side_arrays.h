@@ -23,6 +23,7 @@ struct side_arrays {
     size_t arrays; /* of each quantity: 3 where a triangle has two sides that are a body's, else 1 */
     size_t count;
     struct side_quantity quantity[SIDE_QUANTITIES];
+    double *values; /* of all of them */
 };
 
 /* Takes arrays for quantities [count] of all triangles. Status 0 or STATUS_MEMORY. */

@@ -28,7 +28,7 @@ typedef struct view_counts {
 static int count_ray(const fibrad_scene *scene, uint32_t side, const double point[3], const double w[3],
                      view_counts *counts, uint32_t *seen) {
     double distance;
-    fibrad_hit hit;
+    fibrad_hit hit = {.sphere = FIBRAD_NONE};
     FIBRAD_VERSION_OF(fibrad_trace_point, scene->facts.isa)(scene, point, w, side / 2, &hit);
     counts->rays++;
     if (hit.sphere != FIBRAD_NONE) {
