@@ -297,8 +297,10 @@ typedef struct mesh_gain {
 
 static bool is_within_walls(const fibrad_scene *scene, uint32_t triangle) {
     bool inside = true;
+    double corner[3][3];
+    fibrad_mesh_corners(&scene->mesh, triangle, corner);
     for (int k = 0; k < 3 && scene->container.walls; k++)
-        inside = inside && fibrad_walls_hold(&scene->container, scene->mesh.corner[triangle][k]);
+        inside = inside && fibrad_walls_hold(&scene->container, corner[k]);
     return inside;
 }
 
