@@ -90,6 +90,7 @@ KERNEL = \
     kernel/surface/surface_row.c \
     kernel/ray/cast.c \
     kernel/ray/tracer.c \
+    kernel/ray/triangle_views.c \
     kernel/exchange/body_row.c \
     kernel/exchange/exchange.c \
     kernel/exchange/flow.c \
@@ -161,6 +162,7 @@ HOST = \
     host/mesh/enclosing.c \
     host/mesh/facing.c \
     host/mesh/meshes.c \
+    host/mesh/side_arrays.c \
     host/mesh/stl.c \
     host/mesh/weld.c \
     host/text/read_curve.c \
@@ -225,7 +227,8 @@ HOST = \
     host/heat/heat_given.c \
     host/heat/heat_march.c \
     host/heat/heat_run.c \
-    host/heat/steady.c
+    host/heat/steady.c \
+    host/heat/triangle_heat.c
 
 TESTS = \
     tests/test_accuracy.c \

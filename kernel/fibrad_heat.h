@@ -72,6 +72,9 @@ typedef struct fibrad_heat_sources {
                                      * 1e-5 where a temperature is unknown and not held */
     uint32_t sweeps_max;            /* 0: 1000 */
     int uniform; /* 1: one radiosity per sphere and wall, no extrapolation; wrong but for emissivities near 1 */
+    const double *side_temperature; /* [2 triangles] by the caller's numbers, fronts and backs in turn: 0 to 1e20, of
+                                     * sides of bodies whose temperature is given; NaN: that of the body. NULL: none.
+                                     * Sides that share a patch emit the mean of all */
 } fibrad_heat_sources;
 void fibrad_heat_sources_init(fibrad_heat_sources *sources);
 
@@ -86,7 +89,8 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
 int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
 /* The powers, positive where heat is gained (what a body gives off from inside is their negative), and temperatures,
- * those found and those given; NaN: of emissivity 0, or below zero. Of insulated bodies the mean of T^4 counts. The
+ * those found and those given; NaN: of emissivity 0, or below zero. Of insulated bodies, and those whose sides have
+ * temperatures, the mean of T^4 counts. The
  * arrays are the caller's; those that may be NULL are then not written. Errors: _ARGUMENT; _STATE: no solution;
  * _UNSOLVABLE, with all written: a power is drawn that only a temperature below zero would give. */
 typedef struct fibrad_heat_result {
@@ -105,9 +109,9 @@ typedef struct fibrad_heat_result {
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 
 /* What sides of triangles gain per area, and their temperatures, [2 triangles] by the caller's numbers, fronts and
- * backs in turn: means over the patches of each, or of all that share a patch; fluxes times areas add up to the powers
- * of the bodies. NaN: the side is nobody's, or nothing reaches it. Either may be NULL. Errors: _ARGUMENT; _STATE: no
- * solution.
+ * backs in turn: means over the patches of each, or of all that share a patch. NaN: the side is nobody's; fluxes, and
+ * temperatures of insulated bodies, also where nothing reaches it. Where no plane or cylinder cuts a mesh, fluxes times
+ * areas add up to the power of its body, to rounding. Either may be NULL. Errors: _ARGUMENT; _STATE: no solution.
  */
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature);
 

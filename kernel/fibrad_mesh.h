@@ -1,6 +1,7 @@
 /* fibrad_mesh.h - walls of any shape: triangles in a scene.
  *
- * Index: fibrad_triangles, fibrad_triangles_size, fibrad_triangle_ray. Conventions are those of fibrad.h.
+ * Index: fibrad_triangles, fibrad_triangles_size, fibrad_triangle_ray, fibrad_triangle_views. Conventions are those of
+ * fibrad.h.
  *
  * Sides    Seen from its front a triangle's corners go counter-clockwise. Each side belongs to a body of kind
  *          FIBRAD_BODY_MESH, or to none: then it must not be seen, and whatever sees it ends with FIBRAD_E_BACK and
@@ -52,6 +53,20 @@ typedef struct fibrad_triangle_hit {
  * other walls apart; images along periodic axes count. Errors: _ARGUMENT, _STATE. Cost: below a microsecond. */
 int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const double w[3], double length,
                         fibrad_triangle_hit *hit);
+
+/* Where what a side sends out goes, of all directions by the cosine law. */
+typedef struct fibrad_side_view {
+    double spheres; /* NaN, as all: the side is nobody's, or no point of it lies within planes and cylinder */
+    double bodies;
+    double escaped; /* 1 less the others */
+} fibrad_side_view;
+
+/* The views of a triangle's front and back by `rays` [1, 2^30] quasi-random rays from even points of each; place [0,
+ * triangles): which one in the order of the scene, so that those near each other follow each other. *triangle out: the
+ * caller's number, of the one whose back is seen after FIBRAD_E_BACK. The same whatever else is asked. Error of
+ * spheres in a bed 0.007 with 256 rays. Errors: _ARGUMENT, _STATE, _BACK. Cost: about a microsecond a ray in a bed. */
+int fibrad_triangle_views(const fibrad_scene *scene, uint32_t place, uint32_t rays, uint32_t *triangle,
+                          fibrad_side_view view[2]);
 
 #ifdef __cplusplus
 }

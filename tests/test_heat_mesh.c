@@ -498,7 +498,7 @@ START_TEST(fluxes_through_triangles) {
         sum += flux[2 * t] * 36 / PIECES;
         ck_assert(isnan(flux[2 * t + 1]) && isnan(temperature[2 * t + 1]) && temperature[2 * t] == 1);
     }
-    assert_near(sum, p->q[0], 1e-2);
+    assert_near(sum, p->q[0], 1e-12);
     /* above the centre a black sphere of radius 1 fills (1/1.5)^2 of the view */
     assert_near(flux[2 * middle], .7 * (.8 * 16 / 2.25 - 1), .1);
     ck_assert_double_lt(flux[0], .3 * flux[2 * middle]);
@@ -508,6 +508,155 @@ START_TEST(fluxes_through_triangles) {
     ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, temperature), FIBRAD_OK);
     ck_assert(flux[2 * middle] == 0);
     ck_assert_double_gt(temperature[2 * middle], 1.3 * temperature[0]);
+    free_problem(p);
+}
+END_TEST
+
+/* ---- temperatures of triangles ---- */
+
+static double area_of_triangle(const struct mesh *mesh, uint32_t t) {
+    const double *a = mesh->at[mesh->corner[t][0]], *b = mesh->at[mesh->corner[t][1]],
+                 *c = mesh->at[mesh->corner[t][2]];
+    const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    return .5 * hypot(hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2]), u[0] * v[1] - u[1] * v[0]);
+}
+
+/* What the sides of a body gain together, of fluxes [2 triangles]. */
+static double gain_of_body(const struct problem *p, const double *flux, uint32_t body) {
+    const struct mesh *mesh = p->mesh;
+    double sum = 0;
+    for (uint32_t t = 0; t < mesh->triangles.n; t++) {
+        const double area = area_of_triangle(mesh, t);
+        if (mesh->front[t] == body && !isnan(flux[2 * t])) sum += area * flux[2 * t];
+        if (mesh->back[t] == body && !isnan(flux[2 * t + 1])) sum += area * flux[2 * t + 1];
+    }
+    return sum;
+}
+
+/* A box whose faces have temperatures of their own is as one whose faces are bodies; fluxes of faces are their powers,
+ * whether triangles are cut into patches or share them, and the next solution begins with this one. */
+START_TEST(faces_with_temperatures_of_their_own) {
+    static double side[2 * 12 * 144], flux[2 * 12 * 144], found[2 * 12 * 144];
+    for (uint32_t cells = 1; cells <= 12; cells += 11) {
+        struct problem *bodies = thirty(), *one = thirty();
+        bodies->config = one->config = (fibrad_heat_config){.directions = 2000, .patches = 384, .wall_rays = 1000000};
+        make_box(bodies, 0, 1, cells);
+        one->bodies = 1, one->wall_temperature[0] = 1.7, one->wall_emissivity[0] = .6;
+        add_box(one->mesh, 0, 1, cells, true);
+        for (int b = 0; b < 6; b++) bodies->wall_emissivity[b] = .6;
+        const uint32_t n = one->mesh->triangles.n;
+        for (uint32_t t = 0; t < n; t++)
+            side[2 * t] = bodies->wall_temperature[bodies->mesh->front[t]], side[2 * t + 1] = NAN;
+        one->sources.side_temperature = side;
+        trace_and_solve(bodies), trace_and_solve(one);
+        ck_assert_double_le(distance_of(one->power, bodies->power, 30), 1e-3);
+        ck_assert_int_eq(fibrad_heat_read_sides(one->heat, flux, found), FIBRAD_OK);
+        assert_near(gain_of_body(one, flux, 0), one->q[0], 1e-11);
+        double gain[6] = {0}, mean = 0;
+        for (uint32_t t = 0; t < n; t++) {
+            gain[bodies->mesh->front[t]] += flux[2 * t] * area_of_triangle(one->mesh, t);
+            mean += pow(side[2 * t], 4) / n;
+            if (cells == 1) assert_near(found[2 * t], side[2 * t], 1e-12);
+        }
+        ck_assert_double_le(distance_of(gain, bodies->q, 6), 5e-3);
+        assert_near(pow(one->found[0], 4), mean, 1e-9);
+        ck_assert_double_le(imbalance(one), 1e-12);
+        ck_assert_int_eq(fibrad_heat_read_sides(bodies->heat, flux, NULL), FIBRAD_OK);
+        for (uint32_t b = 0; b < 6; b++) assert_near(gain_of_body(bodies, flux, b), bodies->q[b], 1e-11);
+
+        const uint32_t cold = one->result.sweeps;
+        double power[30];
+        memcpy(power, one->power, sizeof power);
+        for (uint32_t t = 0; t < n; t++) side[2 * t] *= 1.05;
+        solve(one);
+        ck_assert_double_gt(distance_of(one->power, power, 30), 2e-2);
+        for (uint32_t t = 0; t < n; t++) side[2 * t] /= 1.05;
+        solve(one);
+        ck_assert_uint_lt(one->result.sweeps, cold);
+        ck_assert_double_le(distance_of(one->power, power, 30), 1e-3);
+        one->sources.side_temperature = NULL;
+        solve(one); /* all at 1.7 again */
+        memcpy(power, one->power, sizeof power);
+        for (uint32_t t = 0; t < n; t++) side[2 * t] = t % 3 == 0 ? NAN : 1.7;
+        one->sources.side_temperature = side;
+        solve(one);
+        ck_assert_double_le(distance_of(one->power, power, 30), 1e-3);
+        free_problem(bodies), free_problem(one);
+    }
+}
+END_TEST
+
+/* What a place at height 1 receives of a black square at height 0 in temperatures T(x, y). */
+static double received_at(double x, double y, double temperature(double x, double y)) {
+    enum { STEPS = 200 };
+    double sum = 0;
+    for (uint32_t k = 0; k < STEPS * STEPS; k++) {
+        const double u = (k % STEPS + .5) / STEPS, v = (k / STEPS + .5) / STEPS;
+        const double square = (x - u) * (x - u) + (y - v) * (y - v) + 1;
+        sum += pow(temperature(u, v), 4) / (PI * square * square * STEPS * STEPS);
+    }
+    return sum;
+}
+
+/* Two black squares that face each other at a distance of 1, of 200 triangles each, the upper one at 0: fluxes and
+ * power against sums over the lower one. */
+static void check_squares(double temperature(double x, double y), double flux_error, double power_error) {
+    enum { CELLS = 10, PIECES = 2 * CELLS * CELLS };
+    const double low[3] = {0, 0, 0}, high[3] = {0, 0, 1}, a[3] = {1, 0, 0}, b[3] = {0, 1, 0};
+    double side[4 * PIECES], flux[4 * PIECES], due[PIECES], got[PIECES], all = 0;
+    struct problem *p = problem_of(bed_of(1, (const double[][4]){{-5, -5, .5, 1e-3}}), 0, 1);
+    p->bodies = 2, p->config.wall_rays = 1u << 21;
+    add_sheet(p->mesh, low, a, b, CELLS, 0, FIBRAD_NO_BODY);
+    add_sheet(p->mesh, high, b, a, CELLS, 1, FIBRAD_NO_BODY);
+    for (uint32_t t = 0; t < 2 * PIECES; t++) {
+        double x = 0, y = 0;
+        for (int k = 0; k < 3; k++)
+            x += p->mesh->at[p->mesh->corner[t][k]][0] / 3, y += p->mesh->at[p->mesh->corner[t][k]][1] / 3;
+        side[2 * t] = t < PIECES ? temperature(x, y) : NAN, side[2 * t + 1] = NAN;
+        if (t >= PIECES) all += due[t - PIECES] = received_at(x, y, temperature);
+    }
+    p->sources.side_temperature = side;
+    trace_and_solve(p);
+    ck_assert_int_eq(fibrad_heat_read_sides(p->heat, flux, NULL), FIBRAD_OK);
+    for (uint32_t t = 0; t < PIECES; t++) got[t] = flux[2 * (PIECES + t)];
+    const double error = distance_of(got, due, PIECES);
+    ck_assert_msg(error <= flux_error, "off by %.3g", error);
+    assert_near(p->q[1], all / PIECES, power_error);
+    for (uint32_t body = 0; body < 2; body++) assert_near(gain_of_body(p, flux, body), p->q[body], 1e-11);
+    free_problem(p);
+}
+
+static double linear(double x, double y) { return 1 + x + .5 * y; }
+
+/* A hot cell of ten by ten. */
+static double spot(double x, double y) { return x > .3 && x < .4 && y > .6 && y < .7 ? 3 : 0; }
+
+START_TEST(squares_with_fields_of_temperature) {
+    check_squares(linear, 3e-2, 4e-3); /* not constant on triangles */
+    check_squares(spot, .3, 3e-2);
+}
+END_TEST
+
+START_TEST(temperatures_of_triangles_that_are_refused) {
+    struct problem *p = problem_of(bed_of(1, (const double[][4]){{.5, .5, .5, .2}}), 2, .8);
+    double side[24];
+    p->bodies = 1, p->wall_temperature[0] = 1;
+    add_box(p->mesh, 0, 1, 1, true);
+    for (int k = 0; k < 24; k++) side[k] = NAN;
+    side[6] = 2, side[7] = -1; /* the latter is nobody's */
+    p->sources.side_temperature = side;
+    trace_and_solve(p);
+    const double wrong[] = {-1, 1e21, INFINITY};
+    for (int k = 0; k < 3; k++) {
+        side[8] = wrong[k];
+        ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_E_ARGUMENT);
+    }
+    side[8] = 3;
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    p->insulated[0] = 1;
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_E_ARGUMENT);
+    p->insulated[0] = 0, p->wall_temperature[0] = NAN, p->wall_power[0] = 1;
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_E_ARGUMENT);
     free_problem(p);
 }
 END_TEST
@@ -636,6 +785,9 @@ int main(void) {
     tcase_add_test(tests, a_mesh_moves);
     tcase_add_test(tests, estimates_of_errors_are_honest);
     tcase_add_test(tests, fluxes_through_triangles);
+    tcase_add_test(tests, faces_with_temperatures_of_their_own);
+    tcase_add_test(tests, squares_with_fields_of_temperature);
+    tcase_add_test(tests, temperatures_of_triangles_that_are_refused);
     tcase_add_test(tests, patches_have_the_area_of_the_mesh);
     tcase_add_test(tests, soups_have_finite_powers_that_add_up);
     tcase_add_test(tests, a_back_that_is_seen_is_named);

@@ -68,6 +68,14 @@ START_TEST(a_sphere_and_a_triangle) {
         }
         ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 100000}, &row, NULL), FIBRAD_OK);
         ck_assert_double_eq_tol(row.body[0], exact, 2e-3);
+        const double whole = 4 * PI * exact / fibrad_scene_body_area(scene, 0); /* the mean of both sides */
+        fibrad_side_view view[2];
+        uint32_t triangle = 7;
+        ck_assert_int_eq(fibrad_triangle_views(scene, 0, 1 << 16, &triangle, view), FIBRAD_OK);
+        ck_assert_uint_eq(triangle, 0);
+        ck_assert(view[0].spheres * view[1].spheres == 0 && view[0].bodies + view[1].bodies == 0);
+        ck_assert_double_eq_tol((view[0].spheres + view[1].spheres) / 2, whole, 1e-3);
+        for (int side = 0; side < 2; side++) ck_assert_double_eq(view[side].spheres + view[side].escaped, 1);
         row_free(&row);
         work_free(&work);
         free(scene);
@@ -285,6 +293,15 @@ START_TEST(sides_of_nobody) {
     work.triangle = 77;
     ck_assert_int_eq(fibrad_exchange_body(scene, &work, 0, &rule, 0, &body_row), FIBRAD_E_BACK);
     ck_assert_uint_eq(work.triangle, 1);
+    fibrad_side_view view[2];
+    uint32_t triangle = 0;
+    for (uint32_t place = 0; place < 2; place++) { /* the first one sees the back of the other */
+        const int status = fibrad_triangle_views(scene, place, 1000, &triangle, view);
+        ck_assert_uint_eq(triangle, 1);
+        ck_assert(status == FIBRAD_E_BACK || (status == FIBRAD_OK && isnan(view[1].spheres) && view[0].spheres == 0));
+    }
+    ck_assert_int_eq(fibrad_triangle_views(scene, 2, 10, &triangle, view), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_triangle_views(scene, 0, 0, &triangle, view), FIBRAD_E_ARGUMENT);
     free(scene);
     mesh->back[1] = 0;
     scene = scene_of_mesh(&bed, mesh, 2);

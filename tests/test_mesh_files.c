@@ -303,6 +303,37 @@ START_TEST(names_of_meshes) {
 }
 END_TEST
 
+/* An array of doubles of a .vtp, [n] at least. */
+static void vtp_array(const char *path, const char *name, double *values, size_t n) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    char key[60], *text = read_file(path);
+    snprintf(key, sizeof key, "Name=\"%s\"", name);
+    const char *at = strstr(text, key);
+    ck_assert_msg(at != NULL, "%s has no array %s", path, name);
+    at = strchr(at, '>') + 1;
+    unsigned char *bytes = calloc(8 + n * sizeof *values + 3, 1);
+    uint32_t bits = 0;
+    for (size_t k = 0, to = 0; to < 8 + n * sizeof *values; ++at) {
+        const char *digit = *at ? strchr(digits, *at) : NULL;
+        if (!digit) continue;
+        bits = bits << 6 | (uint32_t)(digit - digits);
+        if (++k % 4) continue;
+        for (int shift = 16; shift >= 0; shift -= 8) bytes[to++] = bits >> shift & 255;
+    }
+    memcpy(values, bytes + 8, n * sizeof *values);
+    free(bytes);
+    free(text);
+}
+
+/* The sum of fluxes, or what else is of an area, over n triangles from `first` on. */
+static double gain_of(const char *path, const char *name, size_t first, size_t n) {
+    double flux[200], area[200], sum = 0;
+    vtp_array(path, name, flux, first + n);
+    vtp_array(path, "area", area, first + n);
+    for (size_t t = first; t < first + n; ++t) sum += flux[t] * area[t];
+    return sum;
+}
+
 #define BED "x,y,z,r,T\n-1,0,0,1,500\n1.1,0,0,1,600\n0,2,1,.5,700\n"
 
 /* A closed mesh about a bed gets what six planes get; its triangles, as ParaView reads them. */
@@ -323,6 +354,9 @@ START_TEST(rows_in_a_closed_mesh) {
     ck_assert_double_eq_tol(value_of("wall_tub_area"), 384, 1e-3);
     ck_assert_double_eq(value_of("wall_tub_triangles"), 12);
     ck_assert_str_eq(said, "");
+    /* what it sees of spheres is what they see of it */
+    ck_assert_double_eq_tol(gain_of(out, "F_spheres", 0, 12) / 384, 1 - value_of("wall_tub_to_walls"), 1e-3);
+    ck_assert_double_eq(gain_of(out, "F_surroundings", 0, 12), 0);
 
     char *text = read_file(out);
     struct vtk_grid grid = {.file = out, .text = text, .end = text + strlen(text)};
@@ -398,12 +432,116 @@ START_TEST(backs_of_meshes) {
 }
 END_TEST
 
+/* ---- heat of triangles ------------------------------------------------------------------------------------------ */
+
+/* A line of numbers for each of some triangles. */
+static const char *write_column(const char *name, const char *head, int n, double first, double step) {
+    const char *path = in_folder(name);
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    fputs(head, file);
+    for (int k = 0; k < n; ++k) fprintf(file, "%.17g\n", first + step * k);
+    fclose(file);
+    return path;
+}
+
+#define STATE "--emissivity", "0.7", "--temperature", "T", "--wall-emissivity", "0.6", "--wall-vtp"
+
+/* What triangles gain adds up to what the summary says of their walls. */
+START_TEST(heat_of_triangles) {
+    const struct soup soup = cube();
+    const char *bed = write_file("bed.csv", BED), *box = write_solid("box.stl", &soup), *out = in_folder("q.vtp");
+    SUCCEED("heat", bed, "--length-unit", "cm", "--wall", wall_of("mesh:", box, ""), "--wall-temperature", "400", STATE,
+            out);
+    double kelvins[12], both[12], front[12];
+    ck_assert_double_eq_tol(1e-4 * gain_of(out, "flux_W_m2", 0, 12) / value_of("wall_box_W"), 1, 1e-5);
+    vtp_array(out, "temperature_K", kelvins, 12);
+    for (int t = 0; t < 12; ++t) ck_assert_double_eq(kelvins[t], 400);
+    char *text = read_file(out);
+    ck_assert_ptr_null(strstr(text, "front_W"));
+    free(text);
+
+    SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ":both"), "--wall-temperature", "400",
+            "--ambient", "300", STATE, out);
+    ck_assert_double_eq_tol(gain_of(out, "flux_W_m2", 0, 12) / value_of("wall_box_W"), 1, 1e-5);
+    const double outside = gain_of(out, "flux_front_W_m2", 0, 12); /* the cube's fronts are outside */
+    ck_assert_double_eq_tol(outside, .6 * 384 * 5.670374419e-8 * (pow(300, 4) - pow(400, 4)), 1e-3 * fabs(outside));
+    vtp_array(out, "temperature_front_K", front, 12), vtp_array(out, "temperature_K", both, 12);
+    for (int t = 0; t < 12; ++t) ck_assert(front[t] == 400 && both[t] == 400);
+
+    const char *two = in_folder("two.stl");
+    struct soup half = soup, rest = soup;
+    FILE *file = fopen(two, "w");
+    half.n = 4, rest.n = 8;
+    memmove(rest.corner, rest.corner + 4, 8 * sizeof *rest.corner);
+    print_solid(file, "low", &half, "\n", 17), print_solid(file, "side", &rest, "\n", 17);
+    fclose(file);
+    SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", two, ":solids"), "--wall-temperature",
+            "two_low=400,insulated", STATE, out, "--ambient", "0");
+    ck_assert_double_eq_tol(gain_of(out, "flux_W_m2", 0, 4) / value_of("wall_two_low_W"), 1, 1e-5);
+    vtp_array(out, "temperature_K", kelvins, 12), vtp_array(out, "flux_W_m2", both, 12);
+    for (int t = 4; t < 12; ++t) ck_assert(both[t] == 0 && kelvins[t] > 400 && kelvins[t] < 700);
+
+    SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--wall-temperature", "400", STATE,
+            in_folder("t.*.vtp"), "--until", "10", "--heat-capacity", "800", "--density", "2500");
+    ck_assert_double_gt(gain_of(in_folder("t.0.vtp"), "flux_W_m2", 0, 12), 1);
+}
+END_TEST
+
+/* Triangles with temperatures from a file, in the order of the mesh's, whatever of it is left out. */
+START_TEST(temperatures_of_triangles) {
+    struct soup soup = {0};
+    const double flat[3] = {0, 0, 0};
+    soup_add(&soup, flat, flat, flat);
+    soup_cube(&soup, 4);
+    const char *bed = write_file("bed.csv", BED), *box = write_solid("box.stl", &soup), *out = in_folder("q.vtp");
+    const char *column = write_column("T.csv", "# of a case\nT [C]\n", 13, 100, 10);
+    double kelvins[12];
+    SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--temperature-unit", "C",
+            "--wall-temperature", wall_of("box=triangles:", column, ""), STATE, out);
+    vtp_array(out, "temperature_K", kelvins, 12);
+    double mean = 0;
+    for (int t = 0; t < 12; ++t) {
+        ck_assert_double_eq_tol(kelvins[t], 373.15 + 10 * (t + 1), 1e-9);
+        mean += pow(kelvins[t], 4) / 12;
+    }
+    ck_assert_double_eq_tol(value_of("wall_box_K"), pow(mean, .25), 1e-3);
+    ck_assert_double_eq_tol(gain_of(out, "flux_W_m2", 0, 12) / value_of("wall_box_W"), 1, 1e-5);
+
+    const struct {
+        const char *text, *place, *reason;
+    } wrong[] = {{"1\n2\n3\n", "--wall-temperature: box: ", "3 numbers; "},
+                 {"1\n-2\n", "T.csv:2: ", "the temperature is -2; it must be within 0 and"},
+                 {"1\nnan\n", "T.csv:2: ", "temperature is not finite: 'nan'"},
+                 {"1\n2 3\n", "T.csv:2: ", "2 columns instead of 1"},
+                 {"T\n", "T.csv: ", "no numbers of a table"}};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+        column = write_file("T.csv", wrong[k].text);
+        ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""),
+                             "--wall-temperature", wall_of("box=triangles:", column, ""), STATE, out),
+                         3);
+        ck_assert_msg(strstr(said, wrong[k].place) && strstr(said, wrong[k].reason), "%s", said);
+    }
+    column = write_column("T.csv", "", 13, 100, 10);
+    const char *const lists[] = {"zmin=triangles:", "triangles:", "none=triangles:", "box=3,box=triangles:"};
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; ++k)
+        ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--wall", wall_of("zmin=-5,mesh:", box, ""),
+                             "--wall-temperature", wall_of(lists[k], column, ",300"), STATE, out),
+                         2);
+    ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--wall-temperature",
+                         wall_of("box=triangles:", column, ""), STATE, in_folder("t.*.vtp"), "--until", "10",
+                         "--heat-capacity", "800", "--density", "2500", "--model", "factors"),
+                     2);
+    ck_assert_ptr_nonnull(strstr(said, "--model factors: triangles have temperatures of their own"));
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("mesh_files");
     TCase *files = suite_case(suite, "files"), *sides = suite_case(suite, "sides"),
-          *option = suite_case(suite, "option");
-    TCase *const cases[] = {files, sides, option};
-    for (int k = 0; k < 3; ++k) tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
+          *option = suite_case(suite, "option"), *heat = suite_case(suite, "heat");
+    TCase *const cases[] = {files, sides, option, heat};
+    for (int k = 0; k < 4; ++k) tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
     tcase_add_test(files, the_same_in_every_form);
     tcase_add_loop_test(files, broken_text_is_refused, 0, (int)(sizeof broken / sizeof *broken));
     tcase_add_test(files, broken_binaries_are_refused);
@@ -417,5 +555,7 @@ int main(void) {
     tcase_add_test(option, rows_in_a_closed_mesh);
     tcase_add_test(option, slice_through_a_mesh);
     tcase_add_test(option, backs_of_meshes);
+    tcase_add_test(heat, heat_of_triangles);
+    tcase_add_test(heat, temperatures_of_triangles);
     return suite_run(suite);
 }

@@ -11,12 +11,16 @@
 #include "cli/message.h"
 #include "cli/options.h"
 
-/* The table @PATH of an item of a list; *text moves behind it. */
-static int take_curve(const char *what, const char **text, double low, double high, struct curve *curve) {
-    const size_t length = strcspn(++*text, ",");
+/* Reads a table. */
+typedef int read_function(const char *path, const char *what, double low, double high, struct curve *curve);
+
+/* The table whose path is an item of a list; *text moves behind it. */
+static int take_table(const char *what, const char **text, double low, double high, struct curve *curve,
+                      read_function *read) {
+    const size_t length = strcspn(*text, ",");
     char *path = strndup(*text, length);
     *text += length;
-    const int status = path ? curve_read(path, what, low, high, curve) : message_memory();
+    const int status = path ? read(path, what, low, high, curve) : message_memory();
     free(path);
     return status;
 }
@@ -33,7 +37,8 @@ static int take_value(const char *what, const char **text, double low, double hi
         if (*value >= low && *value <= high) return STATUS_OK;
         return message(STATUS_USAGE, "%s: %g is not within %g and %g", what, *value, low, high);
     }
-    const int status = take_curve(what + strlen("--"), text, low, high, curve);
+    ++*text;
+    const int status = take_table(what + strlen("--"), text, low, high, curve, curve_read);
     if (!status) *value = curve->y[curve->n / 2];
     return status;
 }
@@ -151,33 +156,48 @@ static int take_wall_value(const char *option, const char **text, const char *wo
     return STATUS_OK;
 }
 
-/* NAME=@TABLE instead of a number. */
-static int take_wall_curve(const char *option, const char **text, double low, double high, const struct walls *walls,
-                           struct curve *curve, int *wall, double *value) {
-    const size_t length = strcspn(*text, "=");
+#define TRIANGLES "triangles:"
+
+/* Whether an item is such a table, with or without NAME=. */
+static bool names_table(const char *text, const struct wall_tables *tables) {
+    const size_t length = strcspn(text, "=,");
+    const char *value = text[length] == '=' ? text + length + 1 : text;
+    return tables && ((tables->timed && *value == '@') || strncmp(value, TRIANGLES, strlen(TRIANGLES)) == 0);
+}
+
+static int take_wall_table(const char *option, const char **text, double low, double high, const struct walls *walls,
+                           struct wall_tables *tables, int *wall, double *value) {
+    const size_t length = strcspn(*text, "=,");
+    if ((*text)[length] != '=') return message(STATUS_USAGE, "%s: a table needs its wall: zmin=%.60s", option, *text);
     *wall = number_of_wall(walls, *text, length);
     if (*wall < 0)
         return message(STATUS_USAGE, "%s: there is no wall %.*s", option, length > 40 ? 40 : (int)length, *text);
-    if (curve[*wall].n > 0)
+    struct curve *curve = &tables->curve[*wall], *column = &tables->column[*wall];
+    if (curve->n > 0 || column->n > 0)
         return message(STATUS_USAGE, "%s: %s has two values", option, wall_name(walls, (uint32_t)*wall));
-    *text += length + 1;
-    const int status = take_curve("temperature", text, low, high, &curve[*wall]);
-    if (!status) *value = curve_at(&curve[*wall], 0);
+    const bool timed = (*text)[length + 1] == '@';
+    *text += length + 1 + strlen(timed ? "@" : TRIANGLES);
+    const int status = timed ? take_table("temperature", text, low, high, curve, curve_read)
+                             : take_table("temperature", text, low, high, column, column_read);
+    if (!status) *value = timed ? curve_at(curve, 0) : column->y[0];
     if (**text == ',') ++*text;
     return status;
 }
 
+void wall_tables_free(struct wall_tables *tables) {
+    for (int k = 0; k < WALLS_MAX; ++k) curve_free(&tables->curve[k]), curve_free(&tables->column[k]);
+}
+
 int wall_list(const char *option, const char *text, const char *word, double low, double high,
-              const struct walls *walls, struct curve *curve, struct wall_list *list) {
+              const struct walls *walls, struct wall_tables *tables, struct wall_list *list) {
     *list = (struct wall_list){.others = NAN};
     if (text && walls->count == 0) return message(STATUS_USAGE, "%s: there are no walls", option);
     while (text && *text) {
-        int wall;
+        int wall = -1;
         double value = 0;
-        const bool table = curve && text[strcspn(text, "@,")] == '@';
-        if (table && *text == '@') return message(STATUS_USAGE, "%s: a table needs its wall: zmin=%.60s", option, text);
-        const int status = table ? take_wall_curve(option, &text, low, high, walls, curve, &wall, &value)
-                                 : take_wall_value(option, &text, word, walls, &wall, &value);
+        const int status = names_table(text, tables)
+                               ? take_wall_table(option, &text, low, high, walls, tables, &wall, &value)
+                               : take_wall_value(option, &text, word, walls, &wall, &value);
         if (status) return status;
         if (!(value >= low && value <= high) && !(word && isinf(value)))
             return message(STATUS_USAGE, "%s: %g is not within %g and %g", option, value, low, high);

@@ -65,11 +65,19 @@ struct wall_list {
     double others;           /* NaN: there is no bare number */
 };
 
-/* Takes such a list of values in [low, high], or the word (NULL: none), which is INFINITY. text NULL: no list. curve,
- * unless NULL: [WALLS_MAX] out, to be freed also after an error: NAME=@TABLE may stand for a value, which is that at 0.
- * Status 0, STATUS_USAGE naming the wall that is not there, or as curve_read. */
+/* What may stand for values: NAME=@TABLE of time, where `timed`, and NAME=triangles:FILE, a column of numbers. Zeroed
+ * else; to be freed by wall_tables_free. n = 0: a number. */
+struct wall_tables {
+    bool timed;
+    struct curve curve[WALLS_MAX], column[WALLS_MAX];
+};
+void wall_tables_free(struct wall_tables *tables);
+
+/* Takes such a list of values in [low, high], or the word (NULL: none), which is INFINITY. text NULL: no list; tables
+ * NULL: none may be. The value of a table is that at 0, that of a column its first one. Status 0, STATUS_USAGE naming
+ * the wall that is not there, or as curve_read. */
 int wall_list(const char *option, const char *text, const char *word, double low, double high,
-              const struct walls *walls, struct curve *curve, struct wall_list *list);
+              const struct walls *walls, struct wall_tables *tables, struct wall_list *list);
 
 /* Spreads such a list over the walls, `otherwise` where there is neither name nor bare number. Status 0, or
  * STATUS_USAGE naming the wall that is not there or has no value, `otherwise` being NaN. */

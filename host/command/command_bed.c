@@ -202,9 +202,46 @@ static int bed_compute(void *bed_request, const struct bed *bed, fibrad_bed_fact
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
+/* Rays from each side of a triangle: more from the sides of few. */
+enum { VIEW_RAYS = 256, VIEW_RAYS_MOST = 1 << 14, VIEW_RAYS_IN_ALL = 1 << 19 };
+
+static uint32_t view_rays(uint32_t sides) {
+    const uint32_t rays = VIEW_RAYS_IN_ALL / sides;
+    return rays < VIEW_RAYS ? VIEW_RAYS : rays > VIEW_RAYS_MOST ? VIEW_RAYS_MOST : rays;
+}
+
+static double mean_of_two(double a, double b) { return (a + b) / 2; }
+
+/* What triangles of the walls see. */
+static int bed_views(struct bed_request *request, const struct bed *bed, struct side_arrays *views) {
+    enum { TO_SPHERES, OUT, QUANTITIES };
+    static const struct side_quantity quantity[QUANTITIES] = {
+        [TO_SPHERES] = {.name = {"F_spheres", "F_spheres_front", "F_spheres_back"}, .join = mean_of_two},
+        [OUT] = {.name = {"F_surroundings", "F_surroundings_front", "F_surroundings_back"}, .join = mean_of_two}};
+    const struct fibrad_triangles *triangles = &request->walls.meshes->triangles;
+    const fibrad_scene_config scene = bed_scene(bed, &request->walls);
+    const fibrad_spheres spheres = bed_spheres(bed);
+    const uint32_t sides = 2 * triangles->n;
+    fibrad_run run = bed_options_run(&request->bed);
+    fibrad_side_view *view = malloc(sides * sizeof *view);
+    int status = view ? side_arrays_begin(views, triangles, quantity, QUANTITIES) : message_memory();
+    if (!status) {
+        status = fibrad_side_views(&scene, &spheres, view_rays(sides), &run, view);
+        status = bed_options_status(&request->bed, bed, status, &run.fault);
+    }
+    for (uint32_t s = 0; s < sides && !status; ++s) {
+        views->quantity[TO_SPHERES].side[s] = view[s].spheres;
+        views->quantity[OUT].side[s] = view[s].escaped;
+    }
+    if (!status) side_arrays_show(views);
+    free(view);
+    return status;
+}
+
 /* The matrix of one frame into all outputs. */
 static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_factors **factors) {
     struct contents what = {.wanted = request->options.wanted, .walls = &request->walls};
+    struct side_arrays views = {0};
     struct summary summary;
     int status = bed_options_memory(bed, &request->options, bed_compute, request);
     if (!status) status = bed_compute(request, bed, factors);
@@ -214,9 +251,12 @@ static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_f
     if (request->error > 0 && summary.error_max > request->error)
         message_at(STATUS_OK, request->bed.name, 0, "warning: %d directions were not enough for --error %g",
                    FIBRAD_DIRECTIONS_MAX, request->error);
-    status = bed_options_write(&request->bed, bed, &what);
+    what.of_sides = &views;
+    if (request->bed.wall_vtp) status = bed_views(request, bed, &views);
+    if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->plot) status = plot_bed(&request->picture, request->bed.name, &what);
     if (!status) bed_report(request, &what, &summary);
+    side_arrays_free(&views);
     return status;
 }
 

@@ -261,8 +261,10 @@ static int heat_picture(const struct heat_request *request, const struct bed *be
 
 static int heat_solve(struct heat_request *request, struct bed *bed, struct heat_report *report) {
     int status = heat_run(&request->bed, &request->problem, bed, report);
-    struct contents what = {
-        .walls = &request->problem.walls, .sources = &request->problem.sources, .result = &report->result};
+    struct contents what = {.walls = &request->problem.walls,
+                            .sources = &request->problem.sources,
+                            .result = &report->result,
+                            .of_sides = &report->triangles};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->plot) status = heat_picture(request, bed, report);
     if (!status) heat_print(request, bed, report);
@@ -298,18 +300,19 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status && !request->given.timed) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);
     if (!status) status = bed_options_metres(&request->bed, bed, &report.metres);
     if (!status) status = heat_arrays(&report.result, bed->n);
+    if (!status && request->bed.wall_vtp) status = triangle_heat_begin(&report.triangles, walls);
     if (!status) {
         given_heat_sources(&given, bed->n, request->given.timed ? 1 : report.metres, sources);
         sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
-        request->problem.wall_curve = given.wall_curve, request->problem.ambient_curve = &request->given.ambient_curve;
+        request->problem.wall_curve = given.tables.curve,
+        request->problem.ambient_curve = &request->given.ambient_curve;
         request->problem.emissivity = emissivity, request->problem.of_emissivity = &request->emissivity;
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_absorbed = of_walls[5];
         report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
-        status = request->given.timed
-                     ? heat_march(&request->bed, &request->march, &request->problem, bed, report.metres, &report.result,
-                                  request->plot ? &request->picture : NULL)
-                     : heat_solve(request, bed, &report);
+        status = request->given.timed ? heat_march(&request->bed, &request->march, &request->problem, bed, &report,
+                                                   request->plot ? &request->picture : NULL)
+                                      : heat_solve(request, bed, &report);
     }
     free(emissivity);
     given_free(&given);
@@ -317,6 +320,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     free(report.result.temperature);
     free(report.result.power_error);
     free(report.result.temperature_error);
+    side_arrays_free(&report.triangles);
     return status;
 }
 

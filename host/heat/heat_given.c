@@ -1,6 +1,7 @@
 /* heat_given.c - what is given of each sphere and wall: its temperature or its power. SPDX-License-Identifier: MIT */
 #include "heat/heat_given.h"
 
+#include <gsl/gsl_math.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -50,7 +51,7 @@ static int given_walls(const struct given_options *options, const struct bed *be
                        struct given *given) {
     struct wall_list t, p;
     int status = wall_list("--wall-temperature", options->wall_temperature, "insulated", 0 - options->zero,
-                           TEMPERATURE_MAX, walls, options->timed ? given->wall_curve : NULL, &t);
+                           TEMPERATURE_MAX, walls, &given->tables, &t);
     if (!status) status = wall_list("--wall-power", options->wall_power, NULL, -POWER_MAX, POWER_MAX, walls, NULL, &p);
     for (uint32_t k = 0; k < walls->count && !status; ++k) {
         const char *name = wall_name(walls, k);
@@ -67,6 +68,44 @@ static int given_walls(const struct given_options *options, const struct bed *be
                            name, name, name);
         if (isnan(temperature) && wall_endless(walls, bed, &walls->body[k]))
             return message(STATUS_USAGE, "--wall-power: %s goes on for ever; it needs its --wall-temperature", name);
+    }
+    return status;
+}
+
+/* Temperatures of the sides of a mesh that come from a column; the body's is that at which it emits as much. */
+static int given_triangles(const struct walls *walls, uint32_t wall, const struct curve *column, double zero,
+                           struct given *given) {
+    const struct mesh *mesh = walls->meshes ? mesh_of_body(walls->meshes, wall) : NULL;
+    const char *name = wall_name(walls, wall);
+    double sum = 0, areas = 0;
+    if (!mesh) return message(STATUS_USAGE, "--wall-temperature: %s has no triangles", name);
+    if (column->n != mesh->surface.given)
+        return message(STATUS_INPUT, "--wall-temperature: %s: %zu numbers; %s has %u triangles", name, column->n,
+                       mesh->file, mesh->surface.given);
+    for (uint32_t t = 0; t < mesh->surface.n; ++t) {
+        if (mesh_body(mesh, t) != wall) continue;
+        const double kelvins = column->y[mesh->surface.number[t]] + zero, area = surface_area(&mesh->surface, t);
+        double *side = given->side_temperature + 2 * ((size_t)mesh->first + t);
+        side[0] = side[1] = kelvins;
+        sum += area * gsl_pow_4(kelvins), areas += area;
+    }
+    given->wall_temperature[wall] = pow(sum / areas, 0.25);
+    return STATUS_OK;
+}
+
+/* All of them; NaN of sides without. */
+static int given_sides(const struct walls *walls, double zero, struct given *given) {
+    int status = STATUS_OK;
+    for (uint32_t k = 0; k < walls->count && !status; ++k) {
+        const struct curve *column = &given->tables.column[k];
+        if (column->n == 0) continue;
+        const size_t sides = walls->meshes ? 2 * (size_t)walls->meshes->triangles.n : 0;
+        if (!given->side_temperature) {
+            given->side_temperature = malloc((sides + 1) * sizeof(double));
+            if (!given->side_temperature) return message_memory();
+            for (size_t s = 0; s < sides; ++s) given->side_temperature[s] = NAN;
+        }
+        status = given_triangles(walls, k, column, zero, given);
     }
     return status;
 }
@@ -96,8 +135,9 @@ int given_reflectors(const struct given *given, const double *emissivity, const 
 
 int given_values(const struct given_options *options, const struct bed *bed, const char *file,
                  const struct walls *walls, struct given *given) {
-    *given = (struct given){0};
+    *given = (struct given){.tables.timed = options->timed};
     int status = given_walls(options, bed, walls, given);
+    if (!status) status = given_sides(walls, options->zero, given);
     if (!status)
         status = quantity_values(&options->temperature, bed, file, "temperature in kelvins", options->zero, 0,
                                  TEMPERATURE_MAX, &given->temperature);
@@ -110,7 +150,8 @@ int given_values(const struct given_options *options, const struct bed *bed, con
 void given_free(struct given *given) {
     free(given->temperature);
     free(given->power);
-    for (int k = 0; k < WALLS_MAX; ++k) curve_free(&given->wall_curve[k]);
+    free(given->side_temperature);
+    wall_tables_free(&given->tables);
 }
 
 void given_heat_sources(struct given *given, uint32_t n, double metres, fibrad_heat_sources *sources) {
@@ -118,5 +159,5 @@ void given_heat_sources(struct given *given, uint32_t n, double metres, fibrad_h
     for (uint32_t k = 0; k < WALLS_MAX; ++k) given->wall_power[k] /= metres * metres;
     sources->temperature = given->temperature, sources->power = given->power;
     sources->body_temperature = given->wall_temperature, sources->body_power = given->wall_power;
-    sources->insulated = given->insulated;
+    sources->insulated = given->insulated, sources->side_temperature = given->side_temperature;
 }

@@ -15,7 +15,7 @@
 #define OPTION_WALL_TEMPERATURE                                                                                        \
     "wall-temperature", "LIST",                                                                                        \
         "of the walls: zmin=1200,zmax=insulated,300: one number for all others; insulated: sends back all that "       \
-        "arrives, place by place"
+        "arrives, place by place; NAME=triangles:FILE: a column of numbers, one for each triangle of a mesh's file"
 #define OPTION_WALL_POWER "wall-power", "LIST", "what walls give off whose temperature is wanted: zmin=500 [W]"
 
 /* What the options say. Begin with zeroes. */
@@ -34,7 +34,8 @@ struct given {
     double *power;       /* [spheres] [W] */
     double wall_temperature[WALLS_MAX], wall_power[WALLS_MAX];
     unsigned char insulated[WALLS_MAX];
-    struct curve wall_curve[WALLS_MAX]; /* unit of temperature over seconds; n = 0: a number */
+    struct wall_tables tables; /* of temperatures of walls, in their unit */
+    double *side_temperature;  /* [2 triangles] [K] as in fibrad_heat_sources; NULL: none is given */
 };
 
 /* Takes the arguments of --temperature and --power. Status 0 or STATUS_USAGE. */

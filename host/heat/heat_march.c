@@ -70,6 +70,8 @@ struct marching {
     fibrad_transient *transient;
     fibrad_heat_sources sources;
     fibrad_heat_result *result;
+    struct side_arrays *triangles;
+    double square_metres; /* of the bed's unit */
     fibrad_span span;
     double wall[WALLS_MAX], wall_energy[WALLS_MAX], energy[WALLS_MAX], surroundings_energy;
     double now;
@@ -196,6 +198,8 @@ static int choose_model(struct marching *m) {
     m->span.law = follow ? march_follow : NULL;
     if (follow && problem->by_factors)
         return message(STATUS_USAGE, "--model factors: emissivities follow temperatures; patches let them");
+    if (problem->by_factors && problem->sources.side_temperature)
+        return message(STATUS_USAGE, "--model factors: triangles have temperatures of their own; patches know them");
     for (uint32_t k = 0; k < problem->walls.count; ++k) {
         if (!isnan(problem->sources.body_temperature[k])) continue;
         m->by_patches = true;
@@ -221,14 +225,24 @@ static int write_state(struct marching *m) {
     fibrad_heat_sources shown = m->sources;
     shown.temperature = m->span.temperature;
     heat_emissivities(m->problem, &m->bed, shown.temperature, m->problem->emissivity);
-    int status = library_status(m, fibrad_transient_powers(m->transient, &shown, m->result));
+    int status = fibrad_transient_powers(m->transient, &shown, m->result);
+    if (!status && m->triangles->count && !m->problem->by_factors) {
+        status = fibrad_transient_sides(m->transient, m->triangles->quantity[TRIANGLE_FLUX].side,
+                                        m->triangles->quantity[TRIANGLE_TEMPERATURE].side);
+        triangle_heat_show(m->triangles, m->square_metres);
+    }
+    status = library_status(m, status);
     if (status) return status;
     for (uint32_t k = 0; k < walls; ++k)
         if (!isnan(m->wall[k])) m->result->body_temperature[k] = m->wall[k];
     memcpy(m->result->temperature, m->span.temperature, m->bed.n * sizeof *m->span.temperature);
     if (isnan(m->problem->sources.surroundings)) shown.surroundings = NAN;
-    const struct contents what = {
-        .bed = &m->bed, .walls = &m->problem->walls, .time = &m->now, .sources = &shown, .result = m->result};
+    const struct contents what = {.bed = &m->bed,
+                                  .walls = &m->problem->walls,
+                                  .time = &m->now,
+                                  .sources = &shown,
+                                  .result = m->result,
+                                  .of_sides = m->problem->by_factors ? NULL : m->triangles};
     status = outputs_write(&m->asked->outputs, &what, m->bed.frame);
     ++m->bed.frame;
     return status;
@@ -366,18 +380,22 @@ static int march_bed(struct marching *m, double *before, const struct output *pi
 }
 
 int heat_march(struct bed_options *asked, const struct march_options *march, const struct heat_problem *problem,
-               const struct bed *bed, double metres, fibrad_heat_result *result, const struct output *picture) {
+               const struct bed *bed, struct heat_report *report, const struct output *picture) {
+    const double metres = report->metres;
+    fibrad_heat_result *result = &report->result;
     struct marching m = {.asked = asked,
                          .options = march,
                          .problem = problem,
                          .source = bed,
                          .bed = *bed,
                          .sources = problem->sources,
-                         .result = result};
+                         .result = result,
+                         .triangles = &report->triangles,
+                         .square_metres = metres * metres};
     double *capacity = NULL, *before = malloc(bed->n * sizeof *before);
     int status = before ? STATUS_OK : message_memory();
     m.bed.frame = 0, m.bed.timestep = -1;
-    m.sources.sigma *= metres * metres; /* areas are in the file's unit, powers in watts */
+    m.sources.sigma *= m.square_metres; /* areas are in the file's unit, powers in watts */
     m.sources.body_temperature = m.wall;
     m.span = (fibrad_span){.temperature = (double *)problem->sources.temperature,
                            .step = march->step,

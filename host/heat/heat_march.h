@@ -30,9 +30,9 @@ int march_option(int key, const char *text, struct march_options *march);
 int march_check(struct march_options *march, struct bed_options *bed);
 
 /* Advances the temperatures in problem->sources, which are in watts for the bed's unit of length, writes them at the
- * times asked for, draws the picture (NULL: none) and reports. result: arrays as of heat_run. Status 0, STATUS_USAGE,
- * STATUS_INPUT naming the line of a sphere, or as bed_options_status. */
+ * times asked for, draws the picture (NULL: none) and reports. report: metres and arrays as of heat_run. Status 0,
+ * STATUS_USAGE, STATUS_INPUT naming the line of a sphere, or as bed_options_status. */
 int heat_march(struct bed_options *asked, const struct march_options *march, const struct heat_problem *problem,
-               const struct bed *bed, double metres, fibrad_heat_result *result, const struct output *picture);
+               const struct bed *bed, struct heat_report *report, const struct output *picture);
 
 #endif

@@ -184,6 +184,11 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     if (!status)
         status = fibrad_radiation_settle(radiation, &sources, heat_follow, &(struct heat_law){problem, bed},
                                          problem->emissivity, (double *)sources.body_emissivity, &report->result);
+    if (!status && report->triangles.count) {
+        status = fibrad_radiation_sides(radiation, report->triangles.quantity[TRIANGLE_FLUX].side,
+                                        report->triangles.quantity[TRIANGLE_TEMPERATURE].side);
+        triangle_heat_show(&report->triangles, 1);
+    }
     fibrad_radiation_describe(radiation, &report->facts, &run.fault);
     fibrad_radiation_free(radiation);
     if (status == FIBRAD_E_UNSOLVABLE) {

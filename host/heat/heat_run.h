@@ -3,6 +3,7 @@
 #define HEAT_RUN_H
 
 #include "frames/bed_options.h"
+#include "heat/triangle_heat.h"
 
 /* What is to be solved. */
 struct heat_problem {
@@ -21,8 +22,9 @@ struct heat_problem {
 
 /* Powers, and what is said of them. */
 struct heat_report {
-    fibrad_heat_result result; /* [W] */
-    fibrad_heat_config config; /* as used in the end */
+    fibrad_heat_result result;    /* [W] */
+    struct side_arrays triangles; /* if wanted */
+    fibrad_heat_config config;    /* as used in the end */
     fibrad_scene_facts facts;
     double metres;             /* in: of the bed's unit of length */
     double seconds;            /* computing, without reading and writing */

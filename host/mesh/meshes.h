@@ -3,6 +3,7 @@
 #define MESHES_H
 
 #include "fibrad_mesh.h"
+#include "mesh/side_arrays.h"
 #include "mesh/welded.h"
 
 enum { MESH_NAME = 32 };

@@ -163,6 +163,7 @@ static int keep_triangles(struct surface *surface, const struct stl *stl) {
         }
         memcpy(surface->corner[surface->n], corner, sizeof corner);
         surface->place[surface->n] = stl->place[t];
+        surface->number[surface->n] = t;
         surface->solid[surface->n++] = stl->solid[t];
     }
     table_close(&table);
@@ -199,12 +200,14 @@ static bool is_flat(const struct surface *surface, uint32_t triangle) {
 }
 
 int surface_weld(struct surface *surface, const struct stl *stl, double scale) {
-    *surface = (struct surface){.mean_edge = mean_edge(stl, scale)};
+    *surface = (struct surface){.mean_edge = mean_edge(stl, scale), .given = stl->n};
     surface->vertex = malloc(3 * (size_t)stl->n * sizeof *surface->vertex);
     surface->corner = malloc((size_t)stl->n * sizeof *surface->corner);
     surface->place = malloc((size_t)stl->n * sizeof *surface->place);
     surface->solid = malloc((size_t)stl->n * sizeof *surface->solid);
-    if (!surface->vertex || !surface->corner || !surface->place || !surface->solid) return message_memory();
+    surface->number = malloc((size_t)stl->n * sizeof *surface->number);
+    if (!surface->vertex || !surface->corner || !surface->place || !surface->solid || !surface->number)
+        return message_memory();
     int status = weld_corners(surface, stl, scale);
     if (!status) status = keep_triangles(surface, stl);
     for (uint32_t t = 0; t < surface->n && !status; ++t) surface->flat += is_flat(surface, t);
@@ -216,6 +219,7 @@ void surface_free(struct surface *surface) {
     free(surface->corner);
     free(surface->place);
     free(surface->solid);
+    free(surface->number);
     free(surface->part);
     free(surface->in_parts);
     free(surface->part_of);

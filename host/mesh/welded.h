@@ -18,6 +18,8 @@ struct surface {
     uint32_t (*corner)[3]; /* [n] as wound in the file */
     uint64_t *place;       /* [n] as in struct stl */
     uint32_t *solid;       /* [n] */
+    uint32_t given;        /* triangles of the file, those left out included */
+    uint32_t *number;      /* [n] which one of these, from 0 */
     /* of surface_find_parts */
     uint32_t parts;
     struct part *part;     /* [parts] */

@@ -1,5 +1,5 @@
-/* body_rows.c - rows of walls, by as many paths as what is asked of the spheres deserves. SPDX-License-Identifier: MIT
- */
+/* body_rows.c - rows of walls, by as many paths as what is asked of the spheres deserves, and what their triangles see.
+ * SPDX-License-Identifier: MIT */
 #include "simple/job.h"
 
 #define PATHS_MOST (1u << 24) /* from each wall */
@@ -7,6 +7,8 @@
 /* Paths from each wall: some percent of the work of the spheres, but in small beds up to FEW_PATHS all the same. */
 #define SPHERES_PER_SHARE 2048u
 #define FEW_PATHS         16384u
+
+enum { VIEWS_AT_ONCE = 16 };
 
 struct body_tasks {
     fibrad_job *job;
@@ -58,5 +60,37 @@ int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_
             again = again || !enough;
         }
     }
+    return status;
+}
+
+struct view_tasks {
+    const fibrad_scene *scene;
+    fibrad_team *team;
+    uint32_t rays;
+    fibrad_side_view *view;
+};
+
+static int run_view(void *view_tasks, int thread, uint32_t task) {
+    const struct view_tasks *tasks = view_tasks;
+    fibrad_side_view view[2];
+    uint32_t triangle;
+    const int status = fibrad_triangle_views(tasks->scene, task, tasks->rays, &triangle, view);
+    if (status)
+        tasks->team->work[thread].triangle = triangle;
+    else
+        for (int back = 0; back < 2; ++back) tasks->view[2 * (size_t)triangle + (size_t)back] = view[back];
+    return status;
+}
+
+int fibrad_side_views(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t rays, fibrad_run *run,
+                      fibrad_side_view *view) {
+    fibrad_job job;
+    int status = fibrad_job_open(&job, config, spheres, run);
+    if (!status && !view && job.facts.triangles > 0) status = FIBRAD_E_ARGUMENT;
+    struct view_tasks tasks = {job.scene, &job.team, rays, view};
+    if (!status)
+        status = fibrad_team_run(&job.team, "triangles", job.facts.triangles, VIEWS_AT_ONCE, run_view, &tasks, NULL);
+    if (run && status == FIBRAD_E_BACK) run->fault.triangle = job.team.triangle;
+    fibrad_job_close(&job);
     return status;
 }

@@ -3,9 +3,10 @@
  *
  * Index
  *   run       fibrad_run: threads, progress, cancelling
- *   factors   fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_displacements
- *   heat      fibrad_radiation_new, _move, _solve, _settle, _describe, _free
- *   time      fibrad_transient_new, _move, _powers, _advance, _describe, _free
+ *   factors   fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_side_views,
+ *             fibrad_displacements
+ *   heat      fibrad_radiation_new, _move, _solve, _sides, _settle, _describe, _free
+ *   time      fibrad_transient_new, _move, _powers, _sides, _advance, _describe, _free
  *   kernel    fibrad_heap_resize, fibrad_host_sizeof
  *
  * Typical  fibrad_bed_factors *bed;
@@ -22,6 +23,7 @@
 #define FIBRAD_HOST_H
 
 #include "fibrad_heat.h"
+#include "fibrad_mesh.h"
 #include "fibrad_surface.h"
 
 #ifdef __cplusplus
@@ -30,9 +32,9 @@ extern "C" {
 
 /* ---- run ------------------------------------------------------------------------------------------------------- */
 
-/* Called by the thread that made the call, at the beginning and the end of each stage ("walls", "rows", "beams",
- * "sweeps", "steps") and up to 20 times a second in between: `done` of `total` things are done; total 0: unknown. Not
- * 0: stop, which the call then returns as FIBRAD_E_CANCELLED. */
+/* Called by the thread that made the call, at the beginning and the end of each stage ("walls", "rows", "triangles",
+ * "beams", "sweeps", "steps") and up to 20 times a second in between: `done` of `total` things are done; total 0:
+ * unknown. Not 0: stop, which the call then returns as FIBRAD_E_CANCELLED. */
 typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uint64_t total);
 
 /* How a call is run. NULL or zeroed: OpenMP's threads, no progress. */
@@ -88,6 +90,11 @@ int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_sphe
 /* Frees factors. NULL: nothing. No errors. */
 void fibrad_bed_free(fibrad_bed_factors *factors);
 
+/* fibrad_triangle_views of all triangles of a bed, so many rays from each side; view [2 triangles]: fronts and backs in
+ * turn. Errors: as fibrad_scene_init, fibrad_triangle_views. */
+int fibrad_side_views(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t rays, fibrad_run *run,
+                      fibrad_side_view *view);
+
 /* fibrad_exchange_displacement of the spheres wanted ([spheres] not 0; NULL: all) into displacement [spheres], whose
  * other elements are left as they are; facts, unless NULL, of the scene. Errors: as fibrad_exchange_factors; then some
  * elements may have been written. */
@@ -115,6 +122,10 @@ int fibrad_radiation_move(fibrad_radiation *radiation, const fibrad_scene_config
 /* Net powers for these sources into the caller's result (power [spheres], body_power [bodies]). Errors: as
  * fibrad_heat_begin, fibrad_heat_read. Cost: its sweeps, over threads. */
 int fibrad_radiation_solve(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_heat_result *result);
+
+/* What the last _solve says of the sides of triangles, as fibrad_heat_read_sides; [2 triangles] each, or NULL. Errors:
+ * _ARGUMENT; _STATE: no solution of this bed. */
+int fibrad_radiation_sides(const fibrad_radiation *radiation, double *flux, double *temperature);
 
 /* Emissivities that follow temperatures: fills emissivity [spheres] and body_emissivity [bodies] for these temperatures
  * (NaN: not known yet, of insulated bodies, or of emissivity 0: leave them); called by the thread that made the call.
@@ -168,6 +179,10 @@ int fibrad_transient_move(fibrad_transient *transient, const fibrad_scene_config
 int fibrad_transient_powers(fibrad_transient *transient, const fibrad_heat_sources *sources,
                             fibrad_heat_result *result);
 
+/* What the last _powers says of the sides of triangles, as fibrad_radiation_sides. Errors: as that; _STATE also by
+ * factors alone. */
+int fibrad_transient_sides(const fibrad_transient *transient, double *flux, double *temperature);
+
 /* Called after each step with the time since the beginning of the span and the temperatures [spheres] there. */
 typedef void fibrad_observe(void *context, double time, const double *temperature);
 
@@ -195,11 +210,12 @@ typedef struct fibrad_span {
 
 /* Advances temperatures by a span: an L-stable scheme of second order, for which small spheres among large ones are no
  * limit. What spheres lose is what bodies and surroundings get, to rounding. Of sources, power, emissivities (where a
- * law leaves them), body_power and insulated are used and constant; temperature, hold and reference are not;
- * body_temperature and surroundings are those at the beginning. Only by patches may bodies be of unknown temperature;
- * by factors alone they gain from spheres alone. Errors: _ARGUMENT, with the sphere in fault; as
- * fibrad_exchange_factors or fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below zero. Then temperatures are
- * as before. Cost: two or three solutions a step, some milliseconds for 1e4 spheres by factors. */
+ * law leaves them), body_power, insulated and, but by factors alone, side_temperature are used and constant;
+ * temperature, hold and reference are not; body_temperature and surroundings are those at the beginning. Only by
+ * patches may bodies be of unknown temperature; by factors alone they gain from spheres alone. Errors: _ARGUMENT, with
+ * the sphere in fault; as fibrad_exchange_factors or fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below
+ * zero. Then temperatures are as before. Cost: two or three solutions a step, some milliseconds for 1e4 spheres by
+ * factors. */
 int fibrad_transient_advance(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_span *span);
 
 /* As fibrad_radiation_describe, _free. */

@@ -275,6 +275,11 @@ int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sour
                         : fibrad_network_solve(t->network, &t->team, sources, t->allowed, result);
 }
 
+int fibrad_transient_sides(const fibrad_transient *t, double *flux, double *temperature) {
+    if (!t) return FIBRAD_E_ARGUMENT;
+    return t->radiation ? fibrad_radiation_sides(t->radiation, flux, temperature) : FIBRAD_E_STATE;
+}
+
 int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sources, fibrad_span *span) {
     if (!t || !sources || !span || !surfaces_given(t, sources)) return FIBRAD_E_ARGUMENT;
     int status = check_span(t, sources, span);

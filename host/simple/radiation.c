@@ -119,6 +119,11 @@ int fibrad_radiation_solve(fibrad_radiation *r, const fibrad_heat_sources *sourc
     return status ? status : fibrad_heat_read(r->heat, result);
 }
 
+int fibrad_radiation_sides(const fibrad_radiation *r, double *flux, double *temperature) {
+    if (!r) return FIBRAD_E_ARGUMENT;
+    return r->heat ? fibrad_heat_read_sides(r->heat, flux, temperature) : FIBRAD_E_STATE;
+}
+
 #define EMISSIVITY_CHANGE 1e-5
 enum { SETTLE_MAX = 100 };
 

@@ -38,7 +38,26 @@ static int curve_point(const struct lines *lines, const struct fields *fields, c
     return STATUS_OK;
 }
 
-int curve_read(const char *path, const char *what, double low, double high, struct curve *curve) {
+/* A number of a column, of which *column has n. */
+static int column_number(const struct lines *lines, const struct fields *fields, const char *what, double low,
+                         double high, struct curve *column) {
+    if (fields->n != 1)
+        return message_at(STATUS_INPUT, lines->name, lines->number, "%zu columns instead of 1", fields->n);
+    int status = curve_grow(column);
+    if (!status) status = lines_number(lines, what, fields->at[0], &column->y[column->n]);
+    if (status) return status;
+    const double y = column->y[column->n++];
+    if (y >= low && y <= high) return STATUS_OK;
+    return message_at(STATUS_INPUT, lines->name, lines->number, "the %s is %g; it must be within %g and %g", what, y,
+                      low, high);
+}
+
+/* Takes what is in a line. */
+typedef int take_line(const struct lines *lines, const struct fields *fields, const char *what, double low, double high,
+                      struct curve *curve);
+
+static int read_columns_of(const char *path, const char *what, double low, double high, struct curve *curve,
+                           take_line *take) {
     struct lines lines;
     struct fields fields = {0};
     *curve = (struct curve){0};
@@ -52,12 +71,20 @@ int curve_read(const char *path, const char *what, double low, double high, stru
         header = false;
         if (name) continue;
         status = fields_split(&fields, lines.text, ",; \t\r");
-        if (!status) status = curve_point(&lines, &fields, what, low, high, curve);
+        if (!status) status = take(&lines, &fields, what, low, high, curve);
     }
     if (!status && curve->n == 0) status = message_at(STATUS_INPUT, lines_name(path), 0, "no numbers of a table");
     lines_close(&lines);
     free(fields.at);
     return status;
+}
+
+int curve_read(const char *path, const char *what, double low, double high, struct curve *curve) {
+    return read_columns_of(path, what, low, high, curve, curve_point);
+}
+
+int column_read(const char *path, const char *what, double low, double high, struct curve *column) {
+    return read_columns_of(path, what, low, high, column, column_number);
 }
 
 void curve_free(struct curve *curve) {

@@ -14,6 +14,9 @@ struct curve {
  * and blank ones are skipped. `what` is what y is, in messages. To be freed also after an error. Status 0, STATUS_INPUT
  * naming the line where x does not ascend or y is not in [low, high], or as lines_next. */
 int curve_read(const char *path, const char *what, double low, double high, struct curve *curve);
+
+/* The same of one column, y; x is without a meaning. */
+int column_read(const char *path, const char *what, double low, double high, struct curve *column);
 void curve_free(struct curve *curve);
 
 /* The value at x. */

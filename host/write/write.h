@@ -36,8 +36,7 @@ struct contents {
     const struct array *array;        /* [arrays] that a .npz has besides its own, at most ARRAYS_MAX */
     size_t arrays;
 
-    const struct array *of_triangle; /* [of_triangles] values on all triangles of the meshes, by names without .npy */
-    size_t of_triangles;
+    const struct side_arrays *of_sides; /* what is known of the triangles of meshes; NULL: where they are */
 
     const fibrad_heat_sources *sources; /* kelvins; surroundings NaN: there are none, the geometry is closed */
     const fibrad_heat_result *result;   /* watts, kelvins; has all arrays */

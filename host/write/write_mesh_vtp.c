@@ -62,6 +62,14 @@ static void mesh_areas(FILE *file, const struct meshes *meshes) {
     base64_end(&to);
 }
 
+static void mesh_quantity(FILE *file, const struct side_quantity *quantity, size_t arrays, uint32_t n) {
+    for (size_t k = 0; k < arrays; ++k) {
+        struct base64 to = base64_begin(file, "Float64", quantity->name[k], 1, n);
+        base64_bytes(&to, quantity->shown[k], n * sizeof(double));
+        base64_end(&to);
+    }
+}
+
 int write_mesh_vtp(FILE *file, const struct contents *what, bool first) {
     const struct meshes *meshes = what->walls->meshes;
     const struct fibrad_triangles *all = &meshes->triangles;
@@ -73,11 +81,8 @@ int write_mesh_vtp(FILE *file, const struct contents *what, bool first) {
     mesh_counts(file, "back", meshes, back_of);
     mesh_counts(file, "place", meshes, place_of);
     mesh_areas(file, meshes);
-    for (size_t k = 0; k < what->of_triangles; ++k) {
-        struct base64 to = base64_begin(file, "Float64", what->of_triangle[k].name, 1, all->n);
-        base64_bytes(&to, what->of_triangle[k].data, all->n * sizeof(double));
-        base64_end(&to);
-    }
+    for (size_t q = 0; what->of_sides && q < what->of_sides->count; ++q)
+        mesh_quantity(file, &what->of_sides->quantity[q], what->of_sides->arrays, all->n);
     fputs("</CellData>\n<Points>\n", file);
     mesh_points(file, all);
     fputs("</Points>\n<Polys>\n", file);

@@ -112,6 +112,8 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->sequence = fibrad_arena_take(arena, spheres, sizeof *heat->sequence);
     heat->part = fibrad_arena_take(arena, spheres, sizeof *heat->part);
     heat->cut = fibrad_arena_take(arena, 2 * (size_t)heat->triangles, sizeof *heat->cut);
+    heat->lift =
+        fibrad_arena_take(arena, heat->triangles > 0 ? patches - fibrad_heat_others(heat) : 0, sizeof *heat->lift);
     heat->traced = fibrad_arena_take(arena, tasks_for(spheres, heat->rays_capacity), 1);
     heat->swept = fibrad_arena_take(arena, heat->config.parts, 1);
     heat->pool = fibrad_arena_take(arena, heat->room, 1);

@@ -95,19 +95,21 @@ struct fibrad_heat {
     fibrad_heat_wall wall[FIBRAD_WALLS];
     fibrad_heat_rays sent[FIBRAD_SLOTS]; /* by slot */
     uint32_t of_mesh[FIBRAD_BODIES_MAX]; /* patches of each mesh */
-    fibrad_mesh_cut *cut;  /* [2 triangles] by the caller's numbers; patches counted from the first of all meshes */
-    uint32_t *first;       /* [bodies + 1] */
-    uint32_t *order;       /* [spheres] the caller's index of each, as the scene had it */
-    uint32_t *sequence;    /* [spheres] of sweeps: those of each part, near each other */
-    uint16_t *part;        /* [spheres] which part each one is of */
-    unsigned char *traced; /* [tasks of rays_capacity] 1: this task is */
-    unsigned char *swept;  /* [parts] 1: this part is */
-    uint16_t *leave;       /* [beams] which patch of its sphere each beam leaves: the same for all spheres */
-    fibrad_heat_ray *ray;  /* [rays] */
-    unsigned char *pool;   /* [room] the pencils of all spheres; then, aligned, links by the sphere they end on */
-    size_t room;           /* bytes */
-    size_t used, links;    /* bytes of pencils, and how many end in other parts; several threads at once add to them */
-    fibrad_heat_row *row;  /* [spheres] */
+    fibrad_mesh_cut *cut; /* [2 triangles] by the caller's numbers; patches counted from the first of all meshes */
+    double *lift;         /* [patches of all meshes] emission less that of the body, where sides have temperatures */
+    bool lifted[FIBRAD_BODIES_MAX]; /* of each mesh: its sides have */
+    uint32_t *first;                /* [bodies + 1] */
+    uint32_t *order;                /* [spheres] the caller's index of each, as the scene had it */
+    uint32_t *sequence;             /* [spheres] of sweeps: those of each part, near each other */
+    uint16_t *part;                 /* [spheres] which part each one is of */
+    unsigned char *traced;          /* [tasks of rays_capacity] 1: this task is */
+    unsigned char *swept;           /* [parts] 1: this part is */
+    uint16_t *leave;                /* [beams] which patch of its sphere each beam leaves: the same for all spheres */
+    fibrad_heat_ray *ray;           /* [rays] */
+    unsigned char *pool;  /* [room] the pencils of all spheres; then, aligned, links by the sphere they end on */
+    size_t room;          /* bytes */
+    size_t used, links;   /* bytes of pencils, and how many end in other parts; several threads at once add to them */
+    fibrad_heat_row *row; /* [spheres] */
     fibrad_heat_link *link;
     size_t *first_link; /* [spheres + 2] */
 
@@ -149,6 +151,15 @@ static inline uint32_t fibrad_heat_body(const fibrad_heat *heat, uint32_t slot) 
 }
 static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall) {
     return heat->spheres + FIBRAD_WALLS + heat->meshes + wall;
+}
+/* The first patch of all meshes; by how much each patch of a body emits more than the body, NULL: not at all. */
+static inline uint32_t fibrad_heat_first_meshed(const fibrad_heat *heat) {
+    return heat->first[fibrad_heat_body(heat, FIBRAD_MESHES)];
+}
+static inline const double *fibrad_heat_lift(const fibrad_heat *heat, uint32_t body) {
+    const uint32_t mesh = body - fibrad_heat_body(heat, FIBRAD_MESHES);
+    const bool meshed = body >= fibrad_heat_body(heat, FIBRAD_MESHES) && mesh < heat->meshes;
+    return meshed && heat->lifted[mesh] ? heat->lift + (heat->first[body] - fibrad_heat_first_meshed(heat)) : NULL;
 }
 static inline uint32_t fibrad_heat_others(const fibrad_heat *heat) { return heat->spheres * heat->config.patches; }
 static inline uint32_t fibrad_heat_open(const fibrad_heat *heat) { return heat->patches - 1; }

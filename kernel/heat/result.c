@@ -6,6 +6,7 @@
  * what all samples together say. What patches change of the power of a wall is smooth, and stands for itself. */
 #include "base/port.h"
 #include "heat/solve.h"
+#include "scene/walls.h"
 
 /* Errors over what they are told from, as measured: docs/heat.md. */
 #define PATCH_ERROR  .2 /* with PATCHES */
@@ -280,18 +281,62 @@ typedef struct side_sum {
 } side_sum;
 
 static side_sum sum_of_side(const fibrad_heat *heat, const fibrad_mesh_cut *cut) {
-    const uint32_t begin = heat->first[fibrad_heat_body(heat, FIBRAD_MESHES)] + cut->patch;
+    const uint32_t begin = fibrad_heat_first_meshed(heat) + cut->patch;
     side_sum sum = {0, 0, 0};
+    if (cut->patch == UINT32_MAX) return sum;
     for (uint32_t a = begin; a < begin + (UINT32_C(1) << cut->halvings); a++)
         sum.area += heat->area[a], sum.net += heat->net[a], sum.radiosity += heat->area[a] * heat->radiosity[a];
     return sum;
 }
 
-/* What a body gains per area beyond what its patches do: extrapolation, and what residuals leave. */
-static double flux_beyond_patches(const fibrad_heat *heat, uint32_t b) {
-    double area = 0, net = 0;
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) area += heat->area[a], net += heat->net[a];
-    return area > 0 ? (heat->power[b] - net) / area : 0;
+/* Areas of the sides of a mesh whose patches are met, and what these gain. */
+typedef struct mesh_gain {
+    double area, net;
+    bool whole; /* no plane or cylinder cuts it: areas are those of the triangles, else those the beams have */
+} mesh_gain;
+
+static bool is_within_walls(const fibrad_scene *scene, uint32_t triangle) {
+    bool inside = true;
+    double corner[3][3];
+    fibrad_mesh_corners(&scene->mesh, triangle, corner);
+    for (int k = 0; k < 3 && scene->container.walls; k++)
+        inside = inside && fibrad_walls_hold(&scene->container, corner[k]);
+    return inside;
+}
+
+static mesh_gain gain_of_mesh(const fibrad_heat *heat, uint32_t m) {
+    const fibrad_mesh *mesh = &heat->scene->mesh;
+    const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
+    mesh_gain gain = {0, 0, true};
+    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
+        const side_sum sum = sum_of_side(heat, fibrad_mesh_cut_of(mesh, heat->cut, mesh->side[k]));
+        const double area = fibrad_mesh_triangle_area(mesh, mesh->side[k] / 2);
+        gain.whole = gain.whole && is_within_walls(heat->scene, mesh->side[k] / 2);
+        if (sum.area > 0) gain.area += area, gain.net += area * (sum.net / sum.area);
+    }
+    if (!gain.whole) gain.area = gain.net = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && !gain.whole; a++)
+        gain.area += heat->area[a], gain.net += heat->net[a];
+    return gain;
+}
+
+/* What a mesh gains per area beyond what its patches do: extrapolation, and what residuals leave. */
+static double flux_beyond_patches(const fibrad_heat *heat, uint32_t m) {
+    const mesh_gain gain = gain_of_mesh(heat, m);
+    const double power = heat->power[fibrad_heat_body(heat, FIBRAD_MESHES + m)];
+    return gain.area > 0 ? (power - gain.net) / gain.area : 0;
+}
+
+/* The temperature of a side that has patches. */
+static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fibrad_mesh_cut *cut,
+                                  const side_sum *sum) {
+    if (is_insulated(heat, b))
+        return sum->area > 0 ? fibrad_heat_temperature(heat, sum->radiosity / sum->area) : __builtin_nan("");
+    const double *lift = fibrad_heat_lift(heat, b);
+    if (lift == NULL) return heat->temperature[b];
+    const uint32_t a = fibrad_heat_first_meshed(heat) + cut->patch - heat->first[b];
+    const double t = fibrad_heat_temperature(heat, heat->emission[b] + lift[a]);
+    return t >= 0 ? t : 0;
 }
 
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature) {
@@ -299,17 +344,16 @@ int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temper
     if (heat == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const fibrad_mesh *mesh = &heat->scene->mesh;
-    for (uint32_t m = 0; m < heat->meshes; m++)
-        beyond[m] = flux_beyond_patches(heat, fibrad_heat_body(heat, FIBRAD_MESHES + m));
+    for (uint32_t m = 0; m < heat->meshes; m++) beyond[m] = flux_beyond_patches(heat, m);
     for (uint32_t s = 0; s < 2 * heat->triangles; s++) {
         const fibrad_mesh_cut *cut = fibrad_mesh_cut_of(mesh, heat->cut, s);
         const size_t to = (size_t)(cut - heat->cut);
         double q = __builtin_nan(""), t = q;
-        const side_sum sum = cut->patch != UINT32_MAX ? sum_of_side(heat, cut) : (side_sum){0, 0, 0};
-        if (sum.area > 0) {
+        if (cut->patch != UINT32_MAX) {
             const uint32_t m = mesh->mesh[s / 2][s % 2], b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
-            q = heat->emissivity[b] > 0 ? sum.net / sum.area + beyond[m] : 0;
-            t = is_insulated(heat, b) ? fibrad_heat_temperature(heat, sum.radiosity / sum.area) : heat->temperature[b];
+            const side_sum sum = sum_of_side(heat, cut);
+            if (sum.area > 0) q = heat->emissivity[b] > 0 ? sum.net / sum.area + beyond[m] : 0;
+            t = temperature_of_side(heat, b, cut, &sum);
         }
         if (flux != NULL) flux[to] = q;
         if (temperature != NULL) temperature[to] = t;

@@ -10,6 +10,9 @@
  * E and take no part. On the coarser level J is the same on the patches of a group. For that the residuals of a group
  * are replaced by their mean, and all vectors stay within such J; the finer level goes on from there.
  *
+ * Patches of a mesh may each have an emission of their own. On the coarser level it is eps times what the patch emits
+ * more than its body that J differs by within a group: within such J the system is the same.
+ *
  * A body of unknown temperature gives off S - h E. From q = A eps/rho (<J> - E) = h E - S, <J> the mean over it,
  *
  *     E = (rho S + A eps <J>)/D,    D = rho h + A eps,
@@ -68,13 +71,15 @@ static uint32_t group_end(const fibrad_heat *heat, uint32_t a, uint32_t end) {
 /* What one Jacobi iteration would change of a body of given temperature. Returns the residual times that. */
 static double given_residual(fibrad_heat *heat, uint32_t b) {
     const double eps = heat->emissivity[b];
-    const uint32_t end = heat->first[b + 1];
+    const double *lift = fibrad_heat_lift(heat, b);
+    const uint32_t begin = heat->first[b], end = heat->first[b + 1];
     double slope = 0;
-    for (uint32_t a = heat->first[b], next; a < end; a = next) {
+    for (uint32_t a = begin, next; a < end; a = next) {
         double sum = 0, area = 0;
         next = group_end(heat, a, end);
         for (uint32_t k = a; k < next; k++) {
-            sum += heat->area[k] * eps * (heat->emission[b] - heat->radiosity[k]) + (1 - eps) * heat->net[k];
+            const double emission = lift != NULL ? heat->emission[b] + lift[k - begin] : heat->emission[b];
+            sum += heat->area[k] * eps * (emission - heat->radiosity[k]) + (1 - eps) * heat->net[k];
             area += heat->area[k];
         }
         const double change = eps < 1 && area > 0 ? sum / area : 0;
@@ -147,13 +152,22 @@ static void find_powers(const fibrad_heat *heat, double *power) {
 /* What is nothing but rounding in a sum of squares. */
 #define ROUNDING 1e-28
 
+/* Emissivity times area times the square of how far the emission of each patch is from that of its body. */
+static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
+    const double *lift = fibrad_heat_lift(heat, b);
+    double sum = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && lift != NULL; a++)
+        sum += heat->emissivity[b] * heat->area[a] * lift[a - heat->first[b]] * lift[a - heat->first[b]];
+    return sum;
+}
+
 /* What residuals are compared with: how much emission differs from its mean, what is given off, and, for rounding,
  * emission itself. */
 static void find_scale(fibrad_heat *heat) {
     double weights = 0, sum = 0, largest = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const double area = emitting(heat, b), emission = heat->emission[b];
-        weights += area, sum += area * emission, largest += area * emission * emission;
+        weights += area, sum += area * emission, largest += area * emission * emission + lifted_squares(heat, b);
     }
     heat->scale = 0;
     const double mean = weights > 0 ? sum / weights : 0;
@@ -164,7 +178,7 @@ static void find_scale(fibrad_heat *heat) {
             const double drive = drive_at(heat, b, &body, mean);
             heat->scale += body.area * drive * drive / stiffness(heat, b, &body);
         } else {
-            heat->scale += emitting(heat, b) * difference * difference;
+            heat->scale += emitting(heat, b) * difference * difference + lifted_squares(heat, b);
         }
     }
     heat->smallest = ROUNDING * fibrad_max(largest, heat->scale);

@@ -50,6 +50,28 @@ static bool source_valid(const radiator *s) {
            (s->emissivity > 0 || s->power == 0);
 }
 
+/* The temperature of a side of a mesh, its own or its body's. */
+static double side_temperature(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t side, double of_body) {
+    const double own = s->side_temperature[2 * (size_t)heat->scene->mesh.number[side / 2] + side % 2];
+    return is_given(own) ? own : of_body;
+}
+
+/* Sides have temperatures where their bodies do. */
+static bool sides_valid(const fibrad_heat *heat, const fibrad_heat_sources *s) {
+    const fibrad_mesh *mesh = &heat->scene->mesh;
+    bool valid = true;
+    for (uint32_t b = 0; b < heat->given_bodies && s->side_temperature != NULL; b++) {
+        if (heat->slot[b] < FIBRAD_MESHES) continue;
+        const uint32_t m = heat->slot[b] - FIBRAD_MESHES;
+        const radiator body = of_body(s, b);
+        for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
+            const double t = side_temperature(heat, s, mesh->side[k], __builtin_nan(""));
+            valid = valid && (!is_given(t) || (is_temperature(t) && is_given(body.temperature)));
+        }
+    }
+    return valid;
+}
+
 static bool sources_valid(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     const uint32_t bodies = heat->given_bodies;
     if (heat->spheres > 0 && (s->temperature == NULL || s->emissivity == NULL)) return false;
@@ -62,13 +84,44 @@ static bool sources_valid(const fibrad_heat *heat, const fibrad_heat_sources *s)
         const radiator source = of_body(s, b);
         if (!source_valid(&source)) return false;
     }
-    return is_temperature(s->surroundings) && is_sigma(s->sigma) && s->tolerance >= 0 && s->tolerance < 1;
+    return sides_valid(heat, s) && is_temperature(s->surroundings) && is_sigma(s->sigma) && s->tolerance >= 0 &&
+           s->tolerance < 1;
 }
 
 /* sigma (T^4 - T0^4), T0 being that of the surroundings: all emission and radiosity is counted from theirs. */
 static double emission_of(const fibrad_heat_sources *s, double t) {
     const double t0 = s->surroundings;
     return s->sigma * (t * t + t0 * t0) * (t + t0) * (t - t0);
+}
+
+/* The temperature at which a mesh emits as much as its sides do, each with its own. */
+static double mean_temperature(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t m, double of_body) {
+    const fibrad_mesh *mesh = &heat->scene->mesh;
+    double sum = 0, area = 0;
+    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
+        const double t = side_temperature(heat, s, mesh->side[k], of_body);
+        const double own = fibrad_mesh_triangle_area(mesh, mesh->side[k] / 2);
+        sum += own * (t * t) * (t * t), area += own;
+    }
+    return area > 0 ? fibrad_sqrt(fibrad_sqrt(sum / area)) : of_body;
+}
+
+/* Finds by how much each patch of a mesh emits more than the mesh at some temperature: the mean of its sides. */
+static void lift_patches(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t m, double of_body, double mean) {
+    const fibrad_mesh *mesh = &heat->scene->mesh;
+    const uint32_t *first = heat->first + fibrad_heat_body(heat, FIBRAD_MESHES + m);
+    double *lift = heat->lift + (first[0] - fibrad_heat_first_meshed(heat)), *area = heat->source;
+    fibrad_zero(lift, (first[1] - first[0]) * sizeof *lift);
+    fibrad_zero(area, (first[1] - first[0]) * sizeof *area);
+    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
+        const fibrad_mesh_cut cut = *fibrad_mesh_cut_of(mesh, heat->cut, mesh->side[k]);
+        if (cut.patch == UINT32_MAX) continue;
+        const double own = fibrad_mesh_triangle_area(mesh, mesh->side[k] / 2);
+        const double more = emission_of(s, side_temperature(heat, s, mesh->side[k], of_body)) - emission_of(s, mean);
+        const uint32_t from = fibrad_heat_first_meshed(heat) + cut.patch - first[0];
+        for (uint32_t a = from; a < from + (UINT32_C(1) << cut.halvings); a++) lift[a] += own * more, area[a] += own;
+    }
+    for (uint32_t a = 0; a < first[1] - first[0]; a++) lift[a] = area[a] > 0 ? lift[a] / area[a] : 0;
 }
 
 /* Widens a range of emissions by that of a body, if it emits and one is known. */
@@ -90,6 +143,13 @@ static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         const radiator source = of_body(s, b);
         widen_range(range, s, &source);
+        if (heat->slot[b] < FIBRAD_MESHES || s->side_temperature == NULL) continue;
+        const uint32_t *first = heat->scene->mesh.first + (heat->slot[b] - FIBRAD_MESHES);
+        for (uint32_t k = first[0]; k < first[1]; k++) {
+            radiator side = source;
+            side.temperature = side_temperature(heat, s, heat->scene->mesh.side[k], source.temperature);
+            widen_range(range, s, &side);
+        }
     }
     return range[0] <= range[1] ? range[0] + 0.5 * (range[1] - range[0]) : 0;
 }
@@ -125,6 +185,26 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
     heat->drive[b] = source->power + (source->hold > 0 ? source->hold * emission_of(s, source->reference) : 0);
 }
 
+/* Adds to the radiosities of a mesh, or takes off, what its patches emit more than it does. */
+static void shift_radiosities(fibrad_heat *heat, uint32_t b, double times) {
+    const double *lift = fibrad_heat_lift(heat, b);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && lift != NULL; a++)
+        heat->radiosity[a] += times * heat->emissivity[b] * lift[a - heat->first[b]];
+}
+
+static void set_mesh(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t m, radiator source) {
+    const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
+    const double own = source.temperature;
+    if (heat->warm) shift_radiosities(heat, b, -1);
+    heat->lifted[m] = s->side_temperature != NULL && is_given(own) && source.emissivity > 0;
+    if (heat->lifted[m]) {
+        source.temperature = mean_temperature(heat, s, m, own);
+        lift_patches(heat, s, m, own, source.temperature);
+    }
+    set_body(heat, s, middle, b, &source);
+    shift_radiosities(heat, b, 1);
+}
+
 /* What lies beyond the patches of a wall receives no more than the surroundings send, or what it faces, its area being
  * infinite; so it is like a black body of that radiosity. */
 static double radiosity_beyond(const fibrad_heat *heat, uint32_t k) {
@@ -152,8 +232,7 @@ static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double mi
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
         set_emission(heat, s, fibrad_heat_beyond(heat, k), 1, radiosity_beyond(heat, k));
-    for (uint32_t m = 0; m < heat->meshes; m++)
-        set_body(heat, s, middle, fibrad_heat_body(heat, FIBRAD_MESHES + m), &source[FIBRAD_MESHES + m]);
+    for (uint32_t m = 0; m < heat->meshes; m++) set_mesh(heat, s, middle, m, source[FIBRAD_MESHES + m]);
     set_emission(heat, s, heat->bodies - 1, 1, 0);
 }
 

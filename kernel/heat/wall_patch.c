@@ -143,8 +143,7 @@ void fibrad_heat_cut_meshes(fibrad_heat *heat) {
 
 uint32_t fibrad_heat_mesh_patch(const fibrad_heat *heat, uint32_t side, const double at[3]) {
     if (fibrad_scene_slot(heat->scene, side) == FIBRAD_NONE) return FIBRAD_NONE;
-    return heat->first[fibrad_heat_body(heat, FIBRAD_MESHES)] +
-           fibrad_mesh_patch_at(&heat->scene->mesh, heat->cut, side, at);
+    return fibrad_heat_first_meshed(heat) + fibrad_mesh_patch_at(&heat->scene->mesh, heat->cut, side, at);
 }
 
 /* Where on the square around the origin that leans on its corners, (1, 0) being 0, the other corners 1/4, 1/2, 3/4. */

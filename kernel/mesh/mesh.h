@@ -85,6 +85,9 @@ void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangl
 int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, const double period[3],
                       const uint8_t *mesh_of, uint32_t bodies, uint32_t *fault);
 
+/* Area of a triangle [L^2]. */
+double fibrad_mesh_triangle_area(const fibrad_mesh *mesh, uint32_t triangle);
+
 /* Area of a mesh [L^2], both sides if both are its own. */
 double fibrad_mesh_area(const fibrad_mesh *mesh, uint32_t number);
 
@@ -111,6 +114,9 @@ fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3
 
 /* The outward unit normal of a side. */
 void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]);
+
+/* An even point [L] of a triangle for two numbers in [0, 1]. */
+void fibrad_mesh_triangle_point(const fibrad_mesh *mesh, uint32_t triangle, const double share[2], double point[3]);
 
 /* An even point [L] on a mesh for two numbers in [0, 1); returns its side. */
 uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const double share[2], double point[3]);

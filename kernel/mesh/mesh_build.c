@@ -199,8 +199,9 @@ static void build_tree(fibrad_mesh *mesh) {
     }
 }
 
-static double area_of_triangle(double corner[3][3]) {
-    double a[3], b[3];
+double fibrad_mesh_triangle_area(const fibrad_mesh *mesh, uint32_t triangle) {
+    double corner[3][3], a[3], b[3];
+    fibrad_mesh_corners(mesh, triangle, corner);
     for (int axis = 0; axis < 3; axis++)
         a[axis] = corner[1][axis] - corner[0][axis], b[axis] = corner[2][axis] - corner[0][axis];
     const double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
@@ -219,9 +220,7 @@ static void list_sides(fibrad_mesh *mesh) {
         if (m == FIBRAD_NO_MESH) continue;
         const uint32_t at = end[m]++;
         mesh->side[at] = s;
-        double corner[3][3];
-        fibrad_mesh_corners(mesh, s / 2, corner);
-        mesh->area[at] = area_of_triangle(corner) + (at > mesh->first[m] ? mesh->area[at - 1] : 0);
+        mesh->area[at] = fibrad_mesh_triangle_area(mesh, s / 2) + (at > mesh->first[m] ? mesh->area[at - 1] : 0);
     }
 }
 

@@ -165,6 +165,16 @@ void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]
     for (int axis = 0; axis < 3; axis++) normal[axis] *= scale;
 }
 
+void fibrad_mesh_triangle_point(const fibrad_mesh *mesh, uint32_t triangle, const double share[2], double point[3]) {
+    double corner[3][3];
+    fibrad_mesh_corners(mesh, triangle, corner);
+    const double root = fibrad_sqrt(share[0]), part[2] = {root * (1 - share[1]), root * share[1]};
+    for (int axis = 0; axis < 3; axis++) {
+        const double origin = corner[0][axis];
+        point[axis] = origin + part[0] * (corner[1][axis] - origin) + part[1] * (corner[2][axis] - origin);
+    }
+}
+
 uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const double share[2], double point[3]) {
     const uint32_t first = mesh->first[number];
     const double all = fibrad_mesh_area(mesh, number), at = share[0] * all;
@@ -177,16 +187,9 @@ uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const doubl
             low = middle + 1;
     }
     const double before = low > first ? mesh->area[low - 1] : 0, own = mesh->area[low] - before;
-    const double root = fibrad_sqrt(own > 0 ? fibrad_max(0, fibrad_min(1, (at - before) / own)) : 0);
-    const double part[3] = {1 - root, root * (1 - share[1]), root * share[1]};
-    const uint32_t side = mesh->side[low];
-    double c[3][3];
-    fibrad_mesh_corners(mesh, side / 2, c);
-    for (int axis = 0; axis < 3; axis++) {
-        const double origin = c[0][axis];
-        point[axis] = origin + part[1] * (c[1][axis] - origin) + part[2] * (c[2][axis] - origin);
-    }
-    return side;
+    const double of_own[2] = {own > 0 ? fibrad_max(0, fibrad_min(1, (at - before) / own)) : 0, share[1]};
+    fibrad_mesh_triangle_point(mesh, mesh->side[low] / 2, of_own, point);
+    return mesh->side[low];
 }
 
 static double inner(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }

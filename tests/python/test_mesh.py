@@ -37,6 +37,54 @@ def test_heat_in_a_box_of_triangles():
         assert np.allclose(meshed.solve(**state).spheres, planes.solve(**state).spheres, rtol=5e-3)
 
 
+STATE = {"temperature": [400, 900], "emissivity": [0.5, 0.8], "wall_emissivity": 0.6, "surroundings": 0}
+
+
+def test_fluxes_of_triangles():
+    walls = box()
+    walls["shelf"] = fibrad.Mesh([[0.02, 0.02, 0.02], [0.5, 0.02, 0.02], [0.02, 0.5, 0.02]], [[0, 1, 2]], back=True)
+    with fibrad.Heat(X, R, walls=walls) as heat:
+        powers = heat.solve(**STATE, wall_temperature={name: 300.0 + 50 * k for k, name in enumerate(walls)})
+    assert list(powers.triangle_fluxes) == list(walls) == list(powers.triangle_temperatures)
+    for k, (name, mesh) in enumerate(walls.items()):
+        flux, kelvins = powers.triangle_fluxes[name], powers.triangle_temperatures[name]
+        assert flux.shape == kelvins.shape == (len(mesh.triangles), 2)
+        assert np.isnan(flux[:, 1]).all() == (mesh.back is None)
+        assert (kelvins[:, 0] == 300.0 + 50 * k).all()
+        assert np.nansum(flux * mesh.areas()[:, None]) == pytest.approx(powers.walls[name], rel=1e-9)
+    with fibrad.Heat(X, R, walls={"zmin": 0.0}) as heat:
+        powers = heat.solve(**STATE, wall_temperature=300.0)
+        assert powers.triangle_fluxes == {} == powers.triangle_temperatures
+
+
+def test_temperatures_of_triangles():
+    """All faces as one mesh, a temperature for each triangle, is as one mesh each."""
+    walls = box()
+    one = fibrad.Mesh(np.concatenate([mesh.vertices for mesh in walls.values()]),
+                      np.concatenate([mesh.triangles + 4 * k for k, mesh in enumerate(walls.values())]))
+    kelvins = {name: 300.0 + 100 * k for k, name in enumerate(walls)}
+    given = np.repeat(list(kelvins.values()), 2)
+    with fibrad.Heat(X, R, walls=walls) as meshes, fibrad.Heat(X, R, walls={"tub": one}) as tub:
+        several, single = meshes.solve(**STATE, wall_temperature=kelvins), tub.solve(
+            **STATE, wall_temperature={"tub": given})
+        assert np.allclose(several.spheres, single.spheres, rtol=5e-3)
+        assert np.allclose(single.triangle_temperatures["tub"][:, 0], given, rtol=1e-12)
+        assert single.wall_temperatures["tub"] == pytest.approx(np.mean(given**4)**0.25, rel=1e-9)
+        for wrong, text in ((given[1:], "12 of them"), (-given, "triangle 0 of tub is -300"),
+                            (np.where(given > 700, np.nan, given), "triangle 10 of tub is nan")):
+            with pytest.raises(fibrad.InputError, match=text):
+                tub.solve(**STATE, wall_temperature={"tub": wrong})
+    with fibrad.Heat(X, R, walls=PLANES) as planes, pytest.raises(fibrad.InputError, match="no mesh has that name"):
+        planes.solve(**STATE, wall_temperature={**dict.fromkeys(PLANES, 300.0), "zmin": given})
+    state = {**STATE, "capacity": 1e5, "duration": 10.0, "wall_temperature": {"tub": given}}
+    with fibrad.Transient(X, R, walls={"tub": one}, method="patches") as bed:
+        end = bed.advance(**state)
+        assert end.walls["tub"] == pytest.approx(10 * single.walls["tub"], rel=2e-2)
+    with fibrad.Transient(X, R, walls={"tub": one}, method="factors") as bed:
+        with pytest.raises(fibrad.InputError, match="another method"):
+            bed.advance(**state)
+
+
 def test_backs():
     low = {name: mesh for name, mesh in box().items() if name == "x_low"}
     low["x_low"].triangles = low["x_low"].triangles[:, ::-1].copy()

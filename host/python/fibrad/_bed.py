@@ -68,11 +68,14 @@ class Bed:
             raise refuse(f"there is no wall {', '.join(map(repr, sorted(wrong)))}")
         if isinstance(temperature, Mapping) and found & set(temperature):
             raise refuse(f"{', '.join(sorted(found & set(temperature)))}: its temperature is to be found")
+        temperature, sides = container.sides("wall_temperature", temperature, 0, HOTTEST)
         shares = container.per_wall("wall_emissivity", emissivity, 0, 1, frozenset(insulated))
         arrays: dict[str, NDArray[Any]] = {
             "body_temperature": container.per_wall("wall_temperature", temperature, 0, HOTTEST, found),
             "body_emissivity": np.nan_to_num(shares),
             "insulated": np.array([wall in insulated for wall in container.names], np.uint8)}
+        if sides is not None:
+            arrays["side_temperature"] = sides
         if powers:
             arrays["body_power"] = container.per_wall("wall_power", powers, -STRONGEST, STRONGEST,
                                                       frozenset(container.names))

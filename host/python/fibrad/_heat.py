@@ -44,6 +44,11 @@ class Powers:
     """(n,) of each sphere [K], given or found; NaN of emissivity 0."""
     wall_temperatures: dict[str, float]
     """Of each wall [K]; of an insulated one that at which it would emit what it sends back."""
+    triangle_fluxes: dict[str, NDArray[np.float64]]
+    """(t, 2) what front and back of each triangle of a `Mesh` gain [W/m2], by its name; NaN: nobody's, or not reached.
+    Times areas they add up to `walls`, unless planes or the cylinder cut the mesh."""
+    triangle_temperatures: dict[str, NDArray[np.float64]]
+    """(t, 2) likewise [K]; of an insulated mesh place by place."""
     emissivities: NDArray[np.float64]
     """(n,) of each sphere, at its temperature."""
     errors: NDArray[np.float64]
@@ -132,7 +137,8 @@ class Heat(Bed):
         surroundings : float
             Temperature of the surroundings [K]; may be left out only where walls and periods leave no way out.
         wall_temperature : mapping or float
-            Temperatures of the walls [K] by their names, or of all others; needed where there are walls.
+            Temperatures of the walls [K] by their names, or of all others; needed where there are walls. Of a `Mesh`
+            also an array (t,), one for each triangle.
         wall_emissivity : mapping or float
             Emissivities of the walls by their names, or of all, 0 to 1; needed where there are walls.
         wall_power : mapping, optional
@@ -184,9 +190,13 @@ class Heat(Bed):
             raise refuse("the emissivities do not settle")
         if surroundings is None and result.surroundings_power != 0:
             raise refuse(f"{result.surroundings_power} W leave the bed after 100 periods: surroundings is needed")
+        sides = np.full((2, container.sides_count), math.nan)
+        if sides.size:
+            self._use(library.fibrad_radiation_sides, self._packing, pointer(sides[0]), pointer(sides[1]))
         walls = {name: dict(zip(container.names, array.tolist())) for name, array in of_walls.items()}
         return Powers(spheres=of_spheres["power"], walls=walls["body_power"], surroundings=result.surroundings_power,
                       temperatures=of_spheres["temperature"], wall_temperatures=walls["body_temperature"],
+                      triangle_fluxes=container.by_mesh(sides[0]), triangle_temperatures=container.by_mesh(sides[1]),
                       emissivities=before, errors=of_spheres["power_error"], wall_errors=walls["body_error"],
                       temperature_errors=of_spheres["temperature_error"],
                       error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,

@@ -62,7 +62,8 @@ HeatConfig = _structure("heat_config", ("directions points patches parts", c_uin
                         ("wall_rays", c_uint32))
 HeatSources = _structure("heat_sources", ("temperature emissivity power hold reference", DOUBLES),
                          ("body_temperature body_emissivity body_power", DOUBLES), ("insulated", POINTER(c_ubyte)),
-                         ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int))
+                         ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
+                         ("side_temperature", DOUBLES))
 HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surroundings_power", c_double),
                         ("temperature body_temperature power_error body_error", DOUBLES),
                         ("temperature_error body_temperature_error", DOUBLES),
@@ -90,6 +91,7 @@ def _declare(library: ctypes.CDLL) -> None:
     library.fibrad_radiation_new.argtypes = [POINTER(c_void_p), *bed, POINTER(HeatConfig), POINTER(Run)]
     library.fibrad_radiation_move.argtypes = [c_void_p, *bed]
     library.fibrad_radiation_solve.argtypes = [c_void_p, POINTER(HeatSources), POINTER(HeatResult)]
+    library.fibrad_radiation_sides.argtypes = [c_void_p, DOUBLES, DOUBLES]
     library.fibrad_radiation_describe.argtypes = [c_void_p, c_void_p, POINTER(Fault)]
     library.fibrad_radiation_free.argtypes = [c_void_p]
     library.fibrad_transient_new.argtypes = [POINTER(c_void_p), *bed, POINTER(TransientConfig), POINTER(Run)]

@@ -120,6 +120,11 @@ class Mesh:
         self.triangles = np.ascontiguousarray(corners, np.uint32)
         self.back = back
 
+    def areas(self) -> NDArray[np.float64]:
+        """(t,) of the triangles [m2]."""
+        a, b, c = (self.vertices[self.triangles[:, k]] for k in range(3))
+        return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2)
+
 
 def _body(name: str, value: Any) -> Any:
     if isinstance(value, Mesh):
@@ -181,6 +186,44 @@ class Container:
                 return f"triangle {number} of {self.names[b]}"
             number -= len(mesh.triangles)
         return ""
+
+    def sides(self, name: str, value: Any, low: float, high: float) -> tuple[Any, Optional[NDArray[np.float64]]]:
+        """A mapping by the walls' names without arrays, one value for each triangle of a `Mesh`, and these for all
+        sides of triangles: [2 t], NaN of others; None: there are none. A number with the same mean of fourth powers by
+        area stands for an array."""
+        arrays = {wall: given for wall, given in value.items() if np.ndim(given)} if isinstance(value, Mapping) else {}
+        if not arrays:
+            return value, None
+        numbers, parts = dict(value), []
+        for b, mesh in self._meshes:
+            wall, part = self.names[b], np.full((len(mesh.triangles), 2), math.nan)
+            parts.append(part)
+            if wall not in arrays:
+                continue
+            given = doubles(f"{name} of {wall}", arrays.pop(wall))
+            if given.shape != (len(part),):
+                raise refuse(f"{name} of {wall} has the shape {given.shape}; a number or {len(part)} of them, "
+                             "one for each triangle, are wanted")
+            wrong = np.flatnonzero(~((given >= low) & (given <= high)))
+            if wrong.size:
+                raise refuse(f"{name} of triangle {wrong[0]} of {wall} is {given[wrong[0]]}, not in [{low:g}, {high:g}]")
+            part[:, 0] = given
+            if mesh.back is True or mesh.back == wall:
+                part[:, 1] = given
+            numbers[wall] = float(np.average(given**4, weights=mesh.areas()))**0.25
+        if arrays:
+            raise refuse(f"{name} of {', '.join(arrays)} has several values, and no mesh has that name")
+        return numbers, np.ascontiguousarray(np.concatenate(parts).ravel())
+
+    def by_mesh(self, values: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """Values [2 t] of all sides as (t, 2) of each mesh, by the walls' names."""
+        ends = np.cumsum([len(mesh.triangles) for _, mesh in self._meshes])
+        parts = np.split(values.reshape(-1, 2), ends[:-1]) if self._meshes else []
+        return {self.names[b]: part for (b, _), part in zip(self._meshes, parts)}
+
+    @property
+    def sides_count(self) -> int:
+        return 2 * sum(len(mesh.triangles) for _, mesh in self._meshes)
 
     def closed(self) -> bool:
         """Whether nothing can leave: each axis periodic, between two planes or within the cylinder."""

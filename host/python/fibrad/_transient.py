@@ -132,6 +132,8 @@ class Transient(Bed):
         found = frozenset([*(wall_power or {}), *insulated])
         if found and self._method != "patches":
             raise refuse(f"{', '.join(sorted(found))}: walls of unknown temperature need method='patches'")
+        if "side_temperature" in walls and self._method == "factors":
+            raise refuse("triangles with temperatures of their own need another method than 'factors'")
         end = walls["body_temperature"] if wall_temperature_end is None else container.per_wall(
             "wall_temperature_end", wall_temperature_end, 0, HOTTEST, found)
         shares = per_sphere("emissivity", emissivity, n, 0, 1, names)

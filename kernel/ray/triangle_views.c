@@ -1,0 +1,85 @@
+/* triangle_views.c - how much of what triangles see is spheres, walls and surroundings. SPDX-License-Identifier: MIT */
+#include "base/elementary.h"
+#include "base/random.h"
+#include "base/sobol.h"
+#include "ray/tracer.h"
+#include "scene/walls.h"
+
+#define RAYS_MOST (1u << 30)
+
+/* A direction by the cosine law: the normal and an even point of the unit sphere, added and made 1 long. */
+static bool direction_from(const double normal[3], const double x[2], double w[3]) {
+    const double z = 1 - 2 * x[0], across = fibrad_sqrt(fibrad_max(0, 1 - z * z));
+    double sine, cosine, square = 0;
+    fibrad_sincos_turn(x[1], &sine, &cosine);
+    const double u[3] = {across * cosine, across * sine, z};
+    for (int axis = 0; axis < 3; axis++) w[axis] = normal[axis] + u[axis], square += w[axis] * w[axis];
+    const double length = fibrad_sqrt(square);
+    for (int axis = 0; axis < 3; axis++) w[axis] /= length;
+    return length > 1e-9;
+}
+
+/* Counts of what rays meet. */
+typedef struct view_counts {
+    uint32_t rays, spheres, bodies;
+} view_counts;
+
+/* Counts what a ray meets; FIBRAD_E_BACK: *seen is the place of the triangle. */
+static int count_ray(const fibrad_scene *scene, uint32_t side, const double point[3], const double w[3],
+                     view_counts *counts, uint32_t *seen) {
+    double distance;
+    fibrad_hit hit = {.sphere = FIBRAD_NONE};
+    FIBRAD_VERSION_OF(fibrad_trace_point, scene->facts.isa)(scene, point, w, side / 2, &hit);
+    counts->rays++;
+    if (hit.sphere != FIBRAD_NONE) {
+        counts->spheres++;
+        return FIBRAD_OK;
+    }
+    const uint32_t wall = scene->container.walls ? fibrad_walls_exit(scene, point, w, &distance) : FIBRAD_NONE;
+    const bool meshed = hit.side != FIBRAD_NO_SIDE && (wall == FIBRAD_NONE || hit.distance < distance);
+    counts->bodies += meshed || wall != FIBRAD_NONE;
+    *seen = meshed ? hit.side / 2 : *seen;
+    return meshed && fibrad_scene_slot(scene, hit.side) == FIBRAD_NONE ? FIBRAD_E_BACK : FIBRAD_OK;
+}
+
+static int view_of_side(const fibrad_scene *scene, const fibrad_sobol *sobol, uint32_t side, uint32_t rays,
+                        fibrad_side_view *view, uint32_t *seen) {
+    const fibrad_mesh *mesh = &scene->mesh;
+    const uint64_t shift = fibrad_mix(2 * (uint64_t)mesh->number[side / 2] + side % 2);
+    view_counts counts = {0, 0, 0};
+    double normal[3], point[3], w[3], x[4];
+    int status = FIBRAD_OK;
+    *view = (fibrad_side_view){__builtin_nan(""), __builtin_nan(""), __builtin_nan("")};
+    if (fibrad_scene_slot(scene, side) == FIBRAD_NONE || !(fibrad_mesh_triangle_area(mesh, side / 2) > 0))
+        return FIBRAD_OK;
+    fibrad_mesh_normal(mesh, side, normal);
+    for (uint32_t k = 0; k < rays && status == FIBRAD_OK; k++) {
+        uint32_t bits[8];
+        fibrad_sobol_point(sobol, k, bits);
+        for (uint64_t d = 0; d < 4; d++)
+            x[d] = fibrad_fraction(((uint64_t)bits[d] << 32 | UINT64_C(1) << 31) ^ fibrad_mix(shift + d));
+        fibrad_mesh_triangle_point(mesh, side / 2, x, point);
+        if (!fibrad_walls_hold(&scene->container, point) || !direction_from(normal, x + 2, w)) continue;
+        status = count_ray(scene, side, point, w, &counts, seen);
+    }
+    if (status != FIBRAD_OK || counts.rays == 0) return status;
+    view->spheres = (double)counts.spheres / counts.rays;
+    view->bodies = (double)counts.bodies / counts.rays;
+    view->escaped = (double)(counts.rays - counts.spheres - counts.bodies) / counts.rays;
+    return FIBRAD_OK;
+}
+
+int fibrad_triangle_views(const fibrad_scene *scene, uint32_t place, uint32_t rays, uint32_t *triangle,
+                          fibrad_side_view view[2]) {
+    fibrad_sobol sobol;
+    if (scene == NULL || triangle == NULL || view == NULL || rays < 1 || rays > RAYS_MOST) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
+    if (place >= scene->mesh.triangles) return FIBRAD_E_ARGUMENT;
+    uint32_t seen = place;
+    int status = FIBRAD_OK;
+    fibrad_sobol_make(&sobol);
+    for (uint32_t back = 0; back < 2 && status == FIBRAD_OK; back++)
+        status = view_of_side(scene, &sobol, 2 * place + back, rays, &view[back], &seen);
+    *triangle = scene->mesh.number[status == FIBRAD_E_BACK ? seen : place];
+    return status;
+}
