@@ -88,11 +88,12 @@ typedef enum fibrad_isa {
     FIBRAD_ISA_SCALAR = 1,
     FIBRAD_ISA_SSE2 = 2,
     FIBRAD_ISA_AVX2 = 3,
-    FIBRAD_ISA_AVX512 = 4
+    FIBRAD_ISA_AVX512 = 4,
+    FIBRAD_ISA_NEON = 5 /* aarch64 */
 } fibrad_isa;
 
 /* All instruction sets return the same bits. The widest that this build and this machine offer (cost: microseconds);
- * "scalar", "sse2", "avx2", "avx512", "best" for FIBRAD_ISA_BEST, "?" for other numbers. No errors. */
+ * "scalar", "sse2", "avx2", "avx512", "neon", "best" for FIBRAD_ISA_BEST, "?" for other numbers. No errors. */
 fibrad_isa fibrad_isa_best(void);
 const char *fibrad_isa_name(int isa);
 
