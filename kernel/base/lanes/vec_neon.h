@@ -1,4 +1,4 @@
-/* vec_neon.h - two doubles, four floats on aarch64. What the operations are: vec_scalar.h. SPDX-License-Identifier: MIT */
+/* vec_neon.h - aarch64: two doubles, four floats. Operations: vec_scalar.h. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_VEC_NEON_H
 #define FIBRAD_VEC_NEON_H
 
