@@ -10,7 +10,7 @@
 
 #define ROWS_AT_ONCE 16 /* that a thread takes: few enough to share out a bed, enough to share a neighbourhood */
 #define AVERAGES     4  /* tasks of averaging for a thread, so that one that is late does not hold up the rest */
-#define AVERAGES_MAX 1024
+#define AVERAGES_MAX 64 /* tasks, unless there are more threads: each looks into all rows */
 #define FILED_MAX    256
 #define FILED_BYTES  ((uint64_t)1 << 28) /* that a task of averaging writes, in no order, where they are in a file */
 
@@ -120,7 +120,9 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
 static uint32_t average_tasks(const fibrad_job *job) {
     const fibrad_team *team = &job->team;
     if (team->threads == 1 && !job->scratch) return 1;
-    const uint32_t wanted = AVERAGES * (uint32_t)team->threads, tasks = wanted < AVERAGES_MAX ? wanted : AVERAGES_MAX;
+    const uint32_t threads = (uint32_t)team->threads,
+                   some = threads < AVERAGES_MAX / AVERAGES ? AVERAGES * threads : AVERAGES_MAX;
+    const uint32_t tasks = threads > some ? threads : some;
     uint64_t bytes = 0;
     for (int t = 0; t < team->threads && job->scratch; ++t)
         bytes += 2 * team->rows[t].entries * (sizeof(double) + sizeof(uint32_t));
