@@ -23,14 +23,16 @@ TABLES     =
 PIC        = -fPIC -fno-semantic-interposition
 # number in the name of the shared library: another one when a function or structure of the public headers changes
 ABI        = 0
-# instruction sets of the laned sources: scalar, then any of sse2 avx2 avx512
-ISAS      := scalar $(if $(filter x86_64% i%86%,$(shell $(CC) -dumpmachine)),sse2 avx2 avx512)
+# instruction sets of the laned sources: scalar, then any of sse2 avx2 avx512, or neon
+MACHINE   := $(shell $(CC) -dumpmachine)
+ISAS      := scalar $(if $(filter x86_64% i%86%,$(MACHINE)),sse2 avx2 avx512) $(if $(filter aarch64%,$(MACHINE)),neon)
 
 # ---- what the sources need ------------------------------------------------------------------------------------------
 WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wshadow -Wvla $(WERROR)
 COMMON   = -std=c11 -ffp-contract=off $(WARNINGS) -Ikernel -MMD -MP
-# tables of addresses would be data in position independent code
-KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS)
+# tables of addresses would be data in position independent code; atomics out of line, a call of libgcc
+KERNEL_FLAGS = $(COMMON) -ffreestanding -fno-math-errno -fno-trapping-math $(PIC) -fno-jump-tables $(TABLES) $(WITH_ISAS) \
+               $(if $(filter aarch64%,$(MACHINE)),-mno-outline-atomics)
 SIMPLE_FLAGS = $(COMMON) -D_XOPEN_SOURCE=700 -D_FILE_OFFSET_BITS=64 -Ihost -fopenmp -fno-math-errno -fno-trapping-math $(PIC)
 HOST_FLAGS   = $(COMMON) -D_XOPEN_SOURCE=700 -fopenmp -Ihost $(GSL_CFLAGS) $(ZLIB_CFLAGS)
 TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
@@ -38,13 +40,15 @@ TEST_FLAGS   = $(HOST_FLAGS) $(CHECK_CFLAGS) $(TABLES) $(WITH_ISAS)
 WITH_sse2   = -DFIBRAD_WITH_SSE2
 WITH_avx2   = -DFIBRAD_WITH_AVX2
 WITH_avx512 = -DFIBRAD_WITH_AVX512
+WITH_neon   = -DFIBRAD_WITH_NEON
 WITH_ISAS   = $(foreach isa,$(filter-out scalar,$(ISAS)),$(WITH_$(isa)))
 
-# no -mfma: products and sums round one by one in every instruction set
+# no -mfma, no contraction: products and sums round one by one in every instruction set
 FLAGS_scalar =
 FLAGS_sse2   = -msse2
 FLAGS_avx2   = -mavx2 -mpopcnt
 FLAGS_avx512 = -mavx512f -mavx512dq -mavx512bw -mavx512vl -mpopcnt
+FLAGS_neon   =
 
 # asked for when used, since `make deps` may just have installed them
 GSL_CFLAGS   = $(shell $(PKG_CONFIG) --cflags gsl)
@@ -525,10 +529,10 @@ bench-peers:
 
 # the library is made anew where its sources have changed: its own make knows
 bench-counted: $(filter-out %/libfibrad.a,$(LIBRARIES))
-	@case $$($(CC) -dumpmachine) in x86_64*) \
+	@case $$($(CC) -dumpmachine) in x86_64*|aarch64*) \
 	    $(MAKE) -s --no-print-directory BUILD=$(BUILD)/counted CC="bench/count_cc.sh $(CC)" HOSTCC="$(HOSTCC)" lib && \
 	    $(MAKE) -s --no-print-directory $(COUNT_PROGRAMS) ;; \
-	*) echo "Instructions are only counted on x86-64" ;; esac
+	*) echo "Instructions are only counted on x86-64 and aarch64" ;; esac
 
 ## skips: what the skips save that no argument turns off, each turned off in a copy of the kernel (some minutes)
 skips:

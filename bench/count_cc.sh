@@ -3,9 +3,9 @@
 #
 #     make CC="bench/count_cc.sh gcc" HOSTCC=gcc lib
 #
-# x86-64, one thread. The compiler's assembly is left as it is, but before each block, from a label or jump to the next,
-# the number of its instructions is added to instructions_counted, all registers and flags being kept. Repeated string
-# instructions count once; what is called in other libraries does not count. The caller defines
+# x86-64 and aarch64, one thread. The compiler's assembly is left as it is, but before each block, from a label or jump
+# to the next, the number of its instructions is added to instructions_counted, all registers and flags being kept.
+# Repeated string instructions count once; what is called in other libraries does not count. The caller defines
 # uint64_t instructions_counted[2], of which the second is scratch.
 set -eu
 case " $* " in
@@ -19,9 +19,13 @@ for argument; do
     set -- "$@" "$argument"
 done
 "$@" -g0 -S -MF "${object%.o}.d" -MT "$object"
-awk '
+awk -v machine="$("$compiler" -dumpmachine)" '
 function flush(   k) {
-    if (count > 0) {
+    if (count > 0 && machine ~ /^aarch64/) {
+        print "\tstp x16, x17, [sp, -16]!\n\tadrp x16, instructions_counted"
+        print "\tldr x17, [x16, #:lo12:instructions_counted]\n\tadd x17, x17, #" count
+        print "\tstr x17, [x16, #:lo12:instructions_counted]\n\tldp x16, x17, [sp], 16"
+    } else if (count > 0) {
         print "\tmovq %rax, 8+instructions_counted(%rip)\n\tlahf\n\tseto %al"
         print "\taddq $" count ", instructions_counted(%rip)"
         print "\taddb $127, %al\n\tsahf\n\tmovq 8+instructions_counted(%rip), %rax"
@@ -31,9 +35,9 @@ function flush(   k) {
 }
 /^[^\t #].*:/ {flush(); print; next}
 /^\t(\.section|\.text|\.data|\.bss)/ {flush(); print; next}
-/^[ \t]*([.#]|$)/ {line[held++] = $0; next}
+/^[ \t]*([.#]|\/\/|$)/ {line[held++] = $0; next}
 {line[held++] = $0; count++}
-/^\t(j|ret|notrack jmp)/ {flush()}
+/^\t(j|ret|notrack jmp|(b|br|b\.?[a-z][a-z]|cbn?z|tbn?z)\t)/ {flush()}
 END {flush()}' "$object.plain" >"$object.s"
 "$compiler" -c "$object.s" -o "$object"
 rm "$object.plain" "$object.s"

@@ -88,11 +88,12 @@ typedef enum fibrad_isa {
     FIBRAD_ISA_SCALAR = 1,
     FIBRAD_ISA_SSE2 = 2,
     FIBRAD_ISA_AVX2 = 3,
-    FIBRAD_ISA_AVX512 = 4
+    FIBRAD_ISA_AVX512 = 4,
+    FIBRAD_ISA_NEON = 5 /* aarch64 */
 } fibrad_isa;
 
 /* All instruction sets return the same bits. The widest that this build and this machine offer (cost: microseconds);
- * "scalar", "sse2", "avx2", "avx512", "best" for FIBRAD_ISA_BEST, "?" for other numbers. No errors. */
+ * "scalar", "sse2", "avx2", "avx512", "neon", "best" for FIBRAD_ISA_BEST, "?" for other numbers. No errors. */
 fibrad_isa fibrad_isa_best(void);
 const char *fibrad_isa_name(int isa);
 
@@ -302,6 +303,11 @@ typedef struct fibrad_body_row {
     uint64_t rays;                  /* traced */
 } fibrad_body_row;
 
+/* A function of the caller that has threads: does pieces [0, pieces) of a job by piece(job, k), in any order or at
+ * once, and returns when all are done. */
+typedef void fibrad_piece(void *job, uint32_t k);
+typedef void fibrad_parallel(void *context, uint32_t pieces, fibrad_piece *piece, void *job);
+
 /* What becomes of the rows. Zeroed: view factors, reciprocal and closed. */
 typedef struct fibrad_matrix_rule {
     const double *emissivity;        /* [spheres] [0, 1]: the rows are exchange factors; NULL: view factors */
@@ -311,6 +317,8 @@ typedef struct fibrad_matrix_rule {
     const fibrad_body_row *body_row; /* [bodies] rows of bodies, too, copied; those of bodies without bounds are not
                                         looked at. NULL: spheres alone have rows */
     const double *body_emissivity;   /* [bodies] [0, 1] for these; NULL: 1 */
+    fibrad_parallel *parallel;       /* does what can be done at once, `tasks` pieces; NULL: the calling thread does */
+    void *context;                   /* handed to it */
 } fibrad_matrix_rule;
 
 /* A matrix of factors, compressed rows. The arrays are those of the matrix it was read from. */
@@ -343,7 +351,8 @@ int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const 
 
 /* Averages the rows of task [0, rule->tasks), several threads at once: (A_i F_ij + A_j F_ji)/(2 A_i), A = 4 pi r^2
  * (times emissivity). Optional: fibrad_matrix_close does what was left out. Errors: _ARGUMENT, _STATE (twice, raw,
- * closed). Cost: each task reads all entries three times. Source: docs/methods.md section 5. */
+ * closed). Cost: each task reads its share of entries three times, and looks for them in all rows. Source:
+ * docs/methods.md section 5. */
 int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
 
 /* Ends the matrix. View factors: row sums above 1 are brought down to 1 symmetrically. Exchange factors: row sums are

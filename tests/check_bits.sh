@@ -9,9 +9,10 @@ set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${HOSTCC:=cc}"
 faults=0
 
-# variant NAME COMPILER LEVEL RUN FLAGS: builds the kernel and the hashing program, and compares what it prints
+# variant NAME COMPILER LEVEL RUN FLAGS ISA...: builds the kernel and the hashing program, and compares what it prints
 variant() {
     name=$1 compiler=$2 level=$3 run=$4 flags=$5
+    shift 5
     if ! command -v "$compiler" >/dev/null || { test -n "$run" && ! command -v "$run" >/dev/null; }; then
         echo "SKIP bits of $name: no $compiler${run:+ or no $run} on this machine"
         return
@@ -26,8 +27,7 @@ variant() {
         faults=1
         return
     fi
-    test -z "$run" && isas="scalar sse2 avx2 avx512" || isas=scalar
-    for isa in $isas; do
+    for isa; do
         # shellcheck disable=SC2086  # run may be empty
         $run "$folder/bits" $isa >"$folder/bits.txt"
         status=$?
@@ -64,9 +64,9 @@ test "$1" != all || set -- gcc:-O0 gcc:-O2 gcc:-O3 clang:-O0 clang:-O2 clang:-O3
 for build; do
     level=${build#*:}
     case $build in
-    aarch64:*) variant "aarch64$level" aarch64-linux-gnu-gcc "$level" qemu-aarch64 -static ;;
-    arm:*) variant "arm$level" arm-linux-gnueabihf-gcc "$level" qemu-arm -static ;;
-    *) variant "${build%:*}$level" "${build%:*}" "$level" "" "" ;;
+    aarch64:*) variant "aarch64$level" aarch64-linux-gnu-gcc "$level" qemu-aarch64 -static scalar neon ;;
+    arm:*) variant "arm$level" arm-linux-gnueabihf-gcc "$level" qemu-arm -static scalar ;;
+    *) variant "${build%:*}$level" "${build%:*}" "$level" "" "" scalar sse2 avx2 avx512 ;;
     esac
 done
 for threads in 1 2 7; do

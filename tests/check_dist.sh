@@ -43,5 +43,5 @@ variant() {
 
 variant gcc "" "" scalar sse2 avx2 avx512
 variant clang "" "" scalar sse2 avx2 avx512
-variant aarch64-linux-gnu-gcc qemu-aarch64 -static scalar
+variant aarch64-linux-gnu-gcc qemu-aarch64 -static scalar neon
 exit $faults

@@ -313,6 +313,9 @@ WIDER(avx2)
 #ifdef FIBRAD_WITH_AVX512
 WIDER(avx512)
 #endif
+#ifdef FIBRAD_WITH_NEON
+WIDER(neon)
+#endif
 
 /* In all instruction sets the same windows are degenerate, and the areas have the same bits: [1] in the way of many
  * discs. */
@@ -327,6 +330,9 @@ START_TEST(bits_of_windows) {
 #endif
 #ifdef FIBRAD_WITH_AVX512
         [FIBRAD_ISA_AVX512] = {&avx512, &dense_avx512},
+#endif
+#ifdef FIBRAD_WITH_NEON
+        [FIBRAD_ISA_NEON] = &neon,
 #endif
     };
     int isa[ISAS_MOST];

@@ -503,11 +503,20 @@ END_TEST
 
 /* ---- tasks and states ------------------------------------------------------------------------------------------- */
 
-/* The matrix of `tasks` tasks, every one but each `left`-th averaged here, backwards or by several threads. */
+static void at_once(void *calls, uint32_t pieces, fibrad_piece *piece, void *job) {
+    ++*(int *)calls;
+#pragma omp parallel for num_threads(4) schedule(dynamic, 1)
+    for (uint32_t k = 0; k < pieces; k++) piece(job, pieces - 1 - k);
+}
+
+/* The matrix of `tasks` tasks, every one but each `left`-th averaged here, backwards or by several threads, which then
+ * do all the rest, too. */
 static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                               fibrad_matrix_rule rule, uint32_t tasks, uint32_t left, bool threads) {
     struct matrix m = {NULL, {0}};
+    int calls = 0;
     rule.tasks = tasks;
+    if (threads) rule.parallel = at_once, rule.context = &calls;
     const size_t size = fibrad_matrix_size(scene, rows, count, &rule);
     void *block = block_of(size);
     memset(block, 0xa5, size);
@@ -519,6 +528,14 @@ static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows
     ck_assert_int_eq(failed, 0);
     ck_assert_int_eq(fibrad_matrix_close(m.matrix), FIBRAD_OK);
     ck_assert_int_eq(fibrad_matrix_read(m.matrix, &m.factors), FIBRAD_OK);
+    double largest, same;
+    ck_assert_int_eq(fibrad_matrix_reciprocity(m.matrix, &largest), FIBRAD_OK);
+    ck_assert(!threads || tasks == 1 || calls > 4);
+    struct matrix alone =
+        matrix_of(scene, rows, count, &(fibrad_matrix_rule){.emissivity = rule.emissivity, .drop = rule.drop});
+    ck_assert_int_eq(fibrad_matrix_reciprocity(alone.matrix, &same), FIBRAD_OK);
+    ck_assert_double_eq(largest, same);
+    matrix_free(&alone);
     return m;
 }
 

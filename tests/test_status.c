@@ -55,10 +55,10 @@ START_TEST(version_is_the_headers) {
 END_TEST
 
 START_TEST(instruction_sets_have_names) {
-    static const char *const names[] = {"best", "scalar", "sse2", "avx2", "avx512"};
-    for (int isa = FIBRAD_ISA_BEST; isa <= FIBRAD_ISA_AVX512; isa++) ck_assert_str_eq(fibrad_isa_name(isa), names[isa]);
+    static const char *const names[] = {"best", "scalar", "sse2", "avx2", "avx512", "neon"};
+    for (int isa = FIBRAD_ISA_BEST; isa <= FIBRAD_ISA_NEON; isa++) ck_assert_str_eq(fibrad_isa_name(isa), names[isa]);
     ck_assert_str_eq(fibrad_isa_name(-1), "?");
-    ck_assert_str_eq(fibrad_isa_name(5), "?");
+    ck_assert_str_eq(fibrad_isa_name(6), "?");
 }
 END_TEST
 

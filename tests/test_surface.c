@@ -220,6 +220,9 @@ START_TEST(instruction_sets_not_built_in) {
 #ifndef FIBRAD_WITH_AVX512
         FIBRAD_ISA_AVX512,
 #endif
+#ifndef FIBRAD_WITH_NEON
+        FIBRAD_ISA_NEON,
+#endif
         0};
     for (size_t k = 0; k + 1 < sizeof lacking / sizeof *lacking; k++) {
         double f12 = 42;

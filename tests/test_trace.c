@@ -26,6 +26,9 @@ static const struct versions versions[] = {
 #ifdef FIBRAD_WITH_AVX512
     {FIBRAD_ISA_AVX512, fibrad_trace_avx512, fibrad_trace_point_avx512},
 #endif
+#ifdef FIBRAD_WITH_NEON
+    {FIBRAD_ISA_NEON, fibrad_trace_neon, fibrad_trace_point_neon},
+#endif
 };
 
 /* Few lists, which spheres share, or one for each sphere. */

@@ -13,7 +13,8 @@
 #define LONG_RATIO   8  /* radius over the mean one from which on a row is divided over the threads */
 #define PARTS_EACH   4  /* parts of a row for each thread */
 #define PARTS_MAX    256
-#define AVERAGES_MAX 16 /* tasks of averaging: each reads all entries */
+#define AVERAGES     4  /* tasks of averaging for a thread, so that one that is late does not hold up the rest */
+#define AVERAGES_MAX 64 /* tasks, unless there are more threads: each looks into all rows */
 #define FILED_MAX    256
 #define FILED_BYTES  ((uint64_t)1 << 28) /* that a task of averaging writes, in no order, where they are in a file */
 
@@ -213,15 +214,13 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
     return status;
 }
 
-static int run_average(void *matrix, int thread, uint32_t task) {
-    (void)thread;
-    return fibrad_matrix_average(matrix, task);
-}
-
-/* As many as there are threads; in a file so many more that what each writes stays in memory meanwhile. */
+/* Some for each thread; in a file so many more that what each writes stays in memory meanwhile. */
 static uint32_t average_tasks(const fibrad_job *job) {
     const fibrad_team *team = &job->team;
-    const uint32_t tasks = team->threads < AVERAGES_MAX ? (uint32_t)team->threads : AVERAGES_MAX;
+    if (team->threads == 1 && !job->scratch) return 1;
+    const uint32_t threads = (uint32_t)team->threads,
+                   some = threads < AVERAGES_MAX / AVERAGES ? AVERAGES * threads : AVERAGES_MAX;
+    const uint32_t tasks = threads > some ? threads : some;
     uint64_t bytes = 0;
     for (int t = 0; t < team->threads && job->scratch; ++t)
         bytes += 2 * team->rows[t].entries * (sizeof(double) + sizeof(uint32_t));
@@ -233,6 +232,7 @@ static int make_matrix(fibrad_job *job, const fibrad_matrix_rule *rule, fibrad_m
     fibrad_team *team = &job->team;
     fibrad_matrix_rule divided = *rule;
     divided.tasks = average_tasks(job);
+    divided.parallel = fibrad_team_share, divided.context = team;
     const size_t size = fibrad_matrix_size(job->scene, team->rows, (uint32_t)team->threads, &divided);
     if (!size) return FIBRAD_E_ARGUMENT;
     int status = fibrad_scratch_open(store, job->scratch);
@@ -240,7 +240,6 @@ static int make_matrix(fibrad_job *job, const fibrad_matrix_rule *rule, fibrad_m
     if (!fibrad_scratch_resize(store, NULL, size)) return FIBRAD_E_MEMORY;
     status =
         fibrad_matrix_init(matrix, store->block, size, job->scene, team->rows, (uint32_t)team->threads, &divided, NULL);
-    if (!status && !divided.raw) status = fibrad_team_run(team, NULL, divided.tasks, 1, run_average, *matrix, NULL);
     return status ? status : fibrad_matrix_close(*matrix);
 }
 

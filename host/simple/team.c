@@ -103,3 +103,9 @@ int fibrad_team_run(fibrad_team *team, const char *stage, uint32_t tasks, int ch
     if (failed) *failed = lowest;
     return status ? status : fibrad_team_report(team, stage, tasks, tasks);
 }
+
+void fibrad_team_share(void *team, uint32_t pieces, fibrad_piece *piece, void *job) {
+    const fibrad_team *all = team;
+#pragma omp parallel for schedule(dynamic) num_threads(all->threads)
+    for (uint32_t k = 0; k < pieces; ++k) piece(job, k);
+}

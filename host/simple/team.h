@@ -40,6 +40,9 @@ typedef int fibrad_team_task(void *job, int thread, uint32_t task);
 int fibrad_team_run(fibrad_team *team, const char *stage, uint32_t tasks, int chunk, fibrad_team_task *task, void *job,
                     uint32_t *failed);
 
+/* A fibrad_parallel of a team. */
+void fibrad_team_share(void *team, uint32_t pieces, fibrad_piece *piece, void *job);
+
 /* Calls the progress function, if there is one. FIBRAD_OK or FIBRAD_E_CANCELLED. */
 int fibrad_team_report(const fibrad_team *team, const char *stage, uint64_t done, uint64_t total);
 

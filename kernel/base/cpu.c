@@ -38,6 +38,8 @@ static fibrad_isa isa_of_machine(void) {
         return FIBRAD_ISA_AVX2;
     return FIBRAD_ISA_AVX512;
 }
+#elif defined(__aarch64__) /* every such processor has it */
+static fibrad_isa isa_of_machine(void) { return FIBRAD_ISA_NEON; }
 #else
 static fibrad_isa isa_of_machine(void) { return FIBRAD_ISA_SCALAR; }
 #endif
@@ -59,6 +61,10 @@ int fibrad_isa_built(int isa) {
     case FIBRAD_ISA_AVX512:
         return true;
 #endif
+#ifdef FIBRAD_WITH_NEON
+    case FIBRAD_ISA_NEON:
+        return true;
+#endif
     default:
         return false;
     }
@@ -72,7 +78,7 @@ fibrad_isa fibrad_isa_best(void) {
 
 int fibrad_isa_choose(int wish) {
     if (wish == FIBRAD_ISA_BEST) return (int)fibrad_isa_best();
-    if (wish < FIBRAD_ISA_SCALAR || wish > FIBRAD_ISA_AVX512) return -2;
+    if (wish < FIBRAD_ISA_SCALAR || wish > FIBRAD_ISA_NEON) return -2;
     return fibrad_isa_built(wish) && wish <= (int)isa_of_machine() ? wish : -1;
 }
 
@@ -88,6 +94,8 @@ const char *fibrad_isa_name(int isa) {
         return "avx2";
     case FIBRAD_ISA_AVX512:
         return "avx512";
+    case FIBRAD_ISA_NEON:
+        return "neon";
     default:
         return "?";
     }

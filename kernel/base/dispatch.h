@@ -1,7 +1,7 @@
 /* dispatch.h - the choice of an instruction set. SPDX-License-Identifier: MIT
  *
- * FIBRAD_WITH_SSE2, FIBRAD_WITH_AVX2, FIBRAD_WITH_AVX512 are defined when the laned sources were also compiled for
- * them; scalar is always there. */
+ * FIBRAD_WITH_SSE2, FIBRAD_WITH_AVX2, FIBRAD_WITH_AVX512, FIBRAD_WITH_NEON are defined when the laned sources were also
+ * compiled for them; scalar is always there. */
 #ifndef FIBRAD_BASE_DISPATCH_H
 #define FIBRAD_BASE_DISPATCH_H
 
@@ -29,15 +29,21 @@ int fibrad_isa_built(int isa);
 #else
 #define FIBRAD_AVX512(name) name##_scalar
 #endif
+#ifdef FIBRAD_WITH_NEON
+#define FIBRAD_NEON(name) name##_neon
+#else
+#define FIBRAD_NEON(name) name##_scalar
+#endif
 
 /* The version of a laned function for an instruction set of this build, as fibrad_isa_choose returned it. */
 #define FIBRAD_VERSION_OF(name, isa)                                                                                   \
-    ((isa) == FIBRAD_ISA_AVX512 ? FIBRAD_AVX512(name)                                                                  \
-     : (isa) == FIBRAD_ISA_AVX2 ? FIBRAD_AVX2(name)                                                                    \
-     : (isa) == FIBRAD_ISA_SSE2 ? FIBRAD_SSE2(name)                                                                    \
-                                : name##_scalar)
+    ((isa) == FIBRAD_ISA_NEON     ? FIBRAD_NEON(name)                                                                  \
+     : (isa) == FIBRAD_ISA_AVX512 ? FIBRAD_AVX512(name)                                                                \
+     : (isa) == FIBRAD_ISA_AVX2   ? FIBRAD_AVX2(name)                                                                  \
+     : (isa) == FIBRAD_ISA_SSE2   ? FIBRAD_SSE2(name)                                                                  \
+                                  : name##_scalar)
 
 /* Declares all versions of a laned function of a type. */
-#define FIBRAD_DECLARE_VERSIONS(type, name) type name##_scalar, name##_sse2, name##_avx2, name##_avx512
+#define FIBRAD_DECLARE_VERSIONS(type, name) type name##_scalar, name##_sse2, name##_avx2, name##_avx512, name##_neon
 
 #endif

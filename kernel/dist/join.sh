@@ -90,34 +90,38 @@ cp "$tables" "$work/tables.c"
 #undef FIBRAD_PASS
 #undef FIBRAD_ISA_SUFFIX
 PASSES
-    for pass in 2:sse2:sse2 3:avx2:avx2,popcnt 4:avx512:avx512f,avx512dq,avx512bw,avx512vl,popcnt; do
+    for pass in 2:sse2:sse2 3:avx2:avx2,popcnt 4:avx512:avx512f,avx512dq,avx512bw,avx512vl,popcnt 5:neon:; do
         number=${pass%%:*} isa=$(echo $pass | cut -d : -f 2) target=${pass##*:}
-        cat <<PASS
-#ifdef FIBRAD_WITH_$(echo "$isa" | tr '[:lower:]' '[:upper:]')
+        echo "#ifdef FIBRAD_WITH_$(echo "$isa" | tr '[:lower:]' '[:upper:]')"
+        test -z "$target" || cat <<PUSH
 #ifdef __clang__
 #pragma clang attribute push(__attribute__((target("$target"))), apply_to = function)
 #else
 #pragma GCC push_options
 #pragma GCC target("$target")
 #endif
+PUSH
+        cat <<PASS
 #define FIBRAD_PASS $number
 #define FIBRAD_ISA_SUFFIX _$isa
 #include "fibrad.c"
 #undef FIBRAD_PASS
 #undef FIBRAD_ISA_SUFFIX
+PASS
+        test -z "$target" || cat <<POP
 #ifdef __clang__
 #pragma clang attribute pop
 #else
 #pragma GCC pop_options
 #endif
-#endif
-PASS
+POP
+        echo '#endif'
     done
     echo '#else'
     # shellcheck disable=SC2086
     {
         number=0
-        for isa in scalar sse2 avx2 avx512; do
+        for isa in scalar sse2 avx2 avx512 neon; do
             number=$((number + 1))
             echo "#if FIBRAD_PASS == $number"
             skip=$headers

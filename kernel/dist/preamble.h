@@ -11,6 +11,9 @@
 #define FIBRAD_WITH_SSE2
 #define FIBRAD_WITH_AVX2
 #define FIBRAD_WITH_AVX512
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#define FIBRAD_WITH_NEON
 #endif
 
 #define FIBRAD_PORT_GIVEN

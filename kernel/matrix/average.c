@@ -6,16 +6,34 @@
  * entries as what is left of the transpose. */
 #include "matrix/matrix.h"
 
-/* Writes the rows of the transpose; matrix->place[j] becomes where row j ends. */
+uint64_t fibrad_matrix_count_part(fibrad_matrix *m, const fibrad_matrix_part *part) {
+    uint64_t count = 0;
+    for (uint32_t j = part->begin; j < part->end; j++) m->place[j] = 0;
+    for (uint32_t i = 0; i < m->result.n && part->begin < part->end; i++) {
+        const uint32_t *col = fibrad_record_col(m->row[i]), length = m->row[i]->length;
+        const uint32_t first = (uint32_t)fibrad_first_entry(col, length, part->begin);
+        uint32_t k = first;
+        for (; k < length && col[k] < part->end; k++) m->place[col[k]]++;
+        count += k - first;
+    }
+    return count;
+}
+
+/* Writes the rows of the transpose; matrix->place[j], the length of row j, becomes where it ends. */
 static void transpose_part(fibrad_matrix *m, const fibrad_matrix_part *part) {
     const fibrad_sparse *to = &m->result;
-    for (uint32_t i = 0; i < to->n; i++) {
+    uint64_t place = part->transposed;
+    for (uint32_t j = part->begin; j < part->end; j++) {
+        const uint64_t length = m->place[j];
+        m->place[j] = place;
+        place += length;
+    }
+    for (uint32_t i = 0; i < to->n && part->begin < part->end; i++) {
         const uint32_t *col = fibrad_record_col(m->row[i]), length = m->row[i]->length;
         const double *f = fibrad_record_f(m->row[i]);
-        for (uint32_t k = 0; k < length; k++) {
-            const uint32_t j = col[k];
-            if (j < part->begin || j >= part->end) continue;
-            const uint64_t at = m->place[j]++;
+        for (uint32_t k = (uint32_t)fibrad_first_entry(col, length, part->begin); k < length && col[k] < part->end;
+             k++) {
+            const uint64_t at = m->place[col[k]]++;
             to->col[at] = i, to->f[at] = f[k];
         }
     }

@@ -6,7 +6,8 @@
 #include "matrix/matrix.h"
 #include "scene/scene.h"
 
-#define TASKS_MAX 1024u
+#define TASKS_MAX          1024u
+#define RECIPROCITY_PIECES 256u
 
 /* The estimates of S_ij from both its rows differ by about twice the error of their mean. The factors take in the worst
  * rows of hundred; the part of the raw estimate, rows whose two errors are equal by symmetry: docs/accuracy.md. */
@@ -86,6 +87,14 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     return place;
 }
 
+void fibrad_matrix_share(const fibrad_matrix *m, uint32_t pieces, fibrad_piece *piece, void *job) {
+    if (m->parallel != NULL && pieces > 1) {
+        m->parallel(m->context, pieces, piece, job);
+        return;
+    }
+    for (uint32_t k = 0; k < pieces; k++) piece(job, k);
+}
+
 /* The numbers that follow from the arguments; false if these are not valid. */
 static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                              const fibrad_matrix_rule *rule) {
@@ -96,6 +105,8 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     m->exchange = rule != NULL && rule->emissivity != NULL;
     m->enclosed = rule != NULL && rule->body_row != NULL;
     m->drop = rule != NULL ? rule->drop : 0;
+    m->parallel = rule != NULL ? rule->parallel : NULL;
+    m->context = rule != NULL ? rule->context : NULL;
     m->result.n = scene->facts.spheres;
     m->result.capacity = m->raw ? entries : 2 * entries + (m->drop > 0 ? m->result.n : 0);
     return entries < UINT64_MAX / 4 && m->result.capacity <= SIZE_MAX;
@@ -165,6 +176,7 @@ static void copy_raw(fibrad_matrix *m) {
     for (uint32_t i = 0; i < to->n; i++) {
         const fibrad_record *row = m->row[i];
         const uint32_t length = row != NULL ? row->length : 0;
+        copy_rest(m, i);
         to->start[i + 1] = to->start[i] + length;
         if (length == 0) continue;
         fibrad_copy(to->col + to->start[i], fibrad_record_col(row), length * sizeof *to->col);
@@ -172,33 +184,30 @@ static void copy_raw(fibrad_matrix *m) {
     }
 }
 
+static void measure_part(void *matrix, uint32_t p) {
+    fibrad_matrix *m = matrix;
+    fibrad_matrix_part *part = &m->part[p];
+    for (uint32_t i = part->begin; i < part->end; i++) copy_rest(m, i), part->transposed += m->row[i]->length;
+    part->last = part->transposed + fibrad_matrix_count_part(m, part);
+}
+
 /* Divides the rows into parts of about as many entries. Each has a stretch of the result that holds its rows of the
  * matrix and of its transpose. */
-static void divide(fibrad_matrix *m) {
+static void divide(fibrad_matrix *m, uint64_t entries) {
     const uint32_t n = m->result.n;
-    uint64_t *transposed = m->place, entries = 0, own = 0, at = 0;
-    for (uint32_t i = 0; i < n; i++) transposed[i] = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        const uint32_t *col = fibrad_record_col(m->row[i]);
-        for (uint32_t k = 0; k < m->row[i]->length; k++) transposed[col[k]]++;
-        entries += m->row[i]->length;
-    }
+    uint64_t own = 0, at = 0;
     uint32_t i = 0;
     for (uint32_t p = 0; p < m->tasks; p++) {
-        const uint64_t until = entries / m->tasks * (p + 1), before = own;
-        uint64_t theirs = 0;
+        const uint64_t until = entries / m->tasks * (p + 1);
+        m->part[p] = (fibrad_matrix_part){.begin = i};
+        for (; i < n && (own < until || p + 1 == m->tasks); i++) own += m->row[i]->length;
+        m->part[p].end = i;
+    }
+    fibrad_matrix_share(m, m->tasks, measure_part, m);
+    for (uint32_t p = 0; p < m->tasks; p++) { /* each begins where the one before ends */
         fibrad_matrix_part *part = &m->part[p];
-        *part = (fibrad_matrix_part){.begin = i, .first = at};
-        for (; i < n && (own < until || p + 1 == m->tasks); i++) own += m->row[i]->length, theirs += transposed[i];
-        part->end = i;
-        part->transposed = at + (own - before);
-        part->last = at = part->transposed + theirs;
-        uint64_t place = part->transposed;
-        for (uint32_t j = part->begin; j < i; j++) {
-            const uint64_t length = transposed[j];
-            m->place[j] = place;
-            place += length;
-        }
+        part->first = at, part->transposed += at;
+        part->last = at += part->last;
     }
 }
 
@@ -220,13 +229,12 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
     for (uint32_t i = 0; i < m->result.n; i++) {
         m->r[i] = scene->r[scene->place[i]];
         if (m->exchange) m->r[i] *= fibrad_sqrt(rule->emissivity[i]);
-        copy_rest(m, i);
     }
     if (m->enclosed) fibrad_matrix_take_bodies(m, scene, rule);
     if (m->raw)
         copy_raw(m);
     else
-        divide(m);
+        divide(m, (m->result.capacity - (m->drop > 0 ? m->result.n : 0)) / 2);
     m->given = rows, m->given_count = count, m->given_serial = serial_of(rows, count);
     m->open = true;
     *out = m;
@@ -240,34 +248,62 @@ int fibrad_matrix_average(fibrad_matrix *m, uint32_t task) {
     return FIBRAD_OK;
 }
 
-/* Moves the averaged parts together. */
+static void average_rest(void *matrix, uint32_t p) {
+    fibrad_matrix *m = matrix;
+    if (!m->part[p].done) fibrad_matrix_average_part(m, &m->part[p]);
+}
+
+/* Parts from one on that are moved at once. */
+struct moved_parts {
+    const fibrad_sparse *rows;
+    const fibrad_matrix_part *part;
+};
+
+static void move_part(void *moved, uint32_t p) {
+    const struct moved_parts *parts = moved;
+    const fibrad_sparse *rows = parts->rows;
+    const fibrad_matrix_part *part = &parts->part[p];
+    const size_t length = (size_t)(part->filled - part->first);
+    __builtin_memmove(rows->col + part->to, rows->col + part->first, length * sizeof *rows->col);
+    __builtin_memmove(rows->f + part->to, rows->f + part->first, length * sizeof *rows->f);
+    for (uint32_t i = part->begin; i < part->end; i++) rows->start[i] -= part->first - part->to;
+}
+
+/* Moves the averaged parts together, as many at once as come to lie before where the first of them is. */
 static void gather_parts(fibrad_matrix *m) {
     fibrad_sparse *rows = &m->result;
     uint64_t to = 0;
     for (uint32_t p = 0; p < m->tasks; p++) {
-        const fibrad_matrix_part *part = &m->part[p];
-        const size_t length = (size_t)(part->filled - part->first);
-        __builtin_memmove(rows->col + to, rows->col + part->first, length * sizeof *rows->col);
-        __builtin_memmove(rows->f + to, rows->f + part->first, length * sizeof *rows->f);
-        for (uint32_t i = part->begin; i < part->end; i++) rows->start[i] -= part->first - to;
-        to += length;
+        m->part[p].to = to;
+        to += m->part[p].filled - m->part[p].first;
+    }
+    for (uint32_t p = 0, end; p < m->tasks; p = end) {
+        for (end = p + 1; end < m->tasks; end++)
+            if (m->part[end].to + (m->part[end].filled - m->part[end].first) > m->part[p].first) break;
+        fibrad_matrix_share(m, end - p, move_part, &(struct moved_parts){rows, m->part + p});
     }
     rows->start[rows->n] = to;
 }
 
-/* Brings the sums of exchange factors to those of the raw rows. */
-static void balance_rows(fibrad_matrix *m) {
-    for (uint32_t i = 0; i < m->result.n; i++) {
+static void sum_raw(void *matrix, uint32_t p) {
+    const fibrad_matrix *m = matrix;
+    for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
         const double *f = fibrad_record_f(m->row[i]);
         m->scratch[i] = 0;
         for (uint32_t k = 0; k < m->row[i]->length; k++) m->scratch[i] += f[k];
     }
-    fibrad_sparse_balance(&m->result, m->scratch, m->scratch + m->result.n);
+}
+
+/* Brings the sums of exchange factors to those of the raw rows. */
+static void balance_rows(fibrad_matrix *m) {
+    fibrad_matrix_share(m, m->tasks, sum_raw, m);
+    fibrad_matrix_balance(m);
 }
 
 /* Shares `rest` out among what row i meets besides spheres, in the proportions of its own, or of all spheres together
  * where it met none of that. */
-static void share_out(fibrad_matrix *m, uint32_t i, double rest, const double all[]) {
+static void share_out(fibrad_matrix *m, uint32_t i, double rest) {
+    const double *all = m->all;
     double *body = m->body + (size_t)i * m->bodies, sum = 0, total = 0;
     for (uint32_t b = 0; b < m->bodies; b++) sum += body[b], total += all[b];
     sum += m->escaped[i], total += all[m->bodies];
@@ -279,10 +315,16 @@ static void share_out(fibrad_matrix *m, uint32_t i, double rest, const double al
     m->beyond[i] = sum > 0 ? rest * ((own ? m->beyond[i] : all[m->bodies + 1]) / sum) : 0;
 }
 
+static void close_part(void *matrix, uint32_t p) {
+    fibrad_matrix *m = matrix;
+    for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++)
+        if (m->r[i] > 0) share_out(m, i, fibrad_max(0, 1 - fibrad_sparse_sum(&m->result, i)));
+}
+
 /* Brings what rows meet besides spheres up to what the row sums leave of 1. What a row is short of 1 is as good a
  * measure of it, from the opposite directions, as the raw row's. Rows of spheres that reflect all stay empty. */
 static void close_rows(fibrad_matrix *m) {
-    double all[FIBRAD_BODIES_MAX + 2] = {0}, largest = 0;
+    double *all = m->all, largest = 0;
     const uint32_t n = m->result.n, bodies = m->bodies;
     for (uint32_t i = 0; i < n; i++) largest = fibrad_max(largest, m->r[i]);
     for (uint32_t i = 0; i < n && largest > 0; i++) {
@@ -290,14 +332,14 @@ static void close_rows(fibrad_matrix *m) {
         for (uint32_t b = 0; b < bodies; b++) all[b] += area * m->body[(size_t)i * bodies + b];
         all[bodies] += area * m->escaped[i], all[bodies + 1] += area * m->beyond[i];
     }
-    for (uint32_t i = 0; i < n; i++)
-        if (m->r[i] > 0) share_out(m, i, fibrad_max(0, 1 - fibrad_sparse_sum(&m->result, i)), all);
+    fibrad_matrix_share(m, m->tasks, close_part, m);
 }
 
 /* The error of each row, from how far its mean is off the raw row, whose columns are among those of the mean. How walls
  * share what they get is that of the raw row: the more they get, the more of its error counts. */
-static void estimate_errors(fibrad_matrix *m) {
-    for (uint32_t i = 0; i < m->result.n; i++) {
+static void estimate_errors(void *matrix, uint32_t part) {
+    fibrad_matrix *m = matrix;
+    for (uint32_t i = m->part[part].begin; i < m->part[part].end; i++) {
         const fibrad_record *raw = m->row[i];
         const uint32_t *col = fibrad_record_col(raw);
         const double *f = fibrad_record_f(raw);
@@ -321,17 +363,16 @@ int fibrad_matrix_close(fibrad_matrix *m) {
     if (!matrix_open(m)) return FIBRAD_E_STATE;
     m->closed = true;
     if (m->raw) return FIBRAD_OK;
-    for (uint32_t p = 0; p < m->tasks; p++)
-        if (!m->part[p].done) fibrad_matrix_average_part(m, &m->part[p]);
+    fibrad_matrix_share(m, m->tasks, average_rest, m);
     gather_parts(m);
     if (m->exchange)
         balance_rows(m);
     else
-        fibrad_sparse_limit(&m->result, m->scratch);
+        fibrad_matrix_limit(m);
     close_rows(m);
     if (m->enclosed) fibrad_matrix_enclose(m);
-    estimate_errors(m);
-    if (m->drop > 0) fibrad_sparse_drop(&m->result, m->r, m->drop, m->scratch);
+    fibrad_matrix_share(m, m->tasks, estimate_errors, m);
+    if (m->drop > 0) fibrad_matrix_drop(m);
     return FIBRAD_OK;
 }
 
@@ -361,19 +402,36 @@ static double difference_of(const double *r, uint32_t i, uint32_t j, double f, d
     return fibrad_abs(a_i * a_i * f - a_j * a_j * back);
 }
 
-int fibrad_matrix_reciprocity(const fibrad_matrix *m, double *largest) {
-    if (m == NULL || largest == NULL) return FIBRAD_E_ARGUMENT;
-    if (!m->closed) return FIBRAD_E_STATE;
+/* Of all rows, in pieces. */
+struct reciprocity {
+    const fibrad_matrix *matrix;
+    double worst[RECIPROCITY_PIECES];
+};
+
+static void compare_rows(void *job, uint32_t piece) {
+    struct reciprocity *reciprocity = job;
+    const fibrad_matrix *m = reciprocity->matrix;
     const fibrad_sparse *rows = &m->result;
+    const uint64_t n = rows->n, end = n * (piece + 1) / RECIPROCITY_PIECES;
     double worst = 0;
-    for (uint32_t i = 0; i < rows->n; i++)
+    for (uint32_t i = (uint32_t)(n * piece / RECIPROCITY_PIECES); i < end; i++)
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) {
             const uint32_t j = rows->col[k];
+            if (j < i && !m->raw) continue; /* its partner, which there is, compares them */
             const uint64_t partner = fibrad_sparse_find(rows, j, i);
-            if (j < i && partner != UINT64_MAX) continue; /* its partner has compared them */
+            if (j < i && partner != UINT64_MAX) continue;
             worst =
                 fibrad_max(worst, difference_of(m->r, i, j, rows->f[k], partner == UINT64_MAX ? 0 : rows->f[partner]));
         }
-    *largest = worst;
+    reciprocity->worst[piece] = worst;
+}
+
+int fibrad_matrix_reciprocity(const fibrad_matrix *m, double *largest) {
+    if (m == NULL || largest == NULL) return FIBRAD_E_ARGUMENT;
+    if (!m->closed) return FIBRAD_E_STATE;
+    struct reciprocity reciprocity = {.matrix = m};
+    fibrad_matrix_share(m, RECIPROCITY_PIECES, compare_rows, &reciprocity);
+    *largest = 0;
+    for (uint32_t k = 0; k < RECIPROCITY_PIECES; k++) *largest = fibrad_max(*largest, reciprocity.worst[k]);
     return FIBRAD_OK;
 }

@@ -10,6 +10,8 @@ typedef struct fibrad_matrix_part {
     uint32_t begin, end;
     uint64_t first, transposed, last; /* the stretch; where the rows of the transpose wait in it */
     uint64_t filled;                  /* where the averaged rows end */
+    uint64_t to;                      /* where they go when parts are moved together */
+    double worst;                     /* of its rows: how far one is off */
     unsigned char done;
 } fibrad_matrix_part;
 
@@ -30,10 +32,13 @@ struct fibrad_matrix {
     uint32_t given_count;
     uint64_t given_serial;
     double drop;
-    const fibrad_record **row; /* [n] raw rows by sphere */
-    double *r;                 /* [n] radii, times the root of the emissivity with exchange factors */
-    uint64_t *place;           /* [n] where the next entry of each row of the transpose goes */
-    double *scratch;           /* [3 n] */
+    const fibrad_record **row;         /* [n] raw rows by sphere */
+    double *r;                         /* [n] radii, times the root of the emissivity with exchange factors */
+    uint64_t *place;                   /* [n] where the next entry of each row of the transpose goes */
+    double *scratch;                   /* [3 n] */
+    double all[FIBRAD_BODIES_MAX + 2]; /* what all spheres together send to each body, to the surroundings and beyond */
+    fibrad_parallel *parallel;
+    void *context;
     double *escaped, *beyond, *error;
     double *body;    /* [n][bodies] */
     bool enclosed;   /* whether bodies have rows, too; else what follows is not used */
@@ -45,6 +50,12 @@ struct fibrad_matrix {
     fibrad_matrix_part *part;         /* [tasks] */
 };
 
+/* Does pieces [0, pieces) of a job by the caller's threads, if he has given any. */
+void fibrad_matrix_share(const fibrad_matrix *matrix, uint32_t pieces, fibrad_piece *piece, void *job);
+
+/* Counts the entries of each row of the transpose that is in a part, into matrix->place. Returns how many. */
+uint64_t fibrad_matrix_count_part(fibrad_matrix *matrix, const fibrad_matrix_part *part);
+
 /* Averages the rows of a part. */
 void fibrad_matrix_average_part(fibrad_matrix *matrix, fibrad_matrix_part *part);
 
@@ -54,23 +65,36 @@ void fibrad_matrix_take_bodies(fibrad_matrix *matrix, const fibrad_scene *scene,
 /* Makes them reciprocal, and closes them together with the rows of spheres, which are closed already. */
 void fibrad_matrix_enclose(fibrad_matrix *matrix);
 
+/* The first of ascending columns that is not below `column`, or their number. Without branches it takes longer: nothing
+ * is fetched ahead then. */
+static inline uint64_t fibrad_first_entry(const uint32_t *col, uint64_t length, uint32_t column) {
+    uint64_t low = 0, high = length;
+    while (low < high) {
+        const uint64_t middle = low + (high - low) / 2;
+        if (col[middle] < column)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 /* Sum of a row. */
 double fibrad_sparse_sum(const fibrad_sparse *rows, uint32_t i);
 
 /* Where column j stands in row i, or UINT64_MAX. */
 uint64_t fibrad_sparse_find(const fibrad_sparse *rows, uint32_t i, uint32_t j);
 
-/* Brings row sums above 1 down to 1 and leaves reciprocity as it is: F_ij times min(s_i, s_j), s = min(1, 1/sum).
- * scratch [n]. */
-void fibrad_sparse_limit(fibrad_sparse *rows, double *scratch);
+/* Brings row sums above 1 down to 1 and leaves reciprocity as it is: F_ij times min(s_i, s_j), s = min(1, 1/sum). */
+void fibrad_matrix_limit(fibrad_matrix *matrix);
 
-/* Brings the row sums of reciprocal rows to `target` and leaves reciprocity as it is: F_ij u_i u_j with u found so; to
- * 1e-14 where such u exist, as they do if rows have an F_ii or loops of three and are not far off. Else some rows end
- * below their targets, none above. scratch [2 n]. */
-void fibrad_sparse_balance(fibrad_sparse *rows, const double *target, double *scratch);
+/* Brings the row sums of reciprocal rows to the first n of scratch and leaves reciprocity as it is: F_ij u_i u_j with u
+ * found so; to 1e-14 where such u exist, as they do if rows have an F_ii or loops of three and are not far off. Else
+ * some rows end below their targets, none above. */
+void fibrad_matrix_balance(fibrad_matrix *matrix);
 
-/* Drops entries below `threshold` and gives what they carried back, so that row sums are as before; what no scaling can
- * place goes into F_ii. scratch [3 n]. The capacity has room for n entries more. */
-void fibrad_sparse_drop(fibrad_sparse *rows, const double *r, double threshold, double *scratch);
+/* Drops entries below the threshold and gives what they carried back, so that row sums are as before; what no scaling
+ * can place goes into F_ii. The capacity has room for n entries more. */
+void fibrad_matrix_drop(fibrad_matrix *matrix);
 
 #endif

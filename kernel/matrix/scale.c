@@ -3,15 +3,9 @@
 #include "matrix/matrix.h"
 
 uint64_t fibrad_sparse_find(const fibrad_sparse *rows, uint32_t i, uint32_t j) {
-    uint64_t low = rows->start[i], high = rows->start[i + 1];
-    while (low < high) {
-        uint64_t middle = low + (high - low) / 2;
-        if (rows->col[middle] < j)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < rows->start[i + 1] && rows->col[low] == j ? low : UINT64_MAX;
+    const uint64_t start = rows->start[i], end = rows->start[i + 1];
+    const uint64_t at = start + fibrad_first_entry(rows->col + start, end - start, j);
+    return at < end && rows->col[at] == j ? at : UINT64_MAX;
 }
 
 double fibrad_sparse_sum(const fibrad_sparse *rows, uint32_t i) {
@@ -20,14 +14,25 @@ double fibrad_sparse_sum(const fibrad_sparse *rows, uint32_t i) {
     return sum;
 }
 
-void fibrad_sparse_limit(fibrad_sparse *rows, double *scratch) {
-    for (uint32_t i = 0; i < rows->n; i++) {
-        double sum = fibrad_sparse_sum(rows, i);
-        scratch[i] = sum > 1 ? 1 / sum : 1;
+static void find_limits(void *matrix, uint32_t p) {
+    const fibrad_matrix *m = matrix;
+    for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
+        double sum = fibrad_sparse_sum(&m->result, i);
+        m->scratch[i] = sum > 1 ? 1 / sum : 1;
     }
-    for (uint32_t i = 0; i < rows->n; i++)
+}
+
+static void apply_limits(void *matrix, uint32_t p) {
+    const fibrad_matrix *m = matrix;
+    const fibrad_sparse *rows = &m->result;
+    for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++)
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++)
-            rows->f[k] *= fibrad_min(scratch[i], scratch[rows->col[k]]);
+            rows->f[k] *= fibrad_min(m->scratch[i], m->scratch[rows->col[k]]);
+}
+
+void fibrad_matrix_limit(fibrad_matrix *m) {
+    fibrad_matrix_share(m, m->tasks, find_limits, m);
+    fibrad_matrix_share(m, m->tasks, apply_limits, m);
 }
 
 #define GONE -1.0
@@ -58,20 +63,33 @@ static void take_out(fibrad_sparse *rows, const double *r, double threshold) {
     rows->start[rows->n] = to;
 }
 
+/* A step of the rows of a part. In scratch: targets, u, and the next u. */
+static void scaling_step(void *matrix, uint32_t p) {
+    const fibrad_matrix *m = matrix;
+    const fibrad_sparse *rows = &m->result;
+    const double *target = m->scratch, *u = target + rows->n;
+    double *next = m->scratch + 2 * (size_t)rows->n, worst = 0;
+    for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
+        double sum = 0;
+        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum += rows->f[k] * u[rows->col[k]];
+        worst = fibrad_max(worst, fibrad_abs(target[i] - u[i] * sum));
+        next[i] = sum > 0 ? fibrad_sqrt(u[i] * target[i] / sum) : 1;
+    }
+    m->part[p].worst = worst;
+}
+
 /* Factors u with u_i sum_j F_ij u_j = target_i, by u_i <- sqrt(u_i target_i/sum_j F_ij u_j), which stays near 1 and
  * more than halves the error each time where such factors exist. Ends when all sums are right to `tolerance`. */
-static void find_scaling(const fibrad_sparse *rows, const double *target, double tolerance, double *u, double *next) {
-    for (uint32_t i = 0; i < rows->n; i++) u[i] = 1;
+static void find_scaling(fibrad_matrix *m, double tolerance) {
+    const uint32_t n = m->result.n;
+    double *u = m->scratch + n, *next = u + n;
+    for (uint32_t i = 0; i < n; i++) u[i] = 1;
     for (int step = 0; step < 60; step++) {
         double worst = 0;
-        for (uint32_t i = 0; i < rows->n; i++) {
-            double sum = 0;
-            for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum += rows->f[k] * u[rows->col[k]];
-            worst = fibrad_max(worst, fibrad_abs(target[i] - u[i] * sum));
-            next[i] = sum > 0 ? fibrad_sqrt(u[i] * target[i] / sum) : 1;
-        }
+        fibrad_matrix_share(m, m->tasks, scaling_step, m);
+        for (uint32_t p = 0; p < m->tasks; p++) worst = fibrad_max(worst, m->part[p].worst);
         if (worst <= tolerance) return;
-        fibrad_copy(u, next, rows->n * sizeof *u);
+        fibrad_copy(u, next, n * sizeof *u);
     }
 }
 
@@ -90,10 +108,11 @@ static void bring_down(fibrad_sparse *rows, const double *target, double *u) {
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= fibrad_min(u[i], u[rows->col[k]]);
 }
 
-void fibrad_sparse_balance(fibrad_sparse *rows, const double *target, double *scratch) {
-    find_scaling(rows, target, 1e-14, scratch, scratch + rows->n);
-    scale_rows(rows, scratch);
-    bring_down(rows, target, scratch);
+void fibrad_matrix_balance(fibrad_matrix *m) {
+    double *target = m->scratch, *u = target + m->result.n;
+    find_scaling(m, 1e-14);
+    scale_rows(&m->result, u);
+    bring_down(&m->result, target, u);
 }
 
 /* Puts into F_ii what a row is short of its target, by more than rounding; rows move up to make room. */
@@ -122,12 +141,12 @@ static void fill_up(fibrad_sparse *rows, const double *target) {
     }
 }
 
-void fibrad_sparse_drop(fibrad_sparse *rows, const double *r, double threshold, double *scratch) {
-    const uint32_t n = rows->n;
-    double *target = scratch, *u = scratch + n, *next = u + n;
-    for (uint32_t i = 0; i < n; i++) target[i] = fibrad_sparse_sum(rows, i);
-    take_out(rows, r, threshold);
-    find_scaling(rows, target, 0, u, next);
+void fibrad_matrix_drop(fibrad_matrix *m) {
+    fibrad_sparse *rows = &m->result;
+    double *target = m->scratch, *u = target + rows->n;
+    for (uint32_t i = 0; i < rows->n; i++) target[i] = fibrad_sparse_sum(rows, i);
+    take_out(rows, m->r, m->drop);
+    find_scaling(m, 0);
     scale_rows(rows, u);
     bring_down(rows, target, u); /* where no scaling exists, rows are above or below their targets */
     fill_up(rows, target);

@@ -83,7 +83,7 @@ int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *
               fibrad_abs(obstacles->z[k * stride]) <= most && obstacles->r[k * stride_r] <= most &&
               obstacles->r[k * stride_r] > 0))
             return FIBRAD_E_ARGUMENT;
-    if (rule.isa < FIBRAD_ISA_BEST || rule.isa > FIBRAD_ISA_AVX512) return FIBRAD_E_ARGUMENT;
+    if (rule.isa < FIBRAD_ISA_BEST || rule.isa > FIBRAD_ISA_NEON) return FIBRAD_E_ARGUMENT;
     if (!fibrad_isa_built(rule.isa)) return FIBRAD_E_ISA;
     const fibrad_surface_lanes lanes =
         fibrad_surface_lanes_of(rule.isa == FIBRAD_ISA_BEST ? (int)fibrad_isa_best() : rule.isa);

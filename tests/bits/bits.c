@@ -591,7 +591,7 @@ static int hash_furnace(void) {
 
 int main(int argc, char **argv) {
     int isa = FIBRAD_ISA_SCALAR, failed = 0;
-    while (isa <= FIBRAD_ISA_AVX512 && (argc < 2 || strcmp(argv[1], fibrad_isa_name(isa)) != 0)) isa++;
+    while (isa <= FIBRAD_ISA_NEON && (argc < 2 || strcmp(argv[1], fibrad_isa_name(isa)) != 0)) isa++;
     fibrad_scene *empty;
     const int status = fibrad_scene_init(&empty, scene_memory, sizeof scene_memory, &(fibrad_scene_config){.isa = isa},
                                          &(fibrad_spheres){0}, NULL);

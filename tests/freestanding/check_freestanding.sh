@@ -16,10 +16,10 @@ fault() {
     faults=1
 }
 
-# kernel NAME PREFIX FLAGS TABLES: builds the archive and lists what it takes
+# kernel NAME PREFIX FLAGS TABLES ISAS: builds the archive and lists what it takes
 kernel() {
     rm -rf "${folder:?}/$1"
-    $MAKE -s BUILD="$folder/$1" CC="$2gcc" AR="$2ar" HOSTCC="$HOSTCC" ISAS=scalar PIC= WERROR=-Werror \
+    $MAKE -s BUILD="$folder/$1" CC="$2gcc" AR="$2ar" HOSTCC="$HOSTCC" ISAS="$5" PIC= WERROR=-Werror \
         CFLAGS="-Os -ffunction-sections -fdata-sections -fstack-usage $3" \
         TABLES="-DFIBRAD_PORT_HEADER='\"smoke_port.h\"' -I$here $4" lib >"$folder/log" 2>&1 && return
     fault "$1: the kernel does not build"
@@ -76,25 +76,34 @@ small="-DFIBRAD_TABLE_AZIMUTHS=0 -DFIBRAD_TABLE_SURFACE=0"
 } >"$table"
 complete=true
 if command -v arm-none-eabi-gcc >/dev/null; then
-    kernel m7 arm-none-eabi- "$m7" "$small"
+    kernel m7 arm-none-eabi- "$m7" "$small" scalar
     program m7 arm-none-eabi- "$m7 -T$here/arm.ld" arm.c
     run m7 qemu-system-arm -M mps2-an500 -display none -monitor none -serial none \
         -chardev stdio,id=text -semihosting-config enable=on,target=native,chardev=text -kernel "$folder/m7/smoke"
     sizes m7 arm-none-eabi-
-    kernel m7-all-tables arm-none-eabi- "$m7" ""
+    kernel m7-all-tables arm-none-eabi- "$m7" "" scalar
     sizes m7-all-tables arm-none-eabi-
 else
     echo "SKIP Cortex-M7: no arm-none-eabi-gcc on this machine"
     complete=false
 fi
 if command -v riscv64-unknown-elf-gcc >/dev/null; then
-    kernel rv64 riscv64-unknown-elf- "$rv64" "$small"
+    kernel rv64 riscv64-unknown-elf- "$rv64" "$small" scalar
     program rv64 riscv64-unknown-elf- "$rv64 -Wl,--no-relax" riscv.c
     run rv64 qemu-riscv64 "$folder/rv64/smoke"
     sizes rv64 riscv64-unknown-elf-
 else
     echo "SKIP RV64: no riscv64-unknown-elf-gcc on this machine"
     complete=false
+fi
+if command -v aarch64-linux-gnu-gcc >/dev/null; then # NEON, that is
+    kernel a64 aarch64-linux-gnu- "" "$small" "scalar neon"
+    FIBRAD_PORT_SYMBOLS="smoke_sqrt smoke_copy" BUILD=$folder/a64 tests/check_symbols.sh >"$folder/log" ||
+        fault "a64: $(cat "$folder/log")"
+    program a64 aarch64-linux-gnu- -static aarch64.c
+    run a64 qemu-aarch64 "$folder/a64/smoke"
+else
+    echo "SKIP aarch64: no aarch64-linux-gnu-gcc on this machine"
 fi
 
 cat "$table"

@@ -11,14 +11,4 @@ static long call(long number, long first, const void *second, long third) {
     return a0;
 }
 
-void smoke_write(const char *text) {
-    long length = 0;
-    while (text[length] != 0) length++;
-    call(64, 1, text, length);
-}
-
-void _start(void);
-
-void _start(void) {
-    for (int status = smoke();;) call(93, status, "", 0);
-}
+#include "linux.h"

@@ -2,8 +2,8 @@
 # stack.sh OBJDUMP FOLDER - bytes of stack that the deepest chain of calls takes. SPDX-License-Identifier: MIT
 #
 # Frames come from the compiler (-fstack-usage), calls from the disassembly; calls through pointers are added by name:
-# those of fibrad_surface_factor, and of fibrad_row_run to the methods. The caller's function that resizes memory is not
-# counted. Fails on recursion, on frames without a bound and on other such calls.
+# those of fibrad_surface_factor, of fibrad_row_run to the methods, and of fibrad_matrix_share to the pieces. The caller's
+# functions that resize memory and share out work are not counted. Fails on recursion, on frames without a bound and on other such calls.
 set -u
 find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $6}' >"$2/frames"
 {
@@ -13,12 +13,17 @@ find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $
         /R_ARM_(THM_)?(CALL|JUMP24)|R_RISCV_(CALL|JAL)/ {
             to = $NF; sub(/[-+].*/, "", to); sub(/^\.text\./, "", to); sub(/\.(part|constprop|isra)\..*/, "", to)
             if (to != from && to !~ /^\./) print "call", from, to}
-        /\tblx\tr/ && from !~ /^(fibrad_surface_factor|fibrad_row_run|attempt|fibrad_rows_reserve|fit)$/ {
+        /\tblx\tr/ && from !~ /^(fibrad_surface_factor|fibrad_row_run|attempt|fibrad_rows_reserve|fit|fibrad_matrix_share)$/ {
             print "pointer", from}'
     for version in filter sum; do echo "call fibrad_surface_factor fibrad_surface_${version}_scalar"; done
     for method in beam_to_tolerance cast_compute exchange_compute surface_compute; do
         grep -q "^frame $method " "$2/frames" || echo "gone $method"
         echo "call fibrad_row_run $method"
+    done
+    for piece in apply_limits average_rest close_part compare_rows estimate_errors find_limits measure_part move_part \
+        scaling_step sum_raw; do
+        grep -q "^frame $piece " "$2/frames" || echo "gone $piece"
+        echo "call fibrad_matrix_share $piece"
     done
 } | awk '
     $1 == "frame" {

@@ -918,7 +918,7 @@ static void try_pair(void) {
     fibrad_spheres obstacles = {.x = x, .y = y, .z = z, .r = r, .n = n_obstacles};
     void *block, *scratch = memory_of(FIBRAD_SURFACE_SCRATCH(n_obstacles) * sizeof(double), shift, &block);
     fibrad_surface_rule rule = {.nodes = 8, .flags = byte() & 31, .isa = byte() % 6};
-    if (rule.isa <= FIBRAD_ISA_AVX512 && (fibrad_isa)rule.isa > fibrad_isa_best()) rule.isa = FIBRAD_ISA_BEST;
+    if (rule.isa <= FIBRAD_ISA_NEON && (fibrad_isa)rule.isa > fibrad_isa_best()) rule.isa = FIBRAD_ISA_BEST;
     status = fibrad_surface_pair(r1, r2, gap, &obstacles, &rule, scratch, &f12, NULL);
     if (status == FIBRAD_OK) REQUIRE(f12 >= 0 && f12 < 1.5);
     free(block), free(x), free(y), free(z), free(r);

@@ -4,19 +4,21 @@
 #ifndef FIBRAD_PLACES_H
 #define FIBRAD_PLACES_H
 
-#include <emmintrin.h>
 #include <stdint.h>
 #include "base/port.h"
 
-/* first + l for the lanes l < 4 given by bits, side by side at p, which has room for all; returns how many. The branch
- * at the end of a loop over the bits would nearly always be mispredicted. */
-static inline uint32_t fibrad_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    static const _Alignas(16)
-        uint32_t lane[16][4] = {{0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},
-                                {3}, {0, 3}, {1, 3}, {0, 1, 3}, {2, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2, 3}};
-    __m128i named = _mm_load_si128((const __m128i *)(const void *)lane[bits]);
-    _mm_storeu_si128((__m128i *)(void *)p, _mm_add_epi32(named, _mm_set1_epi32((int)first)));
-    return fibrad_count_bits(bits);
+typedef uint32_t fibrad_four __attribute__((vector_size(16)));
+
+/* first + l for the lanes l < 4 given by bits, side by side at p, which has room for all. The branch at the end of a
+ * loop over the bits would nearly always be mispredicted. */
+static inline void fibrad_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
+    static const fibrad_four lane[16] = {{0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},
+                                         {3}, {0, 3}, {1, 3}, {0, 1, 3}, {2, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2, 3}};
+    const fibrad_four there = lane[bits] + first;
+    fibrad_copy(p, &there, sizeof there);
 }
+
+/* How many of four bits are set, where there is no instruction for it. */
+static inline uint32_t fibrad_count_four(uint32_t bits) { return (uint32_t)(0x4332322132212110 >> 4 * bits & 15); }
 
 #endif

@@ -49,7 +49,8 @@ static inline vd vd_replace(vd a, uint32_t lane, double x) {
     return _mm256_blendv_pd(a, _mm256_set1_pd(x), there);
 }
 static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    return fibrad_compress_places(p, bits, first);
+    fibrad_compress_places(p, bits, first);
+    return fibrad_count_bits(bits);
 }
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return _mm256_set_pd(table[k[3]], table[k[2]], table[k[1]], table[k[0]]);
@@ -82,8 +83,9 @@ static inline vn vn_count_lt(vn n, vf a, vf b) {
     return _mm256_sub_epi32(n, _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
 }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    uint32_t low = fibrad_compress_places(p, bits & 15, first);
-    return low + fibrad_compress_places(p + low, bits >> 4, first + 4);
+    fibrad_compress_places(p, bits & 15, first);
+    fibrad_compress_places(p + fibrad_count_bits(bits & 15), bits >> 4, first + 4);
+    return fibrad_count_bits(bits);
 }
 
 #endif

@@ -68,7 +68,8 @@ static inline uint32_t vn_some_bits(const uint32_t *p) {
 }
 static inline vn vn_count_lt(vn n, vf a, vf b) { return _mm_sub_epi32(n, _mm_castps_si128(_mm_cmplt_ps(a, b))); }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    return fibrad_compress_places(p, bits, first);
+    fibrad_compress_places(p, bits, first);
+    return fibrad_count_four(bits);
 }
 
 #endif
