@@ -121,8 +121,8 @@ LANED = \
     kernel/window/dense_lanes.c \
     kernel/window/points_lanes.c \
     kernel/row/beam_lanes.c \
-    kernel/row/mesh_faces_lanes.c \
-    kernel/row/mesh_lines_lanes.c \
+    kernel/lines/mesh_faces_lanes.c \
+    kernel/lines/mesh_lines_lanes.c \
     kernel/row/mesh_share_lanes.c \
     kernel/work/neighbours_lanes.c \
     kernel/row/wall_share_lanes.c \

@@ -8,8 +8,8 @@
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "base/lanes/below.h"
-#include "row/mesh_faces_lanes.h"
-#include "row/mesh_lines_lanes.h"
+#include "lines/mesh_faces_lanes.h"
+#include "lines/mesh_lines_lanes.h"
 #include "row/mesh_share_lanes.h"
 #include "scene/walls.h"
 #include "window/points_lanes.h"

@@ -2,7 +2,7 @@
  * per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
-#include "row/mesh_faces_lanes.h"
+#include "lines/mesh_faces_lanes.h"
 
 /* How far from the axis of the window its lines are down to a depth. */
 FIBRAD_INLINE vd reach_at(const fibrad_face_search *search, vd depth) {
