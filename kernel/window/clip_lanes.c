@@ -322,13 +322,21 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
     areas->circles = 1;
 }
 
-/* Hides what one disc covers. False once nothing is open. */
-FIBRAD_INLINE bool hide_disc(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+/* Hides what one disc covers in a window that is resolved densely or by the arrangement. False once nothing is open. */
+static __attribute__((noinline)) bool hide_slowly(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
     if (areas->degenerate) return LANED(fibrad_arrangement_disc)(areas, whose, x, y, r);
+    const uint32_t k = areas->circles;
+    fibrad_areas_add_circle(areas, whose, x, y, r);
+    if (r <= CLIP_RADIUS_MAX && LANED(fibrad_dense_hide)(areas)) return is_open_dense(areas);
+    return resolve_again(areas, k + 1);
+}
+
+/* The same in any window. */
+FIBRAD_INLINE bool hide_disc(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+    if (areas->degenerate || areas->dense.on) return hide_slowly(areas, whose, x, y, r);
     uint32_t k = areas->circles;
     fibrad_areas_add_circle(areas, whose, x, y, r);
-    if (areas->dense.on && r <= CLIP_RADIUS_MAX && LANED(fibrad_dense_hide)(areas)) return is_open_dense(areas);
-    if (areas->dense.on || r > CLIP_RADIUS_MAX || !clip_disc_out(areas, k, x, y, r)) return resolve_again(areas, k + 1);
+    if (r > CLIP_RADIUS_MAX || !clip_disc_out(areas, k, x, y, r)) return resolve_again(areas, k + 1);
     if (areas->boundary->alive == 0) return false;
     close_up_slots(areas->boundary);
     return true;

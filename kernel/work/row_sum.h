@@ -23,6 +23,9 @@ typedef struct fibrad_entries {
 /* The entry of a sphere, a new one if it has none so far; FIBRAD_NONE if that finds no room. */
 uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere);
 
+/* Lists what is added to an entry instead of adding it. */
+void fibrad_entries_list(fibrad_entries *entries, uint32_t entry, uint32_t k, double area);
+
 /* Adds visible area to part k mod 4 of an entry. Counts in entries.missed what has none. */
 static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, uint32_t k, double area) {
     if (entry == FIBRAD_NONE) {
@@ -30,7 +33,7 @@ static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, u
         return;
     }
     if (entries->addends != NULL) {
-        fibrad_addends_put(entries->addends, entries->sphere[entry], k, area);
+        fibrad_entries_list(entries, entry, k, area);
         return;
     }
     double *part = entries->part[entry];
