@@ -38,7 +38,7 @@ typedef struct fibrad_triangles {
     double period[3]; /* [L] by which triangles alone are repeated, along open axes of the scene; 0: they are not */
 } fibrad_triangles;
 
-/* Bytes that n triangles add to fibrad_scene_size(spheres, ids), 150 each and 4 a sphere. Errors: 0 if there are too
+/* Bytes that n triangles add to fibrad_scene_size(spheres, ids), 135 each and 4 a sphere. Errors: 0 if there are too
  * many. */
 size_t fibrad_triangles_size(uint32_t n, uint32_t spheres);
 
@@ -50,7 +50,7 @@ typedef struct fibrad_triangle_hit {
 } fibrad_triangle_hit;
 
 /* The first triangle that a ray from `origin` [L] along the unit vector w meets within the length [L], spheres and
- * other walls apart; images along periodic axes count. Errors: _ARGUMENT, _STATE. Cost: below a microsecond. */
+ * other walls apart; images along periodic axes count. Errors: _ARGUMENT, _STATE. Cost: a microsecond or two among 1e5. */
 int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const double w[3], double length,
                         fibrad_triangle_hit *hit);
 
