@@ -50,7 +50,8 @@ typedef struct fibrad_triangle_hit {
 } fibrad_triangle_hit;
 
 /* The first triangle that a ray from `origin` [L] along the unit vector w meets within the length [L], spheres and
- * other walls apart; images along periodic axes count. Errors: _ARGUMENT, _STATE. Cost: a microsecond or two among 1e5. */
+ * other walls apart; images along periodic axes count. Errors: _ARGUMENT, _STATE. Cost: a microsecond or two among 1e5.
+ */
 int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const double w[3], double length,
                         fibrad_triangle_hit *hit);
 
