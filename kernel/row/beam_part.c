@@ -74,10 +74,12 @@ static void add_again(fibrad_workspace *work, const fibrad_addend *a, uint32_t w
         fibrad_entries_add(&work->entries, fibrad_entries_of(&work->entries, a->target), a->window, a->value);
     else if (a->target == FIBRAD_ADD_OPEN)
         open[a->window % 2] += a->value;
+    else if (a->target >= FIBRAD_ADD_SLOT && a->target < FIBRAD_ADD_SLOT + FIBRAD_SLOTS)
+        work->wall[a->target - FIBRAD_ADD_SLOT] += a->value;
+    else if (sums == NULL) /* nor does anything else come without walls */
+        return;
     else if (a->target == FIBRAD_ADD_HIDDEN)
         sums->hidden[a->window / 64] |= UINT64_C(1) << a->window % 64;
-    else if (a->target < FIBRAD_ADD_SLOT + FIBRAD_SLOTS)
-        work->wall[a->target - FIBRAD_ADD_SLOT] += a->value;
     else if (a->target < FIBRAD_ADD_SHARE)
         fibrad_wall_add(sums->open[a->target - FIBRAD_ADD_REGION], a->window, windows, a->value);
     else if (a->target < FIBRAD_ADD_MIXED)

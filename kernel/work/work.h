@@ -75,8 +75,7 @@ typedef struct fibrad_lines {
 
 /* Points of a window that meet triangles. */
 typedef struct fibrad_met {
-    _Alignas(64) fibrad_faces faces;
-    fibrad_lines lines;
+    fibrad_faces faces;
     double depth[FIBRAD_MET_POINTS];   /* along the line, from the plane through the centre; of points beyond a
                                           triangle that cuts sphere i below -1 */
     double weight[FIBRAD_MET_POINTS];  /* area or number of points that goes to the triangle */
@@ -85,6 +84,7 @@ typedef struct fibrad_met {
     fibrad_points points;              /* which they are; of windows by areas also what is open */
     uint32_t deepest;                  /* the side that the deepest line meets */
     bool any;                          /* whether there are such points in the window in hand */
+    fibrad_lines lines;
 } fibrad_met;
 
 #define FIBRAD_WORK_MAX (1u << 28)
