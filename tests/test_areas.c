@@ -332,7 +332,7 @@ START_TEST(bits_of_windows) {
         [FIBRAD_ISA_AVX512] = {&avx512, &dense_avx512},
 #endif
 #ifdef FIBRAD_WITH_NEON
-        [FIBRAD_ISA_NEON] = &neon,
+        [FIBRAD_ISA_NEON] = {&neon, &dense_neon},
 #endif
     };
     int isa[ISAS_MOST];
@@ -359,6 +359,47 @@ START_TEST(bits_of_windows) {
             ck_assert_mem_eq(first, other, (n + 1) * sizeof *first);
         }
     }
+    areas_free(&areas);
+}
+END_TEST
+
+/* Many small discs, then large ones and a degenerate one: the arrangement begins in memory that dense clipping has
+ * filled, and its lanes beyond the last arc must not look up what is no circle. */
+START_TEST(arrangement_after_dense_clipping) {
+    fibrad_areas areas = areas_make();
+    const struct method *const methods[] = {
+        &dense,
+#ifdef FIBRAD_WITH_SSE2
+        &dense_sse2,
+#endif
+#ifdef FIBRAD_WITH_AVX2
+        &dense_avx2,
+#endif
+#ifdef FIBRAD_WITH_AVX512
+        &dense_avx512,
+#endif
+#ifdef FIBRAD_WITH_NEON
+        &dense_neon,
+#endif
+    };
+    int isa[ISAS_MOST];
+    const int sets = isas_there(isa);
+    double first[MOST + 1], other[MOST + 1];
+    for (int round = 0; round < 200; round++) {
+        struct window w = {0};
+        for (uint32_t k = 0; k < 356; k++) {
+            const double r = k % 60 == 59 ? random_in(2, 9) : random_in(.002, .01), t = random_in(0, 6.2831853);
+            const double d = r > 1 ? r + random_in(.8, 1) : .97 * sqrt(random_in(0, 1));
+            put(&w, d * cos(t), d * sin(t), r);
+        }
+        put(&w, .5, 0, .5); /* tangent to the window */
+        measure(methods[0], &areas, &w, first);
+        for (int s = 1; s < sets; s++) {
+            measure(methods[s], &areas, &w, other);
+            ck_assert_mem_eq(first, other, (w.n + 1) * sizeof *first);
+        }
+    }
+    ck_assert_uint_gt(areas.fallbacks, 100); /* where nothing has hidden the point of contact before */
     areas_free(&areas);
 }
 END_TEST
@@ -449,6 +490,7 @@ int main(void) {
     tcase_add_test(tcase, lattices_along_their_axes);
     tcase_add_test(tcase, clipping_against_accounts);
     tcase_add_test(tcase, bits_of_windows);
+    tcase_add_test(tcase, arrangement_after_dense_clipping);
     tcase_add_test(tcase, doubts);
     tcase_add_test(tcase, slope_of_the_open_area);
     return suite_run(suite);

@@ -65,6 +65,14 @@ void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t disc
     if (arena->used < end) arena->used = end;
 }
 
+void fibrad_areas_clear_arcs(fibrad_areas *areas) {
+    const fibrad_arrangement *a = &areas->arrangement;
+    const fibrad_arcs *list[] = {&a->open, &a->left, &a->second[0], &a->second[1]};
+    for (int n = 0; n < 4; n++)
+        fibrad_zero(list[n]->circle, ((size_t)(n < 2 ? a->arcs : a->seconds) + AREA_LANES) * sizeof(double));
+    areas->dense.written = false;
+}
+
 /* Adds what an arc from p to q of a disc's circle contributes: the integral of the normal along it, times the depth. */
 static void add_slope(const fibrad_areas *areas, const double *depth, double circle, double dx, double dy,
                       double slope[2]) {

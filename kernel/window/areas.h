@@ -80,6 +80,10 @@ typedef struct fibrad_areas {
 
 void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t discs);
 
+/* Clears what dense clipping has left in the arrangement's lists of arcs. Lanes beyond their count look up a circle,
+ * too: there must be one of that number. */
+void fibrad_areas_clear_arcs(fibrad_areas *areas);
+
 /* How fast the open area of a completed window grows as the window's direction turns: slope[0] towards u, slope[1]
  * towards v, per radian. A disc at depth t then moves by -t; what its open rim passes over is covered. depth: of the
  * discs, by the caller's numbers. */

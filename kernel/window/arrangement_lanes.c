@@ -348,6 +348,7 @@ static bool remove_covered(fibrad_areas *areas, uint32_t k) {
 }
 
 void LANED(fibrad_arrangement_begin)(fibrad_areas *areas) {
+    if (areas->dense.written) fibrad_areas_clear_arcs(areas);
     areas->circles = 0;
     areas->arrangement.open.count = areas->pieces->count = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);

@@ -275,19 +275,23 @@ FIBRAD_INLINE bool clip_disc_out(fibrad_areas *areas, uint32_t k, double x, doub
 /* Whether dense clipping has resolved its discs. */
 static bool is_open_dense(const fibrad_areas *areas) { return areas->dense.live > 0 && !areas->overflow; }
 
-/* Resolves the window again, up to its first `circles` circles: by dense clipping if it was the slots that were too
- * few, else by the arrangement. */
-static bool resolve_again(fibrad_areas *areas, uint32_t circles) {
+/* Resolves the window again, up to its first `circles` circles, by the arrangement. */
+static bool arrange_again(fibrad_areas *areas, uint32_t circles) {
     bool open = true;
-    if (!areas->dense.on && areas->boundary->alive == (UINT64_C(1) << FIBRAD_BOUNDARY) - 1 &&
-        LANED(fibrad_dense_resolve)(areas, circles))
-        return is_open_dense(areas);
     areas->degenerate = true;
     areas->fallbacks++;
     LANED(fibrad_arrangement_begin)(areas);
     for (uint32_t k = 1; k < circles && open; k++) /* which keeps no more circles than have been read */
         open = LANED(fibrad_arrangement_disc)(areas, areas->whose[k], areas->x[k], areas->y[k], areas->r[k]);
     return open;
+}
+
+/* The same by dense clipping if it was the slots that were too few. */
+static bool resolve_again(fibrad_areas *areas, uint32_t circles) {
+    if (!areas->dense.on && areas->boundary->alive == (UINT64_C(1) << FIBRAD_BOUNDARY) - 1 &&
+        areas->r[circles - 1] <= CLIP_RADIUS_MAX && LANED(fibrad_dense_resolve)(areas, circles))
+        return is_open_dense(areas);
+    return arrange_again(areas, circles);
 }
 
 void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
@@ -374,7 +378,7 @@ double LANED(fibrad_areas_end)(fibrad_areas *areas) {
     if (areas->overflow) return 0;
     if (!areas->degenerate) {
         if (complete_areas(areas)) return areas->area[areas->circles];
-        resolve_again(areas, areas->circles);
+        arrange_again(areas, areas->circles);
     }
     return LANED(fibrad_arrangement_end)(areas);
 }

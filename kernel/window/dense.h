@@ -46,7 +46,8 @@ typedef struct fibrad_dense {
     uint32_t *alive, *next;       /* [blocks_most] bit l: slot l holds an arc; the cell's next block */
     fibrad_dense_disc *disc;
     fibrad_dense_cut *cut;
-    bool on; /* the window in hand is resolved here */
+    bool on;      /* the window in hand is resolved here */
+    bool written; /* its arrays stand where the arrangement's are to be */
 } fibrad_dense;
 
 void fibrad_dense_layout(fibrad_dense *dense, fibrad_arena *arena, uint32_t discs);

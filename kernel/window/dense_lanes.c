@@ -356,7 +356,7 @@ static void begin_dense(fibrad_areas *areas, uint32_t circles) {
 }
 
 bool LANED(fibrad_dense_resolve)(fibrad_areas *areas, uint32_t circles) {
-    areas->dense.on = true;
+    areas->dense.on = areas->dense.written = true;
     begin_dense(areas, circles);
     for (uint32_t k = 1; k < circles && !areas->overflow && areas->dense.live > 0; k++) {
         fibrad_areas_add_circle(areas, areas->whose[k], areas->x[k], areas->y[k], areas->r[k]);
