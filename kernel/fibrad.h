@@ -317,8 +317,8 @@ typedef struct fibrad_matrix_rule {
     const fibrad_body_row *body_row; /* [bodies] rows of bodies, too, copied; those of bodies without bounds are not
                                         looked at. NULL: spheres alone have rows */
     const double *body_emissivity;   /* [bodies] [0, 1] for these; NULL: 1 */
-    fibrad_parallel *parallel;       /* does what can be done at once, `tasks` pieces; NULL: the calling thread does */
-    void *context;                   /* handed to it */
+    fibrad_parallel *parallel; /* does pieces at once, in all calls for the matrix; NULL: the calling thread does */
+    void *context;             /* handed to it */
 } fibrad_matrix_rule;
 
 /* A matrix of factors, compressed rows. The arrays are those of the matrix it was read from. */

@@ -98,6 +98,7 @@ START_TEST(parts_that_do_not_fit) {
     fibrad_work work = work_growing();
     fibrad_row row = row_of(50);
     const fibrad_beam_rule rule = {.directions = 20}, more = {.directions = 21};
+    const fibrad_beam_rule tolerant = {.directions = 20, .tolerance = 1e-3};
     fibrad_row_part part[2] = {{.memory = memory_growing()}, {.memory = memory_growing()}};
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, part, 2, &row), FIBRAD_E_STATE);
     for (uint32_t p = 0; p < 2; p++)
@@ -109,13 +110,13 @@ START_TEST(parts_that_do_not_fit) {
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, part + 1, 1, &row), FIBRAD_E_STATE);
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, NULL, 2, &row), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_join(NULL, &work, 1, &rule, part, 2, &row), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &tolerant, part, 2, &row), FIBRAD_E_UNSUPPORTED);
     ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, part, 2, &row), FIBRAD_OK);
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 5, 5, &part[0]), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 5, 21, &part[0]), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 50, &rule, 5, 9, &part[0]), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 5, 9, NULL), FIBRAD_E_ARGUMENT);
     ck_assert_int_eq(fibrad_beam_part(NULL, &work, 1, &rule, 5, 9, &part[0]), FIBRAD_E_ARGUMENT);
-    const fibrad_beam_rule tolerant = {.directions = 20, .tolerance = 1e-3};
     ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &tolerant, 5, 9, &part[0]), FIBRAD_E_UNSUPPORTED);
     for (int p = 0; p < 2; p++) free(part[p].memory.block);
     work_free(&work);

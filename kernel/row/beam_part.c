@@ -22,6 +22,12 @@ typedef struct part_rule {
     fibrad_beam_range range;
 } part_rule;
 
+/* The rule of a row in parts. */
+static int complete_rule(const fibrad_beam_rule *given, fibrad_beam_rule *rule) {
+    const int status = fibrad_beam_complete(given, rule);
+    return status == FIBRAD_OK && rule->tolerance > 0 ? FIBRAD_E_UNSUPPORTED : status;
+}
+
 static int compute_range(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *given,
                          fibrad_row *row) {
     const part_rule *part = given;
@@ -34,9 +40,8 @@ int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, c
     part_rule how;
     double body[FIBRAD_BODIES_MAX];
     fibrad_row row = {.body = body};
-    const int checked = fibrad_beam_complete(given, &how.rule);
+    const int checked = complete_rule(given, &how.rule);
     if (checked != FIBRAD_OK) return checked;
-    if (how.rule.tolerance > 0) return FIBRAD_E_UNSUPPORTED;
     if (part == NULL || from >= to || to > how.rule.directions) return FIBRAD_E_ARGUMENT;
     fibrad_addends addends = {&part->memory, 0};
     how.range = (fibrad_beam_range){.from = from, .to = to, .addends = &addends};
@@ -56,7 +61,7 @@ int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, c
 int fibrad_beam_join(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *given,
                      const fibrad_row_part *part, uint32_t parts, fibrad_row *row) {
     part_rule how;
-    const int checked = fibrad_beam_complete(given, &how.rule);
+    const int checked = complete_rule(given, &how.rule);
     if (checked != FIBRAD_OK) return checked;
     if (scene == NULL || part == NULL) return FIBRAD_E_ARGUMENT;
     const uint64_t key = key_of(scene, i, &how.rule);
