@@ -131,8 +131,9 @@ START_TEST(raw_rows_close) {
 }
 END_TEST
 
-/* What sphere i sees along w, by exact slicing of all discs in the order of their depths: adds areas to seen[j]. */
-static void slice(const struct bed *bed, uint32_t i, const double w[3], double *seen) {
+/* What sphere i sees along w down to depth `deepest`, by exact slicing of all discs in the order of their depths: adds
+ * areas to seen[j]. */
+static void slice(const struct bed *bed, uint32_t i, const double w[3], double deepest, double *seen) {
     double u[600], v[600], r[600], depth[600], area[600], rest, flat = sqrt(w[0] * w[0] + w[1] * w[1]);
     uint32_t sphere[600], n = 0;
     for (uint32_t j = 0; j < bed->n; j++) {
@@ -140,7 +141,7 @@ static void slice(const struct bed *bed, uint32_t i, const double w[3], double *
         double z = (bed->z[j] - bed->z[i]) / bed->r[i], size = bed->r[j] / bed->r[i];
         double ahead = w[0] * x + w[1] * y + w[2] * z, across = (w[0] * y - w[1] * x) / flat;
         double up = flat * z - w[2] * (w[0] * x + w[1] * y) / flat;
-        if (!(ahead > 0 && across * across + up * up < (1 + size) * (1 + size))) continue;
+        if (!(ahead > 0 && ahead <= deepest && across * across + up * up < (1 + size) * (1 + size))) continue;
         uint32_t to = n++;
         for (; to > 0 && depth[to - 1] > ahead; to--) {
             depth[to] = depth[to - 1], sphere[to] = sphere[to - 1];
@@ -148,6 +149,7 @@ static void slice(const struct bed *bed, uint32_t i, const double w[3], double *
         }
         depth[to] = ahead, sphere[to] = j, u[to] = across, v[to] = up, r[to] = size;
     }
+    if (n == 0) return;
     ck_assert_int_eq(reference_window(n, u, v, r, area, &rest), REFERENCE_OK);
     for (uint32_t k = 0; k < n; k++) seen[sphere[k]] += area[k];
 }
@@ -161,7 +163,7 @@ START_TEST(rows_match_sliced_windows) {
             double seen[600] = {0}, w[3];
             for (uint32_t k = 0; k < 34; k++) {
                 ck_assert_int_eq(fibrad_direction(k, 34, w), FIBRAD_OK);
-                slice(&beds[b], i, w, seen);
+                slice(&beds[b], i, w, INFINITY, seen);
             }
             fibrad_row row = beam(&beds[b], i, (fibrad_beam_rule){.directions = 34}, FIBRAD_ISA_BEST);
             for (uint32_t j = 0; j < beds[b].n; j++)
@@ -593,6 +595,33 @@ START_TEST(strays_are_met_on_the_way) {
 }
 END_TEST
 
+/* Not a sphere deeper, although beams look farther ahead at once. */
+START_TEST(beams_end_after_100_periods) {
+    const fibrad_beam_rule rule = {.directions = 4000};
+    const double period = 3;
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), copies = bed_of(0, NULL);
+    for (int k = 0; k < 12; k++)
+        add_sphere(&bed, .2 * k, (60 + 15 * k) * cos(2.4 * k), (60 + 15 * k) * sin(2.4 * k), 1);
+    for (int image = 0; image <= 400; image++) /* 0, -1, 1, -2, 2 ... periods away */
+        for (uint32_t j = 0; j < bed.n; j++)
+            add_sphere(&copies, bed.x[j] + (image % 2 ? -1 : 1) * ((image + 1) / 2) * period, bed.y[j], bed.z[j], 1);
+    double *seen = calloc(copies.n, sizeof *seen), w[3];
+    ck_assert_ptr_nonnull(seen);
+    for (uint32_t k = 0; k < rule.directions; k++) {
+        ck_assert_int_eq(fibrad_direction(k, rule.directions, w), FIBRAD_OK);
+        slice(&copies, 0, w, 100 * period / fabs(w[0]), seen);
+    }
+    for (uint32_t j = bed.n; j < copies.n; j++) seen[j % bed.n] += seen[j];
+    bed.period[0] = period;
+    fibrad_row row = beam(&bed, 0, rule, FIBRAD_ISA_BEST);
+    for (uint32_t j = 0; j < bed.n; j++)
+        ck_assert_double_eq_tol(row_factor(&row, j), seen[j] / (rule.directions * acos(-1)), 1e-10);
+    row_free(&row);
+    free(seen);
+    bed_free(&bed), bed_free(&copies);
+}
+END_TEST
+
 START_TEST(bad_arguments_are_refused) {
     struct bed bed = lattice('p', 3);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -649,6 +678,7 @@ int main(void) {
     tcase_add_test(tcase, ids_change_no_beam);
     tcase_add_test(tcase, strays_are_seen_however_far);
     tcase_add_test(tcase, strays_are_met_on_the_way);
+    tcase_add_test(tcase, beams_end_after_100_periods);
     tcase_add_test(tcase, bad_arguments_are_refused);
     return suite_run(suite);
 }

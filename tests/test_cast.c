@@ -311,6 +311,22 @@ START_TEST(scaling_by_powers_of_two_changes_no_bit) {
 }
 END_TEST
 
+/* However far the shells reach, which again hangs on a speck. */
+START_TEST(rays_end_after_100_periods) {
+    double escaped = NAN;
+    for (int speck = 0; speck < 5; speck++) {
+        struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, -20 * pow(3, speck), 1e-6}});
+        bed.period[0] = 3;
+        for (int k = 0; k < 8; k++) add_sphere(&bed, .2 * k, 300 * cos(2.4 * k), 300 * sin(2.4 * k), 1.5);
+        fibrad_row row = cast(&bed, 0, (fibrad_cast_rule){.rays = 20000}, FIBRAD_ISA_BEST);
+        if (speck == 0) escaped = row.escaped;
+        ck_assert_double_eq(row.escaped, escaped);
+        row_free(&row);
+        bed_free(&bed);
+    }
+}
+END_TEST
+
 /* Spheres beyond the cutoff neither receive nor block. */
 START_TEST(cutoff) {
     struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}, {0, 0, 40, 30}});
@@ -398,6 +414,7 @@ int main(void) {
     tcase_add_test(tests, same_bits_in_every_instruction_set);
     tcase_add_test(tests, room_is_a_matter_of_speed);
     tcase_add_test(tests, scaling_by_powers_of_two_changes_no_bit);
+    tcase_add_test(tests, rays_end_after_100_periods);
     tcase_add_test(tests, cutoff);
     tcase_add_test(tests, refusals_and_capacities);
     return suite_run(suite);

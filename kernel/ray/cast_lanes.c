@@ -110,13 +110,14 @@ static bool cast_hit_before(const fibrad_scene *scene, const struct cast_hit *a,
     return a->u != b->u ? a->u < b->u : a->v < b->v;
 }
 
-/* Compares the discs of `work` with the first sphere so far. */
-static void intersect_discs(const fibrad_workspace *work, const struct cast_ray *ray, struct cast_hit *first) {
+/* Compares the discs of `work` down to the horizon with the first sphere so far. */
+static void intersect_discs(const fibrad_workspace *work, const struct cast_ray *ray, double horizon,
+                            struct cast_hit *first) {
     const fibrad_discs *disc = &work->disc;
     for (uint32_t k = 0; k < disc->count; k++) {
         struct cast_hit hit = {0, disc->depth[k], disc->u[k], disc->v[k], disc->r[k], fibrad_work_sphere(work, k)};
         double v = hit.v + ray->sine, square = hit.r * hit.r - (hit.u * hit.u + v * v);
-        if (!(square > 0)) continue;
+        if (!(square > 0 && hit.depth <= horizon)) continue;
         hit.distance = fibrad_max(0, hit.depth - ray->cosine - fibrad_sqrt(square));
         if (cast_hit_before(work->scene, &hit, first)) *first = hit;
     }
@@ -129,8 +130,8 @@ static void intersect_discs(const fibrad_workspace *work, const struct cast_ray 
 static bool follow_cast_ray(fibrad_workspace *work, const struct cast_ray *ray, struct cast_hit *first) {
     const fibrad_scene_facts *facts = &work->scene->facts;
     double lead = fibrad_sqrt(2 * facts->overlap_max + 1e-12), largest = facts->radius_max * work->inverse;
-    double known = -1, horizon = 0;
-    for (uint32_t shell = 0; shell == 0 || known < horizon; shell++) {
+    double known = -1, horizon = __builtin_inf();
+    for (uint32_t shell = 0; known < horizon; shell++) {
         work->disc.count = 0;
         if (shell == work->near.shells && fibrad_near_pays(&work->near)) LANED(fibrad_near_extend)(work);
         if (shell < work->near.shells) {
@@ -142,9 +143,9 @@ static bool follow_cast_ray(fibrad_workspace *work, const struct cast_ray *ray, 
             known = to;
         }
         if (work->disc.count > work->disc.capacity) return false;
-        intersect_discs(work, ray, first);
+        if (known >= work->clear) horizon = fibrad_near_horizon(work, ray->frame + 6);
+        intersect_discs(work, ray, horizon, first);
         if (first->distance < __builtin_inf() && first->depth + (first->r + largest) * lead <= known) break;
-        if (shell == 0) horizon = fibrad_near_horizon(work, ray->frame + 6);
     }
     return true;
 }

@@ -163,7 +163,7 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
         if (work->disc.count > work->disc.capacity) break;
         if (known >= work->clear) horizon = fibrad_near_horizon(work, frame + 6);
         sort_discs(work, resolved);
-        resolved = resolve_discs(work, points, k, resolved, known < horizon ? known : __builtin_inf(), &open);
+        resolved = resolve_discs(work, points, k, resolved, fibrad_min(known, horizon), &open);
     }
     const bool near = fibrad_mesh_near(work, open ? __builtin_inf() : known);
     if (work->met != NULL) work->met->any = false;

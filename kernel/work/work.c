@@ -240,7 +240,7 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
                                                  : fibrad_max(work->centre[axis] - scene->low[axis],
                                                               scene->high[axis] - work->centre[axis]) *
                                                        work->inverse;
-    work->farthest = fibrad_min(farthest[0] + farthest[1] + farthest[2], work->reach);
+    work->farthest = fibrad_min(farthest[0] + farthest[1] + farthest[2], work->reach) * (1 + 1e-12);
     work->clear = work->farthest;
     for (int axis = 0; axis < 3; axis++)
         for (int sense = -1; sense <= 1; sense += 2)

@@ -174,7 +174,8 @@ static inline bool fibrad_near_pays(fibrad_near *near) {
 /* What the line from a place along w meets, if it meets no sphere: a slot. */
 uint32_t fibrad_work_met(const fibrad_workspace *work, const double from[3], const double w[3]);
 
-/* No sphere comes before the window of direction w deeper than this. */
+/* No sphere comes before the window of direction w deeper than this, or it does not count: along periodic axes beams
+ * and rays end after FIBRAD_PERIODS. */
 double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]);
 
 /* Whether a sphere comes before the window. At equal depth the lower id is in front, as among discs: of spheres that
