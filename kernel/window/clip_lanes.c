@@ -327,7 +327,7 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
 }
 
 /* Hides what one disc covers in a window that is resolved densely or by the arrangement. False once nothing is open. */
-static __attribute__((noinline)) bool hide_slowly(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
+static bool hide_slowly(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
     if (areas->degenerate) return LANED(fibrad_arrangement_disc)(areas, whose, x, y, r);
     const uint32_t k = areas->circles;
     fibrad_areas_add_circle(areas, whose, x, y, r);
