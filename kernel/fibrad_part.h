@@ -41,7 +41,7 @@ typedef struct fibrad_row_part {
 /* A row divided over threads. _part: what directions [from, to) of fibrad_beam_row give, by a rule without a tolerance
  * (else FIBRAD_E_UNSUPPORTED). _join: the row, from parts in order that together have all directions: to the bit the
  * row that fibrad_beam_row returns. Work memory and `row` as there. Errors: as fibrad_beam_row; _STATE: a part is
- * missing or of another row, rule or scene. Cost: as fibrad_beam_row; _join 20 ns for each sphere that a window sees.
+ * missing or of another row, rule or scene. Cost: together as fibrad_beam_row; _join adds up lists.
  */
 int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                      uint32_t from, uint32_t to, fibrad_row_part *part);

@@ -6,8 +6,6 @@
  * nothing hides them. Lines that meet no sphere get directions of their own, as those among walls do, if what they meet
  * is far: docs/methods.md section 9. */
 #include FIBRAD_LANES_HEADER
-#include "base/constants.h"
-#include "base/lanes/below.h"
 #include "lines/mesh_faces_lanes.h"
 #include "lines/mesh_lines_lanes.h"
 #include "row/mesh_share_lanes.h"

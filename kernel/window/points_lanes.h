@@ -12,9 +12,6 @@ uint64_t LANED(fibrad_points_within)(const fibrad_points *points, uint32_t word,
 /* Hides the open points inside a disc. */
 void LANED(fibrad_points_disc)(fibrad_points *points, double x, double y, double r);
 
-/* The points of one word of 64 that a disc holds. */
-uint64_t LANED(fibrad_points_within)(const fibrad_points *points, uint32_t word, double x, double y, double r);
-
 /* Hides the open points inside the discs order[from] to the last one not deeper than `depth`, from front to back: the
  * ray-sphere test of a parallel beam, without a square root. Writes to hidden_points how many each disc hides. Returns
  * the position in the order where the deeper ones begin. */
