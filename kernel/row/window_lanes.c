@@ -14,15 +14,15 @@
 /* Appends the discs of one shell that come before the window, after a cull in floats. That their places are listed
  * before they are used saves one mispredicted branch for most vectors. */
 static void cull_for_window(fibrad_workspace *work, const double frame[9], uint32_t shell) {
-    const fibrad_near *near = &work->near;
-    const float *x = near->fx, *y = near->fy, *z = near->fz, *e = near->fe;
+    const fibrad_sight sight = shell > 0 ? work->near.all : *LANED(fibrad_near_sight)(&work->near, frame + 6);
+    const size_t begin = shell > 0 ? work->near.end[shell - 1] : 0;
+    const size_t end = shell > 0 ? work->near.end[shell] : sight.count;
     uint32_t *from = work->disc.near + work->disc.count, *to = from;
     vf wx = vf_set1((float)frame[6]), wy = vf_set1((float)frame[7]), wz = vf_set1((float)frame[8]);
-    size_t end = near->end[shell];
-    for (size_t j = shell == 0 ? 0 : near->end[shell - 1]; j < end; j += VF_LANES) {
-        vf depth = wx * vf_load(x + j) + wy * vf_load(y + j) + wz * vf_load(z + j);
-        uint32_t bits = vf_lt_bits(vf_load(e + j), depth);
-        to += vf_compress_places(to, bits, (uint32_t)j);
+    for (size_t j = begin; j < end; j += VF_LANES) {
+        vf depth = wx * vf_load(sight.x + j) + wy * vf_load(sight.y + j) + wz * vf_load(sight.z + j);
+        uint32_t bits = vf_lt_bits(vf_load(sight.e + j), depth);
+        to += vn_compress(to, bits, sight.near + j);
     }
     LANED(fibrad_near_discs)(work, frame, (uint32_t)(to - from));
 }

@@ -87,8 +87,44 @@ void LANED(fibrad_near_extend)(fibrad_workspace *work) {
     prepare_culls(near, begin, count);
     for (uint32_t k = begin; k < count; k++) near->entry[k] = FIBRAD_NONE;
     near->end[shell] = count;
+    if (shell == 0) near->all.count = count;
     near->limit[shell] = to;
     near->shells++;
+}
+
+/* Lists the first shell for an octant of directions; false: no room. Sphere c comes before none of its windows if the
+ * most that w.c can be, the length of what c has along the octant's axes, is not more than e. e is lowered by more than
+ * rounding; below 0 it may be anything. What fills the shell up is at 0 with e = 0. */
+static bool list_octant(const fibrad_near *of, uint32_t octant, fibrad_sight *sight) {
+    const fibrad_near near = *of; /* copies: what is stored cannot change their pointers */
+    const fibrad_sight to = *sight;
+    const vf sx = vf_set1(octant & 1 ? -1 : 1), sy = vf_set1(octant & 2 ? -1 : 1), sz = vf_set1(octant & 4 ? -1 : 1);
+    const vf zero = vf_set1(0);
+    size_t n = 0;
+    for (size_t k = 0; k < near.end[0]; k += VF_LANES) {
+        if (n + FIBRAD_LANES_MAX > near.sights) return false;
+        const vf x = vf_load(near.fx + k), y = vf_load(near.fy + k), z = vf_load(near.fz + k);
+        const vf e = vf_load(near.fe + k);
+        const vf ax = vf_max(sx * x, zero), ay = vf_max(sy * y, zero), az = vf_max(sz * z, zero);
+        const uint32_t bits = vf_lt_bits(e, zero) | vf_lt_bits(e * e, ax * ax + ay * ay + az * az);
+        vf_compress(to.x + n, bits, x);
+        vf_compress(to.y + n, bits, y);
+        vf_compress(to.z + n, bits, z);
+        vf_compress(to.e + n, bits, e);
+        n += vf_compress_places(to.near + n, bits, (uint32_t)k);
+    }
+    for (; n % FIBRAD_LANES_MAX != 0; n++) to.x[n] = to.y[n] = to.z[n] = to.e[n] = 0;
+    sight->count = (uint32_t)n;
+    return true;
+}
+
+const fibrad_sight *LANED(fibrad_near_sight)(fibrad_near *near, const double w[3]) {
+    const uint32_t octant = (w[0] < 0) + 2 * (uint32_t)(w[1] < 0) + 4 * (uint32_t)(w[2] < 0);
+    if (near->seen[octant] == NULL) {
+        fibrad_sight *sight = &near->octant[octant];
+        near->seen[octant] = list_octant(near, octant, sight) ? sight : &near->all;
+    }
+    return near->seen[octant];
 }
 
 /* Removes the discs from number `from` on that do not overlap the window or do not lie ahead. */

@@ -9,6 +9,9 @@
 /* Adds the next shell of near spheres, or sets near.full. */
 void LANED(fibrad_near_extend)(fibrad_workspace *work);
 
+/* A list of all spheres of the first shell, which there must be, that come before the window of direction w. */
+const fibrad_sight *LANED(fibrad_near_sight)(fibrad_near *near, const double w[3]);
+
 /* Appends the discs of `found` near spheres to work->disc, where their places are listed already, if they overlap the
  * window and lie ahead. Beyond its capacity all of them are counted, and no more. */
 void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uint32_t found);

@@ -37,6 +37,17 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     near->r = fibrad_arena_take(arena, near->capacity, sizeof(double));
     near->sphere = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
     near->entry = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
+    near->all = (fibrad_sight){.x = near->fx, .y = near->fy, .z = near->fz, .e = near->fe};
+    near->all.near = fibrad_arena_take(arena, near->capacity, sizeof(uint32_t));
+    near->sights = (near->capacity / 4 + 15) / 16 * 16;
+    for (int octant = 0; octant < 8; octant++) {
+        fibrad_sight *sight = &near->octant[octant];
+        sight->x = fibrad_arena_take(arena, near->sights, sizeof(float));
+        sight->y = fibrad_arena_take(arena, near->sights, sizeof(float));
+        sight->z = fibrad_arena_take(arena, near->sights, sizeof(float));
+        sight->e = fibrad_arena_take(arena, near->sights, sizeof(float));
+        sight->near = fibrad_arena_take(arena, near->sights, sizeof(uint32_t));
+    }
 
     fibrad_discs *disc = &work->disc;
     disc->capacity = plan->discs;
@@ -102,6 +113,7 @@ static fibrad_workspace *lay_out_work(fibrad_work *work, const fibrad_work_plan 
     fibrad_zero(arena.base, bytes_of(plan) - plan->extra - (FIBRAD_ALIGNMENT - 1));
     fibrad_workspace *space = work_layout(&arena, plan, &fields);
     for (uint32_t slot = 0; slot < fields.entries.slots; slot++) fields.entries.at[slot] = FIBRAD_NONE;
+    for (uint32_t k = 0; k < fields.near.capacity; k++) fields.near.all.near[k] = k;
     fields.seal = seal_of(work);
     *space = fields;
     work->inside = space;
@@ -249,6 +261,7 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->back = UINT32_MAX;
     if (work->met != NULL) work->met->any = false;
     work->near.shells = 0;
+    for (int octant = 0; octant < 8; octant++) work->near.seen[octant] = NULL;
     work->near.full = false;
     work->near.asked = 0;
 }

@@ -19,6 +19,13 @@
  * if w.c > e. All spheres with e <= limit[s] are in shells 0 ... s, so that what a window meets down to that depth is
  * known after s + 1 shells. Each shell begins on a whole vector; the gaps are filled with points at the centre, which
  * never lie ahead. */
+/* Spheres of the first shell that may come before windows of some directions: for culls, as in fibrad_near. */
+typedef struct fibrad_sight {
+    float *x, *y, *z, *e; /* [capacity] */
+    uint32_t *near;       /* [same] places in the near list */
+    uint32_t count;       /* whole vectors */
+} fibrad_sight;
+
 typedef struct fibrad_near {
     float *fx, *fy, *fz, *fe; /* [capacity] centre and, a little less than, e: for the first cull, ... */
     float *fq;                /* ... and, a little less than, d^2 + 1 - r^2: for that of rays */
@@ -30,6 +37,10 @@ typedef struct fibrad_near {
     uint32_t end[FIBRAD_SHELLS]; /* where each shell ends */
     double limit[FIBRAD_SHELLS]; /* down to which depth windows are known with it */
     bool full;                   /* no room for a further shell: windows walk the grid instead */
+    fibrad_sight octant[8];      /* of directions: bit 0, 1, 2 of its number where x, y, z are negative */
+    fibrad_sight all;            /* of all directions; its arrays go on with further shells */
+    const fibrad_sight *seen[8]; /* from each octant: its own, if that has room for all; NULL: not listed so far */
+    uint32_t sights;             /* capacity of each octant's */
     uint32_t asked;              /* how many windows have asked for one more than there are */
 } fibrad_near;
 

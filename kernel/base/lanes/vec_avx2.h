@@ -72,6 +72,7 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_pd(_mm25
 
 static inline vf vf_set1(float a) { return _mm256_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm256_load_ps(p); }
+static inline vf vf_max(vf a, vf b) { return _mm256_max_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
 static inline vn vn_zero(void) { return _mm256_setzero_si256(); }
 static inline void vn_store(uint32_t *p, vn n) { _mm256_store_si256((__m256i *)(void *)p, n); }
@@ -81,6 +82,15 @@ static inline uint32_t vn_some_bits(const uint32_t *p) {
 }
 static inline vn vn_count_lt(vn n, vf a, vf b) {
     return _mm256_sub_epi32(n, _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
+}
+static inline void vf_compress(float *p, uint32_t bits, vf a) {
+    __m128 low = _mm256_castps256_ps128(a), high = _mm256_extractf128_ps(a, 1);
+    _mm_storeu_ps(p, _mm_permutevar_ps(low, (__m128i)fibrad_named_lanes(bits & 15)));
+    _mm_storeu_ps(p + fibrad_count_bits(bits & 15), _mm_permutevar_ps(high, (__m128i)fibrad_named_lanes(bits >> 4)));
+}
+static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
+    vf_compress((float *)(void *)p, bits, _mm256_load_ps((const float *)(const void *)from));
+    return fibrad_count_bits(bits);
 }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     fibrad_compress_places(p, bits & 15, first);

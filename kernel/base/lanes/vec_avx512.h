@@ -56,6 +56,7 @@ static inline uint32_t vm_bits(vm a) { return a; }
 
 static inline vf vf_set1(float a) { return _mm512_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm512_load_ps(p); }
+static inline vf vf_max(vf a, vf b) { return _mm512_max_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 static inline vn vn_zero(void) { return _mm512_setzero_si512(); }
 static inline void vn_store(uint32_t *p, vn n) { _mm512_store_si512((__m512i *)(void *)p, n); }
@@ -65,6 +66,13 @@ static inline uint32_t vn_some_bits(const uint32_t *p) {
 }
 static inline vn vn_count_lt(vn n, vf a, vf b) {
     return _mm512_mask_add_epi32(n, _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ), n, _mm512_set1_epi32(1));
+}
+static inline void vf_compress(float *p, uint32_t bits, vf a) {
+    _mm512_storeu_ps(p, _mm512_maskz_compress_ps((__mmask16)bits, a));
+}
+static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
+    _mm512_storeu_si512(p, _mm512_maskz_compress_epi32((__mmask16)bits, _mm512_load_si512(from)));
+    return (uint32_t)_mm_popcnt_u32(bits);
 }
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);

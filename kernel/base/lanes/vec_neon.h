@@ -61,6 +61,7 @@ static inline uint32_t vn_mask_bits(uint32x4_t mask) {
 }
 static inline vf vf_set1(float a) { return vdupq_n_f32(a); }
 static inline vf vf_load(const float *p) { return vld1q_f32(p); }
+static inline vf vf_max(vf a, vf b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return vn_mask_bits(vcltq_f32(a, b)); }
 static inline vn vn_zero(void) { return vdupq_n_u32(0); }
 static inline void vn_store(uint32_t *p, vn n) { vst1q_u32(p, n); }
@@ -69,6 +70,15 @@ static inline uint32_t vn_some_bits(const uint32_t *p) {
     return vn_mask_bits(vtstq_u32(n, n));
 }
 static inline vn vn_count_lt(vn n, vf a, vf b) { return vsubq_u32(n, vcltq_f32(a, b)); }
+static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
+    fibrad_compress_four(p, bits, from);
+    return fibrad_count_four(bits);
+}
+static inline void vf_compress(float *p, uint32_t bits, vf a) {
+    _Alignas(16) uint32_t lane[4];
+    vst1q_u32(lane, vreinterpretq_u32_f32(a));
+    fibrad_compress_four((uint32_t *)(void *)p, bits, lane);
+}
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     fibrad_compress_places(p, bits, first);
     return fibrad_count_four(bits);

@@ -13,9 +13,10 @@
  *                            vd_replace(a, lane, x): a with x in one lane
  *                            vd_compress_places(p, bits, first): first + l for them; returns how many
  *   vm   a mask of vd lanes  & | vm_not vm_bits (bit l = lane l)
- *   vf   VF_LANES floats     + - * vf_set1 vf_load vf_lt_bits (bit l = lane l)
- *                            vf_compress_places(p, bits, first): as that of vd
+ *   vf   VF_LANES floats     + - * vf_set1 vf_load vf_max vf_lt_bits (bit l = lane l)
+ *                            vf_compress(p, bits, a), vf_compress_places(p, bits, first): as those of vd
  *   vn   VF_LANES numbers    vn_zero vn_store vn_count_lt(n, a, b): n, and one more where a < b
+ *                            vn_compress(p, bits, from): those of the numbers at `from`; returns how many
  *                            vn_some_bits(p): which of those at p, any address, are not 0
  * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them.
  * 0 - a, not -a, where a sign turns: the zero it makes is positive. */
@@ -63,11 +64,17 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
 
 static inline vf vf_set1(float a) { return a; }
 static inline vf vf_load(const float *p) { return *p; }
+static inline vf vf_max(vf a, vf b) { return a > b ? a : b; }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return a < b; }
 static inline vn vn_zero(void) { return 0; }
 static inline void vn_store(uint32_t *p, vn n) { *p = n; }
 static inline uint32_t vn_some_bits(const uint32_t *p) { return *p != 0; }
 static inline vn vn_count_lt(vn n, vf a, vf b) { return n + (a < b); }
+static inline void vf_compress(float *p, uint32_t bits, vf a) { (void)bits, *p = a; }
+static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
+    *p = *from;
+    return bits;
+}
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     return vd_compress_places(p, bits, first);
 }

@@ -59,6 +59,7 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm_movemask_pd(_mm_cast
 
 static inline vf vf_set1(float a) { return _mm_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm_load_ps(p); }
+static inline vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)); }
 static inline vn vn_zero(void) { return _mm_setzero_si128(); }
 static inline void vn_store(uint32_t *p, vn n) { _mm_store_si128((__m128i *)(void *)p, n); }
@@ -67,6 +68,15 @@ static inline uint32_t vn_some_bits(const uint32_t *p) {
     return ~(uint32_t)_mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(n, _mm_setzero_si128()))) & 15;
 }
 static inline vn vn_count_lt(vn n, vf a, vf b) { return _mm_sub_epi32(n, _mm_castps_si128(_mm_cmplt_ps(a, b))); }
+static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
+    fibrad_compress_four(p, bits, from);
+    return fibrad_count_four(bits);
+}
+static inline void vf_compress(float *p, uint32_t bits, vf a) {
+    _Alignas(16) uint32_t lane[4];
+    vn_store(lane, _mm_castps_si128(a));
+    fibrad_compress_four((uint32_t *)(void *)p, bits, lane);
+}
 static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
     fibrad_compress_places(p, bits, first);
     return fibrad_count_four(bits);
