@@ -4,6 +4,7 @@
  * are found shell by shell: after a shell all discs down to some depth are known, and these are resolved in the order
  * of their depth. Most windows are covered before a second shell is needed. */
 #include FIBRAD_LANES_HEADER
+#include "base/lanes/below.h"
 #include "base/sort.h"
 #include "row/mesh_share_lanes.h"
 #include "work/neighbours_lanes.h"
@@ -110,14 +111,23 @@ static void sort_discs(fibrad_workspace *work, uint32_t resolved) {
     sort_discs_by_digits(work);
 }
 
+/* How many discs are not deeper than `depth`. */
+static uint32_t discs_down_to(const fibrad_discs *disc, double depth) {
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < disc->count; k += VD_LANES)
+        count += fibrad_count_bits(vm_bits(vd_le(vd_load(disc->depth + k), vd_set1(depth))) &
+                                   vd_lanes_below(disc->count - k));
+    return count;
+}
+
 /* Resolves discs [from, return) of the window, the ones down to `depth`: hides from the window what they cover. *open
  * is false once the window is covered. */
 static uint32_t resolve_discs(fibrad_workspace *work, fibrad_points *points, uint32_t window, uint32_t from,
                               double depth, bool *open) {
     const fibrad_discs disc = work->disc;
-    uint32_t to = from;
+    uint32_t to;
     if (points->count == 0) {
-        while (to < disc.count && disc.depth[disc.order[to]] <= depth) to++;
+        to = discs_down_to(&disc, depth);
         to = from + LANED(fibrad_areas_discs)(&work->areas, 0, disc.order + from, to - from, disc.u, disc.v, disc.r);
         *open = work->areas.open;
     } else {

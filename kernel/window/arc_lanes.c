@@ -10,11 +10,13 @@ void LANED(fibrad_areas_integrate)(fibrad_areas *areas) {
                               vd_load(p->cx + k), vd_load(p->cy + k), vd_load(p->r + k),  vd_load(p->circle + k)};
         vd area = fibrad_arc_area(&a);
         /* the open region is on the left of the window's arcs, on the right of discs' */
+        vd_store_numbers(p->from + k, a.circle);
+        vd_store_numbers(p->to + k, vd_load(p->occluder + k));
         vd_store(p->r + k, vd_select(vd_lt(a.circle, vd_set1(1)), area, 0 - area));
     }
     for (uint32_t k = 0; k < p->count; k++) {
-        sum[(uint32_t)p->circle[k]] -= p->r[k];
-        sum[(uint32_t)p->occluder[k]] += p->r[k];
+        sum[p->from[k]] -= p->r[k];
+        sum[p->to[k]] += p->r[k];
     }
     p->count = 0;
 }

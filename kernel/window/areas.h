@@ -19,7 +19,8 @@ typedef struct fibrad_pieces {
     _Alignas(FIBRAD_ALIGNMENT) double px[FIBRAD_PIECES + 8], py[FIBRAD_PIECES + 8];
     double qx[FIBRAD_PIECES + 8], qy[FIBRAD_PIECES + 8];
     double cx[FIBRAD_PIECES + 8], cy[FIBRAD_PIECES + 8], r[FIBRAD_PIECES + 8];
-    double circle[FIBRAD_PIECES + 8], occluder[FIBRAD_PIECES + 8]; /* numbers */
+    double circle[FIBRAD_PIECES + 8], occluder[FIBRAD_PIECES + 8]; /* numbers, ... */
+    uint32_t from[FIBRAD_PIECES + 8], to[FIBRAD_PIECES + 8];       /* ... the same while they are summed */
     uint32_t count;
 } fibrad_pieces;
 

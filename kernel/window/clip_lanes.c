@@ -369,9 +369,12 @@ static bool complete_areas(fibrad_areas *areas) {
         LANED(fibrad_arcs_add)(areas, (uint32_t)(b->alive >> o) & vd_lanes_below(VD_LANES), &piece, rest);
     }
     LANED(fibrad_areas_integrate)(areas);
-    bool right = fibrad_abs(areas->area[0] + FIBRAD_PI) < CLIP_CLOSURE;
-    for (uint32_t k = 1; k <= rest; k++) right = right & (areas->area[k] > -CLIP_CLOSURE);
-    return right;
+    uint32_t wrong = 0;
+    for (uint32_t m = 0; m <= rest; m += VD_LANES) {
+        uint32_t right = vm_bits(vd_lt(vd_set1(-CLIP_CLOSURE), vd_load(areas->area + m))) | (m == 0);
+        wrong |= ~right & vd_lanes_below(rest + 1 - m);
+    }
+    return fibrad_abs(areas->area[0] + FIBRAD_PI) < CLIP_CLOSURE && wrong == 0;
 }
 
 double LANED(fibrad_areas_end)(fibrad_areas *areas) {
