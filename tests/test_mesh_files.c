@@ -488,6 +488,48 @@ START_TEST(heat_of_triangles) {
 }
 END_TEST
 
+/* Each triangle in four. */
+static void quarter(struct soup *soup) {
+    static struct soup whole;
+    whole = *soup;
+    soup->n = 0;
+    for (uint32_t t = 0; t < whole.n; ++t) {
+        double(*c)[3] = whole.corner[t], middle[3][3];
+        for (int k = 0; k < 9; ++k) middle[k / 3][k % 3] = (c[k / 3][k % 3] + c[(k / 3 + 1) % 3][k % 3]) / 2;
+        for (int k = 0; k < 3; ++k) soup_add(soup, c[k], middle[k], middle[(k + 2) % 3]);
+        soup_add(soup, middle[0], middle[1], middle[2]);
+    }
+}
+
+/* Fluxes of the triangles of a cube with one hot side come closer to those of many rays as there are more. */
+START_TEST(more_rays_for_triangles) {
+    static struct soup soup;
+    static double flux[3][768];
+    const char *out = in_folder("q.vtp"), *const rays[] = {"1", "2000000", "4000000"}, *column = in_folder("T.csv");
+    soup = cube();
+    for (int k = 0; k < 3; ++k) quarter(&soup);
+    ck_assert_uint_eq(soup.n, 768);
+    const char *bed = write_file("mote.csv", "x,y,z,r\n0,0,0,.01\n"), *box = write_solid("box.stl", &soup);
+    FILE *file = fopen(column, "w");
+    ck_assert_ptr_nonnull(file);
+    for (uint32_t t = 0; t < soup.n; ++t) fputs(t < 128 ? "500\n" : "300\n", file);
+    fclose(file);
+    for (int run = 0; run < 3; ++run) {
+        SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""), "--wall-temperature",
+                wall_of("box=triangles:", column, ""), "--emissivity", "0.7", "--temperature", "300", "--wall-vtp", out,
+                "--wall-rays", rays[run]);
+        vtp_array(out, "flux_W_m2", flux[run], 768);
+    }
+    double off[2] = {0};
+    for (int run = 0; run < 2; ++run)
+        for (uint32_t t = 128; t < soup.n; ++t) off[run] += pow(flux[run][t] - flux[2][t], 2) / (soup.n - 128);
+    printf("    cold triangles are off by %.2g W/m2, with 8 times the rays %.2g\n", sqrt(off[0]), sqrt(off[1]));
+    ck_assert_double_lt(sqrt(off[1]), .8 * sqrt(off[0]));
+    ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--wall-rays", "0"), 2);
+    expect_message("--wall-rays", "0");
+}
+END_TEST
+
 /* Triangles with temperatures from a file, in the order of the mesh's, whatever of it is left out. */
 START_TEST(temperatures_of_triangles) {
     struct soup soup = {0};
@@ -556,6 +598,7 @@ int main(void) {
     tcase_add_test(option, slice_through_a_mesh);
     tcase_add_test(option, backs_of_meshes);
     tcase_add_test(heat, heat_of_triangles);
+    tcase_add_test(heat, more_rays_for_triangles);
     tcase_add_test(heat, temperatures_of_triangles);
     return suite_run(suite);
 }

@@ -20,7 +20,8 @@ enum {
     KEY_WALL_TEMPERATURE,
     KEY_WALL_POWER,
     KEY_MODEL,
-    KEY_PATCHES
+    KEY_PATCHES,
+    KEY_WALL_RAYS
 };
 
 static const struct option heat_table[] = {
@@ -41,6 +42,9 @@ static const struct option heat_table[] = {
     {KEY_PATCHES, "patches", "P", "of a sphere: 24, 96 or 384 [96]"},
     {KEY_DIRECTIONS, "directions", "N", "of beams, 8 to 65536 [168; 112 where the mean emissivity is 0.35 or less]"},
     {KEY_POINTS, "points", "M", "beams per direction: 64, 128 or 256 [64; 128 in time]"},
+    {KEY_WALL_RAYS, "wall-rays", "N",
+     "rays from all walls at the least, up to 2^30; errors of triangles ~ N^-0.5 [262144, more "
+     "with many beams or patches]"},
     {KEY_ERROR, "error", "E",
      "as many directions and patches as bring the estimated error of the powers to E times their root mean square or "
      "less, 1e-5 to 1; at the least to 1e-3 E of what is emitted; of temperatures that are found, T^4 to E of its root "
@@ -53,13 +57,15 @@ static const struct option heat_table[] = {
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
+#define WALL_RAYS_MOST (1u << 30) /* of fibrad_heat_config */
+
 struct heat_request {
     struct bed_options bed;
     struct given_options given;
     struct march_options march;
     const char *plot, *wall_emissivity;
     struct quantity emissivity;
-    bool counted; /* --directions, --points or --patches was given */
+    bool counted; /* --directions, --points, --patches or --wall-rays was given */
     struct heat_problem problem;
     struct output picture;
 };
@@ -160,6 +166,9 @@ static int heat_take(struct heat_request *request, const struct options *options
     case KEY_DIRECTIONS:
     case KEY_POINTS:
         return take_beams(request, value, key);
+    case KEY_WALL_RAYS:
+        request->counted = true;
+        return options_count("--wall-rays", value, 1, WALL_RAYS_MOST, &request->problem.config.wall_rays);
     case KEY_ERROR:
         return options_number("--error", value, 1e-5, 1, &request->problem.error);
     case KEY_PLOT:
@@ -189,7 +198,8 @@ static int heat_check_request(struct heat_request *request) {
     if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
     if (request->problem.error > 0 && request->counted)
         return message(STATUS_USAGE,
-                       "--error finds directions and patches itself; leave out --directions, --points and --patches");
+                       "--error finds directions and patches itself; leave out --directions, --points, --patches "
+                       "and --wall-rays");
     if (request->problem.error > 0 && request->problem.sources.uniform)
         return message(STATUS_USAGE,
                        "--error is for --model patches: one radiosity per sphere has an error of its own");
