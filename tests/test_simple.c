@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "scenes.h"
+#include "meshes.h"
 #include "simple/fibrad_host.h"
 #include "suite.h"
 
@@ -322,6 +323,34 @@ START_TEST(faults_name_spheres) {
 }
 END_TEST
 
+/* Of several rows that fail the same is named for any number of threads, divided or not; a call that is cancelled names
+ * none. */
+START_TEST(faults_of_divided_rows) {
+    struct bed bed = strewn(300, 3);
+    struct mesh *mesh = mesh_new();
+    const fibrad_spheres spheres = spheres_of(&bed);
+    fibrad_fault first = {0, 0, 0};
+    fibrad_bed_factors *factors;
+    mesh_box(mesh, (const double[]){-9, -9, -9}, (const double[]){9, 9, 9}, 0);
+    for (uint32_t t = 0; t < mesh->triangles.n; ++t) /* all see it, from the side that is no body's */
+        mesh->back[t] = mesh->front[t], mesh->front[t] = FIBRAD_NO_BODY;
+    const fibrad_scene_config config = {.body = mesh->body, .bodies = 6, .triangles = &mesh->triangles};
+    for (int t = 0; t < 3; t++) {
+        struct calls calls = {.stop_at = 1};
+        fibrad_run run = {.threads = threads[t]};
+        ck_assert_int_eq(fibrad_view_factors(&config, &spheres, NULL, &run, &factors), FIBRAD_E_BACK);
+        if (t == 0) first = run.fault;
+        ck_assert(first.first < 300 && first.triangle < 12);
+        ck_assert(run.fault.first == first.first && run.fault.triangle == first.triangle);
+        run.progress = count_calls, run.context = &calls;
+        ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, &run, &factors), FIBRAD_E_CANCELLED);
+        ck_assert(run.fault.first == 300 && run.fault.second == 300);
+    }
+    free(mesh);
+    bed_free(&bed);
+}
+END_TEST
+
 START_TEST(arguments) {
     struct bed bed = packing(10, .8, 1.2, .4, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
@@ -542,6 +571,7 @@ int main(void) {
     tcase_add_test(factors, factors_in_files);
     tcase_add_test(errors, full_disk);
     tcase_add_test(errors, faults_name_spheres);
+    tcase_add_test(errors, faults_of_divided_rows);
     tcase_add_test(errors, arguments);
     tcase_add_test(errors, progress_and_cancelling);
     tcase_add_test(heat, radiation_moves);

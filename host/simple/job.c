@@ -121,7 +121,7 @@ static int run_divided(const struct row_tasks *rows, struct part_tasks *tasks) {
     return status;
 }
 
-/* Computes the first `count` rows, one by one. *failed: the first that fails. */
+/* Computes the first `count` rows, one by one. *failed: the first that fails; else as it was. */
 static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_t all, uint32_t *failed) {
     const fibrad_beam_rule *rule = rows->rule;
     fibrad_team *team = &rows->job->team;
@@ -137,33 +137,35 @@ static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_
         for (uint32_t p = 0; p < tasks->parts; ++p) tasks->part[p].memory.resize = fibrad_heap_resize;
     }
     for (uint32_t k = 0; k < count && !status; ++k) {
-        *failed = k;
         tasks->sphere = rows->order[k];
         status = fibrad_team_report(team, "rows", k, all);
-        if (!status) status = run_divided(rows, tasks);
+        if (status) break;
+        status = run_divided(rows, tasks);
+        if (status) *failed = k;
     }
     for (uint32_t p = 0; tasks && p < tasks->parts; ++p) free(tasks->part[p].memory.block);
     free(tasks);
     return status;
 }
 
-/* How many rows are divided over the threads, which come to the front of the order: those of spheres far larger than
- * most, whose windows have as many discs as is the square of that, and all if there are fewer than threads. */
+/* Puts spheres far larger than most to the front of the order, for any number of threads, so that the row which fails
+ * first is the same. Returns how many rows are divided over the threads: those, whose windows have as many discs as is
+ * the square of that, and all if there are fewer than threads. */
 static uint32_t put_long_first(const fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule,
                                uint32_t *order, uint32_t count) {
     const fibrad_spheres *s = job->spheres;
     const size_t stride = s && s->stride_r ? s->stride_r : 1;
     uint32_t longs = 0;
     double sum = 0;
-    if (row != fibrad_job_beam_row || job->team.threads == 1 || (rule && rule->tolerance > 0)) return 0;
-    if (count < (uint32_t)job->team.threads) return count;
+    if (row != fibrad_job_beam_row || (rule && rule->tolerance > 0)) return 0;
     for (uint32_t i = 0; i < s->n; ++i) sum += s->r[i * stride];
     for (uint32_t k = 0; k < count; ++k)
         if (s->r[order[k] * stride] * s->n > LONG_RATIO * sum) {
             const uint32_t i = order[k];
             order[k] = order[longs], order[longs++] = i;
         }
-    return longs;
+    if (job->team.threads == 1) return 0;
+    return count < (uint32_t)job->team.threads ? count : longs;
 }
 
 /* The spheres wanted, in the order of the cells. */

@@ -347,7 +347,7 @@ void LANED(fibrad_mesh_count)(fibrad_workspace *work, const double frame[9], uin
         if (side == FIBRAD_NO_SIDE) continue;
         const uint32_t slot = slot_met(work, frame, p);
         if (slot == FIBRAD_NONE) {
-            work->back = scene->mesh.number[side / 2];
+            if (work->back == UINT32_MAX) work->back = scene->mesh.number[side / 2]; /* of a part: as of the row */
             continue;
         }
         const uint32_t entry = fibrad_entries_of(&work->entries, scene->facts.spheres + slot);
