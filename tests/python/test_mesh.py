@@ -80,6 +80,9 @@ def test_temperatures_of_triangles():
     with fibrad.Transient(X, R, walls={"tub": one}, method="patches") as bed:
         end = bed.advance(**state)
         assert end.walls["tub"] == pytest.approx(10 * single.walls["tub"], rel=2e-2)
+        assert bed.advance(**state, wall_temperature_end=300.0).walls["tub"] == pytest.approx(end.walls["tub"], rel=1e-2)
+        with pytest.raises(fibrad.InputError, match="wall_temperature_end of tub: triangles with temperatures of their"):
+            bed.advance(**state, wall_temperature_end={"tub": 300.0})
     with fibrad.Transient(X, R, walls={"tub": one}, method="factors") as bed:
         with pytest.raises(fibrad.InputError, match="another method"):
             bed.advance(**state)

@@ -187,11 +187,17 @@ class Container:
             number -= len(mesh.triangles)
         return ""
 
+    @staticmethod
+    def with_arrays(value: Any) -> frozenset[str]:
+        """The walls to which a mapping gives more than a number."""
+        pairs = value.items() if isinstance(value, Mapping) else ()
+        return frozenset(wall for wall, given in pairs if np.ndim(given))
+
     def sides(self, name: str, value: Any, low: float, high: float) -> tuple[Any, Optional[NDArray[np.float64]]]:
         """A mapping by the walls' names without arrays, one value for each triangle of a `Mesh`, and these for all
         sides of triangles: [2 t], NaN of others; None: there are none. A number with the same mean of fourth powers by
         area stands for an array."""
-        arrays = {wall: given for wall, given in value.items() if np.ndim(given)} if isinstance(value, Mapping) else {}
+        arrays = {wall: value[wall] for wall in self.with_arrays(value)}
         if not arrays:
             return value, None
         numbers, parts = dict(value), []

@@ -107,7 +107,8 @@ class Transient(Bed):
         surroundings, wall_temperature, wall_emissivity
             As of `Heat.solve`, at the beginning.
         surroundings_end, wall_temperature_end : optional
-            At the end [K], linear in between. Default: constant.
+            At the end [K], linear in between. Default: constant, as the triangles of a `Mesh` always are whose
+            ``wall_temperature`` is an array.
         wall_power, insulated : optional
             As of `Heat.solve`: walls of unknown temperature, which have no capacity. Only with ``method="patches"``.
         step : float, optional
@@ -134,8 +135,13 @@ class Transient(Bed):
             raise refuse(f"{', '.join(sorted(found))}: walls of unknown temperature need method='patches'")
         if "side_temperature" in walls and self._method == "factors":
             raise refuse("triangles with temperatures of their own need another method than 'factors'")
-        end = walls["body_temperature"] if wall_temperature_end is None else container.per_wall(
-            "wall_temperature_end", wall_temperature_end, 0, HOTTEST, found)
+        end, constant = walls["body_temperature"], container.with_arrays(wall_temperature)
+        if isinstance(wall_temperature_end, Mapping) and constant & set(wall_temperature_end):
+            raise refuse(f"wall_temperature_end of {', '.join(sorted(constant & set(wall_temperature_end)))}: "
+                         "triangles with temperatures of their own keep them")
+        if wall_temperature_end is not None:
+            given_end = container.per_wall("wall_temperature_end", wall_temperature_end, 0, HOTTEST, found | constant)
+            end = np.where(np.isnan(given_end), end, given_end)
         shares = per_sphere("emissivity", emissivity, n, 0, 1, names)
         given = None if power is None else per_sphere("power", power, n, -STRONGEST, STRONGEST, names)
         around = ctypes.c_double(real("surroundings_end", surroundings if surroundings_end is None else surroundings_end,
