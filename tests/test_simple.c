@@ -1,5 +1,6 @@
 /* test_simple.c - the simple layer: what it returns is what the kernel returns, for any number of threads; faults,
  * cancelling, and beds that move. SPDX-License-Identifier: MIT */
+#include <omp.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -384,6 +385,10 @@ START_TEST(arguments) {
     fibrad_bed_free(factors);
     const fibrad_bed_options tolerance = {.beam = &(fibrad_beam_rule){.tolerance = .1}};
     ck_assert_int_eq(fibrad_view_factors(NULL, &(fibrad_spheres){0}, &tolerance, NULL, &factors), FIBRAD_OK);
+    fibrad_bed_free(factors);
+    omp_set_num_threads(1025); /* of OpenMP's threads as many are taken as may be asked for */
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, NULL, &factors), FIBRAD_OK);
+    ck_assert_int_eq(factors->threads, 1024);
     fibrad_bed_free(factors);
     bed_free(&bed);
 }

@@ -39,7 +39,7 @@ typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uin
 
 /* How a call is run. NULL or zeroed: OpenMP's threads, no progress. */
 typedef struct fibrad_run {
-    int threads;               /* [0, 1024]; 0: as OpenMP has it: OMP_NUM_THREADS, else all processors */
+    int threads;               /* [0, 1024]; 0: as OpenMP has it: OMP_NUM_THREADS, else all processors; at most 1024 */
     fibrad_progress *progress; /* NULL: none */
     void *context;             /* handed to progress */
     fibrad_fault fault;        /* out, of an error: the spheres concerned, their number n: none of them; the triangle */

@@ -8,7 +8,8 @@
 #define INTERVAL    0.05 /* between two calls of the progress function [s] */
 
 int fibrad_team_open(fibrad_team *team, const fibrad_run *run) {
-    *team = (fibrad_team){.threads = omp_get_max_threads(), .triangle = UINT32_MAX};
+    const int most = omp_get_max_threads();
+    *team = (fibrad_team){.threads = most < THREADS_MAX ? most : THREADS_MAX, .triangle = UINT32_MAX};
     if (run && (run->threads < 0 || run->threads > THREADS_MAX)) return FIBRAD_E_ARGUMENT;
     if (run && run->threads) team->threads = run->threads;
     if (run) team->progress = run->progress, team->context = run->context;
