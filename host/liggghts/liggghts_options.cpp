@@ -124,6 +124,8 @@ const char *take(int key, const char *text, liggghts_options *options) {
         return nullptr;
     case 'm':
         if (!mesh(text, &triangles)) return "is neither ID=E nor ID=T,E, with :both or :normals behind it or nothing";
+        for (const radiant_mesh &other : options->meshes)
+            if (other.id == triangles.id) return "is of a mesh that is there already";
         options->meshes.push_back(triangles);
         return nullptr;
     case 's':
