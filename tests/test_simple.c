@@ -418,6 +418,26 @@ START_TEST(progress_and_cancelling) {
 }
 END_TEST
 
+/* Rows that are divided do not report each by itself. */
+START_TEST(progress_of_short_rows) {
+    struct bed bed = bed_of(0, NULL);
+    for (int k = 0; k < 400; k++) add_sphere(&bed, 9 * k, 0, 0, 1);
+    for (int k = 0; k < 8000; k++) add_sphere(&bed, .1 * k, 99, 0, .01);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    unsigned char wanted[8400] = {0};
+    memset(wanted, 1, 400);
+    const fibrad_bed_options options = {.beam = &(fibrad_beam_rule){.directions = 8}, .wanted = wanted};
+    struct calls calls = {0};
+    fibrad_run run = {.threads = 2, .progress = count_calls, .context = &calls};
+    fibrad_bed_factors *factors;
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, &run, &factors), FIBRAD_OK);
+    ck_assert(calls.ends >= 1 && calls.total == 400);
+    ck_assert_uint_lt(calls.count, 400); /* in less than 20 seconds */
+    fibrad_bed_free(factors);
+    bed_free(&bed);
+}
+END_TEST
+
 /* ---- heat -------------------------------------------------------------------------------------------------------- */
 
 enum { N = 80 };
@@ -579,6 +599,7 @@ int main(void) {
     tcase_add_test(errors, faults_of_divided_rows);
     tcase_add_test(errors, arguments);
     tcase_add_test(errors, progress_and_cancelling);
+    tcase_add_test(errors, progress_of_short_rows);
     tcase_add_test(heat, radiation_moves);
     tcase_add_test(heat, radiation_gets_more_room);
     tcase_add_test(heat, radiation_with_walls);

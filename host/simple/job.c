@@ -127,6 +127,7 @@ static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_
     fibrad_team *team = &rows->job->team;
     struct part_tasks *tasks = calloc(1, sizeof *tasks);
     int status = tasks ? FIBRAD_OK : FIBRAD_E_MEMORY;
+    double reported = -INFINITY;
     if (tasks) {
         tasks->job = rows->job;
         if (rule) tasks->rule = *rule;
@@ -138,7 +139,10 @@ static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_
     }
     for (uint32_t k = 0; k < count && !status; ++k) {
         tasks->sphere = rows->order[k];
-        status = fibrad_team_report(team, "rows", k, all);
+        if (omp_get_wtime() - reported > TEAM_INTERVAL) {
+            status = fibrad_team_report(team, "rows", k, all);
+            reported = omp_get_wtime();
+        }
         if (status) break;
         status = run_divided(rows, tasks);
         if (status) *failed = k;

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #define THREADS_MAX 1024
-#define INTERVAL    0.05 /* between two calls of the progress function [s] */
 
 int fibrad_team_open(fibrad_team *team, const fibrad_run *run) {
     const int most = omp_get_max_threads();
@@ -72,7 +71,7 @@ static void run_tasks(fibrad_team *team, const char *stage, uint32_t tasks, int 
 #pragma omp atomic capture
             count = ++done;
             uint32_t at = k;
-            if (!status && thread == 0 && count < tasks && omp_get_wtime() - reported > INTERVAL) {
+            if (!status && thread == 0 && count < tasks && omp_get_wtime() - reported > TEAM_INTERVAL) {
                 status = fibrad_team_report(team, stage, count, tasks);
                 if (status) at = 0;
                 reported = omp_get_wtime();

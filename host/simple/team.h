@@ -4,6 +4,8 @@
 
 #include "simple/heap.h"
 
+#define TEAM_INTERVAL 0.05 /* between two calls of the progress function in a stage [s] */
+
 /* Error of the lowest task that failed in a thread. */
 typedef struct fibrad_team_error {
     uint32_t task;
