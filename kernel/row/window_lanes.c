@@ -81,7 +81,7 @@ static void sort_discs_by_digits(fibrad_workspace *work) {
  * before each, which no branch depends on; insertion mispredicted 38 branches a window. Depths that are equal in floats
  * share a rank, and the ranks then add up to less than they should. The list is padded to whole eights, so that the
  * number of rounds can be predicted, with depths beyond all others. */
-#define DISCS_RANKED 64
+#define DISCS_RANKED 256
 static void sort_discs(fibrad_workspace *work, uint32_t resolved) {
     _Alignas(64) float key[DISCS_RANKED + FIBRAD_LANES_MAX];
     _Alignas(64) uint32_t rank[DISCS_RANKED + FIBRAD_LANES_MAX];

@@ -116,42 +116,7 @@ static void hide_part(fibrad_areas *areas, const fibrad_dense_block *b, uint32_t
     if (pieces->count == FIBRAD_PIECES) LANED(fibrad_areas_integrate)(areas);
 }
 
-/* The arcs of a block that the new disc touches, as bits. */
-typedef struct dense_touch {
-    uint32_t p_in, q_in, twice, degenerate;
-} dense_touch;
-
-/* Which arcs have ends inside the disc or are cut twice: as in clip_lanes.c, but whether an end is inside is decided by
- * its distance from the disc's centre, which is exact to rounding of the disc's radius for circles of any size. */
-static dense_touch classify_block(const fibrad_dense_block *b, uint32_t alive, double x, double y, double r) {
-    dense_touch touch = {0, 0, 0, 0};
-    const vd zero = vd_set1(0), radius = vd_set1(r);
-    for (uint32_t o = 0; o < FIBRAD_DENSE_BLOCK; o += VD_LANES) {
-        const uint32_t lanes = alive >> o & vd_lanes_below(VD_LANES);
-        if (lanes == 0) continue;
-        const vd px = vd_load(b->px + o), py = vd_load(b->py + o);
-        const vd qx = vd_load(b->qx + o), qy = vd_load(b->qy + o);
-        const vd dx = x - vd_load(b->cx + o), dy = y - vd_load(b->cy + o), own = vd_load(b->r + o);
-        const vd p_far = (px - dx) * (px - dx) + (py - dy) * (py - dy) - r * r;
-        const vd q_far = (qx - dx) * (qx - dx) + (qy - dy) * (qy - dy) - r * r;
-        const vd square = dx * dx + dy * dy, sum = own + r, difference = own - r;
-        const vd meeting = (sum * sum - square) * (square - difference * difference);
-        const vm p_in = vd_lt(p_far, zero), q_in = vd_lt(q_far, zero);
-        const vm before = vd_lt(zero, px * dy - py * dx), after = vd_lt(qx * dy - qy * dx, zero);
-        const vm may = (p_in & q_in & vm_not(before | after)) | (vm_not(p_in | q_in) & before & after);
-        const vd wide = vd_max(own, radius), narrow = vd_min(own, radius), ww = wide * wide, nn = narrow * narrow;
-        const vd near = 2 * DENSE_MARGIN * r * r + 2 * DENSE_ROUNDING * wide;
-        const vd tangent = DENSE_MARGIN * (nn * ww) + 10 * DENSE_ROUNDING * (ww * ww);
-        const vm close = vd_le(vd_abs(p_far), near) | vd_le(vd_abs(q_far), near);
-        touch.p_in |= (vm_bits(p_in) & lanes) << o;
-        touch.q_in |= (vm_bits(q_in) & lanes) << o;
-        touch.twice |= (vm_bits(may & vd_lt(zero, meeting)) & lanes) << o;
-        touch.degenerate |= (vm_bits(close | (may & vd_le(vd_abs(meeting), tangent))) & lanes) << o;
-    }
-    return touch;
-}
-
-/* Adds a cut. False if there is no room. */
+/* Adds a cut. */
 static fibrad_dense_cut *add_cut(fibrad_areas *areas, uint32_t block, uint32_t lane, double x, double y, bool leaves) {
     fibrad_dense *grid = &areas->dense;
     if (grid->cuts == grid->cuts_most) {
@@ -159,54 +124,109 @@ static fibrad_dense_cut *add_cut(fibrad_areas *areas, uint32_t block, uint32_t l
         grid->cuts = 0; /* the row begins anew, with more room */
     }
     fibrad_dense_cut *cut = &grid->cut[grid->cuts++];
-    *cut = (fibrad_dense_cut){.x = x, .y = y, .block = block, .lane = lane, .leaves = leaves};
+    cut->x = x, cut->y = y;
+    cut->block = block, cut->lane = lane;
+    cut->leaves = leaves, cut->rest = false;
     return cut;
 }
 
-/* Cuts the arc in a slot, of which an end is inside the disc or both cuts are on it: what is outside stays in the slot,
- * but for the second part of two. The arc's circle enters the disc at s and leaves it at e, counter-clockwise; a walk
- * with the open region on its left goes that way along the window's circle, and the other way along discs'. */
-static void cut_arc(fibrad_areas *areas, uint32_t block, uint32_t lane, bool p_in, bool q_in,
-                    const dense_circle *disc) {
-    fibrad_dense_block *b = &areas->dense.block[block];
-    const double dx = disc->x - b->cx[lane], dy = disc->y - b->cy[lane], r = b->r[lane];
-    const double square = dx * dx + dy * dy, sum = r + disc->r, difference = r - disc->r, scale = 0.5 / square;
-    const double outer = sum * sum - square, inner = square - difference * difference;
-    const double f = (square + sum * difference) * scale, h = fibrad_sqrt(fibrad_max(outer * inner, 0)) * scale;
-    const double sx = f * dx + h * dy, sy = f * dy - h * dx, ex = f * dx - h * dy, ey = f * dy + h * dx;
-    const double px = b->px[lane], py = b->py[lane], qx = b->qx[lane], qy = b->qy[lane];
-    const bool window = b->circle[lane] < 1, twice = p_in == q_in;
-    if (p_in) hide_part(areas, b, lane, px, py, ex, ey);
-    if (q_in) hide_part(areas, b, lane, sx, sy, qx, qy);
-    if (twice && !p_in) hide_part(areas, b, lane, sx, sy, ex, ey);
-    if (p_in || twice) {
-        fibrad_dense_cut *end = add_cut(areas, block, lane, ex - dx, ey - dy, window);
-        end->rest = !p_in, end->qx = qx, end->qy = qy;
-        if (p_in) b->px[lane] = ex, b->py[lane] = ey;
-    }
-    if (q_in || twice) {
-        add_cut(areas, block, lane, sx - dx, sy - dy, !window);
-        b->qx[lane] = sx, b->qy[lane] = sy;
-    }
+/* A vector of arcs against the new disc. */
+typedef struct dense_case {
+    vd dx, dy, square, sum, difference; /* from centre to centre, and its square; of the radii */
+    vm p_in, q_in, twice, degenerate;   /* ends inside the disc; both cuts are on the arc; within a margin */
+} dense_case;
+
+/* Which arcs have ends inside the disc or are cut twice: as in clip_lanes.c, but whether an end is inside is decided by
+ * its distance from the disc's centre, which is exact to rounding of the disc's radius for circles of any size. Of the
+ * ends, those within a margin are looked for at p only, as each q is the p of another arc. */
+FIBRAD_INLINE dense_case classify_lanes(const fibrad_arc_lanes *a, const dense_circle *disc) {
+    const vd zero = vd_set1(0), radius = vd_set1(disc->r), own = a->r;
+    dense_case c = {.dx = disc->x - a->cx, .dy = disc->y - a->cy, .sum = own + radius, .difference = own - radius};
+    const vd px = a->px - c.dx, py = a->py - c.dy, qx = a->qx - c.dx, qy = a->qy - c.dy;
+    const vd p_far = px * px + py * py - disc->r * disc->r, q_far = qx * qx + qy * qy - disc->r * disc->r;
+    c.square = c.dx * c.dx + c.dy * c.dy;
+    const vd meeting = (c.sum * c.sum - c.square) * (c.square - c.difference * c.difference);
+    c.p_in = vd_lt(p_far, zero), c.q_in = vd_lt(q_far, zero);
+    const vm before = vd_lt(zero, a->px * c.dy - a->py * c.dx), after = vd_lt(a->qx * c.dy - a->qy * c.dx, zero);
+    const vm may = (c.p_in & c.q_in & vm_not(before | after)) | (vm_not(c.p_in | c.q_in) & before & after);
+    c.twice = may & vd_lt(zero, meeting);
+    const vd wide = vd_max(own, radius), narrow = vd_min(own, radius), ww = wide * wide, nn = narrow * narrow;
+    const vd near = 2 * DENSE_MARGIN * disc->r * disc->r + 2 * DENSE_ROUNDING * wide;
+    const vd tangent = DENSE_MARGIN * (nn * ww) + 10 * DENSE_ROUNDING * (ww * ww);
+    c.degenerate = vd_le(vd_abs(p_far), near) | (may & vd_le(vd_abs(meeting), tangent));
+    return c;
 }
 
-/* Cuts the arcs of a block. False: degenerate. *changed: some arc was touched. */
+/* The cuts of the arcs of a block: where each enters the new disc counter-clockwise and leaves it, relative to its
+ * centre; and where the arc ended before. */
+typedef struct dense_cuts {
+    _Alignas(FIBRAD_ALIGNMENT) double sx[FIBRAD_DENSE_BLOCK], sy[FIBRAD_DENSE_BLOCK];
+    double ex[FIBRAD_DENSE_BLOCK], ey[FIBRAD_DENSE_BLOCK], qx[FIBRAD_DENSE_BLOCK], qy[FIBRAD_DENSE_BLOCK];
+} dense_cuts;
+
+/* Cuts a vector of arcs. What remains stays in the slots, but for the second parts of arcs cut twice; what is inside
+ * the disc, or the first part of it, goes to the disc's pieces. */
+FIBRAD_INLINE void cut_lanes(fibrad_areas *areas, fibrad_dense_block *b, uint32_t o, const fibrad_arc_lanes *a,
+                             const dense_case *c, uint32_t touching, dense_cuts *cuts) {
+    const vd scale = 0.5 / c->square, f = (c->square + c->sum * c->difference) * scale;
+    const vd outer = c->sum * c->sum - c->square, inner = c->square - c->difference * c->difference;
+    const vd h = vd_sqrt(vd_max(outer * inner, vd_set1(0))) * scale;
+    const vd fx = f * c->dx, fy = f * c->dy, hx = h * c->dx, hy = h * c->dy;
+    const vd sx = fx + hy, sy = fy - hx, ex = fx - hy, ey = fy + hx;
+    vd_store(cuts->sx + o, sx - c->dx), vd_store(cuts->sy + o, sy - c->dy);
+    vd_store(cuts->ex + o, ex - c->dx), vd_store(cuts->ey + o, ey - c->dy);
+    vd_store(cuts->qx + o, a->qx), vd_store(cuts->qy + o, a->qy);
+    const vm q_cut = c->q_in | c->twice, q_hidden = c->q_in & vm_not(c->twice);
+    vd_store(b->px + o, vd_select(c->p_in, ex, a->px)), vd_store(b->py + o, vd_select(c->p_in, ey, a->py));
+    vd_store(b->qx + o, vd_select(q_cut, sx, a->qx)), vd_store(b->qy + o, vd_select(q_cut, sy, a->qy));
+    fibrad_arc_lanes hidden = *a;
+    hidden.px = vd_select(c->p_in, a->px, sx), hidden.py = vd_select(c->p_in, a->py, sy);
+    hidden.qx = vd_select(q_hidden, a->qx, ex), hidden.qy = vd_select(q_hidden, a->qy, ey);
+    fibrad_arcs_append(areas, touching, &hidden, areas->circles);
+}
+
+static fibrad_arc_lanes load_block(const fibrad_dense_block *b, uint32_t o) {
+    return (fibrad_arc_lanes){vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
+                              vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
+}
+
+/* Cuts the arcs of a block. False: degenerate. *changed: some arc was touched. A walk with the open region on its left
+ * goes counter-clockwise along the window's circle, and the other way along discs'. */
 static bool cut_block(fibrad_areas *areas, uint32_t block, const dense_circle *disc, bool *changed) {
     fibrad_dense *grid = &areas->dense;
-    const fibrad_dense_block *b = &grid->block[block];
-    const dense_touch touch = classify_block(b, grid->alive[block], disc->x, disc->y, disc->r);
-    if (touch.degenerate != 0) return false;
-    for (uint32_t bits = touch.p_in | touch.q_in | touch.twice; bits != 0; bits &= bits - 1) {
-        const uint32_t lane = (uint32_t)__builtin_ctz(bits);
-        const bool p_in = touch.p_in >> lane & 1, q_in = touch.q_in >> lane & 1, twice = touch.twice >> lane & 1;
-        *changed = true;
-        if (!p_in || !q_in || twice) {
-            cut_arc(areas, block, lane, p_in, q_in, disc);
-            continue;
-        }
-        hide_part(areas, b, lane, b->px[lane], b->py[lane], b->qx[lane], b->qy[lane]);
-        grid->alive[block] &= ~(1u << lane);
-        grid->live--;
+    fibrad_dense_block *b = &grid->block[block];
+    const uint32_t alive = grid->alive[block];
+    uint32_t p_in = 0, q_in = 0, twice = 0, degenerate = 0;
+    dense_cuts cuts;
+    for (uint32_t o = 0; o < FIBRAD_DENSE_BLOCK; o += VD_LANES) {
+        const uint32_t lanes = alive >> o & vd_lanes_below(VD_LANES);
+        if (lanes == 0) continue;
+        const fibrad_arc_lanes a = load_block(b, o);
+        const dense_case c = classify_lanes(&a, disc);
+        const uint32_t touching = vm_bits(c.p_in | c.q_in | c.twice) & lanes;
+        degenerate |= vm_bits(c.degenerate) & lanes;
+        if (touching == 0) continue;
+        cut_lanes(areas, b, o, &a, &c, touching, &cuts);
+        p_in |= (vm_bits(c.p_in) & lanes) << o;
+        q_in |= (vm_bits(c.q_in) & lanes) << o;
+        twice |= (vm_bits(c.twice) & lanes) << o;
+    }
+    if (degenerate != 0) return false;
+    if ((p_in | q_in | twice) == 0) return true;
+    *changed = true;
+    const uint32_t starts = (q_in & ~p_in) | twice, ends = (p_in & ~q_in) | twice, gone = p_in & q_in & ~twice;
+    grid->alive[block] = alive & ~gone;
+    grid->live -= fibrad_count_bits(gone);
+    for (uint32_t bits = starts | ends; bits != 0; bits &= bits - 1) {
+        const uint32_t k = (uint32_t)__builtin_ctz(bits);
+        const bool window = b->circle[k] < 1;
+        if (starts >> k & 1) add_cut(areas, block, k, cuts.sx[k], cuts.sy[k], !window);
+        if ((ends >> k & 1) == 0) continue;
+        fibrad_dense_cut *end = add_cut(areas, block, k, cuts.ex[k], cuts.ey[k], window);
+        end->rest = (twice & ~p_in) >> k & 1, end->qx = cuts.qx[k], end->qy = cuts.qy[k];
+        if ((twice & p_in) >> k & 1)
+            hide_part(areas, b, k, cuts.sx[k] + (disc->x - b->cx[k]), cuts.sy[k] + (disc->y - b->cy[k]), cuts.qx[k],
+                      cuts.qy[k]);
     }
     return true;
 }
@@ -300,6 +320,14 @@ static void enter_disc(fibrad_areas *areas, const dense_circle *disc) {
         }
 }
 
+/* Puts what is left of an arc beyond its two cuts. */
+static void put_rest(fibrad_areas *areas, const dense_circle *disc, const fibrad_dense_cut *cut) {
+    const fibrad_dense_block *b = &areas->dense.block[cut->block];
+    const uint32_t k = cut->lane;
+    const dense_circle old = {b->cx[k], b->cy[k], b->r[k], b->circle[k]};
+    put_arc(areas, &old, cut->x + (disc->x - old.x), cut->y + (disc->y - old.y), cut->qx, cut->qy);
+}
+
 /* Removes from the open region its part inside the disc of the circle that has been written, and keeps the circle if
  * there is any. False: degenerate. */
 static bool hide_dense_disc(fibrad_areas *areas) {
@@ -309,13 +337,8 @@ static bool hide_dense_disc(fibrad_areas *areas) {
     bool changed = false;
     grid->cuts = 0;
     if (!cut_boundary(areas, &disc, &changed)) return false;
-    for (uint32_t n = 0; n < grid->cuts; n++) {
-        const fibrad_dense_cut *cut = &grid->cut[n];
-        const fibrad_dense_block *b = &grid->block[cut->block];
-        const uint32_t lane = cut->lane;
-        const dense_circle old = {b->cx[lane], b->cy[lane], b->r[lane], b->circle[lane]};
-        if (cut->rest) put_arc(areas, &old, cut->x + (disc.x - old.x), cut->y + (disc.y - old.y), cut->qx, cut->qy);
-    }
+    for (uint32_t n = 0; n < grid->cuts; n++)
+        if (grid->cut[n].rest) put_rest(areas, &disc, &grid->cut[n]);
     if (grid->cuts > 0) {
         if (!join_cuts(areas, &disc)) return false;
     } else if (disc.r < 1 && disc.x * disc.x + disc.y * disc.y < (1 - disc.r) * (1 - disc.r) &&
@@ -374,10 +397,7 @@ void LANED(fibrad_dense_rest)(fibrad_areas *areas, uint32_t rest) {
     const fibrad_dense *grid = &areas->dense;
     for (uint32_t n = 0; n < grid->blocks; n++)
         for (uint32_t o = 0; grid->alive[n] >> o != 0; o += VD_LANES) {
-            const fibrad_dense_block *b = &grid->block[n];
-            const fibrad_arc_lanes piece = {vd_load(b->px + o), vd_load(b->py + o),    vd_load(b->qx + o),
-                                            vd_load(b->qy + o), vd_load(b->cx + o),    vd_load(b->cy + o),
-                                            vd_load(b->r + o),  vd_load(b->circle + o)};
+            const fibrad_arc_lanes piece = load_block(&grid->block[n], o);
             LANED(fibrad_arcs_add)(areas, grid->alive[n] >> o & vd_lanes_below(VD_LANES), &piece, rest);
         }
 }
