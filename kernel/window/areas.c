@@ -37,13 +37,20 @@ static void lay_out_arrangement(fibrad_arrangement *arrangement, fibrad_arena *a
 }
 
 void fibrad_dense_layout(fibrad_dense *dense, fibrad_arena *arena, uint32_t discs) {
-    dense->cells_most = 4 * discs, dense->blocks_most = discs, dense->discs_most = 8 * discs,
+    dense->cells_most = 4 * discs, dense->blocks_most = discs / 4 + 8, dense->discs_most = 8 * discs,
     dense->cuts_most = discs / 2 + 1;
+    const size_t slots = (size_t)FIBRAD_DENSE_BLOCK * dense->blocks_most;
+    dense->px = doubles(arena, slots), dense->py = doubles(arena, slots);
+    dense->qx = doubles(arena, slots), dense->qy = doubles(arena, slots);
+    dense->cx = doubles(arena, slots), dense->cy = doubles(arena, slots);
+    dense->r = doubles(arena, slots), dense->circle = doubles(arena, slots);
+    dense->mx = fibrad_arena_take(arena, slots, sizeof(float)), dense->my = fibrad_arena_take(arena, slots, sizeof(float));
+    dense->half = fibrad_arena_take(arena, slots, sizeof(float));
+    dense->near = fibrad_arena_take(arena, slots + 2 * AREA_LANES, sizeof(uint32_t));
+    dense->alive = fibrad_arena_take(arena, dense->blocks_most, sizeof(uint32_t));
+    dense->next = fibrad_arena_take(arena, dense->blocks_most, sizeof(uint32_t));
     dense->first_block = fibrad_arena_take(arena, dense->cells_most, sizeof(uint32_t));
     dense->first_disc = fibrad_arena_take(arena, dense->cells_most, sizeof(uint32_t));
-    dense->block = fibrad_arena_take(arena, dense->blocks_most, sizeof *dense->block);
-    dense->alive = fibrad_arena_take(arena, discs, sizeof(uint32_t));
-    dense->next = fibrad_arena_take(arena, discs, sizeof(uint32_t));
     dense->disc = fibrad_arena_take(arena, dense->discs_most, sizeof *dense->disc);
     dense->cut = fibrad_arena_take(arena, dense->cuts_most, sizeof *dense->cut);
 }
@@ -86,9 +93,8 @@ static void add_dense_slope(const fibrad_areas *areas, const double *depth, doub
     const fibrad_dense *grid = &areas->dense;
     for (uint32_t n = 0; n < grid->blocks; n++)
         for (uint32_t bits = grid->alive[n]; bits != 0; bits &= bits - 1) {
-            const fibrad_dense_block *b = &grid->block[n];
-            const uint32_t k = (uint32_t)__builtin_ctz(bits);
-            add_slope(areas, depth, b->circle[k], b->qx[k] - b->px[k], b->qy[k] - b->py[k], slope);
+            const uint32_t k = n * FIBRAD_DENSE_BLOCK + (uint32_t)__builtin_ctz(bits);
+            add_slope(areas, depth, grid->circle[k], grid->qx[k] - grid->px[k], grid->qy[k] - grid->py[k], slope);
         }
 }
 

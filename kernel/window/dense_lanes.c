@@ -26,9 +26,11 @@
 #define DENSE_FINENESS   1.0
 #define DENSE_CELLS      4u
 #define DENSE_CELLS_MOST 1024u
+#define DENSE_COARSE     4u /* as many of them along each axis of a cell for arcs */
 
-static uint32_t cell_along(const fibrad_dense *grid, double x) {
-    const double at = (x + 1) * grid->scale, last = grid->cells - 1;
+/* The cell of a coordinate, of `cells` over the width of the window. */
+static uint32_t cell_along(uint32_t cells, double x) {
+    const double at = (x + 1) * 0.5 * cells, last = cells - 1;
     return (uint32_t)fibrad_min(fibrad_max(at, 0), last);
 }
 
@@ -49,23 +51,32 @@ typedef struct dense_circle {
     double x, y, r, number;
 } dense_circle;
 
+/* The middle of the chord of an arc, and half of its length, in floats: that is enough to find out which arcs may meet a
+ * disc, and the errors of the floats of half a window do not reach DENSE_SLACK. */
+#define DENSE_SLACK 1e-6
+static void put_middle(fibrad_dense *grid, uint32_t slot, double x, double y, double half) {
+    grid->mx[slot] = (float)x, grid->my[slot] = (float)y;
+    grid->half[slot] = (float)(half + DENSE_SLACK);
+}
+
 /* Puts an arc into the cell of the middle of its chord. */
 static void put_arc(fibrad_areas *areas, const dense_circle *c, double px, double py, double qx, double qy) {
     fibrad_dense *grid = &areas->dense;
-    const uint32_t column = cell_along(grid, c->x + 0.5 * (px + qx)), line = cell_along(grid, c->y + 0.5 * (py + qy));
-    const uint32_t block = block_with_room(grid, line * grid->cells + column);
+    const double x = c->x + 0.5 * (px + qx), y = c->y + 0.5 * (py + qy), dx = qx - px, dy = qy - py;
+    const uint32_t cell = cell_along(grid->cells, y) * grid->cells + cell_along(grid->cells, x);
+    const uint32_t block = block_with_room(grid, cell);
     if (block == FIBRAD_DENSE_NONE) {
         areas->overflow = true;
         return;
     }
-    const uint32_t lane = (uint32_t)__builtin_ctz(~grid->alive[block]);
-    fibrad_dense_block *b = &grid->block[block];
+    const uint32_t lane = (uint32_t)__builtin_ctz(~grid->alive[block]), k = block * FIBRAD_DENSE_BLOCK + lane;
+    const double half = 0.5 * fibrad_sqrt(dx * dx + dy * dy);
     grid->alive[block] |= 1u << lane;
-    b->px[lane] = px, b->py[lane] = py, b->qx[lane] = qx, b->qy[lane] = qy;
-    b->cx[lane] = c->x, b->cy[lane] = c->y, b->r[lane] = c->r, b->circle[lane] = c->number;
+    grid->px[k] = px, grid->py[k] = py, grid->qx[k] = qx, grid->qy[k] = qy;
+    grid->cx[k] = c->x, grid->cy[k] = c->y, grid->r[k] = c->r, grid->circle[k] = c->number;
+    put_middle(grid, k, x, y, half);
     grid->live++;
-    const double dx = qx - px, dy = qy - py, square = dx * dx + dy * dy;
-    if (square > 4 * grid->reach * grid->reach) grid->reach = 0.5 * fibrad_sqrt(square);
+    if (half > grid->reach) grid->reach = half;
 }
 
 /* Adds an arc in parts that are shorter than a third of the circle, and than a cell. */
@@ -106,28 +117,52 @@ static void add_whole(fibrad_areas *areas, const dense_circle *c) {
 }
 
 /* Gives a part of an arc to the pieces of the new disc. */
-static void hide_part(fibrad_areas *areas, const fibrad_dense_block *b, uint32_t lane, double px, double py, double qx,
-                      double qy) {
+static void hide_part(fibrad_areas *areas, uint32_t slot, double px, double py, double qx, double qy) {
+    const fibrad_dense *grid = &areas->dense;
     fibrad_pieces *pieces = areas->pieces;
     const uint32_t n = pieces->count++;
     pieces->px[n] = px, pieces->py[n] = py, pieces->qx[n] = qx, pieces->qy[n] = qy;
-    pieces->cx[n] = b->cx[lane], pieces->cy[n] = b->cy[lane], pieces->r[n] = b->r[lane];
-    pieces->circle[n] = b->circle[lane], pieces->occluder[n] = areas->circles;
+    pieces->cx[n] = grid->cx[slot], pieces->cy[n] = grid->cy[slot], pieces->r[n] = grid->r[slot];
+    pieces->circle[n] = grid->circle[slot], pieces->occluder[n] = areas->circles;
     if (pieces->count == FIBRAD_PIECES) LANED(fibrad_areas_integrate)(areas);
 }
 
-/* Adds a cut. */
-static fibrad_dense_cut *add_cut(fibrad_areas *areas, uint32_t block, uint32_t lane, double x, double y, bool leaves) {
-    fibrad_dense *grid = &areas->dense;
-    if (grid->cuts == grid->cuts_most) {
-        areas->overflow = true;
-        grid->cuts = 0; /* the row begins anew, with more room */
+/* The cells that a square of half width `half` about a disc overlaps. */
+typedef struct dense_range {
+    uint32_t column[2], line[2];
+} dense_range;
+
+static dense_range range_of(uint32_t cells, const dense_circle *disc, double half) {
+    if (cells == 1) return (dense_range){{0, 0}, {0, 0}};
+    return (dense_range){{cell_along(cells, disc->x - half), cell_along(cells, disc->x + half)},
+                         {cell_along(cells, disc->y - half), cell_along(cells, disc->y + half)}};
+}
+
+/* Lists the arcs of a block that may meet the new disc: if their middles are near enough. */
+FIBRAD_INLINE uint32_t list_block(const fibrad_dense *grid, uint32_t block, const dense_circle *disc, uint32_t count) {
+    const vf x = vf_set1((float)disc->x), y = vf_set1((float)disc->y);
+    const vf r = vf_set1((float)(disc->r * (1 + DENSE_SLACK) + DENSE_SLACK));
+    for (uint32_t o = 0; o < FIBRAD_DENSE_BLOCK; o += VF_LANES) {
+        const uint32_t slot = block * FIBRAD_DENSE_BLOCK + o;
+        const vf dx = vf_load(grid->mx + slot) - x, dy = vf_load(grid->my + slot) - y;
+        const vf near = vf_load(grid->half + slot) + r;
+        const uint32_t lanes = grid->alive[block] >> o & vf_lt_bits(dx * dx + dy * dy, near * near);
+        count += vf_compress_places(grid->near + count, lanes, slot);
     }
-    fibrad_dense_cut *cut = &grid->cut[grid->cuts++];
-    cut->x = x, cut->y = y;
-    cut->block = block, cut->lane = lane;
-    cut->leaves = leaves, cut->rest = false;
-    return cut;
+    return count;
+}
+
+/* Lists the arcs that may meet the new disc. */
+static uint32_t list_near(const fibrad_dense *grid, const dense_circle *disc) {
+    const dense_range range = range_of(grid->cells, disc, disc->r + grid->reach * (1 + DENSE_SLACK));
+    uint32_t count = 0;
+    for (uint32_t line = range.line[0]; line <= range.line[1]; line++)
+        for (uint32_t column = range.column[0]; column <= range.column[1]; column++) {
+            uint32_t block = grid->first_block[line * grid->cells + column];
+            for (; block != FIBRAD_DENSE_NONE; block = grid->next[block])
+                count = list_block(grid, block, disc, count);
+        }
+    return count;
 }
 
 /* A vector of arcs against the new disc. */
@@ -157,99 +192,93 @@ FIBRAD_INLINE dense_case classify_lanes(const fibrad_arc_lanes *a, const dense_c
     return c;
 }
 
-/* The cuts of the arcs of a block: where each enters the new disc counter-clockwise and leaves it, relative to its
- * centre; and where the arc ended before. */
-typedef struct dense_cuts {
-    _Alignas(FIBRAD_ALIGNMENT) double sx[FIBRAD_DENSE_BLOCK], sy[FIBRAD_DENSE_BLOCK];
-    double ex[FIBRAD_DENSE_BLOCK], ey[FIBRAD_DENSE_BLOCK], qx[FIBRAD_DENSE_BLOCK], qy[FIBRAD_DENSE_BLOCK];
-} dense_cuts;
+/* Where a vector of arcs is cut: where each enters the new disc counter-clockwise and leaves it, about its own centre
+ * and the disc's. */
+typedef struct dense_points {
+    _Alignas(FIBRAD_ALIGNMENT) double sx[VD_LANES], sy[VD_LANES], ex[VD_LANES], ey[VD_LANES];
+    double from_sx[VD_LANES], from_sy[VD_LANES], from_ex[VD_LANES], from_ey[VD_LANES];
+} dense_points;
 
-/* Cuts a vector of arcs. What remains stays in the slots, but for the second parts of arcs cut twice; what is inside
- * the disc, or the first part of it, goes to the disc's pieces. */
-FIBRAD_INLINE void cut_lanes(fibrad_areas *areas, fibrad_dense_block *b, uint32_t o, const fibrad_arc_lanes *a,
-                             const dense_case *c, uint32_t touching, dense_cuts *cuts) {
+/* What is inside the disc, or the first part of it, goes to the disc's pieces. */
+FIBRAD_INLINE void cut_lanes(fibrad_areas *areas, const fibrad_arc_lanes *a, const dense_case *c, uint32_t touching,
+                             dense_points *at) {
     const vd scale = 0.5 / c->square, f = (c->square + c->sum * c->difference) * scale;
     const vd outer = c->sum * c->sum - c->square, inner = c->square - c->difference * c->difference;
     const vd h = vd_sqrt(vd_max(outer * inner, vd_set1(0))) * scale;
     const vd fx = f * c->dx, fy = f * c->dy, hx = h * c->dx, hy = h * c->dy;
     const vd sx = fx + hy, sy = fy - hx, ex = fx - hy, ey = fy + hx;
-    vd_store(cuts->sx + o, sx - c->dx), vd_store(cuts->sy + o, sy - c->dy);
-    vd_store(cuts->ex + o, ex - c->dx), vd_store(cuts->ey + o, ey - c->dy);
-    vd_store(cuts->qx + o, a->qx), vd_store(cuts->qy + o, a->qy);
-    const vm q_cut = c->q_in | c->twice, q_hidden = c->q_in & vm_not(c->twice);
-    vd_store(b->px + o, vd_select(c->p_in, ex, a->px)), vd_store(b->py + o, vd_select(c->p_in, ey, a->py));
-    vd_store(b->qx + o, vd_select(q_cut, sx, a->qx)), vd_store(b->qy + o, vd_select(q_cut, sy, a->qy));
+    vd_store(at->sx, sx), vd_store(at->sy, sy), vd_store(at->ex, ex), vd_store(at->ey, ey);
+    vd_store(at->from_sx, sx - c->dx), vd_store(at->from_sy, sy - c->dy);
+    vd_store(at->from_ex, ex - c->dx), vd_store(at->from_ey, ey - c->dy);
+    const vm q_hidden = c->q_in & vm_not(c->twice);
     fibrad_arc_lanes hidden = *a;
     hidden.px = vd_select(c->p_in, a->px, sx), hidden.py = vd_select(c->p_in, a->py, sy);
     hidden.qx = vd_select(q_hidden, a->qx, ex), hidden.qy = vd_select(q_hidden, a->qy, ey);
     fibrad_arcs_append(areas, touching, &hidden, areas->circles);
 }
 
-static fibrad_arc_lanes load_block(const fibrad_dense_block *b, uint32_t o) {
-    return (fibrad_arc_lanes){vd_load(b->px + o), vd_load(b->py + o), vd_load(b->qx + o), vd_load(b->qy + o),
-                              vd_load(b->cx + o), vd_load(b->cy + o), vd_load(b->r + o),  vd_load(b->circle + o)};
-}
-
-/* Cuts the arcs of a block. False: degenerate. *changed: some arc was touched. A walk with the open region on its left
- * goes counter-clockwise along the window's circle, and the other way along discs'. */
-static bool cut_block(fibrad_areas *areas, uint32_t block, const dense_circle *disc, bool *changed) {
+/* Adds a cut. */
+static fibrad_dense_cut *add_cut(fibrad_areas *areas, uint32_t slot, double x, double y, bool leaves) {
     fibrad_dense *grid = &areas->dense;
-    fibrad_dense_block *b = &grid->block[block];
-    const uint32_t alive = grid->alive[block];
-    uint32_t p_in = 0, q_in = 0, twice = 0, degenerate = 0;
-    dense_cuts cuts;
-    for (uint32_t o = 0; o < FIBRAD_DENSE_BLOCK; o += VD_LANES) {
-        const uint32_t lanes = alive >> o & vd_lanes_below(VD_LANES);
-        if (lanes == 0) continue;
-        const fibrad_arc_lanes a = load_block(b, o);
-        const dense_case c = classify_lanes(&a, disc);
-        const uint32_t touching = vm_bits(c.p_in | c.q_in | c.twice) & lanes;
-        degenerate |= vm_bits(c.degenerate) & lanes;
-        if (touching == 0) continue;
-        cut_lanes(areas, b, o, &a, &c, touching, &cuts);
-        p_in |= (vm_bits(c.p_in) & lanes) << o;
-        q_in |= (vm_bits(c.q_in) & lanes) << o;
-        twice |= (vm_bits(c.twice) & lanes) << o;
+    if (grid->cuts == grid->cuts_most) {
+        areas->overflow = true;
+        grid->cuts = 0; /* the row begins anew, with more room */
     }
-    if (degenerate != 0) return false;
-    if ((p_in | q_in | twice) == 0) return true;
-    *changed = true;
-    const uint32_t starts = (q_in & ~p_in) | twice, ends = (p_in & ~q_in) | twice, gone = p_in & q_in & ~twice;
-    grid->alive[block] = alive & ~gone;
-    grid->live -= fibrad_count_bits(gone);
-    for (uint32_t bits = starts | ends; bits != 0; bits &= bits - 1) {
-        const uint32_t k = (uint32_t)__builtin_ctz(bits);
-        const bool window = b->circle[k] < 1;
-        if (starts >> k & 1) add_cut(areas, block, k, cuts.sx[k], cuts.sy[k], !window);
-        if ((ends >> k & 1) == 0) continue;
-        fibrad_dense_cut *end = add_cut(areas, block, k, cuts.ex[k], cuts.ey[k], window);
-        end->rest = (twice & ~p_in) >> k & 1, end->qx = cuts.qx[k], end->qy = cuts.qy[k];
-        if ((twice & p_in) >> k & 1)
-            hide_part(areas, b, k, cuts.sx[k] + (disc->x - b->cx[k]), cuts.sy[k] + (disc->y - b->cy[k]), cuts.qx[k],
-                      cuts.qy[k]);
-    }
-    return true;
+    fibrad_dense_cut *cut = &grid->cut[grid->cuts++];
+    cut->x = x, cut->y = y, cut->slot = slot, cut->leaves = leaves, cut->rest = FIBRAD_DENSE_STAYS;
+    return cut;
 }
 
-/* The cells that a square of half width `half` about a disc overlaps. */
-typedef struct dense_range {
-    uint32_t column[2], line[2];
-} dense_range;
-
-static dense_range range_of(const fibrad_dense *grid, const dense_circle *disc, double half) {
-    return (dense_range){{cell_along(grid, disc->x - half), cell_along(grid, disc->x + half)},
-                         {cell_along(grid, disc->y - half), cell_along(grid, disc->y + half)}};
+/* Ends the step of an arc in lane l: what is outside the disc stays in the slot, but for the second part of two. A walk
+ * with the open region on its left goes counter-clockwise along the window's circle, and the other way along discs'. */
+static void cut_slot(fibrad_areas *areas, uint32_t slot, uint32_t l, bool p_in, bool q_in, bool twice,
+                     const dense_points *at) {
+    fibrad_dense *grid = &areas->dense;
+    const bool window = grid->circle[slot] < 1;
+    if (p_in && q_in && !twice) {
+        grid->alive[slot / FIBRAD_DENSE_BLOCK] &= ~(1u << slot % FIBRAD_DENSE_BLOCK);
+        grid->live--;
+        return;
+    }
+    if (q_in || twice) {
+        fibrad_dense_cut *cut = add_cut(areas, slot, at->from_sx[l], at->from_sy[l], !window);
+        if (p_in) cut->rest = FIBRAD_DENSE_HIDDEN, cut->qx = grid->qx[slot], cut->qy = grid->qy[slot];
+    }
+    if (p_in || twice) {
+        fibrad_dense_cut *cut = add_cut(areas, slot, at->from_ex[l], at->from_ey[l], window);
+        if (!p_in) cut->rest = FIBRAD_DENSE_OPEN, cut->qx = grid->qx[slot], cut->qy = grid->qy[slot];
+    }
+    if (p_in) grid->px[slot] = at->ex[l], grid->py[slot] = at->ey[l];
+    if (q_in || twice) grid->qx[slot] = at->sx[l], grid->qy[slot] = at->sy[l];
 }
 
+FIBRAD_INLINE fibrad_arc_lanes gather_slots(const fibrad_dense *grid, const uint32_t *slot) {
+    return (fibrad_arc_lanes){vd_gather(grid->px, slot), vd_gather(grid->py, slot), vd_gather(grid->qx, slot),
+                              vd_gather(grid->qy, slot), vd_gather(grid->cx, slot), vd_gather(grid->cy, slot),
+                              vd_gather(grid->r, slot),  vd_gather(grid->circle, slot)};
+}
+
+/* Cuts the arcs that the new disc touches. False: degenerate. *changed: there are such. */
 static bool cut_boundary(fibrad_areas *areas, const dense_circle *disc, bool *changed) {
     const fibrad_dense *grid = &areas->dense;
-    const dense_range range = range_of(grid, disc, disc->r + grid->reach * (1 + DENSE_MARGIN));
-    for (uint32_t line = range.line[0]; line <= range.line[1]; line++)
-        for (uint32_t column = range.column[0]; column <= range.column[1]; column++) {
-            uint32_t block = grid->first_block[line * grid->cells + column];
-            for (; block != FIBRAD_DENSE_NONE; block = grid->next[block])
-                if (grid->alive[block] != 0 && !cut_block(areas, block, disc, changed)) return false;
+    const uint32_t count = list_near(grid, disc);
+    fibrad_zero(grid->near + count, VD_LANES * sizeof *grid->near); /* read, too, in the last vector */
+    for (uint32_t n = 0; n < count; n += VD_LANES) {
+        const uint32_t *slot = grid->near + n, lanes = vd_lanes_below(count - n);
+        const fibrad_arc_lanes a = gather_slots(grid, slot);
+        const dense_case c = classify_lanes(&a, disc);
+        const uint32_t p_in = vm_bits(c.p_in), q_in = vm_bits(c.q_in), twice = vm_bits(c.twice);
+        if ((vm_bits(c.degenerate) & lanes) != 0) return false;
+        uint32_t bits = (p_in | q_in | twice) & lanes;
+        if (bits == 0) continue;
+        *changed = true;
+        dense_points at;
+        cut_lanes(areas, &a, &c, bits, &at);
+        for (; bits != 0; bits &= bits - 1) {
+            const uint32_t l = (uint32_t)__builtin_ctz(bits);
+            cut_slot(areas, slot[l], l, p_in >> l & 1, q_in >> l & 1, twice >> l & 1, &at);
         }
+    }
     return true;
 }
 
@@ -287,7 +316,7 @@ static bool join_cuts(fibrad_areas *areas, const dense_circle *disc) {
 /* Whether a point within the window is open: in no disc so far. */
 static bool place_is_open(const fibrad_areas *areas, double x, double y) {
     const fibrad_dense *grid = &areas->dense;
-    uint32_t at = grid->first_disc[cell_along(grid, y) * grid->cells + cell_along(grid, x)];
+    uint32_t at = grid->first_disc[cell_along(grid->fine, y) * grid->fine + cell_along(grid->fine, x)];
     for (; at < FIBRAD_DENSE_FULL; at = grid->disc[at].next) {
         const uint32_t m = grid->disc[at].circle;
         const double dx = x - areas->x[m], dy = y - areas->y[m];
@@ -299,11 +328,11 @@ static bool place_is_open(const fibrad_areas *areas, double x, double y) {
 /* Enters a disc into the cells it overlaps. */
 static void enter_disc(fibrad_areas *areas, const dense_circle *disc) {
     fibrad_dense *grid = &areas->dense;
-    const dense_range range = range_of(grid, disc, disc->r);
-    const double wide = 1 / grid->scale, square = disc->r * disc->r;
+    const dense_range range = range_of(grid->fine, disc, disc->r);
+    const double wide = 2.0 / grid->fine, square = disc->r * disc->r;
     for (uint32_t line = range.line[0]; line <= range.line[1]; line++)
         for (uint32_t column = range.column[0]; column <= range.column[1]; column++) {
-            uint32_t *first = &grid->first_disc[line * grid->cells + column];
+            uint32_t *first = &grid->first_disc[line * grid->fine + column];
             if (*first == FIBRAD_DENSE_FULL) continue;
             const double dx = fibrad_abs((column + 0.5) * wide - 1 - disc->x) + 0.5 * wide;
             const double dy = fibrad_abs((line + 0.5) * wide - 1 - disc->y) + 0.5 * wide;
@@ -320,12 +349,16 @@ static void enter_disc(fibrad_areas *areas, const dense_circle *disc) {
         }
 }
 
-/* Puts what is left of an arc beyond its two cuts. */
-static void put_rest(fibrad_areas *areas, const dense_circle *disc, const fibrad_dense_cut *cut) {
-    const fibrad_dense_block *b = &areas->dense.block[cut->block];
-    const uint32_t k = cut->lane;
-    const dense_circle old = {b->cx[k], b->cy[k], b->r[k], b->circle[k]};
-    put_arc(areas, &old, cut->x + (disc->x - old.x), cut->y + (disc->y - old.y), cut->qx, cut->qy);
+/* Ends the part of an arc beyond its two cuts, the first of which is given; and what has been put about its middle. */
+static void end_rest(fibrad_areas *areas, const dense_circle *disc, const fibrad_dense_cut *cut) {
+    const fibrad_dense *grid = &areas->dense;
+    const uint32_t k = cut->slot;
+    const dense_circle old = {grid->cx[k], grid->cy[k], grid->r[k], grid->circle[k]};
+    const double px = cut->x + (disc->x - old.x), py = cut->y + (disc->y - old.y);
+    if (cut->rest == FIBRAD_DENSE_OPEN)
+        put_arc(areas, &old, px, py, cut->qx, cut->qy);
+    else
+        hide_part(areas, k, px, py, cut->qx, cut->qy);
 }
 
 /* Removes from the open region its part inside the disc of the circle that has been written, and keeps the circle if
@@ -338,7 +371,7 @@ static bool hide_dense_disc(fibrad_areas *areas) {
     grid->cuts = 0;
     if (!cut_boundary(areas, &disc, &changed)) return false;
     for (uint32_t n = 0; n < grid->cuts; n++)
-        if (grid->cut[n].rest) put_rest(areas, &disc, &grid->cut[n]);
+        if (grid->cut[n].rest != FIBRAD_DENSE_STAYS) end_rest(areas, &disc, &grid->cut[n]);
     if (grid->cuts > 0) {
         if (!join_cuts(areas, &disc)) return false;
     } else if (disc.r < 1 && disc.x * disc.x + disc.y * disc.y < (1 - disc.r) * (1 - disc.r) &&
@@ -362,14 +395,14 @@ static void begin_dense(fibrad_areas *areas, uint32_t circles) {
     const double finest =
         circles > 1 ? fibrad_max(DENSE_CELLS, DENSE_FINENESS * (circles - 1) / sum) : DENSE_CELLS_MOST;
     const bool coarse = cells < finest && cells < DENSE_CELLS_MOST;
-    grid->cells = coarse ? cells : (uint32_t)fibrad_min(finest, cells);
+    grid->fine = coarse ? cells : (uint32_t)fibrad_min(finest, cells);
+    grid->cells = (grid->fine + DENSE_COARSE - 1) / DENSE_COARSE;
     grid->enough = coarse ? enough : UINT32_MAX;
     grid->blocks = grid->discs = grid->live = 0;
-    grid->scale = 0.5 * grid->cells;
     grid->reach = 0;
-    grid->longest = 1 / (grid->scale * grid->scale);
-    areas->overflow = grid->cells * grid->cells > grid->cells_most;
-    for (uint32_t cell = 0; cell < grid->cells * grid->cells && !areas->overflow; cell++)
+    grid->longest = 4.0 / (grid->cells * grid->cells);
+    areas->overflow = grid->fine * grid->fine > grid->cells_most;
+    for (uint32_t cell = 0; cell < grid->fine * grid->fine && !areas->overflow; cell++)
         grid->first_block[cell] = grid->first_disc[cell] = FIBRAD_DENSE_NONE;
     areas->pieces->count = 0;
     areas->circles = 0;
@@ -397,7 +430,10 @@ void LANED(fibrad_dense_rest)(fibrad_areas *areas, uint32_t rest) {
     const fibrad_dense *grid = &areas->dense;
     for (uint32_t n = 0; n < grid->blocks; n++)
         for (uint32_t o = 0; grid->alive[n] >> o != 0; o += VD_LANES) {
-            const fibrad_arc_lanes piece = load_block(&grid->block[n], o);
+            const uint32_t k = n * FIBRAD_DENSE_BLOCK + o;
+            const fibrad_arc_lanes piece = {vd_load(grid->px + k), vd_load(grid->py + k), vd_load(grid->qx + k),
+                                            vd_load(grid->qy + k), vd_load(grid->cx + k), vd_load(grid->cy + k),
+                                            vd_load(grid->r + k),  vd_load(grid->circle + k)};
             LANED(fibrad_arcs_add)(areas, grid->alive[n] >> o & vd_lanes_below(VD_LANES), &piece, rest);
         }
 }
