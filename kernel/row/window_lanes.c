@@ -10,6 +10,7 @@
 #include "work/neighbours_lanes.h"
 #include "row/window_lanes.h"
 #include "window/clip_lanes.h"
+#include "window/dense_lanes.h"
 #include "window/points_lanes.h"
 
 /* Appends the discs of one shell that come before the window, after a cull in floats. That their places are listed
@@ -150,6 +151,9 @@ static uint32_t resolve_discs(fibrad_workspace *work, fibrad_points *points, uin
     return to;
 }
 
+/* Windows of more discs in the first shell than this have many arcs, most of them. */
+#define DISCS_DENSE 44
+
 double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k) {
     work->disc.count = 0;
     if (points->count == 0) LANED(fibrad_areas_begin)(&work->areas);
@@ -173,6 +177,8 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
         if (work->disc.count > work->disc.capacity) break;
         if (known >= work->clear) horizon = fibrad_near_horizon(work, frame + 6);
         sort_discs(work, resolved);
+        if (shell == 0 && work->disc.count > DISCS_DENSE && points->count == 0)
+            LANED(fibrad_dense_begin)(&work->areas, work->disc.r, work->disc.count);
         resolved = resolve_discs(work, points, k, resolved, fibrad_min(known, horizon), &open);
     }
     const bool near = fibrad_mesh_near(work, open ? __builtin_inf() : known);

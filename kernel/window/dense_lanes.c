@@ -24,9 +24,9 @@
 /* Cells over the radius of the window: as many as the mean radius of discs goes into it, times this; and not many more
  * than there are discs. */
 #define DENSE_FINENESS   1.0
-#define DENSE_CELLS      4u
+#define DENSE_CELLS 4u
 #define DENSE_CELLS_MOST 1024u
-#define DENSE_COARSE     4u /* as many of them along each axis of a cell for arcs */
+
 
 /* The cell of a coordinate, of `cells` over the width of the window. */
 static uint32_t cell_along(uint32_t cells, double x) {
@@ -385,18 +385,15 @@ static bool hide_dense_disc(fibrad_areas *areas) {
     return true;
 }
 
-/* Chooses the grid for the first `circles` circles, and empties it. */
-static void begin_dense(fibrad_areas *areas, uint32_t circles) {
+/* Chooses the grid for discs of which there are so many, with this sum of radii, up to 1 of each; and empties it. */
+static void begin_dense(fibrad_areas *areas, uint32_t discs, double sum) {
     fibrad_dense *grid = &areas->dense;
-    double sum = 0;
-    for (uint32_t k = 1; k < circles; k++) sum += fibrad_min(areas->r[k], 1);
     uint32_t cells = DENSE_CELLS, enough = 4 * cells * cells;
-    for (; circles > enough && cells < DENSE_CELLS_MOST; enough *= 16) cells *= 4;
-    const double finest =
-        circles > 1 ? fibrad_max(DENSE_CELLS, DENSE_FINENESS * (circles - 1) / sum) : DENSE_CELLS_MOST;
+    for (; discs > enough && cells < DENSE_CELLS_MOST; enough *= 16) cells *= 4;
+    const double finest = discs > 0 ? fibrad_max(DENSE_CELLS, DENSE_FINENESS * discs / sum) : DENSE_CELLS_MOST;
     const bool coarse = cells < finest && cells < DENSE_CELLS_MOST;
     grid->fine = coarse ? cells : (uint32_t)fibrad_min(finest, cells);
-    grid->cells = (grid->fine + DENSE_COARSE - 1) / DENSE_COARSE;
+    grid->cells = grid->fine < 6 ? 1 : grid->fine / 2;
     grid->enough = coarse ? enough : UINT32_MAX;
     grid->blocks = grid->discs = grid->live = 0;
     grid->reach = 0;
@@ -404,6 +401,8 @@ static void begin_dense(fibrad_areas *areas, uint32_t circles) {
     areas->overflow = grid->fine * grid->fine > grid->cells_most;
     for (uint32_t cell = 0; cell < grid->fine * grid->fine && !areas->overflow; cell++)
         grid->first_block[cell] = grid->first_disc[cell] = FIBRAD_DENSE_NONE;
+    areas->dense.on = areas->dense.written = true;
+    areas->boundary->alive = UINT64_MAX;
     areas->pieces->count = 0;
     areas->circles = 0;
     fibrad_areas_add_circle(areas, 0, 0, 0, 1);
@@ -411,9 +410,16 @@ static void begin_dense(fibrad_areas *areas, uint32_t circles) {
     areas->circles = 1;
 }
 
+void LANED(fibrad_dense_begin)(fibrad_areas *areas, const double *r, uint32_t count) {
+    double sum = 0;
+    for (uint32_t n = 0; n < count; n++) sum += fibrad_min(r[n], 1);
+    begin_dense(areas, 4 * count, 4 * sum);
+}
+
 bool LANED(fibrad_dense_resolve)(fibrad_areas *areas, uint32_t circles) {
-    areas->dense.on = areas->dense.written = true;
-    begin_dense(areas, circles);
+    double sum = 0;
+    for (uint32_t k = 1; k < circles; k++) sum += fibrad_min(areas->r[k], 1);
+    begin_dense(areas, circles - 1, sum);
     for (uint32_t k = 1; k < circles && !areas->overflow && areas->dense.live > 0; k++) {
         fibrad_areas_add_circle(areas, areas->whose[k], areas->x[k], areas->y[k], areas->r[k]);
         if (!hide_dense_disc(areas)) return false;

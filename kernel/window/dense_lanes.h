@@ -5,6 +5,9 @@
 #include "base/lanes/laned.h"
 #include "window/areas.h"
 
+/* Begins a window of which the radii of `count` discs are known. */
+void LANED(fibrad_dense_begin)(fibrad_areas *areas, const double *r, uint32_t count);
+
 /* Resolves the window anew, up to its first `circles` circles. False: it is degenerate. Nothing is open any more once
  * areas->dense.live is 0; areas->overflow: there is no room. */
 bool LANED(fibrad_dense_resolve)(fibrad_areas *areas, uint32_t circles);
