@@ -26,12 +26,18 @@
 #define DENSE_FINENESS   1.0
 #define DENSE_CELLS 4u
 #define DENSE_CELLS_MOST 1024u
+#define DENSE_CELLS_LEAST 6u
 
 
 /* The cell of a coordinate, of `cells` over the width of the window. */
 static uint32_t cell_along(uint32_t cells, double x) {
     const double at = (x + 1) * 0.5 * cells, last = cells - 1;
     return (uint32_t)fibrad_min(fibrad_max(at, 0), last);
+}
+
+/* The cell of a place. */
+static uint32_t cell_of(uint32_t cells, double x, double y) {
+    return cells == 1 ? 0 : cell_along(cells, y) * cells + cell_along(cells, x);
 }
 
 /* A block of a cell with a free slot, a new one if there is none; FIBRAD_DENSE_NONE if there is no room. */
@@ -63,8 +69,7 @@ static void put_middle(fibrad_dense *grid, uint32_t slot, double x, double y, do
 static void put_arc(fibrad_areas *areas, const dense_circle *c, double px, double py, double qx, double qy) {
     fibrad_dense *grid = &areas->dense;
     const double x = c->x + 0.5 * (px + qx), y = c->y + 0.5 * (py + qy), dx = qx - px, dy = qy - py;
-    const uint32_t cell = cell_along(grid->cells, y) * grid->cells + cell_along(grid->cells, x);
-    const uint32_t block = block_with_room(grid, cell);
+    const uint32_t block = block_with_room(grid, cell_of(grid->cells, x, y));
     if (block == FIBRAD_DENSE_NONE) {
         areas->overflow = true;
         return;
@@ -316,7 +321,7 @@ static bool join_cuts(fibrad_areas *areas, const dense_circle *disc) {
 /* Whether a point within the window is open: in no disc so far. */
 static bool place_is_open(const fibrad_areas *areas, double x, double y) {
     const fibrad_dense *grid = &areas->dense;
-    uint32_t at = grid->first_disc[cell_along(grid->fine, y) * grid->fine + cell_along(grid->fine, x)];
+    uint32_t at = grid->first_disc[cell_of(grid->fine, x, y)];
     for (; at < FIBRAD_DENSE_FULL; at = grid->disc[at].next) {
         const uint32_t m = grid->disc[at].circle;
         const double dx = x - areas->x[m], dy = y - areas->y[m];
@@ -393,7 +398,8 @@ static void begin_dense(fibrad_areas *areas, uint32_t discs, double sum) {
     const double finest = discs > 0 ? fibrad_max(DENSE_CELLS, DENSE_FINENESS * discs / sum) : DENSE_CELLS_MOST;
     const bool coarse = cells < finest && cells < DENSE_CELLS_MOST;
     grid->fine = coarse ? cells : (uint32_t)fibrad_min(finest, cells);
-    grid->cells = grid->fine < 6 ? 1 : grid->fine / 2;
+    grid->cells = grid->fine / 2;
+    if (grid->fine < DENSE_CELLS_LEAST) grid->fine = grid->cells = 1;
     grid->enough = coarse ? enough : UINT32_MAX;
     grid->blocks = grid->discs = grid->live = 0;
     grid->reach = 0;
