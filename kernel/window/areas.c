@@ -37,14 +37,15 @@ static void lay_out_arrangement(fibrad_arrangement *arrangement, fibrad_arena *a
 }
 
 void fibrad_dense_layout(fibrad_dense *dense, fibrad_arena *arena, uint32_t discs) {
-    dense->cells_most = 4 * discs, dense->blocks_most = discs / 4 + 8, dense->discs_most = 8 * discs,
+    dense->cells_most = 4 * discs, dense->blocks_most = discs / 8 * 3 + 8, dense->discs_most = 8 * discs,
     dense->cuts_most = discs / 2 + 1;
     const size_t slots = (size_t)FIBRAD_DENSE_BLOCK * dense->blocks_most;
     dense->px = doubles(arena, slots), dense->py = doubles(arena, slots);
     dense->qx = doubles(arena, slots), dense->qy = doubles(arena, slots);
     dense->cx = doubles(arena, slots), dense->cy = doubles(arena, slots);
     dense->r = doubles(arena, slots), dense->circle = doubles(arena, slots);
-    dense->mx = fibrad_arena_take(arena, slots, sizeof(float)), dense->my = fibrad_arena_take(arena, slots, sizeof(float));
+    dense->mx = fibrad_arena_take(arena, slots, sizeof(float)),
+    dense->my = fibrad_arena_take(arena, slots, sizeof(float));
     dense->half = fibrad_arena_take(arena, slots, sizeof(float));
     dense->near = fibrad_arena_take(arena, slots + 2 * AREA_LANES, sizeof(uint32_t));
     dense->alive = fibrad_arena_take(arena, dense->blocks_most, sizeof(uint32_t));

@@ -36,11 +36,11 @@ typedef struct fibrad_dense {
     uint32_t live;                /* arcs of the boundary */
     double longest, reach;        /* chord that is allowed, squared; half of the longest there is */
     double *px, *py, *qx, *qy, *cx, *cy, *r, *circle; /* [16 blocks_most] */
-    float *mx, *my, *half; /* [same] the middle of the chord, and a little more than half of it: no point of the arc is
-                              farther from there */
-    uint32_t *near;                      /* [same and more] slots of arcs near the new disc */
-    uint32_t *alive, *next;              /* [blocks_most] bit l: slot l holds an arc; the cell's next block */
-    uint32_t *first_block, *first_disc;  /* [cells^2], [fine^2] of each cell */
+    float *mx, *my, *half;  /* [same] the middle of the chord, and a little more than half of it: no point of the arc is
+                               farther from there */
+    uint32_t *near;         /* [same and more] slots of arcs near the new disc */
+    uint32_t *alive, *next; /* [blocks_most] bit l: slot l holds an arc; the cell's next block */
+    uint32_t *first_block, *first_disc; /* [cells^2], [fine^2] of each cell */
     fibrad_dense_disc *disc;
     fibrad_dense_cut *cut;
     bool on;      /* the window in hand is resolved here */

@@ -1,10 +1,10 @@
 /* dense_lanes.c - exact visible areas of discs in a window by clipping, where many arcs bound the open region. Compiled
  * once per instruction set. SPDX-License-Identifier: MIT
  *
- * As in clip_lanes.c a new disc cuts the boundary of the open region. But a grid over the window knows where arcs are,
- * so that a disc looks at those in its neighbourhood alone, and time goes with the number of discs. Arcs stand in the
- * cell of the middle of their chord, in blocks, which are compared with the disc in lanes; what is cut is then cut one
- * by one. A disc that cuts nothing is open or hidden as one of its points is: discs are known by cell, too.
+ * As in clip_lanes.c a new disc cuts the boundary of the open region. But a cull in floats first finds the arcs near
+ * it, sixteen at a time, and a grid over the window knows where arcs are, if they are very many, so that time goes with
+ * the number of discs. Arcs stand in the cell of the middle of their chord, in blocks. A disc that cuts nothing is open
+ * or hidden as one of its points is: discs are known by cell, too, of a finer grid.
  *
  * Decisions have margins as there, but in units of the circles at hand, since thousands of small discs make many
  * decisions. */
@@ -21,13 +21,13 @@
 #define DENSE_ROUNDING 1e-14
 #define DENSE_ANGLE    1e-9 /* between two points of a circle */
 
-/* Cells over the radius of the window: as many as the mean radius of discs goes into it, times this; and not many more
- * than there are discs. */
-#define DENSE_FINENESS   1.0
-#define DENSE_CELLS 4u
-#define DENSE_CELLS_MOST 1024u
-#define DENSE_CELLS_LEAST 6u
-
+/* Cells for discs over the width of the window: as many as the mean radius of discs goes into half of it, times this;
+ * and not many more than there are discs. Those for arcs are twice as wide. */
+#define DENSE_FINENESS    1.0
+#define DENSE_CELLS       4u
+#define DENSE_CELLS_MOST  1024u
+#define DENSE_CELLS_LEAST 6u /* fewer of them are not worth while: one has all */
+#define DENSE_MORE        4u /* as many discs in all as are known when a window begins, at most, mostly */
 
 /* The cell of a coordinate, of `cells` over the width of the window. */
 static uint32_t cell_along(uint32_t cells, double x) {
@@ -57,8 +57,8 @@ typedef struct dense_circle {
     double x, y, r, number;
 } dense_circle;
 
-/* The middle of the chord of an arc, and half of its length, in floats: that is enough to find out which arcs may meet a
- * disc, and the errors of the floats of half a window do not reach DENSE_SLACK. */
+/* The middle of the chord of an arc, and half of its length, in floats, whose errors are less than DENSE_SLACK: what is
+ * within half a chord of there contains the arc, and what will be left of it. */
 #define DENSE_SLACK 1e-6
 static void put_middle(fibrad_dense *grid, uint32_t slot, double x, double y, double half) {
     grid->mx[slot] = (float)x, grid->my[slot] = (float)y;
@@ -164,8 +164,7 @@ static uint32_t list_near(const fibrad_dense *grid, const dense_circle *disc) {
     for (uint32_t line = range.line[0]; line <= range.line[1]; line++)
         for (uint32_t column = range.column[0]; column <= range.column[1]; column++) {
             uint32_t block = grid->first_block[line * grid->cells + column];
-            for (; block != FIBRAD_DENSE_NONE; block = grid->next[block])
-                count = list_block(grid, block, disc, count);
+            for (; block != FIBRAD_DENSE_NONE; block = grid->next[block]) count = list_block(grid, block, disc, count);
         }
     return count;
 }
@@ -258,8 +257,8 @@ static void cut_slot(fibrad_areas *areas, uint32_t slot, uint32_t l, bool p_in, 
 }
 
 FIBRAD_INLINE fibrad_arc_lanes gather_slots(const fibrad_dense *grid, const uint32_t *slot) {
-    return (fibrad_arc_lanes){vd_gather(grid->px, slot), vd_gather(grid->py, slot), vd_gather(grid->qx, slot),
-                              vd_gather(grid->qy, slot), vd_gather(grid->cx, slot), vd_gather(grid->cy, slot),
+    return (fibrad_arc_lanes){vd_gather(grid->px, slot), vd_gather(grid->py, slot),    vd_gather(grid->qx, slot),
+                              vd_gather(grid->qy, slot), vd_gather(grid->cx, slot),    vd_gather(grid->cy, slot),
                               vd_gather(grid->r, slot),  vd_gather(grid->circle, slot)};
 }
 
@@ -354,7 +353,7 @@ static void enter_disc(fibrad_areas *areas, const dense_circle *disc) {
         }
 }
 
-/* Ends the part of an arc beyond its two cuts, the first of which is given; and what has been put about its middle. */
+/* Ends the part of an arc beyond its two cuts, the first of which is given. */
 static void end_rest(fibrad_areas *areas, const dense_circle *disc, const fibrad_dense_cut *cut) {
     const fibrad_dense *grid = &areas->dense;
     const uint32_t k = cut->slot;
@@ -393,7 +392,7 @@ static bool hide_dense_disc(fibrad_areas *areas) {
 /* Chooses the grid for discs of which there are so many, with this sum of radii, up to 1 of each; and empties it. */
 static void begin_dense(fibrad_areas *areas, uint32_t discs, double sum) {
     fibrad_dense *grid = &areas->dense;
-    uint32_t cells = DENSE_CELLS, enough = 4 * cells * cells;
+    uint32_t cells = DENSE_CELLS, enough = 16 * cells * cells;
     for (; discs > enough && cells < DENSE_CELLS_MOST; enough *= 16) cells *= 4;
     const double finest = discs > 0 ? fibrad_max(DENSE_CELLS, DENSE_FINENESS * discs / sum) : DENSE_CELLS_MOST;
     const bool coarse = cells < finest && cells < DENSE_CELLS_MOST;
@@ -419,7 +418,8 @@ static void begin_dense(fibrad_areas *areas, uint32_t discs, double sum) {
 void LANED(fibrad_dense_begin)(fibrad_areas *areas, const double *r, uint32_t count) {
     double sum = 0;
     for (uint32_t n = 0; n < count; n++) sum += fibrad_min(r[n], 1);
-    begin_dense(areas, 4 * count, 4 * sum);
+    begin_dense(areas, DENSE_MORE * count, DENSE_MORE * sum);
+    areas->open = !areas->overflow;
 }
 
 bool LANED(fibrad_dense_resolve)(fibrad_areas *areas, uint32_t circles) {
@@ -443,8 +443,8 @@ void LANED(fibrad_dense_rest)(fibrad_areas *areas, uint32_t rest) {
     for (uint32_t n = 0; n < grid->blocks; n++)
         for (uint32_t o = 0; grid->alive[n] >> o != 0; o += VD_LANES) {
             const uint32_t k = n * FIBRAD_DENSE_BLOCK + o;
-            const fibrad_arc_lanes piece = {vd_load(grid->px + k), vd_load(grid->py + k), vd_load(grid->qx + k),
-                                            vd_load(grid->qy + k), vd_load(grid->cx + k), vd_load(grid->cy + k),
+            const fibrad_arc_lanes piece = {vd_load(grid->px + k), vd_load(grid->py + k),    vd_load(grid->qx + k),
+                                            vd_load(grid->qy + k), vd_load(grid->cx + k),    vd_load(grid->cy + k),
                                             vd_load(grid->r + k),  vd_load(grid->circle + k)};
             LANED(fibrad_arcs_add)(areas, grid->alive[n] >> o & vd_lanes_below(VD_LANES), &piece, rest);
         }
