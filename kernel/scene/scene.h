@@ -35,6 +35,15 @@ typedef struct fibrad_level {
     uint32_t first_sphere; /* where its spheres begin */
 } fibrad_level;
 
+/* Eight spheres as whole numbers, in one line of the cache, to leave most of them out: [0, 65535] over the box of the
+ * grid along each axis, and no radius is less than its number says. */
+#define FIBRAD_COARSE       8
+#define FIBRAD_COARSE_STRAY 65535 /* for a radius: the sphere is outside the box */
+typedef struct fibrad_coarse {
+    _Alignas(64) uint16_t x[FIBRAD_COARSE];
+    uint16_t y[FIBRAD_COARSE], z[FIBRAD_COARSE], r[FIBRAD_COARSE];
+} fibrad_coarse;
+
 /* The convex region within the walls. */
 typedef struct fibrad_container {
     bool walls;             /* whether there are any */
@@ -55,12 +64,14 @@ struct fibrad_scene {
     uint64_t hash;                      /* of all that was handed over; 0: the scene is not complete */
     double spacing;                     /* cube root of the volume per sphere [L] */
     uint32_t levels;
-    fibrad_level level[FIBRAD_LEVELS]; /* by ascending radius; empty ones left out */
-    double *x, *y, *z, *r;             /* [n] in cell order */
-    uint32_t *order;                   /* [n] the caller's index of each */
-    uint32_t *place;                   /* [n] where the caller's sphere i stands */
-    uint32_t *start;                   /* [cells + 1] */
-    uint64_t *id;                      /* [n] by the caller's index; NULL: that is the id */
+    fibrad_level level[FIBRAD_LEVELS];                   /* by ascending radius; empty ones left out */
+    double *x, *y, *z, *r;                               /* [n] in cell order */
+    fibrad_coarse *coarse;                               /* [n / FIBRAD_COARSE, rounded up] the same, in less room */
+    double coarse_unit[3], coarse_low[3], coarse_radius; /* [L] a number is so much: coarse_low + unit * number */
+    uint32_t *order;                                     /* [n] the caller's index of each */
+    uint32_t *place;                                     /* [n] where the caller's sphere i stands */
+    uint32_t *start;                                     /* [cells + 1] */
+    uint64_t *id;                                        /* [n] by the caller's index; NULL: that is the id */
     fibrad_mesh mesh;
     float *clear; /* [n] distance to the nearest triangle over the radius, or less; NULL: there are no triangles */
 };

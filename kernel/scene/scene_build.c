@@ -16,6 +16,7 @@ static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uin
     fibrad_scene *scene = fibrad_arena_take(arena, 1, sizeof *scene);
     double *x = fibrad_arena_take(arena, n, sizeof *x), *y = fibrad_arena_take(arena, n, sizeof *y);
     double *z = fibrad_arena_take(arena, n, sizeof *z), *r = fibrad_arena_take(arena, n, sizeof *r);
+    fibrad_coarse *coarse = fibrad_arena_take(arena, ((size_t)n + FIBRAD_COARSE - 1) / FIBRAD_COARSE, sizeof *coarse);
     uint32_t *order = fibrad_arena_take(arena, n, sizeof *order), *place = fibrad_arena_take(arena, n, sizeof *place);
     uint32_t *start = fibrad_arena_take(arena, (size_t)n + FIBRAD_LEVELS * SPARE_CELLS + 1, sizeof *start);
     uint64_t *id = ids ? fibrad_arena_take(arena, n, sizeof *id) : NULL;
@@ -24,7 +25,7 @@ static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uin
     float *clear = triangles > 0 ? fibrad_arena_take(arena, n, sizeof *clear) : NULL;
     if (arena->base != NULL) {
         fibrad_zero(scene, sizeof *scene);
-        scene->x = x, scene->y = y, scene->z = z, scene->r = r;
+        scene->x = x, scene->y = y, scene->z = z, scene->r = r, scene->coarse = coarse;
         scene->order = order, scene->place = place, scene->start = start, scene->id = id;
         scene->mesh = mesh, scene->clear = clear;
     }
@@ -287,6 +288,35 @@ static void sort_into_cells(fibrad_scene *scene, const fibrad_spheres *s) {
     }
 }
 
+/* Writes the spheres once more, in whole numbers: centres to half a unit, radii rounded up by as much as centres may be
+ * off. */
+static void write_coarse(fibrad_scene *scene) {
+    double per_length[3], off = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double length = side(scene, axis);
+        scene->coarse_unit[axis] = length / 65535;
+        per_length[axis] = length > 0 ? 65535 / length : 0;
+        scene->coarse_low[axis] = scene->box_low[axis] + 0.5 * scene->coarse_unit[axis];
+        off += 0.51 * scene->coarse_unit[axis];
+    }
+    scene->coarse_radius = (scene->facts.radius_max + off) / 65000;
+    for (uint32_t i = 0; i < scene->facts.spheres; i++) {
+        const double centre[3] = {scene->x[i], scene->y[i], scene->z[i]};
+        uint16_t number[3];
+        bool stray = false;
+        for (int axis = 0; axis < 3; axis++) {
+            const double c = (centre[axis] - scene->box_low[axis]) * per_length[axis];
+            stray = stray || !(c >= 0 && c <= 65535);
+            number[axis] = stray ? 0 : (uint16_t)c;
+        }
+        const uint16_t radius = (uint16_t)((scene->r[i] + off) / scene->coarse_radius + 1);
+        fibrad_coarse *to = &scene->coarse[i / FIBRAD_COARSE];
+        const uint32_t at = i % FIBRAD_COARSE;
+        to->x[at] = number[0], to->y[at] = number[1], to->z[at] = number[2];
+        to->r[at] = stray ? FIBRAD_COARSE_STRAY : radius;
+    }
+}
+
 /* Finds the largest overlap, and refuses centres inside other spheres. */
 static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
     for (uint32_t l = 0; l < scene->levels; l++) {
@@ -401,6 +431,7 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
     if (n > 0) {
         scene->spacing = spacing_of(scene);
         sort_into_cells(scene, &s);
+        write_coarse(scene);
         if (s.id != NULL) fibrad_copy(scene->id, s.id, n * sizeof *s.id);
         status = check_overlaps(scene, fault);
         if (status != FIBRAD_OK) return status;

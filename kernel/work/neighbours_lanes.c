@@ -26,9 +26,6 @@ static void prepare_culls(fibrad_near *near, uint32_t from, uint32_t to) {
     }
 }
 
-/* Thickness of the layers of a march: thinner ones enclose the beam more closely, but there are more of them. */
-#define LAYER_CELLS 1.5
-
 /* Coordinates of spheres of the current run, relative to the centre and in units of the radius. */
 static inline vd relative_to_centre(const fibrad_workspace *work, const fibrad_walk *walk, int axis,
                                     const double *coordinate) {
@@ -170,148 +167,214 @@ void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uin
     if (outside != 0) remove_not_ahead(work, from);
 }
 
-/* A part of a march: spheres whose squared minimum depth lies in (from, to], and whose coordinate along an axis, in the
- * sense of the beam, in [edge, end). */
-typedef struct march_layer {
-    int along;
-    double sense, edge, end, from, to;
-} march_layer;
+/* Cells side by side along x that a beam meets are a run. Runs and spheres are gathered before they are looked at, so
+ * that waits for memory overlap. */
+#define MARCH_RUNS  32
+#define MARCH_FOUND 64
 
-/* Appends the discs of the spheres on a walk. Those at depth 0 may turn out not to lie ahead. */
-static void append_discs(fibrad_workspace *work, const double frame[9], fibrad_walk *walk, const march_layer *layer) {
+/* A march along a beam, or a ray of one, through the cells of one level, whose number along each axis is the unit of
+ * its coordinates. */
+typedef struct march {
+    fibrad_workspace *work;
+    const fibrad_level *level;
+    const double *frame;
+    const fibrad_tube *tube;
+    double from, to;                      /* squared minimum depths of spheres looked for: (from, to] */
+    double at[3], slope[3], per_slope[3]; /* the beam at depth 0, what it advances per depth, and 1/that */
+    double side[3];                       /* half its width, and that of the largest sphere */
+    int32_t first[3], last[3];            /* the outermost cells, in which are strays, too */
+    double slack;                         /* for rounding, in radii */
+    uint32_t runs, found;
+    uint32_t begin[MARCH_RUNS], end[MARCH_RUNS]; /* of each run: cells, then spheres */
+    double shift[3][MARCH_RUNS];                 /* by whole periods */
+    uint32_t sphere[MARCH_FOUND + FIBRAD_LANES_MAX], run[MARCH_FOUND + FIBRAD_LANES_MAX];
+} march;
+
+/* Coordinates of found spheres, relative to the centre and in units of the radius. */
+static inline vd found_coordinate(const march *m, uint32_t k, int axis, const double *coordinate) {
+    vd c = vd_gather(coordinate, m->sphere + k) - m->work->centre[axis];
+    return (c + vd_gather(m->shift[axis], m->run + k)) * m->work->inverse;
+}
+
+/* Appends the discs of the found spheres. Those at depth 0 may turn out not to lie ahead. */
+static void append_found(march *m) {
+    fibrad_workspace *work = m->work;
     const fibrad_scene scene = *work->scene; /* copies: what is stored cannot change their pointers */
     const fibrad_discs disc = work->disc;
+    const double *frame = m->frame;
     const vd inverse = vd_set1(work->inverse), cutoff2 = vd_set1(work->reach * work->reach), zero = vd_set1(0);
     uint32_t *sphere = work->near.sphere + work->near.capacity, n = disc.count;
-    while (fibrad_walk_next(walk))
-        for (uint32_t j = walk->begin; j < walk->end; j += VD_LANES) {
-            const vd c[3] = {relative_to_centre(work, walk, 0, scene.x + j),
-                             relative_to_centre(work, walk, 1, scene.y + j),
-                             relative_to_centre(work, walk, 2, scene.z + j)};
-            vd r = vd_loadu(scene.r + j) * inverse, wide = 1 + r;
-            vd square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-            vd depth = component(frame + 6, c[0], c[1], c[2]), place = layer->sense * c[layer->along];
-            wide *= wide;
-            vd e = square - wide;
-            vm in_layer = vd_le(vd_set1(layer->edge), place) & vd_lt(place, vd_set1(layer->end));
-            vm in_range = vd_lt(vd_set1(layer->from), e) & vd_le(e, vd_set1(layer->to));
-            vm other = vd_lt(zero, square) & vd_le(square, cutoff2); /* than the sphere itself */
-            vm ahead = vd_le(zero, depth) & vd_le(e, depth * depth * (1 + 1e-12));
-            uint32_t bits = vm_bits(in_layer & in_range & other & ahead);
-            bits &= vd_lanes_below(walk->end - j);
-            if (bits == 0) continue;
-            vd u = component(frame, c[0], c[1], c[2]), v = component(frame + 3, c[0], c[1], c[2]);
-            bits &= vm_bits(vd_lt(u * u + v * v, wide));
-            if (n <= disc.capacity) {
-                vd_compress(disc.depth + n, bits, depth);
-                vd_compress(disc.u + n, bits, u);
-                vd_compress(disc.v + n, bits, v);
-                vd_compress(disc.r + n, bits, r);
-                vd_compress_places(sphere + n, bits, j);
-            }
-            n += fibrad_count_bits(bits);
+    for (uint32_t k = m->found; k % VD_LANES != 0; k++) m->sphere[k] = m->run[k] = 0;
+    for (uint32_t k = 0; k < m->found; k += VD_LANES) {
+        vd x = found_coordinate(m, k, 0, scene.x), y = found_coordinate(m, k, 1, scene.y);
+        vd z = found_coordinate(m, k, 2, scene.z), r = vd_gather(scene.r, m->sphere + k) * inverse, wide = 1 + r;
+        vd square = x * x + y * y + z * z;
+        vd u = component(frame, x, y, z), v = component(frame + 3, x, y, z), depth = component(frame + 6, x, y, z);
+        wide *= wide;
+        vd e = square - wide;
+        vm in_range = vd_lt(vd_set1(m->from), e) & vd_le(e, vd_set1(m->to));
+        vm other = vd_lt(zero, square) & vd_le(square, cutoff2); /* than the sphere itself */
+        vm ahead = vd_le(zero, depth) & vd_le(e, depth * depth * (1 + 1e-12));
+        uint32_t bits = vm_bits(in_range & other & ahead & vd_lt(u * u + v * v, wide)) & vd_lanes_below(m->found - k);
+        if (n <= disc.capacity) {
+            vd_compress(disc.depth + n, bits, depth);
+            vd_compress(disc.u + n, bits, u);
+            vd_compress(disc.v + n, bits, v);
+            vd_compress(disc.r + n, bits, r);
+            for (uint32_t l = 0, to = n; l < VD_LANES; to += bits >> l & 1, l++) sphere[to] = m->sphere[k + l];
         }
+        n += fibrad_count_bits(bits);
+    }
     work->disc.count = n;
+    m->found = 0;
 }
 
-/* The distance from `edge`, a coordinate along an axis, to where the grid begins, or, beyond the grid, infinity: only
- * stray spheres are there. 0 within the grid and on a periodic axis. */
-static double distance_to_grid(const fibrad_workspace *work, int axis, double sense, double edge) {
+/* Finds the spheres of a run that may come before the beam: all that do, and few others. */
+static void cull_run(march *m, uint32_t run) {
+    const fibrad_workspace *work = m->work;
     const fibrad_scene *scene = work->scene;
-    if (scene->period[axis] > 0) return 0;
-    const double low = (scene->box_low[axis] - work->centre[axis]) * sense * work->inverse;
-    const double high = (scene->box_high[axis] - work->centre[axis]) * sense * work->inverse;
-    if (edge >= fibrad_max(low, high)) return __builtin_inf();
-    return fibrad_max(0, fibrad_min(low, high) - edge);
+    double origin[3], x[3], y[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const double unit = scene->coarse_unit[axis] * work->inverse;
+        origin[axis] = (scene->coarse_low[axis] - work->centre[axis] + m->shift[axis][run]) * work->inverse;
+        x[axis] = m->frame[axis] * unit, y[axis] = m->frame[3 + axis] * unit;
+    }
+    const double u0 = m->frame[0] * origin[0] + m->frame[1] * origin[1] + m->frame[2] * origin[2] - m->tube->u;
+    const double v0 = m->frame[3] * origin[0] + m->frame[4] * origin[1] + m->frame[5] * origin[2] - m->tube->v;
+    const double radius = scene->coarse_radius * work->inverse, tube = m->tube->radius + m->slack;
+    const uint32_t begin = m->begin[run], end = m->end[run];
+    for (uint32_t j = begin - begin % VD_LANES; j < end; j += VD_LANES) {
+        const fibrad_coarse *coarse = &scene->coarse[j / FIBRAD_COARSE];
+        const uint32_t at = j % FIBRAD_COARSE;
+        vd a = vd_load_short(coarse->x + at), b = vd_load_short(coarse->y + at), c = vd_load_short(coarse->z + at);
+        vd r = vd_load_short(coarse->r + at), wide = tube + r * radius;
+        vd u = u0 + component(x, a, b, c), v = v0 + component(y, a, b, c);
+        uint32_t bits = vm_bits(vd_lt(u * u + v * v, wide * wide) | vd_le(vd_set1(FIBRAD_COARSE_STRAY), r));
+        bits &= vd_lanes_below(end - j);
+        if (j < begin) bits &= ~vd_lanes_below(begin - j);
+        if (bits == 0) continue;
+        if (m->found + VD_LANES > MARCH_FOUND) append_found(m);
+        const uint32_t to = m->found + vd_compress_places(m->sphere + m->found, bits, j);
+        while (m->found < to) m->run[m->found++] = run;
+    }
 }
 
-/* The stretch of a tube about the line along w, in radii from the centre, and the axis across which it is cut. */
-typedef struct march_stretch {
-    const double *w;
-    double middle[3], lateral[3]; /* the tube's cross-section: centre and half extents */
-    double begin, end;            /* depths */
-    int axis;                     /* the one that w is most nearly along */
-    double slope, sense;          /* of w along it: size and sign */
-} march_stretch;
-
-static march_stretch stretch_of(const double frame[9], const fibrad_tube *tube, double radius, double from, double to) {
-    march_stretch s = {.w = frame + 6, .begin = fibrad_max(from, 0)};
-    s.end = fibrad_sqrt(to * to + (1 + radius) * (1 + radius));
-    for (int axis = 0; axis < 3; axis++) {
-        s.middle[axis] = tube->u * frame[axis] + tube->v * frame[3 + axis];
-        s.lateral[axis] = (tube->radius + radius) * fibrad_sqrt(fibrad_max(0, 1 - s.w[axis] * s.w[axis]));
-        if (fibrad_abs(s.w[axis]) > fibrad_abs(s.w[s.axis])) s.axis = axis;
+static void look_at_runs(march *m) {
+    const fibrad_scene *scene = m->work->scene;
+    for (uint32_t k = 0; k < m->runs; k++) {
+        m->begin[k] = scene->start[m->begin[k]], m->end[k] = scene->start[m->end[k]];
+        __builtin_prefetch(&scene->coarse[m->begin[k] / FIBRAD_COARSE]);
     }
-    s.slope = fibrad_abs(s.w[s.axis]), s.sense = s.w[s.axis] < 0 ? -1 : 1;
-    return s;
+    for (uint32_t k = 0; k < m->runs; k++) cull_run(m, k);
+    append_found(m);
+    m->runs = 0;
 }
 
-/* The thickest layer: the stretch itself, or what passes one period of another axis; not less than a cell. */
-static double thickest_layer(const fibrad_workspace *work, const fibrad_level *level, const march_stretch *s,
-                             double length) {
-    const double *period = work->scene->period;
-    for (int axis = 0; axis < 3; axis++)
-        if (axis != s->axis && period[axis] > 0 && s->w[axis] != 0)
-            length = fibrad_min(length, period[axis] * work->inverse * fibrad_abs(s->w[s->axis] / s->w[axis]));
-    return fibrad_max(length, level->cell[s->axis] * work->inverse);
+/* Adds the cells from `low` to `high` along x, as cells of the box, to the runs. */
+static void add_runs(march *m, const int32_t cell[3], const double shift[3], int32_t low, int32_t high) {
+    const fibrad_level *level = m->level;
+    const uint32_t nx = (uint32_t)level->cells[0], ny = (uint32_t)level->cells[1];
+    const uint32_t row = level->first_cell + nx * (ny * (uint32_t)cell[2] + (uint32_t)cell[1]);
+    for (int32_t x = low, run; x <= high; x += run) {
+        if (m->runs == MARCH_RUNS) look_at_runs(m);
+        const uint32_t k = m->runs++;
+        const int32_t begin = fibrad_grid_image(m->work->scene, level, 0, x, &m->shift[0][k]);
+        run = level->cells[0] - begin; /* to the end of the box, or of the cells */
+        if (run > high - x + 1) run = high - x + 1;
+        m->begin[k] = row + (uint32_t)begin, m->end[k] = row + (uint32_t)(begin + run);
+        m->shift[1][k] = shift[1], m->shift[2][k] = shift[2];
+    }
 }
 
-/* The box [L] about the part of the stretch whose coordinate along the axis, in the sense of w, is in
- * [edge, edge + thick). */
-static void box_of_layer(const fibrad_workspace *work, const march_stretch *s, double edge, double thick, double low[3],
-                         double high[3]) {
-    const int a = s->axis;
-    const double height = edge - s->sense * s->middle[a], side = s->lateral[a];
-    const double near_depth = fibrad_max((height - side) / s->slope, s->begin);
-    const double far_depth = fibrad_min((height + thick + side) / s->slope, s->end);
-    for (int axis = 0; axis < 3; axis++) {
-        double p = near_depth * s->w[axis], q = far_depth * s->w[axis];
-        low[axis] = s->middle[axis] + fibrad_min(p, q) - s->lateral[axis];
-        high[axis] = s->middle[axis] + fibrad_max(p, q) + s->lateral[axis];
-    }
-    low[a] = s->sense > 0 ? edge : -edge - thick, high[a] = s->sense > 0 ? edge + thick : -edge;
-    for (int axis = 0; axis < 3; axis++) {
-        low[axis] = work->centre[axis] + low[axis] * work->unit;
-        high[axis] = work->centre[axis] + high[axis] * work->unit;
-    }
+typedef struct march_range {
+    double near, far;
+} march_range;
+
+/* The part of a range of depths in which the beam meets a cell of an axis. */
+static inline march_range depths_in_cell(const march *m, int axis, int32_t cell, march_range all) {
+    const double inf = __builtin_inf(), side = m->side[axis] * fibrad_abs(m->per_slope[axis]);
+    const double low = ((cell > m->first[axis] ? cell : -inf) - m->at[axis]) * m->per_slope[axis];
+    const double high = ((cell < m->last[axis] ? cell + 1.0 : inf) - m->at[axis]) * m->per_slope[axis];
+    return (march_range){fibrad_max(all.near, fibrad_min(low, high) - side),
+                         fibrad_min(all.far, fibrad_max(low, high) + side)};
+}
+
+static inline int32_t march_cell(const march *m, int axis, double coordinate) {
+    const double c = fibrad_max(m->first[axis], fibrad_min(coordinate, m->last[axis]));
+    const int32_t cell = (int32_t)c;
+    return cell - (c < cell);
+}
+
+/* The first and the last cell of an axis that the beam meets in a range of depths. */
+static inline void cells_in_range(const march *m, int axis, march_range range, int32_t *low, int32_t *high) {
+    const double near = range.near * m->slope[axis], far = range.far * m->slope[axis];
+    *low = march_cell(m, axis, m->at[axis] + fibrad_min(near, far) - m->side[axis]);
+    *high = march_cell(m, axis, m->at[axis] + fibrad_max(near, far) + m->side[axis]);
 }
 
 /* Spheres of one level, of minimum depth in (from, to], lie in a stretch of the tube of radius 1 + r about the beam, or
- * of radius r about a ray of it. It is cut into layers across the axis the beam is most nearly along, so that the boxes
- * walked enclose the tube closely. Outside the grid layers grow, up to where the tube passes one period of another
- * axis. */
-static void march_level(fibrad_workspace *work, const fibrad_level *level, const double frame[9],
-                        const fibrad_tube *tube, double from, double to) {
+ * of radius r about a ray of it. Its cells are met layer by layer along y or z, whichever it is more nearly along; in
+ * each row by row; in each all at once along x, in which they lie side by side in memory. */
+static void march_level(march *m, double from, double to) {
+    fibrad_workspace *work = m->work;
     const fibrad_scene *scene = work->scene;
-    const march_stretch s = stretch_of(frame, tube, level->radius_max * work->inverse, from, to);
-    const int a = s.axis;
-    const double side = s.lateral[a], sense = s.sense;
-    double first = s.begin * s.slope - side + sense * s.middle[a], last = s.end * s.slope + side + sense * s.middle[a];
-    const double stride = thickest_layer(work, level, &s, last - first);
-    if (scene->period[a] == 0) { /* nothing beyond the box */
-        double start = sense > 0 ? scene->low[a] - work->centre[a] : work->centre[a] - scene->high[a];
-        double stop = sense > 0 ? scene->high[a] - work->centre[a] : work->centre[a] - scene->low[a];
-        first = fibrad_max(first, start * work->inverse), last = fibrad_min(last, stop * work->inverse);
+    const fibrad_level *level = m->level;
+    const double *w = m->frame + 6, r = level->radius_max * work->inverse, wide = m->tube->radius + r;
+    march_range all = {fibrad_max(from, 0), fibrad_sqrt(to * to + (1 + r) * (1 + r))};
+    m->slack = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double middle = m->tube->u * m->frame[axis] + m->tube->v * m->frame[3 + axis];
+        const double lateral = wide * fibrad_sqrt(fibrad_max(0, 1 - w[axis] * w[axis]));
+        const bool periodic = scene->period[axis] > 0;
+        if (!periodic && w[axis] != 0) { /* nothing beyond the box */
+            const double stop =
+                w[axis] > 0 ? scene->high[axis] - work->centre[axis] : scene->low[axis] - work->centre[axis];
+            all.far = fibrad_min(all.far, (stop * work->inverse - middle) / w[axis] + lateral / fibrad_abs(w[axis]));
+        }
+        const double scale = work->unit * level->inverse[axis];
+        const double low = scene->box_low[axis] - (periodic ? 0 : level->radius_max);
+        m->at[axis] = (work->centre[axis] + middle * work->unit - low) * level->inverse[axis];
+        m->slope[axis] = w[axis] * scale;
+        m->per_slope[axis] = 1 / (fibrad_abs(m->slope[axis]) > 1e-290 ? m->slope[axis] : 1e-290);
+        m->side[axis] = lateral * scale;
+        m->first[axis] = periodic ? -1000000000 : 0;
+        m->last[axis] = periodic ? 1000000000 : level->cells[axis] - 1;
+        m->slack += fibrad_abs(work->centre[axis]) + fibrad_abs(low);
     }
-    /* layers [edge, edge + thick) along that axis, in radii from the centre. They need not match the cells, and then a
-     * sphere could be met twice: its own coordinate along the axis decides which layer it belongs to */
-    const double least = fibrad_min(stride, LAYER_CELLS * level->cell[a] * work->inverse);
-    double thick = least;
-    for (double edge = first; edge <= last; edge += thick) {
-        double clear = distance_to_grid(work, a, sense, edge), low[3], high[3];
-        thick = clear > least ? fibrad_min(fibrad_min(2 * thick, stride), clear) : least;
-        box_of_layer(work, &s, edge, thick, low, high);
-        const march_layer layer = {a, sense, edge, edge + thick, from < 0 ? -__builtin_inf() : from * from, to * to};
-        fibrad_walk walk;
-        fibrad_walk_begin(&walk, scene, level, low, high);
-        append_discs(work, frame, &walk, &layer);
+    m->slack = 1e-12 + 1e-14 * (m->slack * work->inverse + all.far);
+    for (int axis = 0; axis < 3; axis++) m->side[axis] += 1e-6 + m->slack * work->unit * level->inverse[axis];
+    if (!(all.near <= all.far)) return;
+
+    const int a = fibrad_abs(w[1]) > fibrad_abs(w[2]) ? 1 : 2, b = 3 - a;
+    int32_t cell[3], low[3], high[3];
+    double shift[3];
+    cells_in_range(m, a, all, &low[a], &high[a]);
+    for (int32_t layer = low[a]; layer <= high[a]; layer++) {
+        const march_range in_layer = depths_in_cell(m, a, layer, all);
+        if (!(in_layer.near <= in_layer.far)) continue;
+        cell[a] = fibrad_grid_image(scene, level, a, layer, &shift[a]);
+        cells_in_range(m, b, in_layer, &low[b], &high[b]);
+        for (int32_t row = low[b]; row <= high[b]; row++) {
+            const march_range in_row = depths_in_cell(m, b, row, in_layer);
+            if (!(in_row.near <= in_row.far)) continue;
+            cell[b] = fibrad_grid_image(scene, level, b, row, &shift[b]);
+            cells_in_range(m, 0, in_row, &low[0], &high[0]);
+            add_runs(m, cell, shift, low[0], high[0]);
+        }
     }
+    look_at_runs(m);
 }
 
 void LANED(fibrad_near_march)(fibrad_workspace *work, const double frame[9], const fibrad_tube *tube, double from,
                               double to) {
     uint32_t first = work->disc.count, own = work->near.capacity;
-    for (uint32_t l = 0; l < work->scene->levels; l++) march_level(work, &work->scene->level[l], frame, tube, from, to);
+    march m;
+    m.work = work, m.frame = frame, m.tube = tube, m.runs = m.found = 0;
+    m.from = from < 0 ? -__builtin_inf() : from * from, m.to = to * to;
+    for (uint32_t l = 0; l < work->scene->levels; l++) {
+        m.level = &work->scene->level[l];
+        march_level(&m, from, to);
+    }
     if (work->disc.count > work->disc.capacity) return;
     bool ahead = true;
     for (uint32_t k = first; k < work->disc.count; k++) {

@@ -59,6 +59,9 @@ static inline vd vd_loadu(const double *p) { return _mm256_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm256_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm256_storeu_pd(p, a); }
 static inline vd vd_load_float(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
+static inline vd vd_load_short(const uint16_t *p) {
+    return _mm256_cvtepi32_pd(_mm_cvtepu16_epi32(_mm_loadl_epi64((const __m128i *)(const void *)p)));
+}
 static inline void vd_store_float(float *p, vd a) { _mm_store_ps(p, _mm256_cvtpd_ps(a)); }
 static inline void vd_store_numbers(uint32_t *p, vd a) {
     _mm_store_si128((__m128i *)(void *)p, _mm256_cvttpd_epi32(a));

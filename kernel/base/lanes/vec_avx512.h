@@ -43,6 +43,9 @@ static inline vd vd_loadu(const double *p) { return _mm512_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm512_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm512_storeu_pd(p, a); }
 static inline vd vd_load_float(const float *p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
+static inline vd vd_load_short(const uint16_t *p) {
+    return _mm512_cvtepi32_pd(_mm256_cvtepu16_epi32(_mm_load_si128((const __m128i *)(const void *)p)));
+}
 static inline void vd_store_float(float *p, vd a) { _mm256_store_ps(p, _mm512_cvtpd_ps(a)); }
 static inline void vd_store_numbers(uint32_t *p, vd a) {
     _mm256_store_si256((__m256i *)(void *)p, _mm512_cvttpd_epi32(a));

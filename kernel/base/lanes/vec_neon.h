@@ -41,6 +41,7 @@ static inline vd vd_loadu(const double *p) { return vld1q_f64(p); }
 static inline void vd_store(double *p, vd a) { vst1q_f64(p, a); }
 static inline void vd_storeu(double *p, vd a) { vst1q_f64(p, a); }
 static inline vd vd_load_float(const float *p) { return vcvt_f64_f32(vld1_f32(p)); }
+static inline vd vd_load_short(const uint16_t *p) { return (vd){p[0], p[1]}; }
 static inline void vd_store_float(float *p, vd a) { vst1_f32(p, vcvt_f32_f64(a)); }
 static inline void vd_store_numbers(uint32_t *p, vd a) { vst1_u32(p, vmovn_u64(vcvtq_u64_f64(a))); }
 static inline vd vd_sqrt(vd a) { return vsqrtq_f64(a); }

@@ -6,6 +6,7 @@
  *                            vd_set1 vd_load vd_store vd_sqrt vd_min vd_max vd_abs
  *                            vd_loadu vd_storeu (any address), vd_load_float vd_store_float (rounded)
  *                            vd_store_numbers(p, a): whole numbers >= 0 as uint32_t
+ *                            vd_load_short (whole numbers of 16 bits)
  *                            vd_lt vd_le (masks) vd_select(mask, if set, if clear)
  *                            vd_lookup(table, size, k): table[k] for lanes of whole numbers k < size (< the table's
  *                            length in lanes whose result is not used); the table is a whole number of vectors long
@@ -52,6 +53,7 @@ static inline vd vd_loadu(const double *p) { return *p; }
 static inline void vd_store(double *p, vd a) { *p = a; }
 static inline void vd_storeu(double *p, vd a) { *p = a; }
 static inline vd vd_load_float(const float *p) { return *p; }
+static inline vd vd_load_short(const uint16_t *p) { return *p; }
 static inline void vd_store_float(float *p, vd a) { *p = (float)a; }
 static inline void vd_store_numbers(uint32_t *p, vd a) { *p = (uint32_t)a; }
 static inline vd vd_sqrt(vd a) { return fibrad_sqrt(a); }

@@ -43,6 +43,7 @@ static inline void vd_storeu(double *p, vd a) { _mm_storeu_pd(p, a); }
 static inline vd vd_load_float(const float *p) {
     return _mm_cvtps_pd(_mm_castpd_ps(_mm_load_sd((const double *)(const void *)p)));
 }
+static inline vd vd_load_short(const uint16_t *p) { return _mm_set_pd(p[1], p[0]); }
 static inline void vd_store_float(float *p, vd a) { _mm_storel_pi((__m64 *)(void *)p, _mm_cvtpd_ps(a)); }
 static inline void vd_store_numbers(uint32_t *p, vd a) { _mm_storel_epi64((__m128i *)(void *)p, _mm_cvttpd_epi32(a)); }
 static inline vd vd_sqrt(vd a) { return _mm_sqrt_pd(a); }
