@@ -167,27 +167,30 @@ void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uin
     if (outside != 0) remove_not_ahead(work, from);
 }
 
-/* Cells side by side along x that a beam meets are a run. Runs and spheres are gathered before they are looked at, so
- * that waits for memory overlap. */
-#define MARCH_RUNS  32
-#define MARCH_FOUND 64
+/* Rows are cells that a beam meets side by side along x; runs the same within the box. They and the spheres found are
+ * gathered before they are looked at, so that lanes are full and waits for memory overlap. */
+#define MARCH_ROWS  (32 + FIBRAD_LANES_MAX)
+#define MARCH_RUNS  (32 + FIBRAD_LANES_MAX)
+#define MARCH_FOUND (64 + FIBRAD_LANES_MAX)
 
-/* A march along a beam, or a ray of one, through the cells of one level, whose number along each axis is the unit of
- * its coordinates. */
+/* A march along a beam, or a ray of one, through the cells of one level. Coordinates are in cells. */
 typedef struct march {
     fibrad_workspace *work;
     const fibrad_level *level;
     const double *frame;
     const fibrad_tube *tube;
     double from, to;                      /* squared minimum depths of spheres looked for: (from, to] */
-    double at[3], slope[3], per_slope[3]; /* the beam at depth 0, what it advances per depth, and 1/that */
-    double side[3];                       /* half its width, and that of the largest sphere */
-    int32_t first[3], last[3];            /* the outermost cells, in which are strays, too */
     double slack;                         /* for rounding, in radii */
-    uint32_t runs, found;
-    uint32_t begin[MARCH_RUNS], end[MARCH_RUNS]; /* of each run: cells, then spheres */
-    double shift[3][MARCH_RUNS];                 /* by whole periods */
-    uint32_t sphere[MARCH_FOUND + FIBRAD_LANES_MAX], run[MARCH_FOUND + FIBRAD_LANES_MAX];
+    int layers_across, rows_across;       /* axes */
+    double at[3], slope[3], per_slope[3]; /* the beam at depth 0, what it advances per depth, and 1/that */
+    double side[3], depth[3];             /* half its width, with that of the largest sphere; the depth that takes */
+    double first[3], last[3];             /* the outermost cells, in which are strays, too */
+    double cells[3], per_cells[3];        /* of the box */
+    uint32_t rows, runs, found;
+    _Alignas(64) double layer[MARCH_ROWS], row[MARCH_ROWS], near[MARCH_ROWS], far[MARCH_ROWS]; /* cells, depths */
+    double begin[MARCH_RUNS], end[MARCH_RUNS];                                                 /* cells of the scene */
+    double shift[3][MARCH_RUNS];                                                               /* by whole periods */
+    uint32_t sphere[MARCH_FOUND], run[MARCH_FOUND];                                            /* found, and where */
 } march;
 
 /* Coordinates of found spheres, relative to the centre and in units of the radius. */
@@ -229,147 +232,184 @@ static void append_found(march *m) {
     m->found = 0;
 }
 
-/* Finds the spheres of a run that may come before the beam: all that do, and few others. */
-static void cull_run(march *m, uint32_t run) {
+/* Finds the spheres of the runs that may come before the beam: all that do, and few others. */
+static void look_at_runs(march *m) {
     const fibrad_workspace *work = m->work;
     const fibrad_scene *scene = work->scene;
+    const double *frame = m->frame;
+    uint32_t begin[MARCH_RUNS], end[MARCH_RUNS];
+    for (uint32_t k = 0; k < m->runs; k++) {
+        begin[k] = scene->start[(uint32_t)m->begin[k]], end[k] = scene->start[(uint32_t)m->end[k]];
+        __builtin_prefetch(&scene->coarse[begin[k] / FIBRAD_COARSE]);
+    }
     double origin[3], x[3], y[3];
     for (int axis = 0; axis < 3; axis++) {
         const double unit = scene->coarse_unit[axis] * work->inverse;
-        origin[axis] = (scene->coarse_low[axis] - work->centre[axis] + m->shift[axis][run]) * work->inverse;
-        x[axis] = m->frame[axis] * unit, y[axis] = m->frame[3 + axis] * unit;
+        origin[axis] = (scene->coarse_low[axis] - work->centre[axis]) * work->inverse;
+        x[axis] = frame[axis] * unit, y[axis] = frame[3 + axis] * unit;
     }
-    const double u0 = m->frame[0] * origin[0] + m->frame[1] * origin[1] + m->frame[2] * origin[2] - m->tube->u;
-    const double v0 = m->frame[3] * origin[0] + m->frame[4] * origin[1] + m->frame[5] * origin[2] - m->tube->v;
-    const double radius = scene->coarse_radius * work->inverse, tube = m->tube->radius + m->slack;
-    const uint32_t begin = m->begin[run], end = m->end[run];
-    for (uint32_t j = begin - begin % VD_LANES; j < end; j += VD_LANES) {
-        const fibrad_coarse *coarse = &scene->coarse[j / FIBRAD_COARSE];
-        const uint32_t at = j % FIBRAD_COARSE;
-        vd a = vd_load_short(coarse->x + at), b = vd_load_short(coarse->y + at), c = vd_load_short(coarse->z + at);
-        vd r = vd_load_short(coarse->r + at), wide = tube + r * radius;
-        vd u = u0 + component(x, a, b, c), v = v0 + component(y, a, b, c);
-        uint32_t bits = vm_bits(vd_lt(u * u + v * v, wide * wide) | vd_le(vd_set1(FIBRAD_COARSE_STRAY), r));
-        bits &= vd_lanes_below(end - j);
-        if (j < begin) bits &= ~vd_lanes_below(begin - j);
-        if (bits == 0) continue;
-        if (m->found + VD_LANES > MARCH_FOUND) append_found(m);
-        const uint32_t to = m->found + vd_compress_places(m->sphere + m->found, bits, j);
-        while (m->found < to) m->run[m->found++] = run;
+    const double u_at = frame[0] * origin[0] + frame[1] * origin[1] + frame[2] * origin[2] - m->tube->u;
+    const double v_at = frame[3] * origin[0] + frame[4] * origin[1] + frame[5] * origin[2] - m->tube->v;
+    _Alignas(64) double u0[MARCH_RUNS], v0[MARCH_RUNS]; /* where coarse coordinates are 0 */
+    for (uint32_t k = 0; k < m->runs; k += VD_LANES) {
+        vd sx = vd_loadu(m->shift[0] + k), sy = vd_loadu(m->shift[1] + k), sz = vd_loadu(m->shift[2] + k);
+        vd_store(u0 + k, u_at + component(frame, sx, sy, sz) * work->inverse);
+        vd_store(v0 + k, v_at + component(frame + 3, sx, sy, sz) * work->inverse);
     }
-}
-
-static void look_at_runs(march *m) {
-    const fibrad_scene *scene = m->work->scene;
+    const vd ux = vd_set1(x[0]), uy = vd_set1(x[1]), uz = vd_set1(x[2]), vx = vd_set1(y[0]), vy = vd_set1(y[1]);
+    const vd vz = vd_set1(y[2]), stray = vd_set1(FIBRAD_COARSE_STRAY), tube = vd_set1(m->tube->radius + m->slack);
+    const vd radius = vd_set1(scene->coarse_radius * work->inverse);
     for (uint32_t k = 0; k < m->runs; k++) {
-        m->begin[k] = scene->start[m->begin[k]], m->end[k] = scene->start[m->end[k]];
-        __builtin_prefetch(&scene->coarse[m->begin[k] / FIBRAD_COARSE]);
+        if (begin[k] == end[k]) continue;
+        for (uint32_t j = begin[k] / VD_LANES * VD_LANES; j < end[k]; j += VD_LANES) {
+            const uint16_t *coarse = scene->coarse[j / FIBRAD_COARSE].x + j % FIBRAD_COARSE;
+            vd a = vd_load_short(coarse), b = vd_load_short(coarse + FIBRAD_COARSE);
+            vd c = vd_load_short(coarse + 2 * FIBRAD_COARSE), r = vd_load_short(coarse + 3 * FIBRAD_COARSE);
+            vd u = vd_set1(u0[k]) + (ux * a + uy * b + uz * c), v = vd_set1(v0[k]) + (vx * a + vy * b + vz * c);
+            vd wide = tube + radius * r;
+            uint32_t bits = vm_bits(vd_lt(u * u + v * v, wide * wide) | vd_le(stray, r)) & vd_lanes_below(end[k] - j);
+            if (j < begin[k]) bits &= ~vd_lanes_below(begin[k] - j);
+            if (bits == 0) continue;
+            if (m->found + VD_LANES > MARCH_FOUND) append_found(m);
+            const uint32_t to = m->found + vd_compress_places(m->sphere + m->found, bits, j);
+            while (m->found < to) m->run[m->found++] = k;
+        }
     }
-    for (uint32_t k = 0; k < m->runs; k++) cull_run(m, k);
     append_found(m);
     m->runs = 0;
 }
 
-/* Adds the cells from `low` to `high` along x, as cells of the box, to the runs. */
-static void add_runs(march *m, const int32_t cell[3], const double shift[3], int32_t low, int32_t high) {
-    const fibrad_level *level = m->level;
-    const uint32_t nx = (uint32_t)level->cells[0], ny = (uint32_t)level->cells[1];
-    const uint32_t row = level->first_cell + nx * (ny * (uint32_t)cell[2] + (uint32_t)cell[1]);
-    for (int32_t x = low, run; x <= high; x += run) {
-        if (m->runs == MARCH_RUNS) look_at_runs(m);
-        const uint32_t k = m->runs++;
-        const int32_t begin = fibrad_grid_image(m->work->scene, level, 0, x, &m->shift[0][k]);
-        run = level->cells[0] - begin; /* to the end of the box, or of the cells */
-        if (run > high - x + 1) run = high - x + 1;
-        m->begin[k] = row + (uint32_t)begin, m->end[k] = row + (uint32_t)(begin + run);
-        m->shift[1][k] = shift[1], m->shift[2][k] = shift[2];
-    }
+/* The largest whole number not above x, which must be well below 2^51. */
+static inline vd whole(vd x) {
+    vd nearest = (x + 0x1.8p52) - 0x1.8p52;
+    return nearest - vd_select(vd_lt(x, nearest), vd_set1(1), vd_set1(0));
 }
 
-typedef struct march_range {
-    double near, far;
-} march_range;
+/* How many periods away the image is in which a cell is. */
+static inline vd periods_away(const march *m, int axis, vd cell) { return whole((cell + 0.5) * m->per_cells[axis]); }
 
-/* The part of a range of depths in which the beam meets a cell of an axis. */
-static inline march_range depths_in_cell(const march *m, int axis, int32_t cell, march_range all) {
-    const double inf = __builtin_inf(), side = m->side[axis] * fibrad_abs(m->per_slope[axis]);
-    const double low = ((cell > m->first[axis] ? cell : -inf) - m->at[axis]) * m->per_slope[axis];
-    const double high = ((cell < m->last[axis] ? cell + 1.0 : inf) - m->at[axis]) * m->per_slope[axis];
-    return (march_range){fibrad_max(all.near, fibrad_min(low, high) - side),
-                         fibrad_min(all.far, fibrad_max(low, high) + side)};
-}
-
-static inline int32_t march_cell(const march *m, int axis, double coordinate) {
-    const double c = fibrad_max(m->first[axis], fibrad_min(coordinate, m->last[axis]));
-    const int32_t cell = (int32_t)c;
-    return cell - (c < cell);
+/* Narrows depths to those in which the beam meets a cell of an axis. */
+static inline void narrow_to_cell(const march *m, int axis, vd cell, vd *near, vd *far) {
+    const vd inf = vd_set1(__builtin_inf());
+    vd low = vd_select(vd_lt(vd_set1(m->first[axis]), cell), cell, 0 - inf);
+    vd high = vd_select(vd_lt(cell, vd_set1(m->last[axis])), cell + 1, inf);
+    low = (low - m->at[axis]) * m->per_slope[axis], high = (high - m->at[axis]) * m->per_slope[axis];
+    *near = vd_max(*near, vd_min(low, high) - m->depth[axis]);
+    *far = vd_min(*far, vd_max(low, high) + m->depth[axis]);
 }
 
 /* The first and the last cell of an axis that the beam meets in a range of depths. */
-static inline void cells_in_range(const march *m, int axis, march_range range, int32_t *low, int32_t *high) {
-    const double near = range.near * m->slope[axis], far = range.far * m->slope[axis];
-    *low = march_cell(m, axis, m->at[axis] + fibrad_min(near, far) - m->side[axis]);
-    *high = march_cell(m, axis, m->at[axis] + fibrad_max(near, far) + m->side[axis]);
+static inline void cells_met(const march *m, int axis, vd near, vd far, vd *low, vd *high) {
+    const vd first = vd_set1(m->first[axis]), last = vd_set1(m->last[axis]);
+    near *= m->slope[axis], far *= m->slope[axis];
+    *low = whole(vd_max(first, vd_min(last, m->at[axis] - m->side[axis] + vd_min(near, far))));
+    *high = whole(vd_max(first, vd_min(last, m->at[axis] + m->side[axis] + vd_max(near, far))));
+}
+
+/* Divides the rows into runs. */
+static void look_at_rows(march *m) {
+    const int a = m->layers_across, b = m->rows_across;
+    const double *period = m->work->scene->period, stride[3] = {1, m->cells[0], m->cells[0] * m->cells[1]};
+    const vd zero = vd_set1(0), most = vd_set1(m->cells[0]);
+    for (uint32_t k = 0; k < m->rows; k += VD_LANES) {
+        vd layer = vd_load(m->layer + k), row = vd_load(m->row + k), near = vd_load(m->near + k);
+        vd far = vd_load(m->far + k), low, high;
+        narrow_to_cell(m, b, row, &near, &far);
+        cells_met(m, 0, near, far, &low, &high);
+        vd layer_away = periods_away(m, a, layer), row_away = periods_away(m, b, row);
+        vd cell = (layer - layer_away * m->cells[a]) * stride[a] + (row - row_away * m->cells[b]) * stride[b];
+        cell += m->level->first_cell;
+        vd away = periods_away(m, 0, low), last = periods_away(m, 0, high);
+        for (uint32_t bits = vm_bits(vd_le(near, far)) & vd_lanes_below(m->rows - k); bits != 0;) {
+            if (m->runs + VD_LANES > MARCH_RUNS) look_at_runs(m);
+            vd begin = vd_max(zero, low - away * most), end = vd_min(most, high + 1 - away * most);
+            vd_compress(m->begin + m->runs, bits, cell + begin);
+            vd_compress(m->end + m->runs, bits, cell + end);
+            vd_compress(m->shift[0] + m->runs, bits, away * period[0]);
+            vd_compress(m->shift[a] + m->runs, bits, layer_away * period[a]);
+            vd_compress(m->shift[b] + m->runs, bits, row_away * period[b]);
+            m->runs += fibrad_count_bits(bits);
+            bits &= vm_bits(vd_lt(away, last));
+            away += 1;
+        }
+    }
+    look_at_runs(m);
+    m->rows = 0;
 }
 
 /* Spheres of one level, of minimum depth in (from, to], lie in a stretch of the tube of radius 1 + r about the beam, or
- * of radius r about a ray of it. Its cells are met layer by layer along y or z, whichever it is more nearly along; in
- * each row by row; in each all at once along x, in which they lie side by side in memory. */
-static void march_level(march *m, double from, double to) {
-    fibrad_workspace *work = m->work;
+ * of radius r about a ray of it. Its axes in cells; returns the depths of the stretch. */
+static void begin_march(march *m, double from, double to, double *near, double *far) {
+    const fibrad_workspace *work = m->work;
     const fibrad_scene *scene = work->scene;
     const fibrad_level *level = m->level;
-    const double *w = m->frame + 6, r = level->radius_max * work->inverse, wide = m->tube->radius + r;
-    march_range all = {fibrad_max(from, 0), fibrad_sqrt(to * to + (1 + r) * (1 + r))};
+    const double *w = m->frame + 6, r = level->radius_max * work->inverse;
+    m->layers_across = fibrad_abs(w[1]) > fibrad_abs(w[2]) ? 1 : 2, m->rows_across = 3 - m->layers_across;
     m->slack = 0;
+    *near = fibrad_max(from, 0), *far = fibrad_sqrt(to * to + (1 + r) * (1 + r));
     for (int axis = 0; axis < 3; axis++) {
         const double middle = m->tube->u * m->frame[axis] + m->tube->v * m->frame[3 + axis];
-        const double lateral = wide * fibrad_sqrt(fibrad_max(0, 1 - w[axis] * w[axis]));
+        const double radius = m->tube->radius + r, scale = work->unit * level->inverse[axis];
         const bool periodic = scene->period[axis] > 0;
+        m->side[axis] = radius * fibrad_sqrt(fibrad_max(0, 1 - w[axis] * w[axis]));
         if (!periodic && w[axis] != 0) { /* nothing beyond the box */
-            const double stop =
-                w[axis] > 0 ? scene->high[axis] - work->centre[axis] : scene->low[axis] - work->centre[axis];
-            all.far = fibrad_min(all.far, (stop * work->inverse - middle) / w[axis] + lateral / fibrad_abs(w[axis]));
+            const double stop = (w[axis] > 0 ? scene->high[axis] : scene->low[axis]) - work->centre[axis];
+            *far = fibrad_min(*far, (stop * work->inverse - middle) / w[axis] + m->side[axis] / fibrad_abs(w[axis]));
         }
-        const double scale = work->unit * level->inverse[axis];
         const double low = scene->box_low[axis] - (periodic ? 0 : level->radius_max);
         m->at[axis] = (work->centre[axis] + middle * work->unit - low) * level->inverse[axis];
         m->slope[axis] = w[axis] * scale;
         m->per_slope[axis] = 1 / (fibrad_abs(m->slope[axis]) > 1e-290 ? m->slope[axis] : 1e-290);
-        m->side[axis] = lateral * scale;
-        m->first[axis] = periodic ? -1000000000 : 0;
-        m->last[axis] = periodic ? 1000000000 : level->cells[axis] - 1;
+        m->first[axis] = periodic ? -1e9 : 0;
+        m->last[axis] = periodic ? 1e9 : level->cells[axis] - 1;
+        m->cells[axis] = level->cells[axis], m->per_cells[axis] = 1 / m->cells[axis];
         m->slack += fibrad_abs(work->centre[axis]) + fibrad_abs(low);
     }
-    m->slack = 1e-12 + 1e-14 * (m->slack * work->inverse + all.far);
-    for (int axis = 0; axis < 3; axis++) m->side[axis] += 1e-6 + m->slack * work->unit * level->inverse[axis];
-    if (!(all.near <= all.far)) return;
+    m->slack = 1e-12 + 1e-14 * (m->slack * work->inverse + *far);
+    for (int axis = 0; axis < 3; axis++) {
+        m->side[axis] = (m->side[axis] + m->slack) * (work->unit * level->inverse[axis]) + 1e-6;
+        m->depth[axis] = m->side[axis] * fibrad_abs(m->per_slope[axis]);
+    }
+}
 
-    const int a = fibrad_abs(w[1]) > fibrad_abs(w[2]) ? 1 : 2, b = 3 - a;
-    int32_t cell[3], low[3], high[3];
-    double shift[3];
-    cells_in_range(m, a, all, &low[a], &high[a]);
-    for (int32_t layer = low[a]; layer <= high[a]; layer++) {
-        const march_range in_layer = depths_in_cell(m, a, layer, all);
-        if (!(in_layer.near <= in_layer.far)) continue;
-        cell[a] = fibrad_grid_image(scene, level, a, layer, &shift[a]);
-        cells_in_range(m, b, in_layer, &low[b], &high[b]);
-        for (int32_t row = low[b]; row <= high[b]; row++) {
-            const march_range in_row = depths_in_cell(m, b, row, in_layer);
-            if (!(in_row.near <= in_row.far)) continue;
-            cell[b] = fibrad_grid_image(scene, level, b, row, &shift[b]);
-            cells_in_range(m, 0, in_row, &low[0], &high[0]);
-            add_runs(m, cell, shift, low[0], high[0]);
+/* Cells are met layer by layer along y or z, whichever the beam is more nearly along; in each row by row; in each all
+ * at once along x, in which they lie side by side in memory. */
+static void march_level(march *m, double from, double to) {
+    static const _Alignas(64) double number[FIBRAD_LANES_MAX] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    _Alignas(64) double near[VD_LANES], far[VD_LANES], low[VD_LANES], high[VD_LANES];
+    double begin, end;
+    begin_march(m, from, to, &begin, &end);
+    if (!(begin <= end)) return;
+    vd first, last;
+    cells_met(m, m->layers_across, vd_set1(begin), vd_set1(end), &first, &last);
+    vd_store(low, first);
+    vd_store(high, last);
+    const double most = high[0];
+    for (double layer = low[0]; layer <= most; layer += VD_LANES) {
+        vd layers = layer + vd_load(number), nearest = vd_set1(begin), farthest = vd_set1(end), least_row, last_row;
+        narrow_to_cell(m, m->layers_across, layers, &nearest, &farthest);
+        cells_met(m, m->rows_across, nearest, farthest, &least_row, &last_row);
+        vd_store(near, nearest);
+        vd_store(far, farthest);
+        vd_store(low, least_row);
+        vd_store(high, last_row);
+        for (uint32_t l = 0; l < VD_LANES && layer + l <= most; l++) {
+            if (!(near[l] <= far[l])) continue;
+            for (double row = low[l]; row <= high[l]; row++) {
+                if (m->rows == MARCH_ROWS) look_at_rows(m);
+                m->layer[m->rows] = layer + l, m->row[m->rows] = row;
+                m->near[m->rows] = near[l], m->far[m->rows++] = far[l];
+            }
         }
     }
-    look_at_runs(m);
+    look_at_rows(m);
 }
 
 void LANED(fibrad_near_march)(fibrad_workspace *work, const double frame[9], const fibrad_tube *tube, double from,
                               double to) {
     uint32_t first = work->disc.count, own = work->near.capacity;
     march m;
-    m.work = work, m.frame = frame, m.tube = tube, m.runs = m.found = 0;
+    m.work = work, m.frame = frame, m.tube = tube, m.rows = m.runs = m.found = 0;
     m.from = from < 0 ? -__builtin_inf() : from * from, m.to = to * to;
     for (uint32_t l = 0; l < work->scene->levels; l++) {
         m.level = &work->scene->level[l];
