@@ -166,10 +166,10 @@ typedef struct fibrad_fault {
     uint32_t triangle; /* the triangle; UINT32_MAX: none */
 } fibrad_fault;
 
-/* Bytes that fibrad_scene_init needs for n spheres, 44 each and 5 KB (ids: 1 if spheres.id is set, 8 more each).
+/* Bytes that fibrad_scene_init needs for n spheres, 52 each and 5 KB (ids: 1 if spheres.id is set, 8 more each).
  * Errors: 0 if n is above FIBRAD_SPHERES_MAX. An upper bound without ids, for static memory: */
 size_t fibrad_scene_size(uint32_t n, int ids);
-#define FIBRAD_SCENE_BYTES(n) (5376 + (size_t)(n)*64)
+#define FIBRAD_SCENE_BYTES(n) (5632 + (size_t)(n)*64)
 
 /* Makes a scene in memory[size]. config: NULL is all defaults. On periodic axes centres are moved into the box. Spheres
  * may overlap each other and the walls, as in settled beds, but no centre may lie inside another sphere or beyond a

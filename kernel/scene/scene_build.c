@@ -305,9 +305,8 @@ static void write_coarse(fibrad_scene *scene) {
         uint16_t number[3];
         bool stray = false;
         for (int axis = 0; axis < 3; axis++) {
-            const double c = (centre[axis] - scene->box_low[axis]) * per_length[axis];
-            stray = stray || !(c >= 0 && c <= 65535);
-            number[axis] = stray ? 0 : (uint16_t)c;
+            stray = stray || centre[axis] < scene->box_low[axis] || centre[axis] > scene->box_high[axis];
+            number[axis] = stray ? 0 : (uint16_t)((centre[axis] - scene->box_low[axis]) * per_length[axis]);
         }
         const uint16_t radius = (uint16_t)((scene->r[i] + off) / scene->coarse_radius + 1);
         fibrad_coarse *to = &scene->coarse[i / FIBRAD_COARSE];
