@@ -138,7 +138,7 @@ static bool follow_cast_ray(fibrad_workspace *work, const struct cast_ray *ray, 
             cull_for_ray(work, ray, shell);
             known = work->near.limit[shell];
         } else {
-            double to = known < 0 ? work->step : work->growth * known;
+            const double to = fibrad_near_further(work, known);
             LANED(fibrad_near_march)(work, ray->frame, &(fibrad_tube){0, -ray->sine, 0}, known, to);
             known = to;
         }

@@ -170,7 +170,7 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
             cull_for_window(work, frame, shell);
             known = work->near.limit[shell];
         } else {
-            double to = known < 0 ? work->step : work->growth * known;
+            const double to = fibrad_near_further(work, known);
             LANED(fibrad_near_march)(work, frame, &(fibrad_tube){.radius = 1}, known, to);
             known = to;
         }

@@ -40,8 +40,7 @@ typedef struct fibrad_level {
 #define FIBRAD_COARSE       8
 #define FIBRAD_COARSE_STRAY 65535 /* for a radius: the sphere is outside the box */
 typedef struct fibrad_coarse {
-    _Alignas(64) uint16_t x[FIBRAD_COARSE];
-    uint16_t y[FIBRAD_COARSE], z[FIBRAD_COARSE], r[FIBRAD_COARSE];
+    _Alignas(64) uint16_t number[4 * FIBRAD_COARSE]; /* all x, all y, all z, all radii */
 } fibrad_coarse;
 
 /* The convex region within the walls. */

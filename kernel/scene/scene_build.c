@@ -302,17 +302,13 @@ static void write_coarse(fibrad_scene *scene) {
     scene->coarse_radius = (scene->facts.radius_max + off) / 65000;
     for (uint32_t i = 0; i < scene->facts.spheres; i++) {
         const double centre[3] = {scene->x[i], scene->y[i], scene->z[i]};
-        uint16_t number[3];
+        uint16_t *to = scene->coarse[i / FIBRAD_COARSE].number + i % FIBRAD_COARSE;
         bool stray = false;
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; axis++, to += FIBRAD_COARSE) {
             stray = stray || centre[axis] < scene->box_low[axis] || centre[axis] > scene->box_high[axis];
-            number[axis] = stray ? 0 : (uint16_t)((centre[axis] - scene->box_low[axis]) * per_length[axis]);
+            *to = stray ? 0 : (uint16_t)((centre[axis] - scene->box_low[axis]) * per_length[axis]);
         }
-        const uint16_t radius = (uint16_t)((scene->r[i] + off) / scene->coarse_radius + 1);
-        fibrad_coarse *to = &scene->coarse[i / FIBRAD_COARSE];
-        const uint32_t at = i % FIBRAD_COARSE;
-        to->x[at] = number[0], to->y[at] = number[1], to->z[at] = number[2];
-        to->r[at] = stray ? FIBRAD_COARSE_STRAY : radius;
+        *to = stray ? FIBRAD_COARSE_STRAY : (uint16_t)((scene->r[i] + off) / scene->coarse_radius + 1);
     }
 }
 

@@ -66,7 +66,7 @@ void LANED(fibrad_near_extend)(fibrad_workspace *work) {
     uint32_t shell = near->shells, begin = shell > 0 ? near->end[shell - 1] : 0, count = begin;
     double from = shell > 0 ? near->limit[shell - 1] : 0;
     double to = shell > 0 ? work->growth * from : work->step;
-    near->full = shell == FIBRAD_SHELLS;
+    near->full = shell == FIBRAD_SHELLS || (shell > 0 && to < work->free_path); /* few windows meet any in it */
     for (uint32_t l = 0; l < scene->levels && !near->full; l++) {
         double wide = 1 + scene->level[l].radius_max * work->inverse;
         double ball = fibrad_min(fibrad_sqrt(to * to + wide * wide), work->reach) * work->unit, low[3], high[3];
@@ -262,14 +262,15 @@ static void look_at_runs(march *m) {
     for (uint32_t k = 0; k < m->runs; k++) {
         if (begin[k] == end[k]) continue;
         for (uint32_t j = begin[k] / VD_LANES * VD_LANES; j < end[k]; j += VD_LANES) {
-            const uint16_t *coarse = scene->coarse[j / FIBRAD_COARSE].x + j % FIBRAD_COARSE;
+            const uint16_t *coarse = scene->coarse[j / FIBRAD_COARSE].number + j % FIBRAD_COARSE;
             vd a = vd_load_short(coarse), b = vd_load_short(coarse + FIBRAD_COARSE);
             vd c = vd_load_short(coarse + 2 * FIBRAD_COARSE), r = vd_load_short(coarse + 3 * FIBRAD_COARSE);
             vd u = vd_set1(u0[k]) + (ux * a + uy * b + uz * c), v = vd_set1(v0[k]) + (vx * a + vy * b + vz * c);
             vd wide = tube + radius * r;
-            uint32_t bits = vm_bits(vd_lt(u * u + v * v, wide * wide) | vd_le(stray, r)) & vd_lanes_below(end[k] - j);
-            if (j < begin[k]) bits &= ~vd_lanes_below(begin[k] - j);
+            uint32_t bits = vm_bits(vd_lt(u * u + v * v, wide * wide) | vd_le(stray, r));
             if (bits == 0) continue;
+            bits &= vd_lanes_below(end[k] - j);
+            if (j < begin[k]) bits &= ~vd_lanes_below(begin[k] - j);
             if (m->found + VD_LANES > MARCH_FOUND) append_found(m);
             const uint32_t to = m->found + vd_compress_places(m->sphere + m->found, bits, j);
             while (m->found < to) m->run[m->found++] = k;

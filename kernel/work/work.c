@@ -5,6 +5,7 @@
  * only a matter of speed, or in a larger one. Nothing is lost thereby, since rows begin with empty memory. */
 #include "work/work.h"
 #include "base/arena.h"
+#include "base/constants.h"
 #include "base/random.h"
 
 /* What a packed bed takes. */
@@ -245,6 +246,8 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->cut = cutoff > 0 || scene->region;
     work->step = stride.first * scene->spacing * work->inverse;
     work->growth = stride.growth;
+    work->free_path = scene->spacing * scene->spacing * scene->spacing /
+                      (FIBRAD_PI * scene->facts.radius_max * scene->facts.radius_max) * work->inverse;
 
     double farthest[3];
     for (int axis = 0; axis < 3; axis++)

@@ -138,6 +138,7 @@ typedef struct fibrad_workspace {
     double centre[3];          /* [L] */
     double reach;              /* the cutoff; infinity if there is none */
     double step, growth;       /* depth of the first shell, and the ratio of each next one to it */
+    double free_path;          /* about the mean way of a line to the first sphere, or less */
     double farthest;           /* no sphere is farther from i; infinity with periodic axes */
     double clear;              /* no window has its horizon nearer than this */
     double clear_mesh;         /* no triangle is nearer to the centre than this */
@@ -180,6 +181,13 @@ static inline bool fibrad_near_pays(fibrad_near *near) {
     if (near->full || (near->shells > 0 && near->asked++ < FIBRAD_ASKED)) return false;
     near->asked = 0;
     return true;
+}
+
+/* How deep a march goes from where all is known: at least as far as most lines go without a sphere, since each march
+ * costs something. */
+static inline double fibrad_near_further(const fibrad_workspace *work, double known) {
+    if (known < 0) return work->step;
+    return fibrad_max(work->growth * known, known + 1.5 * work->free_path);
 }
 
 /* What the line from a place along w meets, if it meets no sphere: a slot. */
