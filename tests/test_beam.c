@@ -156,8 +156,12 @@ static void slice(const struct bed *bed, uint32_t i, const double w[3], double d
 
 /* Also where large spheres become known before small ones that lie in front of them. */
 START_TEST(rows_match_sliced_windows) {
-    struct bed beds[] = {packing(200, .05, 2, .05, 40, false), packing(200, .5, 2, .3, 41, false), strewn(600, 42),
-                         strewn(600, 43), strewn(600, 44)};
+    struct bed beds[] = {packing(200, .05, 2, .05, 40, false),
+                         packing(200, .5, 2, .3, 41, false),
+                         strewn(600, 42),
+                         strewn(600, 43),
+                         strewn(600, 44),
+                         packing(600, .8, 1.2, .01, 45, false)};
     for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
         for (uint32_t i = 0; i < beds[b].n; i += 3) {
             double seen[600] = {0}, w[3];
@@ -172,6 +176,34 @@ START_TEST(rows_match_sliced_windows) {
         }
         bed_free(&beds[b]);
     }
+}
+END_TEST
+
+/* A layer of spheres leaves the box of the grid no extent, and strays are beside it. No near spheres are kept. */
+START_TEST(strays_beside_a_layer) {
+    struct bed bed;
+    bed_init(&bed);
+    for (int k = 0; k < 49; k++) add_sphere(&bed, 0, 3 * (k % 7) + .1 * (k / 7), 3 * (k / 7), 1);
+    add_sphere(&bed, 40, 9, 8, 2);
+    add_sphere(&bed, -60, 7, 11, 3);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    const fibrad_beam_rule rule = {.directions = 2000};
+    for (uint32_t i = 3; i < bed.n; i += 4) {
+        double seen[600] = {0}, w[3], strays = 0;
+        for (uint32_t k = 0; k < rule.directions; k++) {
+            ck_assert_int_eq(fibrad_direction(k, rule.directions, w), FIBRAD_OK);
+            slice(&bed, i, w, INFINITY, seen);
+        }
+        fibrad_row row = row_of(bed.n);
+        beam_in_little(scene, i, &rule, &row);
+        for (uint32_t j = 0; j < bed.n; j++)
+            ck_assert_double_eq_tol(row_factor(&row, j), seen[j] / (rule.directions * acos(-1)), 1e-10);
+        for (uint32_t j = 49; j < bed.n; j++) strays += row_factor(&row, j);
+        ck_assert_double_gt(strays, 0);
+        row_free(&row);
+    }
+    free(scene);
+    bed_free(&bed);
 }
 END_TEST
 
@@ -212,8 +244,9 @@ END_TEST
 /* Whether spheres are kept near or looked up along each direction is a matter of speed: with the least memory there is
  * room for few of them. */
 START_TEST(work_memory_is_a_matter_of_speed) {
-    struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false), lattice('p', 9)};
-    for (size_t b = 0; b < 3; b++) {
+    struct bed beds[] = {packing(300, .5, 1.5, .55, 3, true), packing(400, .4, 1, .05, 4, false), lattice('p', 9),
+                         packing(400, .8, 1.2, .01, 5, true)};
+    for (size_t b = 0; b < sizeof beds / sizeof *beds; b++) {
         fibrad_scene *scene = scene_of(&beds[b], FIBRAD_ISA_BEST);
         fibrad_row row = row_of(beds[b].n), grown = row_of(beds[b].n);
         fibrad_work work = work_growing();
@@ -661,6 +694,7 @@ int main(void) {
     tcase_add_test(tcase, fallbacks_are_counted);
     tcase_add_test(tcase, raw_rows_close);
     tcase_add_test(tcase, rows_match_sliced_windows);
+    tcase_add_test(tcase, strays_beside_a_layer);
     tcase_add_test(tcase, points_agree_with_areas);
     tcase_add_test(tcase, same_bits_in_every_instruction_set);
     tcase_add_test(tcase, work_memory_is_a_matter_of_speed);

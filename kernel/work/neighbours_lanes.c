@@ -347,16 +347,13 @@ static void begin_march(march *m, double from, double to, double *near, double *
     const double *w = m->frame + 6, r = level->radius_max * work->inverse;
     m->layers_across = fibrad_abs(w[1]) > fibrad_abs(w[2]) ? 1 : 2, m->rows_across = 3 - m->layers_across;
     m->slack = 0;
-    *near = fibrad_max(from, 0), *far = fibrad_sqrt(to * to + (1 + r) * (1 + r));
+    *near = fibrad_max(from, 0);
+    *far = fibrad_min(fibrad_sqrt(to * to + (1 + r) * (1 + r)), fibrad_near_horizon(work, w));
     for (int axis = 0; axis < 3; axis++) {
         const double middle = m->tube->u * m->frame[axis] + m->tube->v * m->frame[3 + axis];
         const double radius = m->tube->radius + r, scale = work->unit * level->inverse[axis];
         const bool periodic = scene->period[axis] > 0;
         m->side[axis] = radius * fibrad_sqrt(fibrad_max(0, 1 - w[axis] * w[axis]));
-        if (!periodic && w[axis] != 0) { /* nothing beyond the box */
-            const double stop = (w[axis] > 0 ? scene->high[axis] : scene->low[axis]) - work->centre[axis];
-            *far = fibrad_min(*far, (stop * work->inverse - middle) / w[axis] + m->side[axis] / fibrad_abs(w[axis]));
-        }
         const double low = scene->box_low[axis] - (periodic ? 0 : level->radius_max);
         m->at[axis] = (work->centre[axis] + middle * work->unit - low) * level->inverse[axis];
         m->slope[axis] = w[axis] * scale;

@@ -246,8 +246,8 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->cut = cutoff > 0 || scene->region;
     work->step = stride.first * scene->spacing * work->inverse;
     work->growth = stride.growth;
-    work->free_path = scene->spacing * scene->spacing * scene->spacing /
-                      (FIBRAD_PI * scene->facts.radius_max * scene->facts.radius_max) * work->inverse;
+    const double thin = scene->spacing / scene->facts.radius_max;
+    work->free_path = thin * thin / FIBRAD_PI * scene->spacing * work->inverse;
 
     double farthest[3];
     for (int axis = 0; axis < 3; axis++)
