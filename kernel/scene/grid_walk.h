@@ -7,17 +7,6 @@
 /* The cell of a coordinate [L] along an axis; on a periodic axis it may be one of an image, beyond [0, cells). */
 int32_t fibrad_grid_cell(const fibrad_scene *scene, const fibrad_level *level, int axis, double c);
 
-/* Cell `at` of an axis as a cell of the box, and the shift of that periodic image. */
-static inline int32_t fibrad_grid_image(const fibrad_scene *scene, const fibrad_level *level, int axis, int32_t at,
-                                        double *shift) {
-    const int32_t cells = level->cells[axis];
-    *shift = 0;
-    if ((uint32_t)at < (uint32_t)cells) return at;
-    const int32_t periods = at < 0 ? -((cells - 1 - at) / cells) : at / cells;
-    *shift = periods * scene->period[axis];
-    return at - periods * cells;
-}
-
 /* A walk through the cells of one level that meet a box, as runs of spheres side by side in memory. */
 typedef struct fibrad_walk {
     const fibrad_scene *scene;

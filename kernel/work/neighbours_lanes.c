@@ -169,9 +169,9 @@ void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uin
 
 /* Rows are cells that a beam meets side by side along x; runs the same within the box. They and the spheres found are
  * gathered before they are looked at, so that lanes are full and waits for memory overlap. */
-#define MARCH_ROWS  (32 + FIBRAD_LANES_MAX)
-#define MARCH_RUNS  (32 + FIBRAD_LANES_MAX)
-#define MARCH_FOUND (64 + FIBRAD_LANES_MAX)
+#define MARCH_ROWS  (6 * VD_LANES)
+#define MARCH_RUNS  (6 * VD_LANES)
+#define MARCH_FOUND (8 * VD_LANES)
 
 /* A march along a beam, or a ray of one, through the cells of one level. Coordinates are in cells. */
 typedef struct march {
@@ -190,7 +190,8 @@ typedef struct march {
     _Alignas(64) double layer[MARCH_ROWS], row[MARCH_ROWS], near[MARCH_ROWS], far[MARCH_ROWS]; /* cells, depths */
     double begin[MARCH_RUNS], end[MARCH_RUNS];                                                 /* cells of the scene */
     double shift[3][MARCH_RUNS];                                                               /* by whole periods */
-    uint32_t sphere[MARCH_FOUND], run[MARCH_FOUND];                                            /* found, and where */
+    uint32_t first_sphere[MARCH_RUNS], end_sphere[MARCH_RUNS];
+    uint32_t sphere[MARCH_FOUND], run[MARCH_FOUND]; /* found, and where */
 } march;
 
 /* Coordinates of found spheres, relative to the centre and in units of the radius. */
@@ -237,7 +238,7 @@ static void look_at_runs(march *m) {
     const fibrad_workspace *work = m->work;
     const fibrad_scene *scene = work->scene;
     const double *frame = m->frame;
-    uint32_t begin[MARCH_RUNS], end[MARCH_RUNS];
+    uint32_t *begin = m->first_sphere, *end = m->end_sphere;
     for (uint32_t k = 0; k < m->runs; k++) {
         begin[k] = scene->start[(uint32_t)m->begin[k]], end[k] = scene->start[(uint32_t)m->end[k]];
         __builtin_prefetch(&scene->coarse[begin[k] / FIBRAD_COARSE]);
@@ -248,9 +249,10 @@ static void look_at_runs(march *m) {
         origin[axis] = (scene->coarse_low[axis] - work->centre[axis]) * work->inverse;
         x[axis] = frame[axis] * unit, y[axis] = frame[3 + axis] * unit;
     }
+    /* where coarse coordinates are 0, from the middle of the tube */
     const double u_at = frame[0] * origin[0] + frame[1] * origin[1] + frame[2] * origin[2] - m->tube->u;
     const double v_at = frame[3] * origin[0] + frame[4] * origin[1] + frame[5] * origin[2] - m->tube->v;
-    _Alignas(64) double u0[MARCH_RUNS], v0[MARCH_RUNS]; /* where coarse coordinates are 0 */
+    _Alignas(64) double u0[MARCH_RUNS], v0[MARCH_RUNS]; /* the same of images */
     for (uint32_t k = 0; k < m->runs; k += VD_LANES) {
         vd sx = vd_loadu(m->shift[0] + k), sy = vd_loadu(m->shift[1] + k), sz = vd_loadu(m->shift[2] + k);
         vd_store(u0 + k, u_at + component(frame, sx, sy, sz) * work->inverse);
@@ -373,11 +375,11 @@ static void begin_march(march *m, double from, double to, double *near, double *
 /* Cells are met layer by layer along y or z, whichever the beam is more nearly along; in each row by row; in each all
  * at once along x, in which they lie side by side in memory. */
 static void march_level(march *m, double from, double to) {
-    static const _Alignas(64) double number[FIBRAD_LANES_MAX] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    _Alignas(64) double near[VD_LANES], far[VD_LANES], low[VD_LANES], high[VD_LANES];
+    _Alignas(64) double near[VD_LANES], far[VD_LANES], low[VD_LANES], high[VD_LANES], number[VD_LANES];
     double begin, end;
     begin_march(m, from, to, &begin, &end);
     if (!(begin <= end)) return;
+    for (int l = 0; l < VD_LANES; l++) number[l] = l;
     vd first, last;
     cells_met(m, m->layers_across, vd_set1(begin), vd_set1(end), &first, &last);
     vd_store(low, first);
