@@ -71,6 +71,29 @@ START_TEST(hidden_sphere_is_not_seen) {
 }
 END_TEST
 
+/* Spheres of radius r about one of radius 1, in layers up to 42 r above it. */
+static void check_shell(uint32_t count, double r) {
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    for (uint32_t k = 0; k < count; k++) {
+        double w[3];
+        fibrad_direction(k, count, w);
+        const double d = 1 + r * (1.2 + 41 * fmod(k * .618033988749895, 1));
+        add_sphere(&bed, d * w[0], d * w[1], d * w[2], r);
+    }
+    fibrad_row row = beam(&bed, 0, (fibrad_beam_rule){.directions = 8}, FIBRAD_ISA_BEST);
+    ck_assert_uint_eq(row.fallbacks, 0);
+    ck_assert_double_eq_tol(row_sum(&row) + row.escaped, 1, 1e-12);
+    row_free(&row);
+    bed_free(&bed);
+}
+
+START_TEST(many_arcs_are_no_fallback) {
+    check_shell(60, .1);
+    check_shell(400, .1);
+    check_shell(20000, 5e-4);
+}
+END_TEST
+
 /* Discs far larger than the window are left to the robust method; not so hundreds of small ones before a large sphere,
  * nor what beds have. */
 START_TEST(fallbacks_are_counted) {
@@ -692,6 +715,7 @@ int main(void) {
     tcase_add_test(tcase, two_spheres_match_the_exact_pair);
     tcase_add_test(tcase, hidden_sphere_is_not_seen);
     tcase_add_test(tcase, fallbacks_are_counted);
+    tcase_add_test(tcase, many_arcs_are_no_fallback);
     tcase_add_test(tcase, raw_rows_close);
     tcase_add_test(tcase, rows_match_sliced_windows);
     tcase_add_test(tcase, strays_beside_a_layer);

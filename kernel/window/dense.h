@@ -17,12 +17,12 @@ typedef struct fibrad_dense_disc {
 
 /* A point where a circle on the boundary meets the new disc, relative to its centre; and, unless that is
  * FIBRAD_DENSE_STAYS, what becomes of the part of the arc that goes on from there, and where that ends. */
-typedef enum fibrad_dense_rest { FIBRAD_DENSE_STAYS, FIBRAD_DENSE_OPEN, FIBRAD_DENSE_HIDDEN } fibrad_dense_rest;
+typedef enum fibrad_dense_part { FIBRAD_DENSE_STAYS, FIBRAD_DENSE_OPEN, FIBRAD_DENSE_HIDDEN } fibrad_dense_part;
 typedef struct fibrad_dense_cut {
     double x, y, qx, qy;
     double ahead; /* pseudo-angle, 0 to 4 */
     uint32_t slot;
-    fibrad_dense_rest rest;
+    fibrad_dense_part rest;
     bool leaves; /* the walk along the boundary leaves the disc here, or enters it */
 } fibrad_dense_cut;
 
