@@ -71,6 +71,7 @@ void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t disc
     arena->used = used; /* a window is resolved by the one or the other */
     fibrad_dense_layout(&areas->dense, arena, discs);
     if (arena->used < end) arena->used = end;
+    areas->dense.written = false;
 }
 
 void fibrad_areas_clear_arcs(fibrad_areas *areas) {

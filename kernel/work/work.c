@@ -14,6 +14,7 @@
 #define USUAL_ENTRIES  1024u
 #define ENOUGH_DISCS   64u
 #define ENOUGH_ENTRIES 256u
+#define MOST_SEEN      8192u /* near spheres that octants of directions are listed of */
 /* The least there may be of each. */
 #define LEAST_NEAR  16u
 #define LEAST_COUNT 4u
@@ -40,7 +41,7 @@ static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan
     near->entry = fibrad_arena_take(arena, near->capacity + discs, sizeof(uint32_t));
     near->all = (fibrad_sight){.x = near->fx, .y = near->fy, .z = near->fz, .e = near->fe};
     near->all.near = fibrad_arena_take(arena, near->capacity, sizeof(uint32_t));
-    near->sights = (near->capacity / 4 + 15) / 16 * 16;
+    near->sights = ((near->capacity < MOST_SEEN ? near->capacity : MOST_SEEN) / 4 + 15) / 16 * 16;
     for (int octant = 0; octant < 8; octant++) {
         fibrad_sight *sight = &near->octant[octant];
         sight->x = fibrad_arena_take(arena, near->sights, sizeof(float));
