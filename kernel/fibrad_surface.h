@@ -60,7 +60,7 @@ int fibrad_surface_pair(double r1, double r2, double gap, const fibrad_spheres *
                         const fibrad_surface_rule *rule, double *scratch, double *f12, fibrad_surface_facts *facts);
 
 /* Row i of the view factors of a scene by the surface method, pair by pair; blockers are the near spheres within the
- * cutoff, all of which the work memory must hold (128 bytes each). i [0, spheres). Sphere 1 of a pair is the
+ * cutoff, all of which the work memory must hold (132 bytes each). i [0, spheres). Sphere 1 of a pair is the
  * one of lower index; its frame has the z axis w towards sphere 2 and the x axis along a x w, a being the coordinate
  * axis that w has least of (the first where equal). So rows are reciprocal but for blockers within the
  * cutoff of one of two spheres. row->escaped is 1 - sum of f, as this method does not measure it (bodies are
