@@ -315,6 +315,29 @@ START_TEST(work_memory_of_a_large_sphere) {
 }
 END_TEST
 
+/* Nor does it matter in which order the spheres come, though a window that begins with many discs of two sizes has a
+ * grid chosen by their mean radius. */
+START_TEST(order_of_spheres_changes_no_bit) {
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}}), turned = bed_of(0, NULL);
+    for (int k = 0; k < 13 * 13 * 13; k++) {
+        double x = .32 * (k % 13 - 6) + .003 * (k % 7), y = .32 * (k / 13 % 13 - 6) + .002 * (k % 11);
+        double z = .32 * (k / 169 - 6) + .004 * (k % 5), d = sqrt(x * x + y * y + z * z);
+        if (d > 1.2 && d < 1.9) add_sphere(&bed, x, y, z, k % 2 == 0 ? .1 : .15);
+    }
+    for (uint32_t i = bed.n; i-- > 0;) add_sphere(&turned, bed.x[i], bed.y[i], bed.z[i], bed.r[i]);
+    const uint32_t last = bed.n - 1;
+    const fibrad_beam_rule rule = {.directions = 200};
+    fibrad_row row = beam(&bed, 0, rule, FIBRAD_ISA_BEST), other = beam(&turned, last, rule, FIBRAD_ISA_BEST);
+    ck_assert_uint_eq(row.length, other.length);
+    for (uint32_t k = 0; k < row.length; k++) {
+        ck_assert_uint_eq(row.col[k], last - other.col[row.length - 1 - k]);
+        ck_assert_double_eq(row.f[k], other.f[row.length - 1 - k]);
+    }
+    row_free(&row), row_free(&other);
+    bed_free(&bed), bed_free(&turned);
+}
+END_TEST
+
 START_TEST(scaling_by_powers_of_two_changes_no_bit) {
     struct bed bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
     fibrad_row row = beam(&bed, 11, (fibrad_beam_rule){.directions = 233, .cutoff = 9}, FIBRAD_ISA_BEST);
@@ -723,6 +746,7 @@ int main(void) {
     tcase_add_test(tcase, same_bits_in_every_instruction_set);
     tcase_add_test(tcase, work_memory_is_a_matter_of_speed);
     tcase_add_test(tcase, work_memory_of_a_large_sphere);
+    tcase_add_test(tcase, order_of_spheres_changes_no_bit);
     tcase_add_test(tcase, scaling_by_powers_of_two_changes_no_bit);
     tcase_add_test(tcase, moved_beds_have_the_same_rows);
     tcase_add_test(tcase, periodic_images_are_copies);

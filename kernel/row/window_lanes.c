@@ -178,7 +178,7 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
         if (known >= work->clear) horizon = fibrad_near_horizon(work, frame + 6);
         sort_discs(work, resolved);
         if (shell == 0 && work->disc.count > DISCS_DENSE && points->count == 0)
-            LANED(fibrad_dense_begin)(&work->areas, work->disc.r, work->disc.count);
+            LANED(fibrad_dense_begin)(&work->areas, work->disc.order, work->disc.count, work->disc.r);
         resolved = resolve_discs(work, points, k, resolved, fibrad_min(known, horizon), &open);
     }
     const bool near = fibrad_mesh_near(work, open ? __builtin_inf() : known);

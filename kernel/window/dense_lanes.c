@@ -415,9 +415,9 @@ static void begin_dense(fibrad_areas *areas, uint32_t discs, double sum) {
     areas->circles = 1;
 }
 
-void LANED(fibrad_dense_begin)(fibrad_areas *areas, const double *r, uint32_t count) {
+void LANED(fibrad_dense_begin)(fibrad_areas *areas, const uint32_t *which, uint32_t count, const double *r) {
     double sum = 0;
-    for (uint32_t n = 0; n < count; n++) sum += fibrad_min(r[n], 1);
+    for (uint32_t n = 0; n < count; n++) sum += fibrad_min(r[which[n]], 1);
     begin_dense(areas, DENSE_MORE * count, DENSE_MORE * sum);
     areas->open = !areas->overflow;
 }

@@ -5,8 +5,8 @@
 #include "base/lanes/laned.h"
 #include "window/areas.h"
 
-/* Begins a window of which the radii of `count` discs are known. */
-void LANED(fibrad_dense_begin)(fibrad_areas *areas, const double *r, uint32_t count);
+/* Begins a window of which the radii of `count` discs are known, from front to back: which[0], which[1] ... */
+void LANED(fibrad_dense_begin)(fibrad_areas *areas, const uint32_t *which, uint32_t count, const double *r);
 
 /* Resolves the window anew, up to its first `circles` circles. False: it is degenerate. Nothing is open any more once
  * areas->dense.live is 0; areas->overflow: there is no room. */
