@@ -16,9 +16,9 @@
 /* Appends the discs of one shell that come before the window, after a cull in floats. That their places are listed
  * before they are used saves one mispredicted branch for most vectors. */
 static void cull_for_window(fibrad_workspace *work, const double frame[9], uint32_t shell) {
-    const fibrad_sight sight = shell > 0 ? work->near.all : *LANED(fibrad_near_sight)(&work->near, frame + 6);
-    const size_t begin = shell > 0 ? work->near.end[shell - 1] : 0;
-    const size_t end = shell > 0 ? work->near.end[shell] : sight.count;
+    fibrad_sight sight = work->near.all;
+    size_t begin = shell > 0 ? work->near.end[shell - 1] : 0, end = work->near.end[shell];
+    if (shell == 0) sight = *LANED(fibrad_near_sight)(&work->near, frame + 6), end = sight.count;
     uint32_t *from = work->disc.near + work->disc.count, *to = from;
     vf wx = vf_set1((float)frame[6]), wy = vf_set1((float)frame[7]), wz = vf_set1((float)frame[8]);
     for (size_t j = begin; j < end; j += VF_LANES) {
