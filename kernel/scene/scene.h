@@ -36,7 +36,7 @@ typedef struct fibrad_level {
 } fibrad_level;
 
 /* Eight spheres as whole numbers, in one line of the cache, to leave most of them out: [0, 65535] over the box of the
- * grid along each axis, and no radius is less than its number says. */
+ * grid along each axis, and no radius is more than its number says. */
 #define FIBRAD_COARSE       8
 #define FIBRAD_COARSE_STRAY 65535 /* for a radius: the sphere is outside the box */
 typedef struct fibrad_coarse {
