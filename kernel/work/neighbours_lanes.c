@@ -175,23 +175,23 @@ void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uin
 
 /* A march along a beam, or a ray of one, through the cells of one level. Coordinates are in cells. */
 typedef struct march {
+    _Alignas(64) double layer[MARCH_ROWS];                           /* cells */
+    double row[MARCH_ROWS], near[MARCH_ROWS], far[MARCH_ROWS];       /* cells, and depths in which they are met */
+    double begin[MARCH_RUNS], end[MARCH_RUNS], shift[3][MARCH_RUNS]; /* cells of the scene; by whole periods */
+    uint32_t first_sphere[MARCH_RUNS], end_sphere[MARCH_RUNS];
+    uint32_t sphere[MARCH_FOUND], run[MARCH_FOUND]; /* found, and where */
     fibrad_workspace *work;
     const fibrad_level *level;
     const double *frame;
     const fibrad_tube *tube;
     double from, to;                      /* squared minimum depths of spheres looked for: (from, to] */
     double slack;                         /* for rounding, in radii */
-    int layers_across, rows_across;       /* axes */
     double at[3], slope[3], per_slope[3]; /* the beam at depth 0, what it advances per depth, and 1/that */
     double side[3], depth[3];             /* half its width, with that of the largest sphere; the depth that takes */
     double first[3], last[3];             /* the outermost cells, in which are strays, too */
     double cells[3], per_cells[3];        /* of the box */
+    int layers_across, rows_across;       /* axes */
     uint32_t rows, runs, found;
-    _Alignas(64) double layer[MARCH_ROWS], row[MARCH_ROWS], near[MARCH_ROWS], far[MARCH_ROWS]; /* cells, depths */
-    double begin[MARCH_RUNS], end[MARCH_RUNS];                                                 /* cells of the scene */
-    double shift[3][MARCH_RUNS];                                                               /* by whole periods */
-    uint32_t first_sphere[MARCH_RUNS], end_sphere[MARCH_RUNS];
-    uint32_t sphere[MARCH_FOUND], run[MARCH_FOUND]; /* found, and where */
 } march;
 
 /* Coordinates of found spheres, relative to the centre and in units of the radius. */
@@ -409,7 +409,8 @@ void LANED(fibrad_near_march)(fibrad_workspace *work, const double frame[9], con
                               double to) {
     uint32_t first = work->disc.count, own = work->near.capacity;
     march m;
-    m.work = work, m.frame = frame, m.tube = tube, m.rows = m.runs = m.found = 0;
+    fibrad_zero(&m, sizeof m); /* lanes beyond a count are looked at, too */
+    m.work = work, m.frame = frame, m.tube = tube;
     m.from = from < 0 ? -__builtin_inf() : from * from, m.to = to * to;
     for (uint32_t l = 0; l < work->scene->levels; l++) {
         m.level = &work->scene->level[l];
