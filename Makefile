@@ -98,6 +98,7 @@ KERNEL = \
     kernel/exchange/body_row.c \
     kernel/exchange/exchange.c \
     kernel/exchange/flow.c \
+    kernel/heat/fine.c \
     kernel/heat/heat.c \
     kernel/heat/parts.c \
     kernel/heat/pencils.c \
@@ -205,6 +206,7 @@ HOST = \
     host/write/write_vtp.c \
     host/plot/gnuplot.c \
     host/plot/plot_bed.c \
+    host/plot/plot_conduction.c \
     host/plot/plot_data.c \
     host/plot/plot_furnace.c \
     host/plot/plot_heat.c \
@@ -220,6 +222,7 @@ HOST = \
     host/reproduce/reproduce_rows.c \
     host/frames/bed_options.c \
     host/frames/beyond.c \
+    host/frames/warnings.c \
     host/command/command_bed.c \
     host/command/command_conductivity.c \
     host/command/command_exchange.c \
@@ -273,8 +276,10 @@ TESTS = \
     tests/test_surface_row.c \
     tests/test_tables.c \
     tests/test_transient.c \
+    tests/test_tolerance.c \
     tests/test_trace.c \
     tests/test_walls.c \
+    tests/test_warnings.c \
     tests/test_work.c \
     tests/test_write.c
 
@@ -291,6 +296,7 @@ SCRIPTS = \
     tests/check_man.sh \
     tests/check_map.sh \
     tests/check_python.sh \
+    tests/check_readme.sh \
     tests/check_symbols.sh \
     tests/check_tables.sh \
     tests/check_time.sh \
@@ -317,6 +323,7 @@ BENCHES = \
     bench/bench_sizes.c \
     bench/bench_skips.c \
     bench/bench_surface.c \
+    bench/bench_tolerance.c \
     bench/bench_walls.c \
     bench/bench_window.c
 
@@ -326,12 +333,17 @@ PEERS = bench/bench_embree.c bench/bench_embree_mesh.c
 # linked with a library that counts its instructions, bench/count_cc.sh; built and run on x86-64
 COUNTED = bench/bench_instructions.c
 
+# libfibrad_files.so, by which Python reads files as the program does: its own objects, since these have names of the program
+FILES = host/files/file_arrays.c host/bed/bed.c host/bed/units.c $(filter host/cli/interrupt.c host/cli/message.c host/cli/output.c \
+    host/mesh/%.c host/text/%.c host/vtk/%.c host/read/%.c,$(filter-out host/read/read_rows.c host/text/read_curve.c,$(HOST)))
+
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)
 LANED_OBJECTS  = $(foreach isa,$(ISAS),$(LANED:%.c=$(BUILD)/%_$(isa).o))
 KERNEL_OBJECTS = $(BUILD)/tables.o $(PLAIN_OBJECTS) $(LANED_OBJECTS)
 SIMPLE_OBJECTS = $(SIMPLE:%.c=$(BUILD)/%.o)
 HOST_OBJECTS   = $(HOST:%.c=$(BUILD)/%.o)
+FILES_OBJECTS  = $(FILES:%.c=$(BUILD)/files/%.o)
 SHARED         = $(BUILD)/libfibrad.so.$(ABI)
 LIBRARIES      = $(BUILD)/libhost.a $(BUILD)/libfibrad_host.a $(BUILD)/libfibrad.a
 TEST_PROGRAMS  = $(TESTS:%.c=$(BUILD)/%)
@@ -341,7 +353,7 @@ COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfi
 COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib lib-host dist demo reproduce test run-programs programs check symbols lists format house bench bench-quick \
+.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols lists format house bench bench-quick \
     bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
@@ -404,6 +416,16 @@ $(BUILD)/libfibrad.so: $(SHARED)
 $(BUILD)/fibrad: $(BUILD)/host/main.o $(LIBRARIES)
 	$(CC) $(LDFLAGS) -fopenmp $^ $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
 
+## lib-files: libfibrad_files.so, which fibrad.read and Mesh.from_stl of Python take; needs zlib
+lib-files: $(BUILD)/libfibrad_files.so
+
+$(BUILD)/libfibrad_files.so: $(FILES_OBJECTS) $(BUILD)/libfibrad.a
+	$(CC) $(CFLAGS) $(LDFLAGS) -shared -Wl,-Bsymbolic -Wl,-z,defs -Wl,--exclude-libs,ALL $^ $(ZLIB_LIBS) -lm -o $@
+
+$(FILES_OBJECTS): $(BUILD)/files/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(COMMON) -D_XOPEN_SOURCE=700 -D_FILE_OFFSET_BITS=64 -Ihost $(ZLIB_CFLAGS) $(PIC) -fvisibility=hidden -c $< -o $@
+
 # all of the host but main, for tests and benches to link
 $(BUILD)/libhost.a: $(HOST_OBJECTS)
 	rm -f $@
@@ -437,9 +459,9 @@ need-check:
 	@$(PKG_CONFIG) --exists check || { echo "The tests need libcheck: run 'make deps' (Debian: check)." >&2; exit 1; }
 
 # other flags, other objects (for flags on the command line: another BUILD)
-$(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) $(HOST_OBJECTS) $(BUILD)/host/main.o $(TEST_PROGRAMS) $(ALL_BENCHES): Makefile
+$(KERNEL_OBJECTS) $(SIMPLE_OBJECTS) $(HOST_OBJECTS) $(FILES_OBJECTS) $(BUILD)/host/main.o $(TEST_PROGRAMS) $(ALL_BENCHES): Makefile
 
--include $(KERNEL_OBJECTS:.o=.d) $(SIMPLE_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(ALL_BENCHES:=.d) $(BUILD)/host/main.d
+-include $(KERNEL_OBJECTS:.o=.d) $(SIMPLE_OBJECTS:.o=.d) $(FILES_OBJECTS:.o=.d) $(HOST_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(ALL_BENCHES:=.d) $(BUILD)/host/main.d
 
 include host/couple/couple.mk
 
@@ -479,7 +501,7 @@ programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 ## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
 check: symbols lists format house
 
-LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) host/main.c $(COUPLE) $(COUPLE_WALLS) $(COUPLE_PROGRAMS) $(COUPLE_TESTS) $(COUPLE_SCRIPTS) kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
+LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) $(FILES) host/main.c $(COUPLE) $(COUPLE_WALLS) $(COUPLE_PROGRAMS) $(COUPLE_TESTS) $(COUPLE_SCRIPTS) kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
 FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c host/couple/*/*.c)) \
          $(wildcard tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
 
@@ -560,27 +582,27 @@ mutate:
 FUZZ_SECONDS = 60
 FUZZ_CC      = clang
 FUZZ         = $(BUILD)/fuzz
-FUZZ_FLAGS   = -timeout=300 -rss_limit_mb=4096 -malloc_limit_mb=64 -close_fd_mask=2 -print_final_stats=1
+FUZZ_FLAGS   = -timeout=60 -rss_limit_mb=4096 -malloc_limit_mb=64 -close_fd_mask=2 -print_final_stats=1
 SANITIZE     = address,undefined -fno-sanitize-recover=undefined
 
 fuzz-programs: need-libraries
 	@$(MAKE) -s --no-print-directory BUILD=$(FUZZ) CC=$(FUZZ_CC) CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE)" \
 	    $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%)
-	@set -e; for target in read kernel; do \
+	@set -e; for target in read kernel host; do \
 	    $(FUZZ_CC) -O1 -g -fsanitize=fuzzer,$(SANITIZE) $(HOST_FLAGS) tests/fuzz/fuzz_$$target.c \
 	        $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
 	done
 
-## fuzz: hostile input for the readers and the kernel, FUZZ_SECONDS=60 in all
+## fuzz: hostile input for the readers, the kernel and the simple layer, FUZZ_SECONDS=60 in all
 fuzz: fuzz-programs
-	@set -e; for target in read kernel; do \
+	@set -e; for target in read kernel host; do \
 	    mkdir -p $(FUZZ)/found_$$target; \
-	    $(FUZZ)/fuzz_$$target $(FUZZ_FLAGS) -max_total_time=$$(($(FUZZ_SECONDS) / 2)) \
+	    $(FUZZ)/fuzz_$$target $(FUZZ_FLAGS) -max_total_time=$$(($(FUZZ_SECONDS) / 3)) \
 	        -artifact_prefix=$(FUZZ)/$$target- $(FUZZ)/found_$$target tests/fuzz/corpus_$$target; \
 	done
 
 ## fuzz-fixed: the same with a fixed number of inputs, the same ones every time (a minute)
-FUZZ_RUNS = read:40000 kernel:2500
+FUZZ_RUNS = read:40000 kernel:2500 host:500
 # what comparisons show would bring addresses in, which differ from run to run: -use_cmp=0
 fuzz-fixed: fuzz-programs
 	@set -e; for run in $(FUZZ_RUNS); do \
@@ -617,13 +639,16 @@ lint:
 reproduce: $(BUILD)/fibrad
 	$(BUILD)/fibrad reproduce -o docs/figures
 
+# installs the named Debian packages that are missing
+DEPS = .ci/deps
+
 ## deps: install the Debian packages that build, demo and tests need; does nothing when nothing is missing
 deps:
-	@.ci/deps libc6-dev pkg-config libgsl-dev zlib1g-dev check gnuplot-nox
+	@$(DEPS) libc6-dev pkg-config libgsl-dev zlib1g-dev check gnuplot-nox
 
 ## deps-ci: install what .ci/run needs besides
 deps-ci:
-	@.ci/deps g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
+	@$(DEPS) g++ clang clang-format clang-tidy cppcheck libomp-dev libclang-rt-14-dev shellcheck \
 	    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user \
 	    gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm python3-numpy python3-scipy python3-pytest \
 	    python3-venv python3-pip gfortran

@@ -53,7 +53,7 @@ typedef enum fibrad_status {
     FIBRAD_E_ALIGNMENT = -3,    /* reserved; no function asks for alignment */
     FIBRAD_E_CAPACITY = -4,     /* an output is too small; the length (row) or bytes (rows) needed are written */
     FIBRAD_E_TABLE = -5,        /* that number of samples is not built in */
-    FIBRAD_E_GEOMETRY = -6,     /* equal centres, or the centre of one sphere inside another */
+    FIBRAD_E_GEOMETRY = -6,     /* equal centres, the centre of one sphere inside another, a sphere beyond an opening */
     FIBRAD_E_WORK = -7,         /* fixed work memory is too small; the bytes needed are written */
     FIBRAD_E_STATE = -8,        /* a call is missing, too early or repeated, or the scene has changed */
     FIBRAD_E_ISA = -9,          /* this build or this machine does not have that instruction set */
@@ -61,7 +61,10 @@ typedef enum fibrad_status {
     FIBRAD_E_MEMORY = -11,      /* a resize function or the heap had no more memory */
     FIBRAD_E_CANCELLED = -12,   /* a progress function asked to stop */
     FIBRAD_E_UNSOLVABLE = -13,  /* no temperatures give bodies the powers that were asked for */
-    FIBRAD_E_BACK = -14         /* a side of a triangle was seen that no body has; its number is written */
+    FIBRAD_E_BACK = -14,        /* a side of a triangle was seen that no body has; its number is written */
+    FIBRAD_E_SUM = -15,         /* a row did not add up to one within 1e-9: a fault of this library, or of row parts
+                                   that were changed */
+    FIBRAD_E_ENDLESS = -16      /* walls go on for ever where the bed is not closed: an opening is missing */
 } fibrad_status;                /* the numbers never change their meaning */
 
 /* One English sentence for any number, never NULL; FIBRAD_VERSION of the library linked in. No errors. */
@@ -75,8 +78,8 @@ typedef void *fibrad_resize(void *context, void *block, size_t size);
 
 /* A block that the kernel fills and never frees: fixed (block and size set), or growing (resize set). */
 typedef struct fibrad_memory {
-    void *block;           /* [size] of any alignment; NULL with size 0: none yet */
-    size_t size;           /* bytes */
+    void *block;           /* [size] of any alignment; NULL with size 0: none yet, with any other size _ARGUMENT */
+    size_t size;           /* bytes; 0 is too small as any other size may be */
     fibrad_resize *resize; /* NULL: the block is all there is */
     void *context;         /* handed to resize */
     size_t needed;         /* out, after FIBRAD_E_WORK and FIBRAD_E_CAPACITY: bytes that would have sufficed */
@@ -131,15 +134,25 @@ typedef enum fibrad_body_kind {
     FIBRAD_BODY_MESH = 3      /* triangles: those of fibrad_scene_config.triangles that name it, one at least */
 } fibrad_body_kind;
 
+/* A plane across an axis. */
+typedef struct fibrad_plane {
+    int axis, upper; /* 0 x, 1 y, 2 z; 1: the scene lies below the plane, 0: above */
+    double at;       /* [L] where on the axis */
+} fibrad_plane;
+
 /* A body that is not a sphere, known by its index in fibrad_scene_config.body. Planes and the cylinder bound a convex
  * container, so that none hides one sphere from another: at most two planes an axis, one of them `upper`, none on a
- * periodic axis, the lower below the upper; at most one cylinder, with x and y open and without planes across them. */
+ * periodic axis, the lower below the upper; at most one cylinder, with x and y open and without planes across them.
+ *
+ * An opening is a plane where such a container ends and the surroundings begin: black, and as hot as they are. What
+ * meets it is `escaped`. It has no index, temperature or emissivity. All that is said of planes holds for openings.
+ *
+ * Walls without an end. One plane, and a pair across one axis, may go on for ever. Planes across several axes, or a
+ * cylinder, would be a tube that nothing leaves or a corner without bounds: FIBRAD_E_ENDLESS, unless every axis has two
+ * planes or a period, or lies across the cylinder. */
 typedef struct fibrad_body {
-    int kind; /* a fibrad_body_kind */
-    struct {
-        int axis, upper; /* 0 x, 1 y, 2 z; 1: the scene lies below the plane, 0: above */
-        double at;       /* [L] where on the axis */
-    } plane;             /* of FIBRAD_BODY_PLANE */
+    int kind;           /* a fibrad_body_kind */
+    fibrad_plane plane; /* of FIBRAD_BODY_PLANE */
     struct {
         double x, y, radius; /* [L] of its axis, parallel to z; > 0 */
     } cylinder;              /* of FIBRAD_BODY_CYLINDER */
@@ -153,6 +166,8 @@ typedef struct fibrad_scene_config {
     double period[3];                   /* [L] of the periodic box along each axis; 0: the axis is open */
     const fibrad_body *body;            /* [bodies] copied */
     uint32_t bodies;                    /* [0, FIBRAD_BODIES_MAX], else FIBRAD_E_UNSUPPORTED */
+    const fibrad_plane *opening;        /* [openings] copied; no sphere may reach beyond one */
+    uint32_t openings;                  /* [0, 6] */
     double known_low[3], known_high[3]; /* [L] spheres beyond may be missing; equal (zeroed): none, along the axis */
     const struct fibrad_occupancy *occupancy; /* fibrad_part.h: where such spheres may be; NULL: not told; not copied */
     const struct fibrad_triangles *triangles; /* fibrad_mesh.h; NULL: none */
@@ -160,10 +175,38 @@ typedef struct fibrad_scene_config {
 
 typedef struct fibrad_scene fibrad_scene; /* spheres copied in the order of cells of a grid; immutable once made */
 
-/* Where fibrad_scene_init found a fault: the two spheres concerned, equal if it is one, n if it is none of them. */
+/* What is wrong with a sphere, a wall or an argument, where a status alone does not say it. */
+typedef enum fibrad_why {
+    FIBRAD_WHY_UNSAID = 0,
+    FIBRAD_WHY_PLACE = 1,         /* a coordinate is NaN, infinite or too far away */
+    FIBRAD_WHY_RADIUS = 2,        /* a radius is not above 0, or out of range */
+    FIBRAD_WHY_BEYOND = 3,        /* a centre lies beyond a wall */
+    FIBRAD_WHY_WALL = 4,          /* a wall does not go with the box or with the walls before it, or is not valid */
+    FIBRAD_WHY_TEMPERATURE = 5,   /* a temperature is out of range */
+    FIBRAD_WHY_EMISSIVITY = 6,    /* an emissivity is not within 0 and 1 */
+    FIBRAD_WHY_POWER = 7,         /* a power is infinite or out of range */
+    FIBRAD_WHY_BOTH = 8,          /* both a temperature and a power are given */
+    FIBRAD_WHY_NEITHER = 9,       /* neither is */
+    FIBRAD_WHY_REFLECTS = 10,     /* of emissivity 0, and to give off a power */
+    FIBRAD_WHY_HOLD = 11,         /* hold or reference are out of range */
+    FIBRAD_WHY_ENDLESS = 12,      /* a wall that goes on for ever has no temperature */
+    FIBRAD_WHY_SIDE = 13,         /* a side of a triangle: its temperature is out of range, or its body has none */
+    FIBRAD_WHY_SURROUNDINGS = 14, /* their temperature is missing or out of range */
+    FIBRAD_WHY_SIGMA = 15,        /* sigma is out of range */
+    FIBRAD_WHY_TOLERANCE = 16,    /* a tolerance is out of range */
+    FIBRAD_WHY_MISSING = 17,      /* an array is missing */
+    FIBRAD_WHY_CAPACITY = 18      /* a heat capacity is not above 0, or out of range */
+} fibrad_why;                     /* the numbers never change their meaning */
+
+/* The same as words that go behind the name of what is concerned, never NULL. No errors. */
+const char *fibrad_why_text(int why);
+
+/* Where a fault is: the two spheres concerned, equal if it is one, n if it is none of them. */
 typedef struct fibrad_fault {
     uint32_t first, second;
     uint32_t triangle; /* the triangle; UINT32_MAX: none */
+    uint32_t wall;     /* 1 + the body; 0: none */
+    int why;           /* fibrad_why */
 } fibrad_fault;
 
 /* Bytes that fibrad_scene_init needs for n spheres, 52 each and 5 KB (ids: 1 if spheres.id is set, 8 more each).
@@ -173,9 +216,10 @@ size_t fibrad_scene_size(uint32_t n, int ids);
 
 /* Makes a scene in memory[size]. config: NULL is all defaults. On periodic axes centres are moved into the box. Spheres
  * may overlap each other and the walls, as in settled beds, but no centre may lie inside another sphere or beyond a
- * wall; what leaves a sphere beyond a wall meets that wall at once. Errors, with fault (may be NULL): _ARGUMENT, _SIZE,
- * _GEOMETRY (also a period less than the largest radius), _ISA, _UNSUPPORTED. Cost: about 0.5 microseconds a sphere;
- * more where spheres crowd in clusters far apart, at worst O(n^2). Source: docs/methods.md section 6. */
+ * wall; what leaves a sphere beyond a wall and goes outwards meets that wall at once; what goes inwards there passes
+ * it. Errors, with fault (may be NULL): _ARGUMENT, _SIZE, _GEOMETRY (also a period less than the largest radius, a
+ * sphere beyond an opening), _ENDLESS, _ISA, _UNSUPPORTED. Cost: about 0.5 microseconds a sphere; more where spheres
+ * crowd in clusters far apart, at worst O(n^2). Source: docs/methods.md section 6. */
 int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 
@@ -212,7 +256,7 @@ typedef struct fibrad_work {
  * FIBRAD_WORK_WALLS, in those with triangles FIBRAD_WORK_TRIANGLES. */
 #define FIBRAD_WORK_BYTES(discs, entries) (28672 + (size_t)(discs)*768 + (size_t)(entries)*96)
 #define FIBRAD_WORK_WALLS                 21504
-#define FIBRAD_WORK_TRIANGLES             22848
+#define FIBRAD_WORK_TRIANGLES             26784
 
 /* ---- row ------------------------------------------------------------------------------------------------------- */
 typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
@@ -226,8 +270,8 @@ typedef struct fibrad_row {
     uint32_t capacity;   /* in; 0 after a row was appended to `rows` */
     fibrad_rows *rows;   /* in: NULL, or the row is appended to these, and capacity is not used */
     uint32_t sphere;     /* out: i */
-    uint32_t length;     /* out: entries; after FIBRAD_E_CAPACITY: the entries there would be */
-    double escaped;      /* out: the fraction that meets no sphere and no body, measured */
+    uint32_t length;     /* out: entries; after FIBRAD_E_CAPACITY: those there would be, with which the call succeeds */
+    double escaped;      /* out: the fraction that meets no sphere and no body, or an opening; measured */
     double beyond;       /* out: the fraction that leaves what is known, cutoff or region: fibrad_part.h */
     double error;        /* out: Euclidean error of f and body together, estimated: on the median twice the true one */
     uint32_t directions; /* out, beams only: how many were taken */
@@ -296,10 +340,11 @@ void fibrad_rows_clear(fibrad_rows *rows);
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
 /* The row of a body, of fibrad_exchange_body. */
 typedef struct fibrad_body_row {
-    double body[FIBRAD_BODIES_MAX]; /* factor to each body */
+    double body[FIBRAD_BODIES_MAX]; /* factor to each body; next to 0 it may err to below */
     double spheres, escaped;        /* to all spheres together; to the surroundings: the sum is 1, of emissivity 0 it
                                        is 0 */
-    double error;                   /* of the mean of parts: Euclidean, estimated by their spread; of one part: 0 */
+    double error;                   /* of one part: what is left of paths among mirrors; of the mean of parts: their
+                                       spread, Euclidean, besides */
     uint64_t rays;                  /* traced */
 } fibrad_body_row;
 
@@ -319,6 +364,7 @@ typedef struct fibrad_matrix_rule {
     const double *body_emissivity;   /* [bodies] [0, 1] for these; NULL: 1 */
     fibrad_parallel *parallel; /* does pieces at once, in all calls for the matrix; NULL: the calling thread does */
     void *context;             /* handed to it */
+    int sampled;               /* 1: view factors by rays or points, averaged and closed as exchange factors are */
 } fibrad_matrix_rule;
 
 /* A matrix of factors, compressed rows. The arrays are those of the matrix it was read from. */
@@ -337,6 +383,13 @@ typedef struct fibrad_factors {
     const double *body_error;   /* [bodies] estimated Euclidean error of both */
     double body_correction;     /* the largest |sum - 1| of a row of a body before it was closed: how well rows of
                                    spheres and paths of bodies agree */
+    double body_closure;        /* ... of the matrix as it is: rounding, or, where reciprocity and sums contradict each
+                                   other, as in some beds cut by triangles, body_correction: then rows of spheres are
+                                   closed, and those of bodies are what paths say */
+    double changed;       /* the largest change, over the error of the row, that averaging and closing have made in
+                             what a row gives to bodies, surroundings and beyond (Euclidean); raw: 0. Well
+                             above 1 raw rows contradict each other by more than their errors say, ... */
+    uint32_t changed_row; /* ... as this one does */
 } fibrad_factors;
 
 typedef struct fibrad_matrix fibrad_matrix; /* rows put together into one matrix */
@@ -349,14 +402,14 @@ size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, ui
 int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const fibrad_scene *scene,
                        const fibrad_rows *rows, uint32_t count, const fibrad_matrix_rule *rule, uint32_t *sphere);
 
-/* Averages the rows of task [0, rule->tasks), several threads at once: (A_i F_ij + A_j F_ji)/(2 A_i), A = 4 pi r^2
- * (times emissivity). Optional: fibrad_matrix_close does what was left out. Errors: _ARGUMENT, _STATE (twice, raw,
- * closed). Cost: each task reads its share of entries three times, and looks for them in all rows. Source:
- * docs/methods.md section 5. */
+/* Averages the rows of task [0, rule->tasks), several threads at once: (A_i F_ij + A_j F_ji)/(2 A_i), A = 4 pi r^2; of
+ * exchange factors by variances, A_i e_i D_ij counting as A_j/(A_i + A_j). Optional: fibrad_matrix_close does what was
+ * left out. Errors: _ARGUMENT, _STATE (twice, raw, closed). Cost: each task reads its share of entries three times, and
+ * looks for them in all rows. Source: docs/methods.md section 5. */
 int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
 
-/* Ends the matrix. View factors: row sums above 1 are brought down to 1 symmetrically. Exchange factors: row sums are
- * brought to those of the raw rows by D_ij u_i u_j. Then bodies, escaped and beyond are scaled to what the row sums
+/* Ends the matrix. View factors: row sums above 1 are brought down to 1 symmetrically. Exchange factors: D_ij u_i u_j
+ * and u_i times what raw row i leaves of 1 add up to 1. Then bodies, escaped and beyond are scaled to what the row sums
  * leave of 1; a row that met none of them takes the shares of all spheres together. Rows of bodies, where A_b F_bi =
  * A_i F_ib, are closed with all others by F_pq u_p u_q. A_i F_ij = A_j F_ji to the last bits, sums are 1 to rounding
  * but for empty rows. Errors: _STATE. Cost: O(entries), 40 times for exchange, `drop`, bodies. Source: docs/heat.md. */

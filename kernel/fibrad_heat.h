@@ -55,7 +55,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
 /* What radiates. Begin with fibrad_heat_sources_init, which zeroes all but sigma, FIBRAD_STEFAN_BOLTZMANN, and
  * surroundings, NaN, which is refused: set it. A body whose temperature is NaN, and whose power is not, has the one at
  * which it gives off power - hold sigma (T^4 - reference^4) from inside; hold is what a store of heat makes of a step
- * in time. Power, hold and reference are not used where temperatures are given. */
+ * in time. Where a temperature is given, power is 0 or NaN, and hold and reference are not used. */
 typedef struct fibrad_heat_sources {
     const double *temperature;      /* [spheres] 0 to 1e20; NaN: unknown */
     const double *emissivity;       /* [spheres] [0, 1]; 0: power 0, whatever the temperature */
@@ -77,6 +77,10 @@ typedef struct fibrad_heat_sources {
                                      * Sides that share a patch emit the mean of all */
 } fibrad_heat_sources;
 void fibrad_heat_sources_init(fibrad_heat_sources *sources);
+
+/* Whether _begin would take these sources; fault (may be NULL): which sphere or wall it would not take, and why.
+ * Errors: _ARGUMENT, _UNSUPPORTED (fault.why is FIBRAD_WHY_ENDLESS). */
+int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
 /* A solution, which starts from the last one if there is one: _begin; then every part [0, parts) of a _sweep once, by
  * several threads at once, and _step, until *solved is 1 (done, or about sweeps_max sweeps made). Errors: _ARGUMENT

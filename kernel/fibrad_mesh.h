@@ -11,6 +11,9 @@
  * Edges    Triangles share an edge if their corners there have equal coordinates; then nothing passes between them.
  * Walls    Planes and the cylinder bound the scene as ever; what of a triangle lies beyond them plays no part.
  * Periods  On periodic axes triangles are repeated with the period, wherever their corners are.
+ * Bounds   No coordinate of corners, spheres and planes is above 3e13 times half the length of all triangles together,
+ *          and at most 4096 images of them lie at one place (the product along all periodic axes of 2 + (length +
+ *          largest diameter)/period), else FIBRAD_E_ARGUMENT; fault.triangle is one that is too far, small or long.
  * Parts    Rows with a cutoff meet triangles beyond it where the occupancy of fibrad_part.h leaves their way clear.
  *
  * SPDX-License-Identifier: MIT */
@@ -50,7 +53,8 @@ typedef struct fibrad_triangle_hit {
 } fibrad_triangle_hit;
 
 /* The first triangle that a ray from `origin` [L] along the unit vector w meets within the length [L], spheres and
- * other walls apart; images along periodic axes count. Errors: _ARGUMENT, _STATE. Cost: a microsecond or two among 1e5.
+ * other walls apart; images along periodic axes count. Errors: _ARGUMENT (also an origin 3e13 times as far from the
+ * middle of all triangles as half their length), _STATE. Cost: a microsecond or two among 1e5.
  */
 int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const double w[3], double length,
                         fibrad_triangle_hit *hit);

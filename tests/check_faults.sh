@@ -23,13 +23,16 @@ complain() {
     faults=1
 }
 
-# until_open PATTERN: waits for the program to have opened its output
-until_open() { while test -z "$(find "$work" -name "$1" 2>/dev/null)"; do sleep 0.05; done; }
+# Waits until process $1 has its output open. The output may have no name; the file of messages does not count.
+until_open() {
+    # shellcheck disable=SC2010  # a link of /proc has no odd name
+    until ls -l "/proc/$1/fd" 2>/dev/null | grep "$work" | grep -qv "$work/err"; do sleep 0.05; done
+}
 
 # Signals in the midst of far more work than there is time for
 for pair in INT:130 TERM:143 HUP:129; do
     "$fibrad" bed "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>"$work/err" &
-    until_open 'F.csv*'
+    until_open $!
     kill -s "${pair%:*}" $!
     wait $!
     verdict "SIG${pair%:*}" $? "${pair#*:}" interrupted
@@ -37,14 +40,14 @@ done
 
 # The same for a furnace
 "$fibrad" furnace --case 1 --bundles 4000000000 -o "$work/F.csv" >/dev/null 2>"$work/err" &
-until_open 'F.csv*'
+until_open $!
 kill -s INT $!
 wait $!
 verdict "SIGINT, furnace" $? 130 interrupted
 
 # Killed outright: nothing under the name asked for; a temporary file may stay, the next run does not mind it
 "$fibrad" bed "$bed" --directions 65536 -o "$work/F.csv" >/dev/null 2>&1 &
-until_open 'F.csv*'
+until_open $!
 kill -s KILL $!
 wait $! 2>/dev/null
 test -e "$work/F.csv" && complain "SIGKILL: a partial file"
@@ -87,12 +90,12 @@ fi
 # The folder of the output is gone when the file is to get its name
 mkdir "$work/gone"
 "$fibrad" bed "$bed" --directions 4000 --threads 1 -o "$work/gone/F.csv" >/dev/null 2>"$work/err" &
-until_open 'F.csv*'
+until_open $!
 kill -s STOP $! # for as long as it takes
 rm -rf "$work/gone"
 kill -s CONT $!
 wait $!
-verdict "folder gone" $? 4 "F.csv: No such file"
+verdict "folder gone" $? 4 "F.csv: cannot be written: No such file"
 
 # Not enough memory, from too little to start with to nearly enough: a clean failure or a complete result
 "$fibrad" bed "$bed" --directions 21 --threads 1 -o "$work/F.csv" >/dev/null 2>&1

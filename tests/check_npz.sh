@@ -12,7 +12,10 @@ for bed in tests/data/mono2000.dump "$work/apart.csv"; do # the second has no en
         "$BUILD/fibrad" bed "$bed" --directions 8 --cutoff 3 --threads 2 -o "$work/F.$ending" >"$work/summary" 2>&1
     done
     "$work/read_npz" "$work/F.npz" >"$work/read.csv"
-    cmp "$work/F.csv" "$work/read.csv"
+    # the same entries to the bit, in other digits
+    awk -F, 'NR == FNR { if (!/,surroundings$|,beyond$|^i/) known[n++] = $1 "," $2 " " $3; next }
+        FNR > 1 { split(known[m++], one, " "); bad += one[1] != $1 "," $2 || one[2] + 0 != $3 + 0 } END { exit bad > 0 || m != n }' \
+        "$work/F.csv" "$work/read.csv"
 
     if ! command -v python3 >/dev/null; then
         echo "SKIP: no python3 to check the archive"
@@ -35,7 +38,7 @@ assert struct.unpack('<2q', arrays['shape.npy'][1]) == (len(start) - 1, len(star
 assert arrays['format.npy'] == ({'descr': '|S3', 'fortran_order': False, 'shape': ()}, b'csr')
 n = len(start) - 1
 further = [('ids', '<i8', (n,)), ('x', '<f8', (n, 3)), ('radius', '<f8', (n,)), ('escaped', '<f8', (n,)),
-           ('beyond', '<f8', (n,)), ('error', '<f8', (n,))]
+           ('beyond', '<f8', (n,)), ('error', '<f8', (n,)), ('length_unit', '|S16', ())]
 for name, kind, shape in further:
     assert arrays.pop(name + '.npy')[0] == {'descr': kind, 'fortran_order': False, 'shape': shape}, name
 assert len(arrays) == 5, arrays.keys()
@@ -50,7 +53,7 @@ import csv, sys, numpy, scipy.sparse
 ids = numpy.load(sys.argv[1])['ids']
 matrix = scipy.sparse.load_npz(sys.argv[1])
 assert matrix.format == 'csr' and matrix.has_sorted_indices
-entries = list(csv.DictReader(open(sys.argv[2])))
+entries = [entry for entry in csv.DictReader(open(sys.argv[2])) if not entry['body']]
 matrix = matrix.tocoo()
 assert matrix.nnz == len(entries)
 for i, j, f, entry in zip(matrix.row, matrix.col, matrix.data, entries):
@@ -60,7 +63,7 @@ done
 
 # walls by their names, and which rows were computed
 if test -n "${scipy:-}"; then
-    "$BUILD/fibrad" bed tests/data/mono2000.dump --directions 21 --wall zmin,cylinder:6,6,9 --targets 1-99 --quiet \
+    "$BUILD/fibrad" bed tests/data/mono2000.dump --directions 21 --wall zmin,cylinder:6,6,9,zmax=open --targets 1-99 --quiet \
         -o "$work/W.npz" -o "$work/W.csv" 2>"$work/said"
     "$scipy" - "$work/W.npz" "$work/W.csv" <<'END'
 import csv, sys, numpy

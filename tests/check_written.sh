@@ -63,6 +63,7 @@ assert [q['walls']['zmin'][key] for key in ('T_K', 'q_W')] == list(bodies['zmin'
 two = lines('two.json')
 assert [frame.pop('file') for frame in two] == ['a.dump', 'b.dump']
 assert [frame.pop('timestep') for frame in two] == [75000, 76000] and q.pop('timestep') == 75000
+assert [frame.pop('frame') for frame in two] == [0, 1] and q.pop('frame') == 0
 assert two == [q, q]
 rows = list(csv.DictReader(open('two.csv')))
 assert len(rows) == 2 * 2002 and {row['file'] for row in rows} == {'a.dump', 'b.dump'}
@@ -131,9 +132,11 @@ END
     python3 - <<'END'
 def rows(path): return [list(map(float, line.split())) for line in open(path).read().split('ITEM: ATOMS')[1].split('\n')[1:2001]]
 ours, theirs = rows('q.dump'), rows('back.dump')
-assert len(ours) == 2000 and all([i, x, y, z, t, q, r] == other for (i, x, y, z, r, t, q), other in zip(ours, theirs))
+assert len(ours) == 2000 and all([i, x, y, z, t, q, r] == other for (i, x, y, z, r, t, q, *_), other in zip(ours, theirs))
 from known import powers
-assert {row[0]: tuple(row[5:]) for row in ours} == powers
+assert {row[0]: tuple(row[5:7]) for row in ours} == powers
+kept = {int(row[0]): (float(row[1]), float(row[6]), float(row[7])) for row in map(str.split, open('a.dump')) if len(row) == 8 and row[0] != 'ITEM:'}
+assert {row[0]: tuple(row[7:]) for row in ours} == kept  # type v_T c_cn of the input
 END
 else
     echo "SKIP: no lmp to read the dump (Debian: lammps)"

@@ -250,6 +250,125 @@ START_TEST(out_of_reach) {
 }
 END_TEST
 
+/* A row of one sphere: halves of the directions may agree by chance. Truth: the closed form. */
+START_TEST(one_entry_is_no_luck) {
+    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_work work = work_growing();
+    fibrad_row row = row_of(bed.n);
+    double truth;
+    ck_assert_int_eq(fibrad_pair_exact(.03, .3, 3e-5, &truth), FIBRAD_OK);
+    int beyond = 0, rows = 0;
+    for (uint32_t directions = 50; directions < 300; directions += 60)
+        for (uint64_t turn = 1; turn <= 50; turn++, rows++) {
+            const fibrad_beam_rule rule = {.directions = directions, .turn = turn};
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, &rule, &row), FIBRAD_OK);
+            beyond += fabs(row_factor(&row, 0) - truth) > 2 * row.error;
+        }
+    ck_assert_int_le(beyond, rows / 20);
+    row_free(&row);
+    free(scene);
+    work_free(&work);
+    bed_free(&bed);
+}
+END_TEST
+
+/* ---- exchange factors ------------------------------------------------------------------------------------------- */
+
+static fibrad_bed_factors *exchange(const struct bed *bed, const fibrad_exchange_rule *rule, bool raw) {
+    const fibrad_spheres spheres = bed_spheres(bed);
+    const fibrad_bed_options options = {.raw = raw};
+    fibrad_run run = {.threads = 1};
+    fibrad_bed_factors *factors = NULL;
+    ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, rule, &options, &run, &factors), FIBRAD_OK);
+    return factors;
+}
+
+/* Large and small, nearly touching. Truth: paths of others, and a million of ours from the small sphere: .1880. */
+START_TEST(small_beside_large_exchange) {
+    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
+    const double emissivity[] = {.6, .6}, truth = .1880;
+    double square = 0;
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        const fibrad_exchange_rule rule = {.emissivity = emissivity, .tolerance = .002, .seed = seed};
+        fibrad_bed_factors *f = exchange(&bed, &rule, false);
+        const double there = matrix_factor(&f->matrix, 0, 1), back = matrix_factor(&f->matrix, 1, 0);
+        ck_assert_double_le(fabs(back - truth), .004);
+        ck_assert_double_le(fabs(100 * there / back - 1), 1e-14);
+        ck_assert_double_le(f->closure_error, 1e-12);
+        ck_assert_double_le(fmax(f->matrix.error[0], f->matrix.error[1]), .002);
+        square += (back - truth) * (back - truth) / 12;
+        fibrad_bed_free(f);
+    }
+    ck_assert_double_le(sqrt(square), .002);
+    bed_free(&bed);
+}
+END_TEST
+
+/* View factors by rays and by points, averaged: the small sphere knows better. Truth: the closed form. */
+START_TEST(small_beside_large_sampled) {
+    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, .3}, {.33003, 0, 0, .03}});
+    const fibrad_spheres spheres = bed_spheres(&bed);
+    const fibrad_beam_rule points = {.points = 64};
+    const fibrad_cast_rule rays = {.rays = 20000};
+    const fibrad_bed_options options =
+        _i == 0 ? (fibrad_bed_options){.beam = &points} : (fibrad_bed_options){.cast = &rays};
+    double truth;
+    fibrad_bed_factors *f = NULL;
+    ck_assert_int_eq(fibrad_pair_exact(.03, .3, 3e-5, &truth), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &options, NULL, &f), FIBRAD_OK);
+    const double there = matrix_factor(&f->matrix, 0, 1), back = matrix_factor(&f->matrix, 1, 0);
+    ck_assert_double_le(fabs(back - truth), .002);
+    ck_assert_double_le(fabs(100 * there / back - 1), 1e-14);
+    ck_assert_double_le(f->closure_error, 1e-12);
+    fibrad_bed_free(f);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Beds whose exchange factors have a tolerance. */
+static const struct {
+    uint32_t n;
+    double smallest, fraction, emissivity, tolerance;
+    uint64_t seed;
+} greys[] = {{30, .2, .3, .3, .01, 2}, {30, .2, .3, .8, .01, 5}, {8, 1, .2, .3, .001, 1}, {8, 1, .2, .8, .001, 1}};
+
+/* The tolerance is reached by all rows, in truth and as estimated. Truth: raw rows of ten times as many directions, and
+ * a hundred times as many paths. */
+START_TEST(tolerance_of_exchange_is_met) {
+    const double tolerance = greys[_i].tolerance;
+    struct bed bed = packing(greys[_i].n, greys[_i].smallest, 1, greys[_i].fraction, greys[_i].seed, false);
+    double *e = calloc(bed.n, sizeof *e), worst = 0, square = 0;
+    for (uint32_t i = 0; i < bed.n; i++) e[i] = greys[_i].emissivity;
+    fibrad_bed_factors *f = exchange(&bed, &(fibrad_exchange_rule){.emissivity = e, .tolerance = tolerance}, false);
+    fibrad_bed_factors *truth =
+        exchange(&bed,
+                 &(fibrad_exchange_rule){
+                     .emissivity = e, .directions = 4000, .paths = (uint32_t)(.3 / tolerance / tolerance), .seed = 9},
+                 true);
+    for (uint32_t i = 0; i < bed.n; i++) {
+        double distance = 0;
+        for (uint32_t j = 0; j < bed.n; j++) {
+            const double a_i = bed.r[i] * bed.r[i], a_j = bed.r[j] * bed.r[j];
+            const double mean =
+                (matrix_factor(&truth->matrix, i, j) + matrix_factor(&truth->matrix, j, i)) * (a_j / (a_i + a_j));
+            distance += pow(matrix_factor(&f->matrix, i, j) - mean, 2);
+        }
+        worst = fmax(worst, sqrt(distance));
+        square += distance / bed.n;
+        ck_assert_double_le(f->matrix.error[i], tolerance);
+    }
+    printf("%u spheres 1:%g, emissivity %g: asked %g, worst %.2g, root mean square %.2g\n", bed.n,
+           1 / greys[_i].smallest, e[0], tolerance, worst, sqrt(square));
+    ck_assert_double_le(sqrt(square), .7 * tolerance);
+    ck_assert_double_le(worst, 1.3 * tolerance);
+    fibrad_bed_free(f);
+    fibrad_bed_free(truth);
+    free(e);
+    bed_free(&bed);
+}
+END_TEST
+
 int main(void) {
     const int count = sizeof beds / sizeof *beds;
     Suite *suite = suite_create("estimate");
@@ -259,5 +378,9 @@ int main(void) {
     tcase_add_loop_test(tcase, estimates_count_walls, 0, SCENES);
     tcase_add_test(tcase, rows_by_themselves);
     tcase_add_test(tcase, out_of_reach);
+    tcase_add_test(tcase, one_entry_is_no_luck);
+    tcase_add_test(tcase, small_beside_large_exchange);
+    tcase_add_loop_test(tcase, small_beside_large_sampled, 0, 2);
+    tcase_add_loop_test(tcase, tolerance_of_exchange_is_met, 0, sizeof greys / sizeof *greys);
     return suite_run(suite);
 }

@@ -595,6 +595,42 @@ START_TEST(bad_arguments) {
 }
 END_TEST
 
+/* Two small spheres in a room of mirrors, which light leaves by its thousandth of a thousandth a leg: paths end, what
+ * they leave is in the error. Truth: light that has been everywhere is absorbed by areas times emissivities. */
+START_TEST(mirrors_end_in_the_error) {
+    struct bed bed = bed_of(2, (const double[][4]){{.3, .5, .5, .05}, {.7, .5, .5, .05}});
+    const fibrad_body walls[] = {plane_at(0, 0, 0), plane_at(0, 1, 1), plane_at(1, 0, 0),
+                                 plane_at(1, 1, 1), plane_at(2, 0, 0), plane_at(2, 1, 1)};
+    const fibrad_scene_config config = {.body = walls, .bodies = 6};
+    fibrad_scene *scene = scene_with(&bed, &config);
+    fibrad_work work = work_growing();
+    static const double of_walls[] = {1e-5, 1e-6, 0};
+    for (int k = 0; k < 3; k++) {
+        const double e[] = {1e-6, 1e-6}, w = of_walls[k], wall[] = {w, w, w, w, w, w};
+        const double area = 4 * PI * .05 * .05, truth = area * e[0] / (2 * area * e[0] + 6 * w);
+        const fibrad_exchange_rule rule = {.emissivity = e, .body_emissivity = wall};
+        fibrad_row row = row_of(bed.n);
+        uint64_t rays = 0;
+        ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, &rays), FIBRAD_OK);
+        double square = pow(row_factor(&row, 0) - truth, 2) + pow(row_factor(&row, 1) - truth, 2);
+        for (int b = 0; b < 6; b++) square += pow(row.body[b] - w / (2 * area * e[0] + 6 * w), 2);
+        ck_assert_double_le(sqrt(square), row.error);
+        ck_assert_double_le((double)rays, 1e6);
+        row_free(&row);
+        fibrad_body_row part;
+        ck_assert_int_eq(fibrad_exchange_body(scene, &work, 0, &rule, 0, &part), FIBRAD_OK);
+        ck_assert_double_ge(part.error, w > 0 ? .5 : 0);
+        ck_assert_double_le((double)part.rays, 1e6);
+        fibrad_displacement moved;
+        ck_assert_int_eq(fibrad_exchange_displacement(scene, &work, 0, &rule, &moved), FIBRAD_OK);
+        ck_assert_double_le((double)moved.rays, 1e6);
+    }
+    free(scene);
+    work_free(&work);
+    bed_free(&bed);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("exchange");
     TCase *cases = suite_case(suite, "exchange");
@@ -612,6 +648,7 @@ int main(void) {
     tcase_add_test(cases, displacement_in_a_chain);
     tcase_add_test(cases, rows_keep_the_books);
     tcase_add_test(cases, paths_go_by_the_numbers_of_spheres);
+    tcase_add_test(cases, mirrors_end_in_the_error);
     tcase_add_test(cases, bad_arguments);
     return suite_run(suite);
 }

@@ -1,6 +1,7 @@
 /* test_files.c - what people bring and take away: units, ids, frames, walls by name, summaries.
  * SPDX-License-Identifier: MIT
  */
+#include "cli/output.h"
 #include "program.h"
 
 #define ATOMS "ITEM: ATOMS id type x y z radius T\n"
@@ -69,7 +70,8 @@ END_TEST
 /* No temperature is made up: that of the surroundings is asked for where something can get there. */
 START_TEST(surroundings_are_asked_for) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
-    static const char *const open[] = {"zmin", "zmin,zmax", "cylinder:4,4,6", "cylinder:4,4,6,zmin"};
+    static const char *const open[] = {"zmin", "zmin,zmax", "cylinder:4,4,6,zmin=open,zmax=open",
+                                       "cylinder:4,4,6,zmin,zmax=open"};
     static const char *const closed[] = {"auto", "cylinder:4,4,6,zmin,zmax"};
     for (int k = 0; k < 4; ++k) {
         ck_assert_int_eq(RUN(HEAT, bed, "--wall", open[k], "--wall-temperature", "300"), 2);
@@ -82,6 +84,52 @@ START_TEST(surroundings_are_asked_for) {
     SUCCEED(HEAT, bed, "--periodic", "8,8,8");
     ck_assert_int_eq(RUN(HEAT, bed, "--periodic", "8,8,0"), 2);
     expect_message("", "which --ambient?");
+}
+END_TEST
+
+/* Some spheres with a temperature and the others with a power, by columns with blanks or nan, by a number for the
+ * others and by types: the same to the byte; what is given comes out again. */
+START_TEST(temperatures_and_powers_mixed) {
+#define MIXED                                                                                                          \
+    "heat", "--emissivity", ".6", "--directions", "21", "--patches", "24", "--length-unit", "m", "--ambient", "300"
+    static const char *const words[][4] = {{"--temperature", "2:900", "--power", "1:40"},
+                                           {"--temperature", "T", "--power", "P"},
+                                           {"--temperature", "T", "--power", "40"},
+                                           {"--temperature", "900", "--power", "P"}};
+    static const char *const beds[] = {
+        "x,y,z,r,type,T,P\n0,0,0,1,1,,40\n3,0,0,1,2,900,\n0,3,0,1,1,,40\n",
+        "x;y;z;r;type;P;T\n0;0;0;1;1;40;NaN\n3;0;0;1;2;nan;900\n0;3;0;1;1;40;\n",
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS ff ff ff\n-9 9\n-9 9\n-9 9\n"
+        "ITEM: ATOMS x y z radius type T P\n0 0 0 1 1 nan 40\n3 0 0 1 2 900 nan\n0 3 0 1 1 nan 40\n",
+        "# vtk DataFile Version 3.0\nbed\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 3 0 0 0 3 0\nPOINT_DATA 3\n"
+        "SCALARS radius double\nLOOKUP_TABLE default\n1 1 1\nSCALARS type double\nLOOKUP_TABLE default\n1 2 1\n"
+        "SCALARS T double\nLOOKUP_TABLE default\nnan 900 nan\nSCALARS P double\nLOOKUP_TABLE default\n40 nan 40\n"};
+    const char *out = in_folder("q.csv");
+    char *first = NULL;
+    for (int k = 0; k < 16; ++k) {
+        const char *const *w = words[k % 4], *bed = write_file("bed", beds[k / 4]);
+        SUCCEED(MIXED, bed, w[0], w[1], w[2], w[3], "-o", out);
+        char *text = read_file(out);
+        if (first) ck_assert_str_eq(text, first);
+        free(first);
+        first = text;
+        ck_assert_double_eq(power_of(out, "0,", ","), -40);
+        ck_assert_double_lt(power_of(out, "1,", ","), 0);
+        ck_assert_ptr_nonnull(strstr(text, "\n1,900,"));
+    }
+    free(first);
+    const char *bed = write_file("bed", beds[0]);
+    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T"), 3); /* blanks are for those that have a power */
+    expect_message(bed, "T is not a number: ''");
+    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "x", "--power", "40"), 2);
+    expect_message("", "--power 40: all spheres have the other given");
+    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T", "--power", "type"), 3);
+    expect_message(bed, "sphere 1 has both a temperature and a power");
+    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T", "--power", "2:5"), 3);
+    expect_message(bed, "sphere 0 has neither a temperature nor a power");
+    ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "600", "--power", "40", "--radius", "T"), 2);
+    ck_assert_int_eq(RUN("heat", bed, "--emissivity", "T", "--temperature", "600", "--ambient", "300"), 3);
+    expect_message(bed, "T is not a number: ''");
 }
 END_TEST
 
@@ -183,11 +231,11 @@ START_TEST(ids_in_any_order) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", UNSORTED)), *out = in_folder("rows.csv");
     SUCCEED("bed", bed, "--targets", "7-19", "-o", out);
     char *text = read_file(out);
-    ck_assert_int_eq(strncmp(text, "i,j,F\n7,3,", 10), 0);
+    ck_assert_int_eq(strncmp(text, "i,j,F,body\n7,3,", 15), 0);
     free(text);
     SUCCEED("bed", bed, "--targets", "0", "--positions", "-o", out);
     text = read_file(out);
-    ck_assert_int_eq(strncmp(text, "i,j,F\n0,1,", 10), 0);
+    ck_assert_int_eq(strncmp(text, "i,j,F,body\n0,1,", 15), 0);
     free(text);
     ck_assert_int_eq(RUN("bed", bed, "--targets", "8-19"), 2);
     expect_message("", "there is no sphere 8 in frame 0 of ");
@@ -272,7 +320,11 @@ START_TEST(all_frames) {
         snprintf(name, sizeof name, "q.%d.vtp", k);
         free(read_file(in_folder(name)));
     }
-    ck_assert_int_eq(remove_files(0), 7);
+    text = read_file(in_folder("q.pvd")); /* what ParaView opens: frames by their timesteps */
+    ck_assert_ptr_nonnull(strstr(text, "<DataSet timestep=\"100\" file=\"q.0.vtp\"/>\n<DataSet timestep=\"250\" file="
+                                       "\"q.1.vtp\"/>\n<DataSet timestep=\"900\" file=\"q.2.vtp\"/>\n"));
+    free(text);
+    ck_assert_int_eq(remove_files(0), 8);
 }
 END_TEST
 
@@ -280,7 +332,7 @@ START_TEST(some_frames) {
     const char *bed = write_frames("bed.dump", 3), *out = in_folder("F.csv");
     SUCCEED("bed", bed, "--frame", "0:3:2", "--directions", "8", "-o", out);
     char *text = read_file(out);
-    ck_assert_int_eq(strncmp(text, "frame,timestep,i,j,F\n0,100,3,", 29), 0);
+    ck_assert_int_eq(strncmp(text, "frame,timestep,i,j,F,body\n0,100,3,", 34), 0);
     ck_assert_ptr_nonnull(strstr(text, "\n2,900,3,"));
     ck_assert_ptr_null(strstr(text, "\n1,"));
     free(text);
@@ -306,11 +358,18 @@ START_TEST(several_files) {
     snprintf(names, sizeof names, "%s/bed.*.dump", folder);
     SUCCEED("bed", names, "--directions", "8", "-o", out, "-o", in_folder("F.*.mtx"));
     char *text = read_file(out);
-    snprintf(expected, sizeof expected, "file,frame,timestep,i,j,F\n%s,0,100,3,", first);
+    snprintf(expected, sizeof expected, "file,frame,timestep,i,j,F,body\n%s,0,100,3,", first);
     ck_assert_int_eq(strncmp(text, expected, strlen(expected)), 0);
     ck_assert_ptr_nonnull(strstr(text, "bed.2.dump,1,250,3,7,"));
     free(text);
     free(read_file(in_folder("F.1.mtx")));
+    SUCCEED("bed", first, first, "--directions", "8", "-o", in_folder("F.*.json"), "-o", in_folder("F.*.vtp"));
+    text = read_file(in_folder("F.1.json")); /* frames count through all files */
+    ck_assert_ptr_nonnull(strstr(text, "\"frame\":1,"));
+    free(text);
+    text = read_file(in_folder("F.pvd")); /* two frames of one timestep: by their numbers */
+    ck_assert(strstr(text, "timestep=\"0\" file=\"F.0.vtp\"") && strstr(text, "timestep=\"1\" file=\"F.1.vtp\""));
+    free(text);
     write_frames("bed.10.dump", 3); /* times are not padded with zeros: 10 comes behind 2 */
     SUCCEED("bed", names, "--directions", "8", "-o", out);
     text = read_file(out);
@@ -434,6 +493,50 @@ START_TEST(one_place_each) {
 }
 END_TEST
 
+#define CORNER(x, y) "vertex " x " " y " 0\n"
+#define FLOOR                                                                                                          \
+    "solid s\nfacet normal 0 0 1\nouter loop\n" CORNER("-9", "-9") CORNER("17", "-9")                                  \
+        CORNER("-9", "17") "endloop\nendfacet\nendsolid s\n"
+
+/* No output takes the place of a file that the run reads, whichever of them it is. */
+START_TEST(inputs_stay) {
+    static const char *const names[] = {"bed.dump", "floor.0.vtp", "eps.csv", "room.json", "lid.json", "sides.svg"};
+    static const char *const texts[] = {NULL, FLOOR, "300 .5\n900 .6\n", "0 300\n9 310\n", "0 700\n9 710\n", "650\n"};
+    static const char *const outputs[] = {"-o", "--wall-vtp", "-o", "--json", "-o", "--plot"};
+    const char *path[6];
+    char words[4][700];
+    for (int k = 0; k < 6; ++k) path[k] = write_file(names[k], k ? texts[k] : frame(NULL, "0", "3", SORTED));
+    snprintf(words[0], sizeof words[0], "floor=mesh:%s:both,zmax=20", path[1]);
+    snprintf(words[1], sizeof words[1], "@%s", path[2]);
+    snprintf(words[2], sizeof words[2], "@%s", path[3]);
+    snprintf(words[3], sizeof words[3], "zmax=@%s,floor=triangles:%s", path[4], path[5]);
+    for (int k = 0; k < 6; ++k) {
+        char other_name[400]; /* of the same file */
+        snprintf(other_name, sizeof other_name, "%s/./%s", folder, k == 1 ? "floor.*.vtp" : names[k]);
+        ck_assert_int_eq(RUN("heat", path[0], "--temperature", "T", "--emissivity", words[1], "--wall", words[0],
+                             "--wall-temperature", words[3], "--ambient", words[2], "--until", "5", "--heat-capacity",
+                             "800", "--density", "2500", "--model", "patches", "--directions", "21", "--patches", "24",
+                             outputs[k], other_name),
+                         2);
+        ck_assert_msg(strstr(said, "is read in this run and would be replaced") != NULL, "output %d: %s", k, said);
+        char *text = read_file(path[k]);
+        ck_assert_str_eq(text, k ? texts[k] : frame(NULL, "0", "3", SORTED));
+        free(text);
+    }
+    ck_assert_int_eq(remove_files(0), 6);                         /* nothing else is there */
+    path[0] = write_file("q.pvd", frame(NULL, "0", "3", SORTED)); /* the collection of q.*.vtp */
+    ck_assert_int_eq(RUN(HEAT, path[0], "--ambient", "300", "--until", "5", "--heat-capacity", "800", "--density",
+                         "2500", "-o", in_folder("q.*.vtp")),
+                     2);
+    char *text = read_file(path[0]);
+    ck_assert_str_eq(text, frame(NULL, "0", "3", SORTED));
+    free(text);
+    input = path[0] = write_file("bed.csv", "x,y,z,r\n0,0,0,1\n3,0,0,1\n"); /* as standard input */
+    ck_assert_int_eq(RUN("bed", "-", "-o", path[0]), 2);
+    input = "/dev/null";
+}
+END_TEST
+
 /* Where nothing is emitted, there are no rows, and their figures are 0. */
 START_TEST(summary_of_no_rows) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "3", SORTED));
@@ -464,6 +567,32 @@ START_TEST(too_little_memory) {
 }
 END_TEST
 
+/* A furnace's summary as JSON, its fields on standard output, its progress when asked for. */
+START_TEST(furnace_outputs) {
+    const char *json = in_folder("s.json"), *csv = in_folder("f.csv");
+#define FURNACE "furnace", "--case", "1", "--method", "mc", "--cells", "3,3,6", "--bundles", "20000"
+    SUCCEED(FURNACE, "--json", json, "-o", csv);
+    ck_assert_ptr_null(strchr(said, '#'));
+    ck_assert_double_eq_tol(json_of(json, "T_axis_2.0") / value_of("T_axis_2.0"), 1, 1e-9);
+    ck_assert_double_eq(json_of(json, "bundles"), value_of("bundles"));
+    char *text = read_file(csv);
+    SUCCEED(FURNACE, "-o", "-", "--format", "csv", "--progress");
+    ck_assert_str_eq(printed, text);
+    ck_assert_ptr_nonnull(strstr(said, "\nT_axis_2.0 "));
+    ck_assert_ptr_nonnull(strstr(said, "##] 100 %"));
+    free(text);
+    SUCCEED(FURNACE, "--json", "-");
+    ck_assert_int_eq(strncmp(printed, "{\"fibrad\"", 9), 0);
+    ck_assert_int_eq(RUN(FURNACE, "-o", "-"), 2);
+    expect_message("", "-o - needs a --format: csv or vti");
+    ck_assert_int_eq(RUN(FURNACE, "-o", "-", "--format", "vtp"), 2);
+    expect_message("", "'vtp' is neither csv nor vti");
+    ck_assert_int_eq(RUN(FURNACE, "--format", "csv"), 2);
+    ck_assert_int_eq(RUN(FURNACE, "-o", csv, "--json", csv), 2);
+    expect_message(csv, "is there twice");
+}
+END_TEST
+
 START_TEST(versions_and_help) {
     SUCCEED("-V");
     ck_assert_int_eq(strncmp(printed, "fibrad ", 7), 0);
@@ -475,6 +604,39 @@ START_TEST(versions_and_help) {
 }
 END_TEST
 
+/* What ends without a word leaves nothing behind, where files need no name until they are complete. */
+START_TEST(nothing_is_left_by_what_is_killed) {
+    char place[] = "/tmp/fibrad_killed_XXXXXX", path[64];
+    ck_assert_ptr_nonnull(mkdtemp(place));
+    snprintf(path, sizeof path, "%s/out", place);
+    struct output probe;
+    ck_assert_int_eq(output_open(&probe, path), 0);
+    const bool unnamed = probe.unnamed;
+    fputs("complete", probe.file);
+    ck_assert_int_eq(output_close(&probe, 0), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        struct output left;
+        if (output_open(&left, path) == 0) fputs("not complete", left.file), fflush(left.file);
+        kill(getpid(), SIGKILL);
+    }
+    ck_assert_int_eq(waitpid(child, NULL, 0), child);
+    uint32_t files = 0;
+    DIR *entries = opendir(place);
+    for (const struct dirent *entry; (entry = readdir(entries));) files += entry->d_name[0] != '.';
+    closedir(entries);
+    ck_assert_uint_eq(files, unnamed ? 1 : 2);
+    char text[16] = "";
+    FILE *file = fopen(path, "r");
+    ck_assert_ptr_nonnull(fgets(text, sizeof text, file));
+    fclose(file);
+    ck_assert_str_eq(text, "complete");
+    char command[80];
+    snprintf(command, sizeof command, "rm -r %s", place);
+    ck_assert_int_eq(system(command), 0);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("files");
     TCase *asked = suite_case(suite, "asked"), *named = suite_case(suite, "named"),
@@ -483,6 +645,7 @@ int main(void) {
     for (int k = 0; k < 4; ++k) tcase_add_checked_fixture(cases[k], make_folder, remove_folder);
     tcase_add_test(asked, wall_temperatures_by_name);
     tcase_add_test(asked, surroundings_are_asked_for);
+    tcase_add_test(asked, temperatures_and_powers_mixed);
     tcase_add_test(asked, units_of_length);
     tcase_add_test(asked, degrees_celsius);
     tcase_add_test(asked, units_of_temperature_columns);
@@ -498,8 +661,11 @@ int main(void) {
     tcase_add_test(summaries, summary_says_what_was_computed);
     tcase_add_test(summaries, quiet_and_streams);
     tcase_add_test(summaries, one_place_each);
+    tcase_add_test(summaries, inputs_stay);
+    tcase_add_test(summaries, nothing_is_left_by_what_is_killed);
     tcase_add_test(summaries, summary_of_no_rows);
     tcase_add_test(summaries, too_little_memory);
+    tcase_add_test(summaries, furnace_outputs);
     tcase_add_test(summaries, versions_and_help);
     return suite_run(suite);
 }

@@ -43,6 +43,8 @@ struct problem {
     struct mesh *mesh;
     fibrad_body body[MOST];
     uint32_t bodies;
+    fibrad_plane opening;
+    uint32_t openings;
     double temperature[64], emissivity[64], wall_temperature[MOST], wall_emissivity[MOST], wall_power[MOST];
     double power[64], q[MOST], error[64], q_error[MOST], found[MOST], absorbed[MOST];
     unsigned char insulated[MOST];
@@ -90,9 +92,12 @@ static void free_problem(struct problem *p) {
 }
 
 static fibrad_scene *build_scene(const struct problem *p) {
-    return scene_with(
-        &p->bed,
-        &(fibrad_scene_config){.isa = p->isa, .body = p->body, .bodies = p->bodies, .triangles = &p->mesh->triangles});
+    return scene_with(&p->bed, &(fibrad_scene_config){.isa = p->isa,
+                                                      .body = p->body,
+                                                      .bodies = p->bodies,
+                                                      .opening = &p->opening,
+                                                      .openings = p->openings,
+                                                      .triangles = &p->mesh->triangles});
 }
 
 static int trace_beams(struct problem *p) {
@@ -199,6 +204,33 @@ START_TEST(a_box_of_twelve_triangles_is_a_box_of_planes) {
         ck_assert(mesh->result.surroundings_power == 0);
         free_problem(planes), free_problem(mesh);
     }
+}
+END_TEST
+
+/* A cup: five planes and an opening, and five sheets of triangles without a lid; hot walls, and insulated ones. */
+START_TEST(a_cup_of_triangles_is_one_of_planes_and_an_opening) {
+    struct problem *p[2] = {thirty(), thirty()};
+    for (int k = 0; k < 2; k++) {
+        p[k]->config = (fibrad_heat_config){.directions = 2000, .wall_rays = 1000000};
+        if (k == 0) make_planes(p[k], 0, 1), p[k]->opening = (fibrad_plane){2, 1, 1}, p[k]->openings = 1;
+        if (k == 1) make_box(p[k], 0, 1, 1), p[k]->mesh->triangles.n -= 2; /* its lid */
+        p[k]->bodies = 5, p[k]->bed.n = 8;
+        p[k]->sources.surroundings = .8;
+        for (int b = 0; b < 5; b++) p[k]->wall_temperature[b] = 2.5, p[k]->wall_emissivity[b] = .6;
+        ck_assert_int_eq(trace(p[k]), FIBRAD_OK);
+    }
+    for (int insulated = 0; insulated < 2; insulated++) {
+        for (int k = 0; k < 2; k++) {
+            for (int b = 0; b < 4; b++) p[k]->insulated[b] = (unsigned char)insulated;
+            solve(p[k]);
+            ck_assert_double_le(imbalance(p[k]), 1e-12);
+        }
+        ck_assert_double_gt(p[0]->result.surroundings_power, 5);
+        assert_near(p[0]->result.surroundings_power, p[1]->result.surroundings_power, 2e-3);
+        for (int b = 0; b < 5; b++) assert_near(p[0]->q[b], p[1]->q[b], 2e-3);
+        ck_assert_double_le(distance_of(p[0]->power, p[1]->power, 8), 2e-3);
+    }
+    free_problem(p[0]), free_problem(p[1]);
 }
 END_TEST
 
@@ -772,6 +804,7 @@ int main(void) {
     Suite *suite = suite_create("heat_mesh");
     TCase *tests = suite_case(suite, "heat among triangles");
     tcase_add_test(tests, a_box_of_twelve_triangles_is_a_box_of_planes);
+    tcase_add_test(tests, a_cup_of_triangles_is_one_of_planes_and_an_opening);
     tcase_add_test(tests, a_grey_sphere_in_a_black_cube);
     tcase_add_test(tests, a_grey_sphere_in_a_large_grey_cube);
     tcase_add_test(tests, nothing_flows_at_one_temperature);

@@ -61,14 +61,16 @@ static void all_closed(const fibrad_factors *m) {
     }
 }
 
-/* The mean of rows and their transpose, entry by entry, before anything else is done to it: dense, [n][n]. */
-static double *mean_of(const fibrad_factors *raw, const double *area) {
+/* The mean of rows and their transpose, entry by entry, before anything else is done to it: dense, [n][n];
+ * halves (r NULL), or each by its area. */
+static double *mean_of(const fibrad_factors *raw, const double *area, const double *r) {
     double *mean = calloc((size_t)raw->n * raw->n, sizeof *mean);
     for (uint32_t i = 0; i < raw->n; i++)
         for (uint64_t k = raw->start[i]; k < raw->start[i + 1]; k++) {
             const uint32_t j = raw->col[k];
-            mean[(size_t)i * raw->n + j] += raw->f[k] / 2;
-            mean[(size_t)j * raw->n + i] += area[i] / area[j] * raw->f[k] / 2;
+            const double part = r != NULL ? r[j] * r[j] / (r[i] * r[i] + r[j] * r[j]) : .5;
+            mean[(size_t)i * raw->n + j] += raw->f[k] * part;
+            mean[(size_t)j * raw->n + i] += area[i] / area[j] * raw->f[k] * part;
         }
     return mean;
 }
@@ -93,7 +95,7 @@ START_TEST(averaging_makes_rows_reciprocal) {
         all_closed(&out.factors);
         ck_assert_double_gt(reciprocity(&raw), 1e-4);
         ck_assert_double_le(reciprocity(&out), 1e-14);
-        double *area = squares(&beds[b], NULL), *mean = mean_of(&raw.factors, area), off = 0;
+        double *area = squares(&beds[b], NULL), *mean = mean_of(&raw.factors, area, NULL), off = 0;
         const uint32_t n = beds[b].n;
         for (uint32_t i = 0; i < n; i++) {
             double sum = 0;
@@ -127,6 +129,27 @@ START_TEST(averaging_by_hand) {
     static const double escaped[] = {1 - .375, 1 - .0625, 1 - .25}; /* rows that met nothing: what is left */
     for (int i = 0; i < 3; i++) ck_assert_double_eq(m.factors.escaped[i], escaped[i]);
     matrix_free(&m);
+}
+END_TEST
+
+/* Sphere 0 sees 25 others that do not see it, and nobody says what else is seen: closing gives the rest of each row to
+ * the surroundings, whatever its error is. */
+START_TEST(what_closing_changes) {
+    enum { N = 26 };
+    double r[N], f[N];
+    uint64_t start[N + 1] = {0};
+    uint32_t col[N];
+    for (uint32_t k = 0; k < N; k++) r[k] = 1, f[k] = .02, col[k] = k + 1, start[k + 1] = N - 1;
+    for (int raw = 0; raw < 2; raw++) {
+        struct matrix m = matrix_by_hand(N, r, start, col, f, &(fibrad_matrix_rule){.raw = raw, .tasks = 3});
+        double most = 0;
+        for (uint32_t i = 0; i < N && !raw; i++) most = fmax(most, m.factors.escaped[i] / m.factors.error[i]);
+        ck_assert(raw || most > 5);
+        ck_assert(fabs(m.factors.changed - most) <= 1e-9 * most);
+        const uint32_t row = m.factors.changed_row;
+        ck_assert(raw || m.factors.escaped[row] / m.factors.error[row] == most);
+        matrix_free(&m);
+    }
 }
 END_TEST
 
@@ -208,7 +231,7 @@ START_TEST(limiting_keeps_reciprocity) {
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     const fibrad_beam_rule rule = {.directions = 55, .points = 64};
     struct matrix raw = matrix_by_beams(scene, &rule, true), limited = matrix_by_beams(scene, &rule, false);
-    double *area = squares(&bed, NULL), *mean = mean_of(&raw.factors, area), above = 0, moved = 0;
+    double *area = squares(&bed, NULL), *mean = mean_of(&raw.factors, area, NULL), above = 0, moved = 0;
     for (uint32_t i = 0; i < bed.n; i++) {
         double sum = 0;
         for (uint32_t j = 0; j < bed.n; j++) sum += mean[(size_t)i * bed.n + j];
@@ -229,7 +252,7 @@ END_TEST
 
 /* ---- exchange factors ------------------------------------------------------------------------------------------- */
 
-/* A_i emissivity_i D_ij is symmetric, and the row sums are those of the raw rows. */
+/* A_i emissivity_i D_ij is symmetric, each row counts by its partner's area, and rows that were closed are. */
 START_TEST(exchange_factors_are_balanced) {
     struct bed bed = packing(150, .5, 1.5, .5, 3, true);
     fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
@@ -242,7 +265,7 @@ START_TEST(exchange_factors_are_balanced) {
         ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
     struct matrix raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = emissivity, .raw = 1});
     struct matrix out = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = emissivity});
-    double *area = squares(&bed, emissivity), *mean = mean_of(&raw.factors, area), moved = 0;
+    double *area = squares(&bed, emissivity), *mean = mean_of(&raw.factors, area, bed.r), moved = 0;
     ck_assert_double_gt(reciprocity(&raw), 1e-4);
     ck_assert_double_le(reciprocity(&out), 1e-14);
     ascending(&out.factors);
@@ -268,8 +291,9 @@ START_TEST(exchange_factors_are_balanced) {
 }
 END_TEST
 
-/* S_01 = (3 A_0 D_01 + A_1 D_10)/2 with A = 4 pi (1, 4), in units of the largest emissivity; loops of one: sums of any
- * size can be reached. Where all emissivities are equal, areas alone count. */
+/* S_01 = (4 (3 A_0 D_01) + A_1 D_10)/5 with A = 4 pi (1, 4), in units of the largest emissivity, and what rows leave
+ * over are closed by factors u: D_01 u_0 u_1, and u_0 times the rest of row 0. Where all emissivities are equal, areas
+ * alone count. */
 START_TEST(exchange_by_hand) {
     const double r[] = {1, 2}, emissivity[] = {.9, .3};
     const uint64_t start[] = {0, 2, 4};
@@ -283,11 +307,12 @@ START_TEST(exchange_by_hand) {
     m = matrix_by_hand(2, r, start, col, skew, &(fibrad_matrix_rule){.emissivity = emissivity});
     ck_assert_double_le(reciprocity(&m), 1e-15);
     ck_assert_double_eq_tol(3 * m.factors.f[1], 4 * m.factors.f[2], 1e-15);
-    ck_assert_double_eq_tol(matrix_sum(&m.factors, 0), .7, 2e-14);
-    ck_assert_double_eq_tol(matrix_sum(&m.factors, 1), .45, 2e-14);
-    /* D_ij u_i u_j of the mean (.2, 2.3/6; 2.3/8, .25) */
+    /* D_ij u_i u_j of the mean (.2, 2.72/6; 2.04/6, .25) */
     const double u0 = sqrt(m.factors.f[0] / .2), u1 = sqrt(m.factors.f[3] / .25);
-    ck_assert_double_eq_tol(m.factors.f[1], 2.3 / 6 * u0 * u1, 1e-14);
+    ck_assert_double_eq_tol(m.factors.f[1], 2.72 / 6 * u0 * u1, 1e-14);
+    ck_assert_double_eq_tol(matrix_sum(&m.factors, 0) + .3 * u0, 1, 2e-14);
+    ck_assert_double_eq_tol(matrix_sum(&m.factors, 1) + .55 * u1, 1, 2e-14);
+    ck_assert_double_eq_tol(m.factors.escaped[1], .55 * u1, 2e-14);
     matrix_free(&m);
     const double same[] = {.7, .7}, reciprocal[] = {.2, .4, .1, .25};
     m = matrix_by_hand(2, r, start, col, reciprocal, &(fibrad_matrix_rule){.emissivity = same});
@@ -818,7 +843,7 @@ END_TEST
  * used again without more memory. */
 START_TEST(rows_added_are_rows_computed) {
     struct bed bed = packing(50, .5, 1.5, .4, 3, false);
-    const fibrad_body walls[] = {cylinder_at(0, 0, 500), plane_at(2, 0, -100)};
+    const fibrad_body walls[] = {plane_at(2, 0, -100), plane_at(2, 1, 500)};
     fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
     fibrad_work work = work_growing();
     const fibrad_beam_rule rule = {.directions = 34};
@@ -996,6 +1021,7 @@ int main(void) {
     TCase *tcase = suite_case(suite, "matrix");
     tcase_add_test(tcase, averaging_makes_rows_reciprocal);
     tcase_add_test(tcase, averaging_by_hand);
+    tcase_add_test(tcase, what_closing_changes);
     tcase_add_test(tcase, averaging_nothing);
     tcase_add_test(tcase, averaging_entry_by_entry);
     tcase_add_test(tcase, errors_of_averaged_rows);

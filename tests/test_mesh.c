@@ -265,6 +265,49 @@ START_TEST(tubes_through_walls) {
 }
 END_TEST
 
+/* An open mesh within planes or a cylinder: windows of which so little is open that no point lies there give it to what
+ * lies behind, so that sums are 1, and walls get what they get by points. */
+START_TEST(open_meshes_within_walls) {
+    struct bed bed = crowd(150, 11);
+    struct mesh *mesh = mesh_new();
+    for (uint32_t k = 0; k < 3; k++) mesh_vertex(mesh, k == 1 ? .9 : .1, k == 2 ? .8 : .2, .3 + .2 * k);
+    mesh_triangle(mesh, 0, 1, 2, 6, 6);
+    for (int round = 0; round < 2; round++) {
+        fibrad_body body[7];
+        for (int b = 0; b < 6; b++) body[b] = plane_at(b / 2, b % 2, b % 2);
+        if (round) body[0] = cylinder_at(.5, .5, .75), body[1] = body[4], body[2] = body[5];
+        const uint32_t bodies = round ? 4 : 7, from = bodies - 1;
+        body[from] = mesh->body[0];
+        mesh->front[0] = mesh->back[0] = from;
+        fibrad_scene *scene =
+            scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = bodies, .triangles = &mesh->triangles});
+        fibrad_work work = work_growing();
+        fibrad_row row = row_of(bed.n), exact = row_of(bed.n), grey = row_of(bed.n);
+        double emissivity[150], of_body[7], square = 0;
+        for (uint32_t k = 0; k < 150; k++) emissivity[k] = .8;
+        for (uint32_t b = 0; b < 7; b++) of_body[b] = .5;
+        const fibrad_exchange_rule rule = {
+            .emissivity = emissivity, .body_emissivity = of_body, .directions = 150, .paths = 100};
+        for (uint32_t i = 0; i < bed.n; i++) {
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, NULL, &exact), FIBRAD_OK);
+            ck_assert_double_eq_tol(total_of(&exact, bodies), 1, 1e-12);
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.points = 256}, &row), FIBRAD_OK);
+            ck_assert_double_eq_tol(total_of(&row, bodies), 1, 1e-12);
+            ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, &rule, &grey, NULL), FIBRAD_OK);
+            ck_assert_double_eq_tol(total_of(&grey, bodies), 1, 1e-12);
+            for (uint32_t b = 0; b < bodies; b++) square += pow(row.body[b] - exact.body[b], 2) / bed.n;
+        }
+        printf("    within walls: by points and by areas differ by %.2g\n", sqrt(square));
+        ck_assert_double_le(sqrt(square), 1.5e-3);
+        row_free(&row), row_free(&exact), row_free(&grey);
+        work_free(&work);
+        free(scene);
+    }
+    free(mesh);
+    bed_free(&bed);
+}
+END_TEST
+
 /* ---- sides ------------------------------------------------------------------------------------------------------- */
 
 /* A plate that nobody's back faces a sphere ends the row and is named; with a body of its own it takes its part. */
@@ -339,6 +382,114 @@ START_TEST(bad_triangles_are_named) {
     ck_assert_int_eq(scene_try(&scene, &bed, &config, &fault), FIBRAD_E_ARGUMENT);
     ck_assert_uint_eq(fault.triangle, UINT32_MAX);
     free(mesh);
+    struct bed own = bed;
+    bed_free(&own);
+}
+END_TEST
+
+/* A triangle of some size at (x, 0, z) about a sphere of radius 1 at the origin, repeated with a period along some
+ * axes: the status of its scene, and the triangle at fault. */
+static int status_of(double size, double x, double z, const double period[3], fibrad_scene **scene,
+                     uint32_t *triangle) {
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    struct mesh *mesh = mesh_new();
+    fibrad_fault fault = {.triangle = 77};
+    for (int k = 0; k < 3; k++)
+        mesh_vertex(mesh, x + size * ((k == 1) - .3), size * ((k == 2) - .3), z + size * .1 * (k == 2));
+    mesh_triangle(mesh, 0, 1, 2, 0, 0);
+    for (int axis = 0; axis < 3 && period != NULL; axis++) mesh->triangles.period[axis] = period[axis];
+    const fibrad_scene_config config = {.body = mesh->body, .bodies = 1, .triangles = &mesh->triangles};
+    free(*scene);
+    *scene = NULL;
+    const int status = scene_try(scene, &bed, &config, &fault);
+    *triangle = fault.triangle;
+    free(mesh);
+    bed_free(&bed);
+    return status;
+}
+
+/* Rows of the sphere of a scene by all methods, which come to an end and add up to one. */
+static void expect_rows(const fibrad_scene *scene) {
+    fibrad_work work = work_growing();
+    fibrad_row row = row_of(1);
+    for (uint32_t points = 0; points <= 128; points += 128) {
+        ck_assert_int_eq(
+            fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 60, .points = points}, &row), FIBRAD_OK);
+        ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
+    }
+    ck_assert_int_eq(fibrad_cast_row(scene, &work, 0, &(fibrad_cast_rule){.rays = 300}, &row, NULL), FIBRAD_OK);
+    ck_assert_double_eq_tol(total_of(&row, 1), 1, 1e-12);
+    row_free(&row);
+    work_free(&work);
+}
+
+/* Triangles have the bounds of spheres: too small, too far, or too many at one place they are refused, at the bounds
+ * all ends well. */
+START_TEST(triangles_have_bounds) {
+    static const double small[] = {1e-14, 1e-30, 1e-37, 1e-50, 1e-200},
+                        short_period[] = {1e-3, 1e-6, 1e-8, 1e-11, 1e-200};
+    fibrad_scene *scene = NULL;
+    fibrad_triangle_hit hit;
+    uint32_t triangle;
+    for (int k = 0; k < 5; k++) {
+        ck_assert_int_eq(status_of(small[k], k % 2 ? 2 : 0, k % 2 ? 0 : 2, NULL, &scene, &triangle), FIBRAD_E_ARGUMENT);
+        ck_assert_uint_eq(triangle, 0);
+        const double period[3] = {short_period[k], short_period[k], 0};
+        ck_assert_int_eq(status_of(1e-9, 0, 2, period, &scene, &triangle), FIBRAD_E_ARGUMENT);
+        ck_assert_uint_eq(triangle, UINT32_MAX);
+    }
+    ck_assert_int_eq(status_of(1, 1e14, 0, NULL, &scene, &triangle), FIBRAD_E_ARGUMENT); /* 3e13 radii away */
+    ck_assert_uint_eq(triangle, 0);
+    ck_assert_int_eq(status_of(2e4, 0, 9, (const double[]){2, 2, 2}, &scene, &triangle), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(triangle, 0);
+    ck_assert_int_eq(status_of(2e4, 0, 9, (const double[]){2, 0, 0}, &scene, &triangle), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(triangle, 0);
+    ck_assert_int_eq(status_of(1, 0, 2, (const double[]){1e14, 0, 0}, &scene, &triangle), FIBRAD_E_ARGUMENT);
+
+    ck_assert_int_eq(status_of(1e-9, 0, 2, NULL, &scene, &triangle), FIBRAD_OK);
+    expect_rows(scene);
+    ck_assert_int_eq(fibrad_triangle_ray(scene, (double[]){0, 0, -1e4}, (double[]){0, 0, 1}, INFINITY, &hit),
+                     FIBRAD_OK);
+    ck_assert_double_eq_tol(hit.distance, 1e4 + 2, 1e-6);
+    for (double far = 1e15; far < 1e300; far *= 1e35)
+        ck_assert_int_eq(fibrad_triangle_ray(scene, (double[]){far, 0, 0}, (double[]){-1, 0, 0}, INFINITY, &hit),
+                         FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(status_of(1e12, 0, 2, NULL, &scene, &triangle), FIBRAD_OK);
+    expect_rows(scene);
+    ck_assert_int_eq(status_of(1e12, 1e12, 2, NULL, &scene, &triangle), FIBRAD_OK);
+    expect_rows(scene);
+    ck_assert_int_eq(status_of(.2, 0, 2, (const double[]){.25, .25, 0}, &scene, &triangle), FIBRAD_OK);
+    expect_rows(scene);
+    ck_assert_int_eq(status_of(2, 0, 1e6, (const double[]){2, 2, 0}, &scene, &triangle), FIBRAD_OK); /* far above */
+    expect_rows(scene);
+    for (int k = 0; k < 2; k++) { /* far along the open axis */
+        ck_assert_int_eq(status_of(k ? 1e9 : 1e4, 0, 2, (const double[]){0, 0, k ? 1e10 : 9e3}, &scene, &triangle),
+                         FIBRAD_OK);
+        ck_assert_int_eq(fibrad_triangle_ray(scene, (double[]){0, 0, -9}, (double[]){1, 0, 1e-30}, INFINITY, &hit),
+                         FIBRAD_OK);
+        expect_rows(scene);
+    }
+    free(scene);
+}
+END_TEST
+
+/* Fins as tall as can be, between which lines go up for ever. */
+START_TEST(tall_fins_are_left) {
+    static const double top[] = {1e2, 1e4, 1e6};
+    const struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    for (int k = 0; k < 3; k++) {
+        struct mesh *mesh = mesh_new();
+        mesh_vertex(mesh, 0, 1.5, 2), mesh_vertex(mesh, .5, 1.5, 2), mesh_vertex(mesh, 0, 1.5, top[k]);
+        mesh_triangle(mesh, 0, 1, 2, 0, 0);
+        mesh->triangles.period[0] = 3, mesh->triangles.period[1] = 3;
+        fibrad_scene *scene = scene_of_mesh(&bed, mesh, 1);
+        fibrad_triangle_hit hit;
+        ck_assert_int_eq(fibrad_triangle_ray(scene, (double[]){.2, 0, -9}, (double[]){1e-30, 1e-20, 1}, INFINITY, &hit),
+                         FIBRAD_OK);
+        ck_assert_uint_eq(hit.triangle, UINT32_MAX);
+        expect_rows(scene);
+        free(scene), free(mesh);
+    }
     struct bed own = bed;
     bed_free(&own);
 }
@@ -454,6 +605,45 @@ START_TEST(work_among_triangles) {
 }
 END_TEST
 
+/* A sphere that sees all others, as many as work memory begins with, and three meshes besides: there are more entries
+ * than spheres, in memory that grows and in as much as FIBRAD_WORK_BYTES says. */
+START_TEST(more_entries_than_spheres) {
+    enum { N = 1024 };
+    static unsigned char block[FIBRAD_WORK_BYTES(512, N) + FIBRAD_WORK_TRIANGLES];
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, 1}});
+    struct mesh *mesh = mesh_new();
+    double of_body[3] = {.5, .5, .5}, emissivity[N];
+    for (uint32_t k = 0; k + 1 < N; k++) {
+        double w[3];
+        fibrad_direction(k, N - 1, w);
+        add_sphere(&bed, 5 * w[0], 5 * w[1], 5 * w[2], .1);
+    }
+    for (uint32_t k = 0; k < N; k++) emissivity[k] = .8;
+    mesh_box(mesh, (const double[]){-6, -6, -6}, (const double[]){6, 6, 6}, 0);
+    for (uint32_t t = 0; t < mesh->triangles.n; t++) mesh->front[t] %= 3;
+    fibrad_scene *scene = scene_of_mesh(&bed, mesh, 3);
+    fibrad_work work[2] = {work_growing(), work_fixed(block, sizeof block)};
+    fibrad_row row = row_of(N);
+    for (int k = 0; k < 2; k++) {
+        for (uint32_t points = 0; points <= 256; points += 256) {
+            const fibrad_beam_rule rule = {.directions = 1000, .points = points};
+            ck_assert_int_eq(fibrad_beam_row(scene, &work[k], 0, &rule, &row), FIBRAD_OK);
+            ck_assert_uint_eq(row.length, N - 1);
+            for (int b = 0; b < 3; b++) ck_assert_double_gt(row.body[b], .1);
+        }
+        ck_assert_int_eq(fibrad_cast_row(scene, &work[k], 0, &(fibrad_cast_rule){.rays = 50000}, &row, NULL),
+                         FIBRAD_OK);
+    }
+    const fibrad_exchange_rule rule = {
+        .emissivity = emissivity, .body_emissivity = of_body, .directions = 1000, .paths = 100};
+    ck_assert_int_eq(fibrad_exchange_row(scene, &work[0], 0, &rule, &row, NULL), FIBRAD_OK);
+    row_free(&row);
+    work_free(&work[0]);
+    free(scene), free(mesh);
+    bed_free(&bed);
+}
+END_TEST
+
 /* Soups of triangles and spheres, slivers, doubled and coplanar ones, corners on spheres: sums are 1, beams and rays
  * agree, and bits are the same in every instruction set and for triangles in any order. */
 START_TEST(soups) {
@@ -561,11 +751,15 @@ int main(void) {
     tcase_add_test(tests, a_box_of_triangles);
     tcase_add_test(tests, a_drum);
     tcase_add_test(tests, tubes_through_walls);
+    tcase_add_test(tests, open_meshes_within_walls);
     tcase_add_test(tests, sides_of_nobody);
     tcase_add_test(tests, bad_triangles_are_named);
+    tcase_add_test(tests, triangles_have_bounds);
+    tcase_add_test(tests, tall_fins_are_left);
     tcase_add_test(tests, rays_through_the_tree);
     tcase_add_test(tests, periodic_meshes);
     tcase_add_test(tests, work_among_triangles);
+    tcase_add_test(tests, more_entries_than_spheres);
     tcase_add_test(tests, soups);
     tcase_add_test(tests, grey_meshes);
     return suite_run(suite);

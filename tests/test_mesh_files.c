@@ -280,14 +280,17 @@ START_TEST(names_of_meshes) {
     FILE *file = fopen(two, "w");
     print_solid(file, "floor no 1", &soup, "\n", 9);
     print_solid(file, "", &soup, "\n", 9);
+    print_solid(file, "floor no 2", &soup, "\n", 9);
+    print_solid(file, "floor no 1", &soup, "\n", 9);
     fclose(file);
     struct wall_options options = {0};
     ck_assert_int_eq(walls_option(wall_of("zmin=-9,mesh:", path, ",zmax"), &options), 0);
     ck_assert_int_eq(walls_option(wall_of("tub=mesh:", path, ":both:scale=0.5"), &options), 0);
     ck_assert_int_eq(walls_option(wall_of("mesh:", two, ":solids"), &options), 0);
-    static const char *const names[] = {"zmin", "my_box", "zmax", "tub", "two_floor", "two_2"};
-    ck_assert_uint_eq(options.walls.count, 6);
-    for (uint32_t k = 0; k < 6; ++k) ck_assert_str_eq(wall_name(&options.walls, k), names[k]);
+    static const char *const names[] = {"zmin",           "my_box", "zmax",           "tub",
+                                        "two_floor_no_1", "two_2",  "two_floor_no_2", "two_4"};
+    ck_assert_uint_eq(options.walls.count, 8);
+    for (uint32_t k = 0; k < 8; ++k) ck_assert_str_eq(wall_name(&options.walls, k), names[k]);
     ck_assert_double_eq(fabs(options.walls.meshes->vertex[3 * 8]), 2);           /* the first of the second mesh */
     ck_assert_int_eq(walls_option(wall_of("tub=mesh:", path, ""), &options), 2); /* twice */
     walls_free(&options);

@@ -856,7 +856,9 @@ static fibrad_rows exchange_rows(const fibrad_scene *scene, uint32_t n, const fi
 START_TEST(what_one_gains_others_lose) {
     struct bed bed = packing(60, .6, 1, .5, 9, false);
     const fibrad_body body[] = {plane_at(2, 0, -1), plane_at(0, 0, -1)};
-    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 2});
+    const fibrad_plane open[] = {{0, 1, 9}, {1, 0, -2}, {1, 1, 9}, {2, 1, 9}};
+    fibrad_scene *scene =
+        scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 2, .opening = open, .openings = 4});
     double e[60];
     for (int i = 0; i < 60; i++) e[i] = .4 + .01 * i;
     fibrad_rows rows = exchange_rows(

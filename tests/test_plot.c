@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include "plot/plot_bed.h"
+#include "plot/plot_conduction.h"
 #include "plot/plot_heat.h"
 #include "scenes.h"
 #include "suite.h"
@@ -105,7 +106,7 @@ START_TEST(where_heat_goes) {
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
     const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
     const struct walls walls = {.count = 2, .body = {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
-    struct heat_shown what = {&bed, &walls, 1, temperature, power, wall_temperature, wall_power, 293, -.125};
+    struct heat_shown what = {&bed, &walls, 1, temperature, power, wall_temperature, wall_power, 293, -.125, false};
     char *svg = drawn(draw_heat, &what);
     assert_texts_inside(svg);
     static const char *const told[] = {"bed's.dump",
@@ -150,6 +151,89 @@ START_TEST(where_heat_goes) {
 }
 END_TEST
 
+/* Names are shown as they are, and those of many walls stand aslant, apart from each other; temperatures that were
+ * found are shown by height. */
+START_TEST(many_walls) {
+    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1}});
+    static struct meshes meshes;
+    static struct walls walls = {.count = 9, .meshes = &meshes};
+    double temperature[9], power[9];
+    for (int k = 0; k < 9; ++k) {
+        walls.body[k] = (fibrad_body){.kind = FIBRAD_BODY_MESH};
+        snprintf(meshes.name[k], sizeof meshes.name[k], "wall_of_tube_%d", k);
+        temperature[k] = 300 + k, power[k] = k - 4;
+    }
+    struct heat_shown what = {&bed, &walls, 1, temperature, power, temperature, power, 293, -.125, .found = true};
+    char *svg = drawn(draw_heat, &what);
+    assert_texts_inside(svg);
+    assert_tells(svg, ">wall_of_tube_0, 300 K<");
+    assert_tells(svg, ">wall_of_tube_8, 308 K<");
+    assert_tells(svg, ">surroundings, 293 K<");
+    assert_tells(svg, "rotate(-40");
+    assert_tells(svg, "Temperature by height");
+    ck_assert_ptr_null(strstr(svg, "Net power by height"));
+    free(svg);
+    walls.count = 2, what.found = false;
+    svg = drawn(draw_heat, &what);
+    assert_tells(svg, ">wall_of_tube_1<");
+    assert_tells(svg, "Net power by height");
+    free(svg);
+    bed_free(&bed);
+}
+END_TEST
+
+/* ---- exchange and conductivity ----------------------------------------------------------------------------------- */
+
+START_TEST(exchange_factors_shown) {
+    struct bed bed = packing(60, .4, .6, .4, 3, false);
+    const fibrad_spheres spheres = spheres_of(&bed);
+    double emissivity[60];
+    for (int i = 0; i < 60; ++i) emissivity[i] = .5;
+    const fibrad_exchange_rule rule = {.emissivity = emissivity};
+    fibrad_bed_factors *factors;
+    ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, &rule, NULL, NULL, &factors), FIBRAD_OK);
+    const struct contents what = {.bed = &bed, .factors = factors, .walls = &(struct walls){0}, .grey = &rule};
+    char *svg = drawn(draw_bed, &what);
+    assert_texts_inside(svg);
+    assert_tells(svg, "exchange factors; row sums");
+    assert_tells(svg, "Exchange factor against distance");
+    ck_assert_ptr_null(strstr(svg, "View factor"));
+    ck_assert_ptr_null(strstr(svg, "nothing between"));
+    free(svg);
+    fibrad_bed_free(factors);
+    bed_free(&bed);
+}
+END_TEST
+
+static int draw_conduction(const struct output *output, const void *what) {
+    return plot_conduction(output, "folder/bed_1.dump", what);
+}
+
+START_TEST(conductivity_shown) {
+    struct conduction what = {.solid_fraction = .61,
+                              .emitters = 49,
+                              .factor = {.75, .76, .77},
+                              .error = {.01, .01, .01},
+                              .axis = -1,
+                              .temperature = 1200,
+                              .k = {.3, .31, .32},
+                              .steady = {NAN, NAN, NAN},
+                              .steady_error = {NAN, NAN, NAN}};
+    char *svg = drawn(draw_conduction, &what);
+    assert_tells(svg, "bed_1.dump");
+    assert_tells(svg, "solid fraction 0.610, 49 spheres emit, 1200 K");
+    assert_tells(svg, ">k = 0.31 W/(m K)<");
+    ck_assert_ptr_null(strstr(svg, "plates"));
+    free(svg);
+    what.axis = 2, what.steady[2] = .78, what.steady_error[2] = .01, what.temperature = NAN;
+    svg = drawn(draw_conduction, &what);
+    assert_tells(svg, "between two plates");
+    assert_tells(svg, ">z<");
+    ck_assert(!strstr(svg, ">x<") && !strstr(svg, "k = "));
+    free(svg);
+}
+END_TEST
+
 int main(void) {
     if (!mkdtemp(folder)) return 1;
     snprintf(path, sizeof path, "%s/a.svg", folder);
@@ -158,6 +242,9 @@ int main(void) {
     tcase_add_loop_test(cases, small_and_large_beds, 0, 4);
     tcase_add_test(cases, a_bed_between_walls);
     tcase_add_test(cases, where_heat_goes);
+    tcase_add_test(cases, many_walls);
+    tcase_add_test(cases, exchange_factors_shown);
+    tcase_add_test(cases, conductivity_shown);
     const int status = suite_run(suite);
     remove(path);
     rmdir(folder);

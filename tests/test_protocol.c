@@ -30,7 +30,7 @@ struct contents {
 
 static const fibrad_heat_config heat_config = {.directions = 24, .patches = 24, .parts = PARTS};
 
-/* Spheres in two layers between a floor, a ceiling and one side wall. */
+/* Spheres in two layers between a floor, a ceiling and one side wall; open on the other sides. */
 static struct contents contents_of(uint64_t seed) {
     struct contents c = {.body = {plane_at(2, 0, -1.2), plane_at(2, 1, 3.4), plane_at(1, 0, -1.3)}, .n = N};
     for (uint32_t i = 0; i < N; i++) {
@@ -43,7 +43,15 @@ static struct contents contents_of(uint64_t seed) {
 }
 
 static int build_at(void *block, size_t size, const struct contents *c, fibrad_scene **scene) {
-    const fibrad_scene_config config = {.period = {c->period_x}, .body = c->body, .bodies = BODIES};
+    fibrad_plane opening[6];
+    uint32_t openings = 0;
+    for (int side = c->period_x > 0 ? 2 : 0; side < 6; side++) {
+        bool walled = false;
+        for (int b = 0; b < BODIES; b++) walled = walled || 2 * c->body[b].plane.axis + c->body[b].plane.upper == side;
+        if (!walled) opening[openings++] = (fibrad_plane){side / 2, side % 2, side % 2 ? 9 : -9};
+    }
+    const fibrad_scene_config config = {
+        .period = {c->period_x}, .body = c->body, .bodies = BODIES, .opening = opening, .openings = openings};
     const fibrad_spheres spheres = {.x = c->x, .y = c->y, .z = c->z, .r = c->r, .n = c->n};
     return fibrad_scene_init(scene, block, size, &config, &spheres, NULL);
 }

@@ -126,7 +126,40 @@ START_TEST(further_columns_by_name) {
     const char kelvins[] = "x,y,z,r,emissivity [-],T (K)\n0,0,0,1,0.5,300\n";
     ck_assert_int_eq(try_options(kelvins, sizeof kelvins - 1, &options), 0);
     const char lacking[] = "x,y,z,r,emissivity,id\n0,0,0,1,1,1\n";
-    expect_refusal(lacking, sizeof lacking - 1, &options, 1, "no column T");
+    expect_refusal(lacking, sizeof lacking - 1, &options, 1, "no column T; there are x, y, z, r, emissivity, id");
+}
+END_TEST
+
+/* Columns whose names have units, by either name. */
+START_TEST(columns_with_units) {
+    static const char *const wanted[] = {"T", "T [C]", "T (\302\260C)", "T_[C]", "T [K]"};
+    static const struct {
+        const char *column;
+        bool found[sizeof wanted / sizeof *wanted];
+    } cases[] = {{"T [C]", {true, true, false, true, false}},
+                 {"T (\302\260C)", {true, false, true, false, false}},
+                 {"T[degC]", {true, false, false, false, false}},
+                 {"T", {true, false, false, false, false}}};
+    const char *const unit = "C";
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k)
+        for (size_t w = 0; w < sizeof wanted / sizeof *wanted; ++w) {
+            const struct read_options options = {.extra = &wanted[w], .unit = &unit, .extras = 1};
+            char text[100];
+            snprintf(text, sizeof text, "x,y,z,r,%s\n0,0,0,1,20.5\n", cases[k].column);
+            const int status = try_options(text, strlen(text), &options);
+            ck_assert_msg((status == 0) == cases[k].found[w], "%s as %s: %s", cases[k].column, wanted[w], said);
+            if (!status) ck_assert_double_eq(bed.extra[0], 20.5);
+        }
+}
+END_TEST
+
+/* Of many names in a header, as many as there is room for. */
+START_TEST(many_columns) {
+    char text[5000] = "x,y,r";
+    for (int k = 0; k < 500; ++k) snprintf(text + strlen(text), 20, ",c%d", k);
+    strcat(text, "\n");
+    expect_refusal(text, strlen(text), &(struct read_options){0}, 1, "no column z; there are x, y, r, c0, c1");
+    ck_assert_ptr_nonnull(strstr(said, " ... (503 in all)"));
 }
 END_TEST
 
@@ -138,7 +171,9 @@ START_TEST(ids) {
     } bad[] = {{{"3", "3"}, "the id 3 is that of line 2, too", 3},
                {{"3", "-4"}, "the id -4 is negative", 3},
                {{"3", "1.5"}, "the id is not a whole number: '1.5'", 3},
-               {{"1e6", "2"}, "the id is not a whole number: '1e6'", 2},
+               {{"1e-6", "2"}, "the id is not a whole number: '1e-6'", 2},
+               {{"1e300", "2"}, "the id is not a whole number: '1e300'", 2},
+               {{"7.0", "7"}, "the id 7 is that of line 2, too", 3},
                {{"9223372036854775808", "2"}, "the id is too large: '9223372036854775808'", 2}};
     const struct read_options positions = {.positions = true};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
@@ -151,6 +186,8 @@ START_TEST(ids) {
     ck_assert_int_eq(try("id,x,y,z,r\n9223372036854775807,1,0,0,1\n70000,3,0,0,1\n0,5,0,0,1\n"), 0);
     ck_assert(bed.x[0] == 5 && bed.x[1] == 3 && bed.x[2] == 1);
     ck_assert_int_eq(bed_name(&bed, 2), INT64_MAX);
+    ck_assert_int_eq(try("id,x,y,z,r\n7.0,1,0,0,1\n1.000e+00,3,0,0,1\n2e2,5,0,0,1\n"), 0); /* reals */
+    ck_assert(bed.id[0] == 1 && bed.id[1] == 7 && bed.id[2] == 200);
 }
 END_TEST
 
@@ -551,7 +588,12 @@ static const struct {
     {0, "", "no spheres"},
     {0, "\n\n# nothing\n", "no spheres"},
     {0, "x,y,z,r\n", "no spheres"},
-    {1, "x,y,r\n0,0,1\n", "no column z"},
+    {1, "x,y,r\n0,0,1\n", "no column z; there are x, y, r"},
+    {0, "Number of particles = 3\nA = 1.0 Angstrom\n", "this is an AtomEye .cfg file"},
+    {0, "i,j,F,body\n1,2,0.5,\n", "this is view factors, as fibrad bed writes them"},
+    {0, "file,frame,timestep,i,j,D,body\na,0,,1,2,0.5,\n", "this is exchange factors, as fibrad exchange writes them"},
+    {0, "i,T_K,q_W,q_error_W,T_error_K,body\n1,300,1,,,\n", "this is powers, as fibrad heat writes them"},
+    {0, "%%MatrixMarket matrix coordinate real general\n", "this is a matrix"},
     {1, "x,y,z\n0,0,1\n", "no column r"},
     {1, "0,0,0,1\n", "numbers without a header that names their columns, such as x,y,z,r"},
     {2, "# made by hand\n0,0,0,1\n", "numbers without a header"},
@@ -718,6 +760,8 @@ int main(void) {
     tcase_add_test(formats, csv_in_any_order);
     tcase_add_test(formats, csv_after_byte_order_mark_and_comments);
     tcase_add_test(formats, further_columns_by_name);
+    tcase_add_test(formats, columns_with_units);
+    tcase_add_test(formats, many_columns);
     tcase_add_test(formats, dump_columns_by_name);
     tcase_add_test(formats, dump_scaled_unwrapped_diameter);
     tcase_add_test(formats, dump_frames);

@@ -67,12 +67,12 @@ START_TEST(among_walls) {
     struct bed bed = strewn(SPHERES, 5);
     const fibrad_body planes[] = {plane_at(0, 0, -.3), plane_at(0, 1, 1.3), plane_at(1, 0, -.3),
                                   plane_at(1, 1, 1.3), plane_at(2, 0, -.3), plane_at(2, 1, 1.3)};
-    const fibrad_body tube[] = {cylinder_at(.5, .5, 1.2), plane_at(2, 0, -.3)};
+    const fibrad_body tube[] = {cylinder_at(.5, .5, 1.2), plane_at(2, 0, -.3), plane_at(2, 1, 1.3)};
     double seen[2] = {0, 0};
     compare_rows(&bed, &(fibrad_scene_config){.body = planes, .bodies = 6}, 0, seen);
     compare_rows(&bed, &(fibrad_scene_config){.body = planes + 4, .bodies = 2}, 0, seen);
     compare_rows(&bed, &(fibrad_scene_config){.body = planes, .bodies = 6}, .5, seen);
-    compare_rows(&bed, &(fibrad_scene_config){.body = tube, .bodies = 2}, 0, seen);
+    compare_rows(&bed, &(fibrad_scene_config){.body = tube, .bodies = 3}, 0, seen);
     ck_assert_double_gt(seen[1], 20);
     bed_free(&bed);
 }
@@ -128,6 +128,31 @@ START_TEST(parts_that_do_not_fit) {
 }
 END_TEST
 
+/* Terms that were changed on the way leave no row that looks right. */
+START_TEST(parts_that_were_changed) {
+    struct bed bed = strewn(50, 7);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_work work = work_growing();
+    fibrad_row row = row_of(50);
+    const fibrad_beam_rule rule = {.directions = 20};
+    fibrad_row_part part = {.memory = memory_growing()};
+    ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_OK);
+    ck_assert_uint_gt(part.count, 1);
+    double *value = part.memory.block;
+    *value += 1e-6;
+    ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &row), FIBRAD_E_SUM);
+    *value = NAN;
+    ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &row), FIBRAD_E_SUM);
+    ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &row), FIBRAD_OK);
+    free(part.memory.block);
+    work_free(&work);
+    row_free(&row);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
 /* Fixed memory that is too small says how much would do. */
 START_TEST(fixed_memory_of_a_part) {
     struct bed bed = strewn(50, 9);
@@ -148,6 +173,126 @@ START_TEST(fixed_memory_of_a_part) {
 }
 END_TEST
 
+/* A resize function that fails once, when it is asked for the time `fails`. */
+struct supply {
+    uint32_t asked, fails;
+};
+
+static void *resize_but_once(void *context, void *block, size_t size) {
+    struct supply *supply = context;
+    return supply->asked++ == supply->fails ? NULL : realloc(block, size);
+}
+
+/* Memory that is refused once is an error, whenever that is; asked again, the part is that of memory in plenty. */
+START_TEST(memory_that_is_refused_once) {
+    struct bed bed = strewn(50, 9);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_work work = work_growing();
+    fibrad_row one = row_of(50), joined = row_of(50);
+    const fibrad_beam_rule rule = {.directions = 20};
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, &rule, &one), FIBRAD_OK);
+    uint32_t asked = 1;
+    for (uint32_t fails = 0; fails < asked; fails++) {
+        struct supply supply = {.fails = fails};
+        fibrad_row_part part = {.memory = {.resize = resize_but_once, .context = &supply}};
+        ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_E_MEMORY);
+        ck_assert_uint_eq(supply.asked, fails + 1);
+        ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined), FIBRAD_E_STATE);
+        ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part), FIBRAD_OK);
+        asked = supply.asked - 1;
+        ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined), FIBRAD_OK);
+        ck_assert(same_bits_with(&one, &joined, 0));
+        part.memory.size /= 2; /* less than it was made in */
+        ck_assert_int_eq(fibrad_beam_join(scene, &work, 1, &rule, &part, 1, &joined),
+                         part.count * 16 > part.memory.size ? FIBRAD_E_STATE : FIBRAD_OK);
+        free(part.memory.block);
+    }
+    ck_assert_uint_gt(asked, 3);
+    row_free(&one);
+    row_free(&joined);
+    work_free(&work);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A block of no bytes is too small, as one of some bytes may be; no block of some bytes is no block. */
+START_TEST(blocks_of_size_zero) {
+    struct bed bed = strewn(50, 9);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_work work = work_growing();
+    const fibrad_beam_rule rule = {.directions = 20};
+    fibrad_row row = row_of(50);
+    double byte;
+    for (int k = 0; k < 3; k++) { /* none yet, a block, and NULL that is said to have bytes */
+        const fibrad_memory memory = {.block = k == 1 ? &byte : NULL, .size = k == 2 ? 1 << 20 : 0};
+        fibrad_work little = {.memory = memory};
+        fibrad_row_part part = {.memory = memory};
+        fibrad_rows rows = {.memory = memory};
+        fibrad_row append = {.rows = &rows};
+        ck_assert_int_eq(fibrad_beam_row(scene, &little, 1, &rule, &row), k == 2 ? FIBRAD_E_ARGUMENT : FIBRAD_E_WORK);
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, &rule, &append),
+                         k == 2 ? FIBRAD_E_ARGUMENT : FIBRAD_E_CAPACITY);
+        ck_assert_int_eq(fibrad_beam_part(scene, &work, 1, &rule, 0, 20, &part),
+                         k == 2 ? FIBRAD_E_ARGUMENT : FIBRAD_E_CAPACITY);
+        if (k < 2) ck_assert(little.memory.needed > 0 && rows.memory.needed > 0 && part.memory.needed > 0);
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, &rule, &row), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_rows_add(&rows, &row, 0), k == 2 ? FIBRAD_E_ARGUMENT : FIBRAD_E_CAPACITY);
+    }
+    row_free(&row);
+    work_free(&work);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Arrays that are too small: the length that a row of a method says is the one with which the next call succeeds, and
+ * until then nothing is written. */
+static void ask_and_repeat(const fibrad_scene *scene, const fibrad_beam_rule *beam,
+                           const fibrad_exchange_rule *exchange) {
+    enum { MOST = 100 };
+    fibrad_work work = work_growing();
+    fibrad_rows rows = {0};
+    fibrad_row append = {.rows = &rows};
+    uint32_t col[MOST];
+    double f[MOST], body[1];
+    for (int k = 0; k < MOST; k++) col[k] = 7, f[k] = -7;
+    body[0] = -7;
+    fibrad_row row = {.col = col, .f = f, .body = body};
+    for (uint32_t tries = 0; tries < 2; tries++) {
+        const int expected = tries == 0 ? FIBRAD_E_CAPACITY : FIBRAD_OK;
+        ck_assert_int_eq(beam ? fibrad_beam_row(scene, &work, 0, beam, &row)
+                              : fibrad_exchange_row(scene, &work, 0, exchange, &row, NULL),
+                         expected);
+        if (tries == 1) ck_assert_uint_eq(row.length, row.capacity);
+        for (int k = tries == 0 ? 0 : (int)row.length; k < MOST; k++) ck_assert(col[k] == 7 && f[k] == -7);
+        if (tries == 0) ck_assert(body[0] == -7 && row.error == 0 && row.escaped == 0);
+        row.capacity = row.length;
+        ck_assert_int_eq(beam ? fibrad_beam_row(scene, &work, 0, beam, &append)
+                              : fibrad_exchange_row(scene, &work, 0, exchange, &append, NULL),
+                         tries < 1 ? FIBRAD_E_CAPACITY : expected);
+        if (tries == 0) rows.memory.size = rows.memory.needed, rows.memory.block = malloc(rows.memory.size);
+    }
+    free(rows.memory.block);
+    work_free(&work);
+}
+
+START_TEST(the_length_that_is_asked_for_suffices) {
+    struct bed bed = packing(100, .5, 1.5, .3, 4, false);
+    const fibrad_body floor = plane_at(2, 0, -100);
+    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = &floor, .bodies = 1});
+    double emissivity[100];
+    for (int i = 0; i < 100; i++) emissivity[i] = .2;
+    fibrad_exchange_rule exchange = {.emissivity = emissivity, .body_emissivity = &(double){.5}, .directions = 8};
+    ask_and_repeat(scene, &(fibrad_beam_rule){.directions = 8, .tolerance = 1e-3}, NULL);
+    ask_and_repeat(scene, NULL, &exchange);
+    for (int i = 1; i < 100; i += 2) emissivity[i] = 0; /* seen by the first leg, and no entries */
+    ask_and_repeat(scene, NULL, &exchange);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("row_parts");
     TCase *tcase = suite_case(suite, "row_parts");
@@ -155,6 +300,10 @@ int main(void) {
     tcase_add_test(tcase, among_walls);
     tcase_add_test(tcase, among_triangles);
     tcase_add_test(tcase, parts_that_do_not_fit);
+    tcase_add_test(tcase, parts_that_were_changed);
     tcase_add_test(tcase, fixed_memory_of_a_part);
+    tcase_add_test(tcase, memory_that_is_refused_once);
+    tcase_add_test(tcase, blocks_of_size_zero);
+    tcase_add_test(tcase, the_length_that_is_asked_for_suffices);
     return suite_run(suite);
 }

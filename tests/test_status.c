@@ -23,22 +23,24 @@ START_TEST(numbers_never_change) {
     ck_assert_int_eq(FIBRAD_E_CANCELLED, -12);
     ck_assert_int_eq(FIBRAD_E_UNSOLVABLE, -13);
     ck_assert_int_eq(FIBRAD_E_BACK, -14);
+    ck_assert_int_eq(FIBRAD_E_SUM, -15);
+    ck_assert_int_eq(FIBRAD_E_ENDLESS, -16);
 }
 END_TEST
 
 START_TEST(each_status_has_its_own_text) {
-    for (int a = FIBRAD_E_BACK; a <= FIBRAD_OK; a++) {
+    for (int a = FIBRAD_E_ENDLESS; a <= FIBRAD_OK; a++) {
         const char *text = fibrad_status_text(a);
         ck_assert_uint_gt(strlen(text), 0);
         ck_assert_int_ne(text[strlen(text) - 1], '.');
         ck_assert_str_ne(text, fibrad_status_text(1));
-        for (int b = FIBRAD_E_BACK; b < a; b++) ck_assert_str_ne(text, fibrad_status_text(b));
+        for (int b = FIBRAD_E_ENDLESS; b < a; b++) ck_assert_str_ne(text, fibrad_status_text(b));
     }
 }
 END_TEST
 
 START_TEST(other_numbers_have_a_text) {
-    static const int others[] = {1, 1000, -15, -1000, -2147483647 - 1, 2147483647};
+    static const int others[] = {1, 1000, -100, -1000, -2147483647 - 1, 2147483647};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         ck_assert_ptr_nonnull(fibrad_status_text(others[i]));
         ck_assert_str_eq(fibrad_status_text(others[i]), fibrad_status_text(1));

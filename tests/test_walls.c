@@ -13,7 +13,7 @@ static double uniform(double low, double high) { return low + (high - low) * (ra
 
 /* Walls by place. */
 struct container {
-    uint32_t planes; /* sum of 1 << place */
+    uint32_t planes, open; /* sums of 1 << place; of openings likewise */
     double at[6], cylinder[3];
 };
 
@@ -21,6 +21,8 @@ struct container {
 struct places {
     uint32_t count, place[WALLS];
     fibrad_body body[WALLS];
+    uint32_t openings;
+    fibrad_plane opening[6];
 };
 
 /* Orders in which walls are named; what is computed follows. */
@@ -32,6 +34,8 @@ static struct places bodies_of(const struct container *walls, const uint32_t ord
     struct places places = {0};
     for (int k = 0; k < WALLS; k++) {
         const uint32_t place = order[k];
+        if (walls->open >> place & 1)
+            places.opening[places.openings++] = (fibrad_plane){(int)place / 2, place % 2, walls->at[place]};
         if (!(place == 6 ? walls->cylinder[2] > 0 : walls->planes >> place & 1)) continue;
         places.place[places.count] = place;
         places.body[places.count++] = place == 6
@@ -47,9 +51,17 @@ static int init(fibrad_scene **scene, const struct bed *bed, uint32_t bodies, co
     return scene_try(scene, bed, &(fibrad_scene_config){.body = body, .bodies = bodies}, fault);
 }
 
+static fibrad_scene *scene_at(const struct bed *bed, const struct places *places, int isa) {
+    return scene_with(bed, &(fibrad_scene_config){.isa = isa,
+                                                  .body = places->body,
+                                                  .bodies = places->count,
+                                                  .opening = places->opening,
+                                                  .openings = places->openings});
+}
+
 static fibrad_scene *scene_in(const struct bed *bed, const struct container *walls, int isa) {
     const struct places places = bodies_of(walls, orders[1]);
-    return scene_with(bed, &(fibrad_scene_config){.isa = isa, .body = places.body, .bodies = places.count});
+    return scene_at(bed, &places, isa);
 }
 
 /* Turns the factors to bodies, in the order of their naming, into those to walls by place, 0 for what is not there. */
@@ -64,8 +76,7 @@ static void by_place(const struct container *walls, const uint32_t order[WALLS],
 static fibrad_row beam_in_order(const struct bed *bed, const struct container *walls, const uint32_t order[WALLS],
                                 uint32_t i, const fibrad_beam_rule *rule, int isa) {
     const struct places places = bodies_of(walls, order);
-    fibrad_scene *scene =
-        scene_with(bed, &(fibrad_scene_config){.isa = isa, .body = places.body, .bodies = places.count});
+    fibrad_scene *scene = scene_at(bed, &places, isa);
     fibrad_work work = work_growing();
     fibrad_row row = row_of(1024);
     ck_assert_int_eq(fibrad_beam_row(scene, &work, i, rule, &row), FIBRAD_OK);
@@ -167,7 +178,7 @@ START_TEST(bad_walls_are_refused) {
                {2, {x_low, can}},
                {2, {can, y_high}}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
-        fault = (fibrad_fault){9, 9, 9};
+        fault = (fibrad_fault){9, 9, 9, 0, 0};
         ck_assert_msg(init(&scene, &bed, bad[k].count, bad[k].body, &fault) == FIBRAD_E_ARGUMENT, "bodies %zu", k);
         ck_assert(fault.first == 3 && fault.second == 3); /* none of the spheres */
         ck_assert_int_eq(init(&scene, &bed, bad[k].count, bad[k].body, NULL), FIBRAD_E_ARGUMENT);
@@ -178,10 +189,11 @@ START_TEST(bad_walls_are_refused) {
         uint32_t whose;
     } beyond[] = {{plane_at(0, 0, 3), 1},
                   {plane_at(2, 1, 9.25), 2},
-                  {cylinder_at(5, 5, 2.5), 1},
-                  {plane_at(2, 0, -1e20), 3}}; /* too far for the digits of coordinates: none of the spheres */
+                  {plane_at(2, 0, -1e20), 3}, /* too far for the digits of coordinates: none of the spheres */
+                  {cylinder_at(5, 5, 2.5), 1}};
     for (size_t k = 0; k < 4; k++) {
-        fault = (fibrad_fault){9, 9, 9};
+        fault = (fibrad_fault){9, 9, 9, 0, 0};
+        bed.period[2] = k == 3 ? 20 : 0;
         ck_assert_int_eq(init(&scene, &bed, 1, &beyond[k].body, &fault), FIBRAD_E_ARGUMENT);
         ck_assert_uint_eq(fault.first, beyond[k].whose);
         ck_assert_uint_eq(fault.second, beyond[k].whose);
@@ -258,6 +270,127 @@ START_TEST(bodies_in_any_order) {
             }
             row_free(&first);
         }
+    bed_free(&bed);
+}
+END_TEST
+
+/* What meets an opening is what a plane in its place would get, to the bit, by every method; but for that nothing
+ * changes, and spheres do not reach beyond it. */
+START_TEST(openings_take_what_planes_would) {
+    struct bed bed = packing(80, .6, 1.4, .4, 3, false);
+    double top = -1e9;
+    for (uint32_t i = 0; i < bed.n; i++) worst_of(&top, bed.z[i] + bed.r[i]);
+    const struct container box = {.planes = 63, .at = {-3, 20, -4, 21, -5, top}},
+                           can = {.planes = 48, .at = {[4] = -5, [5] = top}, .cylinder = {5, 6, 15}};
+    fibrad_work work = work_growing();
+    fibrad_row rays = row_of(1024), open_rays = row_of(1024);
+    for (int k = 0; k < 4; k++) {
+        const struct container closed = k % 2 ? can : box;
+        struct container open = closed;
+        open.open = k < 2 ? 32 : k == 2 ? 58 : 48, open.planes &= ~open.open; /* one; several */
+        fibrad_scene *scene = scene_in(&bed, &closed, 0), *opened = scene_in(&bed, &open, 0);
+        for (uint32_t i = 0; i < bed.n; i += 9) {
+            double of_planes = 0, of_rays = 0;
+            fibrad_row row = beam(&bed, &closed, i, 101, i % 2 ? 64 : 0, 0);
+            fibrad_row open_row = beam(&bed, &open, i, 101, i % 2 ? 64 : 0, 0);
+            cast(scene, &closed, &work, i, 2000, &rays);
+            cast(opened, &open, &work, i, 2000, &open_rays);
+            for (uint32_t wall = 0; wall < 6; wall++) {
+                if (!(open.open >> wall & 1)) continue;
+                of_planes += row.body[wall], of_rays += rays.body[wall];
+                row.body[wall] = rays.body[wall] = 0;
+            }
+            ck_assert_double_eq_tol(open_row.escaped, row.escaped + of_planes, 1e-15);
+            ck_assert_double_eq_tol(open_rays.escaped, of_rays, 1e-15);
+            ck_assert(of_planes > 0);
+            row.escaped = open_row.escaped, rays.escaped = open_rays.escaped;
+            ck_assert(same_bits_with(&row, &open_row, WALLS) && same_bits_with(&rays, &open_rays, WALLS));
+            assert_closed(&open_row);
+            row_free(&row), row_free(&open_row);
+        }
+        free(scene), free(opened);
+    }
+    row_free(&rays), row_free(&open_rays);
+    work_free(&work);
+    bed_free(&bed);
+}
+END_TEST
+
+/* The status for walls and openings about a sphere at (5, 5, 5) of radius 1. */
+static int status_of(const struct container *walls, const double period[3], fibrad_fault *fault) {
+    struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
+    const struct places places = bodies_of(walls, orders[0]);
+    memcpy(bed.period, period, sizeof bed.period);
+    fibrad_scene *scene = NULL;
+    const int status = scene_try(
+        &scene, &bed,
+        &(fibrad_scene_config){
+            .body = places.body, .bodies = places.count, .opening = places.opening, .openings = places.openings},
+        fault);
+    free(scene);
+    bed_free(&bed);
+    return status;
+}
+
+/* Of all containers: those across several axes that are not closed, and cylinders without ends, are endless. */
+START_TEST(walls_without_an_end_are_refused) {
+    for (uint32_t periods = 0; periods < 8; periods++)
+        for (uint32_t sides = 0; sides < 64; sides++)
+            for (uint32_t open = 0; open < 64; open += 21)
+                for (int round = 0; round < 2; round++) {
+                    struct container walls = {.at = {0, 10, 0, 10, 0, 10}, .cylinder = {5, 5, round ? 9 : 0}};
+                    double period[3];
+                    bool closed = true, fits = true;
+                    uint32_t walled = 0;
+                    walls.planes = sides & ~open, walls.open = sides & open;
+                    for (uint32_t axis = 0; axis < 3; axis++) {
+                        const uint32_t both = sides >> 2 * axis & 3;
+                        period[axis] = periods >> axis & 1 ? 12 : 0;
+                        walled += both > 0;
+                        fits = fits && !(both > 0 && period[axis] > 0);
+                        fits = fits && !(round && axis < 2 && (both > 0 || period[axis] > 0));
+                        closed = closed && (both == 3 || period[axis] > 0 || (round && axis < 2));
+                    }
+                    const bool endless = (round || walled > 1) && !closed;
+                    const int expected = !fits ? FIBRAD_E_ARGUMENT : endless ? FIBRAD_E_ENDLESS : FIBRAD_OK;
+                    fibrad_fault fault = {9, 9, 9, 0, 0};
+                    ck_assert_msg(status_of(&walls, period, &fault) == expected, "sides %u, periods %u, round %d",
+                                  sides, periods, round);
+                    if (expected != FIBRAD_OK) ck_assert(fault.first == 1 && fault.second == 1);
+                }
+}
+END_TEST
+
+START_TEST(bad_openings_are_refused) {
+    const double none[3] = {0, 0, 0}, along_z[3] = {0, 0, 20};
+    fibrad_fault fault;
+    struct container walls = {.open = 32, .at = {[5] = 6}};
+    ck_assert_int_eq(status_of(&walls, none, &fault), FIBRAD_OK); /* touches */
+    walls.at[5] = 6 - 1e-15;
+    ck_assert_int_eq(status_of(&walls, none, &fault), FIBRAD_OK); /* but for rounding */
+    for (int k = 0; k < 2; k++) {
+        walls.at[5] = k == 0 ? 6 - 1e-9 : 3; /* beyond, and with the centre, too */
+        ck_assert_int_eq(status_of(&walls, none, &fault), FIBRAD_E_GEOMETRY);
+        ck_assert(fault.first == 0 && fault.second == 0);
+    }
+    ck_assert_int_eq(status_of(&(struct container){.open = 1, .at = {4 + 1e-9}}, none, &fault), FIBRAD_E_GEOMETRY);
+    ck_assert_int_eq(status_of(&(struct container){.open = 1, .at = {4}}, none, &fault), FIBRAD_OK);
+    const struct container bad[] = {{.open = 32, .at = {[5] = NAN}},
+                                    {.open = 32, .at = {[5] = INFINITY}},
+                                    {.open = 32, .planes = 32, .at = {[5] = 9}},
+                                    {.open = 32, .planes = 16, .at = {[4] = 9, [5] = 9}}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
+        ck_assert_int_eq(status_of(&bad[k], none, &fault), FIBRAD_E_ARGUMENT);
+    walls.at[5] = 9;
+    ck_assert_int_eq(status_of(&walls, along_z, &fault), FIBRAD_E_ARGUMENT);
+    struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
+    fibrad_scene *scene = NULL;
+    const fibrad_plane twice[] = {{2, 1, 9}, {2, 1, 9}}, axis = {3, 1, 9};
+    ck_assert_int_eq(scene_try(&scene, &bed, &(fibrad_scene_config){.openings = 1}, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(scene_try(&scene, &bed, &(fibrad_scene_config){.opening = twice, .openings = 2}, NULL),
+                     FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(scene_try(&scene, &bed, &(fibrad_scene_config){.opening = &axis, .openings = 1}, NULL),
+                     FIBRAD_E_ARGUMENT);
     bed_free(&bed);
 }
 END_TEST
@@ -341,11 +474,12 @@ START_TEST(a_ray_leaves_through_the_first_wall) {
                                       can10,
                                       {.planes = 1},
                                       {.planes = 48, .at = {[5] = 10}},
-                                      {.cylinder = {5, 5, 5}},
-                                      {.planes = 37, .at = {[5] = 10}}};
+                                      {.planes = 32, .at = {[5] = 10}},
+                                      {.cylinder = {5, 5, 5}}};
     struct bed bed = bed_of(1, (const double[][4]){{5, 5, 5, 1}});
     srand(1);
     for (size_t k = 0; k < sizeof walls / sizeof *walls; k++) {
+        bed.period[2] = k == 5 ? 20 : 0;
         fibrad_scene *scene = scene_in(&bed, &walls[k], 0);
         for (int ray = 0; ray < 20000; ray++) {
             double o[3], w[3], distance, normal[3], on[3];
@@ -483,14 +617,13 @@ START_TEST(sphere_in_a_cylinder) {
         double phi = uniform(0, 2 * PI), bottom = to_disc(R, s, z), top = to_disc(R, s, h - z);
         for (uint32_t kind = 0; kind < 3; kind++) { /* closed, open above, open */
             struct container can = {.planes = kind == 0 ? 48 : kind == 1 ? 16 : 0, .at = {[4] = 2, [5] = 2 + h}};
+            can.open = 48 & ~can.planes;
             can.cylinder[0] = 3, can.cylinder[1] = -4, can.cylinder[2] = R;
             fibrad_row row = lone(3 + s * cos(phi), -4 + s * sin(phi), 2 + z, 1, &can, 987);
-            double low = row.body[4], high = kind == 0 ? row.body[5] : row.escaped;
-            if (kind < 2) {
-                ck_assert_double_eq_tol(low, bottom, 2e-5);
-                ck_assert_double_eq_tol(high, kind == 0 ? top : 0, 2e-5);
-            }
-            ck_assert_double_eq_tol(row.body[6], 1 - (kind < 2 ? bottom : 0) - (kind < 1 ? top : 0), 2e-5);
+            if (kind == 0) ck_assert_double_eq_tol(row.body[5], top, 2e-5);
+            if (kind < 2) ck_assert_double_eq_tol(row.body[4], bottom, 2e-5);
+            ck_assert_double_eq_tol(row.escaped, kind == 0 ? 0 : kind == 1 ? top : bottom + top, 2e-5);
+            ck_assert_double_eq_tol(row.body[6], 1 - bottom - top, 2e-5);
             assert_closed(&row);
             row_free(&row);
         }
@@ -507,8 +640,7 @@ START_TEST(walls_take_what_escapes) {
             double c = axis == 0 ? bed.x[i] : axis == 1 ? bed.y[i] : bed.z[i];
             least_of(&low[axis], c - .5), worst_of(&high[axis], c + bed.r[i]);
         }
-    struct container walls[4] = {
-        {.planes = 63}, {.planes = 48}, {.planes = 48}, {.planes = 29 /* two sides missing */}};
+    struct container walls[4] = {{.planes = 63}, {.planes = 48}, {.planes = 48}, {.planes = 29, .open = 34}};
     for (int k = 0; k < 4; k++)
         for (int axis = 0; axis < 3; axis++) walls[k].at[2 * axis] = low[axis], walls[k].at[2 * axis + 1] = high[axis];
     walls[2].cylinder[0] = (low[0] + high[0]) / 2, walls[2].cylinder[1] = (low[1] + high[1]) / 2;
@@ -571,7 +703,8 @@ END_TEST
 
 START_TEST(same_bits_in_every_instruction_set) {
     struct bed bed = packing(60, .6, 1.4, .3, 3, false);
-    struct container walls[2] = {{.planes = 63, .at = {-3, 40, -3, 40, -3, 40}}, {.planes = 16, .at = {[4] = -3}}};
+    struct container walls[2] = {{.planes = 63, .at = {-3, 40, -3, 40, -3, 40}},
+                                 {.planes = 16, .open = 32, .at = {-3, 40, -3, 40, -3, 40}}};
     walls[1].cylinder[0] = walls[1].cylinder[1] = 5, walls[1].cylinder[2] = 30;
     int isa[ISAS_MOST];
     const int sets = isas_there(isa);
@@ -671,10 +804,39 @@ START_TEST(closing_rows) {
 }
 END_TEST
 
-static const char *const misspelt[] = {
-    "",      "wall",      "zmin,",     "zmin=",           "zmin=a",           "zmin:3",          "zmin,zmin",
-    ",zmin", "cylinder",  "cylinder:", "cylinder:1,2",    "cylinder:1,2,0",   "cylinder:1,2,-1", "zmax=inf",
-    "autos", "zmin zmax", "box=3",     "cylinder:1,2,3,", "cylinder:1,2,3 4", "cylinder:1;2,3",  "zmin=1=2"};
+static const char *const misspelt[] = {"",
+                                       "wall",
+                                       "zmin,",
+                                       "zmin=",
+                                       "zmin=a",
+                                       "zmin:3",
+                                       "zmin,zmin",
+                                       ",zmin",
+                                       "cylinder",
+                                       "cylinder:",
+                                       "cylinder:1,2",
+                                       "cylinder:1,2,0",
+                                       "cylinder:1,2,-1",
+                                       "zmax=inf",
+                                       "autos",
+                                       "zmin zmax",
+                                       "box=3",
+                                       "cylinder:1,2,3,",
+                                       "cylinder:1,2,3 4",
+                                       "cylinder:1;2,3",
+                                       "zmin=1=2",
+                                       "zmax=opened",
+                                       "zmax=3:",
+                                       "zmax=3:opens",
+                                       "zmax:open",
+                                       "open",
+                                       "box:open",
+                                       "box:open=top",
+                                       "box:zmax",
+                                       "zmax=open,zmax",
+                                       "zmax,zmax=open",
+                                       "box:open=zmax:open=zmax",
+                                       "zmax=open:3"};
 
 START_TEST(misspelt_option) {
     struct wall_options options = {0};
@@ -736,6 +898,29 @@ START_TEST(option_places_walls) {
 }
 END_TEST
 
+/* Openings are no walls; they stand at the end of the spheres, whatever the box of the file, or where they are put. */
+START_TEST(option_places_openings) {
+    struct bed bed = bed_of(2, (const double[][4]){{1, 2, 3, 1}, {4, 6, 8, 2}});
+    struct wall_options options = {0};
+    struct walls walls;
+    for (int axis = 0; axis < 3; axis++) bed.low[axis] = -9, bed.high[axis] = 99;
+    ck_assert_int_eq(walls_option("ymax=20:open,box:open=xmin:open=zmax", &options), 0);
+    ck_assert_int_eq(walls_of(&options, &bed, "bed", &walls), 0);
+    ck_assert_uint_eq(walls.count, 3);
+    ck_assert_uint_eq(walls.openings, 3);
+    const fibrad_plane should[] = {{1, 1, 20}, {0, 0, 0}, {2, 1, 10}};
+    for (int k = 0; k < 3; k++) {
+        ck_assert(walls.opening[k].axis == should[k].axis && walls.opening[k].upper == should[k].upper);
+        ck_assert(walls.opening[k].at == should[k].at);
+    }
+    ck_assert(!walls_closed(&walls, &bed));
+    for (uint32_t k = 0; k < walls.count; k++) ck_assert(!wall_endless(&walls, &bed, &walls.body[k]));
+    bed.period[0] = 200;
+    ck_assert_int_eq(walls_of(&options, &bed, "bed", &walls), 2); /* across a periodic axis */
+    bed_free(&bed);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("walls");
     TCase *tests = suite_case(suite, "walls");
@@ -743,6 +928,9 @@ int main(void) {
     tcase_add_test(tests, what_is_not_supported);
     tcase_add_test(tests, rows_need_room_for_bodies);
     tcase_add_test(tests, bodies_in_any_order);
+    tcase_add_test(tests, openings_take_what_planes_would);
+    tcase_add_test(tests, walls_without_an_end_are_refused);
+    tcase_add_test(tests, bad_openings_are_refused);
     tcase_add_test(tests, areas_of_walls);
     tcase_add_test(tests, a_ray_leaves_through_the_first_wall);
     tcase_add_test(tests, half_of_a_sphere_sees_a_plane);
@@ -757,5 +945,6 @@ int main(void) {
     tcase_add_test(tests, closing_rows);
     tcase_add_loop_test(tests, misspelt_option, 0, (int)(sizeof misspelt / sizeof *misspelt));
     tcase_add_test(tests, option_places_walls);
+    tcase_add_test(tests, option_places_openings);
     return suite_run(suite);
 }

@@ -50,12 +50,62 @@ int bed_add(struct bed *bed, const struct bed_sphere *sphere) {
     return STATUS_OK;
 }
 
-double bed_end(const struct bed *bed, int axis, bool upper) {
-    if (bed->low[axis] < bed->high[axis]) return upper ? bed->high[axis] : bed->low[axis];
-    const double *c = axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z;
+static const double *centres(const struct bed *bed, int axis) {
+    return axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z;
+}
+
+double bed_reach(const struct bed *bed, int axis, bool upper) {
+    const double *c = centres(bed, axis);
     double end = upper ? -INFINITY : INFINITY;
     for (uint32_t i = 0; i < bed->n; ++i) end = upper ? fmax(end, c[i] + bed->r[i]) : fmin(end, c[i] - bed->r[i]);
     return end;
+}
+
+int bed_keep(struct bed *bed, const char *const *text, size_t n) {
+    size_t room = 1;
+    for (size_t k = 0; k < n; ++k) room += strlen(text[k]) + 4; /* a blank, or `nan` where there is nothing */
+    bool good = true;
+    if (bed->kept_used + room > bed->kept_room) {
+        const size_t wanted = 2 * (bed->kept_used + room);
+        bed->kept = resized(bed->kept, wanted, &good);
+        if (good) bed->kept_room = wanted;
+    }
+    if (bed->n > bed->kept_capacity) {
+        bed->kept_at = resized(bed->kept_at, bed->capacity * sizeof *bed->kept_at, &good);
+        if (good) bed->kept_capacity = bed->capacity;
+    }
+    if (!good) return message_memory();
+    bed->kept_at[bed->n - 1] = bed->kept_used;
+    char *to = bed->kept + bed->kept_used;
+    for (size_t k = 0; k < n; ++k) {
+        if (k > 0) *to++ = ' ';
+        for (const char *c = text[k][0] ? text[k] : "nan"; *c; ++c) *to++ = (char)(*c == ' ' || *c == '\t' ? '_' : *c);
+    }
+    *to++ = 0;
+    bed->kept_used = (size_t)(to - bed->kept);
+    return STATUS_OK;
+}
+
+double bed_end(const struct bed *bed, int axis, bool upper) {
+    if (bed->low[axis] < bed->high[axis]) return upper ? bed->high[axis] : bed->low[axis];
+    return bed_reach(bed, axis, upper);
+}
+
+/* How deep an end of a box lies in a sphere that it is one about centres: no real wall is pressed in so far. Centres
+ * may lie beyond it by rounding alone. */
+#define SHRUNK_DEPTH  0.5 /* of a radius */
+#define SHRUNK_BEYOND 1.001
+
+double bed_wall_end(const struct bed *bed, int axis, bool upper, bool *moved) {
+    const double end = bed_end(bed, axis, upper), *c = centres(bed, axis);
+    double deepest = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double depth = bed->r[i] + (upper ? c[i] - end : end - c[i]);
+        deepest = fmax(deepest, depth / bed->r[i]);
+    }
+    if (!(deepest > SHRUNK_DEPTH && deepest < SHRUNK_BEYOND)) return end;
+    *moved = true;
+    return bed_reach(bed, axis, upper);
 }
 
 int64_t bed_name(const struct bed *bed, uint32_t i) { return bed->ids ? bed->id[i] : (int64_t)i; }
@@ -130,6 +180,7 @@ int bed_sort(struct bed *bed, const char *file) {
         rearrange(bed->line, sizeof *bed->line, name, bed->n, room);
         rearrange(bed->id, sizeof *bed->id, name, bed->n, room);
         rearrange(bed->extra, bed->extras * sizeof(double), name, bed->n, room);
+        if (bed->kept_names) rearrange(bed->kept_at, sizeof *bed->kept_at, name, bed->n, room);
     }
     free(name);
     free(room);
@@ -138,7 +189,9 @@ int bed_sort(struct bed *bed, const char *file) {
 
 void bed_clear(struct bed *bed) {
     bed->n = 0;
-    bed->units[0] = 0;
+    bed->kept_names = NULL;
+    bed->kept_used = 0;
+    memset(bed->units, 0, sizeof bed->units); /* all of it, as it is written into .npz */
     bed->timestep = -1;
     for (int axis = 0; axis < 3; ++axis) bed->low[axis] = bed->high[axis] = bed->period[axis] = 0;
 }
@@ -151,5 +204,7 @@ void bed_free(struct bed *bed) {
     free(bed->line);
     free(bed->id);
     free(bed->extra);
+    free(bed->kept);
+    free(bed->kept_at);
     *bed = (struct bed){0};
 }

@@ -14,10 +14,15 @@ struct bed {
     int64_t *id;           /* [n] ascending, from 0 on, no two alike */
     double *extra;         /* [n][extras] further columns asked for by name */
     size_t extras;
+    const char *kept_names; /* of further columns that are kept as text, parted by blanks, the reader's; NULL: none */
+    char *kept;             /* [kept_used] their texts, a 0 behind those of each sphere */
+    size_t *kept_at;        /* [n] where those of a sphere begin */
+    size_t kept_used, kept_room;
+    uint32_t kept_capacity;
     double low[3], high[3]; /* the file's box; all 0 if it has none */
     double period[3];       /* length of the periodic box per axis; 0: the axis is open */
     char units[16];         /* as the file calls them, such as "cgs"; "": it says nothing */
-    int64_t frame;          /* which one of the file, from 0 */
+    int64_t frame;          /* which one of the file, or of all frames of a series of files, from 0 */
     int64_t timestep;       /* as the file says; -1: it says nothing */
 };
 
@@ -34,8 +39,19 @@ void bed_init(struct bed *bed);
 /* Adds a sphere; its extra columns are for the caller to fill in. Status 0 or STATUS_MEMORY. */
 int bed_add(struct bed *bed, const struct bed_sphere *sphere);
 
+/* Keeps the columns' texts of the last sphere, those of the bed's kept_names. Blanks within them become _. Status 0 or
+ * STATUS_MEMORY. */
+int bed_keep(struct bed *bed, const char *const *text, size_t n);
+
 /* The lower or upper end of a bed along an axis: that of the file's box, or else of the spheres. */
 double bed_end(const struct bed *bed, int axis, bool upper);
+
+/* Where a wall stands there: at the end of the file's box; at that of the spheres where the box is one about centres,
+ * as LAMMPS shrinks it, which sets *moved. */
+double bed_wall_end(const struct bed *bed, int axis, bool upper, bool *moved);
+
+/* How far its spheres reach there. */
+double bed_reach(const struct bed *bed, int axis, bool upper);
 
 /* The name of a sphere: its id, or its position from 0 on. */
 int64_t bed_name(const struct bed *bed, uint32_t i);

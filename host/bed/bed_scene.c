@@ -13,7 +13,19 @@ fibrad_scene_config bed_scene(const struct bed *bed, const struct walls *walls) 
     return (fibrad_scene_config){.period = {bed->period[0], bed->period[1], bed->period[2]},
                                  .body = walls ? walls->body : NULL,
                                  .bodies = walls ? walls->count : 0,
+                                 .opening = walls ? walls->opening : NULL,
+                                 .openings = walls ? walls->openings : 0,
                                  .triangles = walls && walls->meshes ? &walls->meshes->triangles : NULL};
+}
+
+/* A sphere that cannot be where it is. */
+static int bed_misplaced(const struct bed *bed, const char *file, uint32_t i) {
+    bool image = false;
+    for (int axis = 0; axis < 3; ++axis) image = image || (bed->period[axis] > 0 && bed->period[axis] < 2 * bed->r[i]);
+    return message_at(STATUS_INPUT, file, bed->line[i],
+                      image ? "sphere %lld reaches its own image in the periodic box"
+                            : "sphere %lld reaches beyond an open side; give a place beyond it, or none",
+                      (long long)bed_name(bed, i));
 }
 
 /* Two spheres that cannot be there both; the one that comes later in the file is at fault. */
@@ -21,9 +33,7 @@ static int bed_overlap(const struct bed *bed, const char *file, uint32_t first, 
     const uint32_t later = bed->line[first] < bed->line[second] ? second : first;
     const uint32_t other = later == first ? second : first;
     char place[BED_PLACE];
-    if (later == other)
-        return message_at(STATUS_INPUT, file, bed->line[later], "sphere %lld reaches its own image in the periodic box",
-                          (long long)bed_name(bed, later));
+    if (later == other) return bed_misplaced(bed, file, later);
     const bool equal =
         bed->x[first] == bed->x[second] && bed->y[first] == bed->y[second] && bed->z[first] == bed->z[second];
     return message_at(STATUS_INPUT, file, bed->line[later],

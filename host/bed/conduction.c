@@ -38,7 +38,7 @@ struct core {
     double low[3], high[3], volume;
 };
 
-static int find_core(const struct bed *bed, const char *file, double diameter, struct core *core) {
+static int find_core(const struct bed *bed, int wanted, const char *file, double diameter, struct core *core) {
     const double *at[3] = {bed->x, bed->y, bed->z};
     core->volume = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -48,16 +48,19 @@ static int find_core(const struct bed *bed, const char *file, double diameter, s
             core->volume *= bed->period[axis];
             continue;
         }
-        double low = INFINITY, high = -INFINITY;
+        double low = INFINITY, high = -INFINITY, lowest = INFINITY, highest = -INFINITY;
         for (uint32_t i = 0; i < bed->n; ++i) {
-            low = fmin(low, at[axis][i]);
-            high = fmax(high, at[axis][i]);
+            low = fmin(low, at[axis][i]), lowest = fmin(lowest, at[axis][i] - bed->r[i]);
+            high = fmax(high, at[axis][i]), highest = fmax(highest, at[axis][i] + bed->r[i]);
         }
         core->low[axis] = low + CONDUCTION_MARGIN * diameter;
         core->high[axis] = high - CONDUCTION_MARGIN * diameter;
-        if (!(core->high[axis] > core->low[axis]))
-            return message_at(STATUS_INPUT, file, 0, "too thin along %c, an open axis: %g mean diameters at the least",
-                              'x' + axis, 2 * CONDUCTION_MARGIN);
+        const bool thin = !(core->high[axis] > core->low[axis]);
+        if (thin && wanted >= 0 && wanted != axis) core->low[axis] = lowest, core->high[axis] = highest;
+        if (thin && (wanted < 0 || wanted == axis))
+            return message_at(STATUS_INPUT, file, 0,
+                              "too thin along %c, an open axis: %g mean diameters at the least%s", 'x' + axis,
+                              2 * CONDUCTION_MARGIN, wanted < 0 ? "; --axis is for F_E along another one" : "");
         core->volume *= core->high[axis] - core->low[axis];
     }
     return STATUS_OK;
@@ -127,12 +130,14 @@ static int find_growth(const struct bed *bed, struct conduction *result) {
 }
 
 /* The volume that belongs to the emitters is that of the spheres themselves over the solid fraction of the core. */
-int conduction_emitters(const struct bed *bed, const char *file, unsigned char *emits, struct conduction *result) {
+int conduction_emitters(const struct bed *bed, int axis, const char *file, unsigned char *emits,
+                        struct conduction *result) {
     struct core core;
     double solid = 0, emitting = 0;
     *result = (struct conduction){.temperature = NAN};
+    for (int a = 0; a < 3; ++a) result->steady[a] = result->steady_error[a] = NAN;
     for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
-    const int status = find_core(bed, file, result->diameter, &core);
+    const int status = find_core(bed, axis, file, result->diameter, &core);
     if (status) return status;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double volume = 4 * PI / 3 * pow(bed->r[i], 3);

@@ -28,10 +28,11 @@ struct conduction {
     uint32_t emitters;
     uint64_t paths; /* from each emitter */
     uint64_t rays;
-    double factor[3], error[3]; /* F_E per axis and its standard error */
-    int axis;                   /* the only one wanted; -1: all three */
-    double temperature;         /* [K]; NaN: k is not known */
-    double k[3], k_error[3];    /* [W/(m K)] */
+    double factor[3], error[3];        /* F_E per axis and its standard error */
+    double steady[3], steady_error[3]; /* F_E between plates, if the caller knows it; NaN */
+    int axis;                          /* the only one wanted; -1: all three */
+    double temperature;                /* [K]; NaN: k is not known */
+    double k[3], k_error[3];           /* [W/(m K)] */
     double growth[3]; /* of F_E for each factor e in the length of flights allowed, through slabs without spheres */
     double concentration[3]; /* of the variance in few groups of paths, sum of squares over squared sum, beyond what
                                 sizes make */
@@ -40,9 +41,11 @@ struct conduction {
     double seconds;
 };
 
-/* Marks the spheres that emit [n]; sets volume, solid_fraction, diameter, emitters and growth. `file` is the bed's name
- * in messages. Status 0; STATUS_INPUT if an open axis is too short; STATUS_MEMORY. */
-int conduction_emitters(const struct bed *bed, const char *file, unsigned char *emits, struct conduction *result);
+/* Marks the spheres that emit [n], for F_E along `axis`, or all three (-1); across one axis alone a bed may be thin,
+ * and then all of it emits. Sets volume, solid_fraction, diameter, emitters and growth. `file` is the bed's name in
+ * messages. Status 0; STATUS_INPUT if an open axis is too short; STATUS_MEMORY. */
+int conduction_emitters(const struct bed *bed, int axis, const char *file, unsigned char *emits,
+                        struct conduction *result);
 
 /* Follows their paths; sets the rest. Status of the library. */
 int conduction_follow(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,

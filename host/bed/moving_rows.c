@@ -15,7 +15,7 @@ enum { KEPT, DUE, DONE };
 static int moving_scene(const struct bed *bed, fibrad_scene **scene, void **block) {
     const fibrad_scene_config config = bed_scene(bed, NULL);
     const fibrad_spheres spheres = bed_spheres(bed);
-    fibrad_fault fault = {bed->n, bed->n, UINT32_MAX};
+    fibrad_fault fault = {bed->n, bed->n, UINT32_MAX, 0, 0};
     return bed_status(bed, "bed", fibrad_heap_scene(scene, block, &config, &spheres, &fault), &fault);
 }
 

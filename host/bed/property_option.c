@@ -144,8 +144,7 @@ static int take_wall_value(const char *option, const char **text, const char *wo
     const size_t length = strcspn(*text, "=,");
     const bool named = (*text)[length] == '=';
     *wall = named ? number_of_wall(walls, *text, length) : -1;
-    if (named && *wall < 0)
-        return message(STATUS_USAGE, "%s: there is no wall %.*s", option, length > 40 ? 40 : (int)length, *text);
+    if (named && *wall < 0) return wall_unknown(option, walls, *text, length);
     const char *number = named ? *text + length + 1 : *text;
     const bool is_word = word && strcspn(number, ",") == strlen(word) && strncmp(number, word, strlen(word)) == 0;
     char *end = (char *)number + (is_word ? strlen(word) : 0);
@@ -170,8 +169,7 @@ static int take_wall_table(const char *option, const char **text, double low, do
     const size_t length = strcspn(*text, "=,");
     if ((*text)[length] != '=') return message(STATUS_USAGE, "%s: a table needs its wall: zmin=%.60s", option, *text);
     *wall = number_of_wall(walls, *text, length);
-    if (*wall < 0)
-        return message(STATUS_USAGE, "%s: there is no wall %.*s", option, length > 40 ? 40 : (int)length, *text);
+    if (*wall < 0) return wall_unknown(option, walls, *text, length);
     struct curve *curve = &tables->curve[*wall], *column = &tables->column[*wall];
     if (curve->n > 0 || column->n > 0)
         return message(STATUS_USAGE, "%s: %s has two values", option, wall_name(walls, (uint32_t)*wall));

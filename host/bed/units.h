@@ -11,6 +11,9 @@
  * Source: LAMMPS, command `units`. */
 bool unit_of_length(const char *name, double *metres);
 
+/* Whether a unit that a file says is this one: K, C or another. Those of temperature have several names. */
+bool unit_is(const char *said, const char *unit);
+
 #define KELVIN_OF_0_CELSIUS 273.15
 
 /* A row of a table of options, without braces. */

@@ -7,8 +7,7 @@
 
 #include "cli/message.h"
 #include "cli/options.h"
-
-enum { PLANES = 6 };
+#include "text/text.h"
 
 static const char *const plane_names[PLANES] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
 
@@ -23,8 +22,12 @@ static bool is_mesh(const fibrad_body *wall) { return wall->kind == FIBRAD_BODY_
 const char *wall_name(const struct walls *walls, uint32_t k) {
     const fibrad_body *wall = &walls->body[k];
     if (is_mesh(wall)) return walls->meshes->name[k];
-    return is_cylinder(wall) ? "cylinder" : plane_names[2 * wall->plane.axis + wall->plane.upper];
+    return is_cylinder(wall) ? "cylinder" : plane_name(&wall->plane);
 }
+
+static int plane_number(const fibrad_plane *plane) { return 2 * plane->axis + plane->upper; }
+
+const char *plane_name(const fibrad_plane *plane) { return plane_names[plane_number(plane)]; }
 
 static bool is_word(const char *word, size_t length, const char *name) {
     return strlen(name) == length && strncmp(word, name, length) == 0;
@@ -40,6 +43,18 @@ static const fibrad_body *wall_named(const struct walls *walls, const char *name
     return NULL;
 }
 
+/* The plane of a side, be it a wall or an opening; NULL: there is none. */
+static const fibrad_plane *plane_of_side(const struct walls *walls, int number) {
+    for (uint32_t k = 0; k < walls->count; ++k)
+        if (walls->body[k].kind == FIBRAD_BODY_PLANE && plane_number(&walls->body[k].plane) == number)
+            return &walls->body[k].plane;
+    for (uint32_t k = 0; k < walls->openings; ++k)
+        if (plane_number(&walls->opening[k]) == number) return &walls->opening[k];
+    return NULL;
+}
+
+static int named_twice(const char *name) { return message(STATUS_USAGE, "--wall: %s is named twice", name); }
+
 static int add_wall(struct wall_options *options, fibrad_body wall, bool placed) {
     struct walls *walls = &options->walls;
     const uint32_t k = walls->count;
@@ -47,8 +62,15 @@ static int add_wall(struct wall_options *options, fibrad_body wall, bool placed)
     options->placed[k] = placed;
     walls->body[k] = wall;
     const char *name = wall_name(walls, k);
-    if (wall_named(walls, name)) return message(STATUS_USAGE, "--wall: %s is named twice", name);
+    if (wall_named(walls, name) || (wall.kind == FIBRAD_BODY_PLANE && plane_of_side(walls, plane_number(&wall.plane))))
+        return named_twice(name);
     ++walls->count;
+    return STATUS_OK;
+}
+
+static int add_opening(struct walls *walls, int number, double at) {
+    if (plane_of_side(walls, number)) return named_twice(plane_names[number]);
+    walls->opening[walls->openings++] = (fibrad_plane){number / 2, number % 2, at};
     return STATUS_OK;
 }
 
@@ -70,19 +92,50 @@ static int take_cylinder(const char **text, struct wall_options *options) {
     return add_wall(options, (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {c[0], c[1], c[2]}}, true);
 }
 
+/* Whether *text begins so, and then moves behind it. */
+static bool take_text(const char **text, const char *begin) {
+    const bool found = begins_with(*text, begin);
+    if (found) *text += strlen(begin);
+    return found;
+}
+
+/* The number of the side of a name; PLANES: it is none. */
+static int side_number(const char *word, size_t length) {
+    int k = 0;
+    while (k < PLANES && !is_word(word, length, plane_names[k])) ++k;
+    return k;
+}
+
 static int take_plane(const char *word, size_t length, const char **text, struct wall_options *options) {
-    for (int k = 0; k < PLANES; ++k) {
-        if (!is_word(word, length, plane_names[k])) continue;
-        double at = 0;
-        const bool placed = **text == '=';
-        if (placed) ++*text;
+    const int k = side_number(word, length);
+    double at = 0;
+    if (k < PLANES) {
+        if (take_text(text, "=open")) return add_opening(&options->walls, k, NAN);
+        const bool placed = take_text(text, "=");
         if (placed && !take_number(text, &at))
-            return message(STATUS_USAGE, "--wall: %s= needs a number", plane_names[k]);
+            return message(STATUS_USAGE, "--wall: %s= needs a number, or the word open", plane_names[k]);
+        if (placed && take_text(text, ":open")) return add_opening(&options->walls, k, at);
         return add_wall(options, plane_at(k, at), placed);
     }
     return message(STATUS_USAGE,
                    "--wall: '%.40s' is none of auto, box, xmin ... zmax, cylinder:X,Y,R, mesh:FILE and NAME=mesh:FILE",
                    word);
+}
+
+/* The word box, and which of its sides are open. */
+static int take_box(const char **text, struct wall_options *options) {
+    int status = STATUS_OK;
+    options->box = true;
+    while (!status && take_text(text, ":")) {
+        const bool open = take_text(text, "open=");
+        const size_t length = strcspn(*text, ",:");
+        const int k = side_number(*text, length);
+        if (!open || k == PLANES)
+            return message(STATUS_USAGE, "--wall: a box may have open sides: box:open=zmax, not '%.40s'", *text);
+        *text += length;
+        status = add_opening(&options->walls, k, NAN);
+    }
+    return status;
 }
 
 /* One of the words behind the file of a mesh. */
@@ -114,7 +167,7 @@ static int add_mesh(struct wall_options *options, const struct mesh_file *file) 
 
 /* Names that have a meaning of their own in options and outputs. */
 static bool is_reserved(const char *name) {
-    static const char *const others[] = {"auto", "box", "mesh", "cylinder", "surroundings", "beyond"};
+    static const char *const others[] = {"auto", "box", "open", "mesh", "cylinder", "surroundings", "beyond"};
     bool found = false;
     for (int k = 0; k < PLANES; ++k) found = found || strcmp(name, plane_names[k]) == 0;
     for (size_t k = 0; k < sizeof others / sizeof *others; ++k) found = found || strcmp(name, others[k]) == 0;
@@ -169,7 +222,7 @@ int walls_option(const char *text, struct wall_options *options) {
         } else if (is_word(word, length, "auto")) {
             options->automatic = true;
         } else if (is_word(word, length, "box")) {
-            options->box = true;
+            status = take_box(&text, options);
         } else {
             status = take_plane(word, length, &text, options);
         }
@@ -184,7 +237,7 @@ static int spell_out(struct wall_options *options, const struct bed *bed, const 
         return message_at(STATUS_USAGE, file, 0, "--wall auto needs a box in the file; --wall box takes the spheres'");
     for (int k = 0; k < PLANES; ++k) {
         const bool wanted = options->box || (options->automatic && !(bed->period[k / 2] > 0));
-        if (wanted && !wall_named(&options->walls, plane_names[k])) add_wall(options, plane_at(k, 0), false);
+        if (wanted && !plane_of_side(&options->walls, k)) add_wall(options, plane_at(k, 0), false);
     }
     return STATUS_OK;
 }
@@ -192,14 +245,14 @@ static int spell_out(struct wall_options *options, const struct bed *bed, const 
 static int check_axes(const struct walls *walls, const struct bed *bed) {
     const bool cylinder = wall_named(walls, "cylinder");
     for (int k = 0; k < PLANES; ++k) {
-        const fibrad_body *wall = wall_named(walls, plane_names[k]), *lower = NULL;
+        const fibrad_plane *wall = plane_of_side(walls, k), *lower = NULL;
         if (!wall) continue;
         if (bed->period[k / 2] > 0)
             return message(STATUS_USAGE, "--wall: %s stands across a periodic axis", plane_names[k]);
         if (cylinder && k / 2 < 2)
             return message(STATUS_USAGE, "--wall: %s and a cylinder do not go together", plane_names[k]);
-        if (k % 2) lower = wall_named(walls, plane_names[k - 1]);
-        if (lower && !(lower->plane.at < wall->plane.at))
+        if (k % 2) lower = plane_of_side(walls, k - 1);
+        if (lower && !(lower->at < wall->at))
             return message(STATUS_USAGE, "--wall: %s does not lie below %s", plane_names[k - 1], plane_names[k]);
     }
     if (cylinder && (bed->period[0] > 0 || bed->period[1] > 0))
@@ -207,21 +260,50 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
     return STATUS_OK;
 }
 
-/* Whether nothing can escape along an axis. */
+/* Whether no wall goes on for ever along an axis. */
 static bool is_closed(const struct walls *walls, const struct bed *bed, int axis) {
-    const bool both = wall_named(walls, plane_names[2 * axis]) && wall_named(walls, plane_names[2 * axis + 1]);
+    const bool both = plane_of_side(walls, 2 * axis) && plane_of_side(walls, 2 * axis + 1);
     return bed->period[axis] > 0 || both || (axis < 2 && wall_named(walls, "cylinder"));
 }
 
 bool walls_closed(const struct walls *walls, const struct bed *bed) {
     if (walls->meshes && walls->meshes->enclosing > 0) return true;
-    return is_closed(walls, bed, 0) && is_closed(walls, bed, 1) && is_closed(walls, bed, 2);
+    return walls->openings == 0 && is_closed(walls, bed, 0) && is_closed(walls, bed, 1) && is_closed(walls, bed, 2);
 }
 
 bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_body *wall) {
     for (int axis = 0; axis < 3 && !is_mesh(wall); ++axis)
         if (!(is_cylinder(wall) ? axis < 2 : axis == wall->plane.axis) && !is_closed(walls, bed, axis)) return true;
     return false;
+}
+
+int walls_refuse_endless(const struct walls *walls, const struct bed *bed) {
+    char missing[PLANES * sizeof "xmin=open,"] = "";
+    const char *first = "";
+    for (int k = 0; k < PLANES; ++k) {
+        if (is_closed(walls, bed, k / 2) || plane_of_side(walls, k)) continue;
+        if (missing[0])
+            strcat(missing, ",");
+        else
+            first = plane_names[k];
+        strcat(strcat(missing, plane_names[k]), "=open");
+    }
+    return message(STATUS_USAGE,
+                   "--wall: these walls go on for ever, and next to nothing would leave the bed; where it is open, add "
+                   "%s (%s=H:open, if the walls end at H)",
+                   missing, first);
+}
+
+int wall_unknown(const char *option, const struct walls *walls, const char *name, size_t length) {
+    for (uint32_t k = 0; k < walls->openings; ++k)
+        if (is_word(name, length, plane_name(&walls->opening[k])))
+            return message(STATUS_USAGE, "%s: %.*s is open: as black and as hot as the surroundings", option,
+                           (int)length, name);
+    const char *names[WALLS_MAX];
+    char list[NAMES_LISTED];
+    for (uint32_t k = 0; k < walls->count; ++k) names[k] = wall_name(walls, k);
+    return message(STATUS_USAGE, "%s: there is no wall %.*s; there are %s", option, length > 40 ? 40 : (int)length,
+                   name, names_list(list, names, walls->count));
 }
 
 static bool is_beyond(const fibrad_body *wall, const double centre[3]) {
@@ -246,9 +328,13 @@ int walls_of(const struct wall_options *options, const struct bed *bed, const ch
     int status = all.automatic || all.box ? spell_out(&all, bed, file) : STATUS_OK;
     if (status) return status;
     *walls = all.walls;
+    for (uint32_t k = 0; k < walls->openings; ++k) {
+        fibrad_plane *opening = &walls->opening[k];
+        if (isnan(opening->at)) opening->at = bed_reach(bed, opening->axis, opening->upper);
+    }
     for (uint32_t k = 0; k < walls->count; ++k) {
         fibrad_body *wall = &walls->body[k];
-        if (!all.placed[k]) wall->plane.at = bed_end(bed, wall->plane.axis, wall->plane.upper);
+        if (!all.placed[k]) wall->plane.at = bed_wall_end(bed, wall->plane.axis, wall->plane.upper, &walls->moved);
     }
     status = check_axes(walls, bed);
     return status ? status : check_centres(walls, bed, file);

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "cli/progress.h"
 #include "fibrad_furnace.h"
 
 enum furnace_method {
@@ -20,7 +21,8 @@ struct furnace_options {
     fibrad_furnace_estimator estimator;
     fibrad_furnace_scatter scatter;
     bool measure;       /* FURNACE_MC: measure Theta afterwards */
-    bool quiet;         /* do not report the outer iterations on standard error */
+    bool quiet;         /* neither report the outer iterations on standard error nor show a bar */
+    bool progress;      /* show a bar also where standard error is no terminal */
     uint64_t bundles;   /* of the first plan, about; further ones add what changes of E need */
     int threads;        /* 0: all cores */
     double tolerance;   /* K: outer iterations end when no cell changes by more */
@@ -39,6 +41,7 @@ struct furnace_run {
     double change;    /* of T in the last outer iteration, largest of all cells [K] */
     uint64_t bundles; /* traced */
     double seconds;
+    struct progress progress; /* of bundles */
 };
 
 /* Computes a box. Results do not depend on the number of threads. Free the run also after an error. Status 0,

@@ -3,9 +3,15 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 static void (*redirected)(void *context, const char *line);
 static void *redirected_context;
+
+enum { WARNINGS = 32 }; /* that are kept */
+static char *warning[WARNINGS];
+static size_t warnings;
 
 void message_redirect(void (*to)(void *context, const char *line), void *context) {
     redirected = to;
@@ -13,12 +19,13 @@ void message_redirect(void (*to)(void *context, const char *line), void *context
 }
 
 /* Prints at most one line, whatever names and tokens it quotes. */
-static void print_line(const char *prefix, const char *format, va_list arguments) {
+static void print_line(int status, const char *prefix, const char *format, va_list arguments) {
     char text[1536];
     const int begun = snprintf(text, sizeof text, "%s", prefix);
     vsnprintf(text + begun, sizeof text - (size_t)begun, format, arguments);
     for (char *c = text; *c; ++c)
         if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
+    if (status == STATUS_OK && warnings < WARNINGS && (warning[warnings] = strdup(text))) ++warnings;
     if (redirected)
         redirected(redirected_context, text);
     else
@@ -28,7 +35,7 @@ static void print_line(const char *prefix, const char *format, va_list arguments
 int message(int status, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    print_line("", format, arguments);
+    print_line(status, "", format, arguments);
     va_end(arguments);
     return status;
 }
@@ -41,9 +48,15 @@ int message_at(int status, const char *file, uint64_t line, const char *format, 
         snprintf(place, sizeof place, "%.480s: ", file);
     va_list arguments;
     va_start(arguments, format);
-    print_line(place, format, arguments);
+    print_line(status, place, format, arguments);
     va_end(arguments);
     return status;
 }
 
 int message_memory(void) { return message(STATUS_MEMORY, "out of memory"); }
+
+const char *message_warning(size_t k) { return k < warnings ? warning[k] : NULL; }
+
+void message_forget_warnings(void) {
+    while (warnings > 0) free(warning[--warnings]);
+}

@@ -2,6 +2,7 @@
 #ifndef MESSAGE_H
 #define MESSAGE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* Host functions that can fail return 0 or one of these, having told why on standard error. */
@@ -14,7 +15,8 @@ enum exit_status {
     STATUS_SIGNAL = 128 /* plus the signal's number */
 };
 
-/* `fibrad: what is wrong`; returns status. Control characters, which may come from a file, are printed as '?'. */
+/* `fibrad: what is wrong`; returns status. With STATUS_OK it is a warning, which begins so and is kept. Control
+ * characters, which may come from a file, are printed as '?'. */
 int message(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* `fibrad: FILE:LINE: what is wrong`, without LINE if that is 0; returns status. */
@@ -23,6 +25,10 @@ int message_at(int status, const char *file, uint64_t line, const char *format, 
 
 /* `fibrad: out of memory`; returns STATUS_MEMORY. */
 int message_memory(void);
+
+/* A warning that is kept, from 0 on, without `fibrad: `; NULL: there are no more. 32 are. */
+const char *message_warning(size_t k);
+void message_forget_warnings(void);
 
 /* Gives all further lines, without `fibrad: `, to a function instead of standard error; NULL: no longer. */
 void message_redirect(void (*to)(void *context, const char *line), void *context);

@@ -1,4 +1,5 @@
 /* output.c - files that get their names when they are complete. SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "cli/output.h"
 
 #include <errno.h>
@@ -64,19 +65,106 @@ bool output_stdout(const char *path) {
            (stat(path, &there) == 0 && fstat(STDOUT_FILENO, &standard) == 0 && same_file(&there, &standard));
 }
 
-/* Opens a file of a name that nobody has, beside the target. False: errno tells why. */
-static bool open_temporary(struct output *output) {
-    const size_t room = strlen(output->target) + 64;
-    int number = -1;
-    output->temporary = malloc(room);
-    errno = ENOMEM;
-    for (int k = 0; output->temporary && number < 0 && k < 100; ++k) { /* O_EXCL: never someone else's file */
-        snprintf(output->temporary, room, "%s.%ld-%d.tmp", output->target, (long)getpid(), k);
-        number = open(output->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (number < 0 && errno != EEXIST) break;
+/* A file that is read in this run, or the target of an output that is open. */
+struct used {
+    char *path;
+    bool read;
+    struct used *next;
+};
+static struct used *in_use;
+
+/* Whether a path is one of those that are read, or of those that are written. */
+static bool is_in_use(const char *path, bool read) {
+    for (const struct used *used = in_use; used; used = used->next)
+        if (used->read == read && output_same(used->path, path)) return true;
+    return false;
+}
+
+static int use(const char *path, bool read) {
+    struct used *used = malloc(sizeof *used);
+    if (!used) return message_memory();
+    used->path = strdup(path), used->read = read, used->next = in_use;
+    if (!used->path) {
+        free(used);
+        return message_memory();
     }
-    output->file = number < 0 ? NULL : fdopen(number, "wb");
-    if (output->file) interrupt_guard(output->temporary);
+    in_use = used;
+    return STATUS_OK;
+}
+
+/* Forgets an output; files that are read stay until the end. */
+static void use_no_more(const char *target) {
+    for (struct used **at = &in_use; *at; at = &(*at)->next) {
+        struct used *used = *at;
+        if (used->read || strcmp(used->path, target) != 0) continue;
+        *at = used->next;
+        free(used->path);
+        free(used);
+        return;
+    }
+}
+
+static int refuse_replacing(const char *path) {
+    return message_at(STATUS_USAGE, path, 0,
+                      "is read in this run and would be replaced; the output needs another name");
+}
+
+int output_spare(const char *path) {
+    if (strcmp(path, "-") == 0) path = "/dev/stdin"; /* which may be a file */
+    if (is_in_use(path, false)) return refuse_replacing(path);
+    for (const struct used *used = in_use; used; used = used->next)
+        if (used->read && strcmp(used->path, path) == 0) return STATUS_OK;
+    return use(path, true);
+}
+
+enum { LINK_PATH = 32 };
+
+/* Where a file that has no name can be linked from. */
+static void link_path(char path[LINK_PATH], int number) { snprintf(path, LINK_PATH, "/proc/self/fd/%d", number); }
+
+/* Opens a file without a name in the folder of the target, which is gone however the program ends. -1: this system or
+ * file system has none. */
+static int open_unnamed(const char *target) {
+    int number = -1;
+#ifdef O_TMPFILE
+    char folder[PATH_MAX], link[LINK_PATH];
+    if (!join_path(folder, target, folder_length(target), "")) return -1;
+    number = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    link_path(link, number);
+    if (number >= 0 && access(link, F_OK) != 0) close(number), number = -1;
+#else
+    (void)target;
+#endif
+    return number;
+}
+
+/* Makes a file of a name that nobody has, beside the target; or gives such a name to the one that is open, number.
+ * False: errno tells why. */
+static bool name_temporary(struct output *output, int *number) {
+    const bool unnamed = *number >= 0;
+    char link[LINK_PATH];
+    bool named = false;
+    link_path(link, *number);
+    for (int k = 0; !named && k < 100; ++k) { /* never someone else's file */
+        snprintf(output->temporary, strlen(output->target) + 64, "%s.%ld-%d.tmp", output->target, (long)getpid(), k);
+        if (unnamed)
+            named = linkat(AT_FDCWD, link, AT_FDCWD, output->temporary, AT_SYMLINK_FOLLOW) == 0;
+        else
+            named = (*number = open(output->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) >= 0;
+        if (!named && errno != EEXIST) break;
+    }
+    if (named) interrupt_guard(output->temporary);
+    return named;
+}
+
+/* Opens a file that is to be the target. False: errno tells why. */
+static bool open_temporary(struct output *output) {
+    output->temporary = malloc(strlen(output->target) + 64);
+    if (!output->temporary) return errno = ENOMEM, false;
+    int number = open_unnamed(output->target);
+    output->unnamed = number >= 0;
+    if (number < 0 && !name_temporary(output, &number)) return false;
+    output->file = fdopen(number, "wb");
     return output->file;
 }
 
@@ -97,10 +185,11 @@ int output_open(struct output *output, const char *path) {
         output->file = fopen(path, "wb");
         return output->file ? STATUS_OK : message_at(STATUS_FILE, path, 0, "%s", strerror(errno));
     }
+    if (is_in_use(path, true)) return refuse_replacing(path);
     output->target = target_of(path, target) ? strdup(target) : NULL;
     if (output->target && open_temporary(output)) {
         if (exists) fchmod(fileno(output->file), there.st_mode & 07777);
-        return STATUS_OK;
+        return use(output->target, false);
     }
     const int status = message_at(STATUS_FILE, path, 0, "%s", strerror(errno));
     free(output->temporary);
@@ -113,7 +202,8 @@ int output_open(struct output *output, const char *path) {
 static int end_temporary(struct output *output, int status) {
     if (!status && rename(output->temporary, output->target) != 0)
         status = message_at(STATUS_FILE, output->path, 0, "%s", strerror(errno));
-    if (status) unlink(output->temporary);
+    if (status && !output->unnamed) unlink(output->temporary);
+    use_no_more(output->target);
     interrupt_unguard(output->temporary);
     free(output->temporary);
     free(output->target);
@@ -132,6 +222,13 @@ int output_flush(const struct output *output) {
 int output_close(struct output *output, int status) {
     if (!output->file) return status;
     if (!status) status = output_flush(output);
+    if (!status && output->unnamed) {
+        int number = fileno(output->file);
+        if (name_temporary(output, &number))
+            output->unnamed = false;
+        else
+            status = cannot_write(output);
+    }
     if (output->file != stdout && fclose(output->file) != 0 && !status) status = cannot_write(output);
     if (output->temporary) status = end_temporary(output, status);
     *output = (struct output){0};

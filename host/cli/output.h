@@ -10,6 +10,7 @@ struct output {
     const char *path;
     char *target;    /* where the path leads to by symbolic links */
     char *temporary; /* in the target's folder; NULL: written at once */
+    bool unnamed;    /* it has no name yet: where the system has such files, they get one when they are complete */
     FILE *file;      /* NULL: not open */
 };
 
@@ -23,8 +24,13 @@ bool output_ends(const char *path, const char *ending);
 /* Whether a path is standard output: "-", or another name of it such as /dev/stdout. */
 bool output_stdout(const char *path);
 
-/* Opens a new file under a temporary name; path NULL: none, which output_close then leaves alone. A symbolic link
- * stays, its target is written, which keeps its permissions. Status 0, STATUS_FILE or STATUS_MEMORY. */
+/* Says that this run reads a file: from now on no output may replace it. What reads a file calls this first. Status 0,
+ * STATUS_USAGE if an output that is open would replace it, or STATUS_MEMORY. */
+int output_spare(const char *path);
+
+/* Opens a new file without a name, or under a temporary one; path NULL: none, which output_close then leaves alone. A
+ * symbolic link stays, its target is written, which keeps its permissions. Status 0, STATUS_FILE, STATUS_MEMORY, or
+ * STATUS_USAGE if the file is one that this run reads. */
 int output_open(struct output *output, const char *path);
 
 /* Whether all that was written so far has arrived. Status 0 or STATUS_FILE. */

@@ -36,10 +36,11 @@ static uint32_t first_from(const int64_t *id, uint32_t n, unsigned long long nam
 static int mark_range(const int64_t *id, uint32_t n, const char *where, unsigned long long first,
                       unsigned long long last, unsigned char *marks) {
     const uint32_t begin = first_from(id, n, first), end = first_from(id, n, last + 1);
-    if (begin == end || (!id && last >= n))
-        return message(STATUS_USAGE, "--targets: there is no sphere %llu in %s; they are %lld to %lld",
-                       begin == end ? first : last, where, id && n ? (long long)id[0] : 0,
-                       id && n ? (long long)id[n - 1] : (long long)n - 1);
+    const unsigned long long least = id && n ? (unsigned long long)id[0] : 0;
+    const unsigned long long most = n == 0 ? 0 : id ? (unsigned long long)id[n - 1] : n - 1;
+    if (begin == end || first < least || last > most)
+        return message(STATUS_USAGE, "--targets: there is no sphere %llu in %s; they are %llu to %llu",
+                       begin == end || first < least ? first : last, where, least, most);
     memset(marks + begin, 1, end - begin);
     return STATUS_OK;
 }

@@ -5,9 +5,8 @@
 #include <stdint.h>
 
 /* Marks the spheres of a list with 1: by their ids, [n] ascending, or by positions from 0 on where id is NULL; `where`
- * says in messages whose they are. A range
- * takes the ids there are in it. marks = NULL: only checks the spelling. Status 0, or STATUS_USAGE if the list is
- * misspelt or names what is not there. */
+ * says in messages whose they are. A range takes the ids there are in it, and may not reach beyond them. marks = NULL:
+ * only checks the spelling. Status 0, or STATUS_USAGE if the list is misspelt or names what is not there. */
 int targets_mark(const char *list, const int64_t *id, uint32_t n, const char *where, unsigned char *marks);
 
 #endif

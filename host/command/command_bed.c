@@ -1,5 +1,6 @@
 /* command_bed.c - `fibrad bed`: view factors of all spheres of a file. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -184,7 +185,9 @@ static void bed_report(struct bed_request *request, const struct contents *what,
         report_count(report, "rays", request->cast.rays);
     if (request->beam_rule.points > 0) report_count(report, "points", request->beam_rule.points);
     if (request->cutoff > 0) report_value(report, "cutoff", request->cutoff, 9);
-    if (request->error > 0) report_value(report, "error_wanted", request->error, 6);
+    if (request->error > 0)
+        report_wanted(report, request->bed.name, request->error, request->error,
+                      fmax(summary->error_max, summary->wall_error_max), "a row, and there are no more directions");
     report_text(report, "rows", request->options.raw ? "raw" : "reciprocal");
     report_count(report, "threads", (uint64_t)factors->threads);
     report_value(report, "seconds", factors->seconds, 3);
@@ -248,9 +251,7 @@ static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_f
     if (status) return status;
     what.factors = *factors;
     summary_make(&summary, &what);
-    if (request->error > 0 && summary.error_max > request->error)
-        message_at(STATUS_OK, request->bed.name, 0, "warning: %d directions were not enough for --error %g",
-                   FIBRAD_DIRECTIONS_MAX, request->error);
+    warn_rows(&request->bed.warned, bed, &what.factors->matrix);
     what.of_sides = &views;
     if (request->bed.wall_vtp) status = bed_views(request, bed, &views);
     if (!status) status = bed_options_write(&request->bed, bed, &what);
@@ -268,7 +269,7 @@ static int bed_frame(void *bed_request, struct bed *bed) {
         return message(STATUS_USAGE, "--method surface needs a --cutoff in a periodic box");
     int status = bed_options_walls(&request->bed, bed, &request->walls);
     if (status) return status;
-    if (request->method == METHOD_SURFACE && request->walls.count > 0)
+    if (request->method == METHOD_SURFACE && request->walls.count + request->walls.openings > 0)
         return message(STATUS_USAGE, "--wall is for the methods beam, cast and mc");
     unsigned char *marks = NULL;
     if (request->targets) {

@@ -10,6 +10,7 @@
 #include "frames/bed_options.h"
 #include "command/commands.h"
 #include "heat/steady.h"
+#include "plot/plot_conduction.h"
 
 enum { KEY_AXIS = KEY_OWN, KEY_CONDUCTIVITY_TEMPERATURE, KEY_MAX_RAYS, KEY_STEADY };
 
@@ -28,6 +29,7 @@ static const struct option conductivity_table[] = {
     OPTIONS_INPUT,
     {'o', "output", "OUT", "F_E and k per axis: .csv .json; - [summary only]"},
     {OPTION_FORMAT},
+    {KEY_PLOT, "plot", "OUT", "a picture of F_E along the axes, .svg or .png, by gnuplot [none]"},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
@@ -39,6 +41,8 @@ struct conductivity_request {
     double temperature; /* [K] */
     struct conduction_rule rule;
     bool steady;
+    const char *plot;
+    struct output picture;
     struct steady between[3]; /* plates, along each axis; 0 spheres: not computed */
 };
 
@@ -49,14 +53,14 @@ static int conductivity_help(void) {
          "grey diffuse spheres, each of one temperature (their own conductivity is large), and d the mean diameter "
          "[m].\n");
     options_print(conductivity_table);
-    printf(
-        "\n" FILES_MORE
-        "\nThe result is that of a linear field of temperature. With open axes only spheres at least %g mean "
-        "diameters inside\n"
-        "the outermost centres emit; all absorb. Where a periodic bed has gaps, flights may be so long that F_E along "
-        "them\n"
-        "does not exist or its standard error cannot be estimated: a warning says so.\n",
-        CONDUCTION_MARGIN);
+    printf("\n" FILES_MORE
+           "\nThe result is that of a linear field of temperature. With open axes only spheres at least %g mean "
+           "diameters inside\n"
+           "the outermost centres emit; all absorb. With --axis a bed may be thinner across it: then all spheres emit. "
+           "Where a periodic bed has gaps, flights may be so long that F_E along "
+           "them\n"
+           "does not exist or its standard error cannot be estimated: a warning says so.\n",
+           CONDUCTION_MARGIN);
     puts("Standard output ends with lines `key value`, the last of them F_E_x, F_E_y, F_E_z, F_E_x_error, "
          "F_E_y_error,\n"
          "F_E_z_error (standard errors, estimated); `unreliable`: the axes whose errors are not to be relied on. With\n"
@@ -104,6 +108,9 @@ static int conductivity_take(struct conductivity_request *request, const struct 
         return take_rays(value, &rule->max_rays);
     case KEY_SEED:
         return options_whole("--seed", value, 0, UINT64_MAX, &rule->seed);
+    case KEY_PLOT:
+        request->plot = value;
+        return STATUS_OK;
     case KEY_STEADY:
         request->steady = true;
         return STATUS_OK;
@@ -134,7 +141,7 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     if (rule->error == 0) rule->error = 0.003;
     if (rule->max_rays == 0) rule->max_rays = 50000000;
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
-    return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION, NULL);
+    return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION, request->plot);
 }
 
 /* The axes with some of these kinds of flights, such as "xz"; how many there are. */
@@ -187,6 +194,9 @@ static void conductivity_report(struct conductivity_request *request, const stru
     report_count(report, "rays", result->rays);
     report_value(report, "seconds", result->seconds, 3);
     report_value(report, "escaped", result->escaped, 2);
+    if (request->rule.paths == 0)
+        report_wanted(report, request->bed.name, request->rule.error, result->stopped ? request->rule.error : INFINITY,
+                      conduction_worst(&request->rule, result), "F_E; more --max-rays would help");
     axes_with(result, FLIGHTS_ENDLESS | FLIGHTS_RARE, unreliable);
     report_text(report, "unreliable", *unreliable ? unreliable : "none");
     if (!isnan(result->temperature)) {
@@ -214,9 +224,6 @@ static void conductivity_warn(const struct conductivity_request *request, const 
                    "warning: F_E along %s rests on a few long flights, as through a channel without spheres; its "
                    "standard error is unreliable",
                    axes);
-    if (result->stopped)
-        message_at(STATUS_OK, file, 0, "warning: stopped at --max-rays %g with a standard error of %.2g of F_E, not %g",
-                   (double)request->rule.max_rays, conduction_worst(&request->rule, result), request->rule.error);
 }
 
 /* Follows the paths of a bed in which something is emitted. */
@@ -231,8 +238,7 @@ static int conductivity_follow(struct conductivity_request *request, const struc
 }
 
 /* Between plates, along the axes that are wanted and possible. */
-static int conductivity_steady(struct conductivity_request *request, const struct bed *bed,
-                               const struct conduction *result) {
+static int conductivity_steady(struct conductivity_request *request, const struct bed *bed, struct conduction *result) {
     int status = STATUS_OK;
     bool any = false;
     for (int axis = 0; axis < 3 && !status; ++axis) {
@@ -240,6 +246,7 @@ static int conductivity_steady(struct conductivity_request *request, const struc
         if (!request->steady || !conduction_wants(result, axis) || !steady_possible(bed, axis)) continue;
         any = true;
         status = steady_conduction(&request->bed, bed, request->rule.emissivity, axis, &request->between[axis]);
+        result->steady[axis] = request->between[axis].factor, result->steady_error[axis] = request->between[axis].error;
     }
     if (request->steady && !any)
         return message_at(STATUS_USAGE, request->bed.name, 0, "--steady: the two axes across it must be periodic");
@@ -254,7 +261,7 @@ static int conductivity_compute(struct conductivity_request *request, struct bed
     if (!status && request->at) status = bed_options_metres(&request->bed, bed, &metres);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     request->rule.emissivity = emissivity;
-    if (!status) status = conduction_emitters(bed, file, emits, result);
+    if (!status) status = conduction_emitters(bed, request->rule.axis, file, emits, result);
     if (!status) status = conductivity_follow(request, bed, emits, result);
     if (!status && request->at) conduction_at(result, request->temperature, metres);
     if (!status) status = conductivity_steady(request, bed, result);
@@ -269,6 +276,7 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
     struct contents what = {.conduction = &result};
     int status = conductivity_compute(request, bed, &result);
     if (!status) status = bed_options_write(&request->bed, bed, &what);
+    if (!status && request->plot) status = plot_conduction(&request->picture, request->bed.name, &result);
     if (status) return status;
     conductivity_warn(request, &result);
     conductivity_report(request, bed, &result);
@@ -278,10 +286,13 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
 int command_conductivity(int argc, char **argv) {
     struct conductivity_request request;
     int status = conductivity_parse(&request, argc, argv);
-    if (status == STATUS_HELP)
+    if (status == STATUS_HELP) {
         status = conductivity_help();
-    else if (!status)
-        status = bed_options_frames(&request.bed, "conductivity", conductivity_frame, &request);
+    } else if (!status) {
+        status = output_open(&request.picture, request.plot);
+        if (!status) status = bed_options_frames(&request.bed, "conductivity", conductivity_frame, &request);
+        status = output_close(&request.picture, status);
+    }
     bed_options_free(&request.bed);
     return status;
 }

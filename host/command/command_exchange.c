@@ -1,5 +1,6 @@
 /* command_exchange.c - `fibrad exchange`: exchange factors of grey spheres. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -7,6 +8,7 @@
 #include "cli/message.h"
 #include "frames/bed_options.h"
 #include "command/commands.h"
+#include "plot/plot_bed.h"
 #include "write/write.h"
 
 enum { KEY_DROP = KEY_OWN };
@@ -16,8 +18,7 @@ static const struct option exchange_table[] = {
     {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [400]"},
     {KEY_DIRECTIONS, "directions", "N", "beam directions for the first leg of all paths, 8 to 65536 [50]"},
     {KEY_ERROR, "error", "E",
-     "as many of both as bring the estimated Euclidean error of a row to E (of the worst to 1.3 E or so), 1e-5 to 1 "
-     "[none]"},
+     "as many of both as bring the estimated Euclidean error of the worst row to E, 1e-5 to 1 [none]"},
     {OPTION_WALL},
     {OPTION_WALL_VTP},
     {OPTION_WALL_EMISSIVITY},
@@ -27,18 +28,20 @@ static const struct option exchange_table[] = {
     OPTIONS_INPUT,
     {'o', "output", "OUT", "the factors: .csv .mtx .npz (SciPy) .json; - [summary only]"},
     {OPTION_FORMAT},
+    {KEY_PLOT, "plot", "OUT", "a picture of the bed and its factors, .svg or .png, by gnuplot [none]"},
     {OPTION_SCRATCH},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
 struct exchange_request {
     struct bed_options bed;
-    const char *wall_emissivity;
+    const char *wall_emissivity, *plot;
     struct quantity emissivity;
     struct walls walls;
     fibrad_exchange_rule rule;
     fibrad_bed_options options;
     bool counted; /* --rays or --directions was given */
+    struct output picture;
 };
 
 static int exchange_help(void) {
@@ -81,6 +84,9 @@ static int exchange_take(struct exchange_request *request, const struct options 
     case KEY_WALL_EMISSIVITY:
         request->wall_emissivity = value;
         return STATUS_OK;
+    case KEY_PLOT:
+        request->plot = value;
+        return STATUS_OK;
     case KEY_RAW:
         request->options.raw = 1;
         return STATUS_OK;
@@ -102,7 +108,7 @@ static int exchange_check(struct exchange_request *request) {
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
     request->options.scratch = request->bed.scratch;
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
-    return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX, NULL);
+    return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX, request->plot);
 }
 
 static int exchange_parse(struct exchange_request *request, int argc, char **argv) {
@@ -123,7 +129,9 @@ static void exchange_report(struct exchange_request *request, const struct conte
     wall_values_report(what->walls, request->rule.body_emissivity, "_emissivity", 6, report);
     report_count(report, "directions", factors->directions);
     report_count(report, "rays", factors->rays);
-    if (request->rule.tolerance > 0) report_value(report, "error_wanted", request->rule.tolerance, 6);
+    if (request->rule.tolerance > 0)
+        report_wanted(report, request->bed.name, request->rule.tolerance, request->rule.tolerance,
+                      fmax(summary.error_max, summary.wall_error_max), "the worst row");
     report_count(report, "seed", request->rule.seed);
     report_text(report, "rows", request->options.raw ? "raw" : "reciprocal");
     report_count(report, "threads", (uint64_t)factors->threads);
@@ -146,8 +154,10 @@ static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
     fibrad_bed_factors *factors = NULL;
     int status = bed_options_memory(bed, &request->options, exchange_solve, request);
     if (!status) status = exchange_solve(request, bed, &factors);
+    if (!status) warn_rows(&request->bed.warned, bed, &factors->matrix);
     struct contents what = {.factors = factors, .walls = &request->walls, .grey = &request->rule};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
+    if (!status && request->plot) status = plot_bed(&request->picture, request->bed.name, &what);
     if (!status) exchange_report(request, &what);
     fibrad_bed_free(factors);
     return status;
@@ -171,10 +181,13 @@ static int exchange_frame(void *exchange_request, struct bed *bed) {
 int command_exchange(int argc, char **argv) {
     struct exchange_request request = {0};
     int status = exchange_parse(&request, argc, argv);
-    if (status == STATUS_HELP)
+    if (status == STATUS_HELP) {
         status = exchange_help();
-    else if (!status)
-        status = bed_options_frames(&request.bed, "exchange", exchange_frame, &request);
+    } else if (!status) {
+        status = output_open(&request.picture, request.plot);
+        if (!status) status = bed_options_frames(&request.bed, "exchange", exchange_frame, &request);
+        status = output_close(&request.picture, status);
+    }
     bed_options_free(&request.bed);
     return status;
 }

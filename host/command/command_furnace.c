@@ -14,6 +14,7 @@
 #include "command/commands.h"
 #include "plot/gnuplot.h"
 #include "plot/plot_furnace.h"
+#include "report/report.h"
 #include "write/write_furnace.h"
 
 enum { KEY_CASE = KEY_OWN, KEY_THETA, KEY_SCATTER, KEY_CELLS, KEY_BUNDLES, KEY_TOLERANCE, KEY_OUTERS };
@@ -29,16 +30,19 @@ static const struct option table[] = {
     {KEY_TOLERANCE, "tolerance", "K", "outer iterations end when no T changes by more [0.1]"},
     {KEY_OUTERS, "outers", "N", "outer iterations at most [50]"},
     {OPTION_THREADS},
-    {'o', "output", "OUT", "the fields of all cells: .csv or .vti (ParaView) [summary only]"},
+    {'o', "output", "OUT", "the fields of all cells: .csv or .vti (ParaView); - [summary only]"},
+    {KEY_FORMAT, "format", "NAME", "of -o -: csv or vti"},
     {KEY_PLOT, "plot", NULL, "[OUT] a picture of the centre plane by gnuplot, .png or .svg [furnace.png]"},
-    {KEY_QUIET, "quiet", NULL, "no report of the outer iterations on standard error"},
+    {KEY_JSON, "json", "OUT", "the summary as JSON, all digits of it [none]"},
+    {KEY_QUIET, "quiet", NULL, "neither progress nor a report of the outer iterations on standard error"},
+    {KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"},
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
 static const char *const methods[] = {"hfm", "mchf", "mchf-x", "mc"};
 
 struct request {
-    const char *file, *out, *plot, *theta, *scatter;
+    const char *file, *out, *format, *plot, *json, *theta, *scatter;
     int number; /* of the case; 0: none */
     uint64_t seed;
     uint32_t cells[3]; /* 0: as the box has it */
@@ -143,6 +147,15 @@ static int furnace_take_option(struct request *request, struct options *options,
     case KEY_QUIET:
         run->quiet = true;
         break;
+    case KEY_PROGRESS:
+        run->progress = true;
+        break;
+    case KEY_JSON:
+        request->json = value;
+        break;
+    case KEY_FORMAT:
+        request->format = value;
+        break;
     case 'o':
         request->out = value;
         break;
@@ -172,18 +185,35 @@ static int furnace_check_scatter(struct request *request) {
     return status;
 }
 
+static bool is_standard(const char *path) { return path && output_stdout(path); }
+
+static int furnace_check_outputs(struct request *request) {
+    const char *out = request->out;
+    if (request->format && (!out || strcmp(out, "-") != 0)) return message(STATUS_USAGE, "--format is for -o -");
+    if (out && strcmp(out, "-") == 0 && !request->format)
+        return message(STATUS_USAGE, "-o - needs a --format: csv or vti");
+    if (out) {
+        char ending[20];
+        snprintf(ending, sizeof ending, "-.%.16s", request->format ? request->format : "");
+        request->write = write_furnace_find(request->format ? ending : out);
+        if (!request->write && request->format)
+            return message(STATUS_USAGE, "--format: '%.40s' is neither csv nor vti", request->format);
+        if (!request->write) return message_at(STATUS_USAGE, out, 0, "unknown ending; there are .csv and .vti");
+    }
+    if ((is_standard(out) && is_standard(request->json)) || (out && request->json && output_same(out, request->json)))
+        return message_at(STATUS_USAGE, request->json, 0, "is there twice");
+    return STATUS_OK;
+}
+
 /* Checks that need no computation. */
 static int furnace_check_request(struct request *request) {
     if (!request->file == !request->number)
         return message(STATUS_USAGE, "either --case 1, --case 2 or a FILE; see fibrad furnace --help");
-    if (request->out) {
-        request->write = write_furnace_find(request->out);
-        if (!request->write)
-            return message_at(STATUS_USAGE, request->out, 0, "unknown ending; there are .csv and .vti");
-    }
+    int status = furnace_check_outputs(request);
+    if (status) return status;
     request->run.measure = request->plot != NULL;
     if (request->run.bundles == 0) request->run.bundles = request->run.method == FURNACE_MC ? 20000000 : 8000000;
-    int status = furnace_check_theta(request);
+    status = furnace_check_theta(request);
     return status ? status : furnace_check_scatter(request);
 }
 
@@ -206,72 +236,91 @@ static bool furnace_is_measured(const struct request *request) {
 }
 
 /* The published case compared with the reference. */
-static void furnace_print_comparison(const struct request *request, const struct furnace_run *run) {
+static void furnace_print_comparison(FILE *text, const struct request *request, const struct furnace_run *run) {
     static const char *const names[3] = {"wall z=0", "wall z=4", "sides"};
     bool measured = furnace_is_measured(request), paper = request->run.estimator == FIBRAD_THETA_PAPER;
     double power[4];
-    printf("# case %d, %s: axis of the furnace, reference by direct Monte Carlo\n", request->number,
-           methods[request->run.method]);
-    printf("# %5s %9s %9s %7s%s\n", "z [m]", "T [K]", "ref. [K]", "dev. %",
-           measured ? "  1/Theta+    ref.  1/Theta-    ref." : "");
+    fprintf(text, "# case %d, %s: axis of the furnace, reference by direct Monte Carlo\n", request->number,
+            methods[request->run.method]);
+    fprintf(text, "# %5s %9s %9s %7s%s\n", "z [m]", "T [K]", "ref. [K]", "dev. %",
+            measured ? "  1/Theta+    ref.  1/Theta-    ref." : "");
     for (int k = 0; k < FURNACE_REFERENCES; k++) {
         double z = furnace_reference_z[k], reference = furnace_reference(request->number, k);
         double t = furnace_axis_temperature(run, z);
-        printf("# %5.1f %9.2f %9.2f %+7.2f", z, t, reference, 100 * (t / reference - 1));
+        fprintf(text, "# %5.1f %9.2f %9.2f %+7.2f", z, t, reference, 100 * (t / reference - 1));
         if (measured && k > 0 && k < FURNACE_REFERENCES - 1) {
             for (int g = 0; g < 2; g++)
-                printf("  %8.4f %7.4f", 1 / furnace_axis_theta(run, g, z), furnace_reference_theta[paper][g][k]);
+                fprintf(text, "  %8.4f %7.4f", 1 / furnace_axis_theta(run, g, z), furnace_reference_theta[paper][g][k]);
         }
-        putchar('\n');
+        putc('\n', text);
     }
     furnace_powers(run, power);
     for (int w = 0; w < 3; w++)
-        printf("# %-8s %9.3f kW, reference %9.3f kW\n", names[w], power[w], furnace_reference_power[w]);
-    puts("# The paper states at most 1 % between mchf and the zone method, and a colder furnace in case 2. The "
-         "reference\n"
-         "# confirms neither: mchf errs by up to 6 % in case 1 and 19 % in case 2, and case 2 is hotter everywhere\n"
-         "# (docs/furnace.md).");
+        fprintf(text, "# %-8s %9.3f kW, reference %9.3f kW\n", names[w], power[w], furnace_reference_power[w]);
+    fputs("# The paper states at most 1 % between mchf and the zone method, and a colder furnace in case 2. The "
+          "reference\n"
+          "# confirms neither: mchf errs by up to 6 % in case 1 and 19 % in case 2, and case 2 is hotter everywhere\n"
+          "# (docs/furnace.md).\n",
+          text);
 }
 
-/* z as in the keys T_axis_0.4, T_axis_2.0. */
-static void furnace_print_height(double z) {
+/* A key such as T_axis_0.4, T_axis_2.0. */
+static void furnace_height_key(double z, char key[48]) {
     char text[32];
     snprintf(text, sizeof text, "%.4g", z);
-    printf("T_axis_%s%s", text, strpbrk(text, ".e") ? "" : ".0");
+    snprintf(key, 48, "T_axis_%s%s", text, strpbrk(text, ".e") ? "" : ".0");
 }
 
-static void furnace_print_summary(const struct request *request, const struct furnace_run *run) {
+static void furnace_report(struct report *report, const struct request *request, const struct furnace_run *run) {
+    enum { FIGURES = 10 };
+    static const char *const keys[] = {"wall_z0_kW", "wall_z1_kW", "sides_kW", "balance_kW"};
     double power[4];
+    char text[48];
     furnace_powers(run, power);
-    printf("method %s\n", methods[request->run.method]);
-    printf("cells %" PRIu32 ",%" PRIu32 ",%" PRIu32 "\n", run->config.cells[0], run->config.cells[1],
-           run->config.cells[2]);
-    printf("wall_z0_kW %.17g\nwall_z1_kW %.17g\nsides_kW %.17g\nbalance_kW %.17g\n", power[0], power[1], power[2],
-           power[3]);
+    report_begin(report);
+    report_text(report, "method", methods[request->run.method]);
+    snprintf(text, sizeof text, "%" PRIu32 ",%" PRIu32 ",%" PRIu32, run->config.cells[0], run->config.cells[1],
+             run->config.cells[2]);
+    report_text(report, "cells", text);
+    for (int k = 0; k < 4; k++) report_value(report, keys[k], power[k], FIGURES);
     for (int k = 0; k < 3; k++) {
         double z = run->config.size[2] * (k == 0 ? 0.1 : k == 1 ? 0.5 : 0.9);
-        furnace_print_height(z);
-        printf(" %.17g\n", furnace_axis_temperature(run, z));
+        furnace_height_key(z, text);
+        report_value(report, text, furnace_axis_temperature(run, z), FIGURES);
     }
-    printf("bundles %" PRIu64 "\n", run->bundles);
-    printf("outer_iterations %" PRIu32 "\n", run->outers);
-    printf("threads %d\n", run->threads);
-    printf("seconds %.17g\n", run->seconds);
+    report_count(report, "bundles", run->bundles);
+    report_count(report, "outer_iterations", run->outers);
+    report_count(report, "threads", (uint64_t)run->threads);
+    report_value(report, "seconds", run->seconds, 3);
+    report_end(report);
+}
+
+/* To standard output, or to standard error where results go there. */
+static void furnace_print(const struct request *request, const struct furnace_run *run, FILE *json) {
+    FILE *text = is_standard(request->out) || is_standard(request->json) ? stderr : stdout;
+    struct report report = {.text = text, .json = json};
+    if (request->number) furnace_print_comparison(text, request, run);
+    report_open(&report, "furnace");
+    furnace_report(&report, request, run);
+    report_close(&report);
 }
 
 /* Outputs are opened first: a path that cannot be written is an error before the computation. */
 static int furnace_compute_and_write(const struct request *request, const fibrad_furnace_config *config,
                                      struct furnace_run *run) {
-    struct output out = {0}, plot = {0};
+    struct output out = {0}, plot = {0}, json = {0};
     int status = output_open(&out, request->out);
     if (!status) status = output_open(&plot, request->plot);
+    if (!status) status = output_open(&json, request->json);
     if (!status) status = furnace_run(config, &request->run, run);
     if (!status && request->out) request->write(out.file, run);
     if (!status && request->plot) {
         const char *name = request->number == 0 ? request->file : request->number == 1 ? "case 1" : "case 2";
         status = furnace_plot(&plot, name, run, furnace_is_measured(request), request->number);
     }
+    if (!status) furnace_print(request, run, json.file);
     status = output_close(&out, status);
+    status = output_close(&json, status);
     return output_close(&plot, status);
 }
 
@@ -289,10 +338,6 @@ int command_furnace(int argc, char **argv) {
     if (request.cells[0]) memcpy(config.cells, request.cells, sizeof config.cells);
     config.seed = request.seed;
     status = furnace_compute_and_write(&request, &config, &run);
-    if (!status) {
-        if (request.number) furnace_print_comparison(&request, &run);
-        furnace_print_summary(&request, &run);
-    }
     furnace_free(&run);
     return status;
 }

@@ -83,9 +83,11 @@ static int heat_help(void) {
         "... with their names in the column `body`; errors as estimated. All q add up to zero. Spheres of emissivity "
         "0\n"
         "reflect all, gain nothing and have no temperature.\n"
-        "Powers given (--power, --wall-power) are given off from inside, > 0, so that q is their negative. With "
-        "columns\n"
-        "and lists by type each sphere has either a temperature or a power.\n"
+        "Powers given (--power, --wall-power) are given off from inside, > 0, so that q is their negative. Each sphere "
+        "has\n"
+        "either a temperature or a power: types that a list leaves out, and blanks or nan in a column, have the other "
+        "one.\n"
+        "One number beside a column or list is for the spheres that this leaves out.\n"
         "With --until temperatures are those to begin with. Each sphere stores heat-capacity times density times its\n"
         "volume; powers given heat it. @TABLE, two columns of seconds and temperatures, may stand for the temperature\n"
         "of a wall or of the surroundings: zmin=@TABLE; --emissivity @TABLE is of temperatures. The .csv has the time "
@@ -105,7 +107,8 @@ static int heat_help(void) {
         "      --wall box --wall-temperature zmin=900,20 -o q.csv\n"
         "  fibrad heat packing.dump --emissivity 0.8 --temperature 1200 --ambient @room.csv --until 3600 \\\n"
         "      --heat-capacity 800 --density 2500 --every 60 -o 'cool.*.vtp' -o cool.csv --plot cool.png\n"
-        "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --wall zmin,cylinder:0,0,0.48 \\\n"
+        "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --wall zmin,zmax=open,cylinder:0,0,0.48 "
+        "\\\n"
         "      --wall-temperature zmin=1200,cylinder=600 --wall-emissivity cylinder=0.4 --ambient 300 --error 0.005 "
         "-o q.vtp");
     return STATUS_OK;
@@ -251,6 +254,9 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
     report_value(report, "balance_of_emission", heat->balance_of_emission, 2);
     report_value(report, "error_of_emission", heat->throughput > 0 ? heat->error / heat->throughput : 0, 2);
     report_value(report, "error_rms_W", heat->error, 2);
+    if (request->problem.error > 0)
+        report_wanted(report, request->bed.name, request->problem.error, request->problem.error, heat->error_reached,
+                      "the powers of spheres, of a wall or of the T^4 that were found");
     report_end(report);
 }
 
@@ -265,7 +271,8 @@ static int heat_picture(const struct heat_request *request, const struct bed *be
                                      .wall_power = report->result.body_power,
                                      .surroundings_temperature = problem->sources.surroundings,
                                      .surroundings_power =
-                                         request->given.ambient ? report->result.surroundings_power : NAN};
+                                         request->given.ambient ? report->result.surroundings_power : NAN,
+                                     .found = report->unknown > 0};
     return plot_heat(&request->picture, request->bed.name, &shown);
 }
 
@@ -309,6 +316,9 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     if (!status && !request->given.timed) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);
     if (!status) status = bed_options_metres(&request->bed, bed, &report.metres);
+    if (!status)
+        warn_temperatures(&request->bed.warned, bed, &request->given.temperature, request->given.zero,
+                          given.temperature);
     if (!status) status = heat_arrays(&report.result, bed->n);
     if (!status && request->bed.wall_vtp) status = triangle_heat_begin(&report.triangles, walls);
     if (!status) {

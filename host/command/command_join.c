@@ -85,28 +85,40 @@ static int join_parse(struct join_request *request, int argc, char **argv) {
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = join_take(request, &options, key);
     if (!status && request->count == 0) status = message(STATUS_USAGE, "which FILEs? see fibrad join --help");
-    return status ? status : outputs_check(&request->outputs, CONTENT_MATRIX, request->files, request->count, false);
+    return status ? status : outputs_check(&request->outputs, CONTENT_MATRIX, false);
 }
 
-/* A body below or above all spheres. */
-static fibrad_body wall_beside(const struct joined *joined, int axis, int upper) {
-    double at = 0;
-    for (uint32_t i = 0; i < joined->n; ++i) {
-        const double x = joined->x[3 * (size_t)i + (size_t)axis], r = joined->radius[i];
-        at = i == 0 ? (upper ? x + r : x - r) : upper ? fmax(at, x + r) : fmin(at, x - r);
-    }
-    return (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {axis, upper, at}};
-}
-
-/* The scene of a matrix, which asks for radii and for how many bodies there are; not where, which is not known. */
+/* The scene of a matrix, which asks for radii and for how many bodies there are; not where, which is not known: each
+ * has the same triangle, above all spheres. */
 static int join_scene(const struct joined *joined, fibrad_scene **scene, void **block) {
     const double *x = joined->x;
     const fibrad_spheres spheres = {x, x + 1, x + 2, joined->radius, joined->n, .stride = 3};
-    fibrad_body body[6];
-    for (uint32_t k = 0; k < joined->bodies && joined->n > 0; ++k)
-        body[k] = wall_beside(joined, (int)k / 2, (int)k % 2);
-    const fibrad_scene_config config = {.body = body, .bodies = joined->n > 0 ? joined->bodies : 0};
-    fibrad_fault fault = {joined->n, joined->n, UINT32_MAX};
+    const uint32_t bodies = joined->n > 0 ? joined->bodies : 0;
+    double top = -INFINITY;
+    for (uint32_t i = 0; i < joined->n; ++i) top = fmax(top, x[3 * (size_t)i + 2] + joined->radius[i]);
+    double vertex[3][3] = {{0}};
+    for (int k = 0; k < 3 && joined->n > 0; ++k) {
+        vertex[k][0] = x[0] + (k == 1) * joined->radius[0];
+        vertex[k][1] = x[1] + (k == 2) * joined->radius[0];
+        vertex[k][2] = top;
+    }
+    fibrad_body body[FIBRAD_BODIES_MAX];
+    uint32_t corner[FIBRAD_BODIES_MAX][3], front[FIBRAD_BODIES_MAX];
+    for (uint32_t k = 0; k < bodies; ++k) {
+        body[k] = (fibrad_body){.kind = FIBRAD_BODY_MESH};
+        for (uint32_t c = 0; c < 3; ++c) corner[k][c] = c;
+        front[k] = k;
+    }
+    const struct fibrad_triangles triangles = {.x = &vertex[0][0],
+                                               .y = &vertex[0][1],
+                                               .z = &vertex[0][2],
+                                               .stride = 3,
+                                               .vertices = 3,
+                                               .corner = &corner[0][0],
+                                               .front = front,
+                                               .n = bodies};
+    const fibrad_scene_config config = {.body = body, .bodies = bodies, .triangles = bodies ? &triangles : NULL};
+    fibrad_fault fault = {joined->n, joined->n, UINT32_MAX, 0, 0};
     const int status = fibrad_heap_scene(scene, block, &config, &spheres, &fault);
     if (status == FIBRAD_OK) return STATUS_OK;
     if (status == FIBRAD_E_MEMORY) return message_memory();
@@ -166,6 +178,7 @@ static int join_write(struct join_request *request, const struct joined *joined,
                             .z = x + 2 * n,
                             .r = joined->radius,
                             .id = (int64_t *)joined->id,
+                            .frame = (int64_t)joined->step, /* for a * in a name */
                             .timestep = (int64_t)joined->step};
     const struct walls walls = {.count = joined->bodies};
     const fibrad_exchange_rule grey = {.emissivity = joined->emissivity, .body_emissivity = unbounded};
@@ -177,7 +190,7 @@ static int join_write(struct join_request *request, const struct joined *joined,
                                   .grey = joined->emissive ? &grey : NULL,
                                   .array = &ids,
                                   .arrays = 1};
-    const int status = outputs_write(&request->outputs, &what, bed.timestep);
+    const int status = outputs_write(&request->outputs, &what);
     if (!status) join_report(request, joined, &what);
     return status;
 }

@@ -7,17 +7,28 @@
 
 #include "cli/message.h"
 #include "cli/options.h"
+#include "cli/output.h"
 #include "command/commands.h"
 #include "reference/exact_gsl.h"
 #include "reference/reference.h"
+#include "report/report.h"
 #include "simple/heap.h"
 
 enum { KEY_OBSTACLE = KEY_OWN, KEY_CHECK };
+
+/* With obstacles: the error by default, also where spheres overlap and visible areas jump, and the most directions. */
+#define ERROR_APART   1e-9
+#define ERROR_OVERLAP 1e-5
+#define DIRECTIONS    5000000
 
 static const struct option pair_table[] = {
     {KEY_METHOD, "method", "NAME",
      "exact; beam: along Fibonacci directions; surface: between nodes; cast: rays; mc: random rays [exact]"},
     {KEY_OBSTACLE, "obstacle", "X,Y,Z,R", "a sphere in the way; may be given again [none]"},
+    {KEY_ERROR, "error", "E",
+     "exact, with obstacles: estimated error over the factor without them, 1e-12 to 1 [1e-9; 1e-5 where spheres "
+     "overlap, "
+     "each further digit of which takes ten times as long]"},
     {KEY_CHECK, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]"},
     {KEY_DIRECTIONS, "directions", "N", "beam: directions, 8 to 65536; error ~ N^-1.5 [233]"},
     {KEY_AREAS, "areas", "KIND", "beam: visible areas exact, or by points [exact]"},
@@ -26,6 +37,7 @@ static const struct option pair_table[] = {
     {KEY_NO_CORRECTION, "no-correction", NULL, "surface: the plain sum [corrected by the exact unblocked factor]"},
     {KEY_RAYS, "rays", "N", "cast, mc: rays from sphere 1; error ~ N^-0.6, N^-0.5 [20000]"},
     {KEY_SEED, "seed", "S", "cast, mc: another number, other rays [0]"},
+    {KEY_JSON, "json", "OUT", "the output as JSON, all digits of it [none]"},
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
@@ -42,13 +54,16 @@ struct pair_request {
     fibrad_beam_rule rule;
     fibrad_surface_rule surface;
     fibrad_cast_rule cast;
+    double error;     /* 0: not asked for */
+    const char *json; /* NULL: not asked for */
+    struct report report;
     bool beam_given, surface_given, cast_given, check;
 };
 
 static int pair_help(void) {
     puts("fibrad pair R1 R2 GAP [options]\n\n"
          "View factor from sphere 1 (radius R1, at the origin) to sphere 2 (radius R2, at 0,0,R1+R2+GAP). GAP may be\n"
-         "negative: the spheres overlap. With obstacles, exact means adaptive quadrature, to about 1e-9 and slow.\n");
+         "negative: the spheres overlap. With obstacles, exact means adaptive quadrature, slow.\n");
     options_print(pair_table);
     puts("\nThe last line of the output is `F12 VALUE`.\n\n"
          "Examples:\n"
@@ -102,6 +117,11 @@ static int pair_take(struct pair_request *request, const struct options *options
     case KEY_CHECK:
         request->check = true;
         return STATUS_OK;
+    case KEY_ERROR:
+        return options_number("--error", options->value, 1e-12, 1, &request->error);
+    case KEY_JSON:
+        request->json = options->value;
+        return STATUS_OK;
     case KEY_NF:
     case KEY_NO_CORRECTION:
         request->surface_given = true;
@@ -128,6 +148,8 @@ static int pair_parse(struct pair_request *request, int argc, char **argv) {
     if (request->given < 3) return message(STATUS_USAGE, "R1, R2 and GAP are needed; see fibrad pair --help");
     if (request->check && (request->method != METHOD_EXACT || request->n > 2))
         return message(STATUS_USAGE, "--check is for the exact factor without obstacles");
+    if (request->error > 0 && (request->method != METHOD_EXACT || request->n == 2))
+        return message(STATUS_USAGE, "--error is for the exact factor with obstacles");
     if (request->beam_given && request->method != METHOD_BEAM)
         return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
     if (request->surface_given && request->method != METHOD_SURFACE)
@@ -142,29 +164,31 @@ static int pair_parse(struct pair_request *request, int argc, char **argv) {
     return options_beam_rule(&request->beam, &request->rule);
 }
 
-static int report_check(const char *name, int error, double value, double abserr, double f12) {
+static int report_check(struct report *report, const char *name, int error, double value, double abserr, double f12) {
+    char text[120];
     if (error) return message(STATUS_USAGE, "%s: %s", name, gsl_strerror(error));
-    printf("%s %.17g error %.3g difference %.3g\n", name, value, abserr, value / f12 - 1);
+    snprintf(text, sizeof text, "%.17g error %.3g difference %.3g", value, abserr, value / f12 - 1);
+    report_text(report, name, text);
     return STATUS_OK;
 }
 
 /* Differences are relative to the kernel's value. */
-static int pair_check(const struct pair_request *request, double f12) {
+static int pair_check(struct pair_request *request, double f12) {
     double value = 0, abserr = 0;
     int status = STATUS_OK;
-    printf("kernel %.17g\n", f12);
+    report_value(&request->report, "kernel", f12, 17);
     if (request->gap >= 0) {
         const int error = exact_gsl_polar(request->r1, request->r2, request->gap, &value, &abserr);
-        status = report_check("gsl_polar", error, value, abserr, f12);
+        status = report_check(&request->report, "gsl_polar", error, value, abserr, f12);
     } else {
-        puts("gsl_polar none: the spheres overlap");
+        report_text(&request->report, "gsl_polar", "none: the spheres overlap");
     }
     if (status) return status;
     const int error = exact_gsl_lens(request->r1, request->r2, request->gap, &value, &abserr);
-    return report_check("gsl_lens", error, value, abserr, f12);
+    return report_check(&request->report, "gsl_lens", error, value, abserr, f12);
 }
 
-static int pair_exact(const struct pair_request *request, double *f12) {
+static int pair_exact(struct pair_request *request, double *f12) {
     const int status = fibrad_pair_exact(request->r1, request->r2, request->gap, f12);
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
     return request->check ? pair_check(request, *f12) : STATUS_OK;
@@ -202,34 +226,33 @@ static int pair_scene(const struct pair_request *request, fibrad_scene **scene, 
     return status ? pair_refuse(status, &fault) : STATUS_OK;
 }
 
-/* Whether the spheres make a scene. */
-static int pair_sound(const struct pair_request *request) {
+/* Whether the spheres make a scene, and what it is. */
+static int pair_sound(const struct pair_request *request, fibrad_scene_facts *facts) {
     fibrad_scene *scene;
     void *block;
     const int status = pair_scene(request, &scene, &block);
+    if (!status) fibrad_scene_describe(scene, facts);
     free(block);
     return status;
 }
 
-/* Pairs with obstacles: the value to 1e-9 of the unobstructed factor, or as near as a minute's work gets. */
-static int pair_reference(const struct pair_request *request, double *f12) {
-    const struct reference_rule rule = {.tolerance = 1e-9, .max_evaluations = 5000000};
+/* Pairs with obstacles. An error that was not asked for may be missed in silence no more than another. */
+static int pair_reference(struct pair_request *request, double *f12) {
     const fibrad_spheres spheres = pair_spheres(request, 0);
+    fibrad_scene_facts facts;
     struct reference_report report;
-    const int status = pair_sound(request);
+    int status = pair_sound(request, &facts);
     if (status) return status;
-    switch (reference_pair(&spheres, 0, 1, &rule, f12, &report)) {
-    case REFERENCE_OK:
-        break;
-    case REFERENCE_UNCONVERGED:
-        message(STATUS_OK, "warning: stopped at an estimated error of %.1e", report.error);
-        break;
-    case REFERENCE_MEMORY:
-        return message_memory();
-    default:
-        return message(STATUS_USAGE, "these spheres cannot be computed");
-    }
-    printf("evaluations %" PRIu64 "\nerror_estimate %.3g\n", report.evaluations, report.error);
+    const double usual = facts.overlap_max > 0 ? ERROR_OVERLAP : ERROR_APART;
+    const struct reference_rule rule = {.tolerance = request->error > 0 ? request->error : usual,
+                                        .max_evaluations = DIRECTIONS};
+    status = reference_pair(&spheres, 0, 1, &rule, f12, &report);
+    if (status == REFERENCE_MEMORY) return message_memory();
+    if (status == REFERENCE_ARGUMENT) return message(STATUS_USAGE, "these spheres cannot be computed");
+    report_count(&request->report, "evaluations", report.evaluations);
+    report_value(&request->report, "error_estimate", report.error, 3);
+    report_wanted(&request->report, NULL, rule.tolerance, rule.tolerance, report.error,
+                  "the factor over that without obstacles");
     return STATUS_OK;
 }
 
@@ -250,17 +273,21 @@ static uint32_t find_column(const fibrad_row *row, uint32_t j) {
 }
 
 /* F from sphere i to sphere j by the row of i. */
-static int beam_factor(struct few *few, const struct pair_request *request, uint32_t i, uint32_t j, double *f) {
+static int beam_factor(struct few *few, struct pair_request *request, uint32_t i, uint32_t j, double *f) {
     fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
     const int status = fibrad_beam_row(few->scene, &few->work, i, &request->rule, &row);
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
     const uint32_t k = find_column(&row, j);
     *f = k < row.length ? row.f[k] : 0;
-    printf("F%" PRIu32 "%" PRIu32 "_raw %.17g\nerror_estimate_%" PRIu32 " %.3g\n", i + 1, j + 1, *f, i + 1, row.error);
+    char key[40];
+    snprintf(key, sizeof key, "F%" PRIu32 "%" PRIu32 "_raw", i + 1, j + 1);
+    report_value(&request->report, key, *f, 17);
+    snprintf(key, sizeof key, "error_estimate_%" PRIu32, i + 1);
+    report_value(&request->report, key, row.error, 3);
     return STATUS_OK;
 }
 
-static int pair_beam(struct few *few, const struct pair_request *request, double *f12) {
+static int pair_beam(struct few *few, struct pair_request *request, double *f12) {
     double there = 0, back = 0;
     int status = beam_factor(few, request, 0, 1, &there);
     if (!status) status = beam_factor(few, request, 1, 0, &back);
@@ -270,7 +297,7 @@ static int pair_beam(struct few *few, const struct pair_request *request, double
 }
 
 /* F12 by rays from sphere 1 alone. */
-static int pair_cast(struct few *few, const struct pair_request *request, double *f12) {
+static int pair_cast(struct few *few, struct pair_request *request, double *f12) {
     fibrad_cast_rule rule = request->cast;
     fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
     rule.random = request->method == METHOD_MC;
@@ -279,12 +306,16 @@ static int pair_cast(struct few *few, const struct pair_request *request, double
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
     const uint32_t k = find_column(&row, 1);
     *f12 = k < row.length ? row.f[k] : 0;
-    printf("rays %" PRIu32 "\nerror_estimate %.3g\n", rule.rays, row.error);
-    if (k < row.length) printf("mean_ray_length %.17g\nmean_angle %.17g\n", few->length[k], few->angle[k]);
+    report_count(&request->report, "rays", rule.rays);
+    report_value(&request->report, "error_estimate", row.error, 3);
+    if (k < row.length) {
+        report_value(&request->report, "mean_ray_length", few->length[k], 17);
+        report_value(&request->report, "mean_angle", few->angle[k], 17);
+    }
     return STATUS_OK;
 }
 
-static int pair_rows(const struct pair_request *request, double *f12) {
+static int pair_rows(struct pair_request *request, double *f12) {
     struct few *few = calloc(1, sizeof *few);
     if (!few) return message_memory();
     few->work.memory.resize = fibrad_heap_resize;
@@ -296,10 +327,11 @@ static int pair_rows(const struct pair_request *request, double *f12) {
     return status;
 }
 
-static int pair_surface(const struct pair_request *request, double *f12) {
+static int pair_surface(struct pair_request *request, double *f12) {
     const fibrad_spheres obstacles = pair_spheres(request, 2);
+    fibrad_scene_facts of_scene;
     fibrad_surface_facts facts;
-    int status = pair_sound(request);
+    int status = pair_sound(request, &of_scene);
     if (status) return status;
     double *scratch = malloc(FIBRAD_SURFACE_SCRATCH(obstacles.n) * sizeof *scratch);
     if (!scratch) return message_memory();
@@ -307,11 +339,11 @@ static int pair_surface(const struct pair_request *request, double *f12) {
                                  &facts);
     free(scratch);
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
-    printf("error_estimate %.3g\n", facts.error);
+    report_value(&request->report, "error_estimate", facts.error, 3);
     return STATUS_OK;
 }
 
-static int pair_compute(const struct pair_request *request) {
+static int pair_compute(struct pair_request *request) {
     double f12 = 0;
     int status;
     if (request->method == METHOD_SURFACE)
@@ -320,16 +352,33 @@ static int pair_compute(const struct pair_request *request) {
         status = pair_rows(request, &f12);
     else
         status = request->n > 2 ? pair_reference(request, &f12) : pair_exact(request, &f12);
-    if (!status) printf("F12 %.17g\n", f12);
+    if (!status) report_value(&request->report, "F12", f12, 17);
     return status;
+}
+
+static int pair_run(struct pair_request *request) {
+    struct output json = {0};
+    int status = output_open(&json, request->json);
+    request->report =
+        (struct report){.text = request->json && output_stdout(request->json) ? stderr : stdout, .json = json.file};
+    if (!status) {
+        report_open(&request->report, "pair");
+        report_begin(&request->report);
+        status = pair_compute(request);
+        report_end(&request->report);
+        report_close(&request->report);
+    }
+    return output_close(&json, status);
 }
 
 int command_pair(int argc, char **argv) {
     struct pair_request *request = calloc(1, sizeof *request);
     if (!request) return message_memory();
     int status = pair_parse(request, argc, argv);
-    if (!status) status = pair_compute(request);
-    if (status == STATUS_HELP) status = pair_help();
+    if (status == STATUS_HELP)
+        status = pair_help();
+    else if (!status)
+        status = pair_run(request);
     free(request);
     return status;
 }

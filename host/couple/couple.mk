@@ -21,6 +21,7 @@ COUPLE_WALLS = host/couple/walls/mesh_walls.c
 COUPLE_MESH = $(COUPLE_WALLS) \
     host/cli/interrupt.c \
     host/cli/message.c \
+    host/cli/output.c \
     host/mesh/edges.c \
     host/mesh/enclosing.c \
     host/mesh/facing.c \
@@ -34,7 +35,7 @@ COUPLE_MESH = $(COUPLE_WALLS) \
 COUPLE_PROGRAMS = host/couple/example.c
 
 COUPLE_TESTS   = tests/couple/test_couple.c
-COUPLE_SCRIPTS = tests/couple/check_couple.sh
+COUPLE_SCRIPTS = tests/couple/check_couple.sh tests/couple/check_made.sh
 
 COUPLE_OBJECTS = $(COUPLE:%.c=$(BUILD)/%.o)
 COUPLE_MESH_OBJECTS = $(COUPLE_MESH:%.c=$(BUILD)/couple/%.o)
@@ -43,8 +44,9 @@ COUPLE_LIBS    = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/libfibrad.a
 COUPLE_CXX     = $(CFLAGS) -pedantic -Wall -Wextra -Wshadow $(WERROR) -DOMPI_SKIP_MPICXX -Ikernel -Ihost -MMD -MP
 COUPLE_FLAGS   = $(COMMON) -D_POSIX_C_SOURCE=200809L -fopenmp -Ihost $(PIC)
 
-# what `make couple` builds
+# what `make couple` builds; what it needs is looked for when the first file is to be made, since deps-couple may have to install it
 COUPLE_PRODUCTS = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/couple/example
+COUPLE_DEPS     = $(filter deps-couple,$(MAKECMDGOALS))
 
 # couplings with other codes add to these lists
 include $(wildcard host/lammps/*.mk host/liggghts/*.mk)
@@ -53,8 +55,13 @@ include $(wildcard host/lammps/*.mk host/liggghts/*.mk)
 $(BUILD)/couple/ranks: bench/ranks.c $(COUPLE_LIBS)
 	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
 
-## couple: libfibrad_couple.a and what couples it with other codes, into build/couple (needs MPI: make deps-couple)
+## couple: libfibrad_couple.a, fix fibrad of LAMMPS and the driver of LIGGGHTS, into build/couple (on a fresh machine: make deps-couple couple)
+.PHONY: couple couple-lib need-mpi test-couple deps-couple
+
 couple: $(COUPLE_PRODUCTS)
+
+## couple-lib: libfibrad_couple.a and its example alone (needs MPI)
+couple-lib: $(BUILD)/couple/libfibrad_couple.a $(BUILD)/couple/example
 
 $(BUILD)/couple/libfibrad_couple.a: $(COUPLE_OBJECTS)
 	@mkdir -p $(@D)
@@ -79,7 +86,7 @@ $(BUILD)/couple/example: host/couple/example.c $(COUPLE_LIBS)
 $(BUILD)/couple/test_couple: tests/couple/test_couple.c $(COUPLE_LIBS)
 	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
 
-need-mpi:
+need-mpi: | $(COUPLE_DEPS)
 	@command -v $(MPICC) >/dev/null || { echo "Couplings need MPI: run 'make deps-couple' (Debian: openmpi-bin," \
 	    "libopenmpi-dev)." >&2; exit 1; }
 
@@ -93,4 +100,4 @@ test-couple:
 
 ## deps-couple: install the Debian packages of the couplings: MPI, LAMMPS, LIGGGHTS
 deps-couple:
-	@.ci/deps zlib1g-dev openmpi-bin libopenmpi-dev lammps liblammps-dev liggghts libliggghts-dev
+	@$(DEPS) libc6-dev g++ pkg-config zlib1g-dev openmpi-bin libopenmpi-dev lammps liblammps-dev liggghts libliggghts-dev

@@ -69,6 +69,8 @@ typedef struct fibrad_insitu_bed {
     const fibrad_body *body;       /* [bodies] walls, as in fibrad_scene_config: every centre inside of them */
     const double *body_emissivity; /* [bodies] [0, 1] */
     uint32_t bodies;
+    const fibrad_plane *opening; /* [openings] as in fibrad_scene_config; at NaN: where the particles end */
+    uint32_t openings;           /* [0, 6] */
     const struct fibrad_triangles *triangles; /* fibrad_mesh.h: all of bodies that are meshes, the same on all ranks;
                                                  on periodic axes they repeat; NULL: none */
     size_t n;                                 /* particles that this rank owns */
@@ -111,7 +113,8 @@ typedef struct fibrad_insitu_facts {
 int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu_config *config);
 
 /* Makes all rows anew. Errors: FIBRAD_E_ARGUMENT (a value out of its range, an id twice, a centre beyond a wall),
- * _GEOMETRY (a centre inside another particle), _BACK (a side of a triangle is seen that is no body's), _MEMORY. */
+ * _GEOMETRY (a centre inside another particle, a particle beyond an opening), _ENDLESS, _BACK (a side of a triangle is
+ * seen that is no body's), _MEMORY. */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Net radiative power of each particle this rank owns now, power[n], > 0 where heat is gained. totals may be NULL.

@@ -18,6 +18,7 @@
 #define REACH_RADII    1.5   /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad_part.h */
 #define LENGTH_MAX     1e150 /* the kernel's */
 #define PERIODS_MAX    100   /* as far as the kernel's beams go */
+#define OPENINGS_MAX   6     /* one a side */
 
 /* ---- begin and end ---- */
 
@@ -122,6 +123,7 @@ struct insitu_build {
     uint64_t step;
     double period[3], cutoff, radius_max, reach;
     size_t halo;
+    fibrad_plane opening[OPENINGS_MAX];
     fibrad_occupancy map;
     fibrad_scene *scene;
 };
@@ -135,7 +137,8 @@ static int check_bed(struct insitu_build *b) {
     fibrad_body body[FIBRAD_BODIES_MAX]; /* but meshes, which bound nothing */
     uint32_t bodies = 0;
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
-        bed->bodies > FIBRAD_BODIES_MAX || (bed->bodies && !(bed->body && bed->body_emissivity)))
+        bed->bodies > FIBRAD_BODIES_MAX || (bed->bodies && !(bed->body && bed->body_emissivity)) ||
+        bed->openings > OPENINGS_MAX || (bed->openings && !bed->opening))
         return FIBRAD_E_ARGUMENT;
     for (int axis = 0; axis < 3; ++axis) {
         if (!bed->periodic[axis]) continue;
@@ -145,9 +148,19 @@ static int check_bed(struct insitu_build *b) {
     }
     for (uint32_t k = 0; k < bed->bodies; ++k)
         if (bed->body[k].kind != FIBRAD_BODY_MESH) body[bodies++] = bed->body[k];
-    const fibrad_scene_config config = {
-        .period = {b->period[0], b->period[1], b->period[2]}, .body = body, .bodies = bodies};
+    for (uint32_t k = 0; k < bed->openings; ++k) {
+        fibrad_plane *opening = &b->opening[k];
+        *opening = bed->opening[k];
+        if (isnan(opening->at))
+            opening->at = opening->upper ? LENGTH_MAX : -LENGTH_MAX; /* as long as there is no bed */
+    }
+    const fibrad_scene_config config = {.period = {b->period[0], b->period[1], b->period[2]},
+                                        .body = body,
+                                        .bodies = bodies,
+                                        .opening = b->opening,
+                                        .openings = bed->openings};
     const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
+    if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));
     if (status) return fibrad_refuse(message, status, "the walls do not bound a box or a cylinder");
     for (uint32_t k = 0; k < bed->bodies; ++k)
         if (!(bed->body_emissivity[k] >= 0 && bed->body_emissivity[k] <= 1))
@@ -193,23 +206,30 @@ static int begin_bed(struct insitu_build *b) {
 static int measure_bed(struct insitu_build *b) {
     const fibrad_particle *particle = b->to->particle.at;
     const fibrad_insitu_config *config = &b->s->config;
-    double most[8] = {0, -1}; /* radius, -emissivity, high, -low */
+    double most[14] = {0, -1}; /* radius, -emissivity, high, -low; the same of surfaces */
     uint64_t sum[2] = {b->to->own, 0};
     int status = FIBRAD_OK;
-    for (int k = 2; k < 8; ++k) most[k] = -INFINITY;
+    for (int k = 2; k < 14; ++k) most[k] = -INFINITY;
     for (size_t i = 0; i < b->to->own; ++i) {
         most[0] = fmax(most[0], particle[i].radius);
         most[1] = fmax(most[1], -particle[i].emissivity);
         for (int axis = 0; axis < 3; ++axis) {
             most[2 + axis] = fmax(most[2 + axis], particle[i].x[axis]);
             most[5 + axis] = fmax(most[5 + axis], -particle[i].x[axis]);
+            most[8 + axis] = fmax(most[8 + axis], particle[i].x[axis] + particle[i].radius);
+            most[11 + axis] = fmax(most[11 + axis], particle[i].radius - particle[i].x[axis]);
         }
     }
-    MPI_Allreduce(MPI_IN_PLACE, most, 8, MPI_DOUBLE, MPI_MAX, b->s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, most, 14, MPI_DOUBLE, MPI_MAX, b->s->comm);
     for (size_t i = 0; i < b->to->own; ++i) sum[1] += (uint64_t)llround(particle[i].radius / most[0] * 0x1p32);
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_UINT64_T, MPI_SUM, b->s->comm);
     b->to->facts = (fibrad_insitu_facts){.particles = sum[0], .step = b->step};
     b->radius_max = most[0];
+    for (uint32_t k = 0; k < b->bed->openings && sum[0]; ++k) {
+        fibrad_plane *opening = &b->opening[k];
+        if (!isnan(b->bed->opening[k].at)) continue;
+        opening->at = opening->upper ? most[8 + opening->axis] : -most[11 + opening->axis];
+    }
     b->cutoff = config->cutoff;
     if (!(b->cutoff > 0) && sum[0])
         b->cutoff = 2 * b->radius_max + (-most[1] < DARK_BELOW ? CUTOFF_DARK : CUTOFF_RADII) *
@@ -260,6 +280,8 @@ static int name_scene_fault(const struct insitu_build *b, int status, const uint
         return fibrad_refuse(message, status, "triangle %" PRIu32 " of the walls is not valid", fault.triangle);
     if (fault.first >= n || fault.second >= n) return status;
     const uint64_t first = id[fault.first], second = id[fault.second];
+    if (fault.first == fault.second && status == FIBRAD_E_GEOMETRY)
+        return fibrad_refuse(message, status, "particle %" PRIu64 ": it reaches beyond an open side", first);
     if (fault.first == fault.second)
         return refuse_particle(message, first,
                                "its centre lies beyond a wall, or too far from the origin for its size");
@@ -287,8 +309,14 @@ static int make_scene(struct insitu_build *b) {
     uint64_t *id = b->to->id.at;
     double *emissivity = s->emissivity.at;
     for (size_t i = 0; i < n; ++i) id[i] = p[i].id, emissivity[i] = p[i].emissivity;
-    const fibrad_scene_config config = {
-        .body = b->bed->body, .bodies = b->bed->bodies, .occupancy = n ? &b->map : NULL, .triangles = &triangles};
+    fibrad_scene_config config = {0}; /* of nothing, where there are no particles */
+    if (n)
+        config = (fibrad_scene_config){.body = b->bed->body,
+                                       .bodies = b->bed->bodies,
+                                       .opening = b->opening,
+                                       .openings = b->bed->openings,
+                                       .occupancy = &b->map,
+                                       .triangles = &triangles};
     const uint32_t stride = sizeof *p / sizeof(double);
     const fibrad_spheres spheres = {&p->x[0], &p->x[1], &p->x[2], &p->radius, (uint32_t)n, stride, stride, id};
     fibrad_fault fault;
@@ -301,7 +329,12 @@ static int name_row_fault(const struct insitu_build *b, int status, uint64_t id,
     const fibrad_triangles *t = b->bed->triangles;
     if (status != FIBRAD_E_BACK || !t || work->triangle >= t->n)
         return fibrad_refuse(b->s->message, status, "particle %" PRIu64 ": %s", id, fibrad_status_text(status));
-    const uint32_t front = t->front[work->triangle], body = front == FIBRAD_NO_BODY ? t->back[work->triangle] : front;
+    const uint32_t front = t->front[work->triangle], back = t->back ? t->back[work->triangle] : FIBRAD_NO_BODY;
+    const uint32_t body = front == FIBRAD_NO_BODY ? back : front;
+    if (body == FIBRAD_NO_BODY)
+        return fibrad_refuse(b->s->message, status,
+                             "particle %" PRIu64 " sees triangle %" PRIu32 ", neither side of which is a wall's", id,
+                             work->triangle);
     return fibrad_refuse(b->s->message, status,
                          "particle %" PRIu64 " sees the back of wall %" PRIu32 ", of triangle %" PRIu32 ", which is no "
                          "wall's",

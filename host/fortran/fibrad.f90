@@ -25,7 +25,8 @@ module fibrad
 
     integer, parameter, public :: fibrad_ok = 0, fibrad_e_argument = -1, fibrad_e_geometry = -6, fibrad_e_state = -8, &
                                   fibrad_e_unsupported = -10, fibrad_e_memory = -11, &
-                                  fibrad_e_back = -14
+                                  fibrad_e_back = -14, fibrad_e_sum = -15, fibrad_e_endless = -16
+    integer(c_int), parameter :: kind_open = -1 ! of fibrad_wall; C has openings in a list of their own
     real(c_double), parameter, public :: fibrad_stefan_boltzmann = 5.670374419e-8_c_double
 
     ! ---- structures of C, as in the headers
@@ -44,7 +45,7 @@ module fibrad
         real(c_double) :: x = 0, y = 0, radius = 0
     end type c_cylinder
 
-    ! A wall, by fibrad_plane, fibrad_cylinder or fibrad_mesh.
+    ! A wall, by fibrad_plane, fibrad_cylinder or fibrad_mesh; or an open side, by fibrad_plane.
     type, bind(C), public :: fibrad_wall
         integer(c_int) :: kind = 0
         type(c_plane) :: plane
@@ -56,6 +57,8 @@ module fibrad
         real(c_double) :: period(3) = 0
         type(c_ptr) :: body = c_null_ptr
         integer(c_int32_t) :: bodies = 0
+        type(c_ptr) :: opening = c_null_ptr
+        integer(c_int32_t) :: openings = 0
         real(c_double) :: known_low(3) = 0, known_high(3) = 0
         type(c_ptr) :: occupancy = c_null_ptr, triangles = c_null_ptr
     end type c_scene_config
@@ -77,14 +80,17 @@ module fibrad
         integer(c_int32_t), allocatable :: back(:)      ! likewise; not allocated: none
     end type fibrad_triangles
 
-    type :: triangles_of_c ! counted from 0, as C wants them for a call
+    type :: walls_of_c ! as C wants them for a call: openings apart, triangles counted from 0
+        type(fibrad_wall), allocatable :: wall(:)
+        type(c_plane), allocatable :: opening(:)
         real(c_double), allocatable :: vertex(:, :)
         integer(c_int32_t), allocatable :: corner(:, :), front(:), back(:)
         type(c_triangles) :: given
-    end type triangles_of_c
+    end type walls_of_c
 
     type, bind(C) :: c_fault
-        integer(c_int32_t) :: first = 0, second = 0, triangle = -1
+        integer(c_int32_t) :: first = 0, second = 0, triangle = -1, wall = 0
+        integer(c_int) :: why = 0
     end type c_fault
 
     type, bind(C) :: c_scene_facts
@@ -121,7 +127,8 @@ module fibrad
         type(c_ptr) :: start = c_null_ptr, col = c_null_ptr, f = c_null_ptr
         type(c_ptr) :: escaped = c_null_ptr, beyond = c_null_ptr, error = c_null_ptr, body = c_null_ptr
         type(c_ptr) :: body_body = c_null_ptr, body_escaped = c_null_ptr, body_error = c_null_ptr
-        real(c_double) :: body_correction = 0
+        real(c_double) :: body_correction = 0, body_closure = 0, changed = 0
+        integer(c_int32_t) :: changed_row = 0
     end type c_factors
 
     type, bind(C) :: c_bed_factors
@@ -382,15 +389,19 @@ module fibrad
 contains
 
     ! The wall called 'xmin', 'xmax' ... 'zmax' at a place on its axis; of another name: refused by what it is passed to.
-    pure function fibrad_plane(name, at) result(wall)
+    ! open: where a container ends and the surroundings begin, black and as hot as they are. It stands among the walls,
+    ! but is none: it is not counted, and has neither temperature nor emissivity.
+    pure function fibrad_plane(name, at, open) result(wall)
         character(*), intent(in) :: name
         real(c_double), intent(in) :: at
+        logical, intent(in), optional :: open
         type(fibrad_wall) :: wall
         character(4), parameter :: names(6) = ['xmin', 'xmax', 'ymin', 'ymax', 'zmin', 'zmax']
         integer :: k
         do k = 1, size(names)
             if (name == names(k)) then
                 wall%kind = 1
+                if (flag(open) /= 0) wall%kind = kind_open
                 wall%plane = c_plane((k - 1) / 2, mod(k - 1, 2), at)
             end if
         end do
@@ -423,7 +434,7 @@ contains
         integer, intent(in), optional :: directions, threads
         logical, intent(in), optional :: raw
         integer, intent(out), optional :: fault(2)
-        type(triangles_of_c), target :: mesh
+        type(walls_of_c), target :: mesh
         type(c_beam_rule), target :: rule
         type(c_bed_options) :: options
         type(c_run) :: run
@@ -457,7 +468,7 @@ contains
         integer, intent(in), optional :: directions, paths, threads
         logical, intent(in), optional :: raw
         integer, intent(out), optional :: fault(2)
-        type(triangles_of_c), target :: mesh
+        type(walls_of_c), target :: mesh
         type(c_exchange_rule) :: rule
         type(c_bed_options) :: options
         type(c_run) :: run
@@ -489,7 +500,7 @@ contains
         type(fibrad_triangles), intent(in), optional :: triangles
         integer, intent(in), optional :: directions, points, patches, threads
         integer, intent(out), optional :: fault(2)
-        type(triangles_of_c), target :: mesh
+        type(walls_of_c), target :: mesh
         type(c_heat_config) :: config
         type(c_run) :: run
         call heat%free()
@@ -515,7 +526,7 @@ contains
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
         type(fibrad_triangles), intent(in), optional :: triangles
         integer, intent(out), optional :: fault(2)
-        type(triangles_of_c), target :: mesh
+        type(walls_of_c), target :: mesh
         type(c_fault) :: found
         if (present(fault)) fault = 0
         status = check_sizes(size(x), size(y), size(z), size(r))
@@ -642,7 +653,7 @@ contains
         type(fibrad_triangles), intent(in), optional :: triangles
         integer, intent(in), optional :: method, directions, points, patches, threads
         integer, intent(out), optional :: fault(2)
-        type(triangles_of_c), target :: mesh
+        type(walls_of_c), target :: mesh
         type(c_transient_config) :: config
         type(c_run) :: run
         call transient%free()
@@ -670,7 +681,7 @@ contains
         type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
         type(fibrad_triangles), intent(in), optional :: triangles
         integer, intent(out), optional :: fault(2)
-        type(triangles_of_c), target :: mesh
+        type(walls_of_c), target :: mesh
         type(c_fault) :: found
         if (present(fault)) fault = 0
         status = check_sizes(size(x), size(y), size(z), size(r))
@@ -828,7 +839,7 @@ contains
     pure integer function count_walls(walls)
         type(fibrad_wall), intent(in), optional :: walls(:)
         count_walls = 0
-        if (present(walls)) count_walls = size(walls)
+        if (present(walls)) count_walls = count(walls%kind /= kind_open)
     end function count_walls
 
     pure integer function count_values(values)
@@ -851,13 +862,17 @@ contains
 
     function scene_of(box, walls, mesh) result(config)
         real(c_double), intent(in), optional :: box(3)
-        type(fibrad_wall), intent(in), optional, contiguous, target :: walls(:)
-        type(triangles_of_c), intent(in), target :: mesh
+        type(fibrad_wall), intent(in), optional :: walls(:)
+        type(walls_of_c), intent(inout), target :: mesh
         type(c_scene_config) :: config
         if (present(box)) config%period = box
         if (present(walls)) then
-            config%body = c_loc(walls)
-            config%bodies = size(walls, kind=c_int32_t)
+            mesh%wall = pack(walls, walls%kind /= kind_open)
+            mesh%opening = pack(walls%plane, walls%kind == kind_open)
+            if (size(mesh%wall) > 0) config%body = c_loc(mesh%wall)
+            if (size(mesh%opening) > 0) config%opening = c_loc(mesh%opening)
+            config%bodies = size(mesh%wall, kind=c_int32_t)
+            config%openings = size(mesh%opening, kind=c_int32_t)
         end if
         if (mesh%given%n > 0) config%triangles = c_loc(mesh%given)
     end function scene_of
@@ -865,7 +880,7 @@ contains
     ! As C counts, for the length of a call.
     integer function copy_triangles(triangles, mesh)
         type(fibrad_triangles), intent(in), optional :: triangles
-        type(triangles_of_c), intent(inout), target :: mesh
+        type(walls_of_c), intent(inout), target :: mesh
         integer :: n
         copy_triangles = fibrad_ok
         if (.not. present(triangles)) return

@@ -15,12 +15,6 @@
 #include "frames/beyond.h"
 #include "plot/gnuplot.h"
 
-/* A mean radius above this is hardly one of a particle in metres. */
-#define RADIUS_LARGE 0.1
-
-/* Overlap over the smaller radius that is worth a word. */
-#define OVERLAP_LARGE 0.05
-
 static int take_period(const char *text, double period[3]) {
     int count = 3;
     const int status = strcmp(text, "none") == 0 ? STATUS_OK : options_numbers("--periodic", text, 3, period, &count);
@@ -34,6 +28,8 @@ static int add_file(struct bed_options *asked, const char *name) {
     for (size_t k = 0; k < asked->files; ++k)
         if (strcmp(name, "-") == 0 && strcmp(asked->file[k], name) == 0)
             return message(STATUS_USAGE, "standard input can be read once only");
+    const int spared = output_spare(name);
+    if (spared) return spared;
     char **file = realloc(asked->file, (asked->files + 1) * sizeof *file);
     if (!file) return message_memory();
     asked->file = file;
@@ -159,6 +155,8 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
 }
 
 size_t bed_options_column(struct bed_options *asked, const char *name, const char *unit) {
+    for (size_t k = 0; name && !unit && k < asked->columns; ++k)
+        if (!asked->unit[k] && strcmp(asked->column[k], name) == 0) return k;
     asked->column[asked->columns] = name;
     asked->unit[asked->columns] = unit;
     return name ? asked->columns++ : 0;
@@ -178,12 +176,12 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
     if (asked->wall_vtp && !asked->walls.walls.meshes)
         return message(STATUS_USAGE, "--wall-vtp: there is no --wall mesh:FILE");
     asked->outputs.picture = picture;
-    return outputs_check(&asked->outputs, content, (const char *const *)asked->file, asked->files,
-                         bed_options_series(asked) || asked->timed);
+    return outputs_check(&asked->outputs, content, bed_options_series(asked) || asked->timed);
 }
 
 /* What the options say of a bed that was read. */
 static int complete_bed(struct bed_options *asked, struct bed *bed) {
+    if (asked->periodic) warn_periods(&asked->warned, bed, asked->period);
     if (asked->periodic) memcpy(bed->period, asked->period, sizeof bed->period);
     if (!bed->units[0] && asked->length_unit)
         snprintf(bed->units, sizeof bed->units, "%s", asked->length_unit); /* for what is written of it */
@@ -195,14 +193,6 @@ static int complete_bed(struct bed_options *asked, struct bed *bed) {
     return status;
 }
 
-/* Rows of one output by ids and by positions are told apart by nothing. */
-static void warn_of_names(struct bed_options *asked, const struct bed *bed) {
-    if (asked->frames_done > 0 && asked->ids != bed->ids)
-        message_at(STATUS_OK, asked->name, 0, "warning: spheres go by %s, those of the frames before by %s",
-                   bed->ids ? "ids" : "positions", asked->ids ? "ids" : "positions");
-    asked->ids = bed->ids;
-}
-
 static int run_file(struct bed_options *asked, const char *path, struct bed *bed, bed_options_frame *frame,
                     void *request) {
     const struct read_options read = {.frames = asked->frames,
@@ -210,17 +200,20 @@ static int run_file(struct bed_options *asked, const char *path, struct bed *bed
                                       .periods_given = asked->periodic,
                                       .no_radius = asked->radius.given,
                                       .part = asked->files > 1,
+                                      .keep = outputs_keep(&asked->outputs),
                                       .extra = asked->column,
                                       .unit = asked->unit,
+                                      .some = asked->some,
                                       .extras = asked->columns};
     struct reader *reader;
     bool more = true;
-    asked->name = lines_name(path);
+    asked->name = asked->warned.file = lines_name(path);
     int status = reader_open(&reader, path, &read);
     while (!status) {
         status = reader_next(reader, bed, &more);
         if (status || !more) break;
-        warn_of_names(asked, bed);
+        if (asked->files > 1) bed->frame = asked->frames_done; /* through all files */
+        warn_frame(&asked->warned, bed);
         status = complete_bed(asked, bed);
         if (!status) status = frame(request, bed);
         ++asked->frames_done;
@@ -256,6 +249,7 @@ int bed_options_status(struct bed_options *asked, const struct bed *bed, int sta
     progress_stop(&asked->progress);
     if (status && asked->walls.walls.meshes && fault->triangle != UINT32_MAX)
         return meshes_refuse(asked->walls.walls.meshes, status, fault->triangle);
+    if (status == FIBRAD_E_ENDLESS) return walls_refuse_endless(&asked->walls.walls, bed);
     if (status == FIBRAD_E_MEMORY && asked->scratch)
         return message_at(STATUS_MEMORY, asked->scratch, 0, "there is no more room on this disk, or in memory");
     return bed_status(bed, asked->name, status, fault);
@@ -291,12 +285,6 @@ static const char *unit_of(const struct bed_options *asked, const struct bed *be
     return by_file ? bed->units : asked->length_unit;
 }
 
-static double mean_radius(const struct bed *bed) {
-    double sum = 0;
-    for (uint32_t i = 0; i < bed->n; ++i) sum += bed->r[i];
-    return sum / bed->n;
-}
-
 int bed_options_metres(struct bed_options *asked, const struct bed *bed, double *metres) {
     const char *unit = unit_of(asked, bed);
     double other;
@@ -309,11 +297,7 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
     if (unit && asked->length_unit && unit_of_length(asked->length_unit, &other) && other != *metres)
         return message_at(STATUS_USAGE, asked->name, 0,
                           "its units are %.20s; --length-unit is for files that name none", unit);
-    if (!unit && mean_radius(bed) > RADIUS_LARGE && !asked->warned) {
-        message_at(STATUS_OK, asked->name, 0, "warning: radii of %g are taken as metres; --length-unit mm, or m",
-                   mean_radius(bed));
-        asked->warned = true;
-    }
+    if (!unit) warn_unit(&asked->warned, bed);
     if (asked->metres > 0 && asked->metres != *metres)
         return message_at(STATUS_USAGE, asked->name, 0, "its unit of length is %g m, that of the files before %g m",
                           *metres, asked->metres);
@@ -325,12 +309,13 @@ int bed_options_write(struct bed_options *asked, const struct bed *bed, struct c
     what->bed = bed;
     what->file = asked->files > 1 ? asked->name : NULL;
     what->series = bed_options_series(asked);
-    return outputs_write(&asked->outputs, what, asked->files > 1 ? asked->frames_done : bed->frame);
+    return outputs_write(&asked->outputs, what);
 }
 
-int bed_options_walls(const struct bed_options *asked, const struct bed *bed, struct walls *walls) {
+int bed_options_walls(struct bed_options *asked, const struct bed *bed, struct walls *walls) {
     const fibrad_spheres spheres = bed_spheres(bed);
     const int status = walls_of(&asked->walls, bed, asked->name, walls);
+    if (!status) warn_walls(&asked->warned, bed, walls);
     if (status || !walls->meshes) return status;
     const int faced = meshes_face(walls->meshes, &spheres, bed->period);
     return faced ? faced : warn_beyond(bed, walls, asked->name);
@@ -343,6 +328,12 @@ static void report_mesh(struct report *report, const struct walls *walls, uint32
     report_text(report, key, mesh->file);
     snprintf(key, sizeof key, "wall_%s_triangles", wall_name(walls, k));
     report_count(report, key, mesh_triangles(mesh, k));
+    double end[2][3];
+    mesh_extents(walls->meshes, k, end[0], end[1]);
+    for (int upper = 0; upper < 2; ++upper) {
+        snprintf(key, sizeof key, "wall_%s_%s", wall_name(walls, k), upper ? "high" : "low");
+        report_vector(report, key, end[upper]);
+    }
 }
 
 static void report_wall(struct report *report, const struct walls *walls, uint32_t k) {
@@ -355,18 +346,6 @@ static void report_wall(struct report *report, const struct walls *walls, uint32
         report_vector(report, key, (const double[]){wall->cylinder.x, wall->cylinder.y, wall->cylinder.radius});
     else
         report_value(report, key, wall->plane.at, 9);
-}
-
-/* Overlaps are common in DEM; large ones are not, and make factors mean little. */
-static void report_overlap(struct bed_options *asked, const struct bed *bed, const fibrad_scene_facts *facts) {
-    const uint32_t first = facts->overlap_pair[0], second = facts->overlap_pair[1];
-    char place[2][BED_PLACE];
-    if (facts->overlap_max == 0) return;
-    report_value(&asked->report, "overlap_max", facts->overlap_max, 3);
-    if (facts->overlap_max > OVERLAP_LARGE)
-        message_at(STATUS_OK, asked->name, 0, "warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius",
-                   (long long)bed_name(bed, first), bed_place(bed, first, place[0]), (long long)bed_name(bed, second),
-                   bed_place(bed, second, place[1]), facts->overlap_max);
 }
 
 void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,
@@ -382,12 +361,18 @@ void bed_options_report(struct bed_options *asked, const struct bed *bed, const 
     report_text(report, "length_unit", unit ? unit : bed->units[0] ? bed->units : "not said");
     if (facts) report_value(report, "radius_min", facts->radius_min, 6);
     if (facts) report_value(report, "radius_max", facts->radius_max, 6);
-    if (facts) report_overlap(asked, bed, facts);
+    if (facts && facts->overlap_max > 0) report_value(report, "overlap_max", facts->overlap_max, 3);
+    if (facts) warn_overlap(&asked->warned, bed, facts);
     if (bed->low[0] < bed->high[0]) {
         report_vector(report, "box_low", bed->low);
         report_vector(report, "box_high", bed->high);
     }
     report_vector(report, "periods", bed->period);
     for (uint32_t k = 0; k < walls->count; ++k) report_wall(report, walls, k);
+    for (uint32_t k = 0; k < walls->openings; ++k) {
+        char key[20];
+        snprintf(key, sizeof key, "open_%s_at", plane_name(&walls->opening[k]));
+        report_value(report, key, walls->opening[k].at, 9);
+    }
     if (facts) report_text(report, "instruction_set", fibrad_isa_name(facts->isa));
 }

@@ -13,6 +13,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "frames/warnings.h"
 #include "report/report.h"
 #include "read/read.h"
 #include "simple/fibrad_host.h"
@@ -62,6 +63,7 @@ struct bed_options {
     const char *length_unit;             /* NULL: not given */
     const char *column[BED_COLUMNS_MAX]; /* [columns] read besides, */
     const char *unit[BED_COLUMNS_MAX];   /* and their units; NULL: none */
+    bool some[BED_COLUMNS_MAX];          /* values may be missing */
     size_t columns;
     struct wall_options walls;
     bool wall_vtp;       /* an output has their triangles */
@@ -73,8 +75,7 @@ struct bed_options {
     /* of the run */
     const char *name; /* of the file in hand, in messages */
     int64_t frames_done;
-    bool ids;      /* spheres of the last frame have them */
-    bool warned;   /* of radii that look like another unit's */
+    struct warned warned;
     double metres; /* of the unit of length so far; 0: not known */
     struct report report;
 };
@@ -83,8 +84,8 @@ struct bed_options {
  * 0, STATUS_HELP, STATUS_USAGE or STATUS_MEMORY. */
 int bed_options_take(struct bed_options *asked, const struct options *options, int key);
 
-/* Asks for a column of the file, whose unit is to be this one (NULL: it has none); returns its place in bed->extra.
- * name NULL: no column. */
+/* Asks for a column of the file, whose unit is to be this one (NULL: it has none); returns its place in bed->extra,
+ * one for all that ask for a column without a unit. name NULL: no column. */
 size_t bed_options_column(struct bed_options *asked, const char *name, const char *unit);
 
 /* Is a file missing, or is there something wrong with the outputs of this content, or with a picture (NULL: none)?
@@ -124,9 +125,9 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
 /* Writes the frame in hand to all outputs. what: all but bed, file and series. */
 int bed_options_write(struct bed_options *asked, const struct bed *bed, struct contents *what);
 
-/* Places the walls about a bed, finds which sides of meshes are walls, and warns of spheres beyond them. Status as
- * walls_of, or STATUS_MEMORY. */
-int bed_options_walls(const struct bed_options *asked, const struct bed *bed, struct walls *walls);
+/* Places the walls about a bed, finds which sides of meshes are walls, and warns of what does not go together. Status
+ * as walls_of, or STATUS_MEMORY. */
+int bed_options_walls(struct bed_options *asked, const struct bed *bed, struct walls *walls);
 
 /* Begins the report of a frame: file, frame, box, radii, units, walls. facts NULL: none. */
 void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,

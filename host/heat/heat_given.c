@@ -26,8 +26,10 @@ int given_check(struct given_options *options, struct bed_options *bed) {
     if (t->value < -options->zero) return message(STATUS_USAGE, "--temperature: %g is below absolute zero", t->value);
     t->some = p->given && !options->timed;
     p->some = true;
-    t->place = bed_options_column(bed, t->column, options->zero > 0 ? "C" : "K");
-    p->place = bed_options_column(bed, p->column, "W");
+    t->place = bed_options_column(bed, t->column, t->types ? NULL : options->zero > 0 ? "C" : "K");
+    p->place = bed_options_column(bed, p->column, p->types ? NULL : "W");
+    if (t->column && !t->types) bed->some[t->place] = t->some;
+    if (p->column && !p->types) bed->some[p->place] = true;
     return STATUS_OK;
 }
 
@@ -110,6 +112,21 @@ static int given_sides(const struct walls *walls, double zero, struct given *giv
     return status;
 }
 
+/* One number beside a column or a list is for the spheres that those leave out. */
+static int leave_out(const char *option, const struct quantity *number, const double *others, uint32_t n,
+                     double *values) {
+    bool used = false;
+    for (uint32_t i = 0; i < n; ++i) {
+        if (isnan(others[i]))
+            used = true;
+        else
+            values[i] = NAN;
+    }
+    if (used) return STATUS_OK;
+    return message(STATUS_USAGE, "%s %g: all spheres have the other given; a blank or nan in its column leaves one out",
+                   option, number->value);
+}
+
 static int given_spheres(const struct bed *bed, const char *file, struct given *given) {
     for (uint32_t i = 0; i < bed->n; ++i) {
         const bool t = !isnan(given->temperature[i]);
@@ -142,6 +159,11 @@ int given_values(const struct given_options *options, const struct bed *bed, con
         status = quantity_values(&options->temperature, bed, file, "temperature in kelvins", options->zero, 0,
                                  TEMPERATURE_MAX, &given->temperature);
     if (!status) status = quantity_values(&options->power, bed, file, "power", 0, -POWER_MAX, POWER_MAX, &given->power);
+    const struct quantity *t = &options->temperature, *p = &options->power;
+    if (!status && !options->timed && t->column && p->given && !p->column)
+        status = leave_out("--power", p, given->temperature, bed->n, given->power);
+    if (!status && !options->timed && p->column && t->given && !t->column)
+        status = leave_out("--temperature", t, given->power, bed->n, given->temperature);
     for (uint32_t i = 0; i < bed->n && !status && options->timed; ++i)
         if (isnan(given->power[i])) given->power[i] = 0;
     return status || options->timed ? status : given_spheres(bed, file, given);

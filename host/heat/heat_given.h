@@ -5,11 +5,14 @@
 #include "frames/bed_options.h"
 
 /* Rows of tables of options, without braces; KEY_* are the command's. */
-#define OPTION_TEMPERATURE "temperature", "T", "of all spheres; or TYPE:T,... ; or the file's column of that name"
+#define OPTION_TEMPERATURE                                                                                             \
+    "temperature", "T",                                                                                                \
+        "of all spheres; or TYPE:T,... ; or the file's column of that name, blank or nan where --power is for the "    \
+        "sphere"
 #define OPTION_POWER                                                                                                   \
     "power", "W",                                                                                                      \
         "what spheres give off from inside whose temperature is not given and wanted: number, TYPE:W,... or "          \
-        "column [W]"
+        "column, blank or nan where a temperature is given [W]"
 #define OPTION_AMBIENT                                                                                                 \
     "ambient", "T", "of the surroundings, which are black; needed unless walls and periods close the bed"
 #define OPTION_WALL_TEMPERATURE                                                                                        \

@@ -3,7 +3,6 @@
 
 #include <gsl/gsl_math.h>
 #include <gsl/gsl_sort.h>
-#include <limits.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -171,6 +170,7 @@ static int find_capacities(struct marching *m, double metres, double **capacity)
         quantity_values(&m->options->capacity, &m->bed, m->asked->name, "heat capacity", 0, 1e-12, 1e12, capacity);
     if (!status)
         status = quantity_values(&m->options->density, &m->bed, m->asked->name, "density", 0, 1e-12, 1e12, &density);
+    if (!status) warn_matter(&m->asked->warned, &m->bed, *capacity, density);
     for (uint32_t i = 0; i < m->bed.n && !status; ++i) {
         if (!(m->span.temperature[i] > 0))
             status = message_at(STATUS_INPUT, m->asked->name, m->bed.line[i],
@@ -243,7 +243,7 @@ static int write_state(struct marching *m) {
                                   .sources = &shown,
                                   .result = m->result,
                                   .of_sides = m->problem->by_factors ? NULL : m->triangles};
-    status = outputs_write(&m->asked->outputs, &what, m->bed.frame);
+    status = outputs_write(&m->asked->outputs, &what);
     ++m->bed.frame;
     return status;
 }
@@ -267,36 +267,6 @@ static int advance(struct marching *m, double time) {
     return STATUS_OK;
 }
 
-/* NAME.pvd beside NAME.*.vtp, which tells ParaView the time of each. */
-static int write_collection(const char *path, const char *star, const double *times, const bool *output, size_t count) {
-    const char *slash = strrchr(path, '/'), *begin = slash ? slash + 1 : path;
-    size_t length = (size_t)(star - path);
-    char name[PATH_MAX];
-    struct output file = {0};
-    int64_t number = 0;
-    while (length > (size_t)(begin - path) && strchr("._-", path[length - 1])) --length;
-    if (snprintf(name, sizeof name, "%.*s.pvd", (int)length, path) >= (int)sizeof name || slash > star)
-        return message_at(STATUS_FILE, path, 0, "no name for its .pvd");
-    int status = output_open(&file, name);
-    if (status) return status;
-    fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n", file.file);
-    for (size_t k = 0; k < count; ++k)
-        if (output[k])
-            fprintf(file.file, "<DataSet timestep=\"%.17g\" file=\"%.*s%lld%s\"/>\n", times[k], (int)(star - begin),
-                    begin, (long long)number++, star + 1);
-    fputs("</Collection>\n</VTKFile>\n", file.file);
-    return output_close(&file, status);
-}
-
-static int write_collections(const struct marching *m, const double *times, const bool *output, size_t count) {
-    const struct outputs *outputs = &m->asked->outputs;
-    int status = STATUS_OK;
-    for (size_t k = 0; k < outputs->count && !status; ++k)
-        if (outputs->to[k].star && strcmp(outputs->to[k].format->name, "vtp") == 0)
-            status = write_collection(outputs->to[k].path, outputs->to[k].star, times, output, count);
-    return status;
-}
-
 static int march_all(struct marching *m) {
     double *times = NULL;
     bool *output = NULL;
@@ -308,7 +278,6 @@ static int march_all(struct marching *m) {
         if (!status && output[k]) status = write_state(m);
     }
     if (!status && m->failed) status = message_memory();
-    if (!status) status = write_collections(m, times, output, count);
     free(times);
     free(output);
     return status;
@@ -392,23 +361,22 @@ int heat_march(struct bed_options *asked, const struct march_options *march, con
                          .result = result,
                          .triangles = &report->triangles,
                          .square_metres = metres * metres};
-    double *capacity = NULL, *before = malloc(bed->n * sizeof *before);
-    int status = before ? STATUS_OK : message_memory();
+    double *capacity = NULL, *now = malloc(2 * (size_t)bed->n * sizeof *now + 1);
+    if (!now) return message_memory();
+    for (uint32_t i = 0; i < bed->n; ++i) now[i] = problem->sources.temperature[i];
+    int status = STATUS_OK;
     m.bed.frame = 0, m.bed.timestep = -1;
     m.sources.sigma *= m.square_metres; /* areas are in the file's unit, powers in watts */
-    m.sources.body_temperature = m.wall;
-    m.span = (fibrad_span){.temperature = (double *)problem->sources.temperature,
-                           .step = march->step,
-                           .body_energy = m.wall_energy,
-                           .observe = note_point,
-                           .context = &m};
+    m.sources.temperature = now, m.sources.body_temperature = m.wall;
+    m.span = (fibrad_span){
+        .temperature = now, .step = march->step, .body_energy = m.wall_energy, .observe = note_point, .context = &m};
     for (uint32_t i = 0; i < bed->n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
     for (uint32_t k = 0; k < problem->walls.count; ++k) result->body_error[k] = result->body_temperature_error[k] = NAN;
     if (!status) status = choose_model(&m);
     if (!status) status = find_capacities(&m, metres, &capacity);
     m.span.capacity = capacity;
-    if (!status) status = march_bed(&m, before, picture);
-    free(before);
+    if (!status) status = march_bed(&m, now + bed->n, picture);
+    free(now);
     free(capacity);
     free(m.point);
     return status;

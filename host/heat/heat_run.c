@@ -7,17 +7,13 @@
 #include "cli/memory.h"
 #include "cli/message.h"
 
-/* Walls whose power is less than this of what they absorb need not know it to the error asked for. */
-#define WALL_SHARE 0.05
-
-/* The largest error of a wall: over the larger of its power and a share of what it absorbs, or of sigma T^4, relative,
- * where its temperature was found. */
+/* The largest error of a wall: over the larger of its power and what it absorbs, or of sigma T^4, relative, where its
+ * temperature was found. */
 static double heat_wall_error(const fibrad_heat_result *result, uint32_t walls) {
     double worst = 0;
     for (uint32_t k = 0; k < walls; ++k) {
         if (result->body_error[k] > 0)
-            worst = fmax(worst, result->body_error[k] /
-                                    fmax(fabs(result->body_power[k]), WALL_SHARE * result->body_absorbed[k]));
+            worst = fmax(worst, result->body_error[k] / fmax(fabs(result->body_power[k]), result->body_absorbed[k]));
         if (result->body_temperature_error[k] > 0)
             worst = fmax(worst, 4 * result->body_temperature_error[k] / result->body_temperature[k]);
     }
@@ -171,11 +167,14 @@ static void heat_follow(void *law, const double *temperature, const double *wall
 
 static int heat_once(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
                      struct heat_report *report) {
+    const double begun = progress_clock();
     const fibrad_scene_config scene = bed_scene(bed, &problem->walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     fibrad_heat_sources sources = problem->sources;
     fibrad_run run = bed_options_run(asked);
     fibrad_radiation *radiation;
+    double wall_emissivity[WALLS_MAX];
+    for (uint32_t k = 0; k < problem->walls.count; ++k) wall_emissivity[k] = sources.body_emissivity[k];
     if (problem->error > 0) sources.tolerance = fmin(1e-5, SOLVED * problem->error);
     if (isnan(sources.surroundings)) sources.surroundings = 0; /* closed: nothing gets there */
     int status = heat_memory(bed, &report->config);
@@ -183,7 +182,7 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
     if (!status)
         status = fibrad_radiation_settle(radiation, &sources, heat_follow, &(struct heat_law){problem, bed},
-                                         problem->emissivity, (double *)sources.body_emissivity, &report->result);
+                                         problem->emissivity, wall_emissivity, &report->result);
     if (!status && report->triangles.count) {
         status = fibrad_radiation_sides(radiation, report->triangles.quantity[TRIANGLE_FLUX].side,
                                         report->triangles.quantity[TRIANGLE_TEMPERATURE].side);
@@ -200,6 +199,7 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     heat_temperatures(bed, &sources, report);
     heat_scale(bed, problem->walls.count, report->metres * report->metres, &report->result);
     heat_summarise(bed, &sources, problem->walls.count, report);
+    report->seconds = progress_clock() - begun;
     return STATUS_OK;
 }
 
@@ -207,60 +207,111 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
 #define WALL_RAYS     262144u
 #define WALL_RAYS_MAX (1u << 23)
 
-#define HELPED 0.6 /* what is left of an error, at the most, by something that helps */
+/* Estimated errors over what --error allows. Powers of spheres that nearly cancel need not be known to E of themselves.
+ */
+struct heat_excess {
+    double beams, patches; /* of spheres, by where it comes from */
+    double walls, emission;
+};
 
-/* More beams, or patches. False: there is no more. */
-static bool heat_refine(struct heat_report *report, bool beams) {
-    fibrad_heat_config *config = &report->config;
-    if ((beams || config->patches == 384) && config->directions <= FIBRAD_DIRECTIONS_MAX / 4)
-        config->directions *= 2;
-    else if (config->patches < 384)
-        config->patches *= 4, config->directions *= 2; /* which few beams leave otherwise */
-    else
-        return false;
-    return true;
+static struct heat_excess heat_compare(const struct heat_problem *problem, const struct heat_report *report) {
+    const double allowed = problem->error * fmax(report->power_rms, 1e-3 * report->throughput);
+    const fibrad_heat_result *result = &report->result;
+    return (struct heat_excess){.beams = allowed > 0 ? result->error_beams / allowed : 0,
+                                .patches = allowed > 0 ? result->error_patches / allowed : 0,
+                                .walls = report->wall_error / problem->error,
+                                .emission = report->emission_error / problem->error};
 }
 
-/* As many more rays as the walls' error, `ratio` times what is allowed, calls for. */
-static bool heat_refine_rays(struct heat_report *report, double ratio) {
-    const uint32_t rays = report->config.wall_rays > 0 ? report->config.wall_rays : WALL_RAYS;
-    report->config.wall_rays = (uint32_t)fmin(rays * fmin(fmax(ratio * ratio, 2), 4), WALL_RAYS_MAX);
-    return report->config.wall_rays > rays;
+static double heat_worst(const struct heat_excess *over) {
+    return fmax(hypot(over->beams, over->patches), fmax(over->walls, over->emission));
 }
 
-/* The error that --error allows [W]; powers that nearly cancel need not be known to E of themselves. */
-static double heat_allowed(const struct heat_problem *problem, const struct heat_report *report) {
-    return problem->error * fmax(report->power_rms, 1e-3 * report->throughput);
+#define HELPED       0.6  /* what is left of an error, at the most, by something that helps */
+#define PATCHES_MOST 0.92 /* of what is allowed: more than that, and beams would have to be without error */
+enum { PATCHES_MAX = 384, GROWTH = 8 };
+
+/* So many times the beams, or all there may be. */
+static void heat_more_beams(fibrad_heat_config *config, double times) {
+    config->directions = (uint32_t)fmin(config->directions * fmin(fmax(times, 1.5), GROWTH), FIBRAD_DIRECTIONS_MAX);
 }
 
-/* Solves it again and again until powers and temperatures of spheres and walls err by no more than is allowed: with
- * more of what makes the larger part of the spheres' error, with more patches where beams do not help temperatures, and
- * with more rays between walls as long as these help a wall much, then more beams. */
+/* More patches want as many beams each as they had: what few of them leave goes back along each. */
+static void heat_more_patches(fibrad_heat_config *config) {
+    config->patches *= 4;
+    heat_more_beams(config, 4);
+}
+
+/* As many more rays as the walls' error calls for. */
+static void heat_more_rays(fibrad_heat_config *config, double over) {
+    const uint32_t rays = config->wall_rays > 0 ? config->wall_rays : WALL_RAYS;
+    config->wall_rays = (uint32_t)fmin(rays * fmin(fmax(over * over, 2), GROWTH), WALL_RAYS_MAX);
+}
+
+/* What is next: more of what makes the larger part of the spheres' error; more patches where beams do not help
+ * temperatures; more rays between walls as long as these help a wall much, then more beams. Errors fall about as beams
+ * rise. */
+static fibrad_heat_config heat_refine(fibrad_heat_config config, const struct heat_excess *over,
+                                      const struct heat_excess *last) {
+    const bool finer = config.patches < PATCHES_MAX;
+    if (over->walls > 1 && over->walls <= HELPED * last->walls) heat_more_rays(&config, over->walls);
+    if (hypot(over->beams, over->patches) > 1) {
+        if (over->patches > PATCHES_MOST && finer)
+            heat_more_patches(&config);
+        else
+            heat_more_beams(&config, over->beams / sqrt(1 - pow(fmin(over->patches, PATCHES_MOST), 2)));
+    } else if (over->emission > 1) {
+        if (over->emission > HELPED * last->emission && finer)
+            heat_more_patches(&config);
+        else
+            heat_more_beams(&config, over->emission);
+    } else if (over->walls > HELPED * last->walls) {
+        heat_more_beams(&config, over->walls);
+    }
+    return config;
+}
+
+/* About how long a solution takes, in beams of spheres; following a ray of a wall takes as long as so many. */
+#define BEAMS_A_RAY 12.0
+static double heat_work(const struct bed *bed, uint32_t walls, const fibrad_heat_config *config) {
+    const double beams = (double)config->directions * config->points;
+    const double rays = fmax(fmax(config->wall_rays, WALL_RAYS), 6 * beams);
+    return bed->n * beams + (walls > 0 ? BEAMS_A_RAY * rays : 0);
+}
+
+/* More than so many times what the defaults take is said beforehand. */
+#define COSTLY 20
+
+/* Solves it again and again until the errors are what is asked for, or can not be less. */
 static int heat_improve(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
                         struct heat_report *report) {
-    double last = INFINITY, last_emission = INFINITY;
-    for (;;) {
-        const double walls = report->wall_error / problem->error, emission = report->emission_error / problem->error;
-        const bool spheres = report->error > heat_allowed(problem, report);
-        bool more = false;
-        if (!spheres && walls <= 1 && emission <= 1) return STATUS_OK;
-        if (walls > 1 && walls <= HELPED * last) more = heat_refine_rays(report, walls);
-        if (spheres)
-            more = heat_refine(report, report->result.error_beams > report->result.error_patches) || more;
-        else if (emission > 1)
-            more = heat_refine(report, emission <= HELPED * last_emission) || more;
-        else if (!more)
-            more = heat_refine(report, true);
-        if (!more) break;
-        last = walls, last_emission = emission;
+    const struct heat_problem plain = {.config = problem->config, .emissivity = problem->emissivity};
+    const fibrad_heat_config defaults = heat_config(&plain, bed);
+    const double begun = progress_clock() - report->seconds;
+    struct heat_excess last = {INFINITY, INFINITY, INFINITY, INFINITY}, over = heat_compare(problem, report);
+    bool said = false;
+    while (heat_worst(&over) > 1) {
+        const fibrad_heat_config next = heat_refine(report->config, &over, &last);
+        const double work = heat_work(bed, problem->walls.count, &report->config);
+        const double seconds = report->seconds * heat_work(bed, problem->walls.count, &next) / work;
+        const double usual = report->seconds * heat_work(bed, problem->walls.count, &defaults) / work;
+        if (next.directions == report->config.directions && next.patches == report->config.patches &&
+            next.wall_rays == report->config.wall_rays)
+            break;
+        if (!said && progress_clock() + seconds - begun > COSTLY * usual) {
+            message_at(STATUS_OK, asked->name, 0,
+                       "warning: --error %g takes about %.0f s, %.0f times what it takes without", problem->error,
+                       ceil(progress_clock() + seconds - begun), (progress_clock() + seconds - begun) / usual);
+            said = true;
+        }
+        report->config = next;
         const int status = heat_once(asked, problem, bed, report);
         if (status) return status;
+        last = over;
+        over = heat_compare(problem, report);
     }
-    return message_at(STATUS_OK, asked->name, 0,
-                      "warning: the estimated error is %.3g of the powers of spheres, %.3g of a wall's, %.3g of the "
-                      "T^4 that were found",
-                      report->power_rms > 0 ? report->error / report->power_rms : 0, report->wall_error,
-                      report->emission_error);
+    report->error_reached = problem->error * heat_worst(&over);
+    return STATUS_OK;
 }
 
 int heat_run(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,

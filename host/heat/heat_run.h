@@ -28,12 +28,13 @@ struct heat_report {
     fibrad_scene_facts facts;
     double metres;             /* in: of the bed's unit of length */
     double seconds;            /* computing, without reading and writing */
+    double error_reached;      /* of the one wanted, as that is meant */
     double power_rms, largest; /* of the spheres: root mean square; of all: largest [W] */
     double emitted;            /* by the spheres [W] */
     double throughput;         /* root mean square of what a sphere emits, or absorbs where that is more [W] */
     double balance, error;     /* sum of all powers; root mean square error of a sphere's [W] */
-    double wall_error; /* of the wall that is worst off, over the larger of its power and 5 % of what it absorbs, or of
-                        * its sigma T^4 if that was found */
+    double wall_error; /* of the wall that is worst off, over the larger of its power and what it absorbs, or of its
+                        * sigma T^4 if that was found */
     double balance_of_emission;                                   /* over the sum of what the spheres emit or absorb */
     uint32_t unknown;                                             /* spheres whose temperatures were found; */
     double coldest, hottest, temperature_mean, temperature_error; /* the latter root mean square [K] */

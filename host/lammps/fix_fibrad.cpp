@@ -155,11 +155,12 @@ void FixFibrad::read_temperature(Words &words) {
         error->all(FLERR, "fix fibrad: `temperature` is followed by d_NAME, not `" + temperature + "`");
 }
 
-// wall FACE T e [at POS] | wall zcylinder R T e [at X Y] | wall mesh ...
+// wall FACE T e [at POS] | wall FACE open [at POS] | wall zcylinder R T e [at X Y] | wall mesh ...
 void FixFibrad::read_wall(Words &words) {
     static const char *const faces[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "zcylinder"};
     const std::string name = words.next();
     const int face = (int)(std::find(faces, faces + 7, name) - faces);
+    if (face < 6 && words.take("open")) return read_opening(words, face);
     if (walls.size() == FIBRAD_BODIES_MAX)
         error->all(FLERR, text("fix fibrad: there are at most %d walls", FIBRAD_BODIES_MAX));
     if (name == "mesh") return read_mesh(words);
@@ -190,6 +191,14 @@ void FixFibrad::read_wall(Words &words) {
     }
     walls.push_back(body);
     wall_face.push_back(at || face == 6 ? -1 : face);
+}
+
+// [at POS]; without it where the particles end
+void FixFibrad::read_opening(Words &words, int face) {
+    const double huge = 1e300;
+    fibrad_plane opening = {face / 2, face % 2, NAN};
+    if (words.take("at")) opening.at = words.number("the place of an open side", -huge, huge);
+    openings.push_back(opening);
 }
 
 // wall mesh FILE T e [name NAME] [both | normals | auto] [solids] [scale S]
@@ -274,6 +283,10 @@ void FixFibrad::init() {
     if (domain->triclinic) error->all(FLERR, std::string("fix fibrad: the box must not be triclinic"));
     if (strstr(update->integrate_style, "respa"))
         error->all(FLERR, std::string("fix fibrad: run_style must be verlet"));
+    for (const fibrad_plane &opening : openings)
+        if (domain->periodicity[opening.axis])
+            error->all(FLERR, std::string("fix fibrad: wall ") + "xyz"[opening.axis] + (opening.upper ? "hi" : "lo") +
+                                  " open is on a periodic axis");
     for (int face : wall_face) {
         if (face < 0) continue;
         const std::string name = {"xyz"[face / 2], face % 2 ? 'h' : 'l', face % 2 ? 'i' : 'o'};
@@ -381,6 +394,8 @@ void FixFibrad::make_rows() {
     bed.body = walls.data();
     bed.body_emissivity = wall_emissivity.data();
     bed.bodies = (uint32_t)walls.size();
+    bed.opening = openings.data();
+    bed.openings = (uint32_t)openings.size();
     bed.triangles = &meshes.meshes.triangles;
     bed.n = member.size();
     bed.id = tags.data();
@@ -393,6 +408,8 @@ void FixFibrad::make_rows() {
     if (status == FIBRAD_E_BACK)
         error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) +
                               "; with the word `both` both sides of a mesh are the wall");
+    if (status == FIBRAD_E_ENDLESS)
+        error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) + ", `wall zhi open`");
     check(status);
     rows_made++;
     fibrad_insitu_facts facts;

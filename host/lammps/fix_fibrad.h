@@ -47,6 +47,7 @@ class FixFibrad : public Fix {
 
     class Words;
     void read_wall(Words &);
+    void read_opening(Words &, int face);
     void read_mesh(Words &);
     void tell_of_meshes(uint32_t first, uint32_t bodies, const std::string &path);
     void read_temperature(Words &);
@@ -69,6 +70,7 @@ class FixFibrad : public Fix {
     double surroundings, sigma, initial;
     fibrad_insitu_config config;
     std::vector<fibrad_body> walls;
+    std::vector<fibrad_plane> openings;
     std::vector<double> wall_temperature, wall_emissivity;
     mesh_walls meshes;
     std::vector<int> wall_face; // 2 axis + upper where the wall is a face of the box, otherwise -1

@@ -1,21 +1,24 @@
 # lammps.mk - fix fibrad of LAMMPS; included by host/couple/couple.mk. SPDX-License-Identifier: MIT
 #
-# For Debian's LAMMPS as it is installed; for a newer one with the PLUGIN package: make LAMMPS_SOURCE=TREE couple.
+# For Debian's LAMMPS as it is installed; for a newer one with the PLUGIN package: make LAMMPS_SOURCE=TREE lammps.
 
 LAMMPS_SOURCE =
+LAMMPS_INCLUDE = /usr/include/lammps
 LAMMPS_SIZES  = -DLAMMPS_SMALLBIG
 
 LAMMPS_FLAGS  = $(COUPLE_CXX) -fPIC $(LAMMPS_SIZES)
 LAMMPS_LINK   = -shared -fopenmp -Wl,--exclude-libs,ALL
-LAMMPS_HERE   = $(wildcard /usr/include/lammps/fix.h)
 FIX           = host/lammps/fix_fibrad.cpp
 
-COUPLE_PRODUCTS += $(if $(LAMMPS_HERE),$(BUILD)/couple/fix_fibrad.so $(BUILD)/couple/fibrad.lmp) \
-    $(if $(LAMMPS_SOURCE),$(BUILD)/couple/fibrad_plugin.so)
+LAMMPS_PRODUCTS  = $(if $(LAMMPS_SOURCE),$(BUILD)/couple/fibrad_plugin.so,$(BUILD)/couple/fix_fibrad.so $(BUILD)/couple/fibrad.lmp)
+COUPLE_PRODUCTS += $(LAMMPS_PRODUCTS)
+
+## lammps: fix fibrad of LAMMPS alone, or with LAMMPS_SOURCE=TREE its plugin for that LAMMPS (on a fresh machine: make deps-couple lammps)
+lammps: $(LAMMPS_PRODUCTS)
 
 # C++14: the headers of Debian's LAMMPS want no more
-$(BUILD)/couple/fix_fibrad.so: $(FIX) $(COUPLE_MESH_LIB) $(COUPLE_LIBS)
-	$(MPICXX) -std=c++14 $(LAMMPS_FLAGS) -isystem host/lammps/debian -isystem /usr/include/lammps $(LAMMPS_LINK) \
+$(BUILD)/couple/fix_fibrad.so: $(FIX) $(COUPLE_MESH_LIB) $(COUPLE_LIBS) | need-lammps
+	$(MPICXX) -std=c++14 $(LAMMPS_FLAGS) -isystem host/lammps/debian -isystem $(LAMMPS_INCLUDE) $(LAMMPS_LINK) \
 	    $(FIX) $(COUPLE_MESH_LIB) $(COUPLE_LIBS) $(ZLIB_LIBS) -llammps -o $@
 
 $(BUILD)/couple/fibrad.lmp: host/lammps/fibrad.lmp.in $(BUILD)/couple/fix_fibrad.so
@@ -38,9 +41,13 @@ $(LAMMPS_CHECKS): $(BUILD)/%: %.c $(BUILD)/libfibrad.a
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(COMMON) -Ihost/couple $(LDFLAGS) $< $(BUILD)/libfibrad.a -lm -o $@
 
-.PHONY: demo-lammps
+need-lammps: | $(COUPLE_DEPS)
+	@test -e $(LAMMPS_INCLUDE)/fix.h || { echo "fix fibrad needs LAMMPS: run 'make deps-couple' (Debian: liblammps-dev)," \
+	    "or name the source of yours: make LAMMPS_SOURCE=TREE lammps." >&2; exit 1; }
+
+.PHONY: lammps demo-lammps need-lammps
 
 ## demo-lammps: pebbles poured onto a hot floor in LAMMPS on 2 ranks: energy balance, T against time, picture, ParaView
 demo-lammps: deps deps-couple
-	@$(MAKE) -s --no-print-directory couple
+	@$(MAKE) -s --no-print-directory lammps
 	@BUILD=$(BUILD) MPIRUN=$(MPIRUN) host/lammps/demo.sh

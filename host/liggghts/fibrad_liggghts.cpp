@@ -79,7 +79,8 @@ int rank() {
 void check(const Driver *driver, int status) {
     if (status == FIBRAD_OK) return;
     const std::string step = std::to_string(driver->lmp->update->ntimestep);
-    stop(WRONG_INPUT, "step " + step + ": " + fibrad_insitu_message(driver->radiation));
+    const char *hint = status == FIBRAD_E_ENDLESS ? ", such as --wall zhi=open" : "";
+    stop(WRONG_INPUT, "step " + step + ": " + fibrad_insitu_message(driver->radiation) + hint);
 }
 
 /* ---- set up ----------------------------------------------------------------------------------------------------- */
@@ -290,6 +291,8 @@ void make_rows(Driver *driver) {
     bed.body = driver->body.data();
     bed.body_emissivity = driver->body_emissivity.data();
     bed.bodies = (uint32_t)driver->body.size();
+    bed.opening = driver->options.openings.data();
+    bed.openings = (uint32_t)driver->options.openings.size();
     bed.triangles = &driver->triangles.meshes.triangles;
     bed.n = driver->id.size();
     bed.id = driver->id.data();

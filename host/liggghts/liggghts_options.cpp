@@ -3,6 +3,7 @@
 
 #include <getopt.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -61,9 +62,24 @@ bool whole(const char *text, uint64_t *value) {
     return *text >= '0' && *text <= '9' && *end == 0 && errno == 0;
 }
 
+const char sides[6][4] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+
+/* SIDE=open or SIDE=open,AT. */
+bool opening(const char *text, fibrad_plane *plane) {
+    std::vector<double> at = {NAN};
+    for (int side = 0; side < 6; ++side) {
+        const std::string begin = std::string(sides[side]) + "=open";
+        if (begin.compare(0, begin.size(), text, std::min(std::strlen(text), begin.size())) != 0) continue;
+        text += begin.size();
+        if (*text != 0 && (*text != ',' || !numbers(text + 1, -1e150, 1e150, &at) || at.size() != 1)) return false;
+        *plane = {side / 2, side % 2, at[0]};
+        return true;
+    }
+    return false;
+}
+
 /* SIDE=T,E[,AT] or cylinder=T,E,X,Y,R. */
 bool wall(const char *text, radiant_wall *wall) {
-    static const char sides[6][4] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
     const char *equals = std::strchr(text, '=');
     std::vector<double> values;
     if (equals == nullptr || !numbers(equals + 1, -1e150, 1e150, &values) || values.size() < 2) return false;
@@ -106,6 +122,7 @@ bool mesh(const char *text, radiant_mesh *mesh) {
 /* What was wrong with an option's argument; NULL: nothing. */
 const char *take(int key, const char *text, liggghts_options *options) {
     radiant_wall one;
+    fibrad_plane open;
     radiant_mesh triangles;
     switch (key) {
     case 'i':
@@ -119,7 +136,12 @@ const char *take(int key, const char *text, liggghts_options *options) {
     case 'T':
         return number(text, 0, 1e9, &options->surroundings) ? nullptr : "is no temperature";
     case 'w':
-        if (!wall(text, &one)) return "is neither SIDE=T,E[,AT], SIDE one of xlo ... zhi, nor cylinder=T,E,X,Y,R";
+        if (opening(text, &open)) {
+            options->openings.push_back(open);
+            return nullptr;
+        }
+        if (!wall(text, &one))
+            return "is none of SIDE=T,E[,AT] and SIDE=open[,AT], SIDE one of xlo ... zhi, and cylinder=T,E,X,Y,R";
         options->walls.push_back(one);
         return nullptr;
     case 'm':
@@ -192,6 +214,7 @@ void liggghts_options_help() {
         "  --surroundings T         temperature [K] of what is seen where there is neither particle nor wall\n"
         "  --wall SIDE=T,E[,AT]     a plane wall that radiates: xlo ... zhi, temperature [K], emissivity, place [fixed "
         "end of the box]\n"
+        "  --wall SIDE=open[,AT]    there the container ends and the surroundings begin [where the particles end]\n"
         "  --wall cylinder=T,E,X,Y,R  a wall about the axis along z through X,Y\n"
         "  --mesh ID=[T,]E          the script's fix mesh/surface ID radiates: temperature [the script's], emissivity; "
         "behind\n"

@@ -28,6 +28,7 @@ struct liggghts_options {
     std::vector<double> emissivity;  /* one for all types, or one for each */
     double surroundings = -1;        /* below 0: not given */
     std::vector<radiant_wall> walls;
+    std::vector<fibrad_plane> openings; /* at NaN: where the particles end */
     std::vector<radiant_mesh> meshes;
     long every = 20, rows = 1000, steps = -1; /* steps below 0: not given */
     fibrad_insitu_config config{};

@@ -2,6 +2,7 @@
 #include "mesh/meshes.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +26,14 @@ static void stem_of(const char *path, char name[MESH_NAME]) {
     name[length] = 0;
 }
 
-/* NAME, or NAME_SOLID for each. */
+/* Is one of the bodies from `first` to `last` called so already? */
+static bool is_taken(const struct meshes *meshes, uint32_t first, uint32_t last, const char *name) {
+    for (uint32_t k = first; k < last; ++k)
+        if (strcmp(meshes->name[k], name) == 0) return true;
+    return false;
+}
+
+/* NAME, or NAME_SOLID for each; NAME_1 and so on where a solid has no name, or that of one before. */
 static void name_bodies(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t body) {
     char name[MESH_NAME], solid[SOLID_NAME];
     if (file->name)
@@ -37,9 +45,9 @@ static void name_bodies(struct meshes *meshes, const struct mesh_file *file, con
         stem_of(stl->name[k], solid);
         if (!file->solids)
             memcpy(to, name, sizeof name);
-        else if (stl->name[k][0])
-            snprintf(to, MESH_NAME, "%.15s_%.15s", name, solid);
         else
+            snprintf(to, MESH_NAME, "%.15s_%.15s", name, solid);
+        if (file->solids && (!stl->name[k][0] || is_taken(meshes, body, body + k, to)))
             snprintf(to, MESH_NAME, "%.15s_%u", name, k + 1);
     }
 }
@@ -130,6 +138,17 @@ uint32_t mesh_triangles(const struct mesh *mesh, uint32_t body) {
     uint32_t count = 0;
     for (uint32_t t = 0; t < mesh->surface.n; ++t) count += mesh_body(mesh, t) == body;
     return count;
+}
+
+void mesh_extents(const struct meshes *meshes, uint32_t body, double low[3], double high[3]) {
+    const struct mesh *mesh = mesh_of_body(meshes, body);
+    for (int axis = 0; axis < 3; ++axis) low[axis] = INFINITY, high[axis] = -INFINITY;
+    for (uint32_t t = 0; t < mesh->surface.n; ++t)
+        for (int k = 0; k < 3 && mesh_body(mesh, t) == body; ++k)
+            for (int axis = 0; axis < 3; ++axis) {
+                const double at = surface_corner(&mesh->surface, t, k)[axis];
+                low[axis] = fmin(low[axis], at), high[axis] = fmax(high[axis], at);
+            }
 }
 
 /* The body's sides are the fronts, the backs, or both. */

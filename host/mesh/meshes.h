@@ -78,6 +78,9 @@ uint32_t mesh_body(const struct mesh *mesh, uint32_t own);
 /* Triangles of a body. */
 uint32_t mesh_triangles(const struct mesh *mesh, uint32_t body);
 
+/* The lower and upper ends of a body along each axis. */
+void mesh_extents(const struct meshes *meshes, uint32_t body, double low[3], double high[3]);
+
 /* Says that the library refuses a triangle. Returns STATUS_INPUT. */
 int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle);
 

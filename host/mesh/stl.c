@@ -115,6 +115,14 @@ static int read_corner(const struct lines *lines, const struct fields *fields, d
     return STATUS_OK;
 }
 
+/* The name behind `solid`: all words of the line, with _ between them. */
+static int name_solid(struct stl *stl, const struct fields *fields) {
+    char name[SOLID_NAME] = "";
+    for (size_t k = 1, used = 0; k < fields->n && used < sizeof name; ++k)
+        used += (size_t)snprintf(name + used, sizeof name - used, k > 1 ? "_%s" : "%s", fields->at[k]);
+    return add_solid(stl, name);
+}
+
 /* One line that is not blank. */
 static int read_line(struct stl *stl, const struct lines *lines, const struct fields *fields, int *state) {
     const char *first = fields->at[0];
@@ -125,7 +133,7 @@ static int read_line(struct stl *stl, const struct lines *lines, const struct fi
         if (words[k].at != *state) continue;
         const int before = *state;
         *state = words[k].then;
-        if (before == OUTSIDE) return add_solid(stl, fields->n > 1 ? fields->at[1] : "");
+        if (before == OUTSIDE) return name_solid(stl, fields);
         if (*state == FACET) return add_triangle(stl, lines->name, lines->number);
         if (before >= CORNER && before < CORNERS_DONE)
             return read_corner(lines, fields, stl->corner[stl->n - 1][before - CORNER]);

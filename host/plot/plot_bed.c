@@ -11,6 +11,10 @@
 #include "plot/plot_data.h"
 #include "plot/plot_slice.h"
 
+static const char *kind_of(const struct contents *what) { return what->grey ? "exchange" : "view"; }
+
+static const char *symbol_of(const struct contents *what) { return what->grey ? "D" : "F"; }
+
 /* What is said of where the radiation goes. */
 static void print_fate(FILE *script, const struct contents *what, const struct summary *summary) {
     double walls = 0;
@@ -32,9 +36,9 @@ static void print_style(FILE *script, const struct output *output, const char *n
     summary_make(&summary, what);
     fprintf(script,
             "' at screen 0.015,0.975 font ',19' tc '#111111' noenhanced\n"
-            "set label 2 '%u spheres, %llu view factors; row sums %.4f to %.4f, ",
-            what->bed->n, (unsigned long long)what->factors->matrix.start[what->bed->n], summary.row_sum_min,
-            summary.row_sum_max);
+            "set label 2 '%u spheres, %llu %s factors; row sums %.4f to %.4f, ",
+            what->bed->n, (unsigned long long)what->factors->matrix.start[what->bed->n], kind_of(what),
+            summary.row_sum_min, summary.row_sum_max);
     print_fate(script, what, &summary);
     fputs("' at screen 0.015,0.945 tc '#444444'\n", script);
 }
@@ -59,7 +63,7 @@ static int print_slice(FILE *script, const struct contents *what) {
     return STATUS_OK;
 }
 
-static void print_pairs(FILE *script, const struct plot_data *data) {
+static void print_pairs(FILE *script, const struct contents *what, const struct plot_data *data) {
     fputs("$pairs << END\n", script);
     for (int d = 0; d < PLOT_DISTANCES; ++d)
         for (int f = 0; f < PLOT_FACTORS; ++f)
@@ -71,46 +75,48 @@ static void print_pairs(FILE *script, const struct plot_data *data) {
         const double apart = 1 + (PLOT_DISTANCE_MAX - 1) * k / 200;
         double f12 = NAN;
         fibrad_pair_exact(1, 1, 2 * (apart - 1), &f12);
-        fprintf(script, "%.6g %.6g\n", apart, log10(f12));
+        fprintf(script, "%.6g %.6g\n", apart, what->grey ? NAN : log10(f12)); /* only view factors have that */
     }
     fprintf(script,
             "END\n"
-            "set title 'View factor against distance: how far the pairs are seen'\n"
-            "set xlabel 'centre distance / (r_i + r_j)'; set ylabel 'F_{ij} r_i / r_j'\n"
+            "set title '%s'\n"
+            "set xlabel 'centre distance / (r_i + r_j)'; set ylabel '%s_{ij} r_i / r_j'\n"
             "set xrange [0.8:%g]; set yrange [%g:-0.8]; set xtics 1\n"
             "set ytics ('10^{-6}' -6, '10^{-5}' -5, '10^{-4}' -4, '10^{-3}' -3, '10^{-2}' -2, '10^{-1}' -1)\n"
             "set cbrange [0:*]; set cblabel 'log_{10} of the number of pairs' offset 1; set grid\n"
             "set key top right\n"
-            "plot $pairs using 1:2:3 with image notitle, $free with lines lw 2.5 lc '#d1495b' "
-            "title 'equal spheres, nothing between'\n"
+            "plot $pairs using 1:2:3 with image notitle, $free with lines lw 2.5 lc '#d1495b' %s\n"
             "unset colorbox; unset cblabel\n",
-            PLOT_DISTANCE_MAX, PLOT_FACTOR_MIN);
+            what->grey ? "Exchange factor against distance: how far heat is carried"
+                       : "View factor against distance: how far the pairs are seen",
+            symbol_of(what), PLOT_DISTANCE_MAX, PLOT_FACTOR_MIN,
+            what->grey ? "notitle" : "title 'equal spheres, nothing between'");
 }
 
-static void print_within(FILE *script, const struct plot_data *data) {
+static void print_within(FILE *script, const struct contents *what, const struct plot_data *data) {
     fputs("$within << END\n", script);
     for (int d = 0; d <= PLOT_DISTANCES; ++d)
         fprintf(script, "%.6g %.6g %.6g %.6g\n", d * PLOT_DISTANCE_MAX / PLOT_DISTANCES, data->within[d][0],
                 data->within[d][1], data->within[d][2]);
     fprintf(script,
             "END\n"
-            "set title 'Where the radiation ends: sum of F within a distance'\n"
-            "set xlabel 'centre distance / mean diameter'; set ylabel 'sum of F_{ij}'\n"
+            "set title 'Where the radiation ends: sum of %s within a distance'\n"
+            "set xlabel 'centre distance / mean diameter'; set ylabel 'sum of %s_{ij}'\n"
             "set xrange [0:%g]; set yrange [0:1.02]; set ytics 0.2; set key bottom right\n"
             "plot $within using 1:2:4 with filledcurves fc '#1fa187' fs transparent solid 0.25 noborder "
             "title '10 %% to 90 %% of the spheres', '' using 1:3 with lines lw 2.5 lc '#277f8e' title 'median'\n",
-            PLOT_DISTANCE_MAX);
+            symbol_of(what), symbol_of(what), PLOT_DISTANCE_MAX);
 }
 
-static void print_factors(FILE *script, const struct plot_data *data) {
+static void print_factors(FILE *script, const struct contents *what, const struct plot_data *data) {
     fputs("$factors << END\n", script);
     for (int f = 0; f < PLOT_FACTORS; ++f)
         fprintf(script, "%.6g %.6g %.6g\n", PLOT_FACTOR_MIN * (1 - (f + 0.5) / PLOT_FACTORS), 100 * data->entries[f],
                 100 * data->carried[f]);
     fprintf(script,
             "END\n"
-            "set title 'Sizes of the view factors, and what they carry'\n"
-            "set xlabel 'F_{ij}'; set ylabel 'share [%%]'\n"
+            "set title 'Sizes of the %s factors, and what they carry'\n"
+            "set xlabel '%s_{ij}'; set ylabel 'share [%%]'\n"
             "set xrange [%g:-0.8]; set yrange [0:*]; set ytics auto; set key top left\n"
             "set xtics ('<10^{-6}' -6, '10^{-5}' -5, '10^{-4}' -4, '10^{-3}' -3, '10^{-2}' -2, '10^{-1}' -1)\n"
             "set boxwidth 0.9 relative\n"
@@ -118,7 +124,7 @@ static void print_factors(FILE *script, const struct plot_data *data) {
             "entries', '' using 1:3 with boxes fc '#e9a23b' fs transparent solid 0.65 noborder title 'of the "
             "radiation'\n"
             "unset multiplot\n",
-            PLOT_FACTOR_MIN);
+            kind_of(what), symbol_of(what), PLOT_FACTOR_MIN);
 }
 
 int plot_bed(const struct output *output, const char *name, const struct contents *what) {
@@ -129,9 +135,9 @@ int plot_bed(const struct output *output, const char *name, const struct content
     if (!status) {
         print_style(gnuplot.script, output, name, what);
         status = print_slice(gnuplot.script, what);
-        print_pairs(gnuplot.script, data);
-        print_within(gnuplot.script, data);
-        print_factors(gnuplot.script, data);
+        print_pairs(gnuplot.script, what, data);
+        print_within(gnuplot.script, what, data);
+        print_factors(gnuplot.script, what, data);
         const int drawn = gnuplot_end(&gnuplot);
         if (!status) status = drawn;
     }

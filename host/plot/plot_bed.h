@@ -1,4 +1,4 @@
-/* plot_bed.h - a picture of a bed and its view factors, by gnuplot. SPDX-License-Identifier: MIT */
+/* plot_bed.h - a picture of a bed and its view or exchange factors, by gnuplot. SPDX-License-Identifier: MIT */
 #ifndef PLOT_BED_H
 #define PLOT_BED_H
 

@@ -64,7 +64,8 @@ static uint32_t add_distances(const struct plot_data *data, const struct content
         if (what->wanted && !what->wanted[i]) continue;
         for (int d = 0; d <= PLOT_DISTANCES; ++d) sums[d][taken] = 0;
         for (uint64_t k = matrix->start[i]; k < matrix->start[i + 1]; ++k) {
-            const double apart = distance_of_pair(what->bed, i, matrix->col[k]) / data->diameter;
+            const bool back = what->grey && matrix->col[k] == i; /* what others reflect to where it came from */
+            const double apart = back ? 0 : distance_of_pair(what->bed, i, matrix->col[k]) / data->diameter;
             if (apart < PLOT_DISTANCE_MAX)
                 sums[bin_index(apart, 0, PLOT_DISTANCE_MAX, PLOT_DISTANCES) + 1][taken] += matrix->f[k];
         }

@@ -87,27 +87,43 @@ static int print_powers(FILE *script, const struct plot_slice *slice, const stru
     return STATUS_OK;
 }
 
-/* Gains and losses in layers about a mean diameter thick, and their sums. */
-static void print_layers(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
-    const struct bed *bed = what->bed;
-    double diameter = 0, low = INFINITY, high = -INFINITY;
-    struct turnover layer[LAYERS_MAX] = {{0, 0}};
+/* Layers of the bed about a mean diameter thick. */
+struct layers {
+    int n;
+    double low, high, thick;
+};
+
+static struct layers layers_of(const struct bed *bed) {
+    double diameter = 0;
+    struct layers layers = {.low = INFINITY, .high = -INFINITY};
     for (uint32_t i = 0; i < bed->n; ++i) {
         diameter += 2 * bed->r[i] / bed->n;
-        low = fmin(low, bed->z[i] - bed->r[i]);
-        high = fmax(high, bed->z[i] + bed->r[i]);
+        layers.low = fmin(layers.low, bed->z[i] - bed->r[i]);
+        layers.high = fmax(layers.high, bed->z[i] + bed->r[i]);
     }
-    const int layers = (int)fmin(LAYERS_MAX, fmax(1, floor((high - low) / diameter)));
-    const double thick = (high - low) / layers;
+    layers.n = (int)fmin(LAYERS_MAX, fmax(1, floor((layers.high - layers.low) / diameter)));
+    layers.thick = (layers.high - layers.low) / layers.n;
+    return layers;
+}
+
+static int layer_at(const struct layers *layers, double z) {
+    return (int)fmin(layers->n - 1, floor((z - layers->low) / layers->thick));
+}
+
+/* Gains and losses in layers, and their sums. */
+static void print_layers(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
+    const struct bed *bed = what->bed;
+    const struct layers layers = layers_of(bed);
+    struct turnover layer[LAYERS_MAX] = {{0, 0}};
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const int k = (int)fmin(layers - 1, floor((bed->z[i] - low) / thick));
+        const int k = layer_at(&layers, bed->z[i]);
         layer[k].gained += fmax(what->power[i], 0);
         layer[k].lost += fmax(-what->power[i], 0);
     }
     fputs("$layers << END\n", script);
-    for (int k = 0; k < layers; ++k)
-        fprintf(script, "%.6g %.6g %.6g %.6g\n", (low + (k + 0.5) * thick) / slice->scale, layer[k].gained,
-                -layer[k].lost, layer[k].gained - layer[k].lost);
+    for (int k = 0; k < layers.n; ++k)
+        fprintf(script, "%.6g %.6g %.6g %.6g\n", (layers.low + (k + 0.5) * layers.thick) / slice->scale,
+                layer[k].gained, -layer[k].lost, layer[k].gained - layer[k].lost);
     fprintf(script,
             "END\n"
             "set title 'Net power by height, layers of %.3g %s'\n"
@@ -119,43 +135,83 @@ static void print_layers(FILE *script, const struct plot_slice *slice, const str
             "plot $layers using ($2/2):1:($2/2):(half) with boxxyerror fc '#" GAINED "' fs solid 0.8 noborder, "
             "'' using ($3/2):1:($3/2):(half) with boxxyerror fc '#" LOST "' fs solid 0.8 noborder, "
             "'' using 4:1 with linespoints lw 2 pt 7 ps 0.6 lc '#222222'\n",
-            thick / slice->scale, slice->unit, slice->unit[0] ? " [" : "", slice->unit, slice->unit[0] ? "]" : "",
-            low / slice->scale, high / slice->scale, 0.46 * thick / slice->scale);
+            layers.thick / slice->scale, slice->unit, slice->unit[0] ? " [" : "", slice->unit,
+            slice->unit[0] ? "]" : "", layers.low / slice->scale, layers.high / slice->scale,
+            0.46 * layers.thick / slice->scale);
 }
 
-/* A bar: what it is, the temperature (NaN: several) and the power. */
-static void print_bar(FILE *script, int at, const char *what, double temperature, double power) {
+/* Temperatures by height, in the same layers: the mean, the coldest and the hottest. */
+static void print_profile(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
+    const struct bed *bed = what->bed;
+    const struct layers layers = layers_of(bed);
+    struct {
+        double sum, least, most;
+        uint32_t n;
+    } layer[LAYERS_MAX];
+    for (int k = 0; k < layers.n; ++k)
+        layer[k].sum = layer[k].n = 0, layer[k].least = INFINITY, layer[k].most = -INFINITY;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const int k = layer_at(&layers, bed->z[i]);
+        if (isnan(what->temperature[i])) continue; /* of emissivity 0 */
+        layer[k].sum += what->temperature[i];
+        layer[k].least = fmin(layer[k].least, what->temperature[i]);
+        layer[k].most = fmax(layer[k].most, what->temperature[i]);
+        ++layer[k].n;
+    }
+    fputs("$layers << END\n", script);
+    for (int k = 0; k < layers.n; ++k)
+        if (layer[k].n > 0)
+            fprintf(script, "%.6g %.6g %.6g %.6g\n", (layers.low + (k + 0.5) * layers.thick) / slice->scale,
+                    layer[k].sum / layer[k].n, layer[k].least, layer[k].most);
+    fputs("NaN NaN NaN NaN\nEND\n", script);
+    fprintf(script,
+            "set title 'Temperature by height, layers of %.3g %s'\n"
+            "set xlabel 'temperature [K]: mean of a layer, coldest and hottest'; set ylabel 'z%s%s%s'; unset "
+            "colorbox; set grid\n"
+            "set xrange [*:*]; set yrange [%.9g:%.9g]; set xtics auto; unset key\n"
+            "plot $layers using 3:1:3:4 with xerrorbars pt 0 lw 4 lc '#e3b7ab', "
+            "'' using 2:1 with linespoints lw 2 pt 7 ps 0.6 lc '#" GAINED "'\n",
+            layers.thick / slice->scale, slice->unit, slice->unit[0] ? " [" : "", slice->unit,
+            slice->unit[0] ? "]" : "", layers.low / slice->scale, layers.high / slice->scale);
+}
+
+/* A bar: what it is, the temperature (NaN: several) and the power. `between` stands before the temperature. */
+static void print_bar(FILE *script, int at, const char *what, const char *between, double temperature, double power) {
     if (isnan(temperature))
         fprintf(script, "%d %.6g \"%s\"\n", at, power, what);
     else
-        fprintf(script, "%d %.6g \"%s\\n%.5g K\"\n", at, power, what, temperature);
+        fprintf(script, "%d %.6g \"%s%s%.5g K\"\n", at, power, what, between, temperature);
 }
 
-/* Who gains and who loses. */
+/* Who gains and who loses. The names of many stand aslant. */
 static void print_bars(FILE *script, const struct heat_shown *what) {
     const struct turnover all = turnover_of(what);
     const bool open = !isnan(what->surroundings_power), many = what->walls->count + open > 4;
+    const char *between = many ? ", " : "\\n";
     int bars = 0;
     fputs("$bars << END\n", script);
-    print_bar(script, bars++, "spheres\\nthat gain", NAN, all.gained);
-    print_bar(script, bars++, "spheres\\nthat lose", NAN, -all.lost);
+    print_bar(script, bars++, many ? "spheres that gain" : "spheres\\nthat gain", between, NAN, all.gained);
+    print_bar(script, bars++, many ? "spheres that lose" : "spheres\\nthat lose", between, NAN, -all.lost);
     for (uint32_t k = 0; k < what->walls->count; ++k)
-        print_bar(script, bars++, wall_name(what->walls, k), what->wall_temperature[k], what->wall_power[k]);
+        print_bar(script, bars++, wall_name(what->walls, k), between, what->wall_temperature[k], what->wall_power[k]);
     if (open)
-        print_bar(script, bars++, many ? "surroun-\\ndings" : "surroundings", what->surroundings_temperature,
-                  what->surroundings_power);
+        print_bar(script, bars++, "surroundings", between, what->surroundings_temperature, what->surroundings_power);
     fprintf(script,
             "END\n"
             "set title 'Where the heat goes: gained above, lost below [W]'\n"
-            "unset xlabel; set ylabel 'net power [W]'; unset yzeroaxis; set xtics scale 0 font ',%d'\n"
+            "unset xlabel; set ylabel 'net power [W]'; unset yzeroaxis\n"
+            "set xtics scale 0 font ',%d' noenhanced %s\n%s"
             "set xrange [-0.6:%g]; set yrange [*:*]; set ytics auto; set offsets 0,0,graph 0.08,graph 0.08\n"
-            "set boxwidth 0.7; set xzeroaxis lt 1 lc '#555555'\n"
+            "set boxwidth 0.7; set xzeroaxis lt 1 lc '#555555'; unset key\n"
             "plot $bars using 1:2:($2 < 0 ? 0x" LOST " : 0x" GAINED
             "):xtic(3) with boxes fs solid 0.85 noborder lc rgb variable, "
             "'' using 1:($2 < 0 ? NaN : $2):(sprintf('%%.3g', $2)) with labels offset 0,0.6 tc '#222222', "
             "'' using 1:($2 < 0 ? $2 : NaN):(sprintf('%%.3g', $2)) with labels offset 0,-0.7 tc '#222222'\n"
             "unset multiplot\n",
-            many ? 9 : 12, bars - 0.4);
+            bars > 16 ? 9
+            : many    ? 11
+                      : 12,
+            many ? "rotate by 40 right" : "", many ? "set bmargin at screen 0.135\n" : "", bars - 0.4);
 }
 
 int plot_heat(const struct output *output, const char *name, const struct heat_shown *what) {
@@ -167,7 +223,10 @@ int plot_heat(const struct output *output, const char *name, const struct heat_s
     print_head(gnuplot.script, output, name, what);
     print_temperatures(gnuplot.script, &slice, what);
     status = print_powers(gnuplot.script, &slice, what);
-    print_layers(gnuplot.script, &slice, what);
+    if (what->found)
+        print_profile(gnuplot.script, &slice, what);
+    else
+        print_layers(gnuplot.script, &slice, what);
     print_bars(gnuplot.script, what);
     const int drawn = gnuplot_end(&gnuplot);
     return status ? status : drawn;

@@ -14,11 +14,12 @@ struct heat_shown {
     const double *temperature, *power;                   /* [bed->n] */
     const double *wall_temperature, *wall_power;         /* [walls->count]; NULL if there are none */
     double surroundings_temperature, surroundings_power; /* NaN: there are none */
+    bool found; /* temperatures of spheres were found: they are shown by height, instead of powers */
 };
 
-/* Draws four panels into an open output: the temperatures and the powers in a slice of the bed, the powers by height,
- * and what spheres, walls and surroundings gain and lose. name: a path, whose last part is the title. Status 0;
- * STATUS_FILE if gnuplot is missing or fails; STATUS_MEMORY; that of a signal. */
+/* Draws four panels into an open output: the temperatures and the powers in a slice of the bed, powers or temperatures
+ * by height, and what spheres, walls and surroundings gain and lose. name: a path, whose last part is the title. Status
+ * 0; STATUS_FILE if gnuplot is missing or fails; STATUS_MEMORY; that of a signal. */
 int plot_heat(const struct output *output, const char *name, const struct heat_shown *what);
 
 #endif

@@ -39,7 +39,7 @@ void reader_close(struct reader *reader) {
     if (!reader) return;
     lines_close(&reader->source.lines);
     free(reader->source.fields.at);
-    free(reader->source.columns.extra);
+    columns_free(&reader->source.columns);
     free(reader);
 }
 

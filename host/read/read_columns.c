@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "cli/message.h"
+#include "text/text.h"
 
 typedef int compare_names(const char *, const char *);
 
@@ -36,8 +37,19 @@ static int find_any(size_t *column, int *which, const struct lines *lines, const
     return STATUS_OK;
 }
 
-static int column_missing(const struct lines *lines, const char *wanted) {
-    return message_at(STATUS_INPUT, lines->name, lines->number, "the header names no column %s", wanted);
+static int column_missing(const struct lines *lines, const struct fields *names, const char *wanted) {
+    char list[NAMES_LISTED];
+    return message_at(STATUS_INPUT, lines->name, lines->number, "the header names no column %.60s; there are %s",
+                      wanted, names_list(list, (const char *const *)names->at, names->n));
+}
+
+/* Is a name wanted with its unit, as the header has it: `T [C]`, `T (C)`, `T_[C]`? */
+static bool names_with_unit(const char *wanted, const char *name, const char *unit) {
+    const size_t length = strlen(name), size = strlen(unit);
+    if (!*unit || strncmp(wanted, name, length) != 0) return false;
+    wanted += length + strspn(wanted + length, " \t_");
+    return (*wanted == '[' || *wanted == '(') && strncmp(wanted + 1, unit, size) == 0 &&
+           (wanted[size + 1] == ']' || wanted[size + 1] == ')') && !wanted[size + 2];
 }
 
 static int find_radius(struct columns *columns, const struct lines *lines, const struct fields *names,
@@ -47,9 +59,21 @@ static int find_radius(struct columns *columns, const struct lines *lines, const
     if (options->no_radius) return STATUS_OK;
     const int status = find_any(&columns->radius, &which, lines, names, radius);
     if (!status && columns->radius == names->n)
-        return column_missing(lines, "r, radius, d or diameter; --radius gives radii");
+        return column_missing(lines, names, "r, radius, d or diameter; --radius gives radii");
     columns->radius_unit = which >= 2 ? 0.5 : 1;
     return status;
+}
+
+static void columns_free_kept(struct columns *columns) {
+    free(columns->kept);
+    free(columns->text);
+    free(columns->kept_names);
+    columns->kept = NULL, columns->text = NULL, columns->kept_names = NULL;
+}
+
+void columns_free(struct columns *columns) {
+    free(columns->extra);
+    columns_free_kept(columns);
 }
 
 static int find_extras(struct columns *columns, const struct lines *lines, const struct fields *names,
@@ -61,7 +85,40 @@ static int find_extras(struct columns *columns, const struct lines *lines, const
     for (size_t k = 0; k < options->extras; ++k) {
         const int status = find(&extra[k], lines, names, options->extra[k], strcmp);
         if (status) return status;
-        if (extra[k] == names->n) return column_missing(lines, options->extra[k]);
+        for (size_t c = 0; columns->units && c < names->n && extra[k] == names->n; ++c)
+            if (names_with_unit(options->extra[k], names->at[c], columns->units[c])) extra[k] = c;
+        if (extra[k] == names->n) return column_missing(lines, names, options->extra[k]);
+    }
+    return STATUS_OK;
+}
+
+/* Whether heat as a dump has a column of this name itself. */
+static bool is_own(const char *name) {
+    static const char *const own[] = {"id", "x", "y", "z", "radius", "T_K", "q_W"};
+    for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
+        if (strcmp(name, own[k]) == 0) return true;
+    return false;
+}
+
+/* Columns that are neither places nor radii nor ids stay. */
+static int find_kept(struct columns *columns, const struct fields *names, const struct read_options *options) {
+    size_t room = 1;
+    columns->keeps = 0;
+    if (!options->keep) return STATUS_OK;
+    for (size_t k = 0; k < names->n; ++k) room += strlen(names->at[k]) + 1;
+    columns_free_kept(columns);
+    columns->kept = malloc((names->n + 1) * sizeof *columns->kept);
+    columns->text = malloc((names->n + 1) * sizeof *columns->text);
+    columns->kept_names = calloc(room, 1);
+    if (!columns->kept || !columns->text || !columns->kept_names) return message_memory();
+    for (size_t k = 0; k < names->n; ++k) {
+        const bool used = k == columns->place[0] || k == columns->place[1] || k == columns->place[2] ||
+                          k == columns->id || (!options->no_radius && k == columns->radius);
+        if (used || is_own(names->at[k]) || !*names->at[k]) continue;
+        char *to = columns->kept_names + strlen(columns->kept_names);
+        if (columns->keeps > 0) *to++ = ' ';
+        for (const char *c = names->at[k]; *c; ++c) *to++ = (char)(*c == ' ' || *c == '\t' ? '_' : *c);
+        columns->kept[columns->keeps++] = k;
     }
     return STATUS_OK;
 }
@@ -87,7 +144,7 @@ int columns_find(struct columns *columns, const struct lines *lines, const struc
     for (int axis = 0; axis < 3; ++axis) {
         const int status = find_any(&columns->place[axis], &which, lines, names, coordinate[axis]);
         if (status) return status;
-        if (columns->place[axis] == names->n) return column_missing(lines, coordinate[axis][0]);
+        if (columns->place[axis] == names->n) return column_missing(lines, names, coordinate[axis][0]);
         columns->scaled[axis] = which == 2 || which == 3;
         if (columns->scaled[axis] && bed->low[axis] == bed->high[axis])
             return message_at(STATUS_INPUT, lines->name, lines->number,
@@ -96,6 +153,7 @@ int columns_find(struct columns *columns, const struct lines *lines, const struc
     }
     int status = find_radius(columns, lines, names, options);
     if (!status) status = find_any(&columns->id, &which, lines, names, id);
+    if (!status) status = find_kept(columns, names, options);
     return status ? status : find_extras(columns, lines, names, options);
 }
 
@@ -111,6 +169,11 @@ static int columns_number(struct columns *columns, const struct lines *lines, co
         *mark = '.';
     }
     return lines_number(lines, what, text, value);
+}
+
+/* Whether a value is missing that may be. */
+static bool is_missing(const struct read_options *options, size_t k, const char *text) {
+    return options->some && options->some[k] && (*text == 0 || strcasecmp(text, "nan") == 0);
 }
 
 int columns_add_sphere(const struct lines *lines, const struct read_options *options, struct bed_sphere *sphere,
@@ -140,9 +203,16 @@ int columns_add(struct columns *columns, const struct lines *lines, const struct
     if (!options->no_radius) status = columns_number(columns, lines, "the radius", row->at[columns->radius], &sphere.r);
     sphere.r *= columns->radius_unit;
     if (!status && bed->ids) status = lines_whole(lines, "the id", row->at[columns->id], &sphere.id);
+    if (columns->keeps > 0) bed->kept_names = columns->kept_names;
     if (!status) status = columns_add_sphere(lines, options, &sphere, bed);
-    for (size_t k = 0; k < options->extras && !status; ++k)
-        status = columns_number(columns, lines, options->extra[k], row->at[columns->extra[k]],
-                                &bed->extra[(bed->n - 1) * options->extras + k]);
-    return status;
+    for (size_t k = 0; k < options->extras && !status; ++k) {
+        char *text = row->at[columns->extra[k]];
+        double *value = &bed->extra[(bed->n - 1) * options->extras + k];
+        if (is_missing(options, k, text))
+            *value = NAN;
+        else
+            status = columns_number(columns, lines, options->extra[k], text, value);
+    }
+    for (size_t k = 0; k < columns->keeps; ++k) columns->text[k] = row->at[columns->kept[k]];
+    return !status && columns->keeps > 0 ? bed_keep(bed, columns->text, columns->keeps) : status;
 }

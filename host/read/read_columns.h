@@ -15,15 +15,22 @@ struct columns {
     double radius_unit; /* 0.5 for diameters */
     size_t id;          /* width: there is none */
     size_t *extra;      /* [extras] */
+    size_t *kept;       /* [keeps] columns that are kept as text, */
+    const char **text;  /* [keeps] what a row has in them */
+    char *kept_names;   /* and their names, parted by blanks */
+    size_t keeps;
     bool commas;        /* numbers may have decimal commas */
     char mark;          /* point or comma, the first that was found */
+    char *const *units; /* [width] of the names in the header, "": none; NULL: they say none */
 };
 
 /* Finds the columns by the names of a header: x, xu, xs or xsu, and so on; radius, r, diameter or d, in any case; id;
- * the extras. Errors: STATUS_INPUT naming the column that is missing or stands there twice, or where coordinates are
- * scaled and the bed has no box. Free columns->extra. */
+ * the extras, with or without their units. Errors: STATUS_INPUT naming the column that is missing or stands there
+ * twice, or where coordinates are scaled and the bed has no box. Free by columns_free. */
 int columns_find(struct columns *columns, const struct lines *lines, const struct fields *names,
                  const struct read_options *options, const struct bed *bed);
+
+void columns_free(struct columns *columns);
 
 /* Do names have x, y and z among them? */
 bool columns_named(const struct fields *names);

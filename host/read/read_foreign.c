@@ -36,6 +36,8 @@ static const struct {
     {8, 4, "DUMP", "a binary LAMMPS dump; write a text dump"},
     {0, 4, "ply\n", "a PLY file of surfaces"},
     {0, 6, "solid ", "an STL file of surfaces"},
+    {0, 14, "%%MatrixMarket", "a matrix, as fibrad writes it; give the file of the spheres"},
+    {0, 8, "FIBROWS1", "a file of rows; put them together: fibrad join FILE..."},
 };
 
 /* Text that goes on in one way behind blanks. */
@@ -47,6 +49,18 @@ static const struct {
     {"#!/", "a script"},
     {"import ", "a Python program"},
     {"from ", "a Python program"},
+    {"Number of particles", "an AtomEye .cfg file; write a text dump: dump ... custom ... id x y z radius"},
+};
+
+/* Columns that a header has which fibrad itself has written, behind those of frames and files. */
+static const struct {
+    const char *columns, *what;
+} own[] = {
+    {"i,j,F", "view factors, as fibrad bed writes them; give the file of the spheres"},
+    {"i,j,D", "exchange factors, as fibrad exchange writes them; give the file of the spheres"},
+    {"i,T_K,q_W",
+     "powers, as fibrad heat writes them, without places of spheres; give the file of the spheres, or write .dump"},
+    {"axis,F_E,", "conductivities, as fibrad conductivity writes them; give the file of the spheres"},
 };
 
 /* Commands one of which a LAMMPS input script begins with. */
@@ -69,12 +83,24 @@ static bool is_script(const char *text, const char *end) {
     return false;
 }
 
+/* What fibrad has written, by the first line. */
+static const char *find_own(const char *text, size_t size) {
+    const char *end = memchr(text, '\n', size);
+    const size_t length = end ? (size_t)(end - text) : size;
+    for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
+        for (size_t at = 0, wide = strlen(own[k].columns); at + wide <= length; ++at)
+            if ((at == 0 || text[at - 1] == ',') && memcmp(text + at, own[k].columns, wide) == 0) return own[k].what;
+    return NULL;
+}
+
 static const char *find_kind(const char *text, size_t size) {
     for (size_t k = 0; k < sizeof magics / sizeof *magics; ++k)
         if (size >= magics[k].at + magics[k].size && memcmp(text + magics[k].at, magics[k].bytes, magics[k].size) == 0)
             return magics[k].what;
     const char *end = text + size;
     if (is_script(text, end)) return "an input script of LAMMPS; give a dump or data file";
+    const char *written = find_own(text, size);
+    if (written) return written;
     while (text < end && isspace((unsigned char)*text)) ++text;
     for (size_t k = 0; k < sizeof texts / sizeof *texts; ++k)
         if ((size_t)(end - text) >= strlen(texts[k].text) && memcmp(text, texts[k].text, strlen(texts[k].text)) == 0)

@@ -19,8 +19,11 @@ struct read_options {
     bool part;                /* of a series of files: one without spheres is left out with a warning */
     const char *const *extra; /* [extras] names of further columns wanted, numbers all */
     const char *const *unit;  /* [extras] the unit they are taken to have, such as "K", NULL for none; a name with
-                                 another  one is refused. NULL: none has any */
+                                 another one is refused. NULL: none has any */
+    const bool *some;         /* [extras] a blank or nan is a value that is missing, NaN; NULL: none may be */
     size_t extras;
+    bool keep;     /* all other columns stay as text: bed->kept */
+    bool any_unit; /* a column asked for with its unit, `T [C]`, may have any */
 };
 
 #endif

@@ -13,10 +13,11 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
+#include "cli/output.h"
 #include "couple/rows_file.h"
 #include "simple/fibrad_host.h"
 
-enum { WORD = 8, BODIES_MAX = 6 };
+enum { WORD = 8 };
 
 struct part {
     const char *path;
@@ -65,13 +66,15 @@ static int check_head(const struct part *part, uint64_t bytes) {
     const fibrad_rows_head *head = &part->head;
     if (bytes < sizeof *head || memcmp(head->magic, FIBRAD_ROWS_MAGIC, sizeof head->magic) != 0)
         return message_at(STATUS_INPUT, part->path, 0, "is no file of rows");
-    if (head->rank >= head->ranks || head->emissive > 1 || head->bodies > BODIES_MAX ||
+    if (head->rank >= head->ranks || head->emissive > 1 || head->bodies > FIBRAD_BODIES_MAX ||
         !(head->cutoff >= 0 && head->cutoff < INFINITY))
         return message_at(STATUS_INPUT, part->path, 0, "its head is damaged");
     return check_size(part, bytes);
 }
 
 static int read_head(struct part *part) {
+    const int spared = output_spare(part->path);
+    if (spared) return spared;
     FILE *file = fopen(part->path, "rb");
     if (!file) return message_at(STATUS_FILE, part->path, 0, "%s", strerror(errno));
     const size_t got = fread(&part->head, 1, sizeof part->head, file);

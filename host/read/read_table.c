@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bed/units.h"
 #include "cli/message.h"
 #include "read/read_format.h"
 
@@ -151,8 +152,11 @@ static int check_units(const struct source *source, const struct header *header)
     for (size_t k = 0; k < source->options.extras; ++k) {
         const char *unit = header->unit[source->columns.extra[k]];
         const char *taken = source->options.unit ? source->options.unit[k] : NULL;
+        if (source->options.any_unit &&
+            strcmp(source->options.extra[k], header->names.at[source->columns.extra[k]]) != 0)
+            continue;
         const bool none = !*unit || strcmp(unit, "-") == 0 || strcmp(unit, "1") == 0;
-        if (taken ? *unit && strcmp(unit, taken) != 0 : !none)
+        if (taken ? *unit && !unit_is(unit, taken) : !none)
             return message_at(STATUS_INPUT, source->lines.name, header->line,
                               "the column %.40s is in [%.20s], and taken for [%.20s]%s", source->options.extra[k], unit,
                               taken ? taken : "-", taken ? "; see --temperature-unit" : "");
@@ -163,6 +167,7 @@ static int check_units(const struct source *source, const struct header *header)
 static int find_columns(struct source *source, const struct header *header, char separator, struct bed *bed) {
     struct lines at = source->lines; /* for messages */
     at.number = header->line;
+    source->columns.units = header->unit;
     int status = columns_find(&source->columns, &at, &header->names, &source->options, bed);
     source->columns.commas = separator != ',';
     if (!status) status = check_units(source, header);

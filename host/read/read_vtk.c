@@ -63,6 +63,7 @@ static int add_point(const struct source *source, const struct vtk_grid *grid, u
     for (size_t k = 0; k < bed->extras && !status; ++k) {
         const double value = wanted[EXTRAS + k].values[i];
         bed->extra[(bed->n - 1) * bed->extras + k] = value;
+        if (isnan(value) && source->options.some && source->options.some[k]) continue; /* missing */
         status = vtk_finite(grid, wanted[EXTRAS + k].name, i, value);
     }
     return status;

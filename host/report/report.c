@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <math.h>
 
+#include "cli/message.h"
 #include "fibrad.h"
 #include "text/text.h"
 
@@ -23,8 +24,23 @@ void report_begin(struct report *report) {
     ++report->runs;
 }
 
+/* Lines have them on standard error already. */
+static void report_warnings(const struct report *report) {
+    const char *text;
+    fprintf(report->json, "%s\"warnings\": [", report->entries > 0 ? ", " : "");
+    for (size_t k = 0; (text = message_warning(k)); ++k) {
+        if (k > 0) fputs(", ", report->json);
+        text_json(report->json, text);
+    }
+    putc(']', report->json);
+}
+
 void report_end(struct report *report) {
-    if (report->json) putc('}', report->json);
+    if (report->json) {
+        report_warnings(report);
+        putc('}', report->json);
+    }
+    message_forget_warnings();
     if (report->text) fflush(report->text);
 }
 
@@ -71,6 +87,17 @@ void report_value(struct report *report, const char *key, double value, int digi
 void report_measured(struct report *report, const char *key, double value, double error) {
     const double scale = log10(fabs(value) / error);
     report_value(report, key, value, !isfinite(scale) ? 6 : scale > 14 ? 15 : scale < 0 ? 1 : 1 + (int)ceil(scale));
+}
+
+void report_wanted(struct report *report, const char *file, double wanted, double limit, double got, const char *of) {
+    report_value(report, "error_wanted", wanted, 6);
+    report_value(report, "error_reached", got, 2);
+    if (got <= limit) return;
+    const char *format = "warning: --error %g is not reached: %.2g is the estimated error of %s";
+    if (file)
+        message_at(STATUS_OK, file, 0, format, wanted, got, of);
+    else
+        message(STATUS_OK, format, wanted, got, of);
 }
 
 void report_vector(struct report *report, const char *key, const double value[3]) {

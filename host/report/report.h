@@ -16,7 +16,8 @@ struct report {
 void report_open(struct report *report, const char *command);
 void report_close(struct report *report);
 
-/* One run, such as a frame: what is reported in between belongs to it. */
+/* One run, such as a frame: what is reported in between belongs to it. Its JSON ends with the list `warnings` of all
+ * that were said since the run before. */
 void report_begin(struct report *report);
 void report_end(struct report *report);
 
@@ -30,6 +31,10 @@ void report_value(struct report *report, const char *key, double value, int digi
 
 /* A figure with the digits that its error leaves it, one uncertain one among them; error 0: six. */
 void report_measured(struct report *report, const char *key, double value, double error);
+
+/* An error that was asked for: that one, and the estimate `got` of what has come of it, with a warning, in the JSON as
+ * all are, where that is above `limit`. of: of what it is, and maybe what would help. file NULL: none. */
+void report_wanted(struct report *report, const char *file, double wanted, double limit, double got, const char *of);
 
 /* Three figures in one line. */
 void report_vector(struct report *report, const char *key, const double value[3]);

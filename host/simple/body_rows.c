@@ -2,7 +2,9 @@
  * SPDX-License-Identifier: MIT */
 #include "simple/job.h"
 
-#define PATHS_MOST (1u << 24) /* from each wall */
+/* From each wall; a power of two, as all numbers of paths are: that many points are spread most evenly, and err half as
+ * much as others about as many. */
+#define PATHS_MOST (1u << 24)
 
 /* Paths from each wall: some percent of the work of the spheres, but in small beds up to FEW_PATHS all the same. */
 #define SPHERES_PER_SHARE 2048u
@@ -27,16 +29,20 @@ static int run_part(void *tasks, int thread, uint32_t task) {
                                 &bodies->part[body][part]);
 }
 
-/* How many paths follow so many that had an error above the tolerance: by the law paths^-0.5, less a fourth. */
+/* How many paths follow so many whose error is `ratio` times the one wanted: by the law paths^-0.7, doubled as often
+ * as it takes. */
 static uint32_t more_paths(uint32_t paths, double ratio) {
-    const double growth = ratio > 4 ? 12 : 0.75 * ratio * ratio, next = (double)paths * (growth > 1.5 ? growth : 1.5);
-    return next < PATHS_MOST ? (uint32_t)next : PATHS_MOST;
+    do paths *= 2, ratio /= 1.62;
+    while (ratio > 1 && paths < PATHS_MOST);
+    return paths;
 }
 
 uint32_t fibrad_job_body_paths(const fibrad_job *job, uint64_t paths) {
     const uint64_t share = paths * job->facts.spheres / SPHERES_PER_SHARE, few = paths < FEW_PATHS ? paths : FEW_PATHS;
     const uint64_t wanted = share > few ? share : few;
-    return wanted < PATHS_MOST ? (uint32_t)wanted : PATHS_MOST;
+    uint32_t even = FIBRAD_BODY_PARTS;
+    while (even < wanted && even < PATHS_MOST) even *= 2;
+    return even;
 }
 
 int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_body_row *row) {

@@ -29,15 +29,21 @@ static int check_options(const fibrad_bed_options *options, int most) {
 /* Paths from a wall for each direction of beams, or each path, of a sphere, which cost about as much as that. */
 enum { PER_DIRECTION = 64, PER_PATH = 8 };
 
+/* The error there may be in the row of a body before both ways are averaged, over that of the mean. */
+#define BODY_BEFORE_AVERAGING 1.4
+
 /* How a matrix is made of the rows of spheres; and rows of bodies, by `walls`, where they are asked for and all
  * spheres have theirs. */
 static int plan_matrix(fibrad_job *job, const fibrad_bed_options *options, const fibrad_exchange_rule *walls,
                        fibrad_body_row *body_row, fibrad_matrix_rule *rule) {
     *rule = (fibrad_matrix_rule){.raw = options->raw || options->wanted, .drop = options->drop};
+    rule->sampled = options->cast || (options->beam && options->beam->points > 0);
     if (!options->bodies || options->wanted || walls->cutoff > 0 || job->facts.bodies == 0) return FIBRAD_OK;
+    fibrad_exchange_rule before = *walls;
+    if (!rule->raw) before.tolerance *= BODY_BEFORE_AVERAGING;
     rule->body_row = body_row;
     rule->body_emissivity = walls->body_emissivity;
-    return fibrad_job_bodies(job, walls, body_row);
+    return fibrad_job_bodies(job, &before, body_row);
 }
 
 /* Rows by one rule, and their matrix. */
@@ -93,16 +99,12 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
     return status;
 }
 
-/* The error there may be in a row to be averaged, over that of the mean, which is smaller by the square root of 2, the
- * errors of partners being independent; the rest is kept for rows that come out worse than most. */
-#define BEFORE_AVERAGING 1.1
-
 /* The emissivities of all spheres, since paths meet them all; the fault is the first that is not valid. */
 static int check_emissivities(fibrad_job *job, const fibrad_exchange_rule *rule) {
     if (!rule || (!rule->emissivity && job->facts.spheres > 0)) return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < job->facts.spheres; ++i)
         if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1)) {
-            if (job->run) job->run->fault = (fibrad_fault){i, i, UINT32_MAX};
+            if (job->run) job->run->fault = (fibrad_fault){i, i, UINT32_MAX, 0, FIBRAD_WHY_EMISSIVITY};
             return FIBRAD_E_ARGUMENT;
         }
     return FIBRAD_OK;
@@ -110,15 +112,15 @@ static int check_emissivities(fibrad_job *job, const fibrad_exchange_rule *rule)
 
 static int run_exchange(fibrad_job *job, const fibrad_exchange_rule *rule, const fibrad_bed_options *options,
                         fibrad_bed_factors **factors) {
-    fibrad_exchange_rule spheres = *rule, walls = *rule;
+    fibrad_exchange_rule walls = *rule;
     fibrad_body_row body_row[FIBRAD_BODIES_MAX];
     fibrad_matrix_rule how;
-    if (!options->raw && !options->wanted) spheres.tolerance *= BEFORE_AVERAGING;
     walls.paths = fibrad_job_body_paths(job, PER_PATH * (uint64_t)(rule->paths ? rule->paths : 400));
     const int status = plan_matrix(job, options, &walls, body_row, &how);
     if (status) return status;
     how.emissivity = rule->emissivity;
-    return run_rule(job, row_by_paths, &spheres, options, &how, factors);
+    if (rule->tolerance > 0 && !how.raw) return fibrad_job_exchange(job, row_by_paths, rule, &how, factors);
+    return run_rule(job, row_by_paths, rule, options, &how, factors);
 }
 
 int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,

@@ -18,6 +18,9 @@
  * of the kernel functions: FIBRAD_E_MEMORY, FIBRAD_E_CANCELLED. On any error nothing is left to free and the
  * out-pointer is NULL.
  *
+ * Fork     OpenMP's threads do not survive fork(). A process that has called a function of this header with more than
+ *          one thread must not call one in a forked child; the child would hang.
+ *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_HOST_H
 #define FIBRAD_HOST_H

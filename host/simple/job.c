@@ -21,7 +21,7 @@
 int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fibrad_spheres *spheres,
                     fibrad_run *run) {
     const uint32_t n = spheres ? spheres->n : 0;
-    fibrad_fault fault = {n, n, UINT32_MAX};
+    fibrad_fault fault = {n, n, UINT32_MAX, 0, 0};
     *job = (fibrad_job){.run = run, .spheres = spheres, .begun = omp_get_wtime()};
     if (run) run->fault = fault;
     int status = fibrad_team_open(&job->team, run);
@@ -206,7 +206,7 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
             failed += longs;
         }
         if (status && job->run && failed < count)
-            job->run->fault = (fibrad_fault){order[failed], order[failed], team->triangle};
+            job->run->fault = (fibrad_fault){order[failed], order[failed], team->triangle, 0, 0};
     }
     for (int t = 0; t < team->threads && !status; ++t) {
         report->rows += part[t].rows;

@@ -54,6 +54,10 @@ int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fi
 int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule,
                          const fibrad_matrix_rule *average, fibrad_bed_factors **factors);
 
+/* Likewise of exchange factors, with rule->tolerance > 0, as long as more paths make the worst error smaller. */
+int fibrad_job_exchange(fibrad_job *job, fibrad_job_row *row, const fibrad_exchange_rule *rule,
+                        const fibrad_matrix_rule *average, fibrad_bed_factors **factors);
+
 /* Rows of all bodies that have bounds, by rule->paths paths from each, or more until no error is above rule->tolerance
  * (0: none); row [bodies] out. Errors: as fibrad_exchange_body. */
 int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_body_row *row);

@@ -231,18 +231,20 @@ static int march(struct march *m) {
 
 /* Whether a span is sound; t->fault has the sphere that is not. */
 static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const fibrad_span *span) {
-    t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX};
+    t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX, 0, 0};
     if (t->n > 0 && (!span->temperature || !span->capacity)) return FIBRAD_E_ARGUMENT;
     if (!(span->duration > 0 && span->duration <= 1e300 && span->step >= 0 && span->tolerance >= 0 &&
           span->tolerance < 1))
         return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < t->n; ++i) {
-        t->fault = (fibrad_fault){i, i, UINT32_MAX};
+        t->fault = (fibrad_fault){i, i, UINT32_MAX, 0, FIBRAD_WHY_TEMPERATURE};
         if (!(span->temperature[i] > 0 && span->temperature[i] <= 1e20)) return FIBRAD_E_ARGUMENT;
+        t->fault.why = FIBRAD_WHY_CAPACITY;
         if (!(span->capacity[i] > 0 && span->capacity[i] <= 1e300)) return FIBRAD_E_ARGUMENT;
+        t->fault.why = FIBRAD_WHY_POWER;
         if (s->power && !(fabs(s->power[i]) <= 1e300)) return FIBRAD_E_ARGUMENT;
     }
-    t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX};
+    t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX, 0, 0};
     return FIBRAD_OK;
 }
 
@@ -271,7 +273,9 @@ int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sour
         if (!(sources->temperature[i] >= 0 && sources->temperature[i] <= 1e20)) return FIBRAD_E_ARGUMENT;
     const int status = fibrad_transient_prepare(t, sources);
     if (status) return status;
-    return t->radiation ? fibrad_radiation_solve(t->radiation, sources, result)
+    fibrad_heat_sources given = *sources; /* temperatures are given, so powers are not */
+    given.power = NULL;
+    return t->radiation ? fibrad_radiation_solve(t->radiation, &given, result)
                         : fibrad_network_solve(t->network, &t->team, sources, t->allowed, result);
 }
 

@@ -67,7 +67,7 @@ int fibrad_radiation_move(fibrad_radiation *r, const fibrad_scene_config *config
     fibrad_scene *scene;
     void *block;
     if (!r || !spheres) return FIBRAD_E_ARGUMENT;
-    r->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX};
+    r->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX, 0, 0};
     if (r->heat && spheres->n != r->n) return FIBRAD_E_ARGUMENT;
     int status = fibrad_heap_scene(&scene, &block, config, spheres, &r->fault);
     if (!status) status = move_heat(r, scene);
@@ -88,7 +88,7 @@ int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config
     fibrad_radiation *r = calloc(1, sizeof *r);
     *radiation = NULL;
     if (!r) return FIBRAD_E_MEMORY;
-    if (spheres) r->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX};
+    if (spheres) r->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX, 0, 0};
     if (heat_config) r->config = *heat_config;
     r->config.parts = PARTS;
     int status = fibrad_team_open(&r->team, run);
@@ -109,8 +109,9 @@ static int sweep_beams(void *heat, int thread, uint32_t part) {
 int fibrad_radiation_solve(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_heat_result *result) {
     if (!r) return FIBRAD_E_ARGUMENT;
     if (!r->heat) return FIBRAD_E_STATE;
-    r->fault = (fibrad_fault){r->n, r->n, UINT32_MAX};
-    int solved = 0, status = fibrad_heat_begin(r->heat, sources);
+    r->fault = (fibrad_fault){r->n, r->n, UINT32_MAX, 0, 0};
+    int solved = 0, status = fibrad_heat_check(r->heat, sources, &r->fault);
+    if (!status) status = fibrad_heat_begin(r->heat, sources);
     for (uint64_t sweeps = 0; !status && !solved; ++sweeps) {
         status = fibrad_team_report(&r->team, "sweeps", sweeps, 0);
         if (!status) status = fibrad_team_run(&r->team, NULL, PARTS, 1, sweep_beams, r->heat, NULL);
@@ -127,6 +128,17 @@ int fibrad_radiation_sides(const fibrad_radiation *r, double *flux, double *temp
 #define EMISSIVITY_CHANGE 1e-5
 enum { SETTLE_MAX = 100 };
 
+/* Temperatures for a law to begin with: NaN is one that it leaves. */
+static bool temperatures_given(const fibrad_heat_sources *s, const fibrad_scene_facts *facts) {
+    return (!facts->spheres || s->temperature) && (!facts->bodies || s->body_temperature);
+}
+
+static bool are_emissivities(const double *emissivity, uint32_t n) {
+    bool valid = true;
+    for (uint32_t i = 0; i < n && valid; ++i) valid = emissivity[i] >= 0 && emissivity[i] <= 1;
+    return valid;
+}
+
 static double largest_change(const double *before, const double *now, uint32_t n) {
     double largest = 0;
     for (uint32_t i = 0; i < n; ++i) {
@@ -142,7 +154,7 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
     if (!r || !sources || !law || !result) return FIBRAD_E_ARGUMENT;
     fibrad_scene_describe(r->scene, &facts);
     if ((facts.spheres && !(emissivity && result->temperature)) ||
-        (facts.bodies && !(body_emissivity && result->body_temperature)))
+        (facts.bodies && !(body_emissivity && result->body_temperature)) || !temperatures_given(sources, &facts))
         return FIBRAD_E_ARGUMENT;
     const uint32_t n = facts.spheres, bodies = facts.bodies;
     double *before = malloc((n + bodies + (size_t)1) * sizeof *before);
@@ -158,6 +170,7 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
         if (n) memcpy(before, emissivity, n * sizeof *before);
         if (bodies) memcpy(before + n, body_emissivity, bodies * sizeof *before);
         law(context, result->temperature, result->body_temperature, emissivity, body_emissivity);
+        if (!are_emissivities(emissivity, n) || !are_emissivities(body_emissivity, bodies)) status = FIBRAD_E_ARGUMENT;
         change = largest_change(before, emissivity, n) + largest_change(before + n, body_emissivity, bodies);
     }
     free(before);

@@ -1,7 +1,9 @@
-/* tolerance.c - as many directions as a stated error takes. SPDX-License-Identifier: MIT
+/* tolerance.c - as many directions and paths as a stated error takes. SPDX-License-Identifier: MIT
  *
- * Rows to be averaged take one number of directions, for only then are their sums at most 1: that which the worst rows
- * of a pilot need by themselves, and more if the estimates then turn out too large. */
+ * Rows of view factors to be averaged take one number of directions, for only then are their sums at most 1: that which
+ * the worst rows of a pilot need by themselves, and more if the estimates then turn out too large. Rows of exchange
+ * factors have a tolerance each, which is made smaller until the worst of their means has the error asked for. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +14,10 @@ enum { PILOT = 50, SAMPLE = 48 };
 /* The largest estimate of averaged rows over that of raw ones, 0.4 to 0.7 as measured; more in sparse beds, which are
  * then repeated. */
 static const double averaged_over_raw = 0.6;
+
+/* The first tolerance of rows of exchange factors, over that of their means: small ones beside large ones are averaged
+ * with hardly anything. */
+static const double before_averaging = 0.9;
 
 static int descending(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -75,4 +81,26 @@ int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam
         *factors = NULL;
     }
     return status;
+}
+
+/* Rows are made anew for this part of the tolerance, as long as the worst error falls to this part of what it was. */
+static const double spare = 0.95, gain = 0.9;
+
+int fibrad_job_exchange(fibrad_job *job, fibrad_job_row *row, const fibrad_exchange_rule *rule,
+                        const fibrad_matrix_rule *average, fibrad_bed_factors **factors) {
+    fibrad_exchange_rule used = *rule;
+    fibrad_job_report report;
+    double least = INFINITY;
+    used.tolerance *= before_averaging;
+    for (;;) {
+        int status = fibrad_job_rows(job, row, &used, NULL, NULL, &report);
+        if (!status) status = fibrad_job_factors(job, average, &report, factors);
+        if (status) return status;
+        const double worst = worst_error(&(*factors)->matrix);
+        if (worst <= rule->tolerance || worst > gain * least) return FIBRAD_OK;
+        least = worst;
+        used.tolerance *= spare * rule->tolerance / worst;
+        fibrad_bed_free(*factors);
+        *factors = NULL;
+    }
 }

@@ -55,7 +55,8 @@ static void copy_bed(fibrad_transient *t, const fibrad_scene_config *scene, cons
     t->named = s->id != NULL;
     if (scene) t->scene = *scene;
     for (uint32_t b = 0; b < t->bodies; ++b) t->body[b] = scene->body[b];
-    t->scene.body = t->body;
+    for (uint32_t k = 0; k < t->scene.openings; ++k) t->opening[k] = scene->opening[k];
+    t->scene.body = t->body, t->scene.opening = t->opening;
     t->scene.triangles = &t->mesh.triangles;
 }
 
@@ -63,7 +64,7 @@ static void copy_bed(fibrad_transient *t, const fibrad_scene_config *scene, cons
 static int check_placed(fibrad_transient *t, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
     fibrad_scene *scene;
     void *block;
-    t->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX};
+    t->fault = (fibrad_fault){spheres->n, spheres->n, UINT32_MAX, 0, 0};
     const int status = fibrad_heap_scene(&scene, &block, config, spheres, &t->fault);
     if (!status) fibrad_scene_describe(scene, &t->facts);
     free(block);
@@ -135,9 +136,10 @@ int fibrad_transient_move(fibrad_transient *t, const fibrad_scene_config *scene,
 
 /* Whether the factors there are, if any, are those of these emissivities. */
 static bool same_surfaces(const fibrad_transient *t, const fibrad_heat_sources *s) {
-    return t->network && memcmp(t->emissivity, s->emissivity, t->n * sizeof *t->emissivity) == 0 &&
-           (t->bodies == 0 ||
-            memcmp(t->body_emissivity, s->body_emissivity, t->bodies * sizeof *t->body_emissivity) == 0);
+    bool same = t->network != NULL;
+    for (uint32_t i = 0; i < t->n && same; ++i) same = t->emissivity[i] == s->emissivity[i];
+    for (uint32_t b = 0; b < t->bodies && same; ++b) same = t->body_emissivity[b] == s->body_emissivity[b];
+    return same;
 }
 
 /* Factors of the bed for the emissivities of the sources. */
@@ -156,7 +158,7 @@ static int make_network(fibrad_transient *t, const fibrad_heat_sources *s) {
     if (status) return status;
     status = fibrad_network_new(&t->network, factors, s->emissivity, t->area);
     if (status) fibrad_bed_free(factors);
-    memcpy(t->emissivity, s->emissivity, t->n * sizeof *t->emissivity);
+    for (uint32_t i = 0; i < t->n; ++i) t->emissivity[i] = s->emissivity[i];
     for (uint32_t b = 0; b < t->bodies; ++b) t->body_emissivity[b] = s->body_emissivity[b];
     return status;
 }
@@ -195,7 +197,9 @@ int fibrad_transient_compare(fibrad_transient *t, const fibrad_heat_sources *s, 
     fibrad_heat_result patches = {.power = t->by_patches, .body_power = t->wall_correction};
     int status = fibrad_network_solve(t->network, &t->team, s, t->allowed, &factors);
     if (status || (t->corrected && !powers_changed(t, s))) return status;
-    status = fibrad_radiation_solve(t->radiation, s, &patches);
+    fibrad_heat_sources given = *s; /* temperatures are given, so powers are not */
+    given.power = NULL;
+    status = fibrad_radiation_solve(t->radiation, &given, &patches);
     if (status) return status;
     for (uint32_t i = 0; i < t->n; ++i) {
         t->correction[i] = t->by_patches[i] - t->power[i];

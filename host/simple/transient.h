@@ -15,7 +15,8 @@ struct fibrad_transient {
     fibrad_fault fault;
     /* the bed: copies, since factors are made when emissivities are known */
     fibrad_scene_config scene;
-    fibrad_body *body; /* [bodies] */
+    fibrad_body *body;       /* [bodies] */
+    fibrad_plane opening[6]; /* [scene.openings] likewise */
     fibrad_triangle_copy mesh;
     double *at[4]; /* [n] x, y, z, r */
     uint64_t *id;  /* [n] if named */

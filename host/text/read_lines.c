@@ -13,6 +13,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
+#include "cli/output.h"
 #include "text/read_number.h"
 
 /* A line that is longer than the most is far beyond any real one: binary files are refused instead of swallowed. */
@@ -66,6 +67,8 @@ static int lines_read_block(struct lines *lines) {
 
 int lines_open(struct lines *lines, const char *path) {
     *lines = (struct lines){.name = lines_name(path), .capacity = BLOCK + 1};
+    const int spared = output_spare(path);
+    if (spared) return spared;
     lines->file = strcmp(path, "-") == 0 ? gzdopen(dup(STDIN_FILENO), "rb") : gzopen(path, "rb");
     if (!lines->file) return message_at(STATUS_FILE, path, 0, "%s", strerror(errno));
     gzbuffer(lines->file, BLOCK);

@@ -35,8 +35,8 @@ struct fields {
 const char *lines_name(const char *path);
 
 /* Opens a file, or standard input for "-", and reads its first bytes, up to 65536: those of lines->buffer from
- * lines->next to lines->end. A byte order mark is skipped. Status 0, STATUS_FILE, STATUS_INPUT (damaged gzip) or
- * STATUS_MEMORY. */
+ * lines->next to lines->end. A byte order mark is skipped. Status 0, STATUS_FILE, STATUS_INPUT (damaged gzip),
+ * STATUS_MEMORY, or as output_spare. */
 int lines_open(struct lines *lines, const char *path);
 void lines_close(struct lines *lines);
 

@@ -7,9 +7,13 @@
 
 #include <errno.h>
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { POWERS = 23 };
+
+#define WHOLE_REAL 0x1p53 /* up to here doubles have all whole numbers */
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -61,7 +65,13 @@ bool number_read(const char *text, double *value) {
 
 bool number_read_whole(const char *text, int64_t *value) {
     char *end;
+    double real;
     errno = 0;
     *value = strtoll(text, &end, 10);
-    return end != text && !*end && !errno;
+    if (end == text || errno) return false;
+    if (!*end) return true;
+    if (!strchr(".eE", *end) || !number_read(text, &real)) return false;
+    if (!(fabs(real) <= WHOLE_REAL && real == floor(real))) return false;
+    *value = (int64_t)real;
+    return true;
 }

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { DIGITS = 17 };
@@ -17,23 +18,62 @@ static wide power_of_5(int exponent) {
     return power;
 }
 
-/* m 2^e 10^k, rounded to even as printf does: m 5^k and a shift, all in whole numbers. */
-static uint64_t scaled(uint64_t m, int e, int k) {
-    const int shift = -(e + k);
-    const wide product = m * power_of_5(k), half = (wide)1 << (shift - 1), rest = product & (2 * half - 1);
-    const uint64_t below = (uint64_t)(product >> shift);
+/* m 2^e 10^k as m 5^k and a shift, all in whole numbers. */
+struct scaled {
+    wide product, five; /* m 5^k, 5^k */
+    int shift;
+};
+
+static struct scaled scaled(uint64_t m, int e, int k) {
+    const wide five = power_of_5(k);
+    return (struct scaled){m * five, five, -(e + k)};
+}
+
+/* Rounded to even as printf does. */
+static uint64_t scaled_rounded(const struct scaled *scaled) {
+    const wide half = (wide)1 << (scaled->shift - 1), rest = scaled->product & (2 * half - 1);
+    const uint64_t below = (uint64_t)(scaled->product >> scaled->shift);
     return below + (rest > half || (rest == half && below & 1));
 }
 
-/* The first 17 digits of a number above 0 and the power of ten of the first of them. False: out of reach, since m 5^k
- * would have more than 128 bits, or no shift is left. */
+/* The same, rounded further to a multiple of `unit`; what the first rounding has made of a half is seen in the number.
+ */
+static uint64_t rounded_further(const struct scaled *scaled, uint64_t digits, uint64_t unit) {
+    const uint64_t up = (digits + unit / 2) / unit * unit;
+    if (digits % unit != unit / 2) return up;
+    const wide ours = (wide)digits << scaled->shift;
+    return ours > scaled->product || (ours == scaled->product && up / unit % 2 == 1) ? up - unit : up;
+}
+
+/* Whether these digits are nearer to the number than half the way to the next double. Below a power of two, `edge`, the
+ * next one is half as far. */
+static bool reads_back(const struct scaled *scaled, uint64_t digits, bool edge) {
+    const wide theirs = (wide)digits << scaled->shift;
+    const wide off = theirs > scaled->product ? theirs - scaled->product : scaled->product - theirs;
+    return (edge ? 4 : 2) * off < scaled->five;
+}
+
+/* The first 17 digits of a number above 0 and the power of ten of the first of them; where 15 or 16 read back as the
+ * same number, zeros stand behind these. False: out of reach, since m 5^k would have more than 128 bits, or no shift is
+ * left. */
 static bool digits_of(double value, uint64_t *digits, int *power) {
     int e;
     const uint64_t m = (uint64_t)ldexp(frexp(value, &e), 53);
     if (e < -52 || e > 50) return false;
     *power = (int)floor((e - 1) * 0.30102999566398120); /* or one more */
-    *digits = scaled(m, e - 53, DIGITS - 1 - *power);
-    if (*digits >= 100000000000000000) *digits = scaled(m, e - 53, DIGITS - 1 - ++*power);
+    struct scaled all = scaled(m, e - 53, DIGITS - 1 - *power);
+    *digits = scaled_rounded(&all);
+    if (*digits >= 100000000000000000) {
+        all = scaled(m, e - 53, DIGITS - 1 - ++*power);
+        *digits = scaled_rounded(&all);
+    }
+    for (uint64_t unit = 100; unit > 1; unit /= 10) {
+        const uint64_t fewer = rounded_further(&all, *digits, unit);
+        if (!reads_back(&all, fewer, m == (uint64_t)1 << 52)) continue;
+        *digits = fewer;
+        if (fewer == 100000000000000000) *digits /= 10, ++*power;
+        break;
+    }
     return true;
 }
 #else
@@ -41,6 +81,16 @@ static bool digits_of(double value, uint64_t *digits, int *power) {
     return (void)value, *digits = 0, *power = 0, false;
 }
 #endif
+
+/* The same by printf, for numbers of any size. */
+static int print_real(char *to, double value) {
+    int used = 0;
+    for (int digits = DIGITS - 2; digits <= DIGITS; ++digits) {
+        used = snprintf(to, TEXT_NUMBER - 1, "%.*g", digits, value);
+        if (strtod(to, NULL) == value) break;
+    }
+    return used;
+}
 
 /* The digits of a number, most significant first, so many of them. */
 static char *put_digits(char *to, uint64_t number, int count) {
@@ -76,8 +126,7 @@ char *text_real(char *to, double value) {
         *to++ = '-';
         value = -value;
     }
-    if (!(value > 0 && isfinite(value) && digits_of(value, &digits, &power)))
-        return to + snprintf(to, TEXT_NUMBER - 1, "%.17g", value);
+    if (!(value > 0 && isfinite(value) && digits_of(value, &digits, &power))) return to + print_real(to, value);
     put_digits(text + ZEROS, digits, DIGITS);
     if (power >= 0) return put_point(to, text + ZEROS, DIGITS, power + 1);
     if (power >= -ZEROS) return put_point(to, text + ZEROS + power, DIGITS - power, 1);
@@ -85,6 +134,19 @@ char *text_real(char *to, double value) {
     *to++ = 'e';
     *to++ = '-';
     return put_digits(to, (uint64_t)-power, 2);
+}
+
+const char *names_list(char to[NAMES_LISTED], const char *const *names, size_t n) {
+    enum { MORE = 24 }; /* room for how many there are */
+    int used = snprintf(to, NAMES_LISTED, "%s", n > 0 ? "" : "none");
+    for (size_t k = 0; k < n; ++k) {
+        if (used + (int)strlen(names[k]) + 2 > NAMES_LISTED - MORE) {
+            snprintf(to + used, (size_t)(NAMES_LISTED - used), " ... (%zu in all)", n);
+            break;
+        }
+        used += snprintf(to + used, (size_t)(NAMES_LISTED - used), k > 0 ? ", %s" : "%s", names[k]);
+    }
+    return to;
 }
 
 void text_json(FILE *file, const char *text) {

@@ -3,17 +3,19 @@
 
 #include <inttypes.h>
 #include <limits.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
+#include "text/text.h"
 
-static const struct format formats[] = {{"csv", {write_csv, write_heat_csv, write_conduction_csv}, true},
-                                        {"mtx", {write_mtx}, false},
-                                        {"npz", {write_npz}, false},
-                                        {"vtp", {write_vtp, write_heat_vtp}, false},
-                                        {"json", {write_json, write_heat_json, write_conduction_json}, true},
-                                        {"dump", {NULL, write_heat_dump}, true},
-                                        {"lammpstrj", {NULL, write_heat_dump}, true}};
+static const struct format formats[] = {{"csv", {write_csv, write_heat_csv, write_conduction_csv}, true, false},
+                                        {"mtx", {write_mtx}, false, false},
+                                        {"npz", {write_npz}, false, false},
+                                        {"vtp", {write_vtp, write_heat_vtp}, false, false},
+                                        {"json", {write_json, write_heat_json, write_conduction_json}, true, false},
+                                        {"dump", {NULL, write_heat_dump}, true, true},
+                                        {"lammpstrj", {NULL, write_heat_dump}, true, true}};
 enum { FORMATS = sizeof formats / sizeof *formats };
 
 /* ".csv, .mtx and .npz": formats that can hold such contents; `dot` stands before each. */
@@ -51,7 +53,7 @@ int outputs_add(struct outputs *outputs, const char *path) {
 }
 
 int outputs_add_meshes(struct outputs *outputs, const char *path) {
-    static const struct format meshes = {"vtp", {write_mesh_vtp, write_mesh_vtp}, false};
+    static const struct format meshes = {"vtp", {write_mesh_vtp, write_mesh_vtp}, false, false};
     const int status = outputs_add(outputs, path);
     if (!status) outputs->to[outputs->count - 1].format = &meshes;
     return status;
@@ -84,14 +86,6 @@ static int check_format(struct outputs *outputs, size_t k, bool series) {
     return STATUS_OK;
 }
 
-static int check_inputs(const struct outputs *outputs, const char *path) {
-    for (size_t k = 0; k < outputs->input_count; ++k)
-        if (output_same(outputs->inputs[k], path))
-            return message_at(STATUS_USAGE, path, 0, "is %s; it would be replaced",
-                              outputs->input_count > 1 ? "one of the files" : "the bed itself");
-    return STATUS_OK;
-}
-
 static bool is_same(const char *a, const char *b) {
     return a && b && ((output_stdout(a) && output_stdout(b)) || output_same(a, b));
 }
@@ -104,24 +98,25 @@ static int check_others(const struct outputs *outputs, size_t k, const char *pat
     return twice ? message_at(STATUS_USAGE, path, 0, "is there twice") : STATUS_OK;
 }
 
-int outputs_check(struct outputs *outputs, enum content content, const char *const *inputs, size_t input_count,
-                  bool series) {
+int outputs_check(struct outputs *outputs, enum content content, bool series) {
     bool wanted = outputs->format == NULL;
     int status = STATUS_OK;
     outputs->content = content;
-    outputs->inputs = inputs;
-    outputs->input_count = input_count;
     for (size_t k = 0; k < outputs->count && !status; ++k) {
         if (!outputs->to[k].format) wanted = true;
         status = check_format(outputs, k, series);
-        if (!status) status = check_inputs(outputs, outputs->to[k].path);
         if (!status) status = check_others(outputs, k, outputs->to[k].path);
     }
-    if (!status && outputs->summary) status = check_inputs(outputs, outputs->summary);
     if (!status && is_same(outputs->summary, outputs->picture))
         status = message_at(STATUS_USAGE, outputs->summary, 0, "is there twice");
     if (status || wanted) return status;
     return message(STATUS_USAGE, "--format %s: no -o needs it", outputs->format->name);
+}
+
+bool outputs_keep(const struct outputs *outputs) {
+    for (size_t k = 0; k < outputs->count; ++k)
+        if (outputs->to[k].format->columns) return true;
+    return false;
 }
 
 int outputs_open(struct outputs *outputs) {
@@ -140,18 +135,32 @@ static int write_alone(const struct outputs *outputs, size_t k, const struct con
     struct output file = {0};
     const int used = snprintf(path, sizeof path, "%.*s%" PRId64 "%s", (int)(star - pattern), pattern, number, star + 1);
     if (used >= (int)sizeof path) return message_at(STATUS_FILE, pattern, 0, "is too long a name");
-    int status = check_inputs(outputs, path);
-    if (!status) status = check_others(outputs, k, path);
+    int status = check_others(outputs, k, path);
     if (!status) status = output_open(&file, path);
     if (!status) status = outputs->to[k].format->write[outputs->content](file.file, what, true);
     return output_close(&file, status);
 }
 
-int outputs_write(struct outputs *outputs, const struct contents *what, int64_t number) {
-    int status = STATUS_OK;
+/* Notes a frame of a series. */
+static int note_frame(struct outputs *outputs, const struct contents *what) {
+    if (!what->series && !what->time) return STATUS_OK;
+    if (outputs->frames == outputs->room) {
+        const size_t room = 2 * outputs->room + 64;
+        struct written *frame = realloc(outputs->frame, room * sizeof *frame);
+        if (!frame) return message_memory();
+        outputs->frame = frame, outputs->room = room;
+    }
+    outputs->frame[outputs->frames++] = (struct written){.number = what->bed->frame,
+                                                         .time = what->time ? *what->time : (double)what->bed->timestep,
+                                                         .known = what->time || what->bed->timestep >= 0};
+    return STATUS_OK;
+}
+
+int outputs_write(struct outputs *outputs, const struct contents *what) {
+    int status = note_frame(outputs, what);
     for (size_t k = 0; k < outputs->count && !status; ++k) {
         if (outputs->to[k].star) {
-            status = write_alone(outputs, k, what, number);
+            status = write_alone(outputs, k, what, what->bed->frame);
             continue;
         }
         struct output *file = &outputs->to[k].file;
@@ -162,8 +171,44 @@ int outputs_write(struct outputs *outputs, const struct contents *what, int64_t 
     return status;
 }
 
+/* Whether times or timesteps of the frames ascend; else their numbers stand for them. */
+static bool has_times(const struct outputs *outputs) {
+    for (size_t k = 0; k < outputs->frames; ++k)
+        if (!outputs->frame[k].known || (k > 0 && !(outputs->frame[k].time > outputs->frame[k - 1].time))) return false;
+    return true;
+}
+
+/* NAME.pvd beside NAME.*.vtp, which tells ParaView the time of each. */
+static int write_collection(const struct outputs *outputs, const char *path, const char *star) {
+    const char *slash = strrchr(path, '/'), *begin = slash ? slash + 1 : path;
+    size_t length = (size_t)(star - path);
+    char name[PATH_MAX], number[TEXT_NUMBER];
+    struct output file = {0};
+    if (slash > star) return STATUS_OK; /* files in folders of their own */
+    while (length > (size_t)(begin - path) && strchr("._-", path[length - 1])) --length;
+    if (snprintf(name, sizeof name, "%.*s.pvd", (int)length, path) >= (int)sizeof name)
+        return message_at(STATUS_FILE, path, 0, "is too long a name");
+    int status = output_open(&file, name);
+    if (status) return status;
+    const bool timed = has_times(outputs);
+    fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n", file.file);
+    for (size_t k = 0; k < outputs->frames; ++k) {
+        const struct written *frame = &outputs->frame[k];
+        *text_real(number, timed ? frame->time : (double)frame->number) = 0;
+        fprintf(file.file, "<DataSet timestep=\"%s\" file=\"%.*s%" PRId64 "%s\"/>\n", number, (int)(star - begin),
+                begin, frame->number, star + 1);
+    }
+    fputs("</Collection>\n</VTKFile>\n", file.file);
+    return output_close(&file, status);
+}
+
 int outputs_close(struct outputs *outputs, int status) {
+    for (size_t k = 0; k < outputs->count && !status && outputs->frames > 0; ++k)
+        if (outputs->to[k].star && strcmp(outputs->to[k].format->name, "vtp") == 0)
+            status = write_collection(outputs, outputs->to[k].path, outputs->to[k].star);
     for (size_t k = 0; k < outputs->count; ++k) status = output_close(&outputs->to[k].file, status);
+    free(outputs->frame);
+    outputs->frame = NULL, outputs->frames = outputs->room = 0;
     return output_close(&outputs->summary_file, status);
 }
 

@@ -41,6 +41,8 @@ void summary_make(struct summary *summary, const struct contents *what) {
     }
     for (uint32_t i = 0; i < matrix->n; ++i)
         if (has_row(what, i)) add_summary(summary, matrix, i, rows);
+    for (uint32_t k = 0; matrix->body_body && k < matrix->bodies; ++k)
+        summary->wall_error_max = fmax(summary->wall_error_max, matrix->body_error[k]); /* NaN is passed over */
     summary->escaped_mean /= rows;
     summary->beyond_mean /= rows;
     summary->error_rms = sqrt(summary->error_rms);
@@ -85,6 +87,7 @@ void summary_report(const struct summary *summary, const struct contents *what, 
     if (matrix->body_body) {
         for (uint32_t k = 0; k < matrix->bodies; ++k) report_wall_row(what, k, report);
         report_value(report, "wall_correction", matrix->body_correction, 2);
+        report_value(report, "wall_closure", matrix->body_closure, 2);
     }
     report_value(report, "closure_max", fmax(what->factors->closure_error, summary->closure_max), 2);
     report_value(report, "reciprocity_max", what->factors->reciprocity_error, 2);

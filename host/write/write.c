@@ -1,8 +1,6 @@
 /* write.c - what all writers ask of the contents. SPDX-License-Identifier: MIT */
 #include "write/write.h"
 
-bool contents_outside(const struct contents *what) { return what->walls && (what->walls->count > 0 || what->grey); }
-
 const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]) {
     if (what->walls->body[k].kind) return wall_name(what->walls, k);
     snprintf(name, BODY_NAME, "wall_%u", k + 1);

@@ -23,9 +23,8 @@ enum { ARRAYS_MAX = 24 };
 /* The results of one frame: a matrix, or heat, or conduction; what belongs to the others is 0. */
 struct contents {
     const struct bed *bed;
-    const struct walls *walls; /* NULL: neither walls nor surroundings are written; none in it: no walls, and
-                                  surroundings only with exchange factors and heat. A body of kind 0: only that there
-                                  is one is known */
+    const struct walls *walls; /* NULL: neither walls nor surroundings are written. A body of kind 0: only that there is
+                                  one is known */
     const char *file;          /* the bed's, a column where several files go into one output; NULL: there is one */
     bool series;               /* several frames may go into one output: columns frame and timestep */
     const double *time;        /* [s] a column where several times go into one output; NULL: there is one */
@@ -53,9 +52,6 @@ write_function write_conduction_csv, write_conduction_json;
 write_function write_mesh_vtp; /* has walls with meshes */
 write_function write_heat_csv, write_heat_vtp, write_heat_json, write_heat_dump;
 
-/* Whether walls and surroundings of a matrix are written. */
-bool contents_outside(const struct contents *what);
-
 /* What a body is called: "zmin" and the like, "wall_1" and the like if its place is not known. */
 enum { BODY_NAME = MESH_NAME };
 const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]);
@@ -65,6 +61,7 @@ struct summary {
     double row_sum_min, row_sum_max, escaped_mean, beyond_mean;
     double closure_max; /* largest |row sum + escaped + beyond + walls - 1| */
     double error_max, error_rms;
+    double wall_error_max; /* of the rows that walls have */
     double wall_mean[WALLS_MAX];
 };
 

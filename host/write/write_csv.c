@@ -124,7 +124,7 @@ static int write_walls(struct csv *csv) {
 
 int write_csv(FILE *file, const struct contents *what, bool first) {
     const fibrad_factors *matrix = &what->factors->matrix;
-    struct csv csv = {.named = contents_outside(what)};
+    struct csv csv = {.named = what->walls};
     begin_csv(&csv, file, what, what->grey ? "i,j,D" : "i,j,F", first);
     for (uint32_t i = 0; i < matrix->n; ++i) {
         if (interrupt_status()) return interrupt_status();
@@ -170,7 +170,7 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
 int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
     const struct conduction *conduction = what->conduction;
     struct csv csv = {0};
-    begin_csv(&csv, file, what, "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable", first);
+    begin_csv(&csv, file, what, "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error", first);
     for (int axis = 0; axis < 3; ++axis) {
         if (!conduction_wants(conduction, axis)) continue;
         char *at = csv.line + csv.columns;
@@ -183,6 +183,8 @@ int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
         if (!isnan(conduction->temperature)) at = text_real(at, conduction->k_error[axis]);
         at = put_comma(at);
         *at++ = conduction_flights(conduction, axis) == FLIGHTS_SETTLED ? '1' : '0';
+        at = put_error(put_comma(at), conduction->steady[axis]);
+        at = put_error(put_comma(at), conduction->steady_error[axis]);
         end_line(&csv, at, "");
     }
     return STATUS_OK;

@@ -14,9 +14,14 @@ static void write_header(FILE *file, const struct bed *bed, bool first) {
     putc('\n', file);
     for (int axis = 0; axis < 3; ++axis) {
         const double low = bed_end(bed, axis, false), high = bed_end(bed, axis, true), period = bed->period[axis];
-        fprintf(file, "%.17g %.17g\n", low, period > 0 && high - low != period ? low + period : high);
+        char line[2 * TEXT_NUMBER], *at = text_real(line, low);
+        *at++ = ' ';
+        at = text_real(at, period > 0 && high - low != period ? low + period : high);
+        *at++ = '\n';
+        fwrite(line, 1, (size_t)(at - line), file);
     }
-    fputs("ITEM: ATOMS id x y z radius T_K q_W\n", file);
+    fprintf(file, "ITEM: ATOMS id x y z radius T_K q_W%s%s\n", bed->kept_names ? " " : "",
+            bed->kept_names ? bed->kept_names : "");
 }
 
 int write_heat_dump(FILE *file, const struct contents *what, bool first) {
@@ -32,8 +37,9 @@ int write_heat_dump(FILE *file, const struct contents *what, bool first) {
             *at++ = ' ';
             at = text_real(at, values[k]);
         }
-        *at++ = '\n';
         fwrite(line, 1, (size_t)(at - line), file);
+        if (bed->kept_names) fprintf(file, " %s", bed->kept + bed->kept_at[i]);
+        putc('\n', file);
     }
     return STATUS_OK;
 }

@@ -2,6 +2,7 @@
 #include "write/write_furnace.h"
 
 #include "cli/output.h"
+#include "text/text.h"
 
 void write_furnace_csv(FILE *file, const struct furnace_run *run) {
     const fibrad_furnace_config *c = &run->config;
@@ -13,8 +14,15 @@ void write_furnace_csv(FILE *file, const struct furnace_run *run) {
         for (uint32_t j = 0; j < c->cells[1]; j++) {
             for (uint32_t i = 0; i < c->cells[0]; i++, cell++) {
                 double e = run->at.e[cell];
-                fprintf(file, "%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", (i + 0.5) * step[0], (j + 0.5) * step[1],
-                        (k + 0.5) * step[2], fibrad_furnace_temperature(e), e, run->at.divergence[cell]);
+                const double values[] = {
+                    (i + 0.5) * step[0],     (j + 0.5) * step[1], (k + 0.5) * step[2], fibrad_furnace_temperature(e), e,
+                    run->at.divergence[cell]};
+                char line[6 * TEXT_NUMBER], *at = line;
+                for (size_t v = 0; v < sizeof values / sizeof *values; v++) {
+                    at = text_real(at, values[v]);
+                    *at++ = v < 5 ? ',' : '\n';
+                }
+                fwrite(line, 1, (size_t)(at - line), file);
             }
         }
     }

@@ -152,6 +152,10 @@ int write_conduction_json(FILE *file, const struct contents *what, bool first) {
             json_entry(file, "k_W_mK", conduction->k[axis]);
             json_entry(file, "k_W_mK_error", conduction->k_error[axis]);
         }
+        if (!isnan(conduction->steady[axis])) {
+            json_entry(file, "F_E_steady", conduction->steady[axis]);
+            json_entry(file, "F_E_steady_error", conduction->steady_error[axis]);
+        }
         putc('}', file);
     }
     fputs("]}\n", file);

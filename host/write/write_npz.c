@@ -175,6 +175,7 @@ static int add_spheres(struct arrays *arrays, const struct bed *bed) {
     add_array(arrays, (struct array){"ids.npy", "i8", arrays->position, n, 0});
     add_array(arrays, (struct array){"x.npy", "f8", arrays->x, n, 3});
     add_array(arrays, (struct array){"radius.npy", "f8", bed->r, n, 0});
+    add_array(arrays, (struct array){"length_unit.npy", "S16", bed->units, SCALAR, 0});
     return STATUS_OK;
 }
 

@@ -23,18 +23,22 @@ typedef struct fibrad_addend {
 
 typedef struct fibrad_addends {
     fibrad_memory *memory;
-    size_t count; /* there is no room for all if they take more than memory->size */
+    size_t count; /* of all terms; those from the first that has found no room on are not listed */
+    bool missed;  /* there is one */
 } fibrad_addends;
 
 static inline void fibrad_addends_put(fibrad_addends *list, uint32_t target, uint32_t window, double value) {
     const fibrad_addend addend = {value, target, window};
     fibrad_memory *memory = list->memory;
     const size_t used = list->count++ * sizeof addend, needed = used + sizeof addend;
-    if (needed > memory->size && memory->resize != NULL) {
-        void *block = memory->resize(memory->context, memory->block, 2 * needed);
-        if (block != NULL) memory->block = block, memory->size = 2 * needed;
+    if (list->missed) return;
+    if (needed > memory->size) {
+        void *block = memory->resize != NULL ? memory->resize(memory->context, memory->block, 2 * needed) : NULL;
+        list->missed = block == NULL;
+        if (list->missed) return;
+        memory->block = block, memory->size = 2 * needed;
     }
-    if (needed <= memory->size) fibrad_copy((unsigned char *)memory->block + used, &addend, sizeof addend);
+    fibrad_copy((unsigned char *)memory->block + used, &addend, sizeof addend);
 }
 
 #endif

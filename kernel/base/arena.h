@@ -6,6 +6,7 @@
 #define FIBRAD_BASE_ARENA_H
 
 #include "fibrad.h"
+#include "base/port.h"
 
 /* Every array begins on this boundary and is padded to a multiple of it, so that it holds whole lanes. */
 #define FIBRAD_ALIGNMENT 64
@@ -35,6 +36,11 @@ static inline size_t fibrad_arena_total(const fibrad_arena *arena) {
 
 /* Bytes before the first boundary of a block. */
 static inline size_t fibrad_arena_lead(const void *memory) { return (size_t) - (uintptr_t)memory % FIBRAD_ALIGNMENT; }
+
+/* Whether the caller's memory is a block, an empty one, or none yet. */
+static inline bool fibrad_memory_valid(const fibrad_memory *memory) {
+    return memory->block != NULL || memory->size == 0;
+}
 
 /* Checks the caller's block before an _init lays out what fibrad_arena_total has counted.
  * Errors: FIBRAD_E_ARGUMENT (NULL, or needed 0: a configuration that is not valid), _SIZE. */

@@ -37,12 +37,12 @@ static inline void fibrad_sobol_make(fibrad_sobol *sobol) {
     }
 }
 
-/* The coordinates of point k in units of 2^-32. Any number added bit by bit, without carry, moves the points and leaves
- * them as even. */
-static inline void fibrad_sobol_point(const fibrad_sobol *sobol, uint32_t k, uint32_t x[8]) {
-    for (int d = 0; d < 8; d++) x[d] = 0;
-    for (int bit = 0; k != 0; bit++, k >>= 1) {
-        const uint32_t all = 0u - (k & 1);
+/* Makes the coordinates of point `from` in units of 2^-32 those of point `to`; all of point 0 are 0. Any number added
+ * bit by bit, without carry, moves the points and leaves them as even. */
+static inline void fibrad_sobol_move(const fibrad_sobol *sobol, uint32_t from, uint32_t to, uint32_t x[8]) {
+    uint32_t changed = from ^ to;
+    for (int bit = 0; changed != 0; bit++, changed >>= 1) {
+        const uint32_t all = 0u - (changed & 1);
         for (int d = 0; d < 8; d++) x[d] ^= sobol->direction[bit][d] & all;
     }
 }

@@ -16,7 +16,8 @@ const char *fibrad_status_text(int status) {
     case FIBRAD_E_TABLE:
         return "that number of samples is not built in";
     case FIBRAD_E_GEOMETRY:
-        return "two spheres have the same centre, or the centre of one lies inside another";
+        return "two spheres have the same centre, the centre of one lies inside another, or one reaches beyond an "
+               "opening";
     case FIBRAD_E_WORK:
         return "the work memory is too small";
     case FIBRAD_E_STATE:
@@ -33,8 +34,55 @@ const char *fibrad_status_text(int status) {
         return "no temperatures give bodies the powers that were asked for";
     case FIBRAD_E_BACK:
         return "a side of a triangle is seen that belongs to no body";
+    case FIBRAD_E_SUM:
+        return "a row does not add up to one: a fault of fibrad, please report it";
+    case FIBRAD_E_ENDLESS:
+        return "walls go on for ever where the bed is not closed: make the missing side a wall, or an opening";
     default:
         return "no known status";
+    }
+}
+
+const char *fibrad_why_text(int why) {
+    switch (why) {
+    case FIBRAD_WHY_PLACE:
+        return "a coordinate is not a number, infinite or too far away";
+    case FIBRAD_WHY_RADIUS:
+        return "the radius is not above 0 or is out of range";
+    case FIBRAD_WHY_BEYOND:
+        return "the centre lies beyond a wall";
+    case FIBRAD_WHY_WALL:
+        return "does not go with the box or the other walls, or its place or size is not valid";
+    case FIBRAD_WHY_TEMPERATURE:
+        return "the temperature is out of range";
+    case FIBRAD_WHY_EMISSIVITY:
+        return "the emissivity is not within 0 and 1";
+    case FIBRAD_WHY_POWER:
+        return "the power is out of range";
+    case FIBRAD_WHY_BOTH:
+        return "has both a temperature and a power; give the one or the other";
+    case FIBRAD_WHY_NEITHER:
+        return "has neither a temperature nor a power";
+    case FIBRAD_WHY_REFLECTS:
+        return "reflects all (emissivity 0) and cannot give off a power";
+    case FIBRAD_WHY_HOLD:
+        return "hold or reference are out of range";
+    case FIBRAD_WHY_ENDLESS:
+        return "goes on for ever and needs its temperature";
+    case FIBRAD_WHY_SIDE:
+        return "the temperature of a triangle is out of range, or its wall has none";
+    case FIBRAD_WHY_SURROUNDINGS:
+        return "the temperature of the surroundings is missing or out of range";
+    case FIBRAD_WHY_SIGMA:
+        return "sigma is out of range";
+    case FIBRAD_WHY_TOLERANCE:
+        return "the tolerance is out of range";
+    case FIBRAD_WHY_MISSING:
+        return "an array is missing";
+    case FIBRAD_WHY_CAPACITY:
+        return "the heat capacity is not above 0 or is out of range";
+    default:
+        return "the value is not valid";
     }
 }
 

@@ -2,7 +2,10 @@
  *
  * Paths come in parts, each of even points moved at random on its own, so that the spread of the parts is that of their
  * mean. */
+#include "base/constants.h"
+#include "base/elementary.h"
 #include "exchange/paths.h"
+#include "row/row.h"
 
 #define FIRST_BODY_PATHS 8192u
 
@@ -13,13 +16,60 @@ static int body_begin(const fibrad_scene *scene, uint32_t body, const fibrad_exc
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     if (body >= scene->facts.bodies || part >= FIBRAD_BODY_PARTS || rule->paths > FIBRAD_PATHS_MAX)
         return FIBRAD_E_ARGUMENT;
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) {
-        const double emissivity = rule->body_emissivity != NULL ? rule->body_emissivity[b] : 1;
-        if (!(emissivity >= 0 && emissivity <= 1)) return FIBRAD_E_ARGUMENT;
-        wall_emissivity[scene->slot[b]] = emissivity;
-    }
+    const int status = fibrad_paths_emissivities(scene, rule->body_emissivity, wall_emissivity);
+    if (status != FIBRAD_OK) return status;
     const bool whole = fibrad_finite(scene->wall_area[scene->slot[body]]) && !scene->region && rule->cutoff == 0;
     return whole ? FIBRAD_OK : FIBRAD_E_UNSUPPORTED;
+}
+
+/* Whether bodies and openings are the six sides of a box, and nothing else but spheres is there. */
+static bool is_box(const fibrad_scene *scene) {
+    bool box = true;
+    for (uint32_t b = 0; b < scene->facts.bodies; b++) box = box && scene->slot[b] < FIBRAD_CYLINDER;
+    for (uint32_t slot = 0; slot < FIBRAD_CYLINDER; slot++) box = box && scene->wall_area[slot] > 0;
+    return box;
+}
+
+/* What a side of a black box sends to the one opposite, over all that it sends, if nothing is in between: sides x times
+ * y, the distance being 1. Source: Siegel, Howell, Thermal Radiation Heat Transfer, configuration C-11. */
+static double factor_of_opposite(double x, double y) {
+    const double lx = fibrad_sqrt(1 + x * x), ly = fibrad_sqrt(1 + y * y);
+    const double log = fibrad_log(lx * ly / fibrad_sqrt(1 + x * x + y * y));
+    const double sum = log + x * ly * fibrad_quarter_angle(ly, x) + y * lx * fibrad_quarter_angle(lx, y) -
+                       x * fibrad_quarter_angle(1, x) - y * fibrad_quarter_angle(1, y);
+    return 2 / (FIBRAD_PI * x * y) * sum;
+}
+
+/* What a side of an empty box sends to each side. What is left over for the sides beside each determines what these
+ * exchange. */
+static void shares_in_empty_box(const fibrad_scene *scene, uint32_t from, double share[FIBRAD_CYLINDER]) {
+    const fibrad_container *c = &scene->container;
+    const uint32_t own = from / 2;
+    double area[3], opposite[3], beside[3];
+    for (uint32_t axis = 0; axis < 3; axis++) {
+        const uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+        const double across = c->high[axis] - c->low[axis];
+        area[axis] = (c->high[u] - c->low[u]) * (c->high[v] - c->low[v]);
+        opposite[axis] = factor_of_opposite((c->high[u] - c->low[u]) / across, (c->high[v] - c->low[v]) / across);
+        beside[axis] = area[axis] * (1 - opposite[axis]);
+    }
+    share[from] = 0, share[from ^ 1] = opposite[own];
+    for (uint32_t turn = 1; turn < 3; turn++) {
+        const uint32_t axis = (own + turn) % 3, third = 3 - own - axis;
+        share[2 * axis] = fibrad_max(0, (beside[own] + beside[axis] - beside[third]) / (4 * area[own]));
+        share[2 * axis + 1] = share[2 * axis];
+    }
+}
+
+/* Of what each wall of an empty box would get spheres keep what they have kept of the paths there. */
+static void share_out_box(fibrad_paths *paths, double followed) {
+    double share[FIBRAD_CYLINDER];
+    shares_in_empty_box(paths->tracer->scene, paths->from, share);
+    for (uint32_t k = 0; k < FIBRAD_CYLINDER; k++) {
+        const double all = paths->wall[k] + paths->behind[k], kept = all > 0 ? paths->behind[k] / all : 0;
+        paths->absorbed += followed * share[k] * kept;
+        paths->wall[k] = followed * share[k] * (1 - kept);
+    }
 }
 
 int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
@@ -34,6 +84,7 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     *row = (fibrad_body_row){0};
     if (wall_emissivity[scene->slot[body]] == 0) return FIBRAD_OK;
 
+    const bool black = rule->emissivity == NULL && rule->body_emissivity == NULL;
     fibrad_sobol sobol;
     fibrad_sobol_make(&sobol);
     const uint32_t wanted = rule->paths > 0 ? rule->paths : FIRST_BODY_PATHS;
@@ -45,24 +96,41 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
                           .sobol = &sobol,
                           .emissivity = rule->emissivity,
                           .wall_emissivity = wall_emissivity,
+                          .boxed = black && is_box(scene),
                           .stream = fibrad_random_start(rule->seed, UINT64_MAX - own),
                           .first = true,
                           .back = UINT32_MAX};
-    FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa)(&paths, 0, count);
+    const uint64_t followed = fibrad_paths_begin(&paths, count);
     work->triangle = paths.back;
     if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
-    double sum = paths.absorbed + paths.escaped + paths.beyond; /* the number of paths, but for Russian roulette */
-    for (uint32_t k = 0; k < FIBRAD_SLOTS; k++) sum += paths.wall[k];
+    if (paths.boxed) share_out_box(&paths, (double)followed);
+    const double sum = fibrad_paths_sum(&paths);
     if (!fibrad_finite(sum)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
     row->rays = paths.rays;
+    row->error = paths.left > 0 ? paths.left / (paths.left + sum) : 0;
     if (sum == 0) {
         row->escaped = 1;
         return FIBRAD_OK;
     }
     row->spheres = paths.absorbed / sum;
     row->escaped = (paths.escaped + paths.beyond) / sum;
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) row->body[b] = paths.wall[scene->slot[b]] / sum;
-    return FIBRAD_OK;
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
+        if (fibrad_is_opening(&scene->container, k)) row->escaped += paths.wall[k] / sum;
+    double all = row->spheres + row->escaped;
+    for (uint32_t b = 0; b < scene->facts.bodies; b++) all += row->body[b] = paths.wall[scene->slot[b]] / sum;
+    return fibrad_sum_checked(all);
+}
+
+/* What differs from an empty box by chance may come out below zero: it is 0, and the others share the rest. */
+static void body_row_settle(fibrad_body_row *row) {
+    double below = 0;
+    for (uint32_t b = 0; b < FIBRAD_BODIES_MAX; b++) {
+        below += fibrad_min(0, row->body[b]);
+        row->body[b] = fibrad_max(0, row->body[b]);
+    }
+    const double all = 1 - below;
+    row->spheres /= all, row->escaped /= all;
+    for (uint32_t b = 0; b < FIBRAD_BODIES_MAX; b++) row->body[b] /= all;
 }
 
 int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fibrad_body_row *mean) {
@@ -72,6 +140,7 @@ int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fib
         for (uint32_t b = 0; b < FIBRAD_BODIES_MAX; b++) sum.body[b] += part[p].body[b] / FIBRAD_BODY_PARTS;
         sum.spheres += part[p].spheres / FIBRAD_BODY_PARTS;
         sum.escaped += part[p].escaped / FIBRAD_BODY_PARTS;
+        sum.error += part[p].error / FIBRAD_BODY_PARTS;
         sum.rays += part[p].rays;
     }
     double square = 0;
@@ -83,7 +152,8 @@ int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fib
             square += difference * difference;
         }
     }
-    sum.error = fibrad_sqrt(square / (FIBRAD_BODY_PARTS * (FIBRAD_BODY_PARTS - 1)));
+    sum.error += fibrad_sqrt(square / (FIBRAD_BODY_PARTS * (FIBRAD_BODY_PARTS - 1)));
+    body_row_settle(&sum);
     *mean = sum;
     return FIBRAD_OK;
 }

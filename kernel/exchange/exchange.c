@@ -9,6 +9,11 @@
 #define FIRST_DIRECTIONS 50u
 #define FIRST_PATHS      400u
 
+/* So many paths tell whether there are mirrors: that most of what paths carry is left at their end, or that they take
+ * more rays than this on the mean. */
+#define FEW_PATHS  4u
+#define USUAL_RAYS 1024u
+
 /* Up to so many directions, windows by 256 points are as good as by exact areas and take a third of the time. */
 #define BY_POINTS 144u
 
@@ -33,11 +38,8 @@ static int exchange_begin(exchange_task *task, const fibrad_scene *scene, uint32
     if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1) || rule->paths > FIBRAD_PATHS_MAX)
         return FIBRAD_E_ARGUMENT;
     *task = (exchange_task){.rule = rule};
-    for (uint32_t b = 0; b < bodies; b++) {
-        const double emissivity = rule->body_emissivity[b];
-        if (!(emissivity >= 0 && emissivity <= 1)) return FIBRAD_E_ARGUMENT;
-        task->wall_emissivity[scene->slot[b]] = emissivity;
-    }
+    const int status = fibrad_paths_emissivities(scene, rule->body_emissivity, task->wall_emissivity);
+    if (status != FIBRAD_OK) return status;
     const bool valid =
         rule->tolerance >= 0 && fibrad_finite(rule->tolerance) && rule->cutoff >= 0 && fibrad_finite(rule->cutoff);
     return valid ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
@@ -94,41 +96,68 @@ static double reflected_of(const exchange_task *task, const fibrad_row *row, con
     return sum;
 }
 
-/* All that the paths have put down. */
-static double sum_of_paths(const fibrad_paths *paths) {
+double fibrad_paths_sum(const fibrad_paths *paths) {
     double sum = paths->absorbed + paths->escaped + paths->beyond;
     for (uint32_t wall = 0; wall < FIBRAD_SLOTS; wall++) sum += paths->wall[wall];
     return sum;
 }
 
-/* The Euclidean distance of the sums over even and odd paths, which is the error of their mean. */
-static double distance_of_halves(const fibrad_entries *entries) {
+uint64_t fibrad_paths_begin(fibrad_paths *paths, uint64_t count) {
+    fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, paths->tracer->scene->facts.isa);
+    const uint64_t few = count < FEW_PATHS ? count : FEW_PATHS;
+    follow(paths, 0, few);
+    if (paths->left > fibrad_paths_sum(paths)) return few;
+    if (paths->rays > few * USUAL_RAYS) count = count * USUAL_RAYS * few / paths->rays;
+    if (count < few) return few;
+    follow(paths, few, count);
+    return count;
+}
+
+/* The error of the sums over all paths, Euclidean: the spread of four parts of them, as two might agree by chance in
+ * rows of few entries, and a path more, of usual weight, which may end where none has. */
+static double spread_of_parts(const fibrad_entries *entries, double weight) {
     double square = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
-        const double *part = entries->part[k];
-        double difference = part[0] + part[2] - part[1] - part[3];
-        square += difference * difference;
+        const double *part = entries->part[k], mean = 0.25 * (part[0] + part[1] + part[2] + part[3]);
+        for (int p = 0; p < 4; p++) square += (part[p] - mean) * (part[p] - mean);
     }
-    return fibrad_sqrt(square);
+    return fibrad_sqrt(4.0 / 3 * square + weight * weight);
+}
+
+/* What is left of what the paths carry, of the emission. */
+static double lost_of(const fibrad_paths *paths, double carried) {
+    return paths->left > 0 ? carried * (paths->left / (paths->left + fibrad_paths_sum(paths))) : 0;
 }
 
 /* Follows paths until their error is not above `wanted` (0: as many as the rule says). Where reflecting surfaces are so
- * small that no path meets one, up to 64 times as many. */
-static void follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, double carried, double wanted) {
+ * small that no path meets one, up to 64 times as many; no more where mirrors leave more than `wanted` anyway. */
+static void follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, double carried, double weight,
+                         double wanted) {
     fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, paths->tracer->scene->facts.isa);
-    uint64_t done = 0, first = rule->paths > 0 ? rule->paths : FIRST_PATHS, next = first;
-    while (done < next) {
+    const uint64_t first = rule->paths > 0 ? rule->paths : FIRST_PATHS;
+    uint64_t done = fibrad_paths_begin(paths, first), next = done;
+    do {
         follow(paths, done, next);
         done = next;
-        double sum = sum_of_paths(paths), ratio = 0;
+        const double sum = fibrad_paths_sum(paths);
+        double ratio = 0;
+        if (lost_of(paths, carried) > wanted) return;
         if (sum == 0) {
             if (carried > wanted && done < 64 * first) next = 4 * done;
             continue;
         }
-        if (wanted > 0) ratio = distance_of_halves(paths->entries) / sum * carried / wanted;
+        if (wanted > 0 && carried > wanted) ratio = spread_of_parts(paths->entries, weight) / sum * carried / wanted;
         if (ratio > 1)
             next = (uint64_t)fibrad_min(FIBRAD_PATHS_MAX, (double)done * fibrad_min(8, 1.1 * ratio * ratio) + 1);
-    }
+    } while (done < next);
+}
+
+/* Moves the first leg out of the way of the paths' entries, into the scratch of their sort. */
+static void keep_first_leg(fibrad_entries *entries, fibrad_row *leg) {
+    fibrad_copy(entries->key[0], leg->f, leg->length * sizeof *leg->f);
+    fibrad_copy(entries->key[1], leg->col, leg->length * sizeof *leg->col);
+    leg->f = (double *)(void *)entries->key[0];
+    leg->col = (uint32_t *)(void *)entries->key[1];
 }
 
 /* Adds the first leg to the scaled sums of the paths. */
@@ -158,41 +187,46 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
                             fibrad_row *row) {
     exchange_task *task = *(exchange_task *const *)of;
     const fibrad_exchange_rule *rule = task->rule;
-    double beam_error, wall[FIBRAD_SLOTS], scale = 0;
+    double beam_error, body[FIBRAD_BODIES_MAX], wall[FIBRAD_SLOTS], scale = 0;
     if (rule->emissivity[i] == 0) return empty_row(scene, row);
-    int status = first_leg(scene, space, i, rule, row, &beam_error);
+    fibrad_row leg = fibrad_row_scratch(space, body);
+    int status = first_leg(scene, space, i, rule, &leg, &beam_error);
     if (status != FIBRAD_OK) return status;
 
+    keep_first_leg(&space->entries, &leg);
     fibrad_copy(wall, space->wall, sizeof wall);
-    const double carried = reflected_of(task, row, wall);
+    const double carried = reflected_of(task, &leg, wall), met = 1 - leg.escaped - leg.beyond;
+    const double weight = carried > 0 ? carried / fibrad_max(carried, met) : 0;
     fibrad_paths paths = paths_of(task, space, scene, i);
     paths.entries = &space->entries;
     fibrad_work_begin(space, scene, paths.place, rule->cutoff, (fibrad_stride){0});
     if (!fibrad_finite(carried)) return FIBRAD_E_ARGUMENT;
     if (carried > 0) { /* what no path has found counts as escaped or, with a cutoff, beyond, and as an error */
         double left = rule->tolerance * rule->tolerance - beam_error * beam_error, least = 0.5 * rule->tolerance;
-        follow_paths(&paths, rule, carried, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
+        follow_paths(&paths, rule, carried, weight, fibrad_max(fibrad_sqrt(fibrad_max(left, 0)), least));
         space->back = paths.back;
         if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
-        double sum = sum_of_paths(&paths);
+        double sum = fibrad_paths_sum(&paths);
         scale = sum > 0 ? carried / sum : 0;
         if (sum == 0) *(paths.cut ? &paths.beyond : &paths.escaped) = carried, scale = 1, beam_error += carried;
     }
     /* the first leg adds the same to all parts: it would leave nothing but rounding */
-    const double paths_error = scale * distance_of_halves(&space->entries);
-    add_first_leg(space, rule, row, scale);
+    const double paths_error = fibrad_min(carried, scale * spread_of_parts(&space->entries, weight));
+    add_first_leg(space, rule, &leg, scale);
     if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
+    const double error = fibrad_sqrt(paths_error * paths_error + beam_error * beam_error) + lost_of(&paths, carried);
+    if (!fibrad_finite(error + scale)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
     status = fibrad_entries_row(&space->entries, scene, 1, row);
     if (status != FIBRAD_OK) return status;
-    row->error = fibrad_sqrt(paths_error * paths_error + beam_error * beam_error);
-    if (!fibrad_finite(row->error + scale)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
-    row->escaped += paths.escaped * scale;
-    row->beyond += paths.beyond * scale;
+    row->error = error;
+    row->directions = leg.directions, row->fallbacks = leg.fallbacks, row->symmetric = 0;
+    row->escaped = leg.escaped + paths.escaped * scale;
+    row->beyond = leg.beyond + paths.beyond * scale;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
         wall[slot] = wall[slot] * task->wall_emissivity[slot] + paths.wall[slot] * scale;
     fibrad_row_bodies(scene, wall, row);
     task->rays = paths.rays;
-    return FIBRAD_OK;
+    return fibrad_row_checked(scene, row);
 }
 
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
@@ -220,9 +254,8 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
         return FIBRAD_OK;
     }
     fibrad_paths paths = paths_of(&task, space, scene, i);
-    const uint32_t count = rule->paths > 0 ? rule->paths : FIRST_PATHS;
     paths.first = true;
-    FIBRAD_VERSION_OF(fibrad_paths_follow, scene->facts.isa)(&paths, 0, count);
+    const double count = (double)fibrad_paths_begin(&paths, rule->paths > 0 ? rule->paths : FIRST_PATHS);
     work->triangle = paths.back;
     if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
     if (!fibrad_finite(paths.absorbed)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */
@@ -236,6 +269,8 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
         displacement->square[axis] = sum / count;
         displacement->error[axis] =
             fibrad_sqrt(square * FIBRAD_DISPLACEMENT_PARTS / (FIBRAD_DISPLACEMENT_PARTS - 1)) / count;
+        if (paths.left > 0 && paths.absorbed > 0) /* it would have gone on, and as far at least */
+            displacement->error[axis] += displacement->square[axis] * (paths.left / paths.absorbed);
     }
     displacement->absorbed = paths.absorbed / count;
     displacement->rays = paths.rays;

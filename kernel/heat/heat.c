@@ -3,9 +3,10 @@
 #include "base/arena.h"
 #include "base/constants.h"
 #include "base/dispatch.h"
+#include "heat/fine.h"
 #include "heat/hits_lanes.h"
 #include "heat/pencils.h"
-#include "heat/sphere_patch.h"
+#include "sample/sphere_patch.h"
 #include "heat/sweep.h"
 #include "heat/wall_patch.h"
 #include "sample/direction.h"
@@ -17,7 +18,9 @@
 #define HEAT_PARTS_MAX  1024u
 #define HEAT_RAYS_MAX   (1u << 30)
 #define HEAT_THIN_MAX   2u
-#define HEAT_KEPT       36u   /* beams of each patch that are not to be thinned out */
+#define HEAT_KEPT       36u /* beams of each patch that are not to be thinned out */
+#define HEAT_NODES_MAX  (1u << 26)
+#define SPARE_NODES     1024u /* for fine patches that come with a move */
 #define HEAT_RADIUS_MIN 1e-30 /* and its inverse the largest */
 
 static fibrad_heat_config heat_config_of(const fibrad_heat_config *config) {
@@ -54,7 +57,7 @@ static uint32_t meshes_of(const fibrad_scene *scene) {
     return meshes;
 }
 
-/* The numbers that follow from a valid configuration and a scene; how meshes are cut stays. */
+/* The numbers that follow from a valid configuration and a scene, without fine patches; how meshes are cut stays. */
 static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const fibrad_scene *scene) {
     const uint32_t spheres = scene->facts.spheres;
     heat->config = *config;
@@ -63,39 +66,42 @@ static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const
     heat->spheres = spheres;
     heat->given_bodies = scene->facts.bodies;
     fibrad_copy(heat->slot, scene->slot, sizeof heat->slot);
+    heat->openings = scene->container.openings;
     heat->beams = config->directions * config->points;
     heat->thin = heat->beams / HEAT_THIN_MAX < HEAT_KEPT * config->patches ? 1 : HEAT_THIN_MAX;
     heat->side = side_of(config->patches);
     heat->meshes = meshes_of(scene), heat->triangles = scene->mesh.triangles;
     heat->bodies = spheres + 2 * FIBRAD_WALLS + heat->meshes + 1;
     heat->patches = spheres * config->patches + 1;
-    heat->rays = 0;
+    heat->rays = 0, heat->fours = 0;
     fibrad_heat_cut_walls(heat);
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
         heat->patches += heat->wall[k].squares[0] * heat->wall[k].squares[1] + heat->wall[k].unbounded;
     for (uint32_t m = 0; m < heat->meshes; m++) heat->patches += heat->of_mesh[m];
 }
 
-/* A fourth more patches and rays of walls than this scene has: when the bed moves they may become more. */
-static void add_room(fibrad_heat *heat) {
+/* A fourth more patches and rays of walls, and fine patches, than this scene has: when the bed moves they may become
+ * more. */
+static void add_room(fibrad_heat *heat, uint32_t nodes) {
     const uint32_t of_walls = heat->patches - heat->spheres * heat->config.patches;
-    heat->patches_capacity = heat->patches + of_walls / 4;
+    heat->nodes_capacity = nodes + (nodes > 1 ? nodes / 4 + SPARE_NODES : 0);
+    heat->patches_capacity = heat->patches + of_walls / 4 + FIBRAD_HEAT_FOUR * heat->nodes_capacity;
     heat->rays_capacity = heat->rays + heat->rays / 4;
 }
 
-static uint32_t tasks_for(uint32_t spheres, uint32_t rays) {
-    return spheres + (rays + FIBRAD_HEAT_TASK - 1) / FIBRAD_HEAT_TASK;
+static uint32_t tasks_for(uint32_t rows, uint32_t rays) {
+    return rows + (rays + FIBRAD_HEAT_TASK - 1) / FIBRAD_HEAT_TASK;
 }
 
 /* Takes the arrays from the arena; the object itself is to be copied to the address returned. */
 static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_heat *place = fibrad_arena_take(arena, 1, sizeof *place);
-    const uint32_t spheres = heat->spheres, patches = heat->patches_capacity;
+    const uint32_t spheres = heat->spheres, patches = heat->patches_capacity, nodes = heat->nodes_capacity;
+    const uint32_t rows = spheres + nodes, others = patches - spheres * heat->config.patches;
     heat->first = fibrad_arena_take(arena, heat->bodies + 1, sizeof *heat->first);
     heat->leave = fibrad_arena_take(arena, heat->beams, sizeof *heat->leave);
     heat->ray = fibrad_arena_take(arena, heat->rays_capacity, sizeof *heat->ray);
-    heat->brought = fibrad_arena_take(arena, (size_t)(patches - fibrad_heat_others(heat)) * heat->config.parts,
-                                      sizeof *heat->brought);
+    heat->brought = fibrad_arena_take(arena, (size_t)others * heat->config.parts, sizeof *heat->brought);
     double **const of_patches[] = {&heat->source,    &heat->gathered, &heat->area,     &heat->net,
                                    &heat->radiosity, &heat->detail,   &heat->direction};
     for (size_t k = 0; k < sizeof of_patches / sizeof *of_patches; k++)
@@ -104,29 +110,36 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
                                   &heat->coarse_emission, &heat->temperature, &heat->power, &heat->halves};
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
         *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
-    heat->density = fibrad_arena_take(arena, spheres, sizeof(double));
-    heat->reflected = fibrad_arena_take(arena, spheres, sizeof(double));
-    heat->row = fibrad_arena_take(arena, spheres, sizeof *heat->row);
-    heat->first_link = fibrad_arena_take(arena, spheres + 2, sizeof *heat->first_link);
+    heat->density = fibrad_arena_take(arena, rows, sizeof(double));
+    heat->reflected = fibrad_arena_take(arena, 2 * spheres, sizeof(double));
+    heat->row = fibrad_arena_take(arena, rows, sizeof *heat->row);
+    heat->first_link = fibrad_arena_take(arena, rows + 2, sizeof *heat->first_link);
     heat->order = fibrad_arena_take(arena, spheres, sizeof *heat->order);
     heat->sequence = fibrad_arena_take(arena, spheres, sizeof *heat->sequence);
-    heat->part = fibrad_arena_take(arena, spheres, sizeof *heat->part);
+    heat->part = fibrad_arena_take(arena, rows, sizeof *heat->part);
+    heat->root = fibrad_arena_take(arena, spheres + FIBRAD_WALLS, sizeof *heat->root);
+    heat->node = fibrad_arena_take(arena, nodes, sizeof *heat->node);
+    heat->first_four = fibrad_arena_take(arena, spheres + FIBRAD_WALLS + 1, sizeof *heat->first_four);
+    heat->four = fibrad_arena_take(arena, nodes, sizeof *heat->four);
+    heat->fine = fibrad_arena_take(arena, nodes, sizeof *heat->fine);
     heat->cut = fibrad_arena_take(arena, 2 * (size_t)heat->triangles, sizeof *heat->cut);
-    heat->lift =
-        fibrad_arena_take(arena, heat->triangles > 0 ? patches - fibrad_heat_others(heat) : 0, sizeof *heat->lift);
-    heat->traced = fibrad_arena_take(arena, tasks_for(spheres, heat->rays_capacity), 1);
+    heat->lift = fibrad_arena_take(arena, heat->triangles > 0 ? others : 0, sizeof *heat->lift);
+    heat->traced = fibrad_arena_take(arena, tasks_for(rows, heat->rays_capacity), 1);
     heat->swept = fibrad_arena_take(arena, heat->config.parts, 1);
     heat->pool = fibrad_arena_take(arena, heat->room, 1);
     return place;
 }
 
-/* The numbers of a new problem, with room for a bed that moves, and for the beams. */
-static void dimension_anew(fibrad_heat *heat, const fibrad_heat_config *config, const fibrad_scene *scene) {
+/* The numbers of a new problem, with room for a bed that moves, and for the beams. FIBRAD_E_UNSUPPORTED. */
+static int dimension_anew(fibrad_heat *heat, const fibrad_heat_config *config, const fibrad_scene *scene) {
     dimension(heat, config, scene);
     fibrad_heat_cut_meshes(heat);
     dimension(heat, config, scene);
-    add_room(heat);
+    const uint64_t nodes = fibrad_heat_count_nodes(heat);
+    if (nodes > HEAT_NODES_MAX) return FIBRAD_E_UNSUPPORTED;
+    add_room(heat, (uint32_t)nodes);
     heat->room = fibrad_heat_room(heat);
+    return FIBRAD_OK;
 }
 
 /* The bytes that a problem of these numbers takes. */
@@ -140,15 +153,15 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
     const fibrad_heat_config c = heat_config_of(config);
     if (heat_check(&c, scene) != FIBRAD_OK) return 0;
     fibrad_heat fields = {0};
-    dimension_anew(&fields, &c, scene);
-    return heat_bytes(fields);
+    return dimension_anew(&fields, &c, scene) == FIBRAD_OK ? heat_bytes(fields) : 0;
 }
 
 /* How many patches a body has. */
 static uint32_t patches_of(const fibrad_heat *heat, uint32_t b) {
     const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES), beyond = fibrad_heat_beyond(heat, 0);
-    if (b < heat->spheres) return heat->config.patches;
-    if (b < mesh) return heat->wall[b - heat->spheres].squares[0] * heat->wall[b - heat->spheres].squares[1];
+    const uint32_t fine = b < mesh ? FIBRAD_HEAT_FOUR * (heat->first_four[b + 1] - heat->first_four[b]) : 0;
+    if (b < heat->spheres) return heat->config.patches + fine;
+    if (b < mesh) return heat->wall[b - heat->spheres].squares[0] * heat->wall[b - heat->spheres].squares[1] + fine;
     if (b < beyond) return heat->of_mesh[b - mesh];
     return b < beyond + FIBRAD_WALLS ? heat->wall[b - beyond].unbounded : 1;
 }
@@ -180,6 +193,8 @@ static void find_origins(fibrad_heat *heat) {
 
 /* Begins with a scene: nothing is traced. */
 static void forget_beams(fibrad_heat *heat) {
+    fibrad_heat_divide_fours(heat);
+    heat->patches += FIBRAD_HEAT_FOUR * heat->fours;
     number_patches(heat);
     fibrad_heat_divide(heat);
     fibrad_copy(heat->order, heat->scene->order, heat->spheres * sizeof *heat->order);
@@ -197,7 +212,8 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     fibrad_heat fields = {0};
     int status = heat_check(&c, scene);
     if (status != FIBRAD_OK) return status;
-    dimension_anew(&fields, &c, scene);
+    status = dimension_anew(&fields, &c, scene);
+    if (status != FIBRAD_OK) return status;
     const size_t least = heat_bytes(fields);
     status = fibrad_arena_open(&arena, memory, size, least);
     if (status != FIBRAD_OK) return status;
@@ -206,6 +222,7 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     *heat = fields;
     fibrad_heat_cut_meshes(heat);
     find_origins(heat);
+    fibrad_heat_balance(heat);
     forget_beams(heat);
     *out = heat;
     return FIBRAD_OK;
@@ -253,6 +270,49 @@ static void carry_over(fibrad_heat *heat, const fibrad_heat *next) {
     fibrad_copy(heat->detail + to, heat->direction, of_meshes);
 }
 
+/* The mean of values, per area, over the patches of a body. */
+static double mean_of_body(const fibrad_heat *heat, uint32_t b, const double *value) {
+    double sum = 0, area = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        sum += heat->area[a] * value[a], area += heat->area[a];
+    return area > 0 ? sum / area : 0;
+}
+
+/* Leaves fine patches out. Own patches that were divided take the mean of their body. */
+static void drop_fine(fibrad_heat *heat) {
+    if (heat->fours == 0) return;
+    uint32_t to = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double mean = mean_of_body(heat, b, heat->radiosity);
+        const bool has_fine = b < fibrad_heat_body(heat, FIBRAD_MESHES) && heat->root[b] != FIBRAD_NONE;
+        const uint32_t end = has_fine ? fibrad_heat_first_fine(heat, b) : heat->first[b + 1];
+        for (uint32_t a = heat->first[b]; a < end; a++, to++) {
+            const bool divided = has_fine && !(heat->area[a] > 0);
+            heat->radiosity[to] = divided ? mean : heat->radiosity[a];
+            heat->detail[to] = divided ? 0 : heat->detail[a];
+        }
+    }
+    heat->fours = 0;
+    fibrad_zero(heat->first_four, (heat->spheres + FIBRAD_WALLS + 1) * sizeof *heat->first_four);
+    for (uint32_t b = 0; b < heat->bodies; b++) heat->first[b + 1] = heat->first[b] + patches_of(heat, b);
+}
+
+/* Makes room for fine patches, which begin with the mean of their body. */
+static void add_fine(fibrad_heat *heat) {
+    uint32_t from = heat->patches - FIBRAD_HEAT_FOUR * heat->fours;
+    for (uint32_t b = heat->bodies; heat->fours > 0 && b-- > 0;) {
+        const bool has_fine = b < fibrad_heat_body(heat, FIBRAD_MESHES) && heat->root[b] != FIBRAD_NONE;
+        const uint32_t begin = heat->first[b], end = has_fine ? fibrad_heat_first_fine(heat, b) : heat->first[b + 1];
+        double sum = 0;
+        for (uint32_t a = end; a-- > begin;) {
+            heat->radiosity[a] = heat->radiosity[--from], heat->detail[a] = heat->detail[from];
+            sum += heat->radiosity[a];
+        }
+        for (uint32_t a = end; a < heat->first[b + 1]; a++)
+            heat->radiosity[a] = sum / (end - begin), heat->detail[a] = 0;
+    }
+}
+
 /* Whether a scene has the same triangles, each of the same bodies. */
 static bool same_triangles(const fibrad_heat *heat, const fibrad_scene *scene) {
     const fibrad_mesh *mesh = &scene->mesh;
@@ -274,17 +334,22 @@ int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
     if (scene->region) return FIBRAD_E_UNSUPPORTED;
     for (uint32_t b = 0; b < heat->given_bodies; b++)
         if (scene->slot[b] != heat->slot[b]) return FIBRAD_E_ARGUMENT;
+    if (scene->container.openings != heat->openings) return FIBRAD_E_ARGUMENT;
     if (!same_triangles(heat, scene)) return FIBRAD_E_ARGUMENT;
     fibrad_heat next = *heat;
     dimension(&next, &heat->config, scene);
-    if (next.patches > heat->patches_capacity || next.rays > heat->rays_capacity) return FIBRAD_E_SIZE;
-    if (heat->warm) carry_over(heat, &next);
+    const uint64_t nodes = fibrad_heat_count_nodes(&next);
+    if (nodes > heat->nodes_capacity || next.patches + FIBRAD_HEAT_FOUR * nodes > heat->patches_capacity ||
+        next.rays > heat->rays_capacity)
+        return FIBRAD_E_SIZE;
+    if (heat->warm) drop_fine(heat), carry_over(heat, &next);
     *heat = next;
     forget_beams(heat);
+    if (heat->warm) add_fine(heat);
     return FIBRAD_OK;
 }
 
-uint32_t fibrad_heat_tasks(const fibrad_heat *heat) { return heat != NULL ? tasks_for(heat->spheres, heat->rays) : 0; }
+uint32_t fibrad_heat_tasks(const fibrad_heat *heat) { return heat != NULL ? tasks_for(heat->rows, heat->rays) : 0; }
 
 uint32_t fibrad_heat_parts(const fibrad_heat *heat) { return heat != NULL ? heat->config.parts : 0; }
 

@@ -2,9 +2,10 @@
  * set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/random.h"
+#include "heat/fine.h"
 #include "heat/hits_lanes.h"
 #include "heat/pencils.h"
-#include "heat/sphere_patch.h"
+#include "sample/sphere_patch.h"
 #include "heat/wall_patch.h"
 #include "ray/tracer.h"
 #include "row/mesh_share_lanes.h"
@@ -50,6 +51,22 @@ static void number_patches_of(struct hit_window *p, const double frame[9], uint3
         patch[k] = (uint16_t)fibrad_patch_number((uint32_t)p->face[k], (uint32_t)p->x[k], (uint32_t)p->y[k], side);
 }
 
+/* The fine patch of a sphere at a place on a face of its cube, whose patch is known; FIBRAD_NONE. */
+static uint32_t fine_patch(const fibrad_heat *heat, uint32_t sphere, uint32_t patch, double x, double y) {
+    const double u = x / 2 - fibrad_min(fibrad_floor(x / 2), heat->side / 2 - 1),
+                 v = y / 2 - fibrad_min(fibrad_floor(y / 2), heat->side / 2 - 1);
+    return fibrad_heat_fine_patch(heat, sphere, patch / FIBRAD_HEAT_FOUR, u, v);
+}
+
+/* Counts a beam of window k to a fine patch; returns it. */
+static fibrad_heat_beam fine_beam(const fibrad_heat *heat, fibrad_workspace *work, uint32_t k, uint16_t from,
+                                  uint32_t fine) {
+    const uint32_t row = heat->four[fine / FIBRAD_HEAT_FOUR].row;
+    const uint32_t entry = fibrad_entries_of(&work->entries, row);
+    fibrad_entries_add(&work->entries, entry, k, 1);
+    return (fibrad_heat_beam){entry, from, (uint16_t)(fine - FIBRAD_HEAT_FOUR * heat->fine[row - heat->spheres].first)};
+}
+
 /* The points of a word that are kept: all, or half of them, by turns those whose numbers have an even number of ones
  * (Thue, Morse) and the others. */
 static uint64_t kept_points(uint32_t turn, uint32_t thin) {
@@ -67,9 +84,10 @@ static uint64_t meshed_points(const fibrad_workspace *work, uint32_t word) {
 }
 
 /* Lists points of a word that are kept and the discs that hide them, the first that covers each: those in `kept`, and
- * one of each sphere that is seen for the first time, whose entry is `known` or later. */
-static void find_hit_discs(const fibrad_workspace *work, const fibrad_points *points, uint32_t word, uint64_t kept,
-                           uint32_t known, struct hit_window *p) {
+ * one of each sphere that is seen for the first time, whose entry is `known` or later; all of a sphere with fine
+ * patches. */
+static void find_hit_discs(const fibrad_heat *heat, const fibrad_workspace *work, const fibrad_points *points,
+                           uint32_t word, uint64_t kept, uint32_t known, struct hit_window *p) {
     uint64_t left = ~(points->seen[word] | meshed_points(work, word));
     p->count = 0;
     for (uint32_t t = 0; left != 0; t++) {
@@ -84,7 +102,7 @@ static void find_hit_discs(const fibrad_workspace *work, const fibrad_points *po
         }
         hidden &= left;
         left &= ~hidden;
-        uint64_t bits = hidden & kept;
+        uint64_t bits = heat->root[fibrad_work_sphere(work, k)] == FIBRAD_NONE ? hidden & kept : hidden;
         if (bits == 0 && work->near.entry[work->disc.near[k]] >= known) bits = hidden & (0 - hidden);
         for (; bits != 0; bits &= bits - 1)
             p->point[p->count] = (uint32_t)__builtin_ctzll(bits), p->disc[p->count++] = k;
@@ -139,24 +157,38 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
 }
 
 /* Keeps the beams of a word of window k that meet spheres; returns where the next ones go. */
-static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, const fibrad_workspace *work, const double frame[9],
+static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
                                    const fibrad_points *points, uint32_t k, uint32_t word, uint64_t kept,
                                    uint32_t known, fibrad_heat_beam *beam) {
     struct hit_window window;
     uint16_t patch[HIT_POINTS];
     const uint16_t *leave = heat->leave + (size_t)k * points->count + HIT_POINTS * word;
-    find_hit_discs(work, points, word, kept, known, &window);
+    find_hit_discs(heat, work, points, word, kept, known, &window);
     find_hit_normals(work, points->set.x + HIT_POINTS * word, points->set.y + HIT_POINTS * word, &window);
     number_patches_of(&window, frame, heat->side, patch);
-    for (uint32_t p = 0; p < window.count; p++)
-        *beam++ =
-            (fibrad_heat_beam){work->near.entry[work->disc.near[window.disc[p]]], leave[window.point[p]], patch[p]};
+    for (uint32_t p = 0; p < window.count; p++) {
+        const uint32_t sphere = fibrad_work_sphere(work, window.disc[p]), from = leave[window.point[p]];
+        const uint32_t entry = work->near.entry[work->disc.near[window.disc[p]]];
+        const bool left_out = fibrad_heat_is_divided(heat, work->place, from / FIBRAD_HEAT_FOUR);
+        const uint32_t fine = heat->root[sphere] != FIBRAD_NONE
+                                  ? fine_patch(heat, sphere, patch[p], window.x[p], window.y[p])
+                                  : FIBRAD_NONE;
+        if (left_out || fine != FIBRAD_NONE) fibrad_entries_add(&work->entries, entry, k, -1);
+        if (left_out) continue;
+        *beam++ = fine != FIBRAD_NONE ? fine_beam(heat, work, k, (uint16_t)from, fine)
+                                      : (fibrad_heat_beam){entry, (uint16_t)from, patch[p]};
+    }
     return beam;
 }
 
 /* Counts, and if it is kept or the first one keeps, a beam of window k to a patch that is of no sphere. */
 static fibrad_heat_beam *keep_other(const fibrad_heat *heat, fibrad_workspace *work, uint32_t k, uint16_t from,
                                     uint32_t patch, bool kept, fibrad_heat_beam *beam) {
+    const uint32_t fine = fibrad_heat_fine_of(heat, patch);
+    if (fine != FIBRAD_NONE) {
+        *beam = fine_beam(heat, work, k, from, fine);
+        return beam + 1;
+    }
     const uint32_t known = work->entries.length, to = (patch - fibrad_heat_others(heat)) % FIBRAD_HEAT_BLOCK;
     const uint32_t entry = fibrad_entries_of(&work->entries, fibrad_heat_other(heat, patch));
     fibrad_entries_add(&work->entries, entry, k, 1);
@@ -171,6 +203,7 @@ static fibrad_heat_beam *keep_meshed(const fibrad_heat *heat, fibrad_workspace *
     for (uint64_t bits = meshed_points(work, word); bits != 0; bits &= bits - 1) {
         const uint32_t p = (uint32_t)__builtin_ctzll(bits), side = work->met->side[HIT_POINTS * word + p];
         double at[3];
+        if (fibrad_heat_is_divided(heat, work->place, leave[p] / FIBRAD_HEAT_FOUR)) continue;
         LANED(fibrad_mesh_place)(work, frame, HIT_POINTS * word + p, at);
         const uint32_t patch = fibrad_heat_mesh_patch(heat, side, at);
         if (patch == FIBRAD_NONE)
@@ -189,6 +222,7 @@ static fibrad_heat_beam *keep_escapes(const fibrad_heat *heat, fibrad_workspace 
     if (heat->scene->container.walls) kept = UINT64_MAX;
     for (uint64_t bits = points->seen[word]; bits != 0; bits &= bits - 1) {
         const uint32_t p = (uint32_t)__builtin_ctzll(bits);
+        if (fibrad_heat_is_divided(heat, work->place, leave[p] / FIBRAD_HEAT_FOUR)) continue;
         const uint32_t patch = escape_patch(heat, work, frame, points, k, HIT_POINTS * word + p);
         beam = keep_other(heat, work, k, leave[p], patch, (kept >> p & 1) != 0, beam);
     }
@@ -214,16 +248,15 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
         LANED(fibrad_beam_window)(work, frame, &points, k);
         if (work->disc.count > work->disc.capacity) return fibrad_work_discs_missed(work);
         for (uint32_t word = 0; word < points.count / HIT_POINTS; word++) {
-            const uint64_t kept = kept_points(turn + k + word, heat->thin);
+            const uint64_t kept = kept_points(turn + k + word, heat->root[place] == FIBRAD_NONE ? heat->thin : 1);
             beam = keep_hits(heat, work, frame, &points, k, word, kept, known, beam);
             beam = keep_meshed(heat, work, frame, k, word, beam);
             beam = keep_escapes(heat, work, frame, &points, k, word, kept, beam);
         }
     }
     if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
-    if (work->entries.missed == 0) return fibrad_heat_keep(heat, work, place, (uint32_t)(beam - first));
-    work->needed.entries = work->entries.capacity + work->entries.missed;
-    return FIBRAD_E_WORK;
+    if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
+    return fibrad_heat_keep(heat, work, place, (uint32_t)(beam - first));
 }
 
 /* Follows ray k of the wall or mesh of a slot; *ray: what it connects. */
@@ -240,13 +273,64 @@ static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t 
     if (hit.sphere != FIBRAD_NONE) return FIBRAD_OK;
     ray->from =
         slot < FIBRAD_WALLS ? fibrad_heat_wall_patch(heat, slot, origin) : fibrad_heat_mesh_patch(heat, side, origin);
+    if (fibrad_heat_fine_of(heat, ray->from) != FIBRAD_NONE) return FIBRAD_OK; /* these have rays of their own */
     ray->to = fibrad_heat_ends(heat, origin, w, hit.side, hit.distance);
     if (ray->to == FIBRAD_NONE) {
         work->back = heat->scene->mesh.number[hit.side / 2];
         return FIBRAD_E_BACK;
     }
+    if (fibrad_heat_fine_of(heat, ray->to) != FIBRAD_NONE) return FIBRAD_OK;
     ray->area = 1 / (density + fibrad_heat_wall_density(heat, ray->to));
     return FIBRAD_OK;
+}
+
+/* Keeps what a ray of a row of fine fours meets; false: the back of a triangle. */
+static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t body,
+                          const fibrad_heat_fine_rays *ray, fibrad_heat_beam *beam) {
+    const fibrad_scene *scene = heat->scene;
+    const bool sphere = body < heat->spheres;
+    fibrad_hit hit;
+    beam->from = (uint16_t)ray->patch;
+    if (sphere)
+        LANED(fibrad_trace_once)(scene, body, ray->normal, ray->direction, &hit);
+    else
+        LANED(fibrad_trace_point)(scene, ray->at, ray->direction, FIBRAD_NO_SIDE, &hit);
+    if (hit.sphere != FIBRAD_NONE) {
+        double place[2];
+        const uint32_t face = fibrad_patch_place(hit.normal, heat->side, place);
+        const uint32_t patch = fibrad_patch_number(face, (uint32_t)place[0], (uint32_t)place[1], heat->side);
+        const uint32_t fine = fine_patch(heat, hit.sphere, patch, place[0], place[1]);
+        if (fine != FIBRAD_NONE) {
+            *beam = fine_beam(heat, work, ray->k, beam->from, fine);
+            return true;
+        }
+        beam->entry = fibrad_entries_of(&work->entries, hit.sphere), beam->to = (uint16_t)patch;
+        fibrad_entries_add(&work->entries, beam->entry, ray->k, 1);
+        return true;
+    }
+    const double centre[3] = {sphere ? scene->x[body] : 0, sphere ? scene->y[body] : 0, sphere ? scene->z[body] : 0};
+    const double origin[3] = {centre[0] + ray->at[0], centre[1] + ray->at[1], centre[2] + ray->at[2]};
+    const double length = hit.side != FIBRAD_NO_SIDE ? hit.distance : 0;
+    const uint32_t to = fibrad_heat_ends(heat, origin, ray->direction, hit.side, length);
+    if (to != FIBRAD_NONE)
+        keep_other(heat, work, ray->k, beam->from, to, true, beam);
+    else
+        work->back = scene->mesh.number[hit.side / 2];
+    return to != FIBRAD_NONE;
+}
+
+/* Follows the rays of a row of fine fours. */
+static int follow_fine_row(fibrad_heat *heat, fibrad_workspace *work, uint32_t row) {
+    const uint32_t body = fibrad_heat_body_of_row(heat, row);
+    fibrad_heat_beam *const first = work->extra, *beam = first;
+    fibrad_heat_fine_rays ray = {.left = 0};
+    work->extra_owner = 0;
+    fibrad_work_begin(work, heat->scene, body < heat->spheres ? body : 0, 0, FIBRAD_BEAM_STRIDE);
+    while (fibrad_heat_fine_ray(heat, row, &ray))
+        if (!keep_fine_ray(heat, work, body, &ray, beam++)) return FIBRAD_E_BACK;
+    if (work->entries.missed == 0) return fibrad_heat_keep(heat, work, row, (uint32_t)(beam - first));
+    work->needed.entries = work->entries.capacity + work->entries.missed;
+    return FIBRAD_E_WORK;
 }
 
 static int follow_wall_rays(fibrad_heat *heat, fibrad_workspace *work, uint32_t task) {
@@ -265,5 +349,6 @@ static int follow_wall_rays(fibrad_heat *heat, fibrad_workspace *work, uint32_t 
 int LANED(fibrad_heat_follow)(fibrad_heat *heat, fibrad_workspace *work, uint32_t task) {
     const fibrad_scene *scene = heat->scene;
     if (task < scene->facts.spheres) return follow_beams_of(heat, work, task);
-    return follow_wall_rays(heat, work, task - scene->facts.spheres);
+    if (task < heat->rows) return follow_fine_row(heat, work, task);
+    return follow_wall_rays(heat, work, task - heat->rows);
 }

@@ -52,6 +52,14 @@ static const double *longest_extent(const fibrad_heat *heat, struct bed_range ra
     return along;
 }
 
+/* Rows of fine fours are of the part of their sphere; those of walls go to all parts in turn. */
+static void divide_fine_rows(fibrad_heat *heat) {
+    for (uint32_t row = heat->spheres; row < heat->rows; row++) {
+        const uint32_t body = fibrad_heat_body_of_row(heat, row);
+        heat->part[row] = body < heat->spheres ? heat->part[body] : (uint16_t)(row % heat->config.parts);
+    }
+}
+
 void fibrad_heat_divide(fibrad_heat *heat) {
     const uint32_t n = heat->spheres;
     struct bed_range wait[HALVES_MAX];
@@ -71,4 +79,5 @@ void fibrad_heat_divide(fibrad_heat *heat) {
         wait[waiting++] = (struct bed_range){range.begin, cut, range.first, one ? range.last : part};
         wait[waiting++] = (struct bed_range){cut, range.end, one ? range.first : part, range.last};
     }
+    divide_fine_rows(heat);
 }

@@ -3,7 +3,9 @@
  * A row has about a hundred other ends, and its beams go by these: so an end of a beam is a patch of a known body, and
  * takes a byte. How much two bodies exchange is known from all beams; where on them the light leaves and arrives, from
  * those that are kept, each of which stands for as many. */
+#include "heat/fine.h"
 #include "heat/pencils.h"
+#include "base/arena.h"
 #include "base/constants.h"
 
 /* Others that a row in a bed sees, times the solid fraction, over the root of its beams: in random beds of equal
@@ -18,10 +20,35 @@
 #define ROOM_STRANDS_WIDE 6.8
 #define ROOM_BUNDLES_WIDE 5.0
 
+#define ROOM_NODE 200.0 /* bytes of rays from a fine four, of which there are fewer than nodes */
+
 /* Of so many beams at the most those that are left when some are joined; none are at no solid fraction. */
 static double room_joined(double beams, double most, double fraction) {
     return fibrad_min(beams, most + (beams - most) * fibrad_max(0, 1 - 2 * fraction));
 }
+
+struct heat_pool {
+    size_t links_at, bytes; /* SIZE_MAX: more than a size_t can say */
+};
+
+/* Lays out a pool: the bytes of all pencils, then the links. */
+static struct heat_pool pool_of(size_t pencil_bytes, size_t links) {
+    fibrad_arena arena = {0};
+    struct heat_pool pool;
+    fibrad_arena_take(&arena, pencil_bytes, 1);
+    pool.links_at = arena.used;
+    fibrad_arena_take(&arena, links, sizeof(fibrad_heat_link));
+    pool.bytes = arena.used;
+    return pool;
+}
+
+/* Whether what is kept so far fits. */
+static bool pool_suffices(fibrad_heat *heat) {
+    const size_t links = fibrad_add_at_once(&heat->links, 0);
+    return pool_of(fibrad_add_at_once(&heat->used, 0), links).bytes <= heat->room;
+}
+
+static size_t whole_of(double number) { return number < (double)(SIZE_MAX / 2) ? (size_t)number : SIZE_MAX; }
 
 /* Beams that meet walls are all kept; by reciprocity they are as many as the walls are large. */
 size_t fibrad_heat_room(const fibrad_heat *heat) {
@@ -39,7 +66,7 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
                      (k == FIBRAD_CYLINDER ? 2 * FIBRAD_PI * scene->container.radius : 1);
     for (uint32_t m = 0; m < heat->meshes; m++) walls += fibrad_mesh_area(&scene->mesh, m);
     const double others = 2 * FIBRAD_WALLS + heat->meshes + 2;
-    const double blocks = others + (double)(heat->patches - fibrad_heat_others(heat)) / FIBRAD_HEAT_BLOCK;
+    const double blocks = others + (heat->patches - n * heat->config.patches) / FIBRAD_HEAT_BLOCK;
     const double fraction = fibrad_min(1, solid / (n * spacing * spacing * spacing));
     const double pencils = fibrad_min(fibrad_min(n + blocks, beams), 16 + ROOM_PENCILS * fibrad_sqrt(beams) / fraction);
     const double of_walls = walls > 0 ? beams * fibrad_min(1, 1.5 * walls / surface) : 0;
@@ -50,11 +77,10 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     const double more = pencils + of_walls;
     const double strands = room_joined(thinned, most_strands + thinned / FIBRAD_HEAT_STRAND, fraction) + more;
     const double bundles = room_joined(thinned, most_bundles, fraction) + more;
-    const double each = sizeof(fibrad_heat_pencil) + sizeof(fibrad_heat_link) + 2;
-    return (size_t)(1.1 * n *
-                    (sizeof(fibrad_heat_bundle) * bundles + strands +
-                     (pencils + strands / FIBRAD_HEAT_STRANDS) * each)) +
-           4096;
+    const double all = pencils + strands / FIBRAD_HEAT_STRANDS;
+    const double bytes = sizeof(fibrad_heat_bundle) * bundles + strands + all * (sizeof(fibrad_heat_pencil) + 2);
+    const double of_fine = heat->nodes_capacity > 1 ? ROOM_NODE * heat->nodes_capacity : 0;
+    return pool_of(whole_of(1.1 * n * bytes + of_fine + 4096), whole_of(1.1 * n * all)).bytes;
 }
 
 /* Beams of an entry from four patches to four: how many by which of these, and a bit for each of which there are any.
@@ -84,11 +110,13 @@ struct row_scratch {
 
 /* Fours of patches that the other end of a beam may have, at the most, and pairs with those of a sphere. */
 static uint32_t fours_stride(const fibrad_heat *heat) {
-    return (heat->config.patches > FIBRAD_HEAT_BLOCK ? heat->config.patches : FIBRAD_HEAT_BLOCK) / FIBRAD_HEAT_FOUR;
+    const uint32_t most = heat->nodes_capacity > 1 ? FIBRAD_HEAT_PATCHES_MAX : heat->config.patches;
+    return (most > FIBRAD_HEAT_BLOCK ? most : FIBRAD_HEAT_BLOCK) / FIBRAD_HEAT_FOUR;
 }
 
 static size_t fours_pairs(const fibrad_heat *heat) {
-    return (size_t)(heat->config.patches / FIBRAD_HEAT_FOUR) * fours_stride(heat);
+    const uint32_t most = heat->nodes_capacity > 1 ? FIBRAD_HEAT_PATCHES_MAX : heat->config.patches;
+    return (size_t)(most / FIBRAD_HEAT_FOUR) * fours_stride(heat);
 }
 
 /* A pencil, bundle and strand of one beam take the most. */
@@ -164,6 +192,7 @@ static void write_bundle(struct pencil_draft *draft, const struct four_patches *
 static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_entries *entries,
                           const struct row_scratch *scratch, size_t *bytes) {
     struct pencil_draft draft = {.to = scratch->pencils};
+    const double weight = place < heat->spheres ? 1 : FIBRAD_HEAT_RAY;
     uint64_t begin = 0;
     uint32_t links = 0;
     for (uint32_t e = 0; e < entries->length; begin = entries->key[0][e++]) {
@@ -172,12 +201,12 @@ static uint32_t write_row(const fibrad_heat *heat, uint32_t place, const fibrad_
         const uint64_t beams = entries->key[0][e] - begin;
         const uint32_t body = entries->sphere[e], joined = join_beams(heat, scratch->sorted + begin, beams, scratch);
         draft.pencil = (fibrad_heat_pencil){.body = body,
-                                            .share = (float)((even + odd) / (double)beams),
+                                            .share = (float)(weight * (even + odd) / (double)beams),
                                             .tilt = (int16_t)(32767 * (even - odd) / (even + odd))};
         draft.written = 0;
         for (uint32_t k = 0; k < joined; k++) write_bundle(&draft, &scratch->fours[k]);
         write_pencil(&draft);
-        if (body < heat->spheres && !fibrad_heat_same_part(heat, place, body)) links += draft.written;
+        if (body < heat->rows && !fibrad_heat_same_part(heat, place, body)) links += draft.written;
     }
     *bytes = (size_t)(draft.to - scratch->pencils);
     return links;
@@ -212,25 +241,24 @@ static struct row_scratch divide_scratch(const fibrad_heat *heat, unsigned char 
 int fibrad_heat_keep(fibrad_heat *heat, const fibrad_workspace *work, uint32_t place, uint32_t count) {
     const fibrad_entries *entries = &work->entries;
     fibrad_heat_row *row = &heat->row[place];
+    if (!pool_suffices(heat)) return FIBRAD_E_SIZE; /* and so for all rows to come */
     const struct row_scratch scratch = divide_scratch(heat, work->extra);
     sort_beams(scratch.beam, count, scratch.sorted, entries->key[0], entries->length);
     fibrad_zero(scratch.seen, fours_pairs(heat) * sizeof *scratch.seen);
     const uint32_t more = write_row(heat, place, entries, &scratch, &row->bytes);
     row->begin = fibrad_add_at_once(&heat->used, row->bytes);
-    const size_t links = fibrad_add_at_once(&heat->links, more) + more;
-    /* whoever adds to both last sees the sums */
-    if (links > heat->room / sizeof(fibrad_heat_link) ||
-        fibrad_add_at_once(&heat->used, 0) > heat->room - links * sizeof(fibrad_heat_link))
-        return FIBRAD_E_SIZE;
+    fibrad_add_at_once(&heat->links, more);
+    /* of threads that add at once, whoever adds last sees all of it */
+    if (!pool_suffices(heat)) return FIBRAD_E_SIZE;
     fibrad_copy(heat->pool + row->begin, scratch.pencils, row->bytes);
     return FIBRAD_OK;
 }
 
 void fibrad_heat_link_pencils(fibrad_heat *heat) {
-    const uint32_t n = heat->spheres;
+    const uint32_t n = heat->rows;
     size_t *first = heat->first_link;
     fibrad_zero(first, (n + 2) * sizeof *first);
-    heat->link = (void *)(heat->pool + (heat->used + FIBRAD_ALIGNMENT - 1) / FIBRAD_ALIGNMENT * FIBRAD_ALIGNMENT);
+    heat->link = (void *)(heat->pool + pool_of(heat->used, heat->links).links_at);
     for (uint32_t place = 0; place < n; place++) {
         const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
         for (; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {

@@ -5,7 +5,8 @@
  * exchange, times a normal number. So the estimate is, in squares, one half what the body's own sample says, one half
  * what all samples together say. What patches change of the power of a wall is smooth, and stands for itself. */
 #include "base/port.h"
-#include "heat/solve.h"
+#include "heat/fine.h"
+#include "heat/problem.h"
 #include "scene/walls.h"
 
 /* Errors over what they are told from, as measured: docs/heat.md. */
@@ -14,7 +15,10 @@
 #define WALL_PATCHES .5 /* of walls over that of spheres */
 #define BEAM_ERROR   .7
 #define FEW_ERROR    .25 /* over beams per patch: patches that few leave send back along each */
-#define SAMPLES      3   /* with fewer of a kind, those of the other kind make up for them */
+#define FEW_SEEN     1.3 /* likewise of walls that a sphere sees, whose beams are less even */
+#define FEW_WALLS    .65 /* and of walls themselves */
+#define SPOT_ERROR   .7
+#define SAMPLES      3 /* with fewer of a kind, those of the other kind make up for them */
 
 static double squared(double x) { return x * x; }
 
@@ -24,15 +28,16 @@ typedef struct heat_spread {
 } heat_spread;
 
 /* Errors of the spheres or of the walls, and what they exchange: sums of squares. */
-typedef struct heat_pool {
+typedef struct error_pool {
     double samples, errors, exchanges;
-} heat_pool;
+} error_pool;
 
 typedef struct heat_errors {
     heat_spread all;
-    double few;        /* error over power, where all that a sphere sends out meets what reflects all */
-    double walls;      /* error of what walls send out */
-    heat_pool pool[2]; /* of spheres, of walls */
+    double few;         /* error over power, where all that a sphere sends out meets spheres that reflect all */
+    double dim[2];      /* what spheres and walls reflect, on the mean by area */
+    double walls;       /* error of what walls send out */
+    error_pool pool[2]; /* of spheres, of walls */
 } heat_errors;
 
 static heat_spread spread_over(const fibrad_heat *heat, uint32_t begin, uint32_t end) {
@@ -68,25 +73,64 @@ static double patch_error(const fibrad_heat *heat, uint32_t b) {
     return (b < heat->spheres ? 1 : WALL_PATCHES) * extrapolation_error(heat, change);
 }
 
+/* Square of the error over the power of a sphere, as few of its beams meet each patch of spheres, or of walls, whose
+ * patches are of one area. */
+static double few_of_sphere(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
+    const double *reflected = heat->reflected + 2 * (size_t)b;
+    const double walls =
+        reflected[1] > 0 ? FEW_SEEN * reflected[1] / heat->beams / (heat->density[b] * heat->patch_area) : 0;
+    return reflected[0] / heat->beams * squared(errors->few) + squared(walls);
+}
+
+/* Likewise of a wall: by beams of spheres, and by rays, of which half are its own. */
+static double few_of_wall(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
+    const uint32_t k = b - heat->spheres, slot = k < FIBRAD_WALLS ? k : FIBRAD_MESHES + (k - FIBRAD_WALLS);
+    const fibrad_heat_rays *sent = &heat->sent[slot];
+    const double area = spread_of(heat, b).area;
+    double rays = 0;
+    for (uint32_t r = sent->first; r < sent->first + sent->count; r++) rays += 2 * heat->ray[r].area;
+    const double share = area > 0 ? fibrad_min(1, rays / area) : 0;
+    const double by_rays = share > 0 ? share * errors->dim[1] / (2 * sent->density * heat->patch_area) : 0;
+    const double by_beams = (1 - share) * errors->dim[0] * heat->config.patches / heat->beams;
+    return squared(FEW_WALLS * (by_rays + by_beams));
+}
+
 /* Square of the error that a body's own beams and patches tell, and the walls it sees. */
 static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const double eps = heat->emissivity[b];
-    const double few = b < heat->spheres ? errors->few * heat->power[b] : 0;
-    const double back = b < heat->spheres ? heat->reflected[b] / heat->beams : 0;
+    const double few = b < heat->spheres ? few_of_sphere(heat, errors, b) : few_of_wall(heat, errors, b);
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double patches = b < heat->spheres ? patch_error(heat, b) : 0;
-    return squared(beam_error(heat, b)) + squared(patches) + back * squared(few) + squared(seen * errors->walls);
+    return squared(beam_error(heat, b)) + squared(patches) + few * squared(heat->power[b]) +
+           squared(seen * errors->walls);
+}
+
+/* Error from light that goes back and forth between a sphere and a mesh whose patches are too large for it. */
+static double spot_error(const fibrad_heat *heat, uint32_t b) {
+    const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES);
+    double back = 0;
+    if (b >= heat->spheres || heat->group > 1) return 0;
+    for (uint32_t m = 0; m < heat->meshes; m++) back = fibrad_max(back, 1 - heat->emissivity[mesh + m]);
+    return SPOT_ERROR * back * fibrad_heat_comes_back(heat, b) * heat->power[b];
 }
 
 static heat_errors errors_of(const fibrad_heat *heat) {
     const uint32_t end = fibrad_heat_beyond(heat, 0); /* of bodies that have patches of their own */
+    double areas[2] = {0, 0};
     heat_errors errors = {.all = spread_over(heat, 0, heat->first[end])};
     if (heat->group == 1) errors.few = FEW_ERROR * heat->config.patches * heat->thin / (2.0 * heat->beams);
+    for (uint32_t b = 0; b < end; b++) {
+        const int kind = b >= heat->spheres;
+        const double area = spread_of(heat, b).area;
+        areas[kind] += area, errors.dim[kind] += area * (1 - heat->emissivity[b]);
+    }
+    for (int kind = 0; kind < 2; kind++)
+        if (areas[kind] > 0) errors.dim[kind] /= areas[kind];
     for (uint32_t b = heat->spheres; b < end; b++)
         errors.walls += squared((heat->hold[b] >= 0 ? 1 : 1 - heat->emissivity[b]) * BEAM_ERROR * heat->halves[b]);
     errors.walls = fibrad_sqrt(errors.walls);
     for (uint32_t b = 0; b < end; b++) {
-        heat_pool *pool = &errors.pool[b >= heat->spheres];
+        error_pool *pool = &errors.pool[b >= heat->spheres];
         const double exchange = exchange_of(heat, &errors, b);
         if (!(exchange > 0) || heat->hold[b] >= 0) continue;
         pool->samples++, pool->errors += own_error(heat, &errors, b), pool->exchanges += squared(exchange);
@@ -101,13 +145,13 @@ static double power_error_of(const fibrad_heat *heat, const heat_errors *errors,
     const int own = b >= heat->spheres;
     double sum = 0, samples = 0;
     for (int kind = 0; kind < 2; kind++) {
-        const heat_pool *pool = &errors->pool[kind];
+        const error_pool *pool = &errors->pool[kind];
         if (!(pool->exchanges > 0)) continue;
         const double weight = kind == own ? pool->samples : fibrad_max(0, SAMPLES - errors->pool[own].samples);
         sum += weight * pool->errors / pool->exchanges, samples += weight;
     }
     const double pooled = samples > 0 ? sum / samples * squared(exchange) : 0;
-    const double smooth = b < heat->spheres ? 0 : patch_error(heat, b);
+    const double smooth = b < heat->spheres ? spot_error(heat, b) : patch_error(heat, b);
     return exchange > 0 ? squared(smooth) + (own_error(heat, errors, b) + pooled) / 2 : 0;
 }
 
@@ -240,20 +284,21 @@ static double absorbed_by(const fibrad_heat *heat, uint32_t b) {
     return heat->emissivity[b] * arrives;
 }
 
-/* Adds to a wall what it takes of what arrives beyond its patches, and the rest to what it faces. */
-static void read_beyond(const fibrad_heat *heat, uint32_t b, fibrad_heat_result *result) {
-    const uint32_t k = heat->slot[b];
-    if (k >= FIBRAD_WALLS) return; /* meshes are bounded */
+/* The power of the body of a slot; where it is an opening or there is none, that of the surroundings. */
+static double *power_of_slot(const fibrad_heat *heat, uint32_t slot, fibrad_heat_result *result) {
+    for (uint32_t b = 0; b < heat->given_bodies; b++)
+        if (heat->slot[b] == slot) return &result->body_power[b];
+    return &result->surroundings_power;
+}
+
+/* Adds to wall k what it takes of what arrives beyond its patches, and the rest to what it faces. */
+static void read_beyond(const fibrad_heat *heat, uint32_t k, fibrad_heat_result *result) {
     const uint32_t beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
     if (a == heat->first[beyond + 1]) return;
     const double less = heat->radiosity[a] - heat->wall_emission[k];
     const double taken = fibrad_heat_taken_beyond(heat, k) * (heat->net[a] + heat->area[a] * less);
-    const uint32_t facing = fibrad_heat_facing(heat, k);
-    double *other = &result->surroundings_power;
-    for (uint32_t c = 0; c < heat->given_bodies; c++)
-        if (heat->slot[c] == facing) other = &result->body_power[c];
-    result->body_power[b] += taken;
-    *other += heat->power[beyond] - taken;
+    *power_of_slot(heat, k, result) += taken;
+    *power_of_slot(heat, fibrad_heat_facing(heat, k), result) += heat->power[beyond] - taken;
 }
 
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
@@ -268,7 +313,10 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
         result->body_power[b] = heat->power[own];
         if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, own);
     }
-    for (uint32_t b = 0; b < heat->given_bodies; b++) read_beyond(heat, b, result);
+    for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
+        if (heat->openings >> k & 1) result->surroundings_power += heat->power[fibrad_heat_body(heat, k)];
+        read_beyond(heat, k, result);
+    }
     read_errors(heat, result);
     result->sweeps = heat->sweeps;
     result->residual = heat->scale > 0 ? fibrad_sqrt(heat->slope / heat->scale) : 0;

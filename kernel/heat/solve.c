@@ -20,7 +20,7 @@
  * which leaves a system of J alone that is symmetric as before. Its residuals are dealt with in two parts, none of
  * which divides by eps or rho: their mean r = eps (S - h <J>)/D + q/A, changed by r/(1 + eps h/D), and the rest,
  * changed as that of other bodies about the mean. A black body sends J = E all over. */
-#include "heat/solve.h"
+#include "heat/problem.h"
 #include "heat/pencils.h"
 #include "heat/sweep.h"
 

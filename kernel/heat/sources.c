@@ -1,6 +1,6 @@
 /* sources.c - what radiates, and where radiosities begin. SPDX-License-Identifier: MIT */
 #include "base/port.h"
-#include "heat/solve.h"
+#include "heat/problem.h"
 
 #define HEAT_TOLERANCE  1e-3
 #define FREE_TOLERANCE  1e-5 /* where temperatures are unknown: errors of long waves are larger than their residuals */
@@ -40,14 +40,25 @@ static radiator of_body(const fibrad_heat_sources *s, uint32_t b) {
                       insulated ? 0 : or_else(s->body_power, b, __builtin_nan("")), 0, __builtin_nan("")};
 }
 
+/* An opening is as black and as hot as the surroundings. */
+static radiator of_opening(const fibrad_heat_sources *s) {
+    return (radiator){s->surroundings, 1, __builtin_nan(""), 0, __builtin_nan("")};
+}
+
 static bool is_given(double temperature) { return temperature == temperature; }
 
-static bool source_valid(const radiator *s) {
-    if (!is_share(s->emissivity)) return false;
-    if (is_given(s->temperature)) return is_temperature(s->temperature);
-    if (is_given(s->reference) ? !is_temperature(s->reference) : s->hold != 0) return false;
-    return fibrad_abs(s->power) <= POWER_MAX && s->hold >= 0 && s->hold <= HOLD_MAX &&
-           (s->emissivity > 0 || s->power == 0);
+/* What is wrong with a body. */
+static int source_why(const radiator *s) {
+    if (!is_share(s->emissivity)) return FIBRAD_WHY_EMISSIVITY;
+    if (is_given(s->temperature)) {
+        if (!is_temperature(s->temperature)) return FIBRAD_WHY_TEMPERATURE;
+        return is_given(s->power) && s->power != 0 ? FIBRAD_WHY_BOTH : FIBRAD_WHY_UNSAID;
+    }
+    if (is_given(s->reference) ? !is_temperature(s->reference) : s->hold != 0) return FIBRAD_WHY_HOLD;
+    if (!is_given(s->power)) return FIBRAD_WHY_NEITHER;
+    if (!(fibrad_abs(s->power) <= POWER_MAX)) return FIBRAD_WHY_POWER;
+    if (!(s->hold >= 0 && s->hold <= HOLD_MAX)) return FIBRAD_WHY_HOLD;
+    return s->emissivity > 0 || s->power == 0 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_REFLECTS;
 }
 
 /* The temperature of a side of a mesh, its own or its body's. */
@@ -56,36 +67,61 @@ static double side_temperature(const fibrad_heat *heat, const fibrad_heat_source
     return is_given(own) ? own : of_body;
 }
 
-/* Sides have temperatures where their bodies do. */
-static bool sides_valid(const fibrad_heat *heat, const fibrad_heat_sources *s) {
+/* Whether the sides of a body have temperatures only where it has one. */
+static bool sides_valid(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     bool valid = true;
-    for (uint32_t b = 0; b < heat->given_bodies && s->side_temperature != NULL; b++) {
-        if (heat->slot[b] < FIBRAD_MESHES) continue;
-        const uint32_t m = heat->slot[b] - FIBRAD_MESHES;
-        const radiator body = of_body(s, b);
-        for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
-            const double t = side_temperature(heat, s, mesh->side[k], __builtin_nan(""));
-            valid = valid && (!is_given(t) || (is_temperature(t) && is_given(body.temperature)));
-        }
+    if (s->side_temperature == NULL || heat->slot[b] < FIBRAD_MESHES) return true;
+    const uint32_t m = heat->slot[b] - FIBRAD_MESHES;
+    const radiator body = of_body(s, b);
+    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
+        const double t = side_temperature(heat, s, mesh->side[k], __builtin_nan(""));
+        valid = valid && (!is_given(t) || (is_temperature(t) && is_given(body.temperature)));
     }
     return valid;
 }
 
-static bool sources_valid(const fibrad_heat *heat, const fibrad_heat_sources *s) {
-    const uint32_t bodies = heat->given_bodies;
-    if (heat->spheres > 0 && (s->temperature == NULL || s->emissivity == NULL)) return false;
-    if (bodies > 0 && (s->body_temperature == NULL || s->body_emissivity == NULL)) return false;
-    for (uint32_t i = 0; i < heat->spheres; i++) {
+/* Whether a wall goes on for ever whose temperature is to be found: what it gives off then has no bound. */
+static bool is_endless_unknown(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
+    const radiator source = of_body(s, b);
+    const uint32_t slot = heat->slot[b];
+    return slot < FIBRAD_WALLS && heat->wall[slot].unbounded && source.emissivity > 0 && !is_given(source.temperature);
+}
+
+/* What is wrong with a wall. */
+static int wall_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
+    const radiator source = of_body(s, b);
+    const int why = source_why(&source);
+    if (why != FIBRAD_WHY_UNSAID) return why;
+    if (!sides_valid(heat, s, b)) return FIBRAD_WHY_SIDE;
+    return is_endless_unknown(heat, s, b) ? FIBRAD_WHY_ENDLESS : FIBRAD_WHY_UNSAID;
+}
+
+/* What is wrong with all sources at once. */
+static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
+    if (heat->spheres > 0 && (s->temperature == NULL || s->emissivity == NULL)) return FIBRAD_WHY_MISSING;
+    if (heat->given_bodies > 0 && (s->body_temperature == NULL || s->body_emissivity == NULL))
+        return FIBRAD_WHY_MISSING;
+    if (!is_temperature(s->surroundings)) return FIBRAD_WHY_SURROUNDINGS;
+    if (!is_sigma(s->sigma)) return FIBRAD_WHY_SIGMA;
+    return s->tolerance >= 0 && s->tolerance < 1 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_TOLERANCE;
+}
+
+int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
+    if (heat == NULL || s == NULL) return FIBRAD_E_ARGUMENT;
+    fibrad_fault found = {heat->spheres, heat->spheres, UINT32_MAX, 0, sources_why(heat, s)};
+    for (uint32_t i = 0; i < heat->spheres && found.why == FIBRAD_WHY_UNSAID; i++) {
         const radiator source = of_sphere(s, i);
-        if (!source_valid(&source)) return false;
+        found.why = source_why(&source);
+        if (found.why != FIBRAD_WHY_UNSAID) found.first = found.second = i;
     }
-    for (uint32_t b = 0; b < bodies; b++) {
-        const radiator source = of_body(s, b);
-        if (!source_valid(&source)) return false;
+    for (uint32_t b = 0; b < heat->given_bodies && found.why == FIBRAD_WHY_UNSAID; b++) {
+        found.why = wall_why(heat, s, b);
+        if (found.why != FIBRAD_WHY_UNSAID) found.wall = b + 1;
     }
-    return sides_valid(heat, s) && is_temperature(s->surroundings) && is_sigma(s->sigma) && s->tolerance >= 0 &&
-           s->tolerance < 1;
+    if (fault != NULL) *fault = found;
+    if (found.why == FIBRAD_WHY_UNSAID) return FIBRAD_OK;
+    return found.why == FIBRAD_WHY_ENDLESS ? FIBRAD_E_UNSUPPORTED : FIBRAD_E_ARGUMENT;
 }
 
 /* sigma (T^4 - T0^4), T0 being that of the surroundings: all emission and radiosity is counted from theirs. */
@@ -140,6 +176,8 @@ static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources
         const radiator source = of_sphere(s, i);
         widen_range(range, s, &source);
     }
+    const radiator opening = of_opening(s);
+    if (heat->openings != 0) widen_range(range, s, &opening);
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         const radiator source = of_body(s, b);
         widen_range(range, s, &source);
@@ -217,7 +255,8 @@ static double radiosity_beyond(const fibrad_heat *heat, uint32_t k) {
 static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double middle) {
     static const radiator absent = {0, 0, 0, 0, 0};
     radiator source[FIBRAD_SLOTS];
-    for (uint32_t k = 0; k < FIBRAD_SLOTS; k++) source[k] = absent;
+    for (uint32_t k = 0; k < FIBRAD_SLOTS; k++)
+        source[k] = fibrad_is_opening(&heat->scene->container, k) ? of_opening(s) : absent;
     fibrad_zero(heat->insulated, sizeof heat->insulated);
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         source[heat->slot[b]] = of_body(s, b);
@@ -236,21 +275,9 @@ static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double mi
     set_emission(heat, s, heat->bodies - 1, 1, 0);
 }
 
-/* Whether a wall goes on for ever whose temperature is to be found: what it gives off then has no bound. */
-static bool endless_unknown(const fibrad_heat *heat, const fibrad_heat_sources *s) {
-    bool found = false;
-    for (uint32_t b = 0; b < heat->given_bodies; b++) {
-        const radiator source = of_body(s, b);
-        const uint32_t slot = heat->slot[b];
-        found = found || (slot < FIBRAD_WALLS && heat->wall[slot].unbounded && source.emissivity > 0 &&
-                          !is_given(source.temperature));
-    }
-    return found;
-}
-
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
-    if (heat == NULL || sources == NULL || !sources_valid(heat, sources)) return FIBRAD_E_ARGUMENT;
-    if (endless_unknown(heat, sources)) return FIBRAD_E_UNSUPPORTED;
+    const int status = fibrad_heat_check(heat, sources, NULL);
+    if (status != FIBRAD_OK) return status;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
         if (!heat->traced[task]) return FIBRAD_E_STATE;

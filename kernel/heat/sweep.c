@@ -15,8 +15,9 @@
  * together tell what the two exchange, those of the denser one counting as much more as there are more of them. One
  * that is kept stands for several. In the sweep for the error those by even directions count more than odd ones. */
 static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil) {
-    const double other = pencil->body < heat->spheres ? heat->density[pencil->body] : 0;
-    const double share = heat->phase == FIBRAD_HEAT_CHECK ? pencil->share * (pencil->tilt / 32767.) : pencil->share;
+    const double other = pencil->body < heat->rows ? heat->density[pencil->body] : 0;
+    const double check = pencil->tilt / 32767. * (owner < heat->spheres ? 1 : RAYS_WEIGHT);
+    const double share = heat->phase == FIBRAD_HEAT_CHECK ? pencil->share * check : pencil->share;
     return share / (heat->density[owner] + other);
 }
 
@@ -57,8 +58,8 @@ static void bring_bundles(const fibrad_heat_pencil *pencil, const struct pencil_
 
 /* Where the patches of the other end of a pencil begin. */
 static size_t other_end(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
-    const uint32_t spheres = heat->spheres, body = pencil->body;
-    return body < spheres ? (size_t)body * heat->config.patches : fibrad_heat_other_block(heat, body);
+    const uint32_t body = pencil->body;
+    return body < heat->rows ? fibrad_heat_first_of_row(heat, body) : fibrad_heat_other_block(heat, body);
 }
 
 /* Many beams meet the few patches that lie beyond the walls and their patches; one sum of all would lose digits. So
@@ -80,13 +81,13 @@ struct gathering {
 static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil, double *to_owner,
                        double *to_other, const struct gathering *g) {
     const struct pencil_ends ends = {
-        .owner = g->areas ? g->none : heat->source + (size_t)owner * heat->config.patches,
+        .owner = g->areas ? g->none : heat->source + fibrad_heat_first_of_row(heat, owner),
         .other = g->areas ? g->one : heat->source + other_end(heat, pencil),
         .to_owner = to_owner,
         .to_other = to_other,
         .area = beam_area(heat, owner, pencil),
     };
-    if (g->coarse && pencil->body < heat->spheres)
+    if (g->coarse && pencil->body < heat->rows)
         bring_bundles(pencil, &ends);
     else if (g->areas)
         bring_strands(pencil, &ends, true);
@@ -96,7 +97,8 @@ static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_hea
 
 /* What the other end of a pencil reflects of its beams. */
 static double reflected_beams(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
-    const uint32_t body = pencil->body < heat->spheres ? pencil->body : fibrad_heat_other_body(heat, pencil->body);
+    const uint32_t body = pencil->body < heat->rows ? fibrad_heat_body_of_row(heat, pencil->body)
+                                                    : fibrad_heat_other_body(heat, pencil->body);
     const double part = (1 - heat->emissivity[body]) * pencil->share;
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     uint32_t beams = 0;
@@ -104,19 +106,26 @@ static double reflected_beams(const fibrad_heat *heat, const fibrad_heat_pencil 
     return part * beams;
 }
 
+/* Where a row gathers: one of a wall does so with what its part brings to walls. */
+static double *gathered_by(const fibrad_heat *heat, uint32_t row, const struct gathering *g) {
+    const uint32_t first = fibrad_heat_first_of_row(heat, row), others = fibrad_heat_others(heat);
+    return first < others ? heat->gathered + first : g->walls + (first - others);
+}
+
 static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, double *own, struct gathering *g) {
     const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
     while (at < end) {
         const fibrad_heat_pencil *pencil = fibrad_heat_pencil_at(at);
-        if (pencil->body >= heat->spheres) {
+        if (pencil->body >= heat->rows) {
             double *walls = g->walls + (other_end(heat, pencil) - fibrad_heat_others(heat));
             bring_ends(heat, place, pencil, own, walls, g);
             set_aside(heat, g->walls, g->away);
         } else {
             const bool both = fibrad_heat_same_part(heat, place, pencil->body);
-            bring_ends(heat, place, pencil, own, both ? heat->gathered + other_end(heat, pencil) : g->waste, g);
+            bring_ends(heat, place, pencil, own, both ? gathered_by(heat, pencil->body, g) : g->waste, g);
         }
-        if (heat->phase == FIBRAD_HEAT_CHECK) heat->reflected[place] += reflected_beams(heat, pencil);
+        if (heat->phase == FIBRAD_HEAT_CHECK && place < heat->spheres)
+            heat->reflected[2 * (size_t)place + (pencil->body >= heat->rows)] += reflected_beams(heat, pencil);
         at += fibrad_heat_pencil_bytes(pencil);
     }
 }
@@ -135,20 +144,25 @@ static void sweep_beams_of_others(const fibrad_heat *heat, uint32_t place, doubl
     }
 }
 
-static double *gathered_by(const fibrad_heat *heat, uint32_t place) {
-    return heat->gathered + (size_t)place * heat->config.patches;
+static void sweep_row(const fibrad_heat *heat, uint32_t row, struct gathering *g) {
+    sweep_own_beams(heat, row, gathered_by(heat, row, g), g);
+    sweep_beams_of_others(heat, row, gathered_by(heat, row, g), g);
 }
 
-static void sweep_spheres(const fibrad_heat *heat, uint32_t begin, uint32_t end, struct gathering *g) {
-    const uint32_t *place = heat->sequence;
+/* The spheres and the rows of fine fours of a part. */
+static void sweep_rows(const fibrad_heat *heat, uint32_t part, struct gathering *g) {
+    const uint32_t n = heat->spheres, *place = heat->sequence, begin = fibrad_heat_part_begin(heat, n, part),
+                   end = fibrad_heat_part_begin(heat, n, part + 1);
     for (uint32_t k = begin; k < end; k++) {
-        fibrad_zero(gathered_by(heat, place[k]), heat->config.patches * sizeof(double));
-        heat->reflected[place[k]] = 0;
+        fibrad_zero(gathered_by(heat, place[k], g), heat->config.patches * sizeof(double));
+        heat->reflected[2 * (size_t)place[k]] = heat->reflected[2 * (size_t)place[k] + 1] = 0;
     }
-    for (uint32_t k = begin; k < end; k++) {
-        sweep_own_beams(heat, place[k], gathered_by(heat, place[k]), g);
-        sweep_beams_of_others(heat, place[k], gathered_by(heat, place[k]), g);
-    }
+    for (uint32_t row = n; row < heat->rows; row++)
+        if (heat->part[row] == part)
+            fibrad_zero(gathered_by(heat, row, g), FIBRAD_HEAT_FOUR * heat->fine[row - n].count * sizeof(double));
+    for (uint32_t k = begin; k < end; k++) sweep_row(heat, place[k], g);
+    for (uint32_t row = n; row < heat->rows; row++)
+        if (heat->part[row] == part) sweep_row(heat, row, g);
 }
 
 static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, struct gathering *g) {
@@ -167,15 +181,13 @@ static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, st
 
 /* All of a part but the note that it is done. */
 static void sweep_part(fibrad_heat *heat, uint32_t part) {
-    const uint32_t spheres = heat->spheres, others = fibrad_heat_others(heat), of_walls = heat->patches - others;
-    const uint32_t begin = fibrad_heat_part_begin(heat, spheres, part),
-                   end = fibrad_heat_part_begin(heat, spheres, part + 1);
+    const uint32_t others = fibrad_heat_others(heat), of_walls = heat->patches - others;
     const bool areas = heat->phase == FIBRAD_HEAT_AREA;
     const bool coarse = heat->phase == FIBRAD_HEAT_CHECK || (heat->group > 1 && !areas);
     struct gathering g = {areas, coarse, heat->brought + (size_t)part * of_walls, {0}, {0}, {0}, {0}};
     for (uint32_t a = 0; a < FIBRAD_HEAT_PATCHES_MAX; a++) g.one[a] = 1;
     fibrad_zero(g.walls, of_walls * sizeof *g.walls);
-    sweep_spheres(heat, begin, end, &g);
+    sweep_rows(heat, part, &g);
     sweep_rays(heat, fibrad_heat_part_begin(heat, heat->rays, part), fibrad_heat_part_begin(heat, heat->rays, part + 1),
                &g);
     set_aside(heat, g.walls, g.away);

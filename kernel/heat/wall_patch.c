@@ -49,7 +49,7 @@ static bool stretch(const fibrad_scene *scene, uint32_t axis, double *low, doubl
     return !fibrad_finite(from) || !fibrad_finite(to);
 }
 
-static double area_of(const fibrad_heat *heat, uint32_t wall) {
+double fibrad_heat_wall_area(const fibrad_heat *heat, uint32_t wall) {
     const fibrad_heat_wall *w = &heat->wall[wall];
     double around = wall == FIBRAD_CYLINDER ? 2 * FIBRAD_PI * heat->scene->container.radius : 1;
     return w->size[0] * around * w->size[1];
@@ -65,10 +65,9 @@ static uint32_t squares(double length, double square) {
 static const uint64_t ray_step[4] = {0xdb4f0b9175ae2165u, 0xbbe0563303a4615fu, 0xa0f2ec75a1fe1575u,
                                      0x89e182857d9ed689u};
 
-/* The coordinates of ray k of a slot. */
-static void ray_coordinates(uint32_t slot, uint32_t k, double x[4]) {
+void fibrad_heat_ray_coordinates(uint64_t seed, uint32_t k, double x[4]) {
     for (int d = 0; d < 4; d++)
-        x[d] = fibrad_fraction(k / 2 * ray_step[d] + fibrad_mix((2 * slot + k % 2) ^ ray_step[d]));
+        x[d] = fibrad_fraction(k / 2 * ray_step[d] + fibrad_mix((2 * seed + k % 2) ^ ray_step[d]));
 }
 
 /* Has a wall or a mesh of some area send out rays, after those of all before it. */
@@ -89,7 +88,7 @@ static double area_inside(const fibrad_scene *scene, uint32_t m) {
     if (!scene->container.walls || area == 0) return area;
     for (uint32_t k = 0; k < INSIDE_POINTS; k++) {
         double x[4], at[3];
-        ray_coordinates(FIBRAD_MESHES + m, 2 * k, x);
+        fibrad_heat_ray_coordinates(FIBRAD_MESHES + m, 2 * k, x);
         fibrad_mesh_point(&scene->mesh, m, x, at);
         inside += fibrad_walls_hold(&scene->container, at);
     }
@@ -107,7 +106,7 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
         for (uint32_t side = k == FIBRAD_CYLINDER; side < 2; side++)
             wall->unbounded |=
                 stretch(scene, k == FIBRAD_CYLINDER ? 2 : (k / 2 + 1 + side) % 3, &wall->low[side], &wall->size[side]);
-        area += area_of(heat, k);
+        area += fibrad_heat_wall_area(heat, k);
     }
     for (uint32_t m = 0; m < heat->meshes; m++)
         area += area_inside(scene, m), meshes += fibrad_mesh_area(&scene->mesh, m);
@@ -126,7 +125,7 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
         wall->squares[0] =
             squares(k == FIBRAD_CYLINDER ? 2 * FIBRAD_PI * scene->container.radius : wall->size[0], square);
         wall->squares[1] = squares(wall->size[1], square);
-        send_rays(heat, k, area_of(heat, k), density);
+        send_rays(heat, k, fibrad_heat_wall_area(heat, k), density);
     }
     for (uint32_t m = 0; m < heat->meshes; m++)
         send_rays(heat, FIBRAD_MESHES + m, fibrad_mesh_area(&scene->mesh, m), density);
@@ -152,24 +151,45 @@ static double around(double x, double y) {
     return (x < 0 ? 2 - t : t < 0 ? 4 + t : t) / 4;
 }
 
-uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]) {
+/* The axis along a side of the rectangle of a wall. */
+static uint32_t axis_along(uint32_t wall, uint32_t side) {
+    return wall == FIBRAD_CYLINDER ? 2 : (wall / 2 + 1 + side) % 3;
+}
+
+bool fibrad_heat_wall_wraps(const fibrad_heat *heat, uint32_t wall, uint32_t side) {
+    return (wall == FIBRAD_CYLINDER && side == 0) || heat->scene->period[axis_along(wall, side)] > 0;
+}
+
+bool fibrad_heat_wall_place(const fibrad_heat *heat, uint32_t wall, const double at[3], double place[2]) {
     const fibrad_heat_wall *w = &heat->wall[wall];
     const fibrad_scene *scene = heat->scene;
-    uint32_t cell[2];
+    bool inside = true;
     for (uint32_t side = 0; side < 2; side++) {
-        const uint32_t axis = wall == FIBRAD_CYLINDER ? 2 : (wall / 2 + 1 + side) % 3;
+        const uint32_t axis = axis_along(wall, side);
         double share = (at[axis] - w->low[side]) / w->size[side];
         if (wall == FIBRAD_CYLINDER && side == 0)
             share = around(at[0] - scene->container.axis[0], at[1] - scene->container.axis[1]);
         else if (scene->period[axis] > 0)
             share -= fibrad_floor(share);
         else if (w->unbounded && !(share >= 0 && share <= 1))
-            return heat->first[fibrad_heat_beyond(heat, wall)];
-        const double place = fibrad_max(0, fibrad_min(share * w->squares[side], w->squares[side] - 1));
-        cell[side] = (uint32_t)place;
+            inside = false;
+        place[side] = fibrad_max(0, fibrad_min(share * w->squares[side], w->squares[side]));
     }
-    return heat->first[fibrad_heat_body(heat, wall)] + ((cell[0] >> 1) * (w->squares[1] >> 1) + (cell[1] >> 1)) * 4 +
-           (cell[0] & 1) * 2 + (cell[1] & 1);
+    return inside;
+}
+
+uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]) {
+    const uint32_t *squares = heat->wall[wall].squares, body = fibrad_heat_body(heat, wall);
+    double place[2];
+    uint32_t cell[2];
+    if (!fibrad_heat_wall_place(heat, wall, at, place)) return heat->first[fibrad_heat_beyond(heat, wall)];
+    for (int side = 0; side < 2; side++) cell[side] = (uint32_t)fibrad_min(place[side], squares[side] - 1);
+    const uint32_t own = (cell[0] >> 1) * (squares[1] >> 1) + (cell[1] >> 1);
+    const uint32_t fine =
+        fibrad_heat_fine_patch(heat, body, own, place[0] / 2 - (cell[0] >> 1), place[1] / 2 - (cell[1] >> 1));
+    if (fine != FIBRAD_NONE)
+        return fibrad_heat_first_fine(heat, body) + (fine - FIBRAD_HEAT_FOUR * heat->first_four[body]);
+    return heat->first[body] + own * FIBRAD_HEAT_FOUR + (cell[0] & 1) * 2 + (cell[1] & 1);
 }
 
 double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch) {
@@ -204,19 +224,24 @@ static void cosine_direction(const double x[2], const double normal[3], const do
     for (int a = 0; a < 3; a++) w[a] = ring * (cosine * across[a] + sine * along[a]) + up * normal[a];
 }
 
-bool fibrad_heat_mesh_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, double origin[3], double w[3],
-                          uint32_t *side) {
-    double x[4], n[3], across[3], along[3];
-    ray_coordinates(FIBRAD_MESHES + mesh, k, x);
-    *side = fibrad_mesh_point(&heat->scene->mesh, mesh, x, origin);
-    if (!fibrad_walls_hold(&heat->scene->container, origin)) return false;
-    fibrad_mesh_normal(&heat->scene->mesh, *side, n);
+void fibrad_heat_direction(const double x[2], const double n[3], double w[3]) {
+    double across[3], along[3];
     int least = fibrad_abs(n[1]) < fibrad_abs(n[0]) ? 1 : 0;
     if (fibrad_abs(n[2]) < fibrad_abs(n[least])) least = 2;
     const double scale = 1 / fibrad_sqrt(1 - n[least] * n[least]);
     for (int a = 0; a < 3; a++) across[a] = ((a == least) - n[least] * n[a]) * scale;
     for (int a = 0; a < 3; a++) along[a] = n[(a + 1) % 3] * across[(a + 2) % 3] - n[(a + 2) % 3] * across[(a + 1) % 3];
-    cosine_direction(x + 2, n, across, along, w);
+    cosine_direction(x, n, across, along, w);
+}
+
+bool fibrad_heat_mesh_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, double origin[3], double w[3],
+                          uint32_t *side) {
+    double x[4], n[3];
+    fibrad_heat_ray_coordinates(FIBRAD_MESHES + mesh, k, x);
+    *side = fibrad_mesh_point(&heat->scene->mesh, mesh, x, origin);
+    if (!fibrad_walls_hold(&heat->scene->container, origin)) return false;
+    fibrad_mesh_normal(&heat->scene->mesh, *side, n);
+    fibrad_heat_direction(x + 2, n, w);
     return true;
 }
 
@@ -224,7 +249,7 @@ bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, do
     const fibrad_heat_wall *part = &heat->wall[wall];
     const fibrad_container *c = &heat->scene->container;
     double x[4], normal[3], sine, cosine;
-    ray_coordinates(wall, k, x);
+    fibrad_heat_ray_coordinates(wall, k, x);
     if (wall == FIBRAD_CYLINDER) {
         fibrad_sincos_turn(x[0], &sine, &cosine);
         origin[0] = c->axis[0] + c->radius * cosine, origin[1] = c->axis[1] + c->radius * sine;

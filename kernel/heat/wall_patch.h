@@ -11,6 +11,14 @@ void fibrad_heat_cut_walls(fibrad_heat *heat);
 /* Cuts the meshes into patches of heat->patch_area: tells how many, and heat->cut if it is there. */
 void fibrad_heat_cut_meshes(fibrad_heat *heat);
 
+/* The area of the part of a wall that is cut [L2]. */
+double fibrad_heat_wall_area(const fibrad_heat *heat, uint32_t wall);
+
+/* Where on a wall a place on it [L] is, in squares; false: beyond the part that is cut. Whether squares at one end of a
+ * side are next to those at the other. */
+bool fibrad_heat_wall_place(const fibrad_heat *heat, uint32_t wall, const double at[3], double place[2]);
+bool fibrad_heat_wall_wraps(const fibrad_heat *heat, uint32_t wall, uint32_t side);
+
 /* The patch of a wall at a place on it [L]. */
 uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]);
 
@@ -27,6 +35,12 @@ uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], con
  * it meets none, at some length; FIBRAD_NONE if that side is nobody's. */
 uint32_t fibrad_heat_ends(const fibrad_heat *heat, const double origin[3], const double w[3], uint32_t side,
                           double length);
+
+/* Four numbers in [0, 1) of ray k of a sequence, those of even and of odd rays even among themselves. */
+void fibrad_heat_ray_coordinates(uint64_t seed, uint32_t k, double x[4]);
+
+/* A direction by the cosine law about a normal, by two numbers. */
+void fibrad_heat_direction(const double x[2], const double normal[3], double w[3]);
 
 /* Origin [L] and direction of ray k of a wall. False: it starts outside the container. */
 bool fibrad_heat_wall_ray(const fibrad_heat *heat, uint32_t wall, uint32_t k, double origin[3], double w[3]);

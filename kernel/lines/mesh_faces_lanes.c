@@ -4,6 +4,8 @@
 #include "base/lanes/below.h"
 #include "lines/mesh_faces_lanes.h"
 
+#define IMAGES_MOST 4096 /* of a stretch, as long as nobody asks for less */
+
 /* How far from the axis of the window its lines are down to a depth. */
 FIBRAD_INLINE vd reach_at(const fibrad_face_search *search, vd depth) {
     return 1 + search->slack + search->wide * vd_max(vd_set1(0), depth);
@@ -140,7 +142,7 @@ static void enter_image(const fibrad_workspace *work, fibrad_face_search *search
     const fibrad_mesh *mesh = &work->scene->mesh;
     double from[3];
     for (int axis = 0; axis < 3; axis++) {
-        search->centre[axis] = work->centre[axis] - search->at[axis] * mesh->period[axis];
+        search->centre[axis] = work->centre[axis] - (double)search->at[axis] * mesh->period[axis];
         from[axis] = (mesh->middle[axis] - search->centre[axis]) * work->inverse;
     }
     for (int c = 0; c < 3; c++) {
@@ -169,11 +171,11 @@ static double share_along(const fibrad_face_search *search, int axis) {
     return fibrad_sqrt(fibrad_max(0, 1 - w * w));
 }
 
-static uint64_t count_images(const fibrad_mesh_images *images) {
-    uint64_t count = 1;
+static double count_images(const fibrad_mesh_images *images) {
+    double count = 1;
     for (int axis = 0; axis < 3; axis++) {
-        const int64_t along = (int64_t)images->last[axis] - images->first[axis] + 1;
-        count *= along > 0 ? (uint64_t)along : 0;
+        const int64_t along = images->last[axis] - images->first[axis] + 1;
+        count *= along > 0 ? (double)along : 0;
     }
     return count;
 }
@@ -192,7 +194,7 @@ static bool enter_stretch(const fibrad_workspace *work, fibrad_face_search *sear
     }
     search->from = from, search->to = to;
     search->images = fibrad_mesh_images_in(&work->scene->mesh, low, high);
-    const uint64_t images = count_images(&search->images);
+    const double images = count_images(&search->images);
     if (from > 0 && images > search->most) {
         search->rest = from;
         return false;
@@ -212,7 +214,7 @@ void LANED(fibrad_faces_begin)(const fibrad_workspace *work, const double frame[
     search->frame = frame, search->wide = wide, search->near = near, search->cut = work->clear_mesh < 1;
     search->slack = mesh->grain * work->inverse + 1e-12;
     search->nearest = search->shallow = __builtin_inf();
-    search->most = UINT64_MAX, search->rest = __builtin_inf();
+    search->most = IMAGES_MOST, search->rest = __builtin_inf();
     search->stretch = deepest + 1, search->to = -1;
     search->walk.level = 0, search->inside = false;
     for (int axis = 0; axis < 3; axis++) {
@@ -228,6 +230,7 @@ void LANED(fibrad_faces_begin)(const fibrad_workspace *work, const double frame[
         if (w > 0) deepest = fibrad_min(deepest, FIBRAD_PERIODS * period / w);
     }
     search->deepest = deepest;
+    search->stretch = fibrad_max(search->stretch, deepest / FIBRAD_MESH_STRETCHES);
 }
 
 bool LANED(fibrad_faces_next)(fibrad_workspace *work, fibrad_face_search *search) {

@@ -15,13 +15,13 @@ typedef struct fibrad_face_search {
     bool cut;       /* whether triangles may cut sphere i */
     double nearest; /* about the least depth of those found, ... */
     double shallow; /* ... and none of them is less deep */
-    uint64_t most;  /* if a stretch has more images than this, it and those behind it are left out, ... */
+    double most;    /* if a stretch has more images than this, it and those behind it are left out, ... */
     double rest;    /* ... and here they begin */
     double stretch; /* depths that are looked at together; the one in hand: */
     double from, to;
     bool inside;               /* whether some of it is left */
     fibrad_mesh_images images; /* that it meets */
-    int32_t at[3];             /* the image in hand */
+    int64_t at[3];             /* the image in hand */
     double centre[3];          /* [L] of sphere i, from there */
     double box[3][3];          /* the frame, for boxes in their units; row by row, ... */
     double shift[3];           /* ... and what is added */

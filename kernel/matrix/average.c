@@ -54,11 +54,12 @@ void fibrad_matrix_average_part(fibrad_matrix *m, fibrad_matrix_part *part) {
             const uint32_t mine = here < length ? col[here] : UINT32_MAX;
             const uint32_t theirs = there < there_end ? to->col[there] : UINT32_MAX, j = mine < theirs ? mine : theirs;
             const double own = mine == j ? f[here++] : 0, back = theirs == j ? to->f[there++] : 0;
+            const double own_part = fibrad_matrix_own(m, i, j), back_part = fibrad_matrix_own(m, j, i);
             /* areas relative to the larger one; the sum is the same from both sides */
             double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
             a_i *= a_i, a_j *= a_j;
             to->col[at] = j;
-            to->f[at++] = (0.5 * (a_i * own) + 0.5 * (a_j * back)) / a_i;
+            to->f[at++] = (own_part * (a_i * own) + back_part * (a_j * back)) / a_i;
         }
     }
     part->filled = at;

@@ -7,9 +7,10 @@
 #include "base/constants.h"
 #include "matrix/matrix.h"
 
-#define CLOSED_TO   1e-14
-#define OWN_STEPS   60 /* of Newton's method; some five do, but where sums contradict each other */
-#define JOINT_STEPS 200
+#define CLOSED_TO     1e-14
+#define CLOSED_ENOUGH 1e-9 /* else sums contradict reciprocity: no factors u bring them to 1 */
+#define OWN_STEPS     60   /* of Newton's method; some five do, but where sums contradict each other */
+#define JOINT_STEPS   200
 
 /* The factor from one body to another. */
 static double *between(const fibrad_matrix *m, uint32_t b, uint32_t c) { return &m->between[b * m->bodies + c]; }
@@ -20,8 +21,12 @@ static double over_body(const fibrad_matrix *m, uint32_t i, uint32_t b) {
     return ratio * ratio;
 }
 
-/* The mean of both ways between bodies, weighted by the paths per area. */
+/* The mean of both ways between bodies, weighted by the paths per area. The square of a row's error is that of its
+ * entries by share; those to spheres come from elsewhere. */
 static void join_ways(fibrad_matrix *m) {
+    double square[FIBRAD_BODIES_MAX];
+    for (uint32_t b = 0; b < m->bodies; b++)
+        square[b] = m->body_error[b] * m->body_error[b] * (m->body_escaped[b] + *between(m, b, b));
     for (uint32_t b = 0; b < m->bodies; b++)
         for (uint32_t c = 0; c < b; c++) {
             if (m->length[b] == 0 || m->length[c] == 0) continue;
@@ -29,8 +34,14 @@ static void join_ways(fibrad_matrix *m) {
             double a_b = m->length[b] / larger, a_c = m->length[c] / larger;
             a_b *= a_b, a_c *= a_c;
             const double sum = (*between(m, b, c) + *between(m, c, b)) / (a_b + a_c);
+            const double both = (*between(m, b, c) * m->body_error[b] * m->body_error[b] +
+                                 *between(m, c, b) * m->body_error[c] * m->body_error[c]) /
+                                ((a_b + a_c) * (a_b + a_c));
+            square[b] += a_c * a_c * both, square[c] += a_b * a_b * both;
             *between(m, b, c) = a_c * sum, *between(m, c, b) = a_b * sum;
         }
+    for (uint32_t b = 0; b < m->bodies; b++)
+        if (m->length[b] > 0) m->body_error[b] = fibrad_sqrt(square[b]);
 }
 
 /* What a body sends to other bodies and the surroundings. */
@@ -73,10 +84,12 @@ static void solve_linear(uint32_t n, double *a, double *x) {
 
 /* Finds v with v_b (fixed_b + sum over c of D_bc v_c) = wanted_b, by Newton's method for the logarithms of v, of which
  * that is the minimum of a convex function. Plain iterations take for ever where two bodies see little but each other.
- */
-static void balance_bodies(const fibrad_matrix *m, const double fixed[], const double wanted[], double v[]) {
+ * Returns by how much the worst was off in the last step. */
+static double balance_bodies(const fibrad_matrix *m, const double fixed[], const double wanted[], double v[]) {
+    double worst = 0;
     for (int step = 0; step < OWN_STEPS; step++) {
-        double *a = m->newton, x[FIBRAD_BODIES_MAX] = {0}, worst = 0;
+        double *a = m->newton, x[FIBRAD_BODIES_MAX] = {0};
+        worst = 0;
         fibrad_zero(a, m->bodies * m->bodies * sizeof *a);
         for (uint32_t b = 0; b < m->bodies; b++) {
             a[b * m->bodies + b] = 1;
@@ -91,10 +104,11 @@ static void balance_bodies(const fibrad_matrix *m, const double fixed[], const d
             x[b] = wanted[b] - sum;
             worst = fibrad_max(worst, fibrad_abs(x[b]));
         }
-        if (worst <= CLOSED_TO / 8) return;
+        if (worst <= CLOSED_TO / 8) return worst;
         solve_linear(m->bodies, a, x);
         for (uint32_t b = 0; b < m->bodies; b++) v[b] = x[b] > 0 ? v[b] * (1 + fibrad_min(x[b], 1)) : v[b] / (1 - x[b]);
     }
+    return worst;
 }
 
 static void scale_bodies(fibrad_matrix *m, const double v[]) {
@@ -112,42 +126,38 @@ static void sum_outside(const fibrad_matrix *m, const double *u, double outside[
             if (m->length[b] > 0) outside[b] += m->body[(size_t)i * m->bodies + b] * over_body(m, i, b) * u[i];
 }
 
-/* One step of the spheres towards sums of 1, from factors u and, of bodies, v; returns by how much the worst is off. */
-static double closing_step(const fibrad_matrix *m, const double *u, const double v[], double *next) {
-    const fibrad_sparse *rows = &m->result;
-    double worst = 0;
-    for (uint32_t i = 0; i < rows->n; i++) {
-        const double *body = m->body + (size_t)i * m->bodies;
-        double sum = m->escaped[i] + m->beyond[i];
-        next[i] = 1;
-        if (m->r[i] == 0) continue;
-        for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum += rows->f[k] * u[rows->col[k]];
-        for (uint32_t b = 0; b < m->bodies; b++) sum += body[b] * v[b];
-        worst = fibrad_max(worst, fibrad_abs(1 - u[i] * sum));
-        next[i] = fibrad_sqrt(u[i] / sum);
+/* One step of the spheres towards sums of 1, bodies being scaled by v; returns by how much the worst is off. */
+static double closing_step(fibrad_matrix *m, const double v[]) {
+    for (uint32_t i = 0; i < m->result.n; i++) {
+        m->scratch[i] = m->escaped[i] + m->beyond[i];
+        for (uint32_t b = 0; b < m->bodies; b++) m->scratch[i] += m->body[(size_t)i * m->bodies + b] * v[b];
     }
-    return worst;
+    return fibrad_matrix_step(m, true);
 }
 
-/* Brings all sums to 1. */
-static void close_all(fibrad_matrix *m) {
+/* Brings all sums to 1; returns by how much the worst was off in the end. Above CLOSED_ENOUGH nothing has changed. */
+static double close_all(fibrad_matrix *m) {
     const fibrad_sparse *rows = &m->result;
-    double *u = m->scratch, *next = u + rows->n, v[FIBRAD_BODIES_MAX], one[FIBRAD_BODIES_MAX],
+    double *u = m->scratch + rows->n, *next = u + rows->n, v[FIBRAD_BODIES_MAX], one[FIBRAD_BODIES_MAX],
            outside[FIBRAD_BODIES_MAX];
     for (uint32_t i = 0; i < rows->n; i++) u[i] = 1;
     for (uint32_t b = 0; b < m->bodies; b++) v[b] = one[b] = 1;
+    double worst = 0;
     for (int step = 0; step < JOINT_STEPS; step++) {
         sum_outside(m, u, outside);
-        balance_bodies(m, outside, one, v);
-        if (closing_step(m, u, v, next) <= CLOSED_TO) break;
+        worst = balance_bodies(m, outside, one, v);
+        worst = fibrad_max(worst, closing_step(m, v));
+        if (worst <= CLOSED_TO) break;
         fibrad_copy(u, next, rows->n * sizeof *u);
     }
+    if (!(worst <= CLOSED_ENOUGH)) return worst;
     for (uint32_t i = 0; i < rows->n; i++) {
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= u[i] * u[rows->col[k]];
         for (uint32_t b = 0; b < m->bodies; b++) m->body[(size_t)i * m->bodies + b] *= u[i] * v[b];
         m->escaped[i] *= u[i], m->beyond[i] *= u[i];
     }
     scale_bodies(m, v);
+    return worst;
 }
 
 void fibrad_matrix_take_bodies(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_matrix_rule *rule) {
@@ -157,10 +167,20 @@ void fibrad_matrix_take_bodies(fibrad_matrix *m, const fibrad_scene *scene, cons
         const bool unbounded = !fibrad_finite(area);
         m->length[b] = unbounded ? 0 : fibrad_sqrt(emitting / (4 * FIBRAD_PI));
         for (uint32_t c = 0; c < m->bodies; c++)
-            *between(m, b, c) = unbounded ? __builtin_nan("") : rule->body_row[b].body[c];
+            *between(m, b, c) = unbounded ? __builtin_nan("") : fibrad_max(0, rule->body_row[b].body[c]);
         m->body_escaped[b] = unbounded ? __builtin_nan("") : rule->body_row[b].escaped;
         m->body_error[b] = unbounded ? __builtin_nan("") : rule->body_row[b].error;
     }
+}
+
+/* Leaves the shares among bodies, and to the surroundings, as the paths have them. */
+static void leave_bodies_open(fibrad_matrix *m) {
+    for (uint32_t b = 0; b < m->bodies; b++) {
+        const double *before = m->before + b * (m->bodies + 1);
+        for (uint32_t c = 0; c < m->bodies; c++) *between(m, b, c) = before[c];
+        m->body_escaped[b] = before[m->bodies];
+    }
+    m->body_closure = m->correction;
 }
 
 void fibrad_matrix_enclose(fibrad_matrix *m) {
@@ -168,17 +188,18 @@ void fibrad_matrix_enclose(fibrad_matrix *m) {
     double *before = m->before, wanted[FIBRAD_BODIES_MAX] = {0}, v[FIBRAD_BODIES_MAX], most = 0;
     for (uint32_t b = 0; b < m->bodies; b++) most = fibrad_max(most, m->length[b]);
     if (most == 0) return;
+    join_ways(m);
     for (uint32_t b = 0; b < m->bodies; b++) {
         for (uint32_t c = 0; c < m->bodies; c++) before[b * wide + c] = *between(m, b, c);
         before[b * wide + m->bodies] = m->body_escaped[b];
     }
-    join_ways(m);
     for (uint32_t b = 0; b < m->bodies; b++)
         if (m->length[b] > 0) wanted[b] = rest_wanted(m, b);
     for (uint32_t b = 0; b < m->bodies; b++) v[b] = 1;
     balance_bodies(m, m->body_escaped, wanted, v);
     scale_bodies(m, v);
-    close_all(m);
+    m->body_closure = close_all(m);
+    if (!(m->body_closure <= CLOSED_ENOUGH)) leave_bodies_open(m);
     for (uint32_t b = 0; b < m->bodies; b++) { /* by how much that has changed a row is an error, too */
         double square = 0, difference = before[b * wide + m->bodies] - m->body_escaped[b];
         square += difference * difference;

@@ -10,10 +10,10 @@
 #define RECIPROCITY_PIECES 256u
 
 /* The estimates of S_ij from both its rows differ by about twice the error of their mean. The factors take in the worst
- * rows of hundred; the part of the raw estimate, rows whose two errors are equal by symmetry: docs/accuracy.md. */
+ * rows of hundred: docs/accuracy.md. */
 #define VIEW_ERROR     1.6
 #define EXCHANGE_ERROR 1.2
-#define RAW_PART       0.5
+#define LEAST_ERROR    1e-12 /* of a row, for what closing changes over it: rounding is no change */
 
 static uint32_t tasks_of(const fibrad_matrix_rule *rule) {
     if (rule == NULL || rule->raw || rule->tasks == 0) return 1;
@@ -30,7 +30,7 @@ static bool matrix_rule_valid(const fibrad_scene *scene, const fibrad_matrix_rul
             return false;
         bool valid = row->escaped >= 0 && fibrad_finite(row->escaped) && row->error >= 0 && fibrad_finite(row->error);
         for (uint32_t c = 0; c < scene->facts.bodies; c++)
-            valid = valid && row->body[c] >= 0 && fibrad_finite(row->body[c]);
+            valid = valid && fibrad_finite(row->body[c]); /* what a deep bed hides may err to below 0 */
         if (!valid) return false;
     }
     for (uint32_t i = 0; i < scene->facts.spheres && rule->emissivity != NULL; i++)
@@ -81,6 +81,7 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     m->newton = fibrad_arena_take(arena, m->enclosed ? m->bodies * (m->bodies + 1) : 0, sizeof *m->newton);
     m->before = fibrad_arena_take(arena, m->enclosed ? m->bodies * (m->bodies + 1) : 0, sizeof *m->before);
     m->r = fibrad_arena_take(arena, n, sizeof *m->r);
+    m->radius = fibrad_arena_take(arena, m->sampled ? n : 0, sizeof *m->radius);
     m->place = fibrad_arena_take(arena, m->raw ? 0 : n, sizeof *m->place);
     m->scratch = fibrad_arena_take(arena, m->raw ? 0 : 3 * n, sizeof *m->scratch);
     m->part = fibrad_arena_take(arena, m->raw ? 0 : m->tasks, sizeof *m->part);
@@ -103,6 +104,7 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     *m = (fibrad_matrix){.bodies = scene->facts.bodies, .tasks = tasks_of(rule)};
     m->raw = rule != NULL && rule->raw;
     m->exchange = rule != NULL && rule->emissivity != NULL;
+    m->sampled = m->exchange || (rule != NULL && rule->sampled);
     m->enclosed = rule != NULL && rule->body_row != NULL;
     m->drop = rule != NULL ? rule->drop : 0;
     m->parallel = rule != NULL ? rule->parallel : NULL;
@@ -228,6 +230,7 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
     if (status != FIBRAD_OK) return status;
     for (uint32_t i = 0; i < m->result.n; i++) {
         m->r[i] = scene->r[scene->place[i]];
+        if (m->sampled) m->radius[i] = m->r[i];
         if (m->exchange) m->r[i] *= fibrad_sqrt(rule->emissivity[i]);
     }
     if (m->enclosed) fibrad_matrix_take_bodies(m, scene, rule);
@@ -285,21 +288,6 @@ static void gather_parts(fibrad_matrix *m) {
     rows->start[rows->n] = to;
 }
 
-static void sum_raw(void *matrix, uint32_t p) {
-    const fibrad_matrix *m = matrix;
-    for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
-        const double *f = fibrad_record_f(m->row[i]);
-        m->scratch[i] = 0;
-        for (uint32_t k = 0; k < m->row[i]->length; k++) m->scratch[i] += f[k];
-    }
-}
-
-/* Brings the sums of exchange factors to those of the raw rows. */
-static void balance_rows(fibrad_matrix *m) {
-    fibrad_matrix_share(m, m->tasks, sum_raw, m);
-    fibrad_matrix_balance(m);
-}
-
 /* Shares `rest` out among what row i meets besides spheres, in the proportions of its own, or of all spheres together
  * where it met none of that. */
 static void share_out(fibrad_matrix *m, uint32_t i, double rest) {
@@ -335,27 +323,52 @@ static void close_rows(fibrad_matrix *m) {
     fibrad_matrix_share(m, m->tasks, close_part, m);
 }
 
-/* The error of each row, from how far its mean is off the raw row, whose columns are among those of the mean. How walls
- * share what they get is that of the raw row: the more they get, the more of its error counts. */
+/* How much of a row that does not go to spheres is not what the raw row says. */
+static double change_of(const fibrad_matrix *m, uint32_t i) {
+    const fibrad_record *raw = m->row[i];
+    const double *body = m->body + (size_t)i * m->bodies, *before = fibrad_record_body(raw);
+    const double escaped = m->escaped[i] - raw->escaped, beyond = m->beyond[i] - raw->beyond;
+    double square = escaped * escaped + beyond * beyond;
+    for (uint32_t b = 0; b < m->bodies; b++) square += (body[b] - before[b]) * (body[b] - before[b]);
+    return fibrad_sqrt(square);
+}
+
+/* The error of each row, from how far its mean is off the raw row, whose columns are among those of the mean; at least
+ * that of the raw row as far as the mean is the row's own, since the errors of both rows may be equal by symmetry. What
+ * a row says little about, as a large sphere about a small one, counts by what the mean takes from it over what it
+ * takes from the other. How walls share what they get is that of the raw row: the more they get, the more of its error
+ * counts.
+ */
 static void estimate_errors(void *matrix, uint32_t part) {
     fibrad_matrix *m = matrix;
+    m->part[part].worst = 0;
     for (uint32_t i = m->part[part].begin; i < m->part[part].end; i++) {
         const fibrad_record *raw = m->row[i];
         const uint32_t *col = fibrad_record_col(raw);
         const double *f = fibrad_record_f(raw);
         if (raw->symmetric) continue;
-        double square = 0;
+        double square = 0, sum = 0, own = 0, met = 0;
         uint32_t p = 0;
         for (uint64_t k = m->result.start[i]; k < m->result.start[i + 1]; k++) {
-            const bool own = p < raw->length && col[p] == m->result.col[k];
-            const double difference = m->result.f[k] - (own ? f[p++] : 0);
-            square += difference * difference;
+            const uint32_t j = m->result.col[k];
+            const double mean = m->result.f[k], own_part = j == i ? 1 : fibrad_matrix_own(m, i, j);
+            const double difference = mean - (p < raw->length && col[p] == j ? f[p++] : 0);
+            square += fibrad_min(1, own_part / (1 - own_part)) * (difference * difference);
+            own += own_part * mean, sum += mean;
         }
-        const double factor = m->exchange ? EXCHANGE_ERROR : VIEW_ERROR;
-        double met = 0;
         for (uint32_t b = 0; b < m->bodies; b++) met += m->body[(size_t)i * m->bodies + b];
-        m->error[i] = fibrad_max(factor * fibrad_sqrt(square), RAW_PART * (1 + met) * m->error[i]);
+        own = sum > 0 ? own / sum : 0.5;
+        m->error[i] = fibrad_max((m->exchange ? EXCHANGE_ERROR : VIEW_ERROR) * fibrad_sqrt(square),
+                                 (own + (1 - own) * met) * m->error[i]);
+        const double changed = change_of(m, i) / fibrad_max(m->error[i], LEAST_ERROR);
+        if (changed > m->part[part].worst) m->part[part].worst = changed, m->part[part].worst_row = i;
     }
+}
+
+/* The row that closing has changed most, over its error. */
+static void find_changed(fibrad_matrix *m) {
+    for (uint32_t p = 0; p < m->tasks; p++)
+        if (m->part[p].worst > m->changed) m->changed = m->part[p].worst, m->changed_row = m->part[p].worst_row;
 }
 
 int fibrad_matrix_close(fibrad_matrix *m) {
@@ -365,13 +378,14 @@ int fibrad_matrix_close(fibrad_matrix *m) {
     if (m->raw) return FIBRAD_OK;
     fibrad_matrix_share(m, m->tasks, average_rest, m);
     gather_parts(m);
-    if (m->exchange)
-        balance_rows(m);
+    if (m->sampled)
+        fibrad_matrix_balance(m);
     else
         fibrad_matrix_limit(m);
     close_rows(m);
     if (m->enclosed) fibrad_matrix_enclose(m);
     fibrad_matrix_share(m, m->tasks, estimate_errors, m);
+    find_changed(m);
     if (m->drop > 0) fibrad_matrix_drop(m);
     return FIBRAD_OK;
 }
@@ -387,12 +401,15 @@ int fibrad_matrix_read(const fibrad_matrix *m, fibrad_factors *factors) {
                                 .escaped = m->escaped,
                                 .beyond = m->beyond,
                                 .error = m->error,
-                                .body = m->body};
+                                .body = m->body,
+                                .changed = m->changed,
+                                .changed_row = m->changed_row};
     if (!m->enclosed) return FIBRAD_OK;
     factors->body_body = m->between;
     factors->body_escaped = m->body_escaped;
     factors->body_error = m->body_error;
     factors->body_correction = m->correction;
+    factors->body_closure = m->body_closure;
     return FIBRAD_OK;
 }
 

@@ -63,34 +63,44 @@ static void take_out(fibrad_sparse *rows, const double *r, double threshold) {
     rows->start[rows->n] = to;
 }
 
-/* A step of the rows of a part. In scratch: targets, u, and the next u. */
-static void scaling_step(void *matrix, uint32_t p) {
-    const fibrad_matrix *m = matrix;
+/* Rows that are scaled. */
+struct scaling {
+    const fibrad_matrix *matrix;
+    bool closing;
+};
+
+/* A step of the rows of a part. */
+static void scaling_step(void *job, uint32_t p) {
+    const struct scaling *scaling = job;
+    const fibrad_matrix *m = scaling->matrix;
     const fibrad_sparse *rows = &m->result;
-    const double *target = m->scratch, *u = target + rows->n;
+    const double *given = m->scratch, *u = given + rows->n;
     double *next = m->scratch + 2 * (size_t)rows->n, worst = 0;
     for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
-        double sum = 0;
+        const double emits = m->r[i] > 0 ? 1 : 0, target = scaling->closing ? emits : given[i];
+        double sum = scaling->closing ? given[i] : 0;
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) sum += rows->f[k] * u[rows->col[k]];
-        worst = fibrad_max(worst, fibrad_abs(target[i] - u[i] * sum));
-        next[i] = sum > 0 ? fibrad_sqrt(u[i] * target[i] / sum) : 1;
+        worst = fibrad_max(worst, fibrad_abs(target - u[i] * sum));
+        next[i] = sum > 0 ? fibrad_sqrt(u[i] * target / sum) : 1;
     }
     m->part[p].worst = worst;
 }
 
-/* Factors u with u_i sum_j F_ij u_j = target_i, by u_i <- sqrt(u_i target_i/sum_j F_ij u_j), which stays near 1 and
- * more than halves the error each time where such factors exist. Ends when all sums are right to `tolerance`. */
-static void find_scaling(fibrad_matrix *m, double tolerance) {
+double fibrad_matrix_step(fibrad_matrix *m, bool closing) {
+    double worst = 0;
+    fibrad_matrix_share(m, m->tasks, scaling_step, &(struct scaling){m, closing});
+    for (uint32_t p = 0; p < m->tasks; p++) worst = fibrad_max(worst, m->part[p].worst);
+    return worst;
+}
+
+/* Finds u by u_i <- sqrt(u_i target_i/sum_i), which stays near 1 and more than halves the error each time where such
+ * factors exist. Ends when all sums are right to `tolerance`. */
+static void find_scaling(fibrad_matrix *m, bool closing, double tolerance) {
     const uint32_t n = m->result.n;
     double *u = m->scratch + n, *next = u + n;
     for (uint32_t i = 0; i < n; i++) u[i] = 1;
-    for (int step = 0; step < 60; step++) {
-        double worst = 0;
-        fibrad_matrix_share(m, m->tasks, scaling_step, m);
-        for (uint32_t p = 0; p < m->tasks; p++) worst = fibrad_max(worst, m->part[p].worst);
-        if (worst <= tolerance) return;
+    for (int step = 0; step < 60 && fibrad_matrix_step(m, closing) > tolerance; step++)
         fibrad_copy(u, next, n * sizeof *u);
-    }
 }
 
 static void scale_rows(fibrad_sparse *rows, const double *u) {
@@ -98,21 +108,33 @@ static void scale_rows(fibrad_sparse *rows, const double *u) {
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= u[i] * u[rows->col[k]];
 }
 
-/* Brings rows above their targets down to them and leaves reciprocity as it is. */
+/* Brings rows above their targets (NULL: 1) down to them and leaves reciprocity as it is. */
 static void bring_down(fibrad_sparse *rows, const double *target, double *u) {
     for (uint32_t i = 0; i < rows->n; i++) {
-        double sum = fibrad_sparse_sum(rows, i);
-        u[i] = sum > target[i] ? target[i] / sum : 1;
+        const double sum = fibrad_sparse_sum(rows, i), most = target != NULL ? target[i] : 1;
+        u[i] = sum > most ? most / sum : 1;
     }
     for (uint32_t i = 0; i < rows->n; i++)
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= fibrad_min(u[i], u[rows->col[k]]);
 }
 
+/* What raw rows leave for others than spheres. */
+static void find_rest(void *matrix, uint32_t p) {
+    const fibrad_matrix *m = matrix;
+    for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
+        const double *f = fibrad_record_f(m->row[i]);
+        double sum = 0;
+        for (uint32_t k = 0; k < m->row[i]->length; k++) sum += f[k];
+        m->scratch[i] = m->r[i] > 0 ? fibrad_max(0, 1 - sum) : 0;
+    }
+}
+
 void fibrad_matrix_balance(fibrad_matrix *m) {
-    double *target = m->scratch, *u = target + m->result.n;
-    find_scaling(m, 1e-14);
+    double *u = m->scratch + m->result.n;
+    fibrad_matrix_share(m, m->tasks, find_rest, m);
+    find_scaling(m, true, 1e-14);
     scale_rows(&m->result, u);
-    bring_down(&m->result, target, u);
+    bring_down(&m->result, NULL, u);
 }
 
 /* Puts into F_ii what a row is short of its target, by more than rounding; rows move up to make room. */
@@ -146,7 +168,7 @@ void fibrad_matrix_drop(fibrad_matrix *m) {
     double *target = m->scratch, *u = target + rows->n;
     for (uint32_t i = 0; i < rows->n; i++) target[i] = fibrad_sparse_sum(rows, i);
     take_out(rows, m->r, m->drop);
-    find_scaling(m, 0);
+    find_scaling(m, false, 0);
     scale_rows(rows, u);
     bring_down(rows, target, u); /* where no scaling exists, rows are above or below their targets */
     fill_up(rows, target);

@@ -16,6 +16,10 @@
 #define FIBRAD_MESH_WIDE  8u  /* boxes of a node, triangles of a leaf at most */
 #define FIBRAD_MESH_DEPTH 64u /* of the tree at most */
 
+/* In so many stretches at the most lines look for images. In each they cross hardly any period, since they look no
+ * farther than 100 periods along any axis. */
+#define FIBRAD_MESH_STRETCHES 1000
+
 /* Boxes about some of the triangles, side by side: their middles, from mesh->middle, and half their edges, rounded
  * outwards; both in units of mesh->extent. Boxes that are not there have negative edges. */
 typedef struct fibrad_mesh_node {
@@ -66,13 +70,16 @@ static inline void fibrad_mesh_enter(fibrad_mesh_walk *walk, uint32_t node, uint
     walk->node[walk->level] = node, walk->left[walk->level++] = count;
 }
 
-/* The next child; false: there is none left. */
+/* The next child; false: there is none left. A box that is not there has the root as its child, which is none. */
 static inline bool fibrad_mesh_next(fibrad_mesh_walk *walk, const fibrad_mesh *mesh, uint32_t *child) {
-    for (; walk->level > 0; walk->level--) {
+    while (walk->level > 0) {
         const uint32_t top = walk->level - 1;
-        if (walk->left[top] == 0) continue;
+        if (walk->left[top] == 0) {
+            walk->level--;
+            continue;
+        }
         *child = mesh->node[walk->node[top]].child[walk->box[top][--walk->left[top]]];
-        return true;
+        if (*child != 0) return true;
     }
     return false;
 }
@@ -80,10 +87,13 @@ static inline bool fibrad_mesh_next(fibrad_mesh_walk *walk, const fibrad_mesh *m
 /* Takes the arrays of so many triangles from the arena. */
 void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangles);
 
-/* Fills a mesh that is laid out. mesh_of [bodies]: which mesh a body is, or FIBRAD_NO_MESH. FIBRAD_E_ARGUMENT: *fault
- * is the triangle, UINT32_MAX if it is none. */
+/* Fills a mesh that is laid out. mesh_of [bodies]: which mesh a body is, or FIBRAD_NO_MESH. longest: of coordinates and
+ * periods. FIBRAD_E_ARGUMENT: *fault is the triangle, UINT32_MAX if it is none. */
 int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, const double period[3],
-                      const uint8_t *mesh_of, uint32_t bodies, uint32_t *fault);
+                      const uint8_t *mesh_of, uint32_t bodies, double longest, uint32_t *fault);
+
+/* The caller's number of a triangle that reaches highest along an axis. */
+uint32_t fibrad_mesh_highest(const fibrad_mesh *mesh, int axis);
 
 /* Area of a triangle [L^2]. */
 double fibrad_mesh_triangle_area(const fibrad_mesh *mesh, uint32_t triangle);
@@ -96,7 +106,7 @@ double fibrad_mesh_distance(const fibrad_mesh *mesh, const double point[3], doub
 
 /* The images of a mesh whose boxes meet a box [L]: shifts by whole periods, first[axis] to last[axis]. */
 typedef struct fibrad_mesh_images {
-    int32_t first[3], last[3];
+    int64_t first[3], last[3];
 } fibrad_mesh_images;
 fibrad_mesh_images fibrad_mesh_images_in(const fibrad_mesh *mesh, const double low[3], const double high[3]);
 
@@ -107,8 +117,8 @@ typedef struct fibrad_mesh_hit {
 } fibrad_mesh_hit;
 
 /* The first side that a ray from `origin` [L] along the unit vector w meets within the length `to`, which may be
- * infinite. Fronts count from a grain behind the origin on, backs from a grain after it; `except`: a triangle that does
- * not count, or FIBRAD_NO_SIDE. */
+ * infinite. Fronts count from a grain behind the origin on, backs from a grain after it; `except`: the triangle
+ * that the ray leaves, which does not count but for images beside it, or FIBRAD_NO_SIDE. */
 fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3], const double w[3], double to,
                                   uint32_t except);
 

@@ -7,7 +7,6 @@
 
 #define BINS       16
 #define BY_SURFACE (FIBRAD_MESH_DEPTH / 2) /* how often; after so many cuts boxes are halved */
-#define LENGTH_MAX 1e150
 #define NO_BOX     (-1e30f)
 
 void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangles) {
@@ -208,6 +207,12 @@ double fibrad_mesh_triangle_area(const fibrad_mesh *mesh, uint32_t triangle) {
     return 0.5 * fibrad_sqrt(x * x + y * y + z * z);
 }
 
+uint32_t fibrad_mesh_highest(const fibrad_mesh *mesh, int axis) {
+    uint32_t t = 0;
+    while (t + 1 < mesh->triangles && !(triangle_box(mesh, t).high[axis] == mesh->high[axis])) t++;
+    return mesh->number[t];
+}
+
 /* Lists the sides of each mesh, with their areas added up. */
 static void list_sides(fibrad_mesh *mesh) {
     uint32_t end[FIBRAD_BODIES_MAX + 1] = {0};
@@ -229,15 +234,15 @@ double fibrad_mesh_area(const fibrad_mesh *mesh, uint32_t number) {
     return end > mesh->first[number] ? mesh->area[end - 1] : 0;
 }
 
-/* Copies a triangle; false: it is not valid. */
-static bool take_triangle(fibrad_mesh *mesh, const struct fibrad_triangles *given, uint32_t t) {
+/* Copies a triangle, whose coordinates may be `longest`; false: it is not valid. */
+static bool take_triangle(fibrad_mesh *mesh, const struct fibrad_triangles *given, uint32_t t, double longest) {
     const size_t stride = given->stride > 0 ? given->stride : 1;
     for (int k = 0; k < 3; k++) {
         const size_t v = given->corner[3 * (size_t)t + (size_t)k];
         if (v >= given->vertices) return false;
         const double at[3] = {given->x[v * stride], given->y[v * stride], given->z[v * stride]};
         for (int axis = 0; axis < 3; axis++) {
-            if (!(fibrad_abs(at[axis]) <= LENGTH_MAX)) return false;
+            if (!(fibrad_abs(at[axis]) <= longest)) return false;
             mesh->corner[k][axis][t] = at[axis];
             mesh->low[axis] = fibrad_min(mesh->low[axis], at[axis]);
             mesh->high[axis] = fibrad_max(mesh->high[axis], at[axis]);
@@ -257,32 +262,32 @@ static bool mesh_of_side(uint32_t body, const uint8_t *mesh_of, uint32_t bodies,
 }
 
 int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, const double period[3],
-                      const uint8_t *mesh_of, uint32_t bodies, uint32_t *fault) {
+                      const uint8_t *mesh_of, uint32_t bodies, double longest, uint32_t *fault) {
     const bool arrays = given->x != NULL && given->y != NULL && given->z != NULL && given->corner != NULL;
     *fault = UINT32_MAX;
     if (given->n > 0 && (!arrays || given->front == NULL)) return FIBRAD_E_ARGUMENT;
     for (int axis = 0; axis < 3; axis++) {
         mesh->period[axis] = period[axis] > 0 ? period[axis] : given->period[axis];
-        if (!(mesh->period[axis] >= 0 && mesh->period[axis] <= LENGTH_MAX)) return FIBRAD_E_ARGUMENT;
+        if (!(mesh->period[axis] >= 0 && mesh->period[axis] <= longest)) return FIBRAD_E_ARGUMENT;
     }
     for (int axis = 0; axis < 3; axis++) mesh->low[axis] = __builtin_inf(), mesh->high[axis] = -__builtin_inf();
     for (uint32_t t = 0; t < given->n; t++) {
         uint8_t ignored;
         *fault = t;
-        if (!take_triangle(mesh, given, t) || !mesh_of_side(given->front[t], mesh_of, bodies, &ignored) ||
+        if (!take_triangle(mesh, given, t, longest) || !mesh_of_side(given->front[t], mesh_of, bodies, &ignored) ||
             (given->back != NULL && !mesh_of_side(given->back[t], mesh_of, bodies, &ignored)))
             return FIBRAD_E_ARGUMENT;
     }
-    double longest = 0;
+    double scale = 0;
     mesh->extent = 0;
     for (int axis = 0; axis < 3; axis++) {
         mesh->middle[axis] = 0.5 * mesh->low[axis] + 0.5 * mesh->high[axis];
         const double far = fibrad_max(fibrad_abs(mesh->low[axis]), fibrad_abs(mesh->high[axis]));
-        longest = fibrad_max(longest, far + (mesh->high[axis] - mesh->low[axis]));
+        scale = fibrad_max(scale, far + (mesh->high[axis] - mesh->low[axis]));
         mesh->extent = fibrad_max(mesh->extent, 0.5 * (mesh->high[axis] - mesh->low[axis]));
     }
     if (!(mesh->extent > 0)) mesh->extent = 1;
-    mesh->grain = 1e-11 * longest;
+    mesh->grain = 1e-11 * scale;
     build_tree(mesh);
     for (uint32_t t = 0; t < mesh->triangles; t++) { /* in the order of the tree */
         mesh_of_side(given->front[mesh->number[t]], mesh_of, bodies, &mesh->mesh[t][0]);

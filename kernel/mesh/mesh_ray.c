@@ -1,13 +1,15 @@
 /* mesh_ray.c - what of a mesh a ray meets first, and what is near a point. SPDX-License-Identifier: MIT */
 #include "mesh/mesh.h"
 
+static int64_t whole_below(double x) { return (int64_t)fibrad_max(-0x1p62, fibrad_min(0x1p62, fibrad_floor(x))); }
+
 fibrad_mesh_images fibrad_mesh_images_in(const fibrad_mesh *mesh, const double low[3], const double high[3]) {
     fibrad_mesh_images images = {{0}, {0}};
     for (int axis = 0; axis < 3; axis++) {
         if (!(mesh->period[axis] > 0)) continue;
         const double inverse = 1 / mesh->period[axis], grain = mesh->grain * inverse;
-        images.first[axis] = (int32_t)-fibrad_floor((mesh->high[axis] - low[axis]) * inverse + grain);
-        images.last[axis] = (int32_t)fibrad_floor((high[axis] - mesh->low[axis]) * inverse + grain);
+        images.first[axis] = -whole_below((mesh->high[axis] - low[axis]) * inverse + grain);
+        images.last[axis] = whole_below((high[axis] - mesh->low[axis]) * inverse + grain);
     }
     return images;
 }
@@ -52,6 +54,14 @@ typedef struct first_side {
     uint32_t side, number;
 } first_side;
 
+/* Whether a ray begins in the plane of a triangle, the one it leaves: not so of images of that beside it. */
+static bool begins_in_plane(const fibrad_mesh *mesh, const sheared_ray *ray, uint32_t t) {
+    double normal[3], height = 0;
+    fibrad_mesh_normal(mesh, 2 * t, normal);
+    for (int axis = 0; axis < 3; axis++) height += normal[axis] * (mesh->corner[0][axis][t] - ray->origin[axis]);
+    return fibrad_abs(height) <= mesh->grain;
+}
+
 static void meet_triangle(const fibrad_mesh *mesh, const sheared_ray *ray, uint32_t t, first_side *first) {
     double at[3][2], along[3];
     for (int k = 0; k < 3; k++) {
@@ -66,8 +76,9 @@ static void meet_triangle(const fibrad_mesh *mesh, const sheared_ray *ray, uint3
     const double distance = (a * along[0] + b * along[1] + c * along[2]) / sum * ray->inverse;
     const uint32_t back = sum > 0;
     const double key = back ? distance + mesh->grain : distance;
-    if (!(distance > (back ? mesh->grain : ray->begin)) || t == ray->except) return;
+    if (!(distance > (back ? mesh->grain : ray->begin))) return;
     if (key > first->key || (key == first->key && mesh->number[t] >= first->number)) return;
+    if (t == ray->except && begins_in_plane(mesh, ray, t)) return;
     *first = (first_side){fibrad_max(0, distance), key, 2 * t + back, mesh->number[t]};
 }
 
@@ -121,7 +132,7 @@ static double stretch_along(const fibrad_mesh *mesh, const double origin[3], con
         stretch = fibrad_min(stretch, mesh->period[axis]);
         if (w[axis] != 0) *to = fibrad_min(*to, MESH_PERIODS * mesh->period[axis] / fibrad_abs(w[axis]));
     }
-    return stretch;
+    return fibrad_max(stretch, *to / FIBRAD_MESH_STRETCHES);
 }
 
 fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3], const double w[3], double to,
@@ -138,10 +149,11 @@ fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3
             low[axis] = origin[axis] + fibrad_min(a, b), high[axis] = origin[axis] + fibrad_max(a, b);
         }
         const fibrad_mesh_images images = fibrad_mesh_images_in(mesh, low, high);
-        for (int32_t z = images.first[2]; z <= images.last[2]; z++)
-            for (int32_t y = images.first[1]; y <= images.last[1]; y++)
-                for (int32_t x = images.first[0]; x <= images.last[0]; x++) {
-                    const double shift[3] = {x * mesh->period[0], y * mesh->period[1], z * mesh->period[2]};
+        for (int64_t z = images.first[2]; z <= images.last[2]; z++)
+            for (int64_t y = images.first[1]; y <= images.last[1]; y++)
+                for (int64_t x = images.first[0]; x <= images.last[0]; x++) {
+                    const double shift[3] = {(double)x * mesh->period[0], (double)y * mesh->period[1],
+                                             (double)z * mesh->period[2]};
                     place_ray(mesh, origin, shift, &ray);
                     meet_image(mesh, &ray, &first);
                 }
@@ -270,13 +282,17 @@ static double nearest_in_image(const fibrad_mesh *mesh, const double at[3], doub
 
 double fibrad_mesh_distance(const fibrad_mesh *mesh, const double point[3], double most) {
     double low[3], high[3], least = most;
-    for (int axis = 0; axis < 3; axis++) low[axis] = point[axis] - most, high[axis] = point[axis] + most;
+    for (int axis = 0; axis < 3; axis++) { /* the nearest of images is half a period away, or less */
+        const double half = 0.5001 * mesh->period[axis] + mesh->grain,
+                     away = half > mesh->grain ? fibrad_min(most, half) : most;
+        low[axis] = point[axis] - away, high[axis] = point[axis] + away;
+    }
     const fibrad_mesh_images images = fibrad_mesh_images_in(mesh, low, high);
-    for (int32_t z = images.first[2]; z <= images.last[2]; z++)
-        for (int32_t y = images.first[1]; y <= images.last[1]; y++)
-            for (int32_t x = images.first[0]; x <= images.last[0]; x++) {
-                const double at[3] = {point[0] - x * mesh->period[0], point[1] - y * mesh->period[1],
-                                      point[2] - z * mesh->period[2]};
+    for (int64_t z = images.first[2]; z <= images.last[2]; z++)
+        for (int64_t y = images.first[1]; y <= images.last[1]; y++)
+            for (int64_t x = images.first[0]; x <= images.last[0]; x++) {
+                const double at[3] = {point[0] - (double)x * mesh->period[0], point[1] - (double)y * mesh->period[1],
+                                      point[2] - (double)z * mesh->period[2]};
                 least = nearest_in_image(mesh, at, least);
             }
     return least * (1 - 1e-9);

@@ -255,5 +255,5 @@ int LANED(fibrad_cast_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     /* row->error stays: each half is a sample of half as many rays, its error sqrt 2 times as large, and they differ by
      * twice that of their mean; 0.65 to 1.9 times that was measured with quasi-random rays */
     if (means != NULL) write_cast_means(work, row, means);
-    return FIBRAD_OK;
+    return fibrad_row_checked(scene, row);
 }

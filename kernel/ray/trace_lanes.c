@@ -204,6 +204,16 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
     if (scene->clear != NULL) meet_mesh_from(scene, place, n, w, hit);
 }
 
+void LANED(fibrad_trace_once)(const fibrad_scene *scene, uint32_t place, const double n[3], const double w[3],
+                              fibrad_hit *hit) {
+    double unit = scene->r[place];
+    struct trace_ray ray = {scene, n, w, {scene->x[place], scene->y[place], scene->z[place]}, unit, 1 / unit, place};
+    struct trace_first first = {.distance = __builtin_inf()};
+    march_ray(&ray, -(n[0] * w[0] + n[1] * w[1] + n[2] * w[2]), &first);
+    write_hit(&ray, &first, hit);
+    if (scene->clear != NULL) meet_mesh_from(scene, place, n, w, hit);
+}
+
 /* The largest power of two not above x, which is normal. */
 static double power_of_two_below(double x) {
     uint64_t bits;

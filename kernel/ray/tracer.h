@@ -66,6 +66,11 @@ typedef void fibrad_trace_function(fibrad_tracer *tracer, uint32_t place, const 
                                    fibrad_hit *hit);
 FIBRAD_DECLARE_VERSIONS(fibrad_trace_function, fibrad_trace);
 
+/* The same without lists, by the grid alone. */
+typedef void fibrad_trace_once_function(const fibrad_scene *scene, uint32_t place, const double n[3], const double w[3],
+                                        fibrad_hit *hit);
+FIBRAD_DECLARE_VERSIONS(fibrad_trace_once_function, fibrad_trace_once);
+
 /* Follows the ray from any point [L] in direction w. A sphere that holds the point is met at distance 0; `except`, a
  * triangle on which it lies, or FIBRAD_NO_SIDE, is not met. */
 typedef void fibrad_trace_point_function(const fibrad_scene *scene, const double point[3], const double w[3],

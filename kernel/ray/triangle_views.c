@@ -37,7 +37,7 @@ static int count_ray(const fibrad_scene *scene, uint32_t side, const double poin
     }
     const uint32_t wall = scene->container.walls ? fibrad_walls_exit(scene, point, w, &distance) : FIBRAD_NONE;
     const bool meshed = hit.side != FIBRAD_NO_SIDE && (wall == FIBRAD_NONE || hit.distance < distance);
-    counts->bodies += meshed || wall != FIBRAD_NONE;
+    counts->bodies += meshed || (wall != FIBRAD_NONE && !fibrad_is_opening(&scene->container, wall));
     *seen = meshed ? hit.side / 2 : *seen;
     return meshed && fibrad_scene_slot(scene, hit.side) == FIBRAD_NONE ? FIBRAD_E_BACK : FIBRAD_OK;
 }
@@ -48,14 +48,14 @@ static int view_of_side(const fibrad_scene *scene, const fibrad_sobol *sobol, ui
     const uint64_t shift = fibrad_mix(2 * (uint64_t)mesh->number[side / 2] + side % 2);
     view_counts counts = {0, 0, 0};
     double normal[3], point[3], w[3], x[4];
+    uint32_t bits[8] = {0};
     int status = FIBRAD_OK;
     *view = (fibrad_side_view){__builtin_nan(""), __builtin_nan(""), __builtin_nan("")};
     if (fibrad_scene_slot(scene, side) == FIBRAD_NONE || !(fibrad_mesh_triangle_area(mesh, side / 2) > 0))
         return FIBRAD_OK;
     fibrad_mesh_normal(mesh, side, normal);
     for (uint32_t k = 0; k < rays && status == FIBRAD_OK; k++) {
-        uint32_t bits[8];
-        fibrad_sobol_point(sobol, k, bits);
+        fibrad_sobol_move(sobol, k > 0 ? k - 1 : 0, k, bits);
         for (uint64_t d = 0; d < 4; d++)
             x[d] = fibrad_fraction(((uint64_t)bits[d] << 32 | UINT64_C(1) << 31) ^ fibrad_mix(shift + d));
         fibrad_mesh_triangle_point(mesh, side / 2, x, point);

@@ -28,15 +28,19 @@ int fibrad_beam_compute(const fibrad_scene *scene, fibrad_workspace *space, uint
     return FIBRAD_VERSION_OF(fibrad_beam_lanes, scene->facts.isa)(scene, space, i, rule, &all, row);
 }
 
-/* Repeats the row with more directions until its error is small enough. */
+/* Repeats the row with more directions until its error is small enough: only then it is known how long it is. */
 static int beam_to_tolerance(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *given,
                              fibrad_row *row) {
     fibrad_beam_rule rule = *(const fibrad_beam_rule *)given;
+    if (rule.tolerance == 0) return fibrad_beam_compute(scene, space, i, &rule, row);
+    double body[FIBRAD_BODIES_MAX];
+    fibrad_row trial = fibrad_row_scratch(space, body);
     for (;;) {
-        const int status = fibrad_beam_compute(scene, space, i, &rule, row);
-        if (status != FIBRAD_OK || !(rule.tolerance > 0 && row->error > rule.tolerance)) return status;
-        if (rule.directions == FIBRAD_DIRECTIONS_MAX) return status;
-        rule.directions = fibrad_directions_for(rule.directions, row->error, rule.tolerance);
+        const int status = fibrad_beam_compute(scene, space, i, &rule, &trial);
+        if (status != FIBRAD_OK) return status;
+        if (trial.error <= rule.tolerance || rule.directions == FIBRAD_DIRECTIONS_MAX)
+            return fibrad_row_give(scene, &trial, row);
+        rule.directions = fibrad_directions_for(rule.directions, trial.error, rule.tolerance);
     }
 }
 

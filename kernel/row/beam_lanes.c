@@ -65,8 +65,8 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
         if (fibrad_slot_of_body(slot)) work->wall[slot] = fibrad_max(0, work->wall[slot]) * scale;
     fibrad_row_bodies(scene, work->wall, row);
     if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
-    row->error *= fibrad_entries_gain(&work->entries, parts);
+    row->error = fibrad_entries_error(&work->entries, parts, row->error, scale);
     row->directions = directions;
     row->symmetric = 0;
-    return FIBRAD_OK;
+    return fibrad_row_checked(scene, row);
 }

@@ -3,6 +3,7 @@
  * A part lists what its windows add to the sums of the row, and the row adds it up in their order: so its bits are
  * those of the row in one. */
 #include "fibrad_part.h"
+#include "base/arena.h"
 #include "base/random.h"
 #include "row/beam.h"
 #include "row/beam_lanes.h"
@@ -31,7 +32,7 @@ static int complete_rule(const fibrad_beam_rule *given, fibrad_beam_rule *rule) 
 static int compute_range(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *given,
                          fibrad_row *row) {
     const part_rule *part = given;
-    if (part->range.addends != NULL) part->range.addends->count = 0;
+    if (part->range.addends != NULL) part->range.addends->count = 0, part->range.addends->missed = false;
     return FIBRAD_VERSION_OF(fibrad_beam_lanes, scene->facts.isa)(scene, space, i, &part->rule, &part->range, row);
 }
 
@@ -42,15 +43,15 @@ int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, c
     fibrad_row row = {.body = body};
     const int checked = complete_rule(given, &how.rule);
     if (checked != FIBRAD_OK) return checked;
-    if (part == NULL || from >= to || to > how.rule.directions) return FIBRAD_E_ARGUMENT;
-    fibrad_addends addends = {&part->memory, 0};
+    if (part == NULL || !fibrad_memory_valid(&part->memory) || from >= to || to > how.rule.directions)
+        return FIBRAD_E_ARGUMENT;
+    fibrad_addends addends = {.memory = &part->memory};
     how.range = (fibrad_beam_range){.from = from, .to = to, .addends = &addends};
     part->key = 0;
     const int status = fibrad_row_run(scene, work, i, &(fibrad_row_method){compute_range, &how, 0, 0}, &row);
     if (status != FIBRAD_OK) return status;
     part->memory.needed = addends.count * sizeof(fibrad_addend);
-    if (part->memory.needed > part->memory.size)
-        return part->memory.resize != NULL ? FIBRAD_E_MEMORY : FIBRAD_E_CAPACITY;
+    if (addends.missed) return part->memory.resize != NULL ? FIBRAD_E_MEMORY : FIBRAD_E_CAPACITY;
     part->from = from, part->to = to;
     part->count = addends.count;
     part->fallbacks = row.fallbacks;
@@ -67,7 +68,8 @@ int fibrad_beam_join(const fibrad_scene *scene, fibrad_work *work, uint32_t i, c
     const uint64_t key = key_of(scene, i, &how.rule);
     uint32_t to = 0;
     for (uint32_t p = 0; p < parts; to = part[p++].to)
-        if (part[p].key != key || part[p].from != to) return FIBRAD_E_STATE;
+        if (part[p].key != key || part[p].from != to || part[p].count > part[p].memory.size / sizeof(fibrad_addend))
+            return FIBRAD_E_STATE;
     if (to != how.rule.directions) return FIBRAD_E_STATE;
     how.range = (fibrad_beam_range){.part = part, .parts = parts};
     return fibrad_row_run(scene, work, i, &(fibrad_row_method){compute_range, &how, 0, 0}, row);

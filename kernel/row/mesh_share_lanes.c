@@ -116,6 +116,10 @@ static double spread_at(double depth, uint32_t n) {
     return ratio < 1 && depth < __builtin_inf() ? wide * fibrad_sqrt(1 - ratio * ratio) : 0;
 }
 
+static void see_all(fibrad_points *points) {
+    for (uint32_t word = 0; word < points->count / 64; word++) points->seen[word] = UINT64_MAX;
+}
+
 /* What triangles take of the open, `open` of it. */
 static double share_open(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k,
                          double open) {
@@ -134,7 +138,11 @@ static double share_open(fibrad_workspace *work, const double frame[9], fibrad_p
     if (own == 0) { /* too little for points: where the deepest line ends */
         const uint32_t slot =
             met->deepest != FIBRAD_NO_SIDE ? fibrad_scene_slot(work->scene, met->deepest) : FIBRAD_NONE;
-        if (slot == FIBRAD_NONE) return open;
+        if (slot == FIBRAD_NONE) { /* walls share it by all points alike */
+            see_all(points);
+            points->open = points->count;
+            return open;
+        }
         const uint32_t entry = fibrad_entries_of(&work->entries, work->scene->facts.spheres + slot);
         fibrad_entries_add(&work->entries, entry, k, open);
         return 0;
@@ -267,13 +275,10 @@ static bool find_faces(fibrad_workspace *work, const double frame[9], double dee
         found->more = LANED(fibrad_faces_next)(work, search);
         found->listed = false;
     }
-    found->at = search->nearest, found->spread = open ? spread_at(search->nearest, work->windows) : 0;
-    if (found->more || !found->listed) search->shallow = -__builtin_inf();
-    return search->nearest < __builtin_inf();
-}
-
-static void see_all(fibrad_points *points) {
-    for (uint32_t word = 0; word < points->count / 64; word++) points->seen[word] = UINT64_MAX;
+    found->at = fibrad_min(search->nearest, search->rest); /* beyond there nobody has looked */
+    found->spread = open ? spread_at(found->at, work->windows) : 0;
+    if (found->more || !found->listed || search->rest < __builtin_inf()) search->shallow = -__builtin_inf();
+    return found->at < __builtin_inf();
 }
 
 /* How many points serve a window by areas, if there are n windows. */

@@ -1,17 +1,59 @@
 /* row.c - rows by any method, with memory that grows. SPDX-License-Identifier: MIT */
 #include "row/row.h"
+#include "base/arena.h"
 #include "store/record.h"
 
 /* Entries for which an empty collection asks for room at first. */
 #define FIRST_ENTRIES 256u
 
-void fibrad_row_bodies(const fibrad_scene *scene, const double wall[FIBRAD_SLOTS], fibrad_row *row) {
+#define SUM_ERROR 1e-9 /* how far the sum of a row may be off: rounding is 1e-13 at the most */
+
+void fibrad_row_bodies(const fibrad_scene *scene, double wall[FIBRAD_SLOTS], fibrad_row *row) {
     for (uint32_t b = 0; b < scene->facts.bodies; b++) row->body[b] = wall[scene->slot[b]];
+    for (uint32_t slot = 0; slot < FIBRAD_WALLS; slot++)
+        if (fibrad_is_opening(&scene->container, slot)) row->escaped += wall[slot], wall[slot] = 0;
+}
+
+int fibrad_sum_checked(double sum) { return fibrad_abs(sum - 1) <= SUM_ERROR ? FIBRAD_OK : FIBRAD_E_SUM; }
+
+int fibrad_row_checked(const fibrad_scene *scene, const fibrad_row *row) {
+    double sum = row->escaped + row->beyond;
+    for (uint32_t k = 0; k < row->length; k++) sum += row->f[k];
+    for (uint32_t b = 0; b < scene->facts.bodies; b++) sum += row->body[b];
+    return fibrad_sum_checked(sum);
+}
+
+fibrad_row fibrad_row_scratch(fibrad_workspace *space, double *body) {
+    fibrad_entries *entries = &space->entries;
+    return (fibrad_row){
+        .col = (uint32_t *)(void *)entries->angles, .f = entries->lengths, .body = body, .capacity = entries->capacity};
+}
+
+int fibrad_row_give(const fibrad_scene *scene, const fibrad_row *row, fibrad_row *to) {
+    fibrad_row given = *row;
+    to->length = row->length;
+    if (row->length > to->capacity) return FIBRAD_E_CAPACITY;
+    for (uint32_t k = 0; k < row->length; k++) to->col[k] = row->col[k], to->f[k] = row->f[k];
+    for (uint32_t b = 0; b < scene->facts.bodies; b++) to->body[b] = row->body[b];
+    given.col = to->col, given.f = to->f, given.body = to->body;
+    given.capacity = to->capacity;
+    *to = given;
+    return FIBRAD_OK;
 }
 
 static bool arrays_valid(const fibrad_row *row, uint32_t bodies) {
-    if (row->rows != NULL) return true;
+    if (row->rows != NULL) return fibrad_memory_valid(&row->rows->memory);
     return (row->capacity == 0 || (row->col != NULL && row->f != NULL)) && (bodies == 0 || row->body != NULL);
+}
+
+/* Computes a row without room for it, for its length alone: FIBRAD_E_CAPACITY. */
+static int measure_row(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_row_method *method,
+                       fibrad_row *own) {
+    double body[FIBRAD_BODIES_MAX];
+    fibrad_row row = {.body = body};
+    const int status = method->compute(scene, space, i, method->rule, &row);
+    own->length = row.length;
+    return status == FIBRAD_OK ? FIBRAD_E_CAPACITY : status;
 }
 
 /* Tries once, into the arrays of `row` or into the free space of a collection. */
@@ -20,6 +62,7 @@ static int attempt(const fibrad_scene *scene, fibrad_workspace *space, uint32_t 
     const uint32_t bodies = scene->facts.bodies;
     if (rows != NULL && !fibrad_rows_open(rows, bodies, own)) {
         const int status = fibrad_rows_reserve(rows, rows->memory.resize != NULL ? FIRST_ENTRIES : 0, bodies);
+        if (status == FIBRAD_E_CAPACITY) return measure_row(scene, space, i, method, own);
         if (status != FIBRAD_OK) return status;
         fibrad_rows_open(rows, bodies, own);
     }
@@ -34,15 +77,18 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
     fibrad_rows *rows = row->rows;
     fibrad_row own = *row;
     fibrad_workspace *space;
-    own.beyond = 0;
+    uint32_t least = 0;
+    own.beyond = 0, own.length = 0;
     int status = fibrad_work_open(work, scene, method->extra_min, method->extra_best, &space);
     while (status == FIBRAD_OK) {
         status = attempt(scene, space, i, method, rows, &own);
         if (status == FIBRAD_OK) break;
         if (status == FIBRAD_E_WORK)
             status = fibrad_work_grow(work, &space);
-        else if (status == FIBRAD_E_CAPACITY && rows != NULL && own.length > own.capacity)
+        else if (status == FIBRAD_E_CAPACITY && rows != NULL && own.length >= least) {
             status = fibrad_rows_reserve(rows, own.length, scene->facts.bodies);
+            least = own.length + 1; /* it would come back for ever */
+        }
     }
     if (status == FIBRAD_E_CAPACITY && rows == NULL) row->length = own.length;
     if (status == FIBRAD_E_BACK) work->triangle = space->back;

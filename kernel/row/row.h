@@ -21,7 +21,18 @@ typedef struct fibrad_row_method {
 int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_row_method *method,
                    fibrad_row *row);
 
-/* The factors to bodies from those by slot. */
-void fibrad_row_bodies(const fibrad_scene *scene, const double wall[FIBRAD_SLOTS], fibrad_row *row);
+/* What every row ends with: FIBRAD_OK, or FIBRAD_E_SUM if its factors do not add up to one. */
+int fibrad_row_checked(const fibrad_scene *scene, const fibrad_row *row);
+int fibrad_sum_checked(double sum);
+
+/* A row that is not the caller's: its arrays are scratch in which entries find room that no call but that of rays
+ * uses, until entries begin anew; body [FIBRAD_BODIES_MAX]. */
+fibrad_row fibrad_row_scratch(fibrad_workspace *space, double *body);
+
+/* Copies a row of a scene into the caller's. FIBRAD_E_CAPACITY: its length alone. */
+int fibrad_row_give(const fibrad_scene *scene, const fibrad_row *row, fibrad_row *to);
+
+/* The factors to bodies from those by slot. Those of openings are moved to row->escaped. */
+void fibrad_row_bodies(const fibrad_scene *scene, double wall[FIBRAD_SLOTS], fibrad_row *row);
 
 #endif

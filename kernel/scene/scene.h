@@ -46,9 +46,15 @@ typedef struct fibrad_coarse {
 /* The convex region within the walls. */
 typedef struct fibrad_container {
     bool walls;             /* whether there are any */
+    uint32_t openings;      /* bit k: the plane of slot k is an opening */
     double low[3], high[3]; /* of the planes [L]; infinite where there is none */
     double axis[2], radius; /* of the cylinder [L]; radius infinite: none */
 } fibrad_container;
+
+/* Whether what meets a slot goes to the surroundings. */
+static inline bool fibrad_is_opening(const fibrad_container *container, uint32_t slot) {
+    return slot < FIBRAD_WALLS && (container->openings >> slot & 1) != 0;
+}
 
 struct fibrad_scene {
     fibrad_scene_facts facts;

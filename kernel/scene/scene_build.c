@@ -1,5 +1,6 @@
 /* scene_build.c - copies spheres into a fixed-memory cell grid, and checks them. SPDX-License-Identifier: MIT */
 #include "scene/scene.h"
+#include "base/constants.h"
 #include "base/random.h"
 #include "base/arena.h"
 #include "base/dispatch.h"
@@ -32,12 +33,12 @@ static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uin
     return scene;
 }
 
-/* Whether a scene can be made for a configuration; FIBRAD_E_ARGUMENT, _UNSUPPORTED, _ISA. */
+/* Whether a scene can be made for a configuration; FIBRAD_E_ARGUMENT, _UNSUPPORTED, _ENDLESS, _ISA. */
 static int check_config(const fibrad_scene_config *config) {
     for (int axis = 0; axis < 3; axis++)
         if (!(config->period[axis] >= 0 && fibrad_finite(config->period[axis]))) return FIBRAD_E_ARGUMENT;
-    int status = fibrad_walls_check(config);
-    if (status == FIBRAD_OK) status = fibrad_surroundings_check(config);
+    int status = fibrad_surroundings_check(config);
+    if (status == FIBRAD_OK) status = fibrad_walls_check(config);
     if (status != FIBRAD_OK) return status;
     const int isa = fibrad_isa_choose(config->isa);
     return isa == -2 ? FIBRAD_E_ARGUMENT : isa == -1 ? FIBRAD_E_ISA : FIBRAD_OK;
@@ -51,7 +52,23 @@ size_t fibrad_scene_size(uint32_t n, int ids) {
 }
 
 static int scene_fault(int status, fibrad_fault *fault, uint32_t first, uint32_t second) {
-    if (fault != NULL) *fault = (fibrad_fault){first, second, UINT32_MAX};
+    if (fault != NULL) *fault = (fibrad_fault){first, second, UINT32_MAX, 0, 0};
+    return status;
+}
+
+static int sphere_fault(fibrad_fault *fault, uint32_t sphere, int why) {
+    if (fault != NULL) *fault = (fibrad_fault){sphere, sphere, UINT32_MAX, 0, why};
+    return FIBRAD_E_ARGUMENT;
+}
+
+/* The first wall that does not go with the box and the walls before it, if that is what is wrong. */
+static int wall_fault(int status, fibrad_fault *fault, uint32_t n, const fibrad_scene_config *config) {
+    fibrad_scene_config some = *config;
+    uint32_t wall = 0;
+    if (status == FIBRAD_E_ARGUMENT && config->body != NULL && config->bodies <= FIBRAD_BODIES_MAX)
+        for (some.bodies = 1; some.bodies <= config->bodies && wall == 0; some.bodies++)
+            if (fibrad_walls_check(&some) == FIBRAD_E_ARGUMENT) wall = some.bodies;
+    if (fault != NULL) *fault = (fibrad_fault){n, n, UINT32_MAX, wall, wall > 0 ? FIBRAD_WHY_WALL : 0};
     return status;
 }
 
@@ -111,6 +128,7 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
         hash = (hash ^ o->mark[k]) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
     hash = fibrad_mix(hash ^ (o->mark != NULL));
     for (uint32_t b = 0; b < scene->facts.bodies; b++) hash = fibrad_mix(hash ^ scene->slot[b]);
+    if (c->openings != 0) hash = fibrad_mix(hash ^ c->openings);
     for (uint32_t i = 0; i < s->n; i++) {
         const double sphere[] = {coordinate_of(s, 0, i), coordinate_of(s, 1, i), coordinate_of(s, 2, i),
                                  radius_of(s, i)};
@@ -136,9 +154,11 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
     return fibrad_mix(hash) | 1;
 }
 
-/* Lengths must leave room for squares, and coordinates for the digits of a radius. */
-#define LENGTH_MAX     1e150
-#define COORDINATE_MAX 0x1p45 /* smallest radii */
+/* The largest that coordinates and periods may be among spheres. */
+static double longest_among(const fibrad_scene *scene) {
+    if (scene->facts.spheres == 0) return FIBRAD_LENGTH_MAX;
+    return fibrad_min(FIBRAD_LENGTH_MAX, FIBRAD_COORDINATE_MAX * scene->facts.radius_min);
+}
 
 /* Box of the centres and range of the radii. A centre on a periodic axis belongs into [low, low + period), low being
  * the least coordinate: a bed that fits its box keeps its coordinates to the bit. */
@@ -147,26 +167,25 @@ static int measure_spheres(fibrad_scene *scene, const fibrad_spheres *s, fibrad_
     for (uint32_t i = 0; i < s->n; i++) {
         for (int axis = 0; axis < 3; axis++) {
             double c = coordinate_of(s, axis, i);
-            if (!(fibrad_abs(c) <= LENGTH_MAX)) return scene_fault(FIBRAD_E_ARGUMENT, fault, i, i);
+            if (!(fibrad_abs(c) <= FIBRAD_LENGTH_MAX)) return sphere_fault(fault, i, FIBRAD_WHY_PLACE);
             if (i == 0 || c < scene->low[axis]) scene->low[axis] = c;
             if (i == 0 || c > scene->high[axis]) scene->high[axis] = c;
         }
         const double r = radius_of(s, i);
-        if (!(r >= 1 / LENGTH_MAX && r <= LENGTH_MAX)) return scene_fault(FIBRAD_E_ARGUMENT, fault, i, i);
+        if (!(r >= 1 / FIBRAD_LENGTH_MAX && r <= FIBRAD_LENGTH_MAX)) return sphere_fault(fault, i, FIBRAD_WHY_RADIUS);
         scene->facts.radius_min = fibrad_min(scene->facts.radius_min, r);
         scene->facts.radius_max = fibrad_max(scene->facts.radius_max, r);
     }
+    const double longest = longest_among(scene);
     for (uint32_t i = 0; i < s->n; i++) {
         for (int axis = 0; axis < 3; axis++)
-            if (fibrad_abs(coordinate_of(s, axis, i)) > COORDINATE_MAX * scene->facts.radius_min)
-                return scene_fault(FIBRAD_E_ARGUMENT, fault, i, i);
-        if (!fibrad_walls_hold(&scene->container,
-                               (double[3]){coordinate_of(s, 0, i), coordinate_of(s, 1, i), coordinate_of(s, 2, i)}))
-            return scene_fault(FIBRAD_E_ARGUMENT, fault, i, i);
+            if (fibrad_abs(coordinate_of(s, axis, i)) > longest) return sphere_fault(fault, i, FIBRAD_WHY_PLACE);
+        const double centre[3] = {coordinate_of(s, 0, i), coordinate_of(s, 1, i), coordinate_of(s, 2, i)};
+        if (!fibrad_walls_hold_ball(&scene->container, centre, radius_of(s, i)))
+            return scene_fault(FIBRAD_E_GEOMETRY, fault, i, i);
+        if (!fibrad_walls_hold(&scene->container, centre)) return sphere_fault(fault, i, FIBRAD_WHY_BEYOND);
     }
-    if (s->n > 0 && fibrad_walls_reach(&scene->container) > COORDINATE_MAX * scene->facts.radius_min)
-        return scene_fault(FIBRAD_E_ARGUMENT, fault, s->n, s->n);
-    const double longest = s->n > 0 ? COORDINATE_MAX * scene->facts.radius_min : LENGTH_MAX;
+    if (fibrad_walls_reach(&scene->container) > longest) return scene_fault(FIBRAD_E_ARGUMENT, fault, s->n, s->n);
     for (int axis = 0; axis < 3; axis++)
         if (scene->period[axis] > longest) return scene_fault(FIBRAD_E_ARGUMENT, fault, s->n, s->n);
     for (int axis = 0; axis < 3; axis++) {
@@ -352,12 +371,35 @@ static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
     return FIBRAD_OK;
 }
 
+#define MESH_IMAGES 4096 /* of all meshes at one place, at the most */
+
 /* Cube root of the volume per sphere. */
 static double spacing_of(const fibrad_scene *scene) {
     double longest = 2 * scene->facts.radius_max, volume = 1;
     for (int axis = 0; axis < 3; axis++) longest = fibrad_max(longest, side(scene, axis));
     for (int axis = 0; axis < 3; axis++) volume *= fibrad_max(side(scene, axis), 2 * scene->facts.radius_max) / longest;
     return longest * cube_root(volume / scene->facts.spheres, 1);
+}
+
+/* Whether a mesh is not too small for where it, spheres and walls lie, nor its images too many at one place. Else
+ * FIBRAD_E_ARGUMENT; *triangle: one that is at fault. */
+static int check_mesh(const fibrad_scene *scene, uint32_t *triangle) {
+    const fibrad_mesh *mesh = &scene->mesh;
+    double farthest = fibrad_walls_reach(&scene->container), images = 1, most = 0;
+    int widest = 3;
+    for (int axis = 0; axis < 3; axis++) {
+        const double far = fibrad_max(fibrad_abs(scene->low[axis]), fibrad_abs(scene->high[axis]));
+        const double own = fibrad_max(fibrad_abs(mesh->low[axis]), fibrad_abs(mesh->high[axis]));
+        farthest = fibrad_max(farthest, fibrad_max(far, own));
+        if (!(mesh->period[axis] > 0)) continue;
+        const double size = mesh->high[axis] - mesh->low[axis], window = 2 * scene->facts.radius_max;
+        images *= 2 + (size + window + 2 * mesh->grain) / mesh->period[axis];
+        if (size > window && size > most * mesh->period[axis]) most = size / mesh->period[axis], widest = axis;
+    }
+    const bool small = !(FIBRAD_COORDINATE_MAX * mesh->extent >= fibrad_max(farthest, 1 / FIBRAD_LENGTH_MAX));
+    if (!small && images <= MESH_IMAGES) return FIBRAD_OK;
+    *triangle = small ? 0 : widest < 3 ? fibrad_mesh_highest(mesh, widest) : UINT32_MAX;
+    return FIBRAD_E_ARGUMENT;
 }
 
 /* Builds the mesh, and how far each sphere is from it, which cannot change by more than the way to the next sphere. */
@@ -367,10 +409,11 @@ static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fi
     uint32_t triangle;
     for (uint32_t b = 0; b < config->bodies; b++)
         mesh_of[b] = scene->slot[b] < FIBRAD_MESHES ? FIBRAD_NO_MESH : (uint8_t)(scene->slot[b] - FIBRAD_MESHES);
-    const int status =
-        fibrad_mesh_build(&scene->mesh, config->triangles, scene->period, mesh_of, config->bodies, &triangle);
+    int status = fibrad_mesh_build(&scene->mesh, config->triangles, scene->period, mesh_of, config->bodies,
+                                   longest_among(scene), &triangle);
+    if (status == FIBRAD_OK) status = check_mesh(scene, &triangle);
     if (status != FIBRAD_OK) {
-        if (fault != NULL) *fault = (fibrad_fault){n, n, triangle};
+        if (fault != NULL) *fault = (fibrad_fault){n, n, triangle, 0, 0};
         return status;
     }
     const fibrad_mesh *mesh = &scene->mesh;
@@ -384,7 +427,10 @@ static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fi
     for (int axis = 0; axis < 3; axis++) distance += mesh->high[axis] - mesh->low[axis];
     for (uint32_t i = 0; i < n; i++) {
         const double at[3] = {scene->x[i], scene->y[i], scene->z[i]};
-        for (int axis = 0; axis < 3; axis++) distance += fibrad_abs(at[axis] - before[axis]);
+        for (int axis = 0; axis < 3; axis++) {
+            const double step = fibrad_abs(at[axis] - before[axis]), period = mesh->period[axis];
+            distance += period > 0 ? fibrad_min(step, period) : step;
+        }
         distance = fibrad_mesh_distance(mesh, at, distance * (1 + 1e-6) + mesh->grain);
         fibrad_copy(before, at, sizeof before);
         scene->clear[i] = (float)fibrad_min((distance - mesh->grain) / scene->r[i] * (1 - 1e-6), 1e30);
@@ -407,7 +453,7 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
         if (needed > 0 && triangles > 0) needed += fibrad_triangles_size(triangles, n);
         status = fibrad_arena_open(&arena, memory, size, needed);
     }
-    if (status != FIBRAD_OK) return scene_fault(status, fault, n, n);
+    if (status != FIBRAD_OK) return wall_fault(status, fault, n, &config);
 
     const fibrad_spheres s = with_strides(spheres);
     fibrad_scene *scene =
@@ -417,7 +463,7 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
     scene->facts.isa = fibrad_isa_choose(config.isa);
     scene->facts.triangles = triangles;
     fibrad_copy(scene->period, config.period, sizeof scene->period);
-    fibrad_walls_build(scene, config.body, config.bodies);
+    fibrad_walls_build(scene, &config);
     status = measure_spheres(scene, &s, fault);
     if (status != FIBRAD_OK) return status;
     for (int axis = 0; axis < 3; axis++)

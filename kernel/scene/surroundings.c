@@ -1,4 +1,5 @@
 /* surroundings.c - what lies around the part of a bed that a row knows. SPDX-License-Identifier: MIT */
+#include "base/constants.h"
 #include "scene/surroundings.h"
 #include "scene/walls.h"
 
@@ -171,6 +172,9 @@ int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const
         square += w[axis] * w[axis];
     }
     if (!(fibrad_abs(square - 1) < 1e-6)) return FIBRAD_E_ARGUMENT;
+    for (int axis = 0; axis < 3 && scene->mesh.triangles > 0; axis++)
+        if (!(fibrad_abs(origin[axis] - scene->mesh.middle[axis]) <= FIBRAD_COORDINATE_MAX * scene->mesh.extent))
+            return FIBRAD_E_ARGUMENT;
     const fibrad_mesh_hit met = fibrad_mesh_first(&scene->mesh, origin, w, length, FIBRAD_NO_SIDE);
     *hit = (fibrad_triangle_hit){.triangle = UINT32_MAX, .distance = met.distance};
     if (met.side != FIBRAD_NO_SIDE) hit->triangle = scene->mesh.number[met.side / 2], hit->back = met.side % 2;

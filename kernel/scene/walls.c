@@ -5,42 +5,77 @@
 
 #define INFINITE        __builtin_inf()
 #define WALL_LENGTH_MAX 1e150
+#define BALL_SLACK      1e-12 /* of a length that has been rounded */
 
 static bool wall_length_valid(double length) { return fibrad_abs(length) <= WALL_LENGTH_MAX; }
 
 /* The slot of a plane or a cylinder; FIBRAD_WALLS: it is not valid. */
-static uint32_t slot_of_body(const fibrad_body *body) {
-    if (body->kind == FIBRAD_BODY_CYLINDER) {
-        const bool valid = wall_length_valid(body->cylinder.x) && wall_length_valid(body->cylinder.y) &&
-                           wall_length_valid(body->cylinder.radius) && body->cylinder.radius > 0;
-        return valid ? FIBRAD_CYLINDER : FIBRAD_WALLS;
-    }
-    const int axis = body->plane.axis, upper = body->plane.upper;
-    const bool valid = body->kind == FIBRAD_BODY_PLANE && axis >= 0 && axis < 3 && (upper == 0 || upper == 1) &&
-                       wall_length_valid(body->plane.at);
+static uint32_t slot_of_plane(const fibrad_plane *plane) {
+    const int axis = plane->axis, upper = plane->upper;
+    const bool valid = axis >= 0 && axis < 3 && (upper == 0 || upper == 1) && wall_length_valid(plane->at);
     return valid ? (uint32_t)(2 * axis + upper) : FIBRAD_WALLS;
 }
 
+static uint32_t slot_of_body(const fibrad_body *body) {
+    if (body->kind == FIBRAD_BODY_PLANE) return slot_of_plane(&body->plane);
+    const bool valid = body->kind == FIBRAD_BODY_CYLINDER && wall_length_valid(body->cylinder.x) &&
+                       wall_length_valid(body->cylinder.y) && wall_length_valid(body->cylinder.radius) &&
+                       body->cylinder.radius > 0;
+    return valid ? FIBRAD_CYLINDER : FIBRAD_WALLS;
+}
+
+/* The planes that were found, openings too, by slot, and the cylinder. */
+typedef struct found_walls {
+    const fibrad_plane *plane[FIBRAD_CYLINDER];
+    bool cylinder;
+} found_walls;
+
+/* Notes a plane. FIBRAD_E_ARGUMENT: it is not valid, its side has one already, or its axis is periodic. */
+static int find_plane(const fibrad_scene_config *config, const fibrad_plane *plane, found_walls *found) {
+    const uint32_t slot = slot_of_plane(plane);
+    if (slot == FIBRAD_WALLS || found->plane[slot] != NULL || config->period[slot / 2] > 0) return FIBRAD_E_ARGUMENT;
+    found->plane[slot] = plane;
+    return FIBRAD_OK;
+}
+
+static int find_body(const fibrad_scene_config *config, const fibrad_body *body, found_walls *found) {
+    if (body->kind == FIBRAD_BODY_PLANE) return find_plane(config, &body->plane, found);
+    if (body->kind == FIBRAD_BODY_MESH)
+        return config->triangles == NULL || config->triangles->n == 0 ? FIBRAD_E_ARGUMENT : FIBRAD_OK;
+    if (slot_of_body(body) == FIBRAD_WALLS || found->cylinder) return FIBRAD_E_ARGUMENT;
+    found->cylinder = true;
+    return FIBRAD_OK;
+}
+
+/* Whether an axis has an end, or none that matters, on both sides. */
+static bool axis_is_closed(const fibrad_scene_config *config, const found_walls *found, int axis) {
+    const bool periodic = config->period[axis] > 0 || (config->occupancy != NULL && config->occupancy->periodic[axis]);
+    return periodic || (found->plane[2 * axis] != NULL && found->plane[2 * axis + 1] != NULL) ||
+           (found->cylinder && axis < 2);
+}
+
 int fibrad_walls_check(const fibrad_scene_config *config) {
-    const fibrad_body *found[FIBRAD_WALLS] = {NULL};
-    if (config->bodies > 0 && config->body == NULL) return FIBRAD_E_ARGUMENT;
+    found_walls found = {0};
+    if ((config->bodies > 0 && config->body == NULL) || (config->openings > 0 && config->opening == NULL))
+        return FIBRAD_E_ARGUMENT;
     if (config->bodies > FIBRAD_BODIES_MAX) return FIBRAD_E_UNSUPPORTED;
-    for (uint32_t b = 0; b < config->bodies; b++) {
-        if (config->body[b].kind == FIBRAD_BODY_MESH) {
-            if (config->triangles == NULL || config->triangles->n == 0) return FIBRAD_E_ARGUMENT;
-            continue;
-        }
-        const uint32_t slot = slot_of_body(&config->body[b]);
-        if (slot == FIBRAD_WALLS || found[slot] != NULL) return FIBRAD_E_ARGUMENT;
-        if (slot < FIBRAD_CYLINDER && config->period[slot / 2] > 0) return FIBRAD_E_ARGUMENT;
-        found[slot] = &config->body[b];
+    int status = FIBRAD_OK;
+    for (uint32_t b = 0; b < config->bodies && status == FIBRAD_OK; b++)
+        status = find_body(config, &config->body[b], &found);
+    for (uint32_t k = 0; k < config->openings && status == FIBRAD_OK; k++)
+        status = find_plane(config, &config->opening[k], &found);
+    if (status != FIBRAD_OK) return status;
+    bool closed = true, across = false;
+    uint32_t walled = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const fibrad_plane *low = found.plane[2 * axis], *high = found.plane[2 * axis + 1];
+        if (low != NULL && high != NULL && !(low->at < high->at)) return FIBRAD_E_ARGUMENT;
+        walled += low != NULL || high != NULL;
+        across = across || (axis < 2 && (low != NULL || high != NULL || config->period[axis] > 0));
+        closed = closed && axis_is_closed(config, &found, axis);
     }
-    for (uint32_t k = 0; k < FIBRAD_CYLINDER; k += 2)
-        if (found[k] != NULL && found[k + 1] != NULL && !(found[k]->plane.at < found[k + 1]->plane.at))
-            return FIBRAD_E_ARGUMENT;
-    if (found[FIBRAD_CYLINDER] == NULL) return FIBRAD_OK;
-    const bool across = found[0] != NULL || found[1] != NULL || found[2] != NULL || found[3] != NULL;
-    return across || config->period[0] > 0 || config->period[1] > 0 ? FIBRAD_E_ARGUMENT : FIBRAD_OK;
+    if (found.cylinder && across) return FIBRAD_E_ARGUMENT;
+    return (found.cylinder || walled > 1) && !closed ? FIBRAD_E_ENDLESS : FIBRAD_OK;
 }
 
 /* How far the container extends along an axis, per period. */
@@ -57,26 +92,35 @@ static double wall_area_of(const fibrad_scene *scene, uint32_t slot) {
     return container_extent(scene, (slot / 2 + 1) % 3) * container_extent(scene, (slot / 2 + 2) % 3);
 }
 
-void fibrad_walls_build(fibrad_scene *scene, const fibrad_body *body, uint32_t bodies) {
+static void set_plane(fibrad_container *c, const fibrad_plane *plane) {
+    (plane->upper ? c->high : c->low)[plane->axis] = plane->at;
+}
+
+void fibrad_walls_build(fibrad_scene *scene, const fibrad_scene_config *config) {
     fibrad_container *c = &scene->container;
+    const fibrad_body *body = config->body;
     for (int axis = 0; axis < 3; axis++) c->low[axis] = -INFINITE, c->high[axis] = INFINITE;
     c->axis[0] = c->axis[1] = 0;
     c->radius = INFINITE;
-    uint32_t meshes = 0;
-    for (uint32_t b = 0; b < bodies; b++) {
+    uint32_t meshes = 0, walls = 0;
+    for (uint32_t b = 0; b < config->bodies; b++) {
         const bool mesh = body[b].kind == FIBRAD_BODY_MESH;
         const uint32_t slot = scene->slot[b] = mesh ? FIBRAD_MESHES + meshes++ : slot_of_body(&body[b]);
         if (mesh) continue;
-        c->walls = true;
+        walls |= 1u << slot;
         if (slot == FIBRAD_CYLINDER)
             c->axis[0] = body[b].cylinder.x, c->axis[1] = body[b].cylinder.y, c->radius = body[b].cylinder.radius;
-        else if (slot % 2 == 0)
-            c->low[slot / 2] = body[b].plane.at;
         else
-            c->high[slot / 2] = body[b].plane.at;
+            set_plane(c, &body[b].plane);
     }
-    for (uint32_t b = 0; b < bodies; b++)
-        if (scene->slot[b] < FIBRAD_WALLS) scene->wall_area[scene->slot[b]] = wall_area_of(scene, scene->slot[b]);
+    for (uint32_t k = 0; k < config->openings; k++) {
+        set_plane(c, &config->opening[k]);
+        c->openings |= 1u << slot_of_plane(&config->opening[k]);
+    }
+    walls |= c->openings;
+    c->walls = walls != 0;
+    for (uint32_t slot = 0; slot < FIBRAD_WALLS; slot++)
+        if (walls >> slot & 1) scene->wall_area[slot] = wall_area_of(scene, slot);
 }
 
 bool fibrad_walls_hold(const fibrad_container *c, const double at[3]) {
@@ -85,6 +129,16 @@ bool fibrad_walls_hold(const fibrad_container *c, const double at[3]) {
     if (c->radius == INFINITE) return true;
     const double x = (at[0] - c->axis[0]) / c->radius, y = (at[1] - c->axis[1]) / c->radius;
     return x * x + y * y <= 1;
+}
+
+bool fibrad_walls_hold_ball(const fibrad_container *c, const double centre[3], double radius) {
+    for (uint32_t slot = 0; slot < FIBRAD_CYLINDER; slot++) {
+        if (!fibrad_is_opening(c, slot)) continue;
+        const uint32_t axis = slot / 2;
+        const double away = slot % 2 ? c->high[axis] - centre[axis] : centre[axis] - c->low[axis];
+        if (!(radius - away <= BALL_SLACK * (radius + fibrad_abs(centre[axis])))) return false;
+    }
+    return true;
 }
 
 double fibrad_walls_reach(const fibrad_container *c) {

@@ -4,14 +4,17 @@
 
 #include "scene/scene.h"
 
-/* Whether bodies and periods of a configuration fit together; FIBRAD_E_ARGUMENT, _UNSUPPORTED. */
+/* Whether bodies, openings and periods of a configuration fit together; FIBRAD_E_ARGUMENT, _UNSUPPORTED, _ENDLESS. */
 int fibrad_walls_check(const fibrad_scene_config *config);
 
-/* Sets scene->container, slot and wall_area from bodies found valid; scene->period is set already. */
-void fibrad_walls_build(fibrad_scene *scene, const fibrad_body *body, uint32_t bodies);
+/* Sets scene->container, slot and wall_area from bodies and openings found valid; scene->period is set already. */
+void fibrad_walls_build(fibrad_scene *scene, const fibrad_scene_config *config);
 
 /* Whether a place [L] lies within the walls, or on one. */
 bool fibrad_walls_hold(const fibrad_container *container, const double at[3]);
+
+/* Whether a sphere reaches beyond no opening, but for rounding. */
+bool fibrad_walls_hold_ball(const fibrad_container *container, const double centre[3], double radius);
 
 /* The largest coordinate of a wall [L], the cylinder's radius included. */
 double fibrad_walls_reach(const fibrad_container *container);

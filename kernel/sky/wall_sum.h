@@ -70,7 +70,7 @@ double fibrad_wall_apart(const fibrad_wall_view *view);
 
 /* Adds to wall[] what each wall gets, or escapes: the open part of each region, over the windows it has, times the
  * solid angle it has. The sum is what was open, so what is left over goes to regions that are hidden in part. parts:
- * the squared distances of the sums over even and odd windows, and over every fourth, as of fibrad_entries_gain. */
+ * the squared distances of the sums over even and odd windows, and over every fourth, as of fibrad_entries_error. */
 void fibrad_wall_factors(const fibrad_wall_sums *sums, const fibrad_wall_view *view, uint32_t windows, double apart,
                          double wall[FIBRAD_SLOTS], double parts[2]);
 

@@ -1,5 +1,6 @@
 /* rows.c - a collection of rows in one block, fixed or growing. SPDX-License-Identifier: MIT */
 #include "fibrad_part.h"
+#include "base/arena.h"
 #include "store/record.h"
 
 /* Bytes before the first record. */
@@ -111,13 +112,16 @@ static bool row_valid(const fibrad_row *row, uint32_t bodies) {
 
 int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t bodies) {
     if (rows == NULL || row == NULL || row->rows != NULL || !row_valid(row, bodies)) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_memory_valid(&rows->memory)) return FIBRAD_E_ARGUMENT;
     fibrad_row to = *row;
     int status = fibrad_rows_reserve(rows, row->length, bodies);
     if (status != FIBRAD_OK) return status;
     fibrad_rows_open(rows, bodies, &to);
-    fibrad_copy(to.body, row->body, bodies * sizeof *to.body);
-    fibrad_copy(to.f, row->f, row->length * sizeof *to.f);
-    fibrad_copy(to.col, row->col, row->length * sizeof *to.col);
+    if (bodies > 0) fibrad_copy(to.body, row->body, bodies * sizeof *to.body);
+    if (row->length > 0) {
+        fibrad_copy(to.f, row->f, row->length * sizeof *to.f);
+        fibrad_copy(to.col, row->col, row->length * sizeof *to.col);
+    }
     fibrad_rows_commit(rows, 0, bodies, &to);
     return FIBRAD_OK;
 }

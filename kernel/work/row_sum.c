@@ -60,16 +60,16 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
 
 /* Where the error falls by the same ratio from fourths to halves as from halves to the whole, it is halves^2/fourths.
  * The bounds are measured, docs/accuracy.md: the factor where many windows see each sphere, and that of independent
- * windows. */
-double fibrad_entries_gain(const fibrad_entries *entries, const double parts[2]) {
-    const double least = 0.5, most = 1.1;
-    double halves = parts[0], fourths = parts[1];
+ * windows. Halves of a row of few entries may agree by chance: then fourths, if errors fall as directions^-1.5. */
+double fibrad_entries_error(const fibrad_entries *entries, const double parts[2], double distance, double scale) {
+    const double least = 0.5, most = 1.1, of_fourths = 0.125;
+    double halves = parts[0], fourths = parts[1], gain = most;
     for (uint32_t k = 0; k < entries->length; k++) {
         const double *part = entries->part[k];
         double half = part[0] + part[2] - part[1] - part[3], even = part[0] - part[2], odd = part[1] - part[3];
         halves += half * half;
         fourths += even * even + odd * odd;
     }
-    if (!(halves < fourths)) return most;
-    return fibrad_max(least, most * fibrad_sqrt(halves / fourths));
+    if (halves < fourths) gain = fibrad_max(least, most * fibrad_sqrt(halves / fourths));
+    return fibrad_max(distance * gain, of_fourths * fibrad_sqrt(fourths) * scale);
 }

@@ -54,8 +54,8 @@ void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *sce
  * windows. Those of slots are errors alone; those of spheres that triangles have hidden again are left out. */
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row);
 
-/* The error of a beam row over that distance, from how much the sums over every fourth window differ, docs/methods.md
- * section 3. */
-double fibrad_entries_gain(const fibrad_entries *entries, const double parts[2]);
+/* The error of the whole rule, estimated: `distance` is that of the halves, entries times scale, and what the caller
+ * has put into it besides: parts are the squared distances of those halves and fourths, unscaled. */
+double fibrad_entries_error(const fibrad_entries *entries, const double parts[2], double distance, double scale);
 
 #endif

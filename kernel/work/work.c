@@ -170,7 +170,7 @@ static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan 
 int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_min, size_t extra_best,
                      fibrad_workspace **space) {
     const uint32_t walls = scene->container.walls, met = scene->mesh.triangles > 0;
-    if (work->memory.block != NULL && work->memory.size == 0) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_memory_valid(&work->memory)) return FIBRAD_E_ARGUMENT;
     fibrad_workspace *inside = inside_of(work);
     fibrad_work_plan plan = {walls, met, USUAL_NEAR, USUAL_DISCS, USUAL_ENTRIES, extra_best};
     const fibrad_work_plan least = {walls, met, LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min};
@@ -198,6 +198,9 @@ int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     fibrad_work_plan plan = now->plan, least = now->least;
     plan.walls = least.walls, plan.met = least.met;
     const fibrad_work_plan needed = now->needed;
+    const bool more = needed.near > plan.near || needed.discs > plan.discs || needed.entries > plan.entries ||
+                      needed.extra > plan.extra;
+    if (!more) return FIBRAD_E_UNSUPPORTED; /* the call would come back for ever */
     /* what has been too small once in this call must not shrink again */
     if (needed.near > plan.near) plan.near = least.near = needed.near;
     if (needed.discs > plan.discs) least.discs = plan.discs + 1, plan.discs = needed.discs;
@@ -212,7 +215,8 @@ int fibrad_work_entries_missed(fibrad_workspace *space) {
     if (space->entries.missed == 0) return FIBRAD_OK;
     const uint64_t enough = (uint64_t)space->entries.capacity + space->entries.missed;
     const uint32_t spheres = space->scene->facts.spheres;
-    space->needed.entries = (uint32_t)(enough < spheres ? enough : spheres);
+    const uint32_t most = space->scene->mesh.triangles > 0 ? spheres + FIBRAD_SLOTS : spheres;
+    space->needed.entries = (uint32_t)(enough < most ? enough : most);
     return FIBRAD_E_WORK;
 }
 

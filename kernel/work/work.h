@@ -114,7 +114,7 @@ typedef struct fibrad_work_plan {
     uint32_t met;     /* 1: among triangles */
     uint32_t near;    /* near spheres kept per row for all its directions; a matter of speed alone for beams and rays */
     uint32_t discs;   /* spheres met in one window, hidden ones included */
-    uint32_t entries; /* different spheres seen by one row */
+    uint32_t entries; /* different spheres and slots seen by one row */
     size_t extra;     /* bytes for what other methods keep */
 } fibrad_work_plan;
 
@@ -154,7 +154,8 @@ typedef struct fibrad_workspace {
 int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_min, size_t extra_best,
                      fibrad_workspace **space);
 
-/* Lays it out anew after the kernel's own FIBRAD_E_WORK, for what (*space)->needed asks. Errors: _WORK, _MEMORY. */
+/* Lays it out anew after the kernel's own FIBRAD_E_WORK, for what (*space)->needed asks. Errors: _WORK, _MEMORY,
+ * _UNSUPPORTED (it asks for no more than there is). */
 int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space);
 
 /* Notes in space->needed that more entries are needed, and returns FIBRAD_E_WORK, if a row has found no room for all;

@@ -146,6 +146,19 @@ for np in 1 2 4; do
     run $np mesh$np mesh.lmp data "$work/quarter.data" walls "wall mesh $work/box.stl 1000 0.9 solids name box"
 done
 run 1 planes mesh.lmp data "$work/quarter.data" walls "$planes"
+# without a lid: as with a black one at the temperature of the surroundings, where the bed ends or higher up
+sides=${planes% wall zhi*}
+gained="f_rad f_rad[6] f_rad[7] f_rad[8] f_rad[9] f_rad[10]"
+for np in 1 2; do
+    run $np open$np mesh.lmp data "$work/quarter.data" walls "$sides wall zhi open at 20" shown "$gained f_rad[1]"
+done
+run 1 lid mesh.lmp data "$work/quarter.data" walls "$sides wall zhi 300 1 at 20"
+run 2 rim mesh.lmp data "$work/quarter.data" walls "$sides wall zhi open" shown "$gained f_rad[1]"
+test -n "$(grep -A1 '^ *Step' "$work/rim.log")" && near "$work/lid.out" "$work/open1.out" 1e-10 "a bed without a lid" &&
+    near "$work/open1.out" "$work/open2.out" 1e-10 "a bed without a lid, np 1 and 2"
+run 1 endless mesh.lmp data "$work/quarter.data" walls "$sides" shown "$gained"
+grep -q 'wall zhi open' "$work/endless.log"
+verdict "a bed without a lid and without an opening is refused" $?
 # walls NAME: step, the powers of particles and six walls, when the run begins
 walls() { awk '$1 == "Step" { getline; print; exit }' "$work/$1.log"; }
 test -n "$(walls mesh1)" && test "$(walls mesh1)" = "$(walls mesh2)" && test "$(walls mesh1)" = "$(walls mesh4)" &&

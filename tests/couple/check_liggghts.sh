@@ -111,6 +111,17 @@ with_mesh() { awk -v fixes="$1" '/^fix heat/ { print fixes } { print }' bed; }
 with_mesh 'fix vessel all mesh/surface file box.stl type 1 temperature 1200' >meshed
 only_planes=$radiation
 for side in zhi xlo xhi ylo yhi; do only_planes="$only_planes --wall $side=1200,.9"; done
+# Without a lid: as with a black one as hot as the surroundings; refused without the word
+sides=$(echo "$only_planes" | sed 's/ --wall zhi=[^ ]*//')
+radiation="$sides --wall zhi=300,1"
+run black_lid 1 'setforce 0 0 0' 200 -in bed
+radiation="$sides --wall zhi=open,.06"
+for ranks in 1 2; do run open$ranks $ranks 'setforce 0 0 0' 200 -in bed; done
+echo "$(value black_lid radiation_particles) $(value open1 radiation_particles) $(value open2 radiation_particles) \
+    $(value black_lid radiation_zhi) $(value open1 radiation_surroundings)" | awk '{
+    printf "below a black lid %.5f J, an opening %.5f J\n", $1, $2
+    off = $2 / $1 - 1; ranks = $2 / $3 - 1; lid = $5 / $4 - 1
+    exit !(NF == 5 && off * off < 1e-24 && ranks * ranks < 1e-24 && lid * lid < 1e-24) }' || complain "an opening is no black lid"
 radiation=$only_planes
 run planes 1 'setforce 0 0 0' 200 -in bed
 radiation='--emissivity 0.8 --surroundings 300'
@@ -153,7 +164,7 @@ refuse 1 2 "which temperature" -in bed --emissivity 0.8 --steps 1
 refuse 1 2 "which script" --emissivity 0.8 --surroundings 300 --steps 1
 refuse 1 2 "unknown option: --bad" -in bed --bad 3
 refuse 1 2 "'1.2' is no number from 0 to 1" -in bed --emissivity 1.2
-refuse 1 2 "neither SIDE=T,E" -in bed --wall floor=300,1
+refuse 1 2 "none of SIDE=T,E" -in bed --wall floor=300,1
 refuse 1 2 "neither ID=E" -in bed --mesh lid=0.9:up
 refuse 1 2 "'lid=700,0.9' is of a mesh that is there already" -in bed --mesh lid=0.9 --mesh lid=700,0.9
 refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
@@ -163,6 +174,10 @@ refuse 2 3 "cools down in" -in bed $radiation --steps 1 --every 1000000 --rows 1
 # shellcheck disable=SC2086
 refuse 2 3 "step 0: .*wall" -in bed $radiation --wall zhi=300,1,0.02 --steps 1
 # shellcheck disable=SC2086
+# shellcheck disable=SC2086  # options
+refuse 2 3 "step 0: .*--wall zhi=open" -in bed $sides --steps 1
+refuse 1 2 "none of SIDE=T,E" -in bed --wall zhi=opened
+# shellcheck disable=SC2086  # options
 refuse 2 3 "no such fix mesh/surface" -in bed $radiation --mesh lid=0.9 --steps 1
 # shellcheck disable=SC2086
 refuse 2 3 "gives no temperature" -in low $radiation --mesh lid=0.9 --steps 1

@@ -138,7 +138,10 @@ static void close_pile(struct pile *p) {
     free(p->body_emissivity);
 }
 
-enum walls { OPEN, FLOORS, TUBE };
+enum walls { OPEN, FLOORS, TUBE, PIPE };
+
+/* Both ends of a pipe, where its particles end. */
+static const fibrad_plane ends[] = {{2, 0, NAN}, {2, 1, NAN}};
 
 /* What a bed of side^3 particles is like. */
 struct kind {
@@ -164,7 +167,7 @@ static struct pile pile_of(const struct kind *kind) {
         for (int axis = 0; axis < 3; ++axis)
             x[axis] =
                 round((PITCH * (place[axis] + .5 + .2 * (random_of(id, (uint64_t)axis) - .5)) - 1) * 0x1p20) / 0x1p20;
-        if (kind->walls == TUBE && hypot(x[0] - box / 2 + 1, x[1] - box / 2 + 1) > box / 2) continue;
+        if (kind->walls >= TUBE && hypot(x[0] - box / 2 + 1, x[1] - box / 2 + 1) > box / 2) continue;
         const size_t n = p.bed.n++;
         p.id[n] = id;
         memcpy(p.x + 3 * n, x, sizeof x);
@@ -175,7 +178,8 @@ static struct pile pile_of(const struct kind *kind) {
     if (kind->walls == FLOORS)
         for (int k = 0; k < 2; ++k)
             p.body[p.bed.bodies++] = (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {2, k, k ? box - 1 : -1}};
-    if (kind->walls == TUBE)
+    if (kind->walls == PIPE) p.bed.opening = ends, p.bed.openings = 2;
+    if (kind->walls >= TUBE)
         p.body[p.bed.bodies++] =
             (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {box / 2 - 1, box / 2 - 1, box / 2}};
     p.body_emissivity[0] = kind->emissivity[0], p.body_emissivity[1] = .5;
@@ -313,6 +317,7 @@ static const struct kind kinds[] = {
     {"black", 6, {0, 0, 0}, FLOORS, {1, 1}, 5, 1, 3},    {"floors", 5, {1, 1, 0}, FLOORS, {.3, .8}, 5, 1, 1},
     {"small", 3, {1, 1, 1}, OPEN, {1, .8}, 8, 2, 0},     {"tube", 6, {0, 0, 1}, TUBE, {.8, 1}, 0, 1, 2},
     {"far", 5, {0, 0, 0}, OPEN, {.3, .8}, 1000, 1, 0},   {"mirrors", 6, {0, 0, 0}, FLOORS, {0, .8}, 6, 2, 1},
+    {"pipe", 6, {0, 0, 0}, PIPE, {.8, .5}, 6, 1, 1},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
@@ -621,7 +626,9 @@ static void check_refused(const fibrad_insitu *s, int status, int expected, cons
 static const struct kind small = {"refused", 4, {1, 1, 0}, FLOORS, {.8, .8}, 4, 2, 0};
 
 /* A bed with one fault. */
-enum fault { TWICE, INSIDE, BAD_X, BAD_RADIUS, BAD_EMISSIVITY, BEYOND, NO_BOX, NO_WALL, FAULTS };
+enum fault { TWICE, INSIDE, BAD_X, BAD_RADIUS, BAD_EMISSIVITY, BEYOND, NO_BOX, NO_WALL, ENDLESS, OUTSIDE, FAULTS };
+
+static const fibrad_plane beneath = {2, 0, -.4};
 
 static void spoil(struct pile *p, enum fault fault) {
     switch (fault) {
@@ -646,17 +653,28 @@ static void spoil(struct pile *p, enum fault fault) {
     case NO_BOX:
         p->bed.high[0] = p->bed.low[0];
         break;
-    default:
+    case NO_WALL:
         p->body_emissivity[1] = 2;
+        break;
+    case ENDLESS:
+        p->body[1] = (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {3, 3, 9}};
+        memset(p->bed.periodic, 0, sizeof p->bed.periodic);
+        break;
+    default:
+        p->bed.opening = &beneath, p->bed.openings = 1;
+        memmove(p->body, p->body + 1, sizeof *p->body);
+        p->bed.bodies = 1;
         break;
     }
 }
 
 static void rows_are_refused(fibrad_insitu *s) {
     static const int status[FAULTS] = {FIBRAD_E_ARGUMENT, FIBRAD_E_GEOMETRY, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT,
-                                       FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT};
-    static const char *const words[FAULTS] = {"twice",          "inside", "coordinate",        "radius",
-                                              "its emissivity", "a wall", "no extent along x", "wall 2"};
+                                       FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT,
+                                       FIBRAD_E_ENDLESS,  FIBRAD_E_GEOMETRY};
+    static const char *const words[FAULTS] = {
+        "twice",  "inside",     "coordinate",         "radius", "its emissivity", "a wall", "no extent along x",
+        "wall 2", "an opening", "beyond an open side"};
     for (int fault = 0; fault < FAULTS; ++fault) {
         struct pile all = pile_of(&small);
         char named[64];

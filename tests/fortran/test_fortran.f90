@@ -8,6 +8,7 @@ program test_fortran
     integer :: failures = 0
     call factors_of_pairs()
     call walls_and_boxes()
+    call open_sides()
     call meshes()
     call exchange_of_pairs()
     call powers()
@@ -67,6 +68,39 @@ contains
         call fibrad_view_factors([0.5_dp], [0.5_dp], [0.5_dp], [0.5_dp], found, status, box=[1.0_dp, 1.0_dp, 1.0_dp])
         call expect(size(found%f) == 1 .and. abs(found%f(1) - 1) < 1e-2_dp, 'it sees its own images')
     end subroutine walls_and_boxes
+
+    ! A cup as deep as it is wide, open above: a disc under 45 degrees is the surroundings'. Without it the cup is endless.
+    subroutine open_sides()
+        type(fibrad_factors) :: found
+        type(fibrad_heat) :: heat
+        real(dp) :: power(1), wall_power(2), outside, lids(3), closed
+        integer :: status, k
+        type(fibrad_wall) :: cup(3), lid
+        cup = [fibrad_plane('zmax', 10.0_dp, open=.true.), fibrad_cylinder(0.0_dp, 0.0_dp, 10.0_dp), &
+               fibrad_plane('zmin', -10.0_dp)]
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], found, status, walls=cup)
+        call expect(status == fibrad_ok .and. all(shape(found%wall) == [2, 1]), 'an open side is no wall')
+        call expect(abs(found%escaped(1) - (1 - sqrt(0.5_dp)) / 2) < 2e-3_dp, 'a disc under 45 degrees is open')
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [0.0_dp], [1.0_dp], found, status, walls=cup(2:3))
+        call expect(status == fibrad_e_endless, 'a cup without a rim')
+        call fibrad_view_factors([0.0_dp], [0.0_dp], [9.5_dp], [1.0_dp], found, status, walls=cup)
+        call expect(status == fibrad_e_geometry, 'a sphere beyond the rim')
+        lid = fibrad_plane('zmax', 10.0_dp)
+        do k = 1, 2
+            if (k == 1) call heat%new([0.0_dp], [0.0_dp], [3.0_dp], [1.0_dp], status, walls=cup)
+            if (k == 2) call heat%new([0.0_dp], [0.0_dp], [3.0_dp], [1.0_dp], status, walls=[cup(2:3), lid])
+            if (k == 1) call heat%solve([500.0_dp], [0.5_dp], 300.0_dp, power, status, wall_temperature=[600.0_dp, 700.0_dp], &
+                                        wall_emissivity=[0.4_dp, 0.8_dp], wall_power=wall_power, surroundings_power=outside)
+            if (k == 1) closed = power(1)
+            if (k == 2) call heat%solve([500.0_dp], [0.5_dp], 300.0_dp, power, status, &
+                                        wall_temperature=[600.0_dp, 700.0_dp, 300.0_dp], &
+                                        wall_emissivity=[0.4_dp, 0.8_dp, 1.0_dp], wall_power=lids)
+            call expect(status == fibrad_ok, 'powers in a cup')
+        end do
+        call expect(near(power(1), closed, 1e-14_dp) .and. near(outside, lids(3), 1e-14_dp) .and. outside > 0, 'a black lid')
+        call expect(near(wall_power(1), lids(1), 1e-14_dp) .and. near(wall_power(2), lids(2), 1e-14_dp), 'the walls of the cup')
+        call heat%free()
+    end subroutine open_sides
 
     ! The box from -side to side about the origin: wall 1 is its floor, wall 2 all the rest. turned: about x, by an angle.
     function box_of(side, turned) result(box)

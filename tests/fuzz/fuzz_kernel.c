@@ -1,157 +1,14 @@
-/* fuzz_kernel.c - libFuzzer target: any arguments to the functions of the public headers, in any order.
+/* fuzz_kernel.c - libFuzzer target: any arguments to the functions of the kernel's headers, in any order.
  * SPDX-License-Identifier: MIT
  *
- * The input is read as a stream of choices. Every block has exactly the size stated to the function, so that the
- * address sanitizer sees a byte too far; everything returned with FIBRAD_OK must be what the header promises. */
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "fibrad.h"
+ * Every block has exactly the size stated to the function, so that the address sanitizer sees a byte too far.
+ * Everything returned with FIBRAD_OK must be what the header promises. */
 #include "fibrad_furnace.h"
 #include "fibrad_heat.h"
-#include "fibrad_part.h"
 #include "fibrad_surface.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define REQUIRE(condition)                                                                                             \
-    do {                                                                                                               \
-        if (!(condition)) {                                                                                            \
-            fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #condition);                                    \
-            abort();                                                                                                   \
-        }                                                                                                              \
-    } while (0)
-
-static const uint8_t *at, *end;
-
-static uint8_t byte(void) { return at < end ? *at++ : 0; }
-
-static uint32_t number(void) {
-    uint32_t n = byte();
-    return n < 250 ? n : (uint32_t)byte() << 24 | (uint32_t)byte() << 16 | (uint32_t)byte() << 8 | byte();
-}
-
-/* Mostly plain numbers on a coarse grid, which touch and coincide; now and then any bits at all. */
-static double coordinate(void) {
-    static const double special[] = {
-        NAN, INFINITY, -INFINITY, -0.0, 1e-300, 1e300, 1e150, 0x1p-1074, 0x1.fffffffffffffp1023};
-    uint8_t kind = byte();
-    if (kind < 240) return (kind - 120) / 4.0;
-    if (kind < 249) return special[kind - 240];
-    uint64_t word = 0;
-    for (int k = 0; k < 8; k++) word = word << 8 | byte();
-    double x;
-    memcpy(&x, &word, sizeof x);
-    return x;
-}
-
-/* A block of exactly `size` bytes `shift` bytes after a boundary (the pointer to free is *block). */
-static void *memory_of(size_t size, size_t shift, void **block) {
-    *block = malloc(size + shift > 0 ? size + shift : 1);
-    REQUIRE(*block != NULL);
-    unsigned char *memory = *block;
-    memset(memory, 0xa5, size + shift);
-    return memory + shift;
-}
-
-static double *copies(uint32_t n, double (*next)(void)) {
-    double *array = malloc(n * sizeof *array + 1);
-    REQUIRE(array != NULL);
-    for (uint32_t i = 0; i < n; i++) array[i] = next();
-    return array;
-}
-
-/* ---- memory ----------------------------------------------------------------------------------------------------- */
-
-/* Memory that grows, into another block each time, until nothing is left. */
-struct supply {
-    void *block;
-    size_t size;
-    uint32_t left; /* how often it grows */
-};
-
-static void *supply_more(void *context, void *block, size_t size) {
-    struct supply *supply = context;
-    REQUIRE(block == supply->block && size > supply->size);
-    if (supply->left == 0 || size > 1 << 26) return NULL;
-    supply->left--;
-    void *larger = malloc(size);
-    REQUIRE(larger != NULL);
-    memset(larger, 0xa5, size);
-    if (block != NULL) memcpy(larger, block, supply->size);
-    free(block);
-    supply->block = larger, supply->size = size;
-    return larger;
-}
-
-/* Fixed or growing; the caller frees supply->block. */
-static fibrad_memory any_memory(struct supply *supply) {
-    const uint8_t kind = byte();
-    *supply = (struct supply){.left = kind < 128 ? UINT32_MAX : kind % 8};
-    fibrad_memory memory = {.resize = supply_more, .context = supply};
-    if (kind % 2 == 0) return memory;
-    supply->size = 1 + (kind % 4 == 1 ? number() % 4096 : 64 * (size_t)number() % 40000);
-    supply->block = malloc(supply->size);
-    REQUIRE(supply->block != NULL);
-    memset(supply->block, 0xa5, supply->size);
-    memory = (fibrad_memory){.block = supply->block, .size = supply->size};
-    return memory;
-}
-
-/* After a status that says so: what was asked for. True: there is more now. */
-static bool give_more(fibrad_memory *memory, struct supply *supply) {
-    REQUIRE(memory->resize == NULL && memory->needed > memory->size);
-    if (memory->needed > 1 << 24) return false;
-    memory->block = realloc(memory->block, memory->needed);
-    REQUIRE(memory->block != NULL);
-    memory->size = supply->size = memory->needed;
-    supply->block = memory->block;
-    return true;
-}
+#include "contents.h"
 
 /* ---- scenes and rows -------------------------------------------------------------------------------------------- */
-
-enum { SPHERES = 24, BODIES = 7 };
-
-static bool plain; /* all lengths lie within what a bed can be */
-static bool tame;  /* they are far from that, but a row takes far less than a second: no 1e9 radii across a box */
-
-static double shortest; /* period */
-
-static double length(void) {
-    double c = coordinate();
-    tame = tame && fabs(c) < 1e6 && (c == 0 || fabs(c) > 1e-6);
-    plain = plain && fabs(c) < 100 && (c == 0 || fabs(c) > 0.1);
-    return c;
-}
-
-static double radius(void) {
-    double c = length();
-    return c <= 0 && c >= -30 && byte() < 250 ? .25 - c / 8 : c;
-}
-
-/* From 0 to 1, seldom what is none. */
-static double share(void) {
-    uint8_t b = byte();
-    return b < 250 ? .04 * (b % 26) : coordinate();
-}
-
-/* What a scene is made of. */
-struct contents {
-    uint32_t n;
-    double x[SPHERES], y[SPHERES], z[SPHERES], r[SPHERES];
-    uint64_t id[SPHERES];
-    bool ids;
-    fibrad_body body[BODIES + 1];
-    bool occupied;
-    fibrad_occupancy occupancy;
-    uint64_t mark[8];
-    fibrad_scene_config config;
-};
 
 /* Everything about one scene, and about what is made of it. */
 struct session {
@@ -172,88 +29,9 @@ struct session {
     unsigned char *traced, swept[16];
     bool begun, solved, of_other;
     bool measured; /* temperatures and sigma are such that powers are compared with rounding */
+    bool unknown;  /* some temperatures are not given */
+    bool wide;     /* the input asks for all there is: parts of rows, rows of bodies, triangles, unknown temperatures */
 };
-
-/* A known region, an occupancy, or both. */
-static void any_surroundings(struct contents *c) {
-    const uint8_t which = byte();
-    if (which % 2 == 0) {
-        const uint32_t axis = which / 2 % 3;
-        c->config.known_high[axis] = length();
-        if (which > 128) c->config.known_low[axis] = length();
-    }
-    c->occupied = which % 4 != 0;
-    c->occupancy = (fibrad_occupancy){.cells = {1 + byte() % 8, 1 + byte() % 8, 1 + byte() % 8}};
-    for (int axis = 0; axis < 3; axis++) {
-        c->occupancy.low[axis] = coordinate();
-        c->occupancy.high[axis] = c->occupancy.low[axis] + (byte() < 250 ? 1 + byte() / 4. : coordinate());
-        c->occupancy.periodic[axis] = byte() % 2;
-    }
-    for (int k = 0; k < 8; k++) c->mark[k] = (uint64_t)byte() << 56 | (uint64_t)byte() << 20 | byte();
-    if (which == 3) c->occupancy.cells[byte() % 3] = number();
-    if (which == 5) c->occupancy.periodic[byte() % 3] = byte();
-}
-
-static struct contents any_contents(bool walled) {
-    struct contents c = {.n = number() % SPHERES};
-    c.ids = byte() % 4 == 1, c.config.isa = byte() % 6;
-    plain = tame = true;
-    shortest = INFINITY;
-    for (int axis = 0; axis < 3; axis++) {
-        c.config.period[axis] = byte() < 160 ? 0 : fabs(length());
-        if (c.config.period[axis] > 0) shortest = fmin(shortest, c.config.period[axis]);
-    }
-    const uint8_t part = byte();
-    if (part == 1 || part > 240) any_surroundings(&c);
-    for (uint32_t planes = walled ? byte() : 0, k = 0; k < 6; k++)
-        if (planes >> k & 1)
-            c.body[c.config.bodies++] =
-                (fibrad_body){.kind = FIBRAD_BODY_PLANE, .plane = {(int)k / 2, k % 2, 8 * length()}};
-    if (walled && byte() % 4 == 0)
-        c.body[c.config.bodies++] =
-            (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {length(), length(), 4 * fabs(length())}};
-    if (walled && byte() == 1) c.body[byte() % BODIES].kind = byte();
-    if (walled && byte() == 1) c.body[byte() % BODIES].plane.axis = (int)number();
-    if (walled && byte() == 1) c.config.bodies = number() % (BODIES + 2);
-    for (uint32_t i = 0; i < c.n; i++) {
-        c.x[i] = length(), c.y[i] = length(), c.z[i] = length(), c.r[i] = radius();
-        c.id[i] = c.ids ? number() : i;
-    }
-    return c;
-}
-
-static int build(fibrad_scene **scene, void *memory, size_t size, struct contents *c) {
-    fibrad_spheres spheres = {.x = c->x, .y = c->y, .z = c->z, .r = c->r, .n = c->n, .id = c->ids ? c->id : NULL};
-    fibrad_fault fault = {0, 0};
-    *scene = NULL;
-    c->config.body = c->body;
-    c->config.occupancy = c->occupied ? &c->occupancy : NULL;
-    const bool small = c->occupancy.cells[0] <= 8 && c->occupancy.cells[1] <= 8 && c->occupancy.cells[2] <= 8;
-    c->occupancy.mark = small ? c->mark : NULL;
-    const int status = fibrad_scene_init(scene, memory, size, &c->config, &spheres, &fault);
-    REQUIRE((status == FIBRAD_OK) == (*scene != NULL) && fault.first <= c->n && fault.second <= c->n);
-    return status;
-}
-
-/* A row that has been computed: points of each window, or rays, or 0 for exact areas. */
-static void check_row(const fibrad_row *row, const fibrad_scene *scene, uint32_t i, uint32_t points) {
-    fibrad_scene_facts facts;
-    fibrad_scene_describe(scene, &facts);
-    double sum = row->escaped + row->beyond;
-    REQUIRE(row->sphere == i && (row->rows != NULL || row->length <= row->capacity));
-    for (uint32_t k = 0; k < row->length; k++) {
-        REQUIRE(row->col[k] < facts.spheres && (k == 0 || row->col[k] > row->col[k - 1]));
-        REQUIRE(row->f[k] > 0 && row->f[k] <= 1 + 1e-9);
-        sum += row->f[k];
-    }
-    for (uint32_t b = 0; b < facts.bodies; b++) {
-        REQUIRE(row->body[b] >= 0 && (row->body[b] == 0 || fibrad_scene_body_area(scene, b) > 0));
-        sum += row->body[b];
-    }
-    REQUIRE(row->escaped >= -1e-9 && row->beyond >= -1e-9 && row->error >= 0 && isfinite(row->error));
-    REQUIRE(row->symmetric == 0 || row->symmetric == 1);
-    if (plain || points > 0) REQUIRE(fabs(sum - 1) < 1e-9);
-}
 
 /* Where nothing moves, no row is off. */
 static void check_unmoved(const fibrad_scene *scene, uint32_t n, const fibrad_row *row) {
@@ -301,8 +79,8 @@ static void any_method(struct method *m) {
         m->emissivity[i] = which == 109 ? bad : k < 26 ? .05 + .037 * k : 0;
     }
     /* where little is absorbed paths go on for long */
-    for (uint32_t b = 0; b < BODIES; b++) m->body_emissivity[b] = .2 + .8 * share();
-    if (which == 107) m->body_emissivity[byte() % BODIES] = coordinate() + .2;
+    for (uint32_t b = 0; b < BODIES; b++) m->body_emissivity[b] = b < PLANES ? .2 + .8 * share() : .1 * b;
+    if (which == 107) m->body_emissivity[byte() % PLANES] = coordinate() + .2;
     if (which == 108) m->exchange.body_emissivity = NULL;
 }
 
@@ -316,13 +94,13 @@ static bool too_long(const struct method *m) {
 static int row_by(const struct session *s, fibrad_work *work, const struct method *m, uint32_t i, fibrad_row *row) {
     switch (m->kind) {
     case BEAM:
-        return fibrad_beam_row(s->scene, work, i, &m->beam, row);
+        return CALL(fibrad_beam_row(s->scene, work, i, &m->beam, row));
     case SURFACE:
-        return fibrad_surface_row(s->scene, work, i, &m->surface, row);
+        return CALL(fibrad_surface_row(s->scene, work, i, &m->surface, row));
     case EXCHANGE:
-        return fibrad_exchange_row(s->scene, work, i, &m->exchange, row, NULL);
+        return CALL(fibrad_exchange_row(s->scene, work, i, &m->exchange, row, NULL));
     default:
-        return fibrad_cast_row(s->scene, work, i, &m->cast, row, NULL);
+        return CALL(fibrad_cast_row(s->scene, work, i, &m->cast, row, NULL));
     }
 }
 
@@ -380,7 +158,7 @@ static void try_displacement(struct session *s) {
     if (too_long(&m)) return;
     fibrad_displacement d;
     const uint32_t i = number() % (s->contents.n + 1);
-    const int status = fibrad_exchange_displacement(s->scene, &s->work, i, &m.exchange, &d);
+    const int status = CALL(fibrad_exchange_displacement(s->scene, &s->work, i, &m.exchange, &d));
     if (status != FIBRAD_OK) return;
     /* few paths may absorb more than they carried: some go on for others that ended */
     REQUIRE(d.absorbed >= 0 && isfinite(d.absorbed));
@@ -401,7 +179,7 @@ static void try_flow(struct session *s) {
                         .body_emission = body_emission,
                         .body_power = body_power,
                         .surroundings_emission = share()};
-    const int status = fibrad_rows_flow(&s->rows, n, bodies, &flow);
+    const int status = CALL(fibrad_rows_flow(&s->rows, n, bodies, &flow));
     sum = flow.surroundings_power, size = fabs(sum);
     for (uint32_t i = 0; i < n; i++) sum += power[i], size += fabs(power[i]);
     for (uint32_t b = 0; b < bodies; b++) sum += body_power[b], size += fabs(body_power[b]);
@@ -443,7 +221,7 @@ static void try_drift(struct session *s) {
 
 /* Work memory exchanged for another, or the contents of the scene for others. */
 static void exchange_work(struct session *s) {
-    free(s->supply.block);
+    supply_end(&s->supply);
     void *inside = byte() % 2 ? s->work.inside : NULL; /* what it was is no matter */
     s->work = (fibrad_work){.memory = any_memory(&s->supply), .inside = inside};
 }
@@ -520,7 +298,7 @@ static void try_matrix(const fibrad_scene *scene, const fibrad_rows *rows, uint3
             REQUIRE(fibrad_matrix_close(matrix) == (closed ? FIBRAD_E_STATE : FIBRAD_OK));
             closed = true;
         } else {
-            const int found = fibrad_matrix_average(matrix, task);
+            const int found = CALL(fibrad_matrix_average(matrix, task));
             if (task >= tasks)
                 REQUIRE(found == FIBRAD_E_ARGUMENT);
             else
@@ -567,7 +345,7 @@ static void try_bed(struct session *s) {
         modest = m.kind != SURFACE;
         try_matrix(s->scene, rows, 2, n, wrong ? FIBRAD_E_STATE : FIBRAD_OK, m.kind == EXCHANGE ? m.emissivity : NULL);
     }
-    free(supply[0].block), free(supply[1].block);
+    supply_end(&supply[0]), supply_end(&supply[1]);
 }
 
 /* Rows by hand, sound or not. */
@@ -596,14 +374,14 @@ static void try_rows(void) {
             }
             row.escaped = share(), row.error = share();
             modest = modest && sum <= 1;
-            const uint32_t bodies = byte() < 250 ? 0 : byte() % BODIES;
-            const int status = fibrad_rows_add(&rows, &row, bodies);
+            const uint32_t bodies = byte() < 250 ? 0 : byte() % PLANES;
+            const int status = CALL(fibrad_rows_add(&rows, &row, bodies));
             if (status == FIBRAD_E_CAPACITY) REQUIRE(rows.memory.needed > rows.memory.size);
             all = all && status == FIBRAD_OK && row.sphere == i && bodies == 0;
         }
         try_matrix(scene, &rows, 1, c.n, all ? FIBRAD_OK : FIBRAD_E_ARGUMENT, NULL);
     }
-    free(scene_block), free(supply.block);
+    free(scene_block), supply_end(&supply);
 }
 
 /* ---- heat ------------------------------------------------------------------------------------------------------- */
@@ -620,11 +398,12 @@ static void begin_heat(struct session *s) {
     if (byte() == 1) s->heat_config.points = number();
     if (byte() == 1) s->heat_config.parts = number();
     if (byte() == 1) s->heat_config.cutoff = coordinate();
+    if (s->wide) s->heat_config.wall_rays = 1 + number() % 300;
     const size_t size = fibrad_heat_size(&s->heat_config, s->scene);
     if (size == 0 || size > 8 << 20 || !plain || s->heat_config.parts > 16) return;
     /* the rays of walls take a second */
     static int walled;
-    if (s->contents.config.bodies > 0 && walled++ >= 40) return;
+    if (s->contents.config.bodies > 0 && !s->wide && walled++ >= 40) return;
     const uint8_t fault = byte();
     void *memory = memory_of(size - (fault == 1), fault % 64, &s->heat_block);
     const int status = fibrad_heat_init(&s->heat, memory, size - (fault == 1), &s->heat_config, s->scene);
@@ -643,15 +422,41 @@ static void begin_heat(struct session *s) {
 static bool kept(const struct session *s) { return s->of_other || s->heat_version == s->version; }
 
 static void trace_task(struct session *s, uint32_t task) {
-    const int status = fibrad_heat_trace(s->heat, &s->work, task);
+    const int status = CALL(fibrad_heat_trace(s->heat, &s->work, task));
     if (task >= s->tasks)
         REQUIRE(status == FIBRAD_E_ARGUMENT);
     else if (!kept(s) || s->traced[task])
         REQUIRE(status == FIBRAD_E_STATE);
     else
-        REQUIRE(status == FIBRAD_OK || status == FIBRAD_E_WORK || status == FIBRAD_E_MEMORY);
+        REQUIRE(status == FIBRAD_OK || status == FIBRAD_E_WORK || status == FIBRAD_E_MEMORY ||
+                s->contents.triangles.n > 0);
     if (status == FIBRAD_E_WORK) (void)give_more(&s->work.memory, &s->supply);
     if (status == FIBRAD_OK) s->traced[task] = 1;
+}
+
+/* What stands for temperatures that are not given. */
+struct unknowns {
+    double power[SPHERES], hold[SPHERES], reference[SPHERES], body_power[BODIES], side[2 * TRIANGLES];
+    unsigned char insulated[BODIES];
+};
+
+static void any_unknowns(struct session *s, struct unknowns *u, double *temperature, double *body_temperature,
+                         fibrad_heat_sources *sources) {
+    for (uint32_t i = 0; i < s->contents.n; i++) {
+        const uint8_t kind = byte();
+        if (kind % 2) temperature[i] = NAN;
+        u->power[i] = isnan(temperature[i]) ? kind < 240 ? share() : coordinate() : 0;
+        u->hold[i] = kind % 3 == 0 ? share() : 0, u->reference[i] = u->hold[i] > 0 ? share() : NAN;
+    }
+    for (uint32_t b = 0; b < s->contents.config.bodies; b++) {
+        const uint8_t kind = byte();
+        if (kind % 3 == 0) body_temperature[b] = NAN;
+        u->body_power[b] = isnan(body_temperature[b]) ? share() : 0, u->insulated[b] = kind % 5 == 0;
+    }
+    for (uint32_t k = 0; k < 2 * s->contents.triangles.n; k++) u->side[k] = byte() % 4 == 0 ? share() : NAN;
+    sources->power = u->power, sources->body_power = u->body_power, sources->insulated = u->insulated;
+    if (byte() % 2) sources->hold = u->hold, sources->reference = u->reference;
+    if (s->contents.triangles.n > 0 && byte() % 2) sources->side_temperature = u->side;
 }
 
 static void begin_solution(struct session *s) {
@@ -676,8 +481,12 @@ static void begin_solution(struct session *s) {
     valid = valid && sources.surroundings >= 0 && sources.surroundings <= 1e20 && sources.sigma >= 1e-30 &&
             sources.sigma <= 1e30 && sources.tolerance >= 0 && sources.tolerance < 1;
     for (uint32_t k = 0; k < s->tasks; k++) all = all && s->traced[k];
-    const int status = fibrad_heat_begin(s->heat, &sources);
-    REQUIRE(status == (!valid ? FIBRAD_E_ARGUMENT : !kept(s) || !all ? FIBRAD_E_STATE : FIBRAD_OK));
+    struct unknowns unknowns;
+    s->unknown = s->wide && byte() % 2;
+    if (s->unknown) any_unknowns(s, &unknowns, temperature, body_temperature, &sources);
+    const int status = CALL(fibrad_heat_begin(s->heat, &sources));
+    if (!s->unknown || status == FIBRAD_OK)
+        REQUIRE(status == (!valid ? FIBRAD_E_ARGUMENT : !kept(s) || !all ? FIBRAD_E_STATE : FIBRAD_OK));
     if (status != FIBRAD_OK) return;
     s->measured = sources.sigma < 100 && sources.surroundings < 100;
     for (uint32_t i = 0; i < s->contents.n; i++) s->measured = s->measured && temperature[i] < 100;
@@ -687,7 +496,7 @@ static void begin_solution(struct session *s) {
 
 static void sweep_part(struct session *s, uint32_t part) {
     if (!kept(s)) return;
-    const int status = fibrad_heat_sweep(s->heat, part);
+    const int status = CALL(fibrad_heat_sweep(s->heat, part));
     if (part >= s->parts)
         REQUIRE(status == FIBRAD_E_ARGUMENT);
     else
@@ -699,7 +508,12 @@ static void step(struct session *s) {
     int solved = 77;
     bool all = s->begun && kept(s);
     for (uint32_t k = 0; k < s->parts; k++) all = all && s->swept[k];
-    REQUIRE(fibrad_heat_step(s->heat, &solved) == (all ? FIBRAD_OK : FIBRAD_E_STATE));
+    const int status = CALL(fibrad_heat_step(s->heat, &solved));
+    if (all && s->unknown && status == FIBRAD_E_UNSOLVABLE) {
+        s->begun = s->solved = false;
+        return;
+    }
+    REQUIRE(status == (all ? FIBRAD_OK : FIBRAD_E_STATE));
     REQUIRE(all ? solved == 0 || solved == 1 : solved == 77);
     if (!all) return;
     memset(s->swept, 0, sizeof s->swept);
@@ -709,10 +523,15 @@ static void step(struct session *s) {
 /* Powers add up to zero, but for rounding of what is emitted. */
 static void read_powers(struct session *s) {
     double power[SPHERES], body_power[BODIES];
+    double temperature[SPHERES], error[SPHERES], flux[2 * TRIANGLES], side[2 * TRIANGLES];
     fibrad_heat_result result = {.power = power, .body_power = body_power};
-    const int status = fibrad_heat_read(s->heat, &result);
-    REQUIRE(status == (s->solved && kept(s) ? FIBRAD_OK : FIBRAD_E_STATE));
+    if (s->wide) result.temperature = temperature, result.power_error = error;
+    const int status = CALL(fibrad_heat_read(s->heat, &result));
+    const bool below_zero = s->unknown && s->solved && status == FIBRAD_E_UNSOLVABLE;
+    REQUIRE(below_zero || status == (s->solved && kept(s) ? FIBRAD_OK : FIBRAD_E_STATE));
     if (status != FIBRAD_OK) return;
+    for (uint32_t i = 0; i < s->contents.n && s->wide; i++) REQUIRE(error[i] >= 0 && !(temperature[i] < 0));
+    if (s->wide) REQUIRE(CALL(fibrad_heat_read_sides(s->heat, flux, side)) == FIBRAD_OK);
     double sum = result.surroundings_power, size = fabs(sum);
     for (uint32_t i = 0; i < s->contents.n; i++) sum += power[i], size += fabs(power[i]);
     for (uint32_t b = 0; b < s->contents.config.bodies; b++) sum += body_power[b], size += fabs(body_power[b]);
@@ -726,7 +545,7 @@ static void move_heat(struct session *s) {
     fibrad_scene *to = s->scene;
     const bool other = byte() % 2 && !s->of_other;
     if (other) to = other_scene(s, &moved);
-    const int status = fibrad_heat_move(s->heat, to);
+    const int status = CALL(fibrad_heat_move(s->heat, to));
     REQUIRE(to != NULL ? status == FIBRAD_OK || status == FIBRAD_E_SIZE : status == FIBRAD_E_ARGUMENT);
     if (status != FIBRAD_OK) return;
     s->of_other = other, s->heat_version = s->version;
@@ -775,20 +594,179 @@ static void try_heat(struct session *s) {
     }
 }
 
+/* ---- what only wide inputs try ---------------------------------------------------------------------------------- */
+
+/* A beam row in parts, of any memory, is to the bit the row in one piece. */
+static void try_parts(struct session *s) {
+    enum { PARTS = 3 };
+    struct method m;
+    any_method(&m);
+    const uint32_t i = number() % (s->contents.n + 1), n = m.beam.directions;
+    const uint32_t cut[PARTS + 1] = {0, n > 0 ? number() % n : 0, n > 0 ? number() % n : 0, n};
+    uint32_t col[SPHERES], whole_col[SPHERES];
+    double f[SPHERES], body[BODIES], whole_f[SPHERES], whole_body[BODIES];
+    fibrad_row row = {.col = col, .f = f, .body = body, .capacity = SPHERES};
+    fibrad_row whole = {.col = whole_col, .f = whole_f, .body = whole_body, .capacity = SPHERES};
+    struct supply supply[PARTS];
+    fibrad_row_part part[PARTS];
+    int status = FIBRAD_OK;
+    for (uint32_t k = 0; k < PARTS; k++) {
+        part[k] = (fibrad_row_part){.memory = any_memory(&supply[k])};
+        for (int tries = 0; status == FIBRAD_OK; tries++) {
+            status = CALL(fibrad_beam_part(s->scene, &s->work, i, &m.beam, cut[k], cut[k + 1], &part[k]));
+            if (status == FIBRAD_OK) break;
+            REQUIRE(tries < 80);
+            const bool more =
+                (status == FIBRAD_E_WORK && s->work.memory.resize == NULL && give_more(&s->work.memory, &s->supply)) ||
+                (status == FIBRAD_E_CAPACITY && give_more(&part[k].memory, &supply[k])) ||
+                (status == FIBRAD_E_MEMORY && tries < 20);
+            if (more) status = FIBRAD_OK;
+        }
+    }
+    const int joined = CALL(fibrad_beam_join(s->scene, &s->work, i, &m.beam, part, PARTS, &row));
+    if (status != FIBRAD_OK) REQUIRE(joined != FIBRAD_OK);
+    if (joined == FIBRAD_OK && CALL(fibrad_beam_row(s->scene, &s->work, i, &m.beam, &whole)) == FIBRAD_OK) {
+        check_row(&row, s->scene, i, m.beam.points);
+        REQUIRE(row.length == whole.length && row.fallbacks == whole.fallbacks);
+        REQUIRE(memcmp(col, whole_col, row.length * sizeof *col) == 0);
+        REQUIRE(memcmp(f, whole_f, row.length * sizeof *f) == 0);
+        REQUIRE(memcmp(body, whole_body, s->contents.config.bodies * sizeof *body) == 0);
+        REQUIRE(memcmp(&row.escaped, &whole.escaped, sizeof row.escaped) == 0);
+        REQUIRE(memcmp(&row.error, &whole.error, sizeof row.error) == 0);
+    }
+    for (uint32_t k = 0; k < PARTS; k++) supply_end(&supply[k]);
+}
+
+/* The row of a body: all it emits goes somewhere. */
+static bool any_body_row(struct session *s, const fibrad_exchange_rule *rule, uint32_t body, fibrad_body_row *mean) {
+    fibrad_body_row part[FIBRAD_BODY_PARTS];
+    for (uint32_t k = 0; k < FIBRAD_BODY_PARTS; k++) {
+        int status;
+        for (int tries = 0;; tries++) {
+            status = CALL(fibrad_exchange_body(s->scene, &s->work, body, rule, k, &part[k]));
+            REQUIRE(tries < 80);
+            if (status != FIBRAD_E_WORK || s->work.memory.resize != NULL || !give_more(&s->work.memory, &s->supply))
+                break;
+        }
+        if (status != FIBRAD_OK) return false;
+    }
+    REQUIRE(CALL(fibrad_exchange_body_mean(part, mean)) == FIBRAD_OK);
+    double sum = mean->spheres + mean->escaped;
+    for (uint32_t b = 0; b < s->contents.config.bodies; b++) {
+        REQUIRE(mean->body[b] >= 0);
+        sum += mean->body[b];
+    }
+    REQUIRE(mean->spheres >= 0 && mean->escaped >= -1e-9 && mean->error >= 0);
+    const double *emissivity = rule->body_emissivity;
+    if (plain) REQUIRE(fabs(sum - (emissivity == NULL || emissivity[body] > 0)) < 1e-9);
+    return true;
+}
+
+/* The matrix of all spheres and bodies: rows of spheres by exchange or by beams, those of bodies by paths. */
+static void try_bodies(struct session *s) {
+    struct method m;
+    any_method(&m);
+    const uint32_t n = s->contents.n, bodies = s->contents.config.bodies;
+    if (n == 0 || bodies == 0 || !plain) return;
+    const bool grey = m.kind == EXCHANGE;
+    m.kind = grey ? EXCHANGE : BEAM;
+    m.exchange.cutoff = m.beam.cutoff = 0, m.exchange.paths = 1 + m.exchange.paths % 64;
+    if (too_long(&m)) return;
+    fibrad_exchange_rule rule = m.exchange;
+    if (!grey) rule.emissivity = rule.body_emissivity = NULL;
+    fibrad_body_row rows_of_bodies[BODIES] = {{{0}, 0, 0, 0, 0}};
+    for (uint32_t b = 0; b < bodies; b++)
+        if (fibrad_scene_body_area(s->scene, b) < INFINITY && !any_body_row(s, &rule, b, &rows_of_bodies[b])) return;
+    struct supply supply = {.left = UINT32_MAX};
+    fibrad_rows rows = {.memory = {.resize = supply_more, .context = &supply}};
+    bool complete = true;
+    for (uint32_t i = 0; i < n && complete; i++) {
+        fibrad_row row = {.rows = &rows};
+        complete = row_by(s, &s->work, &m, i, &row) == FIBRAD_OK;
+    }
+    const fibrad_matrix_rule closed = {.emissivity = grey ? m.emissivity : NULL,
+                                       .body_row = rows_of_bodies,
+                                       .body_emissivity = grey ? m.body_emissivity : NULL};
+    const size_t size = complete ? CALL(fibrad_matrix_size(s->scene, &rows, 1, &closed)) : 0;
+    void *block = NULL, *memory = size > 0 ? memory_of(size, byte() % 64, &block) : NULL;
+    fibrad_matrix *matrix;
+    uint32_t sphere;
+    if (size > 0 && CALL(fibrad_matrix_init(&matrix, memory, size, s->scene, &rows, 1, &closed, &sphere)) == FIBRAD_OK)
+        if (CALL(fibrad_matrix_close(matrix)) == FIBRAD_OK) {
+            modest = !grey;
+            check_matrix(matrix, &closed);
+        }
+    free(block), supply_end(&supply);
+}
+
+/* Rays against triangles, from anywhere, and what their sides see. */
+static void try_triangles(struct session *s) {
+    const uint32_t n = s->contents.triangles.n;
+    double origin[3] = {coordinate(), coordinate(), coordinate()}, w[3] = {0, 0, 1};
+    fibrad_triangle_hit hit;
+    if (byte() < 250) (void)fibrad_direction(number() % 64, 64, w);
+    const double far = byte() < 128 ? 10 : fabs(coordinate());
+    if (tame || far <= 1e3) {
+        const int status = CALL(fibrad_triangle_ray(s->scene, origin, w, far, &hit));
+        if (status == FIBRAD_OK) REQUIRE(hit.triangle == UINT32_MAX || (hit.triangle < n && hit.distance <= far));
+    }
+    if (!plain) return;
+    fibrad_side_view view[2];
+    uint32_t triangle = UINT32_MAX;
+    const uint32_t place = number() % (n + 1);
+    const int status = CALL(fibrad_triangle_views(s->scene, place, 1 + number() % 50, &triangle, view));
+    if (place >= n) REQUIRE(status == FIBRAD_E_ARGUMENT);
+    if (status != FIBRAD_OK) return;
+    REQUIRE(triangle < n);
+    for (int side = 0; side < 2; side++) {
+        const double sum = view[side].spheres + view[side].bodies + view[side].escaped;
+        REQUIRE(isnan(sum) || (view[side].spheres >= 0 && view[side].bodies >= 0 && fabs(sum - 1) < 1e-12));
+    }
+}
+
+/* All rows of the collection, one after the other. */
+static void read_rows(struct session *s) {
+    size_t position = 0;
+    uint32_t count = 0;
+    fibrad_row row;
+    for (uint64_t entries = 0; fibrad_rows_read(&s->rows, &position, &row); count++) {
+        entries += row.length;
+        REQUIRE(row.rows == NULL && row.sphere < s->contents.n && entries <= s->rows.entries);
+        for (uint32_t k = 0; k < row.length; k++) REQUIRE(row.col[k] < s->contents.n && row.f[k] >= 0);
+    }
+    REQUIRE(count == s->rows.count);
+}
+
+static void try_wide(struct session *s) {
+    switch (byte() % 4) {
+    case 0:
+        try_parts(s);
+        break;
+    case 1:
+        try_bodies(s);
+        break;
+    case 2:
+        try_triangles(s);
+        break;
+    default:
+        read_rows(s);
+    }
+}
+
 /* ---- a scene, and what there is to be done with it -------------------------------------------------------------- */
 
-static void try_scene(bool walled) {
-    struct session s = {.contents = any_contents(walled)};
-    s.size = fibrad_scene_size(s.contents.n, s.contents.ids);
-    REQUIRE(s.size > 0 && (s.contents.ids || s.size <= FIBRAD_SCENE_BYTES(s.contents.n)));
+static void try_scene(bool walled, bool meshed) {
+    struct session s = {.contents = any_contents(walled, meshed), .wide = meshed};
+    s.size = size_of(&s.contents);
     const uint8_t fault = byte();
     s.memory = memory_of(s.size - (fault == 1), fault % 64, &s.block);
     bool there = build(&s.scene, s.memory, s.size - (fault == 1), &s.contents) == FIBRAD_OK;
     REQUIRE(!there || fault != 1);
     s.work.memory = any_memory(&s.supply);
     s.rows.memory = any_memory(&s.rows_supply);
+    if (there && meshed) try_triangles(&s);
     for (int k = byte() % 24; k > 0 && there && tame; k--) {
-        switch (byte() % 12) {
+        switch (byte() % (meshed ? 16 : 12)) {
         case 0:
             there = rebuild(&s);
             break;
@@ -815,12 +793,17 @@ static void try_scene(bool walled) {
             try_matrix(s.scene, &s.rows, 1, s.contents.n, FIBRAD_E_ARGUMENT, NULL);
             try_flow(&s);
             break;
+        case 12:
+        case 13:
+        case 14:
+            try_wide(&s);
+            break;
         default:
             try_row(&s);
         }
     }
     end_heat(&s);
-    free(s.block), free(s.other_block), free(s.supply.block), free(s.rows_supply.block);
+    free(s.block), free(s.other_block), supply_end(&s.supply), supply_end(&s.rows_supply);
 }
 
 /* ---- furnace ---------------------------------------------------------------------------------------------------- */
@@ -929,9 +912,10 @@ static void try_pair(void) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    count_calls();
     at = data, end = data + size;
-    const uint8_t kind = byte() % 8;
-    switch (kind) {
+    const uint8_t kind = byte();
+    switch (kind % 8) {
     case 0:
         try_pair();
         break;
@@ -942,7 +926,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         try_furnace();
         break;
     default:
-        try_scene(kind == 7);
+        try_scene(kind % 8 == 7, kind >= 160);
     }
     (void)fibrad_status_text((int)number());
     (void)fibrad_isa_name((int)number());

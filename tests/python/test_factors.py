@@ -114,6 +114,24 @@ def test_any_layout(small, kind):
     assert np.may_share_memory(packing.x, given[0]) == (kind in ("fortran", "slice", "columns", "shifted"))
 
 
+def test_any_address(small):
+    """Arrays at addresses that are no multiple of 8 are copied, those in one piece, too."""
+    def off(array):
+        moved = np.frombuffer(b"x" + np.ascontiguousarray(array).tobytes(), array.dtype, offset=1).reshape(array.shape)
+        assert not moved.flags.aligned
+        return moved
+    expected = fibrad.view_factors(small.x, small.r, ids=np.arange(small.n), directions=20)
+    assert same(fibrad.view_factors(off(small.x), off(small.r), ids=off(np.arange(small.n, dtype="u8")), directions=20),
+                expected)
+    with fibrad.Heat(off(small.x), off(small.r), directions=20, patches=24) as heat:
+        t = np.linspace(300, 900, small.n)
+        moved, plain = (heat.solve(kelvins, 0.5, surroundings=300.0) for kelvins in (off(t), t))
+    with fibrad.Heat(small.x, small.r, directions=20, patches=24) as heat:
+        given = heat.solve(t, 0.5, surroundings=300.0)
+    assert (given.spheres == moved.spheres).all()
+    np.testing.assert_allclose(plain.spheres, given.spheres, atol=1e-6 * abs(given.spheres).max())
+
+
 def test_other_types_are_converted():
     x = [[0, 0, 0], [0, 0, 3]]
     expected = fibrad.view_factors(x, 1.0)
@@ -191,6 +209,7 @@ def test_rows_of_walls():
         assert np.nan_to_num(sums, nan=1) == pytest.approx(1, abs=1e-12)
         exchanged = walls_emit[:, None] * found.wall_wall
         assert exchanged == pytest.approx(exchanged.T, rel=1e-15) and 0 < found.wall_error.max() < 0.02
+        assert 0 < found.wall_correction < 0.05 and found.wall_closure < 1e-9
     assert np.all(found.wall_wall[5] == 0) and np.all(found.wall_wall[:, 5] == 0)
     assert np.isnan(fibrad.view_factors([[0, 0, 3]], 1, walls={"zmin": 0}).wall_wall).all()
     for less in ({"cutoff": 3}, {"wanted": [0]}, {"walls": None}):
@@ -279,6 +298,9 @@ def test_beds_that_cannot_be(x, r, text, spheres):
     ({"box": [-1, 2, 3]}, "three lengths"), ({"box": [0.1, 0, 0]}, "smaller than a sphere's radius"),
     ({"walls": {"floor": 0}}, "no wall 'floor'; there are xmin"), ({"walls": {"zmin": np.nan}}, "wall zmin"),
     ({"walls": [("zmin", 0), ("zmin", 1)]}, "twice"), ({"walls": {"cylinder": 3}}, r"\(x, y, radius\)"),
+    ({"walls": {"zmin": -1, "cylinder": (0, 0, 3)}}, "walls={'zmax': 'open'}"),
+    ({"walls": {"zmax": ("open", 3.5)}}, "a sphere reaches beyond an open side"), ({"walls": {"top": "open"}}, "'top' cannot be open"),
+    ({"walls": {"zmax": "opened"}}, "wall zmax"), ({"walls": {"zmax": ("open", np.nan)}}, "wall zmax"),
     ({"walls": {"zmin": 0.5, "zmax": 1}}, "sphere 0"), ({"walls": {"zmin": -2}, "box": [0, 0, 9]}, "box and walls"),
     ({"wanted": [2]}, r"positions \[0, 2\)"), ({"wanted": [-1]}, "positions"), ({"wanted": [True]}, "one element for each"),
     ({"wanted": [0.5]}, "positions"), ({"ids": [1, 1]}, "two spheres have the id 1"), ({"ids": [1]}, "2 are wanted"),

@@ -56,6 +56,37 @@ def test_a_sphere_within_black_walls():
     assert powers.surroundings == 0 and sum(powers.walls.values()) == pytest.approx(-powers.spheres[0])
 
 
+def test_a_box_without_a_lid():
+    """As with a black lid as hot as the surroundings; at the end of the spheres where no place is given."""
+    x, r = [[0, 0, -2], [1, 2, 3]], [1, 0.5]
+    states = {"emissivity": 0.6, "surroundings": 300}
+    for lid, at in (("open", 3.5), (("open", 5), 5)):
+        with fibrad.Heat(x, r, walls={**CUBE, "zmax": lid}) as heat:
+            cup = heat.solve(500, wall_temperature={name: {"zmin": 900}.get(name, 600) for name in CUBE if name != "zmax"},
+                             wall_emissivity=0.5, **states)
+            assert set(cup.walls) == set(CUBE) - {"zmax"}
+            with pytest.raises(fibrad.InputError, match="surroundings"):
+                heat.solve(500, 0.6, wall_temperature=600, wall_emissivity=0.5)
+            with pytest.raises(fibrad.InputError, match="zmax is open"):
+                heat.solve(500, wall_temperature={"zmax": 600}, wall_emissivity=0.5, **states)
+        with fibrad.Heat(x, r, walls={**CUBE, "zmax": at}) as heat:
+            box = heat.solve(500, wall_temperature={name: {"zmin": 900, "zmax": 300}.get(name, 600) for name in CUBE},
+                             wall_emissivity={name: 1 if name == "zmax" else 0.5 for name in CUBE}, **states)
+        assert cup.spheres == pytest.approx(box.spheres, rel=1e-13)
+        assert cup.surroundings == pytest.approx(box.walls["zmax"], rel=1e-13) and cup.surroundings > 1e4
+        assert cup.walls["zmin"] == pytest.approx(box.walls["zmin"], rel=1e-13)
+
+
+def test_open_sides_move_with_the_spheres():
+    walls = {"zmin": -1, "zmax": "open", "cylinder": (0, 0, 4)}
+    with fibrad.Transient([[0, 0, 0]], 0.5, walls=walls, method="factors") as bed:
+        bed.move([[0, 0, 5]])
+        assert bed.advance([900], 1, capacity=1e4, emissivity=0.5, surroundings=300, wall_temperature=600,
+                           wall_emissivity=0.5).temperatures[0] < 900
+        with pytest.raises(fibrad.InputError, match="they were zmin, cylinder, zmax open"):
+            bed.move([[0, 0, 5]], walls={"zmin": -1, "zmax": 9, "cylinder": (0, 0, 4)})
+
+
 def test_at_one_temperature_nothing_flows(small):
     powers = fibrad.Heat(small.x, small.r, walls={"zmin": 0}).solve(700, 0.5, surroundings=700, wall_temperature=700,
                                                                    wall_emissivity=0.2)
@@ -64,8 +95,8 @@ def test_at_one_temperature_nothing_flows(small):
 
 def test_energy_is_kept(small):
     temperature = np.linspace(300, 1200, small.n)
-    powers = fibrad.Heat(small.x, small.r, walls={"zmin": 0, "xmin": 0}).solve(
-        temperature, 0.7, surroundings=350, wall_temperature={"zmin": 900, "xmin": 300}, wall_emissivity=0.9)
+    powers = fibrad.Heat(small.x, small.r, walls={"zmin": -9, "zmax": 99}).solve(
+        temperature, 0.7, surroundings=350, wall_temperature={"zmin": 900, "zmax": 300}, wall_emissivity=0.9)
     assert abs(powers.balance) < 1e-11 * np.abs(powers.spheres).sum()
     assert 0 < powers.error < 0.02 * np.sqrt(np.mean(powers.spheres**2))
     assert powers.error == pytest.approx(np.hypot(powers.error_patches, powers.error_beams))
@@ -160,7 +191,7 @@ def test_walls_have_temperatures_by_name():
 @pytest.mark.parametrize("box, walls, closed", [
     ((6, 6, 6), {}, True), ((6, 6, 0), {}, False), ((6, 6, 0), {"zmin": -2, "zmax": 2}, True),
     ((6, 6, 0), {"zmin": -2}, False), ((0, 0, 6), {"cylinder": (0, 0, 3)}, True),
-    (None, {"cylinder": (0, 0, 3), "zmin": -2, "zmax": 2}, True), (None, {"cylinder": (0, 0, 3)}, False),
+    (None, {"cylinder": (0, 0, 3), "zmin": -2, "zmax": 2}, True), (None, {"cylinder": (0, 0, 3), "zmin": -2, "zmax": "open"}, False),
     (None, CUBE, True),
 ])
 def test_what_is_closed_needs_no_surroundings(box, walls, closed):
@@ -250,3 +281,36 @@ def test_walls_find_their_temperatures(small):
 def test_temperatures_that_cannot_be(options, text):
     with fibrad.Heat([[0, 0, 0]], 0.5) as heat, pytest.raises(fibrad.InputError, match=text):
         heat.solve(**{"temperature": 300., "emissivity": 0.5, "surroundings": 300., **options})
+
+
+@pytest.mark.parametrize("options, text", [
+    ({"power": 5.0}, "power is given, and all spheres have temperatures"),
+    ({"power": [5.0, np.nan]}, "power is given, and all spheres have temperatures"),
+    ({"temperature": [300., np.nan], "power": [5., 5.]}, "both a temperature and a power.*sphere 0"),
+    ({"temperature": [300., np.nan], "power": [np.nan, np.nan]}, "neither a temperature nor a power.*sphere 1"),
+    ({"temperature": [300., np.nan], "power": [np.nan, 5.], "emissivity": [.5, 0.]}, "reflects all.*sphere 1"),
+    ({"wall_temperature": None, "wall_power": {"zmin": 5.}}, "wall zmin: goes on for ever"),
+])
+def test_what_is_given_twice_or_not_at_all(options, text):
+    given = {"temperature": 300., "emissivity": 0.5, "surroundings": 300., "wall_temperature": 400.,
+             "wall_emissivity": 0.5, **options}
+    with fibrad.Heat([[0, 0, 0], [2, 0, 0]], 0.5, walls={"zmin": -1.}) as heat, \
+            pytest.raises(fibrad.InputError, match=text):
+        heat.solve(**given)
+
+
+def test_one_power_is_for_those_without_temperature():
+    with fibrad.Heat([[0, 0, 0], [2, 0, 0]], 0.5) as heat:
+        one = heat.solve([300., np.nan], 0.5, power=5.0, surroundings=300.)
+    assert one.spheres[1] == -5 and one.temperatures[0] == 300
+
+
+@pytest.mark.parametrize("walls, box, text", [
+    ({"zmin": 1., "zmax": -1.}, None, "wall zmax: does not go with the box or the other walls"),
+    ({"zmin": -1., "xmax": 1.}, [9, 0, 0], "wall xmax: does not go"),
+    ({"cylinder": (0, 0, 5.), "ymin": -1.}, None, "wall ymin: does not go"),
+    ({"zmin": .5}, None, "the centre lies beyond a wall: sphere 0 at"),
+])
+def test_walls_are_named(walls, box, text):
+    with pytest.raises(fibrad.InputError, match=text):
+        fibrad.view_factors([[0, 0, 0]], 0.5, walls=walls, box=box)

@@ -14,6 +14,7 @@ HERE = pathlib.Path(__file__).resolve().parents[1]
 TREE = HERE.parents[1]
 BUILD = TREE / os.environ.get("BUILD", "build")
 LIBRARY = BUILD / "libfibrad.so"
+FILES = BUILD / "libfibrad_files.so"  # reads files; needs zlib
 
 
 class UnsupportedOperation(Exception):
@@ -39,6 +40,8 @@ def _build_library():
         command = ["make", "-s", f"-j{os.cpu_count()}", "-C", str(TREE), f"BUILD={BUILD}", f"CC={compiler}", "lib-host"]
         if subprocess.run(command, check=False).returncode:
             raise SystemExit(f"fibrad: {' '.join(command)}: failed")
+        if subprocess.run([*command[:-1], "lib-files"], check=False).returncode:
+            print("fibrad: without libfibrad_files.so: fibrad.read and Mesh.from_stl need zlib (Debian: zlib1g-dev)")
 
 
 def _metadata():
@@ -80,6 +83,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     files = {f"fibrad/{path.name}": path.read_bytes()
              for path in sorted(package.iterdir()) if path.suffix == ".py" or path.name == "py.typed"}
     files["fibrad/libfibrad.so"] = LIBRARY.read_bytes()
+    if FILES.exists():
+        files["fibrad/libfibrad_files.so"] = FILES.read_bytes()
     tag = re.sub(r"[-.]", "_", sysconfig.get_platform())
     return _write_wheel(wheel_directory, tag, "false", files)
 

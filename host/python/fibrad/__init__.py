@@ -13,10 +13,12 @@ computes; Ctrl-C stops it. Errors are subclasses of `Error`.
 from . import _library
 from ._errors import Cancelled, Error, InputError, OutOfMemory, StateError
 from ._factors import Displacements, Factors, displacements, exchange_factors, view_factors
+from ._files import FileFrame, read
 from ._heat import STEFAN_BOLTZMANN, Heat, Powers
 from ._scene import Mesh
 from ._transient import Advance, Transient
 
 __version__: str = _library.library.fibrad_version().decode()
-__all__ = ["Advance", "Cancelled", "Displacements", "Error", "Factors", "Heat", "InputError", "Mesh", "OutOfMemory",
-           "Powers", "STEFAN_BOLTZMANN", "StateError", "Transient", "displacements", "exchange_factors", "view_factors"]
+__all__ = ["Advance", "Cancelled", "Displacements", "Error", "Factors", "FileFrame", "Heat", "InputError", "Mesh", "OutOfMemory",
+           "Powers", "STEFAN_BOLTZMANN", "StateError", "Transient", "displacements", "exchange_factors", "read",
+           "view_factors"]

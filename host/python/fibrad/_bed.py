@@ -40,7 +40,7 @@ class Bed:
     def __init__(self, x: ArrayLike, r: ArrayLike, box: Optional[ArrayLike], walls: Optional[Walls],
                  ids: Optional[ArrayLike], config: Any, call: Call):
         self._packing = Packing(x, r, ids)
-        self._container = Container(box, walls)
+        self._container = Container(box, walls, self._packing)
         self._call = call
         self._busy = threading.Lock()
         self._handle = ctypes.c_void_p()
@@ -63,9 +63,7 @@ class Bed:
         """What sources say of walls. Those with a power and those insulated have no temperature: NaN."""
         container, powers = self._container, dict(power or {})
         found = frozenset([*powers, *insulated])
-        wrong = found - set(container.names)
-        if wrong:
-            raise refuse(f"there is no wall {', '.join(map(repr, sorted(wrong)))}")
+        container.known("wall_power" if powers else "insulated", found)
         if isinstance(temperature, Mapping) and found & set(temperature):
             raise refuse(f"{', '.join(sorted(found & set(temperature)))}: its temperature is to be found")
         temperature, sides = container.sides("wall_temperature", temperature, 0, HOTTEST)
@@ -117,9 +115,9 @@ class Bed:
             raise refuse(f"x has the shape {np.shape(x)}; this {type(self).__name__} has {self.n} spheres")
         packing = Packing(x, self._packing.r if r is None else r, self._packing.ids)
         container = Container(self._container.period if box is None else box,
-                              self._container.walls if walls is None else walls)
-        if container.names != self._container.names:
-            now, before = (", ".join(names) or "none" for names in (container.names, self._container.names))
+                              self._container.walls if walls is None else walls, packing)
+        if container.kinds != self._container.kinds:
+            now, before = (", ".join(kinds) or "none" for kinds in (container.kinds, self._container.kinds))
             raise refuse(f"the walls are {now}; they were {before}")
         self._use(self._function("move"), packing, container.config, packing.spheres)
         self._packing, self._container = packing, container

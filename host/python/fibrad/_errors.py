@@ -4,6 +4,7 @@ from __future__ import annotations
 from ._library import library
 
 ARGUMENT, TABLE, GEOMETRY, UNSUPPORTED, MEMORY, CANCELLED, UNSOLVABLE, BACK = -1, -5, -6, -10, -11, -12, -13, -14
+SUM, ENDLESS = -15, -16
 
 
 class Error(Exception):
@@ -43,11 +44,16 @@ class OutOfMemory(Error, MemoryError):
 
 
 _KINDS = {MEMORY: OutOfMemory, CANCELLED: Cancelled, ARGUMENT: InputError, TABLE: InputError, GEOMETRY: InputError,
-          UNSUPPORTED: InputError, UNSOLVABLE: InputError, BACK: InputError}
+          UNSUPPORTED: InputError, UNSOLVABLE: InputError, BACK: InputError, SUM: Error,
+          ENDLESS: InputError}
 
 
 def status_text(status: int) -> str:
     return str(library.fibrad_status_text(status).decode())
+
+
+def why_text(why: int) -> str:
+    return str(library.fibrad_why_text(why).decode())
 
 
 def error_of(status: int, text: str, spheres: tuple[int, ...] = ()) -> Error:

@@ -22,6 +22,9 @@ _SEED = (0, 2**64 - 1)
 _FAR = (0.0, 1e150)
 _OVERLAP = 0.05
 """Above it, spheres are hardly what was meant."""
+_CLOSED = 1e-9
+_APART = 0.1
+"""Sums of rows of walls, closed and before that."""
 _METHODS = {"beam": {"directions", "points", "tolerance"}, "surface": {"nodes"}, "cast": {"rays", "seed"},
             "mc": {"rays", "seed"}}
 
@@ -83,6 +86,11 @@ class Factors:
     """(walls,) from walls to the surroundings."""
     wall_error: Optional[NDArray[np.float64]]
     """(walls,) Euclidean error of these two, estimated."""
+    wall_correction: Optional[float]
+    """Largest ``|sum - 1|`` of a row of a wall before closing: how far rows of spheres and of walls disagree."""
+    wall_closure: Optional[float]
+    """Largest ``|sum - 1|`` of a row of a wall as it is: rounding, or ``wall_correction`` where sums and reciprocity
+    contradict each other, as in some beds cut by triangles. Then rows of walls are not closed, and a warning says so."""
     ids: Optional[NDArray[np.uint64]]
     """(n,) as given."""
     closure_error: float
@@ -126,6 +134,23 @@ class Factors:
         """(n,) factors to the wall of that name."""
         return self.walls[:, self.wall_names.index(name)]
 
+    def save(self, path: Folder) -> None:
+        """Writes a .npz, as the program does: for ``scipy.sparse.load_npz``, with `escaped`, `beyond`, `error` and what
+        there is of `ids` and walls beside the matrix."""
+        if not os.fspath(path).endswith(".npz"):
+            raise refuse(f"{os.fspath(path)!r} does not end in .npz")
+        arrays: dict[str, Any] = {
+            "indices": self.indices, "indptr": self.indptr, "format": np.array(b"csr"), "shape": np.array(self.shape),
+            "data": self.data, "escaped": self.escaped, "beyond": self.beyond, "error": self.error}
+        if self.ids is not None:
+            arrays["ids"] = self.ids
+        if self.wall_names:
+            arrays |= {"body": self.walls, "wall_names": np.array([name.encode() for name in self.wall_names]),
+                       "wall_area": self.wall_area}
+        if self.wall_wall is not None and self.wall_names:
+            arrays |= {"wall_wall": self.wall_wall, "wall_escaped": self.wall_escaped, "wall_error": self.wall_error}
+        np.savez(os.fspath(path), **arrays)
+
     def __repr__(self) -> str:
         return (f"<fibrad.Factors: {self.n} spheres, {len(self.data)} entries, error {self.error.max(initial=0):.2g}, "
                 f"{self.seconds:.3g} s>")
@@ -144,7 +169,9 @@ def _factors(owner: _Owner, wall_names: tuple[str, ...], ids: Optional[NDArray[n
         wall_area=_array(owner, found.body_area, (walls,)),
         wall_wall=_array(owner, matrix.body_body, (walls, walls)) if matrix.body_body else None,
         wall_escaped=_array(owner, matrix.body_escaped, (walls,)) if matrix.body_escaped else None,
-        wall_error=_array(owner, matrix.body_error, (walls,)) if matrix.body_error else None, ids=ids, closure_error=found.closure_error,
+        wall_error=_array(owner, matrix.body_error, (walls,)) if matrix.body_error else None, ids=ids,
+        wall_correction=matrix.body_correction if matrix.body_body else None,
+        wall_closure=matrix.body_closure if matrix.body_body else None, closure_error=found.closure_error,
         reciprocity_error=found.reciprocity_error, directions=found.directions, fallbacks=found.fallbacks,
         rays=found.rays, overlap=found.facts.overlap_max, threads=found.threads, seconds=found.seconds)
 
@@ -156,7 +183,7 @@ class _Job:
                  ids: Optional[ArrayLike], wanted: Optional[ArrayLike], threads: Optional[int],
                  progress: Optional[Progress]):
         self.packing = Packing(x, r, ids)
-        self.container = Container(box, walls)
+        self.container = Container(box, walls, self.packing)
         self.marks = marks(wanted, self.packing.n)
         self.wanted = pointer(self.marks, ctypes.POINTER(ctypes.c_ubyte))
         self._call = Call(threads, progress)
@@ -176,6 +203,12 @@ class _Job:
         factors = _factors(owner, self.container.names, self.packing.ids)
         if factors.overlap > _OVERLAP:
             warnings.warn(f"two spheres overlap by {factors.overlap:.3g} of a radius", stacklevel=3)
+        if (factors.wall_closure or 0) > _CLOSED:
+            warnings.warn(f"rows of walls are not closed: their sums are off by {factors.wall_closure:.2g}, since they "
+                          "and those of spheres contradict each other", stacklevel=3)
+        elif (factors.wall_correction or 0) > _APART:
+            warnings.warn(f"rows of walls and of spheres disagreed by {factors.wall_correction:.2g} before they were "
+                          "closed, as where triangles cut spheres", stacklevel=3)
         if tolerance is not None and factors.error.max(initial=0) > tolerance:
             warnings.warn(f"the estimated error is {factors.error.max():.3g}, above the tolerance of {tolerance:g}: "
                           "no more directions or paths are possible", stacklevel=3)
@@ -240,7 +273,8 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
         Lengths of the periodic box; 0 stands for an open axis. Default: open.
     walls : mapping or sequence of pairs, optional
         Names and places: ``{"zmin": 0.0, "zmax": 1.0, "cylinder": (x, y, radius)}``; xmin to zmax, and a cylinder
-        along z.
+        along z. ``"zmax": "open"`` or ``("open", place)``: there the container ends and the surroundings begin, at the
+        end of the spheres or at a place.
     tolerance : float, optional
         As many directions as bring the estimated Euclidean error of every row down to this.
     directions : int, optional

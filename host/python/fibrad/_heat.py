@@ -30,7 +30,7 @@ def _law(emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]]) -> Callable[[
     return lambda found: given
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Powers:
     """Net powers [W], positive where heat is gained; all of them add up to 0. And temperatures."""
 
@@ -72,6 +72,13 @@ class Powers:
     def balance(self) -> float:
         """Sum of all powers [W]: 0 but for rounding."""
         return math.fsum([*self.spheres, *self.walls.values(), self.surroundings])
+
+    def __repr__(self) -> str:
+        known = self.temperatures[~np.isnan(self.temperatures)]
+        range_of = f" of {known.min():.6g} to {known.max():.6g} K" if known.size else ""
+        outside = "".join(f", {name} {power:.6g} W" for name, power in [*self.walls.items(), ("surroundings", self.surroundings)])
+        return (f"<fibrad.Powers: {len(self.spheres)} spheres{range_of} {math.fsum(self.spheres):.6g} W{outside}; "
+                f"error of a sphere {self.error:.2g} W>")
 
 
 class Heat(Bed):
@@ -133,7 +140,8 @@ class Heat(Bed):
             Of the spheres, 0 to 1; 0 reflects all. A function gets the temperatures (n,) and returns emissivities;
             it is asked again until they change no more.
         power : (n,) array or float, optional
-            What spheres of unknown temperature give off from inside [W]; their net power is its negative.
+            What spheres of unknown temperature give off from inside [W]; their net power is its negative. NaN where
+            a temperature is given. One number is for those without a temperature.
         surroundings : float
             Temperature of the surroundings [K]; may be left out only where walls and periods leave no way out.
         wall_temperature : mapping or float
@@ -167,6 +175,10 @@ class Heat(Bed):
         kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, HOTTEST, names,
                              power is not None)
         powers = None if power is None else per_sphere("power", power, n, -STRONGEST, STRONGEST, names, True)
+        if powers is not None and np.any(powers) and n and not np.isnan(kelvins).any():
+            raise refuse("power is given, and all spheres have temperatures; NaN is an unknown one")
+        if powers is not None and np.ndim(power) == 0:
+            powers = np.where(np.isnan(kelvins), powers, math.nan)
         of_bodies = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")

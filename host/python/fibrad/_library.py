@@ -15,30 +15,33 @@ PROGRESS: Any = ctypes.CFUNCTYPE(c_int, c_void_p, c_char_p, c_uint64, c_uint64)
 _structures: list[Any] = []
 
 
-class _Plane(ctypes.Structure):
-    _fields_ = [("axis", c_int), ("upper", c_int), ("at", c_double)]
-
-
 class _Cylinder(ctypes.Structure):
     _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double)]
 
 
+def structure_of_files(name: str, *fields: tuple[str, Any]) -> Any:
+    """The structure NAME of libfibrad_files.so. fields: names, several with blanks between, and their type."""
+    return type(name, (ctypes.Structure,),
+                {"_fields_": [(one, kind) for names, kind in fields for one in names.split()]})
+
+
 def _structure(name: str, *fields: tuple[str, Any]) -> Any:
-    """The structure fibrad_NAME. fields: names, several with blanks between, and their type."""
-    structure = type(f"fibrad_{name}", (ctypes.Structure,),
-                     {"_fields_": [(one, kind) for names, kind in fields for one in names.split()]})
+    """The structure fibrad_NAME, likewise."""
+    structure = structure_of_files(f"fibrad_{name}", *fields)
     _structures.append(structure)
     return structure
 
 
 Spheres = _structure("spheres", ("x y z r", DOUBLES), ("n stride stride_r", c_uint32), ("id", POINTER(c_uint64)))
-Body = _structure("body", ("kind", c_int), ("plane", _Plane), ("cylinder", _Cylinder))
+Plane = _structure("plane", ("axis upper", c_int), ("at", c_double))
+Body = _structure("body", ("kind", c_int), ("plane", Plane), ("cylinder", _Cylinder))
 Triangles = _structure("triangles", ("x y z", DOUBLES), ("stride vertices", c_uint32),
                        ("corner front back", POINTER(c_uint32)), ("n", c_uint32), ("period", c_double * 3))
 SceneConfig = _structure("scene_config", ("isa", c_int), ("period", c_double * 3), ("body", POINTER(Body)),
-                         ("bodies", c_uint32), ("known_low known_high", c_double * 3), ("occupancy", c_void_p),
+                         ("bodies", c_uint32), ("opening", POINTER(Plane)), ("openings", c_uint32),
+                         ("known_low known_high", c_double * 3), ("occupancy", c_void_p),
                          ("triangles", POINTER(Triangles)))
-Fault = _structure("fault", ("first second triangle", c_uint32))
+Fault = _structure("fault", ("first second triangle wall", c_uint32), ("why", c_int))
 SceneFacts = _structure("scene_facts", ("spheres bodies", c_uint32), ("isa", c_int), ("cells", c_uint32),
                         ("radius_min radius_max overlap_max", c_double), ("overlap_pair", c_uint32 * 2),
                         ("triangles", c_uint32))
@@ -51,7 +54,7 @@ BedOptions = _structure("bed_options", ("beam", POINTER(BeamRule)), ("surface", 
                         ("bodies", c_int), ("scratch", c_char_p))
 Matrix = _structure("factors", ("n bodies", c_uint32), ("start", POINTER(c_uint64)), ("col", POINTER(c_uint32)),
                     ("f escaped beyond error body body_body body_escaped body_error", DOUBLES),
-                    ("body_correction", c_double))
+                    ("body_correction body_closure changed", c_double), ("changed_row", c_uint32))
 BedFactors = _structure("bed_factors", ("matrix", Matrix), ("facts", SceneFacts), ("body_area", DOUBLES),
                         ("threads", c_int), ("directions", c_uint32), ("fallbacks rays", c_uint64),
                         ("seconds closure_error reciprocity_error", c_double))
@@ -81,7 +84,7 @@ Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_doub
 def _declare(library: ctypes.CDLL) -> None:
     """Types of what is called, so that no pointer is cut to an int."""
     bed: list[Any] = [POINTER(SceneConfig), POINTER(Spheres)]
-    library.fibrad_version.restype = library.fibrad_status_text.restype = c_char_p
+    library.fibrad_version.restype = library.fibrad_status_text.restype = library.fibrad_why_text.restype = c_char_p
     library.fibrad_host_sizeof.argtypes, library.fibrad_host_sizeof.restype = [c_char_p], c_size_t
     library.fibrad_view_factors.argtypes = [*bed, POINTER(BedOptions), POINTER(Run), POINTER(POINTER(BedFactors))]
     library.fibrad_exchange_factors.argtypes = [*bed, POINTER(ExchangeRule), POINTER(BedOptions), POINTER(Run),

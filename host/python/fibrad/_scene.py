@@ -3,14 +3,14 @@ from __future__ import annotations
 
 import ctypes
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._errors import ARGUMENT, BACK, GEOMETRY, Error, error_of, status_text
-from ._library import DOUBLES, Body, SceneConfig, Spheres, Triangles
+from ._errors import ARGUMENT, BACK, ENDLESS, GEOMETRY, Error, error_of, status_text, why_text
+from ._library import DOUBLES, Body, Plane, SceneConfig, Spheres, Triangles
 from ._values import Names, doubles, real, refuse
 
 _AXES = "xyz"
@@ -37,8 +37,6 @@ def pointers(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
 
 def _stride(array: NDArray[np.float64]) -> int:
     """Doubles between the elements along the first axis; 0: not as the library takes it."""
-    if not array.flags.aligned:
-        return 0
     if len(array) < 2:
         return 1
     apart, rest = divmod(array.strides[0], array.itemsize)
@@ -77,14 +75,22 @@ class Packing:
         values, counts = np.unique(array, return_counts=True)
         if values.size < self.n:
             raise refuse(f"two spheres have the id {values[counts > 1][0]}")
-        return np.ascontiguousarray(array, np.uint64)
+        return np.require(array, np.uint64, "CA")
 
     def error(self, status: int, fault: Any, container: Container) -> Error:
         """What a call has returned, in words, with the spheres or the triangle concerned."""
         concerned = tuple(dict.fromkeys(i for i in (fault.first, fault.second) if i < self.n))
         text = status_text(status)
-        if status == GEOMETRY and len(concerned) < 2:
+        if fault.why:
+            text = why_text(fault.why)
+            if fault.wall:
+                return error_of(status, f"wall {container.names[fault.wall - 1]}: {text}", concerned)
+        elif status == GEOMETRY and len(concerned) == 1 and container.reaches(2 * self.r[concerned[0]]):
+            text = "a sphere reaches beyond an open side"
+        elif status == GEOMETRY and len(concerned) < 2:
             text = "the box is smaller than a sphere's radius along a periodic axis"
+        elif status == ENDLESS:
+            text = f"{text}, such as walls={{{container.missing()!r}: 'open'}}"
         elif status == ARGUMENT and not concerned and not container.triangle(fault.triangle):
             text = f"this bed, box and walls cannot be computed: {text}"
         places = ", ".join(f"{self.names(i)} at {self.x[i].tolist()}, radius {self.r[i]}" for i in concerned)
@@ -117,8 +123,36 @@ class Mesh:
         if corners.min() < 0 or corners.max() >= len(self.vertices):
             raise refuse(f"triangles name vertices from {corners.min()} to {corners.max()}; "
                          f"there are {len(self.vertices)}")
-        self.triangles = np.ascontiguousarray(corners, np.uint32)
+        self.triangles = np.require(corners, np.uint32, "CA")
         self.back = back
+
+    @classmethod
+    def from_stl(cls, path: Any, x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None, scale: float = 1.0,
+                 sides: str = "auto") -> Mesh:
+        """Triangles of an STL file, text or binary, also packed by gzip; mended, and their sides chosen, as the program
+        does.
+
+        Parameters
+        ----------
+        path : str or path
+            The file.
+        x, r, box
+            The bed, as in `view_factors`.
+        scale : float
+            Its coordinates times this.
+        sides : {"auto", "normals", "both"}
+            The wall are the sides that spheres are on; the outer sides, as the file winds its triangles; both sides.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read so; some of its parts are twisted, so that not one side of all is the wall.
+        """
+        from ._files import stl
+        packing = Packing(x, r)
+        period = Container(box, None, packing).period
+        vertices, triangles, both = stl(path, packing.spheres, period, scale, sides)
+        return cls(vertices, triangles, back=both or None)
 
     def areas(self) -> NDArray[np.float64]:
         """(t,) of the triangles [m2]."""
@@ -126,12 +160,36 @@ class Mesh:
         return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2)
 
 
+def _plane(name: str, at: Any) -> tuple[int, int, float]:
+    if isinstance(at, str):
+        raise refuse(f"wall {name} is {at!r}; a place, 'open' or ('open', place) is wanted")
+    return (*_PLANES[name], real(f"wall {name}", at, -_LENGTH_MAX, _LENGTH_MAX))
+
+
+def _is_open(value: Any) -> bool:
+    """Whether a side is open: "open", or ("open", where)."""
+    return isinstance(value, str) and value == "open" or (
+        isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[0], str) and value[0] == "open")
+
+
+def _opening(name: str, value: Any, packing: Packing) -> tuple[int, int, float]:
+    """Without a place the end of the spheres."""
+    if name not in _PLANES:
+        raise refuse(f"{name!r} cannot be open; {', '.join(_PLANES)} can")
+    if not isinstance(value, str):
+        return _plane(name, value[1])
+    axis, upper = _PLANES[name]
+    if not packing.n:
+        raise refuse(f"there are no spheres at whose end {name} could be open; {name}=('open', where) tells")
+    x = packing.x[:, axis]
+    return _plane(name, float((x + packing.r).max() if upper else (x - packing.r).min()))
+
+
 def _body(name: str, value: Any) -> Any:
     if isinstance(value, Mesh):
         return Body(kind=_MESH)
     if name in _PLANES:
-        axis, upper = _PLANES[name]
-        return Body(kind=_PLANE, plane=(axis, upper, real(f"wall {name}", value, -_LENGTH_MAX, _LENGTH_MAX)))
+        return Body(kind=_PLANE, plane=_plane(name, value))
     if name == "cylinder":
         numbers = doubles("wall cylinder", value)
         if numbers.shape != (3,) or not np.isfinite(numbers).all() or numbers[2] <= 0:
@@ -143,16 +201,22 @@ def _body(name: str, value: Any) -> Any:
 class Container:
     """A box and walls."""
 
-    def __init__(self, box: Optional[ArrayLike], walls: Optional[Walls]):
+    def __init__(self, box: Optional[ArrayLike], walls: Optional[Walls], packing: Packing):
         self.period = np.zeros(3) if box is None else doubles("box", box)
         if self.period.shape != (3,) or not (np.isfinite(self.period) & (self.period >= 0)).all():
             raise refuse("box must be three lengths; 0 stands for an open axis")
-        self.walls = pairs = list(walls.items() if isinstance(walls, Mapping) else walls or ())
-        self.names = tuple(name for name, _ in pairs)
-        if len(set(self.names)) < len(pairs):
+        self.walls = all_pairs = list(walls.items() if isinstance(walls, Mapping) else walls or ())
+        if len({name for name, _ in all_pairs}) < len(all_pairs):
             raise refuse("a wall is named twice")
+        pairs = [(name, value) for name, value in all_pairs if not _is_open(value)]
+        openings = {name: _opening(name, value, packing) for name, value in all_pairs if _is_open(value)}
+        self.names = tuple(name for name, _ in pairs)
+        self.opened = frozenset(openings)
+        self.kinds = (*self.names, *(f"{name} open" for name in sorted(openings)))
+        self._openings = (Plane * len(openings))(*openings.values())
         self._bodies = (Body * len(pairs))(*(_body(name, value) for name, value in pairs))
-        self.config = SceneConfig(period=tuple(self.period), body=self._bodies, bodies=len(pairs))
+        self.config = SceneConfig(period=tuple(self.period), body=self._bodies, bodies=len(pairs),
+                                  opening=self._openings, openings=len(openings))
         self._meshes = [(b, value) for b, (_, value) in enumerate(pairs) if isinstance(value, Mesh)]
         if self._meshes:
             self.config.triangles = ctypes.pointer(self._triangles())
@@ -231,12 +295,32 @@ class Container:
     def sides_count(self) -> int:
         return 2 * sum(len(mesh.triangles) for _, mesh in self._meshes)
 
+    def _bounded(self, axis: int) -> bool:
+        """Whether walls go on for ever along an axis: it is periodic, between two planes or within the cylinder."""
+        ends = {f"{_AXES[axis]}min", f"{_AXES[axis]}max"}
+        return bool(self.period[axis] > 0 or ends <= {*self.names, *self.opened} or (axis < 2 and "cylinder" in self.names))
+
     def closed(self) -> bool:
-        """Whether nothing can leave: each axis periodic, between two planes or within the cylinder."""
-        def bounded(axis: int) -> bool:
-            ends = {f"{_AXES[axis]}min", f"{_AXES[axis]}max"}
-            return self.period[axis] > 0 or ends <= set(self.names) or (axis < 2 and "cylinder" in self.names)
-        return all(bounded(axis) for axis in range(3))
+        """Whether nothing can leave."""
+        return not self.opened and all(self._bounded(axis) for axis in range(3))
+
+    def reaches(self, diameter: float) -> bool:
+        """Whether a sphere that cannot be where it is reaches beyond an open side: it is not its own image."""
+        return bool(self.opened) and not ((self.period > 0) & (self.period < diameter)).any()
+
+    def missing(self) -> str:
+        """A side without an end where walls go on for ever."""
+        return next((name for name, (axis, _) in reversed(_PLANES.items())
+                     if not self._bounded(axis) and name not in {*self.names, *self.opened}), "zmax")
+
+    def known(self, name: str, walls: Collection[str]) -> None:
+        """Refuses names of walls that there are not, for an argument."""
+        opened, wrong = sorted(set(walls) & self.opened), sorted(set(walls) - set(self.names))
+        if opened:
+            raise refuse(f"{name}: {', '.join(opened)} is open: as black and as hot as the surroundings")
+        if wrong:
+            there = f"; there are {', '.join(self.names)}" if self.names else ""
+            raise refuse(f"{name}: there is no wall {', '.join(map(repr, wrong))}{there}")
 
     def per_wall(self, name: str, value: Any, low: float, high: float,
                  others: frozenset[str] = frozenset()) -> NDArray[np.float64]:
@@ -246,10 +330,7 @@ class Container:
             raise refuse(f"{name} is given, and there are no walls")
         if not isinstance(value, Mapping):
             value = dict.fromkeys([wall for wall in self.names if wall not in others], value)
-        wrong = set(value) - set(self.names)
-        if wrong:
-            raise refuse(f"{name}: there is no wall {', '.join(map(repr, sorted(wrong)))}; "
-                         f"there are {', '.join(self.names)}")
+        self.known(name, value)
         missing = [wall for wall in self.names if value.get(wall) is None and wall not in others]
         if missing:
             raise refuse(f"{name} of {', '.join(missing)} is missing")

@@ -41,13 +41,14 @@ def real(name: str, value: Optional[float], low: float, high: float) -> float:
 
 
 def doubles(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    """An array of float64, the given one if it is such; what has no plain number is refused."""
+    """An array of float64 at addresses that the processor takes, the given one if it is such; what has no plain number
+    is refused."""
     if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
         raise refuse(f"{name} has masked elements")
     array = np.asarray(value)
     try:
         if array.dtype.kind in "fiubO":
-            return array.astype(np.float64, copy=False)
+            return np.require(array, np.float64, "A")
     except (TypeError, ValueError):
         pass  # objects that are no numbers
     raise refuse(f"{name} must be numbers, not {array.dtype}")

@@ -3,8 +3,8 @@
  * The sphere is projected from its centre onto a cube, each face of which is cut into equal squares after a map that
  * makes their images on the sphere about equal. The cube is turned so that neither the axes nor the contacts of common
  * lattices lie on its edges. */
-#ifndef FIBRAD_HEAT_SPHERE_PATCH_H
-#define FIBRAD_HEAT_SPHERE_PATCH_H
+#ifndef FIBRAD_SAMPLE_SPHERE_PATCH_H
+#define FIBRAD_SAMPLE_SPHERE_PATCH_H
 
 #include "base/port.h"
 
@@ -24,10 +24,10 @@ static inline uint32_t fibrad_patch_number(uint32_t face, uint32_t x, uint32_t y
     return face * side * side + ((x >> 1) * (side >> 1) + (y >> 1)) * 4 + (x & 1) * 2 + (y & 1);
 }
 
-/* The patch of a normal. */
-static inline uint32_t fibrad_patch_of(const double normal[3], uint32_t side) {
+/* Where a normal is: the face, and the place on it in squares. */
+static inline uint32_t fibrad_patch_place(const double normal[3], uint32_t side, double at[2]) {
     static const double frame[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    double axes[9], n[3], at[2];
+    double axes[9], n[3];
     fibrad_patch_turn(frame, axes);
     for (int row = 0; row < 3; row++)
         n[row] = normal[0] * axes[row] + normal[1] * axes[3 + row] + normal[2] * axes[6 + row];
@@ -37,7 +37,14 @@ static inline uint32_t fibrad_patch_of(const double normal[3], uint32_t side) {
         const double t = n[k < axis ? k : k + 1] / fibrad_abs(n[axis]);
         at[k] = fibrad_max(0, t * (1.25 - .25 * (t * t)) + 1) * (.5 * side);
     }
-    return fibrad_patch_number(2 * axis + (n[axis] < 0), (uint32_t)at[0], (uint32_t)at[1], side);
+    return 2 * axis + (n[axis] < 0);
+}
+
+/* The patch of a normal. */
+static inline uint32_t fibrad_patch_of(const double normal[3], uint32_t side) {
+    double at[2];
+    const uint32_t face = fibrad_patch_place(normal, side, at);
+    return fibrad_patch_number(face, (uint32_t)at[0], (uint32_t)at[1], side);
 }
 
 #endif

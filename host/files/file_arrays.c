@@ -1,0 +1,87 @@
+/* file_arrays.c - beds and meshes of files as arrays, for Python: libfibrad_files.so. SPDX-License-Identifier: MIT */
+#include "files/file_arrays.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "mesh/meshes.h"
+#include "read/read.h"
+
+int fibrad_file_read(const struct file_wanted *wanted, struct file_bed *found, file_heard *heard, void *context) {
+    struct read_options options = {
+        .no_radius = wanted->no_radius != 0, .extra = wanted->column, .extras = wanted->columns, .any_unit = true};
+    if (wanted->frame >= 0) options.frames = (struct frames){wanted->frame, wanted->frame + 1, 1};
+    struct bed *bed = malloc(sizeof *bed);
+    *found = (struct file_bed){.bed = bed};
+    if (!bed) return STATUS_MEMORY;
+    message_redirect(heard, context);
+    const int status = read_bed(wanted->path, &options, bed);
+    message_redirect(NULL, NULL);
+    if (status) return status;
+    found->n = bed->n;
+    found->x = bed->x, found->y = bed->y, found->z = bed->z, found->r = bed->r;
+    found->id = bed->ids ? bed->id : NULL;
+    found->extra = bed->extra;
+    memcpy(found->low, bed->low, sizeof bed->low);
+    memcpy(found->high, bed->high, sizeof bed->high);
+    memcpy(found->period, bed->period, sizeof bed->period);
+    found->frame = bed->frame, found->timestep = bed->timestep;
+    memcpy(found->units, bed->units, sizeof bed->units);
+    return STATUS_OK;
+}
+
+void fibrad_file_free(struct file_bed *found) {
+    if (found->bed) bed_free(found->bed);
+    free(found->bed);
+    *found = (struct file_bed){0};
+}
+
+/* Winds triangles whose back is the wall the other way round. Status 0, or STATUS_INPUT. */
+static int turn_to_walls(const struct meshes *meshes, struct file_mesh *found) {
+    uint32_t both = 0;
+    for (uint32_t t = 0; t < found->n; ++t) {
+        uint32_t *corner = &found->corner[3 * (size_t)t];
+        both += meshes->front[t] != FIBRAD_NO_BODY && meshes->back[t] != FIBRAD_NO_BODY;
+        if (meshes->front[t] != FIBRAD_NO_BODY) continue;
+        const uint32_t second = corner[1];
+        corner[1] = corner[2];
+        corner[2] = second;
+    }
+    found->both = both > 0;
+    if (both == 0 || both == found->n) return STATUS_OK;
+    return message_at(
+        STATUS_INPUT, meshes->mesh[0].file, 0,
+        "%u of %u triangles are of parts that are twisted and have both sides; make both sides of all the wall", both,
+        found->n);
+}
+
+int fibrad_file_mesh(const char *path, double scale, int sides, const fibrad_spheres *spheres, const double period[3],
+                     struct file_mesh *found, file_heard *heard, void *context) {
+    const struct mesh_file file = {.path = path, .name = "mesh", .sides = (enum mesh_sides)sides, .scale = scale};
+    struct meshes *meshes = calloc(1, sizeof *meshes);
+    *found = (struct file_mesh){.meshes = meshes};
+    if (!meshes) return STATUS_MEMORY;
+    message_redirect(heard, context);
+    int status = meshes_add(meshes, &file, 0);
+    if (!status) status = meshes_face(meshes, spheres, period);
+    if (!status) {
+        found->vertex = meshes->vertex, found->corner = meshes->corner;
+        found->vertices = meshes->triangles.vertices, found->n = meshes->triangles.n;
+        status = turn_to_walls(meshes, found);
+    }
+    message_redirect(NULL, NULL);
+    return status;
+}
+
+void fibrad_file_mesh_free(struct file_mesh *found) {
+    if (found->meshes) meshes_free(found->meshes);
+    free(found->meshes);
+    *found = (struct file_mesh){0};
+}
+
+size_t fibrad_file_sizeof(const char *name) {
+    if (strcmp(name, "file_bed") == 0) return sizeof(struct file_bed);
+    if (strcmp(name, "file_wanted") == 0) return sizeof(struct file_wanted);
+    return strcmp(name, "file_mesh") == 0 ? sizeof(struct file_mesh) : 0;
+}

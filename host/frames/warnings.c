@@ -1,0 +1,245 @@
+/* warnings.c - what a bed and the options say that contradicts itself: one warning each a run, with the likely remedy.
+ * SPDX-License-Identifier: MIT */
+#include "frames/warnings.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/message.h"
+
+enum kind {
+    OTHER_NAMES,
+    OTHER_ORDER,
+    OTHER_PERIOD,
+    OTHER_UNIT,
+    LARGE_OVERLAP,
+    CUT_BY_WALL,
+    SHRUNK_BOX,
+    MESH_SIZE,
+    MESH_PLACE,
+    CELSIUS,
+    ABSOLUTE_ZERO,
+    HEAT_CAPACITY,
+    DENSITY,
+    WALLS_OPEN,
+    WALLS_APART,
+    CLOSING
+};
+
+#define RADIUS_LARGE  0.1   /* a larger mean radius is hardly one of a particle in metres */
+#define OVERLAP_LARGE 0.05  /* over the smaller radius */
+#define CUT_LARGE     0.1   /* depth of a wall in a sphere, over its radius */
+#define PERIOD_OFF    1e-3  /* relative: boxes are typed with few digits */
+#define SIZES_APART   200.0 /* of a mesh and a bed: metres for millimetres are 1000 */
+#define COLD          150.0 /* [K] all temperatures of a bed that is hardly so cold */
+#define CLOSED        1e-9  /* sums of rows of walls that are closed */
+#define APART         0.1   /* ... and by how much they may be off before: some hundredths by few directions */
+#define CHANGE_LARGE  1.5   /* by closing, over the error: among thousands of rows some come up to 1 by chance */
+/* Twice beyond what solids have, aerogel and uranium included. */
+#define CAPACITY_LOW  30.0 /* [J/(kg K)] */
+#define CAPACITY_HIGH 3e4
+#define DENSITY_LOW   10.0 /* [kg/m3] */
+#define DENSITY_HIGH  1e5
+
+/* Whether a warning is not out yet; now it is. */
+static bool is_new(struct warned *warned, enum kind kind) {
+    const unsigned bit = 1u << kind;
+    const bool new = !(warned->kinds & bit);
+    warned->kinds |= bit;
+    return new;
+}
+
+void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_factors *matrix) {
+    const bool walls = matrix->body_body != NULL;
+    if (walls && matrix->body_closure > CLOSED && is_new(warned, WALLS_OPEN))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: rows of walls are not closed: their sums are off by %.2g, since they and those of spheres "
+                   "contradict each other; do triangles cut spheres?",
+                   matrix->body_closure);
+    else if (walls && matrix->body_correction > APART && is_new(warned, WALLS_APART))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: rows of walls and of spheres disagreed by %.2g before they were closed; do triangles cut "
+                   "spheres? If not, more directions help",
+                   matrix->body_correction);
+    else if (matrix->changed > CHANGE_LARGE && is_new(warned, CLOSING))
+        message_at(STATUS_OK, warned->file, bed->line[matrix->changed_row],
+                   "warning: closing changes what sphere %lld gives to walls and surroundings by %.2g times the error "
+                   "of its row; do triangles cut it? If not, more directions help",
+                   (long long)bed_name(bed, matrix->changed_row), matrix->changed);
+}
+
+/* ---- frames ----------------------------------------------------------------------------------------------------- */
+
+void warn_frame(struct warned *warned, const struct bed *bed) {
+    const bool before = warned->frames > 0;
+    if (before && warned->ids != bed->ids && is_new(warned, OTHER_NAMES)) /* rows of both are told apart by nothing */
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: spheres go by %s, those of the frames before by %s; --positions is for all of them",
+                   bed->ids ? "ids" : "positions", warned->ids ? "ids" : "positions");
+    if (before && bed->timestep >= 0 && bed->timestep < warned->timestep && is_new(warned, OTHER_ORDER))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: timestep %lld comes behind %lld; a pattern in quotes, 'bed.*.dump', gives files in the "
+                   "order of their numbers",
+                   (long long)bed->timestep, (long long)warned->timestep);
+    ++warned->frames;
+    warned->ids = bed->ids;
+    warned->timestep = bed->timestep;
+}
+
+void warn_periods(struct warned *warned, const struct bed *bed, const double period[3]) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double length = bed->high[axis] - bed->low[axis];
+        if (!(period[axis] > 0 && length > 0) || fabs(period[axis] - length) <= PERIOD_OFF * length) continue;
+        if (!is_new(warned, OTHER_PERIOD)) return;
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: --periodic is %g along %c, and the box of the file is %g long; is it in the file's unit?",
+                   period[axis], 'x' + axis, length);
+    }
+}
+
+static double mean_radius(const struct bed *bed) {
+    double sum = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) sum += bed->r[i];
+    return sum / bed->n;
+}
+
+void warn_unit(struct warned *warned, const struct bed *bed) {
+    if (mean_radius(bed) > RADIUS_LARGE && is_new(warned, OTHER_UNIT))
+        message_at(STATUS_OK, warned->file, 0, "warning: radii of %g are taken as metres; --length-unit mm, or m",
+                   mean_radius(bed));
+}
+
+void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_scene_facts *facts) {
+    const uint32_t first = facts->overlap_pair[0], second = facts->overlap_pair[1];
+    char place[2][BED_PLACE];
+    if (facts->overlap_max > OVERLAP_LARGE && is_new(warned, LARGE_OVERLAP))
+        message_at(STATUS_OK, warned->file, 0, "warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius",
+                   (long long)bed_name(bed, first), bed_place(bed, first, place[0]), (long long)bed_name(bed, second),
+                   bed_place(bed, second, place[1]), facts->overlap_max);
+}
+
+/* ---- walls ------------------------------------------------------------------------------------------------------ */
+
+/* How far sphere i reaches beyond a plane or the cylinder; of others 0. */
+static double cut(const struct bed *bed, const fibrad_body *wall, uint32_t i) {
+    const double at[3] = {bed->x[i], bed->y[i], bed->z[i]};
+    if (wall->kind == FIBRAD_BODY_CYLINDER)
+        return hypot(at[0] - wall->cylinder.x, at[1] - wall->cylinder.y) + bed->r[i] - wall->cylinder.radius;
+    if (wall->kind != FIBRAD_BODY_PLANE) return 0;
+    const double beyond = at[wall->plane.axis] - wall->plane.at;
+    return bed->r[i] + (wall->plane.upper ? beyond : -beyond);
+}
+
+static void warn_of_cuts(struct warned *warned, const struct bed *bed, const struct walls *walls) {
+    uint32_t count = 0, sphere = 0, wall = 0;
+    double worst = 0;
+    for (uint32_t k = 0; k < walls->count; ++k)
+        for (uint32_t i = 0; i < bed->n; ++i) {
+            const double depth = cut(bed, &walls->body[k], i) / bed->r[i];
+            count += depth > CUT_LARGE;
+            if (depth > worst) worst = depth, sphere = i, wall = k;
+        }
+    if (count > 0 && is_new(warned, CUT_BY_WALL))
+        message_at(
+            STATUS_OK, warned->file, bed->line[sphere],
+            "warning: sphere %lld reaches through the wall %s by %.2g of its radius (%u such places in all); does "
+            "the wall stand where it should?",
+            (long long)bed_name(bed, sphere), wall_name(walls, wall), worst, count);
+}
+
+/* The lower and upper ends of all spheres; an axis that is periodic has none. */
+static void spheres_extents(const struct bed *bed, double low[3], double high[3]) {
+    const double *const centre[3] = {bed->x, bed->y, bed->z};
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = INFINITY, high[axis] = -INFINITY;
+        for (uint32_t i = 0; i < bed->n; ++i) {
+            low[axis] = fmin(low[axis], centre[axis][i] - bed->r[i]);
+            high[axis] = fmax(high[axis], centre[axis][i] + bed->r[i]);
+        }
+    }
+}
+
+static double longest(const double low[3], const double high[3]) {
+    return fmax(fmax(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+}
+
+static void warn_of_mesh(struct warned *warned, const struct bed *bed, const struct meshes *meshes, uint32_t wall) {
+    double low[3], high[3], from[3], to[3];
+    mesh_extents(meshes, wall, low, high);
+    spheres_extents(bed, from, to);
+    const double ratio = longest(low, high) / longest(from, to);
+    if ((ratio > SIZES_APART || ratio < 1 / SIZES_APART) && is_new(warned, MESH_SIZE))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: the wall %s is %.3g long, the bed %.3g; is the mesh in the bed's unit? mesh:FILE:scale=%g "
+                   "changes it",
+                   meshes->name[wall], longest(low, high), longest(from, to), ratio > 1 ? 1e-3 : 1e3);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double near = 2 * mean_radius(bed);
+        if (bed->period[axis] > 0 || (low[axis] <= to[axis] + near && high[axis] >= from[axis] - near)) continue;
+        if (is_new(warned, MESH_PLACE))
+            message_at(STATUS_OK, warned->file, 0,
+                       "warning: the wall %s lies from %g to %g along %c, the bed from %g to %g; are both in the same "
+                       "place and unit?",
+                       meshes->name[wall], low[axis], high[axis], 'x' + axis, from[axis], to[axis]);
+    }
+}
+
+void warn_walls(struct warned *warned, const struct bed *bed, const struct walls *walls) {
+    if (walls->moved && is_new(warned, SHRUNK_BOX))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: the box of the file ends within spheres, as one about centres does; walls without a place "
+                   "stand where the spheres end; xmin=VALUE places one");
+    warn_of_cuts(warned, bed, walls);
+    for (uint32_t k = 0; k < walls->count; ++k)
+        if (walls->body[k].kind == FIBRAD_BODY_MESH) warn_of_mesh(warned, bed, walls->meshes, k);
+}
+
+/* ---- values ----------------------------------------------------------------------------------------------------- */
+
+/* Whether a column's name says that it is in degrees Celsius. */
+static bool names_celsius(const char *column) {
+    const size_t length = strlen(column);
+    return (length > 2 && strcmp(column + length - 2, "_C") == 0) || strstr(column, "elsius");
+}
+
+void warn_temperatures(struct warned *warned, const struct bed *bed, const struct quantity *given, double zero,
+                       const double *kelvins) {
+    uint32_t zeros = 0, first = 0;
+    double most = -1;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        if (kelvins[i] > most) most = kelvins[i];
+        if (kelvins[i] == 0 && zeros++ == 0) first = i;
+    }
+    const bool named = zero == 0 && given->column && names_celsius(given->column);
+    if (named && is_new(warned, CELSIUS))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: the column %.40s is taken as kelvins; --temperature-unit C takes degrees Celsius",
+                   given->column);
+    if (zero == 0 && most > 0 && most < COLD && is_new(warned, CELSIUS))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: no sphere is warmer than %g K; --temperature-unit C takes degrees Celsius", most);
+    if (zeros > 0 && most > 0 && is_new(warned, ABSOLUTE_ZERO))
+        message_at(STATUS_OK, warned->file, bed->line[first],
+                   "warning: sphere %lld has 0 K, as %u in all have, others up to %g K; is a value missing? nan is an "
+                   "unknown temperature, with --power",
+                   (long long)bed_name(bed, first), zeros, most);
+}
+
+/* The first value that no solid has; n: there is none. */
+static uint32_t find_beyond(const double *value, uint32_t n, double low, double high) {
+    uint32_t i = 0;
+    while (i < n && value[i] >= low && value[i] <= high) ++i;
+    return i;
+}
+
+void warn_matter(struct warned *warned, const struct bed *bed, const double *capacity, const double *density) {
+    const uint32_t c = find_beyond(capacity, bed->n, CAPACITY_LOW, CAPACITY_HIGH);
+    const uint32_t rho = find_beyond(density, bed->n, DENSITY_LOW, DENSITY_HIGH);
+    if (c < bed->n && is_new(warned, HEAT_CAPACITY))
+        message_at(STATUS_OK, warned->file, bed->line[c],
+                   "warning: the heat capacity is %g J/(kg K); solids have some 100 to 5000", capacity[c]);
+    if (rho < bed->n && is_new(warned, DENSITY))
+        message_at(STATUS_OK, warned->file, bed->line[rho],
+                   "warning: the density is %g kg/m3; solids have some 100 to 20,000", density[rho]);
+}

@@ -1,0 +1,12 @@
+/* plot_conduction.h - a picture of exchange factors along the axes, by gnuplot. SPDX-License-Identifier: MIT */
+#ifndef PLOT_CONDUCTION_H
+#define PLOT_CONDUCTION_H
+
+#include "bed/conduction.h"
+#include "cli/output.h"
+
+/* F_E along each axis wanted, with twice its standard error; between plates where that is known; k in the names of the
+ * axes. name: a path, whose last part is the title. Status as plot_heat. */
+int plot_conduction(const struct output *output, const char *name, const struct conduction *conduction);
+
+#endif

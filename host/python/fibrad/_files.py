@@ -1,0 +1,163 @@
+# _files.py - beds and meshes from files, by libfibrad_files.so. SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import ctypes
+import dataclasses
+import os
+import pathlib
+import threading
+import warnings
+from collections.abc import Sequence
+from ctypes import POINTER, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint32, c_void_p
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._errors import Error, InputError, OutOfMemory
+from ._library import DOUBLES, Spheres, structure_of_files
+from ._values import refuse
+
+Path = Union[str, "os.PathLike[str]"]
+_HEARD: Any = ctypes.CFUNCTYPE(None, c_void_p, c_char_p)
+_SIDES = ("auto", "normals", "both")
+_KINDS = {3: InputError, 5: OutOfMemory}
+_busy = threading.Lock()
+_loaded: list[Any] = []
+
+FileBed = structure_of_files(
+    "file_bed", ("x y z r", DOUBLES), ("id", POINTER(c_int64)), ("extra", DOUBLES), ("low high period", c_double * 3),
+    ("frame timestep", c_int64), ("units", ctypes.c_char * 16), ("bed", c_void_p), ("n", c_uint32))
+FileWanted = structure_of_files("file_wanted", ("path", c_char_p), ("frame", c_int64), ("column", POINTER(c_char_p)),
+                                ("columns", c_size_t), ("no_radius", c_int))
+FileMesh = structure_of_files("file_mesh", ("vertex", DOUBLES), ("corner", POINTER(c_uint32)), ("meshes", c_void_p),
+                              ("vertices n", c_uint32), ("both", c_int))
+
+
+def _library() -> Any:
+    """libfibrad_files.so: of the package, or of the source tree."""
+    if _loaded:
+        return _loaded[0]
+    here = pathlib.Path(__file__).resolve().parent
+    name = "libfibrad_files.so"
+    places = [here / name, here.parents[2] / os.environ.get("BUILD", "build") / name]
+    path = next((place for place in places if place.exists()), None)
+    if path is None:
+        raise Error(f"fibrad was installed without {name}, which reads files: zlib was missing (Debian: zlib1g-dev)")
+    library = ctypes.CDLL(str(path))
+    library.fibrad_file_sizeof.argtypes, library.fibrad_file_sizeof.restype = [c_char_p], c_size_t
+    for kind in (FileBed, FileWanted, FileMesh):
+        if library.fibrad_file_sizeof(kind.__name__.encode()) != ctypes.sizeof(kind):
+            raise ImportError(f"fibrad: {path} is of another version")
+    library.fibrad_file_read.argtypes = [POINTER(FileWanted), POINTER(FileBed), _HEARD, c_void_p]
+    library.fibrad_file_mesh.argtypes = [c_char_p, c_double, c_int, POINTER(Spheres), POINTER(c_double),
+                                         POINTER(FileMesh), _HEARD, c_void_p]
+    library.fibrad_file_free.restype = library.fibrad_file_mesh_free.restype = None
+    _loaded.append(library)
+    return library
+
+
+def _call(function: Any, *arguments: Any) -> None:
+    """Calls it; what it says becomes warnings, or the text of an error."""
+    lines: list[str] = []
+    heard = _HEARD(lambda context, line: lines.append(line.decode(errors="replace")))
+    status = function(*arguments, heard, None)
+    if status:
+        raise _KINDS.get(status, Error)(lines[-1] if lines else "out of memory", status)
+    for line in lines:
+        warnings.warn(line, stacklevel=4)
+
+
+def _array(address: Any, shape: tuple[int, ...]) -> NDArray[Any]:
+    return np.ctypeslib.as_array(address, shape).copy()
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class FileFrame:
+    """Spheres of one frame of a file, in the order of their ids."""
+
+    x: NDArray[np.float64]
+    """(n, 3) centres, in the unit of the file."""
+    r: NDArray[np.float64]
+    """(n,) radii."""
+    ids: Optional[NDArray[np.int64]]
+    """(n,); None: the file has none."""
+    box: NDArray[np.float64]
+    """(3,) lengths of the periodic box, 0 for open axes: the `box` of all functions."""
+    low: NDArray[np.float64]
+    """(3,) lower ends of the file's box; as `high` 0 if it has none."""
+    high: NDArray[np.float64]
+    """(3,) upper ends."""
+    columns: dict[str, NDArray[np.float64]]
+    """(n,) of each column asked for."""
+    unit: Optional[str]
+    """Of length, as the file calls it; None: it says none."""
+    frame: int
+    """Which one of the file, from 0."""
+    timestep: Optional[int]
+    """As the file says."""
+
+    def __repr__(self) -> str:
+        return f"<fibrad.FileFrame: {len(self.x)} spheres, frame {self.frame}>"
+
+
+def read(path: Path, frame: int = -1, *, columns: Sequence[str] = (), radius: Optional[float] = None) -> FileFrame:
+    """Reads the spheres of a file as the program does: all formats of ``docs/files.md``.
+
+    Parameters
+    ----------
+    path : str or path
+        The file, whose contents tell its format.
+    frame : int
+        Which one, from 0; -1: the last.
+    columns : names, optional
+        Of further columns wanted, such as ``["v_T"]``.
+    radius : float, optional
+        Of all spheres, for files without radii.
+
+    Returns
+    -------
+    FileFrame
+
+    Raises
+    ------
+    InputError
+        The file cannot be read so; the text names the line.
+    """
+    if isinstance(columns, str):
+        columns = [columns]
+    if frame < -1:
+        raise refuse(f"frame = {frame} is neither -1 nor from 0")
+    library, found = _library(), FileBed()
+    names = (c_char_p * len(columns))(*(name.encode() for name in columns))
+    wanted = FileWanted(os.fsencode(path), frame, names, len(columns), radius is not None)
+    with _busy:
+        try:
+            _call(library.fibrad_file_read, wanted, found)
+            n = found.n
+            x = np.stack([_array(axis, (n,)) for axis in (found.x, found.y, found.z)], axis=1)
+            extra = _array(found.extra, (n, len(columns))) if columns else np.zeros((n, 0))
+            return FileFrame(
+                x=x, r=_array(found.r, (n,)) if radius is None else np.full(n, float(radius)),
+                ids=_array(found.id, (n,)) if found.id else None, box=np.array(found.period), low=np.array(found.low),
+                high=np.array(found.high), columns={name: extra[:, k].copy() for k, name in enumerate(columns)},
+                unit=found.units.decode() or None, frame=found.frame,
+                timestep=found.timestep if found.timestep >= 0 else None)
+        finally:
+            library.fibrad_file_free(ctypes.byref(found))
+
+
+def stl(path: Path, spheres: Any, period: ArrayLike, scale: float, sides: str) -> tuple[Any, Any, bool]:
+    """Vertices and triangles of an STL file, wound so that fronts are the wall, and whether both sides are."""
+    if sides not in _SIDES:
+        raise refuse(f"sides = {sides!r} is none of {', '.join(_SIDES)}")
+    if not 1e-12 <= scale <= 1e12:
+        raise refuse(f"scale = {scale} is not within 1e-12 and 1e12")
+    library, found = _library(), FileMesh()
+    with _busy:
+        try:
+            _call(library.fibrad_file_mesh, os.fsencode(path), scale, _SIDES.index(sides), spheres,
+                  (c_double * 3)(*np.asarray(period, float)), found)
+            return (_array(found.vertex, (found.vertices, 3)), _array(found.corner, (found.n, 3)), bool(found.both))
+        finally:
+            library.fibrad_file_mesh_free(ctypes.byref(found))

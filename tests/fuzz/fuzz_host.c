@@ -1,0 +1,396 @@
+/* fuzz_host.c - libFuzzer target: any arguments to the functions of fibrad_host.h, in any order.
+ * SPDX-License-Identifier: MIT
+ *
+ * The beds are those of fuzz_kernel.c. Everything returned with FIBRAD_OK must be what the header promises, the same
+ * to the bit for any number of threads; after an error nothing is left to free. */
+#include "simple/fibrad_host.h"
+#include "contents.h"
+
+/* Everything about one bed. */
+struct session {
+    struct contents contents;
+    fibrad_spheres spheres;
+    fibrad_run run;
+    uint32_t reports; /* until progress asks to stop */
+    double emissivity[SPHERES], body_emissivity[BODIES];
+    fibrad_radiation *radiation;
+    fibrad_transient *transient;
+    bool solved, powers; /* there is a solution of this bed */
+    uint32_t asked;      /* how often the law of emissivities was asked */
+    uint8_t law;
+};
+
+static int progress(void *context, const char *stage, uint64_t done, uint64_t total) {
+    struct session *s = context;
+    REQUIRE(stage != NULL && (total == 0 || done <= total));
+    return s->reports > 0 && --s->reports == 0;
+}
+
+static void any_run(struct session *s) {
+    const uint8_t kind = byte();
+    s->run = (fibrad_run){.threads = 1 + kind % 3, .progress = progress, .context = s};
+    s->reports = kind > 200 ? kind - 200 : 0;
+    if (kind == 200) s->run.threads = (int)number();
+}
+
+/* Where the contents say now. */
+static const fibrad_spheres *spheres_of(struct session *s) {
+    struct contents *c = &s->contents;
+    s->spheres = (fibrad_spheres){.x = c->x, .y = c->y, .z = c->z, .r = c->r, .n = c->n, .id = c->ids ? c->id : NULL};
+    contents_complete(c);
+    return &s->spheres;
+}
+
+/* ---- factors ---------------------------------------------------------------------------------------------------- */
+
+/* Whether two matrices are the same to the bit. */
+static bool same(const fibrad_factors *a, const fibrad_factors *b) {
+    const uint64_t entries = a->start[a->n];
+    return memcmp(a->start, b->start, (a->n + 1) * sizeof *a->start) == 0 &&
+           memcmp(a->col, b->col, entries * sizeof *a->col) == 0 && memcmp(a->f, b->f, entries * sizeof *a->f) == 0 &&
+           memcmp(a->body, b->body, (size_t)a->n * a->bodies * sizeof *a->body) == 0 &&
+           memcmp(a->escaped, b->escaped, a->n * sizeof *a->escaped) == 0 &&
+           memcmp(a->error, b->error, a->n * sizeof *a->error) == 0;
+}
+
+/* closed: all rows add up to 1, and pairs are reciprocal. */
+static void check_factors(const fibrad_bed_factors *bed, const struct session *s, bool closed) {
+    const fibrad_factors *m = &bed->matrix;
+    REQUIRE(m->n == s->contents.n && m->bodies == s->contents.config.bodies && m->start[0] == 0);
+    REQUIRE(!(bed->closure_error > 1e-9) || !plain);
+    for (uint32_t i = 0; i < m->n; i++) {
+        double sum = m->escaped[i] + m->beyond[i];
+        for (uint64_t k = m->start[i]; k < m->start[i + 1]; k++) {
+            REQUIRE(m->col[k] < m->n && (k == m->start[i] || m->col[k] > m->col[k - 1]) && m->f[k] >= 0);
+            sum += m->f[k];
+        }
+        for (uint32_t b = 0; b < m->bodies; b++) {
+            REQUIRE(m->body[(size_t)i * m->bodies + b] >= 0);
+            sum += m->body[(size_t)i * m->bodies + b];
+        }
+        REQUIRE(m->error[i] >= 0);
+        if (closed) REQUIRE(fabs(sum - 1) < 1e-9 || m->start[i] == m->start[i + 1]);
+    }
+    if (closed) REQUIRE(bed->reciprocity_error < 1e-12);
+}
+
+static int factors_of(struct session *s, const fibrad_exchange_rule *grey, const fibrad_bed_options *options,
+                      fibrad_bed_factors **bed) {
+    const fibrad_spheres *spheres = spheres_of(s);
+    const fibrad_scene_config *config = &s->contents.config;
+    return grey != NULL ? CALL(fibrad_exchange_factors(config, spheres, grey, options, &s->run, bed))
+                        : CALL(fibrad_view_factors(config, spheres, options, &s->run, bed));
+}
+
+static void try_factors(struct session *s) {
+    unsigned char wanted[SPHERES];
+    const uint8_t method = byte() % 8, which = byte();
+    const fibrad_beam_rule beam = {.directions = 8 + byte() % 32,
+                                   .points = method == 1 ? 64 : 0,
+                                   .cutoff = which == 1 ? coordinate() : 0,
+                                   .tolerance = which == 2 ? .05 + share() : 0};
+    const fibrad_surface_rule surface = {.nodes = 8};
+    const fibrad_cast_rule cast = {.rays = 1 + number() % 300, .seed = which};
+    const fibrad_exchange_rule grey = {.emissivity = s->emissivity,
+                                       .body_emissivity = s->body_emissivity,
+                                       .directions = beam.directions,
+                                       .paths = 1 + byte() % 32,
+                                       .tolerance = which == 3 ? .2 + share() : 0};
+    fibrad_bed_options options = {.raw = byte() % 4 == 0, .bodies = byte() % 2, .drop = which % 8 == 0 ? share() : 0};
+    if (method < 4) options.beam = &beam;
+    if (method == 4) options.surface = &surface;
+    if (method == 5) options.cast = &cast;
+    if (which == 4) options.cast = &cast; /* two, perhaps */
+    if (which > 240) options.wanted = wanted;
+    if (which == 240) options.scratch = "/tmp";
+    if (which == 239) options.scratch = "/nonexistent";
+    for (uint32_t i = 0; i < SPHERES; i++) wanted[i] = which >> i % 4 & 1;
+    if (method == 4 && shortest < 1) return; /* many images */
+    fibrad_bed_factors *bed = (fibrad_bed_factors *)s, *again;
+    const int status = factors_of(s, method > 5 ? &grey : NULL, &options, &bed);
+    REQUIRE((status == FIBRAD_OK) == (bed != NULL));
+    if (status != FIBRAD_OK) return;
+    const bool closed = plain && !options.raw && options.wanted == NULL && method != 4 && method < 6;
+    check_factors(bed, s, closed);
+    any_run(s);
+    if (s->reports == 0 && factors_of(s, method > 5 ? &grey : NULL, &options, &again) == FIBRAD_OK) {
+        REQUIRE(same(&bed->matrix, &again->matrix));
+        fibrad_bed_free(again);
+    }
+    fibrad_bed_free(bed);
+}
+
+static void try_views(struct session *s) {
+    const fibrad_spheres *spheres = spheres_of(s);
+    fibrad_side_view view[2 * TRIANGLES];
+    const int status = CALL(fibrad_side_views(&s->contents.config, spheres, number() % 40, &s->run, view));
+    for (uint32_t k = 0; status == FIBRAD_OK && k < 2 * s->contents.triangles.n; k++) {
+        const double sum = view[k].spheres + view[k].bodies + view[k].escaped;
+        REQUIRE(isnan(sum) || fabs(sum - 1) < 1e-12);
+    }
+}
+
+static void try_displacements(struct session *s) {
+    fibrad_displacement d[SPHERES];
+    fibrad_scene_facts facts;
+    const fibrad_exchange_rule grey = {
+        .emissivity = s->emissivity, .body_emissivity = s->body_emissivity, .directions = 8, .paths = 1 + byte() % 32};
+    const int status = CALL(fibrad_displacements(&s->contents.config, spheres_of(s), &grey, NULL, &s->run, d, &facts));
+    for (uint32_t i = 0; status == FIBRAD_OK && i < s->contents.n; i++)
+        for (int axis = 0; axis < 3; axis++) REQUIRE(d[i].square[axis] >= 0 && isfinite(d[i].square[axis]));
+}
+
+/* ---- heat ------------------------------------------------------------------------------------------------------- */
+
+/* What radiates, and the arrays that say so. */
+struct sources {
+    fibrad_heat_sources sources;
+    double temperature[SPHERES], power[SPHERES], body_temperature[BODIES], body_power[BODIES], side[2 * TRIANGLES];
+    unsigned char insulated[BODIES];
+    bool usual; /* no number is beyond what a bed has */
+};
+
+/* known: all temperatures of spheres. in_time: powers act beside them. */
+static void any_sources(struct session *s, struct sources *all, bool known, bool in_time) {
+    fibrad_heat_sources *f = &all->sources;
+    const uint8_t which = byte();
+    fibrad_heat_sources_init(f);
+    f->sweeps_max = 1 + byte() % 40, f->sigma = 1, f->surroundings = which == 1 ? coordinate() : byte() / 16.;
+    all->usual = which != 1 && which != 2;
+    for (uint32_t i = 0; i < s->contents.n; i++) {
+        const uint8_t kind = byte();
+        all->temperature[i] = !known && kind % 4 == 0 ? NAN : .1 + kind / 16.;
+        all->power[i] = in_time || isnan(all->temperature[i]) ? share() : 0;
+        all->usual = all->usual && fabs(all->power[i]) <= 1;
+    }
+    for (uint32_t b = 0; b < s->contents.config.bodies; b++) {
+        const uint8_t kind = byte();
+        all->body_temperature[b] = kind % 5 == 0 ? NAN : kind / 16., all->body_power[b] = kind % 5 == 0 ? kind % 3 : 0;
+        all->insulated[b] = kind % 7 == 0;
+    }
+    for (uint32_t k = 0; k < 2 * s->contents.triangles.n; k++) all->side[k] = k % 3 == 0 ? 1 + which / 16. : NAN;
+    f->temperature = all->temperature, f->emissivity = s->emissivity, f->power = all->power;
+    f->body_temperature = all->body_temperature, f->body_emissivity = s->body_emissivity;
+    f->body_power = all->body_power, f->insulated = all->insulated;
+    if (which == 2) f->sigma = coordinate();
+    if (which == 3) f->temperature = NULL;
+    if (which > 200 && s->contents.triangles.n > 0) f->side_temperature = all->side;
+}
+
+/* Powers add up to zero. */
+static void check_powers(const struct session *s, const fibrad_heat_result *result) {
+    double sum = result->surroundings_power, size = fabs(sum);
+    for (uint32_t i = 0; i < s->contents.n; i++) sum += result->power[i], size += fabs(result->power[i]);
+    for (uint32_t b = 0; b < s->contents.config.bodies; b++)
+        sum += result->body_power[b], size += fabs(result->body_power[b]);
+    REQUIRE(fabs(sum) <= 1e-9 * size + 1e-6);
+}
+
+static fibrad_heat_config any_heat_config(void) {
+    fibrad_heat_config config = {.directions = 8 + byte() % 8, .patches = 24, .wall_rays = 1 + number() % 300};
+    const uint8_t which = byte();
+    if (which == 1) config.directions = number();
+    if (which == 2) config.points = number();
+    if (which == 3) config.patches = number();
+    if (which == 4) config.cutoff = coordinate();
+    return config;
+}
+
+/* Moves some spheres, seldom to where they cannot be. */
+static void move_some(struct session *s) {
+    for (int k = byte() % 4; k > 0 && s->contents.n > 0; k--) s->contents.x[number() % s->contents.n] += length() / 64;
+}
+
+/* Emissivities that fall with temperature; seldom what is none, from some call on. */
+static void law(void *context, const double *temperature, const double *body_temperature, double *emissivity,
+                double *body_emissivity) {
+    struct session *s = context;
+    const bool wrong = s->law % 8 == 1 && ++s->asked > (uint32_t)s->law / 8 % 4;
+    REQUIRE(temperature != NULL);
+    for (uint32_t i = 0; i < s->contents.n; i++)
+        if (!isnan(temperature[i])) emissivity[i] = wrong ? NAN : .2 + .6 / (1 + fabs(temperature[i]));
+    for (uint32_t b = 0; b < s->contents.config.bodies; b++)
+        if (!isnan(body_temperature[b])) body_emissivity[b] = .2 + .6 / (1 + fabs(body_temperature[b]));
+}
+
+static void try_radiation(struct session *s) {
+    double power[SPHERES], temperature[SPHERES], body_power[BODIES], body_temperature[BODIES], flux[2 * TRIANGLES];
+    double power_error[SPHERES];
+    fibrad_heat_result result = {.power = power,
+                                 .temperature = temperature,
+                                 .body_power = body_power,
+                                 .body_temperature = body_temperature,
+                                 .power_error = power_error};
+    struct sources all;
+    int status;
+    if (s->radiation == NULL) {
+        const fibrad_heat_config config = any_heat_config();
+        if (config.directions > 64 || config.points > 256) return;
+        status = CALL(fibrad_radiation_new(&s->radiation, &s->contents.config, spheres_of(s), &config, &s->run));
+        REQUIRE((status == FIBRAD_OK) == (s->radiation != NULL));
+        s->solved = false;
+        if (status != FIBRAD_OK) return;
+    }
+    switch (byte() % 6) {
+    case 0:
+        move_some(s);
+        if (CALL(fibrad_radiation_move(s->radiation, &s->contents.config, spheres_of(s))) != FIBRAD_OK) {
+            fibrad_radiation_free(s->radiation);
+            s->radiation = NULL;
+        }
+        s->solved = false;
+        break;
+    case 1:
+        status = CALL(fibrad_radiation_sides(s->radiation, flux, NULL));
+        REQUIRE(status == (s->solved ? FIBRAD_OK : FIBRAD_E_STATE));
+        break;
+    case 2: {
+        double emissivity[SPHERES], body_emissivity[BODIES];
+        memcpy(emissivity, s->emissivity, sizeof emissivity);
+        memcpy(body_emissivity, s->body_emissivity, sizeof body_emissivity);
+        any_sources(s, &all, false, false);
+        s->law = byte(), s->asked = 0;
+        status =
+            CALL(fibrad_radiation_settle(s->radiation, &all.sources, law, s, emissivity, body_emissivity, &result));
+        s->solved = status == FIBRAD_OK;
+        if (s->solved && all.usual) check_powers(s, &result);
+        for (uint32_t i = 0; i < s->contents.n && s->solved; i++) REQUIRE(emissivity[i] >= 0 && emissivity[i] <= 1);
+        if (status != FIBRAD_OK) { /* what is known of a solution then is not promised */
+            fibrad_radiation_free(s->radiation);
+            s->radiation = NULL;
+        }
+        break;
+    }
+    default:
+        any_sources(s, &all, byte() % 2, false);
+        status = CALL(fibrad_radiation_solve(s->radiation, &all.sources, &result));
+        if (status == FIBRAD_OK && all.usual) check_powers(s, &result);
+        for (uint32_t i = 0; i < s->contents.n && status == FIBRAD_OK; i++) REQUIRE(power_error[i] >= 0);
+        s->solved = status == FIBRAD_OK;
+        if (status != FIBRAD_OK) {
+            fibrad_radiation_free(s->radiation);
+            s->radiation = NULL;
+        }
+    }
+    fibrad_scene_facts facts;
+    fibrad_fault fault;
+    fibrad_radiation_describe(s->radiation, &facts, &fault);
+}
+
+/* ---- time ------------------------------------------------------------------------------------------------------- */
+
+static void advance(struct session *s, struct sources *all) {
+    double capacity[SPHERES], temperature[SPHERES], power[SPHERES], body_power[BODIES], body_energy[BODIES];
+    for (uint32_t i = 0; i < s->contents.n; i++) {
+        const uint8_t kind = byte();
+        temperature[i] = kind == 255 ? coordinate() : .5 + kind / 64.;
+        capacity[i] = kind == 254 ? coordinate() : 1 + kind;
+    }
+    double before[SPHERES];
+    memcpy(before, temperature, sizeof before);
+    const uint8_t which = byte();
+    fibrad_span span = {.temperature = temperature,
+                        .capacity = capacity,
+                        .duration = which == 1 ? coordinate() : .1 + which / 64.,
+                        .step = which == 2 ? coordinate() : 0,
+                        .tolerance = 1e-2,
+                        .power = power,
+                        .body_power = body_power,
+                        .body_energy = body_energy,
+                        .context = s};
+    if (which > 240) span.law = law, s->law = which, s->asked = 0;
+    if (which == 2 && !(span.step > .01)) span.step = .1;
+    all->sources.tolerance = 1e-2, all->sources.sigma *= .01; /* few steps */
+    if (which == 1 && span.duration > 10) span.duration = 10;
+    const int status = CALL(fibrad_transient_advance(s->transient, &all->sources, &span));
+    if (status != FIBRAD_OK) REQUIRE(memcmp(before, temperature, s->contents.n * sizeof *before) == 0);
+    if (status != FIBRAD_OK) return;
+    double stored = 0, given = span.surroundings_energy, size = fabs(given), sources = 0;
+    for (uint32_t i = 0; i < s->contents.n; i++) {
+        REQUIRE(temperature[i] > 0 && isfinite(temperature[i]));
+        stored += capacity[i] * (temperature[i] - before[i]), size += capacity[i] * temperature[i];
+        sources += all->power[i] * span.duration;
+    }
+    for (uint32_t b = 0; b < s->contents.config.bodies; b++) given += body_energy[b], size += fabs(body_energy[b]);
+    if (all->usual) REQUIRE(fabs(stored + given - sources) <= 1e-8 * (size + fabs(sources)) + 1e-9);
+}
+
+static void try_transient(struct session *s) {
+    struct sources all;
+    int status;
+    if (s->transient == NULL) {
+        fibrad_transient_config config = {.method = byte() % 3, .heat = any_heat_config()};
+        config.exchange.directions = 8 + byte() % 8, config.exchange.paths = 1 + byte() % 16;
+        config.exchange.tolerance = .5;
+        if (config.heat.directions > 64 || config.heat.points > 256) return;
+        status = CALL(fibrad_transient_new(&s->transient, &s->contents.config, spheres_of(s), &config, &s->run));
+        REQUIRE((status == FIBRAD_OK) == (s->transient != NULL));
+        s->powers = false;
+        if (status != FIBRAD_OK) return;
+    }
+    double power[SPHERES], body_power[BODIES], flux[2 * TRIANGLES];
+    fibrad_heat_result result = {.power = power, .body_power = body_power};
+    switch (byte() % 5) {
+    case 0:
+        move_some(s);
+        status = CALL(fibrad_transient_move(s->transient, &s->contents.config, spheres_of(s)));
+        break;
+    case 1:
+        any_sources(s, &all, true, false);
+        status = CALL(fibrad_transient_powers(s->transient, &all.sources, &result));
+        if (status == FIBRAD_OK && all.usual) check_powers(s, &result);
+        break;
+    case 2:
+        status = CALL(fibrad_transient_sides(s->transient, flux, NULL));
+        break;
+    default:
+        any_sources(s, &all, true, true);
+        advance(s, &all);
+    }
+    fibrad_scene_facts facts;
+    fibrad_transient_describe(s->transient, &facts, NULL);
+}
+
+/* ---- a bed, and what there is to be done with it ---------------------------------------------------------------- */
+
+static void try_bed(void) {
+    const uint8_t kind = byte();
+    struct session s = {.contents = any_contents(kind & 1, kind & 2)};
+    for (uint32_t i = 0; i < SPHERES; i++) s.emissivity[i] = i % 5 == kind % 5u ? share() : .3 + .05 * (i % 14);
+    for (uint32_t b = 0; b < BODIES; b++) s.body_emissivity[b] = b == kind % 8u ? share() : .2 + .08 * b;
+    for (int k = byte() % 12; k > 0 && plain; k--) {
+        any_run(&s);
+        switch (byte() % 8) {
+        case 0:
+        case 1:
+            try_factors(&s);
+            break;
+        case 2:
+            try_views(&s);
+            break;
+        case 3:
+            try_displacements(&s);
+            break;
+        case 4:
+            try_transient(&s);
+            break;
+        default:
+            try_radiation(&s);
+        }
+    }
+    fibrad_radiation_free(s.radiation);
+    fibrad_transient_free(s.transient);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    count_calls();
+    at = data, end = data + size;
+    try_bed();
+    char name[32] = "fibrad_";
+    for (int k = 7; k < 31; k++) name[k] = (char)byte();
+    (void)fibrad_host_sizeof(name);
+    void *block = fibrad_heap_resize(NULL, NULL, 1 + number() % 4096);
+    REQUIRE(block != NULL);
+    free(block);
+    return 0;
+}

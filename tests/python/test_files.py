@@ -1,0 +1,97 @@
+# test_files.py - beds and meshes from files, matrices to files. SPDX-License-Identifier: MIT
+import gzip
+import subprocess
+
+import numpy as np
+import pytest
+
+import fibrad
+
+CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float) * 4 - 2
+FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+
+
+def write_cube(path, turned=()):
+    """An STL file of 12 triangles whose fronts are outside, but for those turned."""
+    lines = ["solid a cube"]
+    for f, (a, b, c, d) in enumerate(FACES):
+        for corners in ((a, b, c), (a, c, d)):
+            corners = corners[::-1] if f in turned else corners
+            lines += ["facet", "outer loop", *(f"vertex {x} {y} {z}" for x, y, z in CUBE[list(corners)]), "endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid", ""]))
+    return path
+
+
+def test_frames(mono, tmp_path):
+    bed = fibrad.read(mono.path, columns=["v_T", "type"])
+    assert (bed.x == mono.x).all() and (bed.r == mono.r).all() and (bed.ids == mono.ids).all()
+    assert bed.unit is None and bed.frame == 0 and (bed.box == 0).all() and bed.high.tolist() == [12, 12, 50]
+    assert bed.columns["v_T"].shape == (2000,) and (bed.columns["type"] == 1).all()
+    text = mono.path.read_text()
+    path = tmp_path / "two.dump.gz"
+    path.write_bytes(gzip.compress((text + text.replace("0.5 ", "0.25 ")).encode()))
+    assert fibrad.read(path).frame == 1 and fibrad.read(path, 0).r[0] == 0.5 and fibrad.read(path, 1).r[0] == 0.25
+    with pytest.raises(fibrad.InputError, match="there is no frame 2; the last is 1"):
+        fibrad.read(path, 2)
+    table = tmp_path / "a.csv"
+    table.write_text("x [mm],y [mm],z [mm],T [C]\n1,2,3,20\n")
+    bed = fibrad.read(table, radius=0.5, columns=["T [C]"])
+    assert bed.unit == "mm" and bed.ids is None and bed.x.tolist() == [[1, 2, 3]] and bed.r.tolist() == [0.5]
+
+
+def test_refusals(tmp_path):
+    with pytest.raises(fibrad.Error, match="No such file"):
+        fibrad.read(tmp_path / "no.dump")
+    table = tmp_path / "a.csv"
+    table.write_text("x,y,z,r\n1,2,3,0\n")
+    with pytest.raises(fibrad.InputError, match=r"a\.csv:2: the radius is 0"):
+        fibrad.read(table)
+    with pytest.raises(fibrad.InputError, match="no column T; there are x, y, z, r"):
+        fibrad.read(table, columns="T")
+    with pytest.raises(fibrad.InputError, match="sides = 'inner'"):
+        fibrad.Mesh.from_stl(write_cube(tmp_path / "cube.stl"), [[0, 0, 0]], 1.0, sides="inner")
+
+
+@pytest.mark.parametrize("turned", [(), (0, 1, 2, 3, 4, 5), (1, 4)])
+def test_sides_as_the_program_has_them(tmp_path, program, turned):
+    """However the file winds its triangles, the wall is where the sphere is: all that it emits arrives there."""
+    path, bed = write_cube(tmp_path / "cube.stl", turned), tmp_path / "bed.csv"
+    inner = fibrad.Mesh.from_stl(path, [[0, 0, 0]], 1.0)
+    factors = fibrad.view_factors([[0, 0, 0]], 1.0, walls={"cube": inner})
+    assert abs(factors.wall("cube")[0] - 1) < 1e-12 and inner.areas().sum() == pytest.approx(96, rel=1e-14)
+    outer = fibrad.Mesh.from_stl(path, [[5, 0, 0]], 1.0)
+    seen = fibrad.view_factors([[5, 0, 0]], 1.0, directions=500, walls={"cube": outer}).wall("cube")[0]
+    bed.write_text("x,y,z,r\n5,0,0,1\n")
+    said = subprocess.run([program, "bed", bed, "--directions", "500", "--wall", f"cube=mesh:{path}"], check=True,
+                          capture_output=True, text=True).stdout
+    assert float(dict(line.split(None, 1) for line in said.splitlines())["wall_cube_F"]) == pytest.approx(seen, rel=1e-5)
+    assert 0.05 < seen < 0.5 and fibrad.Mesh.from_stl(path, [[0, 0, 0]], 1.0, sides="both").back is True
+    assert (fibrad.Mesh.from_stl(path, [[0, 0, 0]], 1.0, scale=0.5).vertices == inner.vertices / 2).all()
+
+
+def test_open_mesh_is_told(tmp_path):
+    path = write_cube(tmp_path / "cube.stl")
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join(lines[:1] + lines[8:]))  # one triangle less
+    with pytest.warns(UserWarning, match="not closed: 3 edges"):
+        fibrad.Mesh.from_stl(path, [[0, 0, 0]], 1.0)
+
+
+def test_saved(small, tmp_path):
+    sparse = pytest.importorskip("scipy.sparse")
+    factors = fibrad.view_factors(small.x, small.r, directions=21, walls={"zmin": -1.0}, ids=np.arange(small.n) + 7)
+    factors.save(tmp_path / "F.npz")
+    back = sparse.load_npz(tmp_path / "F.npz")
+    assert (back != factors.matrix).nnz == 0
+    arrays = np.load(tmp_path / "F.npz")
+    assert (arrays["escaped"] == factors.escaped).all() and (arrays["body"] == factors.walls).all()
+    assert (arrays["ids"] == factors.ids).all() and arrays["wall_names"].tolist() == [b"zmin"]
+    with pytest.raises(fibrad.InputError, match="npz"):
+        factors.save(tmp_path / "F.txt")
+
+
+def test_powers_say_what_they_are(small):
+    with fibrad.Heat(small.x, small.r, walls={"zmin": -1.0}, patches=24, directions=21) as heat:
+        powers = heat.solve(np.linspace(300, 900, small.n), 0.8, surroundings=300, wall_temperature=400, wall_emissivity=1)
+    text = repr(powers)
+    assert len(text) < 200 and f"{small.n} spheres of 300 to 900 K" in text and "zmin" in text and "surroundings" in text

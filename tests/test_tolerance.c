@@ -1,0 +1,83 @@
+/* test_tolerance.c - errors that are asked for: kept, not overdone, and where they are not reached, a warning.
+ * SPDX-License-Identifier: MIT */
+#include "program.h"
+
+#include "fibrad.h"
+
+#define SIGMA 5.670374419e-8
+#define BOX   "xmin=0,xmax=1,ymin=0,ymax=1,zmin=0,zmax=1"
+
+/* Two black spheres in a black box, as far above its T^4 as below: each wall takes much, and next to nothing on
+ * balance. Powers are those of the closed form of two spheres. */
+START_TEST(walls_by_what_they_absorb) {
+    const double t[2] = {1000, 700}, wall = 887.3643, r = .15;
+    const double place[2][3] = {{.3, .35, .4}, {.65, .6, .55}};
+    char text[300], temperature[40];
+    double f, distance = 0, square = 0, error = 0;
+    for (int a = 0; a < 3; a++) distance += pow(place[1][a] - place[0][a], 2);
+    ck_assert_int_eq(fibrad_pair_exact(r, r, sqrt(distance) - 2 * r, &f), 0);
+    snprintf(text, sizeof text, "x,y,z,r,T\n%g,%g,%g,%g,%g\n%g,%g,%g,%g,%g\n", place[0][0], place[0][1], place[0][2], r,
+             t[0], place[1][0], place[1][1], place[1][2], r, t[1]);
+    snprintf(temperature, sizeof temperature, "%.7g", wall);
+    const char *powers = in_folder("q.csv");
+    SUCCEED("heat", write_file("bed.csv", text), "--length-unit", "m", "--emissivity", "1", "--temperature", "T",
+            "--wall", BOX, "--wall-temperature", temperature, "--error", ".002", "-o", powers);
+    ck_assert_str_eq(said, "");
+    ck_assert_double_lt(value_of("directions"), 2000);
+    ck_assert_double_gt(value_of("error_reached"), 0);
+    ck_assert_double_le(value_of("error_reached"), .002);
+    char *read = read_file(powers);
+    for (int i = 0; i < 2; i++) {
+        const double area = 4 * 3.14159265358979 * r * r, own = pow(t[i], 4);
+        const double exact = area * SIGMA * (f * (pow(t[1 - i], 4) - own) + (1 - f) * (pow(wall, 4) - own));
+        char row[20];
+        snprintf(row, sizeof row, "\n%d,", i);
+        const char *at = strchr(strstr(read, row) + strlen(row), ',') + 1;
+        square += exact * exact, error += pow(atof(at) - exact, 2);
+    }
+    free(read);
+    ck_assert_double_lt(sqrt(error / square), .003);
+}
+END_TEST
+
+/* An obstacle in the two spheres: visible areas jump, and the default error is one that can be had. */
+START_TEST(pair_behind_an_overlapping_obstacle) {
+    SUCCEED("pair", "1", "1", ".2", "--obstacle", ".9,0,1.1,.5");
+    ck_assert_str_eq(said, "");
+    ck_assert_double_lt(value_of("evaluations"), 200000);
+    ck_assert_double_le(value_of("error_reached"), value_of("error_wanted"));
+    const double f = value_of("F12");
+    SUCCEED("pair", "1", "1", ".2", "--obstacle", ".9,0,1.1,.5", "--method", "beam", "--directions", "20000");
+    ck_assert_double_eq_tol(value_of("F12"), f, 1e-5);
+}
+END_TEST
+
+/* What is asked of a command and cannot be had. */
+static const char *const unreached[][16] = {
+    {"bed", "--error", "1e-7", "--points", "64"},
+    {"heat", "--length-unit", "m", "--emissivity", ".9", "--temperature", "T", "--ambient", "300", "--error", "1e-5"}};
+
+START_TEST(a_warning_where_it_is_not_reached) {
+    const char *arguments[40] = {0}, *json = in_folder("run.json");
+    int count = 0;
+    for (; unreached[_i][count]; ++count) arguments[count] = unreached[_i][count];
+    arguments[count++] = write_file("two.csv", "x,y,z,r,T\n.3,.35,.4,.2,1000\n.65,.6,.55,.2,700\n");
+    arguments[count++] = "--json", arguments[count] = json;
+    ck_assert_msg(finish(start(arguments)) == 0, "%s", said);
+    char *text = read_file(json);
+    ck_assert_double_gt(value_of("error_reached"), value_of("error_wanted"));
+    ck_assert_msg(strstr(said, "is not reached") != NULL, "%s", said);
+    ck_assert_msg(strstr(text, "is not reached") != NULL, "%s", text);
+    free(text);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("tolerance");
+    TCase *program = suite_case(suite, "program");
+    tcase_add_checked_fixture(program, make_folder, remove_folder);
+    tcase_add_test(program, walls_by_what_they_absorb);
+    tcase_add_test(program, pair_behind_an_overlapping_obstacle);
+    tcase_add_loop_test(program, a_warning_where_it_is_not_reached, 0, sizeof unreached / sizeof *unreached);
+    return suite_run(suite);
+}

@@ -1,0 +1,199 @@
+/* test_warnings.c - what contradicts itself: one warning each, status 0, with the likely remedy.
+ * SPDX-License-Identifier: MIT */
+#include "program.h"
+
+#define BOX(kind, low, high) "ITEM: BOX BOUNDS " kind "\n" low " " high "\n" low " " high "\n" low " " high "\n"
+#define FRAME(step, box, columns, rows)                                                                                \
+    "ITEM: TIMESTEP\n" step "\nITEM: NUMBER OF ATOMS\n3\n" box "ITEM: ATOMS id x y z radius" columns "\n" rows
+#define ROWS(a, b, c)                                                                                                  \
+    "1 .02 .02 .02 .01" a "\n2 .05 .05 .05 .01" b "\n3 .08 .08 .08 .01" c "\n" /* from .01 to .09 along each axis */
+#define OPEN   BOX("ff ff ff", "0", ".1")
+#define SHRUNK BOX("ss ss ss", ".02", ".08")
+#define PLAIN  FRAME("0", OPEN, " T", ROWS(" 600", " 700", " 800"))
+
+#define FACET(a, b, c) "facet normal 0 0 0\nouter loop\nvertex " a "\nvertex " b "\nvertex " c "\nendloop\nendfacet\n"
+/* A closed one with a corner at the origin; all spheres of PLAIN lie within one with edges of .3. */
+#define CORNER(edge)                                                                                                   \
+    "solid s\n" FACET("0 0 0", edge " 0 0", "0 " edge " 0") FACET("0 0 0", "0 " edge " 0", "0 0 " edge)                \
+        FACET("0 0 0", "0 0 " edge, edge " 0 0") FACET(edge " 0 0", "0 0 " edge, "0 " edge " 0") "endsolid s\n"
+/* It lies within the first sphere. */
+#define WITHIN   "solid s\n" FACET(".018 .018 .021", ".022 .018 .021", ".02 .022 .021") "endsolid s\n"
+#define FAR_AWAY "solid s\n" FACET("5 0 0", "5.1 0 0", "5 .1 0") "endsolid s\n"
+
+#define HEAT "heat", "--emissivity", ".6", "--directions", "21", "--patches", "24", "--ambient", "300"
+#define TIME "--until", "1", "--model", "patches"
+
+static const struct {
+    const char *words[20], *bed, *more, *reason; /* more: a further frame; reason NULL: there is no warning */
+} said_of[] = {
+    {{HEAT, "--temperature", "T"}, PLAIN, NULL, NULL},
+    {{HEAT, "--temperature", "T", "--wall", "auto", "--wall-temperature", "500"}, PLAIN, NULL, NULL},
+    {{HEAT, "--temperature", "T", "--periodic", ".1,.1,0"}, PLAIN, NULL, NULL},
+    {{HEAT, "--temperature", "T", "--periodic", ".1,.2,0"},
+     PLAIN,
+     NULL,
+     "--periodic is 0.2 along y, and the box of the file is 0.1 long"},
+    {{HEAT, "--temperature", "T", "--wall", "zmin=.012,zmax=.1", "--wall-temperature", "500"},
+     PLAIN,
+     NULL,
+     "sphere 1 reaches through the wall zmin by 0.2 of its radius (1 such places in all)"},
+    {{HEAT, "--temperature", "T", "--wall", "zmin=.0105", "--wall-temperature", "500"}, PLAIN, NULL, NULL},
+    {{HEAT, "--temperature", "T", "--wall", "cylinder:.05,.05,.05,zmin=0,zmax=.1", "--wall-temperature", "500"},
+     PLAIN,
+     NULL,
+     "through the wall cylinder by 0.24 of its radius (2 such places in all)"},
+    {{"bed", "--wall", "auto"}, FRAME("0", SHRUNK, "", ROWS("", "", "")), NULL, "stand where the spheres end"},
+    {{"bed", "--wall", "zmin"}, FRAME("0", SHRUNK, "", ROWS("", "", "")), NULL, "stand where the spheres end"},
+    {{"bed", "--wall", "m=mesh:m.stl"}, PLAIN, CORNER(".3"), NULL},
+    {{"bed", "--wall", "m=mesh:m.stl"},
+     PLAIN,
+     CORNER("300"),
+     "the wall m is 300 long, the bed 0.08; is the mesh in the bed's unit? mesh:FILE:scale=0.001 changes it"},
+    {{"bed", "--wall", "m=mesh:m.stl:scale=1e-3"}, PLAIN, CORNER("300"), NULL},
+    {{"bed", "--wall", "m=mesh:m.stl:both"}, PLAIN, CORNER("3e-4"), "mesh:FILE:scale=1000 changes it"},
+    {{"bed", "--wall", "m=mesh:m.stl:both"},
+     PLAIN,
+     FAR_AWAY,
+     "the wall m lies from 5 to 5.1 along x, the bed from 0.01"},
+    {{"bed", "--wall", "m=mesh:m.stl:both"}, PLAIN, WITHIN, "do triangles cut spheres?"},
+    {{"exchange", "--emissivity", ".5", "--wall", "m=mesh:m.stl:both", "--wall-emissivity", ".5"},
+     PLAIN,
+     WITHIN,
+     "do triangles cut spheres?"},
+    {{HEAT, "--temperature", "T_C"},
+     FRAME("0", OPEN, " T_C", ROWS(" 600", " 700", " 800")),
+     NULL,
+     "the column T_C is taken as kelvins; --temperature-unit C"},
+    {{HEAT, "--temperature", "T_C", "--temperature-unit", "C"},
+     FRAME("0", OPEN, " T_C", ROWS(" 600", " 700", " 20")),
+     NULL,
+     NULL},
+    {{HEAT, "--temperature", "T"},
+     FRAME("0", OPEN, " T", ROWS(" 20", " 90", " 140")),
+     NULL,
+     "no sphere is warmer than 140 K; --temperature-unit C"},
+    {{HEAT, "--temperature", "T"},
+     FRAME("0", OPEN, " T", ROWS(" 600", " 0", " 700")),
+     NULL,
+     "sphere 2 has 0 K, as 1 in all have, others up to 700 K"},
+    {{HEAT, "--temperature", "0"}, PLAIN, NULL, NULL},
+    {{HEAT, "--temperature", "T", TIME, "--heat-capacity", "800", "--density", "2500"}, PLAIN, NULL, NULL},
+    {{HEAT, "--temperature", "T", TIME, "--heat-capacity", ".8", "--density", "2500"},
+     PLAIN,
+     NULL,
+     "the heat capacity is 0.8 J/(kg K); solids have"},
+    {{HEAT, "--temperature", "T", TIME, "--heat-capacity", "800", "--density", "2.5"},
+     PLAIN,
+     NULL,
+     "the density is 2.5 kg/m3; solids have"},
+    {{HEAT, "--temperature", "T", "--frame", "all"},
+     FRAME("100", OPEN, " T", ROWS(" 600", " 0", " 700")), /* once for all frames */
+     FRAME("200", OPEN, " T", ROWS(" 600", " 0", " 700")),
+     "has 0 K"},
+    {{"bed", "--frame", "all"}, PLAIN, PLAIN, NULL},
+    {{"bed", "--frame", "all"},
+     FRAME("1000", OPEN, "", ROWS("", "", "")),
+     FRAME("200", OPEN, "", ROWS("", "", "")),
+     "timestep 200 comes behind 1000; a pattern in quotes"}};
+
+/* How often a text has another one. */
+static int count_of(const char *text, const char *what) {
+    int count = 0;
+    for (; (text = strstr(text, what)); text += strlen(what)) ++count;
+    return count;
+}
+
+START_TEST(one_warning_each) {
+    const char *const *words = said_of[_i].words, *more = said_of[_i].more, *reason = said_of[_i].reason;
+    const char *arguments[40] = {0}, *json = in_folder("summary.json");
+    const int mesh = more && strncmp(more, "solid", 5) == 0;
+    char wall[300], *text = NULL;
+    int count = 0;
+    write_file("bed.dump", said_of[_i].bed);
+    if (mesh) write_file("m.stl", more);
+    if (more && !mesh) {
+        FILE *file = fopen(in_folder("bed.dump"), "a");
+        fputs(more, file);
+        fclose(file);
+    }
+    for (; words[count]; ++count) {
+        const char *path = mesh ? strstr(words[count], "m.stl") : NULL;
+        arguments[count] = words[count];
+        if (!path) continue;
+        snprintf(wall, sizeof wall, "m=mesh:%s/%s", folder, path);
+        arguments[count] = wall;
+    }
+    const char *const rest[] = {in_folder("bed.dump"), "--length-unit", "m", "--json", json};
+    for (int k = 0; k < 5; ++k) arguments[count++] = rest[k];
+    ck_assert_msg(finish(start(arguments)) == 0, "%s", said);
+    text = read_file(json);
+    int others = count_of(said, "the mesh is not closed"); /* of the file itself */
+    ck_assert_msg(count_of(said, "warning: ") == (reason != NULL) + others, "%s", said);
+    ck_assert_int_eq(count_of(text, "warning: "), (reason != NULL) + others);
+    if (reason) ck_assert_msg(strstr(said, reason) && strstr(text, reason), "'%s' lacks '%s'", said, reason);
+    ck_assert_int_eq(count_of(text, "\"warnings\": ["), said_of[_i].more && !mesh ? 2 : 1);
+    free(text);
+}
+END_TEST
+
+/* Walls about a box of centres stand at the surfaces, those of a real box where it ends, and a sphere that has left a
+ * real box is refused as before. */
+START_TEST(walls_at_surfaces) {
+    const char *bed = write_file("bed.dump", FRAME("0", SHRUNK, "", ROWS("", "", "")));
+    static const char *const names[] = {"xmin", "ymin", "zmin", "xmax", "ymax", "zmax"};
+    char key[40];
+    SUCCEED("bed", bed, "--wall", "auto");
+    for (int k = 0; k < 6; ++k) {
+        snprintf(key, sizeof key, "wall_%s_at", names[k]);
+        ck_assert_double_eq_tol(value_of(key), k < 3 ? .01 : .09, 1e-9);
+        snprintf(key, sizeof key, "wall_%s_area", names[k]);
+        ck_assert_double_eq_tol(value_of(key), .08 * .08, 1e-8);
+    }
+    SUCCEED("bed", bed, "--wall", "zmin=.015");
+    ck_assert_double_eq(value_of("wall_zmin_at"), .015);
+    SUCCEED("bed", write_file("bed.dump", PLAIN), "--wall", "auto");
+    ck_assert_double_eq_tol(value_of("wall_zmax_at"), .1, 1e-12);
+    ck_assert_int_eq(RUN("bed", write_file("bed.dump", FRAME("0", BOX("ff ff ff", "0", ".06"), "", ROWS("", "", ""))),
+                         "--wall", "auto"),
+                     3);
+    ck_assert_ptr_nonnull(strstr(said, "the centre of sphere 3 lies beyond the wall xmax"));
+}
+END_TEST
+
+/* The summary has the ends of a mesh. */
+/* A plate through a bed: what closing takes from spheres that it cuts, rows do not know. Raw rows all add up to one. */
+START_TEST(closing_that_changes_much) {
+    char wall[300];
+    snprintf(wall, sizeof wall, "auto,m=mesh:%s:both",
+             write_file("m.stl", "solid s\n" FACET("1 2 3", "11 3 9", "4 11 15") "endsolid s\n"));
+    SUCCEED("bed", "tests/data/mono2000.dump", "--cutoff", "3", "--wall", wall);
+    ck_assert_ptr_nonnull(strstr(said, "warning: closing changes what sphere"));
+    SUCCEED("bed", "tests/data/mono2000.dump", "--raw", "--wall", wall);
+    ck_assert_ptr_null(strstr(said, "warning: closing"));
+    const char *closure = strstr(printed, "\nclosure_max ");
+    ck_assert(closure != NULL && strtod(closure + 13, NULL) < 1e-12);
+}
+END_TEST
+
+START_TEST(mesh_extents_are_said) {
+    char wall[300];
+    const char *json = in_folder("summary.json");
+    snprintf(wall, sizeof wall, "m=mesh:%s:scale=2", write_file("m.stl", CORNER(".3")));
+    SUCCEED("bed", write_file("bed.dump", PLAIN), "--wall", wall, "--json", json);
+    ck_assert_ptr_nonnull(strstr(printed, "\nwall_m_low 0 0 0\nwall_m_high 0.6 0.6 0.6\n"));
+    char *text = read_file(json);
+    ck_assert_ptr_nonnull(strstr(text, "\"warnings\": []}"));
+    free(text);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("warnings");
+    TCase *program = suite_case(suite, "program");
+    tcase_add_checked_fixture(program, make_folder, remove_folder);
+    tcase_add_loop_test(program, one_warning_each, 0, sizeof said_of / sizeof *said_of);
+    tcase_add_test(program, walls_at_surfaces);
+    tcase_add_test(program, closing_that_changes_much);
+    tcase_add_test(program, mesh_extents_are_said);
+    return suite_run(suite);
+}
