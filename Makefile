@@ -62,276 +62,19 @@ CHECK_LIBS   = $(shell $(PKG_CONFIG) --libs check)
 HEADERS   = kernel/fibrad.h kernel/fibrad_heat.h kernel/fibrad_mesh.h kernel/fibrad_part.h kernel/fibrad_surface.h kernel/fibrad_furnace.h host/simple/fibrad_host.h
 FUNCTIONS = '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1;/p'
 
-# ---- sources --------------------------------------------------------------------------------------------------------
-# `make check` tells of files that are missing here
-KERNEL = \
-    kernel/base/cpu.c \
-    kernel/base/status.c \
-    kernel/sample/direction.c \
-    kernel/pair/exact.c \
-    kernel/mesh/mesh_build.c \
-    kernel/mesh/mesh_patch.c \
-    kernel/mesh/mesh_ray.c \
-    kernel/scene/drift.c \
-    kernel/scene/grid_walk.c \
-    kernel/scene/scene_build.c \
-    kernel/scene/surroundings.c \
-    kernel/scene/walls.c \
-    kernel/store/rows.c \
-    kernel/window/areas.c \
-    kernel/row/beam.c \
-    kernel/row/beam_part.c \
-    kernel/row/row.c \
-    kernel/work/row_sum.c \
-    kernel/sky/wall_sum.c \
-    kernel/sky/wall_window.c \
-    kernel/work/work.c \
-    kernel/matrix/average.c \
-    kernel/matrix/enclose.c \
-    kernel/matrix/matrix.c \
-    kernel/matrix/scale.c \
-    kernel/surface/surface.c \
-    kernel/surface/surface_row.c \
-    kernel/ray/cast.c \
-    kernel/ray/tracer.c \
-    kernel/ray/triangle_views.c \
-    kernel/exchange/body_row.c \
-    kernel/exchange/exchange.c \
-    kernel/exchange/flow.c \
-    kernel/heat/fine.c \
-    kernel/heat/heat.c \
-    kernel/heat/parts.c \
-    kernel/heat/pencils.c \
-    kernel/heat/result.c \
-    kernel/heat/solve.c \
-    kernel/heat/sources.c \
-    kernel/heat/sweep.c \
-    kernel/heat/wall_patch.c \
-    kernel/furnace/bundle_plan.c \
-    kernel/furnace/bundles.c \
-    kernel/furnace/furnace.c \
-    kernel/furnace/lines.c \
-    kernel/furnace/tally.c
+# ---- sources: what a folder holds belongs to it ---------------------------------------------------------------------
+sources = $(sort $(wildcard $(1)))
 
-# compiled once per instruction set
-LANED = \
-    kernel/surface/surface_lanes.c \
-    kernel/window/arc_lanes.c \
-    kernel/window/arrangement_lanes.c \
-    kernel/window/clip_lanes.c \
-    kernel/window/dense_lanes.c \
-    kernel/window/points_lanes.c \
-    kernel/row/beam_lanes.c \
-    kernel/lines/mesh_faces_lanes.c \
-    kernel/lines/mesh_lines_lanes.c \
-    kernel/row/mesh_share_lanes.c \
-    kernel/work/neighbours_lanes.c \
-    kernel/row/wall_share_lanes.c \
-    kernel/row/window_lanes.c \
-    kernel/ray/cast_lanes.c \
-    kernel/ray/trace_lanes.c \
-    kernel/exchange/paths_lanes.c \
-    kernel/heat/hits_lanes.c
+LANED   := $(call sources,kernel/*/*_lanes.c) # compiled once per instruction set
+KERNEL  := $(filter-out %_lanes.c kernel/sample/generate_tables.c,$(call sources,kernel/*/*.c))
+SIMPLE  := $(call sources,host/simple/*.c) # libfibrad_host.a
+HOST    := $(filter-out $(addprefix host/,simple/% couple/% examples/% files/%),$(call sources,host/*/*.c)) # the program, besides main.c
+TESTS   := $(call sources,tests/test_*.c)
+SCRIPTS := $(filter-out tests/couple/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
 
-# the simple layer, libfibrad_host.a
-SIMPLE = \
-    host/simple/body_rows.c \
-    host/simple/factors.c \
-    host/simple/heap.c \
-    host/simple/job.c \
-    host/simple/march.c \
-    host/simple/network.c \
-    host/simple/radiation.c \
-    host/simple/team.c \
-    host/simple/tolerance.c \
-    host/simple/transient.c
-
-# the program, besides main.c
-HOST = \
-    host/cli/interrupt.c \
-    host/cli/memory.c \
-    host/cli/message.c \
-    host/cli/options.c \
-    host/cli/output.c \
-    host/cli/progress.c \
-    host/cli/targets.c \
-    host/bed/bed.c \
-    host/bed/bed_scene.c \
-    host/bed/conduction.c \
-    host/bed/moving_rows.c \
-    host/bed/packing.c \
-    host/bed/property_option.c \
-    host/bed/units.c \
-    host/bed/wall_option.c \
-    host/mesh/edges.c \
-    host/mesh/enclosing.c \
-    host/mesh/facing.c \
-    host/mesh/meshes.c \
-    host/mesh/side_arrays.c \
-    host/mesh/stl.c \
-    host/mesh/weld.c \
-    host/text/read_curve.c \
-    host/text/read_lines.c \
-    host/text/read_number.c \
-    host/text/text.c \
-    host/vtk/vtk_grid.c \
-    host/vtk/vtk_legacy.c \
-    host/vtk/vtk_xml.c \
-    host/read/read.c \
-    host/read/read_columns.c \
-    host/read/read_data.c \
-    host/read/read_dump.c \
-    host/read/read_foreign.c \
-    host/read/read_format.c \
-    host/read/read_mercury.c \
-    host/read/read_rows.c \
-    host/read/read_table.c \
-    host/read/read_vtk.c \
-    host/read/read_xyz.c \
-    host/boxes/furnace_cases.c \
-    host/boxes/furnace_run.c \
-    host/boxes/read_furnace.c \
-    host/report/report.c \
-    host/write/outputs.c \
-    host/write/summary.c \
-    host/write/vtp_array.c \
-    host/write/write.c \
-    host/write/write_csv.c \
-    host/write/write_dump.c \
-    host/write/write_furnace.c \
-    host/write/write_json.c \
-    host/write/write_mesh_vtp.c \
-    host/write/write_mtx.c \
-    host/write/write_npz.c \
-    host/write/write_vtp.c \
-    host/plot/gnuplot.c \
-    host/plot/plot_bed.c \
-    host/plot/plot_conduction.c \
-    host/plot/plot_data.c \
-    host/plot/plot_furnace.c \
-    host/plot/plot_heat.c \
-    host/plot/plot_slice.c \
-    host/plot/plot_time.c \
-    host/reference/exact_gsl.c \
-    host/reference/reference.c \
-    host/reproduce/reproduce_beds.c \
-    host/reproduce/reproduce_exchange.c \
-    host/reproduce/reproduce_pairs.c \
-    host/reproduce/reproduce_pebbles.c \
-    host/reproduce/reproduce_rays.c \
-    host/reproduce/reproduce_rows.c \
-    host/frames/bed_options.c \
-    host/frames/beyond.c \
-    host/frames/warnings.c \
-    host/command/command_bed.c \
-    host/command/command_conductivity.c \
-    host/command/command_exchange.c \
-    host/command/command_furnace.c \
-    host/command/command_heat.c \
-    host/command/command_join.c \
-    host/command/command_pair.c \
-    host/command/command_reproduce.c \
-    host/heat/heat_given.c \
-    host/heat/heat_march.c \
-    host/heat/heat_run.c \
-    host/heat/steady.c \
-    host/heat/triangle_heat.c
-
-TESTS = \
-    tests/test_accuracy.c \
-    tests/test_areas.c \
-    tests/test_base.c \
-    tests/test_bed_make.c \
-    tests/test_beam.c \
-    tests/test_cast.c \
-    tests/test_cli.c \
-    tests/test_conductivity.c \
-    tests/test_direction.c \
-    tests/test_drift.c \
-    tests/test_files.c \
-    tests/test_estimate.c \
-    tests/test_body_rows.c \
-    tests/test_exchange.c \
-    tests/test_furnace.c \
-    tests/test_heat.c \
-    tests/test_heat_mesh.c \
-    tests/test_matrix.c \
-    tests/test_mesh.c \
-    tests/test_mesh_files.c \
-    tests/test_part.c \
-    tests/test_plot.c \
-    tests/test_protocol.c \
-    tests/test_read_furnace.c \
-    tests/test_pair_exact.c \
-    tests/test_read.c \
-    tests/test_reference.c \
-    tests/test_reproduce.c \
-    tests/test_row_parts.c \
-    tests/test_scene.c \
-    tests/test_settled.c \
-    tests/test_simple.c \
-    tests/test_status.c \
-    tests/test_stress.c \
-    tests/test_surface.c \
-    tests/test_surface_row.c \
-    tests/test_tables.c \
-    tests/test_transient.c \
-    tests/test_tolerance.c \
-    tests/test_trace.c \
-    tests/test_walls.c \
-    tests/test_warnings.c \
-    tests/test_work.c \
-    tests/test_write.c
-
-SCRIPTS = \
-    tests/check_bits.sh \
-    tests/check_dist.sh \
-    tests/check_examples.sh \
-    tests/check_faults.sh \
-    tests/check_formats.sh \
-    tests/check_fortran.sh \
-    tests/check_header.sh \
-    tests/check_npz.sh \
-    tests/check_house.sh \
-    tests/check_man.sh \
-    tests/check_map.sh \
-    tests/check_python.sh \
-    tests/check_readme.sh \
-    tests/check_symbols.sh \
-    tests/check_tables.sh \
-    tests/check_time.sh \
-    tests/check_written.sh \
-    tests/freestanding/check_freestanding.sh \
-    tests/package/check_package.sh
-
-BENCHES = \
-    bench/bench_areas.c \
-    bench/bench_beam.c \
-    bench/bench_cast.c \
-    bench/bench_error.c \
-    bench/bench_estimate.c \
-    bench/bench_cutoff.c \
-    bench/bench_exchange.c \
-    bench/bench_furnace.c \
-    bench/bench_heat.c \
-    bench/bench_mesh.c \
-    bench/bench_moved.c \
-    bench/bench_pair.c \
-    bench/bench_powers.c \
-    bench/bench_read.c \
-    bench/bench_scale.c \
-    bench/bench_sizes.c \
-    bench/bench_skips.c \
-    bench/bench_surface.c \
-    bench/bench_tolerance.c \
-    bench/bench_walls.c \
-    bench/bench_window.c
-
-# built and run where Embree 3 is found (Debian: libembree-dev)
-PEERS = bench/bench_embree.c bench/bench_embree_mesh.c
-
-# linked with a library that counts its instructions, bench/count_cc.sh; built and run on x86-64
-COUNTED = bench/bench_instructions.c
+PEERS   := $(call sources,bench/bench_embree*.c) # built and run where Embree 3 is found (Debian: libembree-dev)
+COUNTED := bench/bench_instructions.c # linked with a library that counts its instructions, bench/count_cc.sh; on x86-64
+BENCHES := $(filter-out $(PEERS) $(COUNTED),$(call sources,bench/bench_*.c))
 
 # libfibrad_files.so, by which Python reads files as the program does: its own objects, since these have names of the program
 FILES = host/files/file_arrays.c host/bed/bed.c host/bed/units.c $(filter host/cli/interrupt.c host/cli/message.c host/cli/output.c \
@@ -353,7 +96,7 @@ COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfi
 COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols lists format house bench bench-quick \
+.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols format house bench bench-quick \
     bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
@@ -498,16 +241,8 @@ run-programs: programs
 ## programs: build the test programs
 programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 
-## check: the symbols of libfibrad.a, the lists of the Makefile and the format of the sources
-check: symbols lists format house
-
-LISTED = $(KERNEL) $(LANED) $(SIMPLE) $(HOST) $(FILES) host/main.c $(COUPLE) $(COUPLE_WALLS) $(COUPLE_PROGRAMS) $(COUPLE_TESTS) $(COUPLE_SCRIPTS) kernel/sample/generate_tables.c $(TESTS) $(SCRIPTS) $(BENCHES) $(PEERS) $(COUNTED)
-FOUND  = $(filter-out host/examples/%,$(wildcard kernel/*/*.c host/*.c host/*/*.c host/couple/*/*.c)) \
-         $(wildcard tests/test_*.c tests/check_*.sh tests/*/check_*.sh bench/bench_*.c)
-
-lists:
-	@test -z "$(filter-out $(LISTED),$(FOUND))" || \
-	    { echo "not in the lists of the Makefile: $(filter-out $(LISTED),$(FOUND))" >&2; exit 1; }
+## check: the symbols of libfibrad.a, the format of the sources, and the house
+check: symbols format house
 
 ## house: folders, includes, names and words, and the map of docs/design.md
 house:

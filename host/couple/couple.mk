@@ -6,14 +6,7 @@ MPICC  = mpicc
 MPICXX = mpicxx
 MPIRUN = mpirun
 
-COUPLE = \
-    host/couple/coarse_map.c \
-    host/couple/collective.c \
-    host/couple/halo.c \
-    host/couple/insitu.c \
-    host/couple/link.c \
-    host/couple/powers.c \
-    host/couple/write_rows.c
+COUPLE := $(filter-out host/couple/example.c,$(call sources,host/couple/*.c))
 
 COUPLE_WALLS = host/couple/walls/mesh_walls.c
 
