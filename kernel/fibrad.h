@@ -1,11 +1,13 @@
-/* fibrad.h - view factors for thermal radiation between spheres. No heap, no I/O, no threads, no mutable globals.
+/* fibrad.h - view factors and exchange factors for thermal radiation between spheres, with walls around them.
+ *
+ * The library has no heap, no input or output, no threads of its own and no mutable global variables.
  *
  * Index        what for                                 functions and types
  *   status     what a call returned                     fibrad_status_text, fibrad_version
  *   memory     a block of bytes, fixed or growing       fibrad_memory, fibrad_resize
  *   isa        instruction sets, chosen at run time     fibrad_isa_best, _name
  *   direction  directions spread evenly over a sphere   fibrad_direction
- *   pair       two spheres, nothing in between          fibrad_pair_exact
+ *   pair       two spheres with nothing in between      fibrad_pair_exact
  *   scene      spheres and walls                        fibrad_scene_size, _init, _describe, _body_area, _sphere
  *   work       scratch memory of one thread             fibrad_work, FIBRAD_WORK_BYTES
  *   row        view factors from one sphere to all      fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
@@ -13,23 +15,53 @@
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _average, _close, _read,
  *                                                       _reciprocity
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
- *   exchange   absorbed after reflections (grey)        fibrad_exchange_row, _body, _body_mean, _displacement
- * fibrad_heat.h has net powers and temperatures, fibrad_mesh.h walls of triangles, fibrad_part.h parts of beds,
- * fibrad_surface.h the method of Bao, Gao and Tan, fibrad_furnace.h a furnace.
+ *   exchange   factors after reflections (grey)         fibrad_exchange_row, _body, _body_mean, _displacement
  *
- * One row   fibrad_scene_init, fibrad_beam_row. All rows: per thread a fibrad_work and a fibrad_rows; fibrad_beam_row
- *           for every sphere; fibrad_matrix_init, _close, _read. docs/embedding.md has complete programs.
- * Units     One length unit L, the caller's choice; angles in radians; factors dimensionless; temperatures absolute.
- *           x[n] is an array of n elements; [a, b) and [a, b] are the range of values.
- * Memory    The caller owns every block, of any alignment, and keeps it in place while it is used; there is no free.
- *           An `_init` function lays its object out in a block and returns a pointer into it; its twin `_size` returns
- *           the bytes that takes, or 0 where `_init` would return an error other than FIBRAD_E_SIZE.
- * Threads   Const objects may be shared between threads. A fibrad_work or fibrad_rows belongs to one thread at a time.
- * Errors    Functions that can fail return FIBRAD_OK or a negative fibrad_status; then outputs are untouched, except
- *           where a comment says otherwise. Null pointers are FIBRAD_E_ARGUMENT; a call too early or repeated, or for
- *           a scene that is not complete or has changed, is FIBRAD_E_STATE.
- * Defaults  Structures may be zeroed but for the fields one needs; comments say what 0 stands for.
- * Bits      Results depend on the arguments alone: not on thread, instruction set, compiler or optimisation level.
+ * Other headers
+ *   fibrad_heat.h     net powers and temperatures
+ *   fibrad_mesh.h     walls made of triangles
+ *   fibrad_part.h     beds divided over several machines
+ *   fibrad_surface.h  the method of Bao, Gao and Tan
+ *   fibrad_furnace.h  a box filled with a participating medium
+ *
+ * How to begin
+ *   one row   fibrad_scene_init, then fibrad_beam_row.
+ *   all rows  Each thread has a fibrad_work and a fibrad_rows. Call fibrad_beam_row for every sphere. Then call
+ *             fibrad_matrix_init, _close and _read.
+ *   example   fibrad_work work = {.memory = {.resize = resize}};
+ *             fibrad_row row = {.col = col, .f = f, .capacity = 300};
+ *             status = fibrad_scene_init(&scene, block, fibrad_scene_size(n, 0), NULL, &spheres, NULL);
+ *             if (status == FIBRAD_OK) status = fibrad_beam_row(scene, &work, i, NULL, &row);
+ *             docs/embedding.md has complete programs.
+ *
+ * Words
+ *   wall             Anything in a scene that is not a sphere: a plane, a cylinder or a mesh of triangles. Names in the
+ *                    code say `body` for a wall. Wall b is element b of fibrad_scene_config.body.
+ *   surroundings     What lies outside the scene. The surroundings are black.
+ *   view factor      F_ij is the fraction of the radiation leaving sphere i that reaches sphere j directly.
+ *   exchange factor  D_ij is the fraction of the emission of sphere i that sphere j absorbs, directly or after diffuse
+ *                    reflections.
+ *   window           The shadow disc of sphere i along one direction. Beams measure what each window sees.
+ *   row              Row i holds all factors from sphere i. An entry is one factor of a row. Its column is the index of
+ *                    the sphere that receives.
+ *   error of a row   The root of the sum of the squared errors of the row's factors.
+ *
+ * Conventions
+ *   Units     All lengths have one unit L, which the caller chooses. Angles are in radians. Factors have no unit.
+ *             Temperatures are absolute.
+ *   Comments  The comment of a field begins with its unit and its shape. x[n] is an array of n elements. A range
+ *             "a to b" includes both ends. "out" marks a field that the function writes.
+ *   Memory    The caller owns every block. A block may have any alignment. It must stay in place while its object is
+ *             used. There is no free. An `_init` function makes an object inside a block and returns a pointer into the
+ *             block. Its twin `_size` returns the number of bytes that the object takes. `_size` returns 0 if `_init`
+ *             would return an error other than FIBRAD_E_SIZE.
+ *   Threads   Threads may share const objects. A fibrad_work or a fibrad_rows belongs to one thread at a time.
+ *   Errors    A function that can fail returns FIBRAD_OK or a negative fibrad_status. After an error the outputs are
+ *             as before, except where the function's comment says otherwise. A null pointer is FIBRAD_E_ARGUMENT. A
+ *             scene that is not complete, or has changed since an object was made from it, is FIBRAD_E_STATE.
+ *   Defaults  A structure may be zeroed. Then set the fields that you need. The comment of a field says what 0 means.
+ *   Bits      Results depend on the arguments alone. They are the same to the bit for every number of threads,
+ *             instruction set, compiler and optimisation level.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_H
@@ -46,48 +78,61 @@ extern "C" {
 #define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
 
 /* ---- status ---------------------------------------------------------------------------------------------------- */
+/* What a call returned. The numbers never change their meaning. */
 typedef enum fibrad_status {
     FIBRAD_OK = 0,
-    FIBRAD_E_ARGUMENT = -1,     /* a null pointer, a value out of its range, NaN or infinity */
-    FIBRAD_E_SIZE = -2,         /* the block is smaller than the `_size` function asks for */
-    FIBRAD_E_ALIGNMENT = -3,    /* reserved; no function asks for alignment */
-    FIBRAD_E_CAPACITY = -4,     /* an output is too small; the length (row) or bytes (rows) needed are written */
-    FIBRAD_E_TABLE = -5,        /* that number of samples is not built in */
-    FIBRAD_E_GEOMETRY = -6,     /* equal centres, the centre of one sphere inside another, a sphere beyond an opening */
-    FIBRAD_E_WORK = -7,         /* fixed work memory is too small; the bytes needed are written */
-    FIBRAD_E_STATE = -8,        /* a call is missing, too early or repeated, or the scene has changed */
-    FIBRAD_E_ISA = -9,          /* this build or this machine does not have that instruction set */
-    FIBRAD_E_UNSUPPORTED = -10, /* a valid request that this version does not compute */
-    FIBRAD_E_MEMORY = -11,      /* a resize function or the heap had no more memory */
-    FIBRAD_E_CANCELLED = -12,   /* a progress function asked to stop */
-    FIBRAD_E_UNSOLVABLE = -13,  /* no temperatures give bodies the powers that were asked for */
-    FIBRAD_E_BACK = -14,        /* a side of a triangle was seen that no body has; its number is written */
-    FIBRAD_E_SUM = -15,         /* a row did not add up to one within 1e-9: a fault of this library, or of row parts
-                                   that were changed */
-    FIBRAD_E_ENDLESS = -16      /* walls go on for ever where the bed is not closed: an opening is missing */
-} fibrad_status;                /* the numbers never change their meaning */
+    FIBRAD_E_ARGUMENT = -1,     /* A pointer is null, or a value is out of its range, NaN or infinite. */
+    FIBRAD_E_SIZE = -2,         /* The block is smaller than the `_size` function says. */
+    FIBRAD_E_ALIGNMENT = -3,    /* Reserved. No function asks for an alignment. */
+    FIBRAD_E_CAPACITY = -4,     /* An output is too small. The function has written what it needs. */
+    FIBRAD_E_TABLE = -5,        /* That number of samples is not built in. */
+    FIBRAD_E_GEOMETRY = -6,     /* A centre lies inside another sphere, or a sphere reaches beyond an opening. */
+    FIBRAD_E_WORK = -7,         /* Fixed work memory is too small. work.memory.needed is the size that suffices. */
+    FIBRAD_E_STATE = -8,        /* A call is missing, too early or repeated, or the scene has changed. */
+    FIBRAD_E_ISA = -9,          /* This build or this machine lacks the instruction set. */
+    FIBRAD_E_UNSUPPORTED = -10, /* The request is valid, but this version cannot compute it. */
+    FIBRAD_E_MEMORY = -11,      /* A resize function or the heap has no more memory. */
+    FIBRAD_E_CANCELLED = -12,   /* A progress function has asked to stop. */
+    FIBRAD_E_UNSOLVABLE = -13,  /* No temperatures give the powers that were asked for. */
+    FIBRAD_E_BACK = -14,        /* A side of a triangle that belongs to no wall was seen. Its number is written. */
+    FIBRAD_E_SUM = -15,    /* A row does not add up to 1 within 1e-9: a fault of the library, or a changed row part */
+    FIBRAD_E_ENDLESS = -16 /* The walls form a tube or a corner without end. Add a wall or an opening. */
+} fibrad_status;
 
-/* One English sentence for any number, never NULL; FIBRAD_VERSION of the library linked in. No errors. */
+/* The meaning of a status as one English phrase.
+ *   Input    status: any number
+ *   Output   never NULL
+ *   Errors   none */
 const char *fibrad_status_text(int status);
+
+/* The FIBRAD_VERSION of the library that the program is linked with.
+ *   Errors   none */
 const char *fibrad_version(void);
 
 /* ---- memory ---------------------------------------------------------------------------------------------------- */
-/* Returns a block of `size` bytes that begins with the contents of `block` (NULL at first), as realloc does, or NULL if
- * there is none; `block` then stays valid. */
+/* A function of the caller that makes a block larger, as realloc does.
+ *   Input    context: fibrad_memory.context
+ *            block: the present block, NULL at the first call
+ *            size: bytes wanted
+ *   Output   a block of `size` bytes with the contents of the old block. Return NULL if there is no memory. Then the
+ *            old block must stay valid. */
 typedef void *fibrad_resize(void *context, void *block, size_t size);
 
-/* A block that the kernel fills and never frees: fixed (block and size set), or growing (resize set). */
+/* A block of memory that the library fills and never frees. There are two kinds.
+ *   fixed    Set `block` and `size`.
+ *   growing  Set `resize`. The block may be NULL at first. The library calls `resize` whenever it needs more bytes. */
 typedef struct fibrad_memory {
-    void *block;           /* [size] of any alignment; NULL with size 0: none yet, with any other size _ARGUMENT */
-    size_t size;           /* bytes; 0 is too small as any other size may be */
-    fibrad_resize *resize; /* NULL: the block is all there is */
+    void *block;           /* [size], any alignment; may be NULL if size is 0 */
+    size_t size;           /* bytes */
+    fibrad_resize *resize; /* NULL: the block is fixed */
     void *context;         /* handed to resize */
-    size_t needed;         /* out, after FIBRAD_E_WORK and FIBRAD_E_CAPACITY: bytes that would have sufficed */
+    size_t needed;         /* bytes, out: the size that suffices, after FIBRAD_E_WORK and FIBRAD_E_CAPACITY */
 } fibrad_memory;
 
 /* ---- isa ------------------------------------------------------------------------------------------------------- */
+/* Instruction sets. All of them return the same bits. */
 typedef enum fibrad_isa {
-    FIBRAD_ISA_BEST = 0, /* the widest the machine offers */
+    FIBRAD_ISA_BEST = 0, /* the widest that this build and this machine have */
     FIBRAD_ISA_SCALAR = 1,
     FIBRAD_ISA_SSE2 = 2,
     FIBRAD_ISA_AVX2 = 3,
@@ -95,165 +140,223 @@ typedef enum fibrad_isa {
     FIBRAD_ISA_NEON = 5 /* aarch64 */
 } fibrad_isa;
 
-/* All instruction sets return the same bits. The widest that this build and this machine offer (cost: microseconds);
- * "scalar", "sse2", "avx2", "avx512", "neon", "best" for FIBRAD_ISA_BEST, "?" for other numbers. No errors. */
+/* The widest instruction set that this build and this machine have.
+ *   Errors   none
+ *   Cost     microseconds */
 fibrad_isa fibrad_isa_best(void);
+
+/* The name of an instruction set.
+ *   Input    isa: any number
+ *   Output   "best", "scalar", "sse2", "avx2", "avx512" or "neon"; "?" for any other number
+ *   Errors   none */
 const char *fibrad_isa_name(int isa);
 
 /* ---- direction, pair --------------------------------------------------------------------------------------------- */
 #define FIBRAD_DIRECTIONS_MIN 8
 #define FIBRAD_DIRECTIONS_MAX 65536
 
-/* Direction k of the spherical Fibonacci set of n directions, a unit vector: z = 1 - (2k+1)/n, azimuth k golden angles.
- * k [0, n), n [FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX]. Errors: _ARGUMENT. Cost: one square root.
- * Source: R. Swinbank, R. J. Purser, Q. J. R. Meteorol. Soc. 132 (2006) 1769, with half-integer offset in z. */
+/* Direction k of the spherical Fibonacci set of n directions: z = 1 - (2k + 1)/n, azimuth = k golden angles.
+ *   Input    k: 0 to n - 1
+ *            n: FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX
+ *   Output   direction[3]: a unit vector
+ *   Errors   _ARGUMENT
+ *   Cost     one square root
+ *   Source   R. Swinbank, R. J. Purser, Q. J. R. Meteorol. Soc. 132 (2006) 1769, with a half-integer offset in z */
 int fibrad_direction(uint32_t k, uint32_t n, double direction[3]);
 
-/* View factor F12 from sphere 1 (radius r1) to sphere 2 (radius r2), nothing in between, at surface distance gap.
- * r1, r2 [L] [1e-150, 1e150]; gap [L] above -2 min(r1, r2); negative: the spheres overlap, and the formula is continued
- * smoothly. Relative error at most 1e-14 for r1/r2 [1e-4, 1e4]; r1^2 F12 and r2^2 F21 agree to the last bits; F is
- * continuous and falls with gap. Errors: _ARGUMENT. Cost: about 0.06 microseconds, 0.2 for overlaps.
- * Source: directional form of the exchange area, docs/methods.md section 2. */
+/* View factor F12 from sphere 1 to sphere 2 with nothing in between.
+ *   Input    r1, r2: radii [L], 1e-150 to 1e150
+ *            gap: distance of the surfaces [L], above -2 min(r1, r2). A negative gap is an overlap. The formula
+ *            continues smoothly into overlaps.
+ *   Output   f12: relative error at most 1e-14 if r1/r2 is within 1e-4 to 1e4. F12 is continuous and falls as the gap
+ *            grows. r1^2 F12 and r2^2 F21 agree to the last bits.
+ *   Errors   _ARGUMENT
+ *   Cost     0.06 microseconds, 0.2 for overlaps
+ *   Source   directional form of the exchange area, docs/methods.md section 2 */
 int fibrad_pair_exact(double r1, double r2, double gap, double *f12);
 
 /* ---- scene ----------------------------------------------------------------------------------------------------- */
-/* Centres and radii [L]. Sphere i has its centre at x[i stride], y[i stride], z[i stride] and its radius at
- * r[i stride_r]: for double at[n][3] that is {&at[0][0], &at[0][1], &at[0][2], r, n, .stride = 3}.
- * r [1e-150, 1e150]; coordinates at most 1e150 and 3e13 times the smallest radius. */
-typedef struct fibrad_spheres {
-    const double *x, *y, *z, *r; /* may be NULL if n = 0 */
-    uint32_t n;                  /* [0, FIBRAD_SPHERES_MAX] */
-    uint32_t stride, stride_r;   /* in doubles; 0: 1 */
-    const uint64_t *id;          /* [n] seeds of random paths, order among equals; NULL: the index */
-} fibrad_spheres;
 #define FIBRAD_SPHERES_MAX 100000000u
 
+/* The spheres of a scene. The centre of sphere i is x[i stride], y[i stride], z[i stride]. Its radius is r[i stride_r].
+ * Example: double at[n][3] is {&at[0][0], &at[0][1], &at[0][2], r, n, .stride = 3}. */
+typedef struct fibrad_spheres {
+    const double *x, *y, *z;   /* L, [n], at most 1e150 and 3e13 times the smallest radius; NULL if n = 0 */
+    const double *r;           /* L, [n], 1e-150 to 1e150; NULL if n = 0 */
+    uint32_t n;                /* 0 to FIBRAD_SPHERES_MAX */
+    uint32_t stride, stride_r; /* doubles; 0: 1 */
+    const uint64_t *id;        /* [n], seeds of random paths, decide ties; NULL: the index is the id */
+} fibrad_spheres;
+
 typedef enum fibrad_body_kind {
-    FIBRAD_BODY_PLANE = 1,    /* a wall across an axis; the scene lies on its inner side */
-    FIBRAD_BODY_CYLINDER = 2, /* a wall around the z axis; the scene lies inside */
-    FIBRAD_BODY_MESH = 3      /* triangles: those of fibrad_scene_config.triangles that name it, one at least */
+    FIBRAD_BODY_PLANE = 1,    /* a plane across an axis; the scene lies on one side of the plane */
+    FIBRAD_BODY_CYLINDER = 2, /* a cylinder parallel to the z axis; the scene lies inside */
+    FIBRAD_BODY_MESH = 3      /* the triangles of fibrad_scene_config.triangles that name this wall, at least one */
 } fibrad_body_kind;
 
 /* A plane across an axis. */
 typedef struct fibrad_plane {
-    int axis, upper; /* 0 x, 1 y, 2 z; 1: the scene lies below the plane, 0: above */
-    double at;       /* [L] where on the axis */
+    int axis;  /* 0: x, 1: y, 2: z */
+    int upper; /* 1: the scene lies below the plane, 0: the scene lies above the plane */
+    double at; /* L, coordinate of the plane on its axis */
 } fibrad_plane;
 
-/* A body that is not a sphere, known by its index in fibrad_scene_config.body. Planes and the cylinder bound a convex
- * container, so that none hides one sphere from another: at most two planes an axis, one of them `upper`, none on a
- * periodic axis, the lower below the upper; at most one cylinder, with x and y open and without planes across them.
+/* A wall. A wall is known by its index in fibrad_scene_config.body.
  *
- * An opening is a plane where such a container ends and the surroundings begin: black, and as hot as they are. What
- * meets it is `escaped`. It has no index, temperature or emissivity. All that is said of planes holds for openings.
+ * Planes and the cylinder bound a convex container. Hence no plane and no cylinder hides one sphere from another.
+ *   planes    At most two planes lie across one axis: a lower one and, above it, an upper one. A periodic axis has no
+ *             planes.
+ *   cylinder  There is at most one. The axes x and y are then open and have no planes.
+ *   meshes    Their triangles may hide spheres from each other. fibrad_mesh.h has the rules for triangles.
  *
- * Walls without an end. One plane, and a pair across one axis, may go on for ever. Planes across several axes, or a
- * cylinder, would be a tube that nothing leaves or a corner without bounds: FIBRAD_E_ENDLESS, unless every axis has two
- * planes or a period, or lies across the cylinder. */
+ * Openings. An opening is a plane where the container ends and the surroundings begin. Radiation that meets an opening
+ * counts as `escaped`. An opening has no index, no temperature and no emissivity. All rules for planes hold for
+ * openings.
+ *
+ * Endless walls. An endless wall has an infinite area. A single plane may be endless. So may two planes across the same
+ * axis. Planes across several axes are allowed only if each axis has two planes or a period. A cylinder is allowed only
+ * if the z axis has two planes or a period. Otherwise fibrad_scene_init returns FIBRAD_E_ENDLESS. An occupancy
+ * (fibrad_part.h) that is periodic along an axis counts as a period. */
 typedef struct fibrad_body {
     int kind;           /* a fibrad_body_kind */
     fibrad_plane plane; /* of FIBRAD_BODY_PLANE */
     struct {
-        double x, y, radius; /* [L] of its axis, parallel to z; > 0 */
+        double x, y, radius; /* L, position of the axis, and radius above 0 */
     } cylinder;              /* of FIBRAD_BODY_CYLINDER */
 } fibrad_body;
 
 #define FIBRAD_BODIES_MAX 32
 
-/* What a scene is made for. Zeroed: open on all sides, no bodies but spheres, the best instruction set. */
+/* How a scene is made. Zeroed: open on all sides, no walls, the best instruction set.
+ *
+ * Example: a box that is periodic along x and y, with a floor at z = 0 and an open top at z = 20.
+ *   const fibrad_body floor = {.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .upper = 0, .at = 0}};
+ *   const fibrad_plane top = {.axis = 2, .upper = 1, .at = 20};
+ *   const fibrad_scene_config config = {
+ *       .period = {10, 10, 0}, .body = &floor, .bodies = 1, .opening = &top, .openings = 1}; */
 typedef struct fibrad_scene_config {
-    int isa;                            /* a fibrad_isa */
-    double period[3];                   /* [L] of the periodic box along each axis; 0: the axis is open */
-    const fibrad_body *body;            /* [bodies] copied */
-    uint32_t bodies;                    /* [0, FIBRAD_BODIES_MAX], else FIBRAD_E_UNSUPPORTED */
-    const fibrad_plane *opening;        /* [openings] copied; no sphere may reach beyond one */
-    uint32_t openings;                  /* [0, 6] */
-    double known_low[3], known_high[3]; /* [L] spheres beyond may be missing; equal (zeroed): none, along the axis */
-    const struct fibrad_occupancy *occupancy; /* fibrad_part.h: where such spheres may be; NULL: not told; not copied */
-    const struct fibrad_triangles *triangles; /* fibrad_mesh.h; NULL: none */
+    int isa;                                  /* a fibrad_isa */
+    double period[3];                         /* L, length of the periodic box along each axis; 0: the axis is open */
+    const fibrad_body *body;                  /* [bodies], the walls; copied */
+    uint32_t bodies;                          /* number of walls, 0 to FIBRAD_BODIES_MAX, else FIBRAD_E_UNSUPPORTED */
+    const fibrad_plane *opening;              /* [openings], copied; no sphere may reach beyond an opening */
+    uint32_t openings;                        /* 0 to 6 */
+    double known_low[3], known_high[3];       /* L, known region (fibrad_part.h); equal: unlimited along the axis */
+    const struct fibrad_occupancy *occupancy; /* where the bed has spheres (fibrad_part.h); NULL: none; not copied */
+    const struct fibrad_triangles *triangles; /* of all meshes (fibrad_mesh.h); NULL: none; copied */
 } fibrad_scene_config;
 
-typedef struct fibrad_scene fibrad_scene; /* spheres copied in the order of cells of a grid; immutable once made */
+/* A scene holds a copy of the spheres, sorted by the cells of a grid. A scene never changes once it is made. */
+typedef struct fibrad_scene fibrad_scene;
 
-/* What is wrong with a sphere, a wall or an argument, where a status alone does not say it. */
+/* The cause of a fault, where a status alone does not say it. The numbers never change their meaning. */
 typedef enum fibrad_why {
-    FIBRAD_WHY_UNSAID = 0,
-    FIBRAD_WHY_PLACE = 1,         /* a coordinate is NaN, infinite or too far away */
-    FIBRAD_WHY_RADIUS = 2,        /* a radius is not above 0, or out of range */
-    FIBRAD_WHY_BEYOND = 3,        /* a centre lies beyond a wall */
-    FIBRAD_WHY_WALL = 4,          /* a wall does not go with the box or with the walls before it, or is not valid */
-    FIBRAD_WHY_TEMPERATURE = 5,   /* a temperature is out of range */
-    FIBRAD_WHY_EMISSIVITY = 6,    /* an emissivity is not within 0 and 1 */
-    FIBRAD_WHY_POWER = 7,         /* a power is infinite or out of range */
-    FIBRAD_WHY_BOTH = 8,          /* both a temperature and a power are given */
-    FIBRAD_WHY_NEITHER = 9,       /* neither is */
-    FIBRAD_WHY_REFLECTS = 10,     /* of emissivity 0, and to give off a power */
-    FIBRAD_WHY_HOLD = 11,         /* hold or reference are out of range */
-    FIBRAD_WHY_ENDLESS = 12,      /* a wall that goes on for ever has no temperature */
-    FIBRAD_WHY_SIDE = 13,         /* a side of a triangle: its temperature is out of range, or its body has none */
-    FIBRAD_WHY_SURROUNDINGS = 14, /* their temperature is missing or out of range */
-    FIBRAD_WHY_SIGMA = 15,        /* sigma is out of range */
-    FIBRAD_WHY_TOLERANCE = 16,    /* a tolerance is out of range */
-    FIBRAD_WHY_MISSING = 17,      /* an array is missing */
-    FIBRAD_WHY_CAPACITY = 18      /* a heat capacity is not above 0, or out of range */
-} fibrad_why;                     /* the numbers never change their meaning */
+    FIBRAD_WHY_UNSAID = 0,        /* The status says all. */
+    FIBRAD_WHY_PLACE = 1,         /* A coordinate is NaN, infinite or too far away. */
+    FIBRAD_WHY_RADIUS = 2,        /* A radius is not above 0, or is out of range. */
+    FIBRAD_WHY_BEYOND = 3,        /* A centre lies beyond a wall. */
+    FIBRAD_WHY_WALL = 4,          /* A wall is not valid, or contradicts the periods or an earlier wall. */
+    FIBRAD_WHY_TEMPERATURE = 5,   /* A temperature is out of range. */
+    FIBRAD_WHY_EMISSIVITY = 6,    /* An emissivity is not within 0 to 1. */
+    FIBRAD_WHY_POWER = 7,         /* A power is infinite or out of range. */
+    FIBRAD_WHY_BOTH = 8,          /* Both a temperature and a power are given. */
+    FIBRAD_WHY_NEITHER = 9,       /* Neither a temperature nor a power is given. */
+    FIBRAD_WHY_REFLECTS = 10,     /* A surface of emissivity 0 cannot give off a power. */
+    FIBRAD_WHY_HOLD = 11,         /* hold or reference is out of range. */
+    FIBRAD_WHY_ENDLESS = 12,      /* An endless wall has no temperature. */
+    FIBRAD_WHY_SIDE = 13,         /* The temperature of a triangle's side is out of range, or its wall has none. */
+    FIBRAD_WHY_SURROUNDINGS = 14, /* The temperature of the surroundings is missing or out of range. */
+    FIBRAD_WHY_SIGMA = 15,        /* sigma is out of range. */
+    FIBRAD_WHY_TOLERANCE = 16,    /* A tolerance is out of range. */
+    FIBRAD_WHY_MISSING = 17,      /* An array is missing. */
+    FIBRAD_WHY_CAPACITY = 18      /* A heat capacity is not above 0, or is out of range. */
+} fibrad_why;
 
-/* The same as words that go behind the name of what is concerned, never NULL. No errors. */
+/* The cause of a fault as English words. The words continue a sentence that begins with the name of a sphere or a wall.
+ *   Input    why: any number
+ *   Output   never NULL
+ *   Errors   none */
 const char *fibrad_why_text(int why);
 
-/* Where a fault is: the two spheres concerned, equal if it is one, n if it is none of them. */
+/* Where a fault is. */
 typedef struct fibrad_fault {
-    uint32_t first, second;
-    uint32_t triangle; /* the triangle; UINT32_MAX: none */
-    uint32_t wall;     /* 1 + the body; 0: none */
-    int why;           /* fibrad_why */
+    uint32_t first, second; /* the two spheres at fault; equal if one is; both n if none is */
+    uint32_t triangle;      /* the triangle at fault; UINT32_MAX: none */
+    uint32_t wall;          /* 1 + the index of the wall at fault; 0: none */
+    int why;                /* a fibrad_why */
 } fibrad_fault;
 
-/* Bytes that fibrad_scene_init needs for n spheres, 52 each and 5 KB (ids: 1 if spheres.id is set, 8 more each).
- * Errors: 0 if n is above FIBRAD_SPHERES_MAX. An upper bound without ids, for static memory: */
+/* Bytes that fibrad_scene_init needs: 5 KB, 52 per sphere, and 8 more per sphere with ids. Triangles need more:
+ * fibrad_triangles_size.
+ *   Input    n: number of spheres
+ *            ids: 1 if fibrad_spheres.id is set, else 0
+ *   Errors   0 if n is above FIBRAD_SPHERES_MAX */
 size_t fibrad_scene_size(uint32_t n, int ids);
+
+/* An upper bound of fibrad_scene_size(n, 0), for static memory. */
 #define FIBRAD_SCENE_BYTES(n) (5632 + (size_t)(n)*64)
 
-/* Makes a scene in memory[size]. config: NULL is all defaults. On periodic axes centres are moved into the box. Spheres
- * may overlap each other and the walls, as in settled beds, but no centre may lie inside another sphere or beyond a
- * wall; what leaves a sphere beyond a wall and goes outwards meets that wall at once; what goes inwards there passes
- * it. Errors, with fault (may be NULL): _ARGUMENT, _SIZE, _GEOMETRY (also a period less than the largest radius, a
- * sphere beyond an opening), _ENDLESS, _ISA, _UNSUPPORTED. Cost: about 0.5 microseconds a sphere; more where spheres
- * crowd in clusters far apart, at worst O(n^2). Source: docs/methods.md section 6. */
+/* Makes a scene.
+ *
+ * Centres on a periodic axis are moved into the box. The box begins at the least coordinate. Spheres may overlap each
+ * other and the walls, as they do in settled beds. No centre may lie inside another sphere or beyond a wall. A part of
+ * a sphere may lie beyond a wall. Radiation that leaves this part outwards meets the wall at once. Radiation that
+ * leaves this part inwards passes the wall.
+ *   Input    memory[size]: at least fibrad_scene_size(n, ids) + fibrad_triangles_size(triangles, n) bytes
+ *            config: NULL for all defaults
+ *            spheres
+ *   Output   scene: a pointer into memory
+ *            fault: where an error is; may be NULL. After FIBRAD_OK `fault` is as before.
+ *   Errors   _ARGUMENT, _SIZE, _ISA, _ENDLESS, _UNSUPPORTED (more than FIBRAD_BODIES_MAX walls)
+ *            _GEOMETRY: a centre lies inside another sphere, a sphere reaches beyond an opening, or a period is less
+ *            than the largest radius
+ *            After an error an earlier scene in the same memory may be lost.
+ *   Cost     0.5 microseconds per sphere. Clusters that lie far apart take longer, O(n^2) at worst.
+ *   Source   docs/methods.md section 6 */
 int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 
+/* Facts of a scene. */
 typedef struct fibrad_scene_facts {
-    uint32_t spheres, bodies;
-    int isa;                       /* the instruction set in use */
-    uint32_t cells;                /* cells of the grid, all levels */
-    double radius_min, radius_max; /* [L]; 0 without spheres */
-    double overlap_max;            /* largest overlap of two spheres over the smaller radius, 0 if none overlap */
-    uint32_t overlap_pair[2];      /* the spheres of the largest overlap */
-    uint32_t triangles;
+    uint32_t spheres, bodies;      /* numbers of spheres and of walls */
+    int isa;                       /* the fibrad_isa in use */
+    uint32_t cells;                /* cells of the grid, all levels together */
+    double radius_min, radius_max; /* L; 0 without spheres */
+    double overlap_max;            /* largest overlap of two spheres over the smaller radius; 0: none overlap */
+    uint32_t overlap_pair[2];      /* the two spheres of the largest overlap */
+    uint32_t triangles;            /* number of triangles */
 } fibrad_scene_facts;
 
-/* The facts of a scene (null pointers: nothing). Area [L^2] of the part of a body inside all others, per period of
- * periodic axes; infinity: unbounded; NaN: no scene, no such body. No errors. */
+/* Reads the facts of a scene. A null pointer, or a scene that is not complete, leaves `facts` as they are.
+ *   Errors   none */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
+
+/* Area of a wall [L^2]. For a plane or a cylinder this is the area inside all other planes and the cylinder. Along a
+ * periodic axis this is the area of one period. For a mesh this is the sum over all sides that belong to the wall.
+ *   Output   infinity: the wall is endless. NaN: there is no such wall, or the scene is not complete.
+ *   Errors   none */
 double fibrad_scene_body_area(const fibrad_scene *scene, uint32_t body);
 
-/* The sphere that comes k-th along the cells of the grid, k [0, n): a permutation in which neighbours in space are
- * mostly near each other, so that rows of large beds find their data in the cache. Errors: UINT32_MAX. */
+/* Sphere k in the order of the grid's cells. This order is a permutation in which neighbours in space mostly follow
+ * each other. Rows of large beds are faster in this order, since their data are in the cache.
+ *   Input    k: 0 to n - 1
+ *   Errors   UINT32_MAX: k is out of range, or the scene is not complete */
 uint32_t fibrad_scene_sphere(const fibrad_scene *scene, uint32_t k);
 
 /* ---- work ------------------------------------------------------------------------------------------------------ */
-/* Scratch memory of one thread, for any scenes and functions in turn; set `memory` alone. Fixed memory too small:
- * FIBRAD_E_WORK; with any block of memory.needed bytes the call succeeds, or gets past this need to a next one. */
+/* Scratch memory of one thread. Set `memory`, and zero the rest. One fibrad_work serves any scenes and functions in
+ * turn. After FIBRAD_E_WORK, call again with a block of memory.needed bytes. This call may return FIBRAD_E_WORK once
+ * more and ask for a still larger block. */
 typedef struct fibrad_work {
     fibrad_memory memory;
-    void *inside;      /* the kernel's own; NULL at first */
-    uint32_t triangle; /* out, after FIBRAD_E_BACK: which one */
+    void *inside;      /* of the library; NULL at first */
+    uint32_t triangle; /* out: the triangle, after FIBRAD_E_BACK */
 } fibrad_work;
 
-/* Bytes for beam rows with up to `discs` spheres met in one window, hidden ones included (a packed bed: 64), and
- * `entries` spheres seen by one row (200): a constant expression, for static memory. In scenes with walls add
- * FIBRAD_WORK_WALLS, in those with triangles FIBRAD_WORK_TRIANGLES. */
+/* Bytes of fixed work memory for beam rows, as a constant expression.
+ *   Input    discs: most spheres that lie in the way of one window, hidden ones included; 64 in a packed bed
+ *            entries: most spheres that one row sees; 200 in a packed bed
+ *   Scenes with walls take FIBRAD_WORK_WALLS more. Scenes with triangles take FIBRAD_WORK_TRIANGLES more. */
 #define FIBRAD_WORK_BYTES(discs, entries) (28672 + (size_t)(discs)*768 + (size_t)(entries)*96)
 #define FIBRAD_WORK_WALLS                 21504
 #define FIBRAD_WORK_TRIANGLES             26784
@@ -261,221 +364,359 @@ typedef struct fibrad_work {
 /* ---- row ------------------------------------------------------------------------------------------------------- */
 typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
 
-/* One row of a matrix of factors: in the caller's arrays, or appended to a collection of rows, into which col, f and
- * body then point until the next row is appended. */
+/* One row of factors. The caller chooses where the entries go.
+ *
+ *              into arrays of the caller         into a collection
+ *   set        col, f, body, capacity; rows NULL rows
+ *   results    fill these arrays                 are appended to the collection; col, f and body then point into the
+ *                                                collection, until the next row is appended
+ *   too small  FIBRAD_E_CAPACITY; `length` is    FIBRAD_E_CAPACITY; rows->memory.needed is the size that suffices
+ *              the capacity that suffices
+ *
+ * The entries, the factors to walls, `escaped` and `beyond` together are 1, to rounding. */
 typedef struct fibrad_row {
-    uint32_t *col;       /* [capacity] out: the spheres seen, ascending */
-    double *f;           /* [capacity] out: factor from sphere i to sphere col[.], all > 0 */
-    double *body;        /* [bodies of the scene] out: factor to each; may be NULL if there are none */
-    uint32_t capacity;   /* in; 0 after a row was appended to `rows` */
-    fibrad_rows *rows;   /* in: NULL, or the row is appended to these, and capacity is not used */
+    uint32_t *col;       /* [capacity], out: the spheres that receive, ascending */
+    double *f;           /* [capacity], out: factor from sphere i to sphere col[k], above 0 */
+    double *body;        /* [bodies], out: factor to each wall; may be NULL without walls */
+    uint32_t capacity;   /* in: elements of col and f; 0 after a row was appended to `rows` */
+    fibrad_rows *rows;   /* in: NULL, or the collection; then capacity is not used */
     uint32_t sphere;     /* out: i */
-    uint32_t length;     /* out: entries; after FIBRAD_E_CAPACITY: those there would be, with which the call succeeds */
-    double escaped;      /* out: the fraction that meets no sphere and no body, or an opening; measured */
-    double beyond;       /* out: the fraction that leaves what is known, cutoff or region: fibrad_part.h */
-    double error;        /* out: Euclidean error of f and body together, estimated: on the median twice the true one */
-    uint32_t directions; /* out, beams only: how many were taken */
-    uint32_t fallbacks;  /* out, beams only: windows whose exact areas the fast method left to the robust one */
-    int symmetric;       /* out: 1 if the method makes A_i F_ij = A_j F_ji by itself, so that averaging adds nothing */
+    uint32_t length;     /* out: number of entries */
+    double escaped;      /* out: fraction that reaches the surroundings, through an opening or past everything */
+    double beyond;       /* out: fraction whose target the row does not know (fibrad_part.h) */
+    double error;        /* out: estimated error of the row, on the median twice the true error */
+    uint32_t directions; /* out: directions taken; 0 by rays */
+    uint32_t fallbacks;  /* out: windows that the slower, robust method for areas resolved; 0 by rays */
+    int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
 } fibrad_row;
 
 /* How a beam row is integrated. Zeroed: 233 directions, exact areas, no cutoff, no tolerance. */
 typedef struct fibrad_beam_rule {
-    uint32_t directions; /* [FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX] */
+    uint32_t directions; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: 233, or 100 with a tolerance */
     uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
-    double cutoff;       /* [L] spheres with centres farther than this (1 + 1e-12) neither receive nor block; 0: none */
-    double tolerance;    /* more directions, `directions` (0: 100) up to the most, until error <= this; 0: none */
-    uint64_t turn;       /* turns all directions together, by a random rotation made from it; 0: not turned */
+    double cutoff;       /* L; spheres with centres farther than this (1 + 1e-12) are left out; 0: no cutoff */
+    double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
+    uint64_t turn;       /* seed of a random rotation of all directions together; 0: no rotation */
 } fibrad_beam_rule;
 
-/* Row i of the view factors of a scene, by parallel beams in the directions of the rule: sum of f + sum of body +
- * escaped + beyond = 1 to rounding; with points, all but body are exact counts. With exact areas the error of f falls
- * as directions^-1.5, that of body a little slower; where nothing hides a wall, it is its solid angle. rule: NULL is
- * all defaults. Beams end after 100 periods; periodic images of one sphere share an entry, and i may see its own.
- * Errors: _ARGUMENT, _TABLE (points), _CAPACITY, _WORK, _MEMORY. Cost: some microseconds per direction with ten discs
- * in the window; it grows with their number. Source: docs/methods.md sections 3 and 4. */
+/* Row i of the view factors of a scene, by parallel beams.
+ *
+ * A beam has the shadow disc of sphere i as its window and one direction of the rule. The row is the mean of what all
+ * windows see. With exact areas, the error of the entries falls as directions^-1.5. The error of factors to walls falls
+ * a little more slowly. A wall that nothing hides gets its solid angle. With points, the entries and `escaped` are
+ * counts of points over the number of all points. Images of one sphere share one entry. Sphere i may see its own
+ * images. A beam ends after 100 periods. The tolerance may
+ * ask for more than FIBRAD_DIRECTIONS_MAX directions. The row is then made with FIBRAD_DIRECTIONS_MAX directions, and
+ * row->error is above the tolerance.
+ *   Input    i: 0 to spheres - 1
+ *            rule: NULL for all defaults
+ *   Output   row
+ *   Errors   _ARGUMENT, _STATE, _TABLE (points), _CAPACITY, _WORK, _MEMORY, _BACK, _SUM
+ *   Cost     some microseconds per direction with ten discs in a window, more with more discs
+ *   Source   docs/methods.md sections 3 and 4 */
 int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
                     fibrad_row *row);
 
-/* The directions to try next, after `directions` have given a row of error > tolerance > 0: by the law directions^-1.5,
- * [6/5 directions, FIBRAD_DIRECTIONS_MAX]. No errors. Source: docs/methods.md section 3. */
+/* The number of directions to try next when a row's error is above the tolerance. The estimate uses the law
+ * directions^-1.5.
+ *   Input    directions: those of the row
+ *            error: of the row, above tolerance
+ *            tolerance: above 0
+ *   Output   at least 6/5 of directions, at most FIBRAD_DIRECTIONS_MAX
+ *   Errors   none
+ *   Source   docs/methods.md section 3 */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance);
 
 /* How a row is sampled by rays. Zeroed: 20000 quasi-random rays, seed 0, no cutoff. */
 typedef struct fibrad_cast_rule {
     uint32_t rays; /* 0: 20000 */
-    int random;    /* 0: quasi-random numbers (`cast`); 1: pseudo-random numbers (`mc`) */
-    uint64_t seed; /* the random numbers, or the shift of the quasi-random set, come from it and the sphere's id */
-    double cutoff; /* as in fibrad_beam_rule */
+    int random;    /* 0: quasi-random numbers (method `cast`); 1: pseudo-random numbers (method `mc`) */
+    uint64_t seed; /* of the random numbers, together with the id of the sphere */
+    double cutoff; /* L, as in fibrad_beam_rule */
 } fibrad_cast_rule;
 
+/* Means over the rays that sphere i sends to sphere col[k]. */
 typedef struct fibrad_cast_means {
-    double *length; /* [row->capacity] out: mean length [L] of the rays to sphere col[.] */
-    double *angle;  /* [row->capacity] out: mean angle between them and the line of centres */
+    double *length; /* L, [row->capacity], out: mean length of the rays */
+    double *angle;  /* radians, [row->capacity], out: mean angle between the rays and the line of centres */
 } fibrad_cast_means;
 
-/* Row i of the view factors of a scene, by rays: origins even over the sphere, directions by the cosine law, each
- * followed to the first sphere. Factors are numbers of rays over all rays; their error falls as rays^-0.6, with random
- * as rays^-0.5. A ray that starts inside another sphere meets it at length 0 if its centre lies ahead. means: may be
- * NULL; not with row->rows. Errors: as fibrad_beam_row. Cost: 0.1 microseconds a ray. Source: methods.md section 8. */
+/* Row i of the view factors of a scene, by rays.
+ *
+ * The origins are spread evenly over the sphere. The directions follow the cosine law. Each ray ends at the first
+ * surface that it meets. A factor is the number of rays that end on a surface over the number of all rays. The error
+ * falls as rays^-0.6 with quasi-random numbers and as rays^-0.5 with pseudo-random numbers. A ray that starts inside
+ * another sphere meets that sphere at length 0 if the centre of that sphere lies ahead.
+ *   Input    i: 0 to spheres - 1
+ *            rule: NULL for all defaults
+ *   Output   row
+ *            means: may be NULL; must be NULL if row->rows is set
+ *   Errors   _ARGUMENT, _STATE, _CAPACITY, _WORK, _MEMORY, _BACK, _SUM
+ *   Cost     0.1 microseconds per ray
+ *   Source   docs/methods.md section 8 */
 int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_cast_rule *rule,
                     fibrad_row *row, const fibrad_cast_means *means);
 
 /* ---- rows ------------------------------------------------------------------------------------------------------ */
-/* Rows of one thread or process, in any order. Set `memory` alone. No room for a row: FIBRAD_E_CAPACITY (the block may
- * then be made larger with its contents kept), or FIBRAD_E_MEMORY. */
+/* A collection of rows of one thread or process, in any order. Set `memory`, and zero the rest. A row that finds no
+ * room in fixed memory is FIBRAD_E_CAPACITY. Then give a larger block with the same contents, and call again. */
 struct fibrad_rows {
     fibrad_memory memory;
-    size_t used, lead;      /* the kernel's own, 0 at first, as all below: bytes that rows take, and before them */
-    uint32_t count, serial; /* rows; changes so far */
-    uint64_t entries;       /* of all rows */
+    size_t used, lead; /* bytes, of the library: bytes of all rows, and bytes in front of the first row */
+    uint32_t count;    /* out: number of rows */
+    uint32_t serial;   /* of the library: number of changes so far */
+    uint64_t entries;  /* out: entries of all rows */
 };
 
-/* _add: appends a row computed elsewhere: sphere, col, f, length, escaped, beyond, error, symmetric, body[bodies].
- * Errors: _ARGUMENT (columns not ascending, factors not in [0, 1] but for rounding), _CAPACITY, _MEMORY.
- * _clear: empties a collection and keeps its memory. NULL: nothing. No errors. */
+/* Appends a row that was computed elsewhere, on another machine for example.
+ *   Input    row: sphere, col, f, length, body, escaped, beyond, error, symmetric. row->rows must be NULL. The columns
+ *            ascend. Each factor is 0 to 1.01.
+ *            bodies: elements of row->body
+ *   Errors   _ARGUMENT, _CAPACITY, _MEMORY */
 int fibrad_rows_add(fibrad_rows *rows, const fibrad_row *row, uint32_t bodies);
+
+/* Removes all rows and keeps the memory. NULL is allowed.
+ *   Errors   none */
 void fibrad_rows_clear(fibrad_rows *rows);
 
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
-/* The row of a body, of fibrad_exchange_body. */
+/* The row of a wall, as fibrad_exchange_body makes it. All its factors together are 1. They are 0 if the wall's
+ * emissivity is 0. */
 typedef struct fibrad_body_row {
-    double body[FIBRAD_BODIES_MAX]; /* factor to each body; next to 0 it may err to below */
-    double spheres, escaped;        /* to all spheres together; to the surroundings: the sum is 1, of emissivity 0 it
-                                       is 0 */
-    double error;                   /* of one part: what is left of paths among mirrors; of the mean of parts: their
-                                       spread, Euclidean, besides */
-    uint64_t rays;                  /* traced */
+    double body[FIBRAD_BODIES_MAX]; /* factor to each wall; in one batch a factor near 0 may be below 0 by chance */
+    double spheres;                 /* factor to all spheres together */
+    double escaped;                 /* factor to the surroundings */
+    double error;                   /* of the mean: estimated error; of a batch: the fraction lost among mirrors */
+    uint64_t rays;                  /* rays traced */
 } fibrad_body_row;
 
-/* A function of the caller that has threads: does pieces [0, pieces) of a job by piece(job, k), in any order or at
- * once, and returns when all are done. */
+/* Does piece k of a job. The library hands this function to fibrad_parallel. */
 typedef void fibrad_piece(void *job, uint32_t k);
+
+/* A function of the caller that uses the caller's threads. It calls piece(job, k) once for each k from 0 to pieces - 1,
+ * in any order or at the same time. It returns when all pieces are done. */
 typedef void fibrad_parallel(void *context, uint32_t pieces, fibrad_piece *piece, void *job);
 
-/* What becomes of the rows. Zeroed: view factors, reciprocal and closed. */
+/* How rows become a matrix. Zeroed: view factors, made reciprocal and closed, for spheres alone.
+ *
+ *   the rows hold                          set
+ *   view factors by beams, exact areas     nothing
+ *   view factors by rays or by points      sampled = 1
+ *   exchange factors                       emissivity, and body_emissivity with body_row
+ *   any of these, also rows of walls       body_row
+ *   rows to be left as they are            raw = 1 */
 typedef struct fibrad_matrix_rule {
-    const double *emissivity;        /* [spheres] [0, 1]: the rows are exchange factors; NULL: view factors */
-    int raw;                         /* 1: rows as they are, in order; a missing one is empty */
-    double drop;                     /* [0, 1] what entries below this carry goes to the others, or to F_ii; 0: none */
-    uint32_t tasks;                  /* [1, 1024] for as many threads, 0: 1; no bit depends on it */
-    const fibrad_body_row *body_row; /* [bodies] rows of bodies, too, copied; those of bodies without bounds are not
-                                        looked at. NULL: spheres alone have rows */
-    const double *body_emissivity;   /* [bodies] [0, 1] for these; NULL: 1 */
-    fibrad_parallel *parallel; /* does pieces at once, in all calls for the matrix; NULL: the calling thread does */
-    void *context;             /* handed to it */
-    int sampled;               /* 1: view factors by rays or points, averaged and closed as exchange factors are */
+    const double *emissivity;        /* [spheres], 0 to 1: the rows hold exchange factors; NULL: view factors */
+    int raw;                         /* 1: leave the rows as they are; a missing row is empty */
+    double drop;                     /* 0 to 1: entries below are dropped; the row's sum stays; 0: keep all */
+    uint32_t tasks;                  /* 1 to 1024, number of tasks for threads, changes no bit; 0: 1 */
+    const fibrad_body_row *body_row; /* [bodies], copied; rows of endless walls are not read; NULL: no rows of walls */
+    const double *body_emissivity;   /* [bodies], 0 to 1, read if body_row is set; NULL: 1 */
+    fibrad_parallel *parallel;       /* used by all calls for this matrix; NULL: the calling thread does all */
+    void *context;                   /* handed to parallel */
+    int sampled;                     /* 1: view factors by rays or points */
 } fibrad_matrix_rule;
 
-/* A matrix of factors, compressed rows. The arrays are those of the matrix it was read from. */
+/* A matrix of factors in compressed rows. The arrays belong to the matrix that they were read from. If walls have no
+ * rows, the three arrays body_body, body_escaped and body_error are NULL. Their elements for an endless wall are NaN.
+ *
+ * `changed` tells whether the raw rows agree with each other. Raw row i gives some of its radiation to walls, to the
+ * surroundings and to `beyond`. The matrix gives them other fractions. The change of row i is the root of the sum of
+ * the squared differences. `changed` is the largest change over the error of its row. A value well above 1 means that
+ * the raw rows contradict each other by more than their errors. */
 typedef struct fibrad_factors {
-    uint32_t n, bodies;
-    const uint64_t *start;      /* [n + 1]: row i is [start[i], start[i+1]) */
-    const uint32_t *col;        /* [start[n]] ascending within each row */
-    const double *f;            /* [start[n]] factor from i to col */
-    const double *escaped;      /* [n] */
-    const double *beyond;       /* [n] */
-    const double *error;        /* [n] estimated Euclidean error of each row */
-    const double *body;         /* [n][bodies] factors to bodies */
-    const double *body_body;    /* [bodies][bodies] factors between bodies, NaN from those without bounds, 0 from those
-                                   of emissivity 0; NULL, as the next two: bodies have no rows */
-    const double *body_escaped; /* [bodies] */
-    const double *body_error;   /* [bodies] estimated Euclidean error of both */
-    double body_correction;     /* the largest |sum - 1| of a row of a body before it was closed: how well rows of
-                                   spheres and paths of bodies agree */
-    double body_closure;        /* ... of the matrix as it is: rounding, or, where reciprocity and sums contradict each
-                                   other, as in some beds cut by triangles, body_correction: then rows of spheres are
-                                   closed, and those of bodies are what paths say */
-    double changed;       /* the largest change, over the error of the row, that averaging and closing have made in
-                             what a row gives to bodies, surroundings and beyond (Euclidean); raw: 0. Well
-                             above 1 raw rows contradict each other by more than their errors say, ... */
-    uint32_t changed_row; /* ... as this one does */
+    uint32_t n, bodies;         /* numbers of spheres and of walls */
+    const uint64_t *start;      /* [n + 1], row i is elements start[i] to start[i + 1] - 1 of col and f */
+    const uint32_t *col;        /* [start[n]], columns, ascending within each row */
+    const double *f;            /* [start[n]], factor from i to col */
+    const double *escaped;      /* [n], factor to the surroundings */
+    const double *beyond;       /* [n], fraction whose target is not known */
+    const double *error;        /* [n], estimated error of each row */
+    const double *body;         /* [n][bodies], factors to walls */
+    const double *body_body;    /* [bodies][bodies], factors from wall to wall */
+    const double *body_escaped; /* [bodies], factors from walls to the surroundings */
+    const double *body_error;   /* [bodies], estimated error of each wall's factors to walls and surroundings */
+    double body_correction;     /* largest |sum - 1| of a wall's row before closing */
+    double body_closure;        /* largest |sum - 1| of a wall's row after closing; see fibrad_matrix_close */
+    double changed;             /* largest change of a row over its error, see above; raw: 0 */
+    uint32_t changed_row;       /* the row of that change */
 } fibrad_factors;
 
-typedef struct fibrad_matrix fibrad_matrix; /* rows put together into one matrix */
+typedef struct fibrad_matrix fibrad_matrix; /* a matrix in the making */
 
-/* Begins a matrix in memory[size] from all rows of a scene, found in rows[count], which stay until fibrad_matrix_close.
- * rule: NULL: defaults. Bytes: 24 per entry of the rows, 80 + 8 bodies per sphere; raw: 12, 48 + 8 bodies. Errors:
- * _ARGUMENT (entries of emissivity 0), _SIZE, _STATE: row missing or twice (*sphere or NULL). Cost: O(n + entries). */
+/* Bytes that fibrad_matrix_init needs: 24 per entry of the rows, and 80 + 8 bodies per sphere. With `raw` they are 12
+ * per entry and 48 + 8 bodies per sphere.
+ *   Input    as fibrad_matrix_init
+ *   Errors   0 */
 size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                           const fibrad_matrix_rule *rule);
+
+/* Begins a matrix from all rows of a scene. Each sphere has one row, in any of the collections.
+ *   Input    memory[size]
+ *            rows[count]: collections; must not change until fibrad_matrix_close has returned
+ *            rule: NULL for all defaults
+ *   Output   matrix: a pointer into memory
+ *            sphere: the sphere whose row is missing or repeated; may be NULL
+ *   Errors   _ARGUMENT: also an entry from or to a sphere of emissivity 0
+ *            _SIZE
+ *            _STATE: a row is missing, repeated or of another scene, or a collection's block was moved
+ *   Cost     O(spheres + entries) */
 int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const fibrad_scene *scene,
                        const fibrad_rows *rows, uint32_t count, const fibrad_matrix_rule *rule, uint32_t *sphere);
 
-/* Averages the rows of task [0, rule->tasks), several threads at once: (A_i F_ij + A_j F_ji)/(2 A_i), A = 4 pi r^2; of
- * exchange factors by variances, A_i e_i D_ij counting as A_j/(A_i + A_j). Optional: fibrad_matrix_close does what was
- * left out. Errors: _ARGUMENT, _STATE (twice, raw, closed). Cost: each task reads its share of entries three times, and
- * looks for them in all rows. Source: docs/methods.md section 5. */
+/* Averages the rows of one task. Several threads may do different tasks at the same time. This call is optional:
+ * fibrad_matrix_close does the tasks that are left. Rows i and j both estimate A_i F_ij = A_j F_ji, A = 4 pi r^2. The
+ * average is w_i A_i F_ij + w_j A_j F_ji with
+ *   view factors by exact areas   w_i = w_j = 1/2
+ *   sampled view factors          w_i = A_j/(A_i + A_j), w_j = A_i/(A_i + A_j)
+ *   exchange factors              the same weights, D instead of F, and A times the emissivity instead of A
+ *   Input    task: 0 to rule->tasks - 1
+ *   Errors   _ARGUMENT
+ *            _STATE: the task is done already, the rule says raw, the matrix is closed, or the rows have changed
+ *   Cost     each task reads its own entries three times and searches all rows once
+ *   Source   docs/methods.md section 5 */
 int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
 
-/* Ends the matrix. View factors: row sums above 1 are brought down to 1 symmetrically. Exchange factors: D_ij u_i u_j
- * and u_i times what raw row i leaves of 1 add up to 1. Then bodies, escaped and beyond are scaled to what the row sums
- * leave of 1; a row that met none of them takes the shares of all spheres together. Rows of bodies, where A_b F_bi =
- * A_i F_ib, are closed with all others by F_pq u_p u_q. A_i F_ij = A_j F_ji to the last bits, sums are 1 to rounding
- * but for empty rows. Errors: _STATE. Cost: O(entries), 40 times for exchange, `drop`, bodies. Source: docs/heat.md. */
+/* Ends the matrix. Afterwards A_i F_ij = A_j F_ji to the last bits, and every row that is not empty has the sum 1 to
+ * rounding. With `raw` nothing is changed. The steps are
+ *   1. All tasks that are left are averaged.
+ *   2. View factors by exact areas: F_ij is multiplied by min(s_i, s_j), s_i = min(1, 1/sum of row i).
+ *      Other factors: F_ij is multiplied by u_i u_j such that u_i (sum over j of F_ij u_j + rest_i) = 1. rest_i is what
+ *      raw row i gives to walls, surroundings and `beyond` together.
+ *   3. Factors to walls, `escaped` and `beyond` are scaled to what the entries leave of 1. A row without any of them
+ *      takes the proportions of all spheres together.
+ *   4. Rows of walls: A_b F_bi = A_i F_ib. Then all factors are multiplied by u_p u_q, p and q being spheres or walls.
+ *      In some beds that triangles cut, no such u exist. Then the rows of spheres are closed, the factors among walls
+ *      stay those of their paths, and body_closure equals body_correction.
+ *   5. Entries below `drop` are removed in pairs. The others are scaled so that the sums stay. What no scaling can
+ *      restore goes to F_ii.
+ *   Errors   _ARGUMENT
+ *            _STATE: the matrix is closed already, or the rows have changed
+ *   Cost     O(entries), and some 40 times as much for step 4, step 5 and factors that are not by exact areas
+ *   Source   docs/methods.md section 5, docs/heat.md */
 int fibrad_matrix_close(fibrad_matrix *matrix);
 
-/* The matrix, once closed; the largest |A_i F_ij - A_j F_ji| / max(A_i, A_j) over all entries, absent partners taken as
- * 0 (A times emissivity). Errors: _ARGUMENT, _STATE. Cost: none; O(entries log(row length)). */
+/* Reads a matrix.
+ *   Errors   _ARGUMENT
+ *            _STATE: the matrix is not closed */
 int fibrad_matrix_read(const fibrad_matrix *matrix, fibrad_factors *factors);
+
+/* How far a matrix is from reciprocity: the largest |A_i F_ij - A_j F_ji|/max(A_i, A_j) over all entries. An entry that
+ * is absent counts as 0. For exchange factors A is area times emissivity.
+ *   Output   largest
+ *   Errors   _ARGUMENT
+ *            _STATE: the matrix is not closed
+ *   Cost     O(entries log(row length)) */
 int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
 
 /* ---- drift ----------------------------------------------------------------------------------------------------- */
-/* How far row i, right for the scene `before`, is off for `now`, the same spheres in boxes of the same periods:
- * Euclidean error, estimated as 2 root(sum over the spheres seen, j = col[length], of (F delta/w)^2). delta [L]: change
- * of the vector from i to j; F, w: docs/methods.md section 10. Estimates of successive steps add up. Bodies and spheres
- * that come into sight are not counted: fibrad_drift_partners. Errors: _ARGUMENT. Cost: about 10 ns per entry. */
+/* Estimates the error of an old row after the spheres have moved:
+ *   error = 2 sqrt(sum over j of (F_ij delta_ij/w_ij)^2),   F_ij = r_j^2/(4 d^2),   w_ij = min(r_j, max(d - r_j, r_i)).
+ * delta_ij [L] is the change of the vector from sphere i to sphere j. d [L] is the smaller one of the two distances of
+ * their centres. j runs over the spheres that the old row sees. Errors of successive steps may be added up. Walls, and
+ * spheres that come into sight, are not counted. fibrad_drift_partners counts spheres that come into sight.
+ *   Input    before, now: the scene of the row and the present scene; the same spheres, the same periods
+ *            i: 0 to spheres - 1
+ *            col[length]: columns of the old row
+ *   Output   error
+ *   Errors   _ARGUMENT, _STATE
+ *   Cost     10 ns per entry
+ *   Source   docs/methods.md section 10 */
 int fibrad_drift_row(const fibrad_scene *before, const fibrad_scene *now, uint32_t i, const uint32_t *col,
                      uint32_t length, double *error);
 
-/* What a new row of sphere i says about those of others, since j sees i just as i sees j. Where F_ij has more than
- * doubled from `before` to `row`, adds twice the change of A_i F_ij/A_j to error[j], as root of the sum of squares.
- * error [spheres]; order matters to its last bits. Errors: _ARGUMENT. Cost: about 10 ns per entry. */
+/* Adds to the error of old rows what a new row of sphere i reveals. If F_ij has grown, F_ji has grown as well, and the
+ * old row j does not know. Where F_ij has more than doubled,
+ *   error[j] = sqrt(error[j]^2 + (2 (F_ij new - F_ij old) A_i/A_j)^2).
+ * The last bits of `error` depend on the order of the calls.
+ *   Input    i: 0 to spheres - 1
+ *            before, row: the old and the new row i; col, f, length, columns ascending, f 0 to 2
+ *            error[spheres]: errors of all rows
+ *   Output   error[spheres]
+ *   Errors   _ARGUMENT, _STATE
+ *   Cost     10 ns per entry
+ *   Source   docs/methods.md section 10 */
 int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row *before, const fibrad_row *row,
                           double *error);
 
 /* ---- exchange -------------------------------------------------------------------------------------------------- */
-/* How the exchange of grey diffuse spheres and bodies is followed. */
+/* How exchange factors are computed. All surfaces are grey and diffuse. A surface of emissivity 0 reflects everything.
+ *
+ * Radiation first travels from sphere i to the surface that it meets. This first leg is a beam row, with 256 points per
+ * window up to 144 directions and exact areas above. Then paths follow the reflections.
+ *
+ *   field                        _row   _displacement   _body
+ *   emissivity                   needed needed          NULL: all spheres are black
+ *   body_emissivity              needed with walls      NULL: all walls are black
+ *   directions, tolerance        used   not used        not used
+ *   cutoff                       used   used            must be 0
+ *   paths, seed                  used   used            used */
 typedef struct fibrad_exchange_rule {
-    const double *emissivity;      /* [spheres] [0, 1]; 0 reflects all: its row and its column are empty */
-    const double *body_emissivity; /* [bodies] [0, 1]; 0 reflects all. NULL if there are none */
-    uint32_t directions;           /* of the first leg, a beam row by 256 points up to 144, by areas above; 0: 50 */
-    uint32_t paths;                /* [1, FIBRAD_PATHS_MAX] for the reflections; 0: 400 */
-    uint64_t seed;                 /* of random numbers, with the sphere's id; and `turn` of the first leg */
-    double cutoff;                 /* of the first leg; reflections end as far from the centre of sphere i; 0: none */
-    double tolerance;              /* more directions and paths until row->error is not above this; 0: none */
+    const double *emissivity;      /* [spheres], 0 to 1 */
+    const double *body_emissivity; /* [bodies], 0 to 1 */
+    uint32_t directions;           /* of the first leg; 0: 50 */
+    uint32_t paths;                /* 1 to FIBRAD_PATHS_MAX; 0: 400, of _body 8192 */
+    uint64_t seed;                 /* of random numbers, with the sphere's id; also the `turn` of the first leg */
+    double cutoff;                 /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
+    double tolerance;              /* the error allowed; directions and paths are added until it is met; 0: none */
 } fibrad_exchange_rule;
 #define FIBRAD_PATHS_MAX (1u << 28)
 
-/* Row i of the exchange factors of a scene: D_ij, in f, is the fraction of what sphere i emits that sphere j absorbs,
- * directly or after any number of diffuse reflections; body, escaped and beyond likewise; the sum is 1 to rounding, or
- * 0 of emissivity 0. The first leg is that of fibrad_beam_row; reflections go from point to point. Errors fall as
- * directions^-1.5 and paths^-0.5 do. rays (may be NULL): how many were traced. Errors: as fibrad_beam_row (emissivities
- * of sphere i and of bodies are checked). Cost: the beam row, and 0.1 to 0.2 microseconds a ray; a path has some 2 rays
- * at emissivity 0.8, 14 at 0.2. Work memory: up to 6 MB more, for speed. Source: docs/heat.md. */
+/* Row i of the exchange factors of a scene. row->f holds D_ij. Factors to walls, `escaped` and `beyond` count all
+ * reflections, too. Their sum is 1 to rounding. The row of a sphere of emissivity 0 is empty, and its sum is 0. No
+ * other row has an entry for such a sphere. The error falls as directions^-1.5 and paths^-0.5.
+ *   Input    i: 0 to spheres - 1
+ *            rule: needed
+ *   Output   row
+ *            rays: rays traced; may be NULL
+ *   Errors   as fibrad_beam_row. The emissivities of sphere i, of walls, and of spheres that are met are checked.
+ *   Cost     the beam row, and 0.1 to 0.2 microseconds per ray. A path has about 2 rays at emissivity 0.8 and 14 at
+ *            0.2. If work memory may grow, this function takes up to 6 MB more, for speed.
+ *   Source   docs/heat.md */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);
 
-/* Part `part` [0, FIBRAD_BODY_PARTS) of the row of a body: what the body emits, on its part inside all others, and whom
- * that is absorbed by; to each sphere it is A_i e_i D_ib/(A_b e_b). Each part follows an eighth of rule->paths (0:
- * 8192) from point to point; errors fall as paths^-0.6, or as paths^-0.5 at low emissivities. rule: emissivity and
- * body_emissivity may be NULL: all are black, and D is F; directions and tolerance are not used. _mean: the mean of all
- * parts. Errors: _ARGUMENT, _WORK, _MEMORY, _UNSUPPORTED (a body without bounds, a cutoff, a known region). Cost: 0.1
- * to 0.5 microseconds a ray. Source: docs/heat.md. */
+/* The row of a wall is computed in this many batches of paths. The spread of the batches is the error. */
 #define FIBRAD_BODY_PARTS 8
+
+/* One batch of the row of a wall: the fractions of the wall's emission that walls, spheres and surroundings absorb.
+ * Only the area inside all other planes and the cylinder emits. Factors to single spheres follow from reciprocity,
+ * A_b e_b D_bi = A_i e_i D_ib. A batch follows an eighth of rule->paths. The error falls as paths^-0.6, at low
+ * emissivities as paths^-0.5.
+ *   Input    body: 0 to bodies - 1
+ *            part: number of the batch, 0 to FIBRAD_BODY_PARTS - 1
+ *            rule: needed
+ *   Output   row
+ *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK, _SUM
+ *            _UNSUPPORTED: an endless wall, a cutoff, or a known region
+ *   Cost     0.1 to 0.5 microseconds per ray
+ *   Source   docs/heat.md */
 int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
                          uint32_t part, fibrad_body_row *row);
+
+/* The mean of all batches of a wall's row. The error is the standard error of the mean, from the spread of the batches,
+ * plus what was lost among mirrors. A mean below 0 becomes 0, and the other factors are scaled.
+ *   Input    part[FIBRAD_BODY_PARTS]: all batches
+ *   Output   mean
+ *   Errors   _ARGUMENT */
 int fibrad_exchange_body_mean(const fibrad_body_row part[FIBRAD_BODY_PARTS], fibrad_body_row *mean);
 
+/* How far the emission of a sphere is carried. */
 typedef struct fibrad_displacement {
-    double square[3]; /* [L^2] mean square displacement along each axis */
-    double error[3];  /* [L^2] standard errors, estimated */
-    double absorbed;  /* fraction that spheres absorb */
-    uint64_t rays;
+    double square[3]; /* L^2: mean square displacement along each axis */
+    double error[3];  /* L^2: estimated standard error of `square` */
+    double absorbed;  /* fraction of the emission that spheres absorb */
+    uint64_t rays;    /* rays traced */
 } fibrad_displacement;
 
-/* How far what sphere i emits is carried, by rule->paths paths, from its centre to that of the sphere that absorbs,
- * periods counted; what bodies absorb, escapes or is beyond counts as 0. Errors and cost: as fibrad_exchange_row. */
+/* Mean square displacement of the emission of sphere i, from its centre to the centre of the sphere that absorbs.
+ * Periods that a path has crossed count. Emission that no sphere absorbs counts as displacement 0.
+ *   Input    i: 0 to spheres - 1
+ *            rule: needed
+ *   Output   displacement
+ *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK
+ *   Cost     0.1 to 0.2 microseconds per ray
+ *   Source   docs/heat.md */
 int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
                                  const fibrad_exchange_rule *rule, fibrad_displacement *displacement);
 
