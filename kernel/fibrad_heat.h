@@ -1,13 +1,23 @@
-/* fibrad_heat.h - net radiative powers and temperatures of grey diffuse spheres and bodies.
+/* fibrad_heat.h - net radiative powers and temperatures of grey diffuse spheres and walls.
  *
- * Each body has a given temperature, or gives off a given power and has the temperature that follows. Surfaces are cut
- * into patches; beams of points connect the patch they leave with the patch they meet, and serve both ways: at equal
- * temperatures nothing flows, and all powers add up to zero. The radiosities J = eps E + (1 - eps) H, E = sigma T^4,
- * follow by conjugate gradients, first on patches four times as large; what both give is extrapolated to patches
- * without size. Source: docs/heat.md.
+ * A surface is a sphere or a wall. Each surface has a given temperature, or it gives off a given power and its
+ * temperature is found.
  *
- * Typical   fibrad_heat_init; _trace every task; _begin; _sweep every part and _step until solved; _read.
- * Units, errors and memory as in fibrad.h; powers in sigma K^4 L^2, watts if L is the metre.
+ * Method     Surfaces are cut into patches. Beams of points connect the patches that see each other. A beam carries
+ *            radiation both ways. Hence nothing flows at equal temperatures, and all powers add up to zero. The
+ *            radiosities J = eps E + (1 - eps) H, with E = sigma T^4 and the irradiation H, follow by conjugate
+ *            gradients. They are found first on coarse patches, four times as large, and then on the patches
+ *            themselves. Powers and temperatures are extrapolated from both to patches without size.
+ * Sequence   1. fibrad_heat_init
+ *            2. fibrad_heat_trace for every task
+ *            3. fibrad_heat_begin
+ *            4. fibrad_heat_sweep for every part, then fibrad_heat_step; repeat step 4 until solved is 1
+ *            5. fibrad_heat_read
+ *            For other sources, go on with step 3. For spheres that have moved, call fibrad_heat_move and go on with
+ *            step 2.
+ * Units      as in fibrad.h. Powers are in sigma K^4 L^2. They are watts if L is the metre and sigma is in W/(m2 K4).
+ * Words      Memory, errors and the layout of comments are as in fibrad.h.
+ * Source     docs/heat.md
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_HEAT_H
@@ -19,104 +29,177 @@
 extern "C" {
 #endif
 
+/* How finely the problem is resolved. Zeroed: the defaults. The default of wall_rays is the largest of 262144, 6
+ * directions times points, and 8 for each patch of a wall. */
 typedef struct fibrad_heat_config {
-    uint32_t directions; /* [FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX] of the beams; 0: 168 */
-    uint32_t points;     /* per direction: 64, 128 or 256; 0: 64 */
-    uint32_t patches;    /* of a sphere: 24, 96 or 384; 0: 96 */
-    uint32_t parts;      /* [1, 1024] of a sweep, for as many threads; last bits depend on it; 0: 8 */
-    double cutoff;       /* 0: none; else, as with a known region, FIBRAD_E_UNSUPPORTED */
-    uint32_t wall_rays;  /* from all walls and meshes at the least, up to 2^30; 0: 262144, 6 directions points, or 8
-                          * for each patch of a wall, whichever is most */
+    uint32_t directions; /* of beams from each sphere, FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: 168 */
+    uint32_t points;     /* of each beam: 64, 128 or 256; 0: 64 */
+    uint32_t patches;    /* of each sphere: 24, 96 or 384; 0: 96 */
+    uint32_t parts;      /* of a sweep, for as many threads, 1 to 1024; changes the last bits; 0: 8 */
+    double cutoff;       /* must be 0, else FIBRAD_E_UNSUPPORTED */
+    uint32_t wall_rays;  /* least number of rays from all walls together, at most 2^30; 0: see above */
 } fibrad_heat_config;
 
-typedef struct fibrad_heat fibrad_heat; /* beams, patches and radiosities of a scene */
+/* A heat problem: the patches, beams and radiosities of a scene. */
+typedef struct fibrad_heat fibrad_heat;
 
-/* Makes a heat problem in memory[size]. The scene stays as it is until fibrad_heat_move. config: NULL is all defaults.
- * Bytes: about spheres times (directions points + 60 patches + 6000), with room for what most beds take; a larger size
- * is all room for beams. Errors: _ARGUMENT, _SIZE, _UNSUPPORTED. */
+/* Bytes that fibrad_heat_init needs: about spheres times (directions points + 60 patches + 6000). This has room for the
+ * beams of most beds.
+ *   Input    config: NULL for all defaults
+ *   Errors   0 */
 size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *scene);
+
+/* Makes a heat problem. The scene must stay as it is until fibrad_heat_move.
+ *   Input    memory[size]: at least fibrad_heat_size bytes. All bytes above are used for beams.
+ *            config: NULL for all defaults
+ *            scene: radii 1e-30 to 1e30 L
+ *   Output   heat: a pointer into memory
+ *   Errors   _ARGUMENT, _SIZE, _STATE
+ *            _UNSUPPORTED: a cutoff, a known region, or more than 2^26 fine patches where surfaces nearly touch */
 int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad_heat_config *config,
                      const fibrad_scene *scene);
 
-/* Changes to another scene of as many spheres, the same kinds of bodies and the same triangles, each of its bodies, or
- * the same one rebuilt in place. All tasks are traced again; the next solution starts from the last one. Errors:
- * _ARGUMENT, _SIZE (walls have grown). */
+/* Goes on with another scene, or with the same scene rebuilt in place. All tasks must be traced again. The next
+ * solution begins with the last one.
+ *   Input    scene: the same number of spheres, the same walls in the same order, the same openings, and the same
+ *            triangles, each of the same wall. Positions and sizes may be others.
+ *   Errors   _ARGUMENT, _STATE
+ *            _SIZE: the walls have grown too much for the memory
+ *            _UNSUPPORTED: a known region */
 int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene);
 
-/* Tasks that the beams are divided into, one per sphere and some for the walls; parts of a sweep (NULL: 0). _trace: the
- * beams of a task [0, tasks), each task once, by several threads at once. Errors: _ARGUMENT, _WORK, _MEMORY (then call
- * again), _STATE, _BACK (work->triangle has a side that is seen and nobody's), _SIZE: spheres see so many others that
- * the room for beams is too small; give _init twice the size.
- * Cost: about 1 microsecond per direction of 64 points. */
+/* Number of tasks for fibrad_heat_trace: one for each sphere, and some for the walls and for fine patches.
+ *   Errors   0 if heat is NULL */
 uint32_t fibrad_heat_tasks(const fibrad_heat *heat);
+
+/* Number of parts for fibrad_heat_sweep: fibrad_heat_config.parts.
+ *   Errors   0 if heat is NULL */
 uint32_t fibrad_heat_parts(const fibrad_heat *heat);
+
+/* Traces the beams of one task. Each task is traced once. Several threads may trace different tasks at the same time.
+ *   Input    work: of the calling thread
+ *            task: 0 to fibrad_heat_tasks - 1
+ *   Errors   _ARGUMENT
+ *            _WORK, _MEMORY: call again for the same task with more memory
+ *            _STATE: the task is traced already, or the scene has changed
+ *            _BACK: work->triangle has a side that is seen and belongs to no wall
+ *            _SIZE: spheres see so many others that the beams do not fit; begin again with twice the size
+ *   Cost     1 microsecond per direction of 64 points */
 int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
 
-/* What radiates. Begin with fibrad_heat_sources_init, which zeroes all but sigma, FIBRAD_STEFAN_BOLTZMANN, and
- * surroundings, NaN, which is refused: set it. A body whose temperature is NaN, and whose power is not, has the one at
- * which it gives off power - hold sigma (T^4 - reference^4) from inside; hold is what a store of heat makes of a step
- * in time. Where a temperature is given, power is 0 or NaN, and hold and reference are not used. */
+/* What radiates. Begin with fibrad_heat_sources_init, and set `surroundings`.
+ *
+ *   a sphere with             temperature  power     hold, reference
+ *   a given temperature       T            0 or NaN  not used
+ *   a given power P           NaN          P         0, NaN or where the search for the temperature begins
+ *   a power that varies       NaN          P         h, R: the sphere gives off P - h sigma (T^4 - R^4)
+ *   emissivity 0              T            0 or NaN  not used
+ *                             NaN          0         0, NaN
+ *
+ * `hold` stands for a store of heat during a step in time.
+ *
+ * Walls have the same choices with body_temperature and body_power, but no hold and no reference. An insulated wall
+ * sends back all that arrives, point by point. Its temperature, emissivity and power are not used. The sides of a mesh
+ * may have temperatures of their own if the wall has a given temperature. An endless wall (fibrad.h) must have a given
+ * temperature, unless it reflects everything.
+ *
+ * The residual is relative to the differences of emission. tolerance = 0 stands for 1e-3, or for 1e-5 if a temperature
+ * is unknown and its hold is 0. side_temperature goes by the caller's numbers of triangles. If sides share a patch,
+ * each of them emits the mean of all of them. */
 typedef struct fibrad_heat_sources {
-    const double *temperature;      /* [spheres] 0 to 1e20; NaN: unknown */
-    const double *emissivity;       /* [spheres] [0, 1]; 0: power 0, whatever the temperature */
-    const double *power;            /* [spheres] up to 1e100 either way, > 0 gives off; NULL: none is unknown */
-    const double *hold;             /* [spheres] [L^2] 0 to 1e60; NULL: 0 */
-    const double *reference;        /* [spheres] 0 to 1e20, also where the search begins; NULL, NaN: none, hold is 0 */
-    const double *body_temperature; /* [bodies] 0 to 1e20; NaN: unknown, of walls of finite area; NULL if no bodies */
-    const double *body_emissivity;  /* [bodies] [0, 1]; NULL if there are none */
-    const double *body_power;       /* [bodies] as power */
-    const unsigned char *insulated; /* [bodies] not 0: sends back all that arrives, place by place; NULL: none */
-    double surroundings;            /* temperature of what beams meet that escape; black */
-    double sigma;                   /* emission is sigma T^4; 1e-30 to 1e30 */
-    double tolerance;               /* residual at which to stop, relative to the differences of emission; 0: 1e-3, or
-                                     * 1e-5 where a temperature is unknown and not held */
-    uint32_t sweeps_max;            /* 0: 1000 */
-    int uniform; /* 1: one radiosity per sphere and wall, no extrapolation; wrong but for emissivities near 1 */
-    const double *side_temperature; /* [2 triangles] by the caller's numbers, fronts and backs in turn: 0 to 1e20, of
-                                     * sides of bodies whose temperature is given; NaN: that of the body. NULL: none.
-                                     * Sides that share a patch emit the mean of all */
+    const double *temperature;      /* K, [spheres], 0 to 1e20; NaN: unknown */
+    const double *emissivity;       /* [spheres], 0 to 1 */
+    const double *power;            /* sigma K^4 L^2, [spheres], -1e100 to 1e100, above 0 gives off; NULL: all NaN */
+    const double *hold;             /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
+    const double *reference;        /* K, [spheres], 0 to 1e20; NULL: all NaN */
+    const double *body_temperature; /* K, [bodies], 0 to 1e20; NaN: unknown; NULL without walls */
+    const double *body_emissivity;  /* [bodies], 0 to 1; NULL without walls */
+    const double *body_power;       /* sigma K^4 L^2, [bodies], as power; NULL: all NaN */
+    const unsigned char *insulated; /* [bodies], not 0: insulated; NULL: no wall is insulated */
+    double surroundings;            /* K, 0 to 1e20, of the black surroundings */
+    double sigma;                   /* of E = sigma T^4, 1e-30 to 1e30 */
+    double tolerance;               /* residual at which to stop, 0 to below 1; 0: see above */
+    uint32_t sweeps_max;            /* sweeps after which to stop; 0: 1000 */
+    int uniform;                    /* 1: one radiosity per surface, no extrapolation; for emissivities near 1 only */
+    const double *side_temperature; /* K, [2 triangles], fronts and backs in turn; NaN: the wall's; NULL: all NaN */
 } fibrad_heat_sources;
+
+/* Zeroes the sources, sets sigma = FIBRAD_STEFAN_BOLTZMANN, and sets surroundings = NaN. NaN is refused, so that no
+ * caller forgets the surroundings.
+ *   Errors   none; NULL is allowed */
 void fibrad_heat_sources_init(fibrad_heat_sources *sources);
 
-/* Whether _begin would take these sources; fault (may be NULL): which sphere or wall it would not take, and why.
- * Errors: _ARGUMENT, _UNSUPPORTED (fault.why is FIBRAD_WHY_ENDLESS). */
+/* Checks sources as fibrad_heat_begin does.
+ *   Output   fault: which sphere or wall is at fault, and why; may be NULL
+ *   Errors   _ARGUMENT
+ *            _UNSUPPORTED: the temperature of an endless wall is unknown, fault.why is FIBRAD_WHY_ENDLESS */
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
-/* A solution, which starts from the last one if there is one: _begin; then every part [0, parts) of a _sweep once, by
- * several threads at once, and _step, until *solved is 1 (done, or about sweeps_max sweeps made). Errors: _ARGUMENT
- * (also a power of emissivity 0), _UNSUPPORTED (unknown temperature of an endless wall), _STATE: a task is not traced,
- * a part swept twice or not at all; of _step also _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the
- * powers do not add up to zero. If they do, the mean emission, by emissivity and area, is that of the surroundings.
- * Cost: about 2 ns per beam and sweep; temperatures of deep beds take some sweeps a layer. */
+/* Begins a solution. The solution begins with the radiosities of the last one, if there is one. The sources are not
+ * needed after the call.
+ *   Errors   as fibrad_heat_check
+ *            _STATE: a task is not traced, or the scene has changed
+ *   Cost     O(patches) */
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
+
+/* Does one part of a sweep. Between two steps each part is swept once. Several threads may sweep different parts at the
+ * same time.
+ *   Input    part: 0 to fibrad_heat_parts - 1
+ *   Errors   _ARGUMENT
+ *            _STATE: the part was swept already, or no solution was begun
+ *   Cost     2 ns per beam. Temperatures of deep beds take some sweeps for each layer of spheres. */
 int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
+
+/* Ends a sweep.
+ *   Output   solved: 1 if the residual is below the tolerance, or after about sweeps_max sweeps; else 0
+ *   Errors   _ARGUMENT
+ *            _STATE: a part was not swept, no solution was begun, or the scene has changed
+ *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and the powers do not add up to zero
+ *   If all temperatures are unknown, nothing escapes, and the powers do add up to zero, the level of the temperatures
+ *   is free. Then the mean emission, weighted by emissivity and area, is that of the surroundings. */
 int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
-/* The powers, positive where heat is gained (what a body gives off from inside is their negative), and temperatures,
- * those found and those given; NaN: of emissivity 0, or below zero. Of insulated bodies, and those whose sides have
- * temperatures, the mean of T^4 counts. The
- * arrays are the caller's; those that may be NULL are then not written. Errors: _ARGUMENT; _STATE: no solution;
- * _UNSOLVABLE, with all written: a power is drawn that only a temperature below zero would give. */
+/* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
+ *
+ * A net power is above 0 where a surface gains heat. In a steady state a
+ * surface gives off the negative of its net power from inside.
+ * Temperatures are those found and those given. A temperature is NaN if the emissivity is 0, or if only a temperature
+ * below zero would give the power. body_temperature of an insulated wall is the fourth root of its mean T^4. The same
+ * holds for a mesh whose sides have temperatures of their own. The root mean square error of the powers of all spheres
+ * is sqrt(error_patches^2 + error_beams^2). */
 typedef struct fibrad_heat_result {
-    double *power;                          /* [spheres] out */
-    double *body_power;                     /* [bodies] out; NULL if there are none */
-    double surroundings_power;              /* out */
-    double *temperature, *body_temperature; /* [spheres], [bodies] out; may be NULL */
-    double *power_error, *body_error;       /* [spheres], [bodies] out: estimated errors of powers; may be NULL */
-    double *temperature_error, *body_temperature_error; /* likewise of temperatures, 0 of those given; may be NULL */
-    double error_patches;  /* out: estimated error of the powers, root mean square over the spheres, from patches */
-    double error_beams;    /* out: ... and from beams: take the root of the sum of squares of both */
-    double residual;       /* out: that of the radiosities, as in `tolerance` */
-    uint32_t sweeps;       /* out */
-    double *body_absorbed; /* [bodies] out: what they take of what arrives, of endless walls near the bed; or NULL */
+    double *power;                  /* sigma K^4 L^2, [spheres], out: net power */
+    double *body_power;             /* sigma K^4 L^2, [bodies], out: net power; NULL without walls */
+    double surroundings_power;      /* sigma K^4 L^2, out: net power */
+    double *temperature;            /* K, [spheres], out; may be NULL */
+    double *body_temperature;       /* K, [bodies], out; may be NULL */
+    double *power_error;            /* sigma K^4 L^2, [spheres], out: estimated error of power; may be NULL */
+    double *body_error;             /* sigma K^4 L^2, [bodies], out: estimated error of body_power; may be NULL */
+    double *temperature_error;      /* K, [spheres], out: estimated error, 0 if given; may be NULL */
+    double *body_temperature_error; /* K, [bodies], out: estimated error, 0 if given; may be NULL */
+    double error_patches;           /* sigma K^4 L^2, out: root mean square error of power from patches */
+    double error_beams;             /* sigma K^4 L^2, out: root mean square error of power from beams */
+    double residual;                /* out: of the radiosities, as `tolerance` */
+    uint32_t sweeps;                /* out */
+    double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: absorbed; if endless, near the bed; or NULL */
 } fibrad_heat_result;
+
+/* Reads the solution.
+ *   Output   result
+ *   Errors   _ARGUMENT
+ *            _STATE: there is no solution, or the scene has changed
+ *            _UNSOLVABLE: only a temperature below zero would give some power. All results are written. */
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 
-/* What sides of triangles gain per area, and their temperatures, [2 triangles] by the caller's numbers, fronts and
- * backs in turn: means over the patches of each, or of all that share a patch. NaN: the side is nobody's; fluxes, and
- * temperatures of insulated bodies, also where nothing reaches it. Where no plane or cylinder cuts a mesh, fluxes times
- * areas add up to the power of its body, to rounding. Either may be NULL. Errors: _ARGUMENT; _STATE: no solution.
- */
+/* Reads the solution on the sides of triangles: element 2 t is the front and 2 t + 1 the back of the caller's triangle
+ * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. If no plane and no
+ * cylinder cuts a mesh, its fluxes times areas add up to the power of its wall, to rounding.
+ *   Output   flux[2 triangles]: net power per area [sigma K^4]; NaN if the side belongs to no wall or nothing reaches
+ *            it; may be NULL
+ *            temperature[2 triangles]: [K]; NaN if the side belongs to no wall, or to an insulated wall and nothing
+ *            reaches it; may be NULL
+ *   Errors   _ARGUMENT
+ *            _STATE: there is no solution, or the scene has changed */
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature);
 
 #ifdef __cplusplus

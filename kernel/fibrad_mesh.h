@@ -1,20 +1,28 @@
-/* fibrad_mesh.h - walls of any shape: triangles in a scene.
+/* fibrad_mesh.h - walls of any shape, made of triangles.
  *
- * Index: fibrad_triangles, fibrad_triangles_size, fibrad_triangle_ray, fibrad_triangle_views. Conventions are those of
- * fibrad.h.
+ * Index
+ *   fibrad_triangles       the triangles of a scene
+ *   fibrad_triangles_size  bytes that triangles add to a scene
+ *   fibrad_triangle_ray    the first triangle that a ray meets
+ *   fibrad_triangle_views  what a triangle sees
  *
- * Sides    Seen from its front a triangle's corners go counter-clockwise. Each side belongs to a body of kind
- *          FIBRAD_BODY_MESH, or to none: then it must not be seen, and whatever sees it ends with FIBRAD_E_BACK and
- *          the number of the triangle. Triangles block, receive, emit and reflect on both sides alike.
- * Spheres  may be cut by triangles, as in settled beds: what a sphere emits where its surface lies beyond a triangle,
- *          as seen from its centre, meets that triangle at once.
- * Edges    Triangles share an edge if their corners there have equal coordinates; then nothing passes between them.
- * Walls    Planes and the cylinder bound the scene as ever; what of a triangle lies beyond them plays no part.
- * Periods  On periodic axes triangles are repeated with the period, wherever their corners are.
- * Bounds   No coordinate of corners, spheres and planes is above 3e13 times half the length of all triangles together,
- *          and at most 4096 images of them lie at one place (the product along all periodic axes of 2 + (length +
- *          largest diameter)/period), else FIBRAD_E_ARGUMENT; fault.triangle is one that is too far, small or long.
- * Parts    Rows with a cutoff meet triangles beyond it where the occupancy of fibrad_part.h leaves their way clear.
+ * Units, words, errors and the layout of comments are as in fibrad.h.
+ *
+ * Sides    Seen from its front, the corners of a triangle go counter-clockwise. Each side belongs to a wall of kind
+ *          FIBRAD_BODY_MESH, or to no wall. A side that belongs to no wall must not be seen. A call that sees such a
+ *          side ends with FIBRAD_E_BACK and writes the number of the triangle. Both sides block, receive, emit and
+ *          reflect alike.
+ * Spheres  A triangle may cut a sphere, as in settled beds. A part of the sphere's surface then lies beyond the
+ *          triangle, as seen from the centre of the sphere. What this part emits meets the triangle at once.
+ * Edges    Two triangles share an edge if their corners have equal coordinates. Nothing passes between them.
+ * Walls    Planes and the cylinder bound the scene. The part of a triangle beyond a plane or the cylinder has no
+ * effect. Periods  Triangles repeat along the periodic axes of the scene. Their corners may lie outside the box.
+ * Bounds   Let 2 l be the largest extent of all triangles together along any axis. No coordinate of corners, spheres
+ *          and planes may be above 3e13 l. Let m = 2 + (extent of all triangles along an axis + largest diameter of a
+ *          sphere)/period. The product of m over all periodic axes may be at most 4096. Otherwise fibrad_scene_init
+ *          returns FIBRAD_E_ARGUMENT, and fault.triangle is a triangle that is too far away, too small or too long.
+ * Cutoffs  A row with a cutoff meets a triangle beyond the cutoff if the occupancy of fibrad_part.h has no spheres in
+ *          between.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_MESH_H
@@ -29,47 +37,63 @@ extern "C" {
 #define FIBRAD_TRIANGLES_MAX 100000000u
 #define FIBRAD_NO_BODY       UINT32_MAX
 
-/* All triangles of a scene, of all its meshes; fibrad_scene_config.triangles. Copied. */
+/* All triangles of all meshes of a scene, for fibrad_scene_config.triangles. fibrad_scene_init copies them.
+ *
+ * Example: a square of two triangles. Its front belongs to wall 0. Its back must not be seen.
+ *   const double at[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+ *   const uint32_t corner[2][3] = {{0, 1, 2}, {0, 2, 3}}, front[2] = {0, 0};
+ *   const fibrad_triangles square = {.x = &at[0][0], .y = &at[0][1], .z = &at[0][2], .stride = 3, .vertices = 4,
+ *                                    .corner = &corner[0][0], .front = front, .n = 2}; */
 typedef struct fibrad_triangles {
-    const double *x, *y, *z; /* [L] vertex v is at x[v stride], y[v stride], z[v stride]; bounds as of spheres */
-    uint32_t stride;         /* in doubles; 0: 1 */
-    uint32_t vertices;
-    const uint32_t *corner; /* [n][3] vertices; triangles without area are never met */
-    const uint32_t *front;  /* [n] body of the front side, FIBRAD_NO_BODY: none */
-    const uint32_t *back;   /* [n] likewise; NULL: no triangle's back may be seen */
-    uint32_t n;             /* [0, FIBRAD_TRIANGLES_MAX] */
-    double period[3]; /* [L] by which triangles alone are repeated, along open axes of the scene; 0: they are not */
+    const double *x, *y, *z; /* L, vertex v is x[v stride], y[v stride], z[v stride]; at most as of spheres */
+    uint32_t stride;         /* doubles; 0: 1 */
+    uint32_t vertices;       /* number of vertices */
+    const uint32_t *corner;  /* [n][3], vertices of each triangle; a triangle without area is never met */
+    const uint32_t *front;   /* [n], wall of each front side; FIBRAD_NO_BODY: none */
+    const uint32_t *back;    /* [n], wall of each back side; FIBRAD_NO_BODY: none; NULL: none for all */
+    uint32_t n;              /* number of triangles, 0 to FIBRAD_TRIANGLES_MAX */
+    double period[3];        /* L, repeats the triangles alone, along an open axis of the scene; 0: no repetition */
 } fibrad_triangles;
 
-/* Bytes that n triangles add to fibrad_scene_size(spheres, ids), 135 each and 4 a sphere. Errors: 0 if there are too
- * many. */
+/* Bytes that n triangles add to fibrad_scene_size(spheres, ids): 135 per triangle and 4 per sphere.
+ *   Errors   0 if n is above FIBRAD_TRIANGLES_MAX */
 size_t fibrad_triangles_size(uint32_t n, uint32_t spheres);
 
 /* What a ray meets first. */
 typedef struct fibrad_triangle_hit {
-    uint32_t triangle; /* the caller's number; UINT32_MAX: the ray meets none */
-    int back;          /* 1: its back */
-    double distance;   /* [L] */
+    uint32_t triangle; /* the caller's number; UINT32_MAX: none is met */
+    int back;          /* 1: the back is met, 0: the front is met */
+    double distance;   /* L, from the origin of the ray */
 } fibrad_triangle_hit;
 
-/* The first triangle that a ray from `origin` [L] along the unit vector w meets within the length [L], spheres and
- * other walls apart; images along periodic axes count. Errors: _ARGUMENT (also an origin 3e13 times as far from the
- * middle of all triangles as half their length), _STATE. Cost: a microsecond or two among 1e5.
- */
+/* The first triangle that a ray meets. Spheres, planes and the cylinder are ignored. Images along periodic axes count.
+ *   Input    origin[3]: [L], at most 3e13 l from the middle of all triangles (see Bounds above)
+ *            w[3]: a unit vector, the direction
+ *            length: [L], of the ray
+ *   Output   hit
+ *   Errors   _ARGUMENT, _STATE
+ *   Cost     1 to 2 microseconds among 1e5 triangles
+ *   Source   docs/methods.md section 9 */
 int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const double w[3], double length,
                         fibrad_triangle_hit *hit);
 
-/* Where what a side sends out goes, of all directions by the cosine law. */
+/* What a side of a triangle sees: fractions of the radiation that leaves the side by the cosine law. All three are NaN
+ * if the side belongs to no wall, or if no point of the side lies within the planes and the cylinder. */
 typedef struct fibrad_side_view {
-    double spheres; /* NaN, as all: the side is nobody's, or no point of it lies within planes and cylinder */
-    double bodies;
-    double escaped; /* 1 less the others */
+    double spheres; /* fraction that meets spheres */
+    double bodies;  /* fraction that meets walls */
+    double escaped; /* fraction that reaches the surroundings */
 } fibrad_side_view;
 
-/* The views of a triangle's front and back by `rays` [1, 2^30] quasi-random rays from even points of each; place [0,
- * triangles): which one in the order of the scene, so that those near each other follow each other. *triangle out: the
- * caller's number, of the one whose back is seen after FIBRAD_E_BACK. The same whatever else is asked. Error of
- * spheres in a bed 0.007 with 256 rays. Errors: _ARGUMENT, _STATE, _BACK. Cost: about a microsecond a ray in a bed. */
+/* The views of both sides of one triangle, by quasi-random rays from even points of the side. The result for a triangle
+ * does not depend on other calls.
+ *   Input    place: 0 to triangles - 1, position in the order of the scene; neighbours in space mostly follow each
+ *            other
+ *            rays: from each side, 1 to 2^30
+ *   Output   triangle: the caller's number of the triangle; after FIBRAD_E_BACK the triangle whose side was seen
+ *            view[2]: of the front and of the back
+ *   Errors   _ARGUMENT, _STATE, _BACK
+ *   Cost     1 microsecond per ray in a bed. The error of `spheres` is 0.007 there with 256 rays. */
 int fibrad_triangle_views(const fibrad_scene *scene, uint32_t place, uint32_t rays, uint32_t *triangle,
                           fibrad_side_view view[2]);
 
