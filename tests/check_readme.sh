@@ -1,10 +1,11 @@
 #!/bin/sh
-# check_readme.sh - every line of the program in README.md runs: with settled beds under the names that README.md has.
-# SPDX-License-Identifier: MIT
+# check_readme.sh - every line of the program in README.md runs: with settled beds under the names that README.md has; so
+# does every recipe of docs/recipes.md, with the output that stands there. SPDX-License-Identifier: MIT
 set -u
-: "${BUILD:=build}"
+: "${BUILD:=build}" "${CC:=cc}"
 case $BUILD in /*) PATH=$BUILD:$PATH ;; *) PATH=$PWD/$BUILD:$PATH ;; esac
 tree=$PWD
+python=$(tests/find_python.sh numpy scipy)
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
 cd "$work" || exit 1
 
@@ -60,4 +61,35 @@ while IFS= read -r line; do
     fi
 done <list
 echo "$lines lines"
-test $lines -gt 12 && exit $faults
+test $lines -gt 12 || exit 1
+
+# the recipes: blocks of sh run one after the other, beside the beds and the files that `File `NAME`:` announces; the
+# lines of a block of text behind one are in its output, in this order, but for `...`
+mkdir try && cp "$tree"/tests/data/*.dump try && cd try && ln -s "$tree/kernel" "$tree/build" .. || exit 1
+test "${BUILD#/}" = "$BUILD" || ln -sfn "$BUILD" ../build
+awk '
+    /^File `.*`:$/ { file = $0; gsub(/File `|`:$/, "", file); next }
+    /^```./ {
+        if (/^```sh/) to = sprintf("%02d.sh", ++steps)
+        else if (file != "") to = file
+        else to = behind_sh ? sprintf("%02d.said", steps) : ""
+        behind_sh = /^```sh/; inside = 1; file = ""; next
+    }
+    /^```/ { inside = 0; next }
+    inside && to != "" { print >to }' "$tree/docs/recipes.md"
+for step in [0-9]*.sh; do
+    case $(cat "$step") in
+    python3*) test -n "$python" || { echo "SKIP recipe $step: no python3 with SciPy" && continue; }
+        sed -i "s|python3|$python|" "$step" ;;
+    cc*) sed -i "s|^cc|$CC|" "$step" ;;
+    lmp*) { command -v lmp >/dev/null && test -e ../build/couple/fibrad.lmp; } ||
+        { echo "SKIP recipe $step: no lmp with the fix (make deps-couple lammps)" && continue; } ;;
+    esac
+    sh -e "$step" >said 2>&1 </dev/null || { echo "docs/recipes.md: $(cat "$step" said)" && faults=1 && continue; }
+    test -e "${step%.sh}.said" || continue
+    awk '{ sub(/ +$/, "") } NR == FNR { if ($0 != "...") line[++n] = $0; next } $0 == line[k + 1] { k++ }
+        END { if (k < n) print "not in the output, or not in this order: " line[k + 1]; exit k < n }' \
+        "${step%.sh}.said" said || { echo "docs/recipes.md: $(cat "$step" said)" && faults=1; }
+done
+echo "${step%.sh} recipes' commands"
+test "${step%.sh}" -gt 10 && exit $faults
