@@ -1,5 +1,6 @@
 /* test_surface_row.c - rows by the surface method against ray-by-ray sums and against beams.
  * SPDX-License-Identifier: MIT */
+#include "fibrad_mesh.h"
 #include "fibrad_surface.h"
 #include "scenes.h"
 #include "suite.h"
@@ -257,6 +258,13 @@ START_TEST(refuses_what_is_wrong) {
     ck_assert_int_eq(fibrad_surface_row(walled, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);
     ck_assert(body == -5 && row.length == 77);
     free(walled);
+    /* a triangle that belongs to no wall */
+    const double x[] = {-9, 9, 0}, y[] = {-9, -9, 9}, z[] = {2, 2, 2};
+    const uint32_t corner[] = {0, 1, 2}, none = FIBRAD_NO_BODY;
+    const fibrad_triangles triangle = {.x = x, .y = y, .z = z, .vertices = 3, .corner = corner, .front = &none, .n = 1};
+    fibrad_scene *cut = scene_with(&one, &(fibrad_scene_config){.triangles = &triangle});
+    ck_assert_int_eq(fibrad_surface_row(cut, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);
+    free(cut);
     bed_free(&one);
 }
 END_TEST
