@@ -1,25 +1,24 @@
-/* fibrad_host.h - fibrad with a heap and OpenMP: whole beds in one call. libfibrad_host.a (with libfibrad.a), or
- * libfibrad.so, which has both.
+/* fibrad_host.h - fibrad with a heap and OpenMP: whole beds in one call.
  *
  * Index
- *   run       fibrad_run: threads, progress, cancelling
- *   factors   fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_side_views,
- *             fibrad_displacements
- *   heat      fibrad_radiation_new, _move, _solve, _sides, _settle, _describe, _free
- *   time      fibrad_transient_new, _move, _powers, _sides, _advance, _describe, _free
- *   kernel    fibrad_heap_resize, fibrad_host_sizeof
+ *   run      fibrad_run: threads, progress, cancelling
+ *   factors  fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_side_views, fibrad_displacements
+ *   heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _describe, _free
+ *   time     fibrad_transient_new, _move, _powers, _sides, _advance, _describe, _free
+ *   kernel   fibrad_heap_resize, fibrad_host_sizeof
  *
- * Typical  fibrad_bed_factors *bed;
- *          int status = fibrad_view_factors(NULL, &spheres, NULL, NULL, &bed);
- *          ... bed->matrix has the rows; then fibrad_bed_free(bed);
- *
- * Units, numbers, errors and zeroed structures are as in fibrad.h. Every result is the same for any number of threads,
- * and so is every error. Objects belong to one thread at a time; different objects are independent. Besides the codes
- * of the kernel functions: FIBRAD_E_MEMORY, FIBRAD_E_CANCELLED. On any error nothing is left to free and the
- * out-pointer is NULL.
- *
- * Fork     OpenMP's threads do not survive fork(). A process that has called a function of this header with more than
- *          one thread must not call one in a forked child; the child would hang.
+ * Example   fibrad_bed_factors *bed;
+ *           int status = fibrad_view_factors(NULL, &spheres, NULL, NULL, &bed);
+ *           if (status == FIBRAD_OK) ... bed->matrix has the rows ...
+ *           fibrad_bed_free(bed);
+ * Link      with libfibrad_host.a and libfibrad.a, or with libfibrad.so, which has both
+ * Words     Units, words, defaults and the layout of comments are as in fibrad.h.
+ * Bits      Every result and every error is the same for any number of threads.
+ * Threads   An object belongs to one thread at a time. Different objects are independent.
+ * Errors    as the kernel functions that a call uses, and FIBRAD_E_MEMORY, FIBRAD_E_CANCELLED. After an error the
+ *           out-pointer is NULL, and there is nothing to free.
+ * Fork      OpenMP's threads do not survive fork(). A process may have called a function of this header with more than
+ *           one thread. Then a forked child must not call one: the child would hang.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_HOST_H
@@ -35,204 +34,300 @@ extern "C" {
 
 /* ---- run ------------------------------------------------------------------------------------------------------- */
 
-/* Called by the thread that made the call, at the beginning and the end of each stage ("walls", "rows", "triangles",
- * "beams", "sweeps", "steps") and up to 20 times a second in between: `done` of `total` things are done; total 0:
- * unknown. Not 0: stop, which the call then returns as FIBRAD_E_CANCELLED. */
+/* A function of the caller that shows progress. The thread that made the call calls it at the beginning and the end of
+ * each stage, and up to 20 times a second in between.
+ *   Input    context: fibrad_run.context
+ *            stage: "walls", "rows", "triangles", "beams", "sweeps" or "steps"
+ *            done: things done
+ *            total: all things; 0: not known
+ *   Output   0 to go on; else the call stops and returns FIBRAD_E_CANCELLED */
 typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uint64_t total);
 
-/* How a call is run. NULL or zeroed: OpenMP's threads, no progress. */
+/* How a call runs. NULL or zeroed: OpenMP's threads, no progress. */
 typedef struct fibrad_run {
-    int threads;               /* [0, 1024]; 0: as OpenMP has it: OMP_NUM_THREADS, else all processors; at most 1024 */
+    int threads;               /* 1 to 1024; 0: OMP_NUM_THREADS, or else all processors, at most 1024 */
     fibrad_progress *progress; /* NULL: none */
     void *context;             /* handed to progress */
-    fibrad_fault fault;        /* out, of an error: the spheres concerned, their number n: none of them; the triangle */
+    fibrad_fault fault;        /* out: where an error is */
 } fibrad_run;
 
 /* ---- factors --------------------------------------------------------------------------------------------------- */
 
-/* What of a matrix is wanted, and how. NULL or zeroed: all rows by the default beam rule, reciprocal and closed. */
+/* Which rows of a bed are computed, and how. NULL or zeroed: all rows by the default beam rule, reciprocal and closed.
+ *
+ * At most one of beam, surface and cast is set. If the beam rule has a tolerance, there are two cases. Rows that are
+ * averaged all have the same number of directions, that of the worst row. Raw rows each have the number they need.
+ *
+ * Rows of walls are computed if `bodies` is 1, all rows are wanted, and the rule has no cutoff. All rows are then
+ * closed together, which changes what spheres exchange within its error. */
 typedef struct fibrad_bed_options {
-    const fibrad_beam_rule *beam;       /* at most one of these three rules is set. Rows that are averaged all get */
-    const fibrad_surface_rule *surface; /* one number of directions, as many as beam->tolerance takes for the worst */
-    const fibrad_cast_rule *cast;       /* of them; raw rows get what each needs */
-    const unsigned char *wanted;        /* [spheres] not 0: this row; sets raw. NULL: all rows */
+    const fibrad_beam_rule *beam;       /* NULL: the defaults, unless surface or cast is set */
+    const fibrad_surface_rule *surface; /* NULL: not by the surface method */
+    const fibrad_cast_rule *cast;       /* NULL: not by rays */
+    const unsigned char *wanted;        /* [spheres], not 0: this row is wanted, and raw is 1; NULL: all rows */
     int raw;                            /* 1: leave the rows as the method gave them */
-    double drop;                        /* as in fibrad_matrix_rule */
-    int bodies; /* 1: rows of bodies, too, unless there is a cutoff or only some rows are wanted; what spheres exchange
-                   then changes within its error, as all is closed together */
-    const char *scratch; /* a folder: rows and matrix are kept in files there, without names, instead of in memory: the
-                            same to the bit, at the disk's speed where they are more than memory; 24 to 36 bytes an
-                            entry of the raw rows, and 24 of the matrix. NULL: in memory */
+    double drop;                        /* 0 to 1, as in fibrad_matrix_rule */
+    int bodies;                         /* 1: rows of walls, too */
+    const char *scratch;                /* folder for unnamed files instead of memory, same bits; NULL: memory */
 } fibrad_bed_options;
 
-/* A matrix, and what else is known of it. */
+/* A matrix of factors, and facts of its computation. */
 typedef struct fibrad_bed_factors {
-    fibrad_factors matrix; /* rows not wanted are empty */
-    fibrad_scene_facts facts;
-    const double *body_area;  /* [bodies] [L^2] as fibrad_scene_body_area */
-    int threads;              /* used */
-    uint32_t directions;      /* the most that a row took; 0: a method without */
-    uint64_t fallbacks, rays; /* beams: windows left to the robust method; exchange: rays traced */
-    double seconds;           /* of computing, checks left out */
-    double closure_error;     /* largest |f + body + escaped + beyond - 1| of the raw rows */
+    fibrad_factors matrix;    /* a row that is not wanted is empty */
+    fibrad_scene_facts facts; /* of the scene */
+    const double *body_area;  /* L^2, [bodies], as fibrad_scene_body_area */
+    int threads;              /* threads used */
+    uint32_t directions;      /* most directions of a row; 0: a method without directions */
+    uint64_t fallbacks;       /* windows that the robust method for areas resolved */
+    uint64_t rays;            /* exchange: rays traced */
+    double seconds;           /* s, of computing, without the two checks below */
+    double closure_error;     /* largest |sum - 1| of a raw row */
     double reciprocity_error; /* as fibrad_matrix_reciprocity; NaN if rows are missing */
 } fibrad_bed_factors;
 
-/* View factors of a whole bed. config: NULL: open on all sides, no bodies. Free the result with fibrad_bed_free.
- * Errors: as fibrad_scene_init, the row functions and fibrad_matrix_init. Cost: a row's times rows over threads; up to
- * 48 bytes an entry. */
+/* View factors of a whole bed.
+ *   Input    config: NULL: open on all sides, no walls
+ *            options, run: NULL for all defaults
+ *   Output   factors: free with fibrad_bed_free
+ *   Errors   as fibrad_scene_init, fibrad_beam_row (_surface_row, _cast_row) and fibrad_matrix_init; _CANCELLED
+ *   Cost     that of all rows over the threads; memory up to 48 bytes per entry
+ *   Source   docs/methods.md */
 int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                         const fibrad_bed_options *options, fibrad_run *run, fibrad_bed_factors **factors);
 
-/* Exchange factors of a whole bed; rule->tolerance is meant for the rows as they are in the end. The rules in options
- * are to be NULL. Otherwise as fibrad_view_factors. */
+/* Exchange factors of a whole bed. rule->tolerance is the error allowed in the final rows.
+ *   Input    config: NULL: open on all sides, no walls
+ *            rule: needed
+ *            options: beam, surface and cast must be NULL. NULL for all defaults
+ *            run: NULL for all defaults
+ *   Output   factors: free with fibrad_bed_free
+ *   Errors   as fibrad_scene_init, fibrad_exchange_row and fibrad_matrix_init; _CANCELLED
+ *   Cost     as fibrad_view_factors
+ *   Source   docs/heat.md */
 int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                             const fibrad_exchange_rule *rule, const fibrad_bed_options *options, fibrad_run *run,
                             fibrad_bed_factors **factors);
 
-/* Frees factors. NULL: nothing. No errors. */
+/* Frees factors. NULL is allowed.
+ *   Errors   none */
 void fibrad_bed_free(fibrad_bed_factors *factors);
 
-/* fibrad_triangle_views of all triangles of a bed, so many rays from each side; view [2 triangles]: fronts and backs in
- * turn. Errors: as fibrad_scene_init, fibrad_triangle_views. */
+/* What all triangles of a bed see: fibrad_triangle_views of each.
+ *   Input    rays: from each side, 1 to 2^30
+ *   Output   view[2 triangles]: element 2 t is the front and 2 t + 1 the back of the caller's triangle t
+ *   Errors   as fibrad_scene_init and fibrad_triangle_views; _CANCELLED */
 int fibrad_side_views(const fibrad_scene_config *config, const fibrad_spheres *spheres, uint32_t rays, fibrad_run *run,
                       fibrad_side_view *view);
 
-/* fibrad_exchange_displacement of the spheres wanted ([spheres] not 0; NULL: all) into displacement [spheres], whose
- * other elements are left as they are; facts, unless NULL, of the scene. Errors: as fibrad_exchange_factors; then some
- * elements may have been written. */
+/* How far the emission of spheres is carried: fibrad_exchange_displacement of each.
+ *   Input    rule: needed
+ *            wanted[spheres]: not 0: this sphere is wanted; NULL: all spheres
+ *   Output   displacement[spheres]: elements that are not wanted stay as they are
+ *            facts: of the scene; may be NULL
+ *   Errors   as fibrad_scene_init and fibrad_exchange_displacement; _CANCELLED. After an error some elements may be
+ *            written. */
 int fibrad_displacements(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                          const fibrad_exchange_rule *rule, const unsigned char *wanted, fibrad_run *run,
                          fibrad_displacement *displacement, fibrad_scene_facts *facts);
 
 /* ---- heat ------------------------------------------------------------------------------------------------------ */
 
-/* Radiation in a bed, step after step. */
+/* A heat problem (fibrad_heat.h) of a bed that may move. */
 typedef struct fibrad_radiation fibrad_radiation;
 
-/* Makes the problem for a bed and traces its beams. heat_config: NULL: defaults; its parts are always 16. run: NULL:
- * defaults; threads, progress and context are kept for later calls. Free it with fibrad_radiation_free. Errors: as
- * fibrad_scene_init, fibrad_heat_init, fibrad_heat_trace. Cost: that of the traces, over threads. */
+/* Makes the heat problem of a bed and traces its beams.
+ *   Input    config: NULL: open on all sides, no walls
+ *            heat_config: NULL for all defaults; `parts` is always 16
+ *            run: NULL for all defaults; threads, progress and context are kept for later calls
+ *   Output   radiation: free with fibrad_radiation_free
+ *   Errors   as fibrad_scene_init, fibrad_heat_init and fibrad_heat_trace; _CANCELLED
+ *   Cost     that of the traces over the threads
+ *   Source   docs/heat.md */
 int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config *config, const fibrad_spheres *spheres,
                          const fibrad_heat_config *heat_config, fibrad_run *run);
 
-/* Goes on to the same spheres and bodies at other places, and traces the beams anew; the next solution starts from the
- * last one. Errors: as fibrad_radiation_new; _ARGUMENT: another number of spheres or other kinds of bodies. After an
- * error _solve is for the last bed that was traced, or FIBRAD_E_STATE if this call has begun to trace. */
+/* Goes on with the same spheres and walls at other positions, and traces the beams again. The next solution begins with
+ * the last one.
+ *   Input    config, spheres: the same number of spheres, otherwise as for fibrad_heat_move
+ *   Errors   as fibrad_radiation_new. If the error is in the bed, the last bed stays. If the error is in a trace,
+ *            fibrad_radiation_solve returns FIBRAD_E_STATE until a move succeeds. */
 int fibrad_radiation_move(fibrad_radiation *radiation, const fibrad_scene_config *config,
                           const fibrad_spheres *spheres);
 
-/* Net powers for these sources into the caller's result (power [spheres], body_power [bodies]). Errors: as
- * fibrad_heat_begin, fibrad_heat_read. Cost: its sweeps, over threads. */
+/* Net powers and temperatures for these sources.
+ *   Input    sources: begin with fibrad_heat_sources_init
+ *   Output   result: the caller's arrays, as for fibrad_heat_read
+ *   Errors   as fibrad_heat_check, _begin, _step and _read; _CANCELLED
+ *   Cost     that of the sweeps over the threads */
 int fibrad_radiation_solve(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_heat_result *result);
 
-/* What the last _solve says of the sides of triangles, as fibrad_heat_read_sides; [2 triangles] each, or NULL. Errors:
- * _ARGUMENT; _STATE: no solution of this bed. */
+/* The last solution on the sides of triangles: fibrad_heat_read_sides.
+ *   Output   flux[2 triangles], temperature[2 triangles]: may be NULL
+ *   Errors   _ARGUMENT
+ *            _STATE: there is no solution of this bed */
 int fibrad_radiation_sides(const fibrad_radiation *radiation, double *flux, double *temperature);
 
-/* Emissivities that follow temperatures: fills emissivity [spheres] and body_emissivity [bodies] for these temperatures
- * (NaN: not known yet, of insulated bodies, or of emissivity 0: leave them); called by the thread that made the call.
- */
+/* A function of the caller: emissivities that depend on temperatures. The thread that made the call calls it. Where a
+ * temperature is NaN, the function leaves the emissivity as it is. A temperature is NaN if it is not known yet, if the
+ * wall is insulated, or if the emissivity is 0.
+ *   Input    temperature[spheres], body_temperature[bodies]: [K]
+ *   Output   emissivity[spheres], body_emissivity[bodies]: 0 to 1 */
 typedef void fibrad_emissivity_law(void *context, const double *temperature, const double *body_temperature,
                                    double *emissivity, double *body_emissivity);
 
-/* As fibrad_radiation_solve with emissivities of a law, in the arrays [spheres] and [bodies] of the caller: in, those
- * to begin with where temperatures are unknown; out, those of the solution. Solves again until no emissivity changes by
- * more than 1e-5. result->temperature and, with bodies, ->body_temperature are to be set; emissivities of the sources
- * are not used. Errors: as fibrad_radiation_solve; _UNSOLVABLE also if 100 solutions do not suffice. */
+/* Net powers and temperatures with emissivities that follow a law. The call solves again until the emissivities change
+ * by at most 1e-5.
+ *   Input    sources: emissivity and body_emissivity are not used
+ *            context: handed to law
+ *            emissivity[spheres], body_emissivity[bodies]: to begin with, used where temperatures are unknown
+ *   Output   emissivity, body_emissivity: those of the solution
+ *            result: temperature, and body_temperature with walls, must be set
+ *   Errors   as fibrad_radiation_solve
+ *            _UNSOLVABLE: also if 100 solutions do not suffice */
 int fibrad_radiation_settle(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
                             void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result);
 
-/* Facts of the scene in use, and the spheres concerned by the last error, as in fibrad_run. Outputs may be NULL;
- * radiation NULL: nothing. No errors. */
+/* Facts of the scene in use, and where the last error was. Either output may be NULL. NULL for radiation is allowed.
+ *   Errors   none */
 void fibrad_radiation_describe(const fibrad_radiation *radiation, fibrad_scene_facts *facts, fibrad_fault *fault);
 
-/* Frees it. NULL: nothing. No errors. */
+/* Frees the problem. NULL is allowed.
+ *   Errors   none */
 void fibrad_radiation_free(fibrad_radiation *radiation);
 
 /* ---- time ------------------------------------------------------------------------------------------------------ */
 
-/* A bed whose temperatures change with time: C dT/dt = power + what radiation brings. Source: docs/heat.md. */
+/* A bed whose temperatures change with time: C dT/dt = power + net radiative power. C is the heat capacity of a sphere
+ * [J/K]. A sphere has one temperature. */
 typedef struct fibrad_transient fibrad_transient;
 
+/* How net radiative powers are found.
+ *
+ *              CORRECTED                           PATCHES             FACTORS
+ *   by         exchange factors, corrected by      patches, for each   exchange factors, made by the first
+ *              patches now and then                step                step after a move
+ *   powers     those of patches                    those of patches    2 to 5 % off
+ *   good for   many steps with the same positions  few steps per move  many steps, little memory
+ *   walls      given temperatures                  any                 given temperatures; they gain from spheres only
+ *              */
 typedef enum fibrad_transient_method {
-    FIBRAD_TRANSIENT_CORRECTED = 0, /* exchange factors, made by the first step in a place, and what patches add */
-    FIBRAD_TRANSIENT_PATCHES = 1,   /* patches for each stage: a step or two in a place, walls of unknown temperature */
-    FIBRAD_TRANSIENT_FACTORS = 2    /* exchange factors alone: without beams, powers to some percent */
+    FIBRAD_TRANSIENT_CORRECTED = 0,
+    FIBRAD_TRANSIENT_PATCHES = 1,
+    FIBRAD_TRANSIENT_FACTORS = 2
 } fibrad_transient_method;
 
-/* Zeroed: corrected factors, whose rows have errors of 0.03; alone 0.01. */
+/* How a bed is followed in time. Zeroed: CORRECTED. */
 typedef struct fibrad_transient_config {
     int method;                    /* a fibrad_transient_method */
-    fibrad_exchange_rule exchange; /* of factors; its emissivities are not used: those of the sources are */
-    fibrad_heat_config heat;       /* of patches, as fibrad_radiation_new has it */
+    fibrad_exchange_rule exchange; /* of exchange factors; emissivities are those of the sources */
+    fibrad_heat_config heat;       /* of patches, as for fibrad_radiation_new; points 0: 128 if CORRECTED */
 } fibrad_transient_config;
 
-/* Makes it for a bed, which is copied, triangles included. config: NULL: defaults; run as in fibrad_radiation_new. Free
- * it with fibrad_transient_free. Errors: _ARGUMENT; as fibrad_scene_init; of patches as fibrad_radiation_new. */
+/* Makes a bed that changes with time. The bed is copied, its triangles included. If exchange.directions, paths and
+ * tolerance are all 0, tolerance is 0.03, or 0.01 by FACTORS.
+ *   Input    scene: NULL: open on all sides, no walls
+ *            config: NULL for all defaults
+ *            run: as for fibrad_radiation_new
+ *   Output   transient: free with fibrad_transient_free
+ *   Errors   as fibrad_scene_init; except by FACTORS as fibrad_radiation_new
+ *   Source   docs/heat.md, In time */
 int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres,
                          const fibrad_transient_config *config, fibrad_run *run);
 
-/* Goes on to as many spheres and the same kinds of bodies at other places. Errors: as fibrad_transient_new; _ARGUMENT:
- * others. After an error the bed is that of before, or, if tracing its beams has failed, FIBRAD_E_STATE. */
+/* Goes on with the same spheres and walls at other positions.
+ *   Input    scene, spheres: as for fibrad_radiation_move
+ *   Errors   as fibrad_transient_new. If the error is in the bed, the last bed stays. If the error is in a trace, later
+ *            calls return FIBRAD_E_STATE until a move succeeds. */
 int fibrad_transient_move(fibrad_transient *transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres);
 
-/* Powers at given temperatures of spheres, by patches if there are beams; result as of fibrad_radiation_solve. Errors:
- * as fibrad_transient_advance. */
+/* Net radiative powers at given temperatures of spheres, by patches. FACTORS uses exchange factors instead.
+ *   Input    sources: temperature has no NaN; power is not used
+ *   Output   result: as for fibrad_radiation_solve. FACTORS writes power, body_power, surroundings_power, temperature
+ *            and sweeps only.
+ *   Errors   as fibrad_transient_advance */
 int fibrad_transient_powers(fibrad_transient *transient, const fibrad_heat_sources *sources,
                             fibrad_heat_result *result);
 
-/* What the last _powers says of the sides of triangles, as fibrad_radiation_sides. Errors: as that; _STATE also by
- * factors alone. */
+/* The last result of fibrad_transient_powers on the sides of triangles.
+ *   Output   as fibrad_radiation_sides
+ *   Errors   as fibrad_radiation_sides
+ *            _STATE: also by FACTORS */
 int fibrad_transient_sides(const fibrad_transient *transient, double *flux, double *temperature);
 
-/* Called after each step with the time since the beginning of the span and the temperatures [spheres] there. */
+/* A function of the caller that is called after each step.
+ *   Input    context: fibrad_span.context
+ *            time: [s] since the beginning of the span
+ *            temperature[spheres]: [K] at that time */
 typedef void fibrad_observe(void *context, double time, const double *temperature);
 
-/* A span of time, in seconds if powers are in watts and capacities in J/K. Zeroed but for the first three. */
+/* A span of time. Times are in seconds if powers are in watts and capacities in J/K. Set temperature, capacity and
+ * duration. The other fields may be zeroed. */
 typedef struct fibrad_span {
-    double *temperature;            /* [spheres] > 0; in: at the beginning; out: at the end */
-    const double *capacity;         /* [spheres] > 0, heat that warms a sphere by 1 K */
-    double duration;                /* > 0 */
-    const double *body_temperature; /* [bodies] at the end, linear in between; NULL: as at the beginning */
-    const double *surroundings;     /* likewise, one number */
-    double step;                    /* > 0: of this length at most, all alike; 0: automatic, first as proposed last */
-    double tolerance;               /* of automatic steps, of a temperature, relative; 0: 1e-4 */
-    double *power, *body_power;     /* [spheres], [bodies] out: net radiative powers at the end; may be NULL */
-    double surroundings_power;      /* out: likewise */
-    double *body_energy;            /* [bodies] out: what radiation has brought; may be NULL */
-    double surroundings_energy;     /* out: likewise */
+    double *temperature;            /* K, [spheres], above 0 to 1e20; in: at the beginning; out: at the end */
+    const double *capacity;         /* J/K, [spheres], above 0 to 1e300 */
+    double duration;                /* s, above 0 to 1e300 */
+    const double *body_temperature; /* K, [bodies], at the end, linear in between; NULL: constant */
+    const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
+    double step;                    /* s; all steps are equal and at most this long; 0: automatic steps */
+    double tolerance;               /* of automatic steps, relative error of a temperature, below 1; 0: 1e-4 */
+    double *power;                  /* W, [spheres], out: net radiative power at the end; may be NULL */
+    double *body_power;             /* W, [bodies], out: net radiative power at the end; may be NULL */
+    double surroundings_power;      /* W, out: net radiative power at the end */
+    double *body_energy;            /* J, [bodies], out: gained by radiation during the span; may be NULL */
+    double surroundings_energy;     /* J, out: gained by radiation during the span */
     fibrad_observe *observe;        /* NULL: none */
-    fibrad_emissivity_law *law;     /* NULL: emissivities are constant; else by patches alone: asked in each stage */
+    fibrad_emissivity_law *law;     /* asked in each stage, by PATCHES only; NULL: emissivities are constant */
     void *context;                  /* handed to observe and law */
-    double error;                   /* out: the largest estimate of a step, as `tolerance` */
-    uint64_t steps, refused;        /* out: taken; tried besides */
-    uint64_t sweeps;                /* out: over all beams, or else over all factors */
+    double error;                   /* out: largest estimated error of a step, as `tolerance` */
+    uint64_t steps;                 /* out: steps taken */
+    uint64_t refused;               /* out: steps tried and refused */
+    uint64_t sweeps;                /* out: sweeps over all beams by PATCHES, over all factors otherwise */
     uint64_t corrections;           /* out: solutions by patches that correct factors */
 } fibrad_span;
 
-/* Advances temperatures by a span: an L-stable scheme of second order, for which small spheres among large ones are no
- * limit. What spheres lose is what bodies and surroundings get, to rounding. Of sources, power, emissivities (where a
- * law leaves them), body_power, insulated and, but by factors alone, side_temperature are used and constant;
- * temperature, hold and reference are not; body_temperature and surroundings are those at the beginning. Only by
- * patches may bodies be of unknown temperature; by factors alone they gain from spheres alone. Errors: _ARGUMENT, with
- * the sphere in fault; as fibrad_exchange_factors or fibrad_radiation_solve; _UNSOLVABLE: a sphere would fall below
- * zero. Then temperatures are as before. Cost: two or three solutions a step, some milliseconds for 1e4 spheres by
- * factors. */
+/* Advances the temperatures of spheres by a span of time. The scheme is implicit (SDIRK), of second order and L-stable:
+ * small spheres among large ones do not limit the step. What spheres lose is what walls and surroundings gain, to
+ * rounding. A span begins with the automatic step that the last span has proposed.
+ *
+ *   field of sources                 use
+ *   temperature, hold, reference     not used
+ *   power                            constant
+ *   emissivity, body_emissivity      constant, or where a law begins
+ *   body_temperature, surroundings   at the beginning of the span; NaN only by PATCHES
+ *   body_power, insulated            constant; by PATCHES only
+ *   side_temperature                 constant; not by FACTORS
+ *   sigma, tolerance, sweeps_max     as for fibrad_radiation_solve
+ *
+ *   Input    sources: begin with fibrad_heat_sources_init
+ *   Output   span: temperature, and the fields marked "out"
+ *   Errors   _ARGUMENT: fibrad_transient_describe tells which sphere is at fault
+ *            _UNSOLVABLE: a sphere would fall below 0 K
+ *            as fibrad_exchange_factors or fibrad_radiation_solve
+ *            After an error the temperatures are as before.
+ *   Cost     two or three solutions per step; with factors some milliseconds each for 1e4 spheres
+ *   Source   R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; docs/heat.md, In time */
 int fibrad_transient_advance(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_span *span);
 
-/* As fibrad_radiation_describe, _free. */
+/* Facts of the scene, and where the last error was, as fibrad_radiation_describe.
+ *   Errors   none */
 void fibrad_transient_describe(const fibrad_transient *transient, fibrad_scene_facts *facts, fibrad_fault *fault);
+
+/* Frees the bed. NULL is allowed.
+ *   Errors   none */
 void fibrad_transient_free(fibrad_transient *transient);
 
 /* ---- kernel ---------------------------------------------------------------------------------------------------- */
 
-/* A fibrad_resize on the heap, for `fibrad_work work = {.memory.resize = fibrad_heap_resize}`; the block is to be freed
- * with free(). context: not used. Errors: NULL. */
+/* A fibrad_resize on the heap, for fibrad_work work = {.memory.resize = fibrad_heap_resize}. Free the block with
+ * free().
+ *   Input    context: not used
+ *   Errors   NULL */
 void *fibrad_heap_resize(void *context, void *block, size_t size);
 
-/* Bytes of a public structure by its name ("fibrad_row", ...), for bindings that lay them out themselves. A library of
- * the same soname has the same sizes and fields. Errors: 0: no such structure. */
+/* Bytes of a public structure, for bindings that lay out structures themselves. Libraries of the same soname have the
+ * same sizes and fields.
+ *   Input    name: "fibrad_row" for example
+ *   Errors   0: there is no such structure */
 size_t fibrad_host_sizeof(const char *name);
 
 #ifdef __cplusplus
