@@ -59,7 +59,9 @@ typedef struct fibrad_run {
  * averaged all have the same number of directions, that of the worst row. Raw rows each have the number they need.
  *
  * Rows of walls are computed if `bodies` is 1, all rows are wanted, and the rule has no cutoff. All rows are then
- * closed together, which changes what spheres exchange within its error. */
+ * closed together, which changes what spheres exchange within its error.
+ *
+ * Files in the scratch folder take 24 to 36 bytes per entry of the raw rows and 24 per entry of the matrix. */
 typedef struct fibrad_bed_options {
     const fibrad_beam_rule *beam;       /* NULL: the defaults, unless surface or cast is set */
     const fibrad_surface_rule *surface; /* NULL: not by the surface method */
@@ -149,7 +151,7 @@ int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config
 /* Goes on with the same spheres and walls at other positions, and traces the beams again. The next solution begins with
  * the last one.
  *   Input    config, spheres: the same number of spheres, otherwise as for fibrad_heat_move
- *   Errors   as fibrad_radiation_new. If the error is in the bed, the last bed stays. If the error is in a trace,
+ *   Errors   as fibrad_radiation_new. A bed that is refused leaves the last bed in use. After an error in a trace,
  *            fibrad_radiation_solve returns FIBRAD_E_STATE until a move succeeds. */
 int fibrad_radiation_move(fibrad_radiation *radiation, const fibrad_scene_config *config,
                           const fibrad_spheres *spheres);
@@ -203,13 +205,14 @@ typedef struct fibrad_transient fibrad_transient;
 
 /* How net radiative powers are found.
  *
- *              CORRECTED                           PATCHES             FACTORS
- *   by         exchange factors, corrected by      patches, for each   exchange factors, made by the first
- *              patches now and then                step                step after a move
- *   powers     those of patches                    those of patches    2 to 5 % off
- *   good for   many steps with the same positions  few steps per move  many steps, little memory
- *   walls      given temperatures                  any                 given temperatures; they gain from spheres only
- *              */
+ *   CORRECTED  by exchange factors, which patches correct from time to time. Powers are those of patches. For many
+ *              steps at the same positions. The temperatures of walls are given.
+ *   PATCHES    by patches in every stage of a step. For a step or two at the same positions, and for walls whose
+ *              temperatures are found.
+ *   FACTORS    by exchange factors alone. Powers are 2 to 5 % off. Takes little memory. The temperatures of walls are
+ *              given, and walls gain from spheres only.
+ *
+ * Exchange factors are computed by the first step after a move. */
 typedef enum fibrad_transient_method {
     FIBRAD_TRANSIENT_CORRECTED = 0,
     FIBRAD_TRANSIENT_PATCHES = 1,
@@ -236,8 +239,8 @@ int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config
 
 /* Goes on with the same spheres and walls at other positions.
  *   Input    scene, spheres: as for fibrad_radiation_move
- *   Errors   as fibrad_transient_new. If the error is in the bed, the last bed stays. If the error is in a trace, later
- *            calls return FIBRAD_E_STATE until a move succeeds. */
+ *   Errors   as fibrad_transient_new. A bed that is refused leaves the last bed in use. After an error in a trace,
+ *            later calls return FIBRAD_E_STATE until a move succeeds. */
 int fibrad_transient_move(fibrad_transient *transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres);
 
 /* Net radiative powers at given temperatures of spheres, by patches. FACTORS uses exchange factors instead.
