@@ -1,23 +1,32 @@
 /* fibrad_couple.h - radiation in simulations whose particles are divided over MPI ranks.
  *
- * Index     link     values of particles that other ranks own   fibrad_link_new, _forward, _reverse, _free
- *           insitu   rows and powers while particles move       fibrad_insitu_new, _rows, _powers, _write, _message,
- *                                                               _facts, _free
+ * Index
+ *   link    values of particles that other ranks own  fibrad_link_new, _forward, _reverse, _free
+ *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _powers, _write, _message, _facts_get,
+ *                                                     _free
  *
- * Use       fibrad_insitu_new once; fibrad_insitu_rows every so many steps, with the particles each rank owns then;
- *           fibrad_insitu_powers whenever temperatures have changed, with the particles each rank owns by then.
- *           host/couple/example.c is a complete program.
- * Ids       Particles are known by their ids alone: 64 bits, each id on one rank. Ranks may have none. The order of
- *           particles, which rank has which, and ghosts do not matter; ranks find what they need of each other.
- * Exchange  Rows are those of exchange factors D (of view factors where all emissivities are 1). Each rank computes the
- *           rows of the particles it owns, which stay there until the next rows, wherever the particles go. Half of
- *           each entry between particles carries heat from i to j, so that no heat is lost, whatever the rows' errors;
- *           particles of equal temperatures exchange nothing. docs/coupling.md has the scheme.
- * Bits      Rows do not depend on the number of ranks, on who owns what, or on threads: not a bit.
- * Units     One length unit L; powers in the unit of sigma T^4 L^2; temperatures absolute.
- * Errors    All functions but _free, _message, _facts are collective over the communicator: every rank calls them, and
- *           all return the same fibrad_status. After an error fibrad_insitu_message has a sentence, the same on all
- *           ranks, that names the particles by id; the object is as it was before the call.
+ * Use         1. fibrad_insitu_new once.
+ *             2. fibrad_insitu_rows every so many steps, with the particles that each rank owns at that time.
+ *             3. fibrad_insitu_powers when temperatures have changed, with the particles that each rank owns by then.
+ *             host/couple/example.c is a complete program.
+ * Particles   A particle is a sphere. It is known by its id of 64 bits alone. One rank owns it. A rank may own none.
+ * The
+ *             order of the particles does not matter. Ghosts are not needed: the ranks send each other what they need.
+ * Rows        A row holds exchange factors, or view factors if all emissivities are 1. Each rank computes the rows of
+ *             the particles that it owns. The rows stay on this rank until new rows are made, wherever the particles
+ *             go.
+ * Powers      Each entry between two particles carries half of what they exchange. The other half comes from the
+ *             partner's row. So no heat is lost, whatever the error of the rows. Nothing flows between particles of
+ *             equal temperature.
+ * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
+ * Collective  All functions are collective over the communicator, except fibrad_link_free, fibrad_insitu_message and
+ *             fibrad_insitu_facts_get. Every rank calls them, and all ranks get the same status.
+ * Errors      After an error, fibrad_insitu_message has a sentence. It is the same on all ranks and names particles by
+ *             id. The object is as it was before the call.
+ * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2. Words and the layout of
+ * comments
+ *             are as in fibrad.h.
+ * Source      docs/coupling.md
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_H
@@ -32,104 +41,149 @@ extern "C" {
 #endif
 
 /* ---- link ------------------------------------------------------------------------------------------------------ */
-/* Values of particles, by id: each rank owns some, and uses some that others own, or itself. */
+/* Connects two kinds of values of particles: those that a rank owns, and those that a rank uses. */
 typedef struct fibrad_link fibrad_link;
 
-/* Connects id[own] that this rank owns, each id owned once, with id[own .. all) that it uses, in any order and as often
- * as it likes. Errors: FIBRAD_E_ARGUMENT: an id is owned twice or used and not owned (*culprit, unless NULL: that id,
- * the least one on all ranks); _MEMORY. Cost: four exchanges of all ranks, of one or two words per id. */
+/* Makes a link.
+ *   Input    id[all]: first the `own` ids that this rank owns, then the ids that it uses. Each id is owned once. It may
+ *            be used in any order and any number of times, by its owner, too.
+ *   Output   link: free with fibrad_link_free
+ *            culprit: the least id at fault on all ranks; may be NULL
+ *   Errors   _ARGUMENT: an id is owned twice, or used and not owned
+ *            _MEMORY
+ *   Cost     four exchanges between all ranks, of one or two words per id */
 int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_t own, size_t all, uint64_t *culprit);
 
-/* value[all][width], ranks in contact alone exchange messages. _forward: sets the values used to those of their owners.
- * _reverse: adds the values used to those of their owners, in an order that depends on the link alone, and sets the
- * values used to 0. width >= 1, the same on all ranks. Errors: none but those of MPI. Cost: `width` messages to and
- * from each rank in contact, of 8 bytes per particle that both know. */
+/* Copies the owners' values to the values that are used. Only ranks that share particles exchange messages.
+ *   Input    value[all][width]: in the order of the ids; the first `own` are read
+ *            width: at least 1, the same on all ranks
+ *   Output   value[all][width]: the others are set
+ *   Errors   none but those of MPI
+ *   Cost     `width` messages to and from each rank in contact, 8 bytes for each particle that both ranks know */
 void fibrad_link_forward(fibrad_link *link, double *value, int width);
+
+/* Adds the values that are used to the owners' values, and sets the values that are used to 0. The order of the sums
+ * depends on the link alone.
+ *   Input    value[all][width], width: as for fibrad_link_forward
+ *   Output   value[all][width]
+ *   Errors   none but those of MPI
+ *   Cost     as fibrad_link_forward */
 void fibrad_link_reverse(fibrad_link *link, double *value, int width);
-void fibrad_link_free(fibrad_link *link); /* NULL: nothing. Not collective */
+
+/* Frees a link. NULL is allowed. Not collective.
+ *   Errors   none */
+void fibrad_link_free(fibrad_link *link);
 
 /* ---- insitu ---------------------------------------------------------------------------------------------------- */
+/* The rows of a bed, and what is needed to make them. */
 typedef struct fibrad_insitu fibrad_insitu;
 
-/* How rows are made; the same on all ranks. Zeroed: all defaults. */
+/* How rows are made. The same on all ranks. Zeroed: all defaults.
+ *
+ * The default cutoff is the largest diameter plus 8 mean radii, or plus 10 mean radii if an emissivity is below 0.4. */
 typedef struct fibrad_insitu_config {
-    double cutoff;       /* [L] from a particle's centre, beyond which it sees nothing; 0: 8 mean radii (10 if some
-                            emissivity is below 0.4) + the largest diameter, which is the least */
-    uint32_t directions; /* of the first leg, as in fibrad_exchange_rule; 0: its default */
-    uint32_t paths;      /* likewise, for reflections; 0: its default */
-    double tolerance;    /* of each row, likewise; 0: none */
-    uint64_t seed;       /* paths depend on it, on the step and on the particle's id */
-    int threads;         /* per rank; 0: 1 */
+    double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
+    uint32_t directions; /* as in fibrad_exchange_rule; 0: its default */
+    uint32_t paths;      /* as in fibrad_exchange_rule; 0: its default */
+    double tolerance;    /* as in fibrad_exchange_rule; 0: none */
+    uint64_t seed;       /* of random numbers, together with the step and the id of the particle */
+    int threads;         /* of each rank, 1 to 1024; 0: 1 */
 } fibrad_insitu_config;
 
-/* The bed when rows are made. Box, periodic and walls are the same on all ranks. */
+/* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks. */
 typedef struct fibrad_insitu_bed {
-    double low[3], high[3];        /* [L] of the box; matters along periodic axes alone */
-    int periodic[3];               /* 1: the bed repeats along the axis with period high - low */
-    const fibrad_body *body;       /* [bodies] walls, as in fibrad_scene_config: every centre inside of them */
-    const double *body_emissivity; /* [bodies] [0, 1] */
-    uint32_t bodies;
-    const fibrad_plane *opening; /* [openings] as in fibrad_scene_config; at NaN: where the particles end */
-    uint32_t openings;           /* [0, 6] */
-    const struct fibrad_triangles *triangles; /* fibrad_mesh.h: all of bodies that are meshes, the same on all ranks;
-                                                 on periodic axes they repeat; NULL: none */
-    size_t n;                                 /* particles that this rank owns */
+    double low[3], high[3];                   /* L, the box, used along periodic axes only */
+    int periodic[3];                          /* 1: the bed repeats along the axis with the period high - low */
+    const fibrad_body *body;                  /* [bodies], walls; every centre lies inside planes and cylinder */
+    const double *body_emissivity;            /* [bodies], 0 to 1 */
+    uint32_t bodies;                          /* number of walls, 0 to FIBRAD_BODIES_MAX */
+    const fibrad_plane *opening;              /* [openings]; `at` NaN: where the particles end */
+    uint32_t openings;                        /* 0 to 6 */
+    const struct fibrad_triangles *triangles; /* of all meshes, repeated along periodic axes; NULL: none */
+    size_t n;                                 /* number of particles that this rank owns */
     const uint64_t *id;                       /* [n] */
-    const double *x;                          /* [n][3] [L] */
-    const double *radius;                     /* [n] [L] */
-    const double *emissivity;                 /* [n] [0, 1]; 0 reflects all */
+    const double *x;                          /* L, [n][3], centres */
+    const double *radius;                     /* L, [n] */
+    const double *emissivity;                 /* [n], 0 to 1; 0 reflects everything */
 } fibrad_insitu_bed;
 
-/* What radiates when powers are asked for. */
+/* Temperatures for which powers are computed. All ranks together have the particles of the rows. */
 typedef struct fibrad_insitu_state {
-    double sigma;                   /* 0: FIBRAD_STEFAN_BOLTZMANN */
-    double surroundings;            /* temperature of what is seen where there is neither particle nor wall */
-    const double *body_temperature; /* [bodies of the rows] */
-    size_t n;                       /* particles that this rank owns now: on all ranks together those of the rows */
+    double sigma;                   /* of E = sigma T^4, at most 1e30; 0: FIBRAD_STEFAN_BOLTZMANN */
+    double surroundings;            /* K, 0 to 1e20 */
+    const double *body_temperature; /* K, [bodies of the rows], 0 to 1e20 */
+    size_t n;                       /* number of particles that this rank owns now */
     const uint64_t *id;             /* [n] */
-    const double *temperature;      /* [n] > 0 */
+    const double *temperature;      /* K, [n], above 0 to 1e20 */
 } fibrad_insitu_state;
 
-/* Sums over all ranks, the same on all; powers > 0 where heat is gained. They add up to 0, to rounding. */
+/* Net powers summed over all ranks, the same on all ranks. A power is above 0 where heat is gained. All of them add up
+ * to 0, to rounding. */
 typedef struct fibrad_insitu_totals {
-    double particles, surroundings;
-    double body[FIBRAD_BODIES_MAX]; /* [bodies of the rows] */
+    double particles;               /* sigma K^4 L^2 */
+    double surroundings;            /* sigma K^4 L^2 */
+    double body[FIBRAD_BODIES_MAX]; /* sigma K^4 L^2, [bodies of the rows] */
 } fibrad_insitu_totals;
 
-/* What the last rows were, over all ranks. */
+/* Facts of the last rows, of all ranks together except halo and bytes. */
 typedef struct fibrad_insitu_facts {
-    uint64_t particles, entries;
-    double cutoff;         /* [L] in use */
-    double beyond;         /* mean fraction of what particles emit that was cut off; given back to the rows */
-    double error;          /* root mean square of the rows' estimated errors */
-    double seconds_rows;   /* of the slowest rank, in all calls of fibrad_insitu_rows so far */
-    double seconds_powers; /* likewise, of fibrad_insitu_powers */
-    uint64_t step;         /* of the rows */
-    size_t halo;           /* particles of others that this rank was sent */
-    size_t bytes;          /* memory of this rank */
+    uint64_t particles, entries; /* numbers of particles and of entries of rows */
+    double cutoff;               /* L, in use */
+    double beyond;               /* mean fraction of the emission whose target is not known; given back to the rows */
+    double error;                /* root mean square of the rows' estimated errors */
+    double seconds_rows;         /* s, of the slowest rank, in all calls of fibrad_insitu_rows so far */
+    double seconds_powers;       /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
+    uint64_t step;               /* of the rows */
+    size_t halo;                 /* particles of other ranks that this rank was sent */
+    size_t bytes;                /* bytes, memory of this rank */
 } fibrad_insitu_facts;
 
-/* Begins. comm is duplicated. config: NULL is all defaults. Errors: FIBRAD_E_ARGUMENT, _MEMORY. */
+/* Begins. The communicator is duplicated.
+ *   Input    config: NULL for all defaults
+ *   Output   insitu: free with fibrad_insitu_free; NULL after an error
+ *   Errors   _ARGUMENT, _MEMORY */
 int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu_config *config);
 
-/* Makes all rows anew. Errors: FIBRAD_E_ARGUMENT (a value out of its range, an id twice, a centre beyond a wall),
- * _GEOMETRY (a centre inside another particle, a particle beyond an opening), _ENDLESS, _BACK (a side of a triangle is
- * seen that is no body's), _MEMORY. */
+/* Makes all rows again.
+ *   Input    bed: not needed after the call
+ *            step: any number, seeds the random numbers
+ *   Errors   _ARGUMENT: a value is out of its range, an id is there twice, a centre lies beyond a wall, or the cutoff
+ *            is less than the largest diameter or more than 100 periods
+ *            _GEOMETRY: a centre lies inside another particle, or a particle reaches beyond an opening
+ *            _ENDLESS: walls, as for fibrad_scene_init
+ *            _BACK: a side of a triangle is seen that belongs to no wall
+ *            _MEMORY
+ *   Cost     that of fibrad_exchange_row for each particle */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
-/* Net radiative power of each particle this rank owns now, power[n], > 0 where heat is gained. totals may be NULL.
- * Errors: FIBRAD_E_ARGUMENT (a temperature that is not above 0 or not finite), FIBRAD_E_STATE (no rows, or other ids
- * than those of the rows). */
+/* Net radiative power of each particle that this rank owns now.
+ *   Output   power[state->n]: [sigma K^4 L^2], above 0 where heat is gained
+ *            totals: may be NULL
+ *   Errors   _ARGUMENT: a temperature or sigma is out of its range
+ *            _STATE: there are no rows, or the ids are not those of the rows
+ *            _MEMORY
+ *   Cost     2 ns per entry, and some messages */
 int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals);
 
-/* Writes the rows of each rank to the file `path`.<rank>.rows, for `fibrad join`. Errors: FIBRAD_E_STATE (no rows),
- * _ARGUMENT (a file could not be written: the message has its name; no rank leaves a file behind). */
+/* Writes the rows of each rank to the file PATH.RANK.rows, for `fibrad join`.
+ *   Input    path: PATH
+ *   Errors   _STATE: there are no rows
+ *            _ARGUMENT: a file cannot be written. The message names the file. No rank leaves a file behind. */
 int fibrad_insitu_write(fibrad_insitu *insitu, const char *path);
 
-const char *fibrad_insitu_message(const fibrad_insitu *insitu); /* never NULL; NULL insitu: "" */
+/* The sentence of the last error. Not collective.
+ *   Output   never NULL; "" if there was no error or insitu is NULL
+ *   Errors   none */
+const char *fibrad_insitu_message(const fibrad_insitu *insitu);
+
+/* Reads the facts of the last rows. Not collective. NULL is ignored.
+ *   Errors   none */
 void fibrad_insitu_facts_get(const fibrad_insitu *insitu, fibrad_insitu_facts *facts);
-void fibrad_insitu_free(fibrad_insitu *insitu); /* NULL: nothing. Collective: frees the communicator */
+
+/* Frees all, and the communicator. NULL is allowed.
+ *   Errors   none */
+void fibrad_insitu_free(fibrad_insitu *insitu);
 
 #ifdef __cplusplus
 }

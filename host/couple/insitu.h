@@ -1,4 +1,4 @@
-/* insitu.h - what a coupling is made of. SPDX-License-Identifier: MIT */
+/* insitu.h - the inside of a coupling. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_INSITU_H
 #define FIBRAD_COUPLE_INSITU_H
 
@@ -7,19 +7,23 @@
 #include "couple/fibrad_couple.h"
 #include "couple/halo.h"
 
-/* The rows of one step, which stay with the ranks that owned the particles then: their homes. */
+/* The rows of one step. The home of a particle is the rank that owned it when its row was made. The row stays there.
+ * The columns of the rows on a rank are numbered 0 to columns - 1: first the particles of which the rank is the home,
+ * then the others that its rows see. Each periodic image has a column of its own. */
 typedef struct fibrad_insitu_set {
-    fibrad_rows *rows; /* [threads] of the particles [0, own); columns [0, columns) */
-    size_t own, columns;
-    fibrad_block particle; /* fibrad_particle [own + halo] as they were then, moved into the box */
-    fibrad_block id;       /* uint64_t [columns]: own, then those of others that rows see, images one by one */
-    fibrad_block weight, emission, power; /* double [columns] A eps [L^2], sigma T^4, and what comes of it */
-    uint32_t bodies;
-    int emissive;         /* 1: exchange factors, 0: all emissivities are 1 */
-    fibrad_link *seen;    /* own particles to columns */
-    fibrad_link *present; /* particles of present owners to their homes */
-    fibrad_block now;     /* uint64_t [now_n + own] ids of present owners, then those at home */
-    size_t now_n;
+    fibrad_rows *rows;     /* [threads], of particles 0 to own - 1 */
+    size_t own, columns;   /* numbers of rows and of columns */
+    fibrad_block particle; /* fibrad_particle [own + halo], when the rows were made, moved into the box */
+    fibrad_block id;       /* uint64_t [columns] */
+    fibrad_block weight;   /* L^2, double [columns], area times emissivity */
+    fibrad_block emission; /* double [columns], sigma T^4 */
+    fibrad_block power;    /* double [columns], net power by the rows on this rank */
+    uint32_t bodies;       /* number of walls */
+    int emissive;          /* 1: exchange factors; 0: all emissivities are 1 */
+    fibrad_link *seen;     /* connects home particles with columns */
+    fibrad_link *present;  /* connects particles of present owners with home particles */
+    fibrad_block now;      /* uint64_t [now_n + own], ids of the present owner, then those at home */
+    size_t now_n;          /* number of particles of the present owner */
     fibrad_insitu_facts facts;
 } fibrad_insitu_set;
 
@@ -29,11 +33,12 @@ struct fibrad_insitu {
     fibrad_insitu_config config;
     char message[FIBRAD_MESSAGE];
     fibrad_work *work;                                 /* [threads] */
-    fibrad_insitu_set set, next;                       /* the rows there are; memory of those before, and to be */
-    int ready;                                         /* there are rows */
-    fibrad_block scene, order, emissivity, mark, sent; /* used while rows are made */
-    fibrad_block value;                                /* double, of particles of present owners, then at home */
-    double seconds_rows, seconds_powers;
+    fibrad_insitu_set set;                             /* the rows in use */
+    fibrad_insitu_set next;                            /* rows in the making, in the memory of the rows before */
+    int ready;                                         /* 1: there are rows */
+    fibrad_block scene, order, emissivity, mark, sent; /* scratch while rows are made */
+    fibrad_block value;                  /* double, of present owners' particles, then of home particles */
+    double seconds_rows, seconds_powers; /* s, so far */
 };
 
 #endif
