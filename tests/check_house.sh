@@ -10,7 +10,7 @@ set -u
 words='accounts|taker|takers|doubtful|in doubt|emergence|sieve|sieves|plain sweep|gets farther|had better|books|fibrad_moved_[a-z]*'
 
 # accuracy, coupling, ... are to be written anew
-pages="README.md docs/contributing.md docs/design.md docs/notebook.md docs/recipes.md"
+pages="README.md docs/contributing.md docs/design.md docs/heat.md docs/methods_heat.md docs/notebook.md docs/recipes.md"
 
 faults=$(
     find kernel host -name '*.[ch]' | sed 's|.*/||' | sort | uniq -d | sed 's/$/: a name of two sources/'

@@ -26,7 +26,8 @@
 
 /* Concentration above which a standard error is not relied on: its square root is the relative standard error of the
  * variance. Where the variances of groups have a tail of index a < 1 it tends to 1 - a however many groups there are,
- * 1/4 for flights along channels, 1/2 for those in slabs (docs/heat.md); without such a tail, to zero. */
+ * 1/4 for flights along channels, 1/2 for those in slabs (docs/methods_heat.md section 12); without such a tail, to
+ * zero. */
 #define SETTLED 0.03
 
 /* Growth of F_E over itself from which it is told whatever the standard error: flights of 100 periods are about e^10
@@ -115,7 +116,7 @@ static double square_gaps(const struct bed *bed, int axis, struct extent *extent
 }
 
 /* A slab of width h across an axis of period P adds h^2/(P d) ln(L/h) to F_E along the other two, L being the longest
- * flight (docs/heat.md). */
+ * flight (docs/methods_heat.md section 12). */
 static int find_growth(const struct bed *bed, struct conduction *result) {
     if (bed->period[0] == 0 || bed->period[1] == 0 || bed->period[2] == 0) return STATUS_OK;
     struct extent *extents = malloc(bed->n * sizeof *extents);

@@ -112,7 +112,7 @@ static void heat_scale(const struct bed *bed, uint32_t walls, double square_metr
 }
 
 /* Where to begin with an error wanted, by default, and up to which mean emissivity patches err more than the fewest
- * directions that have half of their beams left out. Source: docs/heat.md, Directions by default. */
+ * directions that have half of their beams left out. Source: docs/heat.md, Settings. */
 enum { DIRECTIONS_BEGIN = 72, DIRECTIONS_DARK = 168, DIRECTIONS_BRIGHT = 112, PATCHES_BRIGHT = 96 };
 #define BRIGHT 0.35
 #define POINTS 64

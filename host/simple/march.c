@@ -9,7 +9,8 @@
  * T^4: a sphere gives off power + C (base - T*)/(g h) - hold (E - E*), hold = C/(g h dE/dT). Temperatures then follow
  * from the powers q as they were found: what the spheres' sum misses is shared out, so that they lose what bodies and
  * surroundings gain whatever the solution's tolerance. The difference from the embedded solution of first order, g h
- * |f(T') - f(T1)|, is kept below the tolerance; the error of second order sums up to about that. docs/heat.md. */
+ * |f(T') - f(T1)|, is kept below the tolerance; the error of second order sums up to about that. docs/methods_heat.md
+ * section 11. */
 #include <math.h>
 #include <string.h>
 

@@ -9,7 +9,7 @@
 #include "heat/problem.h"
 #include "scene/walls.h"
 
-/* Errors over what they are told from, as measured: docs/heat.md. */
+/* Errors over what they are told from, as measured: docs/methods_heat.md section 9. */
 #define PATCH_ERROR  .2 /* with PATCHES */
 #define PATCHES      96.0
 #define WALL_PATCHES .5 /* of walls over that of spheres */

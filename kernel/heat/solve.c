@@ -243,7 +243,7 @@ static void sink(fibrad_heat *heat) {
 
 /* Takes the finer powers and adds what patches without size would change. Where radiosities are smooth the error falls
  * with the area of patches, and a third of the difference from the coarser powers would be right; near contacts they
- * are not quite, and this is what settled beds ask for: docs/heat.md. */
+ * are not quite, and this is what settled beds ask for: docs/methods_heat.md section 6. */
 #define EXTRAPOLATION 0.4
 static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->power);

@@ -3,7 +3,7 @@
  *
  * What bodies and spheres exchange is known from the rows of spheres, what bodies exchange from paths, which know their
  * total besides. First the shares among bodies are brought to a total between both, by their errors; then all rows are
- * brought to 1 together, X_pq u_p u_q, bodies being rows as spheres are. docs/heat.md. */
+ * brought to 1 together, X_pq u_p u_q, bodies being rows as spheres are. docs/methods_heat.md section 4. */
 #include "base/constants.h"
 #include "matrix/matrix.h"
 
