@@ -1,19 +1,26 @@
 ! fibrad.f90 - view factors and thermal radiation of packed beds, in Fortran 2008, over libfibrad.so (fibrad_host.h).
 !
-! Index    fibrad_plane, fibrad_cylinder, fibrad_mesh        walls; fibrad_triangles those of meshes
-!          fibrad_view_factors, fibrad_exchange_factors      matrices of factors
-!          fibrad_heat: new, move, solve, settle, free       net powers, and temperatures, step after step
-!          fibrad_transient: new, move, advance, free        temperatures in time
-!          fibrad_status_text, fibrad_version, fibrad_layouts_agree
+! Index
+!   walls      fibrad_plane, fibrad_cylinder, fibrad_mesh; fibrad_triangles
+!   factors    fibrad_view_factors, fibrad_exchange_factors; fibrad_factors
+!   heat       fibrad_heat: new, move, solve, settle, free
+!   time       fibrad_transient: new, move, advance, free
+!   status     fibrad_status_text, fibrad_version, fibrad_layouts_agree
 !
-! Arguments  Centres are three arrays x, y, z, radii one, all of one length; for positions (n, 3) pass at(:, 1), at(:, 2),
-!            at(:, 3), which are not copied. Spheres, rows and columns count from 1. box has the lengths of the periodic
-!            box, 0 along open axes; without it, or without walls, all is open. triangles: those of all walls that are
-!            fibrad_mesh(), needed where there are such; they may be elsewhere at each move.
-! Units      One length unit for factors; metres, kelvins and watts for powers, which are positive where heat is gained.
-! Errors     status is 0 or one of fibrad_e_*, fault the one or two spheres concerned, 0 where there are none, or minus
-!            the triangle; after an error other results are not set. What an argument may be: fibrad.h, by the names of
-!            the C functions.
+! Arguments that many procedures have
+!   x, y, z    (n) [L] centres. For positions (n, 3) pass at(:, 1), at(:, 2), at(:, 3). They are not copied.
+!   r          (n) [L] radii
+!   status     0, or one of fibrad_e_*. After an error the other results are not set.
+!   fault      (2) the spheres at fault: one or two numbers; 0: none. A triangle at fault is minus its number.
+!   box        (3) [L] lengths of the periodic box; 0: the axis is open. Absent: all axes are open.
+!   walls      by fibrad_plane, fibrad_cylinder and fibrad_mesh. Openings have no number. Absent: none.
+!   triangles  of all walls by fibrad_mesh. Needed if there is such a wall. They may move with the bed.
+!   threads    0 or absent: OMP_NUM_THREADS, or else all processors
+!
+! Numbers      Spheres, walls, triangles, rows and columns count from 1.
+! Units        One length unit L for factors. Metres, kelvins and watts for powers.
+! Powers       A net power is above 0 where heat is gained.
+! Words        Words, ranges and errors are those of the C functions of the same name, in fibrad_host.h and fibrad.h.
 !
 ! SPDX-License-Identifier: MIT
 module fibrad
@@ -24,9 +31,9 @@ module fibrad
     public :: fibrad_status_text, fibrad_version, fibrad_layouts_agree
 
     integer, parameter, public :: fibrad_ok = 0, fibrad_e_argument = -1, fibrad_e_geometry = -6, fibrad_e_state = -8, &
-                                  fibrad_e_unsupported = -10, fibrad_e_memory = -11, &
+                                  fibrad_e_unsupported = -10, fibrad_e_memory = -11, fibrad_e_unsolvable = -13, &
                                   fibrad_e_back = -14, fibrad_e_sum = -15, fibrad_e_endless = -16
-    integer(c_int), parameter :: kind_open = -1 ! of fibrad_wall; C has openings in a list of their own
+    integer(c_int), parameter :: kind_open = -1 ! of fibrad_wall; C has a list of its own for openings
     real(c_double), parameter, public :: fibrad_stefan_boltzmann = 5.670374419e-8_c_double
 
     ! ---- structures of C, as in the headers
@@ -45,7 +52,7 @@ module fibrad
         real(c_double) :: x = 0, y = 0, radius = 0
     end type c_cylinder
 
-    ! A wall, by fibrad_plane, fibrad_cylinder or fibrad_mesh; or an open side, by fibrad_plane.
+    ! A wall, made by fibrad_plane, fibrad_cylinder or fibrad_mesh; or an opening, made by fibrad_plane.
     type, bind(C), public :: fibrad_wall
         integer(c_int) :: kind = 0
         type(c_plane) :: plane
@@ -71,16 +78,16 @@ module fibrad
         real(c_double) :: period(3) = 0
     end type c_triangles
 
-    ! Triangles of all walls that are meshes. Seen from its front a triangle's corners go counter-clockwise; a side of
-    ! no wall must not be seen.
+    ! The triangles of all walls that are meshes. Seen from its front, the corners of a triangle go counter-clockwise. A
+    ! side that belongs to no wall must not be seen.
     type, public :: fibrad_triangles
-        real(c_double), allocatable :: vertex(:, :)    ! (3, vertices)
-        integer(c_int32_t), allocatable :: corner(:, :) ! (3, triangles) vertices
-        integer(c_int32_t), allocatable :: front(:)     ! (triangles) the wall of the front, 0: none
-        integer(c_int32_t), allocatable :: back(:)      ! likewise; not allocated: none
+        real(c_double), allocatable :: vertex(:, :)    ! L, (3, vertices)
+        integer(c_int32_t), allocatable :: corner(:, :) ! (3, triangles), vertices of each triangle
+        integer(c_int32_t), allocatable :: front(:)     ! (triangles), wall of each front side; 0: none
+        integer(c_int32_t), allocatable :: back(:)      ! (triangles), wall of each back side; 0: none; or not allocated
     end type fibrad_triangles
 
-    type :: walls_of_c ! as C wants them for a call: openings apart, triangles counted from 0
+    type :: walls_of_c ! walls as C takes them: openings in a list of their own, triangles counted from 0
         type(fibrad_wall), allocatable :: wall(:)
         type(c_plane), allocatable :: opening(:)
         real(c_double), allocatable :: vertex(:, :)
@@ -198,7 +205,10 @@ module fibrad
     end type c_span
 
     abstract interface
-        ! Emissivities (n) of spheres at these temperatures [K]; NaN: not known yet, leave it.
+        ! A function of the caller: emissivities that depend on temperatures. Where a temperature is NaN, leave the
+        ! emissivity as it is.
+        !   temperature  (n) [K]
+        !   emissivity   (n) 0 to 1
         subroutine fibrad_law(temperature, emissivity)
             import :: c_double
             real(c_double), intent(in) :: temperature(:)
@@ -207,7 +217,7 @@ module fibrad
     end interface
     public :: fibrad_law
 
-    type :: law_of_spheres ! what C hands back to follow_law
+    type :: law_of_spheres ! C hands this back to follow_law
         procedure(fibrad_law), pointer, nopass :: law => null()
         integer :: n = 0
     end type law_of_spheres
@@ -342,25 +352,28 @@ module fibrad
     end interface
 
     ! ---- results
-    ! A matrix of factors in compressed rows. For each i the f of row i + wall(:, i) + escaped(i) + beyond(i) add up to 1.
+    ! A matrix of factors in compressed rows. The sum of f of row i, wall(:, i), escaped(i) and beyond(i) is 1.
     type, public :: fibrad_factors
-        integer(c_int64_t), allocatable :: start(:) ! (n + 1): row i is start(i) to start(i + 1) - 1
-        integer(c_int32_t), allocatable :: col(:)   ! (start(n + 1) - 1) the spheres that receive, ascending in a row
-        real(c_double), allocatable :: f(:)         ! (start(n + 1) - 1) factor from the sphere of the row to col
-        real(c_double), allocatable :: escaped(:)   ! (n) to the surroundings
-        real(c_double), allocatable :: beyond(:)    ! (n) beyond the cutoff
-        real(c_double), allocatable :: error(:)     ! (n) Euclidean error of each row, estimated
-        real(c_double), allocatable :: wall(:, :)   ! (walls, n)
-        real(c_double), allocatable :: wall_area(:) ! (walls)
-        ! between walls: (j, i) from wall i to wall j, NaN from those without bounds; not allocated with a cutoff
-        real(c_double), allocatable :: wall_wall(:, :)
-        real(c_double), allocatable :: wall_escaped(:) ! (walls) from walls to the surroundings
-        real(c_double), allocatable :: wall_error(:)   ! (walls) Euclidean error of these two, estimated
-        integer :: directions = 0, threads = 0
-        real(c_double) :: seconds = 0, closure_error = 0, reciprocity_error = 0
+        integer(c_int64_t), allocatable :: start(:) ! (n + 1), row i is elements start(i) to start(i + 1) - 1
+        integer(c_int32_t), allocatable :: col(:)   ! (start(n + 1) - 1), spheres that receive, ascending in a row
+        real(c_double), allocatable :: f(:)         ! (start(n + 1) - 1), factor from sphere i to sphere col
+        real(c_double), allocatable :: escaped(:)   ! (n), factor to the surroundings
+        real(c_double), allocatable :: beyond(:)    ! (n), fraction whose target is not known, beyond the cutoff
+        real(c_double), allocatable :: error(:)     ! (n), estimated error of each row: root of the sum of squares
+        real(c_double), allocatable :: wall(:, :)   ! (walls, n), factors to walls
+        real(c_double), allocatable :: wall_area(:) ! L^2, (walls)
+        ! The next three are not allocated with a cutoff. They are NaN for an endless wall.
+        real(c_double), allocatable :: wall_wall(:, :) ! (walls, walls), element (j, i) from wall i to wall j
+        real(c_double), allocatable :: wall_escaped(:) ! (walls), factors from walls to the surroundings
+        real(c_double), allocatable :: wall_error(:)   ! (walls), estimated error of wall_wall and wall_escaped
+        integer :: directions = 0 ! most directions of a row
+        integer :: threads = 0    ! threads used
+        real(c_double) :: seconds = 0           ! s, of computing
+        real(c_double) :: closure_error = 0     ! largest |sum - 1| of a raw row
+        real(c_double) :: reciprocity_error = 0 ! largest |A_i F_ij - A_j F_ji|/max(A_i, A_j)
     end type fibrad_factors
 
-    ! Radiation in a bed, step after step. Not to be copied: free gives back what it has.
+    ! The heat problem of a bed that may move. Do not copy it: `free` returns its memory.
     type, public :: fibrad_heat
         private
         type(c_ptr) :: radiation = c_null_ptr
@@ -373,7 +386,7 @@ module fibrad
         procedure, public :: free => heat_free
     end type fibrad_heat
 
-    ! A bed whose temperatures change with time. Not to be copied: free gives back what it has.
+    ! A bed whose temperatures change with time. Do not copy it: `free` returns its memory.
     integer, parameter, public :: fibrad_corrected = 0, fibrad_patches = 1, fibrad_factors_alone = 2
     type, public :: fibrad_transient
         private
@@ -388,9 +401,11 @@ module fibrad
 
 contains
 
-    ! The wall called 'xmin', 'xmax' ... 'zmax' at a place on its axis; of another name: refused by what it is passed to.
-    ! open: where a container ends and the surroundings begin, black and as hot as they are. It stands among the walls,
-    ! but is none: it is not counted, and has neither temperature nor emissivity.
+    ! A plane across an axis. The bed lies above a min plane and below a max plane.
+    !   name  'xmin', 'xmax', 'ymin', 'ymax', 'zmin' or 'zmax'. A wall of another name is refused where it is used.
+    !   at    [L] coordinate of the plane on its axis
+    !   open  .true.: an opening. The container ends there and the surroundings begin. An opening may stand among the
+    !         walls, but it has no number, no temperature and no emissivity.
     pure function fibrad_plane(name, at, open) result(wall)
         character(*), intent(in) :: name
         real(c_double), intent(in) :: at
@@ -407,7 +422,9 @@ contains
         end do
     end function fibrad_plane
 
-    ! A cylinder about the bed; x and y of its axis, which is parallel to z.
+    ! A cylinder around the bed, parallel to the z axis.
+    !   x, y    [L] position of the axis
+    !   radius  [L] above 0
     pure function fibrad_cylinder(x, y, radius) result(wall)
         real(c_double), intent(in) :: x, y, radius
         type(fibrad_wall) :: wall
@@ -415,14 +432,18 @@ contains
         wall%cylinder = c_cylinder(x, y, radius)
     end function fibrad_cylinder
 
-    ! A wall of triangles: those that name it.
+    ! A wall of triangles: those of fibrad_triangles that have its number.
     pure function fibrad_mesh() result(wall)
         type(fibrad_wall) :: wall
         wall%kind = 3
     end function fibrad_mesh
 
-    ! View factors of all spheres by beams. directions: 8 to 65536, 233 if absent; tolerance: as many as bring the
-    ! estimated error of each row down to it. raw: rows as they were computed, not averaged.
+    ! View factors of all spheres, by beams.
+    !   factors     the matrix
+    !   directions  8 to 65536; absent: 233
+    !   tolerance   the error allowed in each row; directions are added until it is met; absent: none
+    !   cutoff      [L] spheres farther away are left out; absent: none
+    !   raw         .true.: rows as they were computed, not averaged
     subroutine fibrad_view_factors(x, y, z, r, factors, status, box, walls, directions, tolerance, cutoff, raw, threads, &
                                    fault, triangles)
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
@@ -454,8 +475,16 @@ contains
         if (status == fibrad_ok) call take_factors(found, factors)
     end subroutine fibrad_view_factors
 
-    ! Exchange factors of grey diffuse spheres: what sphere i emits and sphere j absorbs, reflections included.
-    ! emissivity: (0, 1], wall_emissivity: [0, 1], needed where there are walls. directions, paths: 50, 400 if absent.
+    ! Exchange factors of grey diffuse spheres: the fraction of the emission of sphere i that sphere j absorbs, directly
+    ! or after diffuse reflections.
+    !   emissivity       (n) 0 to 1
+    !   factors          the matrix
+    !   wall_emissivity  (walls) 0 to 1, needed with walls
+    !   directions       of the first leg; absent: 50
+    !   paths            for reflections; absent: 400
+    !   tolerance        the error allowed in each row; directions and paths are added until it is met; absent: none
+    !   cutoff           [L] spheres farther away are left out; absent: none
+    !   raw              .true.: rows as they were computed, not averaged
     subroutine fibrad_exchange_factors(x, y, z, r, emissivity, factors, status, box, walls, wall_emissivity, directions, &
                                        paths, tolerance, cutoff, raw, threads, fault, triangles)
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:), emissivity(:)
@@ -490,7 +519,10 @@ contains
         if (status == fibrad_ok) call take_factors(found, factors)
     end subroutine fibrad_exchange_factors
 
-    ! Makes the problem for a bed and traces its beams. directions, points, patches: 168, 64, 96 if absent.
+    ! Makes the heat problem of a bed and traces its beams.
+    !   directions  of beams from each sphere, 8 to 65536; absent: 168
+    !   points      of each beam, 64, 128 or 256; absent: 64
+    !   patches     of each sphere, 24, 96 or 384; absent: 96
     subroutine heat_new(heat, x, y, z, r, status, box, walls, directions, points, patches, threads, fault, triangles)
         class(fibrad_heat), intent(inout) :: heat
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
@@ -517,7 +549,7 @@ contains
         heat%walls = count_walls(walls)
     end subroutine heat_new
 
-    ! Goes on to the same spheres and walls at other places; box and walls as in new.
+    ! Goes on with the same spheres and walls at other positions. The arguments are those of `new`.
     subroutine heat_move(heat, x, y, z, r, status, box, walls, fault, triangles)
         class(fibrad_heat), intent(inout) :: heat
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
@@ -537,8 +569,16 @@ contains
         if (c_associated(heat%radiation)) call tell_fault(found, size(x), fault)
     end subroutine heat_move
 
-    ! Net powers [W] of spheres, walls and surroundings at these temperatures [K]. Where there are walls their
-    ! temperatures and emissivities are needed. error: estimated, root mean square over the spheres [W].
+    ! Net powers at given temperatures.
+    !   temperature         (n) [K]
+    !   emissivity          (n) 0 to 1
+    !   surroundings        [K]
+    !   power               (n) [W] out
+    !   wall_temperature    (walls) [K], needed with walls
+    !   wall_emissivity     (walls) 0 to 1, needed with walls
+    !   wall_power          (walls) [W] out
+    !   surroundings_power  [W] out
+    !   error               [W] out: estimated error of power, root mean square over the spheres
     subroutine heat_solve(heat, temperature, emissivity, surroundings, power, status, wall_temperature, wall_emissivity, &
                           wall_power, surroundings_power, error)
         class(fibrad_heat), intent(inout) :: heat
@@ -571,9 +611,20 @@ contains
         if (present(error)) error = hypot(result%error_patches, result%error_beams)
     end subroutine heat_solve
 
-    ! Net powers [W] and temperatures [K] where some of these are unknown, NaN: such a sphere gives off its source [W]
-    ! from inside, and such a wall its wall_source. Emissivities follow the law; before: those to begin with where
-    ! temperatures are unknown. Walls that are insulated have no source.
+    ! Net powers, and temperatures where they are unknown. Emissivities of spheres follow a law.
+    !   temperature         (n) [K] in: NaN if unknown; out: all
+    !   source              (n) [W] given off from inside by a sphere of unknown temperature
+    !   law                 emissivities at temperatures
+    !   emissivity          (n) in: to begin with, where temperatures are unknown; out: those of the solution
+    !   surroundings        [K]
+    !   power               (n) [W] out
+    !   wall_temperature    (walls) [K] in: NaN if unknown; out: all; needed with walls
+    !   wall_emissivity     (walls) 0 to 1, needed with walls
+    !   wall_source         (walls) [W] given off by a wall of unknown temperature that is not insulated
+    !   insulated           (walls) .true.: the wall sends back all that arrives
+    !   wall_power          (walls) [W] out
+    !   surroundings_power  [W] out
+    !   temperature_error   (n) [K] out: estimated, 0 if the temperature was given
     subroutine heat_settle(heat, temperature, source, law, emissivity, surroundings, power, status, wall_temperature, &
                            wall_emissivity, wall_source, insulated, wall_power, surroundings_power, temperature_error)
         class(fibrad_heat), intent(inout) :: heat
@@ -628,7 +679,7 @@ contains
         if (present(surroundings_power)) surroundings_power = result%surroundings_power
     end subroutine heat_settle
 
-    ! Asks a law for emissivities; those of walls stay.
+    ! Asks the law for emissivities of spheres. Emissivities of walls stay as they are.
     subroutine follow_law(context, temperature, body_temperature, emissivity, body_emissivity) bind(C)
         type(c_ptr), value :: context, temperature, body_temperature, emissivity, body_emissivity
         type(law_of_spheres), pointer :: follows
@@ -641,8 +692,11 @@ contains
         call follows%law(kelvins, shares)
     end subroutine follow_law
 
-    ! Makes it for a bed. method: fibrad_corrected if absent, fibrad_patches or fibrad_factors_alone; tolerance: error of
-    ! the rows of exchange factors, 0.03 if absent, alone 0.01; directions, points, patches as of fibrad_heat.
+    ! Makes a bed that changes with time.
+    !   method      fibrad_corrected, fibrad_patches or fibrad_factors_alone (fibrad_transient_method in fibrad_host.h);
+    !               absent: fibrad_corrected
+    !   tolerance   the error allowed in rows of exchange factors; absent: 0.03, or 0.01 by fibrad_factors_alone
+    !   directions, points, patches: as in fibrad_heat; points absent: 128 by fibrad_corrected
     subroutine transient_new(transient, x, y, z, r, status, box, walls, method, tolerance, directions, points, patches, &
                              threads, fault, triangles)
         class(fibrad_transient), intent(inout) :: transient
@@ -672,7 +726,7 @@ contains
         transient%walls = count_walls(walls)
     end subroutine transient_new
 
-    ! Goes on to the same spheres and walls at other places; box and walls as in new.
+    ! Goes on with the same spheres and walls at other positions. The arguments are those of `new`.
     subroutine transient_move(transient, x, y, z, r, status, box, walls, fault, triangles)
         class(fibrad_transient), intent(inout) :: transient
         real(c_double), intent(in), contiguous, target :: x(:), y(:), z(:), r(:)
@@ -692,10 +746,23 @@ contains
         if (c_associated(transient%transient)) call tell_fault(found, size(x), fault)
     end subroutine transient_move
 
-    ! Temperatures [K] after a time [s], in place. capacity: heat that warms a sphere by 1 K [J/K]; source: what heats it
-    ! from inside [W]; *_end: at the end, linear in between; step: of this length at most [s], else automatic steps to a
-    ! relative tolerance of 1e-4 or as given. power: net radiative powers at the end [W]; *_energy: what radiation has
-    ! brought [J].
+    ! Advances the temperatures of spheres by a span of time.
+    !   temperature           (n) [K] in: at the beginning; out: at the end
+    !   duration              [s] of the span
+    !   capacity              (n) [J/K] heat capacities
+    !   emissivity            (n) 0 to 1
+    !   surroundings          [K] at the beginning
+    !   source                (n) [W] heats each sphere from inside; absent: 0
+    !   wall_temperature      (walls) [K] at the beginning, needed with walls
+    !   wall_emissivity       (walls) 0 to 1, needed with walls
+    !   wall_temperature_end  (walls) [K] at the end, linear in between; absent: constant
+    !   surroundings_end      [K] at the end, linear in between; absent: constant
+    !   step                  [s] all steps are equal and at most this long; absent: automatic steps
+    !   tolerance             of automatic steps, relative error of a temperature; absent: 1e-4
+    !   power                 (n) [W] out: net radiative power at the end
+    !   wall_energy           (walls) [J] out: gained by radiation during the span
+    !   surroundings_energy   [J] out: gained by radiation during the span
+    !   steps                 out: steps taken
     subroutine transient_advance(transient, temperature, duration, capacity, emissivity, surroundings, status, source, &
                                  wall_temperature, wall_emissivity, wall_temperature_end, surroundings_end, step, &
                                  tolerance, power, wall_energy, surroundings_energy, steps, fault)
@@ -746,7 +813,7 @@ contains
         if (present(steps)) steps = int(span%steps)
     end subroutine transient_advance
 
-    ! Gives the memory back; new may follow.
+    ! Returns the memory. `new` may be called again.
     subroutine transient_free(transient)
         class(fibrad_transient), intent(inout) :: transient
         call c_transient_free(transient%transient)
@@ -755,7 +822,7 @@ contains
         transient%walls = 0
     end subroutine transient_free
 
-    ! Gives the memory back; new may follow.
+    ! Returns the memory. `new` may be called again.
     subroutine heat_free(heat)
         class(fibrad_heat), intent(inout) :: heat
         call c_radiation_free(heat%radiation)
@@ -764,19 +831,20 @@ contains
         heat%walls = 0
     end subroutine heat_free
 
-    ! One English sentence for any status; the version of the library.
+    ! The meaning of any status as one English phrase.
     function fibrad_status_text(status) result(text)
         integer, intent(in) :: status
         character(:), allocatable :: text
         text = text_of(c_status_text(int(status, c_int)))
     end function fibrad_status_text
 
+    ! The version of the library.
     function fibrad_version() result(text)
         character(:), allocatable :: text
         text = text_of(c_version())
     end function fibrad_version
 
-    ! Whether the structures of this module are those of the library.
+    ! Whether the structures of this module have the same sizes as those of the library.
     logical function fibrad_layouts_agree()
         type(c_spheres) :: spheres
         type(fibrad_wall) :: body
@@ -826,7 +894,7 @@ contains
         end do
     end function text_of
 
-    ! Arrays that belong together have one size.
+    ! fibrad_e_argument if arrays that belong together differ in size.
     pure integer function check_sizes(n, second, third, fourth, fifth)
         integer, intent(in) :: n, second
         integer, intent(in), optional :: third, fourth, fifth
@@ -877,7 +945,7 @@ contains
         if (mesh%given%n > 0) config%triangles = c_loc(mesh%given)
     end function scene_of
 
-    ! As C counts, for the length of a call.
+    ! Copies triangles, with numbers from 0 as in C, for the time of a call.
     integer function copy_triangles(triangles, mesh)
         type(fibrad_triangles), intent(in), optional :: triangles
         type(walls_of_c), intent(inout), target :: mesh
@@ -914,7 +982,7 @@ contains
         if (present(fault)) fault = 0
     end subroutine set_run
 
-    ! Spheres concerned, from 1; their number in C: none of them.
+    ! The spheres at fault, counted from 1. In C the number of spheres stands for none.
     subroutine tell_fault(from, n, fault)
         type(c_fault), intent(in) :: from
         integer, intent(in) :: n
@@ -925,7 +993,7 @@ contains
         if (from%triangle >= 0) fault = [-from%triangle - 1, 0]
     end subroutine tell_fault
 
-    ! Copies factors of C into arrays that count from 1, and frees them.
+    ! Copies factors of C into arrays with numbers from 1, and frees those of C.
     subroutine take_factors(found, factors)
         type(c_ptr), intent(in) :: found
         type(fibrad_factors), intent(inout) :: factors

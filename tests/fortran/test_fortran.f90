@@ -260,6 +260,10 @@ contains
         call bed%advance(t, 10.0_dp, [3.0_dp], [0.5_dp], 300.0_dp, status, wall_temperature=[500.0_dp], &
                          wall_emissivity=[0.7_dp], fault=fault)
         call expect(status == fibrad_e_argument .and. all(fault == 1), 'no such temperature')
+        t = 600
+        call bed%advance(t, 10.0_dp, [3.0_dp], [0.5_dp], 300.0_dp, status, source=[-1e9_dp], wall_temperature=[500.0_dp], &
+                         wall_emissivity=[0.7_dp])
+        call expect(status == fibrad_e_unsolvable .and. all(t >= 600 .and. t <= 600), 'below zero')
         call bed%free()
         call bed%free()
     end subroutine temperatures_in_time
