@@ -6,9 +6,15 @@
 >>> round(float(factors.data[0]), 3)
 0.03
 
-`view_factors`, `exchange_factors` and `displacements` compute whole beds; `Heat` gives net powers for given
-temperatures, step after step. Arrays of positions are (n, 3), of radii (n,). The GIL is released while the library
-computes; Ctrl-C stops it. Errors are subclasses of `Error`.
+`view_factors`, `exchange_factors` and `displacements` compute whole beds. `Heat` gives net powers and temperatures.
+`Transient` follows temperatures in time. `read` and `Mesh.from_stl` read files.
+
+Positions are arrays (n, 3), radii are arrays (n,). The surroundings lie outside the bed and are black. A wall is a
+plane, a cylinder or a `Mesh`. A view factor is the fraction of the radiation leaving a sphere that reaches another
+sphere directly. An exchange factor is the fraction of the emission of a sphere that another sphere absorbs, directly or
+after reflections. The error of a row of factors is the root of the sum of the squared errors of its factors.
+
+The GIL is released while the library computes. Ctrl-C stops the library. Errors are subclasses of `Error`.
 """
 from . import _library
 from ._errors import Cancelled, Error, InputError, OutOfMemory, StateError

@@ -33,7 +33,8 @@ _Self = TypeVar("_Self", bound="Bed")
 
 
 class Bed:
-    """What `Heat` and `Transient` have in common; `_kind` is what their functions of the library are called."""
+    """The common part of `Heat` and `Transient`. The functions of the library are fibrad_KIND_new, ..., KIND being
+    `_kind`."""
 
     _kind: str
 
@@ -55,12 +56,13 @@ class Bed:
 
     @property
     def n(self) -> int:
-        """Spheres."""
+        """Number of spheres."""
         return self._packing.n
 
     def _walls(self, temperature: Any, emissivity: Any, power: Optional[Mapping[str, float]],
                insulated: Collection[str]) -> dict[str, NDArray[Any]]:
-        """What sources say of walls. Those with a power and those insulated have no temperature: NaN."""
+        """The arrays of fibrad_heat_sources for walls. A wall with a power, or an insulated wall, has the temperature
+        NaN."""
         container, powers = self._container, dict(power or {})
         found = frozenset([*powers, *insulated])
         container.known("wall_power" if powers else "insulated", found)
@@ -95,21 +97,22 @@ class Bed:
 
     def move(self, x: ArrayLike, r: Optional[ArrayLike] = None, *, box: Optional[ArrayLike] = None,
              walls: Optional[Walls] = None) -> None:
-        """Goes on to the same spheres and the same kinds of walls at other places.
+        """Goes on with the same spheres and walls at other positions.
 
         Parameters
         ----------
         x : (n, 3) array
             Centres [m].
         r : (n,) array or float, optional
-            Radii [m]. Default: those there are.
+            Radii [m]. Default: the present ones.
         box, walls : optional
-            As at the beginning. Default: those there are.
+            As at the beginning, with the same names. Default: the present ones.
 
         Raises
         ------
         InputError
-            Also another number of spheres or other walls. The bed of before then stays.
+            A value is out of its range, or the number of spheres or the names of walls differ. The last bed then
+            stays in use.
         """
         if np.shape(x)[:1] != (self.n,):
             raise refuse(f"x has the shape {np.shape(x)}; this {type(self).__name__} has {self.n} spheres")
@@ -123,7 +126,7 @@ class Bed:
         self._packing, self._container = packing, container
 
     def close(self) -> None:
-        """Frees the memory; after that the object is of no use."""
+        """Frees the memory. The object cannot be used afterwards."""
         if not self._busy.acquire(blocking=False):
             raise StateError(f"this {type(self).__name__} is in use by another call")
         self._free()

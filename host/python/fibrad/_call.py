@@ -16,8 +16,8 @@ Progress = Callable[[str, int, int], Any]
 
 @contextlib.contextmanager
 def _signals_caught(catch: Callable[[BaseException], None]) -> Iterator[None]:
-    """What signal handlers raise, such as KeyboardInterrupt, goes to `catch`: raised in a callback from C, of which
-    Python may not have run a line yet, it would be printed and lost. Handlers run in the main thread alone."""
+    """Hands exceptions of signal handlers, such as KeyboardInterrupt, to `catch`. An exception that is raised in a
+    callback from C would be printed and lost. Signal handlers run in the main thread only."""
     handlers: dict[int, Any] = {}
     if threading.current_thread() is threading.main_thread():
         found = {number: signal.getsignal(number) for number in signal.valid_signals()}
@@ -39,8 +39,8 @@ def _signals_caught(catch: Callable[[BaseException], None]) -> Iterator[None]:
 
 
 class Call:
-    """How the library is called; `run` is the fibrad_run of these calls. The GIL is released meanwhile, and taken up
-    to 20 times a second to look after signals and to report progress."""
+    """Calls of the library. `run` is their fibrad_run. The GIL is released during a call. It is taken up to 20 times a
+    second, for signals and for progress."""
 
     def __init__(self, threads: Optional[int], progress: Optional[Progress]):
         if progress is not None and not callable(progress):
@@ -61,7 +61,7 @@ class Call:
         return self._raised is not None
 
     def __call__(self, function: Callable[..., int], *arguments: Any) -> int:
-        """A status; raises what a signal handler or the progress function has raised."""
+        """The status of a call. Raises the exception that a signal handler or the progress function has raised."""
         self._raised = None
         with _signals_caught(self._catch):
             status = function(*arguments)

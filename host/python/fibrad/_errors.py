@@ -13,9 +13,9 @@ class Error(Exception):
     Attributes
     ----------
     status : int
-        The number of the error in ``fibrad.h``, such as -6 for spheres that cannot both be there.
+        The number of the error in ``fibrad.h``, -6 for example if a centre lies inside another sphere.
     spheres : tuple of int
-        Positions of the spheres concerned, from 0: none, one or two.
+        Positions of the spheres at fault, from 0. There are none, one or two.
     """
 
     status: int = 0
@@ -28,19 +28,19 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """A value or a bed that cannot be computed."""
+    """A value is out of its range, or the bed cannot be computed."""
 
 
 class StateError(Error, RuntimeError):
-    """A call that comes too late or too early."""
+    """A call comes too late or too early."""
 
 
 class Cancelled(Error, RuntimeError):
-    """A progress function asked to stop."""
+    """A progress function has asked to stop."""
 
 
 class OutOfMemory(Error, MemoryError):
-    """The library had no more memory."""
+    """The library has no more memory."""
 
 
 _KINDS = {MEMORY: OutOfMemory, CANCELLED: Cancelled, ARGUMENT: InputError, TABLE: InputError, GEOMETRY: InputError,

@@ -21,16 +21,16 @@ _DIRECTIONS = (8, 65536)
 _SEED = (0, 2**64 - 1)
 _FAR = (0.0, 1e150)
 _OVERLAP = 0.05
-"""Above it, spheres are hardly what was meant."""
+"""A larger overlap of two spheres, over the smaller radius, gives a warning."""
 _CLOSED = 1e-9
 _APART = 0.1
-"""Sums of rows of walls, closed and before that."""
+"""A larger |sum - 1| of a row of a wall gives a warning: after closing (_CLOSED) and before (_APART)."""
 _METHODS = {"beam": {"directions", "points", "tolerance"}, "surface": {"nodes"}, "cast": {"rays", "seed"},
             "mc": {"rays", "seed"}}
 
 
 class _Owner:
-    """Factors of the library, freed when the last array that refers to them is gone."""
+    """Factors of the library. They are freed with the last array that refers to them."""
 
     def __init__(self) -> None:
         self.factors: Any = ctypes.POINTER(BedFactors)()
@@ -40,7 +40,7 @@ class _Owner:
 
 
 class _Memory:
-    """What numpy needs to make an array of memory that belongs to another."""
+    """The array interface of numpy for memory of the library."""
 
     def __init__(self, owner: _Owner, address: Any, shape: tuple[int, ...], kind: str):
         self._owner = owner
@@ -54,74 +54,79 @@ def _array(owner: _Owner, address: Any, shape: tuple[int, ...], kind: str = "f8"
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Factors:
-    """A matrix of factors in compressed rows (CSR), and what is known of it.
+    """A matrix of factors in compressed rows (CSR), and facts of its computation.
 
-    Row ``i`` is ``data[indptr[i]:indptr[i + 1]]`` in the columns ``indices[indptr[i]:indptr[i + 1]]``, ascending.
-    For each sphere ``data`` of its row + ``walls`` + ``escaped`` + ``beyond`` add up to 1.
+    Row ``i`` has the factors ``data[indptr[i]:indptr[i + 1]]`` and the columns ``indices[indptr[i]:indptr[i + 1]]``.
+    The columns ascend. The sum of row ``i`` of ``data`` and ``walls``, ``escaped[i]`` and ``beyond[i]`` is 1.
+
+    ``wall_wall``, ``wall_escaped``, ``wall_error``, ``wall_correction`` and ``wall_closure`` are None without walls,
+    with a cutoff, or if only some rows were wanted.
     """
 
     indptr: NDArray[np.int64]
-    """(n + 1,) where rows begin."""
+    """(n + 1,) where each row begins."""
     indices: NDArray[np.int32]
     """(entries,) positions of the spheres that receive, from 0."""
     data: NDArray[np.float64]
-    """(entries,) factors from the sphere of the row to that of the column."""
+    """(entries,) factors from the sphere of the row to the sphere of the column."""
     escaped: NDArray[np.float64]
-    """(n,) to the surroundings."""
+    """(n,) factors to the surroundings."""
     beyond: NDArray[np.float64]
-    """(n,) beyond the cutoff."""
+    """(n,) fractions whose target is not known, beyond the cutoff."""
     error: NDArray[np.float64]
-    """(n,) Euclidean error of each row, estimated."""
+    """(n,) estimated error of each row."""
     walls: NDArray[np.float64]
-    """(n, walls) to each wall."""
+    """(n, walls) factors to each wall."""
     wall_names: tuple[str, ...]
     """(walls,) in the order given."""
     wall_area: NDArray[np.float64]
-    """(walls,) of the part inside all others, per period; infinite where there is no bound."""
+    """[L^2] (walls,) area of a wall inside all other planes and the cylinder, of one period. Infinite: an endless
+    wall."""
     wall_wall: Optional[NDArray[np.float64]]
-    """(walls, walls) between walls, closed and reciprocal with all else: to sphere i a wall sends what makes
-    ``A_w F_wi = A_i F_iw`` (areas times emissivities). NaN from walls without bounds. None, as the next two, without
-    walls, with a cutoff, or if only some rows were wanted."""
+    """(walls, walls) factors from wall to wall. NaN from an endless wall. The factor from wall w to sphere i follows
+    from ``A_w F_wi = A_i F_iw``, where A is area times emissivity for exchange factors."""
     wall_escaped: Optional[NDArray[np.float64]]
-    """(walls,) from walls to the surroundings."""
+    """(walls,) factors from walls to the surroundings."""
     wall_error: Optional[NDArray[np.float64]]
-    """(walls,) Euclidean error of these two, estimated."""
+    """(walls,) estimated error of ``wall_wall`` and ``wall_escaped``."""
     wall_correction: Optional[float]
-    """Largest ``|sum - 1|`` of a row of a wall before closing: how far rows of spheres and of walls disagree."""
+    """Largest ``|sum - 1|`` of a row of a wall before closing. It shows how far rows of spheres and of walls
+    disagree."""
     wall_closure: Optional[float]
-    """Largest ``|sum - 1|`` of a row of a wall as it is: rounding, or ``wall_correction`` where sums and reciprocity
-    contradict each other, as in some beds cut by triangles. Then rows of walls are not closed, and a warning says so."""
+    """Largest ``|sum - 1|`` of a row of a wall after closing. In some beds that triangles cut, reciprocity and sums
+    contradict each other. Then rows of walls are not closed, this is ``wall_correction``, and there is a warning."""
     ids: Optional[NDArray[np.uint64]]
     """(n,) as given."""
     closure_error: float
-    """Largest error of a sum of the raw rows, as they were computed."""
+    """Largest ``|sum - 1|`` of a raw row."""
     reciprocity_error: float
-    """Largest ``|A_i F_ij - A_j F_ji| / max(A_i, A_j)``; NaN where rows are missing."""
+    """Largest ``|A_i F_ij - A_j F_ji| / max(A_i, A_j)``. NaN if rows are missing."""
     directions: int
-    """Most that a row took; 0: a method without."""
+    """Most directions of a row. 0: a method without directions."""
     fallbacks: int
-    """Windows that the fast method left to the robust one."""
+    """Windows that the robust method for areas resolved."""
     rays: int
-    """Traced, of exchange factors."""
+    """Rays traced, for exchange factors."""
     overlap: float
     """Largest overlap of two spheres over the smaller radius."""
     threads: int
-    """Used."""
+    """Threads used."""
     seconds: float
-    """Of computing."""
+    """[s] of computing."""
 
     @property
     def n(self) -> int:
-        """Spheres."""
+        """Number of spheres."""
         return len(self.escaped)
 
     @property
     def shape(self) -> tuple[int, int]:
+        """Shape of the matrix, (n, n)."""
         return self.n, self.n
 
     @property
     def matrix(self) -> Any:
-        """The factors as a ``scipy.sparse.csr_matrix``, which shares their memory. Needs SciPy."""
+        """The factors as a ``scipy.sparse.csr_matrix`` in the same memory. Needs SciPy."""
         from scipy.sparse import csr_matrix
         return csr_matrix((self.data, self.indices, self.indptr), shape=self.shape)
 
@@ -131,12 +136,12 @@ class Factors:
         return self.indices[part], self.data[part]
 
     def wall(self, name: str) -> NDArray[np.float64]:
-        """(n,) factors to the wall of that name."""
+        """(n,) factors to the wall of this name."""
         return self.walls[:, self.wall_names.index(name)]
 
     def save(self, path: Folder) -> None:
-        """Writes a .npz, as the program does: for ``scipy.sparse.load_npz``, with `escaped`, `beyond`, `error` and what
-        there is of `ids` and walls beside the matrix."""
+        """Writes a .npz file, as the program does. ``scipy.sparse.load_npz`` reads the matrix from the file. The file
+        also has `escaped`, `beyond` and `error`, and, if there are any, `ids` and the factors of walls."""
         if not os.fspath(path).endswith(".npz"):
             raise refuse(f"{os.fspath(path)!r} does not end in .npz")
         arrays: dict[str, Any] = {
@@ -177,7 +182,7 @@ def _factors(owner: _Owner, wall_names: tuple[str, ...], ids: Optional[NDArray[n
 
 
 class _Job:
-    """Arguments that all functions of beds have in common."""
+    """The arguments that all functions of beds have in common."""
 
     def __init__(self, x: ArrayLike, r: ArrayLike, box: Optional[ArrayLike], walls: Optional[Walls],
                  ids: Optional[ArrayLike], wanted: Optional[ArrayLike], threads: Optional[int],
@@ -239,7 +244,7 @@ def _folder(scratch: Optional[Folder]) -> Optional[bytes]:
 
 
 def _method_options(method: str, values: dict[str, Any], cutoff: Optional[float]) -> dict[str, Any]:
-    """The rule of the method, a field of fibrad_bed_options; values of other methods are refused."""
+    """The rule of the method, as a field of fibrad_bed_options. Values for other methods are refused."""
     if method not in _METHODS:
         raise refuse(f"there is no method {method!r}; there are {', '.join(_METHODS)}")
     foreign = [name for name, value in values.items() if value is not None and name not in _METHODS[method]]
@@ -265,46 +270,48 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
     Parameters
     ----------
     x : (n, 3) array
-        Centres, in any unit of length.
+        [L] Centres. L is any unit of length.
     r : (n,) array or float
-        Radii, in the same unit. An array of float64 is taken as it lies in memory where its strides allow, others are
-        converted.
+        [L] Radii. x and r are not copied if they are of float64 and their strides are whole numbers of float64.
     box : (3,) array, optional
-        Lengths of the periodic box; 0 stands for an open axis. Default: open.
+        [L] Lengths of the periodic box. 0: the axis is open. Default: all axes are open.
     walls : mapping or sequence of pairs, optional
-        Names and places: ``{"zmin": 0.0, "zmax": 1.0, "cylinder": (x, y, radius)}``; xmin to zmax, and a cylinder
-        along z. ``"zmax": "open"`` or ``("open", place)``: there the container ends and the surroundings begin, at the
-        end of the spheres or at a place.
+        Walls by name: ``{"zmin": 0.0, "zmax": 1.0, "cylinder": (x, y, radius), "hopper": Mesh(...)}``. The names of
+        planes are xmin, xmax, ymin, ymax, zmin and zmax, with the coordinate [L]. The cylinder is parallel to the z
+        axis. A `Mesh` has any other name. ``"zmax": "open"`` is an opening: the container ends there and the
+        surroundings begin, where the spheres end. ``"zmax": ("open", at)`` is an opening at the coordinate ``at``.
+        Default: no walls.
     tolerance : float, optional
-        As many directions as bring the estimated Euclidean error of every row down to this.
+        The error allowed in every row. Directions are added until it is met. Default: none.
     directions : int, optional
-        Of beams, 8 to 65536. Default: 233. The error falls as ``directions**-1.5``.
+        Directions of beams, 8 to 65536. The error falls as ``directions**-1.5``. Default: 233.
     points : {64, 128, 256}, optional
-        Of each window of beams. Default: exact visible areas.
+        Points of each window of a beam. Default: exact visible areas.
     method : {"beam", "surface", "cast", "mc"}
-        Beams; nodes on surfaces, after Bao, Gao and Tan; quasi-random rays; random rays.
+        "beam": parallel beams. "surface": nodes on surfaces, after Bao, Gao and Tan. "cast": quasi-random rays. "mc":
+        random rays.
     nodes : int, optional
-        Of the method "surface", a Fibonacci number from 8 to 987. Default: 55.
+        For "surface": nodes on each sphere, a Fibonacci number from 8 to 987. Default: 55.
     rays, seed : int, optional
-        Of the methods "cast" and "mc", rays from each sphere. Default: 20000, 0.
+        For "cast" and "mc": rays from each sphere, and the seed of the random numbers. Default: 20000 and 0.
     cutoff : float, optional
-        Spheres with centres farther apart do not see each other. Default: none.
+        [L] Spheres with centres farther apart do not see each other. Default: none.
     wanted : (n,) bool array or positions, optional
-        Rows wanted; others are empty, and rows are raw. Default: all.
+        Rows that are wanted. The other rows are empty, and the wanted rows are raw. Default: all.
     raw : bool
-        Leave rows as they were computed, not averaged for ``A_i F_ij = A_j F_ji``.
+        True: rows as they were computed. False: averaged, so that ``A_i F_ij = A_j F_ji``, and closed.
     drop : float
-        What entries below this carry goes to the others.
+        Entries below this, 0 to 1, are dropped. The other entries of the row take over, so that the sum stays.
     ids : (n,) array of whole numbers, optional
-        Names of the spheres, for messages, for the seeds of random paths and the order among equals.
+        Names of the spheres, from 0. Messages use them. They seed random paths and decide ties.
     threads : int, optional
-        Default: all processors, or ``OMP_NUM_THREADS``. No bit depends on it.
+        1 to 1024. Changes no bit. Default: ``OMP_NUM_THREADS``, or else all processors.
     scratch : path, optional
-        A folder for files that hold rows and matrix, which may then be larger than memory; they have no names and are
-        gone with the result. No bit depends on it. Default: in memory.
+        A folder for files that hold rows and matrix, for matrices larger than memory. The files have no names and
+        vanish with the result. Changes no bit. Default: in memory.
     progress : callable, optional
-        Called as ``progress(stage, done, total)`` up to 20 times a second; if it returns something true, the call
-        ends with `Cancelled`.
+        Called as ``progress(stage, done, total)`` up to 20 times a second. If it returns something true, the call ends
+        with `Cancelled`.
 
     Returns
     -------
@@ -313,9 +320,11 @@ def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None,
     Raises
     ------
     InputError
-        A value out of its range, NaN; spheres that cannot both be there (a ValueError; attribute ``spheres``).
+        A value is out of its range, or the spheres cannot all be there. The attribute ``spheres`` names those at fault.
     OutOfMemory
-        A MemoryError.
+        There is no more memory.
+    Cancelled
+        The progress function has asked to stop.
     """
     values = {"tolerance": tolerance, "directions": directions, "points": points, "nodes": nodes, "rays": rays,
               "seed": seed}
@@ -332,21 +341,27 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
                      cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None, raw: bool = False,
                      drop: float = 0.0, ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
                      scratch: Optional[Folder] = None, progress: Optional[Progress] = None) -> Factors:
-    """Exchange factors of grey diffuse spheres: the fraction of what sphere i emits that sphere j absorbs, directly
-    or after reflections. The net power to i is ``sum_j A_i e_i D_ij sigma (T_j**4 - T_i**4)``.
+    """Exchange factors between all grey diffuse spheres of a bed.
+
+    D_ij is the fraction of the emission of sphere i that sphere j absorbs, directly or after diffuse reflections. The
+    net power of sphere i is ``sum_j A_i e_i D_ij sigma (T_j**4 - T_i**4)``, where j counts walls and surroundings, too.
 
     Parameters
     ----------
     x, r, box, walls, cutoff, wanted, raw, drop, ids, threads, scratch, progress
-        As of `view_factors`.
+        As for `view_factors`.
     emissivity : (n,) array or float
-        Of the spheres, 0 to 1.
+        Emissivities of the spheres, 0 to 1.
     wall_emissivity : mapping or float
-        Of the walls by their names, or of all, 0 to 1; needed where there are walls.
+        Emissivities of the walls by name, or one for all, 0 to 1. Needed with walls.
     tolerance : float, optional
-        As many directions and paths as bring the estimated Euclidean error of rows down to this.
-    directions, paths, seed : int, optional
-        Of the first leg, of the reflections, of the random numbers. Default: 50, 400, 0.
+        The error allowed in every row. Directions and paths are added until it is met. Default: none.
+    directions : int, optional
+        Directions of the first leg, the way to the first surface. Default: 50.
+    paths : int, optional
+        Paths that follow the reflections. Default: 400.
+    seed : int, optional
+        Of the random numbers. Default: 0.
 
     Returns
     -------
@@ -354,7 +369,8 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
 
     Raises
     ------
-    InputError, OutOfMemory
+    InputError, OutOfMemory, Cancelled
+        As for `view_factors`.
     """
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
     rule = job.exchange_rule(emissivity, wall_emissivity, directions=whole("directions", directions, *_DIRECTIONS),
@@ -367,16 +383,16 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Displacements:
-    """How far what each sphere emits is carried, from its centre to that of the sphere that absorbs."""
+    """How far the emission of each sphere is carried: from its centre to the centre of the sphere that absorbs."""
 
     square: NDArray[np.float64]
-    """(n, 3) [L^2] mean square along each axis."""
+    """[L^2] (n, 3) mean square displacement along each axis."""
     error: NDArray[np.float64]
-    """(n, 3) [L^2] standard errors, estimated."""
+    """[L^2] (n, 3) estimated standard error of `square`."""
     absorbed: NDArray[np.float64]
-    """(n,) fraction that spheres absorb."""
+    """(n,) fraction of the emission that spheres absorb."""
     rays: NDArray[np.uint64]
-    """(n,) traced."""
+    """(n,) rays traced."""
 
 
 def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Optional[ArrayLike] = None,
@@ -384,15 +400,17 @@ def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Opt
                   seed: Optional[int] = None, cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None,
                   ids: Optional[ArrayLike] = None, threads: Optional[int] = None,
                   progress: Optional[Progress] = None) -> Displacements:
-    """Mean square displacements of radiation, from which the conductivity of a bed follows: for equal spheres of
-    diameter d and solid fraction phi in a periodic box ``k = 4 sigma T**3 * 3 phi e square.mean(axis=0) / d``.
+    """Mean square displacements of radiation.
+
+    The conductivity of a bed follows from them. For equal spheres of diameter d, solid fraction phi and emissivity e in
+    a periodic box it is ``k = 4 sigma T**3 * 3 phi e square.mean(axis=0) / d``.
 
     Parameters
     ----------
     x, r, emissivity, box, walls, wall_emissivity, seed, cutoff, wanted, ids, threads, progress
-        As of `exchange_factors`; spheres not wanted have zeros.
+        As for `exchange_factors`. Spheres that are not wanted have zeros.
     paths : int, optional
-        From each sphere. Default: 400.
+        Paths from each sphere. Default: 400.
 
     Returns
     -------
@@ -400,7 +418,8 @@ def displacements(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: Opt
 
     Raises
     ------
-    InputError, OutOfMemory
+    InputError, OutOfMemory, Cancelled
+        As for `view_factors`.
     """
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
     rule = job.exchange_rule(emissivity, wall_emissivity, paths=whole("paths", paths, 1, 2**28),

@@ -35,7 +35,7 @@ FileMesh = structure_of_files("file_mesh", ("vertex", DOUBLES), ("corner", POINT
 
 
 def _library() -> Any:
-    """libfibrad_files.so: of the package, or of the source tree."""
+    """libfibrad_files.so of the package, or else of the source tree."""
     if _loaded:
         return _loaded[0]
     here = pathlib.Path(__file__).resolve().parent
@@ -58,7 +58,7 @@ def _library() -> Any:
 
 
 def _call(function: Any, *arguments: Any) -> None:
-    """Calls it; what it says becomes warnings, or the text of an error."""
+    """Calls a function. Its lines become warnings. After an error the last line is the text of the exception."""
     lines: list[str] = []
     heard = _HEARD(lambda context, line: lines.append(line.decode(errors="replace")))
     status = function(*arguments, heard, None)
@@ -74,46 +74,46 @@ def _array(address: Any, shape: tuple[int, ...]) -> NDArray[Any]:
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class FileFrame:
-    """Spheres of one frame of a file, in the order of their ids."""
+    """The spheres of one frame of a file, in the order of their ids. L is the unit of length of the file."""
 
     x: NDArray[np.float64]
-    """(n, 3) centres, in the unit of the file."""
+    """[L] (n, 3) centres."""
     r: NDArray[np.float64]
-    """(n,) radii."""
+    """[L] (n,) radii."""
     ids: Optional[NDArray[np.int64]]
-    """(n,); None: the file has none."""
+    """(n,) ids. None: the file has none."""
     box: NDArray[np.float64]
-    """(3,) lengths of the periodic box, 0 for open axes: the `box` of all functions."""
+    """[L] (3,) lengths of the periodic box, for the argument `box`. 0: the axis is open."""
     low: NDArray[np.float64]
-    """(3,) lower ends of the file's box; as `high` 0 if it has none."""
+    """[L] (3,) lower corner of the box in the file. 0 if the file has no box."""
     high: NDArray[np.float64]
-    """(3,) upper ends."""
+    """[L] (3,) upper corner of the box in the file. 0 if the file has no box."""
     columns: dict[str, NDArray[np.float64]]
-    """(n,) of each column asked for."""
+    """(n,) values of each further column that was wanted."""
     unit: Optional[str]
-    """Of length, as the file calls it; None: it says none."""
+    """Name of the unit of length in the file. None: the file names none."""
     frame: int
-    """Which one of the file, from 0."""
+    """Number of the frame in the file, from 0."""
     timestep: Optional[int]
-    """As the file says."""
+    """Timestep in the file. None: the file has none."""
 
     def __repr__(self) -> str:
         return f"<fibrad.FileFrame: {len(self.x)} spheres, frame {self.frame}>"
 
 
 def read(path: Path, frame: int = -1, *, columns: Sequence[str] = (), radius: Optional[float] = None) -> FileFrame:
-    """Reads the spheres of a file as the program does: all formats of ``docs/files.md``.
+    """Reads the spheres of a file, as the program does. ``docs/files.md`` lists the formats.
 
     Parameters
     ----------
     path : str or path
-        The file, whose contents tell its format.
+        The file. Its contents tell its format.
     frame : int
-        Which one, from 0; -1: the last.
+        Number of the frame, from 0. -1: the last frame.
     columns : names, optional
-        Of further columns wanted, such as ``["v_T"]``.
+        Further columns that are wanted, ``["v_T"]`` for example.
     radius : float, optional
-        Of all spheres, for files without radii.
+        [L] Radius of all spheres, for files without radii.
 
     Returns
     -------
@@ -122,7 +122,7 @@ def read(path: Path, frame: int = -1, *, columns: Sequence[str] = (), radius: Op
     Raises
     ------
     InputError
-        The file cannot be read so; the text names the line.
+        The file cannot be read. The text names the line.
     """
     if isinstance(columns, str):
         columns = [columns]
@@ -148,7 +148,8 @@ def read(path: Path, frame: int = -1, *, columns: Sequence[str] = (), radius: Op
 
 
 def stl(path: Path, spheres: Any, period: ArrayLike, scale: float, sides: str) -> tuple[Any, Any, bool]:
-    """Vertices and triangles of an STL file, wound so that fronts are the wall, and whether both sides are."""
+    """Vertices and triangles of an STL file, and whether both sides belong to the wall. The fronts belong to the
+    wall."""
     if sides not in _SIDES:
         raise refuse(f"sides = {sides!r} is none of {', '.join(_SIDES)}")
     if not 1e-12 <= scale <= 1e12:

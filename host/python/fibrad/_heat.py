@@ -17,7 +17,7 @@ from ._scene import Walls, pointer, pointers
 from ._values import HOTTEST, STRONGEST, per_sphere, real, refuse
 
 STEFAN_BOLTZMANN = 5.670374419e-8
-"""W/(m2 K4)"""
+"""[W/(m2 K4)]"""
 
 _SETTLE_MAX, _EMISSIVITY_CHANGE = 100, 1e-5
 
@@ -32,45 +32,46 @@ def _law(emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]]) -> Callable[[
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Powers:
-    """Net powers [W], positive where heat is gained; all of them add up to 0. And temperatures."""
+    """Net powers and temperatures. A net power is above 0 where heat is gained. All net powers add up to 0."""
 
     spheres: NDArray[np.float64]
-    """(n,) to each sphere."""
+    """[W] (n,) net power of each sphere."""
     walls: dict[str, float]
-    """To each wall, by its name."""
+    """[W] net power of each wall by name."""
     surroundings: float
-    """To the surroundings."""
+    """[W] net power of the surroundings."""
     temperatures: NDArray[np.float64]
-    """(n,) of each sphere [K], given or found; NaN of emissivity 0."""
+    """[K] (n,) temperature of each sphere, given or found. NaN if the emissivity is 0."""
     wall_temperatures: dict[str, float]
-    """Of each wall [K]; of an insulated one that at which it would emit what it sends back."""
+    """[K] temperature of each wall by name. For an insulated wall: the fourth root of its mean T**4."""
     triangle_fluxes: dict[str, NDArray[np.float64]]
-    """(t, 2) what front and back of each triangle of a `Mesh` gain [W/m2], by its name; NaN: nobody's, or not reached.
-    Times areas they add up to `walls`, unless planes or the cylinder cut the mesh."""
+    """[W/m2] (t, 2) net power per area of front and back of each triangle, by the name of the `Mesh`. NaN: the side
+    belongs to no wall, or nothing reaches it. Fluxes times areas add up to `walls`, unless a plane or the cylinder cuts
+    the mesh."""
     triangle_temperatures: dict[str, NDArray[np.float64]]
-    """(t, 2) likewise [K]; of an insulated mesh place by place."""
+    """[K] (t, 2) temperature of front and back of each triangle, by the name of the `Mesh`."""
     emissivities: NDArray[np.float64]
-    """(n,) of each sphere, at its temperature."""
+    """(n,) emissivity of each sphere, at its temperature."""
     errors: NDArray[np.float64]
-    """(n,) estimated errors of `spheres` [W]."""
+    """[W] (n,) estimated error of `spheres`."""
     wall_errors: dict[str, float]
-    """Of `walls` [W]."""
+    """[W] estimated error of `walls`, by name."""
     temperature_errors: NDArray[np.float64]
-    """(n,) estimated errors of `temperatures` [K], 0 of those given."""
+    """[K] (n,) estimated error of `temperatures`, 0 if the temperature was given."""
     error: float
-    """Estimated error of the powers of spheres, root mean square."""
+    """[W] estimated error of `spheres`, root mean square."""
     error_patches: float
-    """The part of the error that patches have."""
+    """[W] part of `error` that comes from patches."""
     error_beams: float
-    """The part of the error that beams have."""
+    """[W] part of `error` that comes from beams."""
     residual: float
-    """Of the radiosities, relative."""
+    """Residual of the radiosities, relative to the differences of emission."""
     sweeps: int
-    """Of the beams that the solution took."""
+    """Sweeps over the beams that the solution took."""
 
     @property
     def balance(self) -> float:
-        """Sum of all powers [W]: 0 but for rounding."""
+        """[W] sum of all net powers: 0, to rounding."""
         return math.fsum([*self.spheres, *self.walls.values(), self.surroundings])
 
     def __repr__(self) -> str:
@@ -82,32 +83,33 @@ class Powers:
 
 
 class Heat(Bed):
-    """Radiation between grey diffuse spheres, walls and surroundings of given temperatures or powers.
+    """Radiation between grey diffuse spheres, walls and surroundings.
 
-    The beams between all surfaces are traced once; `solve` gives the net powers for any temperatures and emissivities,
-    and starts from the last solution. Memory is freed by `close`, at the end of ``with``, or with the object. One
-    thread at a time may use it.
+    Each sphere and wall has a given temperature, or it gives off a given power and its temperature is found. The beams
+    between all surfaces are traced once. `solve` then gives net powers and temperatures for any sources. A solution
+    begins with the last one. The memory is freed by `close`, at the end of ``with``, or with the object. One thread at
+    a time may use the object.
 
     Parameters
     ----------
     x : (n, 3) array
-        Centres [m].
+        [m] Centres.
     r : (n,) array or float
-        Radii [m].
+        [m] Radii.
     box : (3,) array, optional
-        Lengths of the periodic box [m]; 0 stands for an open axis. Default: open.
+        [m] Lengths of the periodic box. 0: the axis is open. Default: all axes are open.
     walls : mapping or sequence of pairs, optional
-        As of `view_factors`: ``{"zmin": 0.0, "cylinder": (x, y, radius)}``.
+        As for `view_factors`: ``{"zmin": 0.0, "cylinder": (x, y, radius)}``.
     directions : int, optional
-        Of the beams, 8 to 65536. Default: 168.
+        Directions of beams from each sphere, 8 to 65536. Default: 168.
     points : {64, 128, 256}, optional
-        Beams per direction and sphere. Default: 64.
+        Points of each beam. Default: 64.
     patches : {24, 96, 384}, optional
-        That the surface of a sphere is divided into. Default: 96.
+        Patches of the surface of each sphere. Default: 96.
     ids : (n,) array of whole numbers, optional
-        Names of the spheres, for messages and the order among equals.
+        Names of the spheres, from 0. Messages use them. They decide ties.
     threads, progress
-        As of `view_factors`, for this and later calls.
+        As for `view_factors`. They are kept for later calls.
 
     Examples
     --------
@@ -130,36 +132,37 @@ class Heat(Bed):
               wall_emissivity: Any = None, wall_power: Optional[Mapping[str, float]] = None,
               insulated: Collection[str] = (), tolerance: Optional[float] = None, uniform: bool = False,
               sigma: float = STEFAN_BOLTZMANN) -> Powers:
-        """Net powers, and the temperatures of spheres and walls whose powers are given.
+        """Net powers and temperatures.
 
         Parameters
         ----------
         temperature : (n,) array or float
-            Of the spheres [K]; NaN: unknown, which needs `power`. None: of all.
+            [K] Temperatures of the spheres. NaN: the temperature is unknown, and `power` is needed. None: all are
+            unknown.
         emissivity : (n,) array, float or function
-            Of the spheres, 0 to 1; 0 reflects all. A function gets the temperatures (n,) and returns emissivities;
-            it is asked again until they change no more.
+            Emissivities of the spheres, 0 to 1. 0 reflects everything. A function gets the temperatures (n,) and
+            returns the emissivities. It is called until the emissivities change by at most 1e-5.
         power : (n,) array or float, optional
-            What spheres of unknown temperature give off from inside [W]; their net power is its negative. NaN where
-            a temperature is given. One number is for those without a temperature.
+            [W] Power that a sphere of unknown temperature gives off from inside. Its net power is the negative. NaN
+            where the temperature is given. One number holds for all spheres of unknown temperature.
         surroundings : float
-            Temperature of the surroundings [K]; may be left out only where walls and periods leave no way out.
+            [K] Temperature of the surroundings. May be left out only if walls and periods close the bed on all sides.
         wall_temperature : mapping or float
-            Temperatures of the walls [K] by their names, or of all others; needed where there are walls. Of a `Mesh`
-            also an array (t,), one for each triangle.
+            [K] Temperatures of the walls by name, or one for all others. Needed with walls. For a `Mesh` it may be an
+            array (t,), one value for each triangle.
         wall_emissivity : mapping or float
-            Emissivities of the walls by their names, or of all, 0 to 1; needed where there are walls.
+            Emissivities of the walls by name, or one for all, 0 to 1. Needed with walls.
         wall_power : mapping, optional
-            What walls of unknown temperature give off [W], by their names.
+            [W] Power that a wall of unknown temperature gives off, by name.
         insulated : names, optional
-            Walls that send back all that arrives, place by place.
+            Walls that send back all that arrives, point by point.
         tolerance : float, optional
-            Residual at which to stop, relative to the differences of emission. Default: 1e-3, or 1e-5 where
-            temperatures are unknown.
+            Residual at which to stop, relative to the differences of emission. Default: 1e-3, or 1e-5 if a temperature
+            is unknown.
         uniform : bool
-            One radiosity for each sphere and wall; wrong but for emissivities near 1.
+            True: one radiosity for each sphere and wall. This is good only for emissivities near 1.
         sigma : float
-            Emission is ``sigma T**4``; another value for other units.
+            [W/(m2 K4)] Emission is ``sigma T**4``.
 
         Returns
         -------
@@ -168,8 +171,11 @@ class Heat(Bed):
         Raises
         ------
         InputError
-            Also where no temperatures give the powers.
-        StateError, OutOfMemory
+            A value is out of its range, no temperatures give the powers, or the emissivities do not settle.
+        StateError
+            The object is closed, or another thread uses it.
+        OutOfMemory, Cancelled
+            As for `view_factors`.
         """
         container, names, n = self._container, self._packing.names, self.n
         kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, HOTTEST, names,

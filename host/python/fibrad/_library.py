@@ -20,13 +20,14 @@ class _Cylinder(ctypes.Structure):
 
 
 def structure_of_files(name: str, *fields: tuple[str, Any]) -> Any:
-    """The structure NAME of libfibrad_files.so. fields: names, several with blanks between, and their type."""
+    """The structure NAME of libfibrad_files.so. Each field is one or more names, separated by blanks, and their
+    type."""
     return type(name, (ctypes.Structure,),
                 {"_fields_": [(one, kind) for names, kind in fields for one in names.split()]})
 
 
 def _structure(name: str, *fields: tuple[str, Any]) -> Any:
-    """The structure fibrad_NAME, likewise."""
+    """The structure fibrad_NAME of libfibrad.so, with fields as for structure_of_files."""
     structure = structure_of_files(f"fibrad_{name}", *fields)
     _structures.append(structure)
     return structure

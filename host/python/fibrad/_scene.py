@@ -25,18 +25,18 @@ MARKS: Any = ctypes.POINTER(ctypes.c_ubyte)
 
 
 def pointer(array: Optional[NDArray[Any]], kind: Any = DOUBLES) -> Any:
-    """None: NULL."""
+    """The address of an array, NULL for None."""
     return None if array is None else ctypes.cast(array.ctypes.data, kind)
 
 
 def pointers(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
-    """Fields of a structure by their names: doubles, or marks, which are bytes."""
+    """Fields of a structure by name. An array is of doubles or of bytes."""
     return {name: pointer(array, DOUBLES if array.dtype == np.float64 else MARKS)
             for name, array in arrays.items()}
 
 
 def _stride(array: NDArray[np.float64]) -> int:
-    """Doubles between the elements along the first axis; 0: not as the library takes it."""
+    """Distance of the elements along the first axis, in doubles. 0: the library cannot take this array."""
     if len(array) < 2:
         return 1
     apart, rest = divmod(array.strides[0], array.itemsize)
@@ -44,12 +44,12 @@ def _stride(array: NDArray[np.float64]) -> int:
 
 
 def _strided(array: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The array itself where its stride allows, else a copy."""
+    """The array itself if its stride allows, else a copy."""
     return array if _stride(array) else np.ascontiguousarray(array)
 
 
 class Packing:
-    """Spheres with their arrays, which stay as long as it does."""
+    """Spheres, and their arrays, which this object keeps."""
 
     def __init__(self, x: ArrayLike, r: ArrayLike, ids: Optional[ArrayLike] = None):
         self.x = _strided(doubles("x", x))
@@ -78,7 +78,7 @@ class Packing:
         return np.require(array, np.uint64, "CA")
 
     def error(self, status: int, fault: Any, container: Container) -> Error:
-        """What a call has returned, in words, with the spheres or the triangle concerned."""
+        """The exception for a status, with the spheres or the triangle at fault."""
         concerned = tuple(dict.fromkeys(i for i in (fault.first, fault.second) if i < self.n))
         text = status_text(status)
         if fault.why:
@@ -100,17 +100,19 @@ class Packing:
 
 
 class Mesh:
-    """A wall of triangles, for the ``walls`` of all functions: ``walls={"hopper": Mesh(vertices, triangles)}``.
+    """A wall of triangles, for the argument ``walls`` of all functions: ``walls={"hopper": Mesh(vertices,
+    triangles)}``.
 
     Parameters
     ----------
     vertices : (v, 3) array
-        Their places.
+        [L] Positions of the vertices.
     triangles : (t, 3) array of int
-        The three vertices of each, from 0, counter-clockwise seen from the front.
+        The three vertices of each triangle, from 0. Seen from the front they go counter-clockwise. The fronts belong to
+        this wall.
     back : None, True or str
-        Whose the backs are: nobody's, so that they must not be seen; True: this wall's, too; else the wall's of that
-        name, a mesh.
+        None: the backs belong to no wall and must not be seen. True: the backs belong to this wall, too. A name: the
+        backs belong to the mesh of that name.
     """
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, back: Union[None, bool, str] = None):
@@ -129,24 +131,25 @@ class Mesh:
     @classmethod
     def from_stl(cls, path: Any, x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None, scale: float = 1.0,
                  sides: str = "auto") -> Mesh:
-        """Triangles of an STL file, text or binary, also packed by gzip; mended, and their sides chosen, as the program
-        does.
+        """Reads a wall from an STL file, as the program does. The file may be text or binary, also packed by gzip.
+        Corners that nearly coincide are joined, and the sides of the wall are chosen.
 
         Parameters
         ----------
         path : str or path
             The file.
         x, r, box
-            The bed, as in `view_factors`.
+            The bed, as for `view_factors`.
         scale : float
-            Its coordinates times this.
+            Factor for the coordinates of the file, 1e-12 to 1e12.
         sides : {"auto", "normals", "both"}
-            The wall are the sides that spheres are on; the outer sides, as the file winds its triangles; both sides.
+            Which sides belong to the wall. "auto": the sides on which spheres lie. "normals": the outer sides, as the
+            file winds its triangles. "both": both sides.
 
         Raises
         ------
         InputError
-            The file cannot be read so; some of its parts are twisted, so that not one side of all is the wall.
+            The file cannot be read, or a part of the surface is twisted and has no two sides.
         """
         from ._files import stl
         packing = Packing(x, r)
@@ -155,7 +158,7 @@ class Mesh:
         return cls(vertices, triangles, back=both or None)
 
     def areas(self) -> NDArray[np.float64]:
-        """(t,) of the triangles [m2]."""
+        """[L^2] (t,) areas of the triangles."""
         a, b, c = (self.vertices[self.triangles[:, k]] for k in range(3))
         return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2)
 
@@ -167,13 +170,13 @@ def _plane(name: str, at: Any) -> tuple[int, int, float]:
 
 
 def _is_open(value: Any) -> bool:
-    """Whether a side is open: "open", or ("open", where)."""
+    """Whether a value is an opening: "open", or ("open", at)."""
     return isinstance(value, str) and value == "open" or (
         isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[0], str) and value[0] == "open")
 
 
 def _opening(name: str, value: Any, packing: Packing) -> tuple[int, int, float]:
-    """Without a place the end of the spheres."""
+    """The plane of an opening. Without a coordinate it lies where the spheres end."""
     if name not in _PLANES:
         raise refuse(f"{name!r} cannot be open; {', '.join(_PLANES)} can")
     if not isinstance(value, str):
@@ -199,7 +202,7 @@ def _body(name: str, value: Any) -> Any:
 
 
 class Container:
-    """A box and walls."""
+    """The periodic box, the walls and the openings of a bed."""
 
     def __init__(self, box: Optional[ArrayLike], walls: Optional[Walls], packing: Packing):
         self.period = np.zeros(3) if box is None else doubles("box", box)
@@ -232,7 +235,7 @@ class Container:
         return numbers[0]
 
     def _triangles(self) -> Any:
-        """All meshes in arrays, which stay as long as this does."""
+        """All meshes as arrays, which this object keeps."""
         first = np.cumsum([0] + [len(mesh.vertices) for _, mesh in self._meshes])
         at = np.concatenate([mesh.vertices for _, mesh in self._meshes])
         numbers = [np.concatenate(parts).astype(np.uint32) for parts in (
@@ -244,7 +247,7 @@ class Container:
                          *(pointer(array, ctypes.POINTER(ctypes.c_uint32)) for array in numbers), len(numbers[1]))
 
     def triangle(self, number: int) -> str:
-        """The triangle that a call names, or nothing."""
+        """The name of a triangle for a message. "": there is no such triangle."""
         for b, mesh in self._meshes:
             if number < len(mesh.triangles):
                 return f"triangle {number} of {self.names[b]}"
@@ -253,14 +256,14 @@ class Container:
 
     @staticmethod
     def with_arrays(value: Any) -> frozenset[str]:
-        """The walls to which a mapping gives more than a number."""
+        """The walls for which a mapping has an array."""
         pairs = value.items() if isinstance(value, Mapping) else ()
         return frozenset(wall for wall, given in pairs if np.ndim(given))
 
     def sides(self, name: str, value: Any, low: float, high: float) -> tuple[Any, Optional[NDArray[np.float64]]]:
-        """A mapping by the walls' names without arrays, one value for each triangle of a `Mesh`, and these for all
-        sides of triangles: [2 t], NaN of others; None: there are none. A number with the same mean of fourth powers by
-        area stands for an array."""
+        """Divides a mapping in two: numbers for walls, and values for the sides of triangles. The number of a wall with
+        an array is the fourth root of the mean fourth power by area. The values are [2 t], NaN for walls without an
+        array. They are None if no wall has an array."""
         arrays = {wall: value[wall] for wall in self.with_arrays(value)}
         if not arrays:
             return value, None
@@ -286,7 +289,7 @@ class Container:
         return numbers, np.ascontiguousarray(np.concatenate(parts).ravel())
 
     def by_mesh(self, values: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-        """Values [2 t] of all sides as (t, 2) of each mesh, by the walls' names."""
+        """Values [2 t] of all sides as (t, 2) for each mesh, by the name of the wall."""
         ends = np.cumsum([len(mesh.triangles) for _, mesh in self._meshes])
         parts = np.split(values.reshape(-1, 2), ends[:-1]) if self._meshes else []
         return {self.names[b]: part for (b, _), part in zip(self._meshes, parts)}
@@ -296,25 +299,26 @@ class Container:
         return 2 * sum(len(mesh.triangles) for _, mesh in self._meshes)
 
     def _bounded(self, axis: int) -> bool:
-        """Whether walls go on for ever along an axis: it is periodic, between two planes or within the cylinder."""
+        """Whether an axis has an end or a period: two planes, a period, or the cylinder across it."""
         ends = {f"{_AXES[axis]}min", f"{_AXES[axis]}max"}
         return bool(self.period[axis] > 0 or ends <= {*self.names, *self.opened} or (axis < 2 and "cylinder" in self.names))
 
     def closed(self) -> bool:
-        """Whether nothing can leave."""
+        """Whether no radiation can leave."""
         return not self.opened and all(self._bounded(axis) for axis in range(3))
 
     def reaches(self, diameter: float) -> bool:
-        """Whether a sphere that cannot be where it is reaches beyond an open side: it is not its own image."""
+        """Whether a refused sphere of this diameter reaches beyond an opening. Otherwise the sphere overlaps its own
+        image."""
         return bool(self.opened) and not ((self.period > 0) & (self.period < diameter)).any()
 
     def missing(self) -> str:
-        """A side without an end where walls go on for ever."""
+        """The name of a side that makes the walls endless."""
         return next((name for name, (axis, _) in reversed(_PLANES.items())
                      if not self._bounded(axis) and name not in {*self.names, *self.opened}), "zmax")
 
     def known(self, name: str, walls: Collection[str]) -> None:
-        """Refuses names of walls that there are not, for an argument."""
+        """Refuses names of walls that do not exist, for an argument."""
         opened, wrong = sorted(set(walls) & self.opened), sorted(set(walls) - set(self.names))
         if opened:
             raise refuse(f"{name}: {', '.join(opened)} is open: as black and as hot as the surroundings")
@@ -324,8 +328,8 @@ class Container:
 
     def per_wall(self, name: str, value: Any, low: float, high: float,
                  others: frozenset[str] = frozenset()) -> NDArray[np.float64]:
-        """[walls] values [low, high] of a mapping by the walls' names; a number is for all walls, but for `others`,
-        which need none and are NaN."""
+        """[walls] values, low to high, of a mapping by name. A number holds for all walls except `others`. Walls of
+        `others` need no value, and their value is NaN."""
         if not self.names and value is not None:
             raise refuse(f"{name} is given, and there are no walls")
         if not isinstance(value, Mapping):

@@ -21,45 +21,45 @@ _METHODS = {"corrected": 0, "patches": 1, "factors": 2}
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Advance:
-    """What a span of time has brought. Energies [J], positive where heat was gained: the spheres have lost what walls
-    and surroundings have gained, less what their powers have supplied."""
+    """The result of a span of time. An energy is above 0 where heat was gained. The heat stored in the spheres, and the
+    energies of walls and surroundings, add up to the energy that the powers have supplied."""
 
     temperatures: NDArray[np.float64]
-    """(n,) of the spheres at the end [K]."""
+    """[K] (n,) temperatures of the spheres at the end."""
     spheres: NDArray[np.float64]
-    """(n,) net radiative power of each at the end [W]."""
+    """[W] (n,) net radiative power of each sphere at the end."""
     walls: dict[str, float]
-    """Energy that radiation has brought to each wall, by its name."""
+    """[J] energy that each wall has gained by radiation, by name."""
     surroundings: float
-    """Energy that it has brought to the surroundings."""
+    """[J] energy that the surroundings have gained by radiation."""
     steps: int
-    """Taken."""
+    """Steps taken."""
     refused: int
-    """Steps that were tried besides."""
+    """Steps tried and refused."""
     corrections: int
-    """Solutions by patches that have corrected the exchange factors."""
+    """Solutions by patches that corrected the exchange factors."""
     error: float
-    """The largest estimate of a step, relative to a temperature."""
+    """Largest estimated error of a step, relative to a temperature."""
 
 
 class Transient(Bed):
-    """A bed whose temperatures change with time: capacity dT/dt = power + what radiation brings.
+    """A bed whose temperatures change with time: capacity dT/dt = power + net radiative power.
 
-    Steps are implicit, of second order, and keep the energy; small spheres among large ones set no limit to them.
-    Memory is freed by `close`, at the end of ``with``, or with the object. One thread at a time may use it.
+    Steps are implicit and of second order. They keep the energy. Small spheres among large ones do not limit the step.
+    The memory is freed by `close`, at the end of ``with``, or with the object. One thread at a time may use the object.
 
     Parameters
     ----------
     x, r, box, walls, ids, threads, progress
-        As of `Heat`.
+        As for `Heat`.
     method : {"corrected", "patches", "factors"}
-        Exchange factors, made by the first step in a place, and corrected by patches where powers have changed;
-        patches for each step, for beds that move after a step or two; exchange factors alone, which err by some
-        percent and need less memory.
+        "corrected": by exchange factors, which patches correct from time to time. For many steps at the same positions.
+        "patches": by patches in every step. For beds that move after a step or two, and for walls of unknown
+        temperature. "factors": by exchange factors alone. Powers are 2 to 5 % off. Takes less memory.
     error : float, optional
-        Of the rows of exchange factors. Default: 0.03, alone 0.01.
+        The error allowed in rows of exchange factors, 1e-6 to 1. Default: 0.03, or 0.01 for "factors".
     directions, points, patches : optional
-        As of `Heat`.
+        As for `Heat`. The default of points is 128 for "corrected".
 
     Examples
     --------
@@ -95,34 +95,39 @@ class Transient(Bed):
         Parameters
         ----------
         temperature : (n,) array or float
-            Of the spheres at the beginning [K], above 0.
+            [K] Temperatures of the spheres at the beginning, above 0.
         duration : float
-            Of the span [s].
+            [s] Length of the span.
         capacity : (n,) array or float
-            Heat that warms a sphere by 1 K [J/K], above 0: its mass times its heat capacity.
+            [J/K] Heat capacities of the spheres, mass times specific heat, above 0.
         emissivity : (n,) array or float
-            Of the spheres, 0 to 1; 0 reflects all.
+            Emissivities of the spheres, 0 to 1. 0 reflects everything.
         power : (n,) array or float, optional
-            What heats the spheres from inside [W].
+            [W] Power that heats each sphere from inside. Default: 0.
         surroundings, wall_temperature, wall_emissivity
-            As of `Heat.solve`, at the beginning.
+            As for `Heat.solve`, at the beginning of the span.
         surroundings_end, wall_temperature_end : optional
-            At the end [K], linear in between. Default: constant, as the triangles of a `Mesh` always are whose
-            ``wall_temperature`` is an array.
+            [K] At the end of the span, linear in between. Default: constant. Triangles with temperatures of their own
+            (``wall_temperature`` is an array) always keep them.
         wall_power, insulated : optional
-            As of `Heat.solve`: walls of unknown temperature, which have no capacity. Only with ``method="patches"``.
+            As for `Heat.solve`. These walls have no heat capacity. Only with ``method="patches"``.
         step : float, optional
-            Steps of this length at most [s], all alike. Default: automatic.
+            [s] All steps are equal and at most this long. Default: automatic steps.
         tolerance : float, optional
-            Of automatic steps: error of a temperature, relative. Default: 1e-4.
+            Of automatic steps: relative error of a temperature. Default: 1e-4.
         sigma : float
-            Emission is ``sigma T**4``.
+            [W/(m2 K4)] Emission is ``sigma T**4``.
+
+        Returns
+        -------
+        Advance
 
         Raises
         ------
         InputError
-            Also where a sphere would fall below zero.
-        StateError, OutOfMemory
+            A value is out of its range, or a sphere would fall below 0 K.
+        StateError, OutOfMemory, Cancelled
+            As for `Heat.solve`.
         """
         container, names, n = self._container, self._packing.names, self.n
         if surroundings is None and not container.closed():

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._errors import ARGUMENT, InputError
 
 HOTTEST, STRONGEST = 1e20, 1e100
-"""Bounds of temperatures [K] and powers [W]."""
+"""The largest temperature [K] and power [W]."""
 
 
 def refuse(text: str, *spheres: int) -> InputError:
@@ -18,7 +18,7 @@ def refuse(text: str, *spheres: int) -> InputError:
 
 
 def whole(name: str, value: Optional[int], low: int, high: int) -> int:
-    """A whole number [low, high]; None: 0, the library's default."""
+    """A whole number, low to high. None: 0, which stands for the default of the library."""
     if value is None:
         return 0
     try:
@@ -31,7 +31,7 @@ def whole(name: str, value: Optional[int], low: int, high: int) -> int:
 
 
 def real(name: str, value: Optional[float], low: float, high: float) -> float:
-    """A number [low, high]; None: 0, the library's default."""
+    """A number, low to high. None: 0, which stands for the default of the library."""
     if value is None:
         return 0.0
     number = float(value)
@@ -41,8 +41,8 @@ def real(name: str, value: Optional[float], low: float, high: float) -> float:
 
 
 def doubles(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    """An array of float64 at addresses that the processor takes, the given one if it is such; what has no plain number
-    is refused."""
+    """An aligned array of float64: the given array, or a copy. An array with masked elements, or without numbers, is
+    refused."""
     if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
         raise refuse(f"{name} has masked elements")
     array = np.asarray(value)
@@ -56,7 +56,7 @@ def doubles(name: str, value: ArrayLike) -> NDArray[np.float64]:
 
 def per_sphere(name: str, value: ArrayLike, n: int, low: float, high: float, names: "Names",
                some: bool = False) -> NDArray[np.float64]:
-    """[n] values [low, high], or with `some` NaN, contiguous; a number is for all spheres."""
+    """[n] values, low to high, contiguous. A number holds for all spheres. With `some`, NaN is allowed."""
     array = doubles(name, value)
     if array.shape not in ((), (n,)):
         raise refuse(f"{name} has the shape {array.shape}; a number or {n} of them, one for each sphere, are wanted")
@@ -69,7 +69,7 @@ def per_sphere(name: str, value: ArrayLike, n: int, low: float, high: float, nam
 
 
 def marks(wanted: Optional[ArrayLike], n: int) -> Optional[NDArray[np.uint8]]:
-    """[n] 1 for the rows wanted, given as a mask or as positions."""
+    """[n] marks of rows: 1 if the row is wanted. `wanted` is a mask or positions."""
     if wanted is None:
         return None
     array = np.asarray(wanted)
@@ -85,7 +85,7 @@ def marks(wanted: Optional[ArrayLike], n: int) -> Optional[NDArray[np.uint8]]:
 
 
 class Names:
-    """What spheres are called in messages: by id where there are ids, else by position."""
+    """The names of spheres in messages: ids if there are any, else positions."""
 
     def __init__(self, ids: Optional[NDArray[np.uint64]]):
         self._ids = ids
