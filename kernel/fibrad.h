@@ -366,12 +366,12 @@ typedef struct fibrad_rows fibrad_rows; /* a collection of rows, see below */
 
 /* One row of factors. The caller chooses where the entries go.
  *
- *              into arrays of the caller         into a collection
- *   set        col, f, body, capacity; rows NULL rows
- *   results    fill these arrays                 are appended to the collection; col, f and body then point into the
- *                                                collection, until the next row is appended
- *   too small  FIBRAD_E_CAPACITY; `length` is    FIBRAD_E_CAPACITY; rows->memory.needed is the size that suffices
- *              the capacity that suffices
+ *               into arrays of the caller          into a collection
+ *   before        Set col, f, body and capacity.     Set rows.
+ *   after         The arrays have the row.           The row is appended. col, f and body point into the collection
+ *                                                    until the next row is appended.
+ *   no room       FIBRAD_E_CAPACITY. `length` is     FIBRAD_E_CAPACITY. rows->memory.needed is the size that
+ *                 the capacity that suffices.        suffices.
  *
  * The entries, the factors to walls, `escaped` and `beyond` together are 1, to rounding. */
 typedef struct fibrad_row {
@@ -593,7 +593,7 @@ int fibrad_matrix_average(fibrad_matrix *matrix, uint32_t task);
  *   Errors   _ARGUMENT
  *            _STATE: the matrix is closed already, or the rows have changed
  *   Cost     O(entries), and some 40 times as much for step 4, step 5 and factors that are not by exact areas
- *   Source   docs/methods.md section 5, docs/heat.md */
+ *   Source   docs/methods.md section 5, docs/methods_heat.md sections 3 and 4 */
 int fibrad_matrix_close(fibrad_matrix *matrix);
 
 /* Reads a matrix.
@@ -645,12 +645,12 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
  * Radiation first travels from sphere i to the surface that it meets. This first leg is a beam row, with 256 points per
  * window up to 144 directions and exact areas above. Then paths follow the reflections.
  *
- *   field                        _row   _displacement   _body
- *   emissivity                   needed needed          NULL: all spheres are black
- *   body_emissivity              needed with walls      NULL: all walls are black
- *   directions, tolerance        used   not used        not used
- *   cutoff                       used   used            must be 0
- *   paths, seed                  used   used            used */
+ *   field                   _row               _displacement      _body
+ *   emissivity              needed             needed             NULL: all spheres are black
+ *   body_emissivity         needed with walls  needed with walls  NULL: all walls are black
+ *   directions, tolerance   used               not used           not used
+ *   cutoff                  used               used               must be 0
+ *   paths, seed             used               used               used */
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
     const double *body_emissivity; /* [bodies], 0 to 1 */
@@ -672,7 +672,7 @@ typedef struct fibrad_exchange_rule {
  *   Errors   as fibrad_beam_row. The emissivities of sphere i, of walls, and of spheres that are met are checked.
  *   Cost     the beam row, and 0.1 to 0.2 microseconds per ray. A path has about 2 rays at emissivity 0.8 and 14 at
  *            0.2. If work memory may grow, this function takes up to 6 MB more, for speed.
- *   Source   docs/heat.md */
+ *   Source   docs/methods_heat.md section 2 */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);
 
@@ -690,7 +690,7 @@ int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK, _SUM
  *            _UNSUPPORTED: an endless wall, a cutoff, or a known region
  *   Cost     0.1 to 0.5 microseconds per ray
- *   Source   docs/heat.md */
+ *   Source   docs/methods_heat.md section 4 */
 int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t body, const fibrad_exchange_rule *rule,
                          uint32_t part, fibrad_body_row *row);
 
@@ -716,7 +716,7 @@ typedef struct fibrad_displacement {
  *   Output   displacement
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK
  *   Cost     0.1 to 0.2 microseconds per ray
- *   Source   docs/heat.md */
+ *   Source   docs/methods_heat.md section 12 */
 int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
                                  const fibrad_exchange_rule *rule, fibrad_displacement *displacement);
 

@@ -17,7 +17,7 @@
  *            step 2.
  * Units      as in fibrad.h. Powers are in sigma K^4 L^2. They are watts if L is the metre and sigma is in W/(m2 K4).
  * Words      Memory, errors and the layout of comments are as in fibrad.h.
- * Source     docs/heat.md
+ * Source     docs/methods_heat.md sections 5 to 9. docs/heat.md says what is assumed.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_HEAT_H

@@ -1,8 +1,11 @@
 /* fix_fibrad.h - thermal radiation between the particles of a LAMMPS simulation, walls and surroundings.
  *
- * One source for LAMMPS of 29 Sep 2021 (Debian 12) and newer; docs/lammps.md has the syntax. Temperatures are the
- * atom's own where the atom style has `temperature` and `heatflow`: then `fix heat/flow` steps them. Otherwise they are
- * a vector of `fix property/atom`, which this fix steps itself.
+ * One source serves LAMMPS of 29 Sep 2021 (Debian 12) and newer. docs/lammps.md has the syntax.
+ *
+ * Temperatures are stored in one of two places.
+ *   atom style with `temperature` and `heatflow`  This fix adds powers to heatflow. `fix heat/flow` steps temperatures.
+ *   other atom styles                             Temperatures are a vector of `fix property/atom`. This fix steps
+ *                                                 them.
  *
  * SPDX-License-Identifier: MIT. LAMMPS is GPL-2: so are binaries made with its headers. */
 #ifndef LMP_FIX_FIBRAD_H
@@ -38,13 +41,14 @@ class FixFibrad : public Fix {
     static void *create(void *lmp, int narg, char **arg);
 
   private:
-    // a number, a number per type, or a vector of fix property/atom
+    // A value for each atom: a number for all, a number for each type, or a vector of fix property/atom.
     struct Property {
-        std::vector<double> of_type; // [ntypes + 1]; empty: not given, or of_atom
-        std::string of_atom;         // "d_NAME"
+        std::vector<double> of_type; // [ntypes + 1], by type; empty: not given, or of_atom is set
+        std::string of_atom;         // "d_NAME", the vector; empty: of_type is set
         bool given() const { return !of_type.empty() || !of_atom.empty(); }
     };
 
+    // Reading the arguments of the fix.
     class Words;
     void read_wall(Words &);
     void read_opening(Words &, int face);
@@ -52,39 +56,48 @@ class FixFibrad : public Fix {
     void tell_of_meshes(uint32_t first, uint32_t bodies, const std::string &path);
     void read_temperature(Words &);
     Property read_property(Words &);
-    double *vector(const std::string &name);
-    bool known(const std::string &name);
-    void need(const std::string &name);
-    std::vector<double> values(const Property &);
+
+    // Vectors of atoms, of LAMMPS or of fix property/atom.
+    double *vector(const std::string &name);      // NULL: there is none, or this rank has no atoms
+    bool known(const std::string &name);          // whether any rank has the vector
+    void need(const std::string &name);           // stops with an error if a rank with atoms lacks the vector
+    std::vector<double> values(const Property &); // [member]
     double mass(int i) const;
-    void select();
+
+    // Steps of the simulation.
+    void select(); // finds member and tags
     void make_rows();
     void find_powers();
-    void check_step(const std::vector<double> &temperature);
-    void check(int status);
-    void say(const std::string &);
+    void check_step(const std::vector<double> &temperature); // refuses steps of heat that are not stable
+    void check(int status);                                  // stops with the message of an error
+    void say(const std::string &);                           // a line in the log
 
-    int heat_every, rows_every;
+    // Arguments of the fix.
+    int heat_every, rows_every; // steps from powers to powers, and from rows to rows; heat_every 0: no powers
     Property emissivity, cp;
-    std::string temperature, rows_file;
-    double surroundings, sigma, initial;
+    std::string temperature; // name of the vector of temperatures
+    std::string rows_file;   // files to write rows to; empty: none
+    double surroundings;     // temperature
+    double sigma;            // in units of the simulation
+    double initial;          // temperature of new atoms
     fibrad_insitu_config config;
     std::vector<fibrad_body> walls;
     std::vector<fibrad_plane> openings;
     std::vector<double> wall_temperature, wall_emissivity;
     mesh_walls meshes;
-    std::vector<int> wall_face; // 2 axis + upper where the wall is a face of the box, otherwise -1
+    std::vector<int> wall_face; // [walls], 2 axis + upper if the wall moves with a face of the box, else -1
 
+    // State.
     fibrad_insitu *insitu;
-    fibrad_insitu_totals totals;
-    std::vector<double> q;      // [nmax] power of each atom
-    std::vector<int> member;    // atoms of the group that this rank owns
-    std::vector<uint64_t> tags; // [member]
-    bool warned, cut_warned;
+    fibrad_insitu_totals totals; // of the last powers
+    std::vector<double> q;       // [nmax], power of each atom
+    std::vector<int> member;     // atoms of the group that this rank owns
+    std::vector<uint64_t> tags;  // [member], their ids
+    bool warned, cut_warned;     // whether the warnings about steps and about the cutoff were given
 
-    // since the run began
-    double begun;
-    fibrad_insitu_facts before;
+    // Since the beginning of the run.
+    double begun;               // s, time when the run began
+    fibrad_insitu_facts before; // facts when the run began
     int rows_made, powers_found;
 };
 

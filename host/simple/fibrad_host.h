@@ -105,7 +105,7 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
  *   Output   factors: free with fibrad_bed_free
  *   Errors   as fibrad_scene_init, fibrad_exchange_row and fibrad_matrix_init; _CANCELLED
  *   Cost     as fibrad_view_factors
- *   Source   docs/heat.md */
+ *   Source   docs/methods_heat.md sections 2 to 4 */
 int fibrad_exchange_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                             const fibrad_exchange_rule *rule, const fibrad_bed_options *options, fibrad_run *run,
                             fibrad_bed_factors **factors);
@@ -144,7 +144,7 @@ typedef struct fibrad_radiation fibrad_radiation;
  *   Output   radiation: free with fibrad_radiation_free
  *   Errors   as fibrad_scene_init, fibrad_heat_init and fibrad_heat_trace; _CANCELLED
  *   Cost     that of the traces over the threads
- *   Source   docs/heat.md */
+ *   Source   docs/methods_heat.md sections 5 to 9 */
 int fibrad_radiation_new(fibrad_radiation **radiation, const fibrad_scene_config *config, const fibrad_spheres *spheres,
                          const fibrad_heat_config *heat_config, fibrad_run *run);
 
@@ -233,7 +233,7 @@ typedef struct fibrad_transient_config {
  *            run: as for fibrad_radiation_new
  *   Output   transient: free with fibrad_transient_free
  *   Errors   as fibrad_scene_init; except by FACTORS as fibrad_radiation_new
- *   Source   docs/heat.md, In time */
+ *   Source   docs/methods_heat.md section 11 */
 int fibrad_transient_new(fibrad_transient **transient, const fibrad_scene_config *scene, const fibrad_spheres *spheres,
                          const fibrad_transient_config *config, fibrad_run *run);
 
@@ -308,7 +308,7 @@ typedef struct fibrad_span {
  *            as fibrad_exchange_factors or fibrad_radiation_solve
  *            After an error the temperatures are as before.
  *   Cost     two or three solutions per step; with factors some milliseconds each for 1e4 spheres
- *   Source   R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; docs/heat.md, In time */
+ *   Source   R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; docs/methods_heat.md section 11 */
 int fibrad_transient_advance(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_span *span);
 
 /* Facts of the scene, and where the last error was, as fibrad_radiation_describe.
