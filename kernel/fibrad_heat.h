@@ -182,6 +182,7 @@ typedef struct fibrad_heat_result {
     double residual;                /* out: of the radiosities, as `tolerance` */
     uint32_t sweeps;                /* out */
     double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: absorbed; if endless, near the bed; or NULL */
+    double surroundings_error;      /* sigma K^4 L^2, out: estimated error of surroundings_power */
 } fibrad_heat_result;
 
 /* Reads the solution.

@@ -52,6 +52,7 @@ static double missed[] = {.25, .5, .75}, wall_missed[] = {2, NAN}, none_missed[]
 static fibrad_heat_result result = {.power = watts,
                                     .body_power = wall_watts,
                                     .surroundings_power = 0.1,
+                                    .surroundings_error = 0.125,
                                     .temperature = kelvins,
                                     .body_temperature = wall_kelvins,
                                     .power_error = missed,
@@ -243,7 +244,7 @@ START_TEST(heat) {
                  "i,T_K,q_W,q_error_W,T_error_K,body\n0,600,-0.001,0.25,0,\n70,%s,2.5,0.5,1,\n"
                  "123456789012,%s,1e+300,0.75,0,\n%s"
                  "-2,900,-0.1,2,0,cylinder\n-3,77,1e+17,,1,zmin\n",
-                 shortest(kelvins[1]), shortest(kelvins[2]), closed ? "" : "-1,300,0.1,,0,surroundings\n");
+                 shortest(kelvins[1]), shortest(kelvins[2]), closed ? "" : "-1,300,0.1,0.125,0,surroundings\n");
         ck_assert_str_eq(text, all);
         write_heat(write_heat_json, &(struct contents){.bed = &bed, .walls = &walls});
         ck_assert((strstr(text, "surroundings") == NULL) == closed);

@@ -243,7 +243,10 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
     report_value(report, "emitted_W", heat->emitted, 6);
     report_measured(report, "power_rms_W", heat->power_rms, heat->error);
     report_measured(report, "power_largest_W", heat->largest, heat->error);
-    if (request->given.ambient) report_measured(report, "surroundings_W", result->surroundings_power, heat->error);
+    if (request->given.ambient) {
+        report_measured(report, "surroundings_W", result->surroundings_power, result->surroundings_error);
+        report_value(report, "surroundings_error_W", result->surroundings_error, 2);
+    }
     wall_values_report(&request->problem.walls, result->body_power, "_W", 6, report);
     if (heat->unknown) {
         report_measured(report, "temperature_min_K", heat->coldest, heat->temperature_error);

@@ -181,6 +181,7 @@ module fibrad
         real(c_double) :: error_patches = 0, error_beams = 0, residual = 0
         integer(c_int32_t) :: sweeps = 0
         type(c_ptr) :: body_absorbed = c_null_ptr
+        real(c_double) :: surroundings_error = 0
     end type c_heat_result
 
     type, bind(C) :: c_transient_config
@@ -579,8 +580,9 @@ contains
     !   wall_power          (walls) [W] out
     !   surroundings_power  [W] out
     !   error               [W] out: estimated error of power, root mean square over the spheres
+    !   surroundings_error  [W] out: estimated error of surroundings_power
     subroutine heat_solve(heat, temperature, emissivity, surroundings, power, status, wall_temperature, wall_emissivity, &
-                          wall_power, surroundings_power, error)
+                          wall_power, surroundings_power, error, surroundings_error)
         class(fibrad_heat), intent(inout) :: heat
         real(c_double), intent(in), contiguous, target :: temperature(:), emissivity(:)
         real(c_double), intent(in) :: surroundings
@@ -588,7 +590,7 @@ contains
         integer, intent(out) :: status
         real(c_double), intent(in), optional, contiguous, target :: wall_temperature(:), wall_emissivity(:)
         real(c_double), intent(inout), optional :: wall_power(:)
-        real(c_double), intent(inout), optional :: surroundings_power, error
+        real(c_double), intent(inout), optional :: surroundings_power, error, surroundings_error
         type(c_heat_sources) :: sources
         type(c_heat_result) :: result
         real(c_double), target :: walls(max(1, heat%walls))
@@ -609,6 +611,7 @@ contains
         if (present(wall_power)) wall_power = walls(1:heat%walls)
         if (present(surroundings_power)) surroundings_power = result%surroundings_power
         if (present(error)) error = hypot(result%error_patches, result%error_beams)
+        if (present(surroundings_error)) surroundings_error = result%surroundings_error
     end subroutine heat_solve
 
     ! Net powers, and temperatures where they are unknown. Emissivities of spheres follow a law.

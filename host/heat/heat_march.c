@@ -371,6 +371,7 @@ int heat_march(struct bed_options *asked, const struct march_options *march, con
     m.span = (fibrad_span){
         .temperature = now, .step = march->step, .body_energy = m.wall_energy, .observe = note_point, .context = &m};
     for (uint32_t i = 0; i < bed->n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
+    result->surroundings_error = NAN;
     for (uint32_t k = 0; k < problem->walls.count; ++k) result->body_error[k] = result->body_temperature_error[k] = NAN;
     if (!status) status = choose_model(&m);
     if (!status) status = find_capacities(&m, metres, &capacity);

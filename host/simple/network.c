@@ -141,7 +141,7 @@ static void go(fibrad_network *w, const fibrad_heat_sources *s, double product) 
 /* Powers from the emissions in `direction`, L of which is in `product`. */
 static void read_powers(const fibrad_network *w, const fibrad_heat_sources *s, fibrad_heat_result *result) {
     const fibrad_factors *d = &w->factors->matrix;
-    result->surroundings_power = 0;
+    result->surroundings_power = 0, result->surroundings_error = NAN;
     for (uint32_t b = 0; b < d->bodies; ++b) result->body_power[b] = 0;
     for (uint32_t i = 0; i < d->n; ++i) {
         result->power[i] = received_outside(w, s, i) - w->product[i];

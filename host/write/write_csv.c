@@ -160,7 +160,8 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
     }
     if (!what->walls) return STATUS_OK;
     if (!isnan(surroundings))
-        write_power(&csv, SURROUNDINGS, "surroundings", surroundings, result->surroundings_power, NAN, 0);
+        write_power(&csv, SURROUNDINGS, "surroundings", surroundings, result->surroundings_power,
+                    result->surroundings_error, 0);
     for (uint32_t k = 0; k < what->walls->count; ++k)
         write_power(&csv, FIRST_WALL - (int64_t)k, contents_body(what, k, name), result->body_temperature[k],
                     result->body_power[k], result->body_error[k], result->body_temperature_error[k]);

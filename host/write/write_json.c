@@ -127,7 +127,7 @@ int write_heat_json(FILE *file, const struct contents *what, bool first) {
     json_reals(file, ",", "q_error_W", result->power_error, n, 1, NULL);
     json_reals(file, ",", "T_error_K", result->temperature_error, n, 1, NULL);
     if (what->walls && !isnan(surroundings))
-        json_power(file, ",", "surroundings", surroundings, result->surroundings_power, NAN, 0);
+        json_power(file, ",", "surroundings", surroundings, result->surroundings_power, result->surroundings_error, 0);
     for (uint32_t k = 0; k < walls; ++k)
         json_power(file, k > 0 ? "," : ",\"walls\":{", contents_body(what, k, name), result->body_temperature[k],
                    result->body_power[k], result->body_error[k], result->body_temperature_error[k]);

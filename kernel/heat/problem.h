@@ -148,6 +148,7 @@ struct fibrad_heat {
     double *temperature;     /* [bodies] given, or found; NaN: none */
     double *halves;          /* [bodies] by how much the power by even directions exceeds that by odd ones */
     double *reflected; /* [spheres][2] of the beams of each, what spheres reflect that they meet, and what walls */
+    double *escaping;  /* [spheres] as halves, of what each gives to the surroundings */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first that is no sphere */
 
@@ -210,6 +211,16 @@ static inline double fibrad_heat_taken_beyond(const fibrad_heat *heat, uint32_t 
     const uint32_t facing = fibrad_heat_facing(heat, k);
     const double eps = heat->wall_emissivity[k], other = facing < FIBRAD_WALLS ? heat->wall_emissivity[facing] : 1;
     return eps / (1 - (1 - eps) * (1 - other));
+}
+
+/* The part of the power of a body that is the surroundings': of themselves, of openings, of what is beyond walls. */
+static inline double fibrad_heat_outside(const fibrad_heat *heat, uint32_t body) {
+    const uint32_t k = body - heat->spheres, beyond = body - fibrad_heat_beyond(heat, 0);
+    if (body < heat->spheres) return 0;
+    if (k < FIBRAD_WALLS) return heat->openings >> k & 1;
+    if (body < fibrad_heat_beyond(heat, 0)) return 0;
+    if (beyond >= FIBRAD_WALLS) return 1;
+    return fibrad_heat_facing(heat, beyond) < FIBRAD_WALLS ? 0 : 1 - fibrad_heat_taken_beyond(heat, beyond);
 }
 
 static inline const fibrad_heat_pencil *fibrad_heat_pencil_at(const unsigned char *at) { return (const void *)at; }

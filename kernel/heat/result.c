@@ -155,6 +155,58 @@ static double power_error_of(const fibrad_heat *heat, const heat_errors *errors,
     return exchange > 0 ? squared(smooth) + (own_error(heat, errors, b) + pooled) / 2 : 0;
 }
 
+/* Area that rays bring to the surroundings. */
+static double rays_outside(const fibrad_heat *heat) {
+    bool outside[FIBRAD_HEAT_OTHERS];
+    const uint32_t *first = heat->first + heat->spheres, bodies = heat->bodies - heat->spheres;
+    double area = 0;
+    uint32_t from = 0, to = 0;
+    for (uint32_t k = 0; k < bodies; k++) outside[k] = fibrad_heat_outside(heat, heat->spheres + k) > 0;
+    for (uint32_t r = 0; r < heat->rays; r++) {
+        const fibrad_heat_ray *ray = &heat->ray[r];
+        if (ray->area == 0) continue;
+        while (ray->from < first[from] || ray->from >= first[from + 1]) from = (from + 1) % bodies;
+        while (ray->to < first[to] || ray->to >= first[to + 1]) to = (to + 1) % bodies;
+        if (outside[from] != outside[to]) area += ray->area;
+    }
+    return area;
+}
+
+/* Square of what beams miss of the power that spheres give to the surroundings: as many samples as there are spheres,
+ * whose own errors make up for them where they are few. */
+static double missed_by_spheres(const fibrad_heat *heat, const heat_errors *errors) {
+    double square = 0, spheres = 0, all = 0;
+    for (uint32_t b = 0; b < heat->spheres; b++)
+        square += squared(BEAM_ERROR * heat->escaping[b]), spheres += heat->escaping[b] != 0;
+    if (spheres == 0 || spheres >= SAMPLES) return square;
+    for (uint32_t b = 0; b < heat->spheres; b++) all += power_error_of(heat, errors, b);
+    return (spheres * square + (SAMPLES - spheres) * all) / SAMPLES;
+}
+
+/* Square of what rays miss of the power that walls do, as of what these exchange. */
+static double missed_by_walls(const fibrad_heat *heat, const heat_errors *errors) {
+    double missed = 0, exchanges = 0;
+    for (uint32_t b = heat->spheres; b < fibrad_heat_beyond(heat, 0); b++)
+        missed += squared(beam_error(heat, b)), exchanges += squared(exchange_of(heat, errors, b));
+    if (!(exchanges > 0)) return 0;
+    return missed / exchanges * squared(rays_outside(heat)) * (errors->all.variance + squared(errors->all.mean));
+}
+
+/* Square of the estimated error of the power of the surroundings: what extrapolation has changed, what walls send out
+ * wrongly, and what even and odd beams differ by, one half as this says by itself, one half by its shares. */
+static double surroundings_error_of(const fibrad_heat *heat, const heat_errors *errors) {
+    double halves = 0, changed = 0, area = 0;
+    for (uint32_t b = heat->spheres; b < heat->bodies; b++) {
+        const double outside = fibrad_heat_outside(heat, b);
+        halves += outside * heat->halves[b], changed += outside * (heat->power[b] - heat->coarse[b]);
+        area += outside * spread_of(heat, b).area;
+    }
+    const double seen = errors->all.area > 0 ? fibrad_min(1, area / errors->all.area) : 0;
+    const double missed = missed_by_spheres(heat, errors) + missed_by_walls(heat, errors);
+    return squared(extrapolation_error(heat, changed)) + squared(seen * errors->walls) +
+           (squared(BEAM_ERROR * halves) + missed) / 2;
+}
+
 static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
     const heat_errors errors = errors_of(heat);
     const double spheres = fibrad_max(1, heat->spheres);
@@ -167,6 +219,7 @@ static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
     }
     for (uint32_t k = 0; k < heat->given_bodies && result->body_error != NULL; k++)
         result->body_error[k] = fibrad_sqrt(power_error_of(heat, &errors, fibrad_heat_body(heat, heat->slot[k])));
+    result->surroundings_error = fibrad_sqrt(surroundings_error_of(heat, &errors));
     patches = fibrad_min(patches, all);
     result->error_patches = fibrad_sqrt(patches / spheres);
     result->error_beams = fibrad_sqrt((all - patches) / spheres);

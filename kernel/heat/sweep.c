@@ -106,6 +106,31 @@ static double reflected_beams(const fibrad_heat *heat, const fibrad_heat_pencil 
     return part * beams;
 }
 
+/* What the beams of a pencil to another body bring the surroundings, if that is theirs. */
+static double escaping_flow(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil) {
+    const double outside = fibrad_heat_outside(heat, fibrad_heat_other_body(heat, pencil->body));
+    const double *mine = heat->source + fibrad_heat_first_of_row(heat, owner);
+    const double *other = heat->source + fibrad_heat_other_block(heat, pencil->body);
+    const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
+    const uint8_t *strand = fibrad_heat_strands(pencil), *end = strand + pencil->strands;
+    double flow = 0;
+    for (; strand < end && outside > 0; strand++) {
+        const uint32_t a = FIBRAD_HEAT_FOUR * bundle->from, b = FIBRAD_HEAT_FOUR * bundle->to + (*strand >> 3 & 3);
+        flow += ((*strand & 7) + 1) * (mine[a] - other[b]);
+        bundle += *strand >> 7;
+    }
+    return outside > 0 ? outside * beam_area(heat, owner, pencil) * flow : 0;
+}
+
+/* Notes what a pencil tells of the sphere that it leaves, in the sweep for the error. */
+static void note_pencil(const fibrad_heat *heat, uint32_t row, const fibrad_heat_pencil *pencil) {
+    const uint32_t body = fibrad_heat_body_of_row(heat, row);
+    const bool other = pencil->body >= heat->rows;
+    if (body >= heat->spheres) return;
+    if (other) heat->escaping[body] += escaping_flow(heat, row, pencil);
+    if (row == body) heat->reflected[2 * (size_t)row + other] += reflected_beams(heat, pencil);
+}
+
 /* Where a row gathers: one of a wall does so with what its part brings to walls. */
 static double *gathered_by(const fibrad_heat *heat, uint32_t row, const struct gathering *g) {
     const uint32_t first = fibrad_heat_first_of_row(heat, row), others = fibrad_heat_others(heat);
@@ -124,8 +149,7 @@ static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, double *own
             const bool both = fibrad_heat_same_part(heat, place, pencil->body);
             bring_ends(heat, place, pencil, own, both ? gathered_by(heat, pencil->body, g) : g->waste, g);
         }
-        if (heat->phase == FIBRAD_HEAT_CHECK && place < heat->spheres)
-            heat->reflected[2 * (size_t)place + (pencil->body >= heat->rows)] += reflected_beams(heat, pencil);
+        if (heat->phase == FIBRAD_HEAT_CHECK) note_pencil(heat, place, pencil);
         at += fibrad_heat_pencil_bytes(pencil);
     }
 }
@@ -156,6 +180,7 @@ static void sweep_rows(const fibrad_heat *heat, uint32_t part, struct gathering 
     for (uint32_t k = begin; k < end; k++) {
         fibrad_zero(gathered_by(heat, place[k], g), heat->config.patches * sizeof(double));
         heat->reflected[2 * (size_t)place[k]] = heat->reflected[2 * (size_t)place[k] + 1] = 0;
+        heat->escaping[place[k]] = 0;
     }
     for (uint32_t row = n; row < heat->rows; row++)
         if (heat->part[row] == part)

@@ -73,7 +73,7 @@ contains
     subroutine open_sides()
         type(fibrad_factors) :: found
         type(fibrad_heat) :: heat
-        real(dp) :: power(1), wall_power(2), outside, lids(3), closed
+        real(dp) :: power(1), wall_power(2), outside, lids(3), closed, missed
         integer :: status, k
         type(fibrad_wall) :: cup(3), lid
         cup = [fibrad_plane('zmax', 10.0_dp, open=.true.), fibrad_cylinder(0.0_dp, 0.0_dp, 10.0_dp), &
@@ -90,7 +90,8 @@ contains
             if (k == 1) call heat%new([0.0_dp], [0.0_dp], [3.0_dp], [1.0_dp], status, walls=cup)
             if (k == 2) call heat%new([0.0_dp], [0.0_dp], [3.0_dp], [1.0_dp], status, walls=[cup(2:3), lid])
             if (k == 1) call heat%solve([500.0_dp], [0.5_dp], 300.0_dp, power, status, wall_temperature=[600.0_dp, 700.0_dp], &
-                                        wall_emissivity=[0.4_dp, 0.8_dp], wall_power=wall_power, surroundings_power=outside)
+                                        wall_emissivity=[0.4_dp, 0.8_dp], wall_power=wall_power, surroundings_power=outside, &
+                                        surroundings_error=missed)
             if (k == 1) closed = power(1)
             if (k == 2) call heat%solve([500.0_dp], [0.5_dp], 300.0_dp, power, status, &
                                         wall_temperature=[600.0_dp, 700.0_dp, 300.0_dp], &
@@ -98,6 +99,7 @@ contains
             call expect(status == fibrad_ok, 'powers in a cup')
         end do
         call expect(near(power(1), closed, 1e-14_dp) .and. near(outside, lids(3), 1e-14_dp) .and. outside > 0, 'a black lid')
+        call expect(missed > 0 .and. missed < 0.02_dp * outside, 'error of the surroundings')
         call expect(near(wall_power(1), lids(1), 1e-14_dp) .and. near(wall_power(2), lids(2), 1e-14_dp), 'the walls of the cup')
         call heat%free()
     end subroutine open_sides

@@ -31,6 +31,7 @@ def test_two_black_spheres():
     area = 4 * np.pi
     expected = area * np.array([F12 * warm + (1 - F12) * cold - hot, F12 * hot + (1 - F12) * cold - warm])
     assert np.sqrt(np.mean((powers.spheres - expected) ** 2)) < 3 * powers.error < 1e-3 * area * hot
+    assert abs(powers.surroundings + expected.sum()) < 3 * powers.surroundings_error < 1e-3 * area * hot
 
 
 def test_a_mirror_gains_nothing():

@@ -56,6 +56,8 @@ class Powers:
     """[W] (n,) estimated error of `spheres`."""
     wall_errors: dict[str, float]
     """[W] estimated error of `walls`, by name."""
+    surroundings_error: float
+    """[W] estimated error of `surroundings`."""
     temperature_errors: NDArray[np.float64]
     """[K] (n,) estimated error of `temperatures`, 0 if the temperature was given."""
     error: float
@@ -216,6 +218,7 @@ class Heat(Bed):
                       temperatures=of_spheres["temperature"], wall_temperatures=walls["body_temperature"],
                       triangle_fluxes=container.by_mesh(sides[0]), triangle_temperatures=container.by_mesh(sides[1]),
                       emissivities=before, errors=of_spheres["power_error"], wall_errors=walls["body_error"],
+                      surroundings_error=result.surroundings_error,
                       temperature_errors=of_spheres["temperature_error"],
                       error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,
                       error_beams=result.error_beams, residual=result.residual, sweeps=result.sweeps)

@@ -1,0 +1,162 @@
+/* test_heat_errors.c - stated errors of powers against closed forms, over random scenes. SPDX-License-Identifier: MIT
+ */
+#include "rectangles.h"
+#include "scenes.h"
+#include "simple/fibrad_host.h"
+#include "suite.h"
+
+enum { MOST = 8, SPHERES = 6 };
+
+/* Few spheres and walls, all black, and what came out; sigma is 1. */
+struct given {
+    struct bed bed;
+    fibrad_body body[MOST];
+    fibrad_plane opening;
+    fibrad_scene_config scene;
+    double temperature[MOST], emissivity[MOST], wall_temperature[MOST], wall_emissivity[MOST], surroundings;
+    double power[MOST], error[MOST], wall_power[MOST], wall_error[MOST];
+    fibrad_heat_result result;
+};
+
+static void solve(struct given *g) {
+    const fibrad_spheres spheres = spheres_of(&g->bed);
+    fibrad_heat_sources sources;
+    fibrad_radiation *radiation;
+    fibrad_run run = {.threads = 1};
+    fibrad_heat_sources_init(&sources);
+    for (int k = 0; k < MOST; k++) g->emissivity[k] = g->wall_emissivity[k] = 1;
+    sources.sigma = 1, sources.surroundings = g->surroundings;
+    sources.temperature = g->temperature, sources.emissivity = g->emissivity;
+    sources.body_temperature = g->wall_temperature, sources.body_emissivity = g->wall_emissivity;
+    g->result = (fibrad_heat_result){.power = g->power, .power_error = g->error, .surroundings_error = NAN};
+    g->result.body_power = g->wall_power, g->result.body_error = g->wall_error;
+    g->scene.body = g->body, g->scene.opening = &g->opening;
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, &g->scene, &spheres, NULL, &run), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &g->result), FIBRAD_OK);
+    fibrad_radiation_free(radiation);
+    bed_free(&g->bed);
+}
+
+static double drawn(uint64_t seed, uint64_t number, double low, double high) {
+    return low + (high - low) * bed_make_random(seed, number);
+}
+
+static double fourth(double t) { return t * t * t * t; }
+
+/* How estimates of some scenes compare with true errors: squares of both, and how many err by 2.5 times theirs. */
+struct honesty {
+    double errors, estimates;
+    int scenes, beyond;
+};
+
+static void judge(struct honesty *honesty, double error, double estimate, double size) {
+    ck_assert(estimate > 0 && estimate < .1 * size);
+    honesty->errors += pow(error / size, 2), honesty->estimates += pow(estimate / size, 2);
+    honesty->scenes++, honesty->beyond += fabs(error) > 2.5 * estimate;
+}
+
+static void expect_honest(const struct honesty *honesty) {
+    ck_assert_msg(20 * honesty->beyond <= honesty->scenes, "%d of %d", honesty->beyond, honesty->scenes);
+    ck_assert_msg(honesty->estimates < 16 * honesty->errors, "%g, true %g", sqrt(honesty->estimates),
+                  sqrt(honesty->errors));
+}
+
+static double distance(const double a[4], const double b[4]) {
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+/* Whether sphere c comes between a and b, or near that. */
+static bool hides(const double a[4], const double b[4], const double c[4]) {
+    double along = 0, at[4];
+    for (int k = 0; k < 3; k++) along += (b[k] - a[k]) * (c[k] - a[k]);
+    along = fmin(1, fmax(0, along / pow(distance(a, b), 2)));
+    for (int k = 0; k < 3; k++) at[k] = a[k] + along * (b[k] - a[k]);
+    return distance(at, c) <= fmax(a[3], b[3]) + c[3];
+}
+
+/* Spheres of which none hides anything of another from a third, nor touches it. */
+static struct bed apart(uint64_t seed) {
+    double at[SPHERES][4];
+    for (uint32_t n = 0, tried = 0; n < SPHERES; tried += 4) {
+        double *last = at[n];
+        bool fits = true;
+        for (uint32_t k = 0; k < 4; k++) last[k] = k < 3 ? drawn(seed, tried + k, 0, 9) : drawn(seed, tried + k, .4, 1);
+        for (uint32_t i = 0; i < n && fits; i++) {
+            fits = distance(at[i], last) > at[i][3] + last[3];
+            for (uint32_t j = 0; j < n && fits; j++)
+                fits = j == i || !(hides(at[i], at[j], last) || hides(at[i], last, at[j]));
+        }
+        n += fits;
+    }
+    return bed_of(SPHERES, (const double(*)[4])at);
+}
+
+/* Black spheres in the open, by the exact view factors between them. */
+START_TEST(spheres_and_their_surroundings) {
+    struct honesty honesty = {0};
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        struct given g = {.bed = apart(seed)};
+        double power = 0;
+        for (uint32_t i = 0; i < g.bed.n; i++) {
+            double open = 1;
+            const double own[4] = {g.bed.x[i], g.bed.y[i], g.bed.z[i], g.bed.r[i]};
+            for (uint32_t j = 0; j < g.bed.n; j++) {
+                const double other[4] = {g.bed.x[j], g.bed.y[j], g.bed.z[j], g.bed.r[j]};
+                double f;
+                if (j == i) continue;
+                ck_assert_int_eq(fibrad_pair_exact(own[3], other[3], distance(own, other) - own[3] - other[3], &f), 0);
+                open -= f;
+            }
+            g.temperature[i] = drawn(seed, 1000 + i, .3, 1);
+            power += 4 * M_PI * g.bed.r[i] * g.bed.r[i] * open * fourth(g.temperature[i]);
+        }
+        solve(&g);
+        judge(&honesty, g.result.surroundings_power - power, g.result.surroundings_error, power);
+    }
+    expect_honest(&honesty);
+}
+END_TEST
+
+/* Black boxes without a lid, with next to nothing in them: rays of walls tell what the opening gets. */
+START_TEST(a_box_and_its_opening) {
+    struct honesty honesty = {0};
+    for (uint64_t seed = 1; seed <= 30; seed++) {
+        const double size[3] = {drawn(seed, 0, .5, 1.5), drawn(seed, 1, .5, 1.5), drawn(seed, 2, .5, 1.5)};
+        struct given g = {.bed = bed_of(1, (const double[][4]){{.2, .25, .3, 1e-4}}), .opening = {2, 1, size[2]}};
+        g.surroundings = drawn(seed, 3, 0, .6), g.scene.bodies = 5, g.scene.openings = 1;
+        double power = 0, sent = 0;
+        for (uint32_t k = 0; k < 5; k++) {
+            const uint32_t a = k / 2, b = 1 - a; /* the axis across the wall, and the other one of the opening */
+            const double factor = k == 4 ? opposite(size[0], size[1], size[2]) : adjacent(size[b], size[2], size[a]);
+            const double area = k == 4 ? size[0] * size[1] : size[b] * size[2];
+            g.body[k] = plane_at((int)a, k % 2, k % 2 ? size[a] : 0);
+            g.wall_temperature[k] = drawn(seed, 4 + k, .6, 1);
+            power += area * factor * (fourth(g.wall_temperature[k]) - fourth(g.surroundings));
+            sent += area * factor * fourth(g.wall_temperature[k]);
+        }
+        solve(&g);
+        judge(&honesty, g.result.surroundings_power - power, g.result.surroundings_error, sent);
+    }
+    expect_honest(&honesty);
+}
+END_TEST
+
+/* What nothing reaches has no power, and no error. */
+START_TEST(no_surroundings) {
+    struct given g = {.bed = bed_of(1, (const double[][4]){{0, 0, 0, .5}}), .temperature = {1}};
+    g.scene.bodies = 6;
+    for (uint32_t k = 0; k < 6; k++) g.body[k] = plane_at((int)k / 2, k % 2, k % 2 ? 1 : -1);
+    solve(&g);
+    ck_assert(g.result.surroundings_power == 0 && g.result.surroundings_error == 0);
+    ck_assert(g.error[0] > 0 && g.wall_error[0] > 0);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("heat_errors");
+    TCase *surroundings = suite_case(suite, "surroundings");
+    tcase_add_test(surroundings, spheres_and_their_surroundings);
+    tcase_add_test(surroundings, a_box_and_its_opening);
+    tcase_add_test(surroundings, no_surroundings);
+    return suite_run(suite);
+}
