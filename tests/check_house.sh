@@ -10,7 +10,7 @@ set -u
 words='accounts|taker|takers|doubtful|in doubt|emergence|sieve|sieves|plain sweep|gets farther|had better|books|fibrad_moved_[a-z]*'
 
 # the others are to be written anew
-pages="README.md docs/accuracy.md docs/contributing.md docs/design.md docs/embedding.md docs/files.md docs/heat.md docs/methods.md docs/methods_heat.md
+pages="README.md docs/accuracy.md docs/contributing.md docs/coupling.md docs/design.md docs/embedding.md docs/files.md docs/heat.md docs/lammps.md docs/liggghts.md docs/methods.md docs/methods_heat.md
     docs/notebook.md
     docs/performance.md docs/recipes.md docs/scale.md"
 
