@@ -300,8 +300,7 @@ size_t fibrad_scene_size(uint32_t n, int ids);
  *
  * Centres on a periodic axis are moved into the box. The box begins at the least coordinate. Spheres may overlap each
  * other and the walls, as they do in settled beds. No centre may lie inside another sphere or beyond a wall. A part of
- * a sphere may lie beyond a wall. Radiation that leaves this part outwards meets the wall at once. Radiation that
- * leaves this part inwards passes the wall.
+ * a sphere may lie beyond a wall. Whatever leaves this part meets the wall at once.
  *   Input    memory[size]: at least fibrad_scene_size(n, ids) + fibrad_triangles_size(triangles, n) bytes
  *            config: NULL for all defaults
  *            spheres

@@ -334,7 +334,7 @@ START_TEST(plates_and_a_dense_bed) {
     check_balance(&bed, f, NULL, NULL);
     ck_assert_double_lt(between(f, 0, 1), 1e-3);
     ck_assert_double_eq(between(f, 0, 0), 0);
-    ck_assert_double_lt(f->matrix.body_correction, 3e-3);
+    ck_assert_double_lt(f->matrix.body_correction, 1e-2); /* plates cut spheres, by half a radius the most */
     fibrad_bed_factors *alone = NULL;
     fibrad_scene_config whole = config;
     const fibrad_spheres spheres = spheres_of(&bed);

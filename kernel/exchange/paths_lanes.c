@@ -142,6 +142,28 @@ static void look_past(const fibrad_scene *scene, const struct grey_path *path, c
     hit->side = met.side, hit->distance = met.distance;
 }
 
+/* Ends a leg at a wall, or at a side of a mesh. */
+static void reach_wall(const fibrad_scene *scene, struct grey_path *path, uint32_t wall, uint32_t side,
+                       const double at[3]) {
+    double centre[3], point[3];
+    find_point(scene, path, centre, point);
+    for (int axis = 0; axis < 3; axis++) {
+        path->centre[axis] -= centre[axis];
+        path->point[axis] = at[axis];
+        if (scene->period[axis] == 0) continue;
+        /* into a box that does not depend on the spheres */
+        double whole = scene->period[axis] * fibrad_floor(path->point[axis] / scene->period[axis]);
+        path->point[axis] -= whole;
+        path->centre[axis] += whole;
+    }
+    path->triangle = wall < FIBRAD_WALLS ? FIBRAD_NO_SIDE : side / 2;
+    if (wall < FIBRAD_WALLS)
+        fibrad_wall_normal(scene, wall, path->point, path->n);
+    else
+        fibrad_mesh_normal(&scene->mesh, side, path->n);
+    path->place = FIBRAD_NONE;
+}
+
 /* Traces one ray, to a sphere (FIBRAD_NONE) or to a wall or a mesh, whose slot is returned; FIBRAD_ESCAPED,
  * FIBRAD_BEYOND: it meets none of them, or what is nobody's. */
 static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const double w[3]) {
@@ -149,6 +171,12 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
     fibrad_hit hit;
     double centre[3], point[3], distance;
     paths->rays++;
+    find_point(scene, path, centre, point);
+    if (path->place != FIBRAD_NONE) {
+        const uint32_t behind = fibrad_walls_behind(scene, path->place, path->n, point);
+        if (behind != FIBRAD_NONE) reach_wall(scene, path, behind, FIBRAD_NO_SIDE, point);
+        if (behind != FIBRAD_NONE) return behind;
+    }
     if (path->place != FIBRAD_NONE)
         LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
     else
@@ -162,7 +190,6 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
         path->place = hit.sphere;
         return FIBRAD_NONE;
     }
-    find_point(scene, path, centre, point);
     if (hit.sphere != FIBRAD_NONE && scene->clear != NULL) look_past(scene, path, point, w, &hit);
     const double ball = paths->cut ? ball_length(paths, path, w) : __builtin_inf();
     const uint32_t met = hit.side != FIBRAD_NO_SIDE
@@ -173,21 +200,8 @@ static uint32_t trace_leg(fibrad_paths *paths, struct grey_path *path, const dou
         return FIBRAD_BEYOND;
     }
     if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) return met;
-    for (int axis = 0; axis < 3; axis++) {
-        path->centre[axis] -= centre[axis];
-        path->point[axis] = point[axis] + distance * w[axis];
-        if (scene->period[axis] == 0) continue;
-        /* into a box that does not depend on the spheres */
-        double whole = scene->period[axis] * fibrad_floor(path->point[axis] / scene->period[axis]);
-        path->point[axis] -= whole;
-        path->centre[axis] += whole;
-    }
-    path->triangle = met < FIBRAD_WALLS ? FIBRAD_NO_SIDE : hit.side / 2;
-    if (met < FIBRAD_WALLS)
-        fibrad_wall_normal(scene, met, path->point, path->n);
-    else
-        fibrad_mesh_normal(&scene->mesh, hit.side, path->n);
-    path->place = FIBRAD_NONE;
+    for (int axis = 0; axis < 3; axis++) point[axis] += distance * w[axis];
+    reach_wall(scene, path, met, met < FIBRAD_WALLS ? FIBRAD_NO_SIDE : hit.side, point);
     return met;
 }
 

@@ -246,15 +246,6 @@ static void divide_sphere(fibrad_heat *heat, uint32_t body) {
     }
 }
 
-/* How far a place is from a wall [L], inwards. */
-static double height_above(const fibrad_heat *heat, uint32_t wall, const double at[3]) {
-    const fibrad_container *c = &heat->scene->container;
-    if (wall < FIBRAD_CYLINDER)
-        return wall % 2 == 0 ? at[wall / 2] - c->low[wall / 2] : c->high[wall / 2] - at[wall / 2];
-    const double x = at[0] - c->axis[0], y = at[1] - c->axis[1];
-    return c->radius - fibrad_sqrt(x * x + y * y);
-}
-
 /* Divides the fours of a wall below a sphere near it. */
 static void divide_below(fibrad_heat *heat, uint32_t wall, const struct near_sphere *near) {
     uint32_t fours[2];
@@ -279,7 +270,7 @@ static void divide_wall(fibrad_heat *heat, uint32_t wall) {
     bool begun = false;
     for (uint32_t i = 0; i < heat->spheres; i++) {
         struct near_sphere near = {{scene->x[i], scene->y[i], scene->z[i]}, 0};
-        near.height = height_above(heat, wall, near.centre);
+        near.height = fibrad_walls_away(&scene->container, wall, near.centre);
         if (!asks_for_fine(heat, heat->spheres + wall, scene->r[i], &near)) continue;
         begin_body(heat, heat->spheres + wall, &begun);
         divide_below(heat, wall, &near);

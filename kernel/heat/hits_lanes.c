@@ -10,6 +10,7 @@
 #include "ray/tracer.h"
 #include "row/mesh_share_lanes.h"
 #include "sample/direction.h"
+#include "scene/walls.h"
 #include "row/window_lanes.h"
 
 #define HIT_POINTS 64 /* of a window at a time */
@@ -20,6 +21,7 @@ struct hit_window {
     _Alignas(64) double face[HIT_POINTS], x[HIT_POINTS], y[HIT_POINTS];
     uint32_t point[HIT_POINTS], disc[HIT_POINTS];
     uint32_t count;
+    uint64_t behind; /* points that leave their sphere behind a wall */
 };
 
 /* Patch numbers, 0 to 6 side^2 - 1, of the normals of all points. */
@@ -83,11 +85,40 @@ static uint64_t meshed_points(const fibrad_workspace *work, uint32_t word) {
     return bits;
 }
 
+/* Which of some points of a word lie behind a wall, where their beams leave, side 1, or enter, side -1, the sphere at a
+ * place, whose disc is u, v, r. */
+static uint64_t points_behind(const fibrad_workspace *work, const double frame[9], const float *x, const float *y,
+                              uint64_t points, uint32_t place, const double disc[3], double side) {
+    const fibrad_scene *scene = work->scene;
+    double at[3];
+    uint64_t behind = 0;
+    if (!fibrad_walls_cut_place(scene, place)) return 0;
+    const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
+    for (; points != 0; points &= points - 1) {
+        const uint32_t p = (uint32_t)__builtin_ctzll(points);
+        const double u = x[p] - disc[0], v = y[p] - disc[1];
+        const double up = side * fibrad_sqrt(fibrad_max(0, disc[2] * disc[2] - (u * u + v * v)));
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = centre[axis] + work->unit * (u * frame[axis] + v * frame[3 + axis] + up * frame[6 + axis]);
+        if (!fibrad_walls_hold(&scene->container, at)) behind |= points & (0 - points);
+    }
+    return behind;
+}
+
+/* Takes points that a disc hides out of its entry: walls get them, which counts them as open. */
+static void give_to_walls(fibrad_workspace *work, uint32_t disc, uint32_t k, uint64_t bits, uint64_t *seen) {
+    *seen |= bits;
+    for (; bits != 0; bits &= bits - 1)
+        fibrad_entries_add(&work->entries, work->near.entry[work->disc.near[disc]], k, -1);
+}
+
 /* Lists points of a word that are kept and the discs that hide them, the first that covers each: those in `kept`, and
  * one of each sphere that is seen for the first time, whose entry is `known` or later; all of a sphere with fine
- * patches. */
-static void find_hit_discs(const fibrad_heat *heat, const fibrad_workspace *work, const fibrad_points *points,
-                           uint32_t word, uint64_t kept, uint32_t known, struct hit_window *p) {
+ * patches. What lies behind a wall is hidden by none. */
+static void find_hit_discs(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
+                           fibrad_points *points, uint32_t window, uint32_t word, uint64_t kept, uint32_t known,
+                           struct hit_window *p) {
+    const float *x = points->set.x + HIT_POINTS * word, *y = points->set.y + HIT_POINTS * word;
     uint64_t left = ~(points->seen[word] | meshed_points(work, word));
     p->count = 0;
     for (uint32_t t = 0; left != 0; t++) {
@@ -96,17 +127,23 @@ static void find_hit_discs(const fibrad_heat *heat, const fibrad_workspace *work
         vf u = vf_set1((float)work->disc.u[k]), v = vf_set1((float)work->disc.v[k]), square = vf_set1((float)(r * r));
         uint64_t hidden = 0;
         for (uint32_t lane = 0; lane < HIT_POINTS; lane += VF_LANES) {
-            vf dx = vf_load(points->set.x + HIT_POINTS * word + lane) - u;
-            vf dy = vf_load(points->set.y + HIT_POINTS * word + lane) - v;
+            vf dx = vf_load(x + lane) - u;
+            vf dy = vf_load(y + lane) - v;
             hidden |= (uint64_t)vf_lt_bits(dx * dx + dy * dy, square) << lane;
         }
         hidden &= left;
         left &= ~hidden;
+        const double disc[] = {work->disc.u[k], work->disc.v[k], r};
+        const uint64_t behind =
+            (hidden & p->behind) | points_behind(work, frame, x, y, hidden, fibrad_work_sphere(work, k), disc, -1);
+        if (behind != 0) give_to_walls(work, k, window, behind, &points->seen[word]);
+        hidden &= ~behind;
         uint64_t bits = heat->root[fibrad_work_sphere(work, k)] == FIBRAD_NONE ? hidden & kept : hidden;
         if (bits == 0 && work->near.entry[work->disc.near[k]] >= known) bits = hidden & (0 - hidden);
         for (; bits != 0; bits &= bits - 1)
             p->point[p->count] = (uint32_t)__builtin_ctzll(bits), p->disc[p->count++] = k;
     }
+    points->seen[word] |= p->behind;
 }
 
 /* Normals where the points x, y meet their discs. */
@@ -133,16 +170,19 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
 /* The patch that the beam of open point p of window k meets. */
 static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *work, const double frame[9],
                              const fibrad_points *points, uint32_t k, uint32_t p) {
-    double origin[3], w[3];
+    const fibrad_disc_points *set = &points->set;
+    const double x = set->x[p], y = set->y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
+    double n[3], origin[3], w[3];
     if (!heat->scene->container.walls) return fibrad_heat_open(heat);
+    for (int axis = 0; axis < 3; axis++) n[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
+    const uint32_t behind = fibrad_walls_behind(heat->scene, work->place, n, origin);
+    if (behind != FIBRAD_NONE) return fibrad_heat_cap_patch(heat, behind, origin);
     if (work->met != NULL && work->met->any &&
         (work->met->aside[0][p] != 0 || work->met->aside[1][p] != 0)) { /* on the line that meets no triangle */
         LANED(fibrad_mesh_line)(work, frame, p, origin, w);
         return fibrad_heat_leaves(heat, origin, w);
     }
     const uint32_t other = fibrad_points_partner(heat->config.points, p, k);
-    const fibrad_disc_points *set = &points->set;
-    const double x = set->x[p], y = set->y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
     const double a = set->x[other], b = set->y[other];
     const double rare = fibrad_sqrt(1 + fibrad_sqrt(fibrad_max(0, 1 - (a * a + b * b))));
     const double open = (double)points->open / points->count;
@@ -150,7 +190,7 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
     const double du = spread * a, dv = spread * b;
     for (int axis = 0; axis < 3; axis++) {
         const double e = frame[axis], f = frame[3 + axis], g = frame[6 + axis];
-        origin[axis] = work->centre[axis] + work->unit * (x * e + y * f + up * g);
+        origin[axis] = work->centre[axis] + work->unit * n[axis];
         w[axis] = g + (du * e + dv * f);
     }
     return fibrad_heat_leaves(heat, origin, w);
@@ -158,13 +198,15 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
 
 /* Keeps the beams of a word of window k that meet spheres; returns where the next ones go. */
 static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
-                                   const fibrad_points *points, uint32_t k, uint32_t word, uint64_t kept,
-                                   uint32_t known, fibrad_heat_beam *beam) {
+                                   fibrad_points *points, uint32_t k, uint32_t word, uint64_t kept, uint32_t known,
+                                   fibrad_heat_beam *beam) {
     struct hit_window window;
     uint16_t patch[HIT_POINTS];
     const uint16_t *leave = heat->leave + (size_t)k * points->count + HIT_POINTS * word;
-    find_hit_discs(heat, work, points, word, kept, known, &window);
-    find_hit_normals(work, points->set.x + HIT_POINTS * word, points->set.y + HIT_POINTS * word, &window);
+    const float *x = points->set.x + HIT_POINTS * word, *y = points->set.y + HIT_POINTS * word;
+    window.behind = points_behind(work, frame, x, y, UINT64_MAX, work->place, (const double[]){0, 0, 1}, 1);
+    find_hit_discs(heat, work, frame, points, k, word, kept, known, &window);
+    find_hit_normals(work, x, y, &window);
     number_patches_of(&window, frame, heat->side, patch);
     for (uint32_t p = 0; p < window.count; p++) {
         const uint32_t sphere = fibrad_work_sphere(work, window.disc[p]), from = leave[window.point[p]];
@@ -197,10 +239,10 @@ static fibrad_heat_beam *keep_other(const fibrad_heat *heat, fibrad_workspace *w
 }
 
 /* Keeps the beams of a word that meet triangles first, all of them. */
-static fibrad_heat_beam *keep_meshed(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9], uint32_t k,
-                                     uint32_t word, fibrad_heat_beam *beam) {
+static fibrad_heat_beam *keep_meshed(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
+                                     const fibrad_points *points, uint32_t k, uint32_t word, fibrad_heat_beam *beam) {
     const uint16_t *leave = heat->leave + (size_t)k * heat->config.points + HIT_POINTS * word;
-    for (uint64_t bits = meshed_points(work, word); bits != 0; bits &= bits - 1) {
+    for (uint64_t bits = meshed_points(work, word) & ~points->seen[word]; bits != 0; bits &= bits - 1) {
         const uint32_t p = (uint32_t)__builtin_ctzll(bits), side = work->met->side[HIT_POINTS * word + p];
         double at[3];
         if (fibrad_heat_is_divided(heat, work->place, leave[p] / FIBRAD_HEAT_FOUR)) continue;
@@ -250,7 +292,7 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
         for (uint32_t word = 0; word < points.count / HIT_POINTS; word++) {
             const uint64_t kept = kept_points(turn + k + word, heat->root[place] == FIBRAD_NONE ? heat->thin : 1);
             beam = keep_hits(heat, work, frame, &points, k, word, kept, known, beam);
-            beam = keep_meshed(heat, work, frame, k, word, beam);
+            beam = keep_meshed(heat, work, frame, &points, k, word, beam);
             beam = keep_escapes(heat, work, frame, &points, k, word, kept, beam);
         }
     }
@@ -284,17 +326,27 @@ static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t 
     return FIBRAD_OK;
 }
 
-/* Keeps what a ray of a row of fine fours meets; false: the back of a triangle. */
+/* Keeps what a ray of a row of fine fours meets, at *next, which then goes on; false: the back of a triangle. Beams of
+ * a cap behind a wall tell all that the two exchange. */
 static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t body,
-                          const fibrad_heat_fine_rays *ray, fibrad_heat_beam *beam) {
+                          const fibrad_heat_fine_rays *ray, fibrad_heat_beam **next) {
     const fibrad_scene *scene = heat->scene;
     const bool sphere = body < heat->spheres;
+    fibrad_heat_beam *beam = *next;
     fibrad_hit hit;
+    double at[3];
+    const uint32_t behind = sphere ? fibrad_walls_behind(scene, body, ray->normal, at) : FIBRAD_NONE;
     beam->from = (uint16_t)ray->patch;
+    if (behind != FIBRAD_NONE) {
+        *next = keep_other(heat, work, ray->k, beam->from, fibrad_heat_cap_patch(heat, behind, at), true, beam);
+        return true;
+    }
     if (sphere)
         LANED(fibrad_trace_once)(scene, body, ray->normal, ray->direction, &hit);
     else
         LANED(fibrad_trace_point)(scene, ray->at, ray->direction, FIBRAD_NO_SIDE, &hit);
+    if (hit.sphere != FIBRAD_NONE && !sphere && hit.distance == 0 && scene->container.cuts) return true;
+    *next = beam + 1;
     if (hit.sphere != FIBRAD_NONE) {
         double place[2];
         const uint32_t face = fibrad_patch_place(hit.normal, heat->side, place);
@@ -327,7 +379,7 @@ static int follow_fine_row(fibrad_heat *heat, fibrad_workspace *work, uint32_t r
     work->extra_owner = 0;
     fibrad_work_begin(work, heat->scene, body < heat->spheres ? body : 0, 0, FIBRAD_BEAM_STRIDE);
     while (fibrad_heat_fine_ray(heat, row, &ray))
-        if (!keep_fine_ray(heat, work, body, &ray, beam++)) return FIBRAD_E_BACK;
+        if (!keep_fine_ray(heat, work, body, &ray, &beam)) return FIBRAD_E_BACK;
     if (work->entries.missed == 0) return fibrad_heat_keep(heat, work, row, (uint32_t)(beam - first));
     work->needed.entries = work->entries.capacity + work->entries.missed;
     return FIBRAD_E_WORK;

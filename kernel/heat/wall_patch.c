@@ -178,7 +178,7 @@ bool fibrad_heat_wall_place(const fibrad_heat *heat, uint32_t wall, const double
     return inside;
 }
 
-uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]) {
+static uint32_t patch_at(const fibrad_heat *heat, uint32_t wall, const double at[3], bool may_be_fine) {
     const uint32_t *squares = heat->wall[wall].squares, body = fibrad_heat_body(heat, wall);
     double place[2];
     uint32_t cell[2];
@@ -187,9 +187,17 @@ uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const do
     const uint32_t own = (cell[0] >> 1) * (squares[1] >> 1) + (cell[1] >> 1);
     const uint32_t fine =
         fibrad_heat_fine_patch(heat, body, own, place[0] / 2 - (cell[0] >> 1), place[1] / 2 - (cell[1] >> 1));
-    if (fine != FIBRAD_NONE)
+    if (may_be_fine && fine != FIBRAD_NONE)
         return fibrad_heat_first_fine(heat, body) + (fine - FIBRAD_HEAT_FOUR * heat->first_four[body]);
     return heat->first[body] + own * FIBRAD_HEAT_FOUR + (cell[0] & 1) * 2 + (cell[1] & 1);
+}
+
+uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]) {
+    return patch_at(heat, wall, at, true);
+}
+
+uint32_t fibrad_heat_cap_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]) {
+    return patch_at(heat, wall, at, false);
 }
 
 double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch) {

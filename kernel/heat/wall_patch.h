@@ -22,6 +22,9 @@ bool fibrad_heat_wall_wraps(const fibrad_heat *heat, uint32_t wall, uint32_t sid
 /* The patch of a wall at a place on it [L]. */
 uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]);
 
+/* The same of what a sphere's cap behind the wall exchanges with it: never a fine patch, whose rays do not meet it. */
+uint32_t fibrad_heat_cap_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]);
+
 /* The patch at a place [L] on a side of a mesh, or on an image of it; FIBRAD_NONE: the side is nobody's. */
 uint32_t fibrad_heat_mesh_patch(const fibrad_heat *heat, uint32_t side, const double at[3]);
 

@@ -8,6 +8,7 @@
 #include "base/lanes/turn.h"
 #include "base/random.h"
 #include "ray/cast_lanes.h"
+#include "scene/walls.h"
 #include "work/neighbours_lanes.h"
 
 #define CAST_BATCH  (8 * VD_LANES) /* rays: 64 in AVX-512; fewer take less stack where there are no lanes */
@@ -160,6 +161,20 @@ static double angle_of_tangent(double y, double x) {
     return 8 * t * sum;
 }
 
+/* Whether a ray meets its first sphere behind a wall, which it meets before then. */
+static bool is_behind(const fibrad_scene *scene, const struct cast_ray *ray, const double from[3],
+                      const struct cast_hit *hit) {
+    double n[3], at[3];
+    if (!(hit->distance > 0 && hit->distance < __builtin_inf()) || !fibrad_walls_cut_place(scene, hit->sphere))
+        return false;
+    for (int axis = 0; axis < 3; axis++) {
+        const double *frame = ray->frame + axis;
+        const double centre = hit->u * frame[0] + hit->v * frame[3] + hit->depth * frame[6];
+        n[axis] = (from[axis] + hit->distance * frame[6] - centre) / hit->r;
+    }
+    return fibrad_walls_behind(scene, hit->sphere, n, at) != FIBRAD_NONE;
+}
+
 /* Counts a ray that meets no sphere: by where it leaves. from: in radii from the centre. */
 static void count_exit(fibrad_workspace *work, const struct cast_ray *ray, const double from[3]) {
     work->wall[fibrad_work_met(work, from, ray->frame + 6)]++;
@@ -230,10 +245,16 @@ int LANED(fibrad_cast_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
             ray.frame[6 + axis] = rays.w[axis][b];
         }
         struct cast_hit first = {.distance = __builtin_inf()};
-        if (!follow_cast_ray(work, &ray, &first)) return fibrad_work_discs_missed(work);
-        double from[3];
+        double from[3], at[3];
         for (int axis = 0; axis < 3; axis++)
             from[axis] = ray.cosine * ray.frame[6 + axis] - ray.sine * ray.frame[3 + axis];
+        const uint32_t behind = fibrad_walls_behind(scene, work->place, from, at);
+        if (behind != FIBRAD_NONE) {
+            work->wall[behind]++;
+            continue;
+        }
+        if (!follow_cast_ray(work, &ray, &first)) return fibrad_work_discs_missed(work);
+        if (is_behind(scene, &ray, from, &first)) first.distance = __builtin_inf();
         if (scene->clear != NULL && count_side(work, &ray, from, first.distance, k)) continue;
         if (first.distance < __builtin_inf())
             count_hit(work, &first, k, means != NULL);

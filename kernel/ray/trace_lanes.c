@@ -6,6 +6,7 @@
 #include "ray/tracer.h"
 #include "work/work.h"
 #include "scene/grid_walk.h"
+#include "scene/walls.h"
 
 /* A ray: positions relative to `base`, lengths in units of `unit`. */
 struct trace_ray {
@@ -152,6 +153,9 @@ static void write_hit(const struct trace_ray *ray, const struct trace_first *fir
         hit->centre[axis] = first->c[axis] * ray->unit;
         hit->normal[axis] = -(first->across[axis] + first->root * ray->w[axis]) * scale;
     }
+    double at[3]; /* what lies behind a wall is not met, but from within */
+    if (hit->distance > 0 && fibrad_walls_behind(ray->scene, hit->sphere, hit->normal, at) != FIBRAD_NONE)
+        hit->sphere = FIBRAD_NONE;
 }
 
 /* The triangle that a ray from a point meets before its sphere. */

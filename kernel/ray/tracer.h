@@ -47,7 +47,7 @@ size_t fibrad_tracer_best(const fibrad_scene *scene);
  * kept if they were made for the same contents of a scene. */
 fibrad_tracer *fibrad_tracer_of(fibrad_workspace *space, const fibrad_scene *scene);
 
-/* The first sphere or triangle that a ray meets. */
+/* The first sphere or triangle that a ray meets. What of a sphere lies behind a wall is not met. */
 typedef struct fibrad_hit {
     uint32_t side;   /* of the mesh; FIBRAD_NO_SIDE: no triangle */
     uint32_t sphere; /* its place; FIBRAD_NONE: it meets none, and of what follows only a triangle's distance is told */

@@ -63,6 +63,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     row->beyond = work->wall[FIBRAD_BEYOND] * scale;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
         if (fibrad_slot_of_body(slot)) work->wall[slot] = fibrad_max(0, work->wall[slot]) * scale;
+    fibrad_row_cut(scene, work->place, work->wall, row);
     fibrad_row_bodies(scene, work->wall, row);
     if (parts[0] > 0) row->error = fibrad_sqrt(row->error * row->error + parts[0] * scale * scale);
     row->error = fibrad_entries_error(&work->entries, parts, row->error, scale);

@@ -1,12 +1,48 @@
 /* row.c - rows by any method, with memory that grows. SPDX-License-Identifier: MIT */
 #include "row/row.h"
 #include "base/arena.h"
+#include "scene/walls.h"
 #include "store/record.h"
 
 /* Entries for which an empty collection asks for room at first. */
 #define FIRST_ENTRIES 256u
 
 #define SUM_ERROR 1e-9 /* how far the sum of a row may be off: rounding is 1e-13 at the most */
+
+/* What each wall gets of the lines of a sphere, among those that do not go there anyway, since its cap is behind it: on
+ * the mean f^2 for a cap of the fraction f. Returns the part of these lines that is left; 1: no wall gets any. */
+static double share_of_caps(const fibrad_scene *scene, uint32_t place, double share[FIBRAD_WALLS]) {
+    const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
+    double sum = 0;
+    if (!fibrad_walls_cut_place(scene, place)) return 1;
+    for (uint32_t slot = 0; slot < FIBRAD_WALLS; slot++) {
+        const double cap = fibrad_walls_cap(&scene->container, slot, centre, scene->r[place]);
+        sum += share[slot] = cap * cap;
+    }
+    for (uint32_t slot = 0; slot < FIBRAD_WALLS && sum > 1; slot++) share[slot] /= sum;
+    return fibrad_max(0, 1 - sum);
+}
+
+/* docs/methods.md, section 9. What the spheres of the row lose is summed in whole numbers, so that the order of
+ * columns, the caller's, plays no part. */
+void fibrad_row_cut(const fibrad_scene *scene, uint32_t place, double wall[FIBRAD_SLOTS], fibrad_row *row) {
+    double share[FIBRAD_WALLS];
+    int64_t units[FIBRAD_WALLS] = {0};
+    if (!scene->container.cuts) return;
+    for (uint32_t k = 0; k < row->length; k++) {
+        const double left = share_of_caps(scene, scene->place[row->col[k]], share);
+        for (uint32_t slot = 0; slot < FIBRAD_WALLS && left < 1; slot++)
+            units[slot] += (int64_t)(row->f[k] * share[slot] * 0x1p60);
+        row->f[k] *= left;
+    }
+    for (uint32_t slot = 0; slot < FIBRAD_WALLS; slot++) wall[slot] += (double)units[slot] * 0x1p-60;
+    const double left = share_of_caps(scene, place, share);
+    if (left == 1) return;
+    for (uint32_t k = 0; k < row->length; k++) row->f[k] *= left;
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) wall[slot] *= left;
+    for (uint32_t slot = 0; slot < FIBRAD_WALLS; slot++) wall[slot] += share[slot];
+    row->escaped *= left, row->beyond *= left;
+}
 
 void fibrad_row_bodies(const fibrad_scene *scene, double wall[FIBRAD_SLOTS], fibrad_row *row) {
     for (uint32_t b = 0; b < scene->facts.bodies; b++) row->body[b] = wall[scene->slot[b]];

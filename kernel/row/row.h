@@ -32,6 +32,10 @@ fibrad_row fibrad_row_scratch(fibrad_workspace *space, double *body);
 /* Copies a row of a scene into the caller's. FIBRAD_E_CAPACITY: its length alone. */
 int fibrad_row_give(const fibrad_scene *scene, const fibrad_row *row, fibrad_row *to);
 
+/* What walls get of the caps behind them, and no one else: those of sphere i at `place`, and of the spheres of its row.
+ * To be called before fibrad_row_bodies. */
+void fibrad_row_cut(const fibrad_scene *scene, uint32_t place, double wall[FIBRAD_SLOTS], fibrad_row *row);
+
 /* The factors to bodies from those by slot. Those of openings are moved to row->escaped. */
 void fibrad_row_bodies(const fibrad_scene *scene, double wall[FIBRAD_SLOTS], fibrad_row *row);
 

@@ -46,6 +46,7 @@ typedef struct fibrad_coarse {
 /* The convex region within the walls. */
 typedef struct fibrad_container {
     bool walls;             /* whether there are any */
+    bool cuts;              /* whether one cuts a sphere */
     uint32_t openings;      /* bit k: the plane of slot k is an opening */
     double low[3], high[3]; /* of the planes [L]; infinite where there is none */
     double axis[2], radius; /* of the cylinder [L]; radius infinite: none */

@@ -183,6 +183,7 @@ static int measure_spheres(fibrad_scene *scene, const fibrad_spheres *s, fibrad_
         const double centre[3] = {coordinate_of(s, 0, i), coordinate_of(s, 1, i), coordinate_of(s, 2, i)};
         if (!fibrad_walls_hold_ball(&scene->container, centre, radius_of(s, i)))
             return scene_fault(FIBRAD_E_GEOMETRY, fault, i, i);
+        scene->container.cuts = scene->container.cuts || fibrad_walls_cut(&scene->container, centre, radius_of(s, i));
         if (!fibrad_walls_hold(&scene->container, centre)) return sphere_fault(fault, i, FIBRAD_WHY_BEYOND);
     }
     if (fibrad_walls_reach(&scene->container) > longest) return scene_fault(FIBRAD_E_ARGUMENT, fault, s->n, s->n);

@@ -6,6 +6,7 @@
 #define INFINITE        __builtin_inf()
 #define WALL_LENGTH_MAX 1e150
 #define BALL_SLACK      1e-12 /* of a length that has been rounded */
+#define CAP_LEAST       1e-9  /* [radii] the depth from which on a sphere counts as cut */
 
 static bool wall_length_valid(double length) { return fibrad_abs(length) <= WALL_LENGTH_MAX; }
 
@@ -131,14 +132,41 @@ bool fibrad_walls_hold(const fibrad_container *c, const double at[3]) {
     return x * x + y * y <= 1;
 }
 
+double fibrad_walls_away(const fibrad_container *c, uint32_t slot, const double at[3]) {
+    if (slot < FIBRAD_CYLINDER) return slot % 2 ? c->high[slot / 2] - at[slot / 2] : at[slot / 2] - c->low[slot / 2];
+    const double x = at[0] - c->axis[0], y = at[1] - c->axis[1];
+    return c->radius - fibrad_sqrt(x * x + y * y);
+}
+
 bool fibrad_walls_hold_ball(const fibrad_container *c, const double centre[3], double radius) {
-    for (uint32_t slot = 0; slot < FIBRAD_CYLINDER; slot++) {
-        if (!fibrad_is_opening(c, slot)) continue;
-        const uint32_t axis = slot / 2;
-        const double away = slot % 2 ? c->high[axis] - centre[axis] : centre[axis] - c->low[axis];
-        if (!(radius - away <= BALL_SLACK * (radius + fibrad_abs(centre[axis])))) return false;
-    }
+    for (uint32_t slot = 0; slot < FIBRAD_CYLINDER; slot++)
+        if (fibrad_is_opening(c, slot) &&
+            !(radius - fibrad_walls_away(c, slot, centre) <= BALL_SLACK * (radius + fibrad_abs(centre[slot / 2]))))
+            return false;
     return true;
+}
+
+bool fibrad_walls_cut(const fibrad_container *c, const double centre[3], double radius) {
+    const double clear = radius * (1 - CAP_LEAST);
+    bool cut = c->radius < INFINITE && fibrad_walls_away(c, FIBRAD_CYLINDER, centre) < clear;
+    for (int axis = 0; axis < 3; axis++)
+        cut |= (centre[axis] - c->low[axis] < clear) | (c->high[axis] - centre[axis] < clear);
+    return cut;
+}
+
+double fibrad_walls_cap(const fibrad_container *c, uint32_t slot, const double centre[3], double radius) {
+    const double away = fibrad_max(0, fibrad_walls_away(c, slot, centre));
+    return away < radius * (1 - CAP_LEAST) ? (radius - away) / (2 * radius) : 0;
+}
+
+uint32_t fibrad_walls_behind(const fibrad_scene *scene, uint32_t place, const double n[3], double at[3]) {
+    const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
+    double distance;
+    if (!fibrad_walls_cut_place(scene, place)) return FIBRAD_NONE;
+    const uint32_t wall = fibrad_walls_exit(scene, centre, n, &distance);
+    if (!(distance < scene->r[place])) return FIBRAD_NONE;
+    for (int axis = 0; axis < 3; axis++) at[axis] = centre[axis] + distance * n[axis];
+    return wall;
 }
 
 double fibrad_walls_reach(const fibrad_container *c) {

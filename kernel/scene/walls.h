@@ -13,8 +13,29 @@ void fibrad_walls_build(fibrad_scene *scene, const fibrad_scene_config *config);
 /* Whether a place [L] lies within the walls, or on one. */
 bool fibrad_walls_hold(const fibrad_container *container, const double at[3]);
 
+/* How far a place is from the wall of a slot [L], inwards; infinity: there is no such wall. */
+double fibrad_walls_away(const fibrad_container *container, uint32_t slot, const double at[3]);
+
 /* Whether a sphere reaches beyond no opening, but for rounding. */
 bool fibrad_walls_hold_ball(const fibrad_container *container, const double centre[3], double radius);
+
+/* The fraction of a sphere's surface that lies behind the wall of a slot; 0: no more than rounding does. Of a cylinder
+ * with `radius` R it is that behind the plane that touches it there. */
+double fibrad_walls_cap(const fibrad_container *container, uint32_t slot, const double centre[3], double radius);
+
+/* Whether a wall cuts a sphere: a cap of it lies behind. */
+bool fibrad_walls_cut(const fibrad_container *container, const double centre[3], double radius);
+
+/* The same of the sphere at `place`. */
+static inline bool fibrad_walls_cut_place(const fibrad_scene *scene, uint32_t place) {
+    const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
+    return scene->container.cuts && fibrad_walls_cut(&scene->container, centre, scene->r[place]);
+}
+
+/* The wall behind which the point of the sphere at `place` with outward normal n lies, the first that the radius
+ * crosses, at `at`; FIBRAD_NONE: none. What such a point sends out goes to that wall, whatever the direction, and no
+ * line from elsewhere ends there. */
+uint32_t fibrad_walls_behind(const fibrad_scene *scene, uint32_t place, const double n[3], double at[3]);
 
 /* The largest coordinate of a wall [L], the cylinder's radius included. */
 double fibrad_walls_reach(const fibrad_container *container);

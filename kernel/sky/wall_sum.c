@@ -100,6 +100,7 @@ void fibrad_wall_sky(const fibrad_wall_view *view, double sky[FIBRAD_REGIONS]) {
 
 double fibrad_wall_apart(const fibrad_wall_view *view) {
     if (view->cut) return 0;
+    if (view->only < 3) return 1;
     double nearest = fibrad_min(1, view->radius - off_axis(view));
     for (int axis = 0; axis < 3; axis++)
         for (int up = 0; up < 2; up++) nearest = fibrad_min(nearest, distance_to(view, axis, up));

@@ -65,7 +65,8 @@ typedef struct fibrad_point_sums {
 /* How much of `all` a region should have, as a part of all windows: solid angles over 4 pi, from the centre. */
 void fibrad_wall_sky(const fibrad_wall_view *view, double sky[FIBRAD_REGIONS]);
 
-/* How much these solid angles count: 1 if no wall cuts the sphere, 0 if one does deeply, or if lines are cut. */
+/* How much these solid angles count: 1 if no wall cuts the sphere, or all are across one axis; 0 if one does deeply, or
+ * if lines are cut. */
 double fibrad_wall_apart(const fibrad_wall_view *view);
 
 /* Adds to wall[] what each wall gets, or escapes: the open part of each region, over the windows it has, times the
