@@ -17,9 +17,9 @@ static const struct {
     {"exchange", "exchange factors of grey spheres", command_exchange},
     {"furnace", "temperatures in a box with a medium that absorbs, emits and scatters", command_furnace},
     {"heat", "net radiative powers of grey spheres and walls", command_heat},
-    {"join", "rows that the ranks of a simulation wrote, as one matrix", command_join},
+    {"join", "one matrix of the rows that the ranks of a simulation wrote", command_join},
     {"pair", "view factor between two spheres, with or without others in between", command_pair},
-    {"reproduce", "the numbers of the papers beside ours", command_reproduce},
+    {"reproduce", "our numbers beside those of the papers", command_reproduce},
 };
 
 static int main_help(void) {
@@ -29,7 +29,7 @@ static int main_help(void) {
     puts("\nfibrad COMMAND --help   options of a command, with defaults and examples\n"
          "fibrad help COMMAND     the same\n"
          "fibrad -V, --version    version and instruction set in use\n\n"
-         "Exit status: 0; 2 bad usage; 3 bad input; 4 trouble with a file; 5 out of memory; 128 + signal.");
+         "Exit status: 0 success, 2 bad usage, 3 bad input, 4 trouble with a file, 5 out of memory, 128 + signal.");
     return STATUS_OK;
 }
 

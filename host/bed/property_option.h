@@ -16,13 +16,15 @@
 
 /* Rows of tables of options, without braces. */
 #define OPTION_EMISSIVITY                                                                                              \
-    KEY_EMISSIVITY, "emissivity", "E", "of all spheres, 0 to 1; or TYPE:E,... ; or the file's column of that name"
+    KEY_EMISSIVITY, "emissivity", "E", "emissivity of all spheres, 0 to 1, or TYPE:E,..., or a column of the file"
 #define OPTION_EMISSIVITY_CURVES                                                                                       \
     KEY_EMISSIVITY, "emissivity", "E",                                                                                 \
-        "of all spheres, 0 to 1; or @TABLE of temperatures [K] and emissivities; or TYPE:E,TYPE:@TABLE,... ; or the "  \
-        "file's column of that name"
+        "emissivity of all spheres, 0 to 1, or @TABLE of temperatures [K] and emissivities, or "                       \
+        "TYPE:E,TYPE:@TABLE,..., "                                                                                     \
+        "or a column of the file"
 #define OPTION_WALL_EMISSIVITY                                                                                         \
-    KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST", "of the walls, 0 to 1: zmin=0.3,0.9: one number for all others [1]"
+    KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST",                                                                    \
+        "emissivities of walls, 0 to 1, zmin=0.3,0.9 for example; a number without a name is for all others [1]"
 
 /* What an option says of the spheres: a number for all of them, numbers by type, or the name of a column. */
 enum { QUANTITY_TYPES_MAX = 64 };

@@ -18,7 +18,8 @@ bool unit_is(const char *said, const char *unit);
 
 /* A row of a table of options, without braces. */
 #define OPTION_TEMPERATURE_UNIT                                                                                        \
-    KEY_TEMPERATURE_UNIT, "temperature-unit", "UNIT", "of all temperatures given: K or C; those written are kelvins [K]"
+    KEY_TEMPERATURE_UNIT, "temperature-unit", "UNIT",                                                                  \
+        "unit of the temperatures that are given, K or C; results are in K [K]"
 
 /* Takes the argument of --temperature-unit: 0 of that unit in kelvins. Status 0 or STATUS_USAGE. */
 int temperature_unit_option(const char *text, double *zero);

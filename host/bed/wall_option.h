@@ -32,22 +32,28 @@ struct wall_options {
 /* What --help says of it: the row of a table of options, without braces, and more below. */
 #define OPTION_WALL                                                                                                    \
     KEY_WALL, "wall", "LIST",                                                                                          \
-        "walls: auto (box of the file, open axes), box (all six sides), xmin, xmax ... zmax, cylinder:X,Y,R "          \
-        "(axis along z), mesh:FILE (STL); zmax=open: an open side [none]"
+        "walls: auto, box, xmin, xmax, ymin, ymax, zmin, zmax, cylinder:X,Y,R, mesh:FILE; see below [none]"
 #define OPTION_WALL_VTP                                                                                                \
-    KEY_WALL_VTP, "wall-vtp", "OUT", "triangles of the walls of mesh:FILE, a .vtp for ParaView [none]"
+    KEY_WALL_VTP, "wall-vtp", "OUT", "write the triangles of the walls of mesh:FILE, a .vtp for ParaView [none]"
 #define WALLS_MORE                                                                                                     \
-    "Walls: a LIST parted by commas. A side is xmin=VALUE, or without =VALUE the end of the file's box, or else of "   \
-    "the\n"                                                                                                            \
-    "spheres. Sides named besides auto or box stand where they say. A side zmax=open is where the container ends "     \
-    "and\n"                                                                                                            \
-    "the surroundings begin: at the end of the spheres, or at H, which is the rim of the walls, as zmax=H:open;\n"     \
-    "box:open=zmax is a box without a lid. Walls that end nowhere are refused, but for one plane or a pair.\n"         \
-    "mesh:FILE or NAME=mesh:FILE is a wall of "                                                                        \
-    "triangles,\n"                                                                                                     \
-    "called after its file or NAME, in the bed's unit of length. Its sides that spheres are on are the wall; no\n"     \
-    "others may be seen. Words behind FILE, parted by colons: both (sides), normals (the file's outer sides),\n"       \
-    "solids (a wall of each), scale=S (coordinates times S).\n"
+    "Walls: LIST has one or more of these, separated by commas.\n"                                                     \
+    "  auto                   the sides of the file's box on its open axes\n"                                          \
+    "  box                    all six sides\n"                                                                         \
+    "  xmin                   this side, also xmax to zmax, at the end of the file's box, or else of the spheres\n"    \
+    "  xmin=VALUE             this side at a coordinate\n"                                                             \
+    "  zmax=open              an opening where the spheres end: the walls end there and the surroundings begin\n"      \
+    "  zmax=H:open            an opening at the coordinate H\n"                                                        \
+    "  box:open=zmax          a box without a lid\n"                                                                   \
+    "  cylinder:X,Y,R         a cylinder parallel to the z axis\n"                                                     \
+    "  mesh:FILE              triangles of an STL file, in the bed's unit of length; the wall is named after FILE\n"   \
+    "  NAME=mesh:FILE         the same, with a name\n"                                                                 \
+    "A side that is named besides auto or box stands where it says. Walls must not form a tube or a corner\n"          \
+    "without end. If they do, make the missing side a wall or an opening. Of a mesh, the sides on which\n"             \
+    "spheres lie belong to the wall. Other sides must not be seen. mesh:FILE:WORD says more:\n"                        \
+    "  both                   both sides belong to the wall\n"                                                         \
+    "  normals                the outer sides of the file belong to the wall\n"                                        \
+    "  solids                 each solid of the file is a wall\n"                                                      \
+    "  scale=S                coordinates are multiplied by S\n"
 
 /* "xmin" ... "zmax", "cylinder", the name of a mesh; of an opening. */
 const char *wall_name(const struct walls *walls, uint32_t k);

@@ -51,7 +51,7 @@ enum {
 };
 
 /* Rows of tables, without braces. */
-#define OPTION_THREADS KEY_THREADS, "threads", "T", "threads, 1 to 1024 [all cores]"
+#define OPTION_THREADS KEY_THREADS, "threads", "T", "number of threads, 1 to 1024 [all cores]"
 #define OPTION_HELP    KEY_HELP, "help", NULL, "this text"
 
 /* What options_next returns apart from keys. */

@@ -18,26 +18,27 @@ enum { KEY_CUTOFF = KEY_OWN, KEY_TARGETS, KEY_DROP };
 
 static const struct option bed_table[] = {
     {KEY_METHOD, "method", "NAME",
-     "beam: along Fibonacci directions; surface: between nodes; cast: quasi-random rays; mc: random rays [beam]"},
-    {KEY_DIRECTIONS, "directions", "N", "beam: directions, 8 to 65536; error ~ N^-1.5 [233]"},
-    {KEY_AREAS, "areas", "KIND", "beam: visible areas exact, or by points (faster, less accurate) [exact]"},
+     "beam (parallel beams), surface (nodes on surfaces), cast (quasi-random rays) or mc (random rays) [beam]"},
+    {KEY_DIRECTIONS, "directions", "N", "beam: number of directions, 8 to 65536; the error falls as N^-1.5 [233]"},
+    {KEY_AREAS, "areas", "KIND", "beam: visible areas, exact or points; points are faster and less accurate [exact]"},
     {KEY_ERROR, "error", "E",
-     "beam: as many directions as bring the estimated Euclidean error of every row to E or less, 1e-7 to 1 [none]"},
-    {KEY_POINTS, "points", "M", "beam: points per window: 64, 128 or 256; implies --areas points [256]"},
-    {KEY_NF, "nf", "N", "surface: nodes, a Fibonacci number from 8 to 987 [55]"},
-    {KEY_NO_CORRECTION, "no-correction", NULL, "surface: the plain sums [corrected by the exact unblocked factor]"},
-    {KEY_RAYS, "rays", "N", "cast, mc: rays from each sphere; error ~ N^-0.6, N^-0.5 [20000]"},
-    {KEY_SEED, "seed", "S", "cast, mc: another number, other rays [0]"},
+     "beam: error allowed in every row, estimated, 1e-7 to 1; directions are added until it is met [none]"},
+    {KEY_POINTS, "points", "M", "beam: points per window, 64, 128 or 256; implies --areas points [256]"},
+    {KEY_NF, "nf", "N", "surface: nodes on each sphere, a Fibonacci number from 8 to 987 [55]"},
+    {KEY_NO_CORRECTION, "no-correction", NULL, "surface: plain sums [corrected by the exact factor without obstacles]"},
+    {KEY_RAYS, "rays", "N", "cast, mc: rays from each sphere; the error falls as N^-0.6 (cast) or N^-0.5 (mc) [20000]"},
+    {KEY_SEED, "seed", "S", "cast, mc: seed of the rays [0]"},
     {KEY_CUTOFF, "cutoff", "D", "spheres with centres farther apart than D do not see each other [none]"},
-    {KEY_TARGETS, "targets", "LIST", "rows wanted, such as 3,7,10-19, or all; a list implies --raw [all]"},
-    {KEY_RAW, "raw", NULL, "do not average F_ij and F_ji [averaged: A_i F_ij = A_j F_ji]"},
-    {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},
+    {KEY_TARGETS, "targets", "LIST", "rows that are wanted, 3,7,10-19 for example; a list implies --raw [all]"},
+    {KEY_RAW, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i F_ij = A_j F_ji]"},
+    {KEY_DROP, "drop", "D", "drop entries below D; the others take over, and rows stay closed and reciprocal [0]"},
     {OPTION_WALL},
     {OPTION_WALL_VTP},
     OPTIONS_INPUT,
-    {'o', "output", "OUT", "the matrix: .csv .mtx .npz (SciPy) .json; the spheres: .vtp; - [summary only]"},
+    {'o', "output", "OUT",
+     "write the matrix (.csv .mtx .npz .json, - for standard output) or the spheres (.vtp) [summary only]"},
     {OPTION_FORMAT},
-    {KEY_PLOT, "plot", "OUT", "a picture, .svg or .png, by gnuplot [none]"},
+    {KEY_PLOT, "plot", "OUT", "draw a picture by gnuplot, .svg or .png [none]"},
     {OPTION_SCRATCH},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
@@ -61,14 +62,17 @@ static int bed_help(void) {
     puts("fibrad bed FILE... [options]\n\n"
          "View factors between all spheres of FILE.\n");
     options_print(bed_table);
-    puts("\n" FILES_MORE "\n" WALLS_MORE "F to a wall is what arrives there directly. In .csv walls are j = -2, -3 ... "
-         "and the surroundings j = -1, with\n"
-         "their names in the column `body`, so that rows add up to 1; i = -2, -3 ... from walls of finite area to\n"
-         "spheres, walls and the surroundings (not with --targets or --cutoff); in .vtp an array for each wall. .mtx "
-         "holds\n"
-         "spheres only. What leaves a --cutoff is beyond.\n\n"
-         "Several frames go into one .csv or .json, with their numbers, or into one file each where OUT has a *.\n"
-         "Standard output ends with a summary of each, one `key value` a line; `wall_NAME_F`: mean from a sphere.\n\n"
+    puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
+         "A factor to a wall is the fraction that arrives there directly. In .csv the surroundings are j = -1 and\n"
+         "walls are j = -2, -3, ... with their names in the column `body`, so that rows add up to 1. Rows i = -2,\n"
+         "-3, ... are those of walls that are not endless. There are none with --targets or --cutoff. .vtp has an\n"
+         "array for each wall. .mtx has spheres only. `beyond` is what leaves the cutoff where there may be more\n"
+         "spheres.\n"
+         "\n"
+         "Several frames go into one .csv or .json with their numbers. If OUT has a *, each frame has a file.\n"
+         "Standard output ends with a summary of each frame, one `key value` on a line. `wall_NAME_F` is the mean\n"
+         "over spheres.\n"
+         "\n"
          "Examples:\n"
          "  fibrad bed packing.dump -o F.mtx --plot bed.png\n"
          "  fibrad bed packing.dump --error 0.001 -o F.mtx -o F.csv --json F.json\n"

@@ -16,20 +16,21 @@ enum { KEY_AXIS = KEY_OWN, KEY_CONDUCTIVITY_TEMPERATURE, KEY_MAX_RAYS, KEY_STEAD
 
 static const struct option conductivity_table[] = {
     {OPTION_EMISSIVITY},
-    {KEY_CONDUCTIVITY_TEMPERATURE, "temperature", "T", "mean temperature, for k [none: F_E alone]"},
+    {KEY_CONDUCTIVITY_TEMPERATURE, "temperature", "T", "mean temperature, for k [none: F_E only]"},
     {OPTION_TEMPERATURE_UNIT},
-    {KEY_AXIS, "axis", "x|y|z", "F_E along this axis alone, and --error for it alone [all three]"},
-    {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [as many as --error takes]"},
-    {KEY_ERROR, "error", "E", "as many as bring the estimated standard errors to E of F_E, 1e-4 to 1 [0.003]"},
-    {KEY_MAX_RAYS, "max-rays", "N", "no more rays in all than about so many for --error [5e7]"},
+    {KEY_AXIS, "axis", "x|y|z", "axis of F_E and of --error [all three]"},
+    {KEY_RAYS, "rays", "N", "paths from each sphere; the error falls as N^-0.5 [as many as --error needs]"},
+    {KEY_ERROR, "error", "E",
+     "standard error allowed, relative to F_E, 1e-4 to 1; paths are added until it is met [0.003]"},
+    {KEY_MAX_RAYS, "max-rays", "N", "about the most rays that --error may take in all [5e7]"},
     {KEY_STEADY, "steady", NULL,
-     "besides, F_E of the bed between two black plates, spheres at the temperatures at which they gain nothing, along "
-     "each axis whose other two are periodic"},
-    {KEY_SEED, "seed", "S", "another number, other paths and directions [0]"},
+     "compute also F_E of the bed between two black plates, for spheres whose net power is 0, along each axis whose "
+     "other two axes are periodic"},
+    {KEY_SEED, "seed", "S", "seed of paths and directions [0]"},
     OPTIONS_INPUT,
-    {'o', "output", "OUT", "F_E and k per axis: .csv .json; - [summary only]"},
+    {'o', "output", "OUT", "write F_E and k of each axis: .csv .json, - for standard output [summary only]"},
     {OPTION_FORMAT},
-    {KEY_PLOT, "plot", "OUT", "a picture of F_E along the axes, .svg or .png, by gnuplot [none]"},
+    {KEY_PLOT, "plot", "OUT", "draw F_E along the axes by gnuplot, .svg or .png [none]"},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
@@ -48,23 +49,23 @@ struct conductivity_request {
 
 static int conductivity_help(void) {
     puts("fibrad conductivity FILE... --emissivity E [options]\n\n"
-         "Exchange factor F_E = k/(4 sigma T^3 d) along each axis, k being the radiative conductivity [W/(m K)] of a "
-         "bed of\n"
-         "grey diffuse spheres, each of one temperature (their own conductivity is large), and d the mean diameter "
-         "[m].\n");
+         "Exchange factor F_E = k/(4 sigma T^3 d) of a bed of grey diffuse spheres along each axis. k is the\n"
+         "radiative conductivity of the bed [W/(m K)]. d is the mean diameter of the spheres [m]. Each sphere has\n"
+         "one temperature.\n");
     options_print(conductivity_table);
-    printf("\n" FILES_MORE
-           "\nThe result is that of a linear field of temperature. With open axes only spheres at least %g mean "
-           "diameters inside\n"
-           "the outermost centres emit; all absorb. With --axis a bed may be thinner across it: then all spheres emit. "
-           "Where a periodic bed has gaps, flights may be so long that F_E along "
-           "them\n"
-           "does not exist or its standard error cannot be estimated: a warning says so.\n",
+    printf("\n" FILES_MORE "\n"
+           "F_E is that of a linear field of temperature. All spheres absorb. Along open axes only spheres at least\n"
+           "%g mean diameters inside the outermost centres emit. With --axis a bed may be too thin for this along\n"
+           "another axis. Then all spheres along that other axis emit. Where a periodic bed has gaps, flights may be\n"
+           "so long that F_E does not exist, or that its standard error cannot be estimated. Then there is a\n"
+           "warning.\n"
+           "\n",
            CONDUCTION_MARGIN);
-    puts("Standard output ends with lines `key value`, the last of them F_E_x, F_E_y, F_E_z, F_E_x_error, "
-         "F_E_y_error,\n"
-         "F_E_z_error (standard errors, estimated); `unreliable`: the axes whose errors are not to be relied on. With\n"
-         "--temperature k_x_W_mK ... k_z_W_mK_error come before.\n\n"
+    puts("Standard output ends with lines `key value`. F_E_x, F_E_y and F_E_z are the exchange factors.\n"
+         "F_E_x_error, F_E_y_error and F_E_z_error are their estimated standard errors. `unreliable` names the\n"
+         "axes whose errors are not reliable. With --temperature there are also k_x_W_mK to k_z_W_mK and\n"
+         "k_x_W_mK_error to k_z_W_mK_error.\n"
+         "\n"
          "Examples:\n"
          "  fibrad conductivity packing.dump --emissivity 0.8\n"
          "  fibrad conductivity packing.dump --emissivity 0.8 --axis z --temperature 1200 -o k.csv\n"

@@ -15,20 +15,20 @@ enum { KEY_DROP = KEY_OWN };
 
 static const struct option exchange_table[] = {
     {OPTION_EMISSIVITY},
-    {KEY_RAYS, "rays", "N", "paths from each sphere; error ~ N^-0.5 [400]"},
-    {KEY_DIRECTIONS, "directions", "N", "beam directions for the first leg of all paths, 8 to 65536 [50]"},
+    {KEY_RAYS, "rays", "N", "paths from each sphere, for reflections; the error falls as N^-0.5 [400]"},
+    {KEY_DIRECTIONS, "directions", "N", "directions of beams, for the way to the first surface, 8 to 65536 [50]"},
     {KEY_ERROR, "error", "E",
-     "as many of both as bring the estimated Euclidean error of the worst row to E, 1e-5 to 1 [none]"},
+     "error allowed in every row, estimated, 1e-5 to 1; rays and directions are added until it is met [none]"},
     {OPTION_WALL},
     {OPTION_WALL_VTP},
     {OPTION_WALL_EMISSIVITY},
-    {KEY_RAW, "raw", NULL, "do not average D_ij and D_ji [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
-    {KEY_DROP, "drop", "D", "give entries below D back to the others; rows stay closed and reciprocal [0]"},
-    {KEY_SEED, "seed", "S", "another number, other paths and directions [0]"},
+    {KEY_RAW, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
+    {KEY_DROP, "drop", "D", "drop entries below D; the others take over, and rows stay closed and reciprocal [0]"},
+    {KEY_SEED, "seed", "S", "seed of paths and directions [0]"},
     OPTIONS_INPUT,
-    {'o', "output", "OUT", "the factors: .csv .mtx .npz (SciPy) .json; - [summary only]"},
+    {'o', "output", "OUT", "write the factors: .csv .mtx .npz .json, - for standard output [summary only]"},
     {OPTION_FORMAT},
-    {KEY_PLOT, "plot", "OUT", "a picture of the bed and its factors, .svg or .png, by gnuplot [none]"},
+    {KEY_PLOT, "plot", "OUT", "draw the bed and its factors by gnuplot, .svg or .png [none]"},
     {OPTION_SCRATCH},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
@@ -46,20 +46,21 @@ struct exchange_request {
 
 static int exchange_help(void) {
     puts("fibrad exchange FILE... --emissivity E [options]\n\n"
-         "Exchange factors between all spheres of FILE, which are grey and diffuse: D_ij is the fraction of what "
-         "sphere i\n"
-         "emits that sphere j absorbs, directly or after any number of reflections.\n");
+         "Exchange factors between all spheres of FILE. The spheres are grey and diffuse. D_ij is the fraction of\n"
+         "the emission of sphere i that sphere j absorbs, directly or after reflections.\n");
     options_print(exchange_table);
-    puts("\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,j,D,body: spheres by name, the surroundings j = -1, walls j "
-         "= -2, -3 ... with their names in\n"
-         "the column `body`; then from walls of finite area, i = -2, -3 ..., to spheres, walls and the surroundings. "
-         ".mtx\n"
-         "holds spheres only.\n"
-         "Net power to i is sum over j of A_i e_i D_ij sigma (T_j^4 - T_i^4), A_i = 4 pi r_i^2 in square metres and T "
-         "in\n"
-         "kelvins. Spheres of emissivity 0 reflect all: no row, and nothing in their column.\n"
-         "Several frames go into one .csv or .json, with their numbers, or into one file each where OUT has a *.\n"
-         "Standard output ends with a summary of each, one `key value` a line.\n\n"
+    puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
+         "The .csv has the columns i,j,D,body. The surroundings are j = -1. Walls are j = -2, -3, ... with their\n"
+         "names in the column `body`. Rows i = -2, -3, ... are those of walls that are not endless. .mtx has\n"
+         "spheres only.\n"
+         "\n"
+         "The net power of sphere i is the sum over j of A_i e_i D_ij sigma (T_j^4 - T_i^4), with A_i = 4 pi r_i^2\n"
+         "in square metres and T in kelvins. A sphere of emissivity 0 reflects everything. It has no row and no\n"
+         "column.\n"
+         "\n"
+         "Several frames go into one .csv or .json with their numbers. If OUT has a *, each frame has a file.\n"
+         "Standard output ends with a summary of each frame, one `key value` on a line.\n"
+         "\n"
          "Examples:\n"
          "  fibrad exchange packing.dump --emissivity 0.8 --error 0.01 -o D.csv\n"
          "  fibrad exchange packing.dump --emissivity 1:0.8,2:0.3 --frame all -o 'D.*.npz'\n"

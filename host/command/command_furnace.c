@@ -20,22 +20,25 @@
 enum { KEY_CASE = KEY_OWN, KEY_THETA, KEY_SCATTER, KEY_CELLS, KEY_BUNDLES, KEY_TOLERANCE, KEY_OUTERS };
 
 static const struct option table[] = {
-    {KEY_CASE, "case", "1|2", "the published furnace, without or with scattering, instead of FILE"},
-    {KEY_METHOD, "method", "NAME", "hfm, mchf, mchf-x or mc [mchf-x]"},
-    {KEY_THETA, "theta", "WHICH", "of mchf: definition, paper, or a constant in (0, 1] [definition]"},
-    {KEY_SCATTER, "scatter", "KIND", "scattering source: six_flux or exact [exact for mchf-x, else six_flux]"},
-    {KEY_CELLS, "cells", "NX,NY,NZ", "cells along the axes [20,20,40 for the cases, else as FILE says]"},
-    {KEY_BUNDLES, "bundles", "N", "bundles of rays, approximately, 1 to 4294967296 [8000000; mc 20000000]"},
-    {KEY_SEED, "seed", "S", "of the bundles [1]"},
-    {KEY_TOLERANCE, "tolerance", "K", "outer iterations end when no T changes by more [0.1]"},
-    {KEY_OUTERS, "outers", "N", "outer iterations at most [50]"},
+    {KEY_CASE, "case", "1|2", "published furnace instead of FILE: 1 without scattering, 2 with scattering"},
+    {KEY_METHOD, "method", "NAME", "hfm, mchf, mchf-x or mc, see above [mchf-x]"},
+    {KEY_THETA, "theta", "WHICH",
+     "mchf: Theta by its definition, as in the paper, or a constant up to 1: definition, paper or a number "
+     "[definition]"},
+    {KEY_SCATTER, "scatter", "KIND", "scattering source, six_flux or exact [exact for mchf-x, else six_flux]"},
+    {KEY_CELLS, "cells", "NX,NY,NZ", "numbers of cells along the axes [20,20,40 for the cases, else as FILE says]"},
+    {KEY_BUNDLES, "bundles", "N", "approximate number of bundles of rays, 1 to 4294967296 [8000000; mc 20000000]"},
+    {KEY_SEED, "seed", "S", "seed of the bundles [1]"},
+    {KEY_TOLERANCE, "tolerance", "K", "outer iterations end when no temperature changes by more [0.1]"},
+    {KEY_OUTERS, "outers", "N", "most outer iterations [50]"},
     {OPTION_THREADS},
-    {'o', "output", "OUT", "the fields of all cells: .csv or .vti (ParaView); - [summary only]"},
-    {KEY_FORMAT, "format", "NAME", "of -o -: csv or vti"},
-    {KEY_PLOT, "plot", NULL, "[OUT] a picture of the centre plane by gnuplot, .png or .svg [furnace.png]"},
-    {KEY_JSON, "json", "OUT", "the summary as JSON, all digits of it [none]"},
-    {KEY_QUIET, "quiet", NULL, "neither progress nor a report of the outer iterations on standard error"},
-    {KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"},
+    {'o', "output", "OUT",
+     "write the fields of all cells: .csv or .vti (ParaView), - for standard output [summary only]"},
+    {KEY_FORMAT, "format", "NAME", "format of -o -, csv or vti"},
+    {KEY_PLOT, "plot", NULL, "[OUT] draw the centre plane by gnuplot, .png or .svg [furnace.png]"},
+    {KEY_JSON, "json", "OUT", "write the summary as JSON, with all digits [none]"},
+    {KEY_QUIET, "quiet", NULL, "print no progress and no report of the outer iterations on standard error"},
+    {KEY_PROGRESS, "progress", NULL, "show progress even if standard error is not a terminal [off]"},
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
@@ -51,24 +54,26 @@ struct request {
 };
 
 static int furnace_help(void) {
-    puts(
-        "fibrad furnace --case 1|2 [options]\n"
-        "fibrad furnace FILE [options]\n\n"
-        "Temperatures and wall fluxes of a box filled with a grey medium, between grey diffuse walls.\n"
-        "  hfm     heat-flux method: six fluxes, Theta = 1\n"
-        "  mchf    Monte Carlo + heat flux: Theta, the ratio of moments of the intensity, measured by bundles of rays\n"
-        "  mchf-x  with the transverse term, which mchf omits, measured too\n"
-        "  mc      direct Monte Carlo in radiative equilibrium: the reference\n");
+    puts("fibrad furnace --case 1|2 [options]\n"
+         "fibrad furnace FILE [options]\n\n"
+         "Temperatures and wall fluxes of a box filled with a grey medium, between grey diffuse walls. Theta is a "
+         "ratio of\n"
+         "moments of the intensity. docs/furnace.md has the equations.\n"
+         "  hfm     heat-flux method: six fluxes, Theta = 1\n"
+         "  mchf    Monte Carlo and heat flux: bundles of rays measure Theta\n"
+         "  mchf-x  as mchf; bundles measure also the transverse term, which mchf omits\n"
+         "  mc      direct Monte Carlo in radiative equilibrium, the reference\n");
     options_print(table);
-    puts("\nFILE has lines of keys and values, # begins a comment:\n"
+    puts("\nFILE has a key and its values on each line. # begins a comment.\n"
          "  size 2 2 4             lengths of the box [m]\n"
-         "  cells 20 20 40\n"
-         "  absorption 0.15        [1/m], above 0\n"
-         "  scattering 0.35        [1/m], 0 if left out\n"
+         "  cells 20 20 40         numbers of cells along the axes\n"
+         "  absorption 0.15        coefficient [1/m], above 0\n"
+         "  scattering 0.35        coefficient [1/m], 0 if left out\n"
          "  source 5000            net emission of the medium [W/m3], 0 if left out\n"
-         "  wall z0 1200 0.85      temperature [K] and emissivity; walls x0 x1 y0 y1 z0 z1, or `sides` for x and y\n\n"
-         "Standard output ends with a summary, one `key value` a line; powers are net and\n"
-         "leave the wall; balance_kW is their sum plus the power of the source, which should be 0.\n\n"
+         "  wall z0 1200 0.85      temperature [K] and emissivity of x0, x1, y0, y1, z0 or z1, or of `sides`, all x "
+         "and y\n\n"
+         "Standard output ends with a summary, one `key value` on a line. Powers are net powers that leave the walls.\n"
+         "balance_kW is their sum plus the power of the source. It should be 0.\n\n"
          "Examples:\n"
          "  fibrad furnace --case 1 --plot\n"
          "  fibrad furnace --case 2 --method mchf --theta paper\n"

@@ -36,24 +36,25 @@ static const struct option heat_table[] = {
     {OPTION_WALL_EMISSIVITY},
     {OPTION_TEMPERATURE_UNIT},
     {KEY_MODEL, "model", "NAME",
-     "patches: reflected light goes from point to point; spheres: one radiosity each, for emissivities near 1; with "
-     "--until also factors, once for all steps, which differ by some percent [patches; with --until factors that are "
-     "corrected by patches where that changes something]"},
-    {KEY_PATCHES, "patches", "P", "of a sphere: 24, 96 or 384 [96]"},
-    {KEY_DIRECTIONS, "directions", "N", "of beams, 8 to 65536 [168; 112 where the mean emissivity is 0.35 or less]"},
-    {KEY_POINTS, "points", "M", "beams per direction: 64, 128 or 256 [64; 128 in time]"},
+     "patches (reflections from point to point), spheres (one radiosity for each sphere, for emissivities near 1) or, "
+     "with --until, factors (exchange factors, powers 2 to 5 % off) [patches; with --until factors that patches "
+     "correct]"},
+    {KEY_PATCHES, "patches", "P", "patches of each sphere, 24, 96 or 384 [96]"},
+    {KEY_DIRECTIONS, "directions", "N",
+     "directions of beams, 8 to 65536 [168; 112 if the mean emissivity is 0.35 or less]"},
+    {KEY_POINTS, "points", "M", "points of each beam, 64, 128 or 256 [64; with --until 128]"},
     {KEY_WALL_RAYS, "wall-rays", "N",
-     "rays from all walls at the least, up to 2^30; errors of triangles ~ N^-0.5 [262144, more "
-     "with many beams or patches]"},
+     "least number of rays from all walls, up to 2^30; errors of triangles fall as N^-0.5 [262144, more with many "
+     "beams or patches]"},
     {KEY_ERROR, "error", "E",
-     "as many directions and patches as bring the estimated error of the powers to E times their root mean square or "
-     "less, 1e-5 to 1; at the least to 1e-3 E of what is emitted; of temperatures that are found, T^4 to E of its root "
-     "mean square; of walls each [none]"},
+     "error allowed in powers, estimated, relative to their root mean square, 1e-5 to 1; directions and patches are "
+     "added until it is met; see below [none]"},
     OPTIONS_MARCH,
     OPTIONS_INPUT,
-    {'o', "output", "OUT", "powers: .csv .dump (OVITO) .vtp (ParaView) .json; - [summary only]"},
+    {'o', "output", "OUT",
+     "write the powers: .csv .dump (OVITO) .vtp (ParaView) .json, - for standard output [summary only]"},
     {OPTION_FORMAT},
-    {KEY_PLOT, "plot", "OUT", "a picture, .svg or .png, by gnuplot [none]"},
+    {KEY_PLOT, "plot", "OUT", "draw a picture by gnuplot, .svg or .png [none]"},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
 
@@ -72,33 +73,33 @@ struct heat_request {
 
 static int heat_help(void) {
     puts("fibrad heat FILE... --emissivity E --temperature T --ambient T [options]\n\n"
-         "Net radiative power of every sphere of FILE, of walls and of the surroundings, all grey and diffuse, in "
-         "watts;\n"
-         "positive where heat is gained; and the temperature of those whose power is given. Temperatures in kelvins,\n"
-         "lengths in the unit of the file.\n");
+         "Net radiative powers [W] of all spheres of FILE, of walls and of the surroundings, all grey and diffuse.\n"
+         "A net power is above 0 where heat is gained. Where a power is given, the temperature is found [K].\n");
     options_print(heat_table);
+    puts("\n" FILES_MORE "\n" WALLS_MORE "\n"
+         "Each sphere has a temperature or a power. Types that one list leaves out, and blanks or nan in one\n"
+         "column, have the other one. A single number beside a list or column is for the spheres that this leaves\n"
+         "out. A power is given off from inside, so that the net power is its negative. An insulated wall sends\n"
+         "back all that arrives, point by point. A sphere of emissivity 0 reflects everything. It gains nothing\n"
+         "and has no temperature.\n"
+         "\n"
+         "--error E holds for the powers of the spheres together, for each wall, and for T^4 where temperatures\n"
+         "are found. Each error is relative to a root mean square. Errors below 1e-3 E of what is emitted count as\n"
+         "met.\n"
+         "\n"
+         "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
+         "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
+         "the temperature of a wall (zmin=@TABLE) or of the surroundings. The .csv then has the time in its first\n"
+         "column. A series of .vtp has a .pvd for ParaView.\n"
+         "\n"
+         "The .csv has the columns i,T_K,q_W,body,q_error_W,T_error_K, with estimated errors. The surroundings are\n"
+         "i = -1. Walls are i = -2, -3, ... with their names in the column `body`. All q_W add up to zero.\n"
+         "\n"
+         "Several frames go into one .csv, .dump or .json with their numbers. If OUT has a *, each frame has a\n"
+         "file. Standard output ends with a summary of each frame, one `key value` on a line. Its balance and\n"
+         "error are relative to what the spheres emit, or to what they absorb if that is more.\n");
     puts(
-        "\n" FILES_MORE "\n" WALLS_MORE "The .csv holds i,T_K,q_W,body,q_error_W,T_error_K: spheres by name, the "
-        "surroundings i = -1, walls i = -2, -3\n"
-        "... with their names in the column `body`; errors as estimated. All q add up to zero. Spheres of emissivity "
-        "0\n"
-        "reflect all, gain nothing and have no temperature.\n"
-        "Powers given (--power, --wall-power) are given off from inside, > 0, so that q is their negative. Each sphere "
-        "has\n"
-        "either a temperature or a power: types that a list leaves out, and blanks or nan in a column, have the other "
-        "one.\n"
-        "One number beside a column or list is for the spheres that this leaves out.\n"
-        "With --until temperatures are those to begin with. Each sphere stores heat-capacity times density times its\n"
-        "volume; powers given heat it. @TABLE, two columns of seconds and temperatures, may stand for the temperature\n"
-        "of a wall or of the surroundings: zmin=@TABLE; --emissivity @TABLE is of temperatures. The .csv has the time "
-        "in its first column; a series of .vtp\n"
-        "comes with a .pvd, which is what ParaView opens.\n"
-        "Several frames go into one .csv, .dump or .json, with their numbers, or into one file each where OUT has a "
-        "*.\n"
-        "Standard output ends with a summary of each, one `key value` a line. In it balance and error are relative to "
-        "what\n"
-        "the spheres emit, or to what they absorb where that is more.\n\n"
-        "Examples:\n"
+        "\nExamples:\n"
         "  fibrad heat packing.dump --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
         "  fibrad heat 'bed.*.dump.gz' --frame all --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
         "  fibrad heat packing.dump --emissivity 0.8 --power 40 --ambient 300 --wall box \\\n"

@@ -15,11 +15,12 @@
 
 static const struct option join_table[] = {
     {KEY_RAW, "raw", NULL, "leave the rows as they were computed [averaged and closed: A_i e_i D_ij = A_j e_j D_ji]"},
-    {'o', "output", "OUT", "the factors: .csv, .mtx, .npz (SciPy), .json; the spheres: .vtp; - [summary only]"},
+    {'o', "output", "OUT",
+     "write the factors (.csv .mtx .npz .json, - for standard output) or the spheres (.vtp) [summary only]"},
     {OPTION_FORMAT},
-    {KEY_POSITIONS, "positions", NULL, "name spheres by positions from 0 in the order of ids [by their ids]"},
-    {KEY_JSON, "json", "OUT", "the summary as JSON, all digits of it [none]"},
-    {KEY_QUIET, "quiet", NULL, "no summary"},
+    {KEY_POSITIONS, "positions", NULL, "name spheres by positions from 0, in the order of ids [by ids]"},
+    {KEY_JSON, "json", "OUT", "write the summary as JSON, with all digits [none]"},
+    {KEY_QUIET, "quiet", NULL, "print no summary"},
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
@@ -32,23 +33,23 @@ struct join_request {
 };
 
 static int join_help(void) {
-    puts(
-        "fibrad join FILE.rows... [options]\n\n"
-        "The rows that all ranks of a simulation wrote in one step (fix fibrad ... rows NAME: NAME.0.rows, NAME.1.rows "
-        "...),\n"
-        "put together into one matrix: exchange factors, or view factors where all emissivities are 1.\n");
+    puts("fibrad join FILE.rows... [options]\n\n"
+         "Puts the rows that all ranks of a simulation wrote in one step (fix fibrad ... rows NAME: NAME.0.rows,\n"
+         "NAME.1.rows, ...) together into one matrix. The matrix has exchange factors, or view factors if all\n"
+         "emissivities are 1.\n");
     options_print(join_table);
-    puts(
-        "\nFiles are those of fibrad exchange: in .csv the surroundings are j = -1, walls j = -2, -3 ..., then what is "
-        "beyond\n"
-        "the cutoff. What is beyond may be given back: entries times 1/(1 - beyond). Rows are in the order of ids, "
-        "which\n"
-        ".npz has in any case.\n"
-        "Memory: 24 bytes an entry with --raw, 36 without. Standard output ends with a summary, one `key value` a "
-        "line.\n\n"
-        "Examples:\n"
-        "  fibrad join bed.*.rows -o D.npz\n"
-        "  fibrad join bed.*.rows --raw -o D.csv -o D.vtp");
+    puts("\n"
+         "Outputs have the form of fibrad exchange. In .csv the surroundings are j = -1 and walls are j = -2, -3,\n"
+         "... The next number is `beyond`, what leaves the cutoff where there may be more spheres. To give it\n"
+         "back, multiply the entries of a row by 1/(1 - beyond). Rows are in the order of ids. .npz always has the\n"
+         "ids.\n"
+         "\n"
+         "Memory: 24 bytes for each entry with --raw, 36 without. Standard output ends with a summary, one `key\n"
+         "value` on a line.\n"
+         "\n"
+         "Examples:\n"
+         "  fibrad join bed.*.rows -o D.npz\n"
+         "  fibrad join bed.*.rows --raw -o D.csv -o D.vtp");
     return STATUS_OK;
 }
 

@@ -23,21 +23,21 @@ enum { KEY_OBSTACLE = KEY_OWN, KEY_CHECK };
 
 static const struct option pair_table[] = {
     {KEY_METHOD, "method", "NAME",
-     "exact; beam: along Fibonacci directions; surface: between nodes; cast: rays; mc: random rays [exact]"},
-    {KEY_OBSTACLE, "obstacle", "X,Y,Z,R", "a sphere in the way; may be given again [none]"},
+     "exact, beam (parallel beams), surface (nodes on surfaces), cast (quasi-random rays) or mc (random rays) [exact]"},
+    {KEY_OBSTACLE, "obstacle", "X,Y,Z,R", "a sphere in the way; may be repeated [none]"},
     {KEY_ERROR, "error", "E",
-     "exact, with obstacles: estimated error over the factor without them, 1e-12 to 1 [1e-9; 1e-5 where spheres "
-     "overlap, "
-     "each further digit of which takes ten times as long]"},
+     "exact, with obstacles: error allowed, estimated, relative to the factor without obstacles, 1e-12 to 1 [1e-9; "
+     "1e-5 "
+     "if spheres overlap, where each further digit takes ten times as long]"},
     {KEY_CHECK, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]"},
-    {KEY_DIRECTIONS, "directions", "N", "beam: directions, 8 to 65536; error ~ N^-1.5 [233]"},
-    {KEY_AREAS, "areas", "KIND", "beam: visible areas exact, or by points [exact]"},
-    {KEY_POINTS, "points", "M", "beam: points per window: 64, 128 or 256; implies --areas points [256]"},
-    {KEY_NF, "nf", "N", "surface: nodes, a Fibonacci number from 8 to 987 [55]"},
-    {KEY_NO_CORRECTION, "no-correction", NULL, "surface: the plain sum [corrected by the exact unblocked factor]"},
-    {KEY_RAYS, "rays", "N", "cast, mc: rays from sphere 1; error ~ N^-0.6, N^-0.5 [20000]"},
-    {KEY_SEED, "seed", "S", "cast, mc: another number, other rays [0]"},
-    {KEY_JSON, "json", "OUT", "the output as JSON, all digits of it [none]"},
+    {KEY_DIRECTIONS, "directions", "N", "beam: number of directions, 8 to 65536; the error falls as N^-1.5 [233]"},
+    {KEY_AREAS, "areas", "KIND", "beam: visible areas, exact or points [exact]"},
+    {KEY_POINTS, "points", "M", "beam: points per window, 64, 128 or 256; implies --areas points [256]"},
+    {KEY_NF, "nf", "N", "surface: nodes on each sphere, a Fibonacci number from 8 to 987 [55]"},
+    {KEY_NO_CORRECTION, "no-correction", NULL, "surface: plain sum [corrected by the exact factor without obstacles]"},
+    {KEY_RAYS, "rays", "N", "cast, mc: rays from sphere 1; the error falls as N^-0.6 (cast) or N^-0.5 (mc) [20000]"},
+    {KEY_SEED, "seed", "S", "cast, mc: seed of the rays [0]"},
+    {KEY_JSON, "json", "OUT", "write the output as JSON, with all digits [none]"},
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};
 
@@ -62,8 +62,9 @@ struct pair_request {
 
 static int pair_help(void) {
     puts("fibrad pair R1 R2 GAP [options]\n\n"
-         "View factor from sphere 1 (radius R1, at the origin) to sphere 2 (radius R2, at 0,0,R1+R2+GAP). GAP may be\n"
-         "negative: the spheres overlap. With obstacles, exact means adaptive quadrature, slow.\n");
+         "View factor from sphere 1 to sphere 2. Sphere 1 has the radius R1 and its centre at the origin. Sphere 2\n"
+         "has the radius R2 and its centre at 0,0,R1+R2+GAP. If GAP is negative, the spheres overlap. With\n"
+         "obstacles, the method exact is a slow adaptive quadrature.\n");
     options_print(pair_table);
     puts("\nThe last line of the output is `F12 VALUE`.\n\n"
          "Examples:\n"

@@ -15,34 +15,34 @@
 
 enum { KEY_ONLY = KEY_OWN, KEY_NO_PLOTS };
 
-static const struct option reproduce_table[] = {{'o', "output", "DIR", "write CSV files and plots there [none]"},
-                                                {KEY_ONLY, "only", "NAME", "this experiment alone [all]"},
-                                                {KEY_NO_PLOTS, "no-plots", NULL, "CSV files alone [off]"},
-                                                {OPTION_HELP},
-                                                {0, NULL, NULL, NULL}};
+static const struct option reproduce_table[] = {
+    {'o', "output", "DIR", "write CSV files and plots into this folder [none]"},
+    {KEY_ONLY, "only", "NAME", "run this experiment only [all]"},
+    {KEY_NO_PLOTS, "no-plots", NULL, "write CSV files only [off]"},
+    {OPTION_HELP},
+    {0, NULL, NULL, NULL}};
 
 static const struct {
     const char *name, *what;
     experiment *run;
 } experiments[] = {
-    {"fig3", "error of the surface method against the gap, nothing in between", reproduce_fig3},
-    {"fig4", "equal spheres against the exact factor and other formulas", reproduce_fig4},
-    {"fig7-9", "a third sphere touching both", reproduce_third_sphere},
+    {"fig3", "error of the surface method against the gap, with nothing in between", reproduce_fig3},
+    {"fig4", "equal spheres: the exact factor and other formulas", reproduce_fig4},
+    {"fig7-9", "two spheres, and a third one that touches both", reproduce_third_sphere},
     {"fig10", "face-centred cubic beds: sum of the factors against distance", reproduce_fig10},
-    {"table1", "all factors of random beds: seconds", reproduce_table1},
+    {"table1", "time for all factors of random beds", reproduce_table1},
     {"pebble-pair", "two pebbles: factor, ray length, angle, received radiation", reproduce_pebble_pair},
-    {"pebble-rays", "the same by rays: error, rays for 1 %", reproduce_pebble_rays},
-    {"pebble-bed", "random bed of pebbles: factor within 2 and 3 diameters", reproduce_pebble_bed},
+    {"pebble-rays", "two pebbles by rays: error, and rays for 1 %", reproduce_pebble_rays},
+    {"pebble-bed", "random bed of pebbles: factors within 2 and 3 diameters", reproduce_pebble_bed},
     {"conductivity", "grey spheres: exchange factor F_E of a random bed and of lattices", reproduce_conductivity},
     {"exchange", "grey spheres: exchange factor against centre distance", reproduce_exchange},
 };
 enum { EXPERIMENTS = sizeof experiments / sizeof *experiments };
 
 static int reproduce_help(void) {
-    puts(
-        "fibrad reproduce [options]\n\n"
-        "Computes the tables and figures of the papers that the methods come from, on one thread, and prints what was\n"
-        "published (paper), or found independently by their methods (check), beside ours.\n");
+    puts("fibrad reproduce [options]\n\n"
+         "Computes the tables and figures of the papers that the methods come from, on one thread. Prints our numbers\n"
+         "beside those that were published (paper) or computed independently by the papers' methods (check).\n");
     options_print(reproduce_table);
     puts("\nExperiments:");
     for (int k = 0; k < EXPERIMENTS; ++k) printf("  %-12s %s\n", experiments[k].name, experiments[k].what);

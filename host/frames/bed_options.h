@@ -21,31 +21,33 @@
 
 /* Rows of a table of options, without the outermost braces: what is read, and what is left of it. */
 #define OPTIONS_INPUT                                                                                                  \
-    {KEY_RADIUS, "radius", "R", "of all spheres; or TYPE:R,... ; or the file's column of that name [r or radius]"},    \
-        {KEY_LENGTH_UNIT, "length-unit", "UNIT", "of files that name none: " UNITS_LENGTH " [m]"},                     \
-        {KEY_PERIODIC, "periodic", "LX,LY,LZ", "box lengths, 0 for an open axis; or none [as the file says]"},         \
-        {KEY_FRAME, "frame", "K", "frame of a file, from 0; all; A:B or A:B:STEP, B excluded; -1: the last [-1]"}, {   \
-        KEY_POSITIONS, "positions", NULL, "name spheres by their positions in the file, from 0 [by its ids]"           \
+    {KEY_RADIUS, "radius", "R", "radius of all spheres, or TYPE:R,..., or a column of the file [r or radius]"},        \
+        {KEY_LENGTH_UNIT, "length-unit", "UNIT", "unit of length of files that name none: " UNITS_LENGTH " [m]"},      \
+        {KEY_PERIODIC, "periodic", "LX,LY,LZ",                                                                         \
+         "lengths of the periodic box, 0 for an open axis, or none [as the file says]"},                               \
+        {KEY_FRAME, "frame", "K", "frame of the file, from 0, -1 for the last, all, A:B or A:B:STEP without B [-1]"},  \
+    {                                                                                                                  \
+        KEY_POSITIONS, "positions", NULL, "name spheres by their positions in the file, from 0 [by ids]"               \
     }
 #define OPTIONS_RUN                                                                                                    \
-    {OPTION_THREADS}, {KEY_JSON, "json", "OUT", "the summary as JSON, all digits of it [none]"},                       \
-        {KEY_QUIET, "quiet", NULL, "neither summary nor progress"},                                                    \
-        {KEY_PROGRESS, "progress", NULL, "show progress also when standard error is no terminal [off]"}, {             \
+    {OPTION_THREADS}, {KEY_JSON, "json", "OUT", "write the summary as JSON, with all digits [none]"},                  \
+        {KEY_QUIET, "quiet", NULL, "print no summary and no progress"},                                                \
+        {KEY_PROGRESS, "progress", NULL, "show progress even if standard error is not a terminal [off]"}, {            \
         OPTION_HELP                                                                                                    \
     }
 
 /* Of commands that make matrices. */
 #define OPTION_SCRATCH                                                                                                 \
     KEY_SCRATCH, "scratch", "FOLDER",                                                                                  \
-        "keep rows and matrix in files of this folder, gone when all is done; the same factors [in memory]"
+        "keep rows and matrix in temporary files of this folder, with the same results [in memory]"
 
 /* What --help says below of the files. */
 #define FILES_MORE                                                                                                     \
-    "FILE: LAMMPS and LIGGGHTS dumps and data files, CSV with a header, extended XYZ, VTK (.vtp, .vtk), YADE and\n"    \
-    "MercuryDPM text, all of them also compressed by gzip; - for standard input. Several files are one series;\n"      \
-    "those of a pattern 'bed.*.dump' come in the order of their numbers. A * in OUT stands for the number of the\n"    \
-    "frame, with several files counted through them all, from 0. Spheres go by the ids of the file, or by\n"           \
-    "positions from 0 if it has none. docs/files.md\n"
+    "FILE may be a dump or data file of LAMMPS or LIGGGHTS, CSV with a header, extended XYZ, VTK (.vtp,\n"             \
+    ".vtk), or text of YADE or MercuryDPM. It may be compressed by gzip. - is standard input. Several files\n"         \
+    "are one series. Files of a pattern 'bed.*.dump' are read in the order of their numbers. A * in OUT\n"             \
+    "stands for the number of the frame, counted through all files from 0. Spheres are named by the ids of\n"          \
+    "the file, or by positions from 0 if the file has no ids. docs/files.md has the details.\n"
 
 enum { BED_COLUMNS_MAX = 8 };
 

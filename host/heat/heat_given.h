@@ -7,19 +7,19 @@
 /* Rows of tables of options, without braces; KEY_* are the command's. */
 #define OPTION_TEMPERATURE                                                                                             \
     "temperature", "T",                                                                                                \
-        "of all spheres; or TYPE:T,... ; or the file's column of that name, blank or nan where --power is for the "    \
-        "sphere"
+        "temperature of all spheres, or TYPE:T,..., or a column of the file, blank or nan for spheres of --power"
 #define OPTION_POWER                                                                                                   \
     "power", "W",                                                                                                      \
-        "what spheres give off from inside whose temperature is not given and wanted: number, TYPE:W,... or "          \
-        "column, blank or nan where a temperature is given [W]"
+        "power that spheres of unknown temperature give off from inside, a number, TYPE:W,..., or a column of the "    \
+        "file, blank or nan for spheres of --temperature [W]"
 #define OPTION_AMBIENT                                                                                                 \
-    "ambient", "T", "of the surroundings, which are black; needed unless walls and periods close the bed"
+    "ambient", "T", "temperature of the black surroundings; needed unless walls and periods close the bed"
 #define OPTION_WALL_TEMPERATURE                                                                                        \
     "wall-temperature", "LIST",                                                                                        \
-        "of the walls: zmin=1200,zmax=insulated,300: one number for all others; insulated: sends back all that "       \
-        "arrives, place by place; NAME=triangles:FILE: a column of numbers, one for each triangle of a mesh's file"
-#define OPTION_WALL_POWER "wall-power", "LIST", "what walls give off whose temperature is wanted: zmin=500 [W]"
+        "temperatures of walls, zmin=1200,zmax=insulated,300 for example; a number without a name is for all others; " \
+        "NAME=triangles:FILE is a column of numbers, one for each triangle of the mesh"
+#define OPTION_WALL_POWER                                                                                              \
+    "wall-power", "LIST", "powers that walls of unknown temperature give off, zmin=500 for example [W]"
 
 /* What the options say. Begin with zeroes. */
 struct given_options {

@@ -7,12 +7,14 @@
 /* Rows of a table of options, without the outermost braces. */
 enum { KEY_UNTIL = KEY_OWN + 100, KEY_CAPACITY, KEY_DENSITY, KEY_STEP, KEY_TIMES, KEY_EVERY };
 #define OPTIONS_MARCH                                                                                                  \
-    {KEY_UNTIL, "until", "S", "temperatures in time, from those given, up to S seconds [powers at one time]"},         \
-        {KEY_CAPACITY, "heat-capacity", "C", "of the spheres' matter; number, TYPE:C,... or column [J/(kg K)]"},       \
-        {KEY_DENSITY, "density", "RHO", "of it; number, TYPE:RHO,... or column [kg/m3]"},                              \
-        {KEY_STEP, "step", "S", "auto, or of S seconds at most [auto: errors of 1e-4]"},                               \
-        {KEY_TIMES, "times", "LIST", "of output: 0,10,60 seconds [the end]"}, {                                        \
-        KEY_EVERY, "every", "S", "output from 0 on, every S seconds"                                                   \
+    {KEY_UNTIL, "until", "S", "follow the temperatures up to S seconds, from those given [powers at one time]"},       \
+        {KEY_CAPACITY, "heat-capacity", "C",                                                                           \
+         "specific heat of the spheres, a number, TYPE:C,..., or a column of the file [J/(kg K)]"},                    \
+        {KEY_DENSITY, "density", "RHO",                                                                                \
+         "density of the spheres, a number, TYPE:RHO,..., or a column of the file [kg/m3]"},                           \
+        {KEY_STEP, "step", "S", "longest step in seconds, or auto for steps with errors of 1e-4 [auto]"},              \
+        {KEY_TIMES, "times", "LIST", "times of output in seconds, 0,10,60 for example [the end]"}, {                   \
+        KEY_EVERY, "every", "S", "output every S seconds, from 0 on"                                                   \
     }
 
 /* What the options say. Begin with zeroes. */

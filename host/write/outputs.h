@@ -47,7 +47,8 @@ struct outputs {
 };
 
 /* Rows of a table of options, without braces. */
-#define OPTION_FORMAT KEY_FORMAT, "format", "NAME", "of each -o whose ending tells none, such as -o - [by the ending]"
+#define OPTION_FORMAT                                                                                                  \
+    KEY_FORMAT, "format", "NAME", "format of each -o without an ending that names one, such as -o - [by the ending]"
 
 /* Takes the argument of -o, --wall-vtp or --format. Status 0 or STATUS_USAGE. */
 int outputs_add(struct outputs *outputs, const char *path);
