@@ -20,11 +20,7 @@ find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $
         grep -q "^frame $method " "$2/frames" || echo "gone $method"
         echo "call fibrad_row_run $method"
     done
-    for piece in apply_limits average_rest close_part compare_rows estimate_errors find_limits measure_part move_part \
-        scaling_step sum_raw; do
-        grep -q "^frame $piece " "$2/frames" || echo "gone $piece"
-        echo "call fibrad_matrix_share $piece"
-    done
+    sed -n 's/.*fibrad_matrix_share([^,]*, [^,]*, \([a-z_]*\),.*/call fibrad_matrix_share \1/p' kernel/matrix/*.c
 } | awk '
     $1 == "frame" {
         name = $2; sub(/\.(part|constprop|isra)\..*/, "", name)

@@ -17,6 +17,7 @@ LIKE = """
 #include <stddef.h>
 const char *fibrad_version(void) { return "%s"; }
 const char *fibrad_status_text(int status) { return ""; }
+const char *fibrad_why_text(int why) { return ""; }
 size_t fibrad_host_sizeof(const char *name) { return %d; }
 """
 FUNCTIONS = ("view_factors exchange_factors displacements radiation_new radiation_move radiation_solve "

@@ -177,15 +177,15 @@ def test_sources_that_cannot_be(options, text):
 
 
 def test_walls_have_temperatures_by_name():
-    heat = fibrad.Heat(PAIR, 1.0, walls={"zmin": -1, "xmax": 1})
+    heat = fibrad.Heat(PAIR, 1.0, walls={"zmin": -1, "zmax": 4})
     state = {"temperature": 300, "emissivity": 1, "surroundings": 0}
-    for temperature, text in ((None, "wall_temperature of zmin, xmax is missing"),
-                              ({"zmin": 3}, "wall_temperature of xmax is missing"),
-                              ({"zmin": 3, "xmax": 3, "top": 3}, "no wall 'top'; there are zmin, xmax"),
-                              ({"zmin": 3, "xmax": np.nan}, "wall_temperature of xmax")):
+    for temperature, text in ((None, "wall_temperature of zmin, zmax is missing"),
+                              ({"zmin": 3}, "wall_temperature of zmax is missing"),
+                              ({"zmin": 3, "zmax": 3, "top": 3}, "no wall 'top'; there are zmin, zmax"),
+                              ({"zmin": 3, "zmax": np.nan}, "wall_temperature of zmax")):
         with pytest.raises(fibrad.InputError, match=text):
             heat.solve(**state, wall_temperature=temperature, wall_emissivity=1)
-    with pytest.raises(fibrad.InputError, match="wall_emissivity of zmin, xmax is missing"):
+    with pytest.raises(fibrad.InputError, match="wall_emissivity of zmin, zmax is missing"):
         heat.solve(**state, wall_temperature=300)
 
 
