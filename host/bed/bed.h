@@ -7,10 +7,10 @@
 #include <stdint.h>
 
 struct bed {
-    uint32_t n, capacity;
+    uint32_t n, capacity, kept_capacity;
+    bool ids;              /* spheres have ids; else their positions name them */
     double *x, *y, *z, *r; /* [n] units of the file */
     uint64_t *line;        /* [n] where in the file each sphere stands, from 1; 0: in a VTK file */
-    bool ids;              /* spheres have ids; else their positions name them */
     int64_t *id;           /* [n] ascending, from 0 on, no two alike */
     double *extra;         /* [n][extras] further columns asked for by name */
     size_t extras;
@@ -18,7 +18,6 @@ struct bed {
     char *kept;             /* [kept_used] their texts, a 0 behind those of each sphere */
     size_t *kept_at;        /* [n] where those of a sphere begin */
     size_t kept_used, kept_room;
-    uint32_t kept_capacity;
     double low[3], high[3]; /* the file's box; all 0 if it has none */
     double period[3];       /* length of the periodic box per axis; 0: the axis is open */
     char units[16];         /* as the file calls them, such as "cgs"; "": it says nothing */

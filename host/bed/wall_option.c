@@ -279,19 +279,18 @@ bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad
 
 int walls_refuse_endless(const struct walls *walls, const struct bed *bed) {
     char missing[PLANES * sizeof "xmin=open,"] = "";
-    const char *first = "";
+    const char *first = NULL;
+    int length = 0;
     for (int k = 0; k < PLANES; ++k) {
         if (is_closed(walls, bed, k / 2) || plane_of_side(walls, k)) continue;
-        if (missing[0])
-            strcat(missing, ",");
-        else
-            first = plane_names[k];
-        strcat(strcat(missing, plane_names[k]), "=open");
+        length +=
+            snprintf(missing + length, sizeof missing - (size_t)length, "%s%s=open", first ? "," : "", plane_names[k]);
+        if (!first) first = plane_names[k];
     }
     return message(STATUS_USAGE,
                    "--wall: these walls go on for ever, and next to nothing would leave the bed; where it is open, add "
                    "%s (%s=H:open, if the walls end at H)",
-                   missing, first);
+                   missing, first ? first : "");
 }
 
 int wall_unknown(const char *option, const struct walls *walls, const char *name, size_t length) {

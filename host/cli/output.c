@@ -1,5 +1,5 @@
 /* output.c - files that get their names when they are complete. SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE /* O_TMPFILE */
+#define _GNU_SOURCE /* O_TMPFILE; NOLINT(bugprone-reserved-identifier) */
 #include "cli/output.h"
 
 #include <errno.h>

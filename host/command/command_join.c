@@ -168,8 +168,9 @@ static void join_report(struct join_request *request, const struct joined *joine
 /* Writes the matrix and what is known of it. x: [3][n]. */
 static int join_write(struct join_request *request, const struct joined *joined, double *x,
                       const fibrad_bed_factors *factors) {
-    static const double unbounded[] = {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
+    double unbounded[FIBRAD_BODIES_MAX];
     const size_t n = joined->n;
+    for (size_t b = 0; b < FIBRAD_BODIES_MAX; ++b) unbounded[b] = INFINITY;
     for (size_t k = 0; k < 3 * n; ++k) x[k % 3 * n + k / 3] = joined->x[k];
     const struct array ids = {"ids.npy", "u8", joined->id, n, 0};
     const struct bed bed = {.n = joined->n,

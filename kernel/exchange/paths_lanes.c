@@ -297,8 +297,7 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
 static void follow_boxed(fibrad_paths *paths, uint32_t paths_left, uint32_t sobol[PATH_BATCH][8]) {
     const fibrad_scene *scene = paths->tracer->scene;
     _Alignas(64) double at[2][PATH_BATCH] = {{0}}, even[3][PATH_BATCH];
-    struct grey_path path;
-    path.place = FIBRAD_NONE;
+    struct grey_path path = {.place = FIBRAD_NONE};
     for (uint32_t b = 0; b < paths_left; b++) {
         path.sobol = sobol[b];
         for (uint32_t d = 0; d < 2; d++) at[d][b] = path_coordinate(paths, &path, 2 + d);
@@ -322,7 +321,7 @@ static void follow_boxed(fibrad_paths *paths, uint32_t paths_left, uint32_t sobo
 }
 
 void LANED(fibrad_paths_follow)(fibrad_paths *paths, uint64_t begin, uint64_t end) {
-    uint32_t point[8] = {0}, batch[PATH_BATCH][8], at = 0;
+    uint32_t point[8] = {0}, batch[PATH_BATCH][8] = {{0}}, at = 0;
     const uint32_t step = paths->boxed ? PATH_BATCH : 1;
     for (uint64_t k = begin; k < end; k += step) {
         const uint32_t count = end - k < step ? (uint32_t)(end - k) : step;

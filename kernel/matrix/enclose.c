@@ -138,8 +138,8 @@ static double closing_step(fibrad_matrix *m, const double v[]) {
 /* Brings all sums to 1; returns by how much the worst was off in the end. Above CLOSED_ENOUGH nothing has changed. */
 static double close_all(fibrad_matrix *m) {
     const fibrad_sparse *rows = &m->result;
-    double *u = m->scratch + rows->n, *next = u + rows->n, v[FIBRAD_BODIES_MAX], one[FIBRAD_BODIES_MAX],
-           outside[FIBRAD_BODIES_MAX];
+    double *u = m->scratch + rows->n, *next = u + rows->n, v[FIBRAD_BODIES_MAX] = {0}, one[FIBRAD_BODIES_MAX] = {0},
+           outside[FIBRAD_BODIES_MAX] = {0};
     for (uint32_t i = 0; i < rows->n; i++) u[i] = 1;
     for (uint32_t b = 0; b < m->bodies; b++) v[b] = one[b] = 1;
     double worst = 0;

@@ -166,6 +166,7 @@ static void fill_up(fibrad_sparse *rows, const double *target) {
 void fibrad_matrix_drop(fibrad_matrix *m) {
     fibrad_sparse *rows = &m->result;
     double *target = m->scratch, *u = target + rows->n;
+    if (rows->n == 0) return;
     for (uint32_t i = 0; i < rows->n; i++) target[i] = fibrad_sparse_sum(rows, i);
     take_out(rows, m->r, m->drop);
     find_scaling(m, false, 0);
