@@ -97,7 +97,7 @@ COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
 .PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols format house bench bench-quick \
-    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed threads lint deps deps-ci man install install-lib clean help need-libraries need-check
+    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads lint cppcheck nightly deps deps-ci man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
 all: $(BUILD)/fibrad lib lib-host
@@ -230,9 +230,9 @@ $(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*
 ## test: install what is missing, build and run all tests
 test: deps
 	@echo "Building the tests"
-	@$(MAKE) -s --no-print-directory programs all
+	@$(MAKE) -s --no-print-directory programs all man dist
 	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" \
-	    tests/run.sh $(TEST_PROGRAMS) $(SCRIPTS) $(COUPLE_SCRIPTS)
+	    tests/run.sh $(SCRIPTS) $(TEST_PROGRAMS) $(COUPLE_SCRIPTS)
 
 ## run-programs: build and run the test programs without the scripts
 run-programs: programs
@@ -312,39 +312,49 @@ golden: $(BUILD)/fibrad
 mutate:
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/mutate.sh
 
-# Inputs found on the way are kept in build/fuzz; of a crash, the input that caused it. The time limit of one input is
-# for what would never end: machines are slow and sanitizers slower.
+# One build under the sanitizers serves the fuzzers and the tests.
+SANITIZE  = address,undefined
+SANITIZED = $(MAKE) -s --no-print-directory BUILD=$(BUILD)/sanitized CC=clang LDFLAGS=-fsanitize=$(SANITIZE) \
+            CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE) -fno-sanitize-recover=undefined"
+
+## sanitized: the tests under the address and undefined behaviour sanitizers, but for those that only compute for long
+NOT_SANITIZED = accuracy areas beam conductivity estimate exchange furnace heat heat_mesh mesh reference reproduce
+sanitized:
+	+@LSAN_OPTIONS=suppressions=tests/leaks.txt:print_suppressions=0 CK_FORK=no \
+	    $(SANITIZED) SKIP="$(NOT_SANITIZED:%=test_%)" run-programs
+
+# Inputs found on the way are kept; of a crash, the input that caused it. The time limit of one input is for what would
+# never end: machines are slow and sanitizers slower.
+FUZZ         = $(BUILD)/sanitized/fuzz
 FUZZ_SECONDS = 60
-FUZZ_CC      = clang
-FUZZ         = $(BUILD)/fuzz
+FUZZ_TARGETS = read kernel host
 FUZZ_FLAGS   = -timeout=60 -rss_limit_mb=4096 -malloc_limit_mb=64 -close_fd_mask=2 -print_final_stats=1
-SANITIZE     = address,undefined -fno-sanitize-recover=undefined
 
 fuzz-programs: need-libraries
-	@$(MAKE) -s --no-print-directory BUILD=$(FUZZ) CC=$(FUZZ_CC) CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE)" \
-	    $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%)
-	@set -e; for target in read kernel host; do \
-	    $(FUZZ_CC) -O1 -g -fsanitize=fuzzer,$(SANITIZE) $(HOST_FLAGS) tests/fuzz/fuzz_$$target.c \
-	        $(LIBRARIES:$(BUILD)/%=$(FUZZ)/%) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
+	+@$(SANITIZED) $(LIBRARIES:$(BUILD)/%=$(BUILD)/sanitized/%)
+	@mkdir -p $(FUZZ)
+	@set -e; for target in $(FUZZ_TARGETS); do \
+	    clang -O1 -g -fsanitize=fuzzer,$(SANITIZE) -fno-sanitize-recover=undefined $(HOST_FLAGS) tests/fuzz/fuzz_$$target.c \
+	        $(LIBRARIES:$(BUILD)/%=$(BUILD)/sanitized/%) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
 	done
 
 ## fuzz: hostile input for the readers, the kernel and the simple layer, FUZZ_SECONDS=60 in all
 fuzz: fuzz-programs
-	@set -e; for target in read kernel host; do \
+	@set -e; for target in $(FUZZ_TARGETS); do \
 	    mkdir -p $(FUZZ)/found_$$target; \
 	    $(FUZZ)/fuzz_$$target $(FUZZ_FLAGS) -max_total_time=$$(($(FUZZ_SECONDS) / 3)) \
 	        -artifact_prefix=$(FUZZ)/$$target- $(FUZZ)/found_$$target tests/fuzz/corpus_$$target; \
 	done
 
 ## fuzz-fixed: the same with a fixed number of inputs, the same ones every time (a minute)
-FUZZ_RUNS = read:40000 kernel:2500 host:500
+FUZZ_RUNS = read:40000 kernel:2000 host:300
 # what comparisons show would bring addresses in, which differ from run to run: -use_cmp=0
 fuzz-fixed: fuzz-programs
-	@set -e; for run in $(FUZZ_RUNS); do \
-	    target=$${run%:*}; rm -rf $(FUZZ)/fixed_$$target; mkdir -p $(FUZZ)/fixed_$$target; \
-	    $(FUZZ)/fuzz_$$target $(FUZZ_FLAGS) -seed=1 -use_cmp=0 -runs=$${run#*:} \
-	        -artifact_prefix=$(FUZZ)/$$target- $(FUZZ)/fixed_$$target tests/fuzz/corpus_$$target; \
-	done
+	@echo $(FUZZ_RUNS) | tr ' ' '\n' | xargs -P 2 -I{} sh -ec 'run={}; target=$${run%:*}; \
+	    rm -rf $(FUZZ)/fixed_$$target; mkdir -p $(FUZZ)/fixed_$$target; \
+	    if $(FUZZ)/fuzz_$$target $(FUZZ_FLAGS) -seed=1 -use_cmp=0 -runs=$${run#*:} -artifact_prefix=$(FUZZ)/$$target- \
+	        $(FUZZ)/fixed_$$target tests/fuzz/corpus_$$target >$(FUZZ)/$$target.log 2>&1; \
+	    then grep -h "^Done\|calls" $(FUZZ)/$$target.log; else tail -n 60 $(FUZZ)/$$target.log; exit 1; fi'
 
 ## threads: the program under the thread sanitizer, with clang's OpenMP, which tells it about its barriers
 threads:
@@ -359,9 +369,7 @@ LINT_FLAGS   = -Ikernel -Ihost -D_XOPEN_SOURCE=700
 LINT_SCALAR  = -DFIBRAD_LANES_HEADER='"base/lanes/vec_scalar.h"' -DFIBRAD_ISA_SUFFIX=_scalar
 
 ## lint: cppcheck and clang-tidy, with the exceptions that .cppcheck and .clang-tidy give reasons for
-lint:
-	cppcheck --quiet --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
-	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
+lint: cppcheck
 	printf '%s\n' $(KERNEL) $(LANED) | xargs -I{} -P 2 clang-tidy --quiet {} -- -std=c11 $(LINT_FLAGS) $(LINT_SCALAR)
 	printf '%s\n' $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c | xargs -I{} -P 2 \
 	    clang-tidy --quiet --checks=-clang-analyzer-core.* {} -- -std=c11 -fopenmp $(LINT_FLAGS)
@@ -369,6 +377,16 @@ lint:
 	    clang-tidy --quiet --checks=-clang-analyzer-core.*,-clang-analyzer-optin.mpi.* {} -- -std=c11 -fopenmp \
 	    $(LINT_FLAGS) $$($(MPICC) -show | tr ' ' '\n' | grep '^-I'); \
 	else echo "No MPI: couplings are not checked"; fi
+
+cppcheck:
+	cppcheck --quiet --std=c11 --error-exitcode=1 --enable=warning,portability,performance \
+	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
+
+## nightly: what .ci/run leaves out since it takes long: all bits, all sanitizers, clang-tidy, benches, a longer hunt
+nightly: bits threads lint bench-quick
+	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
+	$(MAKE) sanitized NOT_SANITIZED="accuracy furnace reference reproduce"
+	$(MAKE) fuzz FUZZ_SECONDS=900
 
 ## reproduce: the numbers of the papers beside ours, and their plots into docs/figures
 reproduce: $(BUILD)/fibrad

@@ -3,8 +3,8 @@
 # optimisation level, processor and number of threads. SPDX-License-Identifier: MIT
 #
 # The bits of tests/golden/bits.txt are those of tests/bits/bits.c; matrix.sha256 is that of a whole bed's file. After a
-# deliberate change of the results: make golden, which is check_bits.sh pin. A variant is COMPILER:LEVEL; without
-# arguments only that of CC at -O2, as all of them take minutes.
+# deliberate change of the results: make golden, which is check_bits.sh pin. A variant is COMPILER:LEVEL. Without
+# arguments: the library in BUILD, since all variants take minutes.
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${HOSTCC:=cc}"
 faults=0
@@ -18,9 +18,12 @@ variant() {
         return
     fi
     folder=$BUILD/bits/$name
+    mkdir -p "$folder"
+    library=$BUILD/libfibrad.a
     # shellcheck disable=SC2086  # flags is a list
-    if ! { $MAKE -s -j2 BUILD="$folder" CC="$compiler" HOSTCC="$HOSTCC" CFLAGS="$level" lib &&
-        "$compiler" -std=c11 "$level" -ffp-contract=off -Ikernel $flags tests/bits/bits.c "$folder/libfibrad.a" -lm \
+    if ! { { test "$name" = built || { library=$folder/libfibrad.a &&
+        $MAKE -s -j2 BUILD="$folder" CC="$compiler" HOSTCC="$HOSTCC" CFLAGS="$level" lib; }; } &&
+        "$compiler" -std=c11 "$level" -ffp-contract=off -Ikernel $flags tests/bits/bits.c "$library" -lm \
             -o "$folder/bits"; } >"$BUILD/bits/log" 2>&1; then
         echo "$name: does not build:"
         tail -n 5 "$BUILD/bits/log"
@@ -59,8 +62,8 @@ if test "${1:-}" = pin; then # with the simplest build
     exit
 fi
 
-test $# -gt 0 || set -- "$CC:-O2"
-test "$1" != all || set -- gcc:-O0 gcc:-O2 gcc:-O3 clang:-O0 clang:-O2 clang:-O3 aarch64:-O2 arm:-O2
+test $# -gt 0 || variant built "$CC" -O2 "" "" scalar sse2 avx2 avx512
+test "${1:-}" != all || set -- gcc:-O0 gcc:-O2 gcc:-O3 clang:-O0 clang:-O2 clang:-O3 aarch64:-O2 arm:-O2
 for build; do
     level=${build#*:}
     case $build in

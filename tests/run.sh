@@ -1,7 +1,7 @@
 #!/bin/sh
 # run.sh PROGRAM|SCRIPT... - runs tests and ends with "N passed, N failed". SPDX-License-Identifier: MIT
 #
-# Programs run two at a time, scripts one after the other, since they build. A libcheck program counts by its own
+# Two run at a time; the scripts of tests/couple one after the other, since they build the same. A libcheck program counts by its own
 # summary, a script as one test. A program that ends without a summary, or with another exit status than its failures
 # demand, counts as one failure more.
 set -u
@@ -37,8 +37,8 @@ export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-300}"
 tests=$#
 rm -rf "$logs"
 mkdir -p "$logs"
-printf '%s\n' "$@" | grep -v '\.sh$' | xargs -r -n 1 -P 2 "$0" --one
-printf '%s\n' "$@" | grep '\.sh$' | xargs -r -n 1 "$0" --one
+printf '%s\n' "$@" | grep -v tests/couple/ | xargs -r -n 1 -P 2 "$0" --one
+printf '%s\n' "$@" | grep tests/couple/ | xargs -r -n 1 "$0" --one
 
 set -- 0 0 0 0
 for counts in "$logs"/*.counts; do
