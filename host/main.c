@@ -52,7 +52,7 @@ static int main_choose(int argc, char **argv) {
             interrupt_catch();
             return commands[k].run(argc - 2, argv + 2);
         }
-    if (*name == 0) return message(STATUS_USAGE, "which command? see fibrad --help");
+    if (*name == 0) return message(STATUS_USAGE, "the command is missing; see fibrad --help");
     return message(STATUS_USAGE, "unknown %s %.40s; see fibrad --help", *name == '-' ? "option" : "command", name);
 }
 

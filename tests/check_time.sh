@@ -79,21 +79,21 @@ refused() { # refused STATUS WORDS OPTIONS...: of one.csv
 printf '0,300\n10,800\n10,500\n' >"$work/back.csv"
 printf '0,300\n10,-1\n' >"$work/cold.csv"
 set -- --ambient 300 --heat-capacity 800 --density 2500 --until 60
-refused 2 'which --heat-capacity' --ambient 300 --temperature T --until 60 --density 2500
-refused 2 'which --density' --ambient 300 --temperature T --until 60 --heat-capacity 800
-refused 2 'heat-capacity: needs --until' --ambient 300 --temperature T --heat-capacity 800
-refused 2 'which --temperature to begin with' "$@" --power 3
+refused 2 'until needs --heat-capacity' --ambient 300 --temperature T --until 60 --density 2500
+refused 2 'until needs --density' --ambient 300 --temperature T --until 60 --heat-capacity 800
+refused 2 'heat-capacity needs --until' --ambient 300 --temperature T --heat-capacity 800
+refused 2 'until needs --temperature' "$@" --power 3
 refused 3 'one.csv:2: the temperature is 0 K' "$@" --temperature 0
-refused 3 'back.csv:3: 10 does not lie above' "$@" --temperature T --wall zmin=-30 --wall-temperature "zmin=@$work/back.csv"
+refused 3 'back.csv:3: 10 is not above' "$@" --temperature T --wall zmin=-30 --wall-temperature "zmin=@$work/back.csv"
 refused 3 'cold.csv:2: the temperature is -1' "$@" --temperature T --wall zmin=-30 --wall-temperature "zmin=@$work/cold.csv"
 refused 3 'cold.csv:2: the temperature is -1' --temperature T --ambient "@$work/cold.csv" --heat-capacity 1 --density 1 --until 9
-refused 2 'a table needs its wall' "$@" --temperature T --wall zmin=-30 --wall-temperature "@$work/back.csv"
+refused 2 'a table needs the name of its wall' "$@" --temperature T --wall zmin=-30 --wall-temperature "@$work/back.csv"
 refused 2 'there is no wall zmax' "$@" --temperature T --wall zmin=-30 --wall-temperature "zmax=@$work/ramp.csv,zmin=3"
 refused 2 '3 does not lie above' "$@" --temperature T --times 5,3
 refused 2 '90 does not lie above the one before, within 0 and 60' "$@" --temperature T --times 90
-refused 2 'the one or the other' "$@" --temperature T --times 5 --every 3
+refused 2 'cannot be combined' "$@" --temperature T --times 5 --every 3
 refused 2 'put \* into its name' "$@" --temperature T -o "$work/x.vtp"
-refused 2 'model factors: emissivities follow' "$@" --temperature T --emissivity "@$work/eps.csv" --model factors
+refused 2 'model factors: emissivities cannot follow' "$@" --temperature T --emissivity "@$work/eps.csv" --model factors
 refused 2 'not for --until' "$@" --temperature T --error 0.01
 refused 2 'one frame' "$@" --temperature T --frame all
 refused 3 'above 0 K' "$@" --temperature T --power=-1e6

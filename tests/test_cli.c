@@ -25,10 +25,10 @@ END_TEST
 static const struct {
     const char *arguments[9], *reason;
 } misuse[] = {
-    {{NULL}, "which command"},
+    {{NULL}, "the command is missing"},
     {{"bad"}, "unknown command bad; see fibrad --help"},
     {{"--bad"}, "unknown option --bad; see fibrad --help"},
-    {{"bed"}, "which FILE"},
+    {{"bed"}, "FILE is missing"},
     {{"bed", MONO, "--bad=3"}, "unknown option --bad; see fibrad bed --help"},
     {{"bed", MONO, "-x"}, "unknown option -x; see fibrad bed --help"},
     {{"pair", "1", "1", "0", "--raw"}, "unknown option --raw; see fibrad pair --help"},
@@ -41,14 +41,14 @@ static const struct {
     {{"bed", PERIODIC, "--wall", "zmin=0,zmin=open"}, "--wall: zmin is named twice"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=box:open=zmax",
       "--wall-temperature=zmax=600"},
-     "--wall-temperature: zmax is open"},
+     "--wall-temperature: zmax is an opening"},
     {{"exchange", MONO, "--emissivity=.5", "--wall=box:open=zmax", "--wall-emissivity=zmax=.5"},
-     "--wall-emissivity: zmax is open"},
+     "--wall-emissivity: zmax is an opening"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall=box:open=zmax", "--wall-temperature=600"},
-     "which --ambient? the bed is open"},
+     "--ambient is missing: the bed is open"},
     {{"bed", MONO, "--wall", "zmax=open", "--method", "surface"}, "--wall is for the methods beam, cast and mc"},
     {{"bed", MONO, "--wall", "auto", "--method", "surface"}, "--wall is for the methods beam, cast and mc"},
-    {{"bed", PERIODIC, "--wall", "box"}, "stands across a periodic axis"},
+    {{"bed", PERIODIC, "--wall", "box"}, "lies across a periodic axis"},
     {{"bed", MONO, "--raw=yes"}, "--raw takes no argument"},
     {{"bed", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz, .vtp and .json"},
     {{"bed", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
@@ -60,21 +60,21 @@ static const struct {
     {{"bed", MONO, "--length-unit", "lj"}, "--length-unit: 'lj' is none of"},
     {{"bed", MONO, "--radius", "0"}, "--radius: 0 is not within"},
     {{"bed", MONO, "--radius", "1:2,1:3"}, "--radius: type 1 is named twice"},
-    {{"bed", MONO, "--radius", "1:2,x"}, "is no list such as 1:0.5,2:0.8"},
+    {{"bed", MONO, "--radius", "1:2,x"}, "is not a list like 1:0.5,2:0.8"},
     {{"bed", MONO, "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
     {{"bed", MONO, "--method", "surface", "--nf", "56"}, "--nf: 56 is not built in; 8, 13, 21"},
     {{"bed", MONO, "--nf", "55"}, "are for --method surface"},
-    {{"bed", MONO, "--method", "magic"}, "'magic' is no method"},
+    {{"bed", MONO, "--method", "magic"}, "'magic' is not a method"},
     {{"bed", MONO, "--method", "exact"}, "--method exact is for pairs only"},
     {{"bed", MONO, "--rays", "100"}, "--rays and --seed are for --method cast and mc"},
     {{"bed", MONO, "--method=cast", "--rays", "0"}, "--rays: '0' is not a whole number from 1 to 4294967295"},
     {{"bed", MONO, "--method=mc", "--seed", "-1"}, "--seed: '-1'"},
     {{"bed", MONO, "--method=cast", "--directions", "100"}, "are for --method beam"},
-    {{"exchange", MONO}, "which --emissivity"},
+    {{"exchange", MONO}, "--emissivity is missing"},
     {{"exchange", MONO, "--emissivity", "-1"}, "--emissivity: -1 is not within"},
     {{"exchange", MONO, "--emissivity", "1:2"}, "--emissivity: 2 is not within"},
     {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=.5,.6"},
-     "name the walls, such as zmin=0.6"},
+     "--wall-emissivity: two numbers have no name"},
     {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmax=.5"},
      "there is no wall zmax; there are zmin"},
     {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmin=1.5"}, "1.5 is not within"},
@@ -85,9 +85,9 @@ static const struct {
     {{"exchange", MONO, "--emissivity=.5", "--error=.1", "--rays=9"}, "leave out --rays"},
     {{"exchange", MONO, "--emissivity=.5", "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
     {{"exchange", MONO, "--emissivity=.5", "-o", "D.dump"}, "unknown ending; there are .csv, .mtx, .npz"},
-    {{"heat", "--emissivity=.5"}, "which FILE"},
-    {{"heat", MONO, "--temperature", "v_T"}, "which --emissivity"},
-    {{"heat", MONO, "--emissivity", ".5"}, "which --temperature"},
+    {{"heat", "--emissivity=.5"}, "FILE is missing"},
+    {{"heat", MONO, "--temperature", "v_T"}, "--emissivity is missing"},
+    {{"heat", MONO, "--emissivity", ".5"}, "--temperature or --power is missing"},
     {{"heat", MONO, "--emissivity=.5", "--temperature", "-3"}, "--temperature: -3 is below absolute zero"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--patches=100"}, "--patches: 100 is not built in"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--model=fine"},
@@ -96,25 +96,25 @@ static const struct {
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall-temperature=3,4"}, "there are no walls"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--temperature-unit=F"}, "'F' is neither K nor C"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=-1"}, "--ambient: -1 is not within"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9"}, "which --ambient? the bed is open"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9"}, "--ambient is missing: the bed is open"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=auto", "--wall-temperature=300,400"},
-     "one number for all others; name the walls, such as xmin=400"},
+     "two numbers have no name; name the walls, xmin=400 for example"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=zmin"},
-     "--wall-temperature: none for zmin; give zmin=NUMBER"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--power=4"}, "a sphere has the one or the other given"},
+     "--wall-temperature: zmin has no value; give zmin=NUMBER"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--power=4"}, "a sphere has one of them only"},
     {{"heat", MONO, "--emissivity=.5", "--power=1e40"}, "--power: 1e40 is not within"},
     {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-power=zmin=1",
       "--wall-temperature=zmin=3"},
      "zmin has both a temperature and a power"},
     {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-power=zmin=1"},
-     "zmin goes on for ever; it needs its --wall-temperature"},
+     "zmin is endless and needs a --wall-temperature"},
     {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-temperature=isolated"},
      "'isolated' is neither NAME=NUMBER nor a number"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "-o", "q.mtx"},
      "unknown ending; there are .csv, .vtp, .json, .dump"},
-    {{"conductivity", MONO}, "which --emissivity"},
-    {{"conductivity", "--emissivity", ".5"}, "which FILE"},
-    {{"join"}, "which FILEs"},
+    {{"conductivity", MONO}, "--emissivity is missing"},
+    {{"conductivity", "--emissivity", ".5"}, "FILE is missing"},
+    {{"join"}, "FILE is missing"},
     {{"join", MONO, "-o", "D.dump"}, "unknown ending; there are .csv, .mtx, .npz"},
     {{"bed", MONO, "--directions", "7"}, "'7' is not a whole number from 8 to 65536"},
     {{"bed", MONO, "--error", "0"}, "--error: 0 is not within 1e-07 and 1"},
@@ -138,19 +138,19 @@ static const struct {
     {{"bed", MONO, "--periodic", "1,2,-3"}, "three lengths LX,LY,LZ"},
     {{"bed", MONO, "--periodic", "1,2,3,4"}, "more than 3 numbers"},
     {{"bed", MONO, "--periodic", "1,,3"}, "does not begin with a number"},
-    {{"bed", MONO, "--targets", ""}, "is no list such as 3,7,10-19"},
-    {{"bed", MONO, "--targets", "1,,2"}, "is no list such as"},
-    {{"bed", MONO, "--targets", "5-3"}, "is no list such as"},
-    {{"bed", MONO, "--targets", "3-"}, "is no list such as"},
-    {{"bed", MONO, "--targets", "99999999999999999999"}, "is no list such as"},
+    {{"bed", MONO, "--targets", ""}, "is not a list like 3,7,10-19"},
+    {{"bed", MONO, "--targets", "1,,2"}, "is not a list like"},
+    {{"bed", MONO, "--targets", "5-3"}, "is not a list like"},
+    {{"bed", MONO, "--targets", "3-"}, "is not a list like"},
+    {{"bed", MONO, "--targets", "99999999999999999999"}, "is not a list like"},
     {{"bed", MONO, "--targets", "0"},
-     "there is no sphere 0 in frame 0 of tests/data/mono2000.dump; they are 1 to 2000"},
+     "there is no sphere 0 in frame 0 of tests/data/mono2000.dump; its spheres are 1 to 2000"},
     {{"bed", MONO, "--targets", "1-2000", "--targets=7,5000000000"}, "there is no sphere 5000000000"},
     {{"bed", MONO, "--targets", "1990-2001"}, "there is no sphere 2001 in frame 0 of"},
     {{"bed", MONO, "--targets", "0-9"}, "there is no sphere 0 in frame 0 of"},
-    {{"bed", MONO, "--positions", "--targets", "0-2000"}, "they are 0 to 1999"},
+    {{"bed", MONO, "--positions", "--targets", "0-2000"}, "its spheres are 0 to 1999"},
     {{"pair", "1", "1"}, "R1, R2 and GAP are needed"},
-    {{"pair", "1", "1", "0", "0"}, "three lengths only, not also '0'"},
+    {{"pair", "1", "1", "0", "0"}, "three lengths are allowed, not also '0'"},
     {{"pair", "1", "-1", "0"}, "R2: -1 is not within"},
     {{"pair", "1", "1", "x"}, "GAP: 'x' is not a number"},
     {{"pair", "1", "1", "-2"}, "one sphere lies inside the other"},
@@ -402,7 +402,7 @@ START_TEST(a_box_without_a_lid) {
     ck_assert_double_eq(number_of_line(open, ",surroundings", 2), number_of_line(closed, ",zmax", 2));
     ck_assert(isnan(number_of_line(open, ",zmax", 2)));
     ck_assert_int_eq(RUN("bed", MONO, "--wall", "box,zmax=13:open"), 3);
-    expect_message(MONO ":", "reaches beyond an open side");
+    expect_message(MONO ":", "reaches beyond an opening");
     SUCCEED("bed", PERIODIC, "--directions=13", "--wall", "zmin,zmax=open");
     ck_assert_double_gt(value_of("escaped_mean"), 0);
 }
@@ -595,7 +595,7 @@ START_TEST(temperatures) {
     expect_message(table, "the emissivity is 1.4; it must be within 0 and 1");
     write_file("eps.csv", "500,.6\n400,.4\n");
     ck_assert_int_eq(RUN("heat", file, "--emissivity", all, "--temperature", "600", "--ambient", "300"), 3);
-    expect_message(table, ":2: 400 does not lie above the one before");
+    expect_message(table, ":2: 400 is not above the number before");
 
     ck_assert_int_eq(RUN("heat", file, "--length-unit", "m", "--emissivity", ".5", "--power", "4", "--wall", "box",
                          "--wall-temperature", "insulated"),
@@ -613,7 +613,7 @@ START_TEST(temperatures) {
     expect_message(file, "sphere 0 has both a temperature and a power");
     ck_assert_int_eq(RUN("heat", file, "--length-unit", "m", "--emissivity", "eps", "--power", "4", "--ambient", "300"),
                      3);
-    expect_message(file, "sphere 2 reflects all (emissivity 0): it cannot give off 4 W");
+    expect_message(file, "sphere 2 has emissivity 0 and cannot give off 4 W");
 }
 END_TEST
 
@@ -784,7 +784,7 @@ START_TEST(conductivity) {
     ck_assert_double_lt(value_of("F_E_x_error") / value_of("F_E_x"), .025);
     ck_assert_double_lt(value_of("emitters"), 1000);
     ck_assert_int_eq(RUN("conductivity", cell, "--periodic", "2,2,0", "--emissivity", "1"), 3);
-    expect_message(cell, "too thin along z, an open axis");
+    expect_message(cell, "too thin along the open axis z");
     remove_files(0);
 }
 END_TEST
@@ -1019,7 +1019,7 @@ START_TEST(joined) {
     expect_message(csv, "is read in this run");
     const char *both = in_folder("both.json");
     ck_assert_int_eq(RUN("join", zero, one, "-o", both, "--json", both), 2); /* the one would replace the other */
-    expect_message(both, "is there twice");
+    expect_message(both, "is given twice");
     ck_assert_int_eq(RUN("join", zero, one, "--json", one), 2);
     expect_message(one, "is read in this run");
     SUCCEED("join", zero, one, "--json", "-");
@@ -1036,7 +1036,7 @@ static const struct {
     const char *reason;
 } damaged_rows[] = {
     {0, 0, W(7), "is no file of rows"},
-    {1, 1, W(0), "is of rank 0, as is"},
+    {1, 1, W(0), "has the rows of rank 0, as"},
     {1, 2, W(3), "has another number of ranks than"},
     {1, 3, W(701), "has another step than"},
     {1, 4, W(2), "ends too early, after 184 of 272 bytes"},
@@ -1080,11 +1080,11 @@ START_TEST(missing_rows) {
     const char *zero = write_words(rank_names[0], rank_rows[0], 8 * rank_words[0]);
     const char *one = write_words(rank_names[1], rank_rows[1], 8 * rank_words[1]);
     ck_assert_int_eq(RUN("join", zero), 3);
-    expect_message(zero, "is of 2 ranks; the file of rank 1 is missing");
+    expect_message(zero, "is one of 2 files; the file of rank 1 is missing");
     ck_assert_int_eq(RUN("join", one), 3);
     expect_message(one, "the file of rank 0 is missing");
     ck_assert_int_eq(RUN("join", zero, one, zero), 3);
-    expect_message(zero, "is of rank 0, as is");
+    expect_message(zero, "has the rows of rank 0, as");
     ck_assert_int_eq(RUN("join", zero, "no/such.rows"), 4);
     expect_message("no/such.rows: ", "No such file");
     union word near[WORDS];

@@ -233,9 +233,9 @@ START_TEST(one_axis) {
     expect_said("F_E along y does not exist");
     ck_assert_int_eq(strncmp(text_of("unreliable"), "y\n", 2), 0);
     ck_assert_int_eq(RUN("conductivity", gap, "--periodic", "2,0,10", "--emissivity", "1", "--axis", "y"), 3);
-    expect_said("too thin along y, an open axis: 8 mean diameters at the least\n");
+    expect_said("too thin along the open axis y, where at least 8 mean diameters are needed\n");
     ck_assert_int_eq(RUN("conductivity", gap, "--periodic", "2,0,10", "--emissivity", "1"), 3);
-    expect_said("8 mean diameters at the least; --axis is for F_E along another one");
+    expect_said("8 mean diameters are needed; --axis computes F_E along another axis");
     ck_assert_int_eq(RUN("conductivity", gap, "--periodic", "2,2,10", "--emissivity", "1", "--axis", "q"), 2);
     expect_said("--axis: 'q' is none of x, y and z");
 }

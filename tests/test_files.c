@@ -75,7 +75,7 @@ START_TEST(surroundings_are_asked_for) {
     static const char *const closed[] = {"auto", "cylinder:4,4,6,zmin,zmax"};
     for (int k = 0; k < 4; ++k) {
         ck_assert_int_eq(RUN(HEAT, bed, "--wall", open[k], "--wall-temperature", "300"), 2);
-        expect_message("", "which --ambient? the bed is open");
+        expect_message("", "--ambient is missing: the bed is open");
         SUCCEED(HEAT, bed, "--wall", open[k], "--wall-temperature", "300", "--ambient", "290");
         ck_assert_double_eq(value_of("surroundings_K"), 290);
     }
@@ -83,7 +83,7 @@ START_TEST(surroundings_are_asked_for) {
     SUCCEED(HEAT, bed, "--periodic", "8,8,0", "--wall", "zmin,zmax", "--wall-temperature", "300");
     SUCCEED(HEAT, bed, "--periodic", "8,8,8");
     ck_assert_int_eq(RUN(HEAT, bed, "--periodic", "8,8,0"), 2);
-    expect_message("", "which --ambient?");
+    expect_message("", "--ambient is missing");
 }
 END_TEST
 
@@ -122,7 +122,7 @@ START_TEST(temperatures_and_powers_mixed) {
     ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T"), 3); /* blanks are for those that have a power */
     expect_message(bed, "T is not a number: ''");
     ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "x", "--power", "40"), 2);
-    expect_message("", "--power 40: all spheres have the other given");
+    expect_message("", "--power 40 is for no sphere");
     ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T", "--power", "type"), 3);
     expect_message(bed, "sphere 1 has both a temperature and a power");
     ck_assert_int_eq(RUN(MIXED, bed, "--temperature", "T", "--power", "2:5"), 3);
@@ -164,7 +164,7 @@ START_TEST(units_of_length) {
     }
     free(factors);
     ck_assert_int_eq(RUN(HEAT, write_file("lj.dump", frame("lj", "0", "3", SORTED)), "--ambient", "300"), 2);
-    expect_message(in_folder("lj.dump"), "units lj have no metres; --length-unit gives them");
+    expect_message(in_folder("lj.dump"), "units lj have no fixed length in metres; --length-unit gives the length");
     const char *cgs = write_file("cgs.dump", frame("cgs", "0", "3", SORTED));
     ck_assert_int_eq(RUN(HEAT, cgs, "--ambient", "300", "--length-unit", "mm"), 2);
     expect_message(cgs, "its units are cgs");
@@ -174,7 +174,7 @@ START_TEST(units_of_length) {
     ck_assert_int_eq(RUN(HEAT, bed, cgs, "--ambient", "300", "--length-unit", "mm"), 2); /* one series, one unit */
     expect_message(cgs, "its units are cgs");
     ck_assert_int_eq(RUN(HEAT, cgs, write_file("si.dump", frame("si", "0", "3", SORTED)), "--ambient", "300"), 2);
-    expect_message(in_folder("si.dump"), "its unit of length is 1 m, that of the files before 0.01 m");
+    expect_message(in_folder("si.dump"), "the unit of length is 1 m, but that of the files before is 0.01 m");
 }
 END_TEST
 
@@ -198,9 +198,9 @@ START_TEST(units_of_temperature_columns) {
     const char *kelvins = write_file("k.csv", "x,y,z,r,T [K]\n0,0,0,.01,300\n"), *out = in_folder("q.csv");
     const char *celsius = write_file("c.csv", "x,y,z,r,T [C]\n0,0,0,.01,26.85\n"), *other = in_folder("p.csv");
     ck_assert_int_eq(RUN(HEAT, kelvins, "--temperature-unit", "C", "--ambient", "20"), 3);
-    expect_message(kelvins, ":1: the column T is in [K], and taken for [C]; see --temperature-unit");
+    expect_message(kelvins, ":1: the column T is in [K], but is taken as [C]; see --temperature-unit");
     ck_assert_int_eq(RUN(HEAT, celsius, "--ambient", "290"), 3);
-    expect_message(celsius, ":1: the column T is in [C], and taken for [K]");
+    expect_message(celsius, ":1: the column T is in [C], but is taken as [K]");
     SUCCEED(HEAT, kelvins, "--ambient", "290", "-o", out);
     SUCCEED(HEAT, celsius, "--ambient", "16.85", "--temperature-unit", "C", "-o", other);
     ck_assert_double_eq_tol(power_of(other, "0,", ""), power_of(out, "0,", ""), 1e-9);
@@ -245,7 +245,7 @@ END_TEST
 START_TEST(ambiguous_ids) {
     const char *bed = write_file("bed.dump", frame(NULL, "0", "2", "3 1 1 4 4 1 9\n3 1 4 4 4 1 9\n"));
     ck_assert_int_eq(RUN("bed", bed), 3);
-    expect_message(bed, ":11: the id 3 is that of line 10, too");
+    expect_message(bed, ":11: the id 3 occurs in line 10, too");
     SUCCEED("bed", bed, "--positions");
     bed = write_file("bed.dump", frame(NULL, "0", "2", "3 1 1 4 4 1 9\n-1 1 4 4 4 1 9\n"));
     ck_assert_int_eq(RUN("bed", bed), 3);
@@ -378,9 +378,10 @@ START_TEST(several_files) {
     free(text);
     snprintf(names, sizeof names, "%s/none.*.dump", folder);
     ck_assert_int_eq(RUN("bed", names), 4);
-    expect_message(names, "there are no such files");
+    expect_message(names, "no file has such a name");
     SUCCEED("bed", first, write_file("bed.csv", "x,y,z,r\n0,0,0,1\n"), "--directions", "8");
-    expect_message(in_folder("bed.csv"), "warning: spheres go by positions, those of the frames before by ids");
+    expect_message(in_folder("bed.csv"),
+                   "warning: spheres are named by positions, but those of the frames before by ids");
     ck_assert_int_eq(RUN("bed", "-", first, "-"), 2);
     expect_message("standard input", "once only");
 }
@@ -390,7 +391,7 @@ END_TEST
 START_TEST(empty_files_of_a_series) {
     const char *empty = write_file("0.dump", frame(NULL, "0", "0", "")), *bed = write_frames("1.dump", 1);
     SUCCEED("bed", empty, bed, "--directions", "8");
-    expect_message(empty, "warning: frame 0 is left out: it is empty");
+    expect_message(empty, "warning: frame 0 is empty and is left out");
     ck_assert_double_eq(value_of("timestep"), 100);
     ck_assert_int_eq(RUN("bed", empty), 3);
     ck_assert_int_eq(RUN("bed", empty, empty), 3);
@@ -483,7 +484,7 @@ START_TEST(one_place_each) {
         ck_assert_int_eq(RUN(HEAT, bed, "--ambient", "300", "--frame", "0:2", "--length-unit", "m", "--quiet", "--json",
                              standard ? "-" : name, "-o", to, more[k][2], more[k][3]),
                          2);
-        expect_message(standard ? "-" : name, "is there twice");
+        expect_message(standard ? "-" : name, "is given twice");
         ck_assert_int_eq(access(name, F_OK), -1);
     }
     SUCCEED(HEAT, bed, "--ambient", "300", "--json", "-");
@@ -589,7 +590,7 @@ START_TEST(furnace_outputs) {
     expect_message("", "'vtp' is neither csv nor vti");
     ck_assert_int_eq(RUN(FURNACE, "--format", "csv"), 2);
     ck_assert_int_eq(RUN(FURNACE, "-o", csv, "--json", csv), 2);
-    expect_message(csv, "is there twice");
+    expect_message(csv, "is given twice");
 }
 END_TEST
 

@@ -122,7 +122,7 @@ START_TEST(further_columns_by_name) {
     const char bad[] = "x,y,z,r,emissivity,T,id\n0,0,0,1,dark,1,1\n";
     expect_refusal(bad, sizeof bad - 1, &options, 2, "emissivity is not a number: 'dark'");
     const char unit[] = "x,y,z,r,emissivity [-],T [C],id\n0,0,0,1,1,1,1\n";
-    expect_refusal(unit, sizeof unit - 1, &options, 1, "the column T is in [C], and taken for [K]");
+    expect_refusal(unit, sizeof unit - 1, &options, 1, "the column T is in [C], but is taken as [K]");
     const char kelvins[] = "x,y,z,r,emissivity [-],T (K)\n0,0,0,1,0.5,300\n";
     ck_assert_int_eq(try_options(kelvins, sizeof kelvins - 1, &options), 0);
     const char lacking[] = "x,y,z,r,emissivity,id\n0,0,0,1,1,1\n";
@@ -168,12 +168,12 @@ START_TEST(ids) {
     static const struct {
         const char *id[2], *reason;
         unsigned line;
-    } bad[] = {{{"3", "3"}, "the id 3 is that of line 2, too", 3},
+    } bad[] = {{{"3", "3"}, "the id 3 occurs in line 2, too", 3},
                {{"3", "-4"}, "the id -4 is negative", 3},
                {{"3", "1.5"}, "the id is not a whole number: '1.5'", 3},
                {{"1e-6", "2"}, "the id is not a whole number: '1e-6'", 2},
                {{"1e300", "2"}, "the id is not a whole number: '1e300'", 2},
-               {{"7.0", "7"}, "the id 7 is that of line 2, too", 3},
+               {{"7.0", "7"}, "the id 7 occurs in line 2, too", 3},
                {{"9223372036854775808", "2"}, "the id is too large: '9223372036854775808'", 2}};
     const struct read_options positions = {.positions = true};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
@@ -373,7 +373,7 @@ START_TEST(ranges) {
          "0",
          "warning: frame 1 is left out: the file ends within a line",
          0},
-        {SMALL_FRAME EMPTY_FRAME SMALL_FRAME, {0, 9, 1}, "02", "warning: frame 1 is left out: it is empty", 0},
+        {SMALL_FRAME EMPTY_FRAME SMALL_FRAME, {0, 9, 1}, "02", "warning: frame 1 is empty and is left out", 0},
         {SMALL_FRAME EMPTY_FRAME, {0, 0, 0}, "", "there are no spheres", STATUS_INPUT},
         {EMPTY_FRAME EMPTY_FRAME, {0, 9, 1}, "", "there are no spheres", STATUS_INPUT},
         {XYZ_FRAME XYZ_FRAME "\n" XYZ_FRAME, {0, 9, 1}, "012", "", 0},
@@ -648,7 +648,7 @@ static const struct {
      "no array radius"},
     {0, VTP(ARRAY("mass", "1 1")), "no array radius or diameter"},
     {0, VTP(ARRAY("radius", "1 -1")), "the radius is -1; it must be above 0"},
-    {0, VTP(ARRAY("radius", "1 1") ARRAY("id", "3 3")), "the id 3 is there twice"},
+    {0, VTP(ARRAY("radius", "1 1") ARRAY("id", "3 3")), "the id 3 occurs twice"},
     {0, VTP(ARRAY("radius", "1 1") ARRAY("id", "3 3.5")), "the id of point 1 is 3.5"},
     {4, VTP(ARRAY("radius", "1")), "an array is too short"},
     {4, VTP("<DataArray type='Float32' Name='radius' format='binary'>CAAAAAAAAD8AAIA</DataArray>"),

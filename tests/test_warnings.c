@@ -36,21 +36,21 @@ static const struct {
     {{HEAT, "--temperature", "T", "--wall", "zmin=.012,zmax=.1", "--wall-temperature", "500"},
      PLAIN,
      NULL,
-     "sphere 1 reaches through the wall zmin by 0.2 of its radius (1 such places in all)"},
+     "sphere 1 reaches through the wall zmin by 0.2 of its radius (1 such cases in all)"},
     {{HEAT, "--temperature", "T", "--wall", "zmin=.0105", "--wall-temperature", "500"}, PLAIN, NULL, NULL},
     {{HEAT, "--temperature", "T", "--wall", "cylinder:.05,.05,.05,zmin=0,zmax=.1", "--wall-temperature", "500"},
      PLAIN,
      NULL,
-     "through the wall cylinder by 0.24 of its radius (2 such places in all)"},
+     "through the wall cylinder by 0.24 of its radius (2 such cases in all)"},
     {{"bed", "--wall", "auto"}, FRAME("0", SHRUNK, "", ROWS("", "", "")), NULL, "stand where the spheres end"},
     {{"bed", "--wall", "zmin"}, FRAME("0", SHRUNK, "", ROWS("", "", "")), NULL, "stand where the spheres end"},
     {{"bed", "--wall", "m=mesh:m.stl"}, PLAIN, CORNER(".3"), NULL},
     {{"bed", "--wall", "m=mesh:m.stl"},
      PLAIN,
      CORNER("300"),
-     "the wall m is 300 long, the bed 0.08; is the mesh in the bed's unit? mesh:FILE:scale=0.001 changes it"},
+     "the wall m is 300 long, the bed 0.08; is the mesh in the unit of the bed? mesh:FILE:scale=0.001 scales the mesh"},
     {{"bed", "--wall", "m=mesh:m.stl:scale=1e-3"}, PLAIN, CORNER("300"), NULL},
-    {{"bed", "--wall", "m=mesh:m.stl:both"}, PLAIN, CORNER("3e-4"), "mesh:FILE:scale=1000 changes it"},
+    {{"bed", "--wall", "m=mesh:m.stl:both"}, PLAIN, CORNER("3e-4"), "mesh:FILE:scale=1000 scales the mesh"},
     {{"bed", "--wall", "m=mesh:m.stl:both"},
      PLAIN,
      FAR_AWAY,
@@ -75,7 +75,7 @@ static const struct {
     {{HEAT, "--temperature", "T"},
      FRAME("0", OPEN, " T", ROWS(" 600", " 0", " 700")),
      NULL,
-     "sphere 2 has 0 K, as 1 in all have, others up to 700 K"},
+     "sphere 2 has 0 K (1 spheres in all), others have up to 700 K"},
     {{HEAT, "--temperature", "0"}, PLAIN, NULL, NULL},
     {{HEAT, "--temperature", "T", TIME, "--heat-capacity", "800", "--density", "2500"}, PLAIN, NULL, NULL},
     {{HEAT, "--temperature", "T", TIME, "--heat-capacity", ".8", "--density", "2500"},
@@ -94,7 +94,7 @@ static const struct {
     {{"bed", "--frame", "all"},
      FRAME("1000", OPEN, "", ROWS("", "", "")),
      FRAME("200", OPEN, "", ROWS("", "", "")),
-     "timestep 200 comes behind 1000; a pattern in quotes"}};
+     "timestep 200 follows timestep 1000; a pattern in quotes"}};
 
 /* How often a text has another one. */
 static int count_of(const char *text, const char *what) {

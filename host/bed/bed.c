@@ -145,13 +145,15 @@ static int check_names(const struct bed *bed, const char *file, const struct nam
         const uint64_t line = bed->line[name[k].at];
         const long long id = name[k].id;
         if (id < 0)
-            return message_at(STATUS_INPUT, file, line, "the id %lld is negative; --positions leaves ids alone", id);
+            return message_at(STATUS_INPUT, file, line,
+                              "the id %lld is negative; --positions names spheres by positions instead", id);
         if (k == 0 || name[k - 1].id != id) continue;
         const uint64_t other = bed->line[name[k - 1].at];
         if (other == 0)
-            return message_at(STATUS_INPUT, file, 0, "the id %lld is there twice; --positions leaves ids alone", id);
+            return message_at(STATUS_INPUT, file, 0,
+                              "the id %lld occurs twice; --positions names spheres by positions instead", id);
         return message_at(STATUS_INPUT, file, line,
-                          "the id %lld is that of line %llu, too; --positions leaves ids alone", id,
+                          "the id %lld occurs in line %llu, too; --positions names spheres by positions instead", id,
                           (unsigned long long)other);
     }
     return STATUS_OK;

@@ -23,8 +23,8 @@ static int bed_misplaced(const struct bed *bed, const char *file, uint32_t i) {
     bool image = false;
     for (int axis = 0; axis < 3; ++axis) image = image || (bed->period[axis] > 0 && bed->period[axis] < 2 * bed->r[i]);
     return message_at(STATUS_INPUT, file, bed->line[i],
-                      image ? "sphere %lld reaches its own image in the periodic box"
-                            : "sphere %lld reaches beyond an open side; give a place beyond it, or none",
+                      image ? "sphere %lld overlaps its own image in the periodic box"
+                            : "sphere %lld reaches beyond an opening; move the opening, or leave out its coordinate",
                       (long long)bed_name(bed, i));
 }
 

@@ -59,9 +59,10 @@ static int find_core(const struct bed *bed, int wanted, const char *file, double
         const bool thin = !(core->high[axis] > core->low[axis]);
         if (thin && wanted >= 0 && wanted != axis) core->low[axis] = lowest, core->high[axis] = highest;
         if (thin && (wanted < 0 || wanted == axis))
-            return message_at(STATUS_INPUT, file, 0,
-                              "too thin along %c, an open axis: %g mean diameters at the least%s", 'x' + axis,
-                              2 * CONDUCTION_MARGIN, wanted < 0 ? "; --axis is for F_E along another one" : "");
+            return message_at(
+                STATUS_INPUT, file, 0,
+                "the bed is too thin along the open axis %c, where at least %g mean diameters are needed%s", 'x' + axis,
+                2 * CONDUCTION_MARGIN, wanted < 0 ? "; --axis computes F_E along another axis" : "");
         core->volume *= core->high[axis] - core->low[axis];
     }
     return STATUS_OK;

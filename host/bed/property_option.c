@@ -32,7 +32,7 @@ static int take_value(const char *what, const char **text, double low, double hi
     if (!quantity->curves || **text != '@') {
         *value = strtod(*text, &end);
         if (end == *text || (*end && *end != ','))
-            return message(STATUS_USAGE, "%s: '%.60s' is no list such as 1:0.5,2:0.8", what, *text);
+            return message(STATUS_USAGE, "%s: '%.60s' is not a list like 1:0.5,2:0.8", what, *text);
         *text = end;
         if (*value >= low && *value <= high) return STATUS_OK;
         return message(STATUS_USAGE, "%s: %g is not within %g and %g", what, *value, low, high);
@@ -52,7 +52,7 @@ static int take_types(const char *what, const char *text, double low, double hig
         if (k == QUANTITY_TYPES_MAX) return message(STATUS_USAGE, "%s: more than %d types", what, QUANTITY_TYPES_MAX);
         quantity->type[k] = strtod(text, &end);
         if (end == text || *end != ':')
-            return message(STATUS_USAGE, "%s: '%.60s' is no list such as 1:0.5,2:0.8", what, text);
+            return message(STATUS_USAGE, "%s: '%.60s' is not a list like 1:0.5,2:0.8", what, text);
         text = end + 1;
         const int status = take_value(what, &text, low, high, quantity, &quantity->curve[k], &quantity->of_type[k]);
         if (status) return status;
@@ -167,7 +167,8 @@ static bool names_table(const char *text, const struct wall_tables *tables) {
 static int take_wall_table(const char *option, const char **text, double low, double high, const struct walls *walls,
                            struct wall_tables *tables, int *wall, double *value) {
     const size_t length = strcspn(*text, "=,");
-    if ((*text)[length] != '=') return message(STATUS_USAGE, "%s: a table needs its wall: zmin=%.60s", option, *text);
+    if ((*text)[length] != '=')
+        return message(STATUS_USAGE, "%s: a table needs the name of its wall: zmin=%.60s", option, *text);
     *wall = number_of_wall(walls, *text, length);
     if (*wall < 0) return wall_unknown(option, walls, *text, length);
     struct curve *curve = &tables->curve[*wall], *column = &tables->column[*wall];
@@ -201,7 +202,7 @@ int wall_list(const char *option, const char *text, const char *word, double low
             return message(STATUS_USAGE, "%s: %g is not within %g and %g", option, value, low, high);
         if (wall < 0 ? !isnan(list->others) : list->named[wall])
             return message(STATUS_USAGE,
-                           wall < 0 ? "%s: one number for all others; name the walls, such as %s=%g"
+                           wall < 0 ? "%s: two numbers have no name; name the walls, %s=%g for example"
                                     : "%s: %s has two values, the second %g",
                            option, wall_name(walls, wall < 0 ? 0 : (uint32_t)wall), value);
         if (wall < 0)
@@ -221,7 +222,7 @@ int wall_values(const char *option, const char *text, double otherwise, double l
     for (uint32_t k = 0; k < walls->count; ++k) {
         values[k] = list.named[k] ? list.value[k] : otherwise;
         if (isnan(values[k]))
-            return message(STATUS_USAGE, "%s: none for %s; give %s=NUMBER, or one number for all", option,
+            return message(STATUS_USAGE, "%s: %s has no value; give %s=NUMBER, or one number for all", option,
                            wall_name(walls, k), wall_name(walls, k));
     }
     return STATUS_OK;

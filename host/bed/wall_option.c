@@ -88,7 +88,8 @@ static int take_cylinder(const char **text, struct wall_options *options) {
     double c[3];
     bool good = take_number(text, &c[0]);
     for (int k = 1; k < 3 && good; ++k) good = *(*text)++ == ',' && take_number(text, &c[k]);
-    if (!good || !(c[2] > 0)) return message(STATUS_USAGE, "--wall: a cylinder is cylinder:X,Y,R with a radius R > 0");
+    if (!good || !(c[2] > 0))
+        return message(STATUS_USAGE, "--wall: a cylinder is cylinder:X,Y,R with a radius R above 0");
     return add_wall(options, (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {c[0], c[1], c[2]}}, true);
 }
 
@@ -234,7 +235,8 @@ int walls_option(const char *text, struct wall_options *options) {
 /* The words auto and box, as the planes they stand for but for those named besides. */
 static int spell_out(struct wall_options *options, const struct bed *bed, const char *file) {
     if (options->automatic && !(bed->low[0] < bed->high[0]))
-        return message_at(STATUS_USAGE, file, 0, "--wall auto needs a box in the file; --wall box takes the spheres'");
+        return message_at(STATUS_USAGE, file, 0,
+                          "--wall auto needs a box in the file; --wall box takes the ends of the spheres");
     for (int k = 0; k < PLANES; ++k) {
         const bool wanted = options->box || (options->automatic && !(bed->period[k / 2] > 0));
         if (wanted && !plane_of_side(&options->walls, k)) add_wall(options, plane_at(k, 0), false);
@@ -248,9 +250,9 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
         const fibrad_plane *wall = plane_of_side(walls, k), *lower = NULL;
         if (!wall) continue;
         if (bed->period[k / 2] > 0)
-            return message(STATUS_USAGE, "--wall: %s stands across a periodic axis", plane_names[k]);
+            return message(STATUS_USAGE, "--wall: %s lies across a periodic axis", plane_names[k]);
         if (cylinder && k / 2 < 2)
-            return message(STATUS_USAGE, "--wall: %s and a cylinder do not go together", plane_names[k]);
+            return message(STATUS_USAGE, "--wall: %s cannot be combined with a cylinder", plane_names[k]);
         if (k % 2) lower = plane_of_side(walls, k - 1);
         if (lower && !(lower->at < wall->at))
             return message(STATUS_USAGE, "--wall: %s does not lie below %s", plane_names[k - 1], plane_names[k]);
@@ -287,17 +289,18 @@ int walls_refuse_endless(const struct walls *walls, const struct bed *bed) {
             snprintf(missing + length, sizeof missing - (size_t)length, "%s%s=open", first ? "," : "", plane_names[k]);
         if (!first) first = plane_names[k];
     }
-    return message(STATUS_USAGE,
-                   "--wall: these walls go on for ever, and next to nothing would leave the bed; where it is open, add "
-                   "%s (%s=H:open, if the walls end at H)",
-                   missing, first ? first : "");
+    return message(
+        STATUS_USAGE,
+        "--wall: these walls form a tube or a corner without end; where the bed is open, add %s (%s=H:open if "
+        "the walls end at H)",
+        missing, first ? first : "");
 }
 
 int wall_unknown(const char *option, const struct walls *walls, const char *name, size_t length) {
     for (uint32_t k = 0; k < walls->openings; ++k)
         if (is_word(name, length, plane_name(&walls->opening[k])))
-            return message(STATUS_USAGE, "%s: %.*s is open: as black and as hot as the surroundings", option,
-                           (int)length, name);
+            return message(STATUS_USAGE, "%s: %.*s is an opening; it is as black and as hot as the surroundings",
+                           option, (int)length, name);
     const char *names[WALLS_MAX];
     char list[NAMES_LISTED];
     for (uint32_t k = 0; k < walls->count; ++k) names[k] = wall_name(walls, k);

@@ -117,7 +117,7 @@ int options_numbers(const char *what, const char *text, int capacity, double *va
 }
 
 int options_file(const char *text, const char **file) {
-    if (*file) return message(STATUS_USAGE, "one FILE only, not also '%.60s'", text);
+    if (*file) return message(STATUS_USAGE, "one FILE is allowed, not also '%.60s'", text);
     *file = text;
     return STATUS_OK;
 }
@@ -136,7 +136,7 @@ int options_method(const char *text, enum method *method) {
             *method = (enum method)k;
             return STATUS_OK;
         }
-    return message(STATUS_USAGE, "--method: '%.40s' is no method", text);
+    return message(STATUS_USAGE, "--method: '%.40s' is not a method", text);
 }
 
 int options_beam(int key, const char *text, struct beam_options *beam) {

@@ -39,7 +39,7 @@ static int mark_range(const int64_t *id, uint32_t n, const char *where, unsigned
     const unsigned long long least = id && n ? (unsigned long long)id[0] : 0;
     const unsigned long long most = n == 0 ? 0 : id ? (unsigned long long)id[n - 1] : n - 1;
     if (begin == end || first < least || last > most)
-        return message(STATUS_USAGE, "--targets: there is no sphere %llu in %s; they are %llu to %llu",
+        return message(STATUS_USAGE, "--targets: there is no sphere %llu in %s; its spheres are %llu to %llu",
                        begin == end || first < least ? first : last, where, least, most);
     memset(marks + begin, 1, end - begin);
     return STATUS_OK;
@@ -55,7 +55,7 @@ int targets_mark(const char *list, const int64_t *id, uint32_t n, const char *wh
             good = position(&text, &last) && first <= last;
         }
         if (!good || last > INT64_MAX - 1 || (*text && *text != ','))
-            return message(STATUS_USAGE, "--targets: '%.60s' is no list such as 3,7,10-19", list);
+            return message(STATUS_USAGE, "--targets: '%.60s' is not a list like 3,7,10-19", list);
         const int status = marks ? mark_range(id, n, where, first, last, marks) : STATUS_OK;
         if (status || *text == 0) return status;
     }

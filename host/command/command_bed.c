@@ -137,7 +137,7 @@ static int bed_choose(struct bed_request *request) {
     if (request->error > 0 && request->method != METHOD_BEAM)
         return message(STATUS_USAGE, "--error is for --method beam");
     if (request->error > 0 && request->beam.directions > 0)
-        return message(STATUS_USAGE, "--error finds the directions itself; leave out --directions");
+        return message(STATUS_USAGE, "--error chooses the directions; leave out --directions");
     if (request->surface_given && request->method != METHOD_SURFACE)
         return message(STATUS_USAGE, "--nf and --no-correction are for --method surface");
     if (request->cast_given && request->method != METHOD_CAST && request->method != METHOD_MC)

@@ -134,9 +134,8 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     if (status) return status;
     if (request->at) request->temperature += request->zero;
     if (!request->emissivity.given && request->bed.files > 0)
-        return message(STATUS_USAGE, "which --emissivity? see fibrad conductivity --help");
-    if (rule->error > 0 && rule->paths > 0)
-        return message(STATUS_USAGE, "--error finds the rays itself; leave out --rays");
+        return message(STATUS_USAGE, "--emissivity is missing; see fibrad conductivity --help");
+    if (rule->error > 0 && rule->paths > 0) return message(STATUS_USAGE, "--error chooses the rays; leave out --rays");
     if (rule->max_rays > 0 && rule->paths > 0)
         return message(STATUS_USAGE, "--max-rays is for --error; leave out --rays");
     if (rule->error == 0) rule->error = 0.003;
@@ -218,11 +217,11 @@ static void conductivity_warn(const struct conductivity_request *request, const 
     if (axes_with(result, FLIGHTS_ENDLESS, axes))
         message_at(STATUS_OK, file, 0,
                    "warning: F_E along %s does not exist: flights through a gap across the whole bed have no mean "
-                   "square length; it is given for flights of up to 100 periods, its standard error is unreliable",
+                   "square length. F_E is given for flights of up to 100 periods. Its standard error is unreliable",
                    axes);
     if (axes_with(result, FLIGHTS_RARE, axes))
         message_at(STATUS_OK, file, 0,
-                   "warning: F_E along %s rests on a few long flights, as through a channel without spheres; its "
+                   "warning: F_E along %s rests on a few long flights, as through a channel without spheres. Its "
                    "standard error is unreliable",
                    axes);
 }

@@ -102,9 +102,9 @@ static int exchange_take(struct exchange_request *request, const struct options 
 
 static int exchange_check(struct exchange_request *request) {
     if (!request->emissivity.given && request->bed.files > 0)
-        return message(STATUS_USAGE, "which --emissivity? see fibrad exchange --help");
+        return message(STATUS_USAGE, "--emissivity is missing; see fibrad exchange --help");
     if (request->rule.tolerance > 0 && request->counted)
-        return message(STATUS_USAGE, "--error finds rays and directions itself; leave out --rays and --directions");
+        return message(STATUS_USAGE, "--error chooses rays and directions; leave out --rays and --directions");
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
     request->options.scratch = request->bed.scratch;

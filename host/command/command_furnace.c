@@ -206,7 +206,7 @@ static int furnace_check_outputs(struct request *request) {
         if (!request->write) return message_at(STATUS_USAGE, out, 0, "unknown ending; there are .csv and .vti");
     }
     if ((is_standard(out) && is_standard(request->json)) || (out && request->json && output_same(out, request->json)))
-        return message_at(STATUS_USAGE, request->json, 0, "is there twice");
+        return message_at(STATUS_USAGE, request->json, 0, "is given twice");
     return STATUS_OK;
 }
 

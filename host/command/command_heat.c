@@ -199,14 +199,14 @@ static int heat_check_request(struct heat_request *request) {
         return message(STATUS_USAGE, "--error is for powers at one time, not for --until");
     if (!request->given.timed && request->problem.by_factors)
         return message(STATUS_USAGE, "--model factors is for --until");
-    if (!request->emissivity.given) return message(STATUS_USAGE, "which --emissivity? see fibrad heat --help");
+    if (!request->emissivity.given) return message(STATUS_USAGE, "--emissivity is missing; see fibrad heat --help");
     if (request->problem.error > 0 && request->counted)
-        return message(STATUS_USAGE,
-                       "--error finds directions and patches itself; leave out --directions, --points, --patches "
-                       "and --wall-rays");
+        return message(
+            STATUS_USAGE,
+            "--error chooses directions and patches; leave out --directions, --points, --patches and --wall-rays");
     if (request->problem.error > 0 && request->problem.sources.uniform)
         return message(STATUS_USAGE,
-                       "--error is for --model patches: one radiosity per sphere has an error of its own");
+                       "--error is for --model patches; --model spheres has an error that no directions reduce");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
     status = march_check(&request->march, &request->bed);
     if (!status) status = given_check(&request->given, &request->bed);
@@ -315,7 +315,8 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     int status = bed_options_walls(&request->bed, bed, walls);
     if (!status) status = given_values(&request->given, bed, file, walls, &given);
     if (!status && !request->given.ambient && !walls_closed(walls, bed))
-        status = message(STATUS_USAGE, "which --ambient? the bed is open: its surroundings need a temperature");
+        status =
+            message(STATUS_USAGE, "--ambient is missing: the bed is open, and the surroundings need a temperature");
     if (!status) status = wall_emissivities(request->wall_emissivity, walls, of_walls[0]);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     if (!status && !request->given.timed) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);

@@ -85,7 +85,7 @@ static int join_parse(struct join_request *request, int argc, char **argv) {
     struct options options = {.command = "join", .table = join_table, .argc = argc, .argv = argv};
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = join_take(request, &options, key);
-    if (!status && request->count == 0) status = message(STATUS_USAGE, "which FILEs? see fibrad join --help");
+    if (!status && request->count == 0) status = message(STATUS_USAGE, "FILE is missing; see fibrad join --help");
     return status ? status : outputs_check(&request->outputs, CONTENT_MATRIX, false);
 }
 

@@ -101,7 +101,7 @@ static int take_length(struct pair_request *request, const char *text) {
     case 2:
         return options_number("GAP", text, -1e150, 1e150, &request->gap);
     default:
-        return message(STATUS_USAGE, "three lengths only, not also '%.40s'; see fibrad pair --help", text);
+        return message(STATUS_USAGE, "three lengths are allowed, not also '%.40s'; see fibrad pair --help", text);
     }
 }
 

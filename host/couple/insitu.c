@@ -267,7 +267,7 @@ static int link_present(struct insitu_build *b) {
     to->now_n = to->own;
     fibrad_link_free(to->present);
     status = fibrad_link_new(&to->present, b->s->comm, id, to->own, 2 * to->own, &culprit);
-    if (status == FIBRAD_E_ARGUMENT) refuse_particle(b->s->message, culprit, "this id is there twice");
+    if (status == FIBRAD_E_ARGUMENT) refuse_particle(b->s->message, culprit, "this id occurs twice");
     return status;
 }
 
@@ -281,7 +281,7 @@ static int name_scene_fault(const struct insitu_build *b, int status, const uint
     if (fault.first >= n || fault.second >= n) return status;
     const uint64_t first = id[fault.first], second = id[fault.second];
     if (fault.first == fault.second && status == FIBRAD_E_GEOMETRY)
-        return fibrad_refuse(message, status, "particle %" PRIu64 ": it reaches beyond an open side", first);
+        return fibrad_refuse(message, status, "particle %" PRIu64 ": it reaches beyond an opening", first);
     if (fault.first == fault.second)
         return refuse_particle(message, first,
                                "its centre lies beyond a wall, or too far from the origin for its size");
@@ -333,11 +333,11 @@ static int name_row_fault(const struct insitu_build *b, int status, uint64_t id,
     const uint32_t body = front == FIBRAD_NO_BODY ? back : front;
     if (body == FIBRAD_NO_BODY)
         return fibrad_refuse(b->s->message, status,
-                             "particle %" PRIu64 " sees triangle %" PRIu32 ", neither side of which is a wall's", id,
+                             "particle %" PRIu64 " sees triangle %" PRIu32 ", and no side of it belongs to a wall", id,
                              work->triangle);
     return fibrad_refuse(b->s->message, status,
-                         "particle %" PRIu64 " sees the back of wall %" PRIu32 ", of triangle %" PRIu32 ", which is no "
-                         "wall's",
+                         "particle %" PRIu64 " sees the back of wall %" PRIu32 ", at triangle %" PRIu32 "; this side "
+                         "belongs to no wall",
                          id, body + 1, work->triangle);
 }
 

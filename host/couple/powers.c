@@ -17,7 +17,7 @@ static double sigma_of(const fibrad_insitu_state *state) {
 
 static int check_state(fibrad_insitu *s, const fibrad_insitu_state *state, const double *power) {
     const int bodies = (int)s->set.bodies;
-    if (!s->ready) return fibrad_refuse(s->message, FIBRAD_E_STATE, "powers are asked for before there are rows");
+    if (!s->ready) return fibrad_refuse(s->message, FIBRAD_E_STATE, "there are no rows yet, which powers need");
     if (!state || (state->n && !(state->id && state->temperature && power)) || (bodies && !state->body_temperature) ||
         state->n > FIBRAD_SPHERES_MAX)
         return FIBRAD_E_ARGUMENT;
@@ -46,7 +46,7 @@ static int follow_particles(fibrad_insitu *s, const fibrad_insitu_state *state) 
     if (!sum[1]) return FIBRAD_OK;
     if (sum[0] != set->facts.particles)
         return fibrad_refuse(s->message, FIBRAD_E_STATE,
-                             "there are %" PRIu64 " particles, but rows of %" PRIu64 ": make rows anew", sum[0],
+                             "there are %" PRIu64 " particles, but rows of %" PRIu64 "; make new rows", sum[0],
                              set->facts.particles);
     fibrad_link *link;
     uint64_t *id = malloc((all + 1) * sizeof *id);
@@ -58,8 +58,9 @@ static int follow_particles(fibrad_insitu *s, const fibrad_insitu_state *state) 
         memcpy(id + n, home, set->own * sizeof *id);
         status = fibrad_link_new(&link, s->comm, id, n, all, &culprit);
         if (status == FIBRAD_E_ARGUMENT)
-            status = fibrad_refuse(s->message, FIBRAD_E_STATE,
-                                   "particle %" PRIu64 " has a row, but no owner or two: make rows anew", culprit);
+            status =
+                fibrad_refuse(s->message, FIBRAD_E_STATE,
+                              "particle %" PRIu64 " has a row, but no owner or two owners; make new rows", culprit);
     }
     if (status) {
         free(id);

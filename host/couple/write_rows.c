@@ -166,7 +166,7 @@ int fibrad_insitu_write(fibrad_insitu *s, const char *path) {
     s->message[0] = 0;
     int status = s->ready ? FIBRAD_OK : fibrad_refuse(s->message, FIBRAD_E_STATE, "there are no rows to write");
     if (!status && (!path || strlen(path) + 32 > PATH_BYTES))
-        status = fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "no name, or one too long, for files of rows");
+        status = fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "the name for the files of rows is empty or too long");
     status = fibrad_agree(s->comm, status, s->message);
     if (status) return status;
     snprintf(name, sizeof name, "%.4000s.%d.rows", path, s->rank);

@@ -63,7 +63,7 @@ static int take_file(struct bed_options *asked, const char *name) {
     struct stat there;
     glob_t found;
     if (!strpbrk(name, "*?[") || stat(name, &there) == 0) return add_file(asked, name);
-    if (glob(name, 0, NULL, &found) != 0) return message_at(STATUS_FILE, name, 0, "there are no such files");
+    if (glob(name, 0, NULL, &found) != 0) return message_at(STATUS_FILE, name, 0, "no file has such a name");
     qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, order_of_names);
     int status = STATUS_OK;
     for (size_t k = 0; k < found.gl_pathc && !status; ++k) status = add_file(asked, found.gl_pathv[k]);
@@ -105,7 +105,7 @@ static int take_scratch(const char *folder, struct bed_options *asked) {
     asked->scratch = folder;
     if (stat(folder, &there) != 0 || access(folder, W_OK | X_OK) != 0)
         return message_at(STATUS_FILE, folder, 0, "%s", strerror(errno));
-    return S_ISDIR(there.st_mode) ? STATUS_OK : message_at(STATUS_FILE, folder, 0, "is no folder");
+    return S_ISDIR(there.st_mode) ? STATUS_OK : message_at(STATUS_FILE, folder, 0, "is not a folder");
 }
 
 int bed_options_take(struct bed_options *asked, const struct options *options, int key) {
@@ -165,7 +165,7 @@ size_t bed_options_column(struct bed_options *asked, const char *name, const cha
 bool bed_options_series(const struct bed_options *asked) { return asked->range || asked->files > 1; }
 
 int bed_options_check(struct bed_options *asked, const char *command, enum content content, const char *picture) {
-    if (asked->files == 0) return message(STATUS_USAGE, "which FILE? see fibrad %s --help", command);
+    if (asked->files == 0) return message(STATUS_USAGE, "FILE is missing; see fibrad %s --help", command);
     asked->radius.place = bed_options_column(asked, asked->radius.column, NULL);
     if (picture && !plot_ending(picture))
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
@@ -290,8 +290,8 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
     double other;
     *metres = 1;
     if (!unit && bed->units[0])
-        return message_at(STATUS_USAGE, asked->name, 0, "units %.20s have no metres; --length-unit gives them",
-                          bed->units);
+        return message_at(STATUS_USAGE, asked->name, 0,
+                          "units %.20s have no fixed length in metres; --length-unit gives the length", bed->units);
     if (unit && !unit_of_length(unit, metres))
         return message_at(STATUS_USAGE, asked->name, 0, "unknown units '%.20s'", unit);
     if (unit && asked->length_unit && unit_of_length(asked->length_unit, &other) && other != *metres)
@@ -299,8 +299,8 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
                           "its units are %.20s; --length-unit is for files that name none", unit);
     if (!unit) warn_unit(&asked->warned, bed);
     if (asked->metres > 0 && asked->metres != *metres)
-        return message_at(STATUS_USAGE, asked->name, 0, "its unit of length is %g m, that of the files before %g m",
-                          *metres, asked->metres);
+        return message_at(STATUS_USAGE, asked->name, 0,
+                          "the unit of length is %g m, but that of the files before is %g m", *metres, asked->metres);
     asked->metres = *metres;
     return STATUS_OK;
 }

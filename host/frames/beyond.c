@@ -48,7 +48,7 @@ static void look_for_one(const struct bed *bed, const struct meshes *meshes, con
         if (times_left(scene, meshes, centre, w) == meshes->enclosing) continue;
         const char *name = meshes_beyond(meshes, centre, bed->r[i], bed->period);
         if (!name) continue;
-        message_at(STATUS_OK, file, bed->line[i], "warning: sphere %lld lies beyond wall %s with all of it",
+        message_at(STATUS_OK, file, bed->line[i], "warning: all of sphere %lld lies beyond wall %s",
                    (long long)bed_name(bed, i), name);
         return;
     }

@@ -54,8 +54,8 @@ void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_factor
     const bool walls = matrix->body_body != NULL;
     if (walls && matrix->body_closure > CLOSED && is_new(warned, WALLS_OPEN))
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: rows of walls are not closed: their sums are off by %.2g, since they and those of spheres "
-                   "contradict each other; do triangles cut spheres?",
+                   "warning: rows of walls are not closed: their sums are off by %.2g, because they contradict the "
+                   "rows of spheres; do triangles cut spheres?",
                    matrix->body_closure);
     else if (walls && matrix->body_correction > APART && is_new(warned, WALLS_APART))
         message_at(STATUS_OK, warned->file, 0,
@@ -65,7 +65,7 @@ void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_factor
     else if (matrix->changed > CHANGE_LARGE && is_new(warned, CLOSING))
         message_at(STATUS_OK, warned->file, bed->line[matrix->changed_row],
                    "warning: closing changes what sphere %lld gives to walls and surroundings by %.2g times the error "
-                   "of its row; do triangles cut it? If not, more directions help",
+                   "of its row; do triangles cut this sphere? If not, more directions help",
                    (long long)bed_name(bed, matrix->changed_row), matrix->changed);
 }
 
@@ -75,12 +75,13 @@ void warn_frame(struct warned *warned, const struct bed *bed) {
     const bool before = warned->frames > 0;
     if (before && warned->ids != bed->ids && is_new(warned, OTHER_NAMES)) /* rows of both are told apart by nothing */
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: spheres go by %s, those of the frames before by %s; --positions is for all of them",
+                   "warning: spheres are named by %s, but those of the frames before by %s; --positions names all by "
+                   "positions",
                    bed->ids ? "ids" : "positions", warned->ids ? "ids" : "positions");
     if (before && bed->timestep >= 0 && bed->timestep < warned->timestep && is_new(warned, OTHER_ORDER))
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: timestep %lld comes behind %lld; a pattern in quotes, 'bed.*.dump', gives files in the "
-                   "order of their numbers",
+                   "warning: timestep %lld follows timestep %lld; a pattern in quotes, 'bed.*.dump', gives files in "
+                   "the order of their numbers",
                    (long long)bed->timestep, (long long)warned->timestep);
     ++warned->frames;
     warned->ids = bed->ids;
@@ -93,7 +94,8 @@ void warn_periods(struct warned *warned, const struct bed *bed, const double per
         if (!(period[axis] > 0 && length > 0) || fabs(period[axis] - length) <= PERIOD_OFF * length) continue;
         if (!is_new(warned, OTHER_PERIOD)) return;
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: --periodic is %g along %c, and the box of the file is %g long; is it in the file's unit?",
+                   "warning: --periodic is %g along %c, and the box of the file is %g long; is --periodic in the unit "
+                   "of the file?",
                    period[axis], 'x' + axis, length);
     }
 }
@@ -106,7 +108,8 @@ static double mean_radius(const struct bed *bed) {
 
 void warn_unit(struct warned *warned, const struct bed *bed) {
     if (mean_radius(bed) > RADIUS_LARGE && is_new(warned, OTHER_UNIT))
-        message_at(STATUS_OK, warned->file, 0, "warning: radii of %g are taken as metres; --length-unit mm, or m",
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: radii of %g are taken as metres; --length-unit m, or mm for example, says the unit",
                    mean_radius(bed));
 }
 
@@ -141,11 +144,10 @@ static void warn_of_cuts(struct warned *warned, const struct bed *bed, const str
             if (depth > worst) worst = depth, sphere = i, wall = k;
         }
     if (count > 0 && is_new(warned, CUT_BY_WALL))
-        message_at(
-            STATUS_OK, warned->file, bed->line[sphere],
-            "warning: sphere %lld reaches through the wall %s by %.2g of its radius (%u such places in all); does "
-            "the wall stand where it should?",
-            (long long)bed_name(bed, sphere), wall_name(walls, wall), worst, count);
+        message_at(STATUS_OK, warned->file, bed->line[sphere],
+                   "warning: sphere %lld reaches through the wall %s by %.2g of its radius (%u such cases in all); is "
+                   "the wall in the right place?",
+                   (long long)bed_name(bed, sphere), wall_name(walls, wall), worst, count);
 }
 
 /* The lower and upper ends of all spheres; an axis that is periodic has none. */
@@ -171,8 +173,8 @@ static void warn_of_mesh(struct warned *warned, const struct bed *bed, const str
     const double ratio = longest(low, high) / longest(from, to);
     if ((ratio > SIZES_APART || ratio < 1 / SIZES_APART) && is_new(warned, MESH_SIZE))
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: the wall %s is %.3g long, the bed %.3g; is the mesh in the bed's unit? mesh:FILE:scale=%g "
-                   "changes it",
+                   "warning: the wall %s is %.3g long, the bed %.3g; is the mesh in the unit of the bed? "
+                   "mesh:FILE:scale=%g scales the mesh",
                    meshes->name[wall], longest(low, high), longest(from, to), ratio > 1 ? 1e-3 : 1e3);
     for (int axis = 0; axis < 3; ++axis) {
         const double near = 2 * mean_radius(bed);
@@ -188,8 +190,8 @@ static void warn_of_mesh(struct warned *warned, const struct bed *bed, const str
 void warn_walls(struct warned *warned, const struct bed *bed, const struct walls *walls) {
     if (walls->moved && is_new(warned, SHRUNK_BOX))
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: the box of the file ends within spheres, as one about centres does; walls without a place "
-                   "stand where the spheres end; xmin=VALUE places one");
+                   "warning: the box of the file ends within spheres, as a box around centres does. Walls without a "
+                   "coordinate stand where the spheres end. xmin=VALUE gives a coordinate");
     warn_of_cuts(warned, bed, walls);
     for (uint32_t k = 0; k < walls->count; ++k)
         if (walls->body[k].kind == FIBRAD_BODY_MESH) warn_of_mesh(warned, bed, walls->meshes, k);
@@ -214,15 +216,15 @@ void warn_temperatures(struct warned *warned, const struct bed *bed, const struc
     const bool named = zero == 0 && given->column && names_celsius(given->column);
     if (named && is_new(warned, CELSIUS))
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: the column %.40s is taken as kelvins; --temperature-unit C takes degrees Celsius",
+                   "warning: the column %.40s is taken as kelvins; --temperature-unit C is for degrees Celsius",
                    given->column);
     if (zero == 0 && most > 0 && most < COLD && is_new(warned, CELSIUS))
         message_at(STATUS_OK, warned->file, 0,
-                   "warning: no sphere is warmer than %g K; --temperature-unit C takes degrees Celsius", most);
+                   "warning: no sphere is warmer than %g K; --temperature-unit C is for degrees Celsius", most);
     if (zeros > 0 && most > 0 && is_new(warned, ABSOLUTE_ZERO))
         message_at(STATUS_OK, warned->file, bed->line[first],
-                   "warning: sphere %lld has 0 K, as %u in all have, others up to %g K; is a value missing? nan is an "
-                   "unknown temperature, with --power",
+                   "warning: sphere %lld has 0 K (%u spheres in all), others have up to %g K; is a value missing? With "
+                   "--power, nan stands for an unknown temperature",
                    (long long)bed_name(bed, first), zeros, most);
 }
 

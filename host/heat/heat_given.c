@@ -19,10 +19,14 @@ int given_power_option(const char *text, struct given_options *options) {
 
 int given_check(struct given_options *options, struct bed_options *bed) {
     struct quantity *t = &options->temperature, *p = &options->power;
-    if (!t->given && !p->given) return message(STATUS_USAGE, "which --temperature, or --power? see fibrad heat --help");
-    if (options->timed && !t->given) return message(STATUS_USAGE, "--until: which --temperature to begin with?");
+    if (!t->given && !p->given)
+        return message(STATUS_USAGE, "--temperature or --power is missing; see fibrad heat --help");
+    if (options->timed && !t->given)
+        return message(STATUS_USAGE, "--until needs --temperature, the temperatures at the beginning");
     if (!options->timed && t->given && !t->column && p->given && !p->column)
-        return message(STATUS_USAGE, "--temperature and --power: a sphere has the one or the other given");
+        return message(
+            STATUS_USAGE,
+            "--temperature and --power: a sphere has one of them only; at least one must be a list or a column");
     if (t->value < -options->zero) return message(STATUS_USAGE, "--temperature: %g is below absolute zero", t->value);
     t->some = p->given && !options->timed;
     p->some = true;
@@ -58,18 +62,18 @@ static int given_walls(const struct given_options *options, const struct bed *be
     for (uint32_t k = 0; k < walls->count && !status; ++k) {
         const char *name = wall_name(walls, k);
         if (t.named[k] && p.named[k])
-            return message(STATUS_USAGE, "%s has both a temperature and a power; give the one or the other", name);
+            return message(STATUS_USAGE, "%s has both a temperature and a power; give only one of them", name);
         const double temperature = t.named[k] ? t.value[k] : p.named[k] ? NAN : t.others;
         given->wall_power[k] = p.named[k] ? p.value[k] : isnan(temperature) ? p.others : NAN;
         given->insulated[k] = isinf(temperature) != 0;
         given->wall_temperature[k] = given->insulated[k] ? NAN : temperature + options->zero;
         if (isnan(temperature) && isnan(given->wall_power[k]))
             return message(STATUS_USAGE,
-                           "--wall-temperature: none for %s; give %s=NUMBER, one number for all, %s=insulated, "
-                           "or its --wall-power",
+                           "--wall-temperature: %s has no value; give %s=NUMBER, one number for all, %s=insulated, or "
+                           "--wall-power",
                            name, name, name);
         if (isnan(temperature) && wall_endless(walls, bed, &walls->body[k]))
-            return message(STATUS_USAGE, "--wall-power: %s goes on for ever; it needs its --wall-temperature", name);
+            return message(STATUS_USAGE, "--wall-power: %s is endless and needs a --wall-temperature", name);
     }
     return status;
 }
@@ -123,8 +127,10 @@ static int leave_out(const char *option, const struct quantity *number, const do
             values[i] = NAN;
     }
     if (used) return STATUS_OK;
-    return message(STATUS_USAGE, "%s %g: all spheres have the other given; a blank or nan in its column leaves one out",
-                   option, number->value);
+    return message(
+        STATUS_USAGE,
+        "%s %g is for no sphere: all have the other quantity; a blank or nan in its column leaves a sphere out", option,
+        number->value);
 }
 
 static int given_spheres(const struct bed *bed, const char *file, struct given *given) {
@@ -141,11 +147,11 @@ int given_reflectors(const struct given *given, const double *emissivity, const 
                      const double *wall_emissivity, const struct bed *bed, const char *file) {
     for (uint32_t k = 0; k < walls->count; ++k)
         if (wall_emissivity[k] == 0 && !isnan(given->wall_power[k]) && given->wall_power[k] != 0)
-            return message(STATUS_USAGE, "--wall-power: %s reflects all (emissivity 0)", wall_name(walls, k));
+            return message(STATUS_USAGE, "--wall-power: %s has emissivity 0 and cannot give off a power",
+                           wall_name(walls, k));
     for (uint32_t i = 0; i < bed->n; ++i)
         if (emissivity[i] == 0 && !isnan(given->power[i]) && given->power[i] != 0)
-            return message_at(STATUS_INPUT, file, bed->line[i],
-                              "sphere %lld reflects all (emissivity 0): it cannot give off %g W",
+            return message_at(STATUS_INPUT, file, bed->line[i], "sphere %lld has emissivity 0 and cannot give off %g W",
                               (long long)bed_name(bed, i), given->power[i]);
     return STATUS_OK;
 }

@@ -46,11 +46,11 @@ int march_check(struct march_options *march, struct bed_options *bed) {
                             : march->every > 0 ? "--every"
                             : march->step > 0  ? "--step"
                                                : NULL;
-        return needs ? message(STATUS_USAGE, "%s: needs --until", needs) : STATUS_OK;
+        return needs ? message(STATUS_USAGE, "%s needs --until", needs) : STATUS_OK;
     }
-    if (!c->given) return message(STATUS_USAGE, "--until: which --heat-capacity?");
-    if (!rho->given) return message(STATUS_USAGE, "--until: which --density?");
-    if (march->times && march->every > 0) return message(STATUS_USAGE, "--times and --every: the one or the other");
+    if (!c->given) return message(STATUS_USAGE, "--until needs --heat-capacity");
+    if (!rho->given) return message(STATUS_USAGE, "--until needs --density");
+    if (march->times && march->every > 0) return message(STATUS_USAGE, "--times and --every cannot be combined");
     if (march->every > 0 && march->until / march->every > TIMES_MAX)
         return message(STATUS_USAGE, "--every: more than %d times", TIMES_MAX);
     march->capacity.place = bed_options_column(bed, c->column, NULL);
@@ -197,14 +197,16 @@ static int choose_model(struct marching *m) {
     m->by_patches = problem->by_patches || follow;
     m->span.law = follow ? march_follow : NULL;
     if (follow && problem->by_factors)
-        return message(STATUS_USAGE, "--model factors: emissivities follow temperatures; patches let them");
+        return message(STATUS_USAGE, "--model factors: emissivities cannot follow temperatures; use --model patches");
     if (problem->by_factors && problem->sources.side_temperature)
-        return message(STATUS_USAGE, "--model factors: triangles have temperatures of their own; patches know them");
+        return message(STATUS_USAGE,
+                       "--model factors: triangles cannot have temperatures of their own; use --model patches");
     for (uint32_t k = 0; k < problem->walls.count; ++k) {
         if (!isnan(problem->sources.body_temperature[k])) continue;
         m->by_patches = true;
         if (problem->by_factors)
-            return message(STATUS_USAGE, "--model factors: %s has no temperature given; patches find it",
+            return message(STATUS_USAGE,
+                           "--model factors: %s has no temperature; --model patches finds temperatures of walls",
                            wall_name(&problem->walls, k));
     }
     return STATUS_OK;
@@ -215,8 +217,8 @@ static int library_status(struct marching *m, int status) {
     fibrad_transient_describe(m->transient, NULL, &fault);
     if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(m->asked, &m->bed, status, &fault);
     progress_stop(&m->asked->progress);
-    return message_at(STATUS_INPUT, m->asked->name, 0, "after %g s no steps keep all temperatures above 0 K%s", m->now,
-                      m->options->step > 0 ? "; --step auto takes shorter ones" : "");
+    return message_at(STATUS_INPUT, m->asked->name, 0, "after %g s no step keeps all temperatures above 0 K%s", m->now,
+                      m->options->step > 0 ? "; --step auto takes shorter steps" : "");
 }
 
 /* Powers at the time in hand, and all outputs. */

@@ -300,7 +300,7 @@ static int heat_improve(struct bed_options *asked, const struct heat_problem *pr
             break;
         if (!said && progress_clock() + seconds - begun > COSTLY * usual) {
             message_at(STATUS_OK, asked->name, 0,
-                       "warning: --error %g takes about %.0f s, %.0f times what it takes without", problem->error,
+                       "warning: --error %g takes about %.0f s, %.0f times as long as without --error", problem->error,
                        ceil(progress_clock() + seconds - begun), (progress_clock() + seconds - begun) / usual);
             said = true;
         }

@@ -113,8 +113,9 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     for (double c : cp.of_type)
         if (!(c > 0)) error->all(FLERR, text("fix fibrad: cp must be above 0, not %g", c));
     if (heat_every && surroundings < 0)
-        error->all(FLERR,
-                   std::string("fix fibrad: `surroundings T` is missing: what is seen where there is no particle"));
+        error->all(
+            FLERR,
+            std::string("fix fibrad: `surroundings T` is missing, the temperature of what surrounds the particles"));
     if (sigma == 0) {
         if (!strcmp(update->unit_style, "si"))
             sigma = FIBRAD_STEFAN_BOLTZMANN;
@@ -139,7 +140,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
 
     if (fibrad_insitu_new(&insitu, world, &config) != FIBRAD_OK)
         error->all(FLERR,
-                   std::string("fix fibrad: no memory, or cutoff, tolerance, directions or paths beyond their range"));
+                   std::string("fix fibrad: no memory, or cutoff, tolerance, directions or paths are out of range"));
 }
 
 FixFibrad::~FixFibrad() {
@@ -415,8 +416,9 @@ void FixFibrad::make_rows() {
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);
     if (facts.beyond > 0.01 && !cut_warned && comm->me == 0)
-        error->warning(FLERR, text("fix fibrad: %.2g %% of what particles emit is cut off: `cutoff` should be larger",
-                                   100 * facts.beyond));
+        error->warning(
+            FLERR, text("fix fibrad: the cutoff leaves out %.2g %% of what particles emit: `cutoff` should be larger",
+                        100 * facts.beyond));
     cut_warned = cut_warned || facts.beyond > 0.01;
     if (!rows_file.empty())
         check(fibrad_insitu_write(insitu, (rows_file + "." + std::to_string(update->ntimestep)).c_str()));
@@ -480,11 +482,12 @@ void FixFibrad::check_step(const std::vector<double> &t) {
     const int most = (int)(heat_every / worst.ratio * (1 - 1e-9));
     if (worst.ratio >= 1)
         error->all(FLERR, "fix fibrad: steps of heat are too long for " + name +
-                              (most ? ": NEVERY must be at most " + std::to_string(most) : ": the time step is, too"));
+                              (most ? ": NEVERY must be at most " + std::to_string(most)
+                                    : "; the time step itself is too long"));
     warned = true;
     if (comm->me == 0)
         error->warning(FLERR, "fix fibrad: steps of heat are long for " + name +
-                                  text(": %.2g of what is stable", worst.ratio));
+                                  text(": %.2g times the longest stable step", worst.ratio));
 }
 
 void FixFibrad::check(int status) {

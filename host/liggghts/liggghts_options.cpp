@@ -132,45 +132,46 @@ const char *take(int key, const char *text, liggghts_options *options) {
         options->rows_file = text;
         return nullptr;
     case 'e':
-        return numbers(text, 0, 1, &options->emissivity) ? nullptr : "is no number from 0 to 1, nor one for each type";
+        return numbers(text, 0, 1, &options->emissivity) ? nullptr
+                                                         : "is not a number from 0 to 1, nor one for each type";
     case 'T':
-        return number(text, 0, 1e9, &options->surroundings) ? nullptr : "is no temperature";
+        return number(text, 0, 1e9, &options->surroundings) ? nullptr : "is not a temperature";
     case 'w':
         if (opening(text, &open)) {
             options->openings.push_back(open);
             return nullptr;
         }
         if (!wall(text, &one))
-            return "is none of SIDE=T,E[,AT] and SIDE=open[,AT], SIDE one of xlo ... zhi, and cylinder=T,E,X,Y,R";
+            return "is none of SIDE=T,E[,AT], SIDE=open[,AT] and cylinder=T,E,X,Y,R, with SIDE from xlo to zhi";
         options->walls.push_back(one);
         return nullptr;
     case 'm':
-        if (!mesh(text, &triangles)) return "is neither ID=E nor ID=T,E, with :both or :normals behind it or nothing";
+        if (!mesh(text, &triangles)) return "is neither ID=E nor ID=T,E, which :both or :normals may follow";
         for (const radiant_mesh &other : options->meshes)
-            if (other.id == triangles.id) return "is of a mesh that is there already";
+            if (other.id == triangles.id) return "is of a mesh that was named already";
         options->meshes.push_back(triangles);
         return nullptr;
     case 's':
-        return whole(text, 0, &options->steps) ? nullptr : "is no number of steps";
+        return whole(text, 0, &options->steps) ? nullptr : "is not a number of steps";
     case 'E':
-        return whole(text, 1, &options->every) ? nullptr : "is no number of steps above 0";
+        return whole(text, 1, &options->every) ? nullptr : "is not a number of steps above 0";
     case 'R':
-        return whole(text, 1, &options->rows) ? nullptr : "is no number of steps above 0";
+        return whole(text, 1, &options->rows) ? nullptr : "is not a number of steps above 0";
     case 'c':
-        return number(text, 1e-150, 1e150, &options->config.cutoff) ? nullptr : "is no length above 0";
+        return number(text, 1e-150, 1e150, &options->config.cutoff) ? nullptr : "is not a length above 0";
     case 't':
         return number(text, 1e-5, 1, &options->config.tolerance) ? nullptr : "is not within 1e-5 and 1";
     default:
-        return whole(text, &options->config.seed) ? nullptr : "is no whole number";
+        return whole(text, &options->config.seed) ? nullptr : "is not a whole number";
     }
 }
 
 /* What is missing, or does not go together; NULL: nothing. */
 const char *check(const liggghts_options *options) {
-    if (options->script == nullptr) return "which script? -in FILE";
-    if (options->emissivity.empty()) return "which --emissivity? one for all types, or E1,E2... for each";
-    if (options->surroundings < 0) return "which temperature have the --surroundings?";
-    if (options->steps < 0) return "how many --steps are to be run with radiation?";
+    if (options->script == nullptr) return "the script is missing: -in FILE";
+    if (options->emissivity.empty()) return "--emissivity is missing: one number for all types, or E1,E2... for each";
+    if (options->surroundings < 0) return "--surroundings is missing, the temperature of the surroundings";
+    if (options->steps < 0) return "--steps is missing, the number of steps with radiation";
     if (options->rows % options->every != 0) return "--rows is not a multiple of --every";
     return nullptr;
 }

@@ -55,12 +55,12 @@ static void name_bodies(struct meshes *meshes, const struct mesh_file *file, con
 static void warn_of_surface(const char *file, const struct surface *s) {
     if (s->flat || s->twice || s->snapped)
         message_at(STATUS_OK, file, 0,
-                   "warning: mended: %u triangles without area, %u there twice, %u corners less than 1e-6 of an edge "
-                   "from others",
+                   "warning: the mesh was mended: %u triangles without area, %u triangles that occur twice, %u corners "
+                   "closer than 1e-6 of an edge to others",
                    s->flat, s->twice, s->snapped);
     if (s->open || s->crowded)
         message_at(STATUS_OK, file, 0,
-                   "warning: the mesh is %s: %u edges are of one triangle, %u of more than two, in %u parts",
+                   "warning: the mesh is %s: %u edges belong to one triangle, %u to more than two; parts: %u",
                    s->open ? "not closed" : "closed", s->open, s->crowded, s->parts);
 }
 
@@ -108,11 +108,11 @@ int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struc
                           .first = meshes->triangles.n};
     if (!mesh->file) return message_memory();
     if (mesh->bodies > FIBRAD_BODIES_MAX - body)
-        return message_at(STATUS_USAGE, file->path, 0, "more than %d walls; without :solids the file is one",
+        return message_at(STATUS_USAGE, file->path, 0, "more than %d walls; without :solids the file is one wall",
                           FIBRAD_BODIES_MAX);
     int status = surface_weld(&mesh->surface, stl, file->scale);
     if (!status && mesh->surface.flat + mesh->surface.twice == stl->n)
-        status = message_at(STATUS_INPUT, file->path, 0, "no triangle of it has an area");
+        status = message_at(STATUS_INPUT, file->path, 0, "no triangle has an area");
     if (!status) status = surface_find_parts(&mesh->surface);
     if (!status) {
         warn_of_surface(file->path, &mesh->surface);
@@ -213,7 +213,7 @@ int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle) {
     if (status != FIBRAD_E_BACK)
         return message_at(STATUS_INPUT, mesh->file, 0, "%s, wall %s: %s", said, name, fibrad_status_text(status));
     return message_at(STATUS_INPUT, mesh->file, mesh->text ? place : 0,
-                      "the back of wall %s is seen, of %s; mesh:%s:both makes both sides the wall", name, said,
+                      "the back of wall %s is seen, at %s; mesh:%s:both makes both sides the wall", name, said,
                       mesh->file);
 }
 

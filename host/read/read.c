@@ -136,8 +136,8 @@ int reader_next(struct reader *r, struct bed *bed, bool *more) {
             return STATUS_OK;
         }
         if (r->done && !r->given && !r->source.options.part)
-            return message_at(STATUS_INPUT, name, 0, "there are no spheres in it");
-        if (*more) message_at(STATUS_OK, name, 0, "warning: frame %" PRId64 " is left out: it is empty", bed->frame);
+            return message_at(STATUS_INPUT, name, 0, "there are no spheres in the file");
+        if (*more) message_at(STATUS_OK, name, 0, "warning: frame %" PRId64 " is empty and is left out", bed->frame);
     }
     return STATUS_OK;
 }

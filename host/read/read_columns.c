@@ -148,7 +148,7 @@ int columns_find(struct columns *columns, const struct lines *lines, const struc
         columns->scaled[axis] = which == 2 || which == 3;
         if (columns->scaled[axis] && bed->low[axis] == bed->high[axis])
             return message_at(STATUS_INPUT, lines->name, lines->number,
-                              "the scaled coordinate %s needs a box, of which nothing is said before",
+                              "the scaled coordinate %s needs a box, and no box is given before",
                               names->at[columns->place[axis]]);
     }
     int status = find_radius(columns, lines, names, options);

@@ -141,8 +141,10 @@ static int find_style(struct source *source, const char *style, size_t *more, co
     *more = hybrid ? COLUMNS_MAX : IMAGE_FLAGS;
     while (k < sizeof styles / sizeof *styles && strcmp(styles[k].style, style) != 0) ++k;
     if (k == sizeof styles / sizeof *styles)
-        return message_at(STATUS_INPUT, lines->name, lines->number,
-                          "this is a LAMMPS data file of style %.40s, whose columns are not known; sphere is", style);
+        return message_at(
+            STATUS_INPUT, lines->name, lines->number,
+            "this is a LAMMPS data file of style %.40s, whose columns are not known; those of style sphere are known",
+            style);
     if (source->options.no_radius || strstr(styles[k].columns, "diameter"))
         return source_columns(source, styles[k].columns, bed);
     if (hybrid)

@@ -81,7 +81,8 @@ static int read_head(struct part *part) {
     const int sought = fseeko(file, 0, SEEK_END);
     const off_t bytes = ftello(file);
     fclose(file);
-    if (sought != 0 || bytes < 0) return message_at(STATUS_FILE, part->path, 0, "is no file one can read twice");
+    if (sought != 0 || bytes < 0)
+        return message_at(STATUS_FILE, part->path, 0, "cannot be read twice; a regular file is needed");
     return check_head(part, got < sizeof part->head ? got : (uint64_t)bytes);
 }
 
@@ -109,14 +110,14 @@ static int order_parts(struct part *part, size_t count) {
     qsort(part, count, sizeof *part, compare_parts);
     for (size_t k = 0; k < count; ++k) {
         if (k > 0 && part[k].head.rank == part[k - 1].head.rank)
-            return message_at(STATUS_INPUT, part[k].path, 0, "is of rank %" PRIu64 ", as is %.200s", part[k].head.rank,
-                              part[k - 1].path);
+            return message_at(STATUS_INPUT, part[k].path, 0, "has the rows of rank %" PRIu64 ", as %.200s has",
+                              part[k].head.rank, part[k - 1].path);
         if (part[k].head.rank != k) break;
     }
     for (size_t k = 0; k < part[0].head.ranks; ++k)
         if (k >= count || part[k].head.rank != k)
-            return message_at(STATUS_INPUT, part[0].path, 0, "is of %" PRIu64 " ranks; the file of rank %zu is missing",
-                              part[0].head.ranks, k);
+            return message_at(STATUS_INPUT, part[0].path, 0,
+                              "is one of %" PRIu64 " files; the file of rank %zu is missing", part[0].head.ranks, k);
     return STATUS_OK;
 }
 

@@ -158,8 +158,8 @@ static int check_units(const struct source *source, const struct header *header)
         const bool none = !*unit || strcmp(unit, "-") == 0 || strcmp(unit, "1") == 0;
         if (taken ? *unit && !unit_is(unit, taken) : !none)
             return message_at(STATUS_INPUT, source->lines.name, header->line,
-                              "the column %.40s is in [%.20s], and taken for [%.20s]%s", source->options.extra[k], unit,
-                              taken ? taken : "-", taken ? "; see --temperature-unit" : "");
+                              "the column %.40s is in [%.20s], but is taken as [%.20s]%s", source->options.extra[k],
+                              unit, taken ? taken : "-", taken ? "; see --temperature-unit" : "");
     }
     return STATUS_OK;
 }

@@ -32,8 +32,7 @@ static int curve_point(const struct lines *lines, const struct fields *fields, c
         return message_at(STATUS_INPUT, lines->name, lines->number, "the %s is %g; it must be within %g and %g", what,
                           y, low, high);
     if (curve->n > 0 && !(curve->x[curve->n] > curve->x[curve->n - 1]))
-        return message_at(STATUS_INPUT, lines->name, lines->number, "%s does not lie above the one before",
-                          fields->at[0]);
+        return message_at(STATUS_INPUT, lines->name, lines->number, "%s is not above the number before", fields->at[0]);
     curve->n++;
     return STATUS_OK;
 }

@@ -44,7 +44,7 @@ static const struct format *format_of_ending(const char *path) {
 
 int outputs_add(struct outputs *outputs, const char *path) {
     const char *star = strchr(path, '*');
-    if (outputs->count == OUTPUTS_MAX) return message(STATUS_USAGE, "-o: %d are all there may be", OUTPUTS_MAX);
+    if (outputs->count == OUTPUTS_MAX) return message(STATUS_USAGE, "-o: at most %d are allowed", OUTPUTS_MAX);
     if (star && strchr(star + 1, '*')) return message_at(STATUS_USAGE, path, 0, "has more than one *");
     outputs->to[outputs->count].path = path;
     outputs->to[outputs->count].star = star;
@@ -60,10 +60,10 @@ int outputs_add_meshes(struct outputs *outputs, const char *path) {
 }
 
 int outputs_format(struct outputs *outputs, const char *name) {
-    if (outputs->format) return message(STATUS_USAGE, "--format: there can be one only");
+    if (outputs->format) return message(STATUS_USAGE, "--format may be given only once");
     for (int k = 0; k < FORMATS; ++k)
         if (strcmp(formats[k].name, name) == 0) outputs->format = &formats[k];
-    if (!outputs->format) return message(STATUS_USAGE, "--format: '%.40s' is no format", name);
+    if (!outputs->format) return message(STATUS_USAGE, "--format: '%.40s' is not a format", name);
     return STATUS_OK;
 }
 
@@ -78,7 +78,7 @@ static int check_format(struct outputs *outputs, size_t k, bool series) {
         return message_at(STATUS_USAGE, path, 0, "unknown ending; there are %s",
                           list_formats(outputs->content, ".", list));
     if (!format->write[outputs->content])
-        return message(STATUS_USAGE, "--format: %s cannot hold this; there are %s", format->name,
+        return message(STATUS_USAGE, "--format: %s cannot hold this; these formats can: %s", format->name,
                        list_formats(outputs->content, "", list));
     if (series && !format->frames && !outputs->to[k].star)
         return message_at(STATUS_USAGE, path, 0, "%s holds one frame; put * into its name", format->name);
@@ -95,7 +95,7 @@ static int check_others(const struct outputs *outputs, size_t k, const char *pat
     bool twice = is_same(path, outputs->summary) || is_same(path, outputs->picture);
     for (size_t other = 0; other < outputs->count; ++other)
         twice = twice || (other != k && is_same(path, outputs->to[other].path));
-    return twice ? message_at(STATUS_USAGE, path, 0, "is there twice") : STATUS_OK;
+    return twice ? message_at(STATUS_USAGE, path, 0, "is given twice") : STATUS_OK;
 }
 
 int outputs_check(struct outputs *outputs, enum content content, bool series) {
@@ -108,9 +108,9 @@ int outputs_check(struct outputs *outputs, enum content content, bool series) {
         if (!status) status = check_others(outputs, k, outputs->to[k].path);
     }
     if (!status && is_same(outputs->summary, outputs->picture))
-        status = message_at(STATUS_USAGE, outputs->summary, 0, "is there twice");
+        status = message_at(STATUS_USAGE, outputs->summary, 0, "is given twice");
     if (status || wanted) return status;
-    return message(STATUS_USAGE, "--format %s: no -o needs it", outputs->format->name);
+    return message(STATUS_USAGE, "--format %s: every -o has an ending that names its format", outputs->format->name);
 }
 
 bool outputs_keep(const struct outputs *outputs) {

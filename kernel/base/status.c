@@ -12,7 +12,7 @@ const char *fibrad_status_text(int status) {
     case FIBRAD_E_ALIGNMENT:
         return "reserved";
     case FIBRAD_E_CAPACITY:
-        return "the arrays for a row are too small";
+        return "an output is too small";
     case FIBRAD_E_TABLE:
         return "that number of samples is not built in";
     case FIBRAD_E_GEOMETRY:
@@ -31,13 +31,13 @@ const char *fibrad_status_text(int status) {
     case FIBRAD_E_CANCELLED:
         return "stopped on request";
     case FIBRAD_E_UNSOLVABLE:
-        return "no temperatures give bodies the powers that were asked for";
+        return "no temperatures give the powers that were asked for";
     case FIBRAD_E_BACK:
-        return "a side of a triangle is seen that belongs to no body";
+        return "a side of a triangle that belongs to no wall was seen";
     case FIBRAD_E_SUM:
-        return "a row does not add up to one: a fault of fibrad, please report it";
+        return "a row does not add up to 1: a fault of fibrad, please report it";
     case FIBRAD_E_ENDLESS:
-        return "walls go on for ever where the bed is not closed: make the missing side a wall, or an opening";
+        return "the walls form a tube or a corner without end: make the missing side a wall or an opening";
     default:
         return "no known status";
     }
@@ -52,23 +52,23 @@ const char *fibrad_why_text(int why) {
     case FIBRAD_WHY_BEYOND:
         return "the centre lies beyond a wall";
     case FIBRAD_WHY_WALL:
-        return "does not go with the box or the other walls, or its place or size is not valid";
+        return "contradicts the box or another wall, or its position or size is not valid";
     case FIBRAD_WHY_TEMPERATURE:
         return "the temperature is out of range";
     case FIBRAD_WHY_EMISSIVITY:
-        return "the emissivity is not within 0 and 1";
+        return "the emissivity is not within 0 to 1";
     case FIBRAD_WHY_POWER:
         return "the power is out of range";
     case FIBRAD_WHY_BOTH:
-        return "has both a temperature and a power; give the one or the other";
+        return "has both a temperature and a power; give only one of them";
     case FIBRAD_WHY_NEITHER:
         return "has neither a temperature nor a power";
     case FIBRAD_WHY_REFLECTS:
-        return "reflects all (emissivity 0) and cannot give off a power";
+        return "has emissivity 0 and cannot give off a power";
     case FIBRAD_WHY_HOLD:
-        return "hold or reference are out of range";
+        return "hold or reference is out of range";
     case FIBRAD_WHY_ENDLESS:
-        return "goes on for ever and needs its temperature";
+        return "is endless and needs a temperature";
     case FIBRAD_WHY_SIDE:
         return "the temperature of a triangle is out of range, or its wall has none";
     case FIBRAD_WHY_SURROUNDINGS:

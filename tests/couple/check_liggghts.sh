@@ -159,14 +159,14 @@ refuse() { # RANKS STATUS WORDS OPTIONS...
     test "$(grep -c '^fibrad_liggghts: ' out)" = 1 || complain "not one message: $(grep ^fibrad out)"
     grep -q "^fibrad_liggghts: .*$words" out || complain "no message '$words': $(grep ^fibrad out)"
 }
-refuse 2 2 "which --emissivity" -in bed --surroundings 300 --steps 1
-refuse 1 2 "which temperature" -in bed --emissivity 0.8 --steps 1
-refuse 1 2 "which script" --emissivity 0.8 --surroundings 300 --steps 1
+refuse 2 2 "--emissivity is missing" -in bed --surroundings 300 --steps 1
+refuse 1 2 "--surroundings is missing" -in bed --emissivity 0.8 --steps 1
+refuse 1 2 "the script is missing" --emissivity 0.8 --surroundings 300 --steps 1
 refuse 1 2 "unknown option: --bad" -in bed --bad 3
-refuse 1 2 "'1.2' is no number from 0 to 1" -in bed --emissivity 1.2
+refuse 1 2 "'1.2' is not a number from 0 to 1" -in bed --emissivity 1.2
 refuse 1 2 "none of SIDE=T,E" -in bed --wall floor=300,1
 refuse 1 2 "neither ID=E" -in bed --mesh lid=0.9:up
-refuse 1 2 "'lid=700,0.9' is of a mesh that is there already" -in bed --mesh lid=0.9 --mesh lid=700,0.9
+refuse 1 2 "'lid=700,0.9' is of a mesh that was named already" -in bed --mesh lid=0.9 --mesh lid=700,0.9
 refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
 refuse 2 3 "2 emissivities for 1 types" -in bed --emissivity .5,.6 --surroundings 300 --steps 1
 # shellcheck disable=SC2086

@@ -672,9 +672,9 @@ static void rows_are_refused(fibrad_insitu *s) {
     static const int status[FAULTS] = {FIBRAD_E_ARGUMENT, FIBRAD_E_GEOMETRY, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT,
                                        FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT,
                                        FIBRAD_E_ENDLESS,  FIBRAD_E_GEOMETRY};
-    static const char *const words[FAULTS] = {
-        "twice",  "inside",     "coordinate",         "radius", "its emissivity", "a wall", "no extent along x",
-        "wall 2", "an opening", "beyond an open side"};
+    static const char *const words[FAULTS] = {"twice",          "inside",           "coordinate",        "radius",
+                                              "its emissivity", "a wall",           "no extent along x", "wall 2",
+                                              "an opening",     "beyond an opening"};
     for (int fault = 0; fault < FAULTS; ++fault) {
         struct pile all = pile_of(&small);
         char named[64];
@@ -737,7 +737,7 @@ static void refusals(void) {
     struct pile all = pile_of(&small), part = part_of(&all, 0);
     const fibrad_insitu_state state = state_of(&part);
     double *before = memory_of(part.bed.n, sizeof *before);
-    check_refused(s, fibrad_insitu_powers(s, &state, before, NULL), FIBRAD_E_STATE, "before there are rows");
+    check_refused(s, fibrad_insitu_powers(s, &state, before, NULL), FIBRAD_E_STATE, "there are no rows yet");
     check_refused(s, fibrad_insitu_write(s, path_of("refused")), FIBRAD_E_STATE, "no rows");
     make_rows(s, &part, 3);
     CHECK(fibrad_insitu_powers(s, &state, before, NULL) == FIBRAD_OK);

@@ -301,7 +301,7 @@ def test_beds_that_cannot_be(x, r, text, spheres):
     ({"walls": {"zmin": -1, "cylinder": (0, 0, 3)}}, "walls={'zmax': 'open'}"),
     ({"walls": {"zmax": ("open", 3.5)}}, "a sphere reaches beyond an open side"), ({"walls": {"top": "open"}}, "'top' cannot be open"),
     ({"walls": {"zmax": "opened"}}, "wall zmax"), ({"walls": {"zmax": ("open", np.nan)}}, "wall zmax"),
-    ({"walls": {"zmin": 0.5, "zmax": 1}}, "sphere 0"), ({"walls": {"zmin": -2}, "box": [0, 0, 9]}, "wall zmin: does not go with the box"),
+    ({"walls": {"zmin": 0.5, "zmax": 1}}, "sphere 0"), ({"walls": {"zmin": -2}, "box": [0, 0, 9]}, "wall zmin: contradicts the box"),
     ({"wanted": [2]}, r"positions \[0, 2\)"), ({"wanted": [-1]}, "positions"), ({"wanted": [True]}, "one element for each"),
     ({"wanted": [0.5]}, "positions"), ({"ids": [1, 1]}, "two spheres have the id 1"), ({"ids": [1]}, "2 are wanted"),
     ({"ids": [-1, 1]}, "whole numbers from 0"), ({"ids": [0.5, 1]}, "whole numbers from 0"),
