@@ -1,8 +1,8 @@
 /* paths.h - paths of grey diffuse radiation from a sphere or a wall, reflection by reflection. SPDX-License-Identifier:
  * MIT
  *
- * A path carries what is left of a unit of emission. At every surface the part that the surface absorbs is put down,
- * and the rest goes on in a direction drawn by the cosine law. */
+ * A path carries a weight, 1 at first. Every surface that the path meets absorbs a fraction of the weight. The path
+ * goes on with the remaining weight, in a random direction by the cosine law. */
 #ifndef FIBRAD_EXCHANGE_PATHS_H
 #define FIBRAD_EXCHANGE_PATHS_H
 
@@ -15,32 +15,31 @@
 
 typedef struct fibrad_paths {
     fibrad_tracer *tracer;
-    uint32_t place;            /* of the sphere they leave; FIBRAD_NONE: they leave a wall or a mesh, and are not cut */
-    uint32_t from;             /* then: its slot */
-    const fibrad_sobol *sobol; /* then: even points */
-    double inverse;            /* 1/radius of the sphere */
-    bool cut;                  /* whether they end beyond a cutoff or a known region */
-    double cutoff;             /* from its centre, in its radii; infinity: none */
-    const double *emissivity;  /* [spheres], in the caller's order; NULL: all are black */
-    const double *wall_emissivity;  /* [FIBRAD_SLOTS] by slot */
-    bool boxed;                     /* black paths from a side of a closed box */
-    double behind[FIBRAD_CYLINDER]; /* out, then: what a sphere keeps from each wall; nothing is absorbed yet */
-    fibrad_random stream;           /* all numbers of path k come from it and k */
-    bool first;                     /* whether what the first surface absorbs counts */
-    fibrad_entries *entries;        /* out: what each sphere absorbs, path k in part k mod 4; NULL: not asked for */
-    double wall[FIBRAD_SLOTS];      /* out: what each wall absorbs */
-    double escaped, beyond;         /* out: what leaves, for good or beyond cutoff or known region */
-    double absorbed;                /* out: what all spheres absorb */
-    double left;                    /* out: what paths carry that end among mirrors, after too many legs */
-    double square[FIBRAD_DISPLACEMENT_PARTS]
-                 [3]; /* out: sum over what spheres absorb times the squares of their centre's
- distance along each axis [L^2] from that of the sphere left, path k in part k mod that */
-    uint64_t rays;    /* out: traced in all */
-    uint32_t back;    /* out: a triangle that was seen from a side that is nobody's; UINT32_MAX: none; set it so */
+    uint32_t place; /* position of the sphere that paths leave; FIBRAD_NONE: they leave a wall, without a cutoff */
+    uint32_t from;  /* paths from a wall: its slot */
+    const fibrad_sobol *sobol;      /* paths from a wall: even points */
+    double inverse;                 /* 1/L, of the radius of the sphere */
+    bool cut;                       /* whether there is a cutoff or a known region */
+    double cutoff;                  /* from the centre of the sphere, in its radii; infinity: none */
+    const double *emissivity;       /* [spheres], by the caller's index; NULL: all are black */
+    const double *wall_emissivity;  /* [FIBRAD_SLOTS], by slot */
+    bool boxed;                     /* paths from a side of a closed box, where all is black */
+    double behind[FIBRAD_CYLINDER]; /* out, if boxed: weight that spheres keep from each wall */
+    fibrad_random stream;           /* all random numbers of path k follow from stream and k */
+    bool first;                     /* whether absorption by the first surface counts */
+    fibrad_entries *entries;        /* out: absorbed by each sphere, path k in part k mod 4; NULL: not wanted */
+    double wall[FIBRAD_SLOTS];      /* out: absorbed by each wall */
+    double escaped, beyond;         /* out: to the surroundings; beyond the cutoff or the known region */
+    double absorbed;                /* out: absorbed by all spheres */
+    double left;                    /* out: weight of paths that end among mirrors, after too many legs */
+    /* L^2, out: sum over absorption by spheres times the squared displacement along each axis, path k in part k mod
+     * FIBRAD_DISPLACEMENT_PARTS. The displacement is between the centres of the two spheres. */
+    double square[FIBRAD_DISPLACEMENT_PARTS][3];
+    uint64_t rays; /* out: rays traced */
+    uint32_t back; /* out: a triangle seen from a side that belongs to no wall; set it to UINT32_MAX, none */
 } fibrad_paths;
 
-/* The emissivities of walls and meshes by slot, from those of bodies (NULL: all are black); openings are black.
- * FIBRAD_E_ARGUMENT: one is not valid. */
+/* Emissivities by slot from those by wall. NULL: all walls are black. Openings are black. Errors: FIBRAD_E_ARGUMENT. */
 static inline int fibrad_paths_emissivities(const fibrad_scene *scene, const double *of_body,
                                             double wall[FIBRAD_SLOTS]) {
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) wall[slot] = fibrad_is_opening(&scene->container, slot);
@@ -52,15 +51,16 @@ static inline int fibrad_paths_emissivities(const fibrad_scene *scene, const dou
     return FIBRAD_OK;
 }
 
-/* Adds paths [begin, end). */
+/* Follows paths begin to end - 1, and adds to the sums. */
 typedef void fibrad_paths_function(fibrad_paths *paths, uint64_t begin, uint64_t end);
 FIBRAD_DECLARE_VERSIONS(fibrad_paths_function, fibrad_paths_follow);
 
-/* All that the paths have put down: as much as they began with, but for Russian roulette and what is left. */
+/* The sum of all that was absorbed, escaped or is beyond. This is the number of paths, but for Russian roulette and
+ * `left`. */
 double fibrad_paths_sum(const fibrad_paths *paths);
 
-/* Adds paths [0, count). Returns how many: among mirrors fewer, by the rays that they take, and only a few where these
- * leave more than they put down. */
+/* Follows the first `count` paths and adds to the sums. Returns the number of paths followed. Among mirrors, where
+ * paths take many rays, they are fewer. They are very few where paths end with most of their weight. */
 uint64_t fibrad_paths_begin(fibrad_paths *paths, uint64_t count);
 
 #endif

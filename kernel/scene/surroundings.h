@@ -1,34 +1,38 @@
-/* surroundings.h - where rays end that meet no sphere of a scene: at a wall, in the open, or beyond what is known.
+/* surroundings.h - where rays end that meet no sphere of a scene: at a wall, in the surroundings, or beyond.
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_SCENE_SURROUNDINGS_H
 #define FIBRAD_SCENE_SURROUNDINGS_H
 
 #include "scene/scene.h"
 
-/* Whether known region and occupancy of a configuration are valid; FIBRAD_E_ARGUMENT. */
+/* Checks the known region and the occupancy of a configuration. Errors: FIBRAD_E_ARGUMENT. */
 int fibrad_surroundings_check(const fibrad_scene_config *config);
 
-/* Sets scene->known_low, known_high and occupancy from a valid configuration; centres and radii are measured already.
- */
+/* Sets scene->known_low, known_high and occupancy from a valid configuration. Centres and radii must be measured. */
 void fibrad_surroundings_build(fibrad_scene *scene, const fibrad_scene_config *config);
 
-/* The length at which a ray from o along w (of any length but 0), in lengths of w, leaves the ball of some radius about
- * the origin; -1: o is outside. Lengths are in a unit in which squares neither overflow nor vanish; radius infinity:
- * infinity. */
+/* The length at which a ray from o along w leaves the ball about the origin. The length is in units of |w|. w is not 0.
+ * -1: o lies outside the ball. Infinity: the radius is infinite. The unit of o, w and radius must be such that squares
+ * neither overflow nor vanish. */
 double fibrad_ball_exit(const double o[3], const double w[3], double radius);
 
-/* The same for the known region, in the scene's coordinates [L]. */
+/* The length at which a ray from o along w leaves the known region. o is in coordinates of the scene [L]. Otherwise as
+ * fibrad_ball_exit. */
 double fibrad_region_exit(const fibrad_scene *scene, const double o[3], const double w[3]);
 
-/* What the ray from `origin` [L] along w meets that meets no sphere up to the length `ball`, nor before it leaves the
- * known region: the wall it meets until then; else, where the occupancy leaves its way clear, what lies at the end of
- * it, and FIBRAD_BEYOND if not. *distance: to the wall, as of fibrad_walls_exit. */
+/* The slot at which a ray ends that meets no sphere in the known space. The known space ends at the length `ball` and
+ * at the known region. A wall within the known space is the end. Otherwise the occupancy decides. If no marked cell
+ * lies on the way on, the end is the wall there or FIBRAD_ESCAPED. If a marked cell lies there, the end is
+ * FIBRAD_BEYOND.
+ *   Input    origin [L], w
+ *            ball: [L]
+ *   Output   distance: to the wall, as of fibrad_walls_exit */
 uint32_t fibrad_surroundings_met(const fibrad_scene *scene, const double origin[3], const double w[3], double ball,
                                  double *distance);
 
-/* The same for a ray along the unit vector w that meets a triangle at some length before any sphere: the slot of its
- * side, a wall's if that comes first, FIBRAD_BEYOND if its way there is neither known nor clear, or FIBRAD_NONE if the
- * side is nobody's. */
+/* The slot at which a ray ends that meets the side of a triangle at some length, before any sphere. This is the slot of
+ * the side, or of a plane or the cylinder if that comes first. FIBRAD_BEYOND: the way there is neither known nor clear.
+ * FIBRAD_NONE: the side belongs to no wall. w is a unit vector. */
 uint32_t fibrad_surroundings_side(const fibrad_scene *scene, const double origin[3], const double w[3], double ball,
                                   uint32_t side, double length, double *distance);
 
