@@ -1,8 +1,9 @@
 /* mesh.h - triangles in a tree of boxes. SPDX-License-Identifier: MIT
  *
- * Side 2 t is the front of triangle t, a place in the order of the tree, and 2 t + 1 its back. Whether a line meets a
- * triangle is decided by the signs of three areas in the plane across it, each of which is exactly the opposite for the
- * two triangles at an edge: nothing passes between them. Triangles that are seen edge-on are not met. */
+ * Triangles are numbered in the order of the tree. Side 2 t is the front of triangle t, and side 2 t + 1 is its back. A
+ * line meets a triangle if three areas in the plane across the line have one sign. For two triangles at an edge, their
+ * areas at this edge are exactly opposite. Hence nothing passes between the triangles. A triangle that is seen edge-on
+ * is not met. */
 #ifndef FIBRAD_MESH_MESH_H
 #define FIBRAD_MESH_MESH_H
 
@@ -13,37 +14,37 @@
 #define FIBRAD_NO_SIDE UINT32_MAX
 #define FIBRAD_NO_MESH UINT8_MAX
 
-#define FIBRAD_MESH_WIDE  8u  /* boxes of a node, triangles of a leaf at most */
-#define FIBRAD_MESH_DEPTH 64u /* of the tree at most */
+#define FIBRAD_MESH_WIDE  8u  /* boxes of a node, and most triangles of a leaf */
+#define FIBRAD_MESH_DEPTH 64u /* greatest depth of the tree */
 
-/* In so many stretches at the most lines look for images. In each they cross hardly any period, since they look no
- * farther than 100 periods along any axis. */
+/* A long line is divided into this many pieces at most, which search for images one by one. A line ends after 100
+ * periods along any axis, so that a piece crosses hardly any period. */
 #define FIBRAD_MESH_STRETCHES 1000
 
-/* Boxes about some of the triangles, side by side: their middles, from mesh->middle, and half their edges, rounded
- * outwards; both in units of mesh->extent. Boxes that are not there have negative edges. */
+/* The boxes of a node. Middles are relative to mesh->middle. Half edges are rounded outwards. Both are in units of
+ * mesh->extent. A box that does not exist has negative edges. */
 typedef struct fibrad_mesh_node {
     float middle[3][FIBRAD_MESH_WIDE], half[3][FIBRAD_MESH_WIDE];
-    uint32_t child[FIBRAD_MESH_WIDE]; /* a node times 16, or of a leaf its first triangle times 16 and how many */
+    uint32_t child[FIBRAD_MESH_WIDE]; /* 16 times a node; or of a leaf 16 times its first triangle + their number */
 } fibrad_mesh_node;
 
-static inline uint32_t fibrad_mesh_leaf(uint32_t child) { return child % 16; } /* how many triangles; 0: a node */
+static inline uint32_t fibrad_mesh_leaf(uint32_t child) { return child % 16; } /* number of triangles; 0: a node */
 
-/* Meshes are numbered as their bodies come. */
+/* The triangles of all meshes. Meshes are numbered in the order of their walls. */
 typedef struct fibrad_mesh {
     uint32_t triangles, nodes;
-    double period[3];                      /* [L] 0: the axis is open */
-    double low[3], high[3];                /* [L] of all triangles */
-    double middle[3];                      /* [L] */
-    double extent;                         /* [L] from there to the farthest of low and high, along any axis */
-    double grain;                          /* [L] lengths below this may be rounding */
+    double period[3];                      /* L; 0: the axis is open */
+    double low[3], high[3];                /* L, box of all triangles */
+    double middle[3];                      /* L, of this box */
+    double extent;                         /* L, half the longest edge of this box */
+    double grain;                          /* L, lengths below this may be rounding errors */
     fibrad_mesh_node *node;                /* [nodes] */
-    double *corner[3][3];                  /* [triangles] of each corner x, y, z [L]; whole eights can be read */
-    uint32_t *number;                      /* [triangles] the caller's */
-    uint8_t (*mesh)[2];                    /* [triangles] whose front and back are; FIBRAD_NO_MESH: nobody's */
-    uint32_t *side;                        /* [2 triangles] the sides of the first mesh, then those of the second ... */
-    double *area;                          /* [2 triangles] of the mesh's sides up to this one [L^2] */
-    uint32_t first[FIBRAD_BODIES_MAX + 1]; /* where those of each mesh begin */
+    double *corner[3][3];                  /* L, [triangles], of each corner x, y, z; padded to eights */
+    uint32_t *number;                      /* [triangles], the caller's number */
+    uint8_t (*mesh)[2];                    /* [triangles], mesh of front and back; FIBRAD_NO_MESH: no wall */
+    uint32_t *side;                        /* [2 triangles], sides, mesh after mesh */
+    double *area;                          /* L^2, [2 triangles], sum over the sides of the mesh up to this one */
+    uint32_t first[FIBRAD_BODIES_MAX + 1]; /* first element of side and area of each mesh */
 } fibrad_mesh;
 
 static inline void fibrad_mesh_corners(const fibrad_mesh *mesh, uint32_t triangle, double corner[3][3]) {
@@ -51,13 +52,13 @@ static inline void fibrad_mesh_corners(const fibrad_mesh *mesh, uint32_t triangl
         for (int axis = 0; axis < 3; axis++) corner[k][axis] = mesh->corner[k][axis][triangle];
 }
 
-/* A walk through the tree, nodes within nodes: which they are, and which of their boxes are left, the next one last. */
+/* A walk through the tree. Each level has a node and the boxes that are left to visit, the next one last. */
 typedef struct fibrad_mesh_walk {
     uint32_t node[FIBRAD_MESH_DEPTH], level;
     uint8_t box[FIBRAD_MESH_DEPTH][FIBRAD_MESH_WIDE], left[FIBRAD_MESH_DEPTH];
 } fibrad_mesh_walk;
 
-/* Goes into a node, to its boxes given by bits, in the order of their keys. */
+/* Enters a node, to visit the boxes given by bits, in ascending order of their keys. */
 static inline void fibrad_mesh_enter(fibrad_mesh_walk *walk, uint32_t node, uint32_t boxes,
                                      const float key[FIBRAD_MESH_WIDE]) {
     uint8_t *box = walk->box[walk->level], count = 0;
@@ -70,7 +71,7 @@ static inline void fibrad_mesh_enter(fibrad_mesh_walk *walk, uint32_t node, uint
     walk->node[walk->level] = node, walk->left[walk->level++] = count;
 }
 
-/* The next child; false: there is none left. A box that is not there has the root as its child, which is none. */
+/* The next child to visit. False: there is none. A box that does not exist has child 0, the root, which is skipped. */
 static inline bool fibrad_mesh_next(fibrad_mesh_walk *walk, const fibrad_mesh *mesh, uint32_t *child) {
     while (walk->level > 0) {
         const uint32_t top = walk->level - 1;
@@ -84,11 +85,14 @@ static inline bool fibrad_mesh_next(fibrad_mesh_walk *walk, const fibrad_mesh *m
     return false;
 }
 
-/* Takes the arrays of so many triangles from the arena. */
+/* Takes the arrays of this many triangles from the arena. */
 void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangles);
 
-/* Fills a mesh that is laid out. mesh_of [bodies]: which mesh a body is, or FIBRAD_NO_MESH. longest: of coordinates and
- * periods. FIBRAD_E_ARGUMENT: *fault is the triangle, UINT32_MAX if it is none. */
+/* Fills a mesh that is laid out.
+ *   Input    mesh_of[bodies]: mesh of each wall, or FIBRAD_NO_MESH
+ *            longest: [L], bound of coordinates and periods
+ *   Output   fault: the triangle at fault, or UINT32_MAX
+ *   Errors   FIBRAD_E_ARGUMENT */
 int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, const double period[3],
                       const uint8_t *mesh_of, uint32_t bodies, double longest, uint32_t *fault);
 
@@ -98,37 +102,37 @@ uint32_t fibrad_mesh_highest(const fibrad_mesh *mesh, int axis);
 /* Area of a triangle [L^2]. */
 double fibrad_mesh_triangle_area(const fibrad_mesh *mesh, uint32_t triangle);
 
-/* Area of a mesh [L^2], both sides if both are its own. */
+/* Area of a mesh [L^2], the sum over all sides that belong to it. */
 double fibrad_mesh_area(const fibrad_mesh *mesh, uint32_t number);
 
-/* The distance [L] from a point to the nearest triangle, or its image, not more than `most`, rounded down. */
+/* Lower bound of the distance [L] from a point to the nearest triangle or image, at most `most`. */
 double fibrad_mesh_distance(const fibrad_mesh *mesh, const double point[3], double most);
 
-/* The images of a mesh whose boxes meet a box [L]: shifts by whole periods, first[axis] to last[axis]. */
+/* The images of all triangles whose boxes meet a box [L], as shifts by first[axis] to last[axis] periods. */
 typedef struct fibrad_mesh_images {
     int64_t first[3], last[3];
 } fibrad_mesh_images;
 fibrad_mesh_images fibrad_mesh_images_in(const fibrad_mesh *mesh, const double low[3], const double high[3]);
 
-/* What a ray meets. */
+/* What a ray meets first. */
 typedef struct fibrad_mesh_hit {
-    uint32_t side;   /* FIBRAD_NO_SIDE: nothing */
-    double distance; /* [L] */
+    uint32_t side;   /* FIBRAD_NO_SIDE: none */
+    double distance; /* L */
 } fibrad_mesh_hit;
 
 /* The first side that a ray from `origin` [L] along the unit vector w meets within the length `to`, which may be
- * infinite. Fronts count from a grain behind the origin on, backs from a grain after it; `except`: the triangle
- * that the ray leaves, which does not count but for images beside it, or FIBRAD_NO_SIDE. */
+ * infinite. Fronts count from one grain behind the origin on, and backs from one grain after the origin on. `except` is
+ * the triangle that the ray leaves, or FIBRAD_NO_SIDE. This triangle does not count, but its images do. */
 fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3], const double w[3], double to,
                                   uint32_t except);
 
 /* The outward unit normal of a side. */
 void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]);
 
-/* An even point [L] of a triangle for two numbers in [0, 1]. */
+/* The point [L] of a triangle for two numbers, 0 to 1. Even numbers give even points. */
 void fibrad_mesh_triangle_point(const fibrad_mesh *mesh, uint32_t triangle, const double share[2], double point[3]);
 
-/* An even point [L] on a mesh for two numbers in [0, 1); returns its side. */
+/* The point [L] of a mesh for two numbers, 0 to below 1. Even numbers give even points. Returns the side. */
 uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const double share[2], double point[3]);
 
 #endif
