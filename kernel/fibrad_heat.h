@@ -183,6 +183,7 @@ typedef struct fibrad_heat_result {
     uint32_t sweeps;                /* out */
     double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: absorbed; if endless, near the bed; or NULL */
     double surroundings_error;      /* sigma K^4 L^2, out: estimated error of surroundings_power */
+    double *body_area;              /* L^2, [bodies], out: the area of body_power; if endless, near the bed; or NULL */
 } fibrad_heat_result;
 
 /* Reads the solution.

@@ -299,6 +299,28 @@ START_TEST(a_mote_between_endless_walls) {
 END_TEST
 
 /* Plates with a period, as in closed form, whatever the mote is. */
+/* A pair without end has the powers of an area, which is told: those of infinite parallel plates. */
+START_TEST(a_pair_of_endless_plates) {
+    double area[FIBRAD_WALLS];
+    struct problem p = problem_of(bed_of(2, (const double[][4]){{0, 0, 0, 1e-3}, {.3, .1, 0, 1e-3}}), 2, 1e-3);
+    p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, -.5, .5}};
+    p.wall_temperature[4] = 3, p.wall_temperature[5] = 1;
+    p.result.body_area = area;
+    for (int grey = 0; grey < 2; grey++) {
+        if (grey) p.wall_emissivity[4] = .8, p.wall_emissivity[5] = .3;
+        trace_and_solve(&p);
+        const double q = (81 - 1) / (1 / p.wall_emissivity[4] + 1 / p.wall_emissivity[5] - 1);
+        ck_assert_double_eq_tol(area[0], .904 * .704,
+                                1e-12); /* centres, and the largest size of the bed on either side */
+        assert_near(p.wall_power[4], -q * area[0], 2e-3);
+        assert_near(p.wall_power[5], q * area[1], 2e-3);
+        free_heat(&p);
+    }
+    p.scene = NULL, p.heat = NULL;
+    free_problem(&p);
+}
+END_TEST
+
 START_TEST(a_mote_between_periodic_plates) {
     struct problem p = problem_of(bed_of(1, (const double[][4]){{0, 0, 0, .01}}), 2, .5);
     p.bed.period[0] = p.bed.period[1] = 1;
@@ -1454,6 +1476,7 @@ int main(void) {
     tcase_add_test(closed, two_parallel_grey_walls);
     tcase_add_test(closed, a_black_sphere_touches_a_black_plane);
     tcase_add_test(closed, a_mote_between_endless_walls);
+    tcase_add_test(closed, a_pair_of_endless_plates);
     tcase_add_test(closed, a_mote_between_periodic_plates);
     tcase_add_test(closed, white_walls_take_nothing);
     tcase_add_test(closed, view_factors_between_the_walls_of_a_cube);

@@ -249,6 +249,12 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
         report_value(report, "surroundings_error_W", result->surroundings_error, 2);
     }
     wall_values_report(&request->problem.walls, result->body_power, "_W", 6, report);
+    for (uint32_t k = 0; k < request->problem.walls.count; ++k) {
+        if (!wall_endless(&request->problem.walls, bed, &request->problem.walls.body[k])) continue;
+        char key[80];
+        snprintf(key, sizeof key, "wall_%s_part_m2", wall_name(&request->problem.walls, k));
+        report_value(report, key, result->body_area[k], 6);
+    }
     if (heat->unknown) {
         report_measured(report, "temperature_min_K", heat->coldest, heat->temperature_error);
         report_measured(report, "temperature_mean_K", heat->temperature_mean, heat->temperature_error);
@@ -310,7 +316,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     struct walls *walls = &request->problem.walls;
     fibrad_heat_sources *sources = &request->problem.sources;
     struct given given = {0};
-    double *emissivity = NULL, of_walls[6][WALLS_MAX] = {{0}};
+    double *emissivity = NULL, of_walls[7][WALLS_MAX] = {{0}};
     const char *file = request->bed.name;
     int status = bed_options_walls(&request->bed, bed, walls);
     if (!status) status = given_values(&request->given, bed, file, walls, &given);
@@ -333,7 +339,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
         request->problem.ambient_curve = &request->given.ambient_curve;
         request->problem.emissivity = emissivity, request->problem.of_emissivity = &request->emissivity;
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
-        report.result.body_absorbed = of_walls[5];
+        report.result.body_absorbed = of_walls[5], report.result.body_area = of_walls[6];
         report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
         status = request->given.timed ? heat_march(&request->bed, &request->march, &request->problem, bed, &report,
                                                    request->plot ? &request->picture : NULL)

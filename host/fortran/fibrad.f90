@@ -182,6 +182,7 @@ module fibrad
         integer(c_int32_t) :: sweeps = 0
         type(c_ptr) :: body_absorbed = c_null_ptr
         real(c_double) :: surroundings_error = 0
+        type(c_ptr) :: body_area = c_null_ptr
     end type c_heat_result
 
     type, bind(C) :: c_transient_config

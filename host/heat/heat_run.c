@@ -105,6 +105,7 @@ static void heat_scale(const struct bed *bed, uint32_t walls, double square_metr
         result->body_power[k] *= square_metres;
         result->body_error[k] *= square_metres;
         result->body_absorbed[k] *= square_metres;
+        result->body_area[k] *= square_metres;
     }
     result->surroundings_power *= square_metres, result->surroundings_error *= square_metres;
     result->error_patches *= square_metres;

@@ -7,6 +7,7 @@
 #include "base/port.h"
 #include "heat/fine.h"
 #include "heat/problem.h"
+#include "heat/wall_patch.h"
 #include "scene/walls.h"
 
 /* Errors over what they are told from, as measured: docs/methods_heat.md section 9. */
@@ -220,6 +221,9 @@ static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
     for (uint32_t k = 0; k < heat->given_bodies && result->body_error != NULL; k++)
         result->body_error[k] = fibrad_sqrt(power_error_of(heat, &errors, fibrad_heat_body(heat, heat->slot[k])));
     result->surroundings_error = fibrad_sqrt(surroundings_error_of(heat, &errors));
+    for (uint32_t k = 0; k < heat->given_bodies && result->body_area != NULL; k++)
+        result->body_area[k] = heat->slot[k] < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, heat->slot[k])
+                                                             : fibrad_scene_body_area(heat->scene, k);
     patches = fibrad_min(patches, all);
     result->error_patches = fibrad_sqrt(patches / spheres);
     result->error_beams = fibrad_sqrt((all - patches) / spheres);
@@ -344,14 +348,37 @@ static double *power_of_slot(const fibrad_heat *heat, uint32_t slot, fibrad_heat
     return &result->surroundings_power;
 }
 
-/* Adds to wall k what it takes of what arrives beyond its patches, and the rest to what it faces. */
+/* A net flow, and the area that it arrives at. */
+typedef struct patch_flow {
+    double net, area;
+} patch_flow;
+
+/* What the patches of the wall that wall k faces send beyond the patches of wall k. */
+static patch_flow flow_of_facing(const fibrad_heat *heat, uint32_t k) {
+    const uint32_t facing = fibrad_heat_facing(heat, k), a = heat->first[fibrad_heat_beyond(heat, k)];
+    patch_flow flow = {0, 0};
+    if (facing == FIBRAD_WALLS) return flow;
+    const uint32_t body = fibrad_heat_body(heat, facing);
+    for (uint32_t n = 0; n < heat->rays; n++) {
+        const fibrad_heat_ray ray = heat->ray[n];
+        if (ray.to != a || ray.from < heat->first[body] || ray.from >= heat->first[body + 1]) continue;
+        flow.net += ray.area * (heat->radiosity[ray.from] - heat->radiosity[a]);
+        flow.area += ray.area;
+    }
+    return flow;
+}
+
+/* Adds to wall k what it takes of what arrives beyond its patches, and the rest to what it faces. The patches of a wall
+ * that faces another one have their power of the other's light already. What they send beyond the patches of the other
+ * adds up to about 0 for both walls together: each gets half. So the powers of a pair are those of its patches. */
 static void read_beyond(const fibrad_heat *heat, uint32_t k, fibrad_heat_result *result) {
     const uint32_t beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
     if (a == heat->first[beyond + 1]) return;
-    const double less = heat->radiosity[a] - heat->wall_emission[k];
-    const double taken = fibrad_heat_taken_beyond(heat, k) * (heat->net[a] + heat->area[a] * less);
-    *power_of_slot(heat, k, result) += taken;
-    *power_of_slot(heat, fibrad_heat_facing(heat, k), result) += heat->power[beyond] - taken;
+    const patch_flow pair = flow_of_facing(heat, k);
+    const double less = heat->radiosity[a] - heat->wall_emission[k], net = heat->net[a] - pair.net;
+    const double taken = fibrad_heat_taken_beyond(heat, k) * (net + (heat->area[a] - pair.area) * less);
+    *power_of_slot(heat, k, result) += taken + pair.net / 2;
+    *power_of_slot(heat, fibrad_heat_facing(heat, k), result) += heat->power[beyond] - taken - pair.net / 2;
 }
 
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {

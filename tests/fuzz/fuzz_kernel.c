@@ -86,7 +86,7 @@ static void any_method(struct method *m) {
 
 /* Whether a row would take too long to try. */
 static bool too_long(const struct method *m) {
-    if (m->kind == SURFACE) return m->surface.cutoff > 8 * shortest && m->surface.cutoff < 101 * shortest;
+    if (m->kind == SURFACE) return m->surface.cutoff > 3 * shortest && m->surface.cutoff < 101 * shortest;
     if (m->kind == EXCHANGE) return !plain || m->exchange.paths == FIBRAD_PATHS_MAX;
     return false;
 }

@@ -72,7 +72,7 @@ HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surround
                         ("temperature body_temperature power_error body_error", DOUBLES),
                         ("temperature_error body_temperature_error", DOUBLES),
                         ("error_patches error_beams residual", c_double), ("sweeps", c_uint32),
-                        ("body_absorbed", DOUBLES), ("surroundings_error", c_double))
+                        ("body_absorbed", DOUBLES), ("surroundings_error", c_double), ("body_area", DOUBLES))
 
 TransientConfig = _structure("transient_config", ("method", c_int), ("exchange", ExchangeRule), ("heat", HeatConfig))
 Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_double),
