@@ -703,9 +703,9 @@ static void powers_are_refused(fibrad_insitu *s, const struct pile *good) {
     check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_STATE, "63 particles, but rows of 64");
     state.n = part.bed.n;
     if (rank == ranks - 1) part.id[1] = 5;
-    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_STATE, "make rows anew");
+    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_STATE, "make new rows");
     part.id[1] = part.id[0];
-    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_STATE, "make rows anew");
+    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_STATE, "make new rows");
     state.surroundings = -1;
     check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_ARGUMENT, "surroundings");
     close_pile(&part);
@@ -722,7 +722,7 @@ static void files_are_refused(fibrad_insitu *s) {
     remove(name);
     snprintf(name, sizeof name, "%s.%d.rows", path_of("refused"), rank);
     CHECK(remove(name) != 0);
-    check_refused(s, fibrad_insitu_write(s, NULL), FIBRAD_E_ARGUMENT, "no name");
+    check_refused(s, fibrad_insitu_write(s, NULL), FIBRAD_E_ARGUMENT, "is empty or too long");
 }
 
 /* After all refusals the object is as it was. */
