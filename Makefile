@@ -236,7 +236,7 @@ test: deps
 
 ## run-programs: build and run the test programs without the scripts
 run-programs: programs
-	@BUILD=$(BUILD) tests/run.sh $(filter-out $(SKIP:%=$(BUILD)/tests/%),$(TEST_PROGRAMS))
+	@BUILD=$(BUILD) tests/run.sh $(TEST_PROGRAMS)
 
 ## programs: build the test programs
 programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
@@ -317,11 +317,11 @@ SANITIZE  = address,undefined
 SANITIZED = $(MAKE) -s --no-print-directory BUILD=$(BUILD)/sanitized CC=clang LDFLAGS=-fsanitize=$(SANITIZE) \
             CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE) -fno-sanitize-recover=undefined"
 
-## sanitized: the tests under the address and undefined behaviour sanitizers, but for those that only compute for long
-NOT_SANITIZED = accuracy areas beam conductivity estimate exchange furnace heat heat_mesh mesh reference reproduce
+## sanitized: tests of memory, protocols and readers under the address and undefined behaviour sanitizers
+OF_MEMORY = bed_make body_rows matrix part plot protocol read read_furnace row_parts scene status work write
 sanitized:
 	+@LSAN_OPTIONS=suppressions=tests/leaks.txt:print_suppressions=0 CK_FORK=no \
-	    $(SANITIZED) SKIP="$(NOT_SANITIZED:%=test_%)" run-programs
+	    $(SANITIZED) TESTS="$(OF_MEMORY:%=tests/test_%.c)" run-programs
 
 # Inputs found on the way are kept; of a crash, the input that caused it. The time limit of one input is for what would
 # never end: machines are slow and sanitizers slower.
@@ -385,7 +385,7 @@ cppcheck:
 ## nightly: what .ci/run leaves out since it takes long: all bits, all sanitizers, clang-tidy, benches, a longer hunt
 nightly: bits threads lint bench-quick
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
-	$(MAKE) sanitized NOT_SANITIZED="accuracy furnace reference reproduce"
+	$(MAKE) sanitized OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
 	$(MAKE) fuzz FUZZ_SECONDS=900
 
 ## reproduce: the numbers of the papers beside ours, and their plots into docs/figures
