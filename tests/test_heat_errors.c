@@ -4,6 +4,7 @@
 #include "scenes.h"
 #include "simple/fibrad_host.h"
 #include "suite.h"
+#include "meshes.h"
 
 enum { MOST = 8, SPHERES = 6 };
 
@@ -13,6 +14,7 @@ struct given {
     fibrad_body body[MOST];
     fibrad_plane opening;
     fibrad_scene_config scene;
+    fibrad_heat_config config;
     double temperature[MOST], emissivity[MOST], wall_temperature[MOST], wall_emissivity[MOST], surroundings;
     double power[MOST], error[MOST], wall_power[MOST], wall_error[MOST];
     fibrad_heat_result result;
@@ -31,7 +33,7 @@ static void solve(struct given *g) {
     g->result = (fibrad_heat_result){.power = g->power, .power_error = g->error, .surroundings_error = NAN};
     g->result.body_power = g->wall_power, g->result.body_error = g->wall_error;
     g->scene.body = g->body, g->scene.opening = &g->opening;
-    ck_assert_int_eq(fibrad_radiation_new(&radiation, &g->scene, &spheres, NULL, &run), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, &g->scene, &spheres, &g->config, &run), FIBRAD_OK);
     ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &g->result), FIBRAD_OK);
     fibrad_radiation_free(radiation);
     bed_free(&g->bed);
@@ -141,6 +143,45 @@ START_TEST(a_box_and_its_opening) {
 }
 END_TEST
 
+/* A prism of `sides` about the z axis, of triangles seen from within, open at the top. */
+static struct mesh *cup_of(uint32_t sides, double radius, double height) {
+    struct mesh *mesh = mesh_new();
+    const uint32_t middle = mesh_vertex(mesh, 0, 0, 0);
+    for (uint32_t k = 0; k < sides; k++) {
+        const double turn = 2 * M_PI * k / sides;
+        for (int up = 0; up < 2; up++) mesh_vertex(mesh, radius * cos(turn), radius * sin(turn), up * height);
+    }
+    for (uint32_t k = 0; k < sides; k++) {
+        const uint32_t a = 1 + 2 * k, b = 1 + 2 * ((k + 1) % sides);
+        mesh_quad(mesh, (const uint32_t[]){a, a + 1, b + 1, b}, 0, FIBRAD_NO_BODY);
+        mesh_triangle(mesh, middle, a, b, 0, FIBRAD_NO_BODY);
+    }
+    return mesh;
+}
+
+/* Black cups of triangles at one temperature, with a small sphere as hot: all that leaves goes through the lid. Rays of
+ * the cup alone tell how much; they are even on each triangle, so that more of them help. */
+START_TEST(a_cup_of_triangles) {
+    struct honesty honesty = {0}, of_cup = {0};
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        const double radius = drawn(seed, 0, .5, 1.5), height = drawn(seed, 1, .5, 2.5);
+        const uint32_t sides = (uint32_t)drawn(seed, 2, 4, 44);
+        struct given g = {.bed = bed_of(1, (const double[][4]){{.1 * radius, .1 * radius, height / 2, radius / 50}})};
+        struct mesh *mesh = cup_of(sides, radius, height);
+        const double power = sides * .5 * radius * radius * sin(2 * M_PI / sides);
+        g.temperature[0] = g.wall_temperature[0] = 1, g.config.wall_rays = 1 << 20;
+        g.body[0].kind = FIBRAD_BODY_MESH, g.scene.bodies = 1, g.scene.triangles = &mesh->triangles;
+        solve(&g);
+        judge(&honesty, g.result.surroundings_power - power, g.result.surroundings_error, power);
+        judge(&of_cup, g.wall_power[0] + g.power[0] + power, g.wall_error[0], power);
+        free(mesh);
+    }
+    expect_honest(&honesty);
+    expect_honest(&of_cup);
+    ck_assert_msg(honesty.errors / honesty.scenes < pow(5.5e-4, 2), "off by %g", sqrt(honesty.errors / honesty.scenes));
+}
+END_TEST
+
 /* What nothing reaches has no power, and no error. */
 START_TEST(no_surroundings) {
     struct given g = {.bed = bed_of(1, (const double[][4]){{0, 0, 0, .5}}), .temperature = {1}};
@@ -157,6 +198,7 @@ int main(void) {
     TCase *surroundings = suite_case(suite, "surroundings");
     tcase_add_test(surroundings, spheres_and_their_surroundings);
     tcase_add_test(surroundings, a_box_and_its_opening);
+    tcase_add_test(surroundings, a_cup_of_triangles);
     tcase_add_test(surroundings, no_surroundings);
     return suite_run(suite);
 }

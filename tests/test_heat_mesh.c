@@ -300,7 +300,7 @@ START_TEST(two_plates_and_a_shield) {
             struct problem *p = plates(planes == 1, cells, false);
             trace_and_solve(p);
             assert_near(p->q[1], 4 * (81 - 16) / (1 / .3 + 1 / .6 - 1), 1e-3);
-            ck_assert_double_le(p->result.surroundings_power, 1e-4 * p->q[1]); /* what goes farther than is looked */
+            ck_assert_double_le(p->result.surroundings_power, 2e-4 * p->q[1]); /* what goes farther than is looked */
             free_problem(p);
 
             p = plates(planes == 1, cells, true);

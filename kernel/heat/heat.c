@@ -224,6 +224,7 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     fibrad_heat_cut_meshes(heat);
     find_origins(heat);
     fibrad_heat_balance(heat);
+    fibrad_sobol_make(&heat->sobol);
     forget_beams(heat);
     *out = heat;
     return FIBRAD_OK;

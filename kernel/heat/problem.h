@@ -12,6 +12,7 @@
 #define FIBRAD_HEAT_PROBLEM_H
 
 #include "fibrad_heat.h"
+#include "base/sobol.h"
 #include "mesh/mesh_patch.h"
 #include "scene/scene.h"
 #include "work/work.h"
@@ -122,6 +123,7 @@ struct fibrad_heat {
     fibrad_heat_wall wall[FIBRAD_WALLS];
     fibrad_heat_rays sent[FIBRAD_SLOTS]; /* by slot */
     uint32_t of_mesh[FIBRAD_BODIES_MAX]; /* patches of each mesh */
+    fibrad_sobol sobol;                  /* of rays from meshes */
     fibrad_mesh_cut *cut;                /* [2 triangles], by the caller's numbers; patches from first_meshed on */
     double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
     bool lifted[FIBRAD_BODIES_MAX]; /* [meshes], whether sides of the mesh have temperatures */

@@ -15,6 +15,8 @@
 #define PATCHES      96.0
 #define WALL_PATCHES .5 /* of walls over that of spheres */
 #define BEAM_ERROR   .7
+#define RAY_ERROR    1.75
+#define RAY_SAMPLES  16  /* of a mesh, at the most */
 #define FEW_ERROR    .25 /* over beams per patch: patches that few leave send back along each */
 #define FEW_SEEN     1.3 /* likewise of walls that a sphere sees, whose beams are less even */
 #define FEW_WALLS    .65 /* and of walls themselves */
@@ -33,7 +35,16 @@ typedef struct error_pool {
     double samples, errors, exchanges;
 } error_pool;
 
+/* By how much even and odd rays of walls and meshes differ: sums over those that send them, and over stretches of the
+ * sides of a mesh, all of which have sequences of their own, of squares. */
+typedef struct ray_samples {
+    double squares[FIBRAD_HEAT_OTHERS]; /* of the power of each body, from the first that is no sphere */
+    double outside;                     /* of that of the surroundings */
+    double more;                        /* samples than there are walls and meshes */
+} ray_samples;
+
 typedef struct heat_errors {
+    ray_samples rays;
     heat_spread all;
     double few;         /* error over power, where all that a sphere sends out meets spheres that reflect all */
     double dim[2];      /* what spheres and walls reflect, on the mean by area */
@@ -60,8 +71,45 @@ static double exchange_of(const fibrad_heat *heat, const heat_errors *errors, ui
     return heat->emissivity[b] * own.area * fibrad_sqrt(errors->all.variance + squared(own.mean - errors->all.mean));
 }
 
-static double beam_error(const fibrad_heat *heat, uint32_t b) {
-    return BEAM_ERROR * heat->emissivity[b] * fibrad_abs(heat->halves[b]);
+/* Adds the rays of a stretch to the samples. */
+static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, ray_samples *samples) {
+    const uint32_t *first = heat->first + heat->spheres, bodies = heat->bodies - heat->spheres;
+    double half[FIBRAD_HEAT_OTHERS] = {0}, outside = 0;
+    uint32_t from = 0, to = 0;
+    for (uint32_t k = begin; k < end; k++) {
+        const fibrad_heat_ray *ray = &heat->ray[k];
+        if (ray->area == 0) continue;
+        while (ray->from < first[from] || ray->from >= first[from + 1]) from = (from + 1) % bodies;
+        while (ray->to < first[to] || ray->to >= first[to + 1]) to = (to + 1) % bodies;
+        const double flow = ray->area * (heat->source[ray->to] - heat->source[ray->from]);
+        half[from] += k % 2 ? -flow : flow, half[to] -= k % 2 ? -flow : flow;
+    }
+    for (uint32_t b = 0; b < bodies; b++) {
+        samples->squares[b] += squared(half[b]);
+        outside += fibrad_heat_outside(heat, heat->spheres + b) * half[b];
+    }
+    samples->outside += squared(outside);
+}
+
+static void sample_all_rays(const fibrad_heat *heat, ray_samples *samples) {
+    *samples = (ray_samples){{0}, 0, 0};
+    for (uint32_t slot = 0; slot < FIBRAD_MESHES + heat->meshes; slot++) {
+        const fibrad_heat_rays *sent = &heat->sent[slot];
+        const uint32_t *side = heat->scene->mesh.first + (slot - FIBRAD_MESHES);
+        const uint32_t stretches = slot < FIBRAD_MESHES || side[1] - side[0] < RAY_SAMPLES ? 1 : RAY_SAMPLES;
+        samples->more += stretches - 1;
+        for (uint32_t k = 0; k < stretches; k++)
+            sample_rays(heat, sent->first + (uint32_t)((uint64_t)sent->count * k / stretches),
+                        sent->first + (uint32_t)((uint64_t)sent->count * (k + 1) / stretches), samples);
+    }
+}
+
+/* Squares of what rays, and what beams and rays, miss of what a body gets. */
+static double missed_by_rays(const heat_errors *errors, const fibrad_heat *heat, uint32_t b) {
+    return b >= heat->spheres ? squared(RAY_ERROR) * errors->rays.squares[b - heat->spheres] : 0;
+}
+static double missed_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
+    return squared(BEAM_ERROR * heat->halves[b]) + missed_by_rays(errors, heat, b);
 }
 
 /* The fewer the patches, the less they tell. */
@@ -102,7 +150,7 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
     const double few = b < heat->spheres ? few_of_sphere(heat, errors, b) : few_of_wall(heat, errors, b);
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double patches = b < heat->spheres ? patch_error(heat, b) : 0;
-    return squared(beam_error(heat, b)) + squared(patches) + few * squared(heat->power[b]) +
+    return squared(eps) * missed_of(heat, errors, b) + squared(patches) + few * squared(heat->power[b]) +
            squared(seen * errors->walls);
 }
 
@@ -118,7 +166,8 @@ static double spot_error(const fibrad_heat *heat, uint32_t b) {
 static heat_errors errors_of(const fibrad_heat *heat) {
     const uint32_t end = fibrad_heat_beyond(heat, 0); /* of bodies that have patches of their own */
     double areas[2] = {0, 0};
-    heat_errors errors = {.all = spread_over(heat, 0, heat->first[end])};
+    heat_errors errors = {.all = spread_over(heat, 0, heat->patches)};
+    sample_all_rays(heat, &errors.rays);
     if (heat->group == 1) errors.few = FEW_ERROR * heat->config.patches * heat->thin / (2.0 * heat->beams);
     for (uint32_t b = 0; b < end; b++) {
         const int kind = b >= heat->spheres;
@@ -128,7 +177,7 @@ static heat_errors errors_of(const fibrad_heat *heat) {
     for (int kind = 0; kind < 2; kind++)
         if (areas[kind] > 0) errors.dim[kind] /= areas[kind];
     for (uint32_t b = heat->spheres; b < end; b++)
-        errors.walls += squared((heat->hold[b] >= 0 ? 1 : 1 - heat->emissivity[b]) * BEAM_ERROR * heat->halves[b]);
+        errors.walls += squared(heat->hold[b] >= 0 ? 1 : 1 - heat->emissivity[b]) * missed_of(heat, &errors, b);
     errors.walls = fibrad_sqrt(errors.walls);
     for (uint32_t b = 0; b < end; b++) {
         error_pool *pool = &errors.pool[b >= heat->spheres];
@@ -136,6 +185,7 @@ static heat_errors errors_of(const fibrad_heat *heat) {
         if (!(exchange > 0) || heat->hold[b] >= 0) continue;
         pool->samples++, pool->errors += own_error(heat, &errors, b), pool->exchanges += squared(exchange);
     }
+    errors.pool[1].samples += errors.rays.more;
     return errors;
 }
 
@@ -188,7 +238,8 @@ static double missed_by_spheres(const fibrad_heat *heat, const heat_errors *erro
 static double missed_by_walls(const fibrad_heat *heat, const heat_errors *errors) {
     double missed = 0, exchanges = 0;
     for (uint32_t b = heat->spheres; b < fibrad_heat_beyond(heat, 0); b++)
-        missed += squared(beam_error(heat, b)), exchanges += squared(exchange_of(heat, errors, b));
+        missed += squared(heat->emissivity[b]) * missed_by_rays(errors, heat, b),
+            exchanges += squared(exchange_of(heat, errors, b));
     if (!(exchanges > 0)) return 0;
     return missed / exchanges * squared(rays_outside(heat)) * (errors->all.variance + squared(errors->all.mean));
 }
@@ -203,9 +254,9 @@ static double surroundings_error_of(const fibrad_heat *heat, const heat_errors *
         area += outside * spread_of(heat, b).area;
     }
     const double seen = errors->all.area > 0 ? fibrad_min(1, area / errors->all.area) : 0;
-    const double missed = missed_by_spheres(heat, errors) + missed_by_walls(heat, errors);
+    const double rays = squared(RAY_ERROR) * errors->rays.outside + missed_by_walls(heat, errors);
     return squared(extrapolation_error(heat, changed)) + squared(seen * errors->walls) +
-           (squared(BEAM_ERROR * halves) + missed) / 2;
+           (squared(BEAM_ERROR * halves) + missed_by_spheres(heat, errors) + rays) / 2;
 }
 
 static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
@@ -238,8 +289,8 @@ static bool is_found(const fibrad_heat *heat, uint32_t b) { return heat->hold[b]
 
 /* Squares of what beams miss of the emission of a body, as its own sample says, and of how far it is from all others'
  * radiosities. */
-static double missed_emission(const fibrad_heat *heat, uint32_t b, double area) {
-    return squared(BEAM_ERROR * heat->halves[b] / area);
+static double missed_emission(const fibrad_heat *heat, const heat_errors *errors, uint32_t b, double area) {
+    return missed_of(heat, errors, b) / squared(area);
 }
 
 /* What extrapolation has changed of it may be wrong by this. */
@@ -267,7 +318,8 @@ static heat_level level_found(const fibrad_heat *heat, const heat_errors *errors
         if (!(own.area > 0)) continue;
         if (is_found(heat, b)) {
             const int kind = b >= heat->spheres;
-            level.missed[kind] += missed_emission(heat, b, own.area), distances[kind] += distance_of(errors, &own);
+            level.missed[kind] += missed_emission(heat, errors, b, own.area),
+                distances[kind] += distance_of(errors, &own);
             if (kind == 0) level.changed += squared(changed_emission(heat, b)), spheres++;
         } else {
             const double power = fibrad_abs(heat->power[b]);
@@ -294,7 +346,8 @@ static double temperature_error_of(const fibrad_heat *heat, const heat_errors *e
     const double emission = is_insulated(heat, b) ? own.mean : heat->emission[b];
     const double changed = is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b));
     const double missed =
-        (missed_emission(heat, b, own.area) + level->missed[b >= heat->spheres] * distance_of(errors, &own)) / 2;
+        (missed_emission(heat, errors, b, own.area) + level->missed[b >= heat->spheres] * distance_of(errors, &own)) /
+        2;
     const double together =
         (squared(level->error) + (1 - eps) * squared(errors->few)) * squared(emission - level->given);
     const double walls = squared(errors->walls / errors->all.area);

@@ -242,13 +242,34 @@ void fibrad_heat_direction(const double x[2], const double n[3], double w[3]) {
     cosine_direction(x, n, across, along, w);
 }
 
+/* Coordinate d of point k of Sobol's sequence moved at random, even and odd points apart. */
+static double even_coordinate(const uint32_t point[8], uint64_t seed, int d) {
+    return fibrad_fraction(fibrad_mix(seed ^ ray_step[d]) ^ (uint64_t)point[d] << 32);
+}
+
+/* The side that ray k of a mesh leaves, and its coordinates there. Sides send out rays one after another, each as many
+ * as its area asks for, and by a sequence of its own: one of all, cut into triangles, errs by more. */
+static uint32_t side_of_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, double x[4]) {
+    const fibrad_mesh *own = &heat->scene->mesh;
+    const double rays = heat->sent[FIBRAD_MESHES + mesh].count, area = fibrad_mesh_area(own, mesh);
+    uint32_t point[8] = {0};
+    double before;
+    const uint32_t side = own->side[fibrad_mesh_side_at(own, mesh, (k + .5) / rays * area, &before)];
+    const uint32_t first = (uint32_t)(before / area * rays + .5), number = k > first ? k - first : 0;
+    const uint64_t seed = fibrad_mix(2 * (2 * (uint64_t)own->number[side / 2] + side % 2) + number % 2);
+    fibrad_sobol_move(&heat->sobol, 0, number / 2, point);
+    for (int d = 0; d < 4; d++) x[d] = even_coordinate(point, seed, d);
+    return side;
+}
+
 bool fibrad_heat_mesh_ray(const fibrad_heat *heat, uint32_t mesh, uint32_t k, double origin[3], double w[3],
                           uint32_t *side) {
+    const fibrad_mesh *own = &heat->scene->mesh;
     double x[4], n[3];
-    fibrad_heat_ray_coordinates(FIBRAD_MESHES + mesh, k, x);
-    *side = fibrad_mesh_point(&heat->scene->mesh, mesh, x, origin);
+    *side = side_of_ray(heat, mesh, k, x);
+    fibrad_mesh_triangle_point(own, *side / 2, x, origin);
     if (!fibrad_walls_hold(&heat->scene->container, origin)) return false;
-    fibrad_mesh_normal(&heat->scene->mesh, *side, n);
+    fibrad_mesh_normal(own, *side, n);
     fibrad_heat_direction(x + 2, n, w);
     return true;
 }

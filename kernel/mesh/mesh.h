@@ -135,4 +135,7 @@ void fibrad_mesh_triangle_point(const fibrad_mesh *mesh, uint32_t triangle, cons
 /* The point [L] of a mesh for two numbers, 0 to below 1. Even numbers give even points. Returns the side. */
 uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const double share[2], double point[3]);
 
+/* Where in mesh->side is the side of a mesh that has a place in the sum of all their areas, and the sum before it. */
+uint32_t fibrad_mesh_side_at(const fibrad_mesh *mesh, uint32_t number, double at, double *before);
+
 #endif

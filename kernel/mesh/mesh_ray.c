@@ -187,9 +187,8 @@ void fibrad_mesh_triangle_point(const fibrad_mesh *mesh, uint32_t triangle, cons
     }
 }
 
-uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const double share[2], double point[3]) {
+uint32_t fibrad_mesh_side_at(const fibrad_mesh *mesh, uint32_t number, double at, double *before) {
     const uint32_t first = mesh->first[number];
-    const double all = fibrad_mesh_area(mesh, number), at = share[0] * all;
     uint32_t low = first, high = mesh->first[number + 1] - 1;
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
@@ -198,7 +197,15 @@ uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const doubl
         else
             low = middle + 1;
     }
-    const double before = low > first ? mesh->area[low - 1] : 0, own = mesh->area[low] - before;
+    *before = low > first ? mesh->area[low - 1] : 0;
+    return low;
+}
+
+uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const double share[2], double point[3]) {
+    double before;
+    const double at = share[0] * fibrad_mesh_area(mesh, number);
+    const uint32_t low = fibrad_mesh_side_at(mesh, number, at, &before);
+    const double own = mesh->area[low] - before;
     const double of_own[2] = {own > 0 ? fibrad_max(0, fibrad_min(1, (at - before) / own)) : 0, share[1]};
     fibrad_mesh_triangle_point(mesh, mesh->side[low] / 2, of_own, point);
     return mesh->side[low];
