@@ -91,12 +91,18 @@ static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, r
     samples->outside += squared(outside);
 }
 
+/* Into how many samples the rays of a slot are divided. */
+static uint32_t stretches_of(const fibrad_heat *heat, uint32_t slot) {
+    if (slot < FIBRAD_MESHES) return 1;
+    const uint32_t *side = heat->scene->mesh.first + (slot - FIBRAD_MESHES);
+    return side[1] - side[0] < RAY_SAMPLES ? 1 : RAY_SAMPLES;
+}
+
 static void sample_all_rays(const fibrad_heat *heat, ray_samples *samples) {
     *samples = (ray_samples){{0}, 0, 0};
     for (uint32_t slot = 0; slot < FIBRAD_MESHES + heat->meshes; slot++) {
         const fibrad_heat_rays *sent = &heat->sent[slot];
-        const uint32_t *side = heat->scene->mesh.first + (slot - FIBRAD_MESHES);
-        const uint32_t stretches = slot < FIBRAD_MESHES || side[1] - side[0] < RAY_SAMPLES ? 1 : RAY_SAMPLES;
+        const uint32_t stretches = stretches_of(heat, slot);
         samples->more += stretches - 1;
         for (uint32_t k = 0; k < stretches; k++)
             sample_rays(heat, sent->first + (uint32_t)((uint64_t)sent->count * k / stretches),
@@ -108,6 +114,7 @@ static void sample_all_rays(const fibrad_heat *heat, ray_samples *samples) {
 static double missed_by_rays(const heat_errors *errors, const fibrad_heat *heat, uint32_t b) {
     return b >= heat->spheres ? squared(RAY_ERROR) * errors->rays.squares[b - heat->spheres] : 0;
 }
+
 static double missed_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     return squared(BEAM_ERROR * heat->halves[b]) + missed_by_rays(errors, heat, b);
 }
