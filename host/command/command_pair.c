@@ -27,16 +27,9 @@ static const struct option pair_table[] = {
     {KEY_OBSTACLE, "obstacle", "X,Y,Z,R", "a sphere in the way; may be repeated [none]"},
     {KEY_ERROR, "error", "E",
      "exact, with obstacles: error allowed, estimated, relative to the factor without obstacles, 1e-12 to 1 [1e-9; "
-     "1e-5 "
-     "if spheres overlap, where each further digit takes ten times as long]"},
+     "1e-5 if spheres overlap, where each further digit takes ten times as long]"},
     {KEY_CHECK, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]"},
-    {KEY_DIRECTIONS, "directions", "N", "beam: number of directions, 8 to 65536; the error falls as N^-1.5 [233]"},
-    {KEY_AREAS, "areas", "KIND", "beam: visible areas, exact or points [exact]"},
-    {KEY_POINTS, "points", "M", "beam: points per window, 64, 128 or 256; implies --areas points [256]"},
-    {KEY_NF, "nf", "N", "surface: nodes on each sphere, a Fibonacci number from 8 to 987 [55]"},
-    {KEY_NO_CORRECTION, "no-correction", NULL, "surface: plain sum [corrected by the exact factor without obstacles]"},
-    {KEY_RAYS, "rays", "N", "cast, mc: rays from sphere 1; the error falls as N^-0.6 (cast) or N^-0.5 (mc) [20000]"},
-    {KEY_SEED, "seed", "S", "cast, mc: seed of the rays [0]"},
+    OPTIONS_METHODS,
     {KEY_JSON, "json", "OUT", "write the output as JSON, with all digits [none]"},
     {OPTION_HELP},
     {0, NULL, NULL, NULL}};

@@ -150,26 +150,16 @@ static void warn_of_cuts(struct warned *warned, const struct bed *bed, const str
                    (long long)bed_name(bed, sphere), wall_name(walls, wall), worst, count);
 }
 
-/* The lower and upper ends of all spheres; an axis that is periodic has none. */
-static void spheres_extents(const struct bed *bed, double low[3], double high[3]) {
-    const double *const centre[3] = {bed->x, bed->y, bed->z};
-    for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = INFINITY, high[axis] = -INFINITY;
-        for (uint32_t i = 0; i < bed->n; ++i) {
-            low[axis] = fmin(low[axis], centre[axis][i] - bed->r[i]);
-            high[axis] = fmax(high[axis], centre[axis][i] + bed->r[i]);
-        }
-    }
-}
-
 static double longest(const double low[3], const double high[3]) {
     return fmax(fmax(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
 }
 
 static void warn_of_mesh(struct warned *warned, const struct bed *bed, const struct meshes *meshes, uint32_t wall) {
+    const double near = 2 * mean_radius(bed);
     double low[3], high[3], from[3], to[3];
     mesh_extents(meshes, wall, low, high);
-    spheres_extents(bed, from, to);
+    for (int axis = 0; axis < 3; ++axis)
+        from[axis] = bed_reach(bed, axis, false), to[axis] = bed_reach(bed, axis, true);
     const double ratio = longest(low, high) / longest(from, to);
     if ((ratio > SIZES_APART || ratio < 1 / SIZES_APART) && is_new(warned, MESH_SIZE))
         message_at(STATUS_OK, warned->file, 0,
@@ -177,7 +167,6 @@ static void warn_of_mesh(struct warned *warned, const struct bed *bed, const str
                    "mesh:FILE:scale=%g scales the mesh",
                    meshes->name[wall], longest(low, high), longest(from, to), ratio > 1 ? 1e-3 : 1e3);
     for (int axis = 0; axis < 3; ++axis) {
-        const double near = 2 * mean_radius(bed);
         if (bed->period[axis] > 0 || (low[axis] <= to[axis] + near && high[axis] >= from[axis] - near)) continue;
         if (is_new(warned, MESH_PLACE))
             message_at(STATUS_OK, warned->file, 0,

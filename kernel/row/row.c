@@ -26,7 +26,7 @@ static double share_of_caps(const fibrad_scene *scene, uint32_t place, double sh
 /* docs/methods.md, section 9. What the spheres of the row lose is summed in whole numbers, so that the order of
  * columns, the caller's, plays no part. */
 void fibrad_row_cut(const fibrad_scene *scene, uint32_t place, double wall[FIBRAD_SLOTS], fibrad_row *row) {
-    double share[FIBRAD_WALLS];
+    double share[FIBRAD_WALLS] = {0};
     int64_t units[FIBRAD_WALLS] = {0};
     if (!scene->container.cuts) return;
     for (uint32_t k = 0; k < row->length; k++) {
