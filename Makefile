@@ -68,7 +68,7 @@ sources = $(sort $(wildcard $(1)))
 LANED   := $(call sources,kernel/*/*_lanes.c) # compiled once per instruction set
 KERNEL  := $(filter-out %_lanes.c kernel/sample/generate_tables.c,$(call sources,kernel/*/*.c))
 SIMPLE  := $(call sources,host/simple/*.c) # libfibrad_host.a
-HOST    := $(filter-out $(addprefix host/,simple/% couple/% examples/% files/%),$(call sources,host/*/*.c)) # the program, besides main.c
+HOST    := $(filter-out $(addprefix host/,simple/% couple/% python/%),$(call sources,host/*/*.c host/read/*/*.c)) # the program, besides main.c
 TESTS   := $(call sources,tests/test_*.c)
 SCRIPTS := $(filter-out tests/couple/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
 
@@ -77,8 +77,8 @@ COUNTED := bench/bench_instructions.c # linked with a library that counts its in
 BENCHES := $(filter-out $(PEERS) $(COUNTED),$(call sources,bench/bench_*.c))
 
 # libfibrad_files.so, by which Python reads files as the program does: its own objects, since these have names of the program
-FILES = host/files/file_arrays.c host/bed/bed.c host/bed/units.c $(filter host/cli/interrupt.c host/cli/message.c host/cli/output.c \
-    host/mesh/%.c host/text/%.c host/vtk/%.c host/read/%.c,$(filter-out host/read/read_rows.c host/text/read_curve.c,$(HOST)))
+FILES = host/python/file_arrays.c host/bed/bed.c host/bed/units.c $(filter host/cli/interrupt.c host/cli/message.c host/cli/output.c \
+    host/mesh/%.c host/text/%.c host/read/%.c,$(filter-out host/read/read_rows.c host/text/read_curve.c host/text/report.c,$(HOST)))
 
 # ---- objects --------------------------------------------------------------------------------------------------------
 PLAIN_OBJECTS  = $(KERNEL:%.c=$(BUILD)/%.o)
@@ -409,8 +409,8 @@ deps-ci:
 ## man: manual pages of the program and its commands, made from --help into build/man
 man: $(BUILD)/man/fibrad.1
 
-$(BUILD)/man/fibrad.1: $(BUILD)/fibrad host/man/make_man.sh host/man/man.awk
-	host/man/make_man.sh $< $(@D)
+$(BUILD)/man/fibrad.1: $(BUILD)/fibrad host/cli/man/make_man.sh host/cli/man/man.awk
+	host/cli/man/make_man.sh $< $(@D)
 
 COMPLETIONS = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 
@@ -419,7 +419,7 @@ install: install-lib $(BUILD)/fibrad man
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(COMPLETIONS) $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs
 	install $(BUILD)/fibrad $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(BUILD)/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
-	install -m 644 host/man/fibrad.bash $(COMPLETIONS)/fibrad
+	install -m 644 host/cli/man/fibrad.bash $(COMPLETIONS)/fibrad
 	install -m 644 README.md CHANGELOG.md LICENSE $(DESTDIR)$(PREFIX)/share/doc/fibrad
 	install -m 644 docs/*.md $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs
 

@@ -61,7 +61,7 @@ offers() { # EXPECTED WORD...
     test "$found" = "${expected:+$expected }" || fault "fibrad $*: offers '$found' instead of '$expected'"
 }
 if command -v bash >/dev/null; then
-    completion=$PWD/host/man/fibrad.bash
+    completion=$PWD/host/cli/man/fibrad.bash
     case $fibrad in /*) program=$fibrad ;; *) program=$PWD/$fibrad ;; esac
     mkdir "$work/files" && touch "$work/files/bed one.dump" "$work/files/bed.csv" "$work/files/-odd"
     for name in $commands; do

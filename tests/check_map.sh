@@ -26,7 +26,8 @@ find kernel host -name '*.[ch]' -o -name '*.py' -o -name '*.f90' | sed 's|/[^/]*
     files=$(find "$folder" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.py' -o -maxdepth 1 -name '*.f90' |
         sed 's|.*/||; s|\.[a-z0-9]*$||' | LC_ALL=C sort -u | tr '\n' ' ')
     room=${folder#*/}
-    knows=$(find "$folder" -maxdepth 1 -name '*.[ch]' -exec sed -n 's/^#include "\([a-z_]*\)\/.*/\1/p' {} + |
+    knows=$(find "$folder" -maxdepth 1 -name '*.[ch]' -exec sed -n 's/^#include "\([a-z_/]*\)\/.*/\1/p' {} + |
+        sed 's|/lanes$||' |
         grep -vx "$room" | LC_ALL=C sort -u | tr '\n' ' ')
     echo "$folder: $files/ $knows"
 done | LC_ALL=C sort >"$work/tree"

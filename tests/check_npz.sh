@@ -1,11 +1,11 @@
 #!/bin/sh
-# check_npz.sh - a matrix as .npz: the same to the reader in host/examples, to Python's zipfile and to SciPy.
+# check_npz.sh - a matrix as .npz: the same to the reader in docs/examples, to Python's zipfile and to SciPy.
 # SPDX-License-Identifier: MIT
 set -eu
 : "${BUILD:=build}" "${CC:=cc}"
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 
-"$CC" -std=c11 -pedantic -Wall -Wextra -Werror host/examples/read_npz.c -o "$work/read_npz"
+"$CC" -std=c11 -pedantic -Wall -Wextra -Werror docs/examples/read_npz.c -o "$work/read_npz"
 printf 'x,y,z,r\n0,0,0,1\n9e9,0,0,1\n' >"$work/apart.csv"
 for bed in tests/data/mono2000.dump "$work/apart.csv"; do # the second has no entries
     for ending in npz csv; do

@@ -34,7 +34,7 @@ LINE
     */points_*) tests="beam cast $tests" ;;
     kernel/window/*) tests="areas beam $tests" ;;
     */surface_row*) tests="surface_row $tests" ;;
-    */walls.* | */wall_share* | kernel/sky/*) tests="walls part estimate $tests" ;;
+    */walls.* | */wall_*) tests="walls part estimate $tests" ;;
     kernel/surface/*) tests="surface $tests" ;;
     */work.*) tests="work beam cast $tests" ;;
     kernel/row/*) tests="beam cast protocol $tests" ;;
@@ -42,7 +42,7 @@ LINE
     kernel/ray/*) tests="trace $tests" ;;
     */drift*) tests="drift $tests" ;;
     kernel/scene/*) tests="scene beam $tests" ;;
-    kernel/matrix/* | kernel/store/*) tests="matrix protocol $tests" ;;
+    kernel/matrix/* | kernel/work/*) tests="matrix protocol $tests" ;;
     kernel/furnace/*) tests="furnace $tests" ;;
     esac
     if awk -v old="$old" -v new="$new" 'BEGIN {sub(/^ /, "", old); sub(/ $/, "", old); sub(/^ /, "", new)}

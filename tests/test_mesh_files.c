@@ -4,7 +4,7 @@
 #include "mesh/meshes.h"
 #include "plot/plot_slice.h"
 #include "soups.h"
-#include "vtk/vtk_grid.h"
+#include "read/vtk/vtk_grid.h"
 
 static struct soup cube(void) {
     struct soup soup = {0};

@@ -7,7 +7,7 @@
 
 #include "bed/bed.h"
 #include "bed/wall_option.h"
-#include "report/report.h"
+#include "text/report.h"
 #include "text/read_curve.h"
 #include "fibrad.h"
 

@@ -14,7 +14,7 @@
 #include "command/commands.h"
 #include "plot/gnuplot.h"
 #include "plot/plot_furnace.h"
-#include "report/report.h"
+#include "text/report.h"
 #include "write/write_furnace.h"
 
 enum { KEY_CASE = KEY_OWN, KEY_THETA, KEY_SCATTER, KEY_CELLS, KEY_BUNDLES, KEY_TOLERANCE, KEY_OUTERS };

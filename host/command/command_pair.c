@@ -11,7 +11,7 @@
 #include "command/commands.h"
 #include "reference/exact_gsl.h"
 #include "reference/reference.h"
-#include "report/report.h"
+#include "text/report.h"
 #include "simple/heap.h"
 
 enum { KEY_OBSTACLE = KEY_OWN, KEY_CHECK };

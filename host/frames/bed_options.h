@@ -14,7 +14,7 @@
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "frames/warnings.h"
-#include "report/report.h"
+#include "text/report.h"
 #include "read/read.h"
 #include "simple/fibrad_host.h"
 #include "write/outputs.h"

@@ -7,7 +7,7 @@
 
 #include "cli/message.h"
 #include "read/read_format.h"
-#include "vtk/vtk_grid.h"
+#include "read/vtk/vtk_grid.h"
 
 enum { RADIUS, DIAMETER, ID, EXTRAS };
 

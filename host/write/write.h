@@ -8,7 +8,7 @@
 #include "bed/bed.h"
 #include "bed/conduction.h"
 #include "bed/wall_option.h"
-#include "report/report.h"
+#include "text/report.h"
 #include "simple/fibrad_host.h"
 
 /* A further array of a .npz; one of a name that it has anyway takes its place. */

@@ -1,6 +1,6 @@
 /* flow.c - powers from rows of exchange factors, a part of a bed at a time. SPDX-License-Identifier: MIT */
 #include "fibrad_part.h"
-#include "store/record.h"
+#include "work/record.h"
 
 /* What is beyond of a row that knows something. */
 #define BEYOND_MOST (1 - 1e-12)

@@ -2,7 +2,7 @@
 #include "row/row.h"
 #include "base/arena.h"
 #include "scene/walls.h"
-#include "store/record.h"
+#include "work/record.h"
 
 /* Entries for which an empty collection asks for room at first. */
 #define FIRST_ENTRIES 256u

@@ -9,7 +9,7 @@
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "row/wall_share_lanes.h"
-#include "sky/wall_window.h"
+#include "row/wall_window.h"
 #include "sample/direction.h"
 #include "window/points_lanes.h"
 

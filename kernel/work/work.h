@@ -8,7 +8,7 @@
 #define FIBRAD_WORK_WORK_H
 
 #include "work/row_sum.h"
-#include "sky/wall_sum.h"
+#include "work/wall_sum.h"
 #include "scene/surroundings.h"
 #include "window/areas.h"
 #include "window/discs.h"

@@ -1,7 +1,7 @@
 /* wall_sum.h - what the windows of a row give to walls, by regions of the sky, and the factors that come of it.
  * SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_SKY_WALL_SUM_H
-#define FIBRAD_SKY_WALL_SUM_H
+#ifndef FIBRAD_WORK_WALL_SUM_H
+#define FIBRAD_WORK_WALL_SUM_H
 
 #include "base/addends.h"
 #include "scene/surroundings.h"

@@ -1,8 +1,8 @@
 /* wall_window.h - a window as walls see it: the disc of directions it stands for. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_SKY_WALL_WINDOW_H
-#define FIBRAD_SKY_WALL_WINDOW_H
+#ifndef FIBRAD_ROW_WALL_WINDOW_H
+#define FIBRAD_ROW_WALL_WINDOW_H
 
-#include "sky/wall_sum.h"
+#include "work/wall_sum.h"
 
 typedef struct fibrad_wall_window {
     const double *frame; /* its axes */

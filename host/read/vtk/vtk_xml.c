@@ -11,7 +11,7 @@
 
 #include "cli/message.h"
 #include "text/read_number.h"
-#include "vtk/vtk_grid.h"
+#include "read/vtk/vtk_grid.h"
 
 enum { WORD = 80, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
 

@@ -1,5 +1,5 @@
 /* wall_sum.c - solid angles of walls, seen from within, and factors to them. SPDX-License-Identifier: MIT */
-#include "sky/wall_sum.h"
+#include "work/wall_sum.h"
 #include "base/constants.h"
 #include "base/elementary.h"
 

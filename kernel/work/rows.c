@@ -1,7 +1,7 @@
 /* rows.c - a collection of rows in one block, fixed or growing. SPDX-License-Identifier: MIT */
 #include "fibrad_part.h"
 #include "base/arena.h"
-#include "store/record.h"
+#include "work/record.h"
 
 /* Bytes before the first record. */
 static size_t lead_of(const fibrad_rows *rows) { return (size_t) - (uintptr_t)rows->memory.block & 7; }

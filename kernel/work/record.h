@@ -2,8 +2,8 @@
  *
  * A record is this head, the factors to bodies, the factors, and the columns, padded to 8 bytes. Records follow each
  * other from the first 8-byte boundary of the block on. */
-#ifndef FIBRAD_STORE_RECORD_H
-#define FIBRAD_STORE_RECORD_H
+#ifndef FIBRAD_WORK_RECORD_H
+#define FIBRAD_WORK_RECORD_H
 
 #include "fibrad.h"
 #include "base/port.h"

@@ -1,7 +1,7 @@
 # fibrad.bash - completion of fibrad's commands, options and files in bash. SPDX-License-Identifier: MIT
 # shellcheck shell=bash
 #
-# Installed as share/bash-completion/completions/fibrad; or: source host/man/fibrad.bash. Commands and options are those
+# Installed as share/bash-completion/completions/fibrad; or: source host/cli/man/fibrad.bash. Commands and options are those
 # that the program's own --help names.
 
 _fibrad_commands() { # PROGRAM

@@ -1,6 +1,6 @@
 # man.awk - a manual page from the text of --help. SPDX-License-Identifier: MIT
 #
-# awk -v page=fibrad-bed -v purpose='view factors ...' -v version=0.2.0 -f host/man/man.awk: usage lines, paragraphs,
+# awk -v page=fibrad-bed -v purpose='view factors ...' -v version=0.2.0 -f host/cli/man/man.awk: usage lines, paragraphs,
 # rows of options `  -o, --output OUT   text`, paragraphs with indented lines, `Examples:`. The page fibrad begins with
 # `fibrad VERSION - purpose` instead and lists the commands.
 
@@ -38,7 +38,7 @@ function names(head,   words, n, k, out) {
 BEGIN {
     title = page
     gsub(/-/, "\\-", title)
-    print ".\\\" made from --help by host/man/man.awk"
+    print ".\\\" made from --help by host/cli/man/man.awk"
     print ".TH " toupper(title) " 1 \"\" \"fibrad " version "\" \"fibrad\""
     print ".ad l\n.nh\n.SH NAME"
     print title " \\- " plain(purpose)

@@ -1,5 +1,5 @@
 /* report.c - what a command says at its end: lines `key value`, and the same as JSON. SPDX-License-Identifier: MIT */
-#include "report/report.h"
+#include "text/report.h"
 
 #include <inttypes.h>
 #include <math.h>

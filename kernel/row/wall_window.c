@@ -1,5 +1,5 @@
 /* wall_window.c - a window as walls see it: the disc of directions it stands for. SPDX-License-Identifier: MIT */
-#include "sky/wall_window.h"
+#include "row/wall_window.h"
 
 /* Radius of the disc of directions times sqrt n; it would be 2 for discs as large as the share of a direction. */
 #define WALL_SPREAD 1.8

@@ -1,6 +1,6 @@
 /* read_npz.c - example: reads a matrix of view factors from .npz and prints it. SPDX-License-Identifier: MIT
  *
- *     cc -std=c11 host/examples/read_npz.c -o read_npz
+ *     cc -std=c11 docs/examples/read_npz.c -o read_npz
  *     build/fibrad bed packing.dump -o F.npz && ./read_npz F.npz
  *
  * Reads what `fibrad bed -o OUT.npz` writes, on a machine of the same byte order: uncompressed members one behind the

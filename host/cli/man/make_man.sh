@@ -6,7 +6,7 @@ fibrad=$1 folder=$2
 version=$("$fibrad" --version | cut -d ' ' -f 2)
 
 page() { # NAME PURPOSE: the text on standard input
-    awk -v page="$1" -v purpose="$2" -v version="$version" -f host/man/man.awk >"$folder/$1.1.part"
+    awk -v page="$1" -v purpose="$2" -v version="$version" -f host/cli/man/man.awk >"$folder/$1.1.part"
     mv "$folder/$1.1.part" "$folder/$1.1"
 }
 

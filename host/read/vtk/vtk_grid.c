@@ -1,5 +1,5 @@
 /* vtk_grid.c - points of a VTK file and the arrays on them that are wanted. SPDX-License-Identifier: MIT */
-#include "vtk/vtk_grid.h"
+#include "read/vtk/vtk_grid.h"
 
 #include <ctype.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* file_arrays.c - beds and meshes of files as arrays, for Python: libfibrad_files.so. SPDX-License-Identifier: MIT */
-#include "files/file_arrays.h"
+#include "python/file_arrays.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -10,7 +10,7 @@
 
 #include "cli/message.h"
 #include "text/read_number.h"
-#include "vtk/vtk_grid.h"
+#include "read/vtk/vtk_grid.h"
 
 enum { NAME = 80 };
 
