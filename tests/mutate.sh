@@ -32,7 +32,7 @@ LINE
     kernel/exchange/*) tests="exchange body_rows protocol part $tests" ;;
     kernel/heat/*) tests="protocol heat $tests" ;;
     */points_*) tests="beam cast $tests" ;;
-    kernel/window/*) tests="areas beam $tests" ;;
+    kernel/window/*) tests="silhouettes areas beam $tests" ;;
     */surface_row*) tests="surface_row $tests" ;;
     */walls.* | */wall_*) tests="walls part estimate $tests" ;;
     kernel/surface/*) tests="surface $tests" ;;

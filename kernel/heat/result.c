@@ -71,16 +71,23 @@ static double exchange_of(const fibrad_heat *heat, const heat_errors *errors, ui
     return heat->emissivity[b] * own.area * fibrad_sqrt(errors->all.variance + squared(own.mean - errors->all.mean));
 }
 
+/* The number of the body that a patch belongs to, counted from the first body that is not a sphere. The search begins
+ * at body `guess`: rays come in the order of the bodies. */
+static uint32_t other_of_patch(const fibrad_heat *heat, uint32_t patch, uint32_t guess) {
+    const uint32_t *first = heat->first + heat->spheres, bodies = heat->bodies - heat->spheres;
+    while (patch < first[guess] || patch >= first[guess + 1]) guess = guess + 1 < bodies ? guess + 1 : 0;
+    return guess;
+}
+
 /* Adds the rays of a stretch to the samples. */
 static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, ray_samples *samples) {
-    const uint32_t *first = heat->first + heat->spheres, bodies = heat->bodies - heat->spheres;
+    const uint32_t bodies = heat->bodies - heat->spheres;
     double half[FIBRAD_HEAT_OTHERS] = {0}, outside = 0;
     uint32_t from = 0, to = 0;
     for (uint32_t k = begin; k < end; k++) {
         const fibrad_heat_ray *ray = &heat->ray[k];
         if (ray->area == 0) continue;
-        while (ray->from < first[from] || ray->from >= first[from + 1]) from = (from + 1) % bodies;
-        while (ray->to < first[to] || ray->to >= first[to + 1]) to = (to + 1) % bodies;
+        from = other_of_patch(heat, ray->from, from), to = other_of_patch(heat, ray->to, to);
         const double flow = ray->area * (heat->source[ray->to] - heat->source[ray->from]);
         half[from] += k % 2 ? -flow : flow, half[to] -= k % 2 ? -flow : flow;
     }
@@ -215,16 +222,15 @@ static double power_error_of(const fibrad_heat *heat, const heat_errors *errors,
 
 /* Area that rays bring to the surroundings. */
 static double rays_outside(const fibrad_heat *heat) {
-    bool outside[FIBRAD_HEAT_OTHERS];
-    const uint32_t *first = heat->first + heat->spheres, bodies = heat->bodies - heat->spheres;
+    bool outside[FIBRAD_HEAT_OTHERS] = {0};
+    const uint32_t bodies = heat->bodies - heat->spheres;
     double area = 0;
     uint32_t from = 0, to = 0;
     for (uint32_t k = 0; k < bodies; k++) outside[k] = fibrad_heat_outside(heat, heat->spheres + k) > 0;
     for (uint32_t r = 0; r < heat->rays; r++) {
         const fibrad_heat_ray *ray = &heat->ray[r];
         if (ray->area == 0) continue;
-        while (ray->from < first[from] || ray->from >= first[from + 1]) from = (from + 1) % bodies;
-        while (ray->to < first[to] || ray->to >= first[to + 1]) to = (to + 1) % bodies;
+        from = other_of_patch(heat, ray->from, from), to = other_of_patch(heat, ray->to, to);
         if (outside[from] != outside[to]) area += ray->area;
     }
     return area;
