@@ -61,6 +61,19 @@ int options_next(struct options *options) {
     return unknown_option(options, text, (int)length + 2);
 }
 
+/* Prints a text in lines of at most HELP_WIDTH columns. The first line goes on at column HELP_TEXT; the others begin
+ * there. */
+enum { HELP_TEXT = 29, HELP_WIDTH = 100 };
+static void print_wrapped(const char *text) {
+    while (strlen(text) > HELP_WIDTH - HELP_TEXT) {
+        size_t length = HELP_WIDTH - HELP_TEXT;
+        while (length > 1 && text[length] != ' ') --length;
+        printf("%.*s\n%*s", (int)length, text, HELP_TEXT, "");
+        text += length + 1;
+    }
+    printf("%s\n", text);
+}
+
 void options_print(const struct option *table) {
     for (; table->name; ++table) {
         char left[64];
@@ -70,7 +83,8 @@ void options_print(const struct option *table) {
                      table->argument ? table->argument : "");
         else
             snprintf(left, sizeof left, "--%s %s", table->name, table->argument ? table->argument : "");
-        printf("  %-26s %s\n", left, table->help);
+        printf("  %-26s ", left);
+        print_wrapped(table->help);
     }
 }
 

@@ -80,6 +80,9 @@ page != "fibrad" && (NR == 1 || in_usage) {
     next
 }
 
+# The text of an option goes on.
+in_options && /^                             [^ ]/ { print plain(substr($0, 30)); next }
+
 /^Examples:$/ { section("EXAMPLES"); in_examples = 1; blank = 0; next }
 /^Commands:$/ { section("COMMANDS"); in_commands = 1; blank = 0; next }
 /^Exit status: / { section("EXIT STATUS"); print plain(substr($0, 14)); blank = 0; next }
