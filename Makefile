@@ -416,12 +416,14 @@ COMPLETIONS = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 
 ## install: the program, its manual pages and completion, documents, libraries, headers and .pc files, to DESTDIR and PREFIX
 install: install-lib $(BUILD)/fibrad man
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(COMPLETIONS) $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(COMPLETIONS) \
+	    $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs/figures
 	install $(BUILD)/fibrad $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(BUILD)/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	install -m 644 host/cli/man/fibrad.bash $(COMPLETIONS)/fibrad
 	install -m 644 README.md CHANGELOG.md LICENSE $(DESTDIR)$(PREFIX)/share/doc/fibrad
 	install -m 644 docs/*.md $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs
+	install -m 644 docs/figures/* $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs/figures
 
 PC_FILES = kernel/fibrad.pc.in host/simple/fibrad_host.pc.in
 

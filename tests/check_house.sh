@@ -3,7 +3,7 @@
 #
 # No circle of includes among files; at most sixteen sources in a folder; no two sources, and no two static functions of
 # kernel and host, share a name; the field's words and not our own; prose of README.md and docs within 120 columns, links
-# there to files that exist. Which folder may include which: tests/check_map.sh.
+# there to files and headings that exist. Which folder may include which: tests/check_map.sh.
 set -u
 
 # what the field has other words for, or what says less than a plain verb; the changelog has names of before
@@ -31,6 +31,12 @@ faults=$(
     for page in README.md docs/*.md; do
         grep -oE '\]\([^)#:]+' "$page" | sed 's|^](||' | while read -r link; do
             test -e "$(dirname "$page")/$link" || echo "$page: no $link"
+        done
+        grep -oE '\]\([^):]*#[^)]+' "$page" | sed 's|^](||' | while IFS='#' read -r file heading; do
+            target=$page
+            test -n "$file" && target=$(dirname "$page")/$file
+            sed -n 's/^##* //p' "$target" | tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9 _-]//g; s/ /-/g' |
+                grep -qxF -- "$heading" || echo "$page: no $file#$heading"
         done
     done
 )
