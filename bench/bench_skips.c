@@ -7,6 +7,7 @@
  * of a random bed and a hash of the rows, for bench/skips.sh, which turns the others off in the source. */
 #include "bed/packing.h"
 #include "bench_bed.h"
+#include "surface/surface_lanes.h"
 
 enum { SAMPLE = 200, DIRECTIONS = 100 };
 

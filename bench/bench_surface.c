@@ -3,6 +3,7 @@
  *     bench_surface [quick] */
 #include "bed/packing.h"
 #include "bench_bed.h"
+#include "surface/surface_lanes.h"
 
 enum { OBSTACLES = 64 };
 static double scratch[FIBRAD_SURFACE_SCRATCH(OBSTACLES)];

@@ -23,14 +23,9 @@
 extern "C" {
 #endif
 
-/* Steps of the method that a rule may switch off. NO_CORRECTION changes the factor. The others cost time and change no
- * bit of the factor. They serve to prove just that. */
+/* A step of the method that a rule may switch off. */
 typedef enum fibrad_surface_flags {
-    FIBRAD_SURFACE_NO_CORRECTION = 1, /* return the plain sum, without the factor exact/unblocked */
-    FIBRAD_SURFACE_NO_HORIZON = 2,    /* visit also nodes that cannot see the other sphere */
-    FIBRAD_SURFACE_NO_REGION = 4,     /* test rays also against obstacles that they cannot meet */
-    FIBRAD_SURFACE_NO_EXACT = 8,      /* sum also if no obstacle is in between */
-    FIBRAD_SURFACE_NO_HIDDEN = 16     /* test every ray also if one obstacle hides the whole sphere */
+    FIBRAD_SURFACE_NO_CORRECTION = 1 /* return the plain sum, without the factor exact/unblocked */
 } fibrad_surface_flags;
 
 /* How a factor is integrated. Zeroed: 55 nodes, corrected, no cutoff, the best instruction set.
@@ -40,7 +35,7 @@ typedef enum fibrad_surface_flags {
  * returned once. */
 typedef struct fibrad_surface_rule {
     uint32_t nodes; /* on each sphere, a Fibonacci number from 8 to 987; 0: 55 */
-    uint32_t flags; /* sum of fibrad_surface_flags */
+    uint32_t flags; /* 0 or FIBRAD_SURFACE_NO_CORRECTION */
     double cutoff;  /* L, used by rows only, as in fibrad_beam_rule; at most 100 periods; 0: none, not if periodic */
     int isa;        /* a fibrad_isa, see above */
 } fibrad_surface_rule;

@@ -2,6 +2,7 @@
 #include "fibrad_surface.h"
 #include "scenes.h"
 #include "suite.h"
+#include "surface/surface_lanes.h"
 #include "surface_plain.h"
 
 #define MOST 16 /* obstacles */

@@ -8,6 +8,7 @@
 /* Host functions that can fail return 0 or one of these, having told why on standard error. */
 enum exit_status {
     STATUS_OK = 0,
+    STATUS_HELP = 1, /* the help is wanted, which ends the reading of options; the program never exits with it */
     STATUS_USAGE = 2,
     STATUS_INPUT = 3,
     STATUS_FILE = 4,

@@ -78,7 +78,7 @@ void options_print(const struct option *table) {
     for (; table->name; ++table) {
         char left[64];
         if (!table->help) continue;
-        if (table->key < KEY_LATER)
+        if (table->key < KEY_LONG)
             snprintf(left, sizeof left, "-%c, --%s %s", table->key, table->name,
                      table->argument ? table->argument : "");
         else

@@ -19,7 +19,7 @@ struct option {
 /* Keys that commands share; their own ones are above. */
 enum {
     KEY_HELP = 'h',
-    KEY_LATER = 256, /* the option of a method that is not built in yet */
+    KEY_LONG = 256, /* no short form from here on */
     KEY_DIRECTIONS,
     KEY_AREAS,
     KEY_POINTS,
@@ -71,9 +71,6 @@ enum {
 
 /* What options_next returns apart from keys. */
 enum { OPTIONS_POSITIONAL = 0, OPTIONS_END = -1, OPTIONS_BAD = -2 };
-
-/* The status of taking KEY_HELP, which ends the walk as an error does; no exit status. */
-enum { STATUS_HELP = -1 };
 
 /* A walk along the arguments; zeroed but for the first four. */
 struct options {

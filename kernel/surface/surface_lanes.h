@@ -10,6 +10,15 @@
 #include "fibrad_surface.h"
 #include "sample/tables.h"
 
+/* Further flags of a rule. They switch off what saves time. They change no bit of the factor; tests prove this, and
+ * benches measure what each saves. */
+enum {
+    FIBRAD_SURFACE_NO_HORIZON = 2, /* visit also nodes that cannot see the other sphere */
+    FIBRAD_SURFACE_NO_REGION = 4,  /* test rays also against obstacles that they cannot meet */
+    FIBRAD_SURFACE_NO_EXACT = 8,   /* sum also if no obstacle is in between */
+    FIBRAD_SURFACE_NO_HIDDEN = 16  /* test every ray also if one obstacle hides the whole sphere */
+};
+
 /* Spheres in arrays on 64-byte boundaries, which can be read up to a multiple of 8. */
 typedef struct fibrad_obstacles {
     double *x, *y, *z, *r;
