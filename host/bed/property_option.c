@@ -213,8 +213,10 @@ int wall_list(const char *option, const char *text, const char *word, double low
     return STATUS_OK;
 }
 
-int wall_values(const char *option, const char *text, double otherwise, double low, double high,
-                const struct walls *walls, double values[WALLS_MAX]) {
+/* Spreads such a list over the walls, `otherwise` where there is neither name nor bare number. Status 0, or
+ * STATUS_USAGE naming the wall that is not there or has no value, `otherwise` being NaN. */
+static int wall_values(const char *option, const char *text, double otherwise, double low, double high,
+                       const struct walls *walls, double values[WALLS_MAX]) {
     struct wall_list list;
     const int status = wall_list(option, text, NULL, low, high, walls, NULL, &list);
     if (status) return status;

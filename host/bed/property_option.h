@@ -81,11 +81,6 @@ void wall_tables_free(struct wall_tables *tables);
 int wall_list(const char *option, const char *text, const char *word, double low, double high,
               const struct walls *walls, struct wall_tables *tables, struct wall_list *list);
 
-/* Spreads such a list over the walls, `otherwise` where there is neither name nor bare number. Status 0, or
- * STATUS_USAGE naming the wall that is not there or has no value, `otherwise` being NaN. */
-int wall_values(const char *option, const char *text, double otherwise, double low, double high,
-                const struct walls *walls, double values[WALLS_MAX]);
-
 /* Reports a quantity of spheres if it was given: its number, its types' numbers or its column; values of walls, each
  * under the key wall_NAME and this ending. */
 void quantity_report(const struct quantity *quantity, const char *key, struct report *report);

@@ -13,7 +13,8 @@ double progress_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-void progress_begin(struct progress *progress, bool forced, const char *what, uint64_t total) {
+/* The bar appears if standard error is a terminal, or if `forced`. */
+static void progress_begin(struct progress *progress, bool forced, const char *what, uint64_t total) {
     const double now = progress_clock();
     *progress = (struct progress){.forced = forced,
                                   .on = forced || isatty(STDERR_FILENO),

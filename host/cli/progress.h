@@ -15,9 +15,6 @@ struct progress {
     double begun, shown; /* [s] */
 };
 
-/* The bar appears if standard error is a terminal, or if `forced`. */
-void progress_begin(struct progress *progress, bool forced, const char *what, uint64_t total);
-
 /* At most ten times a second; for one thread only. */
 void progress_show(struct progress *progress, uint64_t done);
 

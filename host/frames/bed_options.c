@@ -162,21 +162,21 @@ size_t bed_options_column(struct bed_options *asked, const char *name, const cha
     return name ? asked->columns++ : 0;
 }
 
-bool bed_options_series(const struct bed_options *asked) { return asked->range || asked->files > 1; }
+/* Several frames go into one output. */
+static bool is_series(const struct bed_options *asked) { return asked->range || asked->files > 1; }
 
 int bed_options_check(struct bed_options *asked, const char *command, enum content content, const char *picture) {
     if (asked->files == 0) return message(STATUS_USAGE, "FILE is missing; see fibrad %s --help", command);
     asked->radius.place = bed_options_column(asked, asked->radius.column, NULL);
     if (picture && !plot_ending(picture))
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
-    if (picture && bed_options_series(asked))
-        return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
-    if (asked->timed && bed_options_series(asked))
+    if (picture && is_series(asked)) return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
+    if (asked->timed && is_series(asked))
         return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
     if (asked->wall_vtp && !asked->walls.walls.meshes)
         return message(STATUS_USAGE, "--wall-vtp: there is no --wall mesh:FILE");
     asked->outputs.picture = picture;
-    return outputs_check(&asked->outputs, content, bed_options_series(asked) || asked->timed);
+    return outputs_check(&asked->outputs, content, is_series(asked) || asked->timed);
 }
 
 /* What the options say of a bed that was read. */
@@ -308,7 +308,7 @@ int bed_options_metres(struct bed_options *asked, const struct bed *bed, double 
 int bed_options_write(struct bed_options *asked, const struct bed *bed, struct contents *what) {
     what->bed = bed;
     what->file = asked->files > 1 ? asked->name : NULL;
-    what->series = bed_options_series(asked);
+    what->series = is_series(asked);
     return outputs_write(&asked->outputs, what);
 }
 

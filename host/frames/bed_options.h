@@ -104,9 +104,6 @@ int bed_options_frames(struct bed_options *asked, const char *command, bed_optio
 /* Frees what the options have taken. */
 void bed_options_free(struct bed_options *asked);
 
-/* Several frames go into one output. */
-bool bed_options_series(const struct bed_options *asked);
-
 /* How the library is to be run: threads, and a bar that is kept in `asked`. */
 fibrad_run bed_options_run(struct bed_options *asked);
 

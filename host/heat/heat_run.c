@@ -118,7 +118,8 @@ enum { DIRECTIONS_BEGIN = 72, DIRECTIONS_DARK = 168, DIRECTIONS_BRIGHT = 112, PA
 #define BRIGHT 0.35
 #define POINTS 64
 
-fibrad_heat_config heat_config(const struct heat_problem *problem, const struct bed *bed) {
+/* Its configuration with directions for the emissivities of a bed. */
+static fibrad_heat_config heat_config(const struct heat_problem *problem, const struct bed *bed) {
     fibrad_heat_config config = problem->config;
     double areas = 0, sum = 0;
     for (uint32_t i = 0; i < bed->n; ++i) {

@@ -41,9 +41,6 @@ struct heat_report {
     double emission_error;                                        /* of their sigma T^4, both root mean square */
 };
 
-/* Its configuration with directions for the emissivities of a bed. */
-fibrad_heat_config heat_config(const struct heat_problem *problem, const struct bed *bed);
-
 /* Emissivities of the spheres that follow temperatures [K], at these; NaN: left as they are. */
 void heat_emissivities(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
                        double *emissivity);

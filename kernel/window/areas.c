@@ -36,7 +36,7 @@ static void lay_out_arrangement(fibrad_arrangement *arrangement, fibrad_arena *a
     arrangement->second[1] = take_arcs(arena, arrangement->seconds + AREA_LANES);
 }
 
-void fibrad_dense_layout(fibrad_dense *dense, fibrad_arena *arena, uint32_t discs) {
+static void dense_layout(fibrad_dense *dense, fibrad_arena *arena, uint32_t discs) {
     dense->cells_most = 4 * discs, dense->blocks_most = discs / 8 * 3 + 8, dense->discs_most = 8 * discs,
     dense->cuts_most = discs / 2 + 1;
     const size_t slots = (size_t)FIBRAD_DENSE_BLOCK * dense->blocks_most;
@@ -69,7 +69,7 @@ void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t disc
     lay_out_arrangement(&areas->arrangement, arena, discs, circles);
     const size_t end = arena->used;
     arena->used = used; /* a window is resolved by the one or the other */
-    fibrad_dense_layout(&areas->dense, arena, discs);
+    dense_layout(&areas->dense, arena, discs);
     if (arena->used < end) arena->used = end;
     areas->dense.written = false;
 }

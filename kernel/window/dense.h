@@ -47,6 +47,4 @@ typedef struct fibrad_dense {
     bool written; /* its arrays stand where the arrangement's are to be */
 } fibrad_dense;
 
-void fibrad_dense_layout(fibrad_dense *dense, fibrad_arena *arena, uint32_t discs);
-
 #endif

@@ -82,7 +82,8 @@ static double disc_sky(double d, double s, double radius) {
     return sum / (4 * NODES);
 }
 
-void fibrad_wall_sky(const fibrad_wall_view *view, double sky[FIBRAD_REGIONS]) {
+/* How much of `all` a region should have, as a part of all windows: solid angles over 4 pi, from the centre. */
+static void sky_of_regions(const fibrad_wall_view *view, double sky[FIBRAD_REGIONS]) {
     fibrad_zero(sky, FIBRAD_REGIONS * sizeof *sky);
     for (int octant = 0; octant < 8; octant++) {
         double d[3], *of = sky + 4 * octant;
@@ -134,7 +135,7 @@ void fibrad_wall_factors(const fibrad_wall_sums *sums, const fibrad_wall_view *v
                          double wall[FIBRAD_SLOTS], double parts[2]) {
     double sky[FIBRAD_REGIONS], mean[FIBRAD_REGIONS], got[FIBRAD_REGIONS], rest[FIBRAD_WALLS + 1][4];
     double open = 0, sum = 0, mixed = 0, whole = 0;
-    fibrad_wall_sky(view, sky);
+    sky_of_regions(view, sky);
     open_means(sums, mean);
     fibrad_zero(rest, sizeof rest);
     for (uint32_t region = 0; region < FIBRAD_REGIONS; region++) {

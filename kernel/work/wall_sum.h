@@ -62,9 +62,6 @@ typedef struct fibrad_point_sums {
     fibrad_wall_line first_cut[FIBRAD_WALLS + 1];
 } fibrad_point_sums;
 
-/* How much of `all` a region should have, as a part of all windows: solid angles over 4 pi, from the centre. */
-void fibrad_wall_sky(const fibrad_wall_view *view, double sky[FIBRAD_REGIONS]);
-
 /* How much these solid angles count: 1 if no wall cuts the sphere, or all are across one axis; 0 if one does deeply, or
  * if lines are cut. */
 double fibrad_wall_apart(const fibrad_wall_view *view);
