@@ -18,6 +18,7 @@
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _body, _body_mean, _displacement
  *
  * Other headers
+ *   fibrad_limits.h   bounds and defaults of arguments
  *   fibrad_heat.h     net powers and temperatures
  *   fibrad_mesh.h     walls made of triangles
  *   fibrad_part.h     beds divided over several machines
@@ -69,6 +70,8 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+#include "fibrad_limits.h"
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -152,9 +155,6 @@ fibrad_isa fibrad_isa_best(void);
 const char *fibrad_isa_name(int isa);
 
 /* ---- direction, pair --------------------------------------------------------------------------------------------- */
-#define FIBRAD_DIRECTIONS_MIN 8
-#define FIBRAD_DIRECTIONS_MAX 65536
-
 /* Direction k of the spherical Fibonacci set of n directions: z = 1 - (2k + 1)/n, azimuth = k golden angles.
  *   Input    k: 0 to n - 1
  *            n: FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX
@@ -165,7 +165,7 @@ const char *fibrad_isa_name(int isa);
 int fibrad_direction(uint32_t k, uint32_t n, double direction[3]);
 
 /* View factor F12 from sphere 1 to sphere 2 with nothing in between.
- *   Input    r1, r2: radii [L], 1e-150 to 1e150
+ *   Input    r1, r2: radii [L], FIBRAD_LENGTH_MIN to FIBRAD_LENGTH_MAX
  *            gap: distance of the surfaces [L], above -2 min(r1, r2). A negative gap is an overlap. The formula
  *            continues smoothly into overlaps.
  *   Output   f12: relative error at most 1e-14 if r1/r2 is within 1e-4 to 1e4. F12 is continuous and falls as the gap
@@ -176,13 +176,11 @@ int fibrad_direction(uint32_t k, uint32_t n, double direction[3]);
 int fibrad_pair_exact(double r1, double r2, double gap, double *f12);
 
 /* ---- scene ----------------------------------------------------------------------------------------------------- */
-#define FIBRAD_SPHERES_MAX 100000000u
-
 /* The spheres of a scene. The centre of sphere i is x[i stride], y[i stride], z[i stride]. Its radius is r[i stride_r].
  * Example: double at[n][3] is {&at[0][0], &at[0][1], &at[0][2], r, n, .stride = 3}. */
 typedef struct fibrad_spheres {
-    const double *x, *y, *z;   /* L, [n], at most 1e150 and 3e13 times the smallest radius; NULL if n = 0 */
-    const double *r;           /* L, [n], 1e-150 to 1e150; NULL if n = 0 */
+    const double *x, *y, *z;   /* L, [n], at most FIBRAD_LENGTH_MAX and 3e13 times the smallest radius; NULL if n = 0 */
+    const double *r;           /* L, [n], FIBRAD_LENGTH_MIN to FIBRAD_LENGTH_MAX; NULL if n = 0 */
     uint32_t n;                /* 0 to FIBRAD_SPHERES_MAX */
     uint32_t stride, stride_r; /* doubles; 0: 1 */
     const uint64_t *id;        /* [n], seeds of random paths, decide ties; NULL: the index is the id */
@@ -224,8 +222,6 @@ typedef struct fibrad_body {
         double x, y, radius; /* L, position of the axis, and radius above 0 */
     } cylinder;              /* of FIBRAD_BODY_CYLINDER */
 } fibrad_body;
-
-#define FIBRAD_BODIES_MAX 32
 
 /* How a scene is made. Zeroed: open on all sides, no walls, the best instruction set.
  *
@@ -389,9 +385,10 @@ typedef struct fibrad_row {
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
 } fibrad_row;
 
-/* How a beam row is integrated. Zeroed: 233 directions, exact areas, no cutoff, no tolerance. */
+/* How a beam row is integrated. Zeroed: FIBRAD_DIRECTIONS_DEFAULT directions, exact areas, no cutoff, no
+ * tolerance. directions = 0 with a tolerance: rows begin with FIBRAD_DIRECTIONS_FIRST. */
 typedef struct fibrad_beam_rule {
-    uint32_t directions; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: 233, or 100 with a tolerance */
+    uint32_t directions; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: see above */
     uint32_t points;     /* 0: exact visible areas; 64, 128 or 256: that many points per window */
     double cutoff;       /* L; spheres with centres farther than this (1 + 1e-12) are left out; 0: no cutoff */
     double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
@@ -426,9 +423,9 @@ int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
  *   Source   docs/methods.md section 3 */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance);
 
-/* How a row is sampled by rays. Zeroed: 20000 quasi-random rays, seed 0, no cutoff. */
+/* How a row is sampled by rays. Zeroed: FIBRAD_RAYS_DEFAULT quasi-random rays, seed 0, no cutoff. */
 typedef struct fibrad_cast_rule {
-    uint32_t rays; /* 0: 20000 */
+    uint32_t rays; /* 0: FIBRAD_RAYS_DEFAULT */
     int random;    /* 0: quasi-random numbers (method `cast`); 1: pseudo-random numbers (method `mc`) */
     uint64_t seed; /* of the random numbers, together with the id of the sphere */
     double cutoff; /* L, as in fibrad_beam_rule */
@@ -653,13 +650,12 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
     const double *body_emissivity; /* [bodies], 0 to 1 */
-    uint32_t directions;           /* of the first leg; 0: 50 */
-    uint32_t paths;                /* 1 to FIBRAD_PATHS_MAX; 0: 400, of _body 8192 */
-    uint64_t seed;                 /* of random numbers, with the sphere's id; also the `turn` of the first leg */
-    double cutoff;                 /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
-    double tolerance;              /* the error allowed; directions and paths are added until it is met; 0: none */
+    uint32_t directions;           /* of the first leg; 0: FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT */
+    uint32_t paths;   /* 1 to FIBRAD_PATHS_MAX; 0: FIBRAD_PATHS_DEFAULT, of _body FIBRAD_BODY_PATHS_DEFAULT */
+    uint64_t seed;    /* of random numbers, with the sphere's id; also the `turn` of the first leg */
+    double cutoff;    /* L, as in fibrad_beam_rule; paths end at this distance from centre i; 0: none */
+    double tolerance; /* the error allowed; directions and paths are added until it is met; 0: none */
 } fibrad_exchange_rule;
-#define FIBRAD_PATHS_MAX (1u << 28)
 
 /* Row i of the exchange factors of a scene. row->f holds D_ij. Factors to walls, `escaped` and `beyond` count all
  * reflections, too. Their sum is 1 to rounding. The row of a sphere of emissivity 0 is empty, and its sum is 0. No

@@ -29,15 +29,17 @@
 extern "C" {
 #endif
 
-/* How finely the problem is resolved. Zeroed: the defaults. The default of wall_rays is the largest of 262144, 6
- * directions times points, and 8 for each patch of a wall. */
+/* How finely the problem is resolved. Zeroed: the defaults. The default of wall_rays is the largest of
+ * FIBRAD_WALL_RAYS_DEFAULT, 6 directions times points, and 8 for each patch of a wall. */
 typedef struct fibrad_heat_config {
-    uint32_t directions; /* of beams from each sphere, FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: 168 */
-    uint32_t points;     /* of each beam: 64, 128 or 256; 0: 64 */
-    uint32_t patches;    /* of each sphere: 24, 96 or 384; 0: 96 */
-    uint32_t parts;      /* of a sweep, for as many threads, 1 to 1024; changes the last bits; 0: 8 */
-    double cutoff;       /* must be 0, else FIBRAD_E_UNSUPPORTED */
-    uint32_t wall_rays;  /* least number of rays from all walls together, at most 2^30; 0: see above */
+    uint32_t
+        directions;   /* of beams from each sphere, FIBRAD_DIRECTIONS_MIN to _MAX; 0: FIBRAD_HEAT_DIRECTIONS_DEFAULT */
+    uint32_t points;  /* of each beam: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */
+    uint32_t patches; /* of each sphere: 24, 96 or 384; 0: FIBRAD_HEAT_PATCHES_DEFAULT */
+    uint32_t
+        parts;     /* of a sweep, for as many threads, 1 to FIBRAD_HEAT_PARTS_MAX; changes the last bits; 0: _DEFAULT */
+    double cutoff; /* must be 0, else FIBRAD_E_UNSUPPORTED */
+    uint32_t wall_rays; /* least number of rays from all walls together, at most FIBRAD_WALL_RAYS_MAX; 0: see above */
 } fibrad_heat_config;
 
 /* A heat problem: the patches, beams and radiosities of a scene. */
@@ -52,7 +54,7 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
 /* Makes a heat problem. The scene must stay as it is until fibrad_heat_move.
  *   Input    memory[size]: at least fibrad_heat_size bytes. All bytes above are used for beams.
  *            config: NULL for all defaults
- *            scene: radii 1e-30 to 1e30 L
+ *            scene: radii FIBRAD_HEAT_RADIUS_MIN to 1/FIBRAD_HEAT_RADIUS_MIN L
  *   Output   heat: a pointer into memory
  *   Errors   _ARGUMENT, _SIZE, _STATE
  *            _UNSUPPORTED: a cutoff, a known region, or more than 2^26 fine patches where surfaces nearly touch */
@@ -107,16 +109,16 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * is unknown and its hold is 0. side_temperature goes by the caller's numbers of triangles. If sides share a patch,
  * each of them emits the mean of all of them. */
 typedef struct fibrad_heat_sources {
-    const double *temperature;      /* K, [spheres], 0 to 1e20; NaN: unknown */
-    const double *emissivity;       /* [spheres], 0 to 1 */
-    const double *power;            /* sigma K^4 L^2, [spheres], -1e100 to 1e100, above 0 gives off; NULL: all NaN */
-    const double *hold;             /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
-    const double *reference;        /* K, [spheres], 0 to 1e20; NULL: all NaN */
-    const double *body_temperature; /* K, [bodies], 0 to 1e20; NaN: unknown; NULL without walls */
+    const double *temperature; /* K, [spheres], 0 to FIBRAD_TEMPERATURE_MAX; NaN: unknown */
+    const double *emissivity;  /* [spheres], 0 to 1 */
+    const double *power;       /* sigma K^4 L^2, [spheres], up to FIBRAD_POWER_MAX, above 0 gives off; NULL: all NaN */
+    const double *hold;        /* L^2, [spheres], 0 to 1e60; NULL: all 0 */
+    const double *reference;   /* K, [spheres], as temperature; NULL: all NaN */
+    const double *body_temperature; /* K, [bodies], as temperature; NULL without walls */
     const double *body_emissivity;  /* [bodies], 0 to 1; NULL without walls */
     const double *body_power;       /* sigma K^4 L^2, [bodies], as power; NULL: all NaN */
     const unsigned char *insulated; /* [bodies], not 0: insulated; NULL: no wall is insulated */
-    double surroundings;            /* K, 0 to 1e20, of the black surroundings */
+    double surroundings;            /* K, 0 to FIBRAD_TEMPERATURE_MAX, of the black surroundings */
     double sigma;                   /* of E = sigma T^4, 1e-30 to 1e30 */
     double tolerance;               /* residual at which to stop, 0 to below 1; 0: see above */
     uint32_t sweeps_max;            /* sweeps after which to stop; 0: 1000 */

@@ -34,8 +34,7 @@
 extern "C" {
 #endif
 
-#define FIBRAD_TRIANGLES_MAX 100000000u
-#define FIBRAD_NO_BODY       UINT32_MAX
+#define FIBRAD_NO_BODY UINT32_MAX
 
 /* All triangles of all meshes of a scene, for fibrad_scene_config.triangles. fibrad_scene_init copies them.
  *

@@ -28,13 +28,13 @@ typedef enum fibrad_surface_flags {
     FIBRAD_SURFACE_NO_CORRECTION = 1 /* return the plain sum, without the factor exact/unblocked */
 } fibrad_surface_flags;
 
-/* How a factor is integrated. Zeroed: 55 nodes, corrected, no cutoff, the best instruction set.
+/* How a factor is integrated. Zeroed: FIBRAD_NODES_DEFAULT nodes, corrected, no cutoff, the best instruction set.
  *
  * isa is used by fibrad_surface_pair only. FIBRAD_ISA_BEST asks the machine at every call. Under a hypervisor that
  * takes longer than the pair. Other values are not checked against the machine: take the value that fibrad_isa_best has
  * returned once. */
 typedef struct fibrad_surface_rule {
-    uint32_t nodes; /* on each sphere, a Fibonacci number from 8 to 987; 0: 55 */
+    uint32_t nodes; /* on each sphere, a Fibonacci number, FIBRAD_NODES_MIN to _MAX; 0: FIBRAD_NODES_DEFAULT */
     uint32_t flags; /* 0 or FIBRAD_SURFACE_NO_CORRECTION */
     double cutoff;  /* L, used by rows only, as in fibrad_beam_rule; at most 100 periods; 0: none, not if periodic */
     int isa;        /* a fibrad_isa, see above */

@@ -173,7 +173,7 @@ int options_beam(int key, const char *text, struct beam_options *beam) {
 int options_beam_rule(const struct beam_options *beam, fibrad_beam_rule *rule) {
     const bool exact = beam->areas && strcmp(beam->areas, "exact") == 0;
     if (exact && beam->points) return message(STATUS_USAGE, "--points contradicts --areas exact");
-    rule->directions = beam->directions ? beam->directions : 233;
+    rule->directions = beam->directions ? beam->directions : FIBRAD_DIRECTIONS_DEFAULT;
     rule->points = beam->points;
     if (beam->areas && !exact && !beam->points) rule->points = 256;
     return STATUS_OK;

@@ -50,21 +50,33 @@ enum {
     KEY_OWN
 };
 
+/* The text of a macro that is a number, for help texts. */
+#define TEXT_OF(macro)   TEXT_OF_IT(macro)
+#define TEXT_OF_IT(text) #text
+
+/* Texts of bounds that several options have. */
+#define TEXT_DIRECTIONS TEXT_OF(FIBRAD_DIRECTIONS_MIN) " to " TEXT_OF(FIBRAD_DIRECTIONS_MAX)
+
 /* Rows of tables, without braces. */
 #define OPTION_THREADS KEY_THREADS, "threads", "T", "number of threads, 1 to 1024 [all cores]"
 #define OPTION_HELP    KEY_HELP, "help", NULL, "this text"
 
 /* Rows of the options that the methods of view factors take, with braces. */
 #define OPTIONS_METHODS                                                                                                \
-    {KEY_DIRECTIONS, "directions", "N", "beam: number of directions, 8 to 65536; the error falls as N^-1.5 [233]"},    \
+    {KEY_DIRECTIONS, "directions", "N",                                                                                \
+     "beam: number of directions, " TEXT_DIRECTIONS                                                                    \
+     "; the error falls as N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) "]"},                                          \
         {KEY_AREAS, "areas", "KIND",                                                                                   \
          "beam: visible areas, exact or points; points are faster and less accurate [exact]"},                         \
         {KEY_POINTS, "points", "M", "beam: points per window, 64, 128 or 256; implies --areas points [256]"},          \
-        {KEY_NF, "nf", "N", "surface: nodes on each sphere, a Fibonacci number from 8 to 987 [55]"},                   \
+        {KEY_NF, "nf", "N",                                                                                            \
+         "surface: nodes on each sphere, a Fibonacci number from " TEXT_OF(FIBRAD_NODES_MIN) " to " TEXT_OF(           \
+             FIBRAD_NODES_MAX) " [" TEXT_OF(FIBRAD_NODES_DEFAULT) "]"},                                                \
         {KEY_NO_CORRECTION, "no-correction", NULL,                                                                     \
          "surface: plain sums [corrected by the exact factor without obstacles]"},                                     \
         {KEY_RAYS, "rays", "N",                                                                                        \
-         "cast, mc: rays from a sphere; the error falls as N^-0.6 (cast) or N^-0.5 (mc) [20000]"},                     \
+         "cast, mc: rays from a sphere; the error falls as N^-0.6 (cast) or N^-0.5 (mc) [" TEXT_OF(                    \
+             FIBRAD_RAYS_DEFAULT) "]"},                                                                                \
     {                                                                                                                  \
         KEY_SEED, "seed", "S", "cast, mc: seed of the rays [0]"                                                        \
     }

@@ -102,7 +102,7 @@ static int bed_take(struct bed_request *request, const struct options *options, 
         request->cast_given = true;
         return options_cast(key, value, &request->cast);
     case KEY_CUTOFF:
-        return options_number("--cutoff", value, 1e-150, 1e150, &request->cutoff);
+        return options_number("--cutoff", value, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &request->cutoff);
     case KEY_ERROR:
         return options_number("--error", value, 1e-7, 1, &request->error);
     case KEY_TARGETS:
@@ -163,7 +163,8 @@ static int bed_check(struct bed_request *request) {
 
 static int bed_parse(struct bed_request *request, int argc, char **argv) {
     struct options options = {.command = "bed", .table = bed_table, .argc = argc, .argv = argv};
-    *request = (struct bed_request){.method = METHOD_BEAM, .surface.nodes = 55, .cast.rays = 20000};
+    *request = (struct bed_request){
+        .method = METHOD_BEAM, .surface.nodes = FIBRAD_NODES_DEFAULT, .cast.rays = FIBRAD_RAYS_DEFAULT};
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = bed_take(request, &options, key);
     return status ? status : bed_check(request);

@@ -16,7 +16,9 @@ enum { KEY_DROP = KEY_OWN };
 static const struct option exchange_table[] = {
     {OPTION_EMISSIVITY},
     {KEY_RAYS, "rays", "N", "paths from each sphere, for reflections; the error falls as N^-0.5 [400]"},
-    {KEY_DIRECTIONS, "directions", "N", "directions of beams, for the way to the first surface, 8 to 65536 [50]"},
+    {KEY_DIRECTIONS, "directions", "N",
+     "directions of beams, for the way to the first surface, " TEXT_DIRECTIONS
+     " [" TEXT_OF(FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT) "]"},
     {KEY_ERROR, "error", "E",
      "error allowed in every row, estimated, 1e-5 to 1; rays and directions are added until it is met [none]"},
     {OPTION_WALL},

@@ -39,13 +39,15 @@ static const struct option heat_table[] = {
      "patches (reflections from point to point), spheres (one radiosity for each sphere, for emissivities near 1) or, "
      "with --until, factors (exchange factors, powers 2 to 5 % off) [patches; with --until factors that patches "
      "correct]"},
-    {KEY_PATCHES, "patches", "P", "patches of each sphere, 24, 96 or 384 [96]"},
+    {KEY_PATCHES, "patches", "P", "patches of each sphere, 24, 96 or 384 [" TEXT_OF(FIBRAD_HEAT_PATCHES_DEFAULT) "]"},
     {KEY_DIRECTIONS, "directions", "N",
-     "directions of beams, 8 to 65536 [168; 112 if the mean emissivity is 0.35 or less]"},
+     "directions of beams, " TEXT_DIRECTIONS
+     " [" TEXT_OF(FIBRAD_HEAT_DIRECTIONS_DEFAULT) "; 112 if the mean emissivity is 0.35 or less]"},
     {KEY_POINTS, "points", "M", "points of each beam, 64, 128 or 256 [64; with --until 128]"},
     {KEY_WALL_RAYS, "wall-rays", "N",
-     "least number of rays from all walls, up to 2^30; errors of triangles fall as N^-0.5 [262144, more with many "
-     "beams or patches]"},
+     "least number of rays from all walls, up to 2^30; errors of triangles fall as N^-0.5 [" TEXT_OF(
+         FIBRAD_WALL_RAYS_DEFAULT) ", more with many "
+                                   "beams or patches]"},
     {KEY_ERROR, "error", "E",
      "error allowed in powers, estimated, relative to their root mean square, 1e-5 to 1; directions and patches are "
      "added until it is met; see below [none]"},
@@ -57,8 +59,6 @@ static const struct option heat_table[] = {
     {KEY_PLOT, "plot", "OUT", "draw a picture by gnuplot, .svg or .png [none]"},
     OPTIONS_RUN,
     {0, NULL, NULL, NULL}};
-
-#define WALL_RAYS_MOST (1u << 30) /* of fibrad_heat_config */
 
 struct heat_request {
     struct bed_options bed;
@@ -172,7 +172,7 @@ static int heat_take(struct heat_request *request, const struct options *options
         return take_beams(request, value, key);
     case KEY_WALL_RAYS:
         request->counted = true;
-        return options_count("--wall-rays", value, 1, WALL_RAYS_MOST, &request->problem.config.wall_rays);
+        return options_count("--wall-rays", value, 1, FIBRAD_WALL_RAYS_MAX, &request->problem.config.wall_rays);
     case KEY_ERROR:
         return options_number("--error", value, 1e-5, 1, &request->problem.error);
     case KEY_PLOT:

@@ -88,11 +88,11 @@ static int take_obstacle(struct pair_request *request, const char *text) {
 static int take_length(struct pair_request *request, const char *text) {
     switch (request->given++) {
     case 0:
-        return options_number("R1", text, 1e-150, 1e150, &request->r1);
+        return options_number("R1", text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &request->r1);
     case 1:
-        return options_number("R2", text, 1e-150, 1e150, &request->r2);
+        return options_number("R2", text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &request->r2);
     case 2:
-        return options_number("GAP", text, -1e150, 1e150, &request->gap);
+        return options_number("GAP", text, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &request->gap);
     default:
         return message(STATUS_USAGE, "three lengths are allowed, not also '%.40s'; see fibrad pair --help", text);
     }
@@ -134,7 +134,7 @@ static int pair_take(struct pair_request *request, const struct options *options
 
 static int pair_parse(struct pair_request *request, int argc, char **argv) {
     struct options options = {.command = "pair", .table = pair_table, .argc = argc, .argv = argv};
-    request->cast.rays = 20000;
+    request->cast.rays = FIBRAD_RAYS_DEFAULT;
     request->n = 2; /* obstacles behind spheres 1 and 2 */
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = pair_take(request, &options, key);

@@ -110,11 +110,11 @@ typedef struct fibrad_insitu_bed {
 /* Temperatures for which powers are computed. All ranks together have the particles of the rows. */
 typedef struct fibrad_insitu_state {
     double sigma;                   /* of E = sigma T^4, at most 1e30; 0: FIBRAD_STEFAN_BOLTZMANN */
-    double surroundings;            /* K, 0 to 1e20 */
-    const double *body_temperature; /* K, [bodies of the rows], 0 to 1e20 */
+    double surroundings;            /* K, 0 to FIBRAD_TEMPERATURE_MAX */
+    const double *body_temperature; /* K, [bodies of the rows], 0 to FIBRAD_TEMPERATURE_MAX */
     size_t n;                       /* number of particles that this rank owns now */
     const uint64_t *id;             /* [n] */
-    const double *temperature;      /* K, [n], above 0 to 1e20 */
+    const double *temperature;      /* K, [n], above 0 to FIBRAD_TEMPERATURE_MAX */
 } fibrad_insitu_state;
 
 /* Net powers summed over all ranks, the same on all ranks. A power is above 0 where heat is gained. All of them add up

@@ -14,11 +14,10 @@
 #define CUTOFF_RADII   8  /* mean radii and a largest diameter: 1.4e-4 of what equal spheres emit leaves it at 0.8 */
 #define CUTOFF_DARK    10 /* the same where reflections carry it on */
 #define DARK_BELOW     0.4
-#define CELLS_A_CUTOFF 8     /* of the coarse map */
-#define REACH_RADII    1.5   /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad_part.h */
-#define LENGTH_MAX     1e150 /* the kernel's */
-#define PERIODS_MAX    100   /* as far as the kernel's beams go */
-#define OPENINGS_MAX   6     /* one a side */
+#define CELLS_A_CUTOFF 8   /* of the coarse map */
+#define REACH_RADII    1.5 /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad_part.h */
+#define PERIODS_MAX    100 /* as far as the kernel's beams go */
+#define OPENINGS_MAX   6   /* one a side */
 
 /* ---- begin and end ---- */
 
@@ -152,7 +151,7 @@ static int check_bed(struct insitu_build *b) {
         fibrad_plane *opening = &b->opening[k];
         *opening = bed->opening[k];
         if (isnan(opening->at))
-            opening->at = opening->upper ? LENGTH_MAX : -LENGTH_MAX; /* as long as there is no bed */
+            opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* as long as there is no bed */
     }
     const fibrad_scene_config config = {.period = {b->period[0], b->period[1], b->period[2]},
                                         .body = body,
@@ -183,10 +182,10 @@ static int take_particles(struct insitu_build *b) {
         fibrad_particle p = {.id = bed->id[i], .radius = bed->radius[i], .emissivity = bed->emissivity[i]};
         for (int axis = 0; axis < 3; ++axis) {
             const double x = bed->x[3 * i + (size_t)axis], period = b->period[axis];
-            if (!(fabs(x) <= LENGTH_MAX)) return refuse_particle(message, p.id, "a coordinate is not finite");
+            if (!(fabs(x) <= FIBRAD_LENGTH_MAX)) return refuse_particle(message, p.id, "a coordinate is not finite");
             p.x[axis] = period > 0 ? x - period * floor((x - bed->low[axis]) / period) : x;
         }
-        if (!(p.radius > 0 && p.radius <= LENGTH_MAX))
+        if (!(p.radius > 0 && p.radius <= FIBRAD_LENGTH_MAX))
             return refuse_particle(message, p.id, "its radius is not above 0");
         if (!(p.emissivity >= 0 && p.emissivity <= 1))
             return refuse_particle(message, p.id, "its emissivity is not between 0 and 1");

@@ -6,10 +6,8 @@
 #include "couple/insitu.h"
 #include "fibrad_part.h"
 
-#define TEMPERATURE_MAX 1e20 /* its fourth power is far from overflow */
-
 /* zero: whether it may be 0. */
-static int temperature_valid(double t, int zero) { return (zero ? t >= 0 : t > 0) && t <= TEMPERATURE_MAX; }
+static int temperature_valid(double t, int zero) { return (zero ? t >= 0 : t > 0) && t <= FIBRAD_TEMPERATURE_MAX; }
 
 static double sigma_of(const fibrad_insitu_state *state) {
     return state->sigma == 0 ? FIBRAD_STEFAN_BOLTZMANN : state->sigma;

@@ -466,7 +466,6 @@ contains
         status = check_sizes(size(x), size(y), size(z), size(r))
         if (status == fibrad_ok) status = copy_triangles(triangles, mesh)
         if (status /= fibrad_ok) return
-        rule%directions = 233
         if (present(tolerance)) rule = c_beam_rule(tolerance=tolerance)
         if (present(directions)) rule%directions = int(directions, c_int32_t)
         if (present(cutoff)) rule%cutoff = cutoff

@@ -131,7 +131,7 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
         asked->positions = true;
         return STATUS_OK;
     case KEY_RADIUS:
-        return quantity_option("--radius", value, 1e-150, 1e150, &asked->radius);
+        return quantity_option("--radius", value, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &asked->radius);
     case KEY_LENGTH_UNIT:
         return take_length_unit(value, asked);
     case KEY_SCRATCH:
@@ -187,7 +187,8 @@ static int complete_bed(struct bed_options *asked, struct bed *bed) {
         snprintf(bed->units, sizeof bed->units, "%s", asked->length_unit); /* for what is written of it */
     if (!asked->radius.given) return STATUS_OK;
     double *radius; /* the bed's own array has room for more than this frame */
-    const int status = quantity_values(&asked->radius, bed, asked->name, "radius", 0, 1e-150, 1e150, &radius);
+    const int status =
+        quantity_values(&asked->radius, bed, asked->name, "radius", 0, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &radius);
     if (!status) memcpy(bed->r, radius, bed->n * sizeof *radius);
     free(radius);
     return status;

@@ -114,7 +114,12 @@ static void heat_scale(const struct bed *bed, uint32_t walls, double square_metr
 
 /* Where to begin with an error wanted, by default, and up to which mean emissivity patches err more than the fewest
  * directions that have half of their beams left out. Source: docs/heat.md, Settings. */
-enum { DIRECTIONS_BEGIN = 72, DIRECTIONS_DARK = 168, DIRECTIONS_BRIGHT = 112, PATCHES_BRIGHT = 96 };
+enum {
+    DIRECTIONS_BEGIN = 72,
+    DIRECTIONS_DARK = FIBRAD_HEAT_DIRECTIONS_DEFAULT,
+    DIRECTIONS_BRIGHT = 112,
+    PATCHES_BRIGHT = FIBRAD_HEAT_PATCHES_DEFAULT
+};
 #define BRIGHT 0.35
 #define POINTS 64
 
@@ -206,8 +211,7 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
 }
 
 /* Rays between walls by default, and the most. Source: fibrad_heat_config. */
-#define WALL_RAYS     262144u
-#define WALL_RAYS_MAX (1u << 23)
+#define WALL_RAYS_MOST (1u << 23)
 
 /* Estimated errors over what --error allows. Powers of spheres that nearly cancel need not be known to E of themselves.
  */
@@ -231,7 +235,7 @@ static double heat_worst(const struct heat_excess *over) {
 
 #define HELPED       0.6  /* what is left of an error, at the most, by something that helps */
 #define PATCHES_MOST 0.92 /* of what is allowed: more than that, and beams would have to be without error */
-enum { PATCHES_MAX = 384, GROWTH = 8 };
+enum { GROWTH = 8 };
 
 /* So many times the beams, or all there may be. */
 static void heat_more_beams(fibrad_heat_config *config, double times) {
@@ -246,8 +250,8 @@ static void heat_more_patches(fibrad_heat_config *config) {
 
 /* As many more rays as the walls' error calls for. */
 static void heat_more_rays(fibrad_heat_config *config, double over) {
-    const uint32_t rays = config->wall_rays > 0 ? config->wall_rays : WALL_RAYS;
-    config->wall_rays = (uint32_t)fmin(rays * fmin(fmax(over * over, 2), GROWTH), WALL_RAYS_MAX);
+    const uint32_t rays = config->wall_rays > 0 ? config->wall_rays : FIBRAD_WALL_RAYS_DEFAULT;
+    config->wall_rays = (uint32_t)fmin(rays * fmin(fmax(over * over, 2), GROWTH), WALL_RAYS_MOST);
 }
 
 /* What is next: more of what makes the larger part of the spheres' error; more patches where beams do not help
@@ -255,7 +259,7 @@ static void heat_more_rays(fibrad_heat_config *config, double over) {
  * rise. */
 static fibrad_heat_config heat_refine(fibrad_heat_config config, const struct heat_excess *over,
                                       const struct heat_excess *last) {
-    const bool finer = config.patches < PATCHES_MAX;
+    const bool finer = config.patches < FIBRAD_HEAT_PATCHES_MAX;
     if (over->walls > 1 && over->walls <= HELPED * last->walls) heat_more_rays(&config, over->walls);
     if (hypot(over->beams, over->patches) > 1) {
         if (over->patches > PATCHES_MOST && finer)
@@ -277,7 +281,7 @@ static fibrad_heat_config heat_refine(fibrad_heat_config config, const struct he
 #define BEAMS_A_RAY 12.0
 static double heat_work(const struct bed *bed, uint32_t walls, const fibrad_heat_config *config) {
     const double beams = (double)config->directions * config->points;
-    const double rays = fmax(fmax(config->wall_rays, WALL_RAYS), 6 * beams);
+    const double rays = fmax(fmax(config->wall_rays, FIBRAD_WALL_RAYS_DEFAULT), 6 * beams);
     return bed->n * beams + (walls > 0 ? BEAMS_A_RAY * rays : 0);
 }
 

@@ -71,7 +71,9 @@ bool opening(const char *text, fibrad_plane *plane) {
         const std::string begin = std::string(sides[side]) + "=open";
         if (begin.compare(0, begin.size(), text, std::min(std::strlen(text), begin.size())) != 0) continue;
         text += begin.size();
-        if (*text != 0 && (*text != ',' || !numbers(text + 1, -1e150, 1e150, &at) || at.size() != 1)) return false;
+        if (*text != 0 &&
+            (*text != ',' || !numbers(text + 1, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &at) || at.size() != 1))
+            return false;
         *plane = {side / 2, side % 2, at[0]};
         return true;
     }
@@ -82,7 +84,8 @@ bool opening(const char *text, fibrad_plane *plane) {
 bool wall(const char *text, radiant_wall *wall) {
     const char *equals = std::strchr(text, '=');
     std::vector<double> values;
-    if (equals == nullptr || !numbers(equals + 1, -1e150, 1e150, &values) || values.size() < 2) return false;
+    if (equals == nullptr || !numbers(equals + 1, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &values) || values.size() < 2)
+        return false;
     wall->name.assign(text, equals);
     wall->temperature = values[0];
     wall->emissivity = values[1];
@@ -158,7 +161,8 @@ const char *take(int key, const char *text, liggghts_options *options) {
     case 'R':
         return whole(text, 1, &options->rows) ? nullptr : "is not a number of steps above 0";
     case 'c':
-        return number(text, 1e-150, 1e150, &options->config.cutoff) ? nullptr : "is not a length above 0";
+        return number(text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &options->config.cutoff) ? nullptr
+                                                                                           : "is not a length above 0";
     case 't':
         return number(text, 1e-5, 1, &options->config.tolerance) ? nullptr : "is not within 1e-5 and 1";
     default:

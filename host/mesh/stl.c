@@ -15,7 +15,6 @@
 #include "text/read_lines.h"
 
 enum { HEAD = 84, RECORD = 50, NORMAL = 12 };
-#define COORDINATE_LARGEST 1e150 /* Source: fibrad_triangles */
 
 const char *stl_place(bool text, uint64_t place, char said[STL_PLACE]) {
     snprintf(said, STL_PLACE, "%s %llu", text ? "line" : "triangle", (unsigned long long)place);
@@ -109,7 +108,7 @@ static int read_corner(const struct lines *lines, const struct fields *fields, d
     for (size_t axis = 0; axis < 3; ++axis) {
         const int status = lines_number(lines, "the coordinate", fields->at[axis + 1], &corner[axis]);
         if (status) return status;
-        if (fabs(corner[axis]) > COORDINATE_LARGEST)
+        if (fabs(corner[axis]) > FIBRAD_LENGTH_MAX)
             return message_at(STATUS_INPUT, lines->name, lines->number, "the coordinate %g is too large", corner[axis]);
     }
     return STATUS_OK;

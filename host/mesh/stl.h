@@ -18,8 +18,8 @@ struct stl {
     char (*name)[SOLID_NAME]; /* [solids] shortened; "": none */
 };
 
-/* Reads a file; to be freed also after an error. Coordinates are finite and within 1e150. Status 0; STATUS_FILE,
- * STATUS_INPUT, STATUS_MEMORY or that of a signal, after a message that names the line or the triangle. */
+/* Reads a file; to be freed also after an error. Coordinates are finite and within FIBRAD_LENGTH_MAX. Status 0;
+ * STATUS_FILE, STATUS_INPUT, STATUS_MEMORY or that of a signal, after a message that names the line or the triangle. */
 int stl_read(struct stl *stl, const char *path);
 void stl_free(struct stl *stl);
 

@@ -63,7 +63,7 @@ static fibrad_exchange_rule black_bodies(const fibrad_job *job, const fibrad_bed
         if (cast->rays) rule.paths = cast->rays;
         rule.seed = cast->seed, rule.cutoff = cast->cutoff;
     } else if (!options->surface) {
-        rule.paths = PER_DIRECTION * (beam && beam->directions ? beam->directions : 233);
+        rule.paths = PER_DIRECTION * (beam && beam->directions ? beam->directions : FIBRAD_DIRECTIONS_DEFAULT);
         if (beam) rule.tolerance = beam->tolerance, rule.cutoff = beam->cutoff;
     }
     rule.paths = fibrad_job_body_paths(job, rule.paths);

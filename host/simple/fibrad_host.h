@@ -266,9 +266,9 @@ typedef void fibrad_observe(void *context, double time, const double *temperatur
 /* A span of time. Times are in seconds if powers are in watts and capacities in J/K. Set temperature, capacity and
  * duration. The other fields may be zeroed. */
 typedef struct fibrad_span {
-    double *temperature;            /* K, [spheres], above 0 to 1e20; in: at the beginning; out: at the end */
-    const double *capacity;         /* J/K, [spheres], above 0 to 1e300 */
-    double duration;                /* s, above 0 to 1e300 */
+    double *temperature;    /* K, [spheres], above 0 to FIBRAD_TEMPERATURE_MAX; in: at the beginning; out: at the end */
+    const double *capacity; /* J/K, [spheres], above 0 to 1e300 */
+    double duration;        /* s, above 0 to 1e300 */
     const double *body_temperature; /* K, [bodies], at the end, linear in between; NULL: constant */
     const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
     double step;                    /* s; all steps are equal and at most this long; 0: automatic steps */

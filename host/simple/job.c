@@ -131,7 +131,7 @@ static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_
     if (tasks) {
         tasks->job = rows->job;
         if (rule) tasks->rule = *rule;
-        if (!tasks->rule.directions) tasks->rule.directions = 233;
+        if (!tasks->rule.directions) tasks->rule.directions = FIBRAD_DIRECTIONS_DEFAULT;
         const uint32_t most = PARTS_EACH * (uint32_t)team->threads, n = tasks->rule.directions;
         tasks->parts = most < PARTS_MAX ? most : PARTS_MAX;
         if (tasks->parts > n) tasks->parts = n;

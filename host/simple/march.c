@@ -239,7 +239,7 @@ static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const f
         return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < t->n; ++i) {
         t->fault = (fibrad_fault){i, i, UINT32_MAX, 0, FIBRAD_WHY_TEMPERATURE};
-        if (!(span->temperature[i] > 0 && span->temperature[i] <= 1e20)) return FIBRAD_E_ARGUMENT;
+        if (!(span->temperature[i] > 0 && span->temperature[i] <= FIBRAD_TEMPERATURE_MAX)) return FIBRAD_E_ARGUMENT;
         t->fault.why = FIBRAD_WHY_CAPACITY;
         if (!(span->capacity[i] > 0 && span->capacity[i] <= 1e300)) return FIBRAD_E_ARGUMENT;
         t->fault.why = FIBRAD_WHY_POWER;
@@ -259,9 +259,9 @@ static bool surfaces_given(const fibrad_transient *t, const fibrad_heat_sources 
 /* By factors the temperatures of bodies are to be given. */
 static bool outside_known(const fibrad_transient *t, const fibrad_heat_sources *s) {
     if (t->config.method == FIBRAD_TRANSIENT_PATCHES) return true;
-    bool known = s->surroundings >= 0 && s->surroundings <= 1e20;
+    bool known = s->surroundings >= 0 && s->surroundings <= FIBRAD_TEMPERATURE_MAX;
     for (uint32_t b = 0; b < t->bodies; ++b)
-        known = known && s->body_temperature[b] >= 0 && s->body_temperature[b] <= 1e20 &&
+        known = known && s->body_temperature[b] >= 0 && s->body_temperature[b] <= FIBRAD_TEMPERATURE_MAX &&
                 !(s->insulated && s->insulated[b]);
     return known;
 }
@@ -271,7 +271,8 @@ int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sour
         return FIBRAD_E_ARGUMENT;
     if (t->n > 0 && (!sources->temperature || !result->power)) return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < t->n; ++i)
-        if (!(sources->temperature[i] >= 0 && sources->temperature[i] <= 1e20)) return FIBRAD_E_ARGUMENT;
+        if (!(sources->temperature[i] >= 0 && sources->temperature[i] <= FIBRAD_TEMPERATURE_MAX))
+            return FIBRAD_E_ARGUMENT;
     const int status = fibrad_transient_prepare(t, sources);
     if (status) return status;
     fibrad_heat_sources given = *sources; /* temperatures are given, so powers are not */

@@ -4,8 +4,8 @@
 
 #define FIBRAD_PI 3.14159265358979323846
 
-/* Lengths must leave room for squares, and coordinates for the digits of a radius. */
-#define FIBRAD_LENGTH_MAX     1e150
-#define FIBRAD_COORDINATE_MAX 0x1p45 /* smallest radii, or half lengths of all meshes together */
+/* The largest coordinate, in smallest radii or half lengths of all meshes together. It leaves room for the digits of a
+ * radius. */
+#define FIBRAD_COORDINATE_MAX 0x1p45
 
 #endif

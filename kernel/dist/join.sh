@@ -67,7 +67,9 @@ expand() {
 # ---- fibrad.h
 {
     echo "/* fibrad $version: the public headers of the kernel in one, made by 'make dist'. SPDX-License-Identifier: MIT */"
-    for header in fibrad.h fibrad_heat.h fibrad_mesh.h fibrad_part.h fibrad_surface.h fibrad_furnace.h; do grep -v '^#include "fibrad\.h"' $header; done
+    for header in fibrad_limits.h fibrad.h fibrad_heat.h fibrad_mesh.h fibrad_part.h fibrad_surface.h fibrad_furnace.h; do
+        grep -v '^#include "fibrad' $header
+    done
 } >"$to/fibrad.h"
 
 # ---- fibrad.c

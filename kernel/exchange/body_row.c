@@ -7,8 +7,6 @@
 #include "exchange/paths.h"
 #include "row/row.h"
 
-#define FIRST_BODY_PATHS 8192u
-
 /* Checks the arguments. */
 static int body_begin(const fibrad_scene *scene, uint32_t body, const fibrad_exchange_rule *rule, uint32_t part,
                       double wall_emissivity[FIBRAD_SLOTS]) {
@@ -87,7 +85,7 @@ int fibrad_exchange_body(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     const bool black = rule->emissivity == NULL && rule->body_emissivity == NULL;
     fibrad_sobol sobol;
     fibrad_sobol_make(&sobol);
-    const uint32_t wanted = rule->paths > 0 ? rule->paths : FIRST_BODY_PATHS;
+    const uint32_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_BODY_PATHS_DEFAULT;
     const uint32_t slot = scene->slot[body], count = (wanted + FIBRAD_BODY_PARTS - 1) / FIBRAD_BODY_PARTS;
     const uint64_t own = (uint64_t)slot * FIBRAD_BODY_PARTS + part; /* no sphere's number: from the highest down */
     fibrad_paths paths = {.tracer = fibrad_tracer_of(space, scene),

@@ -6,9 +6,6 @@
 #include "exchange/paths.h"
 #include "row/beam.h"
 
-#define FIRST_DIRECTIONS 50u
-#define FIRST_PATHS      400u
-
 /* So many paths tell whether there are mirrors: that most of what paths carry is left at their end, or that they take
  * more rays than this on the mean. */
 #define FEW_PATHS  4u
@@ -62,7 +59,7 @@ static fibrad_paths paths_of(const exchange_task *task, fibrad_workspace *space,
 /* The first leg: a beam row, and the error of what it makes spheres and walls absorb. */
 static int first_leg(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_exchange_rule *rule,
                      fibrad_row *row, double *error) {
-    fibrad_beam_rule beam = {.directions = rule->directions > 0 ? rule->directions : FIRST_DIRECTIONS,
+    fibrad_beam_rule beam = {.directions = rule->directions > 0 ? rule->directions : FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT,
                              .cutoff = rule->cutoff,
                              .turn = rule->seed};
     int status = fibrad_beam_complete(&beam, &beam);
@@ -134,7 +131,7 @@ static double lost_of(const fibrad_paths *paths, double carried) {
 static void follow_paths(fibrad_paths *paths, const fibrad_exchange_rule *rule, double carried, double weight,
                          double wanted) {
     fibrad_paths_function *follow = FIBRAD_VERSION_OF(fibrad_paths_follow, paths->tracer->scene->facts.isa);
-    const uint64_t first = rule->paths > 0 ? rule->paths : FIRST_PATHS;
+    const uint64_t first = rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT;
     uint64_t done = fibrad_paths_begin(paths, first), next = done;
     do {
         follow(paths, done, next);
@@ -255,7 +252,7 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     }
     fibrad_paths paths = paths_of(&task, space, scene, i);
     paths.first = true;
-    const double count = (double)fibrad_paths_begin(&paths, rule->paths > 0 ? rule->paths : FIRST_PATHS);
+    const double count = (double)fibrad_paths_begin(&paths, rule->paths > 0 ? rule->paths : FIBRAD_PATHS_DEFAULT);
     work->triangle = paths.back;
     if (paths.back != UINT32_MAX) return FIBRAD_E_BACK;
     if (!fibrad_finite(paths.absorbed)) return FIBRAD_E_ARGUMENT; /* an emissivity on the way was NaN */

@@ -11,25 +11,18 @@
 #include "heat/wall_patch.h"
 #include "sample/direction.h"
 
-#define HEAT_DIRECTIONS 168u
-#define HEAT_POINTS     64u
-#define HEAT_PATCHES    96u
-#define HEAT_PARTS      8u
-#define HEAT_PARTS_MAX  1024u
-#define HEAT_RAYS_MAX   (1u << 30)
-#define HEAT_THIN_MAX   2u
-#define HEAT_KEPT       36u /* beams of each patch that are not to be thinned out */
-#define HEAT_NODES_MAX  (1u << 26)
-#define SPARE_NODES     1024u /* for fine patches that come with a move */
-#define HEAT_RADIUS_MIN 1e-30 /* and its inverse the largest */
+#define HEAT_THIN_MAX  2u
+#define HEAT_KEPT      36u /* beams of each patch that are not to be thinned out */
+#define HEAT_NODES_MAX (1u << 26)
+#define SPARE_NODES    1024u /* for fine patches that come with a move */
 
 static fibrad_heat_config heat_config_of(const fibrad_heat_config *config) {
     fibrad_heat_config c = {0};
     if (config != NULL) c = *config;
-    if (c.directions == 0) c.directions = HEAT_DIRECTIONS;
-    if (c.points == 0) c.points = HEAT_POINTS;
-    if (c.patches == 0) c.patches = HEAT_PATCHES;
-    if (c.parts == 0) c.parts = HEAT_PARTS;
+    if (c.directions == 0) c.directions = FIBRAD_HEAT_DIRECTIONS_DEFAULT;
+    if (c.points == 0) c.points = FIBRAD_HEAT_POINTS_DEFAULT;
+    if (c.patches == 0) c.patches = FIBRAD_HEAT_PATCHES_DEFAULT;
+    if (c.parts == 0) c.parts = FIBRAD_HEAT_PARTS_DEFAULT;
     return c;
 }
 
@@ -43,10 +36,10 @@ static int heat_check(const fibrad_heat_config *c, const fibrad_scene *scene) {
     if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
     const bool valid = c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX &&
                        fibrad_disc_points_get(c->points, &set) == FIBRAD_OK && side_of(c->patches) > 0 &&
-                       c->parts <= HEAT_PARTS_MAX && scene->facts.spheres <= (UINT32_MAX >> 1) / c->patches &&
-                       c->cutoff >= 0 && c->wall_rays <= HEAT_RAYS_MAX &&
-                       (scene->facts.spheres == 0 ||
-                        (scene->facts.radius_min >= HEAT_RADIUS_MIN && scene->facts.radius_max <= 1 / HEAT_RADIUS_MIN));
+                       c->parts <= FIBRAD_HEAT_PARTS_MAX && scene->facts.spheres <= (UINT32_MAX >> 1) / c->patches &&
+                       c->cutoff >= 0 && c->wall_rays <= FIBRAD_WALL_RAYS_MAX &&
+                       (scene->facts.spheres == 0 || (scene->facts.radius_min >= FIBRAD_HEAT_RADIUS_MIN &&
+                                                      scene->facts.radius_max <= 1 / FIBRAD_HEAT_RADIUS_MIN));
     return !valid ? FIBRAD_E_ARGUMENT : c->cutoff > 0 || scene->region ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
 }
 

@@ -17,8 +17,7 @@
 #include "scene/scene.h"
 #include "work/work.h"
 
-#define FIBRAD_HEAT_PATCHES_MAX 384   /* of a sphere */
-#define FIBRAD_HEAT_TASK        1024u /* rays of walls in one task */
+#define FIBRAD_HEAT_TASK 1024u /* rays of walls in one task */
 
 #define FIBRAD_HEAT_FOUR   4u                  /* patches of a four */
 #define FIBRAD_HEAT_BLOCK  256u                /* patches of a wall that may be in one pencil */

@@ -5,7 +5,6 @@
 #define HEAT_TOLERANCE  1e-3
 #define FREE_TOLERANCE  1e-5 /* where temperatures are unknown: errors of long waves are larger than their residuals */
 #define HEAT_SWEEPS_MAX 1000u
-#define POWER_MAX       1e100
 #define HOLD_MAX        1e60
 
 void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
@@ -16,7 +15,7 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
 static bool is_share(double x) { return x >= 0 && x <= 1; }
 
 /* Within these bounds no square of an emission, nor its product with areas, leaves the range of doubles. */
-static bool is_temperature(double t) { return t >= 0 && t <= 1e20; }
+static bool is_temperature(double t) { return t >= 0 && t <= FIBRAD_TEMPERATURE_MAX; }
 static bool is_sigma(double sigma) { return sigma >= 1e-30 && sigma <= 1e30; }
 
 /* What the sources say of one body. */
@@ -56,7 +55,7 @@ static int source_why(const radiator *s) {
     }
     if (is_given(s->reference) ? !is_temperature(s->reference) : s->hold != 0) return FIBRAD_WHY_HOLD;
     if (!is_given(s->power)) return FIBRAD_WHY_NEITHER;
-    if (!(fibrad_abs(s->power) <= POWER_MAX)) return FIBRAD_WHY_POWER;
+    if (!(fibrad_abs(s->power) <= FIBRAD_POWER_MAX)) return FIBRAD_WHY_POWER;
     if (!(s->hold >= 0 && s->hold <= HOLD_MAX)) return FIBRAD_WHY_HOLD;
     return s->emissivity > 0 || s->power == 0 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_REFLECTS;
 }

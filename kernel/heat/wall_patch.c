@@ -13,7 +13,6 @@
 #define FEW            16.0 /* times the patches of a sphere */
 #define OUTSIDE        4.0  /* times as many may lie on triangles beyond walls */
 #define RAYS_PER_PATCH 8.0
-#define RAYS_MIN       262144.0
 #define RAYS_PER_BEAM  6.0
 
 /* The longest finite edge of the container; 1 if there is none. */
@@ -115,7 +114,7 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
     const double of_spheres = (double)heat->spheres * heat->config.patches,
                  most = FEW * heat->config.patches + of_spheres / 4;
     const double square = fibrad_sqrt(fibrad_max(surface / of_spheres, area / most));
-    const double least = fibrad_max(RAYS_MIN, heat->config.wall_rays);
+    const double least = fibrad_max(FIBRAD_WALL_RAYS_DEFAULT, heat->config.wall_rays);
     const double rays = fibrad_max(least, RAYS_PER_BEAM * heat->beams);
     const double density = fibrad_max(RAYS_PER_PATCH / (square * square), rays / area);
     heat->patch_area = fibrad_max(square * square, meshes / (OUTSIDE * most));

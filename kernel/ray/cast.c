@@ -2,8 +2,6 @@
  */
 #include "ray/cast_lanes.h"
 
-#define RAYS 20000u
-
 static int cast_compute(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *task,
                         fibrad_row *row) {
     return FIBRAD_VERSION_OF(fibrad_cast_lanes, scene->facts.isa)(scene, space, i, task, row);
@@ -16,7 +14,7 @@ int fibrad_cast_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
         return FIBRAD_E_ARGUMENT;
     fibrad_cast_task task = {.means = means};
     if (rule != NULL) task.rule = *rule;
-    if (task.rule.rays == 0) task.rule.rays = RAYS;
+    if (task.rule.rays == 0) task.rule.rays = FIBRAD_RAYS_DEFAULT;
     if (task.rule.random != 0 && task.rule.random != 1) return FIBRAD_E_ARGUMENT;
     if (!(task.rule.cutoff >= 0 && fibrad_finite(task.rule.cutoff))) return FIBRAD_E_ARGUMENT;
     return fibrad_row_run(scene, work, i, &(fibrad_row_method){cast_compute, &task, 0, 0}, row);

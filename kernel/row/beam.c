@@ -3,9 +3,6 @@
 #include "row/beam.h"
 #include "row/beam_lanes.h"
 
-#define BEAM_DIRECTIONS 233u
-#define BEAM_PILOT      100u /* directions to begin with, if there is a tolerance */
-
 /* In steps of an eighth, each of which takes a sixth off the error, to a little less than is wanted; a fifth more in
  * any case, for rows whose error falls more slowly. */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance) {
@@ -17,7 +14,8 @@ uint32_t fibrad_directions_for(uint32_t directions, double error, double toleran
 int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) {
     *rule = given != NULL ? *given : (fibrad_beam_rule){0};
     if (!(rule->tolerance >= 0 && fibrad_finite(rule->tolerance))) return FIBRAD_E_ARGUMENT;
-    if (rule->directions == 0) rule->directions = rule->tolerance > 0 ? BEAM_PILOT : BEAM_DIRECTIONS;
+    if (rule->directions == 0)
+        rule->directions = rule->tolerance > 0 ? FIBRAD_DIRECTIONS_FIRST : FIBRAD_DIRECTIONS_DEFAULT;
     if (rule->directions < FIBRAD_DIRECTIONS_MIN || rule->directions > FIBRAD_DIRECTIONS_MAX) return FIBRAD_E_ARGUMENT;
     return rule->cutoff >= 0 && fibrad_finite(rule->cutoff) ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }

@@ -172,7 +172,7 @@ static int measure_spheres(fibrad_scene *scene, const fibrad_spheres *s, fibrad_
             if (i == 0 || c > scene->high[axis]) scene->high[axis] = c;
         }
         const double r = radius_of(s, i);
-        if (!(r >= 1 / FIBRAD_LENGTH_MAX && r <= FIBRAD_LENGTH_MAX)) return sphere_fault(fault, i, FIBRAD_WHY_RADIUS);
+        if (!(r >= FIBRAD_LENGTH_MIN && r <= FIBRAD_LENGTH_MAX)) return sphere_fault(fault, i, FIBRAD_WHY_RADIUS);
         scene->facts.radius_min = fibrad_min(scene->facts.radius_min, r);
         scene->facts.radius_max = fibrad_max(scene->facts.radius_max, r);
     }
@@ -397,7 +397,7 @@ static int check_mesh(const fibrad_scene *scene, uint32_t *triangle) {
         images *= 2 + (size + window + 2 * mesh->grain) / mesh->period[axis];
         if (size > window && size > most * mesh->period[axis]) most = size / mesh->period[axis], widest = axis;
     }
-    const bool small = !(FIBRAD_COORDINATE_MAX * mesh->extent >= fibrad_max(farthest, 1 / FIBRAD_LENGTH_MAX));
+    const bool small = !(FIBRAD_COORDINATE_MAX * mesh->extent >= fibrad_max(farthest, FIBRAD_LENGTH_MIN));
     if (!small && images <= MESH_IMAGES) return FIBRAD_OK;
     *triangle = small ? 0 : widest < 3 ? fibrad_mesh_highest(mesh, widest) : UINT32_MAX;
     return FIBRAD_E_ARGUMENT;

@@ -3,8 +3,7 @@
 #include "scene/surroundings.h"
 #include "scene/walls.h"
 
-#define SURROUNDINGS_MAX 1e150 /* of a length, and of its inverse */
-#define OCCUPANCY_CELLS  (1u << 20)
+#define OCCUPANCY_CELLS (1u << 20)
 
 static bool region_given(const fibrad_scene_config *config) {
     for (int axis = 0; axis < 3; axis++)
@@ -14,10 +13,10 @@ static bool region_given(const fibrad_scene_config *config) {
 
 static bool occupancy_valid(const fibrad_occupancy *o) {
     for (int axis = 0; axis < 3; axis++) {
-        if (!(fibrad_abs(o->low[axis]) <= SURROUNDINGS_MAX && fibrad_abs(o->high[axis]) <= SURROUNDINGS_MAX))
+        if (!(fibrad_abs(o->low[axis]) <= FIBRAD_LENGTH_MAX && fibrad_abs(o->high[axis]) <= FIBRAD_LENGTH_MAX))
             return false;
         if (o->cells[axis] < 1 || o->cells[axis] > OCCUPANCY_CELLS) return false;
-        if (!(o->high[axis] - o->low[axis] >= o->cells[axis] / SURROUNDINGS_MAX)) return false;
+        if (!(o->high[axis] - o->low[axis] >= o->cells[axis] * FIBRAD_LENGTH_MIN)) return false;
         if (o->periodic[axis] != 0 && o->periodic[axis] != 1) return false;
     }
     return true;
@@ -26,7 +25,7 @@ static bool occupancy_valid(const fibrad_occupancy *o) {
 int fibrad_surroundings_check(const fibrad_scene_config *config) {
     for (int axis = 0; axis < 3; axis++) {
         const double low = config->known_low[axis], high = config->known_high[axis];
-        if (!(fibrad_abs(low) <= SURROUNDINGS_MAX && fibrad_abs(high) <= SURROUNDINGS_MAX && low <= high))
+        if (!(fibrad_abs(low) <= FIBRAD_LENGTH_MAX && fibrad_abs(high) <= FIBRAD_LENGTH_MAX && low <= high))
             return FIBRAD_E_ARGUMENT;
         if (low < high && config->period[axis] > 0) return FIBRAD_E_ARGUMENT;
     }
@@ -57,7 +56,7 @@ void fibrad_surroundings_build(fibrad_scene *scene, const fibrad_scene_config *c
 }
 
 double fibrad_ball_exit(const double o[3], const double w[3], double radius) {
-    if (!(radius < SURROUNDINGS_MAX)) return __builtin_inf();
+    if (!(radius < FIBRAD_LENGTH_MAX)) return __builtin_inf();
     double along = 0, square = 0, inside = radius * radius;
     for (int axis = 0; axis < 3; axis++)
         along += o[axis] * w[axis], square += w[axis] * w[axis], inside -= o[axis] * o[axis];

@@ -3,12 +3,11 @@
 
 #include "base/constants.h"
 
-#define INFINITE        __builtin_inf()
-#define WALL_LENGTH_MAX 1e150
-#define BALL_SLACK      1e-12 /* of a length that has been rounded */
-#define CAP_LEAST       1e-9  /* [radii] the depth from which on a sphere counts as cut */
+#define INFINITE   __builtin_inf()
+#define BALL_SLACK 1e-12 /* of a length that has been rounded */
+#define CAP_LEAST  1e-9  /* [radii] the depth from which on a sphere counts as cut */
 
-static bool wall_length_valid(double length) { return fibrad_abs(length) <= WALL_LENGTH_MAX; }
+static bool wall_length_valid(double length) { return fibrad_abs(length) <= FIBRAD_LENGTH_MAX; }
 
 /* The slot of a plane or a cylinder; FIBRAD_WALLS: it is not valid. */
 static uint32_t slot_of_plane(const fibrad_plane *plane) {

@@ -91,7 +91,7 @@ static double exchange_overlapping(double R, double r, double gap) {
 }
 
 /* Lengths must leave room for sums and ratios. */
-static bool valid_radius(double r) { return r >= 1e-150 && r <= 1e150; }
+static bool valid_radius(double r) { return r >= FIBRAD_LENGTH_MIN && r <= FIBRAD_LENGTH_MAX; }
 
 int fibrad_pair_exact(double r1, double r2, double gap, double *f12) {
     bool valid = f12 && valid_radius(r1) && valid_radius(r2) && fibrad_finite(gap);

@@ -14,7 +14,7 @@ fibrad_surface_lanes fibrad_surface_lanes_of(int isa) {
 
 int fibrad_surface_nodes_of(const fibrad_surface_rule *rule, fibrad_surface_nodes *nodes) {
     if ((rule->flags & ~(uint32_t)ALL_FLAGS) != 0) return FIBRAD_E_ARGUMENT;
-    return fibrad_surface_nodes_get(rule->nodes == 0 ? 55 : rule->nodes, nodes);
+    return fibrad_surface_nodes_get(rule->nodes == 0 ? FIBRAD_NODES_DEFAULT : rule->nodes, nodes);
 }
 
 int fibrad_surface_factor(fibrad_surface_task *task, fibrad_surface_lanes lanes, double r1, double r2, double gap,

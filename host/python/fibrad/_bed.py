@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from ._call import Call
 from ._errors import StateError
 from ._library import Fault, HeatConfig, library
+from ._limits import DIRECTIONS, PATCHES, POINTS, POWER_MAX, TEMPERATURE_MAX
 from ._scene import Container, Packing, Walls
-from ._values import HOTTEST, STRONGEST, refuse, whole
+from ._values import refuse, whole
 
 
 def _choice(name: str, value: Optional[int], choices: tuple[int, ...]) -> int:
@@ -24,9 +25,9 @@ def _choice(name: str, value: Optional[int], choices: tuple[int, ...]) -> int:
 
 
 def heat_config(directions: Optional[int], points: Optional[int], patches: Optional[int]) -> Any:
-    return HeatConfig(directions=whole("directions", directions, 8, 65536),
-                      points=_choice("points", points, (64, 128, 256)),
-                      patches=_choice("patches", patches, (24, 96, 384)))
+    return HeatConfig(directions=whole("directions", directions, *DIRECTIONS),
+                      points=_choice("points", points, POINTS),
+                      patches=_choice("patches", patches, PATCHES))
 
 
 _Self = TypeVar("_Self", bound="Bed")
@@ -68,16 +69,16 @@ class Bed:
         container.known("wall_power" if powers else "insulated", found)
         if isinstance(temperature, Mapping) and found & set(temperature):
             raise refuse(f"{', '.join(sorted(found & set(temperature)))}: its temperature is to be found")
-        temperature, sides = container.sides("wall_temperature", temperature, 0, HOTTEST)
+        temperature, sides = container.sides("wall_temperature", temperature, 0, TEMPERATURE_MAX)
         shares = container.per_wall("wall_emissivity", emissivity, 0, 1, frozenset(insulated))
         arrays: dict[str, NDArray[Any]] = {
-            "body_temperature": container.per_wall("wall_temperature", temperature, 0, HOTTEST, found),
+            "body_temperature": container.per_wall("wall_temperature", temperature, 0, TEMPERATURE_MAX, found),
             "body_emissivity": np.nan_to_num(shares),
             "insulated": np.array([wall in insulated for wall in container.names], np.uint8)}
         if sides is not None:
             arrays["side_temperature"] = sides
         if powers:
-            arrays["body_power"] = container.per_wall("wall_power", powers, -STRONGEST, STRONGEST,
+            arrays["body_power"] = container.per_wall("wall_power", powers, -POWER_MAX, POWER_MAX,
                                                       frozenset(container.names))
         return arrays
 

@@ -12,14 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._call import Call, Progress
 from ._library import BeamRule, BedFactors, BedOptions, CastRule, Displacement, ExchangeRule, SurfaceRule, library
+from ._limits import DIRECTIONS, LENGTH_MAX, NODES
 from ._scene import Container, Packing, Walls, pointer
 from ._values import marks, per_sphere, real, refuse, whole
 
 Folder = Union[str, "os.PathLike[str]"]
 
-_DIRECTIONS = (8, 65536)
 _SEED = (0, 2**64 - 1)
-_FAR = (0.0, 1e150)
+_FAR = (0.0, LENGTH_MAX)
 _OVERLAP = 0.05
 """A larger overlap of two spheres, over the smaller radius, gives a warning."""
 _CLOSED = 1e-9
@@ -231,7 +231,7 @@ def _beam_rule(values: dict[str, Any], cutoff: float) -> Any:
     if points not in (0, 64, 128, 256):
         raise refuse(f"points = {points} is neither 64, 128 nor 256")
     tolerance = real("tolerance", values["tolerance"], 0, 1)
-    directions = whole("directions", values["directions"], *_DIRECTIONS) or (0 if tolerance else 233)
+    directions = whole("directions", values["directions"], *DIRECTIONS)
     return BeamRule(directions=directions, points=points, cutoff=cutoff, tolerance=tolerance)
 
 
@@ -252,7 +252,7 @@ def _method_options(method: str, values: dict[str, Any], cutoff: Optional[float]
         raise refuse(f"{', '.join(foreign)}: not of the method {method!r}")
     far = real("cutoff", cutoff, *_FAR)
     if method == "surface":
-        return {"surface": ctypes.pointer(SurfaceRule(nodes=whole("nodes", values["nodes"], 8, 987), cutoff=far))}
+        return {"surface": ctypes.pointer(SurfaceRule(nodes=whole("nodes", values["nodes"], *NODES), cutoff=far))}
     if method == "beam":
         return {"beam": ctypes.pointer(_beam_rule(values, far))}
     return {"cast": ctypes.pointer(CastRule(rays=whole("rays", values["rays"], 1, 2**32 - 1), random=method == "mc",
@@ -373,7 +373,7 @@ def exchange_factors(x: ArrayLike, r: ArrayLike, emissivity: ArrayLike, *, box: 
         As for `view_factors`.
     """
     job = _Job(x, r, box, walls, ids, wanted, threads, progress)
-    rule = job.exchange_rule(emissivity, wall_emissivity, directions=whole("directions", directions, *_DIRECTIONS),
+    rule = job.exchange_rule(emissivity, wall_emissivity, directions=whole("directions", directions, *DIRECTIONS),
                              paths=whole("paths", paths, 1, 2**28), seed=whole("seed", seed, *_SEED),
                              cutoff=real("cutoff", cutoff, *_FAR), tolerance=real("tolerance", tolerance, 0, 1))
     options = BedOptions(wanted=job.wanted, raw=bool(raw), bodies=1, drop=real("drop", drop, 0, 1),

@@ -14,7 +14,8 @@ from ._bed import Bed, heat_config
 from ._call import Call, Progress
 from ._library import HeatResult, HeatSources, library
 from ._scene import Walls, pointer, pointers
-from ._values import HOTTEST, STRONGEST, per_sphere, real, refuse
+from ._limits import POWER_MAX, TEMPERATURE_MAX
+from ._values import per_sphere, real, refuse
 
 STEFAN_BOLTZMANN = 5.670374419e-8
 """[W/(m2 K4)]"""
@@ -180,9 +181,9 @@ class Heat(Bed):
             As for `view_factors`.
         """
         container, names, n = self._container, self._packing.names, self.n
-        kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, HOTTEST, names,
+        kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, TEMPERATURE_MAX, names,
                              power is not None)
-        powers = None if power is None else per_sphere("power", power, n, -STRONGEST, STRONGEST, names, True)
+        powers = None if power is None else per_sphere("power", power, n, -POWER_MAX, POWER_MAX, names, True)
         if powers is not None and np.any(powers) and n and not np.isnan(kelvins).any():
             raise refuse("power is given, and all spheres have temperatures; NaN is an unknown one")
         if powers is not None and np.ndim(power) == 0:
@@ -192,7 +193,7 @@ class Heat(Bed):
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
         law = _law(emissivity)
         shares = per_sphere("emissivity", law(np.where(np.isnan(kelvins), surroundings or 300., kelvins)), n, 0, 1, names)
-        sources = HeatSources(surroundings=real("surroundings", surroundings, 0, HOTTEST),
+        sources = HeatSources(surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX),
                               sigma=real("sigma", sigma, 1e-30, 1e30), tolerance=real("tolerance", tolerance, 0, 1),
                               uniform=bool(uniform), temperature=pointer(kelvins), power=pointer(powers),
                               **pointers(of_bodies))

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._errors import ARGUMENT, BACK, ENDLESS, GEOMETRY, Error, error_of, status_text, why_text
 from ._library import DOUBLES, Body, Plane, SceneConfig, Spheres, Triangles
+from ._limits import LENGTH_MAX
 from ._values import Names, doubles, real, refuse
 
 _AXES = "xyz"
@@ -18,7 +19,6 @@ _PLANES = {f"{axis}{end}": (k, upper) for k, axis in enumerate(_AXES) for upper,
 _PLANE, _CYLINDER, _MESH = 1, 2, 3
 _NO_BODY = 2**32 - 1
 _STRIDE_MAX = 2**32 - 1
-_LENGTH_MAX = 1e150
 
 Walls = Union[Mapping[str, Any], Sequence[tuple[str, Any]]]
 MARKS: Any = ctypes.POINTER(ctypes.c_ubyte)
@@ -166,7 +166,7 @@ class Mesh:
 def _plane(name: str, at: Any) -> tuple[int, int, float]:
     if isinstance(at, str):
         raise refuse(f"wall {name} is {at!r}; a place, 'open' or ('open', place) is wanted")
-    return (*_PLANES[name], real(f"wall {name}", at, -_LENGTH_MAX, _LENGTH_MAX))
+    return (*_PLANES[name], real(f"wall {name}", at, -LENGTH_MAX, LENGTH_MAX))
 
 
 def _is_open(value: Any) -> bool:

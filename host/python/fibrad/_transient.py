@@ -14,7 +14,8 @@ from ._call import Call, Progress
 from ._heat import STEFAN_BOLTZMANN
 from ._library import ExchangeRule, HeatSources, Span, TransientConfig, library
 from ._scene import Walls, pointer, pointers
-from ._values import HOTTEST, STRONGEST, per_sphere, real, refuse
+from ._limits import POWER_MAX, TEMPERATURE_MAX
+from ._values import per_sphere, real, refuse
 
 _METHODS = {"corrected": 0, "patches": 1, "factors": 2}
 
@@ -132,8 +133,8 @@ class Transient(Bed):
         container, names, n = self._container, self._packing.names, self.n
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
-        now = per_sphere("temperature", temperature, n, 0, HOTTEST, names).copy()
-        heat = per_sphere("capacity", capacity, n, 0, STRONGEST, names)
+        now = per_sphere("temperature", temperature, n, 0, TEMPERATURE_MAX, names).copy()
+        heat = per_sphere("capacity", capacity, n, 0, POWER_MAX, names)
         walls = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         found = frozenset([*(wall_power or {}), *insulated])
         if found and self._method != "patches":
@@ -145,14 +146,14 @@ class Transient(Bed):
             raise refuse(f"wall_temperature_end of {', '.join(sorted(constant & set(wall_temperature_end)))}: "
                          "triangles with temperatures of their own keep them")
         if wall_temperature_end is not None:
-            given_end = container.per_wall("wall_temperature_end", wall_temperature_end, 0, HOTTEST, found | constant)
+            given_end = container.per_wall("wall_temperature_end", wall_temperature_end, 0, TEMPERATURE_MAX, found | constant)
             end = np.where(np.isnan(given_end), end, given_end)
         shares = per_sphere("emissivity", emissivity, n, 0, 1, names)
-        given = None if power is None else per_sphere("power", power, n, -STRONGEST, STRONGEST, names)
+        given = None if power is None else per_sphere("power", power, n, -POWER_MAX, POWER_MAX, names)
         around = ctypes.c_double(real("surroundings_end", surroundings if surroundings_end is None else surroundings_end,
-                                      0, HOTTEST))
+                                      0, TEMPERATURE_MAX))
         sources = HeatSources(emissivity=pointer(shares), power=pointer(given), sigma=real("sigma", sigma, 1e-30, 1e30),
-                              surroundings=real("surroundings", surroundings, 0, HOTTEST), **pointers(walls))
+                              surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX), **pointers(walls))
         flow, energy = np.zeros(n), np.zeros(len(container.names))
         span = Span(temperature=pointer(now), capacity=pointer(heat), duration=real("duration", duration, 0, 1e300),
                     body_temperature=pointer(end), surroundings=ctypes.pointer(around),

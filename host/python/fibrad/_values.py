@@ -9,9 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._errors import ARGUMENT, InputError
 
-HOTTEST, STRONGEST = 1e20, 1e100
-"""The largest temperature [K] and power [W]."""
-
 
 def refuse(text: str, *spheres: int) -> InputError:
     return InputError(text, ARGUMENT, spheres)

@@ -1,0 +1,8 @@
+# _limits.py - bounds of arguments, as in kernel/fibrad_limits.h. SPDX-License-Identifier: MIT
+DIRECTIONS = (8, 65536)
+NODES = (8, 987)
+POINTS = (64, 128, 256)
+PATCHES = (24, 96, 384)
+LENGTH_MAX = 1e150
+TEMPERATURE_MAX = 1e20
+POWER_MAX = 1e100

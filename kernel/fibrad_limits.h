@@ -1,0 +1,49 @@
+/* fibrad_limits.h - bounds of arguments, and what an argument of 0 stands for.
+ *
+ * fibrad.h includes this header. The program's help, the Python package and the Fortran module have the same numbers.
+ *
+ * SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_LIMITS_H
+#define FIBRAD_LIMITS_H
+
+/* Scenes */
+#define FIBRAD_LENGTH_MIN    1e-150 /* L, of radii and periods */
+#define FIBRAD_LENGTH_MAX    1e150  /* L, of radii, periods and coordinates */
+#define FIBRAD_SPHERES_MAX   100000000u
+#define FIBRAD_TRIANGLES_MAX 100000000u
+#define FIBRAD_BODIES_MAX    32
+
+/* Rows by beams */
+#define FIBRAD_DIRECTIONS_MIN     8
+#define FIBRAD_DIRECTIONS_MAX     65536
+#define FIBRAD_DIRECTIONS_DEFAULT 233
+#define FIBRAD_DIRECTIONS_FIRST   100 /* with a tolerance: the number to begin with */
+
+/* Rows by rays: rays of each sphere */
+#define FIBRAD_RAYS_DEFAULT 20000
+
+/* Rows by the surface method: nodes on each sphere, a Fibonacci number */
+#define FIBRAD_NODES_MIN     8
+#define FIBRAD_NODES_MAX     987
+#define FIBRAD_NODES_DEFAULT 55
+
+/* Exchange factors: directions of the first leg, and paths of each sphere and of each wall */
+#define FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT 50
+#define FIBRAD_PATHS_DEFAULT               400
+#define FIBRAD_BODY_PATHS_DEFAULT          8192
+#define FIBRAD_PATHS_MAX                   (1u << 28)
+
+/* Heat */
+#define FIBRAD_TEMPERATURE_MAX         1e20 /* K; its fourth power is far from overflow */
+#define FIBRAD_POWER_MAX               1e100
+#define FIBRAD_HEAT_RADIUS_MIN         1e-30 /* L; the largest radius is 1 over it */
+#define FIBRAD_HEAT_DIRECTIONS_DEFAULT 168
+#define FIBRAD_HEAT_POINTS_DEFAULT     64
+#define FIBRAD_HEAT_PATCHES_DEFAULT    96
+#define FIBRAD_HEAT_PATCHES_MAX        384
+#define FIBRAD_HEAT_PARTS_DEFAULT      8
+#define FIBRAD_HEAT_PARTS_MAX          1024
+#define FIBRAD_WALL_RAYS_DEFAULT       262144 /* at the least */
+#define FIBRAD_WALL_RAYS_MAX           (1u << 30)
+
+#endif
