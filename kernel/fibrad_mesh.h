@@ -21,7 +21,7 @@
  *          and planes may be above 3e13 l. Let m = 2 + (extent of all triangles along an axis + largest diameter of a
  *          sphere)/period. The product of m over all periodic axes may be at most 4096. Otherwise fibrad_scene_init
  *          returns FIBRAD_E_ARGUMENT, and fault.triangle is a triangle that is too far away, too small or too long.
- * Cutoffs  A row with a cutoff meets a triangle beyond the cutoff if the occupancy of fibrad_part.h has no spheres in
+ * Cutoffs  A row with a cutoff meets a triangle beyond the cutoff if the occupancy of the scene has no spheres in
  *          between.
  *
  * SPDX-License-Identifier: MIT */

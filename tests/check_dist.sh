@@ -9,7 +9,6 @@ mkdir -p "$folder/joined" # the headers that are part of fibrad.h now
 : >"$folder/joined/fibrad_heat.h"
 : >"$folder/joined/fibrad_limits.h"
 : >"$folder/joined/fibrad_mesh.h"
-: >"$folder/joined/fibrad_part.h"
 : >"$folder/joined/fibrad_surface.h"
 : >"$folder/joined/fibrad_furnace.h"
 $MAKE -s --no-print-directory BUILD="$BUILD" CC="$CC" dist || exit 1

@@ -1,6 +1,5 @@
 /* test_matrix.c - collections of rows, and the matrices made of them: averaged, limited, balanced, closed, dropped.
  * SPDX-License-Identifier: MIT */
-#include "fibrad_part.h"
 #include "scenes.h"
 #include "suite.h"
 

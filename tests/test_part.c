@@ -2,7 +2,6 @@
  * powers from rows. SPDX-License-Identifier: MIT */
 #include "base/random.h"
 #include "fibrad_heat.h"
-#include "fibrad_part.h"
 #include "scene/surroundings.h"
 #include "fibrad_surface.h"
 #include "scenes.h"

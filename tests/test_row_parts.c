@@ -1,6 +1,5 @@
 /* test_row_parts.c - rows computed in parts, each a range of directions, have the bits of rows in one.
  * SPDX-License-Identifier: MIT */
-#include "fibrad_part.h"
 #include "suite.h"
 #include "scenes.h"
 #include "meshes.h"

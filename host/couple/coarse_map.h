@@ -3,7 +3,6 @@
 #define FIBRAD_COUPLE_COARSE_MAP_H
 
 #include "couple/halo.h"
-#include "fibrad_part.h"
 
 /* Collective. Makes the occupancy of the bed in a box (low, high, periodic, set before, the same on all ranks) of cells
  * about `width` wide, 2^24 at most: marks those that particle[own] may touch, on all ranks; radius: the largest. Where

@@ -15,7 +15,7 @@
 #define CUTOFF_DARK    10 /* the same where reflections carry it on */
 #define DARK_BELOW     0.4
 #define CELLS_A_CUTOFF 8   /* of the coarse map */
-#define REACH_RADII    1.5 /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad_part.h */
+#define REACH_RADII    1.5 /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad.h */
 #define PERIODS_MAX    100 /* as far as the kernel's beams go */
 #define OPENINGS_MAX   6   /* one a side */
 

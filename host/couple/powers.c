@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "couple/insitu.h"
-#include "fibrad_part.h"
 
 /* zero: whether it may be 0. */
 static int temperature_valid(double t, int zero) { return (zero ? t >= 0 : t > 0) && t <= FIBRAD_TEMPERATURE_MAX; }

@@ -5,7 +5,6 @@
 
 #include "couple/insitu.h"
 #include "couple/rows_file.h"
-#include "fibrad_part.h"
 
 #define PATH_BYTES 4096
 

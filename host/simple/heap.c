@@ -3,7 +3,6 @@
 #include "simple/heap.h"
 
 #include "fibrad_mesh.h"
-#include "fibrad_part.h"
 
 #include <fcntl.h>
 #include <stdlib.h>

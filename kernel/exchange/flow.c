@@ -1,5 +1,4 @@
 /* flow.c - powers from rows of exchange factors, a part of a bed at a time. SPDX-License-Identifier: MIT */
-#include "fibrad_part.h"
 #include "work/record.h"
 
 /* What is beyond of a row that knows something. */

@@ -3,7 +3,6 @@
 #define FIBRAD_ROW_BEAM_LANES_H
 
 #include "base/dispatch.h"
-#include "fibrad_part.h"
 #include "row/row.h"
 
 /* Windows [from, to) of a row: into the row; or what they add to its sums into a list; or a row of all windows from the

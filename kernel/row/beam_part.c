@@ -2,7 +2,6 @@
  *
  * A part lists what its windows add to the sums of the row, and the row adds it up in their order: so its bits are
  * those of the row in one. */
-#include "fibrad_part.h"
 #include "base/arena.h"
 #include "base/random.h"
 #include "row/beam.h"

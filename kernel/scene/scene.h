@@ -3,7 +3,6 @@
 #define FIBRAD_SCENE_SCENE_H
 
 #include "base/port.h"
-#include "fibrad_part.h"
 #include "mesh/mesh.h"
 
 #define FIBRAD_NONE UINT32_MAX

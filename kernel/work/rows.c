@@ -1,5 +1,4 @@
 /* rows.c - a collection of rows in one block, fixed or growing. SPDX-License-Identifier: MIT */
-#include "fibrad_part.h"
 #include "base/arena.h"
 #include "work/record.h"
 

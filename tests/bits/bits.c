@@ -10,7 +10,6 @@
 #include "fibrad.h"
 #include "fibrad_furnace.h"
 #include "fibrad_heat.h"
-#include "fibrad_part.h"
 #include "fibrad_surface.h"
 
 #define SPHERES 300

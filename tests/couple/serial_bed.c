@@ -10,8 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "fibrad_part.h"
-
 enum { MOST = 4096 };
 static double x[MOST], y[MOST], z[MOST], r[MOST], t[MOST], emissivity[MOST], weight[MOST], emission[MOST], power[MOST];
 static uint64_t id[MOST];

@@ -3,7 +3,6 @@
 #define TESTS_FUZZ_CONTENTS_H
 
 #include "fibrad_mesh.h"
-#include "fibrad_part.h"
 #include "choices.h"
 
 enum { SPHERES = 24, PLANES = 7, MESHES = 3, BODIES = PLANES + MESHES, VERTICES = 16, TRIANGLES = 12 };

@@ -40,7 +40,7 @@ fi
 enums=$(sed -n 's/^typedef enum \(fibrad_[a-z_]*\) {.*/\1/p' "$tree/usr/include/fibrad.h" "$tree/usr/include/fibrad_surface.h" \
     "$tree/usr/include/fibrad_host.h")
 sed -n 's/^} \(fibrad_[a-z_]*\);.*/\1/p; s/^struct \(fibrad_[a-z_]*\) {.*/typedef struct \1 \1/p' "$tree/usr/include/fibrad.h" \
-    "$tree/usr/include/fibrad_heat.h" "$tree/usr/include/fibrad_part.h" "$tree/usr/include/fibrad_surface.h" \
+    "$tree/usr/include/fibrad_heat.h" "$tree/usr/include/fibrad_surface.h" \
     "$tree/usr/include/fibrad_host.h" | sed 's/.* //' |
     grep -vx "$enums" | sed 's/.*/CHECK(&);/' >"$tree/structures.inc"
 test "$(wc -l <"$tree/structures.inc")" -gt 20
@@ -66,7 +66,7 @@ prefix=$tree/all/opt/fibrad
         lib/libfibrad_host.a lib/libfibrad.so "lib/$name" lib/pkgconfig/fibrad.pc lib/pkgconfig/fibrad_host.pc; do
         echo "$file"
     done
-    for file in README.md CHANGELOG.md LICENSE docs/*.md; do echo "share/doc/fibrad/$file"; done
+    for file in README.md CHANGELOG.md LICENSE docs/*.md docs/figures/*; do echo "share/doc/fibrad/$file"; done
     for file in "$tree"/usr/include/*.h; do echo "include/${file##*/}"; done
 } | sort >"$tree/expected"
 (cd "$prefix" && find . -type f -o -type l) | sed 's|^\./||' | sort | diff "$tree/expected" -

@@ -1,6 +1,5 @@
 /* sizes.c - what a library says of its structures is what its headers say. SPDX-License-Identifier: MIT */
 #include <fibrad_host.h>
-#include <fibrad_part.h>
 
 #include <stdio.h>
 
