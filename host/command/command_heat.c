@@ -9,7 +9,7 @@
 #include "frames/bed_options.h"
 #include "command/commands.h"
 #include "heat/heat_given.h"
-#include "heat/heat_march.h"
+#include "heat/heat_time.h"
 #include "heat/heat_run.h"
 #include "plot/plot_heat.h"
 
@@ -51,7 +51,7 @@ static const struct option heat_table[] = {
     {KEY_ERROR, "error", "E",
      "error allowed in powers, estimated, relative to their root mean square, 1e-5 to 1; directions and patches are "
      "added until it is met; see below [none]"},
-    OPTIONS_MARCH,
+    OPTIONS_TIME,
     OPTIONS_INPUT,
     {'o', "output", "OUT",
      "write the powers: .csv .dump (OVITO) .vtp (ParaView) .json, - for standard output [summary only]"},
@@ -63,7 +63,7 @@ static const struct option heat_table[] = {
 struct heat_request {
     struct bed_options bed;
     struct given_options given;
-    struct march_options march;
+    struct time_options time;
     const char *plot, *wall_emissivity;
     struct quantity emissivity;
     bool counted; /* --directions, --points, --patches or --wall-rays was given */
@@ -184,14 +184,14 @@ static int heat_take(struct heat_request *request, const struct options *options
     case KEY_STEP:
     case KEY_TIMES:
     case KEY_EVERY:
-        return march_option(key, value, &request->march);
+        return time_option(key, value, &request->time);
     default:
         return bed_options_take(&request->bed, options, key);
     }
 }
 
 static int heat_check_request(struct heat_request *request) {
-    request->bed.timed = request->given.timed = request->march.until > 0;
+    request->bed.timed = request->given.timed = request->time.until > 0;
     request->problem.zero = request->given.zero;
     int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT, request->plot);
     if (status) return status;
@@ -208,7 +208,7 @@ static int heat_check_request(struct heat_request *request) {
         return message(STATUS_USAGE,
                        "--error is for --model patches; --model spheres has an error that no directions reduce");
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
-    status = march_check(&request->march, &request->bed);
+    status = time_check(&request->time, &request->bed);
     if (!status) status = given_check(&request->given, &request->bed);
     return status ? status : given_ambient(&request->given, &request->problem.sources.surroundings);
 }
@@ -341,7 +341,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_absorbed = of_walls[5], report.result.body_area = of_walls[6];
         report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
-        status = request->given.timed ? heat_march(&request->bed, &request->march, &request->problem, bed, &report,
+        status = request->given.timed ? heat_in_time(&request->bed, &request->time, &request->problem, bed, &report,
                                                    request->plot ? &request->picture : NULL)
                                       : heat_solve(request, bed, &report);
     }

@@ -7,9 +7,9 @@
 
 #include "cli/message.h"
 
-#define POWER_MAX 1e30 /* [W] either way */
+#define POWER_MAX 1e30 /* [W] largest absolute value */
 
-int given_temperature_option(const char *text, struct given_options *options) { /* its unit is not known yet */
+int given_temperature_option(const char *text, struct given_options *options) { /* --temperature-unit may follow */
     return quantity_option("--temperature", text, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, &options->temperature);
 }
 
@@ -52,7 +52,8 @@ int given_ambient(struct given_options *options, double *ambient) {
     return status;
 }
 
-/* Each wall has a temperature, is insulated, or has a power; names go before numbers for all others. */
+/* Each wall has a temperature, has a power, or is insulated. A value with the wall's name goes before the number for
+ * all other walls. */
 static int given_walls(const struct given_options *options, const struct bed *bed, const struct walls *walls,
                        struct given *given) {
     struct wall_list t, p;
@@ -78,7 +79,8 @@ static int given_walls(const struct given_options *options, const struct bed *be
     return status;
 }
 
-/* Temperatures of the sides of a mesh that come from a column; the body's is that at which it emits as much. */
+/* Temperatures of the sides of a mesh from a column of numbers. The wall gets the temperature at which it emits as much
+ * as its triangles together. */
 static int given_triangles(const struct walls *walls, uint32_t wall, const struct curve *column, double zero,
                            struct given *given) {
     const struct mesh *mesh = walls->meshes ? mesh_of_body(walls->meshes, wall) : NULL;
@@ -99,7 +101,7 @@ static int given_triangles(const struct walls *walls, uint32_t wall, const struc
     return STATUS_OK;
 }
 
-/* All of them; NaN of sides without. */
+/* Temperatures of the sides of all meshes that have a column. NaN: the side belongs to a mesh without a column. */
 static int given_sides(const struct walls *walls, double zero, struct given *given) {
     int status = STATUS_OK;
     for (uint32_t k = 0; k < walls->count && !status; ++k) {
@@ -116,7 +118,8 @@ static int given_sides(const struct walls *walls, double zero, struct given *giv
     return status;
 }
 
-/* One number beside a column or a list is for the spheres that those leave out. */
+/* One quantity, temperature or power, has a column or a list. The other quantity has one number: that is for the
+ * spheres that the column or list leaves out. */
 static int leave_out(const char *option, const struct quantity *number, const double *others, uint32_t n,
                      double *values) {
     bool used = false;

@@ -1,4 +1,4 @@
-/* heat_run.c - powers of one bed in watts, and what they have in common. SPDX-License-Identifier: MIT */
+/* heat_run.c - net powers of one bed in watts, and their summary. SPDX-License-Identifier: MIT */
 #include "heat/heat_run.h"
 
 #include <gsl/gsl_math.h>
@@ -7,8 +7,7 @@
 #include "cli/memory.h"
 #include "cli/message.h"
 
-/* The largest error of a wall: over the larger of its power and what it absorbs, or of sigma T^4, relative, where its
- * temperature was found. */
+/* heat_report.wall_error. d(T^4)/T^4 = 4 dT/T. */
 static double heat_wall_error(const fibrad_heat_result *result, uint32_t walls) {
     double worst = 0;
     for (uint32_t k = 0; k < walls; ++k) {
@@ -52,7 +51,7 @@ static void heat_summarise(const struct bed *bed, const fibrad_heat_sources *sou
     report->wall_error = heat_wall_error(result, walls);
 }
 
-/* Of the spheres whose temperatures were found. */
+/* Figures of the spheres whose temperatures were found. */
 static void heat_temperatures(const struct bed *bed, const fibrad_heat_sources *sources, struct heat_report *report) {
     const fibrad_heat_result *result = &report->result;
     double sum = 0, square = 0, errors = 0, emissions = 0;
@@ -72,7 +71,7 @@ static void heat_temperatures(const struct bed *bed, const fibrad_heat_sources *
     report->emission_error = emissions > 0 ? sqrt(errors / emissions) : 0;
 }
 
-/* Why there are no temperatures with the powers given. */
+/* Says why no temperatures have the given powers. */
 static int heat_unsolvable(const struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
                            const struct heat_report *report) {
     const fibrad_heat_sources *sources = &problem->sources;
@@ -97,7 +96,7 @@ static int heat_unsolvable(const struct bed_options *asked, const struct heat_pr
                       "no temperature is given in this closed bed, and its powers add up to %g W, not to 0", sum);
 }
 
-/* Powers in square metres instead of the file's unit. */
+/* Powers of the library are per area in the bed's unit of length. In watts they are square_metres times as large. */
 static void heat_scale(const struct bed *bed, uint32_t walls, double square_metres, fibrad_heat_result *result) {
     if (square_metres == 1) return;
     for (uint32_t i = 0; i < bed->n; ++i) result->power[i] *= square_metres, result->power_error[i] *= square_metres;
@@ -112,8 +111,9 @@ static void heat_scale(const struct bed *bed, uint32_t walls, double square_metr
     result->error_beams *= square_metres;
 }
 
-/* Where to begin with an error wanted, by default, and up to which mean emissivity patches err more than the fewest
- * directions that have half of their beams left out. Source: docs/heat.md, Settings. */
+/* Defaults. _BEGIN: directions with --error. _BRIGHT: directions if the mean emissivity is at most BRIGHT and patches
+ * are at most PATCHES_BRIGHT; patches then err more than so few directions do, the fewest for which half of the beams
+ * are left out. _DARK: directions otherwise. Source: docs/heat.md, Settings. */
 enum {
     DIRECTIONS_BEGIN = 72,
     DIRECTIONS_DARK = FIBRAD_HEAT_DIRECTIONS_DEFAULT,
@@ -124,6 +124,8 @@ enum {
 #define POINTS 64
 
 /* Its configuration with directions for the emissivities of a bed. */
+/* problem->config with defaults filled in. The number of directions follows from the emissivities of the bed, and with
+ * problem->error is the one to begin with. */
 static fibrad_heat_config heat_config(const struct heat_problem *problem, const struct bed *bed) {
     fibrad_heat_config config = problem->config;
     double areas = 0, sum = 0;
@@ -138,11 +140,11 @@ static fibrad_heat_config heat_config(const struct heat_problem *problem, const 
     return config;
 }
 
-/* Whether a problem of this kind will fit into memory. Source: fibrad_heat_size. */
+/* Refuses a problem that will not fit into memory. Source: fibrad_heat_size. */
 static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) {
     const double beams = (double)config->directions * config->points, patches = config->patches;
     const double kept = fmin(beams, 4 * sqrt(beams / 2 * patches)), number = patches > 96 ? 2 : 1;
-    const double others = 4000; /* that a sphere sees */
+    const double others = 4000; /* bytes for the spheres that one sphere sees */
     return memory_check(bed->n * (3 * number * kept + 8 * 7 * patches + others),
                         "fewer --directions, --points or --patches take less");
 }
@@ -155,7 +157,7 @@ void heat_emissivities(const struct heat_problem *problem, const struct bed *bed
     }
 }
 
-/* What emissivities follow. */
+/* Context of heat_follow. */
 struct heat_law {
     const struct heat_problem *problem;
     const struct bed *bed;
@@ -169,7 +171,7 @@ static void heat_follow(void *law, const double *temperature, const double *wall
     heat_emissivities(how->problem, how->bed, temperature, emissivity);
 }
 
-/* Radiosities need to be as good as this, over the error asked for, not to add to it. */
+/* Tolerance of the radiosities over problem->error: so small that it adds nothing to the error. */
 #define SOLVED 5e-3
 
 static int heat_once(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
@@ -183,7 +185,7 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     double wall_emissivity[WALLS_MAX];
     for (uint32_t k = 0; k < problem->walls.count; ++k) wall_emissivity[k] = sources.body_emissivity[k];
     if (problem->error > 0) sources.tolerance = fmin(1e-5, SOLVED * problem->error);
-    if (isnan(sources.surroundings)) sources.surroundings = 0; /* closed: nothing gets there */
+    if (isnan(sources.surroundings)) sources.surroundings = 0; /* closed bed: no radiation reaches the surroundings */
     int status = heat_memory(bed, &report->config);
     if (status) return status;
     status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
@@ -210,16 +212,18 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     return STATUS_OK;
 }
 
-/* Rays between walls by default, and the most. Source: fibrad_heat_config. */
+/* Most rays between walls. */
 #define WALL_RAYS_MOST (1u << 23)
 
-/* Estimated errors over what --error allows. Powers of spheres that nearly cancel need not be known to E of themselves.
- */
+/* Estimated errors over those that --error allows. */
 struct heat_excess {
-    double beams, patches; /* of spheres, by where it comes from */
-    double walls, emission;
+    double beams, patches; /* of the powers of spheres: the part due to beams and the part due to patches */
+    double walls;          /* heat_report.wall_error */
+    double emission;       /* heat_report.emission_error */
 };
 
+/* The error of powers is relative to their root mean square, but at least to 1e-3 of what spheres emit: powers that
+ * nearly cancel need not be known to problem->error of themselves. */
 static struct heat_excess heat_compare(const struct heat_problem *problem, const struct heat_report *report) {
     const double allowed = problem->error * fmax(report->power_rms, 1e-3 * report->throughput);
     const fibrad_heat_result *result = &report->result;
@@ -233,30 +237,31 @@ static double heat_worst(const struct heat_excess *over) {
     return fmax(hypot(over->beams, over->patches), fmax(over->walls, over->emission));
 }
 
-#define HELPED       0.6  /* what is left of an error, at the most, by something that helps */
-#define PATCHES_MOST 0.92 /* of what is allowed: more than that, and beams would have to be without error */
+#define HELPED       0.6  /* a change helps if at most this part of the error is left */
+#define PATCHES_MOST 0.92 /* most of the allowed error that patches may have; else beams would have to be exact */
 enum { GROWTH = 8 };
 
-/* So many times the beams, or all there may be. */
+/* Multiplies the number of directions, by 1.5 to GROWTH, up to the largest number there may be. */
 static void heat_more_beams(fibrad_heat_config *config, double times) {
     config->directions = (uint32_t)fmin(config->directions * fmin(fmax(times, 1.5), GROWTH), FIBRAD_DIRECTIONS_MAX);
 }
 
-/* More patches want as many beams each as they had: what few of them leave goes back along each. */
+/* Four times the patches need four times the beams, so that each patch keeps its number of beams. */
 static void heat_more_patches(fibrad_heat_config *config) {
     config->patches *= 4;
     heat_more_beams(config, 4);
 }
 
-/* As many more rays as the walls' error calls for. */
+/* Rays between walls: the error falls as the square root of their number. */
 static void heat_more_rays(fibrad_heat_config *config, double over) {
     const uint32_t rays = config->wall_rays > 0 ? config->wall_rays : FIBRAD_WALL_RAYS_DEFAULT;
     config->wall_rays = (uint32_t)fmin(rays * fmin(fmax(over * over, 2), GROWTH), WALL_RAYS_MOST);
 }
 
-/* What is next: more of what makes the larger part of the spheres' error; more patches where beams do not help
- * temperatures; more rays between walls as long as these help a wall much, then more beams. Errors fall about as beams
- * rise. */
+/* The next configuration. If the powers of spheres err too much, it has more of what errs more, patches or beams. If
+ * temperatures err too much, it has more beams, or more patches where beams have not helped. If walls err too much, it
+ * has more rays between walls as long as those help, then more beams. Errors are about inverse to the number of beams.
+ */
 static fibrad_heat_config heat_refine(fibrad_heat_config config, const struct heat_excess *over,
                                       const struct heat_excess *last) {
     const bool finer = config.patches < FIBRAD_HEAT_PATCHES_MAX;
@@ -277,7 +282,8 @@ static fibrad_heat_config heat_refine(fibrad_heat_config config, const struct he
     return config;
 }
 
-/* About how long a solution takes, in beams of spheres; following a ray of a wall takes as long as so many. */
+/* Estimated time of a solution, in units of one beam of a sphere. One ray of a wall takes as long as BEAMS_A_RAY beams.
+ */
 #define BEAMS_A_RAY 12.0
 static double heat_work(const struct bed *bed, uint32_t walls, const fibrad_heat_config *config) {
     const double beams = (double)config->directions * config->points;
@@ -285,17 +291,17 @@ static double heat_work(const struct bed *bed, uint32_t walls, const fibrad_heat
     return bed->n * beams + (walls > 0 ? BEAMS_A_RAY * rays : 0);
 }
 
-/* More than so many times what the defaults take is said beforehand. */
+/* A warning is printed beforehand if --error takes more than COSTLY times as long as the defaults. */
 #define COSTLY 20
 
-/* Solves it again and again until the errors are what is asked for, or can not be less. */
+/* Solves again with finer configurations until the errors are small enough or the configuration cannot be finer. */
 static int heat_improve(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
                         struct heat_report *report) {
     const struct heat_problem plain = {.config = problem->config, .emissivity = problem->emissivity};
     const fibrad_heat_config defaults = heat_config(&plain, bed);
     const double begun = progress_clock() - report->seconds;
     struct heat_excess last = {INFINITY, INFINITY, INFINITY, INFINITY}, over = heat_compare(problem, report);
-    bool said = false;
+    bool warned = false;
     while (heat_worst(&over) > 1) {
         const fibrad_heat_config next = heat_refine(report->config, &over, &last);
         const double work = heat_work(bed, problem->walls.count, &report->config);
@@ -304,11 +310,11 @@ static int heat_improve(struct bed_options *asked, const struct heat_problem *pr
         if (next.directions == report->config.directions && next.patches == report->config.patches &&
             next.wall_rays == report->config.wall_rays)
             break;
-        if (!said && progress_clock() + seconds - begun > COSTLY * usual) {
+        if (!warned && progress_clock() + seconds - begun > COSTLY * usual) {
             message_at(STATUS_OK, asked->name, 0,
                        "warning: --error %g takes about %.0f s, %.0f times as long as without --error", problem->error,
                        ceil(progress_clock() + seconds - begun), (progress_clock() + seconds - begun) / usual);
-            said = true;
+            warned = true;
         }
         report->config = next;
         const int status = heat_once(asked, problem, bed, report);

@@ -1,4 +1,4 @@
-/* steady.c - effective conductivity of a bed between two plates, whose spheres settle at their own temperatures.
+/* steady.c - effective conductivity of a bed between two plates; no sphere gains or loses heat.
  * SPDX-License-Identifier: MIT */
 #include "heat/steady.h"
 
@@ -20,7 +20,7 @@ static double steady_place(const struct bed *bed, int axis, uint32_t i) {
     return (axis == 0 ? bed->x : axis == 1 ? bed->y : bed->z)[i];
 }
 
-/* The plates, lower and upper. */
+/* The lower and the upper plate. */
 static struct walls steady_plates(const struct bed *bed, int axis) {
     double end[2] = {INFINITY, -INFINITY};
     for (uint32_t i = 0; i < bed->n; ++i) {
@@ -32,7 +32,7 @@ static struct walls steady_plates(const struct bed *bed, int axis) {
     return plates;
 }
 
-/* Emissions of the spheres, from 1 at the lower plate to 0, and the powers of the plates. */
+/* Finds sigma T^4 of the spheres if it is 1 at the lower plate and 0 at the upper one, and the powers of the plates. */
 static int steady_solve(struct bed_options *asked, const struct bed *bed, const struct walls *plates,
                         const double *emissivity, double *emission, double power[2], double error[2]) {
     const fibrad_scene_config scene = bed_scene(bed, plates);
@@ -59,7 +59,7 @@ static int steady_solve(struct bed_options *asked, const struct bed *bed, const 
     return bed_options_status(asked, bed, status, &run.fault);
 }
 
-/* The line through the spheres of the inner half. */
+/* Fits a straight line to sigma T^4 of the spheres of the inner half. */
 static void steady_fit(const struct bed *bed, int axis, const struct walls *plates, double *emission, double *place,
                        struct steady *steady, double *slope, double *slope_error) {
     const double low = plates->body[0].plane.at, high = plates->body[1].plane.at;

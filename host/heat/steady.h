@@ -1,23 +1,24 @@
-/* steady.h - effective conductivity of a bed between two plates, whose spheres settle at their own temperatures.
+/* steady.h - effective conductivity of a bed between two plates; no sphere gains or loses heat.
  * SPDX-License-Identifier: MIT */
 #ifndef STEADY_H
 #define STEADY_H
 
 #include "frames/bed_options.h"
 
-/* F_E along one axis: flux over mean diameter and gradient of sigma T^4, the latter by a straight line through the
- * spheres of the inner half. */
+/* Exchange factor F_E along one axis: flux / (mean diameter x gradient of sigma T^4). The gradient is that of a
+ * straight line through the spheres of the inner half. */
 struct steady {
-    double factor, error; /* of the line and of the flux, estimated */
-    uint32_t spheres;     /* of the inner half */
-    double seconds;
+    double factor;
+    double error;     /* estimated, of the line and of the flux together */
+    uint32_t spheres; /* in the inner half */
+    double seconds;   /* time of computing [s] */
 };
 
 /* Whether the bed is periodic along both other axes. */
 bool steady_possible(const struct bed *bed, int axis);
 
-/* Puts black plates where the spheres end along an axis, which is open then, and solves for temperatures at which no
- * sphere gains anything. emissivity [spheres]. Status 0, STATUS_INPUT if there are less than 40 spheres in the inner
+/* Puts black plates at both ends of the bed along an axis, whose period is dropped, and finds the temperatures at which
+ * no sphere gains or loses heat. emissivity [spheres]. Status 0, STATUS_INPUT if fewer than 40 spheres lie in the inner
  * half, or as bed_options_status. */
 int steady_conduction(struct bed_options *asked, const struct bed *bed, const double *emissivity, int axis,
                       struct steady *steady);

@@ -1,4 +1,4 @@
-/* triangle_heat.c - what the triangles of walls gain, and their temperatures. SPDX-License-Identifier: MIT */
+/* triangle_heat.c - net flux and temperature of each triangle of walls. SPDX-License-Identifier: MIT */
 #include "heat/triangle_heat.h"
 
 #include <gsl/gsl_math.h>

@@ -1,12 +1,12 @@
-/* body_rows.c - rows of walls, by as many paths as what is asked of the spheres deserves, and what their triangles see.
- * SPDX-License-Identifier: MIT */
+/* body_rows.c - rows of walls by paths, and what the triangles of walls see. SPDX-License-Identifier: MIT */
 #include "simple/job.h"
 
-/* From each wall; a power of two, as all numbers of paths are: that many points are spread most evenly, and err half as
- * much as others about as many. */
+/* Most paths from each wall. All numbers of paths are powers of two: so many points are spread most evenly and err half
+ * as much as a similar number of points. */
 #define PATHS_MOST (1u << 24)
 
-/* Paths from each wall: some percent of the work of the spheres, but in small beds up to FEW_PATHS all the same. */
+/* In large beds the paths from a wall cost about as much as one row in SPHERES_PER_SHARE: all walls take some percent
+ * of the work. In small beds a wall has up to FEW_PATHS paths even so. */
 #define SPHERES_PER_SHARE 2048u
 #define FEW_PATHS         16384u
 
@@ -15,7 +15,7 @@ enum { VIEWS_AT_ONCE = 16 };
 struct body_tasks {
     fibrad_job *job;
     fibrad_exchange_rule rule;
-    uint32_t paths[FIBRAD_BODIES_MAX]; /* from each body; 0: not now */
+    uint32_t paths[FIBRAD_BODIES_MAX]; /* from each body; 0: its row is not computed in this round */
     fibrad_body_row part[FIBRAD_BODIES_MAX][FIBRAD_BODY_PARTS];
 };
 
@@ -29,8 +29,8 @@ static int run_part(void *tasks, int thread, uint32_t task) {
                                 &bodies->part[body][part]);
 }
 
-/* How many paths follow so many whose error is `ratio` times the one wanted: by the law paths^-0.7, doubled as often
- * as it takes. */
+/* The next number of paths if the error of `paths` is `ratio` times the tolerance. The error falls about as paths^-0.7:
+ * by 1.62 each time the paths are doubled. */
 static uint32_t more_paths(uint32_t paths, double ratio) {
     do paths *= 2, ratio /= 1.62;
     while (ratio > 1 && paths < PATHS_MOST);

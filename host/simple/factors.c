@@ -20,20 +20,20 @@ static int row_by_paths(const void *rule, const fibrad_scene *scene, fibrad_work
     return fibrad_exchange_row(scene, work, i, rule, row, rays);
 }
 
-/* Not more than `most` rules, and a sound threshold. */
+/* Checks that at most `most` rules are set and that 0 <= drop <= 1. */
 static int check_options(const fibrad_bed_options *options, int most) {
     const int rules = (options->beam != NULL) + (options->surface != NULL) + (options->cast != NULL);
     return rules <= most && options->drop >= 0 && options->drop <= 1 ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
 }
 
-/* Paths from a wall for each direction of beams, or each path, of a sphere, which cost about as much as that. */
+/* Paths from a wall for each direction of beams of a sphere, and for each path of a sphere. They cost about as much. */
 enum { PER_DIRECTION = 64, PER_PATH = 8 };
 
-/* The error there may be in the row of a body before both ways are averaged, over that of the mean. */
+/* Error allowed in the row of a wall before averaging, over the error allowed after averaging. */
 #define BODY_BEFORE_AVERAGING 1.4
 
-/* How a matrix is made of the rows of spheres; and rows of bodies, by `walls`, where they are asked for and all
- * spheres have theirs. */
+/* Fills `rule` for the matrix of a bed. Computes rows of walls by `walls` if options->bodies is set, all rows of
+ * spheres are computed and there is no cutoff. */
 static int plan_matrix(fibrad_job *job, const fibrad_bed_options *options, const fibrad_exchange_rule *walls,
                        fibrad_body_row *body_row, fibrad_matrix_rule *rule) {
     *rule = (fibrad_matrix_rule){.raw = options->raw || options->wanted, .drop = options->drop};
@@ -46,7 +46,7 @@ static int plan_matrix(fibrad_job *job, const fibrad_bed_options *options, const
     return fibrad_job_bodies(job, &before, body_row);
 }
 
-/* Rows by one rule, and their matrix. */
+/* Computes the rows by one rule, and their matrix. */
 static int run_rule(fibrad_job *job, fibrad_job_row *row, const void *rule, const fibrad_bed_options *options,
                     const fibrad_matrix_rule *how, fibrad_bed_factors **factors) {
     fibrad_job_report report;
@@ -54,7 +54,7 @@ static int run_rule(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
     return status ? status : fibrad_job_factors(job, how, &report, factors);
 }
 
-/* How bodies are followed to view factors that are as accurate as those of the spheres. */
+/* A rule for rows of black walls, which makes them about as accurate as the rows of spheres. */
 static fibrad_exchange_rule black_bodies(const fibrad_job *job, const fibrad_bed_options *options) {
     const fibrad_beam_rule *beam = options->beam;
     const fibrad_cast_rule *cast = options->cast;
@@ -99,7 +99,7 @@ int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres 
     return status;
 }
 
-/* The emissivities of all spheres, since paths meet them all; the fault is the first that is not valid. */
+/* Checks the emissivities of all spheres, since paths may meet each of them. The fault names the first invalid one. */
 static int check_emissivities(fibrad_job *job, const fibrad_exchange_rule *rule) {
     if (!rule || (!rule->emissivity && job->facts.spheres > 0)) return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < job->facts.spheres; ++i)
@@ -145,7 +145,7 @@ struct displacement_rule {
     fibrad_displacement *to; /* [spheres] */
 };
 
-/* No row, but the displacement of one sphere: the row stays empty. */
+/* A fibrad_job_row that computes the displacement of one sphere. The row stays empty. */
 static int displacement_of(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
                            uint64_t *rays) {
     const struct displacement_rule *how = rule;

@@ -1,4 +1,4 @@
-/* heap.c - the kernel's blocks on the heap or in files, and the sizes of its structures. SPDX-License-Identifier: MIT
+/* heap.c - memory of the kernel on the heap or in files, and sizes of public structures. SPDX-License-Identifier: MIT
  */
 #include "simple/heap.h"
 
@@ -33,8 +33,9 @@ int fibrad_heap_scene(fibrad_scene **scene, void **block, const fibrad_scene_con
     return status;
 }
 
-/* A file is mapped, so that rows and matrices in it are used as those in memory are, and the system writes out what
- * does not fit. Its room on the disk is taken before it is mapped: a full disk is an error, not a signal. */
+/* The file is mapped. So rows and matrices in the file are used like those in memory, and the system writes to the disk
+ * what does not fit into memory. Disk space is allocated before the file is mapped: else a full disk would end the
+ * process by a signal. */
 int fibrad_scratch_open(fibrad_scratch *scratch, const char *folder) {
     static const char name[] = "/fibrad.XXXXXX";
     *scratch = (fibrad_scratch){0};
@@ -64,7 +65,7 @@ void fibrad_scratch_close(fibrad_scratch *scratch) {
     *scratch = (fibrad_scratch){0};
 }
 
-/* The larger file; the old mapping stays until the new one is there. */
+/* Enlarges the file and maps it anew. The old mapping stays if that fails. */
 static void *map_larger(const fibrad_scratch *scratch, size_t size) {
     const off_t length = (off_t)size;
     if (length < 0 || (size_t)length != size || posix_fallocate(scratch->file, 0, length) != 0) return NULL;

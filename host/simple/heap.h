@@ -1,4 +1,4 @@
-/* heap.h - the kernel's blocks on the heap, or in files. SPDX-License-Identifier: MIT */
+/* heap.h - memory of the kernel on the heap or in files. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_SIMPLE_HEAP_H
 #define FIBRAD_SIMPLE_HEAP_H
 
@@ -7,33 +7,35 @@
 #include "fibrad_mesh.h"
 #include "simple/fibrad_host.h"
 
-/* Makes a scene in *block, which is to be freed; NULL after an error. Errors: as fibrad_scene_init, _MEMORY. */
+/* Makes a scene in *block. The caller frees *block, which is NULL after an error. Errors: as fibrad_scene_init;
+ * _MEMORY.
+ */
 int fibrad_heap_scene(fibrad_scene **scene, void **block, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 
-/* Triangles in a block, which is to be freed. */
+/* A copy of triangles. The caller frees the block. */
 typedef struct fibrad_triangle_copy {
     struct fibrad_triangles triangles;
     void *block;
 } fibrad_triangle_copy;
 
-/* Copies triangles; NULL: none. The block is NULL then and after an error. Errors: _MEMORY. */
+/* Copies triangles. Without triangles (NULL or 0) and after an error copy->block is NULL. Errors: _MEMORY. */
 int fibrad_heap_triangles(fibrad_triangle_copy *copy, const struct fibrad_triangles *given);
 
-/* A block; zeroed: empty and on the heap. */
+/* A block that grows. Zeroed: empty, on the heap. */
 typedef struct fibrad_scratch {
-    bool filed; /* in a file, which is part of the address space and has no name */
-    int file;
+    bool filed;  /* the block is a mapped file without a name */
+    int file;    /* its descriptor, if filed */
     void *block; /* NULL: none yet */
     size_t size;
 } fibrad_scratch;
 
-/* An empty block, in a file of this folder (NULL: on the heap). Close it also after an error. Errors: _MEMORY;
- * _ARGUMENT: no file can be made there. */
+/* Makes an empty block in a file of a folder. folder NULL: on the heap. Close the block also after an error. Errors:
+ * _MEMORY; _ARGUMENT: no file can be made in the folder. */
 int fibrad_scratch_open(fibrad_scratch *scratch, const char *folder);
 void fibrad_scratch_close(fibrad_scratch *scratch);
 
-/* Makes the block of a fibrad_scratch, the context, larger; as fibrad_heap_resize. NULL also where a disk is full. */
+/* A fibrad_resize that enlarges the block of a fibrad_scratch. Returns NULL also if the disk is full. */
 void *fibrad_scratch_resize(void *scratch, void *block, size_t size);
 
 #endif

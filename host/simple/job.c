@@ -8,14 +8,16 @@
 
 #include "simple/heap.h"
 
-#define ROWS_AT_ONCE 16 /* that a thread takes: few enough to share out a bed, enough to share a neighbourhood */
-#define LONG_RATIO   8  /* radius over the mean one from which on a row is divided over the threads */
-#define PARTS_EACH   4  /* parts of a row for each thread */
+#define ROWS_AT_ONCE 16 /* rows per task: few enough to divide a bed, enough to be neighbours in the cache */
+#define LONG_RATIO   8  /* the row of a sphere of more than this many mean radii is divided over the threads */
+#define PARTS_EACH   4  /* parts of a divided row per thread */
 #define PARTS_MAX    256
-#define AVERAGES     4  /* tasks of averaging for a thread, so that one that is late does not hold up the rest */
-#define AVERAGES_MAX 64 /* tasks, unless there are more threads: each looks into all rows */
+#define AVERAGES     4  /* tasks of averaging per thread: several, so that a late thread does not delay the others */
+#define AVERAGES_MAX 64 /* most tasks of averaging, unless there are more threads: each task reads all rows */
 #define FILED_MAX    256
-#define FILED_BYTES  ((uint64_t)1 << 28) /* that a task of averaging writes, in no order, where they are in a file */
+/* Bytes that a task of averaging writes if rows are in a file. It writes in no order, so its bytes must fit in memory.
+ */
+#define FILED_BYTES ((uint64_t)1 << 28)
 
 int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fibrad_spheres *spheres,
                     fibrad_run *run) {
@@ -40,7 +42,7 @@ void fibrad_job_close(fibrad_job *job) {
     free(job->block);
 }
 
-/* Rows in work. */
+/* Rows that are being computed, one per task. */
 struct row_tasks {
     fibrad_job *job;
     fibrad_job_row *row;
@@ -50,7 +52,7 @@ struct row_tasks {
     fibrad_job_report *report; /* [threads] */
 };
 
-static double larger_of(double a, double b) { return a > b ? a : b; } /* no library of mathematics for this alone */
+static double larger_of(double a, double b) { return a > b ? a : b; } /* fmax would need the library of mathematics */
 
 static double sum_of_row(const fibrad_row *row, uint32_t bodies) {
     double sum = 0;
@@ -60,7 +62,7 @@ static double sum_of_row(const fibrad_row *row, uint32_t bodies) {
     return sum + row->beyond;
 }
 
-/* Notes what is known of a row that a thread has computed. */
+/* Adds a row to the report of the thread that has computed the row. */
 static void note_row(const struct row_tasks *rows, int thread, const fibrad_row *row) {
     fibrad_job_report *report = &rows->report[thread];
     if (rows->error) rows->error[row->sphere] = row->error;
@@ -68,7 +70,7 @@ static void note_row(const struct row_tasks *rows, int thread, const fibrad_row 
     report->directions = row->directions > report->directions ? row->directions : report->directions;
     report->fallbacks += row->fallbacks;
     const double sum = row->rows ? sum_of_row(row, rows->job->facts.bodies) : 0;
-    if (sum != 0) /* else there is no row, or that of a sphere that emits nothing */
+    if (sum != 0) /* 0: there is no row, or the sphere emits nothing */
         report->closure_error = larger_of(report->closure_error, fabs(sum - 1));
 }
 
@@ -80,7 +82,7 @@ static int run_row(void *tasks, int thread, uint32_t task) {
     uint64_t rays = 0;
     const int status = rows->row(rows->rule, job->scene, &job->team.work[thread], i, &row, &rays);
     if (status) return status;
-    row.sphere = i; /* of displacements, too */
+    row.sphere = i; /* rows of displacements leave it 0 */
     note_row(rows, thread, &row);
     rows->report[thread].rays += rays;
     return FIBRAD_OK;
@@ -92,7 +94,7 @@ int fibrad_job_beam_row(const void *rule, const fibrad_scene *scene, fibrad_work
     return fibrad_beam_row(scene, work, i, rule, row);
 }
 
-/* A row in parts. */
+/* One row that is divided into parts, one per task. */
 struct part_tasks {
     fibrad_job *job;
     fibrad_beam_rule rule;
@@ -108,7 +110,7 @@ static int run_row_part(void *tasks, int thread, uint32_t task) {
     return fibrad_beam_part(t->job->scene, &t->job->team.work[thread], t->sphere, &t->rule, from, to, &t->part[task]);
 }
 
-/* The row of the sphere of some part tasks, its parts by all threads. */
+/* Computes the row of tasks->sphere, by all threads. */
 static int run_divided(const struct row_tasks *rows, struct part_tasks *tasks) {
     fibrad_team *team = &rows->job->team;
     fibrad_row row = {.rows = &team->rows[0]};
@@ -120,7 +122,8 @@ static int run_divided(const struct row_tasks *rows, struct part_tasks *tasks) {
     return status;
 }
 
-/* Computes the first `count` rows, one by one. *failed: the first that fails; else as it was. */
+/* Computes the first `count` rows one after the other, each by all threads. *failed: the number of the first row that
+ * fails; unchanged if none fails. */
 static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_t all, uint32_t *failed) {
     const fibrad_beam_rule *rule = rows->rule;
     fibrad_team *team = &rows->job->team;
@@ -151,9 +154,10 @@ static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_
     return status;
 }
 
-/* Puts spheres far larger than most to the front of the order, for any number of threads, so that the row which fails
- * first is the same. Returns how many rows are divided over the threads: those, whose windows have as many discs as is
- * the square of that, and all if there are fewer than threads. */
+/* Moves spheres far larger than the mean to the front of the order. A sphere of k mean radii has k^2 times the discs in
+ * a window, so its row takes long. The order is the same for any number of threads, and so is the row that fails first.
+ * Returns the number of rows to be divided over the threads: those of the large spheres, or all rows if they are fewer
+ * than threads. */
 static uint32_t put_long_first(const fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule,
                                uint32_t *order, uint32_t count) {
     const fibrad_spheres *s = job->spheres;
@@ -171,7 +175,7 @@ static uint32_t put_long_first(const fibrad_job *job, fibrad_job_row *row, const
     return count < (uint32_t)job->team.threads ? count : longs;
 }
 
-/* The spheres wanted, in the order of the cells. */
+/* Lists the wanted spheres in the order of the cells. Returns their number. */
 static uint32_t list_spheres(const fibrad_job *job, const unsigned char *wanted, uint32_t *order) {
     uint32_t count = 0;
     for (uint32_t k = 0; k < job->facts.spheres; ++k) {
@@ -219,7 +223,8 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
     return status;
 }
 
-/* Some for each thread; in a file so many more that what each writes stays in memory meanwhile. */
+/* The number of tasks of averaging: some per thread. If rows are in files, there are more, so that the bytes that one
+ * task writes stay in memory. */
 static uint32_t average_tasks(const fibrad_job *job) {
     const fibrad_team *team = &job->team;
     if (team->threads == 1 && !job->scratch) return 1;
@@ -248,9 +253,9 @@ static int make_matrix(fibrad_job *job, const fibrad_matrix_rule *rule, fibrad_m
     return status ? status : fibrad_matrix_close(*matrix);
 }
 
-/* Factors with what they own. */
+/* Factors and the memory they own. */
 struct owned_factors {
-    fibrad_bed_factors factors; /* first, so that its address is that of the whole */
+    fibrad_bed_factors factors; /* first: fibrad_bed_free casts its address to that of the whole */
     fibrad_scratch store;       /* of the matrix */
     double area[];
 };

@@ -1,4 +1,5 @@
-/* job.h - a bed being computed: its scene, its threads and the rows they collect. SPDX-License-Identifier: MIT */
+/* job.h - the computation of a bed: its scene, its threads and the rows that they collect. SPDX-License-Identifier: MIT
+ */
 #ifndef FIBRAD_SIMPLE_JOB_H
 #define FIBRAD_SIMPLE_JOB_H
 
@@ -14,34 +15,34 @@ typedef struct fibrad_job {
     fibrad_run *run;
     const fibrad_spheres *spheres;
     const char *scratch; /* a folder for rows and matrix; NULL: in memory */
-    double begun;        /* [s] */
+    double begun;        /* time of fibrad_job_open [s] */
 } fibrad_job;
 
-/* Makes a scene and a team. Close it also after an error. Errors: as fibrad_view_factors; run->fault is set. */
+/* Makes a scene and a team. Close the job also after an error. Errors: as fibrad_view_factors; run->fault is set. */
 int fibrad_job_open(fibrad_job *job, const fibrad_scene_config *config, const fibrad_spheres *spheres, fibrad_run *run);
 
-/* Rows and matrix go into files of a folder; NULL: they stay in memory. Errors: as fibrad_scratch_open. */
+/* Keeps rows and matrix in files of a folder. folder NULL: in memory. Errors: as fibrad_scratch_open. */
 int fibrad_job_scratch(fibrad_job *job, const char *folder);
 void fibrad_job_close(fibrad_job *job);
 
-/* Row i by some method; into row->rows or elsewhere. A status. */
+/* A method: computes row i into row->rows and adds to *rays the rays it has traced. Returns a status. */
 typedef int fibrad_job_row(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
                            uint64_t *rays);
 
-/* Row i by a fibrad_beam_rule, the one kind that is divided over the threads where it is long. */
+/* The method of beams, by a fibrad_beam_rule. Only this method divides a long row over the threads. */
 fibrad_job_row fibrad_job_beam_row;
 
-/* What is known of rows besides the matrix. */
+/* Facts of the rows computed, as in fibrad_bed_factors. */
 typedef struct fibrad_job_report {
-    uint64_t rows;
+    uint64_t rows; /* their number */
     uint32_t directions;
     uint64_t fallbacks, rays;
     double closure_error;
 } fibrad_job_report;
 
-/* Computes rows, those wanted ([spheres] not 0; NULL: all), into the collections of the team, which are emptied first.
- * error: NULL, or [spheres] out: estimated error of each row; 0 of others. Errors: those of the rows; run->fault is
- * set. */
+/* Empties the collections of the team and computes rows into them. wanted [spheres]: not 0: this row is computed; NULL:
+ * all rows. error [spheres], out: estimated errors, 0 for rows that are not computed; may be NULL. Errors: those of the
+ * rows; run->fault is set. */
 int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, const unsigned char *wanted, double *error,
                     fibrad_job_report *report);
 
@@ -49,20 +50,23 @@ int fibrad_job_rows(fibrad_job *job, fibrad_job_row *row, const void *rule, cons
 int fibrad_job_factors(fibrad_job *job, const fibrad_matrix_rule *rule, const fibrad_job_report *report,
                        fibrad_bed_factors **factors);
 
-/* Rows by the beam rule such that the worst averaged one has an estimated error of rule->tolerance or less, if
- * FIBRAD_DIRECTIONS_MAX suffices, and their matrix. Errors: as the two above. */
+/* Computes rows by beams and their matrix. All rows have the same number of directions. The worst row has, after
+ * averaging, an estimated error of at most rule->tolerance, unless FIBRAD_DIRECTIONS_MAX directions do not suffice.
+ * Errors: as fibrad_job_rows and fibrad_job_factors. */
 int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam_rule *rule,
                          const fibrad_matrix_rule *average, fibrad_bed_factors **factors);
 
-/* Likewise of exchange factors, with rule->tolerance > 0, as long as more paths make the worst error smaller. */
+/* Computes exchange factors, rule->tolerance being above 0, and their matrix. The worst row has, after averaging, an
+ * estimated error of at most rule->tolerance, unless more paths no longer help. Errors: as fibrad_job_rows and
+ * fibrad_job_factors. */
 int fibrad_job_exchange(fibrad_job *job, fibrad_job_row *row, const fibrad_exchange_rule *rule,
                         const fibrad_matrix_rule *average, fibrad_bed_factors **factors);
 
-/* Rows of all bodies that have bounds, by rule->paths paths from each, or more until no error is above rule->tolerance
- * (0: none); row [bodies] out. Errors: as fibrad_exchange_body. */
+/* Computes the rows of all walls of finite area, by rule->paths paths from each wall. With rule->tolerance > 0 a wall
+ * gets more paths until its error is at most rule->tolerance. row [bodies]: out. Errors: as fibrad_exchange_body. */
 int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_body_row *row);
 
-/* `paths`, less in small beds and more in large ones. */
+/* The number of paths from a wall: `paths`, scaled by the number of spheres and rounded up to a power of two. */
 uint32_t fibrad_job_body_paths(const fibrad_job *job, uint64_t paths);
 
 #endif

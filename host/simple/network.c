@@ -1,9 +1,8 @@
 /* network.c - radiation by exchange factors, as a network of conductances. SPDX-License-Identifier: MIT
- *
- * A_i e_i D_ij is a conductance between sphere i and body j for E = sigma T^4. With L the conductances' matrix and H
- * the holds, (H + L) (E - E*) = what is missing of the powers at E*: symmetric and positive definite. Conjugate
- * gradients with the diagonal as preconditioner solve it. Only products with L are shared out to the threads, row by
- * row, so that these change no bit. */
+ * A_i e_i D_ij is a conductance between spheres i and j, or sphere i and a wall, for E = sigma T^4. L is the matrix of
+ * conductances, H the diagonal matrix of the holds, and E* the reference emission. The system (H + L) (E - E*) = r,
+ * with r the power that is missing at E*, is symmetric and positive definite. Conjugate gradients with the diagonal as
+ * preconditioner solve it. Only products with L are divided over the threads, row by row. So threads change no bit. */
 #include "simple/network.h"
 
 #include <math.h>
@@ -57,7 +56,7 @@ void fibrad_network_free(fibrad_network *w) {
     free(w);
 }
 
-/* L times the direction, and H times it. */
+/* A task: some rows of product = (L + H) direction. */
 static int multiply_rows(void *network, int thread, uint32_t task) {
     fibrad_network *w = network;
     const fibrad_factors *d = &w->factors->matrix;
@@ -78,7 +77,7 @@ static int multiply(fibrad_network *w, fibrad_team *team) {
 
 static double emission_at(const fibrad_heat_sources *s, double t) { return s->sigma * (t * t) * (t * t); }
 
-/* What walls and surroundings send to sphere i, as if it sent nothing. */
+/* Power that sphere i absorbs from walls and surroundings. */
 static double received_outside(const fibrad_network *w, const fibrad_heat_sources *s, uint32_t i) {
     const fibrad_factors *d = &w->factors->matrix;
     double sum = d->escaped[i] * emission_at(s, s->surroundings);
@@ -87,7 +86,8 @@ static double received_outside(const fibrad_network *w, const fibrad_heat_source
     return w->weight[i] * sum;
 }
 
-/* The emissions to begin with, and what is missing of the powers there; 0 where the temperature is given. */
+/* Sets the initial emissions and the residual, which is the power missing there. Where the temperature is given, the
+ * residual is 0. */
 static int begin(fibrad_network *w, fibrad_team *team, const fibrad_heat_sources *s) {
     const uint32_t n = w->factors->matrix.n;
     for (uint32_t i = 0; i < n; ++i) {
@@ -104,8 +104,9 @@ static int begin(fibrad_network *w, fibrad_team *team, const fibrad_heat_sources
     return status;
 }
 
-/* The next direction: the preconditioned residual, and `keep` of the last one. Returns their product; *missing: not 0
- * while some sphere's power is not what it may be. */
+/* Finds the next search direction: the preconditioned residual plus `keep` times the last direction. Returns residual
+ * times preconditioned residual. *missing: 1 if a sphere misses more power than `allowed` and than rounding explains.
+ */
 static double turn(fibrad_network *w, const fibrad_heat_sources *s, const double *allowed, double last, int *missing) {
     const double rounding = 1e-14;
     const uint32_t n = w->factors->matrix.n;
@@ -125,7 +126,7 @@ static double turn(fibrad_network *w, const fibrad_heat_sources *s, const double
     return product;
 }
 
-/* Goes along the direction as far as the error falls. */
+/* Goes along the direction to the least error. */
 static void go(fibrad_network *w, const fibrad_heat_sources *s, double product) {
     const uint32_t n = w->factors->matrix.n;
     double curvature = 0;
@@ -138,7 +139,7 @@ static void go(fibrad_network *w, const fibrad_heat_sources *s, double product) 
     }
 }
 
-/* Powers from the emissions in `direction`, L of which is in `product`. */
+/* Finds the powers. `product` is L times the emissions. */
 static void read_powers(const fibrad_network *w, const fibrad_heat_sources *s, fibrad_heat_result *result) {
     const fibrad_factors *d = &w->factors->matrix;
     result->surroundings_power = 0, result->surroundings_error = NAN;
@@ -152,7 +153,7 @@ static void read_powers(const fibrad_network *w, const fibrad_heat_sources *s, f
     }
 }
 
-/* Temperatures; FIBRAD_E_UNSOLVABLE if one of them is below zero, NaN then. */
+/* Finds the temperatures. FIBRAD_E_UNSOLVABLE: an emission is below 0, and the temperature is NaN. */
 static int find_temperatures(const fibrad_network *w, const fibrad_heat_sources *s, fibrad_heat_result *result) {
     int status = FIBRAD_OK;
     for (uint32_t i = 0; i < w->factors->matrix.n; ++i) {

@@ -1,4 +1,4 @@
-/* radiation.c - net radiative powers of a bed, step after step. SPDX-License-Identifier: MIT */
+/* radiation.c - net radiative powers of a bed that may move. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@ struct fibrad_radiation {
     fibrad_heat_config config;
     fibrad_heat *heat; /* NULL: none yet */
     void *heat_block;
-    size_t heat_size; /* of it; 0: none */
+    size_t heat_size; /* bytes of heat_block; 0: none */
     fibrad_scene *scene;
     void *scene_block;
     uint32_t n;
@@ -25,7 +25,7 @@ static int trace_beams(void *radiation, int thread, uint32_t task) {
     return fibrad_heat_trace(r->heat, &r->team.work[thread], task);
 }
 
-/* Another problem in the place of the one there is, in as many bytes at least. */
+/* Replaces the heat problem by a new one in a block of `at_least` bytes or more. */
 static int replace_heat(fibrad_radiation *r, const fibrad_scene *scene, size_t at_least) {
     fibrad_heat *heat;
     size_t size = fibrad_heat_size(&r->config, scene);
@@ -45,13 +45,13 @@ static int replace_heat(fibrad_radiation *r, const fibrad_scene *scene, size_t a
     return FIBRAD_OK;
 }
 
-/* The same problem in another scene; walls that have moved far may ask for more room than there is. */
+/* Moves the problem to another scene. If the moved walls need a larger block, makes a new problem. */
 static int move_heat(fibrad_radiation *r, const fibrad_scene *scene) {
     const int status = r->heat ? fibrad_heat_move(r->heat, scene) : FIBRAD_E_SIZE;
     return status == FIBRAD_E_SIZE ? replace_heat(r, scene, 0) : status;
 }
 
-/* Follows all beams; spheres may see more others than there is room for. */
+/* Traces all beams. FIBRAD_E_SIZE: spheres see more others than the block has room for; the block is doubled. */
 static int trace_all(fibrad_radiation *r) {
     for (;;) {
         const uint32_t tasks = fibrad_heat_tasks(r->heat);
@@ -128,7 +128,7 @@ int fibrad_radiation_sides(const fibrad_radiation *r, double *flux, double *temp
 #define EMISSIVITY_CHANGE 1e-5
 enum { SETTLE_MAX = 100 };
 
-/* Temperatures for a law to begin with: NaN is one that it leaves. */
+/* Whether the sources have the arrays of temperatures that the law reads first. */
 static bool temperatures_given(const fibrad_heat_sources *s, const fibrad_scene_facts *facts) {
     return (!facts->spheres || s->temperature) && (!facts->bodies || s->body_temperature);
 }

@@ -49,11 +49,11 @@ int fibrad_team_report(const fibrad_team *team, const char *stage, uint64_t done
     return FIBRAD_E_CANCELLED;
 }
 
-/* Tasks are begun in ascending order, and none below a task that fails is left out, so that the lowest one that fails
- * is found whatever the threads do. */
+/* Tasks are begun in ascending order. A task that fails stops only tasks behind it. So the lowest task that fails is
+ * found whatever the schedule. */
 static void run_tasks(fibrad_team *team, const char *stage, uint32_t tasks, int chunk, fibrad_team_task *task,
                       void *job) {
-    uint32_t end = tasks; /* a task that failed: those behind it are left out */
+    uint32_t end = tasks; /* a task that failed; tasks behind it are not begun */
     uint64_t done = 0;
 #pragma omp parallel num_threads(team->threads)
     {

@@ -1,8 +1,9 @@
-/* tolerance.c - as many directions and paths as a stated error takes. SPDX-License-Identifier: MIT
+/* tolerance.c - numbers of directions and paths for a tolerance. SPDX-License-Identifier: MIT
  *
- * Rows of view factors to be averaged take one number of directions, for only then are their sums at most 1: that which
- * the worst rows of a pilot need by themselves, and more if the estimates then turn out too large. Rows of exchange
- * factors have a tolerance each, which is made smaller until the worst of their means has the error asked for. */
+ * Rows of view factors that are averaged have one number of directions, for only then are their sums at most 1. The
+ * worst rows of a pilot run, computed by themselves, tell the number. If the estimated errors are too large after
+ * averaging, the number is raised. Each row of exchange factors has a tolerance of its own. This tolerance is lowered
+ * until the worst row has, after averaging, the error that the caller allows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,12 +12,12 @@
 
 enum { PILOT = 50, SAMPLE = 48 };
 
-/* The largest estimate of averaged rows over that of raw ones, 0.4 to 0.7 as measured; more in sparse beds, which are
- * then repeated. */
+/* Largest estimated error of averaged rows over that of raw rows. Measured: 0.4 to 0.7, more in sparse beds, whose rows
+ * are then computed again. */
 static const double averaged_over_raw = 0.6;
 
-/* The first tolerance of rows of exchange factors, over that of their means: small ones beside large ones are averaged
- * with hardly anything. */
+/* First tolerance of a row of exchange factors over that after averaging. Averaging hardly helps rows of small spheres
+ * among large ones. */
 static const double before_averaging = 0.9;
 
 static int descending(const void *a, const void *b) {
@@ -24,7 +25,7 @@ static int descending(const void *a, const void *b) {
     return (x < y) - (x > y);
 }
 
-/* Marks the rows of largest estimate: those at the surface of a bed, mostly. */
+/* Marks the rows of largest estimated error. Most of them lie at the surface of a bed. */
 static int mark_worst(uint32_t n, const double *error, unsigned char *wanted) {
     double *sorted = malloc(n * sizeof *sorted);
     if (!sorted) return FIBRAD_E_MEMORY;
@@ -38,7 +39,7 @@ static int mark_worst(uint32_t n, const double *error, unsigned char *wanted) {
     return FIBRAD_OK;
 }
 
-/* Computes all rows with few directions, and then the worst with as many as they need by themselves. */
+/* Finds the number of directions: computes all rows with few directions, then the worst rows by the tolerance. */
 static int find_directions(fibrad_job *job, fibrad_job_row *row, fibrad_beam_rule rule, double *error,
                            unsigned char *wanted, uint32_t *directions) {
     fibrad_job_report report;
@@ -83,7 +84,7 @@ int fibrad_job_tolerance(fibrad_job *job, fibrad_job_row *row, const fibrad_beam
     return status;
 }
 
-/* Rows are made anew for this part of the tolerance, as long as the worst error falls to this part of what it was. */
+/* Rows are computed again for `spare` of the tolerance, as long as the worst error falls to `gain` of the last one. */
 static const double spare = 0.95, gain = 0.9;
 
 int fibrad_job_exchange(fibrad_job *job, fibrad_job_row *row, const fibrad_exchange_rule *rule,

@@ -1,4 +1,5 @@
-/* transient.c - a bed whose temperatures change with time: what it is made of. SPDX-License-Identifier: MIT */
+/* transient.c - a bed whose temperatures change with time: its data, and powers by factors and patches.
+ * SPDX-License-Identifier: MIT */
 #include "simple/transient.h"
 
 #include <math.h>
@@ -8,13 +9,13 @@
 #include "simple/heap.h"
 
 #define FACTORS_TOLERANCE 0.01
-#define ROUGH_TOLERANCE   0.03 /* of factors that are corrected */
-#define POINTS            128  /* of beams by which powers are compared: few solutions, so they may be better ones */
-#define CHANGED           0.1  /* of powers, relative, since they were compared */
-#define SMALL             1e-3 /* powers over emission that need not be compared */
+#define ROUGH_TOLERANCE   0.03 /* of factors that patches correct */
+#define POINTS            128  /* points of beams for corrections: these are few, so they may be accurate */
+#define CHANGED           0.1  /* relative change of powers after which they are corrected again */
+#define SMALL             1e-3 /* part of the emission below which powers need no correction */
 #define PI                3.14159265358979323846
 
-/* Sweeps of many solutions are no progress; steps are. */
+/* The progress of a span is counted in steps. Sweeps within a step are not shown. */
 static int forward_progress(void *transient, const char *stage, uint64_t done, uint64_t total) {
     const fibrad_transient *t = transient;
     if (strcmp(stage, "sweeps") == 0 || !t->run.progress) return 0;
@@ -25,14 +26,14 @@ static fibrad_run run_of(fibrad_transient *t) {
     return (fibrad_run){.threads = t->run.threads, .progress = forward_progress, .context = t};
 }
 
-/* All arrays of doubles are parts of one block. */
+/* Allocates all arrays. Those of doubles lie in one block. */
 static int take_arrays(fibrad_transient *t) {
     double **const of_spheres[] = {&t->at[0],      &t->at[1],    &t->at[2],     &t->at[3], &t->area,    &t->emissivity,
                                    &t->now,        &t->slope,    &t->base,      &t->first, &t->guess,   &t->hold,
                                    &t->source,     &t->found,    &t->power,     &t->given, &t->allowed, &t->solution,
                                    &t->correction, &t->compared, &t->by_patches};
     double **const of_bodies[] = {&t->body_emissivity, &t->wall_correction, &t->wall_compared, &t->wall_power,
-                                  &t->wall}; /* the last: three a body */
+                                  &t->wall}; /* the last one has three per body */
     const size_t spheres = sizeof of_spheres / sizeof *of_spheres, bodies = sizeof of_bodies / sizeof *of_bodies;
     double *next = calloc(spheres * t->n + (bodies + 2) * t->bodies + 1, sizeof *next);
     t->doubles = next;
@@ -60,7 +61,7 @@ static void copy_bed(fibrad_transient *t, const fibrad_scene_config *scene, cons
     t->scene.triangles = &t->mesh.triangles;
 }
 
-/* Whether a scene can be made of a bed; its facts. */
+/* Checks that a scene can be made of a bed, and keeps the facts of that scene. */
 static int check_placed(fibrad_transient *t, const fibrad_scene_config *config, const fibrad_spheres *spheres) {
     fibrad_scene *scene;
     void *block;
@@ -71,7 +72,7 @@ static int check_placed(fibrad_transient *t, const fibrad_scene_config *config, 
     return status;
 }
 
-/* Beams, or nothing yet; and the bed. */
+/* Takes a bed: traces its beams unless the method is FACTORS, and copies it. After an error the last bed stays. */
 static int place(fibrad_transient *t, const fibrad_scene_config *scene, const fibrad_spheres *spheres) {
     fibrad_triangle_copy mesh = {.block = NULL};
     int status = check_placed(t, scene, spheres);
@@ -134,7 +135,7 @@ int fibrad_transient_move(fibrad_transient *t, const fibrad_scene_config *scene,
     return place(t, scene, spheres);
 }
 
-/* Whether the factors there are, if any, are those of these emissivities. */
+/* Whether there are factors for the emissivities of the sources. */
 static bool same_surfaces(const fibrad_transient *t, const fibrad_heat_sources *s) {
     bool same = t->network != NULL;
     for (uint32_t i = 0; i < t->n && same; ++i) same = t->emissivity[i] == s->emissivity[i];
@@ -142,7 +143,7 @@ static bool same_surfaces(const fibrad_transient *t, const fibrad_heat_sources *
     return same;
 }
 
-/* Factors of the bed for the emissivities of the sources. */
+/* Computes factors for the emissivities of the sources. */
 static int make_network(fibrad_transient *t, const fibrad_heat_sources *s) {
     const fibrad_spheres spheres = {t->at[0], t->at[1], t->at[2], t->at[3], .n = t->n, .id = t->named ? t->id : NULL};
     fibrad_run run = run_of(t);
@@ -174,7 +175,7 @@ static double sum_of_squares(const double *values, uint32_t n) {
     return sum;
 }
 
-/* Whether powers by factors, in t->power and t->wall_power, have changed much since they were compared. */
+/* Whether powers by factors (t->power, t->wall_power) have changed much since the last correction. */
 static bool powers_changed(const fibrad_transient *t, const fibrad_heat_sources *s) {
     double change = 0, emitted = 0;
     for (uint32_t i = 0; i < t->n; ++i) {
@@ -197,7 +198,7 @@ int fibrad_transient_compare(fibrad_transient *t, const fibrad_heat_sources *s, 
     fibrad_heat_result patches = {.power = t->by_patches, .body_power = t->wall_correction};
     int status = fibrad_network_solve(t->network, &t->team, s, t->allowed, &factors);
     if (status || (t->corrected && !powers_changed(t, s))) return status;
-    fibrad_heat_sources given = *s; /* temperatures are given, so powers are not */
+    fibrad_heat_sources given = *s; /* a sphere has a temperature or a power, not both */
     given.power = NULL;
     status = fibrad_radiation_solve(t->radiation, &given, &patches);
     if (status) return status;

@@ -1,4 +1,4 @@
-/* transient.h - the inside of a bed whose temperatures change with time. SPDX-License-Identifier: MIT */
+/* transient.h - the fields of a bed whose temperatures change with time. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_SIMPLE_TRANSIENT_H
 #define FIBRAD_SIMPLE_TRANSIENT_H
 
@@ -13,44 +13,53 @@ struct fibrad_transient {
     fibrad_team team;
     uint32_t n, bodies;
     fibrad_fault fault;
-    /* the bed: copies, since factors are made when emissivities are known */
+    /* A copy of the bed: factors are computed later, when emissivities are known. */
     fibrad_scene_config scene;
     fibrad_body *body;       /* [bodies] */
-    fibrad_plane opening[6]; /* [scene.openings] likewise */
+    fibrad_plane opening[6]; /* [scene.openings] */
     fibrad_triangle_copy mesh;
     double *at[4]; /* [n] x, y, z, r */
+    bool named;    /* spheres have ids */
     uint64_t *id;  /* [n] if named */
-    bool named;
-    double *doubles; /* all arrays of doubles here and below */
     fibrad_scene_facts facts;
+    double *doubles;                      /* the block of all arrays of doubles */
     double *area;                         /* [n] */
-    double *emissivity, *body_emissivity; /* [n], [bodies] of the network */
+    double *emissivity, *body_emissivity; /* [n], [bodies] of the network or of the law */
     fibrad_network *network;              /* NULL: none yet */
-    fibrad_radiation *radiation;          /* of patches; NULL: factors alone */
-    /* what powers by patches have more than by factors, when they were compared */
-    bool corrected;
-    double *correction, *compared, *by_patches;           /* [n]; the powers then by factors; by patches */
-    double *wall_correction, *wall_compared, *wall_power; /* [bodies] likewise */
+    fibrad_radiation *radiation;          /* powers by patches; NULL: the method is FACTORS */
+    /* The last correction: power by patches minus power by factors. */
+    bool corrected;                       /* there is one */
+    double *correction, *wall_correction; /* [n], [bodies] */
     double surroundings_correction;
-    /* of steps, march.c; [n] each */
-    double step;                      /* proposed; 0: none */
-    double *now;                      /* temperatures */
-    double *slope;                    /* of temperatures at the end of the last step; 0 to begin with */
-    double *base, *first, *guess;     /* what a stage starts from; temperatures of the first stage; those in hand */
-    double *given, *hold, *source;    /* the linear problem of a stage: temperatures (NaN: unknown), holds, powers */
-    double *allowed;                  /* of it: what may be missing of the powers */
-    double *found, *power, *solution; /* its temperatures and powers; the temperatures that go with the powers */
-    double *wall;                     /* [bodies] each: temperatures, powers of both stages */
+    double *compared, *wall_compared; /* [n], [bodies] powers by factors at the last correction */
+    double *by_patches;               /* [n] powers by patches at the last correction */
+    double *wall_power;               /* [bodies] powers by factors now */
+    /* Steps (stepper.c). */
+    double step;                   /* proposed for the next span [s]; 0: none */
+    double *now;                   /* [n] temperatures at the beginning of the step */
+    double *slope;                 /* [n] dT/dt at the end of the last step; at first 0 */
+    double *base;                  /* [n] temperatures at which a stage starts */
+    double *first;                 /* [n] change of temperature in the first stage */
+    double *guess;                 /* [n] temperatures about which Newton's method is linear */
+    double *given, *hold, *source; /* [n] the linear problem: temperatures (NaN: unknown), holds, powers */
+    double *allowed;               /* [n] power that a sphere may miss in the solution of the linear problem */
+    double *found, *power;         /* [n] temperatures and powers of the linear problem */
+    double *solution;              /* [n] temperatures of the stage, which keep the energy */
+    double *wall;                  /* [3 bodies] temperatures, then powers of each stage */
 };
 
-/* Makes sure that there are beams or factors for these sources. Errors: as fibrad_exchange_factors. */
+/* Computes factors for these sources unless the method needs none or they are there. Errors: as
+ * fibrad_exchange_factors.
+ */
 int fibrad_transient_prepare(fibrad_transient *transient, const fibrad_heat_sources *sources);
 
-/* Compares factors with patches at the temperatures of the sources, all given, if powers have changed much since it was
- * done last; *corrections counts how often. Errors: as fibrad_radiation_solve. */
+/* Corrects factors by patches at the temperatures of the sources, all of which are known. Does nothing if powers have
+ * changed little since the last correction, or if the method is not CORRECTED. Counts corrections in *corrections.
+ * Errors: as fibrad_radiation_solve. */
 int fibrad_transient_compare(fibrad_transient *transient, const fibrad_heat_sources *sources, uint64_t *corrections);
 
-/* Powers and temperatures of sources whose spheres have a hold, by factors or patches; t->allowed as in network.h. */
+/* Finds powers and temperatures of sources whose spheres have a hold, by factors or by patches. Errors: as
+ * fibrad_network_solve or fibrad_radiation_solve. */
 int fibrad_transient_solve(fibrad_transient *transient, const fibrad_heat_sources *sources, fibrad_heat_result *result);
 
 #endif

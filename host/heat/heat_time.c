@@ -1,5 +1,5 @@
-/* heat_march.c - temperatures of one bed in time. SPDX-License-Identifier: MIT */
-#include "heat/heat_march.h"
+/* heat_time.c - temperatures of one bed in time. SPDX-License-Identifier: MIT */
+#include "heat/heat_time.h"
 
 #include <gsl/gsl_math.h>
 #include <gsl/gsl_sort.h>
@@ -14,74 +14,77 @@
 #define SECONDS_MAX 1e15
 enum { TIMES_MAX = 10000 };
 
-static int march_step_option(const char *text, double *step) {
+static int step_option(const char *text, double *step) {
     *step = 0;
     return strcmp(text, "auto") == 0 ? STATUS_OK : options_number("--step", text, 1 / SECONDS_MAX, SECONDS_MAX, step);
 }
 
-int march_option(int key, const char *text, struct march_options *march) {
+int time_option(int key, const char *text, struct time_options *time) {
     switch (key) {
     case KEY_UNTIL:
-        return options_number("--until", text, 1 / SECONDS_MAX, SECONDS_MAX, &march->until);
+        return options_number("--until", text, 1 / SECONDS_MAX, SECONDS_MAX, &time->until);
     case KEY_CAPACITY:
-        return quantity_option("--heat-capacity", text, 1e-12, 1e12, &march->capacity);
+        return quantity_option("--heat-capacity", text, 1e-12, 1e12, &time->capacity);
     case KEY_DENSITY:
-        return quantity_option("--density", text, 1e-12, 1e12, &march->density);
+        return quantity_option("--density", text, 1e-12, 1e12, &time->density);
     case KEY_STEP:
-        return march_step_option(text, &march->step);
+        return step_option(text, &time->step);
     case KEY_EVERY:
-        return options_number("--every", text, 1 / SECONDS_MAX, SECONDS_MAX, &march->every);
+        return options_number("--every", text, 1 / SECONDS_MAX, SECONDS_MAX, &time->every);
     default:
-        march->times = text;
+        time->times = text;
         return STATUS_OK;
     }
 }
 
-int march_check(struct march_options *march, struct bed_options *bed) {
-    const struct quantity *c = &march->capacity, *rho = &march->density;
-    if (!(march->until > 0)) {
-        const char *needs = c->given           ? "--heat-capacity"
-                            : rho->given       ? "--density"
-                            : march->times     ? "--times"
-                            : march->every > 0 ? "--every"
-                            : march->step > 0  ? "--step"
-                                               : NULL;
+int time_check(struct time_options *time, struct bed_options *bed) {
+    const struct quantity *c = &time->capacity, *rho = &time->density;
+    if (!(time->until > 0)) {
+        const char *needs = c->given          ? "--heat-capacity"
+                            : rho->given      ? "--density"
+                            : time->times     ? "--times"
+                            : time->every > 0 ? "--every"
+                            : time->step > 0  ? "--step"
+                                              : NULL;
         return needs ? message(STATUS_USAGE, "%s needs --until", needs) : STATUS_OK;
     }
     if (!c->given) return message(STATUS_USAGE, "--until needs --heat-capacity");
     if (!rho->given) return message(STATUS_USAGE, "--until needs --density");
-    if (march->times && march->every > 0) return message(STATUS_USAGE, "--times and --every cannot be combined");
-    if (march->every > 0 && march->until / march->every > TIMES_MAX)
+    if (time->times && time->every > 0) return message(STATUS_USAGE, "--times and --every cannot be combined");
+    if (time->every > 0 && time->until / time->every > TIMES_MAX)
         return message(STATUS_USAGE, "--every: more than %d times", TIMES_MAX);
-    march->capacity.place = bed_options_column(bed, c->column, NULL);
-    march->density.place = bed_options_column(bed, rho->column, NULL);
+    time->capacity.place = bed_options_column(bed, c->column, NULL);
+    time->density.place = bed_options_column(bed, rho->column, NULL);
     return STATUS_OK;
 }
 
-/* A march under way. */
-struct marching {
+/* State of a run in time. */
+struct time_run {
     struct bed_options *asked;
-    const struct march_options *options;
+    const struct time_options *options;
     const struct heat_problem *problem;
-    const struct bed *source;
-    struct bed bed; /* the same, but its frame is the number of the output in hand */
+    const struct bed *source; /* the bed as it was read */
+    struct bed bed;           /* the bed as it is written: its frame is the number of the output */
     bool by_patches;
     fibrad_transient *transient;
     fibrad_heat_sources sources;
     fibrad_heat_result *result;
     struct side_arrays *triangles;
-    double square_metres; /* of the bed's unit */
+    double square_metres; /* square of the bed's unit of length [m2] */
     fibrad_span span;
-    double wall[WALLS_MAX], wall_energy[WALLS_MAX], energy[WALLS_MAX], surroundings_energy;
-    double now;
-    uint64_t steps, refused, sweeps, corrections;
-    double error;
-    struct time_point *point; /* [points] of the picture */
+    double now;                                   /* [s] since the beginning */
+    double wall[WALLS_MAX];                       /* temperatures of walls now [K] */
+    double wall_energy[WALLS_MAX];                /* gained by walls during the last span [J] */
+    double energy[WALLS_MAX];                     /* gained by walls since the beginning [J] */
+    double surroundings_energy;                   /* gained by the surroundings since the beginning [J] */
+    uint64_t steps, refused, sweeps, corrections; /* sums over spans, as in fibrad_span */
+    double error;                                 /* largest fibrad_span.error */
+    struct time_point *point;                     /* [points] of the picture */
     size_t points, room;
-    bool failed; /* no memory for more of them */
+    bool failed; /* memory for points ran out */
 };
 
-static struct time_point point_of(const struct marching *m, double time, const double *temperature) {
+static struct time_point point_of(const struct time_run *m, double time, const double *temperature) {
     struct time_point point = {time, 0, INFINITY, -INFINITY};
     for (uint32_t i = 0; i < m->bed.n; ++i) {
         point.mean += temperature[i] / m->bed.n;
@@ -90,8 +93,8 @@ static struct time_point point_of(const struct marching *m, double time, const d
     return point;
 }
 
-static void note_point(void *marching, double time, const double *temperature) {
-    struct marching *m = marching;
+static void note_point(void *time_run, double time, const double *temperature) {
+    struct time_run *m = time_run;
     if (m->points == m->room) {
         const size_t room = 2 * m->room + 64;
         struct time_point *point = realloc(m->point, room * sizeof *point);
@@ -102,30 +105,33 @@ static void note_point(void *marching, double time, const double *temperature) {
     m->point[m->points++] = point_of(m, m->now + time, temperature);
 }
 
-/* A temperature at a time, by its table if it has one. */
-static double temperature_at(const struct marching *m, const struct curve *curve, double time, double otherwise) {
+/* The temperature of a table at a time [K]. Without a table: `otherwise`. */
+static double temperature_at(const struct time_run *m, const struct curve *curve, double time, double otherwise) {
     return curve->n > 0 ? curve_at(curve, time) + m->problem->zero : otherwise;
 }
 
-/* Walls and surroundings at a time; nothing gets to those of a closed bed, NaN. */
-static void outside_at(const struct marching *m, double time, double wall[WALLS_MAX], double *surroundings) {
+/* Temperatures of walls and surroundings at a time [K]. A closed bed has none for the surroundings (NaN). They get 0,
+ * since no radiation reaches them. */
+static void outside_at(const struct time_run *m, double time, double wall[WALLS_MAX], double *surroundings) {
     const fibrad_heat_sources *s = &m->problem->sources;
     for (uint32_t k = 0; k < m->problem->walls.count; ++k)
         wall[k] = temperature_at(m, &m->problem->wall_curve[k], time, s->body_temperature[k]);
     *surroundings = temperature_at(m, m->problem->ambient_curve, time, isnan(s->surroundings) ? 0 : s->surroundings);
 }
 
-/* When a table bends within the time there is, into t; how many times. */
-static size_t take_bends(const struct curve *curve, double until, double *t) {
+/* Lists the times of a table that lie between 0 and `until`. The temperature is linear between them, so spans of the
+ * library end there. Returns their number. */
+static size_t list_table_times(const struct curve *curve, double until, double *t) {
     size_t n = 0;
     for (size_t k = 0; k < curve->n; ++k)
         if (curve->x[k] > 0 && curve->x[k] < until) t[n++] = curve->x[k];
     return n;
 }
 
-/* Times of output, ascending, and when tables bend, the ends of spans: [count] in *times, output[k] says which. */
-static int find_times(const struct marching *m, double **times, bool **output, size_t *count) {
-    const struct march_options *o = m->options;
+/* Finds the ends of all spans in ascending order: times of output and times of tables. output[k]: (*times)[k] is a time
+ * of output. */
+static int find_times(const struct time_run *m, double **times, bool **output, size_t *count) {
+    const struct time_options *o = m->options;
     const size_t every = o->every > 0 ? (size_t)ceil(o->until / o->every * (1 - 1e-12)) : 0;
     size_t room = every + TIMES_MAX + 2, n = 0, asked;
     const struct heat_problem *problem = m->problem;
@@ -148,8 +154,8 @@ static int find_times(const struct marching *m, double **times, bool **output, s
     if (!wanted) return message_memory();
     memcpy(wanted, t, asked * sizeof *wanted);
     if (t[n - 1] < o->until) t[n++] = o->until;
-    for (uint32_t k = 0; k < problem->walls.count; ++k) n += take_bends(&problem->wall_curve[k], o->until, t + n);
-    n += take_bends(problem->ambient_curve, o->until, t + n);
+    for (uint32_t k = 0; k < problem->walls.count; ++k) n += list_table_times(&problem->wall_curve[k], o->until, t + n);
+    n += list_table_times(problem->ambient_curve, o->until, t + n);
     gsl_sort(t, 1, n);
     *count = 0;
     for (size_t k = 0, next = 0; k < n; ++k) {
@@ -163,8 +169,8 @@ static int find_times(const struct marching *m, double **times, bool **output, s
     return STATUS_OK;
 }
 
-/* Heat that warms each sphere by 1 K. */
-static int find_capacities(struct marching *m, double metres, double **capacity) {
+/* Heat capacities of the spheres [J/K]. */
+static int find_capacities(struct time_run *m, double metres, double **capacity) {
     double *density = NULL;
     int status =
         quantity_values(&m->options->capacity, &m->bed, m->asked->name, "heat capacity", 0, 1e-12, 1e12, capacity);
@@ -181,21 +187,22 @@ static int find_capacities(struct marching *m, double metres, double **capacity)
     return status;
 }
 
-/* Emissivities in a stage. */
-static void march_follow(void *marching, const double *temperature, const double *wall_temperature, double *emissivity,
-                         double *wall_emissivity) {
-    const struct marching *m = marching;
+/* A fibrad_emissivity_law: emissivities of spheres that have a table over temperature. */
+static void follow_temperatures(void *time_run, const double *temperature, const double *wall_temperature,
+                                double *emissivity, double *wall_emissivity) {
+    const struct time_run *m = time_run;
     (void)wall_temperature;
     (void)wall_emissivity;
     heat_emissivities(m->problem, &m->bed, temperature, emissivity);
 }
 
-/* Corrected factors, unless a wall's temperature is wanted or emissivities change. */
-static int choose_model(struct marching *m) {
+/* Chooses the method of the library. Patches are needed if the temperature of a wall is to be found, or if emissivities
+ * follow temperatures. Else --model decides, whose default is corrected factors. */
+static int choose_model(struct time_run *m) {
     const struct heat_problem *problem = m->problem;
     const bool follow = quantity_curves(problem->of_emissivity);
     m->by_patches = problem->by_patches || follow;
-    m->span.law = follow ? march_follow : NULL;
+    m->span.law = follow ? follow_temperatures : NULL;
     if (follow && problem->by_factors)
         return message(STATUS_USAGE, "--model factors: emissivities cannot follow temperatures; use --model patches");
     if (problem->by_factors && problem->sources.side_temperature)
@@ -212,7 +219,7 @@ static int choose_model(struct marching *m) {
     return STATUS_OK;
 }
 
-static int library_status(struct marching *m, int status) {
+static int library_status(struct time_run *m, int status) {
     fibrad_fault fault;
     fibrad_transient_describe(m->transient, NULL, &fault);
     if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(m->asked, &m->bed, status, &fault);
@@ -221,8 +228,8 @@ static int library_status(struct marching *m, int status) {
                       m->options->step > 0 ? "; --step auto takes shorter steps" : "");
 }
 
-/* Powers at the time in hand, and all outputs. */
-static int write_state(struct marching *m) {
+/* Computes the powers at m->now and writes all outputs. */
+static int write_state(struct time_run *m) {
     const uint32_t walls = m->problem->walls.count;
     fibrad_heat_sources shown = m->sources;
     shown.temperature = m->span.temperature;
@@ -250,8 +257,8 @@ static int write_state(struct marching *m) {
     return status;
 }
 
-/* Up to another time. */
-static int advance(struct marching *m, double time) {
+/* Advances the temperatures to another time. */
+static int advance(struct time_run *m, double time) {
     double wall[WALLS_MAX], surroundings;
     outside_at(m, time, wall, &surroundings);
     m->span.duration = time - m->now;
@@ -269,7 +276,7 @@ static int advance(struct marching *m, double time) {
     return STATUS_OK;
 }
 
-static int march_all(struct marching *m) {
+static int run_spans(struct time_run *m) {
     double *times = NULL;
     bool *output = NULL;
     size_t count = 0;
@@ -285,8 +292,8 @@ static int march_all(struct marching *m) {
     return status;
 }
 
-static void march_print(struct marching *m, const double *before, double seconds) {
-    const struct march_options *o = m->options;
+static void print_summary(struct time_run *m, const double *before, double seconds) {
+    const struct time_options *o = m->options;
     const struct walls *walls = &m->problem->walls;
     struct report *report = &m->asked->report;
     fibrad_scene_facts facts;
@@ -327,8 +334,8 @@ static void march_print(struct marching *m, const double *before, double seconds
     report_end(report);
 }
 
-/* The march of a bed whose arrays are there. */
-static int march_bed(struct marching *m, double *before, const struct output *picture) {
+/* Runs a bed from 0 to --until. before [spheres]: room for the initial temperatures. */
+static int run_bed(struct time_run *m, double *before, const struct output *picture) {
     const fibrad_scene_config scene = bed_scene(&m->bed, &m->problem->walls);
     const fibrad_spheres spheres = bed_spheres(&m->bed);
     const fibrad_transient_config config = {.method = m->by_patches            ? FIBRAD_TRANSIENT_PATCHES
@@ -342,20 +349,20 @@ static int march_bed(struct marching *m, double *before, const struct output *pi
     if (status) return status;
     outside_at(m, 0, m->wall, &m->sources.surroundings);
     memcpy(before, m->span.temperature, m->bed.n * sizeof *before);
-    status = march_all(m);
+    status = run_spans(m);
     progress_stop(&m->asked->progress);
     if (!status && picture) status = plot_time(picture, m->asked->name, m->point, m->points);
-    if (!status) march_print(m, before, progress_clock() - begun);
+    if (!status) print_summary(m, before, progress_clock() - begun);
     fibrad_transient_free(m->transient);
     return status;
 }
 
-int heat_march(struct bed_options *asked, const struct march_options *march, const struct heat_problem *problem,
-               const struct bed *bed, struct heat_report *report, const struct output *picture) {
+int heat_in_time(struct bed_options *asked, const struct time_options *time, const struct heat_problem *problem,
+                 const struct bed *bed, struct heat_report *report, const struct output *picture) {
     const double metres = report->metres;
     fibrad_heat_result *result = &report->result;
-    struct marching m = {.asked = asked,
-                         .options = march,
+    struct time_run m = {.asked = asked,
+                         .options = time,
                          .problem = problem,
                          .source = bed,
                          .bed = *bed,
@@ -368,17 +375,17 @@ int heat_march(struct bed_options *asked, const struct march_options *march, con
     for (uint32_t i = 0; i < bed->n; ++i) now[i] = problem->sources.temperature[i];
     int status = STATUS_OK;
     m.bed.frame = 0, m.bed.timestep = -1;
-    m.sources.sigma *= m.square_metres; /* areas are in the file's unit, powers in watts */
+    m.sources.sigma *= m.square_metres; /* areas are in the bed's unit of length, powers in watts */
     m.sources.temperature = now, m.sources.body_temperature = m.wall;
     m.span = (fibrad_span){
-        .temperature = now, .step = march->step, .body_energy = m.wall_energy, .observe = note_point, .context = &m};
+        .temperature = now, .step = time->step, .body_energy = m.wall_energy, .observe = note_point, .context = &m};
     for (uint32_t i = 0; i < bed->n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
     result->surroundings_error = NAN;
     for (uint32_t k = 0; k < problem->walls.count; ++k) result->body_error[k] = result->body_temperature_error[k] = NAN;
     if (!status) status = choose_model(&m);
     if (!status) status = find_capacities(&m, metres, &capacity);
     m.span.capacity = capacity;
-    if (!status) status = march_bed(&m, now + bed->n, picture);
+    if (!status) status = run_bed(&m, now + bed->n, picture);
     free(now);
     free(capacity);
     free(m.point);

@@ -1,16 +1,16 @@
-/* march.c - temperatures by implicit steps that keep the energy. SPDX-License-Identifier: MIT
+/* stepper.c - temperatures by implicit steps that keep the energy. SPDX-License-Identifier: MIT
  *
- * The scheme is the singly diagonally implicit one of two stages and second order that is L-stable and stiffly accurate
- * (R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006): with g = 1 - sqrt(1/2) and f = (power + q(T))/C
+ * The scheme is SDIRK with two stages: singly diagonally implicit, of second order, L-stable and stiffly accurate
+ * (R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006). With g = 1 - sqrt(1/2), the step h and f = (power + q(T))/C
  *
  *     T1 = T + g h f(T1),    T' = T + (1 - g) h f(T1) + g h f(T').
  *
- * Each stage is C (T - base)/(g h) = power + q, base being what is known. Newton's method makes it linear in E = sigma
- * T^4: a sphere gives off power + C (base - T*)/(g h) - hold (E - E*), hold = C/(g h dE/dT). Temperatures then follow
- * from the powers q as they were found: what the spheres' sum misses is shared out, so that they lose what bodies and
- * surroundings gain whatever the solution's tolerance. The difference from the embedded solution of first order, g h
- * |f(T') - f(T1)|, is kept below the tolerance; the error of second order sums up to about that. docs/methods_heat.md
- * section 11. */
+ * Each stage solves C (T - base)/(g h) = power + q(T), where base is known. Newton's method makes the equation linear
+ * in E = sigma T^4 about T*: a sphere gives off power + C (base - T*)/(g h) - hold (E - E*) with hold = C/(g h dE/dT).
+ * Temperatures then follow from the powers q of that solution. The energy that the sum over spheres misses is divided
+ * among them. So spheres lose what walls and surroundings gain, whatever the tolerance of the solution. The embedded
+ * solution of first order differs by g h |f(T') - f(T1)|. This difference is kept below the tolerance; the errors of
+ * second order add up to about the tolerance. docs/methods_heat.md section 11. */
 #include <math.h>
 #include <string.h>
 
@@ -18,32 +18,32 @@
 
 #define GAMMA     0.29289321881345247560 /* 1 - sqrt(1/2) */
 #define TOLERANCE 1e-4
-#define SOLVED    1e-2 /* error of a stage's solution over the tolerance */
-#define GROWTH    5.0  /* the most, from a step to the next */
+#define SOLVED    1e-2 /* error of the solution of a stage over the tolerance */
+#define GROWTH    5.0  /* largest ratio of a step to the last one */
 #define SAFETY    0.9
-#define SMALLEST  1e-12 /* step over the span */
+#define SMALLEST  1e-12 /* shortest step over the span */
 enum { NEWTON_MAX = 40 };
 
-struct march {
+struct stepper {
     fibrad_transient *t;
     const fibrad_heat_sources *given;
     fibrad_span *span;
     double tolerance;
-    fibrad_heat_sources sources; /* of a stage */
+    fibrad_heat_sources sources; /* of the linear problem of a stage */
     fibrad_heat_result result;
-    double *stage_walls[2], to_surroundings[2]; /* powers of both stages */
+    double *stage_walls[2], to_surroundings[2]; /* powers of walls [bodies] and of the surroundings in each stage */
 };
 
-/* No library of mathematics for these. */
+/* fmax and fmin would need the library of mathematics. */
 static double larger_one(double a, double b) { return a > b ? a : b; }
 static double smaller_one(double a, double b) { return a < b ? a : b; }
 
-static double power_of(const struct march *m, uint32_t i) { return m->given->power ? m->given->power[i] : 0; }
+static double power_of(const struct stepper *m, uint32_t i) { return m->given->power ? m->given->power[i] : 0; }
 
 static double share_between(double from, double to, double share) { return from + share * (to - from); }
 
-/* Temperatures of bodies and surroundings at a time. */
-static void set_outside(struct march *m, double time) {
+/* Sets the temperatures of walls and surroundings at a time since the beginning of the span. */
+static void set_outside(struct stepper *m, double time) {
     const double share = time / m->span->duration;
     const fibrad_span *span = m->span;
     for (uint32_t b = 0; b < m->t->bodies; ++b)
@@ -54,14 +54,14 @@ static void set_outside(struct march *m, double time) {
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
 }
 
-/* Emissivities at t->guess, which is as far from the solution as the scheme's second order allows. */
-static void set_surfaces(struct march *m) {
+/* Sets emissivities at t->guess, which is near enough to the solution for second order. */
+static void set_surfaces(struct stepper *m) {
     const fibrad_transient *t = m->t;
     if (m->span->law) m->span->law(m->span->context, t->guess, t->wall, t->emissivity, t->body_emissivity);
 }
 
-/* The linear problem about t->guess. One that reflects all has no part in it. */
-static void linearise(struct march *m, double length) {
+/* Makes the linear problem about t->guess. A sphere of emissivity 0 has no part in it. */
+static void linearise(struct stepper *m, double length) {
     fibrad_transient *t = m->t;
     for (uint32_t i = 0; i < t->n; ++i) {
         const double at = t->guess[i], rate = m->span->capacity[i] / length;
@@ -73,9 +73,9 @@ static void linearise(struct march *m, double length) {
     }
 }
 
-/* Takes the solution of the linear problem: t->solution has the temperatures that keep the energy, t->guess those to
- * go on from. Whether they agree. */
-static bool accept_solution(struct march *m, double length) {
+/* Takes the solution of the linear problem. t->solution gets the temperatures that keep the energy, t->guess those
+ * about which Newton's method goes on. Returns whether the two agree. */
+static bool accept_solution(struct stepper *m, double length) {
     fibrad_transient *t = m->t;
     bool agree = true;
     for (uint32_t i = 0; i < t->n; ++i) {
@@ -89,9 +89,9 @@ static bool accept_solution(struct march *m, double length) {
     return agree;
 }
 
-/* What the powers say of the temperatures: all of it where a sphere is slow, little where it follows its neighbours at
- * once; the rest is shared out. */
-static void balance_energy(struct march *m, double length) {
+/* Makes temperatures agree with powers. A slow sphere takes all of the energy that it misses. A fast one, which follows
+ * its neighbours at once, takes little of it. The energy still missing warms all spheres alike. */
+static void balance_energy(struct stepper *m, double length) {
     fibrad_transient *t = m->t;
     double left = -m->result.surroundings_power, capacity = 0;
     for (uint32_t b = 0; b < t->bodies; ++b) left -= m->result.body_power[b];
@@ -112,9 +112,9 @@ static bool all_positive(const double *values, uint32_t count) {
     return true;
 }
 
-/* Solves a stage that ends at `time`, from t->base, about t->guess, into t->solution. FIBRAD_E_UNSOLVABLE: a sphere
- * would be below zero. */
-static int solve_stage(struct march *m, int stage, double time, double length) {
+/* Solves a stage that ends at `time` and starts at t->base. t->guess: where Newton's method begins. t->solution: out.
+ * FIBRAD_E_UNSOLVABLE: a sphere would fall below 0 K. */
+static int solve_stage(struct stepper *m, int stage, double time, double length) {
     fibrad_transient *t = m->t;
     set_outside(m, time);
     m->result.body_power = m->stage_walls[stage];
@@ -132,13 +132,13 @@ static int solve_stage(struct march *m, int stage, double time, double length) {
     return FIBRAD_E_UNSOLVABLE;
 }
 
-/* A guess no farther than a factor of two from a temperature. */
+/* Limits a guess to a factor of two about a temperature. */
 static double near_to(double guess, double temperature) {
     return guess < temperature / 2 ? temperature / 2 : guess > 2 * temperature ? 2 * temperature : guess;
 }
 
-/* Tries a step: t->solution, and its error. */
-static int try_step(struct march *m, double time, double step, double *error) {
+/* Tries a step. t->solution and *error: out. */
+static int try_step(struct stepper *m, double time, double step, double *error) {
     fibrad_transient *t = m->t;
     const double length = GAMMA * step;
     for (uint32_t i = 0; i < t->n; ++i) {
@@ -160,7 +160,7 @@ static int try_step(struct march *m, double time, double step, double *error) {
     return status;
 }
 
-static void accept_step(struct march *m, double step, double error) {
+static void accept_step(struct stepper *m, double step, double error) {
     fibrad_transient *t = m->t;
     fibrad_span *span = m->span;
     const double share[2] = {(1 - GAMMA) * step, GAMMA * step};
@@ -177,12 +177,13 @@ static void accept_step(struct march *m, double step, double error) {
     ++span->steps;
 }
 
-/* A first step: short beside the time in which the hottest there is would warm any sphere by its temperature. */
-static double first_step(const struct march *m) {
+/* The first step. The hottest surface would warm a sphere by its own temperature in a time; the step is sqrt(tolerance)
+ * of the shortest such time. */
+static double first_step(const struct stepper *m) {
     const fibrad_transient *t = m->t;
     double hottest = m->given->surroundings, step = m->span->duration;
     for (uint32_t b = 0; b < t->bodies; ++b)
-        hottest = larger_one(m->given->body_temperature[b], hottest); /* NaN, not known: as it was */
+        hottest = larger_one(m->given->body_temperature[b], hottest); /* NaN, not known: hottest stays */
     for (uint32_t i = 0; i < t->n; ++i) hottest = larger_one(hottest, t->now[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
     for (uint32_t i = 0; i < t->n; ++i) {
@@ -192,8 +193,8 @@ static double first_step(const struct march *m) {
     return step;
 }
 
-/* Factors against patches at the temperatures there are. */
-static int compare(struct march *m, double time) {
+/* Corrects factors by patches at the temperatures of now, if that is due. */
+static int compare(struct stepper *m, double time) {
     fibrad_heat_sources now = *m->given;
     set_outside(m, time);
     now.temperature = m->t->now;
@@ -201,7 +202,7 @@ static int compare(struct march *m, double time) {
     return fibrad_transient_compare(m->t, &now, &m->span->corrections);
 }
 
-static int march(struct march *m) {
+static int take_steps(struct stepper *m) {
     fibrad_transient *t = m->t;
     fibrad_span *span = m->span;
     const bool fixed = span->step > 0;
@@ -209,7 +210,7 @@ static int march(struct march *m) {
     while (time < span->duration) {
         if (!(next > SMALLEST * span->duration)) return FIBRAD_E_UNSOLVABLE;
         const double rest = span->duration - time;
-        const uint64_t parts = (uint64_t)(rest / next * (1 - 1e-9)) + 1; /* of the rest: none is much smaller */
+        const uint64_t parts = (uint64_t)(rest / next * (1 - 1e-9)) + 1; /* equal parts: no last step is much shorter */
         const double step = rest / (double)parts;
         int status = fibrad_team_report(&t->team, "steps", span->steps, 0);
         if (!status) status = compare(m, time);
@@ -230,7 +231,7 @@ static int march(struct march *m) {
     return FIBRAD_OK;
 }
 
-/* Whether a span is sound; t->fault has the sphere that is not. */
+/* Checks a span. t->fault: the first sphere with an invalid value. */
 static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const fibrad_span *span) {
     t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX, 0, 0};
     if (t->n > 0 && (!span->temperature || !span->capacity)) return FIBRAD_E_ARGUMENT;
@@ -249,14 +250,14 @@ static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const f
     return FIBRAD_OK;
 }
 
-/* Whether arrays of sources are there, and emissivities are. */
+/* Whether the sources have the arrays they need and the emissivities lie in 0 to 1. */
 static bool surfaces_given(const fibrad_transient *t, const fibrad_heat_sources *s) {
     bool given = (t->n == 0 || s->emissivity) && (t->bodies == 0 || (s->body_temperature && s->body_emissivity));
     for (uint32_t i = 0; i < t->n && given; ++i) given = s->emissivity[i] >= 0 && s->emissivity[i] <= 1;
     return given;
 }
 
-/* By factors the temperatures of bodies are to be given. */
+/* Whether the temperatures of walls and surroundings are known. Only PATCHES can do without. */
 static bool outside_known(const fibrad_transient *t, const fibrad_heat_sources *s) {
     if (t->config.method == FIBRAD_TRANSIENT_PATCHES) return true;
     bool known = s->surroundings >= 0 && s->surroundings <= FIBRAD_TEMPERATURE_MAX;
@@ -275,7 +276,7 @@ int fibrad_transient_powers(fibrad_transient *t, const fibrad_heat_sources *sour
             return FIBRAD_E_ARGUMENT;
     const int status = fibrad_transient_prepare(t, sources);
     if (status) return status;
-    fibrad_heat_sources given = *sources; /* temperatures are given, so powers are not */
+    fibrad_heat_sources given = *sources; /* a sphere has a temperature or a power, not both */
     given.power = NULL;
     return t->radiation ? fibrad_radiation_solve(t->radiation, &given, result)
                         : fibrad_network_solve(t->network, &t->team, sources, t->allowed, result);
@@ -293,13 +294,13 @@ int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sou
     if (!status && span->law && t->config.method != FIBRAD_TRANSIENT_PATCHES) status = FIBRAD_E_ARGUMENT;
     if (!status) status = fibrad_transient_prepare(t, sources);
     if (status) return status;
-    struct march m = {.t = t,
-                      .given = sources,
-                      .span = span,
-                      .tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE,
-                      .sources = *sources,
-                      .result = {.power = t->power, .temperature = t->found},
-                      .stage_walls = {t->wall + t->bodies, t->wall + 2 * (size_t)t->bodies}};
+    struct stepper m = {.t = t,
+                        .given = sources,
+                        .span = span,
+                        .tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE,
+                        .sources = *sources,
+                        .result = {.power = t->power, .temperature = t->found},
+                        .stage_walls = {t->wall + t->bodies, t->wall + 2 * (size_t)t->bodies}};
     m.sources.temperature = t->given, m.sources.power = t->source;
     m.sources.hold = t->hold, m.sources.reference = t->guess;
     m.sources.body_temperature = t->wall;
@@ -312,7 +313,7 @@ int fibrad_transient_advance(fibrad_transient *t, const fibrad_heat_sources *sou
     span->steps = span->refused = span->sweeps = span->corrections = 0;
     for (uint32_t b = 0; b < t->bodies && span->body_energy; ++b) span->body_energy[b] = 0;
     memcpy(t->now, span->temperature, t->n * sizeof *t->now);
-    status = march(&m);
+    status = take_steps(&m);
     if (status) return status;
     memcpy(span->temperature, t->now, t->n * sizeof *t->now);
     if (span->power) memcpy(span->power, t->power, t->n * sizeof *t->power);
