@@ -15,19 +15,19 @@ static volatile sig_atomic_t caught;
 static const char *volatile temporary[FILES];
 
 static void note_signal(int number) {
-    if (caught) { /* again, or too long ago: a single row may take minutes */
+    if (caught) { /* second signal, or alarm: a single row may take minutes */
         for (int k = 0; k < FILES; ++k)
             if (temporary[k]) unlink(temporary[k]);
-        static const char said[] = "fibrad: interrupted\n";
-        const ssize_t written = write(STDERR_FILENO, said, sizeof said - 1);
-        (void)written; /* nobody could be told */
+        static const char text[] = "fibrad: interrupted\n";
+        const ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
+        (void)written; /* an error could not be reported */
         _exit(STATUS_SIGNAL + caught);
     }
     caught = number;
     alarm(GRACE);
 }
 
-/* Without SA_RESTART, so that a read that waits for input returns. */
+/* Without SA_RESTART a read that waits for input returns. */
 void interrupt_catch(void) {
     struct sigaction action = {.sa_handler = note_signal};
     sigemptyset(&action.sa_mask);

@@ -2,14 +2,15 @@
 #ifndef INTERRUPT_H
 #define INTERRUPT_H
 
-/* From now on SIGINT, SIGTERM and SIGHUP are noted, and a closed pipe and a file grown too large are write errors. A
- * program that has not ended two seconds after the signal, or by the next one, is ended, and its guarded files go. */
+/* From now on SIGINT, SIGTERM and SIGHUP are noted, for interrupt_status. Two seconds later, or at the next signal, the
+ * process removes its guarded files and ends. A closed pipe and a file that is too large become errors of writing. */
 void interrupt_catch(void);
 
-/* 0, or 128 + the number of the signal that came. Loops that may last ask for it and return it as their status. */
+/* Returns 0, or 128 + the number of the signal that has come. Long loops call it and return its value as their status.
+ */
 int interrupt_status(void);
 
-/* Names a temporary file that must not outlive the program; the string stays the caller's. Until it is unguarded. */
+/* Guards a temporary file, which must not outlive the process, until interrupt_unguard. The caller keeps the string. */
 void interrupt_guard(const char *path);
 void interrupt_unguard(const char *path);
 

@@ -1,4 +1,4 @@
-/* memory.c - whether there is memory, or disk, enough, before the work begins. SPDX-License-Identifier: MIT */
+/* memory.c - checks before the work begins that memory or disk suffice. SPDX-License-Identifier: MIT */
 #include "cli/memory.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 
 #include "cli/message.h"
 
-/* The figure of a line `KEY: N kB` of a file of Linux's /proc, in bytes; `otherwise` if there is none. */
+/* Reads the number of a line `KEY: N kB` in a file of Linux's /proc [bytes]. Without such a line: `otherwise`. */
 static double proc_bytes(const char *path, const char *format, double otherwise) {
     char line[256];
     double kilobytes = 0;

@@ -1,4 +1,4 @@
-/* message.c - exit statuses and the one line that tells what went wrong. SPDX-License-Identifier: MIT */
+/* message.c - exit statuses, error messages and warnings. SPDX-License-Identifier: MIT */
 #include "cli/message.h"
 
 #include <stdarg.h>
@@ -9,7 +9,7 @@
 static void (*redirected)(void *context, const char *line);
 static void *redirected_context;
 
-enum { WARNINGS = 32 }; /* that are kept */
+enum { WARNINGS = 32 }; /* most warnings that are kept */
 static char *warning[WARNINGS];
 static size_t warnings;
 
@@ -18,7 +18,7 @@ void message_redirect(void (*to)(void *context, const char *line), void *context
     redirected_context = context;
 }
 
-/* Prints at most one line, whatever names and tokens it quotes. */
+/* Prints one line, also if names and tokens in it have control characters. */
 static void print_line(int status, const char *prefix, const char *format, va_list arguments) {
     char text[1536];
     const int begun = snprintf(text, sizeof text, "%s", prefix);

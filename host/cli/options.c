@@ -1,4 +1,4 @@
-/* options.c - command-line options from tables, strict numbers, help. SPDX-License-Identifier: MIT */
+/* options.c - command-line options by tables, numbers, help. SPDX-License-Identifier: MIT */
 #include "cli/options.h"
 
 #include <ctype.h>
@@ -16,7 +16,7 @@ static int unknown_option(const struct options *options, const char *name, int l
     return OPTIONS_BAD;
 }
 
-/* Sets value from `inline_value` (behind = or the letter) or from the next argument. */
+/* Sets options->value to `inline_value`, the text behind = or behind the letter, or else to the next argument. */
 static int take_argument(struct options *options, const struct option *option, const char *inline_value) {
     options->name = option->name;
     options->value = inline_value;

@@ -1,4 +1,4 @@
-/* options.h - command-line options from tables, strict numbers, help. SPDX-License-Identifier: MIT */
+/* options.h - command-line options by tables, numbers, help. SPDX-License-Identifier: MIT */
 #ifndef OPTIONS_H
 #define OPTIONS_H
 
@@ -10,13 +10,13 @@
 
 /* An option of a command. A table of them ends with a name of NULL. */
 struct option {
-    int key;              /* above 0; a letter: `-o` is the short form */
+    int key;              /* above 0; if it is a letter, such as 'o', there is a short form -o */
     const char *name;     /* without the dashes */
-    const char *argument; /* how the help calls its argument; NULL: it takes none */
+    const char *argument; /* its name in the help; NULL: the option takes none */
     const char *help;     /* NULL: not shown */
 };
 
-/* Keys that commands share; their own ones are above. */
+/* Keys that commands share. Keys of one command begin with KEY_OWN. */
 enum {
     KEY_HELP = 'h',
     KEY_LONG = 256, /* no short form from here on */
@@ -81,38 +81,38 @@ enum {
         KEY_SEED, "seed", "S", "cast, mc: seed of the rays [0]"                                                        \
     }
 
-/* What options_next returns apart from keys. */
+/* What options_next returns besides keys. */
 enum { OPTIONS_POSITIONAL = 0, OPTIONS_END = -1, OPTIONS_BAD = -2 };
 
-/* A walk along the arguments; zeroed but for the first four. */
+/* A walk along the arguments. Set the first four fields, zero the others. */
 struct options {
     const char *command;
     const struct option *table;
     int argc; /* the arguments behind the command's name */
     char **argv;
     int at;
-    bool plain;        /* `--` was met: no more options */
+    bool plain;        /* `--` has come: all arguments that follow are positional */
     const char *value; /* out: the option's argument, or the positional argument */
     const char *name;  /* out: the option's name */
 };
 
-/* The next argument: a key of the table, OPTIONS_POSITIONAL, OPTIONS_END, or OPTIONS_BAD after a message. What begins
- * like a negative number is positional. */
+/* Takes the next argument. Returns a key of the table, OPTIONS_POSITIONAL, OPTIONS_END, or OPTIONS_BAD after a message.
+ * An argument that begins like a negative number is positional. */
 int options_next(struct options *options);
 
-/* Prints the table, one option and its help a line. */
+/* Prints the table, each option with its help. */
 void options_print(const struct option *table);
 
-/* A finite number in [low, high]; a whole number in [low, high], twice: the entire text, or STATUS_USAGE after a
- * message that calls it `what`. */
+/* Reads a number, or a whole number, from low to high. The whole text must be the number. `what` names the number in
+ * messages. Status 0 or STATUS_USAGE. */
 int options_number(const char *what, const char *text, double low, double high, double *value);
 int options_whole(const char *what, const char *text, uint64_t low, uint64_t high, uint64_t *value);
 int options_count(const char *what, const char *text, uint32_t low, uint32_t high, uint32_t *value);
 
-/* Up to `capacity` numbers parted by commas; *count tells how many, which may be all that is wrong. */
+/* Reads up to `capacity` numbers with commas in between. *count: how many. Status 0 or STATUS_USAGE. */
 int options_numbers(const char *what, const char *text, int capacity, double *values, int *count);
 
-/* Takes FILE, of which there is one only (NULL: none yet). Status 0 or STATUS_USAGE. */
+/* Takes the one FILE of a command. *file: NULL before. Status 0 or STATUS_USAGE. */
 int options_file(const char *text, const char **file);
 
 /* Takes the argument of --threads. Status 0 or STATUS_USAGE. */
@@ -121,10 +121,10 @@ int options_threads(const char *text, int *threads);
 /* Methods by name, in the order of the enum. */
 enum method { METHOD_EXACT, METHOD_BEAM, METHOD_SURFACE, METHOD_CAST, METHOD_MC };
 
-/* Status 0 or STATUS_USAGE. */
+/* Reads the name of a method. Status 0 or STATUS_USAGE. */
 int options_method(const char *text, enum method *method);
 
-/* The options of a beam rule, as far as they were given. */
+/* Options of a beam rule. 0 or NULL: not given. */
 struct beam_options {
     uint32_t directions, points;
     const char *areas;
@@ -133,7 +133,7 @@ struct beam_options {
 /* Takes KEY_DIRECTIONS, KEY_AREAS or KEY_POINTS. Status 0 or STATUS_USAGE. */
 int options_beam(int key, const char *text, struct beam_options *beam);
 
-/* The rule they add up to. Status 0, or STATUS_USAGE if they contradict each other. */
+/* Makes the rule of these options. Status 0, or STATUS_USAGE if they contradict each other. */
 int options_beam_rule(const struct beam_options *beam, fibrad_beam_rule *rule);
 
 /* Takes KEY_NF or KEY_NO_CORRECTION. Status 0 or STATUS_USAGE. */

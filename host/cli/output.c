@@ -13,24 +13,24 @@
 #include "cli/interrupt.h"
 #include "cli/message.h"
 
-/* "before/after", or what there is of it. */
+/* Joins the first `length` characters of `before` and all of `after`. False: the path is too long. */
 static bool join_path(char path[PATH_MAX], const char *before, int length, const char *after) {
     const int used = snprintf(path, PATH_MAX, "%.*s%s", length, before, after);
     if (used >= PATH_MAX) errno = ENAMETOOLONG;
     return used < PATH_MAX;
 }
 
-/* How much of a path names the folder, slash and all. */
+/* Length of the folder in a path, the slash included. */
 static int folder_length(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? (int)(slash - path) + 1 : 0;
 }
 
-/* The one name of a file, which may be missing, with no symbolic link in it. False: errno tells why there is none. */
+/* Finds the path of a file without symbolic links. The file itself may be missing. False: errno tells why. */
 static bool target_of(const char *path, char target[PATH_MAX]) {
     char folder[PATH_MAX], link[PATH_MAX];
     if (realpath(path, target)) return true;
-    if (errno != ENOENT) return false; /* links in a circle are ELOOP */
+    if (errno != ENOENT) return false; /* ELOOP: links in a circle */
     const int length = folder_length(path);
     const ssize_t linked = readlink(path, link, sizeof link - 1);
     if (linked >= 0) {
@@ -65,7 +65,7 @@ bool output_stdout(const char *path) {
            (stat(path, &there) == 0 && fstat(STDOUT_FILENO, &standard) == 0 && same_file(&there, &standard));
 }
 
-/* A file that is read in this run, or the target of an output that is open. */
+/* A file that this run reads, or the target of an open output. */
 struct used {
     char *path;
     bool read;
@@ -73,7 +73,7 @@ struct used {
 };
 static struct used *in_use;
 
-/* Whether a path is one of those that are read, or of those that are written. */
+/* Whether this run reads a path (read), or writes it. */
 static bool is_in_use(const char *path, bool read) {
     for (const struct used *used = in_use; used; used = used->next)
         if (used->read == read && output_same(used->path, path)) return true;
@@ -92,7 +92,7 @@ static int use(const char *path, bool read) {
     return STATUS_OK;
 }
 
-/* Forgets an output; files that are read stay until the end. */
+/* Forgets the target of an output. Files that are read stay in the list until the end. */
 static void use_no_more(const char *target) {
     for (struct used **at = &in_use; *at; at = &(*at)->next) {
         struct used *used = *at;
@@ -110,7 +110,7 @@ static int refuse_replacing(const char *path) {
 }
 
 int output_spare(const char *path) {
-    if (strcmp(path, "-") == 0) path = "/dev/stdin"; /* which may be a file */
+    if (strcmp(path, "-") == 0) path = "/dev/stdin"; /* standard input may be a file */
     if (is_in_use(path, false)) return refuse_replacing(path);
     for (const struct used *used = in_use; used; used = used->next)
         if (used->read && strcmp(used->path, path) == 0) return STATUS_OK;
@@ -119,11 +119,11 @@ int output_spare(const char *path) {
 
 enum { LINK_PATH = 32 };
 
-/* Where a file that has no name can be linked from. */
+/* The path from which an open file without a name can be linked. */
 static void link_path(char path[LINK_PATH], int number) { snprintf(path, LINK_PATH, "/proc/self/fd/%d", number); }
 
-/* Opens a file without a name in the folder of the target, which is gone however the program ends. -1: this system or
- * file system has none. */
+/* Opens a file without a name in the folder of the target. The file is gone however the program ends. -1: the system or
+ * the file system has no such files. */
 static int open_unnamed(const char *target) {
     int number = -1;
 #ifdef O_TMPFILE
@@ -138,14 +138,14 @@ static int open_unnamed(const char *target) {
     return number;
 }
 
-/* Makes a file of a name that nobody has, beside the target; or gives such a name to the one that is open, number.
- * False: errno tells why. */
+/* Gives an open file (*number >= 0) a new name beside the target, or opens a file of such a name. False: errno tells
+ * why. */
 static bool name_temporary(struct output *output, int *number) {
     const bool unnamed = *number >= 0;
     char link[LINK_PATH];
     bool named = false;
     link_path(link, *number);
-    for (int k = 0; !named && k < 100; ++k) { /* never someone else's file */
+    for (int k = 0; !named && k < 100; ++k) { /* never replaces a file */
         snprintf(output->temporary, strlen(output->target) + 64, "%s.%ld-%d.tmp", output->target, (long)getpid(), k);
         if (unnamed)
             named = linkat(AT_FDCWD, link, AT_FDCWD, output->temporary, AT_SYMLINK_FOLLOW) == 0;
@@ -157,7 +157,7 @@ static bool name_temporary(struct output *output, int *number) {
     return named;
 }
 
-/* Opens a file that is to be the target. False: errno tells why. */
+/* Opens the file that will replace the target. False: errno tells why. */
 static bool open_temporary(struct output *output) {
     output->temporary = malloc(strlen(output->target) + 64);
     if (!output->temporary) return errno = ENOMEM, false;
@@ -198,7 +198,7 @@ int output_open(struct output *output, const char *path) {
     return status;
 }
 
-/* Gives a complete file its name, else removes it. */
+/* Gives a complete file its name. Removes the file if status is an error. */
 static int end_temporary(struct output *output, int status) {
     if (!status && rename(output->temporary, output->target) != 0)
         status = message_at(STATUS_FILE, output->path, 0, "%s", strerror(errno));

@@ -5,39 +5,39 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* A file that gets its name only when it is complete; or standard output, a pipe or a device, written to at once. */
+/* An output. A regular file gets its name when it is complete. Standard output, pipes and devices are written at once.
+ */
 struct output {
     const char *path;
-    char *target;    /* where the path leads to by symbolic links */
-    char *temporary; /* in the target's folder; NULL: written at once */
-    bool unnamed;    /* it has no name yet: where the system has such files, they get one when they are complete */
+    char *target;    /* the path without symbolic links */
+    char *temporary; /* temporary name in the folder of the target; NULL: written at once */
+    bool unnamed;    /* the file has no name yet, not even a temporary one; not all systems have such files */
     FILE *file;      /* NULL: not open */
 };
 
-/* Whether two paths name one file, there or yet to be made, so that writing the one would replace the other; "-" names
- * none. */
+/* Whether two paths name one file, which may not exist yet. "-" names no file. */
 bool output_same(const char *a, const char *b);
 
-/* Whether a path has this ending, such as ".csv", and something before it; NULL has none. */
+/* Whether a path has this ending, such as ".csv", with something before the ending. path NULL: false. */
 bool output_ends(const char *path, const char *ending);
 
-/* Whether a path is standard output: "-", or another name of it such as /dev/stdout. */
+/* Whether a path names standard output: "-", /dev/stdout, or the file to which standard output is redirected. */
 bool output_stdout(const char *path);
 
-/* Says that this run reads a file: from now on no output may replace it. What reads a file calls this first. Status 0,
- * STATUS_USAGE if an output that is open would replace it, or STATUS_MEMORY. */
+/* Protects a file that this run reads: from now on no output may replace the file. Call it before reading. Status 0,
+ * STATUS_USAGE if an open output would replace the file, or STATUS_MEMORY. */
 int output_spare(const char *path);
 
-/* Opens a new file without a name, or under a temporary one; path NULL: none, which output_close then leaves alone. A
- * symbolic link stays, its target is written, which keeps its permissions. Status 0, STATUS_FILE, STATUS_MEMORY, or
- * STATUS_USAGE if the file is one that this run reads. */
+/* Opens a new file without a name or with a temporary name. path NULL: opens nothing. If the path is a symbolic link,
+ * the link stays and its target is written. An existing file keeps its permissions. Status 0, STATUS_FILE,
+ * STATUS_MEMORY, or STATUS_USAGE if this run reads the file. */
 int output_open(struct output *output, const char *path);
 
-/* Whether all that was written so far has arrived. Status 0 or STATUS_FILE. */
+/* Flushes the file. Status 0, or STATUS_FILE if something could not be written. */
 int output_flush(const struct output *output);
 
-/* Closes the file and gives it its name; after any trouble on the way it is removed instead. `status` is that of what
- * was done so far. Does nothing if the file is not open. Returns status, or STATUS_FILE. */
+/* Closes the file. If `status`, that of the work so far, and closing are without error, the file gets its name; else
+ * the file is removed. Does nothing if the file is not open. Returns status, or STATUS_FILE. */
 int output_close(struct output *output, int status);
 
 #endif

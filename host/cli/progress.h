@@ -6,26 +6,26 @@
 #include <stdint.h>
 
 struct progress {
-    bool forced; /* for progress_stage: show the bar even if standard error is no terminal */
-    bool quiet;  /* for progress_stage: never show it */
-    bool on;
-    const char *what; /* plural of what is counted */
+    bool forced;      /* for progress_stage: show the bar also if standard error is no terminal */
+    bool quiet;       /* for progress_stage: never show the bar */
+    bool on;          /* the bar is shown */
+    const char *what; /* name of the things counted, in the plural */
     uint64_t total;
     uint64_t done;
-    double begun, shown; /* [s] */
+    double begun, shown; /* times of the beginning and of the last drawing [s] */
 };
 
-/* At most ten times a second; for one thread only. */
+/* Draws the bar, at most ten times a second. For one thread only. */
 void progress_show(struct progress *progress, uint64_t done);
 
-/* Leaves no trace of the bar on a terminal, and its last state elsewhere. */
+/* Ends the bar: erases it on a terminal, prints its last state elsewhere. */
 void progress_end(struct progress *progress, uint64_t done);
 
-/* A fibrad_progress of the library, whose context is a struct progress: one bar after the other, a mere count for
- * stages of unknown length. Asks to stop when a signal has come. */
+/* A fibrad_progress whose context is a struct progress. Each stage has a bar, or a count if its length is not known.
+ * Returns not 0, to stop the library, after a signal. */
 int progress_stage(void *progress, const char *stage, uint64_t done, uint64_t total);
 
-/* Ends a bar that an error has left. */
+/* Ends a bar that is still shown, as after an error. */
 void progress_stop(struct progress *progress);
 
 /* A clock that only goes forward [s]. */

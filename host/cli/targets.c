@@ -9,8 +9,8 @@
 
 #include "cli/message.h"
 
-/* A position at the beginning of a text; false if there is none. */
-static bool position(const char **text, unsigned long long *value) {
+/* Reads a number at the beginning of *text and moves *text behind it. False: there is none. */
+static bool read_name(const char **text, unsigned long long *value) {
     char *end;
     if (!isdigit((unsigned char)**text)) return false;
     errno = 0;
@@ -19,7 +19,7 @@ static bool position(const char **text, unsigned long long *value) {
     return errno == 0;
 }
 
-/* The first sphere whose name is not below this one; n: there is none. */
+/* The first sphere whose name is at least `name`. n: there is none. */
 static uint32_t first_from(const int64_t *id, uint32_t n, unsigned long long name) {
     uint32_t low = 0, high = n;
     if (!id) return name < n ? (uint32_t)name : n;
@@ -48,11 +48,11 @@ static int mark_range(const int64_t *id, uint32_t n, const char *where, unsigned
 int targets_mark(const char *list, const int64_t *id, uint32_t n, const char *where, unsigned char *marks) {
     for (const char *text = list;; ++text) {
         unsigned long long first, last;
-        bool good = position(&text, &first);
+        bool good = read_name(&text, &first);
         last = first;
         if (good && *text == '-') {
             ++text;
-            good = position(&text, &last) && first <= last;
+            good = read_name(&text, &last) && first <= last;
         }
         if (!good || last > INT64_MAX - 1 || (*text && *text != ','))
             return message(STATUS_USAGE, "--targets: '%.60s' is not a list like 3,7,10-19", list);

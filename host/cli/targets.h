@@ -4,9 +4,9 @@
 
 #include <stdint.h>
 
-/* Marks the spheres of a list with 1: by their ids, [n] ascending, or by positions from 0 on where id is NULL; `where`
- * says in messages whose they are. A range takes the ids there are in it, and may not reach beyond them. marks = NULL:
- * only checks the spelling. Status 0, or STATUS_USAGE if the list is misspelt or names what is not there. */
+/* Marks the spheres of a list with 1. id [n]: names of the spheres, ascending; NULL: names are positions from 0. where:
+ * names the bed in messages. A range marks all ids in it; both its ends must lie within the ids of the bed. marks NULL:
+ * only checks the spelling. Status 0, or STATUS_USAGE if the list is misspelt or names spheres that do not exist. */
 int targets_mark(const char *list, const int64_t *id, uint32_t n, const char *where, unsigned char *marks);
 
 #endif

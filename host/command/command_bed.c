@@ -39,7 +39,7 @@ static const struct option bed_table[] = {
 
 struct bed_request {
     struct bed_options bed;
-    const char *plot, *targets;
+    const char *targets;
     enum method method;
     struct beam_options beam;
     fibrad_beam_rule beam_rule;
@@ -49,7 +49,6 @@ struct bed_request {
     bool beam_given, surface_given, cast_given;
     struct walls walls;
     fibrad_bed_options options;
-    struct output picture;
 };
 
 static int bed_help(void) {
@@ -114,16 +113,13 @@ static int bed_take(struct bed_request *request, const struct options *options, 
         break;
     case KEY_DROP:
         return options_number("--drop", value, 0, 1, &request->options.drop);
-    case KEY_PLOT:
-        request->plot = value;
-        break;
     default:
         return bed_options_take(&request->bed, options, key);
     }
     return status;
 }
 
-/* The rule of the method; options of other methods are refused. */
+/* Fills the rule of the method. Refuses options of other methods. */
 static int bed_choose(struct bed_request *request) {
     fibrad_beam_rule *beam = &request->beam_rule;
     if (request->beam_given && request->method != METHOD_BEAM)
@@ -146,13 +142,13 @@ static int bed_choose(struct bed_request *request) {
         request->options.beam = beam;
     const int status = options_beam_rule(&request->beam, beam);
     beam->tolerance = request->error;
-    if (request->error > 0) beam->directions = 0; /* as many as it takes */
+    if (request->error > 0) beam->directions = 0; /* the library chooses */
     return status;
 }
 
-/* What can be found wrong before any work is done. */
+/* Checks that need no computation. */
 static int bed_check(struct bed_request *request) {
-    int status = bed_options_check(&request->bed, "bed", CONTENT_MATRIX, request->plot);
+    int status = bed_options_check(&request->bed, "bed", CONTENT_MATRIX);
     if (status) return status;
     if (request->targets) request->options.raw = 1;
     request->options.scratch = request->bed.scratch;
@@ -204,7 +200,7 @@ static int bed_compute(void *bed_request, const struct bed *bed, fibrad_bed_fact
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
-/* Rays from each side of a triangle: more from the sides of few. */
+/* Rays from each side of a triangle. Few sides have more rays each. */
 enum { VIEW_RAYS = 256, VIEW_RAYS_MOST = 1 << 14, VIEW_RAYS_IN_ALL = 1 << 19 };
 
 static uint32_t view_rays(uint32_t sides) {
@@ -214,7 +210,7 @@ static uint32_t view_rays(uint32_t sides) {
 
 static double mean_of_two(double a, double b) { return (a + b) / 2; }
 
-/* What triangles of the walls see. */
+/* Computes what each side of the triangles of walls sees: spheres and surroundings. */
 static int bed_views(struct bed_request *request, const struct bed *bed, struct side_arrays *views) {
     enum { TO_SPHERES, OUT, QUANTITIES };
     static const struct side_quantity quantity[QUANTITIES] = {
@@ -240,7 +236,7 @@ static int bed_views(struct bed_request *request, const struct bed *bed, struct 
     return status;
 }
 
-/* The matrix of one frame into all outputs. */
+/* Computes the matrix of one frame and writes it to all outputs. */
 static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_factors **factors) {
     struct contents what = {.wanted = request->options.wanted, .walls = &request->walls};
     struct side_arrays views = {0};
@@ -254,7 +250,7 @@ static int bed_matrix(struct bed_request *request, struct bed *bed, fibrad_bed_f
     what.of_sides = &views;
     if (request->bed.wall_vtp) status = bed_views(request, bed, &views);
     if (!status) status = bed_options_write(&request->bed, bed, &what);
-    if (!status && request->plot) status = plot_bed(&request->picture, request->bed.name, &what);
+    if (!status && request->bed.outputs.picture) status = plot_bed(&request->bed.picture, request->bed.name, &what);
     if (!status) bed_report(request, &what, &summary);
     side_arrays_free(&views);
     return status;
@@ -288,14 +284,6 @@ static int bed_frame(void *bed_request, struct bed *bed) {
 
 int command_bed(int argc, char **argv) {
     struct bed_request request;
-    int status = bed_parse(&request, argc, argv);
-    if (status == STATUS_HELP) {
-        status = bed_help();
-    } else if (!status) {
-        status = output_open(&request.picture, request.plot);
-        if (!status) status = bed_options_frames(&request.bed, "bed", bed_frame, &request);
-        status = output_close(&request.picture, status);
-    }
-    bed_options_free(&request.bed);
-    return status;
+    const int status = bed_parse(&request, argc, argv);
+    return bed_options_end(&request.bed, status, bed_help, bed_frame, &request);
 }

@@ -42,9 +42,7 @@ struct conductivity_request {
     double temperature; /* [K] */
     struct conduction_rule rule;
     bool steady;
-    const char *plot;
-    struct output picture;
-    struct steady between[3]; /* plates, along each axis; 0 spheres: not computed */
+    struct steady between[3]; /* results between plates along each axis; 0 spheres: not computed */
 };
 
 static int conductivity_help(void) {
@@ -80,7 +78,7 @@ static int take_axis(const char *text, int *axis) {
     return STATUS_OK;
 }
 
-/* Whole numbers, also those such as 2e8. */
+/* Reads --max-rays, which may be written like 2e8. */
 static int take_rays(const char *text, uint64_t *rays) {
     double value;
     const int status = options_number("--max-rays", text, 1, 1e15, &value);
@@ -109,9 +107,6 @@ static int conductivity_take(struct conductivity_request *request, const struct 
         return take_rays(value, &rule->max_rays);
     case KEY_SEED:
         return options_whole("--seed", value, 0, UINT64_MAX, &rule->seed);
-    case KEY_PLOT:
-        request->plot = value;
-        return STATUS_OK;
     case KEY_STEADY:
         request->steady = true;
         return STATUS_OK;
@@ -141,10 +136,10 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
     if (rule->error == 0) rule->error = 0.003;
     if (rule->max_rays == 0) rule->max_rays = 50000000;
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
-    return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION, request->plot);
+    return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION);
 }
 
-/* The axes with some of these kinds of flights, such as "xz"; how many there are. */
+/* Lists the axes with flights of one of these kinds, such as "xz". Returns their number. */
 static int axes_with(const struct conduction *result, unsigned kinds, char axes[4]) {
     int count = 0;
     for (int axis = 0; axis < 3; ++axis)
@@ -154,7 +149,7 @@ static int axes_with(const struct conduction *result, unsigned kinds, char axes[
     return count;
 }
 
-/* Figures of the axes that are wanted, and their errors under keys that end with _error. */
+/* Reports values of the wanted axes, then their errors under keys that end with _error. */
 static void report_axes(struct report *report, const struct conduction *result, const char *key, const double value[3],
                         const double error[3]) {
     char text[40];
@@ -226,7 +221,7 @@ static void conductivity_warn(const struct conductivity_request *request, const 
                    axes);
 }
 
-/* Follows the paths of a bed in which something is emitted. */
+/* Follows the paths of a bed. Refuses a bed that emits nothing. */
 static int conductivity_follow(struct conductivity_request *request, const struct bed *bed, const unsigned char *emits,
                                struct conduction *result) {
     fibrad_run run = bed_options_run(&request->bed);
@@ -237,7 +232,7 @@ static int conductivity_follow(struct conductivity_request *request, const struc
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
-/* Between plates, along the axes that are wanted and possible. */
+/* With --steady computes F_E between plates along each wanted axis whose other two axes are periodic. */
 static int conductivity_steady(struct conductivity_request *request, const struct bed *bed, struct conduction *result) {
     int status = STATUS_OK;
     bool any = false;
@@ -276,7 +271,8 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
     struct contents what = {.conduction = &result};
     int status = conductivity_compute(request, bed, &result);
     if (!status) status = bed_options_write(&request->bed, bed, &what);
-    if (!status && request->plot) status = plot_conduction(&request->picture, request->bed.name, &result);
+    if (!status && request->bed.outputs.picture)
+        status = plot_conduction(&request->bed.picture, request->bed.name, &result);
     if (status) return status;
     conductivity_warn(request, &result);
     conductivity_report(request, bed, &result);
@@ -285,14 +281,6 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
 
 int command_conductivity(int argc, char **argv) {
     struct conductivity_request request;
-    int status = conductivity_parse(&request, argc, argv);
-    if (status == STATUS_HELP) {
-        status = conductivity_help();
-    } else if (!status) {
-        status = output_open(&request.picture, request.plot);
-        if (!status) status = bed_options_frames(&request.bed, "conductivity", conductivity_frame, &request);
-        status = output_close(&request.picture, status);
-    }
-    bed_options_free(&request.bed);
-    return status;
+    const int status = conductivity_parse(&request, argc, argv);
+    return bed_options_end(&request.bed, status, conductivity_help, conductivity_frame, &request);
 }

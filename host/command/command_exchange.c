@@ -37,13 +37,12 @@ static const struct option exchange_table[] = {
 
 struct exchange_request {
     struct bed_options bed;
-    const char *wall_emissivity, *plot;
+    const char *wall_emissivity;
     struct quantity emissivity;
     struct walls walls;
     fibrad_exchange_rule rule;
     fibrad_bed_options options;
     bool counted; /* --rays or --directions was given */
-    struct output picture;
 };
 
 static int exchange_help(void) {
@@ -87,9 +86,6 @@ static int exchange_take(struct exchange_request *request, const struct options 
     case KEY_WALL_EMISSIVITY:
         request->wall_emissivity = value;
         return STATUS_OK;
-    case KEY_PLOT:
-        request->plot = value;
-        return STATUS_OK;
     case KEY_RAW:
         request->options.raw = 1;
         return STATUS_OK;
@@ -111,7 +107,7 @@ static int exchange_check(struct exchange_request *request) {
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
     request->options.scratch = request->bed.scratch;
     request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
-    return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX, request->plot);
+    return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX);
 }
 
 static int exchange_parse(struct exchange_request *request, int argc, char **argv) {
@@ -152,7 +148,7 @@ static int exchange_solve(void *exchange_request, const struct bed *bed, fibrad_
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
-/* The factors of one frame into all outputs. */
+/* Computes the factors of one frame and writes them to all outputs. */
 static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
     fibrad_bed_factors *factors = NULL;
     int status = bed_options_memory(bed, &request->options, exchange_solve, request);
@@ -160,7 +156,7 @@ static int exchange_matrix(struct exchange_request *request, struct bed *bed) {
     if (!status) warn_rows(&request->bed.warned, bed, &factors->matrix);
     struct contents what = {.factors = factors, .walls = &request->walls, .grey = &request->rule};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
-    if (!status && request->plot) status = plot_bed(&request->picture, request->bed.name, &what);
+    if (!status && request->bed.outputs.picture) status = plot_bed(&request->bed.picture, request->bed.name, &what);
     if (!status) exchange_report(request, &what);
     fibrad_bed_free(factors);
     return status;
@@ -183,14 +179,6 @@ static int exchange_frame(void *exchange_request, struct bed *bed) {
 
 int command_exchange(int argc, char **argv) {
     struct exchange_request request = {0};
-    int status = exchange_parse(&request, argc, argv);
-    if (status == STATUS_HELP) {
-        status = exchange_help();
-    } else if (!status) {
-        status = output_open(&request.picture, request.plot);
-        if (!status) status = bed_options_frames(&request.bed, "exchange", exchange_frame, &request);
-        status = output_close(&request.picture, status);
-    }
-    bed_options_free(&request.bed);
-    return status;
+    const int status = exchange_parse(&request, argc, argv);
+    return bed_options_end(&request.bed, status, exchange_help, exchange_frame, &request);
 }

@@ -46,9 +46,9 @@ static const char *const methods[] = {"hfm", "mchf", "mchf-x", "mc"};
 
 struct request {
     const char *file, *out, *format, *plot, *json, *theta, *scatter;
-    int number; /* of the case; 0: none */
+    int number; /* --case; 0: a file */
     uint64_t seed;
-    uint32_t cells[3]; /* 0: as the box has it */
+    uint32_t cells[3]; /* 0: the numbers of the case or file */
     write_furnace_function *write;
     struct furnace_options run;
 };
@@ -103,7 +103,7 @@ static int furnace_parse_cells(const char *text, uint32_t cells[3]) {
     return STATUS_OK;
 }
 
-/* The argument of --plot may be left out: it is one only if it looks like a picture. */
+/* The argument of --plot may be left out. The next word is the argument only if it ends like a picture. */
 static void furnace_take_plot(struct request *request, struct options *options) {
     request->plot = "furnace.png";
     if (options->at < options->argc && plot_ending(options->argv[options->at]))
@@ -240,7 +240,7 @@ static bool furnace_is_measured(const struct request *request) {
            (run->method == FURNACE_MC && run->measure);
 }
 
-/* The published case compared with the reference. */
+/* Compares a published case with the reference. */
 static void furnace_print_comparison(FILE *text, const struct request *request, const struct furnace_run *run) {
     static const char *const names[3] = {"wall z=0", "wall z=4", "sides"};
     bool measured = furnace_is_measured(request), paper = request->run.estimator == FIBRAD_THETA_PAPER;
@@ -269,7 +269,7 @@ static void furnace_print_comparison(FILE *text, const struct request *request, 
           text);
 }
 
-/* A key such as T_axis_0.4, T_axis_2.0. */
+/* Makes a key such as T_axis_0.4 or T_axis_2.0. */
 static void furnace_height_key(double z, char key[48]) {
     char text[32];
     snprintf(text, sizeof text, "%.4g", z);
@@ -300,7 +300,7 @@ static void furnace_report(struct report *report, const struct request *request,
     report_end(report);
 }
 
-/* To standard output, or to standard error where results go there. */
+/* Prints the summary to standard output, or to standard error if results go to standard output. */
 static void furnace_print(const struct request *request, const struct furnace_run *run, FILE *json) {
     FILE *text = is_standard(request->out) || is_standard(request->json) ? stderr : stdout;
     struct report report = {.text = text, .json = json};

@@ -64,11 +64,10 @@ struct heat_request {
     struct bed_options bed;
     struct given_options given;
     struct time_options time;
-    const char *plot, *wall_emissivity;
+    const char *wall_emissivity;
     struct quantity emissivity;
     bool counted; /* --directions, --points, --patches or --wall-rays was given */
     struct heat_problem problem;
-    struct output picture;
 };
 
 static int heat_help(void) {
@@ -175,9 +174,6 @@ static int heat_take(struct heat_request *request, const struct options *options
         return options_count("--wall-rays", value, 1, FIBRAD_WALL_RAYS_MAX, &request->problem.config.wall_rays);
     case KEY_ERROR:
         return options_number("--error", value, 1e-5, 1, &request->problem.error);
-    case KEY_PLOT:
-        request->plot = value;
-        return STATUS_OK;
     case KEY_UNTIL:
     case KEY_CAPACITY:
     case KEY_DENSITY:
@@ -193,7 +189,7 @@ static int heat_take(struct heat_request *request, const struct options *options
 static int heat_check_request(struct heat_request *request) {
     request->bed.timed = request->given.timed = request->time.until > 0;
     request->problem.zero = request->given.zero;
-    int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT, request->plot);
+    int status = bed_options_check(&request->bed, "heat", CONTENT_HEAT);
     if (status) return status;
     if (request->given.timed && request->problem.error > 0)
         return message(STATUS_USAGE, "--error is for powers at one time, not for --until");
@@ -283,7 +279,7 @@ static int heat_picture(const struct heat_request *request, const struct bed *be
                                      .surroundings_power =
                                          request->given.ambient ? report->result.surroundings_power : NAN,
                                      .found = report->unknown > 0};
-    return plot_heat(&request->picture, request->bed.name, &shown);
+    return plot_heat(&request->bed.picture, request->bed.name, &shown);
 }
 
 static int heat_solve(struct heat_request *request, struct bed *bed, struct heat_report *report) {
@@ -293,12 +289,12 @@ static int heat_solve(struct heat_request *request, struct bed *bed, struct heat
                             .result = &report->result,
                             .of_sides = &report->triangles};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
-    if (!status && request->plot) status = heat_picture(request, bed, report);
+    if (!status && request->bed.outputs.picture) status = heat_picture(request, bed, report);
     if (!status) heat_print(request, bed, report);
     return status;
 }
 
-/* The arrays of a result. */
+/* Allocates the arrays of a result for n spheres. */
 static int heat_arrays(fibrad_heat_result *result, uint32_t n) {
     double **const of_spheres[] = {&result->power, &result->temperature, &result->power_error,
                                    &result->temperature_error};
@@ -342,7 +338,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
         report.result.body_absorbed = of_walls[5], report.result.body_area = of_walls[6];
         report.result.body_error = of_walls[3], report.result.body_temperature_error = of_walls[4];
         status = request->given.timed ? heat_in_time(&request->bed, &request->time, &request->problem, bed, &report,
-                                                   request->plot ? &request->picture : NULL)
+                                                     request->bed.outputs.picture ? &request->bed.picture : NULL)
                                       : heat_solve(request, bed, &report);
     }
     free(emissivity);
@@ -357,16 +353,9 @@ static int heat_frame(void *heat_request, struct bed *bed) {
 
 int command_heat(int argc, char **argv) {
     struct heat_request request;
-    int status = heat_parse(&request, argc, argv);
-    if (status == STATUS_HELP) {
-        status = heat_help();
-    } else if (!status) {
-        status = output_open(&request.picture, request.plot);
-        if (!status) status = bed_options_frames(&request.bed, "heat", heat_frame, &request);
-        status = output_close(&request.picture, status);
-    }
+    const int status = heat_parse(&request, argc, argv);
+    const int ended = bed_options_end(&request.bed, status, heat_help, heat_frame, &request);
     quantity_free(&request.emissivity);
     curve_free(&request.given.ambient_curve);
-    bed_options_free(&request.bed);
-    return status;
+    return ended;
 }

@@ -89,8 +89,8 @@ static int join_parse(struct join_request *request, int argc, char **argv) {
     return status ? status : outputs_check(&request->outputs, CONTENT_MATRIX, false);
 }
 
-/* The scene of a matrix, which asks for radii and for how many bodies there are; not where, which is not known: each
- * has the same triangle, above all spheres. */
+/* Makes the scene of a matrix. The matrix needs the radii and the number of walls. Files of rows do not say where the
+ * walls are, so each wall gets the same triangle above all spheres. */
 static int join_scene(const struct joined *joined, fibrad_scene **scene, void **block) {
     const double *x = joined->x;
     const fibrad_spheres spheres = {x, x + 1, x + 2, joined->radius, joined->n, .stride = 3};
@@ -129,7 +129,7 @@ static int join_scene(const struct joined *joined, fibrad_scene **scene, void **
                    joined->id[fault.second], fibrad_status_text(status));
 }
 
-/* What the kernel makes of the rows, in *block, to be freed also after an error. */
+/* Makes the matrix of the rows in *block. The caller frees *block also after an error. */
 static int join_matrix(const struct join_request *request, const struct joined *joined, const fibrad_scene *scene,
                        fibrad_bed_factors *factors, void **block) {
     const fibrad_matrix_rule rule = {.emissivity = joined->emissive ? joined->emissivity : NULL, .raw = request->raw};
@@ -165,7 +165,7 @@ static void join_report(struct join_request *request, const struct joined *joine
     report_end(report);
 }
 
-/* Writes the matrix and what is known of it. x: [3][n]. */
+/* Writes the matrix and its summary. x: room for [3][n] numbers. */
 static int join_write(struct join_request *request, const struct joined *joined, double *x,
                       const fibrad_bed_factors *factors) {
     double unbounded[FIBRAD_BODIES_MAX];
@@ -180,12 +180,12 @@ static int join_write(struct join_request *request, const struct joined *joined,
                             .z = x + 2 * n,
                             .r = joined->radius,
                             .id = (int64_t *)joined->id,
-                            .frame = (int64_t)joined->step, /* for a * in a name */
+                            .frame = (int64_t)joined->step, /* the number for a * in OUT */
                             .timestep = (int64_t)joined->step};
     const struct walls walls = {.count = joined->bodies};
     const fibrad_exchange_rule grey = {.emissivity = joined->emissivity, .body_emissivity = unbounded};
     fibrad_bed_factors with_areas = *factors;
-    with_areas.body_area = unbounded; /* not known, so that there are no rows of walls */
+    with_areas.body_area = unbounded; /* not known; INFINITY leaves out the rows of walls */
     const struct contents what = {.bed = &bed,
                                   .factors = &with_areas,
                                   .walls = &walls,
@@ -212,14 +212,15 @@ static int join_solve(struct join_request *request, const struct joined *joined)
     return status;
 }
 
-/* Ids name the spheres, unless they are too large for it. */
+/* Refuses ids that are too large to name spheres. */
 static int join_names(const struct join_request *request, const struct joined *joined) {
     if (request->positions || joined->n == 0 || joined->id[joined->n - 1] <= INT64_MAX) return STATUS_OK;
     return message(STATUS_INPUT, "id %" PRIu64 " is too large for a name; --positions names spheres by positions",
                    joined->id[joined->n - 1]);
 }
 
-/* Everything between the options and the end; outputs are opened before the work. */
+/* Reads rows, makes the matrix and writes it. Outputs are opened first: a path that cannot be written is an error
+ * before any work is done. */
 static int join_run(struct join_request *request) {
     struct joined joined = {0};
     int status = outputs_open(&request->outputs);

@@ -16,7 +16,8 @@
 
 enum { KEY_OBSTACLE = KEY_OWN, KEY_CHECK };
 
-/* With obstacles: the error by default, also where spheres overlap and visible areas jump, and the most directions. */
+/* With obstacles: default errors, a larger one if spheres overlap, since visible areas then jump; and most directions.
+ */
 #define ERROR_APART   1e-9
 #define ERROR_OVERLAP 1e-5
 #define DIRECTIONS    5000000
@@ -38,7 +39,7 @@ enum { SPHERES_MAX = 1000 };
 
 struct pair_request {
     double r1, r2, gap;
-    int given; /* of these three */
+    int given; /* how many of these three were given */
     /* sphere 1, sphere 2, obstacles */
     uint32_t n;
     double x[SPHERES_MAX], y[SPHERES_MAX], z[SPHERES_MAX], r[SPHERES_MAX];
@@ -47,8 +48,8 @@ struct pair_request {
     fibrad_beam_rule rule;
     fibrad_surface_rule surface;
     fibrad_cast_rule cast;
-    double error;     /* 0: not asked for */
-    const char *json; /* NULL: not asked for */
+    double error;     /* 0: not given */
+    const char *json; /* NULL: not given */
     struct report report;
     bool beam_given, surface_given, cast_given, check;
 };
@@ -166,7 +167,7 @@ static int report_check(struct report *report, const char *name, int error, doub
     return STATUS_OK;
 }
 
-/* Differences are relative to the kernel's value. */
+/* Compares the kernel's value with GSL. Differences are relative to the kernel's value. */
 static int pair_check(struct pair_request *request, double f12) {
     double value = 0, abserr = 0;
     int status = STATUS_OK;
@@ -211,7 +212,7 @@ static fibrad_spheres pair_spheres(const struct pair_request *request, uint32_t 
                             .n = request->n - first};
 }
 
-/* The spheres as a scene in a block to be freed; only sound ones make one. */
+/* Makes a scene of the spheres in *block. The caller frees *block. Refuses spheres that make no scene. */
 static int pair_scene(const struct pair_request *request, fibrad_scene **scene, void **block) {
     const fibrad_spheres spheres = pair_spheres(request, 0);
     fibrad_fault fault;
@@ -220,8 +221,8 @@ static int pair_scene(const struct pair_request *request, fibrad_scene **scene, 
     return status ? pair_refuse(status, &fault) : STATUS_OK;
 }
 
-/* Whether the spheres make a scene, and what it is. */
-static int pair_sound(const struct pair_request *request, fibrad_scene_facts *facts) {
+/* Refuses spheres that make no scene. facts: of the scene. */
+static int pair_facts(const struct pair_request *request, fibrad_scene_facts *facts) {
     fibrad_scene *scene;
     void *block;
     const int status = pair_scene(request, &scene, &block);
@@ -230,12 +231,12 @@ static int pair_sound(const struct pair_request *request, fibrad_scene_facts *fa
     return status;
 }
 
-/* Pairs with obstacles. An error that was not asked for may be missed in silence no more than another. */
+/* The exact factor with obstacles. report_wanted warns if the error is missed, be it given or the default. */
 static int pair_reference(struct pair_request *request, double *f12) {
     const fibrad_spheres spheres = pair_spheres(request, 0);
     fibrad_scene_facts facts;
     struct reference_report report;
-    int status = pair_sound(request, &facts);
+    int status = pair_facts(request, &facts);
     if (status) return status;
     const double usual = facts.overlap_max > 0 ? ERROR_OVERLAP : ERROR_APART;
     const struct reference_rule rule = {.tolerance = request->error > 0 ? request->error : usual,
@@ -250,7 +251,7 @@ static int pair_reference(struct pair_request *request, double *f12) {
     return STATUS_OK;
 }
 
-/* Rows of a few spheres. */
+/* Scene, work memory and one row of a few spheres. */
 struct few {
     fibrad_scene *scene;
     void *block; /* of the scene */
@@ -259,14 +260,14 @@ struct few {
     double f[SPHERES_MAX], length[SPHERES_MAX], angle[SPHERES_MAX];
 };
 
-/* Where sphere j stands in a row; its length if it is not there. */
+/* The index of the entry of sphere j in a row. row->length: there is none. */
 static uint32_t find_column(const fibrad_row *row, uint32_t j) {
     uint32_t k = 0;
     while (k < row->length && row->col[k] != j) ++k;
     return k;
 }
 
-/* F from sphere i to sphere j by the row of i. */
+/* The factor from sphere i to sphere j, by beams of sphere i. */
 static int beam_factor(struct few *few, struct pair_request *request, uint32_t i, uint32_t j, double *f) {
     fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
     const int status = fibrad_beam_row(few->scene, &few->work, i, &request->rule, &row);
@@ -290,7 +291,7 @@ static int pair_beam(struct few *few, struct pair_request *request, double *f12)
     return status;
 }
 
-/* F12 by rays from sphere 1 alone. */
+/* F12 by rays from sphere 1. */
 static int pair_cast(struct few *few, struct pair_request *request, double *f12) {
     fibrad_cast_rule rule = request->cast;
     fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
@@ -325,7 +326,7 @@ static int pair_surface(struct pair_request *request, double *f12) {
     const fibrad_spheres obstacles = pair_spheres(request, 2);
     fibrad_scene_facts of_scene;
     fibrad_surface_facts facts;
-    int status = pair_sound(request, &of_scene);
+    int status = pair_facts(request, &of_scene);
     if (status) return status;
     double *scratch = malloc(FIBRAD_SURFACE_SCRATCH(obstacles.n) * sizeof *scratch);
     if (!scratch) return message_memory();

@@ -1,4 +1,4 @@
-/* command_reproduce.c - `fibrad reproduce`: the numbers of the papers beside ours. SPDX-License-Identifier: MIT */
+/* command_reproduce.c - `fibrad reproduce`: our numbers beside those of the papers. SPDX-License-Identifier: MIT */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef COMMANDS_H
 #define COMMANDS_H
 
-/* Each takes the arguments behind its name and returns the exit status, all that is to be said having been said. */
+/* Each command takes the arguments behind its name, prints its messages and returns the exit status. */
 int command_pair(int argc, char **argv);
 int command_bed(int argc, char **argv);
 int command_conductivity(int argc, char **argv);

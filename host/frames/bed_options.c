@@ -1,4 +1,4 @@
-/* bed_options.c - what all commands about beds are asked. SPDX-License-Identifier: MIT */
+/* bed_options.c - options that all commands about beds share. SPDX-License-Identifier: MIT */
 #include "frames/bed_options.h"
 
 #include <errno.h>
@@ -37,7 +37,7 @@ static int add_file(struct bed_options *asked, const char *name) {
     return file[asked->files++] ? STATUS_OK : message_memory();
 }
 
-/* Order of names by the numbers in them: bed.200.dump stands before bed.1000.dump. */
+/* Orders names by the numbers in them: bed.200.dump stands before bed.1000.dump. */
 static int order_of_names(const void *a, const void *b) {
     static const char digits[] = "0123456789";
     const char *one = *(char *const *)a, *other = *(char *const *)b;
@@ -58,7 +58,7 @@ static int order_of_names(const void *a, const void *b) {
     return order != 0 ? order : strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* A name, or all files that a pattern of the shell stands for, which the shell has left alone. */
+/* Takes the name of a file, or a pattern in quotes that the shell has not expanded. */
 static int take_file(struct bed_options *asked, const char *name) {
     struct stat there;
     glob_t found;
@@ -71,7 +71,7 @@ static int take_file(struct bed_options *asked, const char *name) {
     return status;
 }
 
-/* K, all, A:B, A:B:STEP, -1. */
+/* Reads --frame: K, all, A:B, A:B:STEP or -1. */
 static int take_frames(const char *text, struct bed_options *asked) {
     struct frames frames = {0, INT64_MAX, 1};
     char *end = (char *)text;
@@ -136,6 +136,9 @@ int bed_options_take(struct bed_options *asked, const struct options *options, i
         return take_length_unit(value, asked);
     case KEY_SCRATCH:
         return take_scratch(value, asked);
+    case KEY_PLOT:
+        asked->outputs.picture = value;
+        return STATUS_OK;
     case KEY_JSON:
         asked->outputs.summary = value;
         return STATUS_OK;
@@ -162,10 +165,12 @@ size_t bed_options_column(struct bed_options *asked, const char *name, const cha
     return name ? asked->columns++ : 0;
 }
 
-/* Several frames go into one output. */
+/* Whether the run may have several frames. */
 static bool is_series(const struct bed_options *asked) { return asked->range || asked->files > 1; }
 
-int bed_options_check(struct bed_options *asked, const char *command, enum content content, const char *picture) {
+int bed_options_check(struct bed_options *asked, const char *command, enum content content) {
+    const char *picture = asked->outputs.picture;
+    asked->command = command;
     if (asked->files == 0) return message(STATUS_USAGE, "FILE is missing; see fibrad %s --help", command);
     asked->radius.place = bed_options_column(asked, asked->radius.column, NULL);
     if (picture && !plot_ending(picture))
@@ -175,18 +180,17 @@ int bed_options_check(struct bed_options *asked, const char *command, enum conte
         return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
     if (asked->wall_vtp && !asked->walls.walls.meshes)
         return message(STATUS_USAGE, "--wall-vtp: there is no --wall mesh:FILE");
-    asked->outputs.picture = picture;
     return outputs_check(&asked->outputs, content, is_series(asked) || asked->timed);
 }
 
-/* What the options say of a bed that was read. */
+/* Puts periods, unit and radii of the options into a bed that was read. */
 static int complete_bed(struct bed_options *asked, struct bed *bed) {
     if (asked->periodic) warn_periods(&asked->warned, bed, asked->period);
     if (asked->periodic) memcpy(bed->period, asked->period, sizeof bed->period);
     if (!bed->units[0] && asked->length_unit)
-        snprintf(bed->units, sizeof bed->units, "%s", asked->length_unit); /* for what is written of it */
+        snprintf(bed->units, sizeof bed->units, "%s", asked->length_unit); /* outputs show the unit */
     if (!asked->radius.given) return STATUS_OK;
-    double *radius; /* the bed's own array has room for more than this frame */
+    double *radius; /* copied: bed->r has room for larger frames, which must stay */
     const int status =
         quantity_values(&asked->radius, bed, asked->name, "radius", 0, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &radius);
     if (!status) memcpy(bed->r, radius, bed->n * sizeof *radius);
@@ -213,7 +217,7 @@ static int run_file(struct bed_options *asked, const char *path, struct bed *bed
     while (!status) {
         status = reader_next(reader, bed, &more);
         if (status || !more) break;
-        if (asked->files > 1) bed->frame = asked->frames_done; /* through all files */
+        if (asked->files > 1) bed->frame = asked->frames_done; /* counted through all files */
         warn_frame(&asked->warned, bed);
         status = complete_bed(asked, bed);
         if (!status) status = frame(request, bed);
@@ -223,23 +227,31 @@ static int run_file(struct bed_options *asked, const char *path, struct bed *bed
     return status;
 }
 
-int bed_options_frames(struct bed_options *asked, const char *command, bed_options_frame *frame, void *request) {
+/* Outputs are opened first: a path that cannot be written is an error before any work is done. */
+static int run_frames(struct bed_options *asked, bed_options_frame *frame, void *request) {
     struct bed bed;
     bed_init(&bed);
-    int status = outputs_open(&asked->outputs);
+    int status = output_open(&asked->picture, asked->outputs.picture);
+    if (!status) status = outputs_open(&asked->outputs);
     asked->report = outputs_report(&asked->outputs, asked->quiet);
-    if (!status) report_open(&asked->report, command);
+    if (!status) report_open(&asked->report, asked->command);
     for (size_t k = 0; k < asked->files && !status; ++k) status = run_file(asked, asked->file[k], &bed, frame, request);
     if (!status && asked->frames_done == 0) status = message(STATUS_INPUT, "there are no spheres in any of the files");
     if (!status) report_close(&asked->report);
     bed_free(&bed);
-    return outputs_close(&asked->outputs, status);
+    status = outputs_close(&asked->outputs, status);
+    return output_close(&asked->picture, status);
 }
 
-void bed_options_free(struct bed_options *asked) {
+int bed_options_end(struct bed_options *asked, int status, int (*help)(void), bed_options_frame *frame, void *request) {
+    if (status == STATUS_OK)
+        status = run_frames(asked, frame, request);
+    else if (status == STATUS_HELP)
+        status = help();
     for (size_t k = 0; k < asked->files; ++k) free(asked->file[k]);
     free(asked->file);
     walls_free(&asked->walls);
+    return status;
 }
 
 fibrad_run bed_options_run(struct bed_options *asked) {
@@ -258,7 +270,11 @@ int bed_options_status(struct bed_options *asked, const struct bed *bed, int sta
 
 int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute,
                        void *request) {
-    enum { SAMPLE = 16, ENTRIES_MANY = 2000, ENTRY_BYTES = 48 }; /* the last while rows are averaged */
+    enum {
+        SAMPLE = 16,
+        ENTRIES_MANY = 2000,
+        ENTRY_BYTES = 48
+    }; /* an entry takes ENTRY_BYTES while rows are averaged */
     fibrad_bed_factors *factors = NULL;
     const double left = options->scratch ? disk_left(options->scratch) : memory_left();
     if (options->wanted || (double)bed->n * ENTRIES_MANY * ENTRY_BYTES < left) return STATUS_OK;
@@ -279,7 +295,7 @@ int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_o
     return status;
 }
 
-/* The unit of a bed: the file's, or else that of the option; NULL: neither says. */
+/* The unit of a bed: that of the file, or else that of --length-unit. NULL: neither names one. */
 static const char *unit_of(const struct bed_options *asked, const struct bed *bed) {
     double metres = 0;
     const bool by_file = bed->units[0] && (!unit_of_length(bed->units, &metres) || metres > 0);

@@ -1,5 +1,5 @@
-/* bed_options.h - what all commands about beds are asked: files and how to read them, threads, where results go; and
- * the run over all frames of all files. SPDX-License-Identifier: MIT */
+/* bed_options.h - options that all commands about beds share, and the loop over all frames of all files.
+ * SPDX-License-Identifier: MIT */
 #ifndef BED_OPTIONS_H
 #define BED_OPTIONS_H
 
@@ -19,7 +19,7 @@
 #include "simple/fibrad_host.h"
 #include "write/outputs.h"
 
-/* Rows of a table of options, without the outermost braces: what is read, and what is left of it. */
+/* Rows of a table of options, without the outermost braces. */
 #define OPTIONS_INPUT                                                                                                  \
     {KEY_RADIUS, "radius", "R", "radius of all spheres, or TYPE:R,..., or a column of the file [r or radius]"},        \
         {KEY_LENGTH_UNIT, "length-unit", "UNIT", "unit of length of files that name none: " UNITS_LENGTH " [m]"},      \
@@ -36,12 +36,12 @@
         OPTION_HELP                                                                                                    \
     }
 
-/* Of commands that make matrices. */
+/* For commands that make matrices. */
 #define OPTION_SCRATCH                                                                                                 \
     KEY_SCRATCH, "scratch", "FOLDER",                                                                                  \
         "keep rows and matrix in temporary files of this folder, with the same results [in memory]"
 
-/* What --help says below of the files. */
+/* A paragraph of --help about the files. */
 #define FILES_MORE                                                                                                     \
     "FILE may be a dump or data file of LAMMPS or LIGGGHTS, CSV with a header, extended XYZ, VTK (.vtp,\n"             \
     ".vtk), or text of YADE or MercuryDPM. It may be compressed by gzip. - is standard input. Several files\n"         \
@@ -51,84 +51,86 @@
 
 enum { BED_COLUMNS_MAX = 8 };
 
-/* What was asked; zeroed to begin with. To be freed with bed_options_free. */
+/* Arguments of the options, and the state of the run. Begin with zeroes; bed_options_end frees it. */
 struct bed_options {
     char **file; /* [files] "-": standard input */
     size_t files;
     struct frames frames;
-    bool range;    /* of frames: there may be several in a file */
-    bool timed;    /* results at several times are made of one frame */
+    bool range;    /* --frame names a range: there may be several frames per file */
+    bool timed;    /* the command computes results at several times from one frame */
     bool periodic; /* --periodic was given */
     double period[3];
     bool positions;
     struct quantity radius;
     const char *length_unit;             /* NULL: not given */
-    const char *column[BED_COLUMNS_MAX]; /* [columns] read besides, */
-    const char *unit[BED_COLUMNS_MAX];   /* and their units; NULL: none */
-    bool some[BED_COLUMNS_MAX];          /* values may be missing */
+    const char *column[BED_COLUMNS_MAX]; /* [columns] columns of the file that options name */
+    const char *unit[BED_COLUMNS_MAX];   /* [columns] unit that the file must not contradict; NULL: none */
+    bool some[BED_COLUMNS_MAX];          /* [columns] values may be missing */
     size_t columns;
     struct wall_options walls;
-    bool wall_vtp;       /* an output has their triangles */
+    bool wall_vtp;       /* --wall-vtp was given */
     int threads;         /* 0: all cores */
     const char *scratch; /* a folder for rows and matrix; NULL: in memory */
     struct outputs outputs;
+    struct output picture; /* of outputs.picture */
     bool quiet;
     struct progress progress;
-    /* of the run */
-    const char *name; /* of the file in hand, in messages */
+    /* state of the run */
+    const char *command;
+    const char *name; /* name of the current file, for messages */
     int64_t frames_done;
     struct warned warned;
-    double metres; /* of the unit of length so far; 0: not known */
+    double metres; /* unit of length of the frames so far [m]; 0: not known */
     struct report report;
 };
 
-/* Takes FILE, -o, --wall, --wall-vtp and all options of this header; a key that it does not know is OPTIONS_BAD. Status
- * 0, STATUS_HELP, STATUS_USAGE or STATUS_MEMORY. */
+/* Takes FILE, -o, --plot, --wall, --wall-vtp and the options of this header. Any other key counts as OPTIONS_BAD, after
+ * which the message is out. Status 0, STATUS_HELP, STATUS_USAGE, STATUS_FILE or STATUS_MEMORY. */
 int bed_options_take(struct bed_options *asked, const struct options *options, int key);
 
-/* Asks for a column of the file, whose unit is to be this one (NULL: it has none); returns its place in bed->extra,
- * one for all that ask for a column without a unit. name NULL: no column. */
+/* Asks for a column of the file. unit: expected unit; NULL: none. Returns the index of the column in bed->extra.
+ * Without a unit a column has one index however often it is asked for. name NULL: does nothing. */
 size_t bed_options_column(struct bed_options *asked, const char *name, const char *unit);
 
-/* Is a file missing, or is there something wrong with the outputs of this content, or with a picture (NULL: none)?
- * Status 0 or STATUS_USAGE. */
-int bed_options_check(struct bed_options *asked, const char *command, enum content content, const char *picture);
+/* Checks files and outputs when all options have been read. The command writes `content`. Status 0 or STATUS_USAGE. */
+int bed_options_check(struct bed_options *asked, const char *command, enum content content);
 
 /* Computes, writes and reports one frame. Returns its status. */
 typedef int bed_options_frame(void *request, struct bed *bed);
 
-/* Opens the outputs, reads all frames of all files, hands them one after the other to `frame`, and closes the outputs,
- * which get their names only if all went well. Status as read_bed, or that of a frame. */
-int bed_options_frames(struct bed_options *asked, const char *command, bed_options_frame *frame, void *request);
+/* Ends a command whose options have been read with `status`. STATUS_HELP prints the help. STATUS_OK reads all frames of
+ * all files and hands them one after the other to `frame`; outputs get their names only if no frame fails. In any case
+ * the options are freed. Returns the exit status. */
+int bed_options_end(struct bed_options *asked, int status, int (*help)(void), bed_options_frame *frame, void *request);
 
-/* Frees what the options have taken. */
-void bed_options_free(struct bed_options *asked);
-
-/* How the library is to be run: threads, and a bar that is kept in `asked`. */
+/* Threads and progress bar for calls of the library. The bar is part of the options. */
 fibrad_run bed_options_run(struct bed_options *asked);
 
-/* The exit status for a status of the library run so, after a message; the bar is ended. As bed_status. */
+/* Ends the bar after a call of the library. If the call has failed, prints a message. Returns the exit status, as
+ * bed_status. */
 int bed_options_status(struct bed_options *asked, const struct bed *bed, int status, const fibrad_fault *fault);
 
-/* Computes the factors of a bed as a request says. Returns a status, a message being out. */
+/* Computes the factors of a bed for the request of a command. Prints a message if it fails. Returns a status. */
 typedef int bed_options_compute(void *request, const struct bed *bed, fibrad_bed_factors **factors);
 
-/* Whether all rows will fit into memory, or onto the disk of options->scratch, judged by a few, which `compute` makes
- * with options->wanted. Status 0; STATUS_MEMORY; that of compute. Small beds and lists of targets are not asked. */
+/* Refuses a bed whose rows will not fit into memory, or onto the disk of options->scratch. `compute` makes a few rows,
+ * by options->wanted, to estimate the size. Small beds and lists of targets are not checked. Status 0, STATUS_MEMORY,
+ * STATUS_FILE if the disk is too small, or that of compute. */
 int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute, void *request);
 
-/* Metres of the bed's unit of length, for what comes in watts, with a word where it is assumed and looks wrong. Status
- * 0; STATUS_USAGE if there is none, as in lj, or if frames before had another one. */
+/* Finds the bed's unit of length [m]. Without a known unit assumes metres, and warns if radii look too large for
+ * metres. Status 0, or STATUS_USAGE if the unit has no length in metres (as units lj) or if earlier frames had another
+ * unit. */
 int bed_options_metres(struct bed_options *asked, const struct bed *bed, double *metres);
 
-/* Writes the frame in hand to all outputs. what: all but bed, file and series. */
+/* Writes the current frame to all outputs. The caller sets `what` but for bed, file and series. */
 int bed_options_write(struct bed_options *asked, const struct bed *bed, struct contents *what);
 
-/* Places the walls about a bed, finds which sides of meshes are walls, and warns of what does not go together. Status
- * as walls_of, or STATUS_MEMORY. */
+/* Places the walls about a bed and finds which sides of meshes are walls. Warns if walls and bed contradict each other.
+ * Status as walls_of, or STATUS_MEMORY. */
 int bed_options_walls(struct bed_options *asked, const struct bed *bed, struct walls *walls);
 
-/* Begins the report of a frame: file, frame, box, radii, units, walls. facts NULL: none. */
+/* Begins the summary of a frame: file, frame, units, radii, box, walls. facts NULL: no radii. */
 void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,
                         const fibrad_scene_facts *facts);
 

@@ -1,7 +1,6 @@
 /* beyond.c - spheres that lie beyond a closed mesh. SPDX-License-Identifier: MIT
- *
- * A ray from where all is right leaves each mesh that encloses the bed once more, through its inner side, than it comes
- * back, and enters others as often as it leaves them. */
+ * Follow a ray from a sphere in its right place. The ray leaves each mesh that encloses the bed through the inner side,
+ * once more often than it enters. It enters each other mesh as often as it leaves. */
 #include "frames/beyond.h"
 
 #include <math.h>
@@ -12,9 +11,9 @@
 #include "simple/heap.h"
 
 enum { CROSSINGS_MOST = 10000 };
-#define STEP_BEHIND 1e-6 /* of an edge: where a ray goes on behind what it has met */
+#define STEP_BEHIND 1e-6 /* over the mean edge: the ray goes on so far behind a triangle that it has met */
 
-/* A direction across no periodic axis. False: there is none. */
+/* Finds a direction across open axes only. False: all axes are periodic. */
 static bool open_direction(const struct bed *bed, double w[3]) {
     const double any[3] = {0.4330127, 0.5590170, 0.7071068};
     double square = 0;
@@ -26,7 +25,7 @@ static bool open_direction(const struct bed *bed, double w[3]) {
     return square > 0;
 }
 
-/* How often a ray leaves closed meshes through their inner sides more than it comes in. */
+/* How much more often a ray leaves closed meshes through their inner sides than it enters them. */
 static int64_t times_left(const fibrad_scene *scene, const struct meshes *meshes, const double from[3],
                           const double w[3]) {
     double at[3] = {from[0], from[1], from[2]};
@@ -68,5 +67,5 @@ int warn_beyond(const struct bed *bed, const struct walls *walls, const char *fi
     if (status == FIBRAD_E_MEMORY) return message_memory();
     if (!status) look_for_one(bed, walls->meshes, scene, w, file);
     free(block);
-    return STATUS_OK; /* other errors come with the bed itself */
+    return STATUS_OK; /* the computation of the bed reports other errors */
 }

@@ -1,5 +1,4 @@
-/* warnings.c - what a bed and the options say that contradicts itself: one warning each a run, with the likely remedy.
- * SPDX-License-Identifier: MIT */
+/* warnings.c - warnings about beds and options that contradict each other. SPDX-License-Identifier: MIT */
 #include "frames/warnings.h"
 
 #include <math.h>
@@ -27,22 +26,22 @@ enum kind {
     CLOSING
 };
 
-#define RADIUS_LARGE  0.1   /* a larger mean radius is hardly one of a particle in metres */
-#define OVERLAP_LARGE 0.05  /* over the smaller radius */
-#define CUT_LARGE     0.1   /* depth of a wall in a sphere, over its radius */
-#define PERIOD_OFF    1e-3  /* relative: boxes are typed with few digits */
-#define SIZES_APART   200.0 /* of a mesh and a bed: metres for millimetres are 1000 */
-#define COLD          150.0 /* [K] all temperatures of a bed that is hardly so cold */
-#define CLOSED        1e-9  /* sums of rows of walls that are closed */
-#define APART         0.1   /* ... and by how much they may be off before: some hundredths by few directions */
-#define CHANGE_LARGE  1.5   /* by closing, over the error: among thousands of rows some come up to 1 by chance */
-/* Twice beyond what solids have, aerogel and uranium included. */
+#define RADIUS_LARGE  0.1   /* [m] particles hardly have a larger mean radius */
+#define OVERLAP_LARGE 0.05  /* overlap over the smaller radius */
+#define CUT_LARGE     0.1   /* depth of a wall in a sphere over the radius */
+#define PERIOD_OFF    1e-3  /* relative: users type boxes with few digits */
+#define SIZES_APART   200.0 /* ratio of the sizes of mesh and bed; metres for millimetres make 1000 */
+#define COLD          150.0 /* [K] a bed is hardly colder everywhere */
+#define CLOSED        1e-9  /* closed rows of walls add up to 1 within this */
+#define APART         0.1   /* sums of rows of walls may differ from 1 so much before closing; few directions: 0.01s */
+#define CHANGE_LARGE  1.5   /* change by closing over the error of a row; among thousands of rows chance makes 1 */
+/* Bounds with a margin of 2 beyond all solids, from aerogel to uranium. */
 #define CAPACITY_LOW  30.0 /* [J/(kg K)] */
 #define CAPACITY_HIGH 3e4
 #define DENSITY_LOW   10.0 /* [kg/m3] */
 #define DENSITY_HIGH  1e5
 
-/* Whether a warning is not out yet; now it is. */
+/* Whether a kind of warning is the first of its kind. Marks the kind as printed. */
 static bool is_new(struct warned *warned, enum kind kind) {
     const unsigned bit = 1u << kind;
     const bool new = !(warned->kinds & bit);
@@ -73,7 +72,8 @@ void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_factor
 
 void warn_frame(struct warned *warned, const struct bed *bed) {
     const bool before = warned->frames > 0;
-    if (before && warned->ids != bed->ids && is_new(warned, OTHER_NAMES)) /* rows of both are told apart by nothing */
+    if (before && warned->ids != bed->ids &&
+        is_new(warned, OTHER_NAMES)) /* nothing in the output would tell ids from positions */
         message_at(STATUS_OK, warned->file, 0,
                    "warning: spheres are named by %s, but those of the frames before by %s; --positions names all by "
                    "positions",
@@ -124,7 +124,7 @@ void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_sce
 
 /* ---- walls ------------------------------------------------------------------------------------------------------ */
 
-/* How far sphere i reaches beyond a plane or the cylinder; of others 0. */
+/* How far sphere i reaches beyond a plane or a cylinder. For a mesh: 0. */
 static double cut(const struct bed *bed, const fibrad_body *wall, uint32_t i) {
     const double at[3] = {bed->x[i], bed->y[i], bed->z[i]};
     if (wall->kind == FIBRAD_BODY_CYLINDER)
@@ -188,7 +188,7 @@ void warn_walls(struct warned *warned, const struct bed *bed, const struct walls
 
 /* ---- values ----------------------------------------------------------------------------------------------------- */
 
-/* Whether a column's name says that it is in degrees Celsius. */
+/* Whether the name of a column says degrees Celsius. */
 static bool names_celsius(const char *column) {
     const size_t length = strlen(column);
     return (length > 2 && strcmp(column + length - 2, "_C") == 0) || strstr(column, "elsius");
@@ -217,16 +217,16 @@ void warn_temperatures(struct warned *warned, const struct bed *bed, const struc
                    (long long)bed_name(bed, first), zeros, most);
 }
 
-/* The first value that no solid has; n: there is none. */
-static uint32_t find_beyond(const double *value, uint32_t n, double low, double high) {
+/* The index of the first value outside low to high. n: there is none. */
+static uint32_t find_outlier(const double *value, uint32_t n, double low, double high) {
     uint32_t i = 0;
     while (i < n && value[i] >= low && value[i] <= high) ++i;
     return i;
 }
 
 void warn_matter(struct warned *warned, const struct bed *bed, const double *capacity, const double *density) {
-    const uint32_t c = find_beyond(capacity, bed->n, CAPACITY_LOW, CAPACITY_HIGH);
-    const uint32_t rho = find_beyond(density, bed->n, DENSITY_LOW, DENSITY_HIGH);
+    const uint32_t c = find_outlier(capacity, bed->n, CAPACITY_LOW, CAPACITY_HIGH);
+    const uint32_t rho = find_outlier(density, bed->n, DENSITY_LOW, DENSITY_HIGH);
     if (c < bed->n && is_new(warned, HEAT_CAPACITY))
         message_at(STATUS_OK, warned->file, bed->line[c],
                    "warning: the heat capacity is %g J/(kg K); solids have some 100 to 5000", capacity[c]);

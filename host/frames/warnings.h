@@ -1,7 +1,7 @@
-/* warnings.h - what a bed and the options say that contradicts itself: one warning each a run, with the likely remedy.
- * SPDX-License-Identifier: MIT
+/* warnings.h - warnings about beds and options that contradict each other. SPDX-License-Identifier: MIT
  *
- * A warning changes neither results nor status. It goes to standard error and into the JSON of the summary. */
+ * Each kind of warning is printed once in a run and names the likely remedy. A warning changes neither results nor
+ * status. It goes to standard error and into the JSON of the summary. */
 #ifndef WARNINGS_H
 #define WARNINGS_H
 
@@ -13,39 +13,41 @@
 #include "bed/wall_option.h"
 #include "fibrad.h"
 
-/* What was said in a run. Zeroed to begin with, but for the name. */
+/* Warnings of a run so far. Begin with zeroes. */
 struct warned {
-    const char *file; /* in hand, in messages */
-    unsigned kinds;   /* bits: warnings that are out */
-    int64_t frames;   /* that came before; of the last one: */
-    int64_t timestep; /* -1: it has none */
-    bool ids;         /* spheres have them */
+    const char *file; /* name of the current file, for messages */
+    unsigned kinds;   /* bits: kinds of warnings that have been printed */
+    int64_t frames;   /* frames so far */
+    int64_t timestep; /* of the last frame; -1: it has none */
+    bool ids;         /* spheres of the last frame have ids */
 };
 
-/* The next frame: timesteps go up, spheres go by the same names. */
+/* Warns if timesteps go down from frame to frame, or if some frames have ids and others do not. */
 void warn_frame(struct warned *warned, const struct bed *bed);
 
-/* Lengths of --periodic, which the bed does not have yet, are those of the file's box. */
+/* Warns if the lengths of --periodic are not those of the file's box. Call it before bed->period is replaced. */
 void warn_periods(struct warned *warned, const struct bed *bed, const double period[3]);
 
-/* Radii are taken as metres since nobody has named their unit. */
+/* Warns if radii without a unit are too large for metres. */
 void warn_unit(struct warned *warned, const struct bed *bed);
 
-/* Overlaps are common in DEM. Large ones are not, and make factors mean little. */
+/* Warns of large overlaps. Small ones are common in DEM; large ones make factors mean little. */
 void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_scene_facts *facts);
 
-/* Walls stand about the spheres: planes and cylinders do not cut them, meshes are of the bed's size and place, and a
- * box that ends within spheres is none of walls. */
+/* Warns if a plane or a cylinder cuts spheres deeply, if a mesh differs much from the bed in size or place, and if the
+ * file's box ends within spheres, so that it cannot be one of walls. */
 void warn_walls(struct warned *warned, const struct bed *bed, const struct walls *walls);
 
-/* Temperatures [bed->n] are kelvins. `zero` is 0 of the unit they were given in. NaN: not given. */
+/* Warns if temperatures look like degrees Celsius taken as kelvins, or if some are 0 K. zero: 0 of the unit of the
+ * option [K]. kelvins [bed->n]: NaN: not given. */
 void warn_temperatures(struct warned *warned, const struct bed *bed, const struct quantity *given, double zero,
                        const double *kelvins);
 
-/* Heat capacities and densities [bed->n] are those of solids in J/(kg K) and kg/m3. */
+/* Warns if heat capacities [J/(kg K)] or densities [kg/m3], both [bed->n], are not those of solids. */
 void warn_matter(struct warned *warned, const struct bed *bed, const double *capacity, const double *density);
 
-/* Rows of walls agree with those of spheres, and closing changes these by no more than their errors. */
+/* Warns if rows of walls and rows of spheres contradict each other, or if closing changes a row of a sphere by more
+ * than its error. */
 void warn_rows(struct warned *warned, const struct bed *bed, const fibrad_factors *matrix);
 
 #endif
