@@ -169,6 +169,19 @@ static inline void contents_complete(struct contents *c) {
     c->occupancy.mark = small ? c->mark : NULL;
 }
 
+/* Whether triangles reach over many periods. A ray then looks at many images of each. The rays of walls would take
+ * minutes. */
+static inline bool has_many_images(const struct contents *c) {
+    double images = 1;
+    for (int axis = 0; axis < 3 && c->triangles.n > 0; axis++) {
+        double low = INFINITY, high = -INFINITY;
+        for (uint32_t k = 0; k < VERTICES && k < c->triangles.vertices; k++)
+            low = fmin(low, c->vertex[axis][k]), high = fmax(high, c->vertex[axis][k]);
+        if (c->config.period[axis] > 0) images *= 1 + (high - low) / c->config.period[axis];
+    }
+    return !(images < 30);
+}
+
 static inline size_t size_of(const struct contents *c) {
     const size_t size = fibrad_scene_size(c->n, c->ids), triangles = fibrad_triangles_size(c->triangles.n, c->n);
     REQUIRE(size > 0 && (c->ids || size <= FIBRAD_SCENE_BYTES(c->n)));

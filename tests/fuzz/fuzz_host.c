@@ -223,6 +223,7 @@ static void try_radiation(struct session *s) {
                                  .power_error = power_error};
     struct sources all;
     int status;
+    if (has_many_images(&s->contents)) return;
     if (s->radiation == NULL) {
         const fibrad_heat_config config = any_heat_config();
         if (config.directions > 64 || config.points > 256) return;
@@ -318,6 +319,7 @@ static void advance(struct session *s, struct sources *all) {
 static void try_transient(struct session *s) {
     struct sources all;
     int status;
+    if (has_many_images(&s->contents)) return;
     if (s->transient == NULL) {
         fibrad_transient_config config = {.method = byte() % 3, .heat = any_heat_config()};
         config.exchange.directions = 8 + byte() % 8, config.exchange.paths = 1 + byte() % 16;

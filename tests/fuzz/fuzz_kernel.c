@@ -401,6 +401,7 @@ static void begin_heat(struct session *s) {
     if (s->wide) s->heat_config.wall_rays = 1 + number() % 300;
     const size_t size = fibrad_heat_size(&s->heat_config, s->scene);
     if (size == 0 || size > 8 << 20 || !plain || s->heat_config.parts > 16) return;
+    if (has_many_images(&s->contents)) return;
     /* the rays of walls take a second */
     static int walled;
     if (s->contents.config.bodies > 0 && !s->wide && walled++ >= 40) return;
@@ -545,6 +546,7 @@ static void move_heat(struct session *s) {
     fibrad_scene *to = s->scene;
     const bool other = byte() % 2 && !s->of_other;
     if (other) to = other_scene(s, &moved);
+    if (other && has_many_images(&moved)) return;
     const int status = CALL(fibrad_heat_move(s->heat, to));
     REQUIRE(to != NULL ? status == FIBRAD_OK || status == FIBRAD_E_SIZE : status == FIBRAD_E_ARGUMENT);
     if (status != FIBRAD_OK) return;
