@@ -6,7 +6,7 @@
 #include "suite.h"
 #include "meshes.h"
 
-enum { MOST = 8, SPHERES = 6 };
+enum { MOST = 20 };
 
 /* Few spheres and walls, all black, and what came out; sigma is 1. */
 struct given {
@@ -76,13 +76,14 @@ static bool hides(const double a[4], const double b[4], const double c[4]) {
     return distance(at, c) <= fmax(a[3], b[3]) + c[3];
 }
 
-/* Spheres of which none hides anything of another from a third, nor touches it. */
-static struct bed apart(uint64_t seed) {
-    double at[SPHERES][4];
-    for (uint32_t n = 0, tried = 0; n < SPHERES; tried += 4) {
+/* Spheres in a cube of which none hides anything of another from a third, nor touches it. */
+static struct bed apart(uint64_t seed, uint32_t spheres, double size) {
+    double at[MOST][4];
+    for (uint32_t n = 0, tried = 0; n < spheres; tried += 4) {
         double *last = at[n];
         bool fits = true;
-        for (uint32_t k = 0; k < 4; k++) last[k] = k < 3 ? drawn(seed, tried + k, 0, 9) : drawn(seed, tried + k, .4, 1);
+        for (uint32_t k = 0; k < 4; k++)
+            last[k] = k < 3 ? drawn(seed, tried + k, 0, size) : drawn(seed, tried + k, .4, 1);
         for (uint32_t i = 0; i < n && fits; i++) {
             fits = distance(at[i], last) > at[i][3] + last[3];
             for (uint32_t j = 0; j < n && fits; j++)
@@ -90,33 +91,64 @@ static struct bed apart(uint64_t seed) {
         }
         n += fits;
     }
-    return bed_of(SPHERES, (const double(*)[4])at);
+    return bed_of(spheres, (const double(*)[4])at);
 }
 
-/* Black spheres in the open, by the exact view factors between them. */
+/* The exact area times view factor from a sphere to another one that nothing hides. */
+static double exact_exchange(const struct bed *bed, uint32_t i, uint32_t j) {
+    const double a[] = {bed->x[i], bed->y[i], bed->z[i], bed->r[i]};
+    const double b[] = {bed->x[j], bed->y[j], bed->z[j], bed->r[j]};
+    double view;
+    ck_assert_int_eq(fibrad_pair_exact(a[3], b[3], distance(a, b) - a[3] - b[3], &view), 0);
+    return 4 * M_PI * a[3] * a[3] * view;
+}
+
+/* Black spheres in the open. */
 START_TEST(spheres_and_their_surroundings) {
     struct honesty honesty = {0};
     for (uint64_t seed = 1; seed <= 60; seed++) {
-        struct given g = {.bed = apart(seed)};
+        struct given g = {.bed = apart(seed, 6, 9)};
         double power = 0;
         for (uint32_t i = 0; i < g.bed.n; i++) {
-            double open = 1;
-            const double own[4] = {g.bed.x[i], g.bed.y[i], g.bed.z[i], g.bed.r[i]};
-            for (uint32_t j = 0; j < g.bed.n; j++) {
-                const double other[4] = {g.bed.x[j], g.bed.y[j], g.bed.z[j], g.bed.r[j]};
-                double f;
-                if (j == i) continue;
-                ck_assert_int_eq(fibrad_pair_exact(own[3], other[3], distance(own, other) - own[3] - other[3], &f), 0);
-                open -= f;
-            }
+            double open = 4 * M_PI * g.bed.r[i] * g.bed.r[i];
+            for (uint32_t j = 0; j < g.bed.n; j++) open -= j == i ? 0 : exact_exchange(&g.bed, i, j);
             g.temperature[i] = drawn(seed, 1000 + i, .3, 1);
-            power += 4 * M_PI * g.bed.r[i] * g.bed.r[i] * open * fourth(g.temperature[i]);
+            power += open * fourth(g.temperature[i]);
         }
         solve(&g);
         judge(&honesty, g.result.surroundings_power - power, g.result.surroundings_error, power);
     }
     expect_honest(&honesty);
 }
+END_TEST
+
+/* Beds of black spheres in the open, so far apart that each one meets another by a direction or two, or by none. */
+static void expect_honest_powers(uint64_t beds, uint32_t spheres, double size) {
+    struct honesty honesty = {0}, of_surroundings = {0};
+    for (uint64_t seed = 1; seed <= beds; seed++) {
+        struct given g = {.bed = apart(seed, spheres, size)};
+        double power[MOST], area[MOST], lost = 0, areas = 0;
+        for (uint32_t i = 0; i < spheres; i++) g.temperature[i] = drawn(seed, 1000 + i, .3, 1);
+        for (uint32_t i = 0; i < spheres; i++) {
+            area[i] = 4 * M_PI * g.bed.r[i] * g.bed.r[i], power[i] = -area[i] * fourth(g.temperature[i]);
+            for (uint32_t j = 0; j < spheres; j++)
+                power[i] += j == i ? 0 : exact_exchange(&g.bed, i, j) * fourth(g.temperature[j]);
+        }
+        solve(&g);
+        for (uint32_t i = 0; i < spheres; i++) {
+            judge(&honesty, g.power[i] - power[i], g.error[i], area[i]);
+            lost -= power[i], areas += area[i];
+        }
+        judge(&of_surroundings, g.result.surroundings_power - lost, g.result.surroundings_error, areas);
+    }
+    expect_honest(&honesty);
+    expect_honest(&of_surroundings);
+}
+
+START_TEST(two_spheres_alone) { expect_honest_powers(300, 2, 9); }
+END_TEST
+
+START_TEST(spheres_far_apart) { expect_honest_powers(20, 20, 30); }
 END_TEST
 
 /* Black boxes without a lid, with next to nothing in them: rays of walls tell what the opening gets. */
@@ -200,5 +232,8 @@ int main(void) {
     tcase_add_test(surroundings, a_box_and_its_opening);
     tcase_add_test(surroundings, a_cup_of_triangles);
     tcase_add_test(surroundings, no_surroundings);
+    TCase *powers = suite_case(suite, "powers");
+    tcase_add_test(powers, two_spheres_alone);
+    tcase_add_test(powers, spheres_far_apart);
     return suite_run(suite);
 }

@@ -104,8 +104,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
         *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
     heat->density = fibrad_arena_take(arena, rows, sizeof(double));
-    heat->reflected = fibrad_arena_take(arena, 2 * spheres, sizeof(double));
-    heat->escaping = fibrad_arena_take(arena, spheres, sizeof(double));
+    heat->seen = fibrad_arena_take(arena, spheres, sizeof *heat->seen);
     heat->row = fibrad_arena_take(arena, rows, sizeof *heat->row);
     heat->first_link = fibrad_arena_take(arena, rows + 2, sizeof *heat->first_link);
     heat->order = fibrad_arena_take(arena, spheres, sizeof *heat->order);

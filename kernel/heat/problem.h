@@ -85,6 +85,14 @@ typedef struct fibrad_heat_ray {
     double area;
 } fibrad_heat_ray;
 
+/* What the beams of a sphere tell of the error of its power. */
+typedef struct fibrad_heat_seen {
+    double reflected[2];  /* beams times reflectivity of what they meet: spheres, walls */
+    double escaping;      /* power to the surroundings by even directions minus that by odd directions */
+    double met;           /* beams that meet spheres */
+    double squares, lone; /* squares of even minus odd beams to each sphere; those of spheres met by one kind alone */
+} fibrad_heat_seen;
+
 typedef enum fibrad_heat_phase {
     FIBRAD_HEAT_IDLE,  /* no solution was begun */
     FIBRAD_HEAT_AREA,  /* this sweep sums the areas of patches */
@@ -155,8 +163,7 @@ struct fibrad_heat {
     double *coarse_emission;       /* [bodies], E at the coarser level */
     double *temperature;           /* K, [bodies], given or found; NaN: none */
     double *halves;                /* [bodies], power by even directions minus power by odd directions */
-    double *reflected;             /* [spheres][2], beams times reflectivity of what they meet: spheres, walls */
-    double *escaping;              /* [spheres], as halves, of the power to the surroundings */
+    fibrad_heat_seen *seen;        /* [spheres] */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
 

@@ -15,6 +15,8 @@
 #define PATCHES      96.0
 #define WALL_PATCHES .5 /* of walls over that of spheres */
 #define BEAM_ERROR   .7
+#define LONE_ERROR   1.2 /* more, times the share of spheres that are met in one direction */
+#define UNSEEN_ERROR .25 /* over what one direction brings */
 #define RAY_ERROR    1.75
 #define RAY_SAMPLES  16  /* of a mesh, at the most */
 #define FEW_ERROR    .25 /* over beams per patch: patches that few leave send back along each */
@@ -122,8 +124,22 @@ static double missed_by_rays(const heat_errors *errors, const fibrad_heat *heat,
     return b >= heat->spheres ? squared(RAY_ERROR) * errors->rays.squares[b - heat->spheres] : 0;
 }
 
+/* Square of the error of what beams bring a body over the difference of even and odd ones. Directions are even, so they
+ * err by less in a sphere that several of them meet. Whether a far one is met by one of them or none is chance. */
+static double beam_error(const fibrad_heat *heat, uint32_t b) {
+    const fibrad_heat_seen *seen = &heat->seen[b];
+    const double lone = b < heat->spheres && seen->squares > 0 ? seen->lone / seen->squares : 0;
+    return squared(BEAM_ERROR) + squared(LONE_ERROR * lone);
+}
+
 static double missed_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
-    return squared(BEAM_ERROR * heat->halves[b]) + missed_by_rays(errors, heat, b);
+    return beam_error(heat, b) * squared(heat->halves[b]) + missed_by_rays(errors, heat, b);
+}
+
+/* Square of the error that no beam tells: there may be spheres between the directions that meet none. */
+static double unseen_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
+    const double free = fibrad_max(0, 1 - heat->seen[b].met / heat->beams);
+    return free * squared(UNSEEN_ERROR / heat->config.directions * exchange_of(heat, errors, b));
 }
 
 /* The fewer the patches, the less they tell. */
@@ -139,7 +155,7 @@ static double patch_error(const fibrad_heat *heat, uint32_t b) {
 /* Square of the error over the power of a sphere, as few of its beams meet each patch of spheres, or of walls, whose
  * patches are of one area. */
 static double few_of_sphere(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
-    const double *reflected = heat->reflected + 2 * (size_t)b;
+    const double *reflected = heat->seen[b].reflected;
     const double walls =
         reflected[1] > 0 ? FEW_SEEN * reflected[1] / heat->beams / (heat->density[b] * heat->patch_area) : 0;
     return reflected[0] / heat->beams * squared(errors->few) + squared(walls);
@@ -163,8 +179,8 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
     const double eps = heat->emissivity[b];
     const double few = b < heat->spheres ? few_of_sphere(heat, errors, b) : few_of_wall(heat, errors, b);
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
-    const double patches = b < heat->spheres ? patch_error(heat, b) : 0;
-    return squared(eps) * missed_of(heat, errors, b) + squared(patches) + few * squared(heat->power[b]) +
+    const double sphere = b < heat->spheres ? squared(patch_error(heat, b)) + unseen_error(heat, errors, b) : 0;
+    return squared(eps) * missed_of(heat, errors, b) + sphere + few * squared(heat->power[b]) +
            squared(seen * errors->walls);
 }
 
@@ -241,7 +257,7 @@ static double rays_outside(const fibrad_heat *heat) {
 static double missed_by_spheres(const fibrad_heat *heat, const heat_errors *errors) {
     double square = 0, spheres = 0, all = 0;
     for (uint32_t b = 0; b < heat->spheres; b++)
-        square += squared(BEAM_ERROR * heat->escaping[b]), spheres += heat->escaping[b] != 0;
+        square += beam_error(heat, b) * squared(heat->seen[b].escaping), spheres += heat->seen[b].escaping != 0;
     if (spheres == 0 || spheres >= SAMPLES) return square;
     for (uint32_t b = 0; b < heat->spheres; b++) all += power_error_of(heat, errors, b);
     return (spheres * square + (SAMPLES - spheres) * all) / SAMPLES;
@@ -260,15 +276,16 @@ static double missed_by_walls(const fibrad_heat *heat, const heat_errors *errors
 /* Square of the estimated error of the power of the surroundings: what extrapolation has changed, what walls send out
  * wrongly, and what even and odd beams differ by, one half as this says by itself, one half by its shares. */
 static double surroundings_error_of(const fibrad_heat *heat, const heat_errors *errors) {
-    double halves = 0, changed = 0, area = 0;
+    double halves = 0, changed = 0, area = 0, unseen = 0;
     for (uint32_t b = heat->spheres; b < heat->bodies; b++) {
         const double outside = fibrad_heat_outside(heat, b);
         halves += outside * heat->halves[b], changed += outside * (heat->power[b] - heat->coarse[b]);
         area += outside * spread_of(heat, b).area;
     }
     const double seen = errors->all.area > 0 ? fibrad_min(1, area / errors->all.area) : 0;
+    for (uint32_t b = 0; b < heat->spheres && area > 0; b++) unseen += unseen_error(heat, errors, b);
     const double rays = squared(RAY_ERROR) * errors->rays.outside + missed_by_walls(heat, errors);
-    return squared(extrapolation_error(heat, changed)) + squared(seen * errors->walls) +
+    return squared(extrapolation_error(heat, changed)) + squared(seen * errors->walls) + unseen +
            (squared(BEAM_ERROR * halves) + missed_by_spheres(heat, errors) + rays) / 2;
 }
 

@@ -95,15 +95,25 @@ static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_hea
         bring_strands(pencil, &ends, false);
 }
 
-/* What the other end of a pencil reflects of its beams. */
-static double reflected_beams(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
-    const uint32_t body = pencil->body < heat->rows ? fibrad_heat_body_of_row(heat, pencil->body)
-                                                    : fibrad_heat_other_body(heat, pencil->body);
-    const double part = (1 - heat->emissivity[body]) * pencil->share;
+/* How many beams of its owner a pencil stands for. */
+static double beams_of(const fibrad_heat_pencil *pencil) {
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     uint32_t beams = 0;
-    for (uint32_t k = 0; k < pencil->bundles && part > 0; k++) beams += bundle[k].count;
-    return part * beams;
+    for (uint32_t k = 0; k < pencil->bundles; k++) beams += bundle[k].count;
+    return (double)pencil->share * beams;
+}
+
+/* What the other end of a pencil reflects. */
+static double reflectivity_of(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
+    return 1 - heat->emissivity[pencil->body < heat->rows ? fibrad_heat_body_of_row(heat, pencil->body)
+                                                          : fibrad_heat_other_body(heat, pencil->body)];
+}
+
+/* Notes how many beams meet another sphere, and by how much even and odd ones differ. */
+static void note_sphere(fibrad_heat_seen *seen, const fibrad_heat_pencil *pencil, double beams) {
+    const double tilt = pencil->tilt / 32767., square = beams * tilt * (beams * tilt);
+    seen->met += beams, seen->squares += square;
+    if (tilt == 1 || tilt == -1) seen->lone += square;
 }
 
 /* What the beams of a pencil to another body bring the surroundings, if that is theirs. */
@@ -127,8 +137,11 @@ static void note_pencil(const fibrad_heat *heat, uint32_t row, const fibrad_heat
     const uint32_t body = fibrad_heat_body_of_row(heat, row);
     const bool other = pencil->body >= heat->rows;
     if (body >= heat->spheres) return;
-    if (other) heat->escaping[body] += escaping_flow(heat, row, pencil);
-    if (row == body) heat->reflected[2 * (size_t)row + other] += reflected_beams(heat, pencil);
+    if (other) heat->seen[body].escaping += escaping_flow(heat, row, pencil);
+    if (row != body) return;
+    const double beams = beams_of(pencil);
+    heat->seen[body].reflected[other] += reflectivity_of(heat, pencil) * beams;
+    if (pencil->body < heat->spheres) note_sphere(&heat->seen[body], pencil, beams);
 }
 
 /* Where a row gathers: one of a wall does so with what its part brings to walls. */
@@ -179,8 +192,7 @@ static void sweep_rows(const fibrad_heat *heat, uint32_t part, struct gathering 
                    end = fibrad_heat_part_begin(heat, n, part + 1);
     for (uint32_t k = begin; k < end; k++) {
         fibrad_zero(gathered_by(heat, place[k], g), heat->config.patches * sizeof(double));
-        heat->reflected[2 * (size_t)place[k]] = heat->reflected[2 * (size_t)place[k] + 1] = 0;
-        heat->escaping[place[k]] = 0;
+        heat->seen[place[k]] = (fibrad_heat_seen){{0, 0}, 0, 0, 0, 0};
     }
     for (uint32_t row = n; row < heat->rows; row++)
         if (heat->part[row] == part)
