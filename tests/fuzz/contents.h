@@ -177,7 +177,8 @@ static inline bool has_many_images(const struct contents *c) {
         double low = INFINITY, high = -INFINITY;
         for (uint32_t k = 0; k < VERTICES && k < c->triangles.vertices; k++)
             low = fmin(low, c->vertex[axis][k]), high = fmax(high, c->vertex[axis][k]);
-        if (c->config.period[axis] > 0) images *= 1 + (high - low) / c->config.period[axis];
+        const double period = fmax(c->triangles.period[axis], c->config.period[axis]);
+        if (period > 0) images *= 1 + (high - low) / period;
     }
     return !(images < 30);
 }
