@@ -93,7 +93,7 @@ static struct surface surface_of(const struct soup *soup, double scale) {
     struct surface surface;
     ck_assert_int_eq(stl_read(&stl, write_solid("s.stl", soup)), 0);
     ck_assert_int_eq(surface_weld(&surface, &stl, scale), 0);
-    ck_assert_int_eq(surface_find_parts(&surface), 0);
+    ck_assert_int_eq(surface_find_components(&surface), 0);
     stl_free(&stl);
     return surface;
 }
@@ -108,8 +108,8 @@ START_TEST(corners_are_welded) {
             }
         struct surface s = surface_of(&soup, 1000);
         ck_assert_uint_eq(s.vertices, 8);
-        ck_assert_uint_eq(s.parts, 1);
-        ck_assert(s.part[0].closed && !s.part[0].twisted && s.open == 0 && s.crowded == 0);
+        ck_assert_uint_eq(s.components, 1);
+        ck_assert(s.component[0].closed && !s.component[0].twisted && s.open == 0 && s.crowded == 0);
         ck_assert_uint_eq(s.snapped, trial > 0 ? 28 : 0);
         ck_assert_double_eq_tol(fabs(s.vertex[5][1]), 4000, 2e-3);
         surface_free(&s);
@@ -199,7 +199,7 @@ START_TEST(sides_of_a_funnel) {
         double centre[3][8] = {{1, 1.5, 3, -1, 1, 1, 1, 2}, {2, 2, 2, 2, 4, 0, 2, 2}, {2, 1, 4, 4, 4, 4, 6, -1}};
         struct meshes meshes = faced(&soup, SIDES_AUTO, 8, centre); /* one above it, one below its end, too */
         for (uint32_t t = 0; t < soup.n; ++t) assert_side(&meshes, t, (const double[]){1, 2, 2.5});
-        ck_assert_uint_eq(meshes.mesh[0].surface.parts, 1);
+        ck_assert_uint_eq(meshes.mesh[0].surface.components, 1);
         ck_assert_uint_eq(meshes.mesh[0].surface.open, 48);
         meshes_free(&meshes);
     }
@@ -215,7 +215,7 @@ START_TEST(sides_of_a_tube_in_a_box) {
         double centre[3][8] = {{2, 0, 1, -3, 3, 1, 2, -2}, {0, 0, 1, 3, -3, -1, 2, 0}, {0, 1, 2, 3, -3, -2, -1, 3}};
         struct meshes meshes = faced(&soup, SIDES_AUTO, 8, centre);
         const struct surface *s = &meshes.mesh[0].surface;
-        ck_assert_uint_eq(s->parts, 2);
+        ck_assert_uint_eq(s->components, 2);
         for (uint32_t t = 0; t < soup.n; ++t) {
             const double *at = surface_corner(s, t, 0);
             assert_side(&meshes, t,
@@ -256,8 +256,8 @@ START_TEST(sides_that_are_asked_for) {
         soup_add(&soup, p[0], p[3], p[2]);
     }
     struct meshes strip = faced(&soup, SIDES_AUTO, 1, centre);
-    ck_assert_uint_eq(strip.mesh[0].surface.parts, 1);
-    ck_assert(strip.mesh[0].surface.part[0].twisted);
+    ck_assert_uint_eq(strip.mesh[0].surface.components, 1);
+    ck_assert(strip.mesh[0].surface.component[0].twisted);
     for (uint32_t t = 0; t < soup.n; ++t) ck_assert(strip.front[t] == 0 && strip.back[t] == 0);
     meshes_free(&strip);
 }

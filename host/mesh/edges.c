@@ -1,4 +1,4 @@
-/* edges.c - edges of triangles, and parts that hang together by them, wound alike. SPDX-License-Identifier: MIT */
+/* edges.c - edges of triangles, and connected components with one winding. SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 
 #include "cli/message.h"
@@ -6,7 +6,7 @@
 
 #define NONE UINT32_MAX
 
-/* Side k of triangle t, half = 3 t + k: from corner k to the next one. */
+/* Edge k of triangle t, from corner k to the next corner. half = 3 t + k. */
 struct half_edge {
     uint32_t low, high; /* vertices */
     uint32_t half;
@@ -24,12 +24,12 @@ static struct half_edge edge_of(const struct surface *surface, uint32_t half) {
     return (struct half_edge){a < b ? a : b, a < b ? b : a, half};
 }
 
-/* Whether it goes from its lower vertex to the higher one. */
+/* Whether a half edge goes from its lower vertex to its higher one. */
 static bool goes_up(const struct surface *surface, uint32_t half) {
     return surface->corner[half / 3][half % 3] == edge_of(surface, half).low;
 }
 
-/* partner [3 n]: the other one of an edge of two, or NONE. */
+/* partner [3 n]: the other half of an edge of exactly two triangles, else NONE. */
 static int find_partners(struct surface *surface, uint32_t *partner) {
     const uint64_t count = 3 * (uint64_t)surface->n;
     struct half_edge *edge = malloc((size_t)count * sizeof *edge);
@@ -49,15 +49,15 @@ static int find_partners(struct surface *surface, uint32_t *partner) {
     return STATUS_OK;
 }
 
-/* Follows partners from a seed that is the last one listed; those found are listed behind it. */
-static void gather_part(struct surface *surface, const uint32_t *partner, bool *met, struct part *part) {
-    uint32_t *list = surface->in_parts;
-    for (uint32_t k = part->first; k < part->first + part->n; ++k) {
-        surface->part_of[list[k]] = surface->parts - 1;
+/* Gathers the triangles of a component: follows partners from its first triangle and lists the triangles found. */
+static void gather_component(struct surface *surface, const uint32_t *partner, bool *met, struct component *component) {
+    uint32_t *list = surface->in_components;
+    for (uint32_t k = component->first; k < component->first + component->n; ++k) {
+        surface->component_of[list[k]] = surface->components - 1;
         for (uint32_t half = 3 * list[k]; half < 3 * list[k] + 3; ++half) {
             const uint32_t other = partner[half];
             if (other == NONE) {
-                part->closed = false;
+                component->closed = false;
                 continue;
             }
             const bool alike = goes_up(surface, half) != goes_up(surface, other);
@@ -65,54 +65,54 @@ static void gather_part(struct surface *surface, const uint32_t *partner, bool *
             if (!met[other / 3]) {
                 met[other / 3] = true;
                 surface->turned[other / 3] = turned;
-                list[part->first + part->n++] = other / 3;
+                list[component->first + component->n++] = other / 3;
             } else if (surface->turned[other / 3] != turned) {
-                part->twisted = true;
+                component->twisted = true;
             }
         }
     }
 }
 
-/* Turned are those, not the others, that have the smaller area. */
-static void keep_majority(struct surface *surface, const struct part *part) {
+/* Of the two windings in a component, marks as turned the one with the smaller area. */
+static void keep_majority(struct surface *surface, const struct component *component) {
     double area[2] = {0, 0};
-    for (uint32_t k = part->first; k < part->first + part->n; ++k)
-        area[surface->turned[surface->in_parts[k]]] += surface_area(surface, surface->in_parts[k]);
-    for (uint32_t k = part->first; k < part->first + part->n && area[1] > area[0]; ++k)
-        surface->turned[surface->in_parts[k]] ^= 1;
+    for (uint32_t k = component->first; k < component->first + component->n; ++k)
+        area[surface->turned[surface->in_components[k]]] += surface_area(surface, surface->in_components[k]);
+    for (uint32_t k = component->first; k < component->first + component->n && area[1] > area[0]; ++k)
+        surface->turned[surface->in_components[k]] ^= 1;
 }
 
-static int gather_all_parts(struct surface *surface, const uint32_t *partner, bool *met) {
+static int gather_all_components(struct surface *surface, const uint32_t *partner, bool *met) {
     uint32_t room = 0;
     for (uint32_t t = 0, listed = 0; t < surface->n; ++t) {
         if (met[t]) continue;
-        if (surface->parts == room) {
+        if (surface->components == room) {
             room = room ? 2 * room : 16;
-            struct part *part = realloc(surface->part, room * sizeof *part);
-            if (!part) return message_memory();
-            surface->part = part;
+            struct component *component = realloc(surface->component, room * sizeof *component);
+            if (!component) return message_memory();
+            surface->component = component;
         }
-        struct part *part = &surface->part[surface->parts++];
-        *part = (struct part){.first = listed, .n = 1, .closed = true};
+        struct component *component = &surface->component[surface->components++];
+        *component = (struct component){.first = listed, .n = 1, .closed = true};
         met[t] = true;
-        surface->in_parts[listed] = t;
-        gather_part(surface, partner, met, part);
-        keep_majority(surface, part);
-        listed += part->n;
+        surface->in_components[listed] = t;
+        gather_component(surface, partner, met, component);
+        keep_majority(surface, component);
+        listed += component->n;
     }
     return STATUS_OK;
 }
 
-int surface_find_parts(struct surface *surface) {
+int surface_find_components(struct surface *surface) {
     uint32_t *partner = malloc((3 * (size_t)surface->n + 1) * sizeof *partner);
     bool *met = calloc((size_t)surface->n + 1, sizeof *met);
-    surface->in_parts = malloc(((size_t)surface->n + 1) * sizeof *surface->in_parts);
-    surface->part_of = malloc(((size_t)surface->n + 1) * sizeof *surface->part_of);
+    surface->in_components = malloc(((size_t)surface->n + 1) * sizeof *surface->in_components);
+    surface->component_of = malloc(((size_t)surface->n + 1) * sizeof *surface->component_of);
     surface->turned = calloc((size_t)surface->n + 1, sizeof *surface->turned);
-    const bool room = partner && met && surface->in_parts && surface->part_of && surface->turned;
+    const bool room = partner && met && surface->in_components && surface->component_of && surface->turned;
     int status = room ? STATUS_OK : message_memory();
     if (!status) status = find_partners(surface, partner);
-    if (!status) status = gather_all_parts(surface, partner, met);
+    if (!status) status = gather_all_components(surface, partner, met);
     free(partner);
     free(met);
     return status;

@@ -1,16 +1,16 @@
-/* enclosing.c - closed parts of meshes, of which one side is a body. SPDX-License-Identifier: MIT */
+/* enclosing.c - closed components of meshes with a wall on one side only. SPDX-License-Identifier: MIT */
 #include "mesh/facing.h"
 #include "mesh/meshes.h"
 
-static int inner_of(const struct meshes *meshes, const struct mesh *mesh, const struct part *part) {
+static int inner_of(const struct meshes *meshes, const struct mesh *mesh, const struct component *component) {
     const struct surface *surface = &mesh->surface;
     int inner = 0;
-    if (!part->closed || part->twisted) return 0;
-    for (uint32_t k = part->first; k < part->first + part->n; ++k) {
-        const uint32_t t = surface->in_parts[k], number = mesh->first + t;
+    if (!component->closed || component->twisted) return 0;
+    for (uint32_t k = component->first; k < component->first + component->n; ++k) {
+        const uint32_t t = surface->in_components[k], number = mesh->first + t;
         const bool front = meshes->front[number] != FIBRAD_NO_BODY, back = meshes->back[number] != FIBRAD_NO_BODY;
         const int own = front == back ? 0 : front != surface->turned[t] ? 1 : -1;
-        if (own == 0 || (k > part->first && own != inner)) return 0;
+        if (own == 0 || (k > component->first && own != inner)) return 0;
         inner = own;
     }
     return inner;
@@ -20,10 +20,10 @@ uint32_t meshes_enclosing(struct meshes *meshes) {
     uint32_t count = 0;
     for (uint32_t m = 0; m < meshes->count; ++m) {
         const struct surface *surface = &meshes->mesh[m].surface;
-        for (uint32_t p = 0; p < surface->parts; ++p) {
-            struct part *part = &surface->part[p];
-            part->inner = inner_of(meshes, &meshes->mesh[m], part);
-            count += part->inner * facing_volume(surface, part) < 0;
+        for (uint32_t p = 0; p < surface->components; ++p) {
+            struct component *component = &surface->component[p];
+            component->inner = inner_of(meshes, &meshes->mesh[m], component);
+            count += component->inner * facing_volume(surface, component) < 0;
         }
     }
     return count;
@@ -31,7 +31,7 @@ uint32_t meshes_enclosing(struct meshes *meshes) {
 
 int meshes_side(const struct meshes *meshes, uint32_t triangle, bool back) {
     const struct mesh *mesh = mesh_of_triangle(meshes, triangle);
-    if (mesh->surface.part[mesh->surface.part_of[triangle - mesh->first]].inner == 0) return 0;
+    if (mesh->surface.component[mesh->surface.component_of[triangle - mesh->first]].inner == 0) return 0;
     return (back ? meshes->back : meshes->front)[triangle] != FIBRAD_NO_BODY ? 1 : -1;
 }
 
@@ -39,11 +39,12 @@ const char *meshes_beyond(const struct meshes *meshes, const double centre[3], d
     for (uint32_t m = 0; m < meshes->count; ++m) {
         const struct mesh *mesh = &meshes->mesh[m];
         const struct surface *surface = &mesh->surface;
-        for (uint32_t p = 0; p < surface->parts; ++p) {
-            const struct part *part = &surface->part[p];
+        for (uint32_t p = 0; p < surface->components; ++p) {
+            const struct component *component = &surface->component[p];
             int side;
-            if (part->inner != 0 && facing_distance(surface, part, centre, period, &side) >= r && side == -part->inner)
-                return meshes->name[mesh_body(mesh, surface->in_parts[part->first])];
+            if (component->inner != 0 && facing_distance(surface, component, centre, period, &side) >= r &&
+                side == -component->inner)
+                return meshes->name[mesh_body(mesh, surface->in_components[component->first])];
         }
     }
     return NULL;

@@ -1,7 +1,7 @@
-/* facing.c - which side of a surface spheres are on. SPDX-License-Identifier: MIT
+/* facing.c - on which side of a surface spheres lie. SPDX-License-Identifier: MIT
  *
- * At an edge or corner the nearest point is that of several triangles, which have to agree; at the edge of one triangle
- * nothing tells. */
+ * The nearest triangle tells the side. If the nearest point lies on an edge or corner of several triangles, all of them
+ * have to agree. If it lies on an edge of one triangle alone, the side is unknown. */
 #include "mesh/facing.h"
 
 #include <math.h>
@@ -9,22 +9,22 @@
 
 #include "cli/message.h"
 
-#define TIED 1e-9 /* of squares of distances */
+#define TIED 1e-9 /* relative difference of squared distances that count as equal */
 enum { VOTERS_MOST = 1000, VOTERS_LEAST = 50 };
-#define VOTES_MOST 2e7 /* of all triangles */
+#define VOTES_MOST 2e7 /* distances from a sphere to a triangle, in all */
 
 static double product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* What is known of a triangle in advance: a ball about it. */
+/* A ball about a triangle. */
 struct ball {
     double centre[3], radius;
 };
 
 /* The nearest triangles so far. */
 struct nearest {
-    double square; /* of the distance */
-    int side;      /* 1: before them, -1: behind them, 0: they do not agree */
-    bool edge;     /* it is one triangle, and its edge */
+    double square; /* squared distance */
+    int side;      /* 1: the point is before them; -1: behind them; 0: they do not agree */
+    bool edge;     /* there is one triangle, and the nearest point lies on its edge */
 };
 
 static struct ball ball_of(const struct surface *surface, uint32_t triangle) {
@@ -39,7 +39,7 @@ static struct ball ball_of(const struct surface *surface, uint32_t triangle) {
     return ball;
 }
 
-/* The square of the distance from a point to the line from a to b. */
+/* Squared distance from a point to the line from a to b. */
 static double to_line(const double p[3], const double a[3], const double b[3]) {
     const double ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, ap[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
     const double square = product(ab, ab), along = square > 0 ? fmin(fmax(product(ap, ab) / square, 0), 1) : 0;
@@ -47,8 +47,8 @@ static double to_line(const double p[3], const double a[3], const double b[3]) {
     return product(off, off);
 }
 
-/* The square of the distance from a point to a triangle, whether its edge is nearest, and the side; false: it has no
- * area. */
+/* Finds squared distance and side of a point and a triangle, and whether the nearest point lies on an edge. False: the
+ * triangle has no area. */
 static bool to_triangle(const struct surface *surface, uint32_t triangle, const double p[3], struct nearest *found) {
     double normal[3];
     const double *c[3];
@@ -71,7 +71,7 @@ static bool to_triangle(const struct surface *surface, uint32_t triangle, const 
     return square > 0;
 }
 
-/* Takes a triangle into account for a point, whose image next to it counts. */
+/* Updates the nearest triangles with one more triangle. In a periodic bed the nearest image of the point counts. */
 static void try_triangle(const struct surface *surface, uint32_t triangle, const struct ball *ball,
                          const double point[3], const double period[3], struct nearest *best) {
     double p[3], away = 0;
@@ -92,12 +92,12 @@ static void try_triangle(const struct surface *surface, uint32_t triangle, const
     }
 }
 
-/* The nearest triangles of a part; ball [n]: of all triangles, NULL: not known. */
-static struct nearest nearest_of(const struct surface *surface, const struct part *part, const struct ball *ball,
-                                 const double point[3], const double period[3]) {
+/* Finds the nearest triangles of a component. ball [n]: balls of all triangles; NULL: not known. */
+static struct nearest nearest_of(const struct surface *surface, const struct component *component,
+                                 const struct ball *ball, const double point[3], const double period[3]) {
     struct nearest best = {.square = INFINITY};
-    for (uint32_t k = part->first; k < part->first + part->n; ++k) {
-        const uint32_t t = surface->in_parts[k];
+    for (uint32_t k = component->first; k < component->first + component->n; ++k) {
+        const uint32_t t = surface->in_components[k];
         const struct ball about = ball ? ball[t] : ball_of(surface, t);
         try_triangle(surface, t, &about, point, period, &best);
     }
@@ -105,9 +105,9 @@ static struct nearest nearest_of(const struct surface *surface, const struct par
     return best;
 }
 
-double facing_distance(const struct surface *surface, const struct part *part, const double point[3],
+double facing_distance(const struct surface *surface, const struct component *component, const double point[3],
                        const double period[3], int *side) {
-    const struct nearest best = nearest_of(surface, part, NULL, point, period);
+    const struct nearest best = nearest_of(surface, component, NULL, point, period);
     *side = best.side;
     return sqrt(best.square);
 }
@@ -122,24 +122,24 @@ int facing_votes(const struct surface *surface, const fibrad_spheres *spheres, c
     struct ball *ball = malloc(((size_t)surface->n + 1) * sizeof *ball);
     if (!ball) return message_memory();
     for (uint32_t t = 0; t < surface->n; ++t) ball[t] = ball_of(surface, t);
-    for (uint32_t part = 0; part < surface->parts; ++part) {
-        votes[part] = 0;
+    for (uint32_t component = 0; component < surface->components; ++component) {
+        votes[component] = 0;
         for (uint32_t voter = 0; voter < voters; ++voter) {
             const uint32_t i = (uint32_t)((uint64_t)spheres->n * voter / voters);
             const double centre[3] = {spheres->x[i], spheres->y[i], spheres->z[i]}, r = spheres->r[i];
-            const struct nearest best = nearest_of(surface, &surface->part[part], ball, centre, period);
-            if (best.side != 0) votes[part] += best.side * fmin(r * r / best.square, 1);
+            const struct nearest best = nearest_of(surface, &surface->component[component], ball, centre, period);
+            if (best.side != 0) votes[component] += best.side * fmin(r * r / best.square, 1);
         }
     }
     free(ball);
     return STATUS_OK;
 }
 
-double facing_volume(const struct surface *surface, const struct part *part) {
-    const double *from = surface_corner(surface, surface->in_parts[part->first], 0);
+double facing_volume(const struct surface *surface, const struct component *component) {
+    const double *from = surface_corner(surface, surface->in_components[component->first], 0);
     double volume = 0, normal[3];
-    for (uint32_t k = part->first; k < part->first + part->n; ++k) {
-        const uint32_t t = surface->in_parts[k];
+    for (uint32_t k = component->first; k < component->first + component->n; ++k) {
+        const uint32_t t = surface->in_components[k];
         const double *at = surface_corner(surface, t, 0);
         surface_normal(surface, t, normal);
         const double six = product(normal, (const double[]){at[0] - from[0], at[1] - from[1], at[2] - from[2]});

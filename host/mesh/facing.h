@@ -1,22 +1,22 @@
-/* facing.h - which side of a surface spheres are on. SPDX-License-Identifier: MIT */
+/* facing.h - on which side of a surface spheres lie. SPDX-License-Identifier: MIT */
 #ifndef FACING_H
 #define FACING_H
 
 #include "fibrad.h"
 #include "mesh/welded.h"
 
-/* For each part: above 0 where spheres are before the side that is the front of triangles that are not turned, below 0
- * where they are behind it, 0 where nothing tells. Spheres, not all of them if they are many, vote by the side that
- * their centre is on of the nearest triangle, with the weight (r/distance)^2, at most 1. period: 0: the axis is open.
- * votes [parts] out. Status 0 or STATUS_MEMORY. */
+/* Lets spheres vote on which side of each component they lie. A sphere votes by the side of its centre at the nearest
+ * triangle, with the weight (r/distance)^2, at most 1. If there are many spheres, only some of them vote. period: 0:
+ * the axis is open. votes [components], out: above 0: before the fronts of triangles that are not turned; below 0:
+ * behind them; 0: unknown. Status 0 or STATUS_MEMORY. */
 int facing_votes(const struct surface *surface, const fibrad_spheres *spheres, const double period[3], double *votes);
 
-/* The distance from a point to a part; *side: 1 if the point is before triangles that are not turned, -1 behind them,
- * 0 if nothing tells. */
-double facing_distance(const struct surface *surface, const struct part *part, const double point[3],
+/* The distance from a point to a component. *side: 1: before the fronts of triangles that are not turned; -1: behind
+ * them; 0: unknown. */
+double facing_distance(const struct surface *surface, const struct component *component, const double point[3],
                        const double period[3], int *side);
 
-/* Volume that a closed part bounds, above 0 if triangles that are not turned have their fronts outside. */
-double facing_volume(const struct surface *surface, const struct part *part);
+/* Volume within a closed component. Below 0: the fronts of triangles that are not turned are inside. */
+double facing_volume(const struct surface *surface, const struct component *component);
 
 #endif

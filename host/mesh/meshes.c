@@ -1,4 +1,4 @@
-/* meshes.c - walls of triangles from files, as the library takes them. SPDX-License-Identifier: MIT */
+/* meshes.c - walls of triangles from files, in the form of the library. SPDX-License-Identifier: MIT */
 #include "mesh/meshes.h"
 
 #include <ctype.h>
@@ -16,7 +16,7 @@ bool mesh_name(const char *name) {
     return length > 0 && length < MESH_NAME && name[length] == 0;
 }
 
-/* A valid name: of a path without folders and endings, with _ for what is no letter. */
+/* Makes a valid name of a path: without folders and endings, with _ for all but letters and digits. */
 static void stem_of(const char *path, char name[MESH_NAME]) {
     const char *slash = strrchr(path, '/'), *begin = slash ? slash + 1 : path;
     size_t length = strcspn(begin, ".");
@@ -26,14 +26,15 @@ static void stem_of(const char *path, char name[MESH_NAME]) {
     name[length] = 0;
 }
 
-/* Is one of the bodies from `first` to `last` called so already? */
+/* Whether one of the walls from `first` to `last` - 1 has this name. */
 static bool is_taken(const struct meshes *meshes, uint32_t first, uint32_t last, const char *name) {
     for (uint32_t k = first; k < last; ++k)
         if (strcmp(meshes->name[k], name) == 0) return true;
     return false;
 }
 
-/* NAME, or NAME_SOLID for each; NAME_1 and so on where a solid has no name, or that of one before. */
+/* Names the walls of a file: NAME, or with :solids NAME_SOLID for each. A solid without a name of its own becomes
+ * NAME_1, NAME_2 ... by its number. */
 static void name_bodies(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t body) {
     char name[MESH_NAME], solid[SOLID_NAME];
     if (file->name)
@@ -61,7 +62,7 @@ static void warn_of_surface(const char *file, const struct surface *s) {
     if (s->open || s->crowded)
         message_at(STATUS_OK, file, 0,
                    "warning: the mesh is %s: %u edges belong to one triangle, %u to more than two; parts: %u",
-                   s->open ? "not closed" : "closed", s->open, s->crowded, s->parts);
+                   s->open ? "not closed" : "closed", s->open, s->crowded, s->components);
 }
 
 /* Puts the triangles of the last mesh behind those of the others. */
@@ -113,7 +114,7 @@ int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struc
     int status = surface_weld(&mesh->surface, stl, file->scale);
     if (!status && mesh->surface.flat + mesh->surface.twice == stl->n)
         status = message_at(STATUS_INPUT, file->path, 0, "no triangle has an area");
-    if (!status) status = surface_find_parts(&mesh->surface);
+    if (!status) status = surface_find_components(&mesh->surface);
     if (!status) {
         warn_of_surface(file->path, &mesh->surface);
         name_bodies(meshes, file, stl, body);
@@ -151,7 +152,7 @@ void mesh_extents(const struct meshes *meshes, uint32_t body, double low[3], dou
             }
 }
 
-/* The body's sides are the fronts, the backs, or both. */
+/* Gives the front, the back or both sides of a triangle to its wall. */
 static void give_sides(struct meshes *meshes, const struct mesh *mesh, uint32_t own, bool front, bool back) {
     const uint32_t body = mesh_body(mesh, own);
     meshes->front[mesh->first + own] = front ? body : FIBRAD_NO_BODY;
@@ -161,15 +162,15 @@ static void give_sides(struct meshes *meshes, const struct mesh *mesh, uint32_t 
 static int face_spheres(struct meshes *meshes, const struct mesh *mesh, const fibrad_spheres *spheres,
                         const double period[3]) {
     const struct surface *surface = &mesh->surface;
-    double *votes = malloc(surface->parts * sizeof *votes);
+    double *votes = malloc(surface->components * sizeof *votes);
     const int status = votes ? facing_votes(surface, spheres, period, votes) : message_memory();
-    for (uint32_t p = 0; p < surface->parts && !status; ++p) {
-        const struct part *part = &surface->part[p];
+    for (uint32_t p = 0; p < surface->components && !status; ++p) {
+        const struct component *component = &surface->component[p];
         const bool behind = votes[p] < 0;
-        for (uint32_t k = part->first; k < part->first + part->n; ++k) {
-            const uint32_t t = surface->in_parts[k];
+        for (uint32_t k = component->first; k < component->first + component->n; ++k) {
+            const uint32_t t = surface->in_components[k];
             const bool back = surface->turned[t] != behind;
-            give_sides(meshes, mesh, t, !back || part->twisted, back || part->twisted);
+            give_sides(meshes, mesh, t, !back || component->twisted, back || component->twisted);
         }
     }
     free(votes);
@@ -205,15 +206,15 @@ const struct mesh *mesh_of_body(const struct meshes *meshes, uint32_t body) {
 
 int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle) {
     const struct mesh *mesh = mesh_of_triangle(meshes, triangle);
-    char said[STL_PLACE];
+    char where[STL_PLACE];
     if (!mesh) return message(STATUS_INPUT, "triangle %u: %s", triangle, fibrad_status_text(status));
     const uint64_t place = mesh->surface.place[triangle - mesh->first];
     const char *name = meshes->name[mesh_body(mesh, triangle - mesh->first)];
-    stl_place(mesh->text, place, said);
+    stl_place(mesh->text, place, where);
     if (status != FIBRAD_E_BACK)
-        return message_at(STATUS_INPUT, mesh->file, 0, "%s, wall %s: %s", said, name, fibrad_status_text(status));
+        return message_at(STATUS_INPUT, mesh->file, 0, "%s, wall %s: %s", where, name, fibrad_status_text(status));
     return message_at(STATUS_INPUT, mesh->file, mesh->text ? place : 0,
-                      "the back of wall %s is seen, at %s; mesh:%s:both makes both sides the wall", name, said,
+                      "the back of wall %s is seen, at %s; mesh:%s:both makes both sides the wall", name, where,
                       mesh->file);
 }
 

@@ -1,4 +1,4 @@
-/* meshes.h - walls of triangles from files, as the library takes them. SPDX-License-Identifier: MIT */
+/* meshes.h - walls of triangles from files, in the form of the library. SPDX-License-Identifier: MIT */
 #ifndef MESHES_H
 #define MESHES_H
 
@@ -8,15 +8,16 @@
 
 enum { MESH_NAME = 32 };
 
-/* Which sides of triangles are the body: those that spheres are on, those that the file calls outer ones, both. */
+/* Which sides of triangles are the wall: those where the spheres are, the fronts by the winding of the file, or both.
+ */
 enum mesh_sides { SIDES_AUTO, SIDES_NORMALS, SIDES_BOTH };
 
-/* A file that is wanted. */
+/* A file of --wall. */
 struct mesh_file {
     const char *path;
-    const char *name; /* of the body, or before that of each solid, valid as mesh_name says; NULL: after the file */
+    const char *name; /* name of the wall, or the first part of the names of its solids; NULL: from the path */
     enum mesh_sides sides;
-    bool solids;  /* a body each */
+    bool solids;  /* each solid is a wall */
     double scale; /* > 0 */
 };
 
@@ -24,64 +25,64 @@ struct mesh {
     char *file;
     bool text;
     enum mesh_sides sides;
-    uint32_t first;  /* of its triangles among all */
-    uint32_t body;   /* its first one */
-    uint32_t bodies; /* that many, of its solids in turn */
+    uint32_t first;  /* its first triangle among those of all meshes */
+    uint32_t body;   /* its first wall */
+    uint32_t bodies; /* its number of walls: 1, or one per solid */
     struct surface surface;
 };
 
-/* All meshes of a run. Zeroed: none; to be freed by meshes_free. */
+/* All meshes of a run. Begin with zeroes; free with meshes_free. */
 struct meshes {
     uint32_t count;
     struct mesh *mesh;
-    char name[FIBRAD_BODIES_MAX][MESH_NAME]; /* of bodies that are meshes */
-    struct fibrad_triangles triangles;       /* all of them; sides are those of the last meshes_face */
-    uint32_t enclosing;                      /* parts that are closed and whose inner sides alone are walls, then */
-    /* what `triangles` has */
+    char name[FIBRAD_BODIES_MAX][MESH_NAME]; /* names of the walls that are meshes */
+    struct fibrad_triangles triangles;       /* of all meshes, with the sides of the last meshes_face */
+    uint32_t enclosing;                      /* meshes_enclosing of the last meshes_face */
+    /* arrays of `triangles` */
     double *vertex;
     uint32_t *corner, *front, *back;
 };
 
-/* Whether a body may be called so: letters, digits and _, at most 31. */
+/* Whether a name is valid for a wall: 1 to 31 letters, digits and _. */
 bool mesh_name(const char *name);
 
-/* Reads a file, whose bodies are `body` and those behind it; warns of what is not sound. Status 0; STATUS_USAGE: too
- * many bodies; as stl_read. */
+/* Adds the mesh of a file. Its first wall gets the index `body`. Warns of faults of the mesh. Status 0, STATUS_USAGE if
+ * there are too many walls, or as stl_read. */
 int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t body);
 
-/* The same with triangles that are there, as if the file had them. Those stay the caller's. */
+/* Adds a mesh of triangles in memory, as if the file had them. The caller keeps `stl`. */
 int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t body);
 
-/* Finds out which sides these spheres are on. Status 0 or STATUS_MEMORY. */
+/* Finds which sides of triangles are walls, for these spheres. Status 0 or STATUS_MEMORY. */
 int meshes_face(struct meshes *meshes, const fibrad_spheres *spheres, const double period[3]);
 
-/* How many parts are closed, with one side that is a body, and it is the inner one. Sets part.inner of all: 1 if of a
- * closed part the fronts of triangles that are not turned and the backs of the others are bodies, -1 if it is their
- * other sides, else 0. */
+/* Counts closed components whose inner side alone is a wall. Sets `inner` of all components. 1: the component is
+ * closed, and its wall is the fronts of triangles that are not turned and the backs of the others. -1: the wall is the
+ * other side. 0: the component is not closed, or both sides are walls. */
 uint32_t meshes_enclosing(struct meshes *meshes);
 
-/* 1 if this side of a triangle is a body's, of a closed part that has one such side, -1 if it is the other one of such
- * a part, else 0. */
+/* 1: this side of a triangle is a wall, and the triangle is of a closed component with a wall on one side only. -1: the
+ * other side is that wall. 0: any other triangle. */
 int meshes_side(const struct meshes *meshes, uint32_t triangle, bool back);
 
-/* The name of the body, of a closed part with one such side, beyond which a sphere lies with all of it; NULL: there is
- * none. Cost: a look at each triangle. */
+/* The name of a wall behind which a sphere lies wholly, of a closed component with a wall on one side only. NULL: there
+ * is none. Cost: all triangles are looked at. */
 const char *meshes_beyond(const struct meshes *meshes, const double centre[3], double r, const double period[3]);
 
-/* The mesh of a triangle or body; NULL: it is of none. */
+/* The mesh of a triangle or of a wall. NULL: there is none. */
 const struct mesh *mesh_of_triangle(const struct meshes *meshes, uint32_t triangle);
 const struct mesh *mesh_of_body(const struct meshes *meshes, uint32_t body);
 
-/* The body of a triangle of a mesh, which is triangle `own` there. */
+/* The wall of triangle `own` of a mesh, counted within the mesh. */
 uint32_t mesh_body(const struct mesh *mesh, uint32_t own);
 
-/* Triangles of a body. */
+/* The number of triangles of a wall. */
 uint32_t mesh_triangles(const struct mesh *mesh, uint32_t body);
 
-/* The lower and upper ends of a body along each axis. */
+/* The least and largest coordinates of a wall. */
 void mesh_extents(const struct meshes *meshes, uint32_t body, double low[3], double high[3]);
 
-/* Says that the library refuses a triangle. Returns STATUS_INPUT. */
+/* Prints why the library refuses a triangle. Returns STATUS_INPUT. */
 int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle);
 
 void meshes_free(struct meshes *meshes);

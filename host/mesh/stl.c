@@ -1,7 +1,7 @@
-/* stl.c - triangles of an STL file, text or binary, packed by gzip or not. SPDX-License-Identifier: MIT
+/* stl.c - triangles of an STL file, text or binary, which may be packed by gzip. SPDX-License-Identifier: MIT
  *
- * Binary: 80 bytes, the number of triangles, 50 bytes for each: normal, corners, two bytes without meaning. The length
- * tells it from text, since its first bytes may be "solid", too. */
+ * A binary file has 80 bytes, the number of triangles, and 50 bytes per triangle: normal, corners, two bytes without
+ * meaning. Its first bytes may be "solid", as in a text file. So the length of the file decides. */
 #include "mesh/stl.h"
 
 #include <math.h>
@@ -16,9 +16,9 @@
 
 enum { HEAD = 84, RECORD = 50, NORMAL = 12 };
 
-const char *stl_place(bool text, uint64_t place, char said[STL_PLACE]) {
-    snprintf(said, STL_PLACE, "%s %llu", text ? "line" : "triangle", (unsigned long long)place);
-    return said;
+const char *stl_place(bool text, uint64_t place, char to[STL_PLACE]) {
+    snprintf(to, STL_PLACE, "%s %llu", text ? "line" : "triangle", (unsigned long long)place);
+    return to;
 }
 
 void stl_free(struct stl *stl) {
@@ -40,7 +40,7 @@ static bool stl_grow(struct stl *stl, uint32_t capacity) {
     return corner && place && solid;
 }
 
-/* A further triangle of the last solid; its corners are for the caller to fill in. */
+/* Adds a triangle to the last solid. The caller fills in its corners. */
 static int add_triangle(struct stl *stl, const char *file, uint64_t place) {
     if (stl->n == FIBRAD_TRIANGLES_MAX)
         return message_at(STATUS_INPUT, file, 0, "more than %u triangles", FIBRAD_TRIANGLES_MAX);
@@ -60,7 +60,7 @@ static int add_solid(struct stl *stl, const char *name) {
 
 /* ---- binary ----------------------------------------------------------------------------------------------------- */
 
-/* Four bytes, the lowest first. */
+/* A number of four bytes, the lowest first. */
 static uint32_t word_of(const char *bytes) {
     const unsigned char *b = (const unsigned char *)bytes;
     return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
@@ -85,7 +85,7 @@ static int read_records(struct stl *stl, const char *file, const char *bytes, ui
 
 /* ---- text ------------------------------------------------------------------------------------------------------- */
 
-/* What a line may begin with, where, and what then comes. */
+/* Words that begin lines: where each word may stand (at), and where the next line then stands (then). */
 enum { OUTSIDE, SOLID, FACET, CORNER, CORNERS_DONE = CORNER + 3, LOOP_DONE };
 static const struct {
     const char *word;
@@ -114,7 +114,7 @@ static int read_corner(const struct lines *lines, const struct fields *fields, d
     return STATUS_OK;
 }
 
-/* The name behind `solid`: all words of the line, with _ between them. */
+/* Takes the name behind `solid`: all words of the line, with _ between them. */
 static int name_solid(struct stl *stl, const struct fields *fields) {
     char name[SOLID_NAME] = "";
     for (size_t k = 1, used = 0; k < fields->n && used < sizeof name; ++k)
@@ -122,7 +122,7 @@ static int name_solid(struct stl *stl, const struct fields *fields) {
     return add_solid(stl, name);
 }
 
-/* One line that is not blank. */
+/* Reads a line that is not blank. */
 static int read_line(struct stl *stl, const struct lines *lines, const struct fields *fields, int *state) {
     const char *first = fields->at[0];
     bool known = false;
@@ -159,7 +159,7 @@ static int read_text(struct stl *stl, struct lines *lines) {
 
 /* ---- either ----------------------------------------------------------------------------------------------------- */
 
-/* Whether it can only be text: "solid" and no byte that text has not. */
+/* Whether the bytes can only be text: they begin with "solid", and the first 512 have no 0. */
 static bool is_text(const char *bytes, size_t size) {
     const char *begin = bytes + strspn(bytes, " \t\r\n\v\f");
     return strncasecmp(begin, "solid", 5) == 0 && !memchr(bytes, 0, size < 512 ? size : 512);

@@ -1,4 +1,4 @@
-/* stl.h - triangles of an STL file, text or binary, packed by gzip or not. SPDX-License-Identifier: MIT */
+/* stl.h - triangles of an STL file, text or binary, which may be packed by gzip. SPDX-License-Identifier: MIT */
 #ifndef STL_H
 #define STL_H
 
@@ -7,15 +7,15 @@
 
 enum { SOLID_NAME = 32 };
 
-/* Triangles as they stand in the file. Normals are not read. */
+/* Triangles in the order of the file. Normals are not read. */
 struct stl {
     uint32_t n, capacity;
     double (*corner)[3][3]; /* [n] */
-    uint64_t *place;        /* [n] of text the line of `facet`, else the triangle's number from 0 */
-    uint32_t *solid;        /* [n] which one of the file, from 0 */
-    bool text;
+    uint64_t *place;        /* [n] text: the line of `facet`; binary: the number of the triangle from 0 */
+    uint32_t *solid;        /* [n] number of the solid from 0 */
+    bool text;              /* else binary */
     uint32_t solids;
-    char (*name)[SOLID_NAME]; /* [solids] shortened; "": none */
+    char (*name)[SOLID_NAME]; /* [solids] at most 31 characters; "": none */
 };
 
 /* Reads a file; to be freed also after an error. Coordinates are finite and within FIBRAD_LENGTH_MAX. Status 0;
@@ -23,8 +23,8 @@ struct stl {
 int stl_read(struct stl *stl, const char *path);
 void stl_free(struct stl *stl);
 
-/* "line 7" or "triangle 7", for messages, in `text`, which is returned. */
+/* Writes "line 7" or "triangle 7" for messages. text: of a text file. Returns `to`. */
 enum { STL_PLACE = 32 };
-const char *stl_place(bool text, uint64_t place, char said[STL_PLACE]);
+const char *stl_place(bool text, uint64_t place, char to[STL_PLACE]);
 
 #endif

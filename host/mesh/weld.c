@@ -1,7 +1,8 @@
-/* weld.c - corners of triangles that are the same, triangles that are none or there twice. SPDX-License-Identifier: MIT
+/* weld.c - joins equal corners, leaves out triangles without area and triangles that occur twice.
+ * SPDX-License-Identifier: MIT
  *
- * Points lie in cells of a grid, by a table of heads of lists; cells are much wider than what is joined, so that a
- * point is near one or two of them along each axis. */
+ * Points lie in cells of a grid, which a hash table finds. Cells are much wider than the distance of points that are
+ * joined. So the points near a point lie in one or two cells along each axis. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,16 +10,16 @@
 #include "cli/message.h"
 #include "mesh/welded.h"
 
-#define NEAR 1e-6  /* of the mean edge: corners closer than this are one */
-#define WIDE 1e3   /* of that: a cell */
+#define NEAR 1e-6  /* distance over the mean edge within which corners are joined */
+#define WIDE 1e3   /* width of a cell over that distance */
 #define FLAT 1e-14 /* height over length of a triangle without area */
 #define NONE UINT32_MAX
 
-/* A table of lists: of points by their cells, or of triangles by their corners. */
+/* A hash table of lists: of points by their cells, or of triangles by their corners. */
 struct table {
     uint32_t size;  /* a power of 2 */
     uint32_t *head; /* [size] */
-    uint32_t *next; /* [things] */
+    uint32_t *next; /* [things] the next one in the list; NONE ends a list */
 };
 
 static int table_open(struct table *table, uint64_t things) {
@@ -60,7 +61,7 @@ static bool is_near(const double a[3], const double b[3], double distance) {
     return fabs(a[0] - b[0]) <= distance && fabs(a[1] - b[1]) <= distance && fabs(a[2] - b[2]) <= distance;
 }
 
-/* A vertex at a point, or near it; NONE: there is none yet. */
+/* Finds a vertex at a point, or else near the point. NONE: there is none. */
 static uint32_t find_near(const struct surface *surface, const struct table *table, const double point[3],
                           double near) {
     double cell[2][3];
@@ -135,7 +136,7 @@ static void sorted_corners(const uint32_t corner[3], uint64_t key[3]) {
     swap_larger(&key[0], &key[1]);
 }
 
-/* Whether a triangle is among those kept, of any winding; else it is put there as number n. */
+/* Whether a triangle with these corners, of any winding, has been kept. If not, lists it as triangle n. */
 static bool is_kept(const struct surface *surface, struct table *table, const uint32_t corner[3]) {
     uint64_t key[3], other[3];
     sorted_corners(corner, key);
@@ -189,7 +190,7 @@ double surface_area(const struct surface *surface, uint32_t triangle) {
     return hypot(hypot(normal[0], normal[1]), normal[2]) / 2;
 }
 
-/* Whether a triangle of three corners has no area. */
+/* Whether a triangle of three different corners has no area. */
 static bool is_flat(const struct surface *surface, uint32_t triangle) {
     double longest = 0;
     for (int k = 0; k < 3; ++k) {
@@ -220,9 +221,9 @@ void surface_free(struct surface *surface) {
     free(surface->place);
     free(surface->solid);
     free(surface->number);
-    free(surface->part);
-    free(surface->in_parts);
-    free(surface->part_of);
+    free(surface->component);
+    free(surface->in_components);
+    free(surface->component_of);
     free(surface->turned);
     *surface = (struct surface){0};
 }

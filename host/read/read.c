@@ -1,8 +1,8 @@
-/* read.c - finds out the format of a file and reads the frames that are wanted. SPDX-License-Identifier: MIT
+/* read.c - finds the format of a file and reads the wanted frames. SPDX-License-Identifier: MIT
  *
- * A frame is passed over first, and kept in memory, to see that all of it is there, and for the last one that none
- * follows; then it is read. So all files can be read that cannot be gone back in, and what is wrong within a frame that
- * is not wanted does not matter. */
+ * A frame is first skipped and kept in memory, to see that it is complete and, for the last frame, that no other one
+ * follows. Then it is read from memory. So pipes can be read, in which there is no way back. Errors within a frame that
+ * is not wanted do not matter. */
 #include "read/read.h"
 
 #include <inttypes.h>
@@ -16,10 +16,10 @@
 struct reader {
     struct source source;
     const struct format *format;
-    int64_t frame; /* the next one in the file */
-    bool found;    /* a frame that is wanted was there */
-    bool given;    /* and had spheres */
-    bool done;
+    int64_t frame; /* number of the next frame in the file */
+    bool found;    /* a wanted frame has been read */
+    bool filled;   /* a wanted frame had spheres */
+    bool done;     /* no frame follows that is wanted */
 };
 
 int reader_open(struct reader **reader, const char *path, const struct read_options *options) {
@@ -52,7 +52,7 @@ static bool wants_frame(const struct reader *r) {
            (frames->step <= 1 || (r->frame - frames->begin) % frames->step == 0);
 }
 
-/* Is there nothing more in the file? That of a file that was cut off is unknown. */
+/* Whether only blank lines follow. Of a gzip file that was cut off this is unknown: *end is false. */
 static int at_end(struct lines *lines, bool *end) {
     bool more;
     int status;
@@ -62,8 +62,8 @@ static int at_end(struct lines *lines, bool *end) {
     return status;
 }
 
-/* What is to be said when the frames of the file end, all or the last one but in part. */
-static int say_end(const struct reader *r, enum found found, const char *lack) {
+/* The file ends: says whether a frame is missing or incomplete. An incomplete frame behind wanted ones is a warning. */
+static int report_end_of_file(const struct reader *r, enum found found, const char *lack) {
     const struct source *source = &r->source;
     const bool part = found == FOUND_PART || source->lines.truncated;
     if (part && r->found) {
@@ -83,7 +83,7 @@ static int say_end(const struct reader *r, enum found found, const char *lack) {
                       source->options.frames.begin, r->frame - 1);
 }
 
-/* Goes to the beginning of the next frame that is wanted; *more false: there is none. */
+/* Goes to the beginning of the next wanted frame. *more false: there is none. */
 static int find_frame(struct reader *r, bool *more) {
     struct source *source = &r->source;
     for (*more = false; wants_last(r) || r->frame < source->options.frames.end; ++r->frame) {
@@ -93,7 +93,7 @@ static int find_frame(struct reader *r, bool *more) {
         const bool wanted = wants_frame(r);
         if (wanted) lines_keep(&source->lines);
         int status = r->format->skip(source, &found, lack);
-        if (!status && found != FOUND_FRAME) return say_end(r, found, lack);
+        if (!status && found != FOUND_FRAME) return report_end_of_file(r, found, lack);
         if (!status && wants_last(r)) status = at_end(&source->lines, &end);
         if (status) return status;
         if (wanted && end) {
@@ -106,11 +106,11 @@ static int find_frame(struct reader *r, bool *more) {
     return STATUS_OK;
 }
 
-/* The only frame of a file that holds one. */
+/* Finds the frame of a format whose files have one frame. */
 static int find_only(struct reader *r, bool *more) {
     *more = r->frame == 0 && wants_frame(r);
     r->frame += !*more && r->frame == 0;
-    return *more || r->found ? STATUS_OK : say_end(r, FOUND_END, "");
+    return *more || r->found ? STATUS_OK : report_end_of_file(r, FOUND_END, "");
 }
 
 static int read_frame(struct reader *r, struct bed *bed) {
@@ -132,10 +132,10 @@ int reader_next(struct reader *r, struct bed *bed, bool *more) {
         if (!status && *more) status = read_frame(r, bed);
         if (status) return status;
         if (*more && bed->n > 0) {
-            r->given = true;
+            r->filled = true;
             return STATUS_OK;
         }
-        if (r->done && !r->given && !r->source.options.part)
+        if (r->done && !r->filled && !r->source.options.part)
             return message_at(STATUS_INPUT, name, 0, "there are no spheres in the file");
         if (*more) message_at(STATUS_OK, name, 0, "warning: frame %" PRId64 " is empty and is left out", bed->frame);
     }

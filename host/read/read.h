@@ -13,20 +13,20 @@
 /* A file that is read frame by frame. */
 struct reader;
 
-/* Opens a file or, for "-", standard input; what is in it tells the format. Close it also after an error. Status 0,
- * STATUS_INPUT, STATUS_FILE or STATUS_MEMORY. */
+/* Opens a file or, for "-", standard input. Finds the format by the contents. Close the reader also after an error.
+ * Status 0, STATUS_INPUT, STATUS_FILE or STATUS_MEMORY. */
 int reader_open(struct reader **reader, const char *path, const struct read_options *options);
 
-/* Reads the next frame that is wanted into a bed, whose former contents are lost; spheres with ids come in their order.
- * *more false: there are no further ones. A frame at which the file ends is an error, behind others that were wanted a
- * warning, and so are frames without spheres. Memory stays within a small multiple of a frame. Status 0, STATUS_INPUT
+/* Reads the next wanted frame into a bed, which is cleared before. Spheres with ids are sorted by id. *more false:
+ * there are no more frames. An incomplete last frame is an error, or a warning if a wanted frame came before. Frames
+ * without spheres are left out with a warning. Memory stays within a small multiple of a frame. Status 0, STATUS_INPUT
  * naming the line, STATUS_FILE, STATUS_MEMORY or that of a signal. */
 int reader_next(struct reader *reader, struct bed *bed, bool *more);
 
-/* Closes it. NULL: nothing. */
+/* Closes a reader. NULL is allowed. */
 void reader_close(struct reader *reader);
 
-/* Reads the first frame wanted. Free the bed also after an error. Status as reader_next. */
+/* Reads the first wanted frame of a file. Free the bed also after an error. Status as reader_next. */
 int read_bed(const char *path, const struct read_options *options, struct bed *bed);
 
 #endif

@@ -11,7 +11,7 @@
 
 typedef int compare_names(const char *, const char *);
 
-/* Finds a column; it is `width` if there is none. */
+/* Finds a column by name. *column: names->n if there is none. */
 static int find(size_t *column, const struct lines *lines, const struct fields *names, const char *wanted,
                 compare_names *compare) {
     *column = names->n;
@@ -24,8 +24,8 @@ static int find(size_t *column, const struct lines *lines, const struct fields *
     return STATUS_OK;
 }
 
-/* Finds the first column that is there of several names, ended by NULL, as they are written before any case; `which`
- * says the one; *column is `width` if there is none. */
+/* Finds a column by the first of several names that the header has. The names end with NULL. Names in the same case go
+ * before names in another case. *which: index of the name. *column: names->n if there is none. */
 static int find_any(size_t *column, int *which, const struct lines *lines, const struct fields *names,
                     const char *const wanted[]) {
     compare_names *const compare[] = {strcmp, strcasecmp};
@@ -43,7 +43,7 @@ static int column_missing(const struct lines *lines, const struct fields *names,
                       wanted, names_list(list, (const char *const *)names->at, names->n));
 }
 
-/* Is a name wanted with its unit, as the header has it: `T [C]`, `T (C)`, `T_[C]`? */
+/* Whether a wanted name is a name of the header with its unit: `T [C]`, `T (C)` or `T_[C]`. */
 static bool names_with_unit(const char *wanted, const char *name, const char *unit) {
     const size_t length = strlen(name), size = strlen(unit);
     if (!*unit || strncmp(wanted, name, length) != 0) return false;
@@ -92,7 +92,7 @@ static int find_extras(struct columns *columns, const struct lines *lines, const
     return STATUS_OK;
 }
 
-/* Whether heat as a dump has a column of this name itself. */
+/* Whether write_dump writes a column of this name of its own. */
 static bool is_own(const char *name) {
     static const char *const own[] = {"id", "x", "y", "z", "radius", "T_K", "q_W"};
     for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
@@ -100,7 +100,7 @@ static bool is_own(const char *name) {
     return false;
 }
 
-/* Columns that are neither places nor radii nor ids stay. */
+/* Finds the columns that are kept as text: all but coordinates, radii, ids and those that write_dump writes. */
 static int find_kept(struct columns *columns, const struct fields *names, const struct read_options *options) {
     size_t room = 1;
     columns->keeps = 0;
@@ -157,7 +157,7 @@ int columns_find(struct columns *columns, const struct lines *lines, const struc
     return status ? status : find_extras(columns, lines, names, options);
 }
 
-/* A number of a row. In files where commas may be decimal, points and commas do not mix. */
+/* Reads a number of a row. In files that may have decimal commas, points and commas must not mix. */
 static int columns_number(struct columns *columns, const struct lines *lines, const char *what, char *text,
                           double *value) {
     char *mark = columns->commas ? strpbrk(text, ".,") : NULL;
@@ -171,7 +171,7 @@ static int columns_number(struct columns *columns, const struct lines *lines, co
     return lines_number(lines, what, text, value);
 }
 
-/* Whether a value is missing that may be. */
+/* Whether a value is missing in a column that allows this. */
 static bool is_missing(const struct read_options *options, size_t k, const char *text) {
     return options->some && options->some[k] && (*text == 0 || strcasecmp(text, "nan") == 0);
 }

@@ -1,7 +1,6 @@
 /* read_data.c - beds from data files of LAMMPS and LIGGGHTS. SPDX-License-Identifier: MIT
- *
- * A comment, a header of lines such as `100 atoms` and `0 2 xlo xhi`, and sections, of which `Atoms # sphere` has the
- * spheres. Positions are those within the box; image flags are left alone. */
+ * A file has a comment, a header of lines such as `100 atoms` and `0 2 xlo xhi`, and sections. The section
+ * `Atoms # sphere` has the spheres. Positions are those within the box; image flags are not used. */
 #include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -14,7 +13,7 @@
 
 enum { IMAGE_FLAGS = 3, COLUMNS_MAX = 1000, WORD = 40 };
 
-/* The columns of the styles of atoms that are known. */
+/* The known styles of atoms and their columns. */
 static const struct {
     const char *style, *columns;
 } styles[] = {
@@ -31,7 +30,7 @@ static const struct {
     {"full", "id molecule type q x y z"},
 };
 
-/* Is a line among the first ones `100 atoms`? */
+/* Whether one of the first 100 lines is like `100 atoms`. */
 static bool is_data(const struct source *source) {
     size_t size;
     const char *text = source_begin(source, &size), *last = text + size;
@@ -53,8 +52,8 @@ static bool is_data(const struct source *source) {
 
 /* ---- header ----------------------------------------------------------------------------------------------------- */
 
-/* `LAMMPS data file via write_data, version 2 Aug 2023, timestep = 3, units = si`. LIGGGHTS says no style with Atoms.
- */
+/* Reads the comment: `LAMMPS data file via write_data, version 2 Aug 2023, timestep = 3, units = si`. In files of
+ * LIGGGHTS the style is granular: their section Atoms names no style. */
 static void read_comment(const struct lines *lines, char *style, struct bed *bed) {
     char word[WORD];
     const char *units = strstr(lines->text, ", units = "), *step = strstr(lines->text, ", timestep = ");
@@ -63,7 +62,7 @@ static void read_comment(const struct lines *lines, char *style, struct bed *bed
     if (step && sscanf(step, ", timestep = %39[0-9]", word) == 1) (void)number_read_whole(word, &bed->timestep);
 }
 
-/* A line of the header, cut to pieces. */
+/* Reads a line of the header, which has been split. */
 static int read_header_line(struct source *source, int64_t *atoms, struct bed *bed) {
     static const char *const low[] = {"xlo", "ylo", "zlo"}, *const high[] = {"xhi", "yhi", "zhi"};
     const struct fields *fields = &source->fields;
@@ -88,7 +87,7 @@ static int read_header_line(struct source *source, int64_t *atoms, struct bed *b
     return status;
 }
 
-/* Reads up to the section Atoms; style becomes what its comment says. */
+/* Reads up to the section Atoms. style: out: the comment behind Atoms. */
 static int read_header(struct source *source, int64_t *atoms, char *style, struct bed *bed) {
     struct lines *lines = &source->lines;
     bool more, header = true;
@@ -106,7 +105,7 @@ static int read_header(struct source *source, int64_t *atoms, char *style, struc
             return STATUS_OK;
         }
         header = header && !isupper((unsigned char)*word);
-        if (!header) continue; /* a section that is of no use here */
+        if (!header) continue; /* a line of another section */
         status = fields_split_blanks(&source->fields, lines->text);
         if (!status) status = read_header_line(source, atoms, bed);
     }
@@ -115,7 +114,7 @@ static int read_header(struct source *source, int64_t *atoms, char *style, struc
 
 /* ---- atoms ------------------------------------------------------------------------------------------------------ */
 
-/* The style where the file does not say it: five columns, and image flags, are of one style alone. */
+/* Guesses the style if the file does not name it. Only style atomic has five columns, or eight with image flags. */
 static int guess_style(struct source *source, char *style) {
     char line[200];
     int n = 0, length;
@@ -133,7 +132,7 @@ static int guess_style(struct source *source, char *style) {
     return STATUS_OK;
 }
 
-/* Finds the columns of a style; *more: how many may be behind them. */
+/* Finds the columns of a style. *more: how many unknown columns may follow. */
 static int find_style(struct source *source, const char *style, size_t *more, const struct bed *bed) {
     const struct lines *lines = &source->lines;
     const bool hybrid = strncmp(style, "hybrid", 6) == 0;

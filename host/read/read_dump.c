@@ -1,7 +1,7 @@
 /* read_dump.c - beds from LAMMPS and LIGGGHTS text dumps. SPDX-License-Identifier: MIT
- *
- * A dump is a sequence of frames; a frame is a sequence of sections, each begun by a line `ITEM: NAME ...`: TIMESTEP
- * near its begin, ATOMS with the names of its columns at its end. UNITS stands before the first frame alone. */
+ * A dump is a sequence of frames, and a frame is a sequence of sections. Each section begins with a line `ITEM: NAME
+ * ...`. TIMESTEP stands near the beginning of a frame. ATOMS, with the names of the columns, is the last section of a
+ * frame. UNITS stands before the first frame only. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,12 +11,12 @@
 
 static bool is_dump(const struct source *source) { return source_begins(source, "ITEM:"); }
 
-/* The rest of an ITEM line if it is the one named, else NULL. */
+/* If the current line begins with `name`: the rest of the line. Else NULL. */
 static char *item(const struct source *source, const char *name) {
     return lines_begin(&source->lines, name) ? source->lines.text + strlen(name) : NULL;
 }
 
-/* The next line within a section. */
+/* Reads the next line of a section. */
 static int section_line(struct source *source, bool *more) {
     const int status = lines_next(&source->lines, more);
     if (status || !*more) return status;
@@ -51,7 +51,7 @@ static int skip_units(struct source *source, bool *more) {
     return status;
 }
 
-/* Goes to the next ITEM. */
+/* Skips the lines up to the next ITEM. */
 static int skip_section(struct source *source, bool *more) {
     int status;
     while ((status = lines_next(&source->lines, more)) == STATUS_OK && *more)
@@ -107,7 +107,7 @@ static int read_timestep(struct source *source, struct bed *bed) {
     return lines_whole(&source->lines, "the timestep", source_word(source, word, sizeof word), &bed->timestep);
 }
 
-/* The next line of a section as so many numbers. */
+/* Reads the next line of a section as n numbers. */
 static int read_numbers(struct source *source, size_t n, const char *const names[], double *value, const char *wanted) {
     bool more;
     int status = section_line(source, &more);
@@ -132,9 +132,9 @@ static int read_bounds(struct source *source, int axis, bool tilted, bool period
     return STATUS_OK;
 }
 
-/* `ITEM: BOX BOUNDS pp ff ff`: pp marks a periodic axis, other pairs of f, s, m an open one; old files lack the marks.
- * Then `low high` for each axis. Triclinic boxes say `xy xz yz` before the marks and have a tilt behind each pair, and
- * those of any direction say `abc origin`. */
+/* Reads `ITEM: BOX BOUNDS pp ff ff` and a line `low high` for each axis. pp marks a periodic axis, other pairs of f, s,
+ * m an open one. Old files lack the marks. Triclinic boxes have `xy xz yz` before the marks and a tilt behind each
+ * pair. Boxes of any direction have `abc origin`. */
 static int read_box(struct source *source, char *marks, struct bed *bed) {
     int status = fields_split_blanks(&source->fields, marks);
     if (status) return status;

@@ -1,11 +1,11 @@
-/* read_foreign.c - files that have no spheres to be read, told by what they are. SPDX-License-Identifier: MIT */
+/* read_foreign.c - recognises files without spheres, and says what they are. SPDX-License-Identifier: MIT */
 #include <ctype.h>
 #include <string.h>
 
 #include "cli/message.h"
 #include "read/read_format.h"
 
-/* Files that begin in one way. */
+/* Files known by bytes at their beginning. */
 static const struct {
     size_t at, size;
     const char *bytes, *what;
@@ -40,7 +40,7 @@ static const struct {
     {0, 8, "FIBROWS1", "a file of rows; put them together: fibrad join FILE..."},
 };
 
-/* Text that goes on in one way behind blanks. */
+/* Files known by their first text behind blanks. */
 static const struct {
     const char *text, *what;
 } texts[] = {
@@ -52,7 +52,7 @@ static const struct {
     {"Number of particles", "an AtomEye .cfg file; write a text dump: dump ... custom ... id x y z radius"},
 };
 
-/* Columns that a header has which fibrad itself has written, behind those of frames and files. */
+/* Tables that fibrad writes, known by columns of the header. Columns of frames and files may stand before them. */
 static const struct {
     const char *columns, *what;
 } own[] = {
@@ -63,13 +63,13 @@ static const struct {
     {"axis,F_E,", "conductivities, as fibrad conductivity writes them; give the file of the spheres"},
 };
 
-/* Commands one of which a LAMMPS input script begins with. */
+/* Commands with which LAMMPS input scripts begin. */
 static const char *const commands[] = {"units",       "atom_style",     "boundary",   "variable", "dimension", "newton",
                                        "atom_modify", "processors",     "package",    "shell",    "log",       "echo",
                                        "clear",       "region",         "read_data",  "include",  "print",     "if",
                                        "label",       "hard_particles", "communicate"};
 
-/* Is the first word of the text, comments before it aside, a command of LAMMPS with words behind it? */
+/* Whether the first word behind comments is a command of LAMMPS with an argument. */
 static bool is_script(const char *text, const char *end) {
     while (text < end && (*text == '#' || isspace((unsigned char)*text))) {
         const char *next = *text == '#' ? memchr(text, '\n', (size_t)(end - text)) : text;
@@ -83,7 +83,7 @@ static bool is_script(const char *text, const char *end) {
     return false;
 }
 
-/* What fibrad has written, by the first line. */
+/* Looks in the first line for a table that fibrad writes. NULL: it is none. */
 static const char *find_own(const char *text, size_t size) {
     const char *end = memchr(text, '\n', size);
     const size_t length = end ? (size_t)(end - text) : size;

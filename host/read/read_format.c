@@ -1,4 +1,4 @@
-/* read_format.c - what the readers of all formats have in common. SPDX-License-Identifier: MIT */
+/* read_format.c - functions for the readers of all formats. SPDX-License-Identifier: MIT */
 #include "read/read_format.h"
 
 #include <inttypes.h>

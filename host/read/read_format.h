@@ -1,4 +1,5 @@
-/* read_format.h - what the readers of all formats have in common. SPDX-License-Identifier: MIT */
+/* read_format.h - the interface of a format, and functions for the readers of all formats. SPDX-License-Identifier: MIT
+ */
 #ifndef READ_FORMAT_H
 #define READ_FORMAT_H
 
@@ -13,8 +14,8 @@ struct source {
     struct read_options options;
     struct fields fields;
     struct columns columns;
-    char units[sizeof((struct bed *)0)->units]; /* as said once for all frames */
-    bool warned;                                /* that the file does not say what is periodic */
+    char units[sizeof((struct bed *)0)->units]; /* of all frames, as the file names them once */
+    bool warned;                                /* source_warn_open has warned */
 };
 
 enum found {
@@ -23,12 +24,13 @@ enum found {
     FOUND_PART /* the file ends within a frame */
 };
 
-/* How a format is read. Files are told by contents. */
+/* A format. The contents of a file tell its format. */
 struct format {
-    bool (*is)(const struct source *source); /* by the first bytes of the file, as lines_open has left them */
+    /* Whether a file has this format, by its first bytes, which lines_open has read. */
+    bool (*is)(const struct source *source);
 
-    /* Passes over a frame and checks that all lines of it are there, without cutting any; tells in LACK_MAX bytes what
-     * a part lacks. NULL: the file is one frame. */
+    /* Skips a frame, without splitting lines, and checks that all its lines are there. FOUND_PART: lack, of LACK_MAX
+     * bytes, says what is missing. NULL: files of the format have one frame. */
     int (*skip)(struct source *source, enum found *found, char *lack);
 
     /* Reads a frame into an empty bed. */
@@ -37,44 +39,45 @@ struct format {
 
 enum { LACK_MAX = 100 };
 
-/* The first bytes of the file, before any line has been read. */
+/* The first bytes of the file. Call it before the first line is read. */
 const char *source_begin(const struct source *source, size_t *size);
 
-/* Does the file begin with a text? */
+/* Whether the file begins with a text. */
 bool source_begins(const struct source *source, const char *text);
 
 extern const struct format format_data, format_dump, format_mercury, format_table, format_vtk, format_vtk_xml,
     format_xyz;
 
-/* Refuses a file that is known to have no spheres, and says what it is. Status 0 or STATUS_INPUT. */
+/* Refuses a file of a known kind that has no spheres, and says what the file is. Status 0 or STATUS_INPUT. */
 int source_foreign(const struct source *source);
 
-/* The error `what`, in the current line. Status STATUS_INPUT. */
+/* Prints the error `what` with the number of the current line. Returns STATUS_INPUT. */
 int source_fail(const struct source *source, const char *what);
 
-/* Finds the columns by names in one text, parted by blanks. Status as columns_find. */
+/* Finds the columns by a text of names with blanks in between. Status as columns_find. */
 int source_columns(struct source *source, const char *names, const struct bed *bed);
 
-/* Reads the next lines as so many spheres; rows may have up to `more` columns behind those that are known. Status as
- * columns_add, and STATUS_INPUT where the file ends. */
+/* Reads the next lines as spheres, one per line. A row may have up to `more` columns behind the known ones. Status as
+ * columns_add, or STATUS_INPUT if the file ends too early. */
 int source_rows(struct source *source, int64_t rows, size_t more, struct bed *bed);
 
-/* Passes over so many lines; FOUND_PART: the file has fewer. */
+/* Skips lines. FOUND_PART: the file has fewer. */
 int source_skip(struct source *source, int64_t rows, enum found *found, char *lack);
 
-/* A frame whose last line has no end is but a part: a number may have been cut. For files that programs alone write. */
+/* Changes FOUND_FRAME to FOUND_PART if the last line has no end of line: a number may be cut off. For formats that only
+ * programs write. */
 void source_skip_end(const struct source *source, enum found *found, char *lack);
 
-/* The line, or its first word, as a number of atoms. */
+/* Reads a text as a number of atoms. Status 0 or STATUS_INPUT. */
 int source_count(const struct source *source, const char *text, int64_t *atoms);
 
-/* Warns, once, that the file does not say which axes are periodic. */
+/* Warns once per file that the file does not say which axes are periodic. */
 void source_warn_open(struct source *source);
 
-/* The line without the blanks about it, as much as there is room for. Returns `to`. */
+/* Copies the current line without the blanks about it. A text longer than `room` is cut. Returns `to`. */
 char *source_word(const struct source *source, char *to, size_t room);
 
-/* The file ends too early, which is what `lack` says in more detail. Status STATUS_INPUT. */
+/* Prints that the file ends too early: `lack`, or that the gzip file is cut off. Returns STATUS_INPUT. */
 int source_ends(const struct source *source, const char *lack);
 
 #endif

@@ -1,7 +1,6 @@
 /* read_mercury.c - beds from the .data files of MercuryDPM. SPDX-License-Identifier: MIT
- *
- * A frame is a line `N time xmin ymin zmin xmax ymax zmax` and N lines of 14 numbers; in two dimensions, of 6 and of 8
- * numbers. There are no ids, and which axes are periodic is not said. */
+ * A frame is a line `N time xmin ymin zmin xmax ymax zmax` and N lines of 14 numbers. In two dimensions these lines
+ * have 6 and 8 numbers. There are no ids. The file does not say which axes are periodic. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +9,7 @@
 #include "read/read_format.h"
 #include "text/read_number.h"
 
-/* How many numbers a line has; -1: it has other things, or 100 of them. */
+/* How many numbers a line has. -1: it has something else, or 100 numbers or more. */
 static int numbers_of(const char *text, const char *end) {
     char line[2000], *word, *rest = line;
     double value;
@@ -24,7 +23,7 @@ static int numbers_of(const char *text, const char *end) {
     return n;
 }
 
-/* Are the first two lines of such lengths? */
+/* Whether the first two lines have as many numbers as in such files. */
 static bool is_mercury(const struct source *source) {
     size_t size;
     const char *text = source_begin(source, &size), *end = memchr(text, '\n', size);
@@ -36,7 +35,7 @@ static bool is_mercury(const struct source *source) {
     return (head == 8 && width == 14) || (head == 6 && width == 8);
 }
 
-/* The number of spheres and the box, as the line that begins a frame says. */
+/* Reads the line that begins a frame: number of spheres, time and box. */
 static int mercury_head(struct source *source, double head[8]) {
     static const char *const names[] = {
         "the number of atoms", "the time", "xmin", "ymin", "zmin", "xmax", "ymax", "zmax"};
@@ -50,7 +49,7 @@ static int mercury_head(struct source *source, double head[8]) {
     return status;
 }
 
-/* The number of spheres; lines of blanks are skipped. */
+/* Reads the number of spheres of the next frame. Blank lines are skipped. */
 static int mercury_count(struct source *source, int64_t *spheres, bool *more) {
     int status;
     char word[32] = "";

@@ -1,4 +1,4 @@
-/* read_options.h - what is wanted of a file. SPDX-License-Identifier: MIT */
+/* read_options.h - which frames and columns of a file are read. SPDX-License-Identifier: MIT */
 #ifndef READ_OPTIONS_H
 #define READ_OPTIONS_H
 
@@ -6,24 +6,24 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Which frames of a file are wanted, counted from 0: begin, begin + step ... below end. Zeroed: the last one alone. */
+/* Frames that are read, counted from 0: begin, begin + step ... below end. Zeroed: the last frame only. */
 struct frames {
     int64_t begin, end, step;
 };
 
 struct read_options {
     struct frames frames;
-    bool positions;           /* ids are left alone: spheres stand in the order of the file */
-    bool periods_given;       /* besides the file, which need not say them */
-    bool no_radius;           /* no radius is looked for; bed->r is NaN */
-    bool part;                /* of a series of files: one without spheres is left out with a warning */
-    const char *const *extra; /* [extras] names of further columns wanted, numbers all */
-    const char *const *unit;  /* [extras] the unit they are taken to have, such as "K", NULL for none; a name with
-                                 another one is refused. NULL: none has any */
-    const bool *some;         /* [extras] a blank or nan is a value that is missing, NaN; NULL: none may be */
+    bool positions;           /* ids are not used: spheres are in the order of the file */
+    bool periods_given;       /* by --periodic: no warning if the file names no periods */
+    bool no_radius;           /* radii are not read; bed->r is NaN */
+    bool part;                /* one of a series of files: a file without spheres is no error */
+    const char *const *extra; /* [extras] names of further columns, all of numbers */
+    const char *const *unit;  /* [extras] expected units, such as "K", or NULL for none; a column whose header names
+                               * another unit is refused. NULL: no column has one */
+    const bool *some;         /* [extras] blank or nan means a missing value, NaN; NULL: no value may be missing */
     size_t extras;
-    bool keep;     /* all other columns stay as text: bed->kept */
-    bool any_unit; /* a column asked for with its unit, `T [C]`, may have any */
+    bool keep;     /* other columns are kept as text: bed->kept */
+    bool any_unit; /* a column that is asked for with its unit, `T [C]`, may have any unit */
 };
 
 #endif

@@ -1,9 +1,8 @@
-/* read_table.c - beds from tables: values parted by commas, semicolons, tabs or blanks, and YADE's text export.
- * SPDX-License-Identifier: MIT
+/* read_table.c - beds from tables of text, and from YADE's text export. SPDX-License-Identifier: MIT
  *
- * A header names the columns: the first line, or a comment before it where the first line has numbers alone, as `# x y
- * z r` or YADE's `#format x_y_z_r`. Names may have units, as `x [mm]` or `r (m)`. Other lines that begin with # are
- * skipped. */
+ * Commas, semicolons, tabs or blanks stand between values. A header names the columns. The header is the first line. If
+ * that line has numbers only, the header is a comment before it, such as `# x y z r` or YADE's `#format x_y_z_r`. Names
+ * may have units, such as `x [mm]` or `r (m)`. Other lines that begin with # are skipped. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,21 +11,21 @@
 #include "cli/message.h"
 #include "read/read_format.h"
 
-/* The names of columns and their units, in a text of their own. */
+/* The header: names of columns and their units, which point into `text`. */
 struct header {
     char *text;
     struct fields names;
-    char **unit; /* [names.n] "": it says none */
+    char **unit; /* [names.n] "": the column has none */
     uint64_t line;
-    bool yade; /* rows are parted by blanks of any kind */
+    bool yade; /* of YADE: any blanks stand between values */
 };
 
 static bool is_table(const struct source *source) {
-    (void)source; /* what is no other format */
+    (void)source; /* the last format that is tried: it takes all files */
     return true;
 }
 
-/* What parts the values of a line. */
+/* The character between the values of a line. */
 static char find_separator(const char *text) {
     for (const char *c = ";\t,"; *c; ++c)
         if (strchr(text, *c)) return *c;
@@ -38,7 +37,7 @@ static int split(struct fields *fields, const struct lines *lines, char *text, c
     return fields_split_at(fields, lines, text, separator);
 }
 
-/* Takes the unit off a name; "": it has none. */
+/* Cuts the unit off a name and returns the unit. "": the name has none. */
 static char *take_unit(char *name) {
     char *open = strpbrk(name, "[(");
     char *end = name + strlen(name);
@@ -50,7 +49,8 @@ static char *take_unit(char *name) {
     return open + 1;
 }
 
-/* Takes units off names; those that blanks part from their names were names of their own so far. */
+/* Cuts the units off all names. If blanks stand between columns, `x [mm]` has been split into two names, which are
+ * joined here. */
 static int take_units(struct header *header) {
     struct fields *names = &header->names;
     size_t n = 0;
@@ -76,7 +76,7 @@ static void forget_header(struct header *header) {
     *header = (struct header){0};
 }
 
-/* Takes a piece of the current line as a header. */
+/* Takes a text of the current line as the header. */
 static int take_header(struct header *header, const struct lines *lines, const char *text) {
     static const char yade[] = "#format";
     forget_header(header);
@@ -95,7 +95,7 @@ static int take_header(struct header *header, const struct lines *lines, const c
     return status ? status : take_units(header);
 }
 
-/* A comment is taken for a header if it names x, y and z. */
+/* Takes a comment as the header if it names x, y and z. */
 static int take_comment(struct header *header, const struct lines *lines) {
     struct header comment = {0};
     const int status = take_header(&comment, lines, lines->text);
@@ -112,7 +112,7 @@ static bool begins_with_number(const struct lines *lines) {
     return end != text;
 }
 
-/* Finds the header, and the separator of the rows, the first of which is the next line. */
+/* Finds the header and the separator of the rows. The first row is the next line. */
 static int find_header(struct source *source, struct header *header, char *separator) {
     struct lines *lines = &source->lines;
     bool more;
@@ -131,7 +131,7 @@ static int find_header(struct source *source, struct header *header, char *separ
     return status;
 }
 
-/* All lengths must have one unit. */
+/* Finds the unit of lengths, which must be the same in all columns. */
 static int find_unit(const struct source *source, const struct header *header, struct bed *bed) {
     const struct columns *columns = &source->columns;
     const char *unit = header->unit[columns->place[0]];
@@ -147,7 +147,7 @@ static int find_unit(const struct source *source, const struct header *header, s
     return STATUS_OK;
 }
 
-/* Further columns have the unit they are taken to have, if their names say one. */
+/* Refuses a further column whose header names another unit than the expected one. */
 static int check_units(const struct source *source, const struct header *header) {
     for (size_t k = 0; k < source->options.extras; ++k) {
         const char *unit = header->unit[source->columns.extra[k]];
@@ -165,7 +165,7 @@ static int check_units(const struct source *source, const struct header *header)
 }
 
 static int find_columns(struct source *source, const struct header *header, char separator, struct bed *bed) {
-    struct lines at = source->lines; /* for messages */
+    struct lines at = source->lines; /* a copy with the line of the header, for messages */
     at.number = header->line;
     source->columns.units = header->unit;
     int status = columns_find(&source->columns, &at, &header->names, &source->options, bed);
@@ -174,7 +174,7 @@ static int find_columns(struct source *source, const struct header *header, char
     return status ? status : find_unit(source, header, bed);
 }
 
-/* Where YADE says that there are attributes, and not which, a row may have any number of them. */
+/* Reads a row. If the last name of YADE's header is attrs, a row may have any number of attributes. */
 static int read_row(struct source *source, const struct header *header, char separator, struct bed *bed) {
     const struct fields *names = &header->names;
     const int status = split(&source->fields, &source->lines, source->lines.text, separator);

@@ -1,4 +1,4 @@
-/* read_vtk.c - beds from VTK files, legacy or XML: points with an array of radii. SPDX-License-Identifier: MIT */
+/* read_vtk.c - beds from VTK files, legacy or XML, with points and an array of radii. SPDX-License-Identifier: MIT */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 
 enum { RADIUS, DIAMETER, ID, EXTRAS };
 
-/* Is this text within the first bytes of the file? */
+/* Whether a text is within the first 1000 bytes of the file. */
 static bool begins_near(const struct source *source, const char *wanted) {
     char head[1000];
     size_t size;
@@ -38,7 +38,7 @@ static int vtk_check(const struct source *source, const struct vtk_grid *grid) {
     return STATUS_OK;
 }
 
-/* A number of point i that must be finite. */
+/* Refuses a number of point i that is not finite. */
 static int vtk_finite(const struct vtk_grid *grid, const char *what, uint64_t i, double value) {
     if (isfinite(value)) return STATUS_OK;
     return vtk_fail(grid, NULL, "%s of point %llu is not finite", what, (unsigned long long)i);

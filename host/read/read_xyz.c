@@ -1,8 +1,8 @@
-/* read_xyz.c - beds from XYZ files, extended ones too. SPDX-License-Identifier: MIT
+/* read_xyz.c - beds from XYZ and extended XYZ files. SPDX-License-Identifier: MIT
  *
- * A frame is a line with the number of atoms, a comment, and a line for each. In extended XYZ the comment has
- * `Properties=species:S:1:pos:R:3:radius:R:1`, which names the columns, and may have `Lattice="..."`, the edges of the
- * box, `Origin="x y z"`, and `pbc="T T F"`, all periodic if that is missing. */
+ * A frame is a line with the number of atoms, a comment, and a line for each atom. In extended XYZ the comment has
+ * `Properties=species:S:1:pos:R:3:radius:R:1`, which names the columns. The comment may have `Lattice="..."`, the edges
+ * of the box, `Origin="x y z"`, and `pbc="T T F"`, the periodic axes. Without pbc all axes are periodic. */
 #include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@
 
 enum { COLUMNS_MAX = 1000, ANY = 1000 };
 
-/* Is the first line one whole number? */
+/* Whether the first line is one whole number. */
 static bool is_xyz(const struct source *source) {
     size_t size;
     const char *text = source_begin(source, &size), *end = memchr(text, '\n', size);
@@ -43,7 +43,8 @@ static int skip_xyz(struct source *source, enum found *found, char *lack) {
     return source_skip(source, atoms, found, lack);
 }
 
-/* The value of a key of the comment, in `to`: behind =, in quotes or up to a blank. False: there is no such key. */
+/* Copies the value of a key of the comment. The value stands behind =, in quotes or up to a blank. False: there is no
+ * such key, or the value is too long. */
 static bool find_value(const char *comment, const char *key, char *to, size_t room) {
     const size_t length = strlen(key);
     char quote = 0;
@@ -64,7 +65,7 @@ static bool find_value(const char *comment, const char *key, char *to, size_t ro
     return false;
 }
 
-/* So many numbers of a value. Returns how many there are. */
+/* Reads up to n numbers of a value. Returns how many there are. */
 static int take_numbers(const char *text, int n, double *value) {
     char word[64];
     int length, k = 0;
@@ -100,7 +101,7 @@ static int read_lattice(const struct source *source, const char *comment, struct
     return STATUS_OK;
 }
 
-/* Prints the names of the columns of one property; pos is x, y and z. */
+/* Prints the names of the columns of one property. The columns of pos are x, y and z. */
 static void print_names(FILE *names, const char *property, long count) {
     const bool position = strcasecmp(property, "pos") == 0 && count == 3;
     for (long k = 0; k < count; ++k)
@@ -112,7 +113,7 @@ static void print_names(FILE *names, const char *property, long count) {
             fprintf(names, "%s:%ld ", property, k);
 }
 
-/* species:S:1:pos:R:3 becomes `species x y z`. */
+/* Prints the names of the columns of all properties: species:S:1:pos:R:3 becomes `species x y z`. */
 static int read_properties(const struct source *source, char *text, FILE *names) {
     struct fields piece = {0};
     int64_t count, columns = 0;

@@ -8,9 +8,9 @@
 #include "cli/message.h"
 #include "text/read_lines.h"
 
-/* Room for another point. */
+/* Makes room for another point. */
 static int curve_grow(struct curve *curve) {
-    if (curve->n & (curve->n - 1)) return STATUS_OK; /* it doubles at powers of 2 */
+    if (curve->n & (curve->n - 1)) return STATUS_OK; /* room doubles when n is a power of 2 */
     const size_t room = curve->n ? 2 * curve->n : 1;
     double *x = realloc(curve->x, room * sizeof *x);
     if (x) curve->x = x;
@@ -37,7 +37,7 @@ static int curve_point(const struct lines *lines, const struct fields *fields, c
     return STATUS_OK;
 }
 
-/* A number of a column, of which *column has n. */
+/* Takes the number in a line of a column. */
 static int column_number(const struct lines *lines, const struct fields *fields, const char *what, double low,
                          double high, struct curve *column) {
     if (fields->n != 1)
@@ -51,7 +51,7 @@ static int column_number(const struct lines *lines, const struct fields *fields,
                       low, high);
 }
 
-/* Takes what is in a line. */
+/* Takes a line into a curve or a column. */
 typedef int take_line(const struct lines *lines, const struct fields *fields, const char *what, double low, double high,
                       struct curve *curve);
 

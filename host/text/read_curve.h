@@ -4,18 +4,18 @@
 
 #include <stddef.h>
 
-/* y over x, straight between points, constant beyond. */
+/* y over x: linear between points, constant before the first and behind the last one. */
 struct curve {
     double *x, *y; /* [n] x ascending */
     size_t n;      /* 0: there is none */
 };
 
-/* Reads a table: x and y in each line, parted by commas, semicolons, tabs or blanks; a header, lines that begin with #
- * and blank ones are skipped. `what` is what y is, in messages. To be freed also after an error. Status 0, STATUS_INPUT
- * naming the line where x does not ascend or y is not in [low, high], or as lines_next. */
+/* Reads a table of x and y with commas, semicolons, tabs or blanks in between. A header, lines that begin with # and
+ * blank lines are skipped. `what` names y in messages. Free the curve also after an error. Status 0, as lines_next, or
+ * STATUS_INPUT naming a line where x does not ascend or y is not within low and high. */
 int curve_read(const char *path, const char *what, double low, double high, struct curve *curve);
 
-/* The same of one column, y; x is without a meaning. */
+/* Reads a table of one column, y. x of the curve has no meaning. Otherwise as curve_read. */
 int column_read(const char *path, const char *what, double low, double high, struct curve *column);
 void curve_free(struct curve *curve);
 

@@ -1,7 +1,7 @@
-/* read_lines.c - text input line by line, packed by gzip or not, with strict numbers. SPDX-License-Identifier: MIT
+/* read_lines.c - text files line by line, which may be packed by gzip, and their numbers. SPDX-License-Identifier: MIT
  *
- * The file comes in blocks. A line is a piece of the buffer, whose end is overwritten by a 0 and put back before the
- * next line is looked for, so that a part of the file can be kept and gone through once more. */
+ * The file is read in blocks. A line is a piece of the buffer. A 0 replaces the character behind the line. This
+ * character is put back before the next line is looked for. So kept lines can be read once more. */
 #include "text/read_lines.h"
 
 #include <errno.h>
@@ -16,7 +16,7 @@
 #include "cli/output.h"
 #include "text/read_number.h"
 
-/* A line that is longer than the most is far beyond any real one: binary files are refused instead of swallowed. */
+/* No real line is longer than MOST bytes. A longer one is refused, so that a binary file does not fill the memory. */
 enum { BLOCK = 1 << 16, MOST = 1 << 20 };
 
 static const char blanks[] = " \t\r\v\f";
@@ -31,8 +31,8 @@ static int lines_fail(const struct lines *lines) {
     return message_at(STATUS_INPUT, lines->name, 0, "the gzip file is damaged: %s", why);
 }
 
-/* Makes room for more bytes behind those that are kept or still to come: moves them to the front where that at least
- * halves what is held, else doubles the buffer. */
+/* Makes room for more bytes. If at least half of the buffer is not needed any more, moves the bytes that are kept or
+ * unread to the front. Else doubles the buffer. */
 static int lines_make_room(struct lines *lines) {
     const size_t first = lines->keeps ? lines->kept : lines->next;
     if (first >= lines->end - first) {
@@ -49,7 +49,7 @@ static int lines_make_room(struct lines *lines) {
     return STATUS_OK;
 }
 
-/* Reads a further block, or notes that the file is finished; a byte behind the end stays free. */
+/* Reads another block, or notes that the file is finished. One byte behind the end stays free for a 0. */
 static int lines_read_block(struct lines *lines) {
     int status = lines_make_room(lines);
     if (status) return status;
@@ -85,13 +85,13 @@ void lines_close(struct lines *lines) {
     *lines = (struct lines){0};
 }
 
-/* Puts back what the end of the current line has overwritten. */
+/* Puts back the character that the 0 behind the current line has replaced. */
 static void lines_restore(struct lines *lines) {
     if (lines->text) lines->text[lines->length] = lines->behind;
     lines->text = NULL;
 }
 
-/* Finds the end of the line that begins at lines->next; at the end of the file that is the end. */
+/* Finds the end of the line that begins at lines->next. The last line may end with the file. */
 static int find_end(struct lines *lines, size_t *end) {
     size_t sought = 0;
     for (;;) {
@@ -193,7 +193,7 @@ int fields_split(struct fields *fields, char *text, const char *separators) {
 
 static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/* The same for the rows of large files, many times as fast. */
+/* Many times as fast as fields_split: rows of large files are cut here. */
 int fields_split_blanks(struct fields *fields, char *text) {
     fields->n = 0;
     for (;;) {
@@ -206,7 +206,8 @@ int fields_split_blanks(struct fields *fields, char *text) {
     }
 }
 
-/* Takes a quoted piece out of its quotes, where "" stands for a quote. Returns the place behind it; NULL: no end. */
+/* Removes the quotes about a field, in which "" stands for a quote. Returns a pointer behind the field. NULL: the
+ * closing quote is missing. */
 static char *unquote(char *text) {
     char *to = text;
     for (char *from = text + 1; *from; ++from) {
@@ -219,7 +220,7 @@ static char *unquote(char *text) {
     return NULL;
 }
 
-/* Skips blanks, of which the separator is none. */
+/* Skips blanks. The separator, such as a tab, is not a blank. */
 static char *skip_blanks(char *text, char separator) {
     while (is_blank(*text) && *text != separator) ++text;
     return text;

@@ -1,4 +1,5 @@
-/* read_lines.h - text input line by line, packed by gzip or not, with strict numbers. SPDX-License-Identifier: MIT */
+/* read_lines.h - text files line by line, which may be packed by gzip, and their numbers. SPDX-License-Identifier: MIT
+ */
 #ifndef READ_LINES_H
 #define READ_LINES_H
 
@@ -11,67 +12,69 @@ struct gzFile_s;
 struct lines {
     struct gzFile_s *file;
     const char *name; /* for messages */
-    uint64_t number;  /* of the line in `text`, from 1 */
-    char *text;       /* without its end */
+    uint64_t number;  /* of the current line, from 1 */
+    char *text;       /* the current line, without the end of line; NULL: none */
     size_t length;
-    bool ended;     /* a line end is behind it, not the end of the file */
-    bool truncated; /* the end of the file is that of a gzip file that was cut off */
+    bool ended;     /* an end of line follows the line, not the end of the file */
+    bool truncated; /* the file is a gzip file that was cut off, and its end has been read */
 
-    /* what has been read of the file: lines that are kept, the current line, bytes that are still to come */
+    /* The buffer has the kept lines from `kept` on, the current line, and unread bytes from `next` to `end`. */
     char *buffer;
     size_t capacity, kept, next, end;
-    bool keeps, finished;
-    char behind; /* what stood where text ends now */
-    uint64_t kept_number;
+    bool keeps;           /* lines are kept */
+    bool finished;        /* the whole file is in the buffer or behind it */
+    char behind;          /* the character that the 0 behind the current line has replaced */
+    uint64_t kept_number; /* number of the line before the kept ones */
 };
 
-/* Pieces of a line; they point into its text. */
+/* Fields of a line; they point into its text. */
 struct fields {
     char **at;
     size_t n, capacity;
 };
 
-/* What messages call a path: "-" is standard input. */
+/* The name of a path in messages: "standard input" for "-". */
 const char *lines_name(const char *path);
 
-/* Opens a file, or standard input for "-", and reads its first bytes, up to 65536: those of lines->buffer from
- * lines->next to lines->end. A byte order mark is skipped. Status 0, STATUS_FILE, STATUS_INPUT (damaged gzip),
- * STATUS_MEMORY, or as output_spare. */
+/* Opens a file, or standard input for "-". Reads its first bytes, up to 65536, into lines->buffer from lines->next to
+ * lines->end. Skips a byte order mark. Status 0, STATUS_FILE, STATUS_INPUT (damaged gzip file), STATUS_MEMORY, or as
+ * output_spare. */
 int lines_open(struct lines *lines, const char *path);
 void lines_close(struct lines *lines);
 
-/* The next line; *more is false at the end of the file. Status 0, STATUS_INPUT (binary data, endless lines, damaged
- * gzip), STATUS_FILE, STATUS_MEMORY or that of a signal. */
+/* Reads the next line. *more: false at the end of the file. Status 0, STATUS_INPUT (binary data, a line without end,
+ * damaged gzip file), STATUS_FILE, STATUS_MEMORY or that of a signal. */
 int lines_next(struct lines *lines, bool *more);
 
-/* lines_next will return the current line once more; until then there is none. */
+/* Makes lines_next return the current line once more. Until then there is no current line. */
 void lines_hold(struct lines *lines);
 
-/* Keeps in memory all that comes behind the current line; lines_return goes back to there, once, if no line has been
- * cut to pieces since. lines_drop keeps no longer. */
+/* lines_keep keeps in memory all lines behind the current one. lines_return goes back to the first kept line, if no
+ * line has been split since. lines_drop ends the keeping. */
 void lines_keep(struct lines *lines);
 void lines_return(struct lines *lines);
 void lines_drop(struct lines *lines);
 
-/* All that comes behind the current line, up to the end of the file, and a 0; it is the buffer's. Status as
- * lines_next. */
+/* Reads all bytes behind the current line into the buffer, with a 0 behind them. Status as lines_next. */
 int lines_rest(struct lines *lines, char **rest, size_t *size);
 
-/* Is there nothing but blanks in the line? */
+/* Whether the current line has blanks only. */
 bool lines_blank(const struct lines *lines);
 
-/* Does it begin so? */
+/* Whether the current line begins with a text. */
 bool lines_begin(const struct lines *lines, const char *with);
 
-/* Cuts a text at any of the separators, or at blanks, runs of which count once; *fields grows as needed (free
- * fields->at). */
+/* Splits a text at any of the separators, or at blanks. Several separators in a row count as one. Free fields->at in
+ * the end. Status 0 or STATUS_MEMORY. */
 int fields_split(struct fields *fields, char *text, const char *separators);
 int fields_split_blanks(struct fields *fields, char *text);
 
-/* Cuts a text of the current line at a separator, takes off the blanks and quotes about the pieces. */
+/* Splits a text of the current line at each separator. Removes blanks and quotes about the fields. Status 0,
+ * STATUS_INPUT if a quote is missing, or STATUS_MEMORY. */
 int fields_split_at(struct fields *fields, const struct lines *lines, char *text, char separator);
 
-/* A finite number, a whole number: the entire text or an error naming the line and `what` it should have been. */
+/* Read a finite number, or a whole number, which must be the whole text. `what` names the number in messages. Status 0,
+ * or STATUS_INPUT naming the line. */
 int lines_number(const struct lines *lines, const char *what, const char *text, double *value);
 int lines_whole(const struct lines *lines, const char *what, const char *text, int64_t *value);
 

@@ -1,8 +1,7 @@
 /* read_number.c - numbers from text, with the bits of strtod. SPDX-License-Identifier: MIT
- *
- * A mantissa of at most 53 bits and a power of ten up to 10^22 are both exact as doubles, so that their product or
- * quotient is rounded once, as it should be (Clinger, How to read floating point numbers accurately, 1990). All other
- * numbers, and all that is unusual, are for strtod. */
+ * A mantissa of at most 53 bits and a power of ten up to 10^22 are both exact as doubles. So their product or quotient
+ * is rounded once, and correctly (Clinger, How to read floating point numbers accurately, 1990). strtod reads all other
+ * numbers. */
 #include "text/read_number.h"
 
 #include <errno.h>
@@ -13,11 +12,11 @@
 
 enum { POWERS = 23 };
 
-#define WHOLE_REAL 0x1p53 /* up to here doubles have all whole numbers */
+#define WHOLE_REAL 0x1p53 /* doubles have all whole numbers up to here */
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/* Takes digits into a mantissa; false: there may be too many. */
+/* Reads digits into a mantissa. False: there may be too many. */
 static bool take_digits(const char **text, uint64_t *mantissa, int *digits) {
     for (; is_digit(**text); ++*text, ++*digits) {
         if (*mantissa > UINT64_MAX / 10 - 1) return false;
@@ -26,7 +25,7 @@ static bool take_digits(const char **text, uint64_t *mantissa, int *digits) {
     return true;
 }
 
-/* Takes `e-5` and the like; false: it is none, or a large one. */
+/* Reads an exponent such as `e-5`. False: it is not valid, or above 99. */
 static bool take_exponent(const char **text, int *exponent) {
     if (**text != 'e' && **text != 'E') return true;
     const char sign = *++*text;

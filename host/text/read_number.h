@@ -5,11 +5,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The entire text as a number, the bits being those of strtod; false: it is none. */
+/* Reads the whole text as a number, with the bits of strtod. False: the text is no number. */
 bool number_read(const char *text, double *value);
 
-/* The entire text as a whole number, also as programs write it that know reals alone: 7.0, 7.000e+00; false: it is
- * none, or beyond 63 bits, or such a real beyond 2^53. */
+/* Reads the whole text as a whole number. Forms such as 7.0 and 7.000e+00, which some programs write, are allowed up to
+ * 2^53. False: the text is no whole number, or the number is beyond 63 bits. */
 bool number_read_whole(const char *text, int64_t *value);
 
 #endif

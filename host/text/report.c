@@ -1,4 +1,4 @@
-/* report.c - what a command says at its end: lines `key value`, and the same as JSON. SPDX-License-Identifier: MIT */
+/* report.c - the summary of a command: lines `key value`, and JSON. SPDX-License-Identifier: MIT */
 #include "text/report.h"
 
 #include <inttypes.h>
@@ -24,7 +24,7 @@ void report_begin(struct report *report) {
     ++report->runs;
 }
 
-/* Lines have them on standard error already. */
+/* For JSON only: warnings have been printed on standard error. */
 static void report_warnings(const struct report *report) {
     const char *text;
     fprintf(report->json, "%s\"warnings\": [", report->entries > 0 ? ", " : "");

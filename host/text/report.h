@@ -1,6 +1,6 @@
-/* report.h - what a command says at its end: lines `key value`, and the same as JSON. SPDX-License-Identifier: MIT
+/* report.h - the summary of a command: lines `key value`, and JSON. SPDX-License-Identifier: MIT
  *
- * Lines have as many digits as a figure carries, JSON has all of them. */
+ * Lines have as many digits as the error of a value leaves. JSON has all digits. */
 #ifndef REPORT_H
 #define REPORT_H
 
@@ -8,35 +8,35 @@
 #include <stdio.h>
 
 struct report {
-    FILE *text, *json; /* NULL: not wanted */
-    int runs, entries; /* begun in all, of this run */
+    FILE *text, *json; /* NULL: not written */
+    int runs;          /* runs begun so far */
+    int entries;       /* entries of the current run so far */
 };
 
-/* The JSON as a whole: an object with the program's version, the command and an array of runs. */
+/* Begin and end the JSON: an object with the version of the program, the command and an array of runs. */
 void report_open(struct report *report, const char *command);
 void report_close(struct report *report);
 
-/* One run, such as a frame: what is reported in between belongs to it. Its JSON ends with the list `warnings` of all
- * that were said since the run before. */
+/* Begin and end one run, such as a frame. Its JSON ends with the list `warnings` of all warnings since the last run. */
 void report_begin(struct report *report);
 void report_end(struct report *report);
 
-/* A line each. A key has letters, digits and _; its unit, where there is one, is its end: `power_rms_W`. */
+/* Write one line each. A key has letters, digits and _. A key ends with the unit, if there is one: `power_rms_W`. */
 void report_text(struct report *report, const char *key, const char *text);
 void report_count(struct report *report, const char *key, uint64_t count);
 void report_whole(struct report *report, const char *key, int64_t number);
 
-/* A figure with so many digits. */
+/* Writes a value with `digits` significant digits. */
 void report_value(struct report *report, const char *key, double value, int digits);
 
-/* A figure with the digits that its error leaves it, one uncertain one among them; error 0: six. */
+/* Writes a value with the digits that its error leaves, one uncertain digit included. error 0: six digits. */
 void report_measured(struct report *report, const char *key, double value, double error);
 
-/* An error that was asked for: that one, and the estimate `got` of what has come of it, with a warning, in the JSON as
- * all are, where that is above `limit`. of: of what it is, and maybe what would help. file NULL: none. */
+/* Writes the error of --error (wanted) and the estimated error of the result (got). Warns if `got` is above `limit`.
+ * of: names in the warning whose error it is, and may say what would help. file: for the warning; NULL: none. */
 void report_wanted(struct report *report, const char *file, double wanted, double limit, double got, const char *of);
 
-/* Three figures in one line. */
+/* Writes three values in one line. */
 void report_vector(struct report *report, const char *key, const double value[3]);
 
 #endif

@@ -18,7 +18,7 @@ static wide power_of_5(int exponent) {
     return power;
 }
 
-/* m 2^e 10^k as m 5^k and a shift, all in whole numbers. */
+/* The number m 2^e 10^k as m 5^k and a shift, in whole numbers. */
 struct scaled {
     wide product, five; /* m 5^k, 5^k */
     int shift;
@@ -29,15 +29,15 @@ static struct scaled scaled(uint64_t m, int e, int k) {
     return (struct scaled){m * five, five, -(e + k)};
 }
 
-/* Rounded to even as printf does. */
+/* Rounds to a whole number, halves to even as printf does. */
 static uint64_t scaled_rounded(const struct scaled *scaled) {
     const wide half = (wide)1 << (scaled->shift - 1), rest = scaled->product & (2 * half - 1);
     const uint64_t below = (uint64_t)(scaled->product >> scaled->shift);
     return below + (rest > half || (rest == half && below & 1));
 }
 
-/* The same, rounded further to a multiple of `unit`; what the first rounding has made of a half is seen in the number.
- */
+/* Rounds to a multiple of `unit`. `digits` are rounded already. If they look like a half, the exact number tells on
+ * which side of the half it lies. */
 static uint64_t rounded_further(const struct scaled *scaled, uint64_t digits, uint64_t unit) {
     const uint64_t up = (digits + unit / 2) / unit * unit;
     if (digits % unit != unit / 2) return up;
@@ -45,22 +45,22 @@ static uint64_t rounded_further(const struct scaled *scaled, uint64_t digits, ui
     return ours > scaled->product || (ours == scaled->product && up / unit % 2 == 1) ? up - unit : up;
 }
 
-/* Whether these digits are nearer to the number than half the way to the next double. Below a power of two, `edge`, the
- * next one is half as far. */
+/* Whether the digits read back as the same double: they are nearer to the number than half the distance to the next
+ * double. edge: the number is a power of two, and the next double below is half as far. */
 static bool reads_back(const struct scaled *scaled, uint64_t digits, bool edge) {
     const wide theirs = (wide)digits << scaled->shift;
     const wide off = theirs > scaled->product ? theirs - scaled->product : scaled->product - theirs;
     return (edge ? 4 : 2) * off < scaled->five;
 }
 
-/* The first 17 digits of a number above 0 and the power of ten of the first of them; where 15 or 16 read back as the
- * same number, zeros stand behind these. False: out of reach, since m 5^k would have more than 128 bits, or no shift is
- * left. */
+/* Finds 17 digits of a number above 0, and the power of ten of the first digit. If 15 or 16 digits read back as the
+ * same number, the last digits are 0. False: the number is too large or too small, since m 5^k would have more than 128
+ * bits or no shift would be left. */
 static bool digits_of(double value, uint64_t *digits, int *power) {
     int e;
     const uint64_t m = (uint64_t)ldexp(frexp(value, &e), 53);
     if (e < -52 || e > 50) return false;
-    *power = (int)floor((e - 1) * 0.30102999566398120); /* or one more */
+    *power = (int)floor((e - 1) * 0.30102999566398120); /* the power, or one less */
     struct scaled all = scaled(m, e - 53, DIGITS - 1 - *power);
     *digits = scaled_rounded(&all);
     if (*digits >= 100000000000000000) {
@@ -82,7 +82,7 @@ static bool digits_of(double value, uint64_t *digits, int *power) {
 }
 #endif
 
-/* The same by printf, for numbers of any size. */
+/* Does the work of text_real by printf, for numbers of any size. */
 static int print_real(char *to, double value) {
     int used = 0;
     for (int digits = DIGITS - 2; digits <= DIGITS; ++digits) {
@@ -92,7 +92,7 @@ static int print_real(char *to, double value) {
     return used;
 }
 
-/* The digits of a number, most significant first, so many of them. */
+/* Writes the last `count` digits of a number, the most significant one first. */
 static char *put_digits(char *to, uint64_t number, int count) {
     for (int k = count - 1; k >= 0; --k, number /= 10) to[k] = (char)('0' + number % 10);
     return to + count;
@@ -106,7 +106,7 @@ char *text_whole(char *to, int64_t value) {
     return put_digits(to, size, count);
 }
 
-/* Digits with the point behind the first `before` of them; zeros at the end are left out. */
+/* Writes digits with the point behind the first `before` ones, without zeros at the end. */
 static char *put_point(char *to, const char *digits, int count, int before) {
     while (count > before && digits[count - 1] == '0') --count;
     memcpy(to, digits, (size_t)before);
@@ -118,7 +118,7 @@ static char *put_point(char *to, const char *digits, int count, int before) {
 }
 
 char *text_real(char *to, double value) {
-    enum { ZEROS = 4 }; /* that may stand before the digits; further down there is an exponent */
+    enum { ZEROS = 4 }; /* most zeros before the digits; smaller numbers have an exponent */
     char text[ZEROS + DIGITS] = "0000";
     uint64_t digits;
     int power;
@@ -137,7 +137,7 @@ char *text_real(char *to, double value) {
 }
 
 const char *names_list(char to[NAMES_LISTED], const char *const *names, size_t n) {
-    enum { MORE = 24 }; /* room for how many there are */
+    enum { MORE = 24 }; /* room for the number of names */
     int used = snprintf(to, NAMES_LISTED, "%s", n > 0 ? "" : "none");
     for (size_t k = 0; k < n; ++k) {
         if (used + (int)strlen(names[k]) + 2 > NAMES_LISTED - MORE) {

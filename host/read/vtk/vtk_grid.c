@@ -1,4 +1,4 @@
-/* vtk_grid.c - points of a VTK file and the arrays on them that are wanted. SPDX-License-Identifier: MIT */
+/* vtk_grid.c - points of a VTK file and wanted arrays on the points. SPDX-License-Identifier: MIT */
 #include "read/vtk/vtk_grid.h"
 
 #include <ctype.h>

@@ -1,4 +1,4 @@
-/* vtk_grid.h - points of a VTK file and the arrays on them that are wanted. SPDX-License-Identifier: MIT */
+/* vtk_grid.h - points of a VTK file and wanted arrays on the points. SPDX-License-Identifier: MIT */
 #ifndef VTK_GRID_H
 #define VTK_GRID_H
 
@@ -6,19 +6,19 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* One value of an array. */
+/* The type of the values of an array. */
 struct vtk_type {
     size_t size;       /* bytes; 0: unknown */
-    char kind;         /* f, i (with sign) or u */
-    const char *names; /* in legacy and XML files, each with a blank before and behind */
+    char kind;         /* f: floating point, i: integer, u: unsigned integer */
+    const char *names; /* names in legacy and XML files, each with a blank before and behind */
 };
 
-/* An array that is wanted. */
+/* A wanted array. */
 struct vtk_wanted {
-    const char *const *names; /* in any case, NULL ends them; or one name as it is */
-    const char *name;
+    const char *const *names; /* possible names in any case, ended by NULL; or NULL */
+    const char *name;         /* the exact name; or NULL */
     bool required;
-    double *values; /* [n], NULL: it is not there. To be freed */
+    double *values; /* [n], which the caller frees; NULL: the file does not have the array */
 };
 
 struct vtk_grid {
@@ -26,33 +26,33 @@ struct vtk_grid {
     const char *text; /* the whole file */
     const char *end;
     uint64_t n;
-    double *points; /* [3 n] to be freed */
+    double *points; /* [3 n], which the caller frees */
     struct vtk_wanted *wanted;
     size_t count;
 };
 
-/* Reads the points and the arrays wanted. Status 0, STATUS_INPUT or STATUS_MEMORY; what is to be freed is so also after
- * an error. Numbers are finite or not. */
+/* Read the points and the wanted arrays. Numbers may be infinite or NaN. Free points and values also after an error.
+ * Status 0, STATUS_INPUT or STATUS_MEMORY. */
 int vtk_read_legacy(struct vtk_grid *grid);
 int vtk_read_xml(struct vtk_grid *grid);
 
-/* The type of a name, of either kind of file; its size is 0 if there is none. */
+/* The type by its name in a legacy or XML file. size 0: there is none. */
 struct vtk_type vtk_find_type(const char *name);
 
-/* Where values of an array on points are wanted; NULL: nowhere. */
+/* Where to put the values of an array on points. NULL: the array is not wanted. */
 double **vtk_find_wanted(const struct vtk_grid *grid, const char *name);
 
-/* Values from bytes. */
+/* Converts bytes to values. big: the bytes are big-endian. */
 void vtk_convert(struct vtk_type type, bool big, const void *bytes, uint64_t count, double *values);
 
-/* Values from text; *text is moved behind them. False: there are fewer. */
+/* Reads values from text and moves *text behind them. values NULL: skips them. False: there are fewer than `count`. */
 bool vtk_scan(const char **text, const char *end, uint64_t count, double *values);
 
-/* `fibrad: FILE: what` or `FILE:LINE: what`, the line being that of a place in the file. Status STATUS_INPUT. */
+/* Prints an error with the line of `at`, a pointer into the file. at NULL: without a line. Returns STATUS_INPUT. */
 int vtk_fail(const struct vtk_grid *grid, const char *at, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Room for so many values. Status 0 or STATUS_MEMORY. */
+/* Allocates room for `count` values. Frees *values before. Status 0 or STATUS_MEMORY. */
 int vtk_room(double **values, uint64_t count);
 
 #endif

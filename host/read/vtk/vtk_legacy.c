@@ -1,7 +1,6 @@
 /* vtk_legacy.c - points and arrays of legacy VTK files, text or binary. SPDX-License-Identifier: MIT
- *
- * Four lines say what it is; then come keywords, most of them with an array behind. Binary arrays are big-endian. What
- * is not wanted is passed over. */
+ * Four lines name version, title, ASCII or BINARY, and kind of the data set. Keywords follow, most of them with an
+ * array. Binary arrays are big-endian. Arrays that are not wanted are skipped. */
 #include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -16,18 +15,20 @@ enum { NAME = 80 };
 
 struct legacy {
     struct vtk_grid *grid;
-    const char *at, *line; /* behind what has been read; the last line of words */
-    bool binary, fifth;    /* cells are of offsets and connectivity, as from version 5.0 on */
-    bool on_points;        /* arrays are on points */
-    uint64_t tuples;       /* of an array on points or cells */
-    uint64_t sizes[2];     /* of the last list of cells */
+    const char *at;    /* the next byte to be read */
+    const char *line;  /* the last line that take_words has read */
+    bool binary;       /* else text */
+    bool fifth;        /* version 5.0 or later: cells are offsets and connectivity */
+    bool on_points;    /* the arrays that follow are on points, not on cells */
+    uint64_t tuples;   /* length of these arrays */
+    uint64_t sizes[2]; /* sizes in the last list of cells */
 };
 
 static int legacy_fail(const struct legacy *legacy, const char *what) {
     return vtk_fail(legacy->grid, legacy->binary ? NULL : legacy->line, "%s", what);
 }
 
-/* Copies the next line and goes behind it. */
+/* Copies the next line and moves behind it. */
 static void take_line(struct legacy *legacy, char *line, size_t room) {
     const char *end = memchr(legacy->at, '\n', (size_t)(legacy->grid->end - legacy->at));
     const char *next = end ? end + 1 : legacy->grid->end;
@@ -38,7 +39,7 @@ static void take_line(struct legacy *legacy, char *line, size_t room) {
     legacy->at = next;
 }
 
-/* The next line that has something in it; false: the file ends. */
+/* Copies the next line that is not blank. False: the file ends. */
 static bool take_words(struct legacy *legacy, char *line, size_t room) {
     while (legacy->at < legacy->grid->end) {
         legacy->line = legacy->at;
@@ -48,7 +49,7 @@ static bool take_words(struct legacy *legacy, char *line, size_t room) {
     return false;
 }
 
-/* An array of so many values, into *values unless that is NULL. */
+/* Reads an array of `count` values into *values. values NULL: skips the array. */
 static int legacy_array(struct legacy *legacy, const char *type_name, uint64_t count, double **values) {
     const struct vtk_type type = vtk_find_type(type_name);
     const uint64_t left = (uint64_t)(legacy->grid->end - legacy->at);
@@ -71,7 +72,7 @@ static int legacy_array(struct legacy *legacy, const char *type_name, uint64_t c
     return STATUS_OK;
 }
 
-/* An array on points or cells. */
+/* Reads an array on points if it is wanted. Skips any other array. */
 static int take_data(struct legacy *legacy, const char *name, const char *type, uint64_t components, uint64_t tuples) {
     const bool known = legacy->grid->points && tuples == legacy->grid->n;
     double **values = legacy->on_points && known ? vtk_find_wanted(legacy->grid, name) : NULL;
@@ -113,14 +114,15 @@ static int take_points(struct legacy *legacy, uint64_t n, const char *type) {
     return legacy_array(legacy, type, 3 * n, &legacy->grid->points);
 }
 
-/* Cells, which are of no use here: `CELLS n size` and size numbers; or `CELLS n m`, n offsets and m numbers. */
+/* Skips cells: `CELLS n size` and size numbers. From version 5.0 on, `CELLS n m`, and arrays of n offsets and m numbers
+ * follow with keywords of their own. */
 static int take_cells(struct legacy *legacy, uint64_t n, uint64_t size) {
     legacy->sizes[0] = n;
     legacy->sizes[1] = size;
     return legacy->fifth ? STATUS_OK : legacy_array(legacy, "int", size, NULL);
 }
 
-/* `SCALARS name type components`, and a table of colours. */
+/* Reads `SCALARS name type components`, which a line LOOKUP_TABLE may follow. */
 static int take_scalars(struct legacy *legacy, const char *line) {
     char name[NAME], type[NAME], table[NAME];
     uint64_t components = 1;
@@ -131,7 +133,7 @@ static int take_scalars(struct legacy *legacy, const char *line) {
     return take_data(legacy, name, type, components, legacy->tuples);
 }
 
-/* One keyword and what is behind it. */
+/* Reads the line of a keyword and what belongs to it. */
 static int take_keyword(struct legacy *legacy, const char *line) {
     static const struct {
         const char *keyword;

@@ -1,7 +1,7 @@
 /* vtk_xml.c - points and arrays of VTK's XML files, .vtp and .vtu. SPDX-License-Identifier: MIT
- *
- * Arrays stand as text or base64 where they are declared, or behind all else, as base64 or bytes, each at an offset.
- * Bytes begin with their number, or with a list of blocks that zlib has packed. */
+ * An array is text or base64 in the tag that declares the array, or it is appended: at an offset in the last tag of the
+ * file, as base64 or bytes. Binary data begin with the number of bytes, or with a list of blocks that zlib has packed.
+ */
 #include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -18,19 +18,21 @@ enum { WORD = 80, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less tha
 struct xml {
     struct vtk_grid *grid;
     const char *at;
-    const char *appended; /* the first byte of arrays that stand behind all else */
-    bool raw;             /* they are bytes and not base64 */
-    bool big, packed, points, point_data;
-    struct vtk_type header; /* type of the numbers before bytes */
-    int pieces;
+    const char *appended;    /* first byte of appended arrays; NULL: there are none */
+    bool raw;                /* appended arrays are bytes, not base64 */
+    bool big;                /* big-endian */
+    bool packed;             /* blocks are packed by zlib */
+    bool points, point_data; /* within the tag Points, PointData */
+    struct vtk_type header;  /* type of the numbers of bytes */
+    int pieces;              /* pieces with points so far */
 };
 
-/* A tag, from behind its < to its >. */
+/* A tag, without its < and >. */
 struct tag {
     const char *text, *end;
 };
 
-/* Where an array stands. */
+/* Type, length and place of an array. */
 struct place {
     struct vtk_type type;
     uint64_t count;
@@ -46,7 +48,7 @@ static bool is_tag(const struct tag *tag, const char *name) {
            (tag->text + length == tag->end || !isalnum((unsigned char)tag->text[length]));
 }
 
-/* Goes behind the next tag; false: there is none. */
+/* Finds the next tag and moves behind it. False: there is none. */
 static bool next_tag(struct xml *xml, struct tag *tag) {
     const char *last = xml->grid->end;
     const char *open = memchr(xml->at, '<', (size_t)(last - xml->at));
@@ -63,7 +65,7 @@ static bool next_tag(struct xml *xml, struct tag *tag) {
     return false;
 }
 
-/* The value of an attribute; "": it is not there. */
+/* The value of an attribute. "": the tag does not have the attribute. */
 static const char *attribute(const struct tag *tag, const char *name, char value[WORD]) {
     const size_t length = strlen(name);
     value[0] = 0;
@@ -87,12 +89,12 @@ static uint64_t number_of(const struct tag *tag, const char *name, uint64_t othe
 
 /* ---- bytes ------------------------------------------------------------------------------------------------------ */
 
-/* Bytes from base64 or as they are. */
+/* A stream of bytes, from base64 or from bytes (raw). */
 struct stream {
     const char *at, *end;
     bool raw;
     unsigned char ready[3];
-    int left; /* of those ready */
+    int left; /* bytes of `ready` that are left */
 };
 
 static int sextet(char c) {
@@ -101,7 +103,7 @@ static int sextet(char c) {
     return found ? (int)(found - digits) : -1;
 }
 
-/* Four digits of base64 become three bytes, or fewer before a padding. */
+/* Decodes four digits of base64 into three bytes, or into fewer if there is padding. */
 static bool decode(struct stream *stream) {
     uint32_t bits = 0;
     int digits = 0;
@@ -149,7 +151,8 @@ static int take_plain(const struct xml *xml, struct stream *stream, unsigned cha
     return STATUS_OK;
 }
 
-/* Number of blocks, size of a block, size of the last one if it is smaller, sizes when packed; then the blocks. */
+/* Reads packed data: number of blocks, size of a block, size of the last block if it is smaller, packed size of each
+ * block, and the blocks. */
 static int take_packed(const struct xml *xml, struct stream *stream, unsigned char *to, uint64_t bytes) {
     const uint64_t most = (uint64_t)(xml->grid->end - xml->grid->text);
     uint64_t blocks, size, last;
@@ -185,7 +188,7 @@ static int take_values(struct xml *xml, const struct place *place, double **valu
         return vtk_scan(&at, xml->grid->end, place->count, *values) ? STATUS_OK
                                                                     : xml_fail(xml, "an array is too short");
     }
-    double *data = NULL; /* bytes, in fact */
+    double *data = NULL; /* holds bytes */
     struct stream stream = {.at = place->at, .end = xml->grid->end, .raw = place->raw};
     status = vtk_room(&data, bytes / sizeof *data + 1);
     if (!status) status = (xml->packed ? take_packed : take_plain)(xml, &stream, (unsigned char *)data, bytes);
@@ -257,7 +260,7 @@ static int xml_tag(struct xml *xml, const struct tag *tag) {
     return STATUS_OK;
 }
 
-/* Finds what is appended to the tags: behind the first _ after its tag. */
+/* Finds the appended arrays, which begin behind the first _ after the tag AppendedData. */
 static void find_appended(struct xml *xml) {
     static const char name[] = "<AppendedData";
     struct tag tag;
