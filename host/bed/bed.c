@@ -1,4 +1,4 @@
-/* bed.c - spheres as read from a file, with the lines they came from. SPDX-License-Identifier: MIT */
+/* bed.c - spheres that were read from a file, and the lines they stand in. SPDX-License-Identifier: MIT */
 #include "bed/bed.h"
 
 #include <assert.h>
@@ -18,7 +18,8 @@ static void *resized(void *array, size_t bytes, bool *good) {
     return moved ? moved : array;
 }
 
-/* Doubles the arrays, so that memory stays within a small multiple of what the file really holds. */
+/* Doubles the arrays. So memory stays within a small multiple of the spheres in the file, whatever number the file
+ * declares. */
 static int grow(struct bed *bed) {
     const size_t capacity = bed->capacity ? 2 * (size_t)bed->capacity : 1024;
     bool good = true;
@@ -63,7 +64,7 @@ double bed_reach(const struct bed *bed, int axis, bool upper) {
 
 int bed_keep(struct bed *bed, const char *const *text, size_t n) {
     size_t room = 1;
-    for (size_t k = 0; k < n; ++k) room += strlen(text[k]) + 4; /* a blank, or `nan` where there is nothing */
+    for (size_t k = 0; k < n; ++k) room += strlen(text[k]) + 4; /* a blank, or `nan` for an empty field */
     bool good = true;
     if (bed->kept_used + room > bed->kept_room) {
         const size_t wanted = 2 * (bed->kept_used + room);
@@ -91,9 +92,9 @@ double bed_end(const struct bed *bed, int axis, bool upper) {
     return bed_reach(bed, axis, upper);
 }
 
-/* How deep an end of a box lies in a sphere that it is one about centres: no real wall is pressed in so far. Centres
- * may lie beyond it by rounding alone. */
-#define SHRUNK_DEPTH  0.5 /* of a radius */
+/* A box is one about centres if an end lies this deep in a sphere, in radii: no sphere is pressed so far into a real
+ * wall. A centre may lie beyond such an end by rounding only. */
+#define SHRUNK_DEPTH  0.5
 #define SHRUNK_BEYOND 1.001
 
 double bed_wall_end(const struct bed *bed, int axis, bool upper, bool *moved) {
@@ -116,13 +117,14 @@ const char *bed_place(const struct bed *bed, uint32_t i, char text[BED_PLACE]) {
     return text;
 }
 
-/* A sphere's id and where the sphere stands. */
+/* The id and the position of a sphere. */
 struct named {
     int64_t id;
     uint32_t at;
 };
 
-/* Sorts by id, eight bits at a time from the lowest; spheres of one id stay in their order, negative ids come last. */
+/* Sorts by id, eight bits at a time from the lowest ones. Spheres with equal ids keep their order. Negative ids come
+ * last. */
 static void sort_names(struct named *name, struct named *room, uint32_t n) {
     for (int shift = 0; shift < 64; shift += 8) {
         uint32_t start[257] = {0};
@@ -159,7 +161,7 @@ static int check_names(const struct bed *bed, const char *file, const struct nam
     return STATUS_OK;
 }
 
-/* Moves what stands in an array of n things of so many bytes to the places that the names give. */
+/* Puts the n elements of an array, of `size` bytes each, into the order of the names. */
 static void rearrange(void *array, size_t size, const struct named *name, uint32_t n, void *room) {
     if (size == 0) return;
     for (uint32_t k = 0; k < n; ++k) memcpy((char *)room + k * size, (char *)array + name[k].at * size, size);
@@ -177,8 +179,8 @@ int bed_sort(struct bed *bed, const char *file) {
     if (!status) sort_names(name, room, bed->n);
     if (!status) status = check_names(bed, file, name);
     if (!status) {
-        double *const part[] = {bed->x, bed->y, bed->z, bed->r};
-        for (int k = 0; k < 4; ++k) rearrange(part[k], sizeof(double), name, bed->n, room);
+        double *const array[] = {bed->x, bed->y, bed->z, bed->r};
+        for (int k = 0; k < 4; ++k) rearrange(array[k], sizeof(double), name, bed->n, room);
         rearrange(bed->line, sizeof *bed->line, name, bed->n, room);
         rearrange(bed->id, sizeof *bed->id, name, bed->n, room);
         rearrange(bed->extra, bed->extras * sizeof(double), name, bed->n, room);
@@ -193,7 +195,7 @@ void bed_clear(struct bed *bed) {
     bed->n = 0;
     bed->kept_names = NULL;
     bed->kept_used = 0;
-    memset(bed->units, 0, sizeof bed->units); /* all of it, as it is written into .npz */
+    memset(bed->units, 0, sizeof bed->units); /* all bytes: .npz files have the whole array */
     bed->timestep = -1;
     for (int axis = 0; axis < 3; ++axis) bed->low[axis] = bed->high[axis] = bed->period[axis] = 0;
 }

@@ -1,4 +1,4 @@
-/* bed.h - spheres as read from a file, with the lines they came from. SPDX-License-Identifier: MIT */
+/* bed.h - spheres that were read from a file, and the lines they stand in. SPDX-License-Identifier: MIT */
 #ifndef BED_H
 #define BED_H
 
@@ -9,63 +9,62 @@
 struct bed {
     uint32_t n, capacity, kept_capacity;
     bool ids;              /* spheres have ids; else their positions name them */
-    double *x, *y, *z, *r; /* [n] units of the file */
-    uint64_t *line;        /* [n] where in the file each sphere stands, from 1; 0: in a VTK file */
-    int64_t *id;           /* [n] ascending, from 0 on, no two alike */
-    double *extra;         /* [n][extras] further columns asked for by name */
+    double *x, *y, *z, *r; /* [n] centres and radii, in the unit of the file */
+    uint64_t *line;        /* [n] line of each sphere in the file, from 1; 0: VTK files have no lines */
+    int64_t *id;           /* [n] ascending, from 0, all different; if ids */
+    double *extra;         /* [n][extras] columns that options name */
     size_t extras;
-    const char *kept_names; /* of further columns that are kept as text, parted by blanks, the reader's; NULL: none */
-    char *kept;             /* [kept_used] their texts, a 0 behind those of each sphere */
-    size_t *kept_at;        /* [n] where those of a sphere begin */
+    const char *kept_names; /* names of columns kept as text, with blanks in between; owned by the reader; NULL: none */
+    char *kept;             /* [kept_used] the texts of these columns, a 0 behind those of each sphere */
+    size_t *kept_at;        /* [n] index in `kept` where the texts of a sphere begin */
     size_t kept_used, kept_room;
-    double low[3], high[3]; /* the file's box; all 0 if it has none */
+    double low[3], high[3]; /* box of the file; all 0: the file has none */
     double period[3];       /* length of the periodic box per axis; 0: the axis is open */
-    char units[16];         /* as the file calls them, such as "cgs"; "": it says nothing */
-    int64_t frame;          /* which one of the file, or of all frames of a series of files, from 0 */
-    int64_t timestep;       /* as the file says; -1: it says nothing */
+    char units[16];         /* units that the file names, such as "cgs"; "": none */
+    int64_t frame;          /* number of the frame in the file or in the series of files, from 0 */
+    int64_t timestep;       /* timestep that the file names; -1: none */
 };
 
-/* One sphere to be added. */
+/* A sphere for bed_add. */
 struct bed_sphere {
     double x, y, z, r;
     uint64_t line;
     int64_t id;
 };
 
-/* Makes an empty bed. What has ids or extras says so before the first sphere. */
+/* Makes an empty bed. Set bed->ids and bed->extras before the first sphere. */
 void bed_init(struct bed *bed);
 
-/* Adds a sphere; its extra columns are for the caller to fill in. Status 0 or STATUS_MEMORY. */
+/* Adds a sphere. The caller fills in its extra columns. Status 0, STATUS_INPUT if there are too many spheres, or
+ * STATUS_MEMORY. */
 int bed_add(struct bed *bed, const struct bed_sphere *sphere);
 
-/* Keeps the columns' texts of the last sphere, those of the bed's kept_names. Blanks within them become _. Status 0 or
+/* Keeps texts [n] of the last sphere, in the columns of bed->kept_names. Blanks within a text become _. Status 0 or
  * STATUS_MEMORY. */
 int bed_keep(struct bed *bed, const char *const *text, size_t n);
 
-/* The lower or upper end of a bed along an axis: that of the file's box, or else of the spheres. */
+/* The lower or upper end of a bed along an axis: that of the file's box, or else that of the spheres. */
 double bed_end(const struct bed *bed, int axis, bool upper);
 
-/* Where a wall stands there: at the end of the file's box; at that of the spheres where the box is one about centres,
- * as LAMMPS shrinks it, which sets *moved. */
+/* The coordinate of a wall at the lower or upper end: that of bed_end. LAMMPS may shrink a box to one about centres.
+ * Then the wall stands at the end of the spheres, and *moved is set. */
 double bed_wall_end(const struct bed *bed, int axis, bool upper, bool *moved);
 
-/* How far its spheres reach there. */
+/* The least or largest coordinate of the spheres of a bed along an axis. */
 double bed_reach(const struct bed *bed, int axis, bool upper);
 
-/* The name of a sphere: its id, or its position from 0 on. */
+/* The name of a sphere: its id, or its position from 0. */
 int64_t bed_name(const struct bed *bed, uint32_t i);
 
-/* Room for what bed_place says. */
+/* Writes " of line 7" for messages, or "" if the sphere has no line. Returns `text`. */
 enum { BED_PLACE = 32 };
-
-/* " of line 7", or "" where a sphere is on no line, in `text`, which is returned. */
 const char *bed_place(const struct bed *bed, uint32_t i, char text[BED_PLACE]);
 
-/* Puts the spheres in the order of their ids, if they have any. Status 0; STATUS_INPUT naming the line of an id that is
- * negative or there twice; STATUS_MEMORY. `file` is the bed's name in messages. */
+/* Sorts the spheres by id, if they have ids. file: name of the bed in messages. Status 0, STATUS_MEMORY, or
+ * STATUS_INPUT naming the line of an id that is negative or occurs twice. */
 int bed_sort(struct bed *bed, const char *file);
 
-/* Forgets the spheres, the box and what the file says of the frame, keeps the memory. */
+/* Empties a bed and keeps its memory. */
 void bed_clear(struct bed *bed);
 
 void bed_free(struct bed *bed);

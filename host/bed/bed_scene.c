@@ -1,4 +1,4 @@
-/* bed_scene.c - a bed as the library takes it, and what the library says of it as messages.
+/* bed_scene.c - a bed in the form of the library, and messages for errors of the library.
  * SPDX-License-Identifier: MIT */
 #include "bed/bed_scene.h"
 
@@ -18,7 +18,7 @@ fibrad_scene_config bed_scene(const struct bed *bed, const struct walls *walls) 
                                  .triangles = walls && walls->meshes ? &walls->meshes->triangles : NULL};
 }
 
-/* A sphere that cannot be where it is. */
+/* Refuses a sphere that overlaps its own image or reaches beyond an opening. */
 static int bed_misplaced(const struct bed *bed, const char *file, uint32_t i) {
     bool image = false;
     for (int axis = 0; axis < 3; ++axis) image = image || (bed->period[axis] > 0 && bed->period[axis] < 2 * bed->r[i]);
@@ -28,7 +28,7 @@ static int bed_misplaced(const struct bed *bed, const char *file, uint32_t i) {
                       (long long)bed_name(bed, i));
 }
 
-/* Two spheres that cannot be there both; the one that comes later in the file is at fault. */
+/* Refuses two spheres that overlap too much. The message names the line of the one that comes later in the file. */
 static int bed_overlap(const struct bed *bed, const char *file, uint32_t first, uint32_t second) {
     const uint32_t later = bed->line[first] < bed->line[second] ? second : first;
     const uint32_t other = later == first ? second : first;

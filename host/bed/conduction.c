@@ -1,7 +1,6 @@
 /* conduction.c - effective radiative conductivity of a bed of grey spheres. SPDX-License-Identifier: MIT
- *
- * Each batch of paths has a seed of its own, and the paths of one sphere in one batch are a group. A group's standard
- * error comes from the kernel; groups are independent, so that variances add up. */
+ * Each batch of paths has a seed of its own. The paths of one sphere in one batch are a group. The kernel estimates the
+ * standard error of a group. Groups are independent, so their variances add up. */
 #include "bed/conduction.h"
 
 #include <math.h>
@@ -13,28 +12,28 @@
 
 #define PI 3.14159265358979323846
 
-/* So many emitters there have to be where an axis is open. */
+/* Fewest emitters of a bed with an open axis. */
 #define EMITTERS 40u
 
-/* A search begins with so many paths in all, in so many groups, each of a multiple of so many paths, which the kernel
- * compares in as many parts. It goes on to at most so many times what there is. */
-#define PILOT      50000.0
-#define GROUPS     256.0
-#define PARTS      16u
-#define GROWTH     8.0
+/* Numbers of a search for --error. The kernel compares the paths of a group in PARTS parts. */
+#define PILOT      50000.0 /* paths of the first round, in all */
+#define GROUPS     256.0   /* fewest groups of a round */
+#define PARTS      16u     /* the paths of a group are a multiple */
+#define GROWTH     8.0     /* largest ratio of all paths after a round to those before */
 #define BATCH_MOST (FIBRAD_PATHS_MAX / PARTS * PARTS)
 
-/* Concentration above which a standard error is not relied on: its square root is the relative standard error of the
- * variance. Where the variances of groups have a tail of index a < 1 it tends to 1 - a however many groups there are,
- * 1/4 for flights along channels, 1/2 for those in slabs (docs/methods_heat.md section 12); without such a tail, to
- * zero. */
+/* A standard error is unreliable if the concentration is larger than this. The square root of the concentration is the
+ * relative standard error of the variance. If the variances of groups have a tail of index a < 1, the concentration
+ * tends to 1 - a however many groups there are: 1/4 for flights along channels, 1/2 for flights in slabs
+ * (docs/methods_heat.md section 12). Without such a tail it tends to 0. */
 #define SETTLED 0.03
 
-/* Growth of F_E over itself from which it is told whatever the standard error: flights of 100 periods are about e^10
- * times a gap, which makes as much of F_E as most ask for. */
+/* Growth of F_E over F_E from which flights count as endless, however large the standard error is. Flights of 100
+ * periods are about e^10 times as long as a gap. So such a growth adds 0.003 to F_E, which is the default of --error.
+ */
 #define ENDLESS 0.0003
 
-/* The part of the bed that emits, a box; infinite along periodic axes. */
+/* The core of the bed, which emits: a box, infinite along periodic axes. */
 struct core {
     double low[3], high[3], volume;
 };
@@ -74,16 +73,14 @@ static bool is_inside(const struct core *core, const double at[3]) {
     return true;
 }
 
-/* The fraction of a sphere that lies inside, by points: counting centres alone would be as rough as a small core is
- * small. */
-static double part_inside(const struct bed *bed, uint32_t i, const struct core *core) {
+/* The fraction of a sphere that lies in the core, by points. Counting centres would be rough if the core is small. */
+static double fraction_inside(const struct bed *bed, uint32_t i, const struct core *core) {
     enum { POINTS = 256 };
     uint32_t count = 0;
     for (uint32_t k = 0; k < POINTS; ++k) {
         double w[3];
         fibrad_direction(k, POINTS, w);
-        const double depth =
-            bed->r[i] * cbrt(fmod((k + .5) * .7548776662466927, 1)); /* even in the cube of the radius */
+        const double depth = bed->r[i] * cbrt(fmod((k + .5) * .7548776662466927, 1)); /* uniform in volume */
         const double at[3] = {bed->x[i] + depth * w[0], bed->y[i] + depth * w[1], bed->z[i] + depth * w[2]};
         count += is_inside(core, at);
     }
@@ -99,7 +96,7 @@ static int compare_extents(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The sum of squares of the widths of all gaps across a periodic axis, through which planes run that meet no sphere. */
+/* Sum of squared widths of all gaps across a periodic axis. A gap is a slab without spheres. */
 static double square_gaps(const struct bed *bed, int axis, struct extent *extents) {
     const double *at = (const double *[]){bed->x, bed->y, bed->z}[axis], period = bed->period[axis];
     double reach = -INFINITY, sum = 0;
@@ -116,8 +113,8 @@ static double square_gaps(const struct bed *bed, int axis, struct extent *extent
     return sum;
 }
 
-/* A slab of width h across an axis of period P adds h^2/(P d) ln(L/h) to F_E along the other two, L being the longest
- * flight (docs/methods_heat.md section 12). */
+/* Finds the growth of F_E. A slab of width h across an axis of period P adds h^2/(P d) ln(L/h) to F_E along the other
+ * two axes, with the mean diameter d and the longest flight L (docs/methods_heat.md section 12). */
 static int find_growth(const struct bed *bed, struct conduction *result) {
     if (bed->period[0] == 0 || bed->period[1] == 0 || bed->period[2] == 0) return STATUS_OK;
     struct extent *extents = malloc(bed->n * sizeof *extents);
@@ -131,7 +128,7 @@ static int find_growth(const struct bed *bed, struct conduction *result) {
     return STATUS_OK;
 }
 
-/* The volume that belongs to the emitters is that of the spheres themselves over the solid fraction of the core. */
+/* The volume of the emitters is that of their spheres over the solid fraction of the core. */
 int conduction_emitters(const struct bed *bed, int axis, const char *file, unsigned char *emits,
                         struct conduction *result) {
     struct core core;
@@ -145,7 +142,7 @@ int conduction_emitters(const struct bed *bed, int axis, const char *file, unsig
         const double volume = 4 * PI / 3 * pow(bed->r[i], 3);
         emits[i] = is_inside(&core, (const double[]){bed->x[i], bed->y[i], bed->z[i]});
         emitting += emits[i] * volume;
-        solid += part_inside(bed, i, &core) * volume;
+        solid += fraction_inside(bed, i, &core) * volume;
         result->emitters += emits[i];
     }
     result->solid_fraction = solid / core.volume;
@@ -157,15 +154,17 @@ int conduction_emitters(const struct bed *bed, int axis, const char *file, unsig
     return find_growth(bed, result);
 }
 
-/* Batches so far, and sums over their groups, of what they say times the paths of the group. */
+/* Sums over all groups of all batches so far. Each group is weighted by its number of paths. */
 struct tally {
-    uint64_t batches, paths; /* per emitter */
-    double factor[3], variance[3], fourth[3], lost, all;
-    double expected, expected_fourth; /* of groups whose spheres carry light as far as their own size */
-    fibrad_displacement *moved;       /* [n] of the last batch */
+    uint64_t batches;
+    uint64_t paths;                           /* from each emitter */
+    double factor[3], variance[3], fourth[3]; /* F_E, its variance, and squared variances of groups */
+    double lost, all;                         /* emission that no sphere absorbs, and all emission */
+    double expected, expected_fourth;         /* variance and squares if flights were as long as the sphere */
+    fibrad_displacement *moved;               /* [n] of the last batch */
 };
 
-/* Adds a batch of so many paths from each emitter. Summed in order, whatever the threads did. */
+/* Adds a batch of `paths` paths from each emitter, in the order of spheres, so that threads change no bit. */
 static void add_batch(struct tally *tally, const struct bed *bed, const unsigned char *emits, const double *emissivity,
                       uint32_t paths, struct conduction *result) {
     for (uint32_t i = 0; i < bed->n; ++i) {
@@ -191,7 +190,7 @@ static void add_batch(struct tally *tally, const struct bed *bed, const unsigned
 }
 
 static void read_tally(const struct tally *tally, struct conduction *result) {
-    /* few large spheres among small ones concentrate the variance, too; twice that, as it is a rough estimate */
+    /* A few large spheres among small ones concentrate the variance, too. This is a rough estimate, hence the 2. */
     const double sizes = 2 * tally->expected_fourth / (tally->expected * tally->expected);
     result->paths = tally->paths;
     for (int axis = 0; axis < 3; ++axis) {
@@ -203,7 +202,7 @@ static void read_tally(const struct tally *tally, struct conduction *result) {
     result->escaped = fmax(0, tally->lost / tally->all);
 }
 
-/* One bar for the batches of a round. */
+/* Progress of a round: one bar for all its batches. */
 struct round_progress {
     const fibrad_run *run;
     uint32_t batch, batches;
@@ -214,7 +213,7 @@ static int round_stage(void *context, const char *stage, uint64_t done, uint64_t
     return round->run->progress(round->run->context, stage, round->batch * total + done, round->batches * total);
 }
 
-/* Follows `paths` more from each emitter, shared out among batches. */
+/* Follows `paths` more paths from each emitter, divided among batches. */
 static int follow_round(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
                         fibrad_run *run, uint32_t batches, uint64_t paths, struct tally *tally,
                         struct conduction *result) {
@@ -225,7 +224,8 @@ static int follow_round(const struct bed *bed, const unsigned char *emits, const
         const uint32_t share = (uint32_t)(paths / batches + (round.batch < paths % batches));
         const fibrad_exchange_rule how = {
             .emissivity = rule->emissivity, .paths = share, .seed = rule->seed + tally->batches * 0x9e3779b97f4a7c15u};
-        fibrad_run own = {.threads = result->emitters == 1 ? 1 : run->threads, /* short batches: no team to wake */
+        fibrad_run own = {.threads =
+                              result->emitters == 1 ? 1 : run->threads, /* batches are too short for several threads */
                           .progress = run->progress ? round_stage : NULL,
                           .context = &round};
         const int status = fibrad_displacements(&scene, &spheres, &how, emits, &own, tally->moved, NULL);
@@ -246,13 +246,13 @@ double conduction_worst(const struct conduction_rule *rule, const struct conduct
     return worst;
 }
 
-/* The paths per emitter that bring the worst error down to what is asked for, a tenth to spare; 0: it is there. */
+/* The paths per emitter that bring the worst error down to --error, with a tenth to spare. 0: no more are needed. */
 static double paths_for(const struct conduction_rule *rule, const struct conduction *result) {
     const double over = conduction_worst(rule, result) / rule->error;
     return over > 1 ? 1.1 * over * over * (double)result->paths : 0;
 }
 
-/* Rounds of more and more paths until the error is reached or the rays are used up. */
+/* Follows rounds of more and more paths until the error is reached or the rays are used up. */
 static int search(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
                   fibrad_run *run, uint32_t batches, struct tally *tally, struct conduction *result) {
     const uint32_t step = PARTS * batches;

@@ -1,4 +1,4 @@
-/* packing.c - beds made to measure: random ones and lattices. SPDX-License-Identifier: MIT */
+/* packing.c - makes random beds and lattices. SPDX-License-Identifier: MIT */
 #include "bed/packing.h"
 
 #include <math.h>
@@ -18,15 +18,17 @@ double bed_make_random(uint64_t seed, uint64_t count) {
     return (double)(z >> 11) * 0x1p-53;
 }
 
-/* Spheres pushed apart a little more than they need, so that pushing comes to an end. */
+/* Spheres are pushed apart by SPARE more than necessary, relative to their distance, so that pushing comes to an end.
+ */
 #define SPARE  1e-4
 #define SWEEPS 20000
 
-/* The centres by cells of a periodic cube, which are as wide as the largest sphere. */
+/* Lists of spheres by cells of a periodic cube. A cell is as wide as the largest sphere, or as the smallest one for
+ * sweep_by_size. */
 struct cells {
     uint32_t side;  /* cells along an edge */
-    int32_t *first; /* [side^3] a sphere of the cell, or -1 */
-    int32_t *next;  /* [n] another one of the same cell, or -1 */
+    int32_t *first; /* [side^3] the first sphere of the cell, or -1 */
+    int32_t *next;  /* [n] the next sphere of the cell, or -1 */
 };
 
 static uint32_t cell_index(double c, double edge, uint32_t side) {
@@ -45,8 +47,8 @@ static void fill_cells(struct cells *cells, const struct bed *bed, double edge) 
     }
 }
 
-/* Pushes two spheres apart along their line of centres, sphere i by its share of what is missing; true if they did
- * overlap. */
+/* Pushes two overlapping spheres apart along their line of centres. Sphere i moves by `share` of the distance missing,
+ * sphere j by the rest. Returns whether they overlapped. */
 static bool push(struct bed *bed, double edge, uint32_t i, uint32_t j, double share) {
     double *const axis[3] = {bed->x, bed->y, bed->z};
     double e[3], square = 0;
@@ -90,7 +92,7 @@ static bool sweep_cells(struct bed *bed, double edge, struct cells *cells) {
     return overlap;
 }
 
-/* Pushes for up to `sweeps` sweeps; *apart tells whether no spheres overlap any more. */
+/* Puts spheres at random and pushes them apart for up to `sweeps` sweeps. *apart: no spheres overlap. */
 static int pack(struct bed *bed, uint32_t n, double low, double high, double fraction, uint64_t seed, uint32_t sweeps,
                 bool *apart) {
     double volume = 0, largest = 0;
@@ -134,8 +136,8 @@ int bed_make_jammed(struct bed *bed, uint32_t n, double fraction, uint32_t sweep
     return pack(bed, n, 1, 1, fraction, seed, sweeps, &apart);
 }
 
-/* The same for spheres of very different sizes: cells are as wide as the smallest sphere, and of each pair the larger
- * one looks for the other. The smaller one gives way. */
+/* A sweep for spheres of very different sizes. Cells are as wide as the smallest sphere. Of each pair the larger sphere
+ * looks for the smaller one, and the smaller one moves. */
 static bool sweep_by_size(struct bed *bed, double edge, struct cells *cells) {
     bool overlap = false;
     wrap_and_fill(cells, bed, edge);

@@ -11,10 +11,10 @@
 #include "cli/message.h"
 #include "cli/options.h"
 
-/* Reads a table. */
+/* curve_read or column_read. */
 typedef int read_function(const char *path, const char *what, double low, double high, struct curve *curve);
 
-/* The table whose path is an item of a list; *text moves behind it. */
+/* Reads the table whose path is the next item of a list. Moves *text behind the item. */
 static int take_table(const char *what, const char **text, double low, double high, struct curve *curve,
                       read_function *read) {
     const size_t length = strcspn(*text, ",");
@@ -25,7 +25,7 @@ static int take_table(const char *what, const char **text, double low, double hi
     return status;
 }
 
-/* A number, or @TABLE where that may be; *text moves behind it. */
+/* Reads a number, or @TABLE if quantity->curves. Moves *text behind the item. */
 static int take_value(const char *what, const char **text, double low, double high, struct quantity *quantity,
                       struct curve *curve, double *value) {
     char *end;
@@ -43,7 +43,7 @@ static int take_value(const char *what, const char **text, double low, double hi
     return status;
 }
 
-/* TYPE:VALUE,TYPE:VALUE ... */
+/* Reads a list TYPE:VALUE,TYPE:VALUE ... */
 static int take_types(const char *what, const char *text, double low, double high, struct quantity *quantity) {
     quantity->column = "type";
     for (;;) {
@@ -102,7 +102,7 @@ bool quantity_curves(const struct quantity *quantity) {
     return false;
 }
 
-/* The value of sphere i; NaN: its type has none. */
+/* The value of sphere i. NaN: the option was not given, or the list does not have the type of the sphere. */
 static double value_of_sphere(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
     if (!quantity->given) return NAN;
     if (!quantity->column) return quantity->value;
@@ -129,7 +129,7 @@ int quantity_values(const struct quantity *quantity, const struct bed *bed, cons
     return STATUS_OK;
 }
 
-/* The number of the wall of this name, or -1. */
+/* The index of the wall with this name. -1: there is none. */
 static int number_of_wall(const struct walls *walls, const char *name, size_t length) {
     for (uint32_t k = 0; k < walls->count; ++k) {
         const char *known = wall_name(walls, k);
@@ -138,7 +138,8 @@ static int number_of_wall(const struct walls *walls, const char *name, size_t le
     return -1;
 }
 
-/* One item of a list: NAME=VALUE or VALUE; `wall`: the number of the wall named, or -1. *text moves behind it. */
+/* Reads an item of a list: NAME=VALUE or VALUE. *wall: index of the wall, or -1 without a name. Moves *text behind the
+ * item. */
 static int take_wall_value(const char *option, const char **text, const char *word, const struct walls *walls,
                            int *wall, double *value) {
     const size_t length = strcspn(*text, "=,");
@@ -157,7 +158,7 @@ static int take_wall_value(const char *option, const char **text, const char *wo
 
 #define TRIANGLES "triangles:"
 
-/* Whether an item is such a table, with or without NAME=. */
+/* Whether an item is a table, with or without NAME=. */
 static bool names_table(const char *text, const struct wall_tables *tables) {
     const size_t length = strcspn(text, "=,");
     const char *value = text[length] == '=' ? text + length + 1 : text;

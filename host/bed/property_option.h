@@ -11,7 +11,7 @@
 #include "text/read_curve.h"
 #include "fibrad.h"
 
-/* The hottest there may be [K]. */
+/* Largest temperature [K]. */
 #define TEMPERATURE_MAX 1e9
 
 /* Rows of tables of options, without braces. */
@@ -26,68 +26,69 @@
     KEY_WALL_EMISSIVITY, "wall-emissivity", "LIST",                                                                    \
         "emissivities of walls, 0 to 1, zmin=0.3,0.9 for example; a number without a name is for all others [1]"
 
-/* What an option says of the spheres: a number for all of them, numbers by type, or the name of a column. */
+/* A quantity of spheres that an option gives: a number for all spheres, a value for each type, or a column. */
 enum { QUANTITY_TYPES_MAX = 64 };
 struct quantity {
     bool given;
-    bool some; /* spheres may have none: NaN */
-    double value;
-    const char *column;                                           /* NULL: value */
-    size_t place;                                                 /* of the column in bed->extra */
-    int types;                                                    /* not 0: the column is that of types, from 1 on, */
-    double type[QUANTITY_TYPES_MAX], of_type[QUANTITY_TYPES_MAX]; /* [types] and these are the values of these */
-    bool curves;                                                  /* @TABLE may stand for a value, */
-    struct curve curve[QUANTITY_TYPES_MAX];                       /* by type, [0] without types; n = 0: a number */
+    bool some;          /* spheres may have no value: NaN */
+    double value;       /* for all spheres, if there is no column */
+    const char *column; /* name of the column of values or, if types > 0, of types; NULL: none */
+    size_t place;       /* index of the column in bed->extra */
+    int types;          /* 0: values are not by type */
+    double type[QUANTITY_TYPES_MAX], of_type[QUANTITY_TYPES_MAX]; /* [types] types and their values */
+    bool curves;                                                  /* @TABLE is allowed in place of a number */
+    struct curve curve[QUANTITY_TYPES_MAX]; /* [types] tables, or [0] for all spheres; n = 0: a number */
 };
 
-/* Takes the argument of an option whose values are in [low, high]. Status 0, STATUS_USAGE, or as curve_read. */
+/* Reads the argument of an option `what`, whose values are from low to high. emissivity_option reads that of
+ * --emissivity and allows tables. Status 0, STATUS_USAGE, or as curve_read. */
 int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity);
-int emissivity_option(const char *text, struct quantity *quantity); /* of --emissivity, with tables */
+int emissivity_option(const char *text, struct quantity *quantity);
 
-/* Frees its tables. */
+/* Frees the tables of a quantity. */
 void quantity_free(struct quantity *quantity);
 
-/* The table that the value of sphere i comes from; NULL: it is a number. */
+/* The table for sphere i. NULL: its value is a number. */
 const struct curve *quantity_curve(const struct quantity *quantity, const struct bed *bed, uint32_t i);
 
-/* Whether there are any. */
+/* Whether a quantity has tables. */
 bool quantity_curves(const struct quantity *quantity);
 
-/* The values of all spheres [n], to be freed also after an error; `file` is the bed's name and `what` that of the
- * quantity in messages. offset is added. Status 0, STATUS_INPUT naming the line of one that is not in [low, high], or
- * STATUS_MEMORY. Without the option, and where quantity->some: NaN;
- * from tables: one of their values. */
+/* Finds the values of all spheres, *values [n]. Free *values also after an error. `offset` is added to each value. A
+ * value is NaN if the option was not given or, with quantity->some, if it is missing. A table gives one of its values.
+ * file, what: names of bed and quantity in messages. Status 0, STATUS_MEMORY, or STATUS_INPUT naming the line of a
+ * sphere whose value is not within low and high. */
 int quantity_values(const struct quantity *quantity, const struct bed *bed, const char *file, const char *what,
                     double offset, double low, double high, double **values);
 
-/* A list such as zmin=1200,300: values by name, a bare number for all others. */
+/* A list such as zmin=1200,300: values with names of walls, and a number without a name for all other walls. */
 struct wall_list {
     bool named[WALLS_MAX];
-    double value[WALLS_MAX]; /* of those named */
-    double others;           /* NaN: there is no bare number */
+    double value[WALLS_MAX]; /* if named */
+    double others;           /* the number without a name; NaN: none */
 };
 
-/* What may stand for values: NAME=@TABLE of time, where `timed`, and NAME=triangles:FILE, a column of numbers. Zeroed
- * else; to be freed by wall_tables_free. n = 0: a number. */
+/* Tables in such a list: NAME=@TABLE over time, and NAME=triangles:FILE, a column of numbers, one per triangle. n = 0:
+ * the wall has no table. Set `timed` and zero the others; free with wall_tables_free. */
 struct wall_tables {
-    bool timed;
+    bool timed; /* tables over time are allowed */
     struct curve curve[WALLS_MAX], column[WALLS_MAX];
 };
 void wall_tables_free(struct wall_tables *tables);
 
-/* Takes such a list of values in [low, high], or the word (NULL: none), which is INFINITY. text NULL: no list; tables
- * NULL: none may be. The value of a table is that at 0, that of a column its first one. Status 0, STATUS_USAGE naming
- * the wall that is not there, or as curve_read. */
+/* Reads such a list of values from low to high. word: a word that is allowed as a value and gives INFINITY; NULL: none.
+ * text NULL: no list. tables NULL: tables are not allowed. The value of a wall with a table is that at time 0; with a
+ * column the first number. Status 0, STATUS_USAGE if there is no wall of a name, or as curve_read. */
 int wall_list(const char *option, const char *text, const char *word, double low, double high,
               const struct walls *walls, struct wall_tables *tables, struct wall_list *list);
 
-/* Reports a quantity of spheres if it was given: its number, its types' numbers or its column; values of walls, each
- * under the key wall_NAME and this ending. */
+/* Report a quantity of spheres, if it was given, and values of walls. The key of a wall is wall_NAME with the ending.
+ */
 void quantity_report(const struct quantity *quantity, const char *key, struct report *report);
 void wall_values_report(const struct walls *walls, const double *values, const char *ending, int digits,
                         struct report *report);
 
-/* Emissivities of walls; text NULL: black. */
+/* Reads the argument of --wall-emissivity. text NULL: all walls are black. Status as wall_values. */
 int wall_emissivities(const char *text, const struct walls *walls, double emissivity[WALLS_MAX]);
 
 #endif

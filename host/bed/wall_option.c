@@ -33,17 +33,17 @@ static bool is_word(const char *word, size_t length, const char *name) {
     return strlen(name) == length && strncmp(word, name, length) == 0;
 }
 
-/* Whether a text begins with another one. */
+/* Whether a text begins with `begin`. */
 static bool begins_with(const char *text, const char *begin) { return strncmp(text, begin, strlen(begin)) == 0; }
 
-/* The wall of a name; NULL: there is none. */
+/* The wall with a name. NULL: there is none. */
 static const fibrad_body *wall_named(const struct walls *walls, const char *name) {
     for (uint32_t k = 0; k < walls->count; ++k)
         if (strcmp(wall_name(walls, k), name) == 0) return &walls->body[k];
     return NULL;
 }
 
-/* The plane of a side, be it a wall or an opening; NULL: there is none. */
+/* The plane of a side, which may be a wall or an opening. NULL: there is none. */
 static const fibrad_plane *plane_of_side(const struct walls *walls, int number) {
     for (uint32_t k = 0; k < walls->count; ++k)
         if (walls->body[k].kind == FIBRAD_BODY_PLANE && plane_number(&walls->body[k].plane) == number)
@@ -74,7 +74,7 @@ static int add_opening(struct walls *walls, int number, double at) {
     return STATUS_OK;
 }
 
-/* One finite number at *text, which moves behind it. */
+/* Reads a finite number and moves *text behind it. False: there is none. */
 static bool take_number(const char **text, double *value) {
     char *end;
     *value = strtod(*text, &end);
@@ -83,7 +83,7 @@ static bool take_number(const char **text, double *value) {
     return found;
 }
 
-/* X,Y,R; *text moves behind them. */
+/* Reads X,Y,R and moves *text behind them. */
 static int take_cylinder(const char **text, struct wall_options *options) {
     double c[3];
     bool good = take_number(text, &c[0]);
@@ -93,14 +93,14 @@ static int take_cylinder(const char **text, struct wall_options *options) {
     return add_wall(options, (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {c[0], c[1], c[2]}}, true);
 }
 
-/* Whether *text begins so, and then moves behind it. */
+/* Whether *text begins with `begin`. If so, moves *text behind it. */
 static bool take_text(const char **text, const char *begin) {
     const bool found = begins_with(*text, begin);
     if (found) *text += strlen(begin);
     return found;
 }
 
-/* The number of the side of a name; PLANES: it is none. */
+/* The number of the side with a name. PLANES: there is none. */
 static int side_number(const char *word, size_t length) {
     int k = 0;
     while (k < PLANES && !is_word(word, length, plane_names[k])) ++k;
@@ -123,7 +123,7 @@ static int take_plane(const char *word, size_t length, const char **text, struct
                    word);
 }
 
-/* The word box, and which of its sides are open. */
+/* Takes the word box and its open sides. */
 static int take_box(const char **text, struct wall_options *options) {
     int status = STATUS_OK;
     options->box = true;
@@ -139,7 +139,7 @@ static int take_box(const char **text, struct wall_options *options) {
     return status;
 }
 
-/* One of the words behind the file of a mesh. */
+/* Takes one of the words behind the file of a mesh. */
 static int take_mesh_word(const char *word, struct mesh_file *file) {
     if (strcmp(word, "solids") == 0)
         file->solids = true;
@@ -154,7 +154,7 @@ static int take_mesh_word(const char *word, struct mesh_file *file) {
     return STATUS_OK;
 }
 
-/* Reads the file of a mesh and adds its bodies. */
+/* Reads the file of a mesh and adds its walls. */
 static int add_mesh(struct wall_options *options, const struct mesh_file *file) {
     struct walls *walls = &options->walls;
     if (!walls->meshes) walls->meshes = calloc(1, sizeof *walls->meshes);
@@ -175,7 +175,7 @@ static bool is_reserved(const char *name) {
     return found;
 }
 
-/* FILE:WORD:WORD, in pieces. */
+/* Takes FILE:WORD:WORD. Splits `item` at the colons. */
 static int take_mesh_words(char *item, struct mesh_file *file) {
     char *next = strchr(item, ':');
     int status = STATUS_OK;
@@ -190,7 +190,8 @@ static int take_mesh_words(char *item, struct mesh_file *file) {
     return status;
 }
 
-/* NAME=mesh:FILE:WORD:WORD up to the next comma, of which *text is FILE and moves behind it; word NULL: no name. */
+/* Takes NAME=mesh:FILE:WORD:WORD up to the next comma. word, length: NAME; word NULL: no name. *text: at FILE; moves
+ * behind the item. */
 static int take_mesh(const char *word, size_t length, const char **text, struct wall_options *options) {
     char *item = strndup(*text, strcspn(*text, ",")), *name = word ? strndup(word, length) : NULL;
     struct mesh_file file = {.name = name, .scale = 1};
@@ -232,8 +233,8 @@ int walls_option(const char *text, struct wall_options *options) {
     }
 }
 
-/* The words auto and box, as the planes they stand for but for those named besides. */
-static int spell_out(struct wall_options *options, const struct bed *bed, const char *file) {
+/* Adds the planes of the words auto and box. A side that has been named keeps its own plane. */
+static int add_planes_of_box(struct wall_options *options, const struct bed *bed, const char *file) {
     if (options->automatic && !(bed->low[0] < bed->high[0]))
         return message_at(STATUS_USAGE, file, 0,
                           "--wall auto needs a box in the file; --wall box takes the ends of the spheres");
@@ -262,7 +263,7 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
     return STATUS_OK;
 }
 
-/* Whether no wall goes on for ever along an axis. */
+/* Whether walls end along an axis. */
 static bool is_closed(const struct walls *walls, const struct bed *bed, int axis) {
     const bool both = plane_of_side(walls, 2 * axis) && plane_of_side(walls, 2 * axis + 1);
     return bed->period[axis] > 0 || both || (axis < 2 && wall_named(walls, "cylinder"));
@@ -327,7 +328,7 @@ static int check_centres(const struct walls *walls, const struct bed *bed, const
 
 int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, struct walls *walls) {
     struct wall_options all = *options;
-    int status = all.automatic || all.box ? spell_out(&all, bed, file) : STATUS_OK;
+    int status = all.automatic || all.box ? add_planes_of_box(&all, bed, file) : STATUS_OK;
     if (status) return status;
     *walls = all.walls;
     for (uint32_t k = 0; k < walls->openings; ++k) {

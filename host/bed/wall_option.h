@@ -11,25 +11,25 @@
 
 enum { WALLS_MAX = FIBRAD_BODIES_MAX, PLANES = 6 };
 
-/* Walls in the order given, those of auto and box last: body[k] is j = -2 - k in a matrix. Openings are no walls: what
- * meets them goes to the surroundings. */
+/* Walls in the order of the option; those of auto and box come last. body[k] is j = -2 - k in a matrix. Openings are no
+ * walls: radiation that meets them goes to the surroundings. */
 struct walls {
     uint32_t count;
     fibrad_body body[WALLS_MAX];
     uint32_t openings;
-    fibrad_plane opening[PLANES]; /* at NaN: where the spheres end, as far as the bed is not known */
-    struct meshes *meshes;        /* of the option; NULL: none */
-    bool moved;                   /* a plane without a place stands where spheres end, not where the file's box does */
+    fibrad_plane opening[PLANES]; /* at NaN: at the end of the spheres, before the bed is known */
+    struct meshes *meshes;        /* owned by the options; NULL: none */
+    bool moved; /* a wall stands at the end of the spheres, since the file's box ends within spheres */
 };
 
-/* What --wall asks for; several such options add up. Zeroed: no walls; to be freed by walls_free. */
+/* Walls of all options --wall. Begin with zeroes; free with walls_free. */
 struct wall_options {
     struct walls walls;
-    bool placed[WALLS_MAX]; /* whether its place was given */
-    bool automatic, box;    /* the words auto and box: which axes are open is known with the bed alone */
+    bool placed[WALLS_MAX]; /* the option gives the coordinate */
+    bool automatic, box;    /* the words auto and box; their planes are added when the bed is known */
 };
 
-/* What --help says of it: the row of a table of options, without braces, and more below. */
+/* Rows of a table of options, without braces, and a paragraph of --help. */
 #define OPTION_WALL                                                                                                    \
     KEY_WALL, "wall", "LIST",                                                                                          \
         "walls: auto, box, xmin, xmax, ymin, ymax, zmin, zmax, cylinder:X,Y,R, mesh:FILE; see below [none]"
@@ -55,30 +55,30 @@ struct wall_options {
     "  solids                 each solid of the file is a wall\n"                                                      \
     "  scale=S                coordinates are multiplied by S\n"
 
-/* "xmin" ... "zmax", "cylinder", the name of a mesh; of an opening. */
+/* The name of a wall, "xmin" ... "zmax", "cylinder" or that of a mesh; the name of the side of a plane. */
 const char *wall_name(const struct walls *walls, uint32_t k);
 const char *plane_name(const fibrad_plane *plane);
 
-/* That there is no wall of a name, after an option: what there is, and openings are none. Returns STATUS_USAGE. */
+/* Prints that there is no wall of a name in an option, and which walls there are. Returns STATUS_USAGE. */
 int wall_unknown(const char *option, const struct walls *walls, const char *name, size_t length);
 
-/* Why the library calls walls endless, and what would end them. Returns STATUS_USAGE. */
+/* Prints that walls are endless, and which openings would end them. Returns STATUS_USAGE. */
 int walls_refuse_endless(const struct walls *walls, const struct bed *bed);
 
-/* Takes one argument of --wall, and reads its meshes. Status 0, STATUS_USAGE, or as meshes_add. */
+/* Reads an argument of --wall, and the files of its meshes. Status 0, STATUS_USAGE, or as meshes_add. */
 int walls_option(const char *text, struct wall_options *options);
 void walls_free(struct wall_options *options);
 
-/* Places the walls about a bed whose periods are settled; `file` is its name in messages. Status 0, STATUS_USAGE if
- * walls and periodic axes do not agree, STATUS_INPUT naming the line if a centre lies beyond a plane or cylinder.
- * Sides of meshes are for meshes_face to find. */
+/* Places the walls about a bed whose periods are final. meshes_face finds the sides of meshes later. file: name of the
+ * bed in messages. Status 0, STATUS_USAGE if walls and periodic axes contradict each other, or STATUS_INPUT naming the
+ * line of a sphere whose centre lies beyond a plane or a cylinder. */
 int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, struct walls *walls);
 
-/* Whether nothing can escape: each axis is periodic or has both planes, none of them an opening, or the cylinder stands
- * about it; or a mesh of one side encloses the bed. */
+/* Whether no radiation can escape. Either a closed mesh encloses the bed, or there are no openings, and each axis is
+ * periodic, has walls at both ends, or lies across the cylinder. */
 bool walls_closed(const struct walls *walls, const struct bed *bed);
 
-/* Whether a wall goes on for ever along an axis. */
+/* Whether a wall is infinite along an axis. */
 bool wall_endless(const struct walls *walls, const struct bed *bed, const fibrad_body *wall);
 
 #endif

@@ -1,4 +1,6 @@
-/* furnace_cases.c - the published furnace, its reference values, and places in a box. SPDX-License-Identifier: MIT */
+/* furnace_cases.c - the published furnace, its reference values, and values along its axis. SPDX-License-Identifier:
+ * MIT
+ */
 #include "boxes/furnace_cases.h"
 
 #include <math.h>
@@ -17,8 +19,8 @@ fibrad_furnace_config furnace_case(int number) {
 const double furnace_reference_z[FURNACE_REFERENCES] = {0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0,
                                                         2.2, 2.4, 2.6, 2.8, 3.0, 3.2, 3.4, 3.6, 3.8, 3.9};
 
-/* Both cases have the same extinction, hence the same incident radiation, and E = incident/4 + source/(4 absorption),
- * so one table is valid for both. */
+/* Both cases have the same extinction, and so the same incident radiation. E = incident/4 + source/(4 absorption). So
+ * one table serves both. */
 double furnace_reference(int number, int k) {
     static const double t[FURNACE_REFERENCES] = {1094.52, 1081.62, 1057.76, 1036.54, 1017.96, 1002.14, 988.77,
                                                  977.33,  967.53,  958.93,  951.15,  943.82,  936.64,  929.32,
@@ -40,7 +42,7 @@ const double furnace_reference_theta[2][2][FURNACE_REFERENCES] = {
      {1.3446, 1.3440, 1.3441, 1.3445, 1.3456, 1.3472, 1.3497, 1.3533, 1.3569, 1.3620, 1.3683,
       1.3759, 1.3849, 1.3948, 1.4051, 1.4142, 1.4176, 1.4095, 1.3871, 1.3578, 1.3333}}};
 
-/* The mean over the two middle cells along x and y; if their number is odd, these are the same. */
+/* The mean over the two middle cells along x and along y. If the number of cells is odd, both are the same cell. */
 static double furnace_axis_mean(const double *values, size_t start, const uint32_t cells[3]) {
     double sum = 0;
     for (uint32_t j = 0; j < 2; j++)

@@ -18,7 +18,7 @@ static size_t furnace_cells(const struct furnace_run *run) {
     return (size_t)run->config.cells[0] * run->config.cells[1] * run->config.cells[2];
 }
 
-/* The exit status of a kernel function's status, for which `context` is printed before its text. */
+/* Returns the exit status for a status of the kernel. After an error prints `context` and the text of the status. */
 static int furnace_status(int status, const char *context) {
     if (status == FIBRAD_OK) return STATUS_OK;
     return message(STATUS_INPUT, "furnace: %s: %s", context, fibrad_status_text(status));
@@ -34,7 +34,7 @@ static int furnace_make(struct furnace_run *run) {
     return furnace_status(status, "initialisation");
 }
 
-/* Empties tally t, which is allocated if it is not yet. */
+/* Empties tally t, and allocates the tally the first time. */
 static int furnace_clear_tally(struct furnace_run *run, int t) {
     size_t size = fibrad_furnace_tally_size(run->furnace);
     if (run->tally_blocks[t] == NULL) run->tally_blocks[t] = malloc(size);
@@ -53,7 +53,7 @@ static int furnace_clear_tallies(struct furnace_run *run) {
     return status;
 }
 
-/* Sets the last tally to the sum of those of all threads. */
+/* Sets the last tally to the sum of the tallies of all threads. */
 static int furnace_add_tallies(struct furnace_run *run) {
     int status = furnace_clear_tally(run, run->threads);
     for (int t = 0; t < run->threads && !status; t++)
@@ -61,7 +61,7 @@ static int furnace_add_tallies(struct furnace_run *run) {
     return status;
 }
 
-/* Plans and traces bundles; the last tally then holds all that were traced since the restart. */
+/* Plans and traces bundles. The last tally then has all bundles since the last restart. */
 static int furnace_trace_plan(struct furnace_run *run, fibrad_furnace_physics physics, uint64_t bundles, bool restart) {
     uint64_t planned = 0;
     int stop = restart ? furnace_clear_tallies(run) : STATUS_OK, failed = FIBRAD_OK;
@@ -97,7 +97,7 @@ static int furnace_trace_plan(struct furnace_run *run, fibrad_furnace_physics ph
 }
 
 static int furnace_solve_lines(struct furnace_run *run, const struct furnace_options *options) {
-    /* Far below any noise: the powers of the walls then balance the source to 1e-7. */
+    /* Far below any noise. The powers of the walls then balance the source to 1e-7. */
     double tolerance = 1e-9 * run->at.e[0];
     fibrad_furnace_report report = {0};
     run->sweeps = 0;
@@ -112,7 +112,7 @@ static int furnace_solve_lines(struct furnace_run *run, const struct furnace_opt
                    FURNACE_SWEEPS_MAX);
 }
 
-/* Largest change of T from the temperatures in `before`, which are updated. */
+/* The largest change of T since `before` [K]. Updates `before`. */
 static double furnace_largest_change(const struct furnace_run *run, double *before) {
     double largest = 0;
     for (size_t k = 0; k < furnace_cells(run); k++) {
@@ -123,25 +123,26 @@ static double furnace_largest_change(const struct furnace_run *run, double *befo
     return largest;
 }
 
-/* The change of E by which each cell alone would emit the heat that the bundles found missing there [W/m2]. */
+/* The change of E of each cell that alone would balance the cell, by the divergence that bundles have measured [W/m2].
+ */
 static void furnace_local_change(const struct furnace_run *run, double *local) {
     const fibrad_furnace_config *c = &run->config;
     for (size_t k = 0; k < furnace_cells(run); k++)
         local[k] = (c->source - run->at.divergence[k]) / (4 * c->absorption);
 }
 
-/* Theta, fluxes and transverse term from the sum of the tallies. */
+/* Estimates Theta, fluxes and the transverse term from the sum of the tallies. */
 static int furnace_estimate(struct furnace_run *run, const struct furnace_options *options, bool transverse) {
     int status = fibrad_furnace_estimate(run->furnace, run->tallies[run->threads], options->estimator, transverse,
                                          options->scatter);
     return furnace_status(status, "estimate");
 }
 
-/* Heat fluxes with measured coefficients: bundles for the present E, coefficients from all bundles so far, a new E.
- * With the transverse term the heat-flux equations correct errors that extend over many cells in full, but errors that
- * differ from cell to cell only by about half: in a thin cell the derivative of the six fluxes with respect to E is
- * 6 a/Theta, that of its emission 4 a. The other half is added from the balance of the cell, which makes convergence
- * four times as fast. */
+/* Solves the heat-flux equations with measured coefficients. Each iteration traces bundles for the present E, estimates
+ * the coefficients from all bundles so far, and solves for a new E. With the transverse term, the equations correct
+ * errors of E that extend over many cells in full, but errors that differ from cell to cell only by about half: in a
+ * thin cell the derivative of the six fluxes with respect to E is 6 a/Theta, that of its emission is 4 a. The other
+ * half is added from the balance of the cell. So convergence is four times as fast. */
 static int furnace_iterate(struct furnace_run *run, const struct furnace_options *options, double *before,
                            double *local) {
     const fibrad_furnace_config *c = &run->config;

@@ -10,38 +10,38 @@
 
 enum furnace_method {
     FURNACE_HFM,    /* heat fluxes, Theta = 1 */
-    FURNACE_MCHF,   /* heat fluxes, Theta a constant or measured by Monte Carlo */
-    FURNACE_MCHF_X, /* with the transverse term besides */
+    FURNACE_MCHF,   /* heat fluxes, Theta constant or measured by Monte Carlo */
+    FURNACE_MCHF_X, /* as FURNACE_MCHF, and the transverse term is measured, too */
     FURNACE_MC      /* Monte Carlo in radiative equilibrium */
 };
 
 struct furnace_options {
     enum furnace_method method;
-    double theta; /* FURNACE_MCHF: a constant, (0, 1]; 0: measured */
+    double theta; /* FURNACE_MCHF: a constant above 0 to 1; 0: measured */
     fibrad_furnace_estimator estimator;
     fibrad_furnace_scatter scatter;
     bool measure;       /* FURNACE_MC: measure Theta afterwards */
-    bool quiet;         /* neither report the outer iterations on standard error nor show a bar */
-    bool progress;      /* show a bar also where standard error is no terminal */
-    uint64_t bundles;   /* of the first plan, about; further ones add what changes of E need */
+    bool quiet;         /* print no outer iterations and no bar on standard error */
+    bool progress;      /* show a bar also if standard error is no terminal */
+    uint64_t bundles;   /* about, of the first plan; later plans have as many as the changes of E need */
     int threads;        /* 0: all cores */
-    double tolerance;   /* K: outer iterations end when no cell changes by more */
-    uint32_t outer_max; /* outer iterations at most */
+    double tolerance;   /* outer iterations end when no cell changes by more [K] */
+    uint32_t outer_max; /* most outer iterations */
 };
 
 struct furnace_run {
     fibrad_furnace_config config;
     fibrad_furnace *furnace;
     fibrad_furnace_arrays at;
-    fibrad_furnace_tally **tallies; /* [threads + 1], the last for the sum of all */
+    fibrad_furnace_tally **tallies; /* [threads + 1] one per thread, and their sum */
     void *block, **tally_blocks;
     int threads;
-    uint32_t outers;  /* Monte Carlo runs, each followed by a solution of the heat-flux equations */
-    uint32_t sweeps;  /* of the last such solution */
-    double change;    /* of T in the last outer iteration, largest of all cells [K] */
-    uint64_t bundles; /* traced */
-    double seconds;
-    struct progress progress; /* of bundles */
+    uint32_t outers;  /* outer iterations: bundles, then a solution of the heat-flux equations */
+    uint32_t sweeps;  /* of the last solution */
+    double change;    /* largest change of T in the last outer iteration [K] */
+    uint64_t bundles; /* bundles traced */
+    double seconds;   /* time of computing [s] */
+    struct progress progress;
 };
 
 /* Computes a box. Results do not depend on the number of threads. Free the run also after an error. Status 0,

@@ -17,14 +17,15 @@ static const struct {
 
 static const char *const walls[6] = {"x0", "x1", "y0", "y1", "z0", "z1"};
 
+/* A file that is being read. */
 struct reading {
     struct lines lines;
     struct fields fields;
     fibrad_furnace_config *config;
-    uint64_t line_of[KEYS], line_of_wall[6]; /* 0: none yet */
+    uint64_t line_of[KEYS], line_of_wall[6]; /* lines of keys and walls; 0: not read yet */
 };
 
-/* A number of the line that is at least `low`, or above it. */
+/* Reads a number of the line that must be at least `low`, or above `low`. */
 static int furnace_read_number(const struct reading *r, const char *what, size_t field, double low, bool above,
                                double *value) {
     int status = lines_number(&r->lines, what, r->fields.at[field], value);

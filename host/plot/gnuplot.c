@@ -1,4 +1,4 @@
-/* gnuplot.c - runs gnuplot with its picture going to an output. SPDX-License-Identifier: MIT */
+/* gnuplot.c - runs gnuplot, whose picture goes to an output. SPDX-License-Identifier: MIT */
 #include "plot/gnuplot.h"
 
 #include <errno.h>
@@ -61,7 +61,7 @@ void gnuplot_name(FILE *script, const char *path) {
     }
 }
 
-/* gnuplot does not tell when the disc is full: has the picture got its end? */
+/* Whether the picture has its end. gnuplot reports no error if the disk is full. */
 static bool picture_whole(int picture) {
     char tail[32];
     const off_t size = lseek(picture, 0, SEEK_END);
@@ -72,7 +72,8 @@ static bool picture_whole(int picture) {
     return false;
 }
 
-/* Why: where gnuplot could not write, neither can we, at the latest when a first try has filled what room there was. */
+/* Says why the picture failed. If the disk is full, writing fails here, too: the first try fills the room that is left.
+ */
 static int picture_failed(const struct output *picture) {
     static const char more[65536];
     for (int tries = 0; tries < 2; tries++)

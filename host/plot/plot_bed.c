@@ -1,4 +1,4 @@
-/* plot_bed.c - a picture of a bed and its view factors, by gnuplot. SPDX-License-Identifier: MIT */
+/* plot_bed.c - a picture of a bed and its view or exchange factors, by gnuplot. SPDX-License-Identifier: MIT */
 #include "plot/plot_bed.h"
 
 #include <math.h>
@@ -15,8 +15,8 @@ static const char *kind_of(const struct contents *what) { return what->grey ? "e
 
 static const char *symbol_of(const struct contents *what) { return what->grey ? "D" : "F"; }
 
-/* What is said of where the radiation goes. */
-static void print_fate(FILE *script, const struct contents *what, const struct summary *summary) {
+/* Prints how much radiation goes to walls and leaves the bed. */
+static void print_losses(FILE *script, const struct contents *what, const struct summary *summary) {
     double walls = 0;
     for (uint32_t k = 0; k < what->factors->matrix.bodies; ++k) walls += summary->wall_mean[k];
     if (what->factors->matrix.bodies > 0)
@@ -39,11 +39,11 @@ static void print_style(FILE *script, const struct output *output, const char *n
             "set label 2 '%u spheres, %llu %s factors; row sums %.4f to %.4f, ",
             what->bed->n, (unsigned long long)what->factors->matrix.start[what->bed->n], kind_of(what),
             summary.row_sum_min, summary.row_sum_max);
-    print_fate(script, what, &summary);
+    print_losses(script, what, &summary);
     fputs("' at screen 0.015,0.945 tc '#444444'\n", script);
 }
 
-/* The slice, coloured by what does not go to spheres: what escapes, and what walls receive. */
+/* Draws the slice, coloured by the fraction of radiation that escapes or goes to walls. */
 static int print_slice(FILE *script, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
     struct plot_slice slice;
@@ -75,7 +75,7 @@ static void print_pairs(FILE *script, const struct contents *what, const struct 
         const double apart = 1 + (PLOT_DISTANCE_MAX - 1) * k / 200;
         double f12 = NAN;
         fibrad_pair_exact(1, 1, 2 * (apart - 1), &f12);
-        fprintf(script, "%.6g %.6g\n", apart, what->grey ? NAN : log10(f12)); /* only view factors have that */
+        fprintf(script, "%.6g %.6g\n", apart, what->grey ? NAN : log10(f12)); /* for view factors only */
     }
     fprintf(script,
             "END\n"

@@ -5,8 +5,9 @@
 #include "cli/output.h"
 #include "write/write.h"
 
-/* Draws four panels into an open output: a slice of the bed, F against distance, how F adds up with distance, and the
- * row sums. Status 0; STATUS_FILE if gnuplot is missing or fails; STATUS_MEMORY; that of a signal. */
+/* Draws four panels into an open output: a slice of the bed, factors against distance, sums of factors within a
+ * distance, and sizes of factors. name: a path, whose last part is the title. Status 0, STATUS_FILE if gnuplot is
+ * missing or fails, STATUS_MEMORY, or that of a signal. */
 int plot_bed(const struct output *output, const char *name, const struct contents *what);
 
 #endif

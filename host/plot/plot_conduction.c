@@ -6,7 +6,8 @@
 #include "cli/message.h"
 #include "plot/gnuplot.h"
 
-/* Lines: number, F_E, twice its error, the same between plates, name. */
+/* Prints a line per axis: number, F_E, twice its error, F_E between plates, twice its error, name. Returns the number
+ * of lines. */
 static int print_axes(FILE *script, const struct conduction *conduction, bool *between) {
     int axes = 0;
     fputs("$axes << END\n", script);

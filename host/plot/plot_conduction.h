@@ -5,8 +5,8 @@
 #include "bed/conduction.h"
 #include "cli/output.h"
 
-/* F_E along each axis wanted, with twice its standard error; between plates where that is known; k in the names of the
- * axes. name: a path, whose last part is the title. Status as plot_heat. */
+/* Draws F_E along each wanted axis with twice its standard error, and F_E between plates where it is known. The names
+ * of the axes include k. name: a path, whose last part is the title. Status as plot_heat. */
 int plot_conduction(const struct output *output, const char *name, const struct conduction *conduction);
 
 #endif

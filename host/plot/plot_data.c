@@ -1,4 +1,4 @@
-/* plot_data.c - what a picture of a bed shows, in numbers. SPDX-License-Identifier: MIT */
+/* plot_data.c - the numbers in a picture of a bed. SPDX-License-Identifier: MIT */
 #include "plot/plot_data.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #include "cli/message.h"
 
-/* Distance of two centres, across periodic faces if that is shorter; of a sphere from its next image if i = j. */
+/* Distance of two centres, or of their nearest images in a periodic bed. i = j: of a sphere from its nearest image. */
 static double distance_of_pair(const struct bed *bed, uint32_t i, uint32_t j) {
     const double between[3] = {bed->x[j] - bed->x[i], bed->y[j] - bed->y[i], bed->z[j] - bed->z[i]};
     double square = 0, shortest = INFINITY;
@@ -20,7 +20,7 @@ static double distance_of_pair(const struct bed *bed, uint32_t i, uint32_t j) {
     return i == j ? shortest : sqrt(square);
 }
 
-/* The bin of x in [low, high) cut into n; what is beyond goes into the first and the last. */
+/* The bin of x if low to high is divided into n bins. Smaller x are in the first bin, larger x in the last one. */
 static int bin_index(double x, double low, double high, int n) {
     const double k = floor((x - low) / (high - low) * n);
     return k < 0 ? 0 : k >= n ? n - 1 : (int)k;
@@ -55,7 +55,8 @@ static int ascending_sums(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Sums of F up to each distance for a selection of the rows, [distance][row]. */
+/* Finds sums of factors within each distance for a selection of rows, sums[distance][row]. Returns the number of rows.
+ */
 static uint32_t add_distances(const struct plot_data *data, const struct contents *what, double (*sums)[PLOT_ROWS]) {
     const fibrad_factors *matrix = &what->factors->matrix;
     const uint32_t stride = matrix->n / PLOT_ROWS + 1;
@@ -64,7 +65,8 @@ static uint32_t add_distances(const struct plot_data *data, const struct content
         if (what->wanted && !what->wanted[i]) continue;
         for (int d = 0; d <= PLOT_DISTANCES; ++d) sums[d][taken] = 0;
         for (uint64_t k = matrix->start[i]; k < matrix->start[i + 1]; ++k) {
-            const bool back = what->grey && matrix->col[k] == i; /* what others reflect to where it came from */
+            const bool back =
+                what->grey && matrix->col[k] == i; /* emission that other spheres reflect to its own sphere */
             const double apart = back ? 0 : distance_of_pair(what->bed, i, matrix->col[k]) / data->diameter;
             if (apart < PLOT_DISTANCE_MAX)
                 sums[bin_index(apart, 0, PLOT_DISTANCE_MAX, PLOT_DISTANCES) + 1][taken] += matrix->f[k];

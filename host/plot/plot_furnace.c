@@ -1,4 +1,4 @@
-/* plot_furnace.c - the fields of the centre plane of a box, by gnuplot. SPDX-License-Identifier: MIT */
+/* plot_furnace.c - a picture of the fields in the centre plane of a box, by gnuplot. SPDX-License-Identifier: MIT */
 #include "plot/plot_furnace.h"
 
 #include <math.h>
@@ -8,16 +8,16 @@
 #include "boxes/furnace_cases.h"
 #include "plot/gnuplot.h"
 
-/* A map of the centre plane: values at the centres of cells, or of faces across axis x or z. */
+/* A map of the centre plane. Values are at centres of cells, or of faces across axis x or z. */
 struct map {
     const double *values;
     int axis; /* of the faces; -1: cells */
     bool temperature;
     const char *title;
-    double contour; /* between lines */
+    double contour; /* distance of contour lines */
 };
 
-/* Mean over the two cells next to the plane y = Y/2. */
+/* The mean over the two cells next to the plane y = Y/2. */
 static double furnace_plane_mean(const struct furnace_run *run, const struct map *map, size_t i, size_t k) {
     const uint32_t *n = run->config.cells;
     size_t across = n[0] + (map->axis == 0 ? 1u : 0u);

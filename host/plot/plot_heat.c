@@ -11,11 +11,11 @@
 
 enum { LAYERS_MAX = 60 };
 
-/* Colours of what gains and what loses. */
+/* Colours of heat gained and lost. */
 #define GAINED "c8553d"
 #define LOST   "3a6ea5"
 
-/* What the spheres gain and lose together. */
+/* Sums over the spheres that gain heat and over those that lose heat. */
 struct turnover {
     double gained, lost; /* [W] both >= 0 */
 };
@@ -47,7 +47,7 @@ static void print_head(FILE *script, const struct output *output, const char *na
             what->bed->n, low, high, all.gained >= all.lost ? "gain" : "lose", fabs(all.gained - all.lost));
 }
 
-/* The slice by temperature; walls by theirs. */
+/* Draws the slice. Spheres and walls are coloured by their temperatures. */
 static void print_temperatures(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
     fprintf(script,
             "set palette defined (0 '#000004', 1 '#3b0f70', 2 '#8c2981', 3 '#de4968', 4 '#fe9f6d', 5 '#fcfdbf')\n"
@@ -62,7 +62,8 @@ static int ascending_sizes(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The power that one sphere of fifty exceeds, so that a few do not take all the colour; 0: out of memory. */
+/* The end of the colour scale: the power that one sphere of fifty exceeds, so that a few large powers do not make all
+ * other spheres grey. 0: out of memory. */
 static double power_shown(const struct heat_shown *what) {
     const uint32_t n = what->bed->n;
     double *power = malloc(n * sizeof *power);
@@ -87,7 +88,7 @@ static int print_powers(FILE *script, const struct plot_slice *slice, const stru
     return STATUS_OK;
 }
 
-/* Layers of the bed about a mean diameter thick. */
+/* Layers of the bed across z, about one mean diameter thick. */
 struct layers {
     int n;
     double low, high, thick;
@@ -110,7 +111,7 @@ static int layer_at(const struct layers *layers, double z) {
     return (int)fmin(layers->n - 1, floor((z - layers->low) / layers->thick));
 }
 
-/* Gains and losses in layers, and their sums. */
+/* Draws gains and losses of layers, and their sums. */
 static void print_layers(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
     const struct bed *bed = what->bed;
     const struct layers layers = layers_of(bed);
@@ -140,7 +141,7 @@ static void print_layers(FILE *script, const struct plot_slice *slice, const str
             0.46 * layers.thick / slice->scale);
 }
 
-/* Temperatures by height, in the same layers: the mean, the coldest and the hottest. */
+/* Draws mean, least and largest temperature of each layer. */
 static void print_profile(FILE *script, const struct plot_slice *slice, const struct heat_shown *what) {
     const struct bed *bed = what->bed;
     const struct layers layers = layers_of(bed);
@@ -152,7 +153,7 @@ static void print_profile(FILE *script, const struct plot_slice *slice, const st
         layer[k].sum = layer[k].n = 0, layer[k].least = INFINITY, layer[k].most = -INFINITY;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const int k = layer_at(&layers, bed->z[i]);
-        if (isnan(what->temperature[i])) continue; /* of emissivity 0 */
+        if (isnan(what->temperature[i])) continue; /* emissivity 0: no temperature */
         layer[k].sum += what->temperature[i];
         layer[k].least = fmin(layer[k].least, what->temperature[i]);
         layer[k].most = fmax(layer[k].most, what->temperature[i]);
@@ -175,7 +176,7 @@ static void print_profile(FILE *script, const struct plot_slice *slice, const st
             slice->unit[0] ? "]" : "", layers.low / slice->scale, layers.high / slice->scale);
 }
 
-/* A bar: what it is, the temperature (NaN: several) and the power. `between` stands before the temperature. */
+/* Prints a bar: its name, temperature (NaN: none) and power. `between` stands between name and temperature. */
 static void print_bar(FILE *script, int at, const char *what, const char *between, double temperature, double power) {
     if (isnan(temperature))
         fprintf(script, "%d %.6g \"%s\"\n", at, power, what);
@@ -183,7 +184,7 @@ static void print_bar(FILE *script, int at, const char *what, const char *betwee
         fprintf(script, "%d %.6g \"%s%s%.5g K\"\n", at, power, what, between, temperature);
 }
 
-/* Who gains and who loses. The names of many stand aslant. */
+/* Draws a bar for spheres, each wall and the surroundings. If there are many bars, their names are rotated. */
 static void print_bars(FILE *script, const struct heat_shown *what) {
     const struct turnover all = turnover_of(what);
     const bool open = !isnan(what->surroundings_power), many = what->walls->count + open > 4;

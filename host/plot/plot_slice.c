@@ -1,15 +1,13 @@
-/* plot_slice.c - a slice through a bed across y, its spheres and walls coloured, by gnuplot. SPDX-License-Identifier:
- * MIT
- */
+/* plot_slice.c - a slice through a bed across y with coloured spheres and walls. SPDX-License-Identifier: MIT */
 #include "plot/plot_slice.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Walls farther off than this part of the bed's extent are not shown: they would leave it little room. */
+/* A wall farther from the bed than this part of the bed's length is not shown: the bed would become too small. */
 #define FAR_WALL 0.3
 
-/* The range that spheres take up along an axis. */
+/* The least and largest coordinate of spheres along an axis. */
 static void bounds(const double *centre, const double *r, uint32_t n, double *low, double *high) {
     *low = INFINITY;
     *high = -INFINITY;
@@ -19,7 +17,8 @@ static void bounds(const double *centre, const double *r, uint32_t n, double *lo
     }
 }
 
-/* Along axis 0 or 2, the places where walls stand in the plane. Returns how many, at most 2; 0 of a mesh. */
+/* Finds where the slice meets a plane or a cylinder: coordinates along *axis, 0 or 2. Returns their number, at most 2.
+ * A mesh has none. */
 static int wall_places(const struct plot_slice *slice, const fibrad_body *wall, int *axis, double place[2]) {
     if (wall->kind == FIBRAD_BODY_MESH) return 0;
     *axis = wall->kind == FIBRAD_BODY_PLANE ? wall->plane.axis : 0;
@@ -35,7 +34,7 @@ static int wall_places(const struct plot_slice *slice, const fibrad_body *wall, 
 
 static uint32_t walls_shown(const struct plot_slice *slice) { return slice->walls ? slice->walls->count : 0; }
 
-/* Where the plane cuts a triangle: x and z of both ends [2][2]. False: nowhere. */
+/* Finds where the slice cuts a triangle: x and z of both ends of the cut. False: nowhere. */
 static bool cut_of(const struct plot_slice *slice, const struct surface *surface, uint32_t triangle, double end[2][2]) {
     int ends = 0;
     for (int k = 0; k < 3 && ends < 2; ++k) {
@@ -48,7 +47,7 @@ static bool cut_of(const struct plot_slice *slice, const struct surface *surface
     return ends == 2;
 }
 
-/* Shows what is done with the cut of a triangle of body k. */
+/* A function that takes the cut of a triangle of wall k. */
 typedef void cut_seen(void *context, double end[2][2], uint32_t k);
 
 static void cut_meshes(const struct plot_slice *slice, cut_seen *seen, void *context) {
@@ -59,7 +58,7 @@ static void cut_meshes(const struct plot_slice *slice, cut_seen *seen, void *con
             if (cut_of(slice, &meshes->mesh[m].surface, t, end)) seen(context, end, mesh_body(&meshes->mesh[m], t));
 }
 
-/* The range without walls, and where it becomes wider. */
+/* A slice whose range is being widened, and its range without walls. */
 struct widening {
     struct plot_slice *slice;
     double low[3], high[3];
@@ -79,7 +78,7 @@ static void include_cut(void *widening, double end[2][2], uint32_t k) {
         for (int axis = 0; axis < 2; ++axis) include_place(widening, 2 * axis, end[e][axis]);
 }
 
-/* Widens the range shown to walls that are near. */
+/* Widens the range of the slice, so that near walls are shown. */
 static void include_walls(struct plot_slice *slice) {
     struct widening widening = {.slice = slice};
     memcpy(widening.low, slice->low, sizeof widening.low);
@@ -93,7 +92,7 @@ static void include_walls(struct plot_slice *slice) {
     cut_meshes(slice, include_cut, &widening);
 }
 
-/* Numbers of millimetres and the like stay short: a thousandth, a thousand, ... where the largest asks for it. */
+/* Chooses the unit of the axes: a power of 1000, so that the largest coordinate has few digits. */
 static void choose_scale(struct plot_slice *slice, double metres) {
     static const char *const prefix[] = {"n", "\302\265", "m", "", "k"};
     const bool known = metres > 0;
@@ -125,11 +124,11 @@ void plot_slice_of(struct plot_slice *slice, const struct bed *bed, const struct
     choose_scale(slice, metres);
 }
 
-/* Lines in the making. */
+/* Where and how lines of walls are printed. */
 struct wall_lines {
     FILE *script;
     double scale;
-    const double *value; /* of walls; NULL: none */
+    const double *value; /* [walls] for the colour; NULL: none */
 };
 
 static void print_end(const struct wall_lines *lines, double x, double z, uint32_t k) {
@@ -142,7 +141,7 @@ static void print_cut(void *wall_lines, double end[2][2], uint32_t k) {
     fputs("\n", lines->script);
 }
 
-/* Lines of the walls: their ends and a value, parted by empty lines. */
+/* Prints the lines of walls: their ends with a value, and an empty line behind each. */
 static void print_walls(FILE *script, const struct plot_slice *slice, const double *wall_value) {
     struct wall_lines lines = {script, slice->scale, wall_value};
     fputs("$walls << END\n", script);

@@ -6,13 +6,13 @@
 
 #include "cli/output.h"
 
-/* What the spheres have in common at a time. */
+/* Temperatures of all spheres at a time. */
 struct time_point {
     double time;              /* [s] */
     double mean, least, most; /* temperatures [K] */
 };
 
-/* Mean and extremes over time. Status as plot_heat. */
+/* Draws mean, least and largest temperature over time. Status as plot_heat. */
 int plot_time(const struct output *output, const char *name, const struct time_point *point, size_t points);
 
 #endif

@@ -126,7 +126,7 @@ static int order_files(struct rank_file *rank_file, size_t count) {
 /* ---- ids -------------------------------------------------------------------------------------------------------- */
 
 /* Compares ids, or structures that begin with an id. */
-static int compare_ids(const void *a, const void *b) {
+static int compare_joined(const void *a, const void *b) {
     const uint64_t left = *(const uint64_t *)a, right = *(const uint64_t *)b;
     return (left > right) - (left < right);
 }
@@ -148,7 +148,7 @@ static int order_ids(const struct rank_file *rank_file, struct owner *owner, str
         const int status = own_ids(&rank_file[k], k, owner + n, joined->id);
         if (status) return status;
     }
-    qsort(owner, n, sizeof *owner, compare_ids);
+    qsort(owner, n, sizeof *owner, compare_joined);
     for (size_t k = 0; k < n; ++k) {
         joined->id[k] = owner[k].id;
         if (k > 0 && owner[k].id == owner[k - 1].id)
@@ -180,7 +180,7 @@ static int join_ids(const struct rank_file *rank_file, struct joined *joined) {
 
 /* The number of the sphere of an id. joined->n: there is none. */
 static uint32_t sphere_of(const struct joined *joined, uint64_t id) {
-    const uint64_t *at = joined->n > 0 ? bsearch(&id, joined->id, joined->n, sizeof id, compare_ids) : NULL;
+    const uint64_t *at = joined->n > 0 ? bsearch(&id, joined->id, joined->n, sizeof id, compare_joined) : NULL;
     return at ? (uint32_t)(at - joined->id) : joined->n;
 }
 

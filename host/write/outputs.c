@@ -1,4 +1,4 @@
-/* outputs.c - where the results of a run go: -o, several times, and --format. SPDX-License-Identifier: MIT */
+/* outputs.c - the outputs of a run: -o, --format, --json. SPDX-License-Identifier: MIT */
 #include "write/outputs.h"
 
 #include <inttypes.h>
@@ -18,7 +18,7 @@ static const struct format formats[] = {{"csv", {write_csv, write_heat_csv, writ
                                         {"lammpstrj", {NULL, write_heat_dump}, true, true}};
 enum { FORMATS = sizeof formats / sizeof *formats };
 
-/* ".csv, .mtx and .npz": formats that can hold such contents; `dot` stands before each. */
+/* Lists the formats that can hold such contents: ".csv, .mtx and .npz". `dot` stands before each name. */
 static const char *list_formats(enum content content, const char *dot, char text[100]) {
     int left = 0, used = 0;
     for (int k = 0; k < FORMATS; ++k) left += formats[k].write[content] != NULL;
@@ -67,7 +67,7 @@ int outputs_format(struct outputs *outputs, const char *name) {
     return STATUS_OK;
 }
 
-/* The format of an output is settled; can it hold what is to come? */
+/* Finds the format of an output, and checks that the format can hold the contents. */
 static int check_format(struct outputs *outputs, size_t k, bool series) {
     const char *path = outputs->to[k].path;
     const struct format *format = outputs->to[k].format ? outputs->to[k].format : outputs->format;
@@ -90,7 +90,7 @@ static bool is_same(const char *a, const char *b) {
     return a && b && ((output_stdout(a) && output_stdout(b)) || output_same(a, b));
 }
 
-/* Would output k, under this name, and another file of the run replace each other? */
+/* Checks that no other output of the run has the path of output k. */
 static int check_others(const struct outputs *outputs, size_t k, const char *path) {
     bool twice = is_same(path, outputs->summary) || is_same(path, outputs->picture);
     for (size_t other = 0; other < outputs->count; ++other)
@@ -128,7 +128,7 @@ int outputs_open(struct outputs *outputs) {
     return status;
 }
 
-/* A frame as a file of its own. */
+/* Writes a frame into a file of its own. */
 static int write_alone(const struct outputs *outputs, size_t k, const struct contents *what, int64_t number) {
     const char *pattern = outputs->to[k].path, *star = outputs->to[k].star;
     char path[PATH_MAX];
@@ -141,7 +141,7 @@ static int write_alone(const struct outputs *outputs, size_t k, const struct con
     return output_close(&file, status);
 }
 
-/* Notes a frame of a series. */
+/* Notes a frame of a series, for write_collection. */
 static int note_frame(struct outputs *outputs, const struct contents *what) {
     if (!what->series && !what->time) return STATUS_OK;
     if (outputs->frames == outputs->room) {
@@ -171,20 +171,20 @@ int outputs_write(struct outputs *outputs, const struct contents *what) {
     return status;
 }
 
-/* Whether times or timesteps of the frames ascend; else their numbers stand for them. */
+/* Whether all frames have times or timesteps that ascend. If not, the .pvd has their numbers instead. */
 static bool has_times(const struct outputs *outputs) {
     for (size_t k = 0; k < outputs->frames; ++k)
         if (!outputs->frame[k].known || (k > 0 && !(outputs->frame[k].time > outputs->frame[k - 1].time))) return false;
     return true;
 }
 
-/* NAME.pvd beside NAME.*.vtp, which tells ParaView the time of each. */
+/* Writes NAME.pvd beside NAME.*.vtp. It tells ParaView the time of each file. */
 static int write_collection(const struct outputs *outputs, const char *path, const char *star) {
     const char *slash = strrchr(path, '/'), *begin = slash ? slash + 1 : path;
     size_t length = (size_t)(star - path);
     char name[PATH_MAX], number[TEXT_NUMBER];
     struct output file = {0};
-    if (slash > star) return STATUS_OK; /* files in folders of their own */
+    if (slash > star) return STATUS_OK; /* each file is in a folder of its own */
     while (length > (size_t)(begin - path) && strchr("._-", path[length - 1])) --length;
     if (snprintf(name, sizeof name, "%.*s.pvd", (int)length, path) >= (int)sizeof name)
         return message_at(STATUS_FILE, path, 0, "is too long a name");

@@ -1,4 +1,4 @@
-/* outputs.h - where the results of a run go: -o, several times, and --format. SPDX-License-Identifier: MIT */
+/* outputs.h - the outputs of a run: -o, --format, --json. SPDX-License-Identifier: MIT */
 #ifndef OUTPUTS_H
 #define OUTPUTS_H
 
@@ -11,36 +11,36 @@
 
 enum content { CONTENT_MATRIX, CONTENT_HEAT, CONTENT_CONDUCTION, CONTENTS };
 
-/* A format by its name, which is the ending of its files, too. */
+/* A format of outputs. */
 struct format {
-    const char *name;
-    write_function *write[CONTENTS]; /* NULL: it cannot hold that */
-    bool frames;                     /* it holds several frames, one after the other */
-    bool columns;                    /* it has the columns of the input, too */
+    const char *name;                /* also the ending of its files */
+    write_function *write[CONTENTS]; /* NULL: the format cannot hold these contents */
+    bool frames;                     /* a file can hold several frames */
+    bool columns;                    /* a file has the columns of the input, too */
 };
 
 enum { OUTPUTS_MAX = 8 };
 
-/* A frame that was written, for those files of ParaView that list them. */
+/* A frame that was written, for the .pvd of a series. */
 struct written {
     int64_t number;
     double time; /* [s], or the timestep */
-    bool known;  /* there is one of these */
+    bool known;  /* the frame has a time or a timestep */
 };
 
-/* Zeroed: none, and the summary only. */
+/* All outputs of a run. Begin with zeroes: the summary only. */
 struct outputs {
     size_t count;
     struct {
         const char *path; /* "-": standard output */
-        const char *star; /* in the path: one file a frame, with its number there; NULL: one for all */
+        const char *star; /* the * in the path, which means a file per frame; NULL: one file */
         const struct format *format;
-        struct output file; /* where there is no star */
-        bool begun;         /* a frame is in it */
+        struct output file; /* without a star */
+        bool begun;         /* the file has a frame */
     } to[OUTPUTS_MAX];
-    const struct format *format; /* of --format; NULL: it was not given */
+    const struct format *format; /* --format; NULL: not given */
     enum content content;
-    const char *summary, *picture; /* other files of the run, --json and --plot; NULL: none */
+    const char *summary, *picture; /* paths of --json and --plot; NULL: not given */
     struct output summary_file;
     struct written *frame; /* [frames] */
     size_t frames, room;
@@ -50,31 +50,32 @@ struct outputs {
 #define OPTION_FORMAT                                                                                                  \
     KEY_FORMAT, "format", "NAME", "format of each -o without an ending that names one, such as -o - [by the ending]"
 
-/* Takes the argument of -o, --wall-vtp or --format. Status 0 or STATUS_USAGE. */
+/* Take the argument of -o, --wall-vtp or --format. Status 0 or STATUS_USAGE. */
 int outputs_add(struct outputs *outputs, const char *path);
 int outputs_add_meshes(struct outputs *outputs, const char *path);
 int outputs_format(struct outputs *outputs, const char *name);
 
-/* Can all that be written? series: several frames may come. Status 0 or STATUS_USAGE. */
+/* Checks when all options have been read that the outputs can hold the contents and have different paths. series: there
+ * may be several frames. Status 0 or STATUS_USAGE. */
 int outputs_check(struct outputs *outputs, enum content content, bool series);
 
-/* Whether one of them has the columns of the input, too. */
+/* Whether an output has the columns of the input, too. */
 bool outputs_keep(const struct outputs *outputs);
 
-/* Opens them before any work is done; those with `*` are tried. Status 0 or as output_open; then, as after all that
- * follows, outputs_close. */
+/* Opens all outputs before any work is done. For a path with `*`, a file is opened for a test and removed. Call
+ * outputs_close also after an error. Status as output_open. */
 int outputs_open(struct outputs *outputs);
 
-/* Writes a frame into each, the number of what->bed->frame in the names of those with `*`; a file of its own is
- * complete when this returns. Status 0, that of the writer, of outputs_open or of output_close. */
+/* Writes a frame to all outputs. A path with `*` gets a file of the number what->bed->frame, which is then complete.
+ * Status 0, that of the writer, or as output_open or output_close. */
 int outputs_write(struct outputs *outputs, const struct contents *what);
 
-/* Beside series NAME.*.vtp of frames or times writes NAME.pvd, which ParaView opens; gives the files their names, or
- * removes those still open after any trouble; `status` as in output_close. */
+/* Closes all outputs as output_close does, with the status of the work so far. Beside a series NAME.*.vtp writes
+ * NAME.pvd for ParaView. */
 int outputs_close(struct outputs *outputs, int status);
 
-/* Where the summary goes, once they are open: its lines to standard output, or to standard error where results go there
- * (quiet: nowhere), and to --json. */
+/* Makes the report of the summary when the outputs are open. Its lines go to standard output, or to standard error if
+ * results go to standard output. quiet: no lines. Its JSON goes to --json. */
 struct report outputs_report(const struct outputs *outputs, bool quiet);
 
 #endif

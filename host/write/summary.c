@@ -1,4 +1,4 @@
-/* summary.c - what the rows of a matrix have in common. SPDX-License-Identifier: MIT */
+/* summary.c - sums, means and errors of the rows of a matrix. SPDX-License-Identifier: MIT */
 #include <math.h>
 
 #include "write/write.h"
@@ -25,7 +25,7 @@ static void add_summary(struct summary *summary, const fibrad_factors *matrix, u
     summary->beyond_mean += matrix->beyond[i];
 }
 
-/* Rows not wanted, and those of spheres that emit nothing, are empty. */
+/* Whether a row is not empty. Rows that are not wanted and rows of spheres of emissivity 0 are empty. */
 static bool has_row(const struct contents *what, uint32_t i) {
     return (!what->wanted || what->wanted[i]) && (!what->grey || what->grey->emissivity[i] > 0);
 }
@@ -42,16 +42,16 @@ void summary_make(struct summary *summary, const struct contents *what) {
     for (uint32_t i = 0; i < matrix->n; ++i)
         if (has_row(what, i)) add_summary(summary, matrix, i, rows);
     for (uint32_t k = 0; matrix->body_body && k < matrix->bodies; ++k)
-        summary->wall_error_max = fmax(summary->wall_error_max, matrix->body_error[k]); /* NaN is passed over */
+        summary->wall_error_max = fmax(summary->wall_error_max, matrix->body_error[k]); /* fmax ignores NaN */
     summary->escaped_mean /= rows;
     summary->beyond_mean /= rows;
     summary->error_rms = sqrt(summary->error_rms);
 }
 
-/* Of a wall: the mean F to it and, where it has an end, its area. */
+/* Reports the mean factor to a wall and, if the wall is finite, its area. */
 static void report_wall_share(const struct summary *summary, const struct contents *what, uint32_t k,
                               struct report *report) {
-    const char *kind = what->walls->body[k].kind ? "wall_" : ""; /* else that is its name */
+    const char *kind = what->walls->body[k].kind ? "wall_" : ""; /* names of unknown walls begin with wall_ */
     const double area = what->factors->body_area[k];
     char name[BODY_NAME], key[BODY_NAME + 16];
     snprintf(key, sizeof key, "%s%s_F", kind, contents_body(what, k, name));
@@ -60,7 +60,7 @@ static void report_wall_share(const struct summary *summary, const struct conten
     if (area < INFINITY) report_value(report, key, area, 6);
 }
 
-/* Of a wall that has a row: what it sends to all walls and to the surroundings, and the error of both. */
+/* Reports the factors from a wall to all walls and to the surroundings, and their error, if the wall has a row. */
 static void report_wall_row(const struct contents *what, uint32_t k, struct report *report) {
     const fibrad_factors *matrix = &what->factors->matrix;
     char name[BODY_NAME], key[BODY_NAME + 16];

@@ -1,6 +1,5 @@
 /* vtp_array.h - arrays of VTK's XML files, inline and binary. SPDX-License-Identifier: MIT
- *
- * Base64 of the length in bytes (UInt64) followed by the values. */
+ * An array is the base64 of its length in bytes (UInt64), followed by the values. */
 #ifndef VTP_ARRAY_H
 #define VTP_ARRAY_H
 
@@ -8,25 +7,25 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* The first lines of a file of points and cells, `kind` being Verts or Polys; and its last ones. */
+/* Writes the first lines of a file of points and cells. kind: Verts or Polys. VTP_END: the last lines. */
 void vtp_head(FILE *file, uint32_t points, const char *kind, uint32_t cells);
 #define VTP_END "</Piece>\n</PolyData>\n</VTKFile>\n"
 
-/* Base64 of a stream of bytes. */
+/* A stream of bytes that is written as base64. */
 struct base64 {
     FILE *file;
-    uint32_t bits;
-    int bytes; /* waiting in bits: 0 to 2 */
+    uint32_t bits; /* bytes that are not written yet */
+    int bytes;     /* their number, 0 to 2 */
 };
 
-/* An array of so many values of 8 bytes, which follow, up to base64_end. */
+/* Begins an array of `values` values of 8 bytes. Write the values, then call base64_end. */
 struct base64 base64_begin(FILE *file, const char *type, const char *name, int components, uint64_t values);
 void base64_bytes(struct base64 *to, const void *data, size_t size);
 void base64_double(struct base64 *to, double value);
 void base64_whole(struct base64 *to, int64_t value);
 void base64_end(struct base64 *to);
 
-/* An array of whole numbers; of first, first + step ... */
+/* Write an array of whole numbers, given or first, first + step ... */
 void vtp_counts(FILE *file, const char *name, const int64_t *values, uint32_t n);
 void vtp_ascending(FILE *file, const char *name, uint32_t n, int64_t first, int64_t step);
 

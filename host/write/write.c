@@ -1,4 +1,4 @@
-/* write.c - what all writers ask of the contents. SPDX-License-Identifier: MIT */
+/* write.c - names of walls for all writers. SPDX-License-Identifier: MIT */
 #include "write/write.h"
 
 const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]) {

@@ -1,4 +1,4 @@
-/* write.h - results of a bed to files, one frame at a time, and what is said of them. SPDX-License-Identifier: MIT */
+/* write.h - the results of a bed, their writers, and their summary. SPDX-License-Identifier: MIT */
 #ifndef WRITE_H
 #define WRITE_H
 
@@ -11,7 +11,7 @@
 #include "text/report.h"
 #include "simple/fibrad_host.h"
 
-/* A further array of a .npz; one of a name that it has anyway takes its place. */
+/* A further array of a .npz. It replaces an array of the same name that every .npz has. */
 struct array {
     const char *name, *type; /* "x.npy"; kind and bytes as NumPy has them: "f8" */
     const void *data;
@@ -20,58 +20,58 @@ struct array {
 
 enum { ARRAYS_MAX = 24 };
 
-/* The results of one frame: a matrix, or heat, or conduction; what belongs to the others is 0. */
+/* The results of one frame: a matrix, heat or conduction. Fields of the others are 0. */
 struct contents {
     const struct bed *bed;
-    const struct walls *walls; /* NULL: neither walls nor surroundings are written. A body of kind 0: only that there is
-                                  one is known */
-    const char *file;          /* the bed's, a column where several files go into one output; NULL: there is one */
-    bool series;               /* several frames may go into one output: columns frame and timestep */
-    const double *time;        /* [s] a column where several times go into one output; NULL: there is one */
+    const struct walls *walls; /* NULL: neither walls nor surroundings are written. kind 0: the wall is not known, only
+                                * that there is one */
+    const char *file;          /* for a column of the names of several files; NULL: one file */
+    bool series;               /* with columns frame and timestep, for several frames */
+    const double *time;        /* [s] for a column of several times; NULL: one time */
 
     const fibrad_bed_factors *factors;
-    const unsigned char *wanted;      /* [n] not 0: this row was computed; NULL: all were */
+    const unsigned char *wanted;      /* [n] not 0: this row was computed; NULL: all rows */
     const fibrad_exchange_rule *grey; /* NULL: view factors; else exchange factors by this rule */
-    const struct array *array;        /* [arrays] that a .npz has besides its own, at most ARRAYS_MAX */
+    const struct array *array;        /* [arrays] further arrays of a .npz */
     size_t arrays;
 
-    const struct side_arrays *of_sides; /* what is known of the triangles of meshes; NULL: where they are */
+    const struct side_arrays *of_sides; /* values of the triangles of meshes; NULL: none */
 
-    const fibrad_heat_sources *sources; /* kelvins; surroundings NaN: there are none, the geometry is closed */
-    const fibrad_heat_result *result;   /* watts, kelvins; has all arrays */
+    const fibrad_heat_sources *sources; /* [K]; surroundings NaN: the bed is closed */
+    const fibrad_heat_result *result;   /* [W], [K]; all arrays are set */
 
     const struct conduction *conduction;
 };
 
-/* Writes one frame; first: the file is empty yet. A failing file is noticed by the caller. Status 0, STATUS_MEMORY or
- * that of a signal. */
+/* Writes one frame. first: the file is empty. The caller checks the file for errors. Status 0, STATUS_MEMORY or that of
+ * a signal. */
 typedef int write_function(FILE *file, const struct contents *what, bool first);
 
 write_function write_csv, write_mtx, write_npz, write_vtp, write_json;
 write_function write_conduction_csv, write_conduction_json;
-write_function write_mesh_vtp; /* has walls with meshes */
+write_function write_mesh_vtp; /* for walls with meshes */
 write_function write_heat_csv, write_heat_vtp, write_heat_json, write_heat_dump;
 
-/* What a body is called: "zmin" and the like, "wall_1" and the like if its place is not known. */
+/* The name of a wall in outputs: "zmin" for example, or "wall_1" for the first one if walls are not known. */
 enum { BODY_NAME = MESH_NAME };
 const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]);
 
-/* What the rows that were computed have in common. */
+/* Extremes, means and errors of the rows that were computed. */
 struct summary {
     double row_sum_min, row_sum_max, escaped_mean, beyond_mean;
     double closure_max; /* largest |row sum + escaped + beyond + walls - 1| */
     double error_max, error_rms;
-    double wall_error_max; /* of the rows that walls have */
-    double wall_mean[WALLS_MAX];
+    double wall_error_max;       /* largest error of a row of a wall */
+    double wall_mean[WALLS_MAX]; /* mean factor to each wall */
 };
 
-/* The sum over the spheres that row i sees. */
+/* The sum of the factors from sphere i to all spheres. */
 double summary_row(const fibrad_factors *matrix, uint32_t i);
 
 void summary_make(struct summary *summary, const struct contents *what);
 
-/* Reports it, with the entries of the matrix, its reciprocity, and the area of each wall that has an end; closure is
- * that of the raw rows and of those written. */
+/* Reports a summary, with the number of entries, the reciprocity and the areas of finite walls. The closure is the
+ * worst of the raw rows and of the rows written. */
 void summary_report(const struct summary *summary, const struct contents *what, struct report *report);
 
 #endif

@@ -1,8 +1,7 @@
 /* write_csv.c - comma-separated values: i,j,F or i,j,D of a matrix, i,T_K,q_W,... of heat, F_E and k of conduction.
  * SPDX-License-Identifier: MIT
- *
- * What is no sphere has negative numbers, and its name in the column body: the surroundings -1, walls -2, -3 ..., then
- * what is beyond a cutoff. */
+ * Numbers below 0 are not spheres, and the column body has their names: -1 is the surroundings, -2, -3 ... are walls,
+ * and the next number is `beyond`. */
 #include <gsl/gsl_math.h>
 #include <limits.h>
 #include <math.h>
@@ -15,16 +14,16 @@
 
 enum { SURROUNDINGS = -1, FIRST_WALL = -2 };
 
-/* A line in the making. */
+/* The line that is being written. */
 struct csv {
     FILE *file;
     const struct contents *what;
     bool named;     /* there is a column body */
-    size_t columns; /* how long the columns are that all lines begin with */
+    size_t columns; /* length of the columns file, frame, timestep and time_s, with which all lines begin */
     char line[2 * PATH_MAX + 8 * TEXT_NUMBER];
 };
 
-/* A text; in quotes if it has commas or quotes itself. */
+/* Puts a text, in quotes if it has commas or quotes. */
 static char *put_text(char *to, const char *text) {
     const bool quoted = strpbrk(text, ",\"\r\n");
     if (quoted) *to++ = '"';
@@ -41,7 +40,7 @@ static char *put_comma(char *to) {
     return to + 1;
 }
 
-/* Writes the header, too, if the file is empty; `names` are those of the columns. */
+/* Begins the lines of a frame. If the file is empty (first), writes the header. names: of the columns. */
 static void begin_csv(struct csv *csv, FILE *file, const struct contents *what, const char *names, bool first) {
     const struct bed *bed = what->bed;
     char *at = csv->line;
@@ -88,7 +87,7 @@ static void write_outside(struct csv *csv, uint32_t i) {
     write_entry(csv, row, FIRST_WALL - (int64_t)walls, what->factors->matrix.beyond[i], "beyond");
 }
 
-/* From a wall to the walls and the surroundings; the column body then has both names. */
+/* Writes the factors from a wall to walls and surroundings. The column body has both names. */
 static void write_wall_row(struct csv *csv, uint32_t k) {
     const struct contents *what = csv->what;
     const fibrad_factors *matrix = &what->factors->matrix;
@@ -103,7 +102,7 @@ static void write_wall_row(struct csv *csv, uint32_t k) {
     }
 }
 
-/* From the walls of finite area: to the spheres by reciprocity, and what else their rows have. */
+/* Writes the rows of walls of finite area. Factors to spheres follow from reciprocity. */
 static int write_walls(struct csv *csv) {
     const struct contents *what = csv->what;
     const struct bed *bed = what->bed;
@@ -135,7 +134,7 @@ int write_csv(FILE *file, const struct contents *what, bool first) {
     return csv.named ? write_walls(&csv) : STATUS_OK;
 }
 
-/* A number; nothing if there is none. */
+/* Puts a number. NaN: puts nothing. */
 static char *put_error(char *to, double error) { return isnan(error) ? to : text_real(to, error); }
 
 static void write_power(struct csv *csv, int64_t name, const char *body, double temperature, double power,

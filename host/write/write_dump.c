@@ -1,4 +1,4 @@
-/* write_dump.c - heat as a LAMMPS text dump, which OVITO and our own reader open, too. SPDX-License-Identifier: MIT */
+/* write_dump.c - heat as a LAMMPS text dump, which OVITO and fibrad itself read. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 
 #include "cli/interrupt.h"

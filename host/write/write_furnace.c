@@ -1,4 +1,4 @@
-/* write_furnace.c - the fields of a box to files. SPDX-License-Identifier: MIT */
+/* write_furnace.c - writes the fields of a box. SPDX-License-Identifier: MIT */
 #include "write/write_furnace.h"
 
 #include "cli/output.h"

@@ -1,4 +1,4 @@
-/* write_json.c - a frame as one line, an object of JSON, so that several frames are JSON lines.
+/* write_json.c - a frame as an object of JSON in one line, so that several frames are JSON lines.
  * SPDX-License-Identifier: MIT
  *
  * Numbers that are not finite are null. */
@@ -10,7 +10,7 @@
 #include "text/text.h"
 #include "write/write.h"
 
-/* A further entry of an object. */
+/* Writes a further entry of an object. */
 static void json_entry(FILE *file, const char *name, double value) {
     fprintf(file, ",\"%s\":", name);
     text_json_real(file, value);
@@ -22,8 +22,8 @@ static void json_whole(FILE *file, int64_t value) {
     fwrite(text, 1, (size_t)(end - text), file);
 }
 
-/* An entry of an object: every `stride`th value, n in all; valid, unless NULL, tells which are there. `comma` comes
- * before it. */
+/* Writes an entry of an object: an array of n values, each `stride`th one of `values`. valid [n]: 0: the value is null;
+ * valid NULL: all are valid. `comma` stands before the entry. */
 static void json_reals(FILE *file, const char *comma, const char *name, const double *values, uint64_t n, size_t stride,
                        const unsigned char *valid) {
     fprintf(file, "%s\"%s\":[", comma, name);
@@ -34,7 +34,7 @@ static void json_reals(FILE *file, const char *comma, const char *name, const do
     putc(']', file);
 }
 
-/* What the frame is. */
+/* Begins the object of a frame: kind, file, frame, timestep and time. */
 static void json_frame(FILE *file, const struct contents *what, const char *kind) {
     const struct bed *bed = what->bed;
     fprintf(file, "{\"kind\":\"%s\"", kind);
@@ -50,7 +50,7 @@ static void json_frame(FILE *file, const struct contents *what, const char *kind
     if (what->time) json_entry(file, "time_s", *what->time);
 }
 
-/* The same, and the names of its spheres. */
+/* Begins the object of a frame with the names of its spheres. */
 static void json_begin(FILE *file, const struct contents *what, const char *kind) {
     const struct bed *bed = what->bed;
     json_frame(file, what, kind);
@@ -62,7 +62,7 @@ static void json_begin(FILE *file, const struct contents *what, const char *kind
     putc(']', file);
 }
 
-/* From each wall to all walls, in the order of `walls`, and to the surroundings. */
+/* Writes the factors from each wall to all walls, in the order of `walls`, and to the surroundings. */
 static void json_wall_rows(FILE *file, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
     char name[BODY_NAME];
@@ -76,7 +76,7 @@ static void json_wall_rows(FILE *file, const struct contents *what) {
     putc('}', file);
 }
 
-/* The matrix in compressed rows, as SciPy's csr_array((data, indices, indptr)) takes it. */
+/* Writes the matrix in compressed rows, the form of SciPy's csr_array((data, indices, indptr)). */
 int write_json(FILE *file, const struct contents *what, bool first) {
     const fibrad_factors *matrix = &what->factors->matrix;
     const uint64_t entries = matrix->start[matrix->n];

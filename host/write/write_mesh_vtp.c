@@ -1,7 +1,6 @@
 /* write_mesh_vtp.c - VTK XML polydata for ParaView: the triangles of all meshes. SPDX-License-Identifier: MIT
- *
- * Arrays on triangles: `body`, k of wall -2 - k; `front` and `back`, whether these sides are the body's; `place`, the
- * line or number in the mesh's file; `area`; those of the contents. */
+ * Arrays on triangles: `body`, k of wall -2 - k; `front` and `back`, 1 if this side is a wall; `place`, the line or
+ * number in the mesh's file; `area`; arrays of the contents. */
 #include <math.h>
 
 #include "cli/interrupt.h"
@@ -25,7 +24,7 @@ static void mesh_corners(FILE *file, const struct fibrad_triangles *all) {
     vtp_ascending(file, "offsets", all->n, 3, 3);
 }
 
-/* What is known of a triangle, as a whole number. */
+/* A whole number of a triangle. */
 typedef int64_t mesh_count(const struct mesh *mesh, const struct fibrad_triangles *all, uint32_t own);
 
 static int64_t body_of(const struct mesh *mesh, const struct fibrad_triangles *all, uint32_t own) {

@@ -6,9 +6,9 @@
 #include "text/text.h"
 #include "write/write.h"
 
-/* Ids in the order of the rows, in lines of comment. */
+/* Writes the ids in the order of the rows, as lines of comment. */
 static void write_ids(FILE *file, const struct bed *bed) {
-    enum { LINE = 100 }; /* characters, about */
+    enum { LINE = 100 }; /* about so many characters in a line */
     int used = LINE;
     for (uint32_t i = 0; i < bed->n; ++i) {
         if (used >= LINE) used = fprintf(file, i > 0 ? "\n%% ids:" : "%% ids:");

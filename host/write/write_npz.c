@@ -1,8 +1,8 @@
 /* write_npz.c - a matrix as a NumPy archive that scipy.sparse.load_npz opens. SPDX-License-Identifier: MIT
- *
- * A ZIP archive without compression, one member per array of the matrix in compressed rows: a header of 128 bytes that
- * names type and shape, then the array as it stands in memory. All members carry 64-bit sizes (ZIP64), so that small
- * and large files go one way. The checksum stands before the data and is computed first. */
+ * The file is a ZIP archive without compression. It has a member for each array of the matrix in compressed rows. A
+ * member is a header of 128 bytes, which names type and shape, and the array as it is in memory. All members have
+ * 64-bit sizes (ZIP64), so that small and large files are written alike. The checksum stands before the data, so it is
+ * computed first. */
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,13 +17,13 @@ enum { HEADER = 128, BLOCK = 1 << 20 };
 #define SCALAR UINT64_MAX /* length of an array without dimensions */
 
 struct member {
-    struct array array; /* of length SCALAR, or not */
-    uint64_t bytes;     /* of data */
-    uint64_t offset;    /* where in the file the member begins */
+    struct array array;
+    uint64_t bytes;  /* of data */
+    uint64_t offset; /* where in the file the member begins */
     uint32_t crc;
 };
 
-/* Writes `bytes` bytes of a number, the lowest first. */
+/* Writes a number in `bytes` bytes, the lowest first. */
 static void put_little(FILE *file, uint64_t value, int bytes) {
     for (; bytes > 0; --bytes, value >>= 8) putc((int)(value & 255), file);
 }
@@ -51,14 +51,14 @@ static void make_header(const struct member *member, unsigned char header[HEADER
     header[HEADER - 1] = '\n';
 }
 
-/* What local and central header have in common, from the version to the length of the name. */
+/* Writes the fields that are the same in local and central headers, from the version to the length of the name. */
 static void put_common(FILE *file, const struct member *member) {
     put_little(file, 45, 2);         /* version that reads ZIP64 */
     put_little(file, 0, 2);          /* flags */
     put_little(file, 0, 2);          /* stored */
     put_little(file, 0x00210000, 4); /* time and date: 1 January 1980, so that equal matrices make equal files */
     put_little(file, member->crc, 4);
-    put_little(file, UINT32_MAX, 4); /* both sizes stand in the ZIP64 field */
+    put_little(file, UINT32_MAX, 4); /* both sizes are in the ZIP64 field */
     put_little(file, UINT32_MAX, 4);
     put_little(file, strlen(member->array.name), 2);
 }
@@ -90,12 +90,12 @@ static int write_member(FILE *file, struct member *member) {
     for (uint64_t done = 0; done < member->bytes; done += BLOCK) {
         if (interrupt_status()) return interrupt_status();
         const uint64_t left = member->bytes - done;
-        if (!fwrite(data + done, left < BLOCK ? left : BLOCK, 1, file)) break; /* the caller asks ferror */
+        if (!fwrite(data + done, left < BLOCK ? left : BLOCK, 1, file)) break; /* the caller checks the file */
     }
     return STATUS_OK;
 }
 
-/* Bytes of a member in the file, and of its entry in the directory at the end. */
+/* Bytes of a member, and of its entry in the directory. */
 static uint64_t member_size(const struct member *member) {
     return 30 + strlen(member->array.name) + 20 + HEADER + member->bytes;
 }
@@ -111,13 +111,13 @@ static void put_entry(FILE *file, const struct member *member) {
     put_little(file, 0, 2);          /* disk */
     put_little(file, 0, 2);          /* internal attributes */
     put_little(file, 0, 4);          /* external attributes */
-    put_little(file, UINT32_MAX, 4); /* the offset stands in the ZIP64 field too */
+    put_little(file, UINT32_MAX, 4); /* the offset is in the ZIP64 field, too */
     fputs(member->array.name, file);
     put_sizes(file, member, 24);
     put_little(file, member->offset, 8);
 }
 
-/* The end of the directory, in ZIP64 and, with nothing but all bits set, as of old. */
+/* Writes the end of the directory in ZIP64, and the old form with all bits set, which refers to ZIP64. */
 static void put_end(FILE *file, uint64_t members, uint64_t offset, uint64_t size) {
     put_little(file, 0x06064b50, 4);
     put_little(file, 44, 8);
@@ -148,7 +148,7 @@ static struct member make_member(const struct array *array) {
     return (struct member){.array = *array, .bytes = array->length == SCALAR ? each : each * array->length * columns};
 }
 
-/* The arrays of an archive in the making, and those made for it. */
+/* The arrays of an archive, and memory of arrays that are made for it. */
 struct arrays {
     struct array list[ARRAYS_MAX];
     size_t count;
@@ -156,7 +156,7 @@ struct arrays {
     double (*x)[3];
 };
 
-/* Adds an array, unless there is one of its name or there are no data. */
+/* Adds an array unless it has no data or an array of its name is there. */
 static void add_array(struct arrays *arrays, struct array array) {
     for (size_t k = 0; k < arrays->count; ++k)
         if (strcmp(arrays->list[k].name, array.name) == 0) return;
@@ -179,7 +179,7 @@ static int add_spheres(struct arrays *arrays, const struct bed *bed) {
     return STATUS_OK;
 }
 
-/* Names of walls side by side, each of 8 bytes, or BODY_NAME where one is longer. */
+/* The array of names of walls. Each takes 8 bytes, or BODY_NAME bytes if a name is longer. */
 static struct array wall_names(const struct contents *what, char names[WALLS_MAX * BODY_NAME]) {
     const uint32_t walls = what->walls->count;
     char name[BODY_NAME];
@@ -190,7 +190,7 @@ static struct array wall_names(const struct contents *what, char names[WALLS_MAX
     return (struct array){"wall_names.npy", width > 8 ? "S32" : "S8", names, walls, 0};
 }
 
-/* What is known of the rows besides the matrix. */
+/* Adds the arrays of rows besides the matrix. */
 static void add_rows(struct arrays *arrays, const struct contents *what, char names[WALLS_MAX * BODY_NAME]) {
     const fibrad_factors *matrix = &what->factors->matrix;
     const uint64_t n = matrix->n;

@@ -1,6 +1,8 @@
-/* write_vtp.c - VTK XML polydata for ParaView: one point and vertex per sphere. SPDX-License-Identifier: MIT
+/* write_vtp.c - VTK XML polydata for ParaView, with one point and vertex per sphere. SPDX-License-Identifier: MIT
  *
- * Missing values, such as those of rows that were not computed, are NaN, which text arrays cannot hold. */
+ * Missing values are NaN, as those of rows that were not computed. Text arrays could not hold NaN, so arrays are
+ * binary.
+ */
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,7 +11,7 @@
 #include "write/vtp_array.h"
 #include "write/write.h"
 
-/* An array of numbers; valid, unless NULL, tells which are there. */
+/* Writes an array of numbers. valid [n]: 0: the value is missing; valid NULL: none is missing. */
 static void vtp_doubles(FILE *file, const char *name, const double *values, uint32_t n, const unsigned char *valid) {
     struct base64 to = base64_begin(file, "Float64", name, 1, n);
     for (uint32_t i = 0; i < n; ++i) base64_double(&to, !valid || valid[i] ? values[i] : NAN);
@@ -26,8 +28,8 @@ static void write_points(FILE *file, const struct bed *bed) {
     base64_end(&to);
 }
 
-/* Begins a file of the spheres; their radii and ids are its first arrays, `scalars` the one that ParaView shows first.
- * Arrays of [bed->n] values follow, then vtp_end. */
+/* Begins a file of spheres, with radii and ids as its first arrays. scalars: the array that ParaView shows first. Write
+ * further arrays of [bed->n] values, then call vtp_end. */
 static void vtp_begin(FILE *file, const struct bed *bed, const char *scalars) {
     vtp_head(file, bed->n, "Verts", bed->n);
     fprintf(file, "<PointData Scalars=\"%s\">\n", scalars);
@@ -49,7 +51,7 @@ static void vtp_row_sums(FILE *file, const struct contents *what, double *values
     vtp_doubles(file, "row_sum", values, what->bed->n, what->wanted);
 }
 
-/* One array per wall, wall_zmin and the like. */
+/* Writes an array per wall, such as wall_zmin. */
 static void vtp_walls(FILE *file, const struct contents *what, double *values) {
     const fibrad_factors *matrix = &what->factors->matrix;
     for (uint32_t k = 0; what->walls && k < what->walls->count; ++k) {
