@@ -258,19 +258,21 @@ static void heat_more_rays(fibrad_heat_config *config, double over) {
     config->wall_rays = (uint32_t)fmin(rays * fmin(fmax(over * over, 2), GROWTH), WALL_RAYS_MOST);
 }
 
-/* The next configuration. If the powers of spheres err too much, it has more of what errs more, patches or beams. If
- * temperatures err too much, it has more beams, or more patches where beams have not helped. If walls err too much, it
- * has more rays between walls as long as those help, then more beams. Errors are about inverse to the number of beams.
+/* The next configuration. If the powers of spheres err too much, it has more of what errs more, patches or beams. It
+ * stays as it is if more patches are impossible and beams err little. If temperatures err too much, it has more beams,
+ * or more patches where beams have not helped. If walls err too much, it has more rays between walls as long as those
+ * help, then more beams. Errors are about inverse to the number of beams.
  */
 static fibrad_heat_config heat_refine(fibrad_heat_config config, const struct heat_excess *over,
                                       const struct heat_excess *last) {
     const bool finer = config.patches < FIBRAD_HEAT_PATCHES_MAX;
+    const double beams_allowed = sqrt(1 - pow(fmin(over->patches, PATCHES_MOST), 2));
     if (over->walls > 1 && over->walls <= HELPED * last->walls) heat_more_rays(&config, over->walls);
     if (hypot(over->beams, over->patches) > 1) {
         if (over->patches > PATCHES_MOST && finer)
             heat_more_patches(&config);
-        else
-            heat_more_beams(&config, over->beams / sqrt(1 - pow(fmin(over->patches, PATCHES_MOST), 2)));
+        else if (over->beams > beams_allowed)
+            heat_more_beams(&config, over->beams / beams_allowed);
     } else if (over->emission > 1) {
         if (over->emission > HELPED * last->emission && finer)
             heat_more_patches(&config);

@@ -296,7 +296,7 @@ static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const double square = power_error_of(heat, &errors, b);
         if (result->power_error != NULL) result->power_error[heat->order[b]] = fibrad_sqrt(square);
-        if (square > 0) patches += squared(patch_error(heat, b));
+        if (square > 0) patches += squared(patch_error(heat, b)) + squared(spot_error(heat, b));
         all += square;
     }
     for (uint32_t k = 0; k < heat->given_bodies && result->body_error != NULL; k++)
