@@ -1,4 +1,4 @@
-/* block.h - memory that grows and is used again. SPDX-License-Identifier: MIT */
+/* block.h - memory on the heap that grows and is reused. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_BLOCK_H
 #define FIBRAD_COUPLE_BLOCK_H
 
@@ -6,13 +6,14 @@
 
 #include "fibrad.h"
 
-/* Memory on the heap, to be freed. Zeroed: none. */
+/* Memory on the heap. Begin with zeroes; free with fibrad_block_free. */
 typedef struct fibrad_block {
     void *at;
     size_t size; /* bytes */
 } fibrad_block;
 
-/* Makes room for `count` things of `size` bytes, contents kept. FIBRAD_OK or _E_MEMORY, the block then as it was. */
+/* Makes room for `count` elements of `size` bytes and keeps the contents. Returns FIBRAD_OK, or _E_MEMORY with the
+ * block unchanged. */
 static inline int fibrad_block_fit(fibrad_block *block, size_t count, size_t size) {
     const size_t needed = (count + 1) * size; /* never NULL */
     if (needed > block->size) {

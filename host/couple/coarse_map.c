@@ -1,4 +1,4 @@
-/* coarse_map.c - where the whole bed has particles, in coarse cells. SPDX-License-Identifier: MIT */
+/* coarse_map.c - marks the coarse cells of the whole bed that have particles. SPDX-License-Identifier: MIT */
 #include "couple/coarse_map.h"
 
 #include <math.h>
@@ -7,12 +7,12 @@
 
 #define CELLS_MAX 0x1p24
 #define AXIS_MAX  0x1p20
-#define MARGIN    1e-6 /* cells, far above rounding */
+#define MARGIN    1e-6 /* in widths of a cell, far above rounding */
 
 #define TRIM_ROUNDS 16
-#define TRIM_UNITS  0x1p16 /* of a side: squares of 2^31 places fit into a sum */
+#define TRIM_UNITS  0x1p16 /* units per side of the box: squares of 2^31 positions fit into a sum */
 
-/* Divides the box into cells of a width, as far as an axis may have so many; how many there are. */
+/* Divides the box into cells of a width, with at most AXIS_MAX cells along an axis. Returns the number of cells. */
 static double divide_box(double width, fibrad_occupancy *map) {
     double product = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -22,14 +22,14 @@ static double divide_box(double width, fibrad_occupancy *map) {
     return product;
 }
 
-/* Narrows open axes to where the bulk of the centres lies, mean and four standard deviations, again and again while
- * that leaves some out: particles lost far away must not make the cells wide. Sums are of whole numbers, the same
- * whoever owns what. */
+/* Narrows the box along open axes to mean and four standard deviations of the centres, again and again while centres
+ * are left out. So particles lost far away do not make the cells wide. Sums are of whole numbers, so the result does
+ * not depend on who owns which particle. */
 static void leave_out_strays(MPI_Comm comm, const fibrad_particle *particle, size_t own, double radius,
                              fibrad_occupancy *map) {
     bool less = true;
     for (int round = 0; round < TRIM_ROUNDS && less; ++round) {
-        uint64_t sum[3][3] = {{0}}; /* by axis: centres, their places in the box, squares of these */
+        uint64_t sum[3][3] = {{0}}; /* by axis: number of centres, sum of their positions, sum of squared positions */
         for (size_t i = 0; i < own; ++i)
             for (int axis = 0; axis < 3; ++axis) {
                 const double at = (particle[i].x[axis] - map->low[axis]) / (map->high[axis] - map->low[axis]);
@@ -53,8 +53,8 @@ static void leave_out_strays(MPI_Comm comm, const fibrad_particle *particle, siz
     }
 }
 
-/* Whether a sphere touches the box along an axis, and the cells [first, last] there; on periodic axes they may lie
- * beyond the box. */
+/* Finds the cells [first, last] that a sphere touches along an axis. On periodic axes they may lie beyond the box.
+ * Returns whether the sphere touches the box. */
 static bool find_cells(const fibrad_occupancy *map, const fibrad_particle *p, int axis, int64_t *first, int64_t *last) {
     const double cells = map->cells[axis], scale = cells / (map->high[axis] - map->low[axis]);
     double low = floor((p->x[axis] - p->radius - map->low[axis]) * scale - MARGIN);
@@ -67,7 +67,7 @@ static bool find_cells(const fibrad_occupancy *map, const fibrad_particle *p, in
     return touches;
 }
 
-/* The cell in the box. */
+/* The number of a cell within the periodic box. */
 static int64_t wrap_cell(int64_t cell, int64_t cells) { return (cell % cells + cells) % cells; }
 
 static void mark_sphere(const fibrad_occupancy *map, const fibrad_particle *p, uint64_t *mark) {

@@ -1,13 +1,13 @@
-/* coarse_map.h - where the whole bed has particles, in coarse cells. SPDX-License-Identifier: MIT */
+/* coarse_map.h - marks the coarse cells of the whole bed that have particles. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_COARSE_MAP_H
 #define FIBRAD_COUPLE_COARSE_MAP_H
 
 #include "couple/halo.h"
 
-/* Collective. Makes the occupancy of the bed in a box (low, high, periodic, set before, the same on all ranks) of cells
- * about `width` wide, 2^24 at most: marks those that particle[own] may touch, on all ranks; radius: the largest. Where
- * there would be more cells, the box is first made smaller by particles far from all others, which are then in nobody's
- * way; then cells wider. mark: its memory. Errors, on all ranks: _MEMORY. */
+/* Collective. Makes the occupancy of the bed: marks the cells that particles of any rank may touch. The caller sets
+ * low, high and periodic of `map`, the same on all ranks. Cells are about `width` wide. radius: the largest radius.
+ * There are at most 2^24 cells. If there were more, the box is first narrowed, which leaves out particles far from all
+ * others; then cells are made wider. mark: memory of the map. Errors, on all ranks: _MEMORY. */
 int fibrad_coarse_map(MPI_Comm comm, double width, double radius, const fibrad_particle *particle, size_t own,
                       fibrad_block *mark, fibrad_occupancy *map);
 

@@ -1,4 +1,4 @@
-/* collective.c - errors agreed by all ranks, and things dealt out to them. SPDX-License-Identifier: MIT */
+/* collective.c - errors that all ranks agree on, and an exchange between all ranks. SPDX-License-Identifier: MIT */
 #include "couple/collective.h"
 
 #include <limits.h>

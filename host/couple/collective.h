@@ -1,4 +1,4 @@
-/* collective.h - errors agreed by all ranks, and things dealt out to them. SPDX-License-Identifier: MIT */
+/* collective.h - errors that all ranks agree on, and an exchange between all ranks. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_COLLECTIVE_H
 #define FIBRAD_COUPLE_COLLECTIVE_H
 
@@ -8,20 +8,20 @@
 
 #define FIBRAD_MESSAGE 256 /* bytes of a message */
 
-/* Puts a sentence into message[FIBRAD_MESSAGE], as printf does, and returns status. */
+/* Prints a sentence into message[FIBRAD_MESSAGE] and returns status. */
 int fibrad_refuse(char *message, int status, const char *format, ...);
 
-/* Collective. FIBRAD_OK if all ranks say so; else, on all ranks, the status and the message (may be NULL) of the lowest
- * rank that failed. A message that is empty becomes the text of the status. */
+/* Collective. Returns FIBRAD_OK if all ranks pass FIBRAD_OK. Else returns on all ranks the status of the lowest rank
+ * that failed, and copies its message. message may be NULL. An empty message becomes the text of the status. */
 int fibrad_agree(MPI_Comm comm, int status, char *message);
 
-/* Collective. Sends count[ranks] things of `size` bytes to each rank, which follow each other in `send`, and puts those
- * that come, got[ranks] from each, behind the first `at` things of `to`, by rank. Nothing is sent if some rank's
- * `status` is an error, which is returned. Errors: that, _MEMORY; on all ranks. */
+/* Collective. Sends elements of `size` bytes from `send` to all ranks: count[q] elements to rank q, in the order of
+ * ranks. The elements that arrive, got[q] from rank q, are put behind the first `at` elements of `to`, in the order of
+ * ranks. If a rank passes an error as `status`, nothing is sent. Errors, on all ranks: that status; _MEMORY. */
 int fibrad_deal(MPI_Comm comm, int status, const void *send, const int *count, size_t size, fibrad_block *to, size_t at,
                 int *got);
 
-/* Sum of counts; start[ranks]: where the things of each rank begin. */
+/* The sum of counts; and start[ranks], where the elements of each rank begin. */
 size_t fibrad_count_sum(const int *count, int ranks);
 void fibrad_count_starts(const int *count, int ranks, int *start);
 

@@ -1,4 +1,4 @@
-/* example.c - radiation in a code of your own over MPI: a bed between a hot and a cold wall. For mpirun -np 2.
+/* example.c - radiation in your own code over MPI: a bed between a hot and a cold wall. Run it by mpirun -np 2.
  * SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdio.h>
@@ -7,10 +7,11 @@
 
 enum { SIDE = 12, ALL = SIDE * SIDE * SIDE, STEPS = 50 };
 
-static uint64_t id[ALL]; /* what this rank owns */
+static uint64_t id[ALL]; /* particles that this rank owns */
 static double x[ALL][3], radius[ALL], emissivity[ALL], temperature[ALL], power[ALL];
 
-/* Layers of the lattice k, k + step, ...: particles of 1 mm, moved a little off their places. */
+/* Makes layers k, k + step, ... of the lattice: particles of radius 1 mm, a little off the sites. Returns their number.
+ */
 static size_t make_particles(int k, int step) {
     size_t n = 0;
     for (; k < SIDE; k += step)
@@ -43,7 +44,8 @@ int main(int argc, char **argv) {
     fibrad_insitu_totals totals;
     status = fibrad_insitu_new(&radiation, MPI_COMM_WORLD, NULL);
     for (uint64_t step = 0; step < STEPS && !status; ++step) {
-        if (step % 25 == 0) status = fibrad_insitu_rows(radiation, &bed, step); /* here particles would have moved */
+        if (step % 25 == 0)
+            status = fibrad_insitu_rows(radiation, &bed, step); /* in a real code the particles have moved */
         if (!status) status = fibrad_insitu_powers(radiation, &state, power, &totals);
         for (size_t i = 0; i < n && !status; ++i) temperature[i] += power[i] * dt / capacity;
         stored += totals.particles * dt, from_walls -= (totals.body[0] + totals.body[1]) * dt;

@@ -9,9 +9,8 @@
  *             2. fibrad_insitu_rows every so many steps, with the particles that each rank owns at that time.
  *             3. fibrad_insitu_powers when temperatures have changed, with the particles that each rank owns by then.
  *             host/couple/example.c is a complete program.
- * Particles   A particle is a sphere. It is known by its id of 64 bits alone. One rank owns it. A rank may own none.
- * The
- *             order of the particles does not matter. Ghosts are not needed: the ranks send each other what they need.
+ * Particles   A particle is a sphere with an id of 64 bits. One rank owns it. A rank may own none. The order of the
+ *             particles does not matter. Ghosts are not needed: the ranks send each other the particles they need.
  * Rows        A row holds exchange factors, or view factors if all emissivities are 1. Each rank computes the rows of
  *             the particles that it owns. The rows stay on this rank until new rows are made, wherever the particles
  *             go.
@@ -21,12 +20,10 @@
  * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
  * Collective  All functions are collective over the communicator, except fibrad_link_free, fibrad_insitu_message and
  *             fibrad_insitu_facts_get. Every rank calls them, and all ranks get the same status.
- * Errors      After an error, fibrad_insitu_message has a sentence. It is the same on all ranks and names particles by
- *             id. The object is as it was before the call.
+ * Errors      After an error, fibrad_insitu_message has a sentence, the same on all ranks, which names particles by id.
+ *             The object is as it was before the call.
  * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2. Words and the layout of
- * comments
- *             are as in fibrad.h.
- * Source      docs/coupling.md
+ * comments are as in fibrad.h. Source      docs/coupling.md
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_H

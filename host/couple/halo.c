@@ -1,7 +1,7 @@
-/* halo.c - particles of other ranks, and images, near those of this rank. SPDX-License-Identifier: MIT
+/* halo.c - particles of other ranks and periodic images near the particles of this rank. SPDX-License-Identifier: MIT
  *
- * All ranks know the boxes of all others' particles. Each sends what lies within reach of a box, moved by all multiples
- * of the periods for which it does: the receiver needs neither periods nor a second look. */
+ * All ranks know the boxes of the particles of all ranks. Each rank sends to each box its particles and periodic images
+ * within reach of the box. So the receiver needs no periods and makes no images. */
 #include "couple/halo.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@ struct range_box {
     double low[3], high[3]; /* without particles low is above high */
 };
 
-/* Multiples of the periods by which something is moved, [first, last] along each axis. */
+/* Multiples of the periods, from first to last along each axis. */
 struct shift_range {
     int first[3], last[3];
 };
@@ -26,12 +26,12 @@ static struct range_box box_of_centres(const fibrad_particle *particle, size_t n
     return box;
 }
 
-/* The shifts that bring some point of `from` into `to` widened by `reach`, along each axis; false: there are none. */
+/* Finds the shifts that move a point of `from` into `to` widened by `reach`. False: there are none. */
 static bool find_shifts(const struct range_box *from, const struct range_box *to, const double period[3], double reach,
                         struct shift_range *shifts) {
     for (int axis = 0; axis < 3; ++axis) {
         const double least = to->low[axis] - reach - from->high[axis], most = to->high[axis] + reach - from->low[axis];
-        if (!(least <= most)) return false; /* nothing there */
+        if (!(least <= most)) return false; /* a box without particles */
         if (period[axis] > 0) {
             shifts->first[axis] = (int)ceil(least / period[axis]);
             shifts->last[axis] = (int)floor(most / period[axis]);
@@ -53,7 +53,7 @@ static bool within_reach(const double x[3], const struct range_box *box, double 
     return square <= reach * reach;
 }
 
-/* Appends the images of a particle that lie within reach of a box. itself: the one that is not moved is left out. */
+/* Appends a particle and its images, if they lie within reach of a box. itself: the particle itself is left out. */
 static int add_images(const fibrad_particle *particle, const struct range_box *box, const double period[3],
                       double reach, bool itself, fibrad_block *sent, size_t *count) {
     const struct range_box point = {{particle->x[0], particle->x[1], particle->x[2]},
@@ -75,7 +75,7 @@ static int add_images(const fibrad_particle *particle, const struct range_box *b
     return FIBRAD_OK;
 }
 
-/* What goes to each rank. */
+/* Lists the particles and images for each rank. count[q]: their number for rank q. */
 static int choose_particles(const struct range_box *box, int rank, int ranks, const double period[3], double reach,
                             const fibrad_particle *particle, size_t own, fibrad_block *sent, int *count) {
     size_t sum = 0;
@@ -99,7 +99,7 @@ int fibrad_halo(MPI_Comm comm, const double period[3], double reach, fibrad_bloc
     struct range_box *box = malloc((size_t)ranks * sizeof *box);
     int *count = calloc(2 * (size_t)ranks, sizeof *count);
     int status = fibrad_agree(comm, box && count ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
-    reach *= 1 + 1e-9; /* what lies on the edge comes along, however it rounds */
+    reach *= 1 + 1e-9; /* includes particles at the edge whatever the rounding */
     if (!status) {
         MPI_Allgather(&mine, 6, MPI_DOUBLE, box, 6, MPI_DOUBLE, comm);
         status = choose_particles(box, rank, ranks, period, reach, particle->at, own, sent, count);

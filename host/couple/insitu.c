@@ -10,11 +10,13 @@
 #include "couple/coarse_map.h"
 #include "fibrad_mesh.h"
 
-#define THREADS_MAX    1024
-#define CUTOFF_RADII   8  /* mean radii and a largest diameter: 1.4e-4 of what equal spheres emit leaves it at 0.8 */
-#define CUTOFF_DARK    10 /* the same where reflections carry it on */
+#define THREADS_MAX 1024
+#define CUTOFF_RADII                                                                                                   \
+    8 /* mean radii beyond the largest diameter: 1.4e-4 of the emission leaves it at emissivity 0.8                    \
+       */
+#define CUTOFF_DARK    10 /* the same for emissivities below DARK_BELOW, since reflections carry radiation farther */
 #define DARK_BELOW     0.4
-#define CELLS_A_CUTOFF 8   /* of the coarse map */
+#define CELLS_A_CUTOFF 8   /* cells of the coarse map per cutoff */
 #define REACH_RADII    1.5 /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad.h */
 #define PERIODS_MAX    100 /* as far as the kernel's beams go */
 #define OPENINGS_MAX   6   /* one a side */
@@ -39,7 +41,7 @@ static int open_set(fibrad_insitu_set *set, int threads) {
     return set->rows ? FIBRAD_OK : FIBRAD_E_MEMORY;
 }
 
-/* Up to a NULL. */
+/* Frees blocks up to a NULL. */
 static void free_blocks(fibrad_block *const *block) {
     for (; *block; ++block) fibrad_block_free(*block);
 }
@@ -114,7 +116,7 @@ void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts)
 
 /* ---- the bed ---- */
 
-/* Rows being made. */
+/* The making of rows. */
 struct insitu_build {
     fibrad_insitu *s;
     fibrad_insitu_set *to;
@@ -127,13 +129,13 @@ struct insitu_build {
     fibrad_scene *scene;
 };
 
-/* What is the same on all ranks. */
+/* Checks the bed without its particles, which is the same on all ranks. */
 static int check_bed(struct insitu_build *b) {
     const fibrad_insitu_bed *bed = b->bed;
     char *message = b->s->message;
     unsigned char block[FIBRAD_SCENE_BYTES(0)];
     fibrad_scene *empty;
-    fibrad_body body[FIBRAD_BODIES_MAX]; /* but meshes, which bound nothing */
+    fibrad_body body[FIBRAD_BODIES_MAX]; /* without meshes, which bound no box */
     uint32_t bodies = 0;
     if (!bed || (bed->n && !(bed->id && bed->x && bed->radius && bed->emissivity)) || bed->n > FIBRAD_SPHERES_MAX ||
         bed->bodies > FIBRAD_BODIES_MAX || (bed->bodies && !(bed->body && bed->body_emissivity)) ||
@@ -151,7 +153,7 @@ static int check_bed(struct insitu_build *b) {
         fibrad_plane *opening = &b->opening[k];
         *opening = bed->opening[k];
         if (isnan(opening->at))
-            opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* as long as there is no bed */
+            opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* until the bed is known */
     }
     const fibrad_scene_config config = {.period = {b->period[0], b->period[1], b->period[2]},
                                         .body = body,
@@ -172,7 +174,7 @@ static int refuse_particle(char *message, uint64_t id, const char *fault) {
     return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "particle %" PRIu64 ": %s", id, fault);
 }
 
-/* Particles, moved into the periodic box. */
+/* Checks the particles and copies them, moved into the periodic box. */
 static int take_particles(struct insitu_build *b) {
     const fibrad_insitu_bed *bed = b->bed;
     char *message = b->s->message;
@@ -201,11 +203,12 @@ static int begin_bed(struct insitu_build *b) {
     return fibrad_agree(b->s->comm, status, b->s->message);
 }
 
-/* Extents, radii, the cutoff: the same to the bit whoever owns what, so the mean radius is a sum of whole numbers. */
+/* Finds extents, radii and the cutoff. They must be the same to the bit whoever owns which particle. So the mean radius
+ * comes from a sum of whole numbers. */
 static int measure_bed(struct insitu_build *b) {
     const fibrad_particle *particle = b->to->particle.at;
     const fibrad_insitu_config *config = &b->s->config;
-    double most[14] = {0, -1}; /* radius, -emissivity, high, -low; the same of surfaces */
+    double most[14] = {0, -1}; /* radius, -emissivity, high and -low of centres, high and -low of surfaces */
     uint64_t sum[2] = {b->to->own, 0};
     int status = FIBRAD_OK;
     for (int k = 2; k < 14; ++k) most[k] = -INFINITY;
@@ -253,7 +256,7 @@ static int measure_bed(struct insitu_build *b) {
     return status;
 }
 
-/* Links the particles to themselves at home, where they now are; finds ids that are there twice. */
+/* Links present owners to home ranks, which are the same now. Refuses ids that occur twice. */
 static int link_present(struct insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const fibrad_particle *particle = to->particle.at;
@@ -292,7 +295,7 @@ static int name_scene_fault(const struct insitu_build *b, int status, const uint
                          first < second ? first : second, first < second ? second : first);
 }
 
-/* A scene of the particles of this rank and of those around them; images are spheres of their own. */
+/* Makes the scene of the particles of this rank and those around them. Images are spheres of their own. */
 static int make_scene(struct insitu_build *b) {
     fibrad_insitu *s = b->s;
     const size_t n = b->to->own + b->halo;
@@ -308,7 +311,7 @@ static int make_scene(struct insitu_build *b) {
     uint64_t *id = b->to->id.at;
     double *emissivity = s->emissivity.at;
     for (size_t i = 0; i < n; ++i) id[i] = p[i].id, emissivity[i] = p[i].emissivity;
-    fibrad_scene_config config = {0}; /* of nothing, where there are no particles */
+    fibrad_scene_config config = {0}; /* without particles: an empty scene */
     if (n)
         config = (fibrad_scene_config){.body = b->bed->body,
                                        .bodies = b->bed->bodies,
@@ -323,7 +326,7 @@ static int make_scene(struct insitu_build *b) {
     return status ? name_scene_fault(b, status, id, n, fault) : FIBRAD_OK;
 }
 
-/* Says why there is no row of a particle. */
+/* Says why the row of a particle could not be computed. */
 static int name_row_fault(const struct insitu_build *b, int status, uint64_t id, const fibrad_work *work) {
     const fibrad_triangles *t = b->bed->triangles;
     if (status != FIBRAD_E_BACK || !t || work->triangle >= t->n)
@@ -340,7 +343,7 @@ static int name_row_fault(const struct insitu_build *b, int status, uint64_t id,
                          id, body + 1, work->triangle);
 }
 
-/* The particles of this rank in the order of the cells. */
+/* Lists the particles of this rank in the order of the cells. */
 static int list_own(struct insitu_build *b) {
     const size_t n = b->to->own + b->halo;
     if (fibrad_block_fit(&b->s->order, n, sizeof(uint32_t))) return FIBRAD_E_MEMORY;
@@ -352,7 +355,8 @@ static int list_own(struct insitu_build *b) {
     return FIBRAD_OK;
 }
 
-/* Each thread takes the next equal part of the list, so that rows lie in its order whatever the threads. */
+/* Computes all rows. Each thread takes an equal part of the list, one after the other. So rows are in the order of the
+ * list for any number of threads. */
 static int compute_rows(struct insitu_build *b) {
     fibrad_insitu *s = b->s;
     const fibrad_exchange_rule rule = {.emissivity = s->emissivity.at,
@@ -375,7 +379,7 @@ static int compute_rows(struct insitu_build *b) {
         before = status;
         if (before) continue;
         fibrad_exchange_rule turned =
-            rule; /* each row by itself, so that powers of walls average out errors of directions */
+            rule; /* each row has its own directions, so that their errors average out in powers of walls */
         turned.seed += ((uint64_t *)b->to->id.at)[order[k]] * 0xd1342543de82ef95u;
         const int result = fibrad_exchange_row(b->scene, &s->work[thread], order[k], &turned, &row, NULL);
         if (!result) continue;
@@ -389,7 +393,7 @@ static int compute_rows(struct insitu_build *b) {
     return status;
 }
 
-/* Leaves out the particles of others that no row sees, and numbers columns anew. */
+/* Leaves out particles of other ranks that no row sees, and numbers the columns anew. */
 static int number_columns(struct insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const size_t n = to->own + b->halo;
@@ -432,12 +436,12 @@ static int make_rows(struct insitu_build *b) {
     return fibrad_agree(b->s->comm, status, b->s->message);
 }
 
-/* What the rows are, over all ranks. */
+/* Sums the facts of the rows over all ranks. */
 static void sum_facts(struct insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const double *weight = to->weight.at;
     fibrad_row row;
-    double sum[5] = {0}; /* emitted, beyond, squares of errors, entries, rows that are not empty for emissivity 0 */
+    double sum[5] = {0}; /* emission, beyond, squared errors, entries, rows of emissivity above 0 */
     for (int t = 0; t < b->s->config.threads; ++t) {
         for (size_t at = 0; fibrad_rows_read(&to->rows[t], &at, &row);) {
             sum[0] += weight[row.sphere];

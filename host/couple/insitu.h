@@ -1,4 +1,4 @@
-/* insitu.h - the inside of a coupling. SPDX-License-Identifier: MIT */
+/* insitu.h - the fields of fibrad_insitu. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_INSITU_H
 #define FIBRAD_COUPLE_INSITU_H
 
@@ -34,7 +34,7 @@ struct fibrad_insitu {
     char message[FIBRAD_MESSAGE];
     fibrad_work *work;                                 /* [threads] */
     fibrad_insitu_set set;                             /* the rows in use */
-    fibrad_insitu_set next;                            /* rows in the making, in the memory of the rows before */
+    fibrad_insitu_set next;                            /* rows that are being made, in the memory of older rows */
     int ready;                                         /* 1: there are rows */
     fibrad_block scene, order, emissivity, mark, sent; /* scratch while rows are made */
     fibrad_block value;                  /* double, of present owners' particles, then of home particles */

@@ -1,8 +1,8 @@
 /* link.c - values of particles that other ranks own. SPDX-License-Identifier: MIT
  *
- * Each id has a rank that keeps its entry in the directory, found from the id alone. Owners enter their ids there,
- * users ask there who owns theirs, each id once, and then ask the owners. From then on only ranks that share particles
- * exchange messages, of one value per particle, between buffers that stay in place. */
+ * The directory says who owns an id. It is divided over the ranks; the id alone tells which rank has its entry. Owners
+ * enter their ids. Users ask the directory for the owner of each id once, and then tell the owners. From then on only
+ * ranks that share particles exchange messages, with one value per particle, between buffers that stay in place. */
 #include <limits.h>
 #include <stdbool.h>
 #include <string.h>
@@ -13,14 +13,15 @@
 #define LINK_TAG 12012
 
 struct fibrad_link {
-    size_t own, used;
-    size_t sent, got;         /* values that others, or this rank itself, use of its own; that it uses, each id once */
-    uint32_t *source;         /* [sent] the own values, by rank that uses them */
-    uint32_t *slot;           /* [used] where in `in` a value is found */
+    size_t own, used;         /* numbers of ids that this rank owns, and uses */
+    size_t sent;              /* own values that ranks use, this rank included */
+    size_t got;               /* different ids that this rank uses */
+    uint32_t *source;         /* [sent] indices of own values, by the rank that uses them */
+    uint32_t *slot;           /* [used] index in `in` of the value */
     double *out, *in;         /* [sent], [got] messages of _forward, by rank; _reverse sends `in` and receives `out` */
-    size_t self_out, self_in; /* where in them the values are that the rank has for itself */
-    size_t self;              /* how many */
-    MPI_Request *request;     /* [2][requests] persistent, of _forward, of _reverse */
+    size_t self_out, self_in; /* indices in out and in where the values from this rank to itself begin */
+    size_t self;              /* number of these values */
+    MPI_Request *request;     /* [2][requests] persistent requests of _forward and of _reverse */
     int requests;
 };
 
@@ -53,7 +54,8 @@ static void close_table(struct id_table *table) {
     free(table->number);
 }
 
-/* Where the number of an id is, or goes. The high bits choose: the low ones have chosen the rank of the directory. */
+/* The place of the number of an id in the table. The high bits of the hash choose the place, since the low bits choose
+ * the rank of the directory. */
 static uint32_t *find_id(const struct id_table *table, uint64_t id) {
     size_t k = hash_id(id) >> 20 & table->mask;
     while (table->number[k] != UINT32_MAX && table->id[k] != id) k = (k + 1) & table->mask;
@@ -63,7 +65,7 @@ static uint32_t *find_id(const struct id_table *table, uint64_t id) {
 
 /* ---- making a link ---- */
 
-/* Who owns an id, and where there. */
+/* An entry of the directory: the rank that owns an id, and the index of the id there. */
 struct owner {
     uint64_t id;
     uint32_t rank, index;
@@ -71,21 +73,21 @@ struct owner {
 
 enum { DIRECTORY, QUESTIONS, REPLIES, WANTED, ARRIVALS };
 
-/* A link being made. */
+/* The making of a link. */
 struct making {
     MPI_Comm comm;
     int rank, ranks;
-    int *count, *got;   /* [ranks] things to send, and that come; got is scratch before they do */
-    int *answers;       /* [ranks] that come from each rank of the directory */
+    int *count, *got;   /* [ranks] numbers of elements sent and received; got is scratch before an exchange */
+    int *answers;       /* [ranks] numbers of replies from each rank of the directory */
     const uint64_t *id; /* [own + used] */
-    uint64_t *asked;    /* [unique] ids used, each once, in order of their directory's rank */
+    uint64_t *asked;    /* [unique] different ids used, in the order of the ranks of their directory */
     size_t unique;
-    uint32_t *number;    /* [unique] where among them each id used is; then where its value arrives */
-    struct owner *owner; /* [own] by their directory's rank */
+    uint32_t *number;    /* [unique] first the index of each id in `asked`, later the index of its value in `in` */
+    struct owner *owner; /* [own] entries for the directory, in the order of its ranks */
     struct id_table table;
-    fibrad_block *arrived; /* [ARRIVALS] what others have sent */
-    uint64_t culprit;
-    bool fault;
+    fibrad_block *arrived; /* [ARRIVALS] elements received */
+    uint64_t culprit;      /* least id at fault on this rank */
+    bool fault;            /* an id is at fault */
 };
 
 static void blame(struct making *m, uint64_t id) {
@@ -95,7 +97,7 @@ static void blame(struct making *m, uint64_t id) {
 
 static int directory_of(const struct making *m, uint64_t id) { return (int)(hash_id(id) % (uint64_t)m->ranks); }
 
-/* Enters the ids owned in the directory. */
+/* Enters the own ids into the directory. */
 static int enter_owned(struct making *m, size_t own) {
     memset(m->count, 0, (size_t)m->ranks * sizeof *m->count);
     for (size_t i = 0; i < own; ++i) m->count[directory_of(m, m->id[i])]++;
@@ -105,7 +107,7 @@ static int enter_owned(struct making *m, size_t own) {
     return fibrad_deal(m->comm, FIBRAD_OK, m->owner, m->count, sizeof *m->owner, &m->arrived[DIRECTORY], 0, m->got);
 }
 
-/* Asks the directory for the ids used, each once. slot[used]: which of the questions. */
+/* Asks the directory for the owners of the used ids, each id once. slot [used]: index of the question. */
 static int ask_directory(struct making *m, size_t own, size_t used, uint32_t *slot) {
     struct id_table seen;
     int status = open_table(&seen, used);
@@ -120,7 +122,7 @@ static int ask_directory(struct making *m, size_t own, size_t used, uint32_t *sl
     }
     fibrad_count_starts(m->count, m->ranks, m->got);
     for (size_t k = 0, next = 0; k < used && !status; ++k)
-        if (slot[k] == next) { /* the first time */
+        if (slot[k] == next) { /* the first use of this id */
             const int at = m->got[directory_of(m, m->id[own + k])]++;
             m->asked[at] = m->id[own + k];
             m->number[next++] = (uint32_t)at;
@@ -130,7 +132,7 @@ static int ask_directory(struct making *m, size_t own, size_t used, uint32_t *sl
     return fibrad_deal(m->comm, status, m->asked, m->count, sizeof *m->asked, &m->arrived[QUESTIONS], 0, m->got);
 }
 
-/* Answers all questions; the answers come back in the order of the questions. */
+/* Answers the questions of all ranks. Each rank gets its replies in the order of its questions. */
 static int answer(struct making *m, size_t entries) {
     const struct owner *entry = m->arrived[DIRECTORY].at;
     const uint64_t *question = m->arrived[QUESTIONS].at;
@@ -153,7 +155,7 @@ static int answer(struct making *m, size_t entries) {
     return status;
 }
 
-/* The same fault on all ranks: the one of the least id. */
+/* Finds the least id at fault on all ranks. */
 static int agree_on_fault(struct making *m, uint64_t *culprit) {
     uint64_t least[2] = {!m->fault, m->fault ? m->culprit : UINT64_MAX};
     MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_UINT64_T, MPI_MIN, m->comm);
@@ -162,7 +164,7 @@ static int agree_on_fault(struct making *m, uint64_t *culprit) {
     return FIBRAD_E_ARGUMENT;
 }
 
-/* Asks the owners for the values, by rank; slots become places in that order. */
+/* Tells the owners which values this rank uses. Slots become indices in the order of owners. */
 static int ask_owners(struct making *m, fibrad_link *link) {
     const struct owner *reply = m->arrived[REPLIES].at;
     uint32_t *wanted = malloc((m->unique + 1) * sizeof *wanted);
@@ -181,7 +183,7 @@ static int ask_owners(struct making *m, fibrad_link *link) {
     return status;
 }
 
-/* Buffers and persistent requests. count: values to get from each rank; got: values to send to each. */
+/* Makes buffers and persistent requests. m->count: values from each rank; m->got: values to each rank. */
 static int lay_out(struct making *m, fibrad_link *link) {
     int peers = 0;
     for (int q = 0; q < m->ranks; ++q) peers += q != m->rank ? (m->count[q] > 0) + (m->got[q] > 0) : 0;
@@ -226,7 +228,7 @@ static int make_link(struct making *m, fibrad_link *link, uint64_t *culprit) {
     return status ? status : lay_out(m, link);
 }
 
-/* Memory for own and used ids; close it also after an error. FIBRAD_OK or _E_MEMORY. */
+/* Allocates memory for own and used ids. Close it also after an error. Returns FIBRAD_OK or _E_MEMORY. */
 static int open_making(struct making *m, size_t own, size_t used) {
     const size_t ranks = (size_t)m->ranks;
     m->count = malloc(ranks * sizeof *m->count);
@@ -249,7 +251,7 @@ static void close_making(struct making *m) {
     for (int k = 0; k < ARRIVALS; ++k) fibrad_block_free(&m->arrived[k]);
 }
 
-/* A link without messages yet; NULL: no memory. */
+/* Makes a link without buffers. NULL: there is not enough memory. */
 static fibrad_link *open_link(size_t own, size_t used) {
     fibrad_link *link = calloc(1, sizeof *link);
     if (!link) return NULL;
@@ -281,7 +283,7 @@ int fibrad_link_new(fibrad_link **link, MPI_Comm comm, const uint64_t *id, size_
     return status;
 }
 
-/* ---- using it ---- */
+/* ---- using a link ---- */
 
 static void exchange_messages(const fibrad_link *link, MPI_Request *request) {
     MPI_Startall(link->requests, request);

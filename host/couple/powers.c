@@ -1,11 +1,11 @@
-/* powers.c - net radiative powers from rows that lie where their particles were. SPDX-License-Identifier: MIT */
+/* powers.c - net radiative powers, from rows that stay on the home ranks of particles. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
 #include "couple/insitu.h"
 
-/* zero: whether it may be 0. */
+/* Whether a temperature is valid. zero: 0 is valid. */
 static int temperature_valid(double t, int zero) { return (zero ? t >= 0 : t > 0) && t <= FIBRAD_TEMPERATURE_MAX; }
 
 static double sigma_of(const fibrad_insitu_state *state) {
@@ -33,11 +33,12 @@ static int check_state(fibrad_insitu *s, const fibrad_insitu_state *state, const
     return FIBRAD_OK;
 }
 
-/* Links the particles of present owners to their homes anew, if they have moved on some rank. */
+/* Links present owners to home ranks anew, if owners have changed on some rank. */
 static int follow_particles(fibrad_insitu *s, const fibrad_insitu_state *state) {
     fibrad_insitu_set *set = &s->set;
     const size_t n = state->n, all = n + set->own;
-    uint64_t culprit, sum[2] = {n, n != set->now_n}; /* particles; ranks where they have moved */
+    uint64_t culprit,
+        sum[2] = {n, n != set->now_n}; /* number of particles; number of ranks with other particles than before */
     if (n && !sum[1]) sum[1] = memcmp(set->now.at, state->id, n * sizeof *state->id) != 0;
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_UINT64_T, MPI_SUM, s->comm);
     if (!sum[1]) return FIBRAD_OK;
@@ -73,7 +74,7 @@ static int follow_particles(fibrad_insitu *s, const fibrad_insitu_state *state) 
 
 static double fourth(double t) { return t * t * t * t; }
 
-/* Powers of the rows at home, into set->power[own]; and what walls and surroundings gain. */
+/* Finds the powers by the rows of this rank: of columns (set->power), walls and surroundings. */
 static int flow_at_home(fibrad_insitu *s, const fibrad_insitu_state *state, fibrad_flow *flow) {
     fibrad_insitu_set *set = &s->set;
     int status = FIBRAD_OK;

@@ -1,10 +1,10 @@
-/* rows_file.h - the file of one rank's rows. SPDX-License-Identifier: MIT
+/* rows_file.h - the file of the rows of one rank. SPDX-License-Identifier: MIT
  *
- * Little endian, words of 8 bytes without gaps: this head, then the arrays id[rows], start[rows + 1], col[entries],
- * f[entries], body[rows][bodies], escaped[rows], beyond[rows], error[rows], radius[rows], emissivity[rows], x[rows][3].
- * Rows are those of start[i] to start[i + 1]; ids ascend, within each row those of its columns, too; images of one
- * particle share an entry. What is beyond is to be given back: entries times 1/(1 - beyond). step is the number that
- * the rows were made with and that their paths depend on. */
+ * The file is little endian and has words of 8 bytes without gaps: this head, then the arrays id[rows], start[rows +
+ * 1], col[entries], f[entries], body[rows][bodies], escaped[rows], beyond[rows], error[rows], radius[rows],
+ * emissivity[rows], x[rows][3]. Row i has the entries start[i] to start[i + 1] - 1, whose columns are ids. Ids ascend,
+ * and so do the columns within each row. Images of one particle share an entry. Entries are raw: to give `beyond` back,
+ * multiply the entries of a row by 1/(1 - beyond). The paths of the rows depend on `step`. */
 #ifndef FIBRAD_ROWS_FILE_H
 #define FIBRAD_ROWS_FILE_H
 

@@ -1,4 +1,4 @@
-/* write_rows.c - the rows of each rank in a file. SPDX-License-Identifier: MIT */
+/* write_rows.c - writes the rows of each rank to a file. SPDX-License-Identifier: MIT */
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,12 +10,14 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "files are written as memory is");
 
-/* A row and where it lies, or an entry of it, by id. */
+/* The id of a row, and where the row is. */
 struct row_place {
     uint64_t id;
     size_t at;
     int thread;
 };
+
+/* An entry of a row, by the id of its column. */
 struct entry_of_id {
     uint64_t id;
     double f;
@@ -38,7 +40,8 @@ struct rows_arrays {
     double *f, *body, *escaped, *beyond, *error, *radius, *emissivity, *x;
 };
 
-/* One row at place i of the arrays; images of one particle in one entry, whatever the order they were found in. */
+/* Puts a row into the arrays as row i. Images of one particle are joined in one entry, in an order that does not depend
+ * on the order of the row. */
 static void put_row(const fibrad_insitu_set *set, const fibrad_row *row, size_t i, struct entry_of_id *entry,
                     struct rows_arrays *to) {
     const uint64_t *id = set->id.at;
@@ -82,7 +85,7 @@ static int write_file(const char *name, const fibrad_rows_head *head, const stru
     return fclose(file) == 0 && whole;
 }
 
-/* place[own]: the rows by ascending id. Returns the length of the longest. */
+/* Lists the rows by ascending id, place[own]. Returns the length of the longest row. */
 static uint32_t list_rows(fibrad_insitu *s, struct row_place *place) {
     fibrad_row row;
     size_t count = 0;
@@ -97,7 +100,7 @@ static uint32_t list_rows(fibrad_insitu *s, struct row_place *place) {
     return longest;
 }
 
-/* Memory of a file's arrays for rows in all. FIBRAD_OK or _E_MEMORY. */
+/* Allocates the arrays of a file. Returns FIBRAD_OK or _E_MEMORY. */
 static int open_arrays(const fibrad_insitu_set *set, uint64_t entries, struct rows_arrays *a) {
     const size_t n = set->own;
     a->id = malloc((2 * n + 1 + entries) * sizeof *a->id);
@@ -115,7 +118,7 @@ static int open_arrays(const fibrad_insitu_set *set, uint64_t entries, struct ro
     return FIBRAD_OK;
 }
 
-/* The rows in the order of their ids. FIBRAD_OK or _E_MEMORY. */
+/* Fills the arrays with the rows in the order of their ids. Returns FIBRAD_OK or _E_MEMORY. */
 static int gather_rows(fibrad_insitu *s, struct rows_arrays *a) {
     const size_t n = s->set.own;
     struct row_place *place = malloc((n + 1) * sizeof *place);

@@ -24,17 +24,17 @@ static int take_period(const char *text, double period[3]) {
     return STATUS_OK;
 }
 
-static int add_file(struct bed_options *asked, const char *name) {
-    for (size_t k = 0; k < asked->files; ++k)
-        if (strcmp(name, "-") == 0 && strcmp(asked->file[k], name) == 0)
+static int add_file(struct bed_options *options, const char *name) {
+    for (size_t k = 0; k < options->files; ++k)
+        if (strcmp(name, "-") == 0 && strcmp(options->file[k], name) == 0)
             return message(STATUS_USAGE, "standard input can be read once only");
     const int spared = output_spare(name);
     if (spared) return spared;
-    char **file = realloc(asked->file, (asked->files + 1) * sizeof *file);
+    char **file = realloc(options->file, (options->files + 1) * sizeof *file);
     if (!file) return message_memory();
-    asked->file = file;
-    file[asked->files] = strdup(name);
-    return file[asked->files++] ? STATUS_OK : message_memory();
+    options->file = file;
+    file[options->files] = strdup(name);
+    return file[options->files++] ? STATUS_OK : message_memory();
 }
 
 /* Orders names by the numbers in them: bed.200.dump stands before bed.1000.dump. */
@@ -59,26 +59,26 @@ static int order_of_names(const void *a, const void *b) {
 }
 
 /* Takes the name of a file, or a pattern in quotes that the shell has not expanded. */
-static int take_file(struct bed_options *asked, const char *name) {
+static int take_file(struct bed_options *options, const char *name) {
     struct stat there;
     glob_t found;
-    if (!strpbrk(name, "*?[") || stat(name, &there) == 0) return add_file(asked, name);
+    if (!strpbrk(name, "*?[") || stat(name, &there) == 0) return add_file(options, name);
     if (glob(name, 0, NULL, &found) != 0) return message_at(STATUS_FILE, name, 0, "no file has such a name");
     qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, order_of_names);
     int status = STATUS_OK;
-    for (size_t k = 0; k < found.gl_pathc && !status; ++k) status = add_file(asked, found.gl_pathv[k]);
+    for (size_t k = 0; k < found.gl_pathc && !status; ++k) status = add_file(options, found.gl_pathv[k]);
     globfree(&found);
     return status;
 }
 
 /* Reads --frame: K, all, A:B, A:B:STEP or -1. */
-static int take_frames(const char *text, struct bed_options *asked) {
+static int take_frames(const char *text, struct bed_options *options) {
     struct frames frames = {0, INT64_MAX, 1};
     char *end = (char *)text;
     const char *digits = "0123456789";
-    asked->range = strcmp(text, "all") == 0 || strchr(text, ':');
+    options->range = strcmp(text, "all") == 0 || strchr(text, ':');
     if (strcmp(text, "-1") == 0 || strcmp(text, "all") == 0) {
-        asked->frames = asked->range ? frames : (struct frames){0};
+        options->frames = options->range ? frames : (struct frames){0};
         return STATUS_OK;
     }
     if (strspn(text, digits) > 0) frames.begin = strtoll(text, &end, 10);
@@ -88,184 +88,187 @@ static int take_frames(const char *text, struct bed_options *asked) {
     if (*end == ':' && strspn(++end, digits) > 0) frames.step = strtoll(end, &end, 10);
     good = good && *end == 0 && frames.begin < frames.end && frames.step > 0;
     if (!good) return message(STATUS_USAGE, "--frame: '%.40s' is none of K, all, A:B, A:B:STEP, -1", text);
-    asked->frames = frames;
+    options->frames = frames;
     return STATUS_OK;
 }
 
-static int take_length_unit(const char *text, struct bed_options *asked) {
+static int take_length_unit(const char *text, struct bed_options *options) {
     double metres;
     if (!unit_of_length(text, &metres) || metres == 0)
         return message(STATUS_USAGE, "--length-unit: '%.40s' is none of " UNITS_LENGTH, text);
-    asked->length_unit = text;
+    options->length_unit = text;
     return STATUS_OK;
 }
 
-static int take_scratch(const char *folder, struct bed_options *asked) {
+static int take_scratch(const char *folder, struct bed_options *options) {
     struct stat there;
-    asked->scratch = folder;
+    options->scratch = folder;
     if (stat(folder, &there) != 0 || access(folder, W_OK | X_OK) != 0)
         return message_at(STATUS_FILE, folder, 0, "%s", strerror(errno));
     return S_ISDIR(there.st_mode) ? STATUS_OK : message_at(STATUS_FILE, folder, 0, "is not a folder");
 }
 
-int bed_options_take(struct bed_options *asked, const struct options *options, int key) {
-    const char *value = options->value;
+int bed_options_take(struct bed_options *options, const struct options *parsed, int key) {
+    const char *value = parsed->value;
     switch (key) {
     case OPTIONS_POSITIONAL:
-        return take_file(asked, value);
+        return take_file(options, value);
     case KEY_HELP:
         return STATUS_HELP;
     case KEY_PERIODIC:
-        asked->periodic = true;
-        return take_period(value, asked->period);
+        options->periodic = true;
+        return take_period(value, options->period);
     case KEY_FRAME:
-        return take_frames(value, asked);
+        return take_frames(value, options);
     case KEY_WALL:
-        return walls_option(value, &asked->walls);
+        return walls_option(value, &options->walls);
     case KEY_WALL_VTP:
-        asked->wall_vtp = true;
-        return outputs_add_meshes(&asked->outputs, value);
+        options->wall_vtp = true;
+        return outputs_add_meshes(&options->outputs, value);
     case KEY_THREADS:
-        return options_threads(value, &asked->threads);
+        return options_threads(value, &options->threads);
     case KEY_POSITIONS:
-        asked->positions = true;
+        options->positions = true;
         return STATUS_OK;
     case KEY_RADIUS:
-        return quantity_option("--radius", value, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &asked->radius);
+        return quantity_option("--radius", value, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &options->radius);
     case KEY_LENGTH_UNIT:
-        return take_length_unit(value, asked);
+        return take_length_unit(value, options);
     case KEY_SCRATCH:
-        return take_scratch(value, asked);
+        return take_scratch(value, options);
     case KEY_PLOT:
-        asked->outputs.picture = value;
+        options->outputs.picture = value;
         return STATUS_OK;
     case KEY_JSON:
-        asked->outputs.summary = value;
+        options->outputs.summary = value;
         return STATUS_OK;
     case KEY_QUIET:
-        asked->quiet = asked->progress.quiet = true;
+        options->quiet = options->progress.quiet = true;
         return STATUS_OK;
     case KEY_PROGRESS:
-        asked->progress.forced = true;
+        options->progress.forced = true;
         return STATUS_OK;
     case KEY_FORMAT:
-        return outputs_format(&asked->outputs, value);
+        return outputs_format(&options->outputs, value);
     case 'o':
-        return outputs_add(&asked->outputs, value);
+        return outputs_add(&options->outputs, value);
     default:
         return STATUS_USAGE; /* OPTIONS_BAD: the message is out */
     }
 }
 
-size_t bed_options_column(struct bed_options *asked, const char *name, const char *unit) {
-    for (size_t k = 0; name && !unit && k < asked->columns; ++k)
-        if (!asked->unit[k] && strcmp(asked->column[k], name) == 0) return k;
-    asked->column[asked->columns] = name;
-    asked->unit[asked->columns] = unit;
-    return name ? asked->columns++ : 0;
+size_t bed_options_column(struct bed_options *options, const char *name, const char *unit) {
+    for (size_t k = 0; name && !unit && k < options->columns; ++k)
+        if (!options->unit[k] && strcmp(options->column[k], name) == 0) return k;
+    options->column[options->columns] = name;
+    options->unit[options->columns] = unit;
+    return name ? options->columns++ : 0;
 }
 
 /* Whether the run may have several frames. */
-static bool is_series(const struct bed_options *asked) { return asked->range || asked->files > 1; }
+static bool is_series(const struct bed_options *options) { return options->range || options->files > 1; }
 
-int bed_options_check(struct bed_options *asked, const char *command, enum content content) {
-    const char *picture = asked->outputs.picture;
-    asked->command = command;
-    if (asked->files == 0) return message(STATUS_USAGE, "FILE is missing; see fibrad %s --help", command);
-    asked->radius.place = bed_options_column(asked, asked->radius.column, NULL);
+int bed_options_check(struct bed_options *options, const char *command, enum content content) {
+    const char *picture = options->outputs.picture;
+    options->command = command;
+    if (options->files == 0) return message(STATUS_USAGE, "FILE is missing; see fibrad %s --help", command);
+    options->radius.place = bed_options_column(options, options->radius.column, NULL);
     if (picture && !plot_ending(picture))
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
-    if (picture && is_series(asked)) return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
-    if (asked->timed && is_series(asked))
+    if (picture && is_series(options)) return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
+    if (options->timed && is_series(options))
         return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
-    if (asked->wall_vtp && !asked->walls.walls.meshes)
+    if (options->wall_vtp && !options->walls.walls.meshes)
         return message(STATUS_USAGE, "--wall-vtp: there is no --wall mesh:FILE");
-    return outputs_check(&asked->outputs, content, is_series(asked) || asked->timed);
+    return outputs_check(&options->outputs, content, is_series(options) || options->timed);
 }
 
 /* Puts periods, unit and radii of the options into a bed that was read. */
-static int complete_bed(struct bed_options *asked, struct bed *bed) {
-    if (asked->periodic) warn_periods(&asked->warned, bed, asked->period);
-    if (asked->periodic) memcpy(bed->period, asked->period, sizeof bed->period);
-    if (!bed->units[0] && asked->length_unit)
-        snprintf(bed->units, sizeof bed->units, "%s", asked->length_unit); /* outputs show the unit */
-    if (!asked->radius.given) return STATUS_OK;
+static int complete_bed(struct bed_options *options, struct bed *bed) {
+    if (options->periodic) warn_periods(&options->warned, bed, options->period);
+    if (options->periodic) memcpy(bed->period, options->period, sizeof bed->period);
+    if (!bed->units[0] && options->length_unit)
+        snprintf(bed->units, sizeof bed->units, "%s", options->length_unit); /* outputs show the unit */
+    if (!options->radius.given) return STATUS_OK;
     double *radius; /* copied: bed->r has room for larger frames, which must stay */
-    const int status =
-        quantity_values(&asked->radius, bed, asked->name, "radius", 0, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &radius);
+    const int status = quantity_values(&options->radius, bed, options->name, "radius", 0, FIBRAD_LENGTH_MIN,
+                                       FIBRAD_LENGTH_MAX, &radius);
     if (!status) memcpy(bed->r, radius, bed->n * sizeof *radius);
     free(radius);
     return status;
 }
 
-static int run_file(struct bed_options *asked, const char *path, struct bed *bed, bed_options_frame *frame,
+static int run_file(struct bed_options *options, const char *path, struct bed *bed, bed_options_frame *frame,
                     void *request) {
-    const struct read_options read = {.frames = asked->frames,
-                                      .positions = asked->positions,
-                                      .periods_given = asked->periodic,
-                                      .no_radius = asked->radius.given,
-                                      .part = asked->files > 1,
-                                      .keep = outputs_keep(&asked->outputs),
-                                      .extra = asked->column,
-                                      .unit = asked->unit,
-                                      .some = asked->some,
-                                      .extras = asked->columns};
+    const struct read_options read = {.frames = options->frames,
+                                      .positions = options->positions,
+                                      .periods_given = options->periodic,
+                                      .no_radius = options->radius.given,
+                                      .part = options->files > 1,
+                                      .keep = outputs_keep(&options->outputs),
+                                      .extra = options->column,
+                                      .unit = options->unit,
+                                      .some = options->some,
+                                      .extras = options->columns};
     struct reader *reader;
     bool more = true;
-    asked->name = asked->warned.file = lines_name(path);
+    options->name = options->warned.file = lines_name(path);
     int status = reader_open(&reader, path, &read);
     while (!status) {
         status = reader_next(reader, bed, &more);
         if (status || !more) break;
-        if (asked->files > 1) bed->frame = asked->frames_done; /* counted through all files */
-        warn_frame(&asked->warned, bed);
-        status = complete_bed(asked, bed);
+        if (options->files > 1) bed->frame = options->frames_done; /* counted through all files */
+        warn_frame(&options->warned, bed);
+        status = complete_bed(options, bed);
         if (!status) status = frame(request, bed);
-        ++asked->frames_done;
+        ++options->frames_done;
     }
     reader_close(reader);
     return status;
 }
 
 /* Outputs are opened first: a path that cannot be written is an error before any work is done. */
-static int run_frames(struct bed_options *asked, bed_options_frame *frame, void *request) {
+static int run_frames(struct bed_options *options, bed_options_frame *frame, void *request) {
     struct bed bed;
     bed_init(&bed);
-    int status = output_open(&asked->picture, asked->outputs.picture);
-    if (!status) status = outputs_open(&asked->outputs);
-    asked->report = outputs_report(&asked->outputs, asked->quiet);
-    if (!status) report_open(&asked->report, asked->command);
-    for (size_t k = 0; k < asked->files && !status; ++k) status = run_file(asked, asked->file[k], &bed, frame, request);
-    if (!status && asked->frames_done == 0) status = message(STATUS_INPUT, "there are no spheres in any of the files");
-    if (!status) report_close(&asked->report);
+    int status = output_open(&options->picture, options->outputs.picture);
+    if (!status) status = outputs_open(&options->outputs);
+    options->report = outputs_report(&options->outputs, options->quiet);
+    if (!status) report_open(&options->report, options->command);
+    for (size_t k = 0; k < options->files && !status; ++k)
+        status = run_file(options, options->file[k], &bed, frame, request);
+    if (!status && options->frames_done == 0)
+        status = message(STATUS_INPUT, "there are no spheres in any of the files");
+    if (!status) report_close(&options->report);
     bed_free(&bed);
-    status = outputs_close(&asked->outputs, status);
-    return output_close(&asked->picture, status);
+    status = outputs_close(&options->outputs, status);
+    return output_close(&options->picture, status);
 }
 
-int bed_options_end(struct bed_options *asked, int status, int (*help)(void), bed_options_frame *frame, void *request) {
+int bed_options_end(struct bed_options *options, int status, int (*help)(void), bed_options_frame *frame,
+                    void *request) {
     if (status == STATUS_OK)
-        status = run_frames(asked, frame, request);
+        status = run_frames(options, frame, request);
     else if (status == STATUS_HELP)
         status = help();
-    for (size_t k = 0; k < asked->files; ++k) free(asked->file[k]);
-    free(asked->file);
-    walls_free(&asked->walls);
+    for (size_t k = 0; k < options->files; ++k) free(options->file[k]);
+    free(options->file);
+    walls_free(&options->walls);
     return status;
 }
 
-fibrad_run bed_options_run(struct bed_options *asked) {
-    return (fibrad_run){.threads = asked->threads, .progress = progress_stage, .context = &asked->progress};
+fibrad_run bed_options_run(struct bed_options *options) {
+    return (fibrad_run){.threads = options->threads, .progress = progress_stage, .context = &options->progress};
 }
 
-int bed_options_status(struct bed_options *asked, const struct bed *bed, int status, const fibrad_fault *fault) {
-    progress_stop(&asked->progress);
-    if (status && asked->walls.walls.meshes && fault->triangle != UINT32_MAX)
-        return meshes_refuse(asked->walls.walls.meshes, status, fault->triangle);
-    if (status == FIBRAD_E_ENDLESS) return walls_refuse_endless(&asked->walls.walls, bed);
-    if (status == FIBRAD_E_MEMORY && asked->scratch)
-        return message_at(STATUS_MEMORY, asked->scratch, 0, "there is no more room on this disk, or in memory");
-    return bed_status(bed, asked->name, status, fault);
+int bed_options_status(struct bed_options *options, const struct bed *bed, int status, const fibrad_fault *fault) {
+    progress_stop(&options->progress);
+    if (status && options->walls.walls.meshes && fault->triangle != UINT32_MAX)
+        return meshes_refuse(options->walls.walls.meshes, status, fault->triangle);
+    if (status == FIBRAD_E_ENDLESS) return walls_refuse_endless(&options->walls.walls, bed);
+    if (status == FIBRAD_E_MEMORY && options->scratch)
+        return message_at(STATUS_MEMORY, options->scratch, 0, "there is no more room on this disk, or in memory");
+    return bed_status(bed, options->name, status, fault);
 }
 
 int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute,
@@ -296,46 +299,46 @@ int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_o
 }
 
 /* The unit of a bed: that of the file, or else that of --length-unit. NULL: neither names one. */
-static const char *unit_of(const struct bed_options *asked, const struct bed *bed) {
+static const char *unit_of(const struct bed_options *options, const struct bed *bed) {
     double metres = 0;
     const bool by_file = bed->units[0] && (!unit_of_length(bed->units, &metres) || metres > 0);
-    return by_file ? bed->units : asked->length_unit;
+    return by_file ? bed->units : options->length_unit;
 }
 
-int bed_options_metres(struct bed_options *asked, const struct bed *bed, double *metres) {
-    const char *unit = unit_of(asked, bed);
+int bed_options_metres(struct bed_options *options, const struct bed *bed, double *metres) {
+    const char *unit = unit_of(options, bed);
     double other;
     *metres = 1;
     if (!unit && bed->units[0])
-        return message_at(STATUS_USAGE, asked->name, 0,
+        return message_at(STATUS_USAGE, options->name, 0,
                           "units %.20s have no fixed length in metres; --length-unit gives the length", bed->units);
     if (unit && !unit_of_length(unit, metres))
-        return message_at(STATUS_USAGE, asked->name, 0, "unknown units '%.20s'", unit);
-    if (unit && asked->length_unit && unit_of_length(asked->length_unit, &other) && other != *metres)
-        return message_at(STATUS_USAGE, asked->name, 0,
+        return message_at(STATUS_USAGE, options->name, 0, "unknown units '%.20s'", unit);
+    if (unit && options->length_unit && unit_of_length(options->length_unit, &other) && other != *metres)
+        return message_at(STATUS_USAGE, options->name, 0,
                           "its units are %.20s; --length-unit is for files that name none", unit);
-    if (!unit) warn_unit(&asked->warned, bed);
-    if (asked->metres > 0 && asked->metres != *metres)
-        return message_at(STATUS_USAGE, asked->name, 0,
-                          "the unit of length is %g m, but that of the files before is %g m", *metres, asked->metres);
-    asked->metres = *metres;
+    if (!unit) warn_unit(&options->warned, bed);
+    if (options->metres > 0 && options->metres != *metres)
+        return message_at(STATUS_USAGE, options->name, 0,
+                          "the unit of length is %g m, but that of the files before is %g m", *metres, options->metres);
+    options->metres = *metres;
     return STATUS_OK;
 }
 
-int bed_options_write(struct bed_options *asked, const struct bed *bed, struct contents *what) {
+int bed_options_write(struct bed_options *options, const struct bed *bed, struct contents *what) {
     what->bed = bed;
-    what->file = asked->files > 1 ? asked->name : NULL;
-    what->series = is_series(asked);
-    return outputs_write(&asked->outputs, what);
+    what->file = options->files > 1 ? options->name : NULL;
+    what->series = is_series(options);
+    return outputs_write(&options->outputs, what);
 }
 
-int bed_options_walls(struct bed_options *asked, const struct bed *bed, struct walls *walls) {
+int bed_options_walls(struct bed_options *options, const struct bed *bed, struct walls *walls) {
     const fibrad_spheres spheres = bed_spheres(bed);
-    const int status = walls_of(&asked->walls, bed, asked->name, walls);
-    if (!status) warn_walls(&asked->warned, bed, walls);
+    const int status = walls_of(&options->walls, bed, options->name, walls);
+    if (!status) warn_walls(&options->warned, bed, walls);
     if (status || !walls->meshes) return status;
     const int faced = meshes_face(walls->meshes, &spheres, bed->period);
-    return faced ? faced : warn_beyond(bed, walls, asked->name);
+    return faced ? faced : warn_beyond(bed, walls, options->name);
 }
 
 static void report_mesh(struct report *report, const struct walls *walls, uint32_t k) {
@@ -365,12 +368,12 @@ static void report_wall(struct report *report, const struct walls *walls, uint32
         report_value(report, key, wall->plane.at, 9);
 }
 
-void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,
+void bed_options_report(struct bed_options *options, const struct bed *bed, const struct walls *walls,
                         const fibrad_scene_facts *facts) {
-    struct report *report = &asked->report;
-    const char *unit = unit_of(asked, bed);
+    struct report *report = &options->report;
+    const char *unit = unit_of(options, bed);
     report_begin(report);
-    report_text(report, "file", asked->name);
+    report_text(report, "file", options->name);
     report_whole(report, "frame", bed->frame);
     if (bed->timestep >= 0) report_whole(report, "timestep", bed->timestep);
     report_count(report, "spheres", bed->n);
@@ -379,7 +382,7 @@ void bed_options_report(struct bed_options *asked, const struct bed *bed, const 
     if (facts) report_value(report, "radius_min", facts->radius_min, 6);
     if (facts) report_value(report, "radius_max", facts->radius_max, 6);
     if (facts && facts->overlap_max > 0) report_value(report, "overlap_max", facts->overlap_max, 3);
-    if (facts) warn_overlap(&asked->warned, bed, facts);
+    if (facts) warn_overlap(&options->warned, bed, facts);
     if (bed->low[0] < bed->high[0]) {
         report_vector(report, "box_low", bed->low);
         report_vector(report, "box_high", bed->high);

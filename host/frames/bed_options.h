@@ -86,14 +86,14 @@ struct bed_options {
 
 /* Takes FILE, -o, --plot, --wall, --wall-vtp and the options of this header. Any other key counts as OPTIONS_BAD, after
  * which the message is out. Status 0, STATUS_HELP, STATUS_USAGE, STATUS_FILE or STATUS_MEMORY. */
-int bed_options_take(struct bed_options *asked, const struct options *options, int key);
+int bed_options_take(struct bed_options *options, const struct options *parsed, int key);
 
 /* Asks for a column of the file. unit: expected unit; NULL: none. Returns the index of the column in bed->extra.
- * Without a unit a column has one index however often it is asked for. name NULL: does nothing. */
-size_t bed_options_column(struct bed_options *asked, const char *name, const char *unit);
+ * Without a unit a column has one index however often it is options for. name NULL: does nothing. */
+size_t bed_options_column(struct bed_options *options, const char *name, const char *unit);
 
 /* Checks files and outputs when all options have been read. The command writes `content`. Status 0 or STATUS_USAGE. */
-int bed_options_check(struct bed_options *asked, const char *command, enum content content);
+int bed_options_check(struct bed_options *options, const char *command, enum content content);
 
 /* Computes, writes and reports one frame. Returns its status. */
 typedef int bed_options_frame(void *request, struct bed *bed);
@@ -101,14 +101,15 @@ typedef int bed_options_frame(void *request, struct bed *bed);
 /* Ends a command whose options have been read with `status`. STATUS_HELP prints the help. STATUS_OK reads all frames of
  * all files and hands them one after the other to `frame`; outputs get their names only if no frame fails. In any case
  * the options are freed. Returns the exit status. */
-int bed_options_end(struct bed_options *asked, int status, int (*help)(void), bed_options_frame *frame, void *request);
+int bed_options_end(struct bed_options *options, int status, int (*help)(void), bed_options_frame *frame,
+                    void *request);
 
 /* Threads and progress bar for calls of the library. The bar is part of the options. */
-fibrad_run bed_options_run(struct bed_options *asked);
+fibrad_run bed_options_run(struct bed_options *options);
 
 /* Ends the bar after a call of the library. If the call has failed, prints a message. Returns the exit status, as
  * bed_status. */
-int bed_options_status(struct bed_options *asked, const struct bed *bed, int status, const fibrad_fault *fault);
+int bed_options_status(struct bed_options *options, const struct bed *bed, int status, const fibrad_fault *fault);
 
 /* Computes the factors of a bed for the request of a command. Prints a message if it fails. Returns a status. */
 typedef int bed_options_compute(void *request, const struct bed *bed, fibrad_bed_factors **factors);
@@ -121,17 +122,17 @@ int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_o
 /* Finds the bed's unit of length [m]. Without a known unit assumes metres, and warns if radii look too large for
  * metres. Status 0, or STATUS_USAGE if the unit has no length in metres (as units lj) or if earlier frames had another
  * unit. */
-int bed_options_metres(struct bed_options *asked, const struct bed *bed, double *metres);
+int bed_options_metres(struct bed_options *options, const struct bed *bed, double *metres);
 
 /* Writes the current frame to all outputs. The caller sets `what` but for bed, file and series. */
-int bed_options_write(struct bed_options *asked, const struct bed *bed, struct contents *what);
+int bed_options_write(struct bed_options *options, const struct bed *bed, struct contents *what);
 
 /* Places the walls about a bed and finds which sides of meshes are walls. Warns if walls and bed contradict each other.
  * Status as walls_of, or STATUS_MEMORY. */
-int bed_options_walls(struct bed_options *asked, const struct bed *bed, struct walls *walls);
+int bed_options_walls(struct bed_options *options, const struct bed *bed, struct walls *walls);
 
 /* Begins the summary of a frame: file, frame, units, radii, box, walls. facts NULL: no radii. */
-void bed_options_report(struct bed_options *asked, const struct bed *bed, const struct walls *walls,
+void bed_options_report(struct bed_options *options, const struct bed *bed, const struct walls *walls,
                         const fibrad_scene_facts *facts);
 
 #endif

@@ -72,7 +72,7 @@ static void heat_temperatures(const struct bed *bed, const fibrad_heat_sources *
 }
 
 /* Says why no temperatures have the given powers. */
-static int heat_unsolvable(const struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
+static int heat_unsolvable(const struct bed_options *options, const struct heat_problem *problem, const struct bed *bed,
                            const struct heat_report *report) {
     const fibrad_heat_sources *sources = &problem->sources;
     const double square_metres = report->metres * report->metres;
@@ -81,7 +81,7 @@ static int heat_unsolvable(const struct bed_options *asked, const struct heat_pr
         if (!isnan(sources->temperature[i])) continue;
         sum += sources->power[i] * square_metres;
         if (isnan(report->result.temperature[i]) && sources->emissivity[i] > 0)
-            return message_at(STATUS_INPUT, asked->name, bed->line[i],
+            return message_at(STATUS_INPUT, options->name, bed->line[i],
                               "sphere %lld: no temperature above 0 K gives off %g W here", (long long)bed_name(bed, i),
                               sources->power[i] * square_metres);
     }
@@ -89,10 +89,10 @@ static int heat_unsolvable(const struct bed_options *asked, const struct heat_pr
         if (!isnan(sources->body_temperature[k]) || sources->insulated[k]) continue;
         sum += sources->body_power[k] * square_metres;
         if (isnan(report->result.body_temperature[k]))
-            return message_at(STATUS_INPUT, asked->name, 0, "wall %s: no temperature above 0 K gives off %g W here",
+            return message_at(STATUS_INPUT, options->name, 0, "wall %s: no temperature above 0 K gives off %g W here",
                               wall_name(&problem->walls, k), sources->body_power[k] * square_metres);
     }
-    return message_at(STATUS_INPUT, asked->name, 0,
+    return message_at(STATUS_INPUT, options->name, 0,
                       "no temperature is given in this closed bed, and its powers add up to %g W, not to 0", sum);
 }
 
@@ -174,13 +174,13 @@ static void heat_follow(void *law, const double *temperature, const double *wall
 /* Tolerance of the radiosities over problem->error: so small that it adds nothing to the error. */
 #define SOLVED 5e-3
 
-static int heat_once(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
+static int heat_once(struct bed_options *options, const struct heat_problem *problem, const struct bed *bed,
                      struct heat_report *report) {
     const double begun = progress_clock();
     const fibrad_scene_config scene = bed_scene(bed, &problem->walls);
     const fibrad_spheres spheres = bed_spheres(bed);
     fibrad_heat_sources sources = problem->sources;
-    fibrad_run run = bed_options_run(asked);
+    fibrad_run run = bed_options_run(options);
     fibrad_radiation *radiation;
     double wall_emissivity[WALLS_MAX];
     for (uint32_t k = 0; k < problem->walls.count; ++k) wall_emissivity[k] = sources.body_emissivity[k];
@@ -200,10 +200,10 @@ static int heat_once(struct bed_options *asked, const struct heat_problem *probl
     fibrad_radiation_describe(radiation, &report->facts, &run.fault);
     fibrad_radiation_free(radiation);
     if (status == FIBRAD_E_UNSOLVABLE) {
-        progress_stop(&asked->progress);
-        return heat_unsolvable(asked, problem, bed, report);
+        progress_stop(&options->progress);
+        return heat_unsolvable(options, problem, bed, report);
     }
-    status = bed_options_status(asked, bed, status, &run.fault);
+    status = bed_options_status(options, bed, status, &run.fault);
     if (status) return status;
     heat_temperatures(bed, &sources, report);
     heat_scale(bed, problem->walls.count, report->metres * report->metres, &report->result);
@@ -297,7 +297,7 @@ static double heat_work(const struct bed *bed, uint32_t walls, const fibrad_heat
 #define COSTLY 20
 
 /* Solves again with finer configurations until the errors are small enough or the configuration cannot be finer. */
-static int heat_improve(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
+static int heat_improve(struct bed_options *options, const struct heat_problem *problem, const struct bed *bed,
                         struct heat_report *report) {
     const struct heat_problem plain = {.config = problem->config, .emissivity = problem->emissivity};
     const fibrad_heat_config defaults = heat_config(&plain, bed);
@@ -313,13 +313,13 @@ static int heat_improve(struct bed_options *asked, const struct heat_problem *pr
             next.wall_rays == report->config.wall_rays)
             break;
         if (!warned && progress_clock() + seconds - begun > COSTLY * usual) {
-            message_at(STATUS_OK, asked->name, 0,
+            message_at(STATUS_OK, options->name, 0,
                        "warning: --error %g takes about %.0f s, %.0f times as long as without --error", problem->error,
                        ceil(progress_clock() + seconds - begun), (progress_clock() + seconds - begun) / usual);
             warned = true;
         }
         report->config = next;
-        const int status = heat_once(asked, problem, bed, report);
+        const int status = heat_once(options, problem, bed, report);
         if (status) return status;
         last = over;
         over = heat_compare(problem, report);
@@ -328,12 +328,12 @@ static int heat_improve(struct bed_options *asked, const struct heat_problem *pr
     return STATUS_OK;
 }
 
-int heat_run(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
+int heat_run(struct bed_options *options, const struct heat_problem *problem, const struct bed *bed,
              struct heat_report *report) {
     const double begun = progress_clock();
     report->config = heat_config(problem, bed);
-    int status = heat_once(asked, problem, bed, report);
-    if (!status && problem->error > 0) status = heat_improve(asked, problem, bed, report);
+    int status = heat_once(options, problem, bed, report);
+    if (!status && problem->error > 0) status = heat_improve(options, problem, bed, report);
     report->seconds = progress_clock() - begun;
     return status;
 }

@@ -54,7 +54,7 @@ void heat_emissivities(const struct heat_problem *problem, const struct bed *bed
 /* Solves the problem of a bed. With problem->error, solves again with more beams and patches until the estimated error
  * is small enough. The caller sets report->metres and all arrays of report->result. Status 0, STATUS_INPUT if no
  * temperatures above 0 K have the given powers, STATUS_MEMORY, or as bed_options_status. */
-int heat_run(struct bed_options *asked, const struct heat_problem *problem, const struct bed *bed,
+int heat_run(struct bed_options *options, const struct heat_problem *problem, const struct bed *bed,
              struct heat_report *report);
 
 #endif

@@ -60,8 +60,8 @@ int time_check(struct time_options *time, struct bed_options *bed) {
 
 /* State of a run in time. */
 struct time_run {
-    struct bed_options *asked;
-    const struct time_options *options;
+    struct bed_options *options;
+    const struct time_options *time;
     const struct heat_problem *problem;
     const struct bed *source; /* the bed as it was read */
     struct bed bed;           /* the bed as it is written: its frame is the number of the output */
@@ -131,9 +131,9 @@ static size_t list_table_times(const struct curve *curve, double until, double *
 /* Finds the ends of all spans in ascending order: times of output and times of tables. output[k]: (*times)[k] is a time
  * of output. */
 static int find_times(const struct time_run *m, double **times, bool **output, size_t *count) {
-    const struct time_options *o = m->options;
+    const struct time_options *o = m->time;
     const size_t every = o->every > 0 ? (size_t)ceil(o->until / o->every * (1 - 1e-12)) : 0;
-    size_t room = every + TIMES_MAX + 2, n = 0, asked;
+    size_t room = every + TIMES_MAX + 2, n = 0, outputs;
     const struct heat_problem *problem = m->problem;
     for (uint32_t k = 0; k < problem->walls.count; ++k) room += problem->wall_curve[k].n;
     room += problem->ambient_curve->n;
@@ -149,10 +149,10 @@ static int find_times(const struct time_run *m, double **times, bool **output, s
             return message(STATUS_USAGE, "--times: %g does not lie above the one before, within 0 and %g s", t[k],
                            o->until);
     if (!o->times && (n == 0 || t[n - 1] < o->until)) t[n++] = o->until;
-    asked = n;
-    double *wanted = malloc(asked * sizeof *wanted);
+    outputs = n;
+    double *wanted = malloc(outputs * sizeof *wanted);
     if (!wanted) return message_memory();
-    memcpy(wanted, t, asked * sizeof *wanted);
+    memcpy(wanted, t, outputs * sizeof *wanted);
     if (t[n - 1] < o->until) t[n++] = o->until;
     for (uint32_t k = 0; k < problem->walls.count; ++k) n += list_table_times(&problem->wall_curve[k], o->until, t + n);
     n += list_table_times(problem->ambient_curve, o->until, t + n);
@@ -161,7 +161,7 @@ static int find_times(const struct time_run *m, double **times, bool **output, s
     for (size_t k = 0, next = 0; k < n; ++k) {
         if (*count > 0 && t[k] == t[*count - 1]) continue;
         t[*count] = t[k];
-        (*output)[*count] = next < asked && wanted[next] == t[k];
+        (*output)[*count] = next < outputs && wanted[next] == t[k];
         next += (*output)[*count];
         ++*count;
     }
@@ -173,13 +173,13 @@ static int find_times(const struct time_run *m, double **times, bool **output, s
 static int find_capacities(struct time_run *m, double metres, double **capacity) {
     double *density = NULL;
     int status =
-        quantity_values(&m->options->capacity, &m->bed, m->asked->name, "heat capacity", 0, 1e-12, 1e12, capacity);
+        quantity_values(&m->time->capacity, &m->bed, m->options->name, "heat capacity", 0, 1e-12, 1e12, capacity);
     if (!status)
-        status = quantity_values(&m->options->density, &m->bed, m->asked->name, "density", 0, 1e-12, 1e12, &density);
-    if (!status) warn_matter(&m->asked->warned, &m->bed, *capacity, density);
+        status = quantity_values(&m->time->density, &m->bed, m->options->name, "density", 0, 1e-12, 1e12, &density);
+    if (!status) warn_matter(&m->options->warned, &m->bed, *capacity, density);
     for (uint32_t i = 0; i < m->bed.n && !status; ++i) {
         if (!(m->span.temperature[i] > 0))
-            status = message_at(STATUS_INPUT, m->asked->name, m->bed.line[i],
+            status = message_at(STATUS_INPUT, m->options->name, m->bed.line[i],
                                 "the temperature is %g K; to begin with it must be above 0", m->span.temperature[i]);
         (*capacity)[i] *= density[i] * (4. / 3 * M_PI) * gsl_pow_3(m->bed.r[i] * metres);
     }
@@ -222,10 +222,10 @@ static int choose_model(struct time_run *m) {
 static int library_status(struct time_run *m, int status) {
     fibrad_fault fault;
     fibrad_transient_describe(m->transient, NULL, &fault);
-    if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(m->asked, &m->bed, status, &fault);
-    progress_stop(&m->asked->progress);
-    return message_at(STATUS_INPUT, m->asked->name, 0, "after %g s no step keeps all temperatures above 0 K%s", m->now,
-                      m->options->step > 0 ? "; --step auto takes shorter steps" : "");
+    if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(m->options, &m->bed, status, &fault);
+    progress_stop(&m->options->progress);
+    return message_at(STATUS_INPUT, m->options->name, 0, "after %g s no step keeps all temperatures above 0 K%s",
+                      m->now, m->time->step > 0 ? "; --step auto takes shorter steps" : "");
 }
 
 /* Computes the powers at m->now and writes all outputs. */
@@ -252,7 +252,7 @@ static int write_state(struct time_run *m) {
                                   .sources = &shown,
                                   .result = m->result,
                                   .of_sides = m->problem->by_factors ? NULL : m->triangles};
-    status = outputs_write(&m->asked->outputs, &what);
+    status = outputs_write(&m->options->outputs, &what);
     ++m->bed.frame;
     return status;
 }
@@ -293,9 +293,9 @@ static int run_spans(struct time_run *m) {
 }
 
 static void print_summary(struct time_run *m, const double *before, double seconds) {
-    const struct time_options *o = m->options;
+    const struct time_options *o = m->time;
     const struct walls *walls = &m->problem->walls;
-    struct report *report = &m->asked->report;
+    struct report *report = &m->options->report;
     fibrad_scene_facts facts;
     double supplied = 0, stored = 0, exchanged = 0;
     const struct time_point end = point_of(m, o->until, m->span.temperature);
@@ -307,7 +307,7 @@ static void print_summary(struct time_run *m, const double *before, double secon
     double balance = stored - supplied + m->surroundings_energy;
     for (uint32_t k = 0; k < walls->count; ++k) balance += m->energy[k];
     fibrad_transient_describe(m->transient, &facts, NULL);
-    bed_options_report(m->asked, m->source, walls, &facts);
+    bed_options_report(m->options, m->source, walls, &facts);
     report_value(report, "until_s", o->until, 9);
     report_text(report, "model", m->by_patches ? "patches" : m->problem->by_factors ? "factors" : "corrected");
     quantity_report(m->problem->of_emissivity, "emissivity", report);
@@ -316,7 +316,7 @@ static void print_summary(struct time_run *m, const double *before, double secon
     if (!isnan(m->problem->sources.surroundings)) report_value(report, "surroundings_K", m->sources.surroundings, 6);
     wall_values_report(walls, m->wall, "_K", 6, report);
     wall_values_report(walls, m->sources.body_emissivity, "_emissivity", 6, report);
-    report_count(report, "threads", (uint64_t)(m->asked->threads ? m->asked->threads : omp_get_max_threads()));
+    report_count(report, "threads", (uint64_t)(m->options->threads ? m->options->threads : omp_get_max_threads()));
     report_value(report, "seconds", seconds, 3);
     report_count(report, "steps", m->steps);
     report_count(report, "steps_refused", m->refused);
@@ -343,26 +343,26 @@ static int run_bed(struct time_run *m, double *before, const struct output *pict
                                                                                : FIBRAD_TRANSIENT_CORRECTED,
                                             .heat = m->problem->config};
     const double begun = progress_clock();
-    fibrad_run run = bed_options_run(m->asked);
+    fibrad_run run = bed_options_run(m->options);
     int status = fibrad_transient_new(&m->transient, &scene, &spheres, &config, &run);
-    status = bed_options_status(m->asked, &m->bed, status, &run.fault);
+    status = bed_options_status(m->options, &m->bed, status, &run.fault);
     if (status) return status;
     outside_at(m, 0, m->wall, &m->sources.surroundings);
     memcpy(before, m->span.temperature, m->bed.n * sizeof *before);
     status = run_spans(m);
-    progress_stop(&m->asked->progress);
-    if (!status && picture) status = plot_time(picture, m->asked->name, m->point, m->points);
+    progress_stop(&m->options->progress);
+    if (!status && picture) status = plot_time(picture, m->options->name, m->point, m->points);
     if (!status) print_summary(m, before, progress_clock() - begun);
     fibrad_transient_free(m->transient);
     return status;
 }
 
-int heat_in_time(struct bed_options *asked, const struct time_options *time, const struct heat_problem *problem,
+int heat_in_time(struct bed_options *options, const struct time_options *time, const struct heat_problem *problem,
                  const struct bed *bed, struct heat_report *report, const struct output *picture) {
     const double metres = report->metres;
     fibrad_heat_result *result = &report->result;
-    struct time_run m = {.asked = asked,
-                         .options = time,
+    struct time_run m = {.options = options,
+                         .time = time,
                          .problem = problem,
                          .source = bed,
                          .bed = *bed,

@@ -35,7 +35,7 @@ int time_check(struct time_options *time, struct bed_options *bed);
  * none) and prints the summary. Powers in problem->sources are in watts. The caller sets report->metres and the arrays
  * of `report`, as for heat_run. Status 0, STATUS_USAGE, STATUS_INPUT naming the line of a sphere, or as
  * bed_options_status. */
-int heat_in_time(struct bed_options *asked, const struct time_options *time, const struct heat_problem *problem,
+int heat_in_time(struct bed_options *options, const struct time_options *time, const struct heat_problem *problem,
                  const struct bed *bed, struct heat_report *report, const struct output *picture);
 
 #endif

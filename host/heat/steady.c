@@ -33,11 +33,11 @@ static struct walls steady_plates(const struct bed *bed, int axis) {
 }
 
 /* Finds sigma T^4 of the spheres if it is 1 at the lower plate and 0 at the upper one, and the powers of the plates. */
-static int steady_solve(struct bed_options *asked, const struct bed *bed, const struct walls *plates,
+static int steady_solve(struct bed_options *options, const struct bed *bed, const struct walls *plates,
                         const double *emissivity, double *emission, double power[2], double error[2]) {
     const fibrad_scene_config scene = bed_scene(bed, plates);
     const fibrad_spheres spheres = bed_spheres(bed);
-    fibrad_run run = bed_options_run(asked);
+    fibrad_run run = bed_options_run(options);
     fibrad_radiation *radiation = NULL;
     double *unknown = malloc(bed->n * sizeof *unknown), *given = calloc(bed->n, sizeof *given);
     double *gained = malloc(bed->n * sizeof *gained);
@@ -56,7 +56,7 @@ static int steady_solve(struct bed_options *asked, const struct bed *bed, const 
     free(unknown);
     free(given);
     free(gained);
-    return bed_options_status(asked, bed, status, &run.fault);
+    return bed_options_status(options, bed, status, &run.fault);
 }
 
 /* Fits a straight line to sigma T^4 of the spheres of the inner half. */
@@ -77,7 +77,7 @@ static void steady_fit(const struct bed *bed, int axis, const struct walls *plat
     *slope_error = sqrt(cov11);
 }
 
-int steady_conduction(struct bed_options *asked, const struct bed *bed, const double *emissivity, int axis,
+int steady_conduction(struct bed_options *options, const struct bed *bed, const double *emissivity, int axis,
                       struct steady *steady) {
     const double begun = progress_clock();
     struct bed open = *bed;
@@ -86,11 +86,11 @@ int steady_conduction(struct bed_options *asked, const struct bed *bed, const do
     double *emission = malloc(bed->n * sizeof *emission), *place = malloc(bed->n * sizeof *place);
     double power[2], error[2], diameter = 0, slope = NAN, slope_error = NAN;
     int status = emission && place ? STATUS_OK : message_memory();
-    if (!status) status = steady_solve(asked, &open, &plates, emissivity, emission, power, error);
+    if (!status) status = steady_solve(options, &open, &plates, emissivity, emission, power, error);
     if (!status) steady_fit(&open, axis, &plates, emission, place, steady, &slope, &slope_error);
     if (!status && steady->spheres < FITTED_MIN)
         status =
-            message_at(STATUS_INPUT, asked->name, 0, "%u spheres in the inner half along %c are too few for a line",
+            message_at(STATUS_INPUT, options->name, 0, "%u spheres in the inner half along %c are too few for a line",
                        steady->spheres, 'x' + axis);
     if (!status) {
         for (uint32_t i = 0; i < bed->n; ++i) diameter += 2 * bed->r[i] / bed->n;

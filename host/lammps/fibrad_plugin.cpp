@@ -1,4 +1,4 @@
-/* fibrad_plugin.cpp - makes the fix known to a LAMMPS with the PLUGIN package, by `plugin load`.
+/* fibrad_plugin.cpp - makes the fix known to a LAMMPS that has the PLUGIN package, through `plugin load`.
  * SPDX-License-Identifier: MIT. LAMMPS is GPL-2: so are binaries made with its headers. */
 #include "fix_fibrad.h"
 

@@ -1,4 +1,4 @@
-/* fix_fibrad.cpp - thermal radiation in LAMMPS: reads the command, hands particles to fibrad_insitu, takes powers back.
+/* fix_fibrad.cpp - thermal radiation in LAMMPS: reads the command, hands particles to fibrad_insitu, applies powers.
  * SPDX-License-Identifier: MIT. LAMMPS is GPL-2: so are binaries made with its headers. */
 #include "fix_fibrad.h"
 
@@ -16,7 +16,7 @@
 
 using namespace LAMMPS_NS;
 
-// as printf writes it: the format library of LAMMPS' headers differs from version to version
+// Formats a text like printf. The format library of LAMMPS differs from version to version.
 __attribute__((format(printf, 1, 2))) static std::string text(const char *format, ...) {
     char buffer[1024];
     va_list arguments;
@@ -28,13 +28,13 @@ __attribute__((format(printf, 1, 2))) static std::string text(const char *format
 
 // ---- the command ------------------------------------------------------------------------------------------------
 
-// the words of the command after the style, one after the other
+// A walk along the words of the command behind the style.
 class FixFibrad::Words {
   public:
     Words(LAMMPS *lammps, int count, char **word) : lmp(lammps), words(word + 2, word + count) {}
     bool more() const { return at < words.size(); }
     bool next_is(const char *word) const { return more() && words[at] == word; }
-    // whether the next word is this one, which is then taken
+    // Whether the next word is this one. If so, moves behind it.
     bool take(const char *word) {
         const bool is = next_is(word);
         at += is;
@@ -44,7 +44,7 @@ class FixFibrad::Words {
         if (!more()) lmp->error->all(FLERR, "fix fibrad: a word is missing after `" + words.back() + "`");
         return words[at++];
     }
-    // a number of [low, high]
+    // Takes a number from low to high.
     double number(const char *what, double low, double high) {
         const double value = utils::numeric(FLERR, next().c_str(), false, lmp);
         if (!(value >= low && value <= high))
@@ -68,7 +68,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
       insitu(nullptr), totals(), warned(false), cut_warned(false), begun(0), before(), rows_made(0), powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
-    config.seed = 1; // 0 would leave the directions of step 0 as they are, whose errors add up
+    config.seed = 1; // the default of docs/lammps.md
     heat_every = words.count("NEVERY", 0);
     rows_every = words.count("NROWS", 1);
     if (heat_every && rows_every % heat_every)
@@ -149,7 +149,7 @@ FixFibrad::~FixFibrad() {
     mesh_walls_free(&meshes);
 }
 
-// d_NAME, or LAMMPS' own: other words may name what is no vector of numbers
+// Takes d_NAME or `temperature`. Other words may name data of LAMMPS that are no vector of numbers.
 void FixFibrad::read_temperature(Words &words) {
     temperature = words.next();
     if (temperature != "temperature" && temperature.compare(0, 2, "d_") != 0)
@@ -194,7 +194,7 @@ void FixFibrad::read_wall(Words &words) {
     wall_face.push_back(at || face == 6 ? -1 : face);
 }
 
-// [at POS]; without it where the particles end
+// [at POS]; without `at` the opening is where the particles end
 void FixFibrad::read_opening(Words &words, int face) {
     const double huge = 1e300;
     fibrad_plane opening = {face / 2, face % 2, NAN};
@@ -235,19 +235,19 @@ void FixFibrad::read_mesh(Words &words) {
     }
     uint32_t bodies;
     const int status = mesh_walls_add(&meshes, world, &file, nullptr, first, &bodies);
-    if (status) error->all(FLERR, std::string("fix fibrad: ") + (meshes.told[0] ? meshes.told : path.c_str()));
+    if (status) error->all(FLERR, std::string("fix fibrad: ") + (meshes.messages[0] ? meshes.messages : path.c_str()));
     fibrad_body body = {};
     body.kind = FIBRAD_BODY_MESH;
     walls.insert(walls.end(), bodies, body);
     wall_temperature.insert(wall_temperature.end(), bodies, t);
     wall_emissivity.insert(wall_emissivity.end(), bodies, e);
     wall_face.insert(wall_face.end(), bodies, -1);
-    if (comm->me == 0) tell_of_meshes(first, bodies, path);
+    if (comm->me == 0) describe_meshes(first, bodies, path);
 }
 
-// on rank 0, which alone knows: what was wrong with a file, and where in the output its walls are
-void FixFibrad::tell_of_meshes(uint32_t first, uint32_t bodies, const std::string &path) {
-    if (meshes.told[0]) error->warning(FLERR, std::string("fix fibrad: ") + meshes.told);
+// Prints warnings about a file, and the indices of its walls in the output. For rank 0, which alone has the names.
+void FixFibrad::describe_meshes(uint32_t first, uint32_t bodies, const std::string &path) {
+    if (meshes.messages[0]) error->warning(FLERR, std::string("fix fibrad: ") + meshes.messages);
     for (uint32_t k = first; k < first + bodies; k++)
         say(text("fix fibrad: f_%s[%d] is of wall %s, %u triangles of ", id, 6 + (int)k, meshes.meshes.name[k],
                  mesh_triangles(mesh_of_body(&meshes.meshes, k), k)) +
@@ -313,7 +313,7 @@ void FixFibrad::init() {
     if (!cp.given()) say("fix fibrad: without `cp` the time step is not checked");
 }
 
-// rows depend on positions and the number of the last multiple of NROWS, so that a restarted run has the same ones
+// Rows depend on positions and on the last multiple of NROWS. So a restarted run has the same rows.
 void FixFibrad::setup(int) {
     begun = MPI_Wtime();
     fibrad_insitu_facts_get(insitu, &before);
@@ -346,7 +346,7 @@ void FixFibrad::say(const std::string &sentence) {
 
 // ---- in a run -----------------------------------------------------------------------------------------------------
 
-// Temperatures of the atom's own: fix heat/flow clears heatflow before the forces and steps temperatures after them.
+// For temperatures of LAMMPS: fix heat/flow clears heatflow before the forces and steps temperatures after them.
 void FixFibrad::post_force(int) {
     if (!heat_every || temperature != "temperature") return;
     double *heatflow = vector("heatflow");
@@ -452,7 +452,7 @@ void FixFibrad::find_powers() {
     for (size_t k = 0; k < member.size(); k++) q[member[k]] = power[k];
 }
 
-// An explicit step of temperatures is stable if 4 sigma T^3 A e dt < m cp: then no particle overshoots its
+// Checks that steps of temperatures are stable: 4 sigma T^3 A e dt < m cp. Then no particle overshoots its
 // surroundings.
 void FixFibrad::check_step(const std::vector<double> &t) {
     const std::vector<double> e = values(emissivity), capacity = values(cp);
@@ -496,10 +496,11 @@ void FixFibrad::check(int status) {
 
 // ---- values of atoms ------------------------------------------------------------------------------------------------
 
-// LAMMPS' own vector, or one of fix property/atom; it moves when atoms come. NULL is the vector of no atoms, too.
+// A vector of LAMMPS or of fix property/atom. LAMMPS may move the vector when atoms come. NULL: there is none, or this
+// rank has no atoms.
 double *FixFibrad::vector(const std::string &name) { return (double *)atom->extract(name.c_str()); }
 
-// whether some rank has it
+// Whether some rank has a vector.
 bool FixFibrad::known(const std::string &name) {
     int there = vector(name) != nullptr;
     MPI_Allreduce(MPI_IN_PLACE, &there, 1, MPI_INT, MPI_MAX, world);
@@ -513,7 +514,7 @@ void FixFibrad::need(const std::string &name) {
         error->all(FLERR, "fix fibrad: atoms have no " + name + ": say fix ID all property/atom " + name + " before");
 }
 
-// of the members
+// Values of the members.
 std::vector<double> FixFibrad::values(const Property &property) {
     std::vector<double> value;
     if (!property.given()) return value;
@@ -548,7 +549,7 @@ void FixFibrad::grow_arrays(int nmax) {
 
 void FixFibrad::copy_arrays(int i, int j, int) { q[j] = q[i]; }
 
-// a new atom, whose place in the vectors may have been another's
+// Sets the values of a new atom. Its place in the vectors may have been that of another atom.
 void FixFibrad::set_arrays(int i) {
     q[i] = 0;
     if (!(atom->mask[i] & groupbit)) return;
@@ -569,7 +570,7 @@ int FixFibrad::unpack_exchange(int i, double *buffer) {
 
 void *FixFibrad::create(void *lmp, int narg, char **arg) { return new FixFibrad((LAMMPS *)lmp, narg, arg); }
 
-// makes the fix known to a LAMMPS without `plugin load`; fibrad.lmp calls it
+// Makes the fix known to a LAMMPS without `plugin load`. fibrad.lmp calls this function.
 extern "C" void fibrad_register(LAMMPS *lmp) {
     (*lmp->modify->fix_map)["fibrad"] = (Modify::FixCreator)&FixFibrad::create;
 }

@@ -53,7 +53,7 @@ class FixFibrad : public Fix {
     void read_wall(Words &);
     void read_opening(Words &, int face);
     void read_mesh(Words &);
-    void tell_of_meshes(uint32_t first, uint32_t bodies, const std::string &path);
+    void describe_meshes(uint32_t first, uint32_t bodies, const std::string &path);
     void read_temperature(Words &);
     Property read_property(Words &);
 

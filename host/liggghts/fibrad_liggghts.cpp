@@ -1,10 +1,9 @@
 /* fibrad_liggghts.cpp - LIGGGHTS with radiation beside conduction. SPDX-License-Identifier: MIT
  *
  * LIGGGHTS is under the GNU GPL, version 2 or later, and a binary of this program, linked with it, is, too.
- *
- * A fix external calls radiate() every so many steps, before temperatures are integrated. There each particle's
- * heatSource changes by what its radiative power has changed since, so that a source of the script's own stays. The
- * power in the heatSource is kept in a property of the particle, fibradPower, and goes with it from rank to rank. */
+ * A fix external calls radiate() every --every steps, before temperatures are integrated. radiate() adds to each
+ * particle's heatSource the change of its radiative power. So heat sources of the script stay. The property fibradPower
+ * of a particle is the radiative power that its heatSource has now. It goes with the particle from rank to rank. */
 #include <atom.h>
 #include <domain.h>
 #include <fix.h>
@@ -40,7 +39,7 @@ struct script_triangle {
 
 struct script_mesh {
     LAMMPS_NS::FixMeshSurface *fix;
-    std::vector<script_triangle> triangle; /* rank 0: all of them by id, when rows were made last */
+    std::vector<script_triangle> triangle; /* on rank 0: all triangles by id, at the last rows */
 };
 
 struct Driver {
@@ -50,16 +49,16 @@ struct Driver {
     double sigma; /* in the script's units */
     std::vector<fibrad_body> body;
     std::vector<std::string> body_name;
-    std::vector<script_mesh> mesh; /* the last bodies */
-    mesh_walls triangles;          /* of them, when rows were made last */
+    std::vector<script_mesh> mesh; /* the last walls of `body` */
+    mesh_walls triangles;          /* of all meshes, at the last rows */
     std::vector<double> body_temperature, body_emissivity;
-    Fix *temperature, *source, *power, *capacity;                 /* properties of particles; of types */
+    Fix *temperature, *source, *power, *capacity;                 /* properties of particles, and of types */
     std::vector<uint64_t> id;                                     /* [own] */
     std::vector<double> emissivity, gain;                         /* [own] */
-    fibrad_insitu_totals totals;                                  /* of the powers in use */
-    bool radiates;                                                /* there are such */
-    LAMMPS_NS::bigint since;                                      /* first step that they heat */
-    double heat, heat_surroundings, heat_body[FIBRAD_BODIES_MAX]; /* what they have brought until then */
+    fibrad_insitu_totals totals;                                  /* of the current powers */
+    bool radiates;                                                /* there are powers */
+    LAMMPS_NS::bigint since;                                      /* first step in which the current powers heat */
+    double heat, heat_surroundings, heat_body[FIBRAD_BODIES_MAX]; /* heat by radiation before that step */
 };
 
 int rank() {
@@ -68,12 +67,13 @@ int rank() {
     return rank;
 }
 
-/* Ends the program on all ranks, which all come here, with one message. */
+/* Ends the program with one message. All ranks call it. */
 [[noreturn]] void stop(int status, const std::string &message) {
-    const bool tells = rank() == 0; /* the others end well: mpirun would end the one that tells before it is heard */
-    if (tells) std::fprintf(stderr, "fibrad_liggghts: %s\n", message.c_str());
+    const bool prints =
+        rank() == 0; /* other ranks end with 0, else mpirun would kill rank 0 before its message is out */
+    if (prints) std::fprintf(stderr, "fibrad_liggghts: %s\n", message.c_str());
     MPI_Finalize();
-    std::exit(tells ? status : 0);
+    std::exit(prints ? status : 0);
 }
 
 void check(const Driver *driver, int status) {
@@ -87,7 +87,8 @@ void check(const Driver *driver, int status) {
 
 void command(Driver *driver, const std::string &text) { lammps_command(driver->lmp, text.c_str()); }
 
-/* A property of particles or of types by its name; none: stops, saying what would make it. */
+/* Finds a property of particles or of types. Without such a property ends the program and names `maker`, the fix that
+ * makes it. maker NULL: returns NULL. */
 Fix *property(Driver *driver, const char *name, const char *style, const char *kind, const char *maker) {
     Fix *fix = driver->lmp->modify->find_fix_property(name, style, kind, 0, 0, "fibrad_liggghts", false);
     if (fix == nullptr && maker != nullptr)
@@ -134,7 +135,7 @@ void place_walls(Driver *driver) {
     }
 }
 
-/* The temperature that the script gives a mesh; NULL: none. */
+/* The temperature that the script gives to a mesh. NULL: none. */
 LAMMPS_NS::ScalarContainer<double> *mesh_temperature(LAMMPS_NS::FixMeshSurface *fix) {
     return fix->triMesh()->prop().getGlobalProperty<LAMMPS_NS::ScalarContainer<double>>("Temp");
 }
@@ -161,7 +162,7 @@ void find_meshes(Driver *driver) {
 
 /* ---- while it runs ---------------------------------------------------------------------------------------------- */
 
-/* What this rank owns now. */
+/* Takes ids and emissivities of the particles that this rank owns now. */
 void take_particles(Driver *driver) {
     const LAMMPS_NS::Atom *atom = driver->lmp->atom;
     const size_t n = (size_t)atom->nlocal;
@@ -179,7 +180,7 @@ double heat_capacity(const Driver *driver, int i) {
     return atom->rmass[i] * driver->capacity->compute_vector(atom->type[i] - 1);
 }
 
-/* Explicit steps are stable while a power lasts less than it takes the particle to cool down by it. */
+/* Explicit steps are stable if a power lasts for less than the time in which it would cool the particle down. */
 void check_time_step(const Driver *driver) {
     const LAMMPS_NS::Atom *atom = driver->lmp->atom;
     const double seconds = driver->lmp->update->dt * (double)driver->options.every;
@@ -202,7 +203,8 @@ void check_time_step(const Driver *driver) {
     stop(WRONG_INPUT, text);
 }
 
-/* All triangles of a mesh where they are now, on rank 0, by id. Ranks have parts of meshes, or all of small ones. */
+/* Gathers all triangles of a mesh at their present positions on rank 0, in the order of ids. A rank may have some of
+ * the triangles, or all triangles of a small mesh. */
 std::vector<script_triangle> gather_mesh(LAMMPS_NS::FixMeshSurface *fix) {
     LAMMPS_NS::TriMesh *mesh = fix->triMesh();
     const int own = mesh->sizeLocal();
@@ -232,7 +234,7 @@ bool same_places(const std::vector<script_triangle> &a, const std::vector<script
     return same;
 }
 
-/* The triangles of one mesh as if read from a file. */
+/* Adds the triangles of one mesh as if they came from a file. */
 void take_mesh(Driver *driver, const radiant_mesh &mesh, const std::vector<script_triangle> &triangle, uint32_t body) {
     const size_t n = triangle.size();
     std::vector<double> corner(9 * n);
@@ -259,11 +261,12 @@ void take_mesh(Driver *driver, const radiant_mesh &mesh, const std::vector<scrip
     const bool first = !driver->radiates;
     uint32_t bodies;
     const int status = mesh_walls_add(&driver->triangles, MPI_COMM_WORLD, &file, &stl, body, &bodies);
-    if (status != 0) stop(WRONG_INPUT, driver->triangles.told);
-    if (first && driver->triangles.told[0] != 0) std::fprintf(stderr, "fibrad_liggghts: %s\n", driver->triangles.told);
+    if (status != 0) stop(WRONG_INPUT, driver->triangles.messages);
+    if (first && driver->triangles.messages[0] != 0)
+        std::fprintf(stderr, "fibrad_liggghts: %s\n", driver->triangles.messages);
 }
 
-/* Brings the triangles to where the script's meshes are. */
+/* Takes all meshes anew if a mesh has moved. */
 void follow_meshes(Driver *driver) {
     int moved = 0;
     for (script_mesh &mesh : driver->mesh) {
@@ -304,7 +307,7 @@ void make_rows(Driver *driver) {
     check(driver, fibrad_insitu_rows(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
 }
 
-/* Powers of the rows there are; of new ones where particles have come or gone since. */
+/* Computes powers. If particles have come or gone since the last rows, makes new rows before. */
 void make_powers(Driver *driver) {
     const size_t first = driver->body.size() - driver->mesh.size();
     for (size_t m = 0; m < driver->mesh.size(); ++m)
@@ -325,7 +328,7 @@ void make_powers(Driver *driver) {
     check(driver, status);
 }
 
-/* Adds up what the powers in use have brought until before step `now`, when they end. */
+/* Adds the heat that the current powers have brought in the steps before `now`. */
 void count_heat(Driver *driver, LAMMPS_NS::bigint now) {
     if (!driver->radiates) return;
     const double seconds = driver->lmp->update->dt * (double)(now - driver->since);
@@ -334,7 +337,8 @@ void count_heat(Driver *driver, LAMMPS_NS::bigint now) {
     for (size_t k = 0; k < driver->body.size(); ++k) driver->heat_body[k] += seconds * driver->totals.body[k];
 }
 
-/* Called by the fix external. Setting up a run does not integrate temperatures. */
+/* The callback of the fix external. In the setup of a run no temperatures are integrated, so powers heat from the next
+ * step on. */
 void radiate(void *context, LAMMPS_NS::bigint step, int n, int *, double **, double **force) {
     Driver *driver = static_cast<Driver *>(context);
     const LAMMPS_NS::bigint first = step + (driver->lmp->update->setupflag ? 1 : 0);
@@ -353,9 +357,9 @@ void radiate(void *context, LAMMPS_NS::bigint step, int n, int *, double **, dou
     driver->since = first;
 }
 
-/* ---- what it comes to ------------------------------------------------------------------------------------------- */
+/* ---- summary ------------------------------------------------------------------------------------------- */
 
-/* Heat in all particles, the same on all ranks. */
+/* The heat in all particles, the same on all ranks. */
 double stored_heat(const Driver *driver) {
     double heat = 0, all;
     for (int i = 0; i < driver->lmp->atom->nlocal; ++i)

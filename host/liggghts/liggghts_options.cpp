@@ -1,4 +1,4 @@
-/* liggghts_options.cpp - what the driver of LIGGGHTS is asked. SPDX-License-Identifier: MIT */
+/* liggghts_options.cpp - the options of the driver of LIGGGHTS. SPDX-License-Identifier: MIT */
 #include "liggghts/liggghts_options.h"
 
 #include <getopt.h>
@@ -27,7 +27,7 @@ const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"help", no_argument, nullptr, 'h'},
                                {nullptr, 0, nullptr, 0}};
 
-/* Numbers parted by commas, all of them in [low, high]. */
+/* Reads numbers from low to high with commas in between. */
 bool numbers(const char *text, double low, double high, std::vector<double> *values) {
     values->clear();
     for (const char *at = text;; ++at) {
@@ -64,7 +64,7 @@ bool whole(const char *text, uint64_t *value) {
 
 const char sides[6][4] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
 
-/* SIDE=open or SIDE=open,AT. */
+/* Reads SIDE=open or SIDE=open,AT. */
 bool opening(const char *text, fibrad_plane *plane) {
     std::vector<double> at = {NAN};
     for (int side = 0; side < 6; ++side) {
@@ -80,7 +80,7 @@ bool opening(const char *text, fibrad_plane *plane) {
     return false;
 }
 
-/* SIDE=T,E[,AT] or cylinder=T,E,X,Y,R. */
+/* Reads SIDE=T,E[,AT] or cylinder=T,E,X,Y,R. */
 bool wall(const char *text, radiant_wall *wall) {
     const char *equals = std::strchr(text, '=');
     std::vector<double> values;
@@ -107,7 +107,7 @@ bool wall(const char *text, radiant_wall *wall) {
     return false;
 }
 
-/* ID=E or ID=T,E, behind it :both or :normals. */
+/* Reads ID=E or ID=T,E, which :both or :normals may follow. */
 bool mesh(const char *text, radiant_mesh *mesh) {
     const char *equals = std::strchr(text, '=');
     std::vector<double> values;
@@ -122,7 +122,7 @@ bool mesh(const char *text, radiant_mesh *mesh) {
     return mesh->sides != SIDES_NORMALS || std::strcmp(colon, ":normals") == 0;
 }
 
-/* What was wrong with an option's argument; NULL: nothing. */
+/* Takes the argument of an option. Returns what is wrong with the argument. NULL: nothing. */
 const char *take(int key, const char *text, liggghts_options *options) {
     radiant_wall one;
     fibrad_plane open;
@@ -170,7 +170,7 @@ const char *take(int key, const char *text, liggghts_options *options) {
     }
 }
 
-/* What is missing, or does not go together; NULL: nothing. */
+/* Returns what is missing or contradicts itself. NULL: nothing. */
 const char *check(const liggghts_options *options) {
     if (options->script == nullptr) return "the script is missing: -in FILE";
     if (options->emissivity.empty()) return "--emissivity is missing: one number for all types, or E1,E2... for each";

@@ -1,4 +1,4 @@
-/* liggghts_options.h - what the driver of LIGGGHTS is asked. SPDX-License-Identifier: MIT */
+/* liggghts_options.h - the options of the driver of LIGGGHTS. SPDX-License-Identifier: MIT */
 #ifndef LIGGGHTS_OPTIONS_H
 #define LIGGGHTS_OPTIONS_H
 
@@ -11,24 +11,24 @@
 struct radiant_wall {
     std::string name; /* xlo ... zhi, cylinder */
     fibrad_body body;
-    bool placed; /* false: it stands where the box ends */
+    bool placed; /* the option gives the coordinate; else the wall is at the end of the box */
     double temperature, emissivity;
 };
 
 /* A mesh of the script that radiates. */
 struct radiant_mesh {
-    std::string id; /* of its fix mesh/surface */
+    std::string id; /* ID of its fix mesh/surface */
     mesh_sides sides;
-    double temperature, emissivity; /* temperature below 0: the script's */
+    double temperature, emissivity; /* temperature below 0: that of the script */
 };
 
 struct liggghts_options {
     const char *script = nullptr;
     const char *rows_file = nullptr; /* --write */
-    std::vector<double> emissivity;  /* one for all types, or one for each */
+    std::vector<double> emissivity;  /* one for all types, or one per type */
     double surroundings = -1;        /* below 0: not given */
     std::vector<radiant_wall> walls;
-    std::vector<fibrad_plane> openings; /* at NaN: where the particles end */
+    std::vector<fibrad_plane> openings; /* at NaN: at the end of the particles */
     std::vector<radiant_mesh> meshes;
     long every = 20, rows = 1000, steps = -1; /* steps below 0: not given */
     fibrad_insitu_config config{};
@@ -36,7 +36,7 @@ struct liggghts_options {
 
 enum { OPTIONS_GO, OPTIONS_HELP, OPTIONS_WRONG };
 
-/* Takes the arguments up to `--`; *rest gets the index of those behind it. OPTIONS_WRONG: *wrong says why. */
+/* Reads the arguments up to `--`. *rest: index of the first argument behind `--`. OPTIONS_WRONG: *wrong says why. */
 int liggghts_options_parse(int argc, char **argv, liggghts_options *options, int *rest, std::string *wrong);
 void liggghts_options_help();
 

@@ -8,14 +8,14 @@
 #include "mesh/meshes.h"
 #include "read/read.h"
 
-int fibrad_file_read(const struct file_wanted *wanted, struct file_bed *found, file_heard *heard, void *context) {
+int fibrad_file_read(const struct file_wanted *wanted, struct file_bed *found, file_report *report, void *context) {
     struct read_options options = {
         .no_radius = wanted->no_radius != 0, .extra = wanted->column, .extras = wanted->columns, .any_unit = true};
     if (wanted->frame >= 0) options.frames = (struct frames){wanted->frame, wanted->frame + 1, 1};
     struct bed *bed = malloc(sizeof *bed);
     *found = (struct file_bed){.bed = bed};
     if (!bed) return STATUS_MEMORY;
-    message_redirect(heard, context);
+    message_redirect(report, context);
     const int status = read_bed(wanted->path, &options, bed);
     message_redirect(NULL, NULL);
     if (status) return status;
@@ -37,7 +37,7 @@ void fibrad_file_free(struct file_bed *found) {
     *found = (struct file_bed){0};
 }
 
-/* Winds triangles whose back is the wall the other way round. Status 0, or STATUS_INPUT. */
+/* Reverses the winding of triangles whose back is the wall. Status 0, or STATUS_INPUT. */
 static int turn_to_walls(const struct meshes *meshes, struct file_mesh *found) {
     uint32_t both = 0;
     for (uint32_t t = 0; t < found->n; ++t) {
@@ -57,12 +57,12 @@ static int turn_to_walls(const struct meshes *meshes, struct file_mesh *found) {
 }
 
 int fibrad_file_mesh(const char *path, double scale, int sides, const fibrad_spheres *spheres, const double period[3],
-                     struct file_mesh *found, file_heard *heard, void *context) {
+                     struct file_mesh *found, file_report *report, void *context) {
     const struct mesh_file file = {.path = path, .name = "mesh", .sides = (enum mesh_sides)sides, .scale = scale};
     struct meshes *meshes = calloc(1, sizeof *meshes);
     *found = (struct file_mesh){.meshes = meshes};
     if (!meshes) return STATUS_MEMORY;
-    message_redirect(heard, context);
+    message_redirect(report, context);
     int status = meshes_add(meshes, &file, 0);
     if (!status) status = meshes_face(meshes, spheres, period);
     if (!status) {

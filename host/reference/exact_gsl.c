@@ -1,4 +1,4 @@
-/* exact_gsl.c - the unobstructed view factor by GSL's adaptive quadrature, two ways. SPDX-License-Identifier: MIT */
+/* exact_gsl.c - the unobstructed view factor by GSL's adaptive quadrature, in two ways. SPDX-License-Identifier: MIT */
 #include "reference/exact_gsl.h"
 
 #include <gsl/gsl_errno.h>
@@ -10,11 +10,11 @@ enum { INTERVALS = 500 };
 
 typedef struct pair_geometry {
     double r1, r2, gap, d;
-    double from, width; /* of the variable of the lens integral */
+    double from, width; /* range of the cosine in the lens integral */
 } pair_geometry;
 
-/* Integrates over [from, to], whose ends may have integrable singularities, and adds to *sum and *abserr: to 1e-14 of
- * the sum or of itself, whichever is more. */
+/* Integrates f over [from, to] and adds the result to *sum and its error to *abserr. f may have integrable
+ * singularities at the ends. Tolerance: 1e-14 of the larger of *sum and the integral. */
 static int add_integral(double (*f)(double, void *), pair_geometry *pair, double from, double to, double *sum,
                         double *abserr) {
     gsl_integration_cquad_workspace *work = gsl_integration_cquad_workspace_alloc(INTERVALS);
@@ -29,21 +29,22 @@ static int add_integral(double (*f)(double, void *), pair_geometry *pair, double
     return 0;
 }
 
-/* The element of sphere 1 at polar angle t lies d - d cos t = s below the pole that faces sphere 2. H = distance/r2,
- * `cosine` that of the angle between its normal and the centre of sphere 2; H cosine = 1 + (gap - s)/r2. All is formed
- * from gap and s, so that nothing cancels near contact nor far away. */
+/* The element of sphere 1 at polar angle t lies s = d - d cos t below the pole that faces sphere 2. H is the distance
+ * of the element from the centre of sphere 2 over r2. `cosine` is the cosine of the angle between the normal and the
+ * direction of that centre; H cosine = 1 + (gap - s)/r2. All terms are formed from gap and s, so that nothing cancels
+ * near contact or far away. */
 static double square_less_one(const pair_geometry *pair, double s) {
     return (pair->gap * (pair->gap + 2 * pair->r2) + 2 * pair->r1 * s) / gsl_pow_2(pair->r2); /* H^2 - 1 */
 }
 
-/* Elements that see the whole of sphere 2: s = v gap. */
+/* Integrand for elements that see all of sphere 2: s = v gap. */
 static double whole_integrand(double v, void *params) {
     const pair_geometry *pair = params;
     double s = v * pair->gap, H2 = 1 + square_less_one(pair, s);
     return pair->gap * (1 + (pair->gap - s) / pair->r2) / (H2 * sqrt(H2));
 }
 
-/* Elements whose horizon cuts sphere 2: s = gap + v r2, v in [0, 2]. */
+/* Integrand for elements whose horizon cuts sphere 2: s = gap + v r2, v from 0 to 2. */
 static double cut_integrand(double v, void *params) {
     const pair_geometry *pair = params;
     double x2 = square_less_one(pair, pair->gap + v * pair->r2), H2 = 1 + x2;
@@ -65,7 +66,7 @@ int exact_gsl_polar(double r1, double r2, double gap, double *f12, double *abser
     return 0;
 }
 
-/* Area of the segment with half angle a in the unit circle, a - sin a cos a, by its series when thin. */
+/* Area a - sin a cos a of the segment with half angle a in the unit circle. For small a by its series. */
 static double segment_area(double a) {
     if (a > 0.5) return a - sin(2 * a) / 2;
     double term = 4 * a * a * a / 6, sum = 0;
@@ -76,8 +77,9 @@ static double segment_area(double a) {
     return sum;
 }
 
-/* Area common to the discs seen at the cosine mu = from + width v to the line of centres, over the smaller radius
- * squared. `outer` = (r1 + r2)^2 - s^2 and `inner` = s^2 - (r1 - r2)^2, s the distance of the discs' centres. */
+/* Area common to both shadow discs over the squared smaller radius, for directions at the cosine mu = from + width v to
+ * the line of centres. outer = (r1 + r2)^2 - s^2 and inner = s^2 - (r1 - r2)^2, where s is the distance of the centres
+ * of the discs. */
 static double lens_integrand(double v, void *params) {
     const pair_geometry *pair = params;
     double R = GSL_MAX(pair->r1, pair->r2), r = GSL_MIN(pair->r1, pair->r2), d = pair->d;
@@ -95,7 +97,7 @@ int exact_gsl_lens(double r1, double r2, double gap, double *f12, double *abserr
     double R = GSL_MAX(r1, r2), r = GSL_MIN(r1, r2);
     if (!(r > 0 && gap > -2 * r)) return GSL_EDOM;
     pair_geometry pair = {.r1 = r1, .r2 = r2, .gap = gap, .d = R - r + (2 * r + gap)};
-    /* The discs touch at the cosine `from`; beyond from + width the smaller lies within the larger. */
+    /* The discs touch at the cosine `from`. Beyond from + width the smaller disc lies within the larger one. */
     double inside = sqrt((2 * R + gap) * (2 * r + gap)) / pair.d;
     pair.from = gap < 0 ? 0 : sqrt(gap * (2 * (R + r) + gap)) / pair.d;
     pair.width = gap < 0 ? inside : 4 * R * r / gsl_pow_2(pair.d) / (inside + pair.from);

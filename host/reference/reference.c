@@ -11,30 +11,31 @@ static const double pi = 3.14159265358979323846;
 
 /* ---- visible areas in one direction ---------------------------------------------------------------------------- */
 
-/* A shadow disc, lengths in radii of sphere i. Disc 0 is the window itself: centre 0, radius 1. */
+/* A shadow disc. Lengths are in radii of sphere i. Disc 0 is the window: centre 0, radius 1. */
 struct disc {
     double u, v, r, depth;
     uint32_t sphere;
 };
 
-/* A stretch of one line x = constant through the window, between the arcs `low` and `high`: disc and half of it. */
+/* The upper (half = 1) or lower (half = -1) half of the circle of a disc, and its y on a line x = constant. */
 struct arc {
     uint32_t disc;
-    double half; /* +1 or -1 */
+    double half;
     double y;
 };
 
+/* A part of a line x = constant through the window, between two arcs. */
 struct stretch {
     struct arc low, high;
 };
 
-/* Scratch for `capacity` discs. */
+/* Discs of a window, and memory for their visible areas. */
 struct slicer {
     struct disc *disc;
     uint32_t discs;
-    double *area; /* [discs] visible; area[0] is what stays open */
-    double *event;
-    struct stretch *open, *left, *open_block;
+    double *area;                             /* [discs] visible areas; area[0]: the open region */
+    double *event;                            /* values of x where arcs may change */
+    struct stretch *open, *left, *open_block; /* open stretches, those left behind a disc, memory of both */
 };
 
 static double square(double x) { return x * x; }
@@ -43,7 +44,7 @@ static double ordinate(const struct disc *disc, double x) {
     return sqrt(fmax((disc->r - (x - disc->u)) * (disc->r + (x - disc->u)), 0));
 }
 
-/* asin q - q sqrt(1 - q^2): the area between an arc of the unit circle and its chord 2 q. */
+/* Area asin q - q sqrt(1 - q^2) between an arc of the unit circle and its chord 2 q. */
 static double cap(double q) {
     if (q > 0.03) return asin(fmin(q, 1)) - q * sqrt(fmax(1 - q * q, 0));
     double power = 2 * q * q * q, sum = 0;
@@ -54,7 +55,7 @@ static double cap(double q) {
     return sum;
 }
 
-/* Integral of an arc's ordinate from x1 to x2: the trapezium below its chord, and the cap. */
+/* Integral of the ordinate of an arc from x1 to x2: the trapezium below its chord, and the cap. */
 static double below(const struct slicer *s, const struct arc *arc, double x1, double x2) {
     const struct disc *disc = &s->disc[arc->disc];
     const double y1 = ordinate(disc, x1), y2 = ordinate(disc, x2);
@@ -62,8 +63,8 @@ static double below(const struct slicer *s, const struct arc *arc, double x1, do
     return (x2 - x1) * (disc->v + arc->half * (y1 + y2) / 2) + arc->half * square(disc->r) * cap(chord / disc->r);
 }
 
-/* Can the arcs change at this point? Not if it lies outside the window or, with room to spare, in a disc before
- * `last` other than `own`. */
+/* Whether the arcs may change at a point. They cannot if the point lies outside the window, or well inside a disc
+ * before `last` other than `own`. */
 static bool matters(const struct slicer *s, double x, double y, uint32_t own, uint32_t last) {
     const double room = 1e-9;
     if (x * x + y * y > 1 + room) return false;
@@ -86,15 +87,14 @@ static uint32_t find_events(struct slicer *s) {
     s->event[n++] = 1;
     for (uint32_t b = 1; b < s->discs; b++) {
         const struct disc *B = &s->disc[b];
-        s->event[n++] = B->u; /* no arc longer than a quarter of its circle, where cap() is well-conditioned */
+        s->event[n++] = B->u; /* so no arc is longer than a quarter of its circle, and cap() is well-conditioned */
         if (matters(s, B->u - B->r, B->v, b, b)) s->event[n++] = B->u - B->r;
         if (matters(s, B->u + B->r, B->v, b, b)) s->event[n++] = B->u + B->r;
         for (uint32_t a = 0; a < b; a++) {
             const struct disc *A = &s->disc[a];
             const double du = B->u - A->u, dv = B->v - A->v, d2 = du * du + dv * dv;
             const double outer = square(A->r + B->r), inner = square(A->r - B->r);
-            if (d2 > 0 &&
-                fmin(fabs(d2 - outer), fabs(d2 - inner)) < 1e-9 * outer) { /* tangent, whichever way it rounds */
+            if (d2 > 0 && fmin(fabs(d2 - outer), fabs(d2 - inner)) < 1e-9 * outer) { /* tangent within rounding */
                 const double side = fabs(d2 - outer) < fabs(d2 - inner) || A->r > B->r ? 1 : -1;
                 s->event[n++] = A->u + side * A->r * du / sqrt(d2);
             }
@@ -111,7 +111,8 @@ static uint32_t find_events(struct slicer *s) {
     return n;
 }
 
-/* Lets disc `b` take what is open of its stretch at x; the open stretches shrink. */
+/* Covers open stretches of the line at x by disc b, and adds to its area from x1 to x2. Returns the number of stretches
+ * that are still open. */
 static uint32_t take_stretch(struct slicer *s, uint32_t open, uint32_t b, double x, double x1, double x2) {
     const struct disc *disc = &s->disc[b];
     if (fabs(x - disc->u) >= disc->r) return open;
@@ -135,9 +136,10 @@ static uint32_t take_stretch(struct slicer *s, uint32_t open, uint32_t b, double
     return left;
 }
 
-/* Visible areas of discs [1, discs), nearest first, in disc 0. Between two neighbouring events (crossings of two
- * circles and extreme points of one) the same arcs bound the same stretches of every line x = constant; which ones, the
- * middle line tells, and their areas are elementary. Slabs of no width, however many events coincide, add nothing. */
+/* Finds the visible areas of discs [1, discs), nearest first, in disc 0. Events are crossings of two circles and
+ * extreme points of one circle. Between two neighbouring events the same arcs bound the same stretches of every line x
+ * = constant. The middle line tells which arcs, and the areas are elementary. Events that coincide make slabs without
+ * width, which add nothing. */
 static void visible_areas(struct slicer *s) {
     memset(s->area, 0, s->discs * sizeof *s->area);
     const uint32_t events = find_events(s);
@@ -159,20 +161,21 @@ enum { GAUSS = 3, DEPTH = 26 };
 static const double gauss_node[GAUSS] = {-0.77459666924148338, 0, 0.77459666924148338};
 static const double gauss_weight[GAUSS] = {5 / 18., 8 / 18., 5 / 18.};
 
-/* A sphere as seen from sphere i, in radii of i. */
+/* Another sphere seen from sphere i. Lengths are in radii of sphere i. */
 struct target {
     double c[3], r, distance;
-    double cone; /* half angle of the directions in which its disc meets the window */
+    double cone; /* half angle of the cone of directions in which its disc meets the window */
 };
 
-/* A rectangle of a chart of the directions: of a face of the cube [-1, 1]^3, seen from its centre, or of polar
- * coordinates (theta, phi) about `axis`, theta running smoothly from theta[0] to theta[1] as x runs from 0 to 1. */
+/* A chart of the directions: a face of the cube [-1, 1]^3 seen from its centre, or polar coordinates (theta, phi) about
+ * `axis`. In polar coordinates theta goes smoothly from theta[0] to theta[1] while x goes from 0 to 1. */
 struct chart {
     bool polar;
     double axis[3], side[3], up[3];
     double theta[2];
 };
 
+/* A rectangle of a chart. */
 struct cell {
     const struct chart *chart;
     double x, y, dx, dy; /* centre and half widths */
@@ -180,10 +183,10 @@ struct cell {
 
 struct integral {
     struct target *target;
-    uint32_t n, goal; /* goal: the only target wanted, or n for all of them and, as entry n, the open part */
+    uint32_t n, goal; /* goal: the wanted target; n: all targets and, as entry n, the open region */
     uint32_t entries;
     struct slicer slicer;
-    double threshold, *sum, *error; /* [entries] accepted so far */
+    double threshold, *sum, *error; /* [entries] sums over accepted cells */
     double *value;                  /* [DEPTH][4][entries] */
     uint32_t *near;                 /* [DEPTH][n] */
     uint64_t evaluations, max_evaluations;
@@ -207,8 +210,8 @@ static void across(const double w[3], double side[3], double up[3]) {
     cross_product(w, side, up);
 }
 
-/* The direction at (x, y) of a chart; returns solid angle per dx dy. In theta, x^2 (3 - 2 x) takes the square-root-like
- * ends off the integrand. */
+/* The direction at (x, y) of a chart. Returns the solid angle per dx dy. The integrand behaves like a square root at
+ * the ends of theta; x^2 (3 - 2 x) removes that. */
 static double direction(const struct chart *chart, double x, double y, double w[3]) {
     double a, b, c, density;
     if (chart->polar) {
@@ -227,7 +230,7 @@ static double direction(const struct chart *chart, double x, double y, double w[
     return density;
 }
 
-/* No direction of the cell is farther from that of its centre [radians]. */
+/* A bound of the angle between the direction of a cell's centre and any other direction of the cell [rad]. */
 static double cell_radius(const struct cell *cell) {
     if (!cell->chart->polar) return hypot(cell->dx, cell->dy);
     const double *theta = cell->chart->theta, span = theta[1] - theta[0];
@@ -241,8 +244,8 @@ static int by_depth(const void *a, const void *b) {
     return (x->sphere > y->sphere) - (x->sphere < y->sphere);
 }
 
-/* Puts the discs that the spheres near[count] throw into the window along w into the slicer, nearest first, without
- * those that lie wholly behind a nearer one. */
+/* Puts the discs of the spheres near[count] in the window along w into the slicer, nearest first. Leaves out discs that
+ * lie wholly behind a nearer one. Returns the number of discs. */
 static uint32_t collect_discs(struct integral *in, const double w[3], const uint32_t *near, uint32_t count) {
     struct disc *disc = in->slicer.disc;
     double side[3], up[3];
@@ -268,7 +271,9 @@ static uint32_t collect_discs(struct integral *in, const double w[3], const uint
     return kept;
 }
 
-/* Adds weight times the visible areas along w to value[]. Most windows are closed by their first few discs. */
+/* Adds weight times the visible areas along w to value[]. The first few discs cover most windows, so few are tried
+ * first.
+ */
 static void add_direction(struct integral *in, const double w[3], double weight, const uint32_t *near, uint32_t count,
                           double *value) {
     struct slicer *s = &in->slicer;
@@ -288,8 +293,8 @@ static void add_direction(struct integral *in, const double w[3], double weight,
     }
 }
 
-/* The spheres of near[count] whose discs may meet the window in a cell. *coarse: the cell is too wide to tell how many
- * features there are inside it. */
+/* Lists the spheres of near[count] whose discs may meet the window for a direction of a cell. *coarse: the cell is too
+ * wide for the rule to see all discs in it. Returns their number. */
 static uint32_t cull(const struct integral *in, const struct cell *cell, const uint32_t *near, uint32_t count,
                      uint32_t *out, bool *coarse) {
     double w[3], smallest = pi;
@@ -308,7 +313,8 @@ static uint32_t cull(const struct integral *in, const struct cell *cell, const u
     return n;
 }
 
-/* The rule on one cell, as view factors: the mean over all directions of area over the window's area pi. */
+/* Applies the rule to a cell. Values are view factors: the mean over all directions of visible area over pi, the area
+ * of the window. */
 static void evaluate(struct integral *in, const struct cell *cell, const uint32_t *near, uint32_t count,
                      double *value) {
     memset(value, 0, in->entries * sizeof *value);
@@ -322,9 +328,9 @@ static void evaluate(struct integral *in, const struct cell *cell, const uint32_
         }
 }
 
-/* Adds a cell, whose value by one application of the rule is `whole`, to the sum: quartered until whole and quarters
- * agree. The difference, mostly the error of the whole, counts as error. Agreement may be an accident: where the cell
- * that this one is a quarter of was far off (`inherited`), one more step is taken. */
+/* Adds a cell to the sum. `whole` is its value by one application of the rule. The cell is divided into quarters until
+ * whole and quarters agree. Their difference counts as error; it is mostly the error of the whole. Agreement may be an
+ * accident. So if the cell of which this one is a quarter was far off (inherited), this one is divided once more. */
 static void refine_cell(struct integral *in, const struct cell *cell, const double *whole, const uint32_t *near,
                         uint32_t count, int depth, double inherited) {
     if (in->evaluations > in->max_evaluations) return;
@@ -355,7 +361,7 @@ static void refine_cell(struct integral *in, const struct cell *cell, const doub
     }
 }
 
-/* One pass over all charts at one threshold; returns the largest error. */
+/* Integrates over all charts with one threshold. Returns the largest error. */
 static double sweep_charts(struct integral *in, const struct cell *cell, uint32_t cells, uint32_t self) {
     memset(in->sum, 0, in->entries * sizeof *in->sum);
     memset(in->error, 0, in->entries * sizeof *in->error);
@@ -371,10 +377,10 @@ static double sweep_charts(struct integral *in, const struct cell *cell, uint32_
     return largest;
 }
 
-/* Sweeps with falling thresholds until the estimate meets the tolerance; the first, a coarse one, is always finished.
- * The differences of `refine_cell` are errors of the coarser values. Where the integrand bends, an error of h^3.5 per
- * cell, those of the quarters are five times smaller, elsewhere smaller still; but cells that miss a narrow gap between
- * discs count too little, so half of the differences is taken. */
+/* Integrates with falling thresholds until the estimated error meets the tolerance. The first, coarse pass is always
+ * finished. The differences of refine_cell are errors of the coarser values. Where the integrand has a bend, the error
+ * per cell is of order h^3.5, and the quarters err five times less; elsewhere they err still less. But cells that miss
+ * a narrow gap between discs count too little. So half of the differences is the estimate. */
 static int integrate(struct integral *in, const struct cell *cell, uint32_t cells, uint32_t self,
                      const struct reference_rule *rule, double tolerance, double *result,
                      struct reference_report *report) {
@@ -401,7 +407,7 @@ static void slicer_free(struct slicer *s) {
     free(s->open_block);
 }
 
-/* Room for n discs, the window included. */
+/* Allocates room for n discs, the window included. */
 static bool slicer_make(struct slicer *s, size_t n) {
     s->disc = malloc(n * sizeof *s->disc);
     s->area = malloc(n * sizeof *s->area);
@@ -436,7 +442,7 @@ static void integral_release(struct integral *in) {
     free(in->near);
 }
 
-/* Sphere i to the origin and to radius 1. goal: as in struct integral. */
+/* Prepares an integral. Sphere i is at the origin with radius 1. goal: as in struct integral. */
 static int integral_prepare(struct integral *in, const fibrad_spheres *spheres, uint32_t i, uint32_t goal) {
     const size_t n = spheres->n;
     *in = (struct integral){.n = spheres->n, .goal = goal, .entries = goal < spheres->n ? 1 : spheres->n + 1};
@@ -496,7 +502,7 @@ int reference_pair(const fibrad_spheres *spheres, uint32_t i, uint32_t j, const 
     if (target && fibrad_pair_exact(1, target->r, target->distance - 1 - target->r, &unobstructed))
         status = REFERENCE_ARGUMENT;
     if (!status) {
-        /* Within theta[1] one disc lies inside the other, beyond theta[2] they are apart. */
+        /* Below theta[1] one disc lies inside the other. Beyond theta[2] they are apart. */
         const double theta[3] = {0, asin(fmin(fabs(1 - target->r) / target->distance, 1)), target->cone};
         struct chart chart[2];
         struct cell cell[8];

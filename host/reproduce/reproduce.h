@@ -1,4 +1,4 @@
-/* reproduce.h - published numbers beside ours: what the experiments of `fibrad reproduce` share.
+/* reproduce.h - functions that all experiments of `fibrad reproduce` share.
  * SPDX-License-Identifier: MIT */
 #ifndef REPRODUCE_H
 #define REPRODUCE_H
@@ -11,31 +11,32 @@
 #include "cli/output.h"
 #include "simple/fibrad_host.h"
 
-/* Where results go. */
+/* The run of `fibrad reproduce`, and the current experiment. */
 struct reproduce {
-    const char *directory; /* NULL: the terminal only */
+    const char *directory; /* for files; NULL: no files are written */
     bool plots;
     struct output comparison; /* comparison.csv */
-    const char *experiment;   /* its name, at the head of each line */
-    /* the data of the experiment in hand, as CSV */
+    const char *experiment;   /* name of the current experiment, at the beginning of each line */
+    /* data of the current experiment as CSV: write to `data`; text [length] has them */
     FILE *data;
     char *text;
     size_t length;
 };
 
-/* Who says what ours is compared with: the paper itself, or an independent calculation by its method. */
+/* The source of a number that ours is compared with: the paper, or an independent calculation by its method. */
 #define SOURCE_PAPER "paper"
 #define SOURCE_CHECK "check"
 
-/* One line, on standard output and in comparison.csv: a number of others (NAN: there is none) and ours. In units of
- * "%", the difference is in points, otherwise in per cent. */
+/* Writes a line with their number and ours, to standard output and to comparison.csv. theirs NAN: there is none. If the
+ * unit is "%", the difference is in points, else in per cent. */
 void reproduce_compare(struct reproduce *reproduce, const char *what, const char *source, const char *unit,
                        double theirs, double ours);
 
-/* Writes the collected data as NAME.csv and, by a gnuplot script that finds it in $data, NAME.svg. Status. */
+/* Writes the data of the experiment as NAME.csv, and NAME.svg by a gnuplot script that reads them from $data. script
+ * NULL: no picture. Returns a status. */
 int reproduce_figure(struct reproduce *reproduce, const char *name, const char *script);
 
-/* One experiment: writes its data to reproduce->data, the header line first, and compares. Status. */
+/* An experiment: writes its data to reproduce->data, the header line first, and compares numbers. Returns a status. */
 typedef int experiment(struct reproduce *reproduce);
 
 experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig10, reproduce_table1,
@@ -43,7 +44,7 @@ experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig
 
 /* ---- rows of a bed, one thread ---- */
 
-/* The row in hand. */
+/* The scene of a bed, and memory for one row. */
 struct rows {
     fibrad_scene *scene;
     void *block; /* of the scene */
@@ -53,11 +54,12 @@ struct rows {
     double *f;     /* [n] */
 };
 
-/* Status. Close it in any case. */
+/* Makes the scene of a bed; periodic: with its periods. Close it also after an error. Returns a status. */
 int rows_open(struct rows *rows, const struct bed *bed, bool periodic);
 void rows_close(struct rows *rows);
 
-/* Row i by the rule of `method` into rows->col and f; length and the rest in *row. Status. */
+/* Computes row i by the rule of `method`. rows->col and rows->f get the entries, *row the other results. Returns a
+ * status. */
 int rows_row(struct rows *rows, const fibrad_bed_options *method, uint32_t i, fibrad_row *row);
 
 #endif

@@ -15,7 +15,7 @@ enum { DISTANCES = 7, DRAWS = 20, METHODS = 3 };
 static const double distances[DISTANCES] = {2, 3, 4, 5, 6, 8, 10};
 static const char *const names[METHODS] = {"surface", "beam", "reference"};
 
-/* Row sum of the first sphere, spheres whose centres are farther than `distance` left out. */
+/* The row sum of the first sphere, without spheres whose centres are farther than `distance`. */
 static int lattice_row_sum(struct rows *rows, int method, double distance, double *sum) {
     const fibrad_surface_rule surface = {.cutoff = distance};
     const fibrad_beam_rule beam = {.directions = method == 1 ? 0 : 8192, .cutoff = distance};
@@ -40,8 +40,8 @@ static int draw_lattice(double low, uint64_t seed, double sums[METHODS][DISTANCE
     return status;
 }
 
-static void tell_lattice(struct reproduce *reproduce, double fraction, uint32_t draws,
-                         double sums[DRAWS][METHODS][DISTANCES], const double *check) {
+static void report_lattice(struct reproduce *reproduce, double fraction, uint32_t draws,
+                           double sums[DRAWS][METHODS][DISTANCES], const double *check) {
     char what[80];
     for (int m = 0; m < METHODS; ++m)
         for (int d = 0; d < DISTANCES; ++d) {
@@ -65,7 +65,7 @@ static void tell_lattice(struct reproduce *reproduce, double fraction, uint32_t 
 int reproduce_fig10(struct reproduce *reproduce) {
     static const struct {
         double fraction, low;
-        double check[DISTANCES]; /* one draw; 0: none */
+        double check[DISTANCES]; /* of one draw; 0: none */
     } lattices[] = {{.74, 1, {.8626, .9651, .9973, .9998, 1, 1, 1}},
                     {.567, .824, {.715, .843, .963, .992, .997, .999, 1}},
                     {.474, .707, {0}},
@@ -79,7 +79,8 @@ int reproduce_fig10(struct reproduce *reproduce) {
             const int status = draw_lattice(lattices[l].low, k, sums[k]);
             if (status) return status;
         }
-        tell_lattice(reproduce, lattices[l].fraction, draws, sums, lattices[l].check[0] > 0 ? lattices[l].check : NULL);
+        report_lattice(reproduce, lattices[l].fraction, draws, sums,
+                       lattices[l].check[0] > 0 ? lattices[l].check : NULL);
     }
     return reproduce_figure(
         reproduce, "fig10",
@@ -100,10 +101,10 @@ int reproduce_fig10(struct reproduce *reproduce) {
 enum { SIZES = 5, SAMPLE = 40 };
 static const uint32_t sizes[SIZES] = {10, 50, 100, 500, 1000};
 
-/* Some rows of a bed as they should be. */
+/* Accurate rows of some spheres of a bed. */
 struct truth {
     uint32_t n, count;
-    double *f; /* [count][n], of spheres k n/count */
+    double *f; /* [count][n] rows of spheres k n/count */
 };
 
 static void add_factors(double *f, const struct rows *rows, const fibrad_row *row, double factor) {
@@ -125,7 +126,7 @@ static int make_truth(struct truth *truth, struct rows *rows) {
     return status;
 }
 
-/* Root mean square over the rows of their Euclidean errors. */
+/* The root mean square over rows of the Euclidean error of a row. */
 static int error_of(struct rows *rows, const fibrad_bed_options *method, const struct truth *truth, double *error) {
     double *difference = malloc(truth->n * sizeof *difference), square = 0;
     int status = difference ? STATUS_OK : message_memory();
@@ -142,7 +143,7 @@ static int error_of(struct rows *rows, const fibrad_bed_options *method, const s
     return status;
 }
 
-/* Seconds for all rows; small beds again and again, to have something to measure. */
+/* The time for all rows [s]. Rows of small beds are computed many times, for a time long enough to measure. */
 static int seconds_of(struct rows *rows, const fibrad_bed_options *method, double *seconds) {
     const double begun = progress_clock();
     uint32_t times = 0;
@@ -158,7 +159,7 @@ static int seconds_of(struct rows *rows, const fibrad_bed_options *method, doubl
     return STATUS_OK;
 }
 
-/* The fewest directions, in steps of a quarter, whose error is at most `error`. */
+/* Finds the fewest directions, in steps of a quarter, whose error is at most `error`. */
 static int fewest_directions(struct rows *rows, const struct truth *truth, double error, fibrad_beam_rule *rule) {
     double found;
     rule->directions = FIBRAD_DIRECTIONS_MIN;
@@ -170,13 +171,14 @@ static int fewest_directions(struct rows *rows, const struct truth *truth, doubl
     }
 }
 
-/* A row of rays costs the same wherever it is, so a sample tells what all would take. */
+/* A method of rays with an error, and its time for all rows. All rows by rays take about the same time, so some rows
+ * tell the time of all. */
 struct rays_at {
     fibrad_cast_rule rule;
     double error, seconds;
 };
 
-/* As many rays as bring about the error, by the law they follow from 20,000 on. */
+/* Measures the time of as many rays as give the error, extrapolated from 20,000 rays. */
 static int time_rays(struct rows *rows, const struct truth *truth, double error, struct rays_at *rays) {
     const fibrad_bed_options method = {.cast = &rays->rule};
     rays->rule.rays = 20000;

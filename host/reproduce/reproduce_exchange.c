@@ -28,7 +28,7 @@ static double *constant(uint32_t n, double value) {
     return e;
 }
 
-/* F_E of a periodic bed of unit spheres, mean of three axes, with so many paths from each. */
+/* F_E of a periodic bed of unit spheres, as the mean of three axes, with `paths` paths from each sphere. */
 static int factor_of(const struct bed *bed, double emissivity, uint32_t paths, double *factor) {
     const fibrad_scene_config box = bed_scene(bed, NULL);
     const fibrad_spheres spheres = bed_spheres(bed);
@@ -51,7 +51,7 @@ static int factor_of(const struct bed *bed, double emissivity, uint32_t paths, d
     return status;
 }
 
-/* A cell of touching unit spheres. */
+/* Makes a periodic cell of touching unit spheres. */
 static int lattice_cell(struct bed *bed, double edge, int sites, const double site[][3]) {
     int status = STATUS_OK;
     for (int k = 0; k < sites && !status; ++k)
@@ -98,7 +98,7 @@ int reproduce_conductivity(struct reproduce *reproduce) {
     if (status) return status;
     fputs("emissivity,random,simple_cubic,body_centred,face_centred,random_one_radiosity\n", reproduce->data);
     for (int e = 0; e < EMISSIVITIES; ++e) {
-        /* one radiosity per sphere: what black spheres give, docs/heat.md */
+        /* one radiosity per sphere gives the F_E of black spheres, docs/heat.md */
         fprintf(reproduce->data, "%g,%.5f,%.5f,%.5f,%.5f,%.5f\n", emissivities[e], factor[0][e], factor[1][e],
                 factor[2][e], factor[3][e], factor[0][EMISSIVITIES - 1]);
         for (int k = 0; k <= LATTICES; ++k) {
@@ -112,7 +112,7 @@ int reproduce_conductivity(struct reproduce *reproduce) {
     return reproduce_figure(reproduce, "conductivity", conductivity_script);
 }
 
-/* Mean exchange factor of pairs by their centre distance. */
+/* Bins of the mean exchange factor of pairs by centre distance. */
 #define WIDTH  .1
 #define CENTRE 2.0
 enum { BINS = 36 };
@@ -122,7 +122,7 @@ struct curve {
     uint64_t pairs[BINS];
 };
 
-/* Bins are centred on multiples of WIDTH; the first one has contacts alone. */
+/* The bin of a distance. Bins are centred on CENTRE plus multiples of WIDTH. The first bin has contacts only. */
 static int bin_of(double distance) {
     if (distance < CENTRE + .03) return 0;
     return (int)((distance - CENTRE) / WIDTH + .5);

@@ -1,4 +1,4 @@
-/* reproduce_pairs.c - figures 3, 4, 7, 8 and 9 of the surface paper: pairs, free and with a third sphere.
+/* reproduce_pairs.c - figures 3, 4, 7, 8 and 9 of the surface paper: pairs, without and with a third sphere.
  * SPDX-License-Identifier: MIT */
 #include <math.h>
 
@@ -12,7 +12,8 @@ static const double radii[] = {.1, .3, .7, 1};
 static const double gaps[] = {0, .01, .02, .05, .1, .5, 1, 2, 4, 6, 8};
 enum { RADII = sizeof radii / sizeof *radii, GAPS = sizeof gaps / sizeof *gaps };
 
-/* The surface factor from a unit sphere; obstacle: x, y, z, r or NULL. Its arguments are always valid. */
+/* The factor from a unit sphere by the surface method. obstacle: x, y, z, r; or NULL. All arguments here are valid, so
+ * no status is checked. */
 static double surface_factor(double r2, double gap, const double *obstacle, uint32_t nodes, uint32_t flags) {
     static double scratch[FIBRAD_SURFACE_SCRATCH(1)];
     const fibrad_surface_rule rule = {.nodes = nodes, .flags = flags};
@@ -69,7 +70,7 @@ int reproduce_fig3(struct reproduce *reproduce) {
 }
 
 int reproduce_fig4(struct reproduce *reproduce) {
-    /* the pebble-bed paper: equal spheres at centre distances H; by rays, and by numerical integration */
+    /* the pebble-bed paper: factors of equal spheres by rays and by numerical integration */
     static const struct {
         double gap, rays, numerical;
     } pebbles[] = {{0, 7.573e-2, 7.558e-2},
@@ -103,7 +104,7 @@ int reproduce_fig4(struct reproduce *reproduce) {
                             "'' using 1:6 with lines dt 3 title 'far field: 1/(4 d^2)'");
 }
 
-/* The blocked factor by adaptive quadrature, to about 1e-7. */
+/* The factor with an obstacle by adaptive quadrature, with an error of about 1e-7. */
 static int reference_factor(double r2, double gap, const double obstacle[4], double *f12) {
     const double x[3] = {0, 0, obstacle[0]}, y[3] = {0, 0, obstacle[1]}, z[3] = {0, 1 + r2 + gap, obstacle[2]};
     const double r[3] = {1, r2, obstacle[3]};
@@ -117,7 +118,7 @@ static int reference_factor(double r2, double gap, const double obstacle[4], dou
 
 enum { AZIMUTHS = 24 };
 
-/* Relative errors in per cent. */
+/* Relative errors over azimuths of the obstacle [%]. */
 struct spread {
     double at_zero, low, high;
 };
@@ -130,10 +131,10 @@ static void widen(struct spread *spread, int azimuth, double error) {
 
 static double larger(double a, double b) { return fabs(b) > fabs(a) ? b : a; }
 
-/* Largest errors over the gaps, per cent. */
+/* Largest errors over all gaps [%]. */
 struct worst {
-    double raw, corrected;             /* 55 nodes against 987, azimuth 0 */
-    double raw_truth, corrected_truth; /* 55 nodes against the reference, any azimuth */
+    double raw, corrected;             /* 55 nodes against 987 nodes, azimuth 0 */
+    double raw_truth, corrected_truth; /* 55 nodes against the reference, all azimuths */
     double raw_987, corrected_987;     /* 987 nodes against the reference */
 };
 
@@ -194,7 +195,7 @@ int reproduce_third_sphere(struct reproduce *reproduce) {
         struct worst worst = {0};
         const double r = radii[p];
         for (int g = 0; g < GAPS; ++g) {
-            /* the third sphere's centre is 1 + r from the first and 2 r from the second */
+            /* the third sphere touches both: its centre is 1 + r from the first and 2 r from the second centre */
             const double d = 1 + r + gaps[g], z = ((1 + r) * (1 + r) - 4 * r * r + d * d) / (2 * d);
             if (z >= 1 + r) continue;
             const int status = third_sphere(reproduce, r, gaps[g], sqrt((1 + r) * (1 + r) - z * z), z, &worst);

@@ -10,13 +10,14 @@
 
 /* ---- two unit spheres at centre distance H ---- */
 
-/* Area common to two unit discs at distance s, and the integral over it of the height of either unit sphere above the
- * plane of its disc. */
+/* Finds the area common to two unit discs at distance s, and the integral over that area of the height of a unit sphere
+ * above its disc. */
 static void lens(double s, double *area, double *height) {
     enum { STEPS = 400 };
     const double half = s / 2, width = 1 - half;
     *area = 2 * acos(half) - s * sqrt(1 - half * half);
-    /* from disc 2's rim to the chord, with x = s - 1 + width sin^2; from the chord to disc 1's rim */
+    /* numerically from the rim of disc 2 to the chord, with x = s - 1 + width sin^2; then exactly to the rim of disc 1
+     */
     double sum = 0;
     for (int k = 0; k < STEPS; ++k) {
         const double t = PI / 2 * (k + .5) / STEPS, x = s - 1 + width * sin(t) * sin(t);
@@ -27,9 +28,9 @@ static void lens(double s, double *area, double *height) {
     *height = sum * (PI / 2 / STEPS) + PI / 2 * ((1 - 1. / 3) - (half - half * half * half / 3));
 }
 
-/* What all rays from one to the other make together, direction by direction: a direction at angle t to the line of
- * centres carries the lens of the two shadows, and its rays are as long as the centres are apart along it less a height
- * on either sphere. */
+/* Finds factor, mean length and mean angle of all rays between two unit spheres, as integrals over directions. Along a
+ * direction at angle t to the line of centres the rays fill the lens of both shadows. A ray is as long as the distance
+ * of the centres along the direction, less a height on each sphere. */
 static void pair_of(double h, double *f12, double *length, double *angle) {
     enum { STEPS = 2000 };
     const double widest = asin(2 / h);
@@ -47,7 +48,8 @@ static void pair_of(double h, double *f12, double *length, double *angle) {
     *angle = angles / areas * 180 / PI;
 }
 
-/* Factor from a plane element to a unit sphere at distance h, its normal at angle t to the direction of the centre. */
+/* The factor from a plane element to a unit sphere at distance h. t: angle between the normal and the direction of the
+ * centre. */
 static double element(double h, double t) {
     if (cos(t) >= 1 / h) return cos(t) / (h * h);
     if (cos(t) <= -1 / h) return 0;
@@ -56,15 +58,15 @@ static double element(double h, double t) {
     return (cos(t) * acos(y) - x * root) / (PI * h * h) + atan(root / x) / PI;
 }
 
-/* What a point of sphere 2 receives, at angle t from the line of centres: the element lies at another place of the
- * sphere, so sphere 1 is at another distance and angle. */
+/* The factor from sphere 2 at a point at angle t from the line of centres to sphere 1: distance and angle of sphere 1
+ * depend on the point. */
 static double received(double h, double t) {
     const double distance = sqrt(h * h + 1 - 2 * h * cos(t));
     if (distance <= 1) return 1; /* the point of contact */
     return element(distance, acos(fmax(-1, fmin(1, (h * cos(t) - 1) / distance))));
 }
 
-/* Share of what is received within the angle t. */
+/* The fraction of the radiation received that sphere 2 receives within the angle t. */
 static double share_within(double h, double t) {
     enum { STEPS = 4000 };
     double within = 0, all = 0;
@@ -123,10 +125,10 @@ enum { PEBBLES = 1000, SAMPLE = 100, BINS = 81 };
 #define BIN 0.1 /* [radii] of the centre distance, up to 8 */
 
 struct within {
-    double factor[BINS], spheres[BINS]; /* means over the sample, up to each distance */
+    double factor[BINS], spheres[BINS]; /* means over the sample of sums within each distance */
 };
 
-/* The centre distance of two spheres, nearest images. */
+/* The distance between the centres of the nearest images of two spheres. */
 static double apart(const struct bed *bed, uint32_t i, uint32_t j) {
     const double *const axis[3] = {bed->x, bed->y, bed->z};
     double square = 0;
@@ -157,7 +159,7 @@ static int collect_within(struct within *within, const struct bed *bed, struct r
     return STATUS_OK;
 }
 
-static void tell_bed(struct reproduce *reproduce, double fraction, const struct within *within) {
+static void report_bed(struct reproduce *reproduce, double fraction, const struct within *within) {
     static const struct {
         int bin;
         const char *distance;
@@ -190,7 +192,7 @@ int reproduce_pebble_bed(struct reproduce *reproduce) {
         int status = bed_make_packing(&bed, PEBBLES, 1, 1, fractions[k], 1);
         if (!status) status = rows_open(&rows, &bed, true);
         if (!status) status = collect_within(&within, &bed, &rows);
-        if (!status) tell_bed(reproduce, fractions[k], &within);
+        if (!status) report_bed(reproduce, fractions[k], &within);
         rows_close(&rows);
         bed_free(&bed);
         if (status) return status;

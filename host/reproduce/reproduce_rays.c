@@ -1,4 +1,5 @@
-/* reproduce_rays.c - the pebble-bed paper's table by its own method, rays. SPDX-License-Identifier: MIT */
+/* reproduce_rays.c - the table of the pebble-bed paper by its own method, which is rays. SPDX-License-Identifier: MIT
+ */
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,7 +10,7 @@
 
 enum { ORIENTATIONS = 24, RAYS = 200000 };
 
-/* Unit spheres at centre distance h: means over orientations of the pair, each with rays of its own. */
+/* Results for two unit spheres: means over orientations of the pair, each of which has its own rays. */
 struct pair_rays {
     double error; /* root mean square relative error of F */
     double f12, length, angle;
@@ -51,7 +52,7 @@ static int cast_pair(double h, fibrad_cast_rule rule, struct pair_rays *means) {
     return status;
 }
 
-/* The fewest of 1000, 1414, 2000, ... rays whose error is at most 1 %. */
+/* Finds the fewest of 1000, 1414, 2000, ... rays whose error is at most 1 %. */
 static int rays_for_one_percent(double h, uint32_t *rays) {
     struct pair_rays means = {.error = INFINITY};
     int status = STATUS_OK;
@@ -82,7 +83,8 @@ int reproduce_pebble_rays(struct reproduce *reproduce) {
         if (!status) status = cast_pair(h, (fibrad_cast_rule){.rays = RAYS, .random = 1}, &random);
         if (!status) status = rays_for_one_percent(h, &needed);
         if (status) return status;
-        const double random_needed = RAYS * pow(100 * random.error, 2); /* its error falls as rays^-1/2 */
+        const double random_needed =
+            RAYS * pow(100 * random.error, 2); /* the error of random rays falls as rays^-1/2 */
 #define COMPARE(text, source, unit, theirs, ours)                                                                      \
     (snprintf(what, sizeof what, "H = %g: " text, h), reproduce_compare(reproduce, what, source, unit, theirs, ours))
         COMPARE("F, 200,000 rays, mean of 24 orientations", SOURCE_PAPER, "", table[t].f12, quasi.f12);

@@ -1,4 +1,4 @@
-/* reproduce_rows.c - rows of view factors of a bed by any method, one thread. SPDX-License-Identifier: MIT */
+/* reproduce_rows.c - rows of view factors of a bed by any method, on one thread. SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 
 #include "bed/bed_scene.h"

@@ -1,4 +1,4 @@
-/* mesh_walls.c - walls of triangles that rank 0 reads and all ranks know. SPDX-License-Identifier: MIT */
+/* mesh_walls.c - walls of triangles, which rank 0 reads and hands to all ranks. SPDX-License-Identifier: MIT */
 #include "couple/walls/mesh_walls.h"
 
 #include <limits.h>
@@ -11,19 +11,19 @@
 
 enum { VOTERS = 1000 };
 
-/* Keeps a line for the simulation to tell. */
+/* Keeps a message for the simulation to print. */
 static void keep_line(void *context, const char *line) {
     struct mesh_walls *walls = context;
-    const size_t length = strlen(walls->told);
-    snprintf(walls->told + length, sizeof walls->told - length, "%s%s", length ? "\n" : "", line);
+    const size_t length = strlen(walls->messages);
+    snprintf(walls->messages + length, sizeof walls->messages - length, "%s%s", length ? "\n" : "", line);
 }
 
-static void listen(struct mesh_walls *walls) {
-    walls->told[0] = 0;
+static void collect_messages(struct mesh_walls *walls) {
+    walls->messages[0] = 0;
     message_redirect(keep_line, walls);
 }
 
-/* The status of rank 0, to all. */
+/* Sends the status of rank 0 to all ranks. */
 static int share_status(MPI_Comm comm, int status) {
     MPI_Bcast(&status, 1, MPI_INT, 0, comm);
     return status;
@@ -36,7 +36,7 @@ static int grow_array(void *array, size_t count, size_t size) {
     return larger ? STATUS_OK : STATUS_MEMORY;
 }
 
-/* Room for what rank 0 has, on the others. */
+/* Makes room on the other ranks for the triangles of rank 0. */
 static int make_room(struct meshes *meshes, uint32_t vertices, uint32_t n) {
     int status = grow_array(&meshes->vertex, 3 * (size_t)vertices, sizeof *meshes->vertex);
     if (!status) status = grow_array(&meshes->corner, 3 * (size_t)n, sizeof *meshes->corner);
@@ -55,7 +55,7 @@ static int make_room(struct meshes *meshes, uint32_t vertices, uint32_t n) {
     return STATUS_OK;
 }
 
-/* Corners of all triangles and names of all bodies, from rank 0 to all. */
+/* Sends the corners of all triangles and the names of all walls from rank 0 to all ranks. */
 static int share_triangles(struct mesh_walls *walls, MPI_Comm comm) {
     struct meshes *meshes = &walls->meshes;
     int rank;
@@ -78,7 +78,7 @@ int mesh_walls_add(struct mesh_walls *walls, MPI_Comm comm, const struct mesh_fi
     MPI_Comm_rank(comm, &rank);
     *bodies = 0;
     if (rank == 0) {
-        listen(walls);
+        collect_messages(walls);
         status = stl ? meshes_take(&walls->meshes, file, stl, body) : meshes_add(&walls->meshes, file, body);
         message_redirect(NULL, NULL);
         if (!status) *bodies = walls->meshes.mesh[walls->meshes.count - 1].bodies;
@@ -88,9 +88,9 @@ int mesh_walls_add(struct mesh_walls *walls, MPI_Comm comm, const struct mesh_fi
     return status ? status : share_triangles(walls, comm);
 }
 
-/* A particle that votes. */
+/* A particle that votes on which side of a mesh the bed lies. */
 struct voter {
-    uint64_t order; /* of its id, without a pattern */
+    uint64_t order; /* a hash of its id */
     double x[3], radius;
 };
 
@@ -99,13 +99,13 @@ static int by_order(const void *a, const void *b) {
     return (first > second) - (first < second);
 }
 
-/* The first of them, at most VOTERS. */
+/* Sorts particles by their hashes. The first VOTERS of them vote. Returns their number. */
 static size_t first_voters(struct voter *voter, size_t n) {
     qsort(voter, n, sizeof *voter, by_order);
     return n < VOTERS ? n : VOTERS;
 }
 
-/* Those of all ranks, for rank 0; of `own` of this one. */
+/* Gathers the voters of all ranks on rank 0. own: number of voters of this rank. *all: number of voters on rank 0. */
 static int gather_voters(MPI_Comm comm, int ranks, struct voter **voter, size_t own, size_t *all) {
     fibrad_block got = {0};
     int *count = calloc(2 * (size_t)ranks, sizeof *count);
@@ -121,7 +121,7 @@ static int gather_voters(MPI_Comm comm, int ranks, struct voter **voter, size_t 
     return status ? STATUS_MEMORY : STATUS_OK;
 }
 
-/* As meshes_face, by these voters. */
+/* Finds by these voters which sides of triangles are walls. */
 static int face_voters(struct mesh_walls *walls, const fibrad_insitu_bed *bed, const struct voter *voter, size_t n) {
     double *c = malloc((4 * n + 1) * sizeof *c), period[3]; /* one array for each coordinate */
     if (!c) return STATUS_MEMORY;
@@ -131,7 +131,7 @@ static int face_voters(struct mesh_walls *walls, const fibrad_insitu_bed *bed, c
     }
     for (int axis = 0; axis < 3; ++axis) period[axis] = bed->periodic[axis] ? bed->high[axis] - bed->low[axis] : 0;
     const fibrad_spheres spheres = {.x = c, .y = c + n, .z = c + 2 * n, .r = c + 3 * n, .n = (uint32_t)n};
-    listen(walls);
+    collect_messages(walls);
     const int status = meshes_face(&walls->meshes, &spheres, period);
     message_redirect(NULL, NULL);
     free(c);
@@ -170,5 +170,5 @@ int mesh_walls_face(struct mesh_walls *walls, MPI_Comm comm, const fibrad_insitu
 
 void mesh_walls_free(struct mesh_walls *walls) {
     meshes_free(&walls->meshes);
-    walls->told[0] = 0;
+    walls->messages[0] = 0;
 }

@@ -1,4 +1,4 @@
-/* mesh_walls.h - walls of triangles that rank 0 reads and all ranks know. SPDX-License-Identifier: MIT */
+/* mesh_walls.h - walls of triangles, which rank 0 reads and hands to all ranks. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_MESH_WALLS_H
 #define FIBRAD_COUPLE_MESH_WALLS_H
 
@@ -10,22 +10,24 @@ extern "C" {
 
 #include "mesh/meshes.h"
 
-enum { MESH_WALLS_TOLD = 2048 };
+enum { MESH_WALLS_MESSAGES = 2048 };
 
-/* Meshes as of all ranks: rank 0 alone has more than meshes.triangles. Zeroed: none; to be freed by mesh_walls_free. */
+/* The meshes of a simulation. All ranks have meshes.triangles and names; only rank 0 has the rest. Begin with zeroes;
+ * free with mesh_walls_free. */
 struct mesh_walls {
     struct meshes meshes;
-    char told[MESH_WALLS_TOLD]; /* rank 0: warnings of the last call, or why it failed, a line each; "": nothing */
+    char messages[MESH_WALLS_MESSAGES]; /* on rank 0: lines of warnings of the last call, or of its error; "": none */
 };
 
-/* Collective. Rank 0 reads a file, or takes triangles that it has (stl not NULL), and the others get their corners:
- * the file is read once, and need not be there for other ranks. Its bodies are `body` and those behind it. *bodies: how
- * many. Status 0 or, on all ranks, that of meshes_add; STATUS_MEMORY. */
+/* Collective. Adds a mesh. Rank 0 reads the file, or takes the triangles of `stl` if that is not NULL, and sends the
+ * corners to the other ranks, which need no file. The first wall gets the index `body`. *bodies: number of walls.
+ * Status, the same on all ranks, as meshes_add, or STATUS_MEMORY. */
 int mesh_walls_add(struct mesh_walls *walls, MPI_Comm comm, const struct mesh_file *file, const struct stl *stl,
                    uint32_t body, uint32_t *bodies);
 
-/* Collective. Finds out which sides the particles of a bed are on: up to 1000 vote, chosen by their ids, whoever owns
- * them. Status 0 or STATUS_MEMORY, on all ranks. */
+/* Collective. Finds which sides of triangles are walls: those on which the particles of a bed lie. Up to 1000 particles
+ * vote. Their ids choose them, so the result does not depend on who owns them. Status, the same on all ranks: 0 or
+ * STATUS_MEMORY. */
 int mesh_walls_face(struct mesh_walls *walls, MPI_Comm comm, const fibrad_insitu_bed *bed);
 
 void mesh_walls_free(struct mesh_walls *walls);
