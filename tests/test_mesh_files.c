@@ -430,8 +430,8 @@ START_TEST(backs_of_meshes) {
     ck_assert_str_eq(said, "");
     soup.n -= 2; /* no longer closed */
     SUCCEED("bed", bed, "--wall", wall_of("mesh:", write_solid("half.stl", &soup), ":both"));
-    expect_message(text,
-                   "warning: the mesh is not closed: 4 edges belong to one triangle, 0 to more than two; parts: 1");
+    expect_message(
+        text, "warning: the mesh is not closed: 4 edges belong to one triangle, 0 to more than two; components: 1");
 }
 END_TEST
 
@@ -559,7 +559,7 @@ START_TEST(temperatures_of_triangles) {
                  {"1\n-2\n", "T.csv:2: ", "the temperature is -2; it must be within 0 and"},
                  {"1\nnan\n", "T.csv:2: ", "temperature is not finite: 'nan'"},
                  {"1\n2 3\n", "T.csv:2: ", "2 columns instead of 1"},
-                 {"T\n", "T.csv: ", "no numbers of a table"}};
+                 {"T\n", "T.csv: ", "the table has no numbers"}};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
         column = write_file("T.csv", wrong[k].text);
         ck_assert_int_eq(RUN("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, ""),

@@ -214,8 +214,8 @@ int wall_list(const char *option, const char *text, const char *word, double low
     return STATUS_OK;
 }
 
-/* Spreads such a list over the walls, `otherwise` where there is neither name nor bare number. Status 0, or
- * STATUS_USAGE naming the wall that is not there or has no value, `otherwise` being NaN. */
+/* Reads a list of values of walls and finds the value of each wall: that with its name, or the number without a name,
+ * or else `otherwise`. Status 0, or STATUS_USAGE if there is no wall of a name or if the value of a wall is NaN. */
 static int wall_values(const char *option, const char *text, double otherwise, double low, double high,
                        const struct walls *walls, double values[WALLS_MAX]) {
     struct wall_list list;

@@ -88,7 +88,7 @@ void quantity_report(const struct quantity *quantity, const char *key, struct re
 void wall_values_report(const struct walls *walls, const double *values, const char *ending, int digits,
                         struct report *report);
 
-/* Reads the argument of --wall-emissivity. text NULL: all walls are black. Status as wall_values. */
+/* Reads the argument of --wall-emissivity. text NULL: all walls are black. Status 0 or STATUS_USAGE. */
 int wall_emissivities(const char *text, const struct walls *walls, double emissivity[WALLS_MAX]);
 
 #endif

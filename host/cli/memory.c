@@ -29,7 +29,7 @@ double memory_left(void) {
 int memory_check(double bytes, const char *what_would_help) {
     const double left = memory_left();
     if (bytes <= left) return STATUS_OK;
-    return message(STATUS_MEMORY, "out of memory: %.3g GB are wanted, %.3g GB are left; %s", bytes / 1e9, left / 1e9,
+    return message(STATUS_MEMORY, "out of memory: %.3g GB are needed, %.3g GB are left; %s", bytes / 1e9, left / 1e9,
                    what_would_help);
 }
 
@@ -41,6 +41,6 @@ double disk_left(const char *folder) {
 int disk_check(const char *folder, double bytes) {
     const double left = disk_left(folder);
     if (bytes <= left) return STATUS_OK;
-    return message_at(STATUS_FILE, folder, 0, "no room on this disk: %.3g GB are wanted, %.3g GB are left", bytes / 1e9,
+    return message_at(STATUS_FILE, folder, 0, "no room on this disk: %.3g GB are needed, %.3g GB are left", bytes / 1e9,
                       left / 1e9);
 }

@@ -126,7 +126,7 @@ typedef struct fibrad_insitu_totals {
 typedef struct fibrad_insitu_facts {
     uint64_t particles, entries; /* numbers of particles and of entries of rows */
     double cutoff;               /* L, in use */
-    double beyond;               /* mean fraction of the emission whose target is not known; given back to the rows */
+    double beyond;               /* mean fraction of the emission whose target is not known; the known targets get it */
     double error;                /* root mean square of the rows' estimated errors */
     double seconds_rows;         /* s, of the slowest rank, in all calls of fibrad_insitu_rows so far */
     double seconds_powers;       /* s, of the slowest rank, in all calls of fibrad_insitu_powers so far */
@@ -144,7 +144,7 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
 /* Makes all rows again.
  *   Input    bed: not needed after the call
  *            step: any number, seeds the random numbers
- *   Errors   _ARGUMENT: a value is out of its range, an id is there twice, a centre lies beyond a wall, or the cutoff
+ *   Errors   _ARGUMENT: a value is out of its range, an id occurs twice, a centre lies beyond a wall, or the cutoff
  *            is less than the largest diameter or more than 100 periods
  *            _GEOMETRY: a centre lies inside another particle, or a particle reaches beyond an opening
  *            _ENDLESS: walls, as for fibrad_scene_init

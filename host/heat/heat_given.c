@@ -132,8 +132,8 @@ static int leave_out(const char *option, const struct quantity *number, const do
     if (used) return STATUS_OK;
     return message(
         STATUS_USAGE,
-        "%s %g is for no sphere: all have the other quantity; a blank or nan in its column leaves a sphere out", option,
-        number->value);
+        "%s %g is for no sphere: each sphere has the other quantity; a blank or nan in that column leaves a sphere out",
+        option, number->value);
 }
 
 static int given_spheres(const struct bed *bed, const char *file, struct given *given) {

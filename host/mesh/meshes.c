@@ -61,7 +61,7 @@ static void warn_of_surface(const char *file, const struct surface *s) {
                    s->flat, s->twice, s->snapped);
     if (s->open || s->crowded)
         message_at(STATUS_OK, file, 0,
-                   "warning: the mesh is %s: %u edges belong to one triangle, %u to more than two; parts: %u",
+                   "warning: the mesh is %s: %u edges belong to one triangle, %u to more than two; components: %u",
                    s->open ? "not closed" : "closed", s->open, s->crowded, s->components);
 }
 

@@ -190,7 +190,7 @@ int stl_read(struct stl *stl, const char *path) {
     *stl = (struct stl){0};
     int status = lines_open(&lines, path);
     if (!status) status = read_either(stl, &lines);
-    if (!status && stl->n == 0) status = message_at(STATUS_INPUT, lines.name, 0, "there are no triangles in it");
+    if (!status && stl->n == 0) status = message_at(STATUS_INPUT, lines.name, 0, "the file has no triangles");
     lines_close(&lines);
     return status;
 }

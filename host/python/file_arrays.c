@@ -50,10 +50,11 @@ static int turn_to_walls(const struct meshes *meshes, struct file_mesh *found) {
     }
     found->both = both > 0;
     if (both == 0 || both == found->n) return STATUS_OK;
-    return message_at(STATUS_INPUT, meshes->mesh[0].file, 0,
-                      "%u of %u triangles belong to twisted parts, of which both sides are the wall; make both sides "
-                      "of all triangles the wall",
-                      both, found->n);
+    return message_at(
+        STATUS_INPUT, meshes->mesh[0].file, 0,
+        "%u of %u triangles belong to twisted components, both sides of which are the wall; make both sides "
+        "of all triangles the wall",
+        both, found->n);
 }
 
 int fibrad_file_mesh(const char *path, double scale, int sides, const fibrad_spheres *spheres, const double period[3],

@@ -38,8 +38,8 @@ extern "C" {
  * each stage, and up to 20 times a second in between.
  *   Input    context: fibrad_run.context
  *            stage: "walls", "rows", "triangles", "beams", "sweeps" or "steps"
- *            done: things done
- *            total: all things; 0: not known
+ *            done: number of things done
+ *            total: number of all things; 0: not known
  *   Output   0 to go on; else the call stops and returns FIBRAD_E_CANCELLED */
 typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uint64_t total);
 
@@ -82,7 +82,7 @@ typedef struct fibrad_bed_factors {
     uint32_t directions;      /* most directions of a row; 0: a method without directions */
     uint64_t fallbacks;       /* windows that the robust method for areas resolved */
     uint64_t rays;            /* exchange: rays traced */
-    double seconds;           /* s, of computing, without the two checks below */
+    double seconds;           /* s, time of computing, without the two checks below */
     double closure_error;     /* largest |sum - 1| of a raw row */
     double reciprocity_error; /* as fibrad_matrix_reciprocity; NaN if rows are missing */
 } fibrad_bed_factors;
@@ -222,8 +222,8 @@ typedef enum fibrad_transient_method {
 /* How a bed is followed in time. Zeroed: CORRECTED. */
 typedef struct fibrad_transient_config {
     int method;                    /* a fibrad_transient_method */
-    fibrad_exchange_rule exchange; /* of exchange factors; emissivities are those of the sources */
-    fibrad_heat_config heat;       /* of patches, as for fibrad_radiation_new; points 0: 128 if CORRECTED */
+    fibrad_exchange_rule exchange; /* for exchange factors, but for its emissivities: those of the sources count */
+    fibrad_heat_config heat;       /* for patches, as for fibrad_radiation_new; points 0: 128 if CORRECTED */
 } fibrad_transient_config;
 
 /* Makes a bed that changes with time. The bed is copied, its triangles included. If exchange.directions, paths and
@@ -279,7 +279,7 @@ typedef struct fibrad_span {
     double *body_energy;            /* J, [bodies], out: gained by radiation during the span; may be NULL */
     double surroundings_energy;     /* J, out: gained by radiation during the span */
     fibrad_observe *observe;        /* NULL: none */
-    fibrad_emissivity_law *law;     /* asked in each stage, by PATCHES only; NULL: emissivities are constant */
+    fibrad_emissivity_law *law;     /* called in each stage, by PATCHES only; NULL: emissivities are constant */
     void *context;                  /* handed to observe and law */
     double error;                   /* out: largest estimated error of a step, as `tolerance` */
     uint64_t steps;                 /* out: steps taken */

@@ -72,7 +72,7 @@ static int read_columns_of(const char *path, const char *what, double low, doubl
         status = fields_split(&fields, lines.text, ",; \t\r");
         if (!status) status = take(&lines, &fields, what, low, high, curve);
     }
-    if (!status && curve->n == 0) status = message_at(STATUS_INPUT, lines_name(path), 0, "no numbers of a table");
+    if (!status && curve->n == 0) status = message_at(STATUS_INPUT, lines_name(path), 0, "the table has no numbers");
     lines_close(&lines);
     free(fields.at);
     return status;

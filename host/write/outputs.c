@@ -134,7 +134,7 @@ static int write_alone(const struct outputs *outputs, size_t k, const struct con
     char path[PATH_MAX];
     struct output file = {0};
     const int used = snprintf(path, sizeof path, "%.*s%" PRId64 "%s", (int)(star - pattern), pattern, number, star + 1);
-    if (used >= (int)sizeof path) return message_at(STATUS_FILE, pattern, 0, "is too long a name");
+    if (used >= (int)sizeof path) return message_at(STATUS_FILE, pattern, 0, "the name is too long");
     int status = check_others(outputs, k, path);
     if (!status) status = output_open(&file, path);
     if (!status) status = outputs->to[k].format->write[outputs->content](file.file, what, true);
@@ -187,7 +187,7 @@ static int write_collection(const struct outputs *outputs, const char *path, con
     if (slash > star) return STATUS_OK; /* each file is in a folder of its own */
     while (length > (size_t)(begin - path) && strchr("._-", path[length - 1])) --length;
     if (snprintf(name, sizeof name, "%.*s.pvd", (int)length, path) >= (int)sizeof name)
-        return message_at(STATUS_FILE, path, 0, "is too long a name");
+        return message_at(STATUS_FILE, path, 0, "the name is too long");
     int status = output_open(&file, name);
     if (status) return status;
     const bool timed = has_times(outputs);
