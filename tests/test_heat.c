@@ -692,7 +692,8 @@ struct strands {
 };
 
 static void strands_to(const fibrad_heat *heat, uint32_t place, uint32_t body, struct strands *s) {
-    const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
+    const unsigned char *at = heat->pencils.pool + heat->pencils.row[place].begin,
+                        *end = at + heat->pencils.row[place].bytes;
     s->count = s->sum = 0;
     for (; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
         const fibrad_heat_pencil *pencil = fibrad_heat_pencil_at(at);
@@ -748,7 +749,7 @@ START_TEST(a_small_sphere_and_the_spot_under_it) {
         for (int k = 0; k < FIBRAD_WALLS; k++) p.wall_temperature[k] = 500, p.wall_emissivity[k] = .1;
     }
     trace_and_solve(&p);
-    ck_assert_uint_gt(p.heat->fours, 0);
+    ck_assert_uint_gt(p.heat->division.fours, 0);
     ck_assert_double_le(fabs(sum_of_powers(&p, &largest)), 1e-12 * largest);
     for (uint32_t i = 0; i < c->n; i++) {
         const double off = fabs(p.result.power[i] - c->truth[i]) - 2 * c->noise[i];
@@ -767,7 +768,7 @@ START_TEST(fine_patches_come_and_go_with_a_move) {
     p.temperature[1] = q.temperature[1] = 2;
     p.sources.tolerance = q.sources.tolerance = 1e-9;
     trace_and_solve(&p), trace_and_solve(&q);
-    ck_assert_uint_eq(q.heat->fours, 0);
+    ck_assert_uint_eq(q.heat->division.fours, 0);
     const double power[2] = {p.result.power[1], q.result.power[1]};
     ck_assert_int_eq(fibrad_heat_move(p.heat, q.scene), FIBRAD_OK);
     trace_beams(&p), solve(&p);
@@ -793,12 +794,13 @@ START_TEST(parts_are_compact_and_even) {
             count[heat->part[k]]++, seen[heat->sequence[k]]++;
         }
         for (uint32_t k = 0; k < heat->rows; k++) {
-            const unsigned char *at = heat->pool + heat->row[k].begin, *end = at + heat->row[k].bytes;
+            const unsigned char *at = heat->pencils.pool + heat->pencils.row[k].begin,
+                                *end = at + heat->pencils.row[k].bytes;
             for (; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) pencils++;
         }
         for (uint32_t k = 0; k < p.bed.n; k++) ck_assert_uint_eq(seen[k], 1);
         for (uint32_t k = 0; k < parts; k++) ck_assert(count[k] == p.bed.n / parts || count[k] == p.bed.n / parts + 1);
-        ck_assert_uint_le(heat->links, parts == 1 ? 0 : parts == 8 ? pencils / 2 : pencils);
+        ck_assert_uint_le(heat->pencils.links, parts == 1 ? 0 : parts == 8 ? pencils / 2 : pencils);
         free_problem(&p);
     }
 }
@@ -1405,7 +1407,7 @@ END_TEST
 
 /* Bytes of the pool up to the last link. */
 static size_t pool_end(const fibrad_heat *heat) {
-    return (size_t)((const unsigned char *)(heat->link + heat->links) - heat->pool);
+    return (size_t)((const unsigned char *)(heat->pencils.link + heat->pencils.links) - heat->pencils.pool);
 }
 
 /* Traces all spheres again, until there is no room. */
@@ -1425,15 +1427,15 @@ START_TEST(nothing_is_written_behind_the_room_for_beams) {
         struct problem p = problem_of(packing(30, 1, 1, .55, 5, true), 1, .5);
         p.config.directions = directions;
         trace_and_solve(&p);
-        const size_t all = p.heat->room, end = pool_end(p.heat);
-        const size_t sum = p.heat->used + p.heat->links * sizeof(fibrad_heat_link);
+        const size_t all = p.heat->pencils.room, end = pool_end(p.heat);
+        const size_t sum = p.heat->pencils.used + p.heat->pencils.links * sizeof(fibrad_heat_link);
         ck_assert_uint_lt(sum, end);
         for (int last = 0; last <= 2; last++) {
-            p.heat->room = last == 0 ? sum : last == 1 ? end - 1 : (end + 63) / 64 * 64;
-            memset(p.heat->pool + p.heat->room, 0x5a, all - p.heat->room);
+            p.heat->pencils.room = last == 0 ? sum : last == 1 ? end - 1 : (end + 63) / 64 * 64;
+            memset(p.heat->pencils.pool + p.heat->pencils.room, 0x5a, all - p.heat->pencils.room);
             ck_assert_int_eq(trace_again(&p), last < 2 ? FIBRAD_E_SIZE : FIBRAD_OK);
             if (last == 2) solve(&p);
-            for (size_t k = p.heat->room; k < all; k++) ck_assert_uint_eq(p.heat->pool[k], 0x5a);
+            for (size_t k = p.heat->pencils.room; k < all; k++) ck_assert_uint_eq(p.heat->pencils.pool[k], 0x5a);
         }
         free_problem(&p);
     }
@@ -1454,12 +1456,12 @@ START_TEST(the_room_for_beams_may_be_too_small) {
         trace_beams(&p);
         solve(&p);
         memcpy(power[times - 1], p.result.power, sizeof power[0]);
-        ck_assert_uint_le(pool_end(p.heat), p.heat->room);
+        ck_assert_uint_le(pool_end(p.heat), p.heat->pencils.room);
         if (times == 1) free(p.heat);
     }
     ck_assert_mem_eq(power[0], power[1], sizeof power[0]);
 
-    p.heat->room = pool_end(p.heat) - 1000;
+    p.heat->pencils.room = pool_end(p.heat) - 1000;
     ck_assert_int_eq(trace_again(&p), FIBRAD_E_SIZE);
     ck_assert_int_eq(fibrad_heat_begin(p.heat, &p.sources), FIBRAD_E_STATE);
     free_problem(&p);

@@ -170,8 +170,8 @@ static bool is_too_large(const fibrad_heat *heat, const fibrad_heat_four *four, 
 }
 
 static uint32_t add_nodes(fibrad_heat *heat, uint32_t n) {
-    const uint32_t begin = heat->nodes;
-    for (uint32_t k = 0; k < n; k++) heat->node[heat->nodes++] = 0;
+    const uint32_t begin = heat->division.nodes;
+    for (uint32_t k = 0; k < n; k++) heat->division.node[heat->division.nodes++] = 0;
     return begin;
 }
 
@@ -184,17 +184,17 @@ static void divide_four(fibrad_heat *heat, uint32_t body, uint32_t own, const st
     } wait[3 * FINE_LEVELS + 4];
     uint32_t waiting = 1;
     wait[0].four = (fibrad_heat_four){.body = body, .own = own};
-    wait[0].node = heat->node != NULL ? heat->root[body] + own : 0;
+    wait[0].node = heat->division.node != NULL ? heat->division.root[body] + own : 0;
     while (waiting > 0) {
         const fibrad_heat_four four = wait[--waiting].four;
         const uint32_t node = wait[waiting].node;
         if (!is_too_large(heat, &four, near)) continue;
         uint32_t children = 0;
-        if (heat->node == NULL)
-            heat->nodes += FIBRAD_HEAT_FOUR;
-        else if (heat->node[node] == 0)
-            heat->node[node] = add_nodes(heat, FIBRAD_HEAT_FOUR);
-        if (heat->node != NULL) children = heat->node[node];
+        if (heat->division.node == NULL)
+            heat->division.nodes += FIBRAD_HEAT_FOUR;
+        else if (heat->division.node[node] == 0)
+            heat->division.node[node] = add_nodes(heat, FIBRAD_HEAT_FOUR);
+        if (heat->division.node != NULL) children = heat->division.node[node];
         for (uint32_t k = 0; k < FIBRAD_HEAT_FOUR; k++) {
             wait[waiting].four = (fibrad_heat_four){
                 .body = body, .own = own, .level = four.level + 1, .x = 2 * four.x + k / 2, .y = 2 * four.y + k % 2};
@@ -215,8 +215,8 @@ static bool asks_for_fine(const fibrad_heat *heat, uint32_t body, double r, stru
 /* Gives a body its nodes, if it has none. */
 static void begin_body(fibrad_heat *heat, uint32_t body, bool *begun) {
     const uint32_t n = fours_of(heat, body);
-    if (!*begun && heat->node != NULL) heat->root[body] = add_nodes(heat, n);
-    if (!*begun && heat->node == NULL) heat->nodes += n;
+    if (!*begun && heat->division.node != NULL) heat->division.root[body] = add_nodes(heat, n);
+    if (!*begun && heat->division.node == NULL) heat->division.nodes += n;
     *begun = true;
 }
 
@@ -280,7 +280,7 @@ static void divide_wall(fibrad_heat *heat, uint32_t wall) {
 /* Divides the fours of all bodies, or counts the nodes. Number 0 is none. */
 static void divide_bodies(fibrad_heat *heat) {
     const fibrad_scene *scene = heat->scene;
-    heat->nodes = 1;
+    heat->division.nodes = 1;
     for (uint32_t b = 0; b < heat->spheres && scene->facts.radius_min < FINE_UNLIKE * scene->facts.radius_max; b++)
         divide_sphere(heat, b);
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
@@ -289,9 +289,9 @@ static void divide_bodies(fibrad_heat *heat) {
 
 uint64_t fibrad_heat_count_nodes(const fibrad_heat *heat) {
     fibrad_heat fields = *heat;
-    fields.node = NULL;
+    fields.division.node = NULL;
     divide_bodies(&fields);
-    return fields.nodes;
+    return fields.division.nodes;
 }
 
 /* The fours that are fine, level by level. */
@@ -300,19 +300,19 @@ static void number_fours(fibrad_heat *heat, uint32_t body) {
         fibrad_heat_four four;
         uint32_t node;
     } wait[3 * FINE_LEVELS + 4];
-    const uint32_t n = heat->root[body] != FIBRAD_NONE ? fours_of(heat, body) : 0;
+    const uint32_t n = heat->division.root[body] != FIBRAD_NONE ? fours_of(heat, body) : 0;
     uint32_t found = 1;
     for (uint32_t level = 1; found > 0 && level <= FINE_LEVELS; level++) {
         found = 0;
         for (uint32_t own = 0; own < n; own++) {
             uint32_t waiting = 1;
-            wait[0].four = (fibrad_heat_four){.body = body, .own = own}, wait[0].node = heat->root[body] + own;
+            wait[0].four = (fibrad_heat_four){.body = body, .own = own}, wait[0].node = heat->division.root[body] + own;
             while (waiting > 0) {
                 fibrad_heat_four four = wait[--waiting].four;
-                const uint32_t node = wait[waiting].node, next = heat->node[node];
+                const uint32_t node = wait[waiting].node, next = heat->division.node[node];
                 if (next == 0 && four.level == level) {
-                    heat->four[heat->fours] = four;
-                    heat->node[node] = FIBRAD_HEAT_FINE + heat->fours++;
+                    heat->division.four[heat->division.fours] = four;
+                    heat->division.node[node] = FIBRAD_HEAT_FINE + heat->division.fours++;
                 }
                 if (next == 0 || next >= FIBRAD_HEAT_FINE) continue;
                 found++;
@@ -344,12 +344,12 @@ static void put_in_rows(fibrad_heat *heat) {
     heat->rows = heat->spheres;
     uint32_t most = 0;
     fibrad_heat_fine *row = NULL;
-    for (uint32_t k = 0; k < heat->fours; k++) {
-        fibrad_heat_four *four = &heat->four[k];
+    for (uint32_t k = 0; k < heat->division.fours; k++) {
+        fibrad_heat_four *four = &heat->division.four[k];
         if (row == NULL || row->body != four->body || row->level != four->level || row->count == most) {
             const double rays = rays_of_four(heat, four->body, four->level);
             const double area = four_area(heat, four->body) * fibrad_power_of_two(-2 * (int64_t)four->level);
-            row = &heat->fine[heat->rows - heat->spheres];
+            row = &heat->division.fine[heat->rows - heat->spheres];
             *row = (fibrad_heat_fine){.body = four->body, .level = four->level, .first = k};
             heat->density[heat->rows++] = FIBRAD_HEAT_RAY * rays / area;
             most = (uint32_t)fibrad_min(FIBRAD_HEAT_PATCHES_MAX / FIBRAD_HEAT_FOUR, heat->beams / (2 * rays));
@@ -360,12 +360,12 @@ static void put_in_rows(fibrad_heat *heat) {
 
 void fibrad_heat_divide_fours(fibrad_heat *heat) {
     const uint32_t bodies = heat->spheres + FIBRAD_WALLS;
-    for (uint32_t b = 0; b < bodies; b++) heat->root[b] = FIBRAD_NONE;
-    heat->node[0] = 0;
+    for (uint32_t b = 0; b < bodies; b++) heat->division.root[b] = FIBRAD_NONE;
+    heat->division.node[0] = 0;
     divide_bodies(heat);
-    heat->fours = 0;
+    heat->division.fours = 0;
     for (uint32_t b = 0; b <= bodies; b++) {
-        heat->first_four[b] = heat->fours;
+        heat->division.first_four[b] = heat->division.fours;
         if (b < bodies) number_fours(heat, b);
     }
     put_in_rows(heat);
@@ -382,8 +382,9 @@ double fibrad_heat_comes_back(const fibrad_heat *heat, uint32_t sphere) {
 }
 
 uint32_t fibrad_heat_fine_of(const fibrad_heat *heat, uint32_t patch) {
-    for (uint32_t k = 0; k < FIBRAD_WALLS && heat->fours > 0; k++) {
-        const uint32_t b = heat->spheres + k, *own = heat->first_four + b, begin = fibrad_heat_first_fine(heat, b);
+    for (uint32_t k = 0; k < FIBRAD_WALLS && heat->division.fours > 0; k++) {
+        const uint32_t b = heat->spheres + k, *own = heat->division.first_four + b,
+                       begin = fibrad_heat_first_fine(heat, b);
         if (patch >= begin && patch < heat->first[b + 1]) return FIBRAD_HEAT_FOUR * own[0] + (patch - begin);
     }
     return FIBRAD_NONE;
@@ -406,9 +407,10 @@ static double share_of(const fibrad_heat *heat, uint32_t own) {
 /* So rays of fine patches stand for the area of the beams that they replace, and all of a sphere for its own. */
 void fibrad_heat_balance(fibrad_heat *heat) {
     if (heat->spheres == 0) return;
-    for (uint32_t own = 0; own < fours_of(heat, 0); own++) heat->balance[own] = 0;
-    for (uint32_t k = 0; k < heat->beams; k++) heat->balance[heat->leave[k] / FIBRAD_HEAT_FOUR]++;
-    for (uint32_t own = 0; own < fours_of(heat, 0); own++) heat->balance[own] /= heat->beams * share_of(heat, own);
+    for (uint32_t own = 0; own < fours_of(heat, 0); own++) heat->division.balance[own] = 0;
+    for (uint32_t k = 0; k < heat->beams; k++) heat->division.balance[heat->leave[k] / FIBRAD_HEAT_FOUR]++;
+    for (uint32_t own = 0; own < fours_of(heat, 0); own++)
+        heat->division.balance[own] /= heat->beams * share_of(heat, own);
 }
 
 /* The number of the random sequence of a four. */
@@ -422,10 +424,10 @@ static uint64_t seed_of(const fibrad_heat *heat, const fibrad_heat_four *four) {
 /* Goes on to the next four of a row that sends out rays. Their number is by area, and what is rounded off goes to the
  * next one. */
 static bool next_four(const fibrad_heat *heat, uint32_t row, fibrad_heat_fine_rays *rays) {
-    const fibrad_heat_fine *fine = &heat->fine[row - heat->spheres];
+    const fibrad_heat_fine *fine = &heat->division.fine[row - heat->spheres];
     while (rays->left == 0 && rays->fours < fine->count) {
-        const fibrad_heat_four *four = &heat->four[fine->first + rays->fours++];
-        const double balance = is_sphere(heat, four->body) ? heat->balance[four->own] : 1;
+        const fibrad_heat_four *four = &heat->division.four[fine->first + rays->fours++];
+        const double balance = is_sphere(heat, four->body) ? heat->division.balance[four->own] : 1;
         rays->due += balance * area_of(heat, four) * heat->density[row] / FIBRAD_HEAT_RAY,
             rays->most = most_of(heat, four);
         rays->left = (uint32_t)(rays->due + .5);
@@ -436,8 +438,9 @@ static bool next_four(const fibrad_heat *heat, uint32_t row, fibrad_heat_fine_ra
 
 bool fibrad_heat_fine_ray(const fibrad_heat *heat, uint32_t row, fibrad_heat_fine_rays *rays) {
     if (!next_four(heat, row, rays)) return false;
-    const fibrad_heat_four *own = &heat->four[heat->fine[row - heat->spheres].first + rays->fours - 1];
-    const uint64_t seed = seed_of(heat, &heat->four[heat->fine[row - heat->spheres].first]);
+    const fibrad_heat_four *own =
+        &heat->division.four[heat->division.fine[row - heat->spheres].first + rays->fours - 1];
+    const uint64_t seed = seed_of(heat, &heat->division.four[heat->division.fine[row - heat->spheres].first]);
     double x[4], area, chance;
     do { /* places where the image is stretched less are left out more often */
         fibrad_heat_ray_coordinates(seed, rays->k, x);

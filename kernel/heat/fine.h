@@ -18,10 +18,10 @@
 /* How many nodes there are at the most, more than fine fours. Needs heat->config, scene, spheres, side and wall. */
 uint64_t fibrad_heat_count_nodes(const fibrad_heat *heat);
 
-/* Divides the fours: heat->root, node, nodes, four, fours, first_four, fine, rows and the density of those. */
+/* Divides the fours: heat->division.root, node, nodes, four, fours, first_four, fine, rows and the density of those. */
 void fibrad_heat_divide_fours(fibrad_heat *heat);
 
-/* Finds heat->balance from heat->leave. */
+/* Finds heat->division.balance from heat->leave. */
 void fibrad_heat_balance(fibrad_heat *heat);
 
 /* A point on a four: u, v in [0, 1] of it. Its place, from the centre of a sphere or in the scene [L], and the normal

@@ -66,7 +66,7 @@ static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const
     heat->meshes = meshes_of(scene), heat->triangles = scene->mesh.triangles;
     heat->bodies = spheres + 2 * FIBRAD_WALLS + heat->meshes + 1;
     heat->patches = spheres * config->patches + 1;
-    heat->rays = 0, heat->fours = 0;
+    heat->rays = 0, heat->division.fours = 0;
     fibrad_heat_cut_walls(heat);
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
         heat->patches += heat->wall[k].squares[0] * heat->wall[k].squares[1] + heat->wall[k].unbounded;
@@ -77,8 +77,8 @@ static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const
  * more. */
 static void add_room(fibrad_heat *heat, uint32_t nodes) {
     const uint32_t of_walls = heat->patches - heat->spheres * heat->config.patches;
-    heat->nodes_capacity = nodes + (nodes > 1 ? nodes / 4 + SPARE_NODES : 0);
-    heat->patches_capacity = heat->patches + of_walls / 4 + FIBRAD_HEAT_FOUR * heat->nodes_capacity;
+    heat->division.nodes_capacity = nodes + (nodes > 1 ? nodes / 4 + SPARE_NODES : 0);
+    heat->patches_capacity = heat->patches + of_walls / 4 + FIBRAD_HEAT_FOUR * heat->division.nodes_capacity;
     heat->rays_capacity = heat->rays + heat->rays / 4;
 }
 
@@ -89,37 +89,40 @@ static uint32_t tasks_for(uint32_t rows, uint32_t rays) {
 /* Takes the arrays from the arena; the object itself is to be copied to the address returned. */
 static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_heat *place = fibrad_arena_take(arena, 1, sizeof *place);
-    const uint32_t spheres = heat->spheres, patches = heat->patches_capacity, nodes = heat->nodes_capacity;
+    const uint32_t spheres = heat->spheres, patches = heat->patches_capacity, nodes = heat->division.nodes_capacity;
     const uint32_t rows = spheres + nodes, others = patches - spheres * heat->config.patches;
     heat->first = fibrad_arena_take(arena, heat->bodies + 1, sizeof *heat->first);
     heat->leave = fibrad_arena_take(arena, heat->beams, sizeof *heat->leave);
     heat->ray = fibrad_arena_take(arena, heat->rays_capacity, sizeof *heat->ray);
-    heat->brought = fibrad_arena_take(arena, (size_t)others * heat->config.parts, sizeof *heat->brought);
-    double **const of_patches[] = {&heat->source,    &heat->gathered, &heat->area,     &heat->net,
-                                   &heat->radiosity, &heat->detail,   &heat->direction};
+    heat->solution.brought =
+        fibrad_arena_take(arena, (size_t)others * heat->config.parts, sizeof *heat->solution.brought);
+    double **const of_patches[] = {&heat->solution.source,   &heat->solution.gathered,  &heat->solution.area,
+                                   &heat->solution.net,      &heat->solution.radiosity, &heat->solution.detail,
+                                   &heat->solution.direction};
     for (size_t k = 0; k < sizeof of_patches / sizeof *of_patches; k++)
         *of_patches[k] = fibrad_arena_take(arena, patches, sizeof(double));
-    double **const of_bodies[] = {&heat->emissivity,      &heat->emission,    &heat->drive, &heat->hold,  &heat->coarse,
-                                  &heat->coarse_emission, &heat->temperature, &heat->power, &heat->halves};
+    double **const of_bodies[] = {&heat->sources.emissivity,  &heat->sources.emission, &heat->sources.drive,
+                                  &heat->sources.hold,        &heat->solution.coarse,  &heat->solution.coarse_emission,
+                                  &heat->sources.temperature, &heat->solution.power,   &heat->samples.halves};
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
         *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
     heat->density = fibrad_arena_take(arena, rows, sizeof(double));
-    heat->seen = fibrad_arena_take(arena, spheres, sizeof *heat->seen);
-    heat->row = fibrad_arena_take(arena, rows, sizeof *heat->row);
-    heat->first_link = fibrad_arena_take(arena, rows + 2, sizeof *heat->first_link);
+    heat->samples.seen = fibrad_arena_take(arena, spheres, sizeof *heat->samples.seen);
+    heat->pencils.row = fibrad_arena_take(arena, rows, sizeof *heat->pencils.row);
+    heat->pencils.first_link = fibrad_arena_take(arena, rows + 2, sizeof *heat->pencils.first_link);
     heat->order = fibrad_arena_take(arena, spheres, sizeof *heat->order);
     heat->sequence = fibrad_arena_take(arena, spheres, sizeof *heat->sequence);
     heat->part = fibrad_arena_take(arena, rows, sizeof *heat->part);
-    heat->root = fibrad_arena_take(arena, spheres + FIBRAD_WALLS, sizeof *heat->root);
-    heat->node = fibrad_arena_take(arena, nodes, sizeof *heat->node);
-    heat->first_four = fibrad_arena_take(arena, spheres + FIBRAD_WALLS + 1, sizeof *heat->first_four);
-    heat->four = fibrad_arena_take(arena, nodes, sizeof *heat->four);
-    heat->fine = fibrad_arena_take(arena, nodes, sizeof *heat->fine);
+    heat->division.root = fibrad_arena_take(arena, spheres + FIBRAD_WALLS, sizeof *heat->division.root);
+    heat->division.node = fibrad_arena_take(arena, nodes, sizeof *heat->division.node);
+    heat->division.first_four = fibrad_arena_take(arena, spheres + FIBRAD_WALLS + 1, sizeof *heat->division.first_four);
+    heat->division.four = fibrad_arena_take(arena, nodes, sizeof *heat->division.four);
+    heat->division.fine = fibrad_arena_take(arena, nodes, sizeof *heat->division.fine);
     heat->cut = fibrad_arena_take(arena, 2 * (size_t)heat->triangles, sizeof *heat->cut);
-    heat->lift = fibrad_arena_take(arena, heat->triangles > 0 ? others : 0, sizeof *heat->lift);
+    heat->sources.lift = fibrad_arena_take(arena, heat->triangles > 0 ? others : 0, sizeof *heat->sources.lift);
     heat->traced = fibrad_arena_take(arena, tasks_for(rows, heat->rays_capacity), 1);
     heat->swept = fibrad_arena_take(arena, heat->config.parts, 1);
-    heat->pool = fibrad_arena_take(arena, heat->room, 1);
+    heat->pencils.pool = fibrad_arena_take(arena, heat->pencils.room, 1);
     return place;
 }
 
@@ -131,7 +134,7 @@ static int dimension_anew(fibrad_heat *heat, const fibrad_heat_config *config, c
     const uint64_t nodes = fibrad_heat_count_nodes(heat);
     if (nodes > HEAT_NODES_MAX) return FIBRAD_E_UNSUPPORTED;
     add_room(heat, (uint32_t)nodes);
-    heat->room = fibrad_heat_room(heat);
+    heat->pencils.room = fibrad_heat_room(heat);
     return FIBRAD_OK;
 }
 
@@ -152,7 +155,8 @@ size_t fibrad_heat_size(const fibrad_heat_config *config, const fibrad_scene *sc
 /* How many patches a body has. */
 static uint32_t patches_of(const fibrad_heat *heat, uint32_t b) {
     const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES), beyond = fibrad_heat_beyond(heat, 0);
-    const uint32_t fine = b < mesh ? FIBRAD_HEAT_FOUR * (heat->first_four[b + 1] - heat->first_four[b]) : 0;
+    const uint32_t fine =
+        b < mesh ? FIBRAD_HEAT_FOUR * (heat->division.first_four[b + 1] - heat->division.first_four[b]) : 0;
     if (b < heat->spheres) return heat->config.patches + fine;
     if (b < mesh) return heat->wall[b - heat->spheres].squares[0] * heat->wall[b - heat->spheres].squares[1] + fine;
     if (b < beyond) return heat->of_mesh[b - mesh];
@@ -187,14 +191,14 @@ static void find_origins(fibrad_heat *heat) {
 /* Begins with a scene: nothing is traced. */
 static void forget_beams(fibrad_heat *heat) {
     fibrad_heat_divide_fours(heat);
-    heat->patches += FIBRAD_HEAT_FOUR * heat->fours;
+    heat->patches += FIBRAD_HEAT_FOUR * heat->division.fours;
     number_patches(heat);
     fibrad_heat_divide(heat);
     fibrad_copy(heat->order, heat->scene->order, heat->spheres * sizeof *heat->order);
     fibrad_zero(heat->traced, fibrad_heat_tasks(heat));
-    heat->used = heat->links = 0;
-    heat->areas = false;
-    heat->phase = FIBRAD_HEAT_IDLE;
+    heat->pencils.used = heat->pencils.links = 0;
+    heat->solution.areas = false;
+    heat->solution.phase = FIBRAD_HEAT_IDLE;
 }
 
 int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_heat_config *config,
@@ -210,7 +214,7 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     const size_t least = heat_bytes(fields);
     status = fibrad_arena_open(&arena, memory, size, least);
     if (status != FIBRAD_OK) return status;
-    fields.room += (size - least) / FIBRAD_ALIGNMENT * FIBRAD_ALIGNMENT;
+    fields.pencils.room += (size - least) / FIBRAD_ALIGNMENT * FIBRAD_ALIGNMENT;
     fibrad_heat *heat = heat_layout(&arena, &fields);
     *heat = fields;
     fibrad_heat_cut_meshes(heat);
@@ -244,66 +248,67 @@ static bool same_patches(const fibrad_heat *a, const fibrad_heat *b) {
 /* Takes the radiosities of the last solution along. Patches of walls that are cut otherwise begin anew. */
 static void carry_over(fibrad_heat *heat, const fibrad_heat *next) {
     const uint32_t n = heat->spheres, each = heat->config.patches;
-    uint32_t *old_place = (uint32_t *)(void *)heat->source;
+    uint32_t *old_place = (uint32_t *)(void *)heat->solution.source;
     for (uint32_t place = 0; place < n; place++) old_place[heat->order[place]] = place;
-    reorder(heat->radiosity, each, next->scene, old_place, n, heat->gathered);
-    reorder(heat->detail, each, next->scene, old_place, n, heat->gathered);
-    reorder(heat->emission, 1, next->scene, old_place, n, heat->gathered);
+    reorder(heat->solution.radiosity, each, next->scene, old_place, n, heat->solution.gathered);
+    reorder(heat->solution.detail, each, next->scene, old_place, n, heat->solution.gathered);
+    reorder(heat->sources.emission, 1, next->scene, old_place, n, heat->solution.gathered);
     if (same_patches(heat, next)) return;
     const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES), from = heat->first[mesh];
-    const size_t of_meshes = (heat->first[fibrad_heat_beyond(heat, 0)] - from) * sizeof *heat->radiosity;
-    fibrad_copy(heat->gathered, heat->radiosity + from, of_meshes);
-    fibrad_copy(heat->direction, heat->detail + from, of_meshes);
+    const size_t of_meshes = (heat->first[fibrad_heat_beyond(heat, 0)] - from) * sizeof *heat->solution.radiosity;
+    fibrad_copy(heat->solution.gathered, heat->solution.radiosity + from, of_meshes);
+    fibrad_copy(heat->solution.direction, heat->solution.detail + from, of_meshes);
     uint32_t a = n * each, to = a;
     for (uint32_t b = n; b < heat->bodies; b++) {
         if (b == mesh) to = a;
         for (uint32_t end = a + patches_of(next, b); a < end; a++)
-            heat->radiosity[a] = heat->emission[b], heat->detail[a] = 0;
+            heat->solution.radiosity[a] = heat->sources.emission[b], heat->solution.detail[a] = 0;
     }
-    fibrad_copy(heat->radiosity + to, heat->gathered, of_meshes);
-    fibrad_copy(heat->detail + to, heat->direction, of_meshes);
+    fibrad_copy(heat->solution.radiosity + to, heat->solution.gathered, of_meshes);
+    fibrad_copy(heat->solution.detail + to, heat->solution.direction, of_meshes);
 }
 
 /* The mean of values, per area, over the patches of a body. */
 static double mean_of_body(const fibrad_heat *heat, uint32_t b, const double *value) {
     double sum = 0, area = 0;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        sum += heat->area[a] * value[a], area += heat->area[a];
+        sum += heat->solution.area[a] * value[a], area += heat->solution.area[a];
     return area > 0 ? sum / area : 0;
 }
 
 /* Leaves fine patches out. Own patches that were divided take the mean of their body. */
 static void drop_fine(fibrad_heat *heat) {
-    if (heat->fours == 0) return;
+    if (heat->division.fours == 0) return;
     uint32_t to = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const double mean = mean_of_body(heat, b, heat->radiosity);
-        const bool has_fine = b < fibrad_heat_body(heat, FIBRAD_MESHES) && heat->root[b] != FIBRAD_NONE;
+        const double mean = mean_of_body(heat, b, heat->solution.radiosity);
+        const bool has_fine = b < fibrad_heat_body(heat, FIBRAD_MESHES) && heat->division.root[b] != FIBRAD_NONE;
         const uint32_t end = has_fine ? fibrad_heat_first_fine(heat, b) : heat->first[b + 1];
         for (uint32_t a = heat->first[b]; a < end; a++, to++) {
-            const bool divided = has_fine && !(heat->area[a] > 0);
-            heat->radiosity[to] = divided ? mean : heat->radiosity[a];
-            heat->detail[to] = divided ? 0 : heat->detail[a];
+            const bool divided = has_fine && !(heat->solution.area[a] > 0);
+            heat->solution.radiosity[to] = divided ? mean : heat->solution.radiosity[a];
+            heat->solution.detail[to] = divided ? 0 : heat->solution.detail[a];
         }
     }
-    heat->fours = 0;
-    fibrad_zero(heat->first_four, (heat->spheres + FIBRAD_WALLS + 1) * sizeof *heat->first_four);
+    heat->division.fours = 0;
+    fibrad_zero(heat->division.first_four, (heat->spheres + FIBRAD_WALLS + 1) * sizeof *heat->division.first_four);
     for (uint32_t b = 0; b < heat->bodies; b++) heat->first[b + 1] = heat->first[b] + patches_of(heat, b);
 }
 
 /* Makes room for fine patches, which begin with the mean of their body. */
 static void add_fine(fibrad_heat *heat) {
-    uint32_t from = heat->patches - FIBRAD_HEAT_FOUR * heat->fours;
-    for (uint32_t b = heat->bodies; heat->fours > 0 && b-- > 0;) {
-        const bool has_fine = b < fibrad_heat_body(heat, FIBRAD_MESHES) && heat->root[b] != FIBRAD_NONE;
+    uint32_t from = heat->patches - FIBRAD_HEAT_FOUR * heat->division.fours;
+    for (uint32_t b = heat->bodies; heat->division.fours > 0 && b-- > 0;) {
+        const bool has_fine = b < fibrad_heat_body(heat, FIBRAD_MESHES) && heat->division.root[b] != FIBRAD_NONE;
         const uint32_t begin = heat->first[b], end = has_fine ? fibrad_heat_first_fine(heat, b) : heat->first[b + 1];
         double sum = 0;
         for (uint32_t a = end; a-- > begin;) {
-            heat->radiosity[a] = heat->radiosity[--from], heat->detail[a] = heat->detail[from];
-            sum += heat->radiosity[a];
+            heat->solution.radiosity[a] = heat->solution.radiosity[--from],
+            heat->solution.detail[a] = heat->solution.detail[from];
+            sum += heat->solution.radiosity[a];
         }
         for (uint32_t a = end; a < heat->first[b + 1]; a++)
-            heat->radiosity[a] = sum / (end - begin), heat->detail[a] = 0;
+            heat->solution.radiosity[a] = sum / (end - begin), heat->solution.detail[a] = 0;
     }
 }
 
@@ -333,13 +338,13 @@ int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
     fibrad_heat next = *heat;
     dimension(&next, &heat->config, scene);
     const uint64_t nodes = fibrad_heat_count_nodes(&next);
-    if (nodes > heat->nodes_capacity || next.patches + FIBRAD_HEAT_FOUR * nodes > heat->patches_capacity ||
+    if (nodes > heat->division.nodes_capacity || next.patches + FIBRAD_HEAT_FOUR * nodes > heat->patches_capacity ||
         next.rays > heat->rays_capacity)
         return FIBRAD_E_SIZE;
-    if (heat->warm) drop_fine(heat), carry_over(heat, &next);
+    if (heat->solution.warm) drop_fine(heat), carry_over(heat, &next);
     *heat = next;
     forget_beams(heat);
-    if (heat->warm) add_fine(heat);
+    if (heat->solution.warm) add_fine(heat);
     return FIBRAD_OK;
 }
 

@@ -63,10 +63,11 @@ static uint32_t fine_patch(const fibrad_heat *heat, uint32_t sphere, uint32_t pa
 /* Counts a beam of window k to a fine patch; returns it. */
 static fibrad_heat_beam fine_beam(const fibrad_heat *heat, fibrad_workspace *work, uint32_t k, uint16_t from,
                                   uint32_t fine) {
-    const uint32_t row = heat->four[fine / FIBRAD_HEAT_FOUR].row;
+    const uint32_t row = heat->division.four[fine / FIBRAD_HEAT_FOUR].row;
     const uint32_t entry = fibrad_entries_of(&work->entries, row);
     fibrad_entries_add(&work->entries, entry, k, 1);
-    return (fibrad_heat_beam){entry, from, (uint16_t)(fine - FIBRAD_HEAT_FOUR * heat->fine[row - heat->spheres].first)};
+    return (fibrad_heat_beam){entry, from,
+                              (uint16_t)(fine - FIBRAD_HEAT_FOUR * heat->division.fine[row - heat->spheres].first)};
 }
 
 /* The points of a word that are kept: all, or half of them, by turns those whose numbers have an even number of ones
@@ -138,7 +139,7 @@ static void find_hit_discs(const fibrad_heat *heat, fibrad_workspace *work, cons
             (hidden & p->behind) | points_behind(work, frame, x, y, hidden, fibrad_work_sphere(work, k), disc, -1);
         if (behind != 0) give_to_walls(work, k, window, behind, &points->seen[word]);
         hidden &= ~behind;
-        uint64_t bits = heat->root[fibrad_work_sphere(work, k)] == FIBRAD_NONE ? hidden & kept : hidden;
+        uint64_t bits = heat->division.root[fibrad_work_sphere(work, k)] == FIBRAD_NONE ? hidden & kept : hidden;
         if (bits == 0 && work->near.entry[work->disc.near[k]] >= known) bits = hidden & (0 - hidden);
         for (; bits != 0; bits &= bits - 1)
             p->point[p->count] = (uint32_t)__builtin_ctzll(bits), p->disc[p->count++] = k;
@@ -212,7 +213,7 @@ static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, fibrad_workspace *wo
         const uint32_t sphere = fibrad_work_sphere(work, window.disc[p]), from = leave[window.point[p]];
         const uint32_t entry = work->near.entry[work->disc.near[window.disc[p]]];
         const bool left_out = fibrad_heat_is_divided(heat, work->place, from / FIBRAD_HEAT_FOUR);
-        const uint32_t fine = heat->root[sphere] != FIBRAD_NONE
+        const uint32_t fine = heat->division.root[sphere] != FIBRAD_NONE
                                   ? fine_patch(heat, sphere, patch[p], window.x[p], window.y[p])
                                   : FIBRAD_NONE;
         if (left_out || fine != FIBRAD_NONE) fibrad_entries_add(&work->entries, entry, k, -1);
@@ -290,7 +291,8 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
         LANED(fibrad_beam_window)(work, frame, &points, k);
         if (work->disc.count > work->disc.capacity) return fibrad_work_discs_missed(work);
         for (uint32_t word = 0; word < points.count / HIT_POINTS; word++) {
-            const uint64_t kept = kept_points(turn + k + word, heat->root[place] == FIBRAD_NONE ? heat->thin : 1);
+            const uint64_t kept =
+                kept_points(turn + k + word, heat->division.root[place] == FIBRAD_NONE ? heat->thin : 1);
             beam = keep_hits(heat, work, frame, &points, k, word, kept, known, beam);
             beam = keep_meshed(heat, work, frame, &points, k, word, beam);
             beam = keep_escapes(heat, work, frame, &points, k, word, kept, beam);

@@ -44,8 +44,8 @@ static struct heat_pool pool_of(size_t pencil_bytes, size_t links) {
 
 /* Whether what is kept so far fits. */
 static bool pool_suffices(fibrad_heat *heat) {
-    const size_t links = fibrad_add_at_once(&heat->links, 0);
-    return pool_of(fibrad_add_at_once(&heat->used, 0), links).bytes <= heat->room;
+    const size_t links = fibrad_add_at_once(&heat->pencils.links, 0);
+    return pool_of(fibrad_add_at_once(&heat->pencils.used, 0), links).bytes <= heat->pencils.room;
 }
 
 static size_t whole_of(double number) { return number < (double)(SIZE_MAX / 2) ? (size_t)number : SIZE_MAX; }
@@ -79,7 +79,7 @@ size_t fibrad_heat_room(const fibrad_heat *heat) {
     const double bundles = room_joined(thinned, most_bundles, fraction) + more;
     const double all = pencils + strands / FIBRAD_HEAT_STRANDS;
     const double bytes = sizeof(fibrad_heat_bundle) * bundles + strands + all * (sizeof(fibrad_heat_pencil) + 2);
-    const double of_fine = heat->nodes_capacity > 1 ? ROOM_NODE * heat->nodes_capacity : 0;
+    const double of_fine = heat->division.nodes_capacity > 1 ? ROOM_NODE * heat->division.nodes_capacity : 0;
     return pool_of(whole_of(1.1 * n * bytes + of_fine + 4096), whole_of(1.1 * n * all)).bytes;
 }
 
@@ -110,12 +110,12 @@ struct row_scratch {
 
 /* Fours of patches that the other end of a beam may have, at the most, and pairs with those of a sphere. */
 static uint32_t fours_stride(const fibrad_heat *heat) {
-    const uint32_t most = heat->nodes_capacity > 1 ? FIBRAD_HEAT_PATCHES_MAX : heat->config.patches;
+    const uint32_t most = heat->division.nodes_capacity > 1 ? FIBRAD_HEAT_PATCHES_MAX : heat->config.patches;
     return (most > FIBRAD_HEAT_BLOCK ? most : FIBRAD_HEAT_BLOCK) / FIBRAD_HEAT_FOUR;
 }
 
 static size_t fours_pairs(const fibrad_heat *heat) {
-    const uint32_t most = heat->nodes_capacity > 1 ? FIBRAD_HEAT_PATCHES_MAX : heat->config.patches;
+    const uint32_t most = heat->division.nodes_capacity > 1 ? FIBRAD_HEAT_PATCHES_MAX : heat->config.patches;
     return (size_t)(most / FIBRAD_HEAT_FOUR) * fours_stride(heat);
 }
 
@@ -240,27 +240,28 @@ static struct row_scratch divide_scratch(const fibrad_heat *heat, unsigned char 
 
 int fibrad_heat_keep(fibrad_heat *heat, const fibrad_workspace *work, uint32_t place, uint32_t count) {
     const fibrad_entries *entries = &work->entries;
-    fibrad_heat_row *row = &heat->row[place];
+    fibrad_heat_row *row = &heat->pencils.row[place];
     if (!pool_suffices(heat)) return FIBRAD_E_SIZE; /* and so for all rows to come */
     const struct row_scratch scratch = divide_scratch(heat, work->extra);
     sort_beams(scratch.beam, count, scratch.sorted, entries->key[0], entries->length);
     fibrad_zero(scratch.seen, fours_pairs(heat) * sizeof *scratch.seen);
     const uint32_t more = write_row(heat, place, entries, &scratch, &row->bytes);
-    row->begin = fibrad_add_at_once(&heat->used, row->bytes);
-    fibrad_add_at_once(&heat->links, more);
+    row->begin = fibrad_add_at_once(&heat->pencils.used, row->bytes);
+    fibrad_add_at_once(&heat->pencils.links, more);
     /* of threads that add at once, whoever adds last sees all of it */
     if (!pool_suffices(heat)) return FIBRAD_E_SIZE;
-    fibrad_copy(heat->pool + row->begin, scratch.pencils, row->bytes);
+    fibrad_copy(heat->pencils.pool + row->begin, scratch.pencils, row->bytes);
     return FIBRAD_OK;
 }
 
 void fibrad_heat_link_pencils(fibrad_heat *heat) {
     const uint32_t n = heat->rows;
-    size_t *first = heat->first_link;
+    size_t *first = heat->pencils.first_link;
     fibrad_zero(first, (n + 2) * sizeof *first);
-    heat->link = (void *)(heat->pool + pool_of(heat->used, heat->links).links_at);
+    heat->pencils.link = (void *)(heat->pencils.pool + pool_of(heat->pencils.used, heat->pencils.links).links_at);
     for (uint32_t place = 0; place < n; place++) {
-        const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
+        const unsigned char *at = heat->pencils.pool + heat->pencils.row[place].begin,
+                            *end = at + heat->pencils.row[place].bytes;
         for (; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
             const uint32_t other = fibrad_heat_pencil_at(at)->body;
             if (other < n && !fibrad_heat_same_part(heat, place, other)) first[other + 2]++;
@@ -268,11 +269,13 @@ void fibrad_heat_link_pencils(fibrad_heat *heat) {
     }
     for (uint32_t i = 2; i < n + 2; i++) first[i] += first[i - 1];
     for (uint32_t place = 0; place < n; place++) {
-        const unsigned char *begin = heat->pool + heat->row[place].begin, *end = begin + heat->row[place].bytes;
+        const unsigned char *begin = heat->pencils.pool + heat->pencils.row[place].begin,
+                            *end = begin + heat->pencils.row[place].bytes;
         for (const unsigned char *at = begin; at < end; at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
             const uint32_t other = fibrad_heat_pencil_at(at)->body;
             if (other < n && !fibrad_heat_same_part(heat, place, other))
-                heat->link[first[other + 1]++] = (fibrad_heat_link){place, (uint32_t)((size_t)(at - begin) / 4)};
+                heat->pencils.link[first[other + 1]++] =
+                    (fibrad_heat_link){place, (uint32_t)((size_t)(at - begin) / 4)};
         }
     }
 }

@@ -46,8 +46,8 @@ typedef struct fibrad_heat_bundle {
 #define FIBRAD_HEAT_STRAND  8u /* most beams */
 #define FIBRAD_HEAT_STRANDS UINT8_MAX
 
-/* Position of the pencils of a row in heat->pool [bytes]. A link is a pencil that ends on a row of another part. Its
- * position `at` is in units of four bytes after `begin` of the row. */
+/* Position of the pencils of a row in heat->pencils.pool [bytes]. A link is a pencil that ends on a row of another
+ * part. Its position `at` is in units of four bytes after `begin` of the row. */
 typedef struct fibrad_heat_row {
     size_t begin, bytes;
 } fibrad_heat_row;
@@ -102,24 +102,9 @@ typedef enum fibrad_heat_phase {
     FIBRAD_HEAT_DONE
 } fibrad_heat_phase;
 
-struct fibrad_heat {
-    fibrad_heat_config config;
-    const fibrad_scene *scene;
-    uint64_t hash;                                  /* of the scene */
-    uint32_t spheres;                               /* number of spheres */
-    uint32_t given_bodies, slot[FIBRAD_BODIES_MAX]; /* number of walls, and their slots */
-    uint32_t openings;                              /* bit k: slot k is an opening */
-    uint32_t beams;                                 /* beams of one sphere: directions times points */
-    uint32_t thin;                                  /* 1: all beams to spheres are kept; 2: every second one */
-    uint32_t side;                                  /* patches of a sphere along an edge of its cube */
-    uint32_t meshes, triangles;                     /* numbers of meshes and triangles */
-    double patch_area;                              /* L^2, about the area of a patch of a wall */
-    uint32_t bodies;                                /* number of bodies, see above */
-    uint32_t patches;                               /* number of patches */
-    uint32_t rays;                                  /* number of rays of all walls */
-    uint32_t patches_capacity, rays_capacity, nodes_capacity;
-    uint32_t rows;          /* number of rows: spheres, then rows of fine fours */
-    uint32_t nodes, fours;  /* nodes in use; number of fine fours */
+/* Fours that are divided, and the fine fours that they are divided into (fine.h). */
+typedef struct fibrad_heat_division {
+    uint32_t nodes_capacity, nodes, fours; /* room for nodes; nodes in use; number of fine fours */
     uint32_t *root;         /* [spheres + FIBRAD_WALLS], node of the first own four; FIBRAD_NONE: none is divided */
     uint32_t *node;         /* [nodes], first of four children, or FIBRAD_HEAT_FINE + a fine four; 0: not divided */
     uint32_t *first_four;   /* [spheres + FIBRAD_WALLS + 1], first fine four of each body */
@@ -127,57 +112,101 @@ struct fibrad_heat {
     fibrad_heat_fine *fine; /* [rows - spheres] */
     /* share of a sphere's beams that leaves each of its own fours, over the share of its area */
     double balance[FIBRAD_HEAT_PATCHES_MAX / FIBRAD_HEAT_FOUR];
-    fibrad_heat_wall wall[FIBRAD_WALLS];
-    fibrad_heat_rays sent[FIBRAD_SLOTS]; /* by slot */
-    uint32_t of_mesh[FIBRAD_BODIES_MAX]; /* patches of each mesh */
-    fibrad_sobol sobol;                  /* of rays from meshes */
-    fibrad_mesh_cut *cut;                /* [2 triangles], by the caller's numbers; patches from first_meshed on */
-    double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
-    bool lifted[FIBRAD_BODIES_MAX]; /* [meshes], whether sides of the mesh have temperatures */
-    uint32_t *first;                /* [bodies + 1], first patch of each body */
-    uint32_t *order;                /* [spheres], the caller's index, a copy of that of the scene */
-    uint32_t *sequence;             /* [spheres], order of sweeps: by part, neighbours in space together */
-    uint16_t *part;                 /* [rows], part of each row */
-    unsigned char *traced;          /* [tasks of rays_capacity], 1: the task is traced */
-    unsigned char *swept;           /* [parts], 1: the part is swept */
-    uint16_t *leave;                /* [beams], patch of the sphere that a beam leaves, the same for all spheres */
-    fibrad_heat_ray *ray;           /* [rays] */
-    unsigned char *pool;            /* [room], pencils of all rows; then, aligned, links by the row they end on */
-    size_t room;                    /* bytes */
-    size_t used, links;   /* bytes of pencils, number of links; several threads add to them at the same time */
-    fibrad_heat_row *row; /* [rows] */
+} fibrad_heat_division;
+
+/* What rows and bodies exchange. Several threads add to `used` and `links` at the same time. */
+typedef struct fibrad_heat_pencils {
+    unsigned char *pool; /* [room], pencils of all rows; then, aligned, links by the row they end on */
+    size_t room, used;   /* bytes; bytes of pencils */
+    fibrad_heat_row *row;
+    size_t links;
     fibrad_heat_link *link;
     size_t *first_link; /* [rows + 2] */
+} fibrad_heat_pencils;
 
-    double *density;               /* 1/L^2, [rows], beams per area of the surface */
-    double *source;                /* [patches], sent in this sweep */
-    double *gathered;              /* [patches], received in this sweep */
-    double *brought;               /* [parts][patches that are not of spheres], received from each part */
-    double *area;                  /* L^2, [patches], by the beams */
-    double *radiosity, *net;       /* [patches], J and the net flow N J */
-    double *detail;                /* [patches], J minus J of the coarser level */
-    double *direction;             /* [patches], search direction */
-    double *emissivity, *emission; /* [bodies], eps, and E minus E of the surroundings */
+/* What is given of a solution. E is counted from that of the surroundings. */
+typedef struct fibrad_heat_given {
+    double *emissivity, *emission; /* [bodies], eps and E */
     double *drive, *hold;          /* [bodies], unknown temperature: gives off drive - hold E; hold < 0: given */
-    double *coarse, *power;        /* [bodies], net power at the coarser level, and extrapolated */
-    double *coarse_emission;       /* [bodies], E at the coarser level */
     double *temperature;           /* K, [bodies], given or found; NaN: none */
-    double *halves;                /* [bodies], power by even directions minus power by odd directions */
-    fibrad_heat_seen *seen;        /* [spheres] */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
-
-    fibrad_heat_phase phase;
-    bool warm;                  /* radiosities are those of a solution */
-    bool areas;                 /* areas are those of the present beams */
-    bool afloat;                /* the sources fix differences of emission, but not their level */
-    double sigma, surroundings; /* of the sources */
-    uint32_t group;             /* patches that have one J: 1, 4, or all of a body */
-    double slope;               /* residual times preconditioned residual */
-    double scale;               /* to which the slope is compared */
-    double smallest;            /* slope of rounding errors */
+    double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
+    bool lifted[FIBRAD_BODIES_MAX]; /* [meshes], whether sides of the mesh have temperatures */
+    bool afloat;                    /* the sources fix differences of emission, but not their level */
+    double sigma, surroundings;
     double tolerance;
-    uint32_t sweeps, limit;
+    uint32_t limit; /* sweeps after which to stop */
+} fibrad_heat_given;
+
+/* A solution, by conjugate gradients. */
+typedef struct fibrad_heat_solution {
+    fibrad_heat_phase phase;
+    bool warm;               /* radiosities are those of a solution */
+    bool areas;              /* areas are those of the present beams */
+    uint32_t group;          /* patches that have one J: 1, 4, or all of a body */
+    uint32_t sweeps;         /* so far */
+    double slope;            /* residual times preconditioned residual */
+    double scale;            /* to which the slope is compared */
+    double smallest;         /* slope of rounding errors */
+    double *area;            /* L^2, [patches], by the beams */
+    double *radiosity, *net; /* [patches], J and the net flow N J */
+    double *detail;          /* [patches], J minus J of the coarser level */
+    double *direction;       /* [patches], search direction */
+    double *source;          /* [patches], sent in this sweep */
+    double *gathered;        /* [patches], received in this sweep */
+    double *brought;         /* [parts][patches that are not of spheres], received from each part */
+    double *coarse, *power;  /* [bodies], net power at the coarser level, and extrapolated */
+    double *coarse_emission; /* [bodies], E at the coarser level */
+} fibrad_heat_solution;
+
+/* What tells errors. */
+typedef struct fibrad_heat_samples {
+    double *halves;         /* [bodies], power by even directions minus power by odd directions */
+    fibrad_heat_seen *seen; /* [spheres] */
+} fibrad_heat_samples;
+
+struct fibrad_heat {
+    fibrad_heat_config config;
+    const fibrad_scene *scene;
+    uint64_t hash; /* of the scene */
+
+    /* bodies and their patches */
+    uint32_t spheres, meshes, triangles;            /* numbers of them */
+    uint32_t given_bodies, slot[FIBRAD_BODIES_MAX]; /* number of walls, and their slots */
+    uint32_t openings;                              /* bit k: slot k is an opening */
+    uint32_t bodies;                                /* number of bodies, see above */
+    uint32_t patches, patches_capacity;             /* number of patches, and room */
+    uint32_t side;                                  /* patches of a sphere along an edge of its cube */
+    double patch_area;                              /* L^2, about the area of a patch of a wall */
+    uint32_t *first;                                /* [bodies + 1], first patch of each body */
+    uint32_t *order;                                /* [spheres], the caller's index, a copy of that of the scene */
+    fibrad_heat_wall wall[FIBRAD_WALLS];            /* by slot */
+    uint32_t of_mesh[FIBRAD_BODIES_MAX];            /* patches of each mesh */
+    fibrad_mesh_cut *cut; /* [2 triangles], by the caller's numbers; patches from first_meshed on */
+    fibrad_heat_division division;
+
+    /* beams of spheres and rays of walls */
+    uint32_t rows;                       /* number of rows: spheres, then rows of fine fours */
+    uint32_t beams;                      /* beams of one sphere: directions times points */
+    uint32_t thin;                       /* 1: all beams to spheres are kept; 2: every second one */
+    uint32_t rays, rays_capacity;        /* number of rays of all walls, and room */
+    double *density;                     /* 1/L^2, [rows], beams per area of the surface */
+    uint16_t *leave;                     /* [beams], patch that a beam leaves, the same for all spheres */
+    fibrad_heat_ray *ray;                /* [rays] */
+    fibrad_heat_rays sent[FIBRAD_SLOTS]; /* by slot */
+    fibrad_sobol sobol;                  /* of rays from meshes */
+    fibrad_heat_pencils pencils;
+
+    /* tasks */
+    uint32_t *sequence;    /* [spheres], order of sweeps: by part, neighbours in space together */
+    uint16_t *part;        /* [rows], part of each row */
+    unsigned char *traced; /* [tasks of rays_capacity], 1: the task is traced */
+    unsigned char *swept;  /* [parts], 1: the part is swept */
+
+    fibrad_heat_given sources;
+    fibrad_heat_solution solution;
+    fibrad_heat_samples samples;
 };
 
 /* The body of a slot, and the body beyond the patches of an endless wall. */
@@ -194,7 +223,9 @@ static inline uint32_t fibrad_heat_first_meshed(const fibrad_heat *heat) {
 static inline const double *fibrad_heat_lift(const fibrad_heat *heat, uint32_t body) {
     const uint32_t mesh = body - fibrad_heat_body(heat, FIBRAD_MESHES);
     const bool meshed = body >= fibrad_heat_body(heat, FIBRAD_MESHES) && mesh < heat->meshes;
-    return meshed && heat->lifted[mesh] ? heat->lift + (heat->first[body] - fibrad_heat_first_meshed(heat)) : NULL;
+    return meshed && heat->sources.lifted[mesh]
+               ? heat->sources.lift + (heat->first[body] - fibrad_heat_first_meshed(heat))
+               : NULL;
 }
 /* The first patch that is not of a sphere, and the patch of the surroundings. */
 static inline uint32_t fibrad_heat_others(const fibrad_heat *heat) { return heat->first[heat->spheres]; }
@@ -218,7 +249,7 @@ static inline size_t fibrad_heat_other_block(const fibrad_heat *heat, uint32_t o
  * FIBRAD_WALLS: to the surroundings. Between two walls of emissivity 0, all radiation comes from the surroundings. */
 static inline uint32_t fibrad_heat_facing(const fibrad_heat *heat, uint32_t k) {
     const uint32_t other = k == FIBRAD_CYLINDER ? k : k ^ 1;
-    const bool white = heat->wall_emissivity[k] == 0 && heat->wall_emissivity[other] == 0;
+    const bool white = heat->sources.wall_emissivity[k] == 0 && heat->sources.wall_emissivity[other] == 0;
     return heat->wall[other].unbounded && !white ? other : FIBRAD_WALLS;
 }
 
@@ -226,7 +257,8 @@ static inline uint32_t fibrad_heat_facing(const fibrad_heat *heat, uint32_t k) {
  * */
 static inline double fibrad_heat_taken_beyond(const fibrad_heat *heat, uint32_t k) {
     const uint32_t facing = fibrad_heat_facing(heat, k);
-    const double eps = heat->wall_emissivity[k], other = facing < FIBRAD_WALLS ? heat->wall_emissivity[facing] : 1;
+    const double eps = heat->sources.wall_emissivity[k],
+                 other = facing < FIBRAD_WALLS ? heat->sources.wall_emissivity[facing] : 1;
     return eps / (1 - (1 - eps) * (1 - other));
 }
 
@@ -262,34 +294,36 @@ static inline bool fibrad_heat_same_part(const fibrad_heat *heat, uint32_t row, 
 
 /* The first fine patch of a body, and the first patch of a row. */
 static inline uint32_t fibrad_heat_first_fine(const fibrad_heat *heat, uint32_t body) {
-    return heat->first[body + 1] - FIBRAD_HEAT_FOUR * (heat->first_four[body + 1] - heat->first_four[body]);
+    return heat->first[body + 1] -
+           FIBRAD_HEAT_FOUR * (heat->division.first_four[body + 1] - heat->division.first_four[body]);
 }
 static inline uint32_t fibrad_heat_first_of_row(const fibrad_heat *heat, uint32_t row) {
     if (row < heat->spheres) return heat->first[row];
-    const fibrad_heat_fine *fine = &heat->fine[row - heat->spheres];
-    return fibrad_heat_first_fine(heat, fine->body) + FIBRAD_HEAT_FOUR * (fine->first - heat->first_four[fine->body]);
+    const fibrad_heat_fine *fine = &heat->division.fine[row - heat->spheres];
+    return fibrad_heat_first_fine(heat, fine->body) +
+           FIBRAD_HEAT_FOUR * (fine->first - heat->division.first_four[fine->body]);
 }
 static inline uint32_t fibrad_heat_body_of_row(const fibrad_heat *heat, uint32_t row) {
-    return row < heat->spheres ? row : heat->fine[row - heat->spheres].body;
+    return row < heat->spheres ? row : heat->division.fine[row - heat->spheres].body;
 }
 
 /* The number of the fine patch at u, v, 0 to 1, of an own four of a body. FIBRAD_NONE: the four is not divided. */
 static inline uint32_t fibrad_heat_fine_patch(const fibrad_heat *heat, uint32_t body, uint32_t own, double u,
                                               double v) {
-    if (heat->root[body] == FIBRAD_NONE) return FIBRAD_NONE;
-    uint32_t node = heat->node[heat->root[body] + own];
+    if (heat->division.root[body] == FIBRAD_NONE) return FIBRAD_NONE;
+    uint32_t node = heat->division.node[heat->division.root[body] + own];
     if (node == 0) return FIBRAD_NONE;
     while (node < FIBRAD_HEAT_FINE) {
         const uint32_t right = 2 * u >= 1, up = 2 * v >= 1;
         u = 2 * u - right, v = 2 * v - up;
-        node = heat->node[node + 2 * right + up];
+        node = heat->division.node[node + 2 * right + up];
     }
     return FIBRAD_HEAT_FOUR * (node - FIBRAD_HEAT_FINE) + (2 * u >= 1 ? 2u : 0u) + (2 * v >= 1 ? 1u : 0u);
 }
 
 /* Whether an own four of a sphere is divided. */
 static inline bool fibrad_heat_is_divided(const fibrad_heat *heat, uint32_t sphere, uint32_t own) {
-    return heat->root[sphere] != FIBRAD_NONE && heat->node[heat->root[sphere] + own] != 0;
+    return heat->division.root[sphere] != FIBRAD_NONE && heat->division.node[heat->division.root[sphere] + own] != 0;
 }
 
 /* The first of n things that belongs to a part. */

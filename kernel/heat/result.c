@@ -56,10 +56,12 @@ typedef struct heat_errors {
 
 static heat_spread spread_over(const fibrad_heat *heat, uint32_t begin, uint32_t end) {
     heat_spread s = {0, 0, 0};
-    for (uint32_t a = begin; a < end; a++) s.area += heat->area[a], s.mean += heat->area[a] * heat->radiosity[a];
+    for (uint32_t a = begin; a < end; a++)
+        s.area += heat->solution.area[a], s.mean += heat->solution.area[a] * heat->solution.radiosity[a];
     if (!(s.area > 0)) return s;
     s.mean /= s.area;
-    for (uint32_t a = begin; a < end; a++) s.variance += heat->area[a] / s.area * squared(heat->radiosity[a] - s.mean);
+    for (uint32_t a = begin; a < end; a++)
+        s.variance += heat->solution.area[a] / s.area * squared(heat->solution.radiosity[a] - s.mean);
     return s;
 }
 
@@ -70,7 +72,8 @@ static heat_spread spread_of(const fibrad_heat *heat, uint32_t b) {
 /* Emissivity times area times how far the radiosities of all are from the body's own. */
 static double exchange_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
     const heat_spread own = spread_of(heat, b);
-    return heat->emissivity[b] * own.area * fibrad_sqrt(errors->all.variance + squared(own.mean - errors->all.mean));
+    return heat->sources.emissivity[b] * own.area *
+           fibrad_sqrt(errors->all.variance + squared(own.mean - errors->all.mean));
 }
 
 /* The number of the body that a patch belongs to, counted from the first body that is not a sphere. The search begins
@@ -90,7 +93,7 @@ static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, r
         const fibrad_heat_ray *ray = &heat->ray[k];
         if (ray->area == 0) continue;
         from = other_of_patch(heat, ray->from, from), to = other_of_patch(heat, ray->to, to);
-        const double flow = ray->area * (heat->source[ray->to] - heat->source[ray->from]);
+        const double flow = ray->area * (heat->solution.source[ray->to] - heat->solution.source[ray->from]);
         half[from] += k % 2 ? -flow : flow, half[to] -= k % 2 ? -flow : flow;
     }
     for (uint32_t b = 0; b < bodies; b++) {
@@ -127,18 +130,18 @@ static double missed_by_rays(const heat_errors *errors, const fibrad_heat *heat,
 /* Square of the error of what beams bring a body over the difference of even and odd ones. Directions are even, so they
  * err by less in a sphere that several of them meet. Whether a far one is met by one of them or none is chance. */
 static double beam_error(const fibrad_heat *heat, uint32_t b) {
-    const fibrad_heat_seen *seen = &heat->seen[b];
+    const fibrad_heat_seen *seen = &heat->samples.seen[b];
     const double lone = b < heat->spheres && seen->squares > 0 ? seen->lone / seen->squares : 0;
     return squared(BEAM_ERROR) + squared(LONE_ERROR * lone);
 }
 
 static double missed_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
-    return beam_error(heat, b) * squared(heat->halves[b]) + missed_by_rays(errors, heat, b);
+    return beam_error(heat, b) * squared(heat->samples.halves[b]) + missed_by_rays(errors, heat, b);
 }
 
 /* Square of the error that no beam tells: there may be spheres between the directions that meet none. */
 static double unseen_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
-    const double free = fibrad_max(0, 1 - heat->seen[b].met / heat->beams);
+    const double free = fibrad_max(0, 1 - heat->samples.seen[b].met / heat->beams);
     return free * squared(UNSEEN_ERROR / heat->config.directions * exchange_of(heat, errors, b));
 }
 
@@ -148,14 +151,14 @@ static double extrapolation_error(const fibrad_heat *heat, double change) {
 }
 
 static double patch_error(const fibrad_heat *heat, uint32_t b) {
-    const double change = heat->power[b] - heat->coarse[b];
+    const double change = heat->solution.power[b] - heat->solution.coarse[b];
     return (b < heat->spheres ? 1 : WALL_PATCHES) * extrapolation_error(heat, change);
 }
 
 /* Square of the error over the power of a sphere, as few of its beams meet each patch of spheres, or of walls, whose
  * patches are of one area. */
 static double few_of_sphere(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
-    const double *reflected = heat->seen[b].reflected;
+    const double *reflected = heat->samples.seen[b].reflected;
     const double walls =
         reflected[1] > 0 ? FEW_SEEN * reflected[1] / heat->beams / (heat->density[b] * heat->patch_area) : 0;
     return reflected[0] / heat->beams * squared(errors->few) + squared(walls);
@@ -176,11 +179,11 @@ static double few_of_wall(const fibrad_heat *heat, const heat_errors *errors, ui
 
 /* Square of the error that a body's own beams and patches tell, and the walls it sees. */
 static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
-    const double eps = heat->emissivity[b];
+    const double eps = heat->sources.emissivity[b];
     const double few = b < heat->spheres ? few_of_sphere(heat, errors, b) : few_of_wall(heat, errors, b);
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double sphere = b < heat->spheres ? squared(patch_error(heat, b)) + unseen_error(heat, errors, b) : 0;
-    return squared(eps) * missed_of(heat, errors, b) + sphere + few * squared(heat->power[b]) +
+    return squared(eps) * missed_of(heat, errors, b) + sphere + few * squared(heat->solution.power[b]) +
            squared(seen * errors->walls);
 }
 
@@ -188,9 +191,9 @@ static double own_error(const fibrad_heat *heat, const heat_errors *errors, uint
 static double spot_error(const fibrad_heat *heat, uint32_t b) {
     const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES);
     double back = 0;
-    if (b >= heat->spheres || heat->group > 1) return 0;
-    for (uint32_t m = 0; m < heat->meshes; m++) back = fibrad_max(back, 1 - heat->emissivity[mesh + m]);
-    return SPOT_ERROR * back * fibrad_heat_comes_back(heat, b) * heat->power[b];
+    if (b >= heat->spheres || heat->solution.group > 1) return 0;
+    for (uint32_t m = 0; m < heat->meshes; m++) back = fibrad_max(back, 1 - heat->sources.emissivity[mesh + m]);
+    return SPOT_ERROR * back * fibrad_heat_comes_back(heat, b) * heat->solution.power[b];
 }
 
 static heat_errors errors_of(const fibrad_heat *heat) {
@@ -198,21 +201,22 @@ static heat_errors errors_of(const fibrad_heat *heat) {
     double areas[2] = {0, 0};
     heat_errors errors = {.all = spread_over(heat, 0, heat->patches)};
     sample_all_rays(heat, &errors.rays);
-    if (heat->group == 1) errors.few = FEW_ERROR * heat->config.patches * heat->thin / (2.0 * heat->beams);
+    if (heat->solution.group == 1) errors.few = FEW_ERROR * heat->config.patches * heat->thin / (2.0 * heat->beams);
     for (uint32_t b = 0; b < end; b++) {
         const int kind = b >= heat->spheres;
         const double area = spread_of(heat, b).area;
-        areas[kind] += area, errors.dim[kind] += area * (1 - heat->emissivity[b]);
+        areas[kind] += area, errors.dim[kind] += area * (1 - heat->sources.emissivity[b]);
     }
     for (int kind = 0; kind < 2; kind++)
         if (areas[kind] > 0) errors.dim[kind] /= areas[kind];
     for (uint32_t b = heat->spheres; b < end; b++)
-        errors.walls += squared(heat->hold[b] >= 0 ? 1 : 1 - heat->emissivity[b]) * missed_of(heat, &errors, b);
+        errors.walls +=
+            squared(heat->sources.hold[b] >= 0 ? 1 : 1 - heat->sources.emissivity[b]) * missed_of(heat, &errors, b);
     errors.walls = fibrad_sqrt(errors.walls);
     for (uint32_t b = 0; b < end; b++) {
         error_pool *pool = &errors.pool[b >= heat->spheres];
         const double exchange = exchange_of(heat, &errors, b);
-        if (!(exchange > 0) || heat->hold[b] >= 0) continue;
+        if (!(exchange > 0) || heat->sources.hold[b] >= 0) continue;
         pool->samples++, pool->errors += own_error(heat, &errors, b), pool->exchanges += squared(exchange);
     }
     errors.pool[1].samples += errors.rays.more;
@@ -221,7 +225,7 @@ static heat_errors errors_of(const fibrad_heat *heat) {
 
 /* Square of the estimated error of a body's power. */
 static double power_error_of(const fibrad_heat *heat, const heat_errors *errors, uint32_t b) {
-    if (heat->hold[b] >= 0) return 0; /* it is given */
+    if (heat->sources.hold[b] >= 0) return 0; /* it is given */
     const double exchange = exchange_of(heat, errors, b);
     const int own = b >= heat->spheres;
     double sum = 0, samples = 0;
@@ -257,7 +261,8 @@ static double rays_outside(const fibrad_heat *heat) {
 static double missed_by_spheres(const fibrad_heat *heat, const heat_errors *errors) {
     double square = 0, spheres = 0, all = 0;
     for (uint32_t b = 0; b < heat->spheres; b++)
-        square += beam_error(heat, b) * squared(heat->seen[b].escaping), spheres += heat->seen[b].escaping != 0;
+        square += beam_error(heat, b) * squared(heat->samples.seen[b].escaping),
+            spheres += heat->samples.seen[b].escaping != 0;
     if (spheres == 0 || spheres >= SAMPLES) return square;
     for (uint32_t b = 0; b < heat->spheres; b++) all += power_error_of(heat, errors, b);
     return (spheres * square + (SAMPLES - spheres) * all) / SAMPLES;
@@ -267,7 +272,7 @@ static double missed_by_spheres(const fibrad_heat *heat, const heat_errors *erro
 static double missed_by_walls(const fibrad_heat *heat, const heat_errors *errors) {
     double missed = 0, exchanges = 0;
     for (uint32_t b = heat->spheres; b < fibrad_heat_beyond(heat, 0); b++)
-        missed += squared(heat->emissivity[b]) * missed_by_rays(errors, heat, b),
+        missed += squared(heat->sources.emissivity[b]) * missed_by_rays(errors, heat, b),
             exchanges += squared(exchange_of(heat, errors, b));
     if (!(exchanges > 0)) return 0;
     return missed / exchanges * squared(rays_outside(heat)) * (errors->all.variance + squared(errors->all.mean));
@@ -279,7 +284,8 @@ static double surroundings_error_of(const fibrad_heat *heat, const heat_errors *
     double halves = 0, changed = 0, area = 0, unseen = 0;
     for (uint32_t b = heat->spheres; b < heat->bodies; b++) {
         const double outside = fibrad_heat_outside(heat, b);
-        halves += outside * heat->halves[b], changed += outside * (heat->power[b] - heat->coarse[b]);
+        halves += outside * heat->samples.halves[b],
+            changed += outside * (heat->solution.power[b] - heat->solution.coarse[b]);
         area += outside * spread_of(heat, b).area;
     }
     const double seen = errors->all.area > 0 ? fibrad_min(1, area / errors->all.area) : 0;
@@ -312,10 +318,12 @@ static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
 
 /* Whether a body is a wall or a mesh that is insulated. */
 static bool is_insulated(const fibrad_heat *heat, uint32_t b) {
-    return b >= heat->spheres && heat->insulated[b - heat->spheres];
+    return b >= heat->spheres && heat->sources.insulated[b - heat->spheres];
 }
 
-static bool is_found(const fibrad_heat *heat, uint32_t b) { return heat->hold[b] >= 0 || is_insulated(heat, b); }
+static bool is_found(const fibrad_heat *heat, uint32_t b) {
+    return heat->sources.hold[b] >= 0 || is_insulated(heat, b);
+}
 
 /* Squares of what beams miss of the emission of a body, as its own sample says, and of how far it is from all others'
  * radiosities. */
@@ -325,7 +333,7 @@ static double missed_emission(const fibrad_heat *heat, const heat_errors *errors
 
 /* What extrapolation has changed of it may be wrong by this. */
 static double changed_emission(const fibrad_heat *heat, uint32_t b) {
-    return extrapolation_error(heat, heat->emission[b] - heat->coarse_emission[b]);
+    return extrapolation_error(heat, heat->sources.emission[b] - heat->solution.coarse_emission[b]);
 }
 
 static double distance_of(const heat_errors *errors, const heat_spread *own) {
@@ -352,8 +360,8 @@ static heat_level level_found(const fibrad_heat *heat, const heat_errors *errors
                 distances[kind] += distance_of(errors, &own);
             if (kind == 0) level.changed += squared(changed_emission(heat, b)), spheres++;
         } else {
-            const double power = fibrad_abs(heat->power[b]);
-            level.given += power * heat->emission[b], powers += power;
+            const double power = fibrad_abs(heat->solution.power[b]);
+            level.given += power * heat->sources.emission[b], powers += power;
             if (b < fibrad_heat_beyond(heat, 0)) square += power_error_of(heat, errors, b);
         }
     }
@@ -368,12 +376,12 @@ static heat_level level_found(const fibrad_heat *heat, const heat_errors *errors
  * one half as its own say and one half as all do, what walls send out wrongly, and what it has in common with all. */
 static double temperature_error_of(const fibrad_heat *heat, const heat_errors *errors, const heat_level *level,
                                    uint32_t b, double temperature) {
-    const double slope = 4 * heat->sigma * temperature * temperature * temperature;
+    const double slope = 4 * heat->sources.sigma * temperature * temperature * temperature;
     const heat_spread own = spread_of(heat, b);
     if (!is_found(heat, b) || !(slope > 0) || !(own.area > 0)) return 0;
-    const double eps = heat->emissivity[b], held = fibrad_max(0, heat->hold[b]);
+    const double eps = heat->sources.emissivity[b], held = fibrad_max(0, heat->sources.hold[b]);
     const double share = held > 0 ? eps * own.area / (eps * own.area + held) : 1;
-    const double emission = is_insulated(heat, b) ? own.mean : heat->emission[b];
+    const double emission = is_insulated(heat, b) ? own.mean : heat->sources.emission[b];
     const double changed = is_insulated(heat, b) ? level->changed : squared(changed_emission(heat, b));
     const double missed =
         (missed_emission(heat, errors, b, own.area) + level->missed[b >= heat->spheres] * distance_of(errors, &own)) /
@@ -388,7 +396,7 @@ static double temperature_error_of(const fibrad_heat *heat, const heat_errors *e
 static double insulated_temperature(const fibrad_heat *heat, uint32_t b) {
     double sum = 0, area = 0;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        sum += heat->area[a] * heat->radiosity[a], area += heat->area[a];
+        sum += heat->solution.area[a] * heat->solution.radiosity[a], area += heat->solution.area[a];
     return fibrad_heat_temperature(heat, area > 0 ? sum / area : 0);
 }
 
@@ -399,15 +407,15 @@ static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result 
     bool found = true;
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const uint32_t i = heat->order[b];
-        if (heat->hold[b] >= 0) found = found && heat->temperature[b] >= 0;
-        if (result->temperature != NULL) result->temperature[i] = heat->temperature[b];
+        if (heat->sources.hold[b] >= 0) found = found && heat->sources.temperature[b] >= 0;
+        if (result->temperature != NULL) result->temperature[i] = heat->sources.temperature[b];
         if (result->temperature_error != NULL)
-            result->temperature_error[i] = temperature_error_of(heat, &errors, &level, b, heat->temperature[b]);
+            result->temperature_error[i] = temperature_error_of(heat, &errors, &level, b, heat->sources.temperature[b]);
     }
     for (uint32_t k = 0; k < heat->given_bodies; k++) {
         const uint32_t b = fibrad_heat_body(heat, heat->slot[k]);
-        if (heat->hold[b] >= 0) found = found && heat->temperature[b] >= 0;
-        const double t = is_insulated(heat, b) ? insulated_temperature(heat, b) : heat->temperature[b];
+        if (heat->sources.hold[b] >= 0) found = found && heat->sources.temperature[b] >= 0;
+        const double t = is_insulated(heat, b) ? insulated_temperature(heat, b) : heat->sources.temperature[b];
         if (result->body_temperature != NULL) result->body_temperature[k] = t;
         if (result->body_temperature_error != NULL)
             result->body_temperature_error[k] = temperature_error_of(heat, &errors, &level, b, t);
@@ -417,11 +425,11 @@ static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result 
 
 /* What a wall takes of what arrives at its patches; radiosities are counted from that of the surroundings. */
 static double absorbed_by(const fibrad_heat *heat, uint32_t b) {
-    const double black = heat->sigma * squared(squared(heat->surroundings));
+    const double black = heat->sources.sigma * squared(squared(heat->sources.surroundings));
     double arrives = 0;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        arrives += heat->area[a] * (heat->radiosity[a] + black) + heat->net[a];
-    return heat->emissivity[b] * arrives;
+        arrives += heat->solution.area[a] * (heat->solution.radiosity[a] + black) + heat->solution.net[a];
+    return heat->sources.emissivity[b] * arrives;
 }
 
 /* The power of the body of a slot; where it is an opening or there is none, that of the surroundings. */
@@ -445,7 +453,7 @@ static patch_flow flow_of_facing(const fibrad_heat *heat, uint32_t k) {
     for (uint32_t n = 0; n < heat->rays; n++) {
         const fibrad_heat_ray ray = heat->ray[n];
         if (ray.to != a || ray.from < heat->first[body] || ray.from >= heat->first[body + 1]) continue;
-        flow.net += ray.area * (heat->radiosity[ray.from] - heat->radiosity[a]);
+        flow.net += ray.area * (heat->solution.radiosity[ray.from] - heat->solution.radiosity[a]);
         flow.area += ray.area;
     }
     return flow;
@@ -458,31 +466,32 @@ static void read_beyond(const fibrad_heat *heat, uint32_t k, fibrad_heat_result 
     const uint32_t beyond = fibrad_heat_beyond(heat, k), a = heat->first[beyond];
     if (a == heat->first[beyond + 1]) return;
     const patch_flow pair = flow_of_facing(heat, k);
-    const double less = heat->radiosity[a] - heat->wall_emission[k], net = heat->net[a] - pair.net;
-    const double taken = fibrad_heat_taken_beyond(heat, k) * (net + (heat->area[a] - pair.area) * less);
+    const double less = heat->solution.radiosity[a] - heat->sources.wall_emission[k],
+                 net = heat->solution.net[a] - pair.net;
+    const double taken = fibrad_heat_taken_beyond(heat, k) * (net + (heat->solution.area[a] - pair.area) * less);
     *power_of_slot(heat, k, result) += taken + pair.net / 2;
-    *power_of_slot(heat, fibrad_heat_facing(heat, k), result) += heat->power[beyond] - taken - pair.net / 2;
+    *power_of_slot(heat, fibrad_heat_facing(heat, k), result) += heat->solution.power[beyond] - taken - pair.net / 2;
 }
 
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
     if (heat->given_bodies > 0 && result->body_power == NULL) return FIBRAD_E_ARGUMENT;
-    if (heat->phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
+    if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const uint32_t spheres = heat->spheres, open = heat->bodies - 1;
-    for (uint32_t b = 0; b < spheres; b++) result->power[heat->order[b]] = heat->power[b];
-    result->surroundings_power = heat->power[open];
+    for (uint32_t b = 0; b < spheres; b++) result->power[heat->order[b]] = heat->solution.power[b];
+    result->surroundings_power = heat->solution.power[open];
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         const uint32_t own = fibrad_heat_body(heat, heat->slot[b]);
-        result->body_power[b] = heat->power[own];
+        result->body_power[b] = heat->solution.power[own];
         if (result->body_absorbed != NULL) result->body_absorbed[b] = absorbed_by(heat, own);
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
-        if (heat->openings >> k & 1) result->surroundings_power += heat->power[fibrad_heat_body(heat, k)];
+        if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];
         read_beyond(heat, k, result);
     }
     read_errors(heat, result);
-    result->sweeps = heat->sweeps;
-    result->residual = heat->scale > 0 ? fibrad_sqrt(heat->slope / heat->scale) : 0;
+    result->sweeps = heat->solution.sweeps;
+    result->residual = heat->solution.scale > 0 ? fibrad_sqrt(heat->solution.slope / heat->solution.scale) : 0;
     return read_temperatures(heat, result) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
 }
 
@@ -496,7 +505,8 @@ static side_sum sum_of_side(const fibrad_heat *heat, const fibrad_mesh_cut *cut)
     side_sum sum = {0, 0, 0};
     if (cut->patch == UINT32_MAX) return sum;
     for (uint32_t a = begin; a < begin + (UINT32_C(1) << cut->halvings); a++)
-        sum.area += heat->area[a], sum.net += heat->net[a], sum.radiosity += heat->area[a] * heat->radiosity[a];
+        sum.area += heat->solution.area[a], sum.net += heat->solution.net[a],
+            sum.radiosity += heat->solution.area[a] * heat->solution.radiosity[a];
     return sum;
 }
 
@@ -527,14 +537,14 @@ static mesh_gain gain_of_mesh(const fibrad_heat *heat, uint32_t m) {
     }
     if (!gain.whole) gain.area = gain.net = 0;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && !gain.whole; a++)
-        gain.area += heat->area[a], gain.net += heat->net[a];
+        gain.area += heat->solution.area[a], gain.net += heat->solution.net[a];
     return gain;
 }
 
 /* What a mesh gains per area beyond what its patches do: extrapolation, and what residuals leave. */
 static double flux_beyond_patches(const fibrad_heat *heat, uint32_t m) {
     const mesh_gain gain = gain_of_mesh(heat, m);
-    const double power = heat->power[fibrad_heat_body(heat, FIBRAD_MESHES + m)];
+    const double power = heat->solution.power[fibrad_heat_body(heat, FIBRAD_MESHES + m)];
     return gain.area > 0 ? (power - gain.net) / gain.area : 0;
 }
 
@@ -544,16 +554,16 @@ static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fib
     if (is_insulated(heat, b))
         return sum->area > 0 ? fibrad_heat_temperature(heat, sum->radiosity / sum->area) : __builtin_nan("");
     const double *lift = fibrad_heat_lift(heat, b);
-    if (lift == NULL) return heat->temperature[b];
+    if (lift == NULL) return heat->sources.temperature[b];
     const uint32_t a = fibrad_heat_first_meshed(heat) + cut->patch - heat->first[b];
-    const double t = fibrad_heat_temperature(heat, heat->emission[b] + lift[a]);
+    const double t = fibrad_heat_temperature(heat, heat->sources.emission[b] + lift[a]);
     return t >= 0 ? t : 0;
 }
 
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature) {
     double beyond[FIBRAD_BODIES_MAX];
     if (heat == NULL) return FIBRAD_E_ARGUMENT;
-    if (heat->phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
+    if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const fibrad_mesh *mesh = &heat->scene->mesh;
     for (uint32_t m = 0; m < heat->meshes; m++) beyond[m] = flux_beyond_patches(heat, m);
     for (uint32_t s = 0; s < 2 * heat->triangles; s++) {
@@ -563,7 +573,7 @@ int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temper
         if (cut->patch != UINT32_MAX) {
             const uint32_t m = mesh->mesh[s / 2][s % 2], b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
             const side_sum sum = sum_of_side(heat, cut);
-            if (sum.area > 0) q = heat->emissivity[b] > 0 ? sum.net / sum.area + beyond[m] : 0;
+            if (sum.area > 0) q = heat->sources.emissivity[b] > 0 ? sum.net / sum.area + beyond[m] : 0;
             t = temperature_of_side(heat, b, cut, &sum);
         }
         if (flux != NULL) flux[to] = q;

@@ -29,13 +29,13 @@ typedef struct free_body {
     double area, radiosity, net, divisor;
 } free_body;
 
-static bool is_free(const fibrad_heat *heat, uint32_t body) { return heat->hold[body] >= 0; }
+static bool is_free(const fibrad_heat *heat, uint32_t body) { return heat->sources.hold[body] >= 0; }
 
 /* The mean of values per area, or the sum of values, over the patches of a body. */
 static double mean_over(const fibrad_heat *heat, uint32_t body, const double *value) {
     double sum = 0, area = 0;
     for (uint32_t a = heat->first[body]; a < heat->first[body + 1]; a++)
-        sum += heat->area[a] * value[a], area += heat->area[a];
+        sum += heat->solution.area[a] * value[a], area += heat->solution.area[a];
     return area > 0 ? sum / area : 0;
 }
 
@@ -46,31 +46,32 @@ static double sum_over(const fibrad_heat *heat, uint32_t body, const double *val
 }
 
 static free_body free_body_of(const fibrad_heat *heat, uint32_t b) {
-    const double eps = heat->emissivity[b], area = sum_over(heat, b, heat->area);
-    return (free_body){area, mean_over(heat, b, heat->radiosity), area > 0 ? sum_over(heat, b, heat->net) / area : 0,
-                       (1 - eps) * heat->hold[b] + area * eps};
+    const double eps = heat->sources.emissivity[b], area = sum_over(heat, b, heat->solution.area);
+    return (free_body){area, mean_over(heat, b, heat->solution.radiosity),
+                       area > 0 ? sum_over(heat, b, heat->solution.net) / area : 0,
+                       (1 - eps) * heat->sources.hold[b] + area * eps};
 }
 
 /* What the mean residual of a body of unknown temperature is, where it and what it receives are at one emission. */
 static double drive_at(const fibrad_heat *heat, uint32_t b, const free_body *body, double emission) {
-    return heat->emissivity[b] * (heat->drive[b] - heat->hold[b] * emission) / body->divisor;
+    return heat->sources.emissivity[b] * (heat->sources.drive[b] - heat->sources.hold[b] * emission) / body->divisor;
 }
 
 /* 1 + eps h/D */
 static double stiffness(const fibrad_heat *heat, uint32_t b, const free_body *body) {
-    return 1 + heat->emissivity[b] * heat->hold[b] / body->divisor;
+    return 1 + heat->sources.emissivity[b] * heat->sources.hold[b] / body->divisor;
 }
 
 /* Patches from a on that share one J, up to `end`. */
 static uint32_t end_of_group(uint32_t a, uint32_t end, uint32_t group) { return end - a > group ? a + group : end; }
 
 static uint32_t group_end(const fibrad_heat *heat, uint32_t a, uint32_t end) {
-    return end_of_group(a, end, heat->group);
+    return end_of_group(a, end, heat->solution.group);
 }
 
 /* What one Jacobi iteration would change of a body of given temperature. Returns the residual times that. */
 static double given_residual(fibrad_heat *heat, uint32_t b) {
-    const double eps = heat->emissivity[b];
+    const double eps = heat->sources.emissivity[b];
     const double *lift = fibrad_heat_lift(heat, b);
     const uint32_t begin = heat->first[b], end = heat->first[b + 1];
     double slope = 0;
@@ -78,9 +79,11 @@ static double given_residual(fibrad_heat *heat, uint32_t b) {
         double sum = 0, area = 0;
         next = group_end(heat, a, end);
         for (uint32_t k = a; k < next; k++) {
-            const double emission = lift != NULL ? heat->emission[b] + lift[k - begin] : heat->emission[b];
-            sum += heat->area[k] * eps * (emission - heat->radiosity[k]) + (1 - eps) * heat->net[k];
-            area += heat->area[k];
+            const double emission =
+                lift != NULL ? heat->sources.emission[b] + lift[k - begin] : heat->sources.emission[b];
+            sum += heat->solution.area[k] * eps * (emission - heat->solution.radiosity[k]) +
+                   (1 - eps) * heat->solution.net[k];
+            area += heat->solution.area[k];
         }
         const double change = eps < 1 && area > 0 ? sum / area : 0;
         for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, change);
@@ -91,7 +94,7 @@ static double given_residual(fibrad_heat *heat, uint32_t b) {
 
 /* The same of a body of unknown temperature. */
 static double free_residual(fibrad_heat *heat, uint32_t b) {
-    const double eps = heat->emissivity[b], rho = 1 - eps;
+    const double eps = heat->sources.emissivity[b], rho = 1 - eps;
     const uint32_t end = heat->first[b + 1];
     const free_body body = free_body_of(heat, b);
     if (!(body.area > 0)) return 0;
@@ -102,8 +105,9 @@ static double free_residual(fibrad_heat *heat, uint32_t b) {
         double sum = 0, area = 0;
         next = group_end(heat, a, end);
         for (uint32_t k = a; k < next; k++) {
-            sum += heat->area[k] * (eps * (body.radiosity - heat->radiosity[k]) - rho * body.net) + rho * heat->net[k];
-            area += heat->area[k];
+            sum += heat->solution.area[k] * (eps * (body.radiosity - heat->solution.radiosity[k]) - rho * body.net) +
+                   rho * heat->solution.net[k];
+            area += heat->solution.area[k];
         }
         const double change = eps < 1 && area > 0 ? sum / area : 0;
         for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, shift + change);
@@ -125,15 +129,17 @@ static void find_emissions(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (!is_free(heat, b)) continue;
         const free_body body = free_body_of(heat, b);
-        const double eps = heat->emissivity[b];
+        const double eps = heat->sources.emissivity[b];
         if (body.area > 0)
-            heat->emission[b] = ((1 - eps) * heat->drive[b] + body.area * eps * body.radiosity) / body.divisor;
+            heat->sources.emission[b] =
+                ((1 - eps) * heat->sources.drive[b] + body.area * eps * body.radiosity) / body.divisor;
     }
 }
 
 /* Emissivity times area of a body whose power and emission are not both told by others; 0 of the rest. */
 static double emitting(const fibrad_heat *heat, uint32_t body) {
-    return heat->hold[body] != 0 ? heat->emissivity[body] * sum_over(heat, body, heat->area) : 0;
+    return heat->sources.hold[body] != 0 ? heat->sources.emissivity[body] * sum_over(heat, body, heat->solution.area)
+                                         : 0;
 }
 
 /* Net powers of the bodies. Those that reflect all have none, and some give off a given power: what residuals leave of
@@ -141,9 +147,9 @@ static double emitting(const fibrad_heat *heat, uint32_t body) {
 static void find_powers(const fibrad_heat *heat, double *power) {
     double left = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        power[b] = sum_over(heat, b, heat->net);
-        if (heat->emissivity[b] == 0) left += power[b], power[b] = 0;
-        if (heat->hold[b] == 0) left += power[b] + heat->drive[b], power[b] = -heat->drive[b];
+        power[b] = sum_over(heat, b, heat->solution.net);
+        if (heat->sources.emissivity[b] == 0) left += power[b], power[b] = 0;
+        if (heat->sources.hold[b] == 0) left += power[b] + heat->sources.drive[b], power[b] = -heat->sources.drive[b];
     }
     for (uint32_t b = 0; b < heat->bodies && left != 0; b++) weights += emitting(heat, b);
     for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) power[b] += left * (emitting(heat, b) / weights);
@@ -157,7 +163,8 @@ static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
     const double *lift = fibrad_heat_lift(heat, b);
     double sum = 0;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && lift != NULL; a++)
-        sum += heat->emissivity[b] * heat->area[a] * lift[a - heat->first[b]] * lift[a - heat->first[b]];
+        sum +=
+            heat->sources.emissivity[b] * heat->solution.area[a] * lift[a - heat->first[b]] * lift[a - heat->first[b]];
     return sum;
 }
 
@@ -166,22 +173,22 @@ static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
 static void find_scale(fibrad_heat *heat) {
     double weights = 0, sum = 0, largest = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const double area = emitting(heat, b), emission = heat->emission[b];
+        const double area = emitting(heat, b), emission = heat->sources.emission[b];
         weights += area, sum += area * emission, largest += area * emission * emission + lifted_squares(heat, b);
     }
-    heat->scale = 0;
+    heat->solution.scale = 0;
     const double mean = weights > 0 ? sum / weights : 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const double difference = heat->emission[b] - mean;
+        const double difference = heat->sources.emission[b] - mean;
         const free_body body = is_free(heat, b) ? free_body_of(heat, b) : (free_body){0};
         if (body.area > 0) {
             const double drive = drive_at(heat, b, &body, mean);
-            heat->scale += body.area * drive * drive / stiffness(heat, b, &body);
+            heat->solution.scale += body.area * drive * drive / stiffness(heat, b, &body);
         } else {
-            heat->scale += emitting(heat, b) * difference * difference + lifted_squares(heat, b);
+            heat->solution.scale += emitting(heat, b) * difference * difference + lifted_squares(heat, b);
         }
     }
-    heat->smallest = ROUNDING * fibrad_max(largest, heat->scale);
+    heat->solution.smallest = ROUNDING * fibrad_max(largest, heat->solution.scale);
 }
 
 /* Whether there are temperatures that give the powers: something is given, or the powers add up to zero. */
@@ -191,16 +198,16 @@ static bool solvable(fibrad_heat *heat) {
     bool held = false;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         held = held || emitting(heat, b) > 0;
-        if (heat->hold[b] == 0) sum += heat->drive[b], sizes += fibrad_abs(heat->drive[b]);
+        if (heat->sources.hold[b] == 0) sum += heat->sources.drive[b], sizes += fibrad_abs(heat->sources.drive[b]);
     }
-    heat->afloat = !held;
+    heat->sources.afloat = !held;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
 /* Makes the next sweep one of the radiosities. */
 static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
-    for (uint32_t a = 0; a < heat->patches; a++) fibrad_heat_send(heat, a, heat->radiosity[a]);
-    heat->phase = phase;
+    for (uint32_t a = 0; a < heat->patches; a++) fibrad_heat_send(heat, a, heat->solution.radiosity[a]);
+    heat->solution.phase = phase;
 }
 
 /* Makes the next sweep the one for the error, which knows of no more than the coarser level does. */
@@ -209,23 +216,23 @@ static void send_means(fibrad_heat *heat) {
         for (uint32_t a = heat->first[b], next; a < heat->first[b + 1]; a = next) {
             double sum = 0;
             next = end_of_group(a, heat->first[b + 1], FIBRAD_HEAT_FOUR);
-            for (uint32_t k = a; k < next; k++) sum += heat->radiosity[k];
+            for (uint32_t k = a; k < next; k++) sum += heat->solution.radiosity[k];
             for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, sum / (next - a));
         }
-    heat->phase = FIBRAD_HEAT_CHECK;
+    heat->solution.phase = FIBRAD_HEAT_CHECK;
 }
 
 void fibrad_heat_start(fibrad_heat *heat) {
-    if (heat->areas)
+    if (heat->solution.areas)
         send_radiosities(heat, FIBRAD_HEAT_FIRST);
     else {
         fibrad_heat_link_pencils(heat);
-        heat->phase = FIBRAD_HEAT_AREA;
+        heat->solution.phase = FIBRAD_HEAT_AREA;
     }
 }
 
 double fibrad_heat_temperature(const fibrad_heat *heat, double emission) {
-    const double t0 = heat->surroundings, power = emission / heat->sigma + (t0 * t0) * (t0 * t0);
+    const double t0 = heat->sources.surroundings, power = emission / heat->sources.sigma + (t0 * t0) * (t0 * t0);
     return power >= 0 ? fibrad_sqrt(fibrad_sqrt(power)) : __builtin_nan("");
 }
 
@@ -233,12 +240,12 @@ double fibrad_heat_temperature(const fibrad_heat *heat, double emission) {
 static void sink(fibrad_heat *heat) {
     double sum = 0, weights = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const double area = heat->emissivity[b] * sum_over(heat, b, heat->area);
-        sum += area * heat->emission[b], weights += area;
+        const double area = heat->sources.emissivity[b] * sum_over(heat, b, heat->solution.area);
+        sum += area * heat->sources.emission[b], weights += area;
     }
     const double mean = weights > 0 ? sum / weights : 0;
-    for (uint32_t b = 0; b < heat->bodies; b++) heat->emission[b] -= mean;
-    for (uint32_t a = 0; a < heat->patches; a++) heat->radiosity[a] -= mean;
+    for (uint32_t b = 0; b < heat->bodies; b++) heat->sources.emission[b] -= mean;
+    for (uint32_t a = 0; a < heat->patches; a++) heat->solution.radiosity[a] -= mean;
 }
 
 /* Takes the finer powers and adds what patches without size would change. Where radiosities are smooth the error falls
@@ -246,89 +253,93 @@ static void sink(fibrad_heat *heat) {
  * are not quite, and this is what settled beds ask for: docs/methods_heat.md section 6. */
 #define EXTRAPOLATION 0.4
 static void finish_powers(fibrad_heat *heat) {
-    find_powers(heat, heat->power);
+    find_powers(heat, heat->solution.power);
     find_emissions(heat);
-    if (heat->afloat) sink(heat);
+    if (heat->sources.afloat) sink(heat);
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        if (heat->group > 1) heat->coarse[b] = heat->power[b], heat->coarse_emission[b] = heat->emission[b];
-        heat->power[b] += EXTRAPOLATION * (heat->power[b] - heat->coarse[b]);
+        if (heat->solution.group > 1)
+            heat->solution.coarse[b] = heat->solution.power[b],
+            heat->solution.coarse_emission[b] = heat->sources.emission[b];
+        heat->solution.power[b] += EXTRAPOLATION * (heat->solution.power[b] - heat->solution.coarse[b]);
         if (is_free(heat, b))
-            heat->temperature[b] = fibrad_heat_temperature(
-                heat, heat->emission[b] + EXTRAPOLATION * (heat->emission[b] - heat->coarse_emission[b]));
+            heat->sources.temperature[b] = fibrad_heat_temperature(
+                heat, heat->sources.emission[b] +
+                          EXTRAPOLATION * (heat->sources.emission[b] - heat->solution.coarse_emission[b]));
     }
-    if (heat->group == 1)
-        for (uint32_t a = 0; a < heat->patches; a++) heat->detail[a] += heat->radiosity[a];
+    if (heat->solution.group == 1)
+        for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
     send_means(heat);
 }
 
 /* Whether the radiosities of the level in hand are good enough. */
 static bool level_solved(const fibrad_heat *heat) {
-    return heat->slope <= fibrad_max(heat->tolerance * heat->tolerance * heat->scale, heat->smallest) ||
-           heat->sweeps >= heat->limit;
+    return heat->solution.slope <= fibrad_max(heat->sources.tolerance * heat->sources.tolerance * heat->solution.scale,
+                                              heat->solution.smallest) ||
+           heat->solution.sweeps >= heat->sources.limit;
 }
 
 /* The direction to search next: the residual, and `keep` of the last direction. */
 static void turn_direction(fibrad_heat *heat, double keep) {
     for (uint32_t a = 0; a < heat->patches; a++) {
-        heat->direction[a] = fibrad_heat_sent(heat, a) + (keep != 0 ? keep * heat->direction[a] : 0);
-        fibrad_heat_send(heat, a, heat->direction[a]);
+        heat->solution.direction[a] = fibrad_heat_sent(heat, a) + (keep != 0 ? keep * heat->solution.direction[a] : 0);
+        fibrad_heat_send(heat, a, heat->solution.direction[a]);
     }
 }
 
 /* From the coarser level to the finer one, with the detail that an earlier solution had. Until this one has its own,
  * `detail` holds what is to be taken from it. */
 static void refine_patches(fibrad_heat *heat) {
-    find_powers(heat, heat->coarse);
+    find_powers(heat, heat->solution.coarse);
     find_emissions(heat);
-    if (heat->afloat) sink(heat);
-    fibrad_copy(heat->coarse_emission, heat->emission, heat->bodies * sizeof *heat->emission);
-    heat->group = 1;
+    if (heat->sources.afloat) sink(heat);
+    fibrad_copy(heat->solution.coarse_emission, heat->sources.emission, heat->bodies * sizeof *heat->sources.emission);
+    heat->solution.group = 1;
     for (uint32_t a = 0; a < heat->patches; a++) {
-        const double coarse = heat->radiosity[a];
-        heat->radiosity[a] += heat->detail[a];
-        heat->detail[a] = -coarse;
+        const double coarse = heat->solution.radiosity[a];
+        heat->solution.radiosity[a] += heat->solution.detail[a];
+        heat->solution.detail[a] = -coarse;
     }
     send_radiosities(heat, FIBRAD_HEAT_FIRST);
 }
 
 /* Goes on with the search, or with the finer level, if there is something left to do. */
 static void search_on(fibrad_heat *heat, bool restart) {
-    const double last = heat->slope;
-    heat->slope = find_residual(heat);
-    if (restart) heat->smallest = fibrad_max(heat->smallest, ROUNDING * heat->slope);
+    const double last = heat->solution.slope;
+    heat->solution.slope = find_residual(heat);
+    if (restart) heat->solution.smallest = fibrad_max(heat->solution.smallest, ROUNDING * heat->solution.slope);
     if (level_solved(heat)) {
-        if (heat->group == FIBRAD_HEAT_FOUR)
+        if (heat->solution.group == FIBRAD_HEAT_FOUR)
             refine_patches(heat);
         else
             finish_powers(heat);
         return;
     }
-    turn_direction(heat, restart ? 0 : heat->slope / last);
-    heat->phase = FIBRAD_HEAT_STEPS;
+    turn_direction(heat, restart ? 0 : heat->solution.slope / last);
+    heat->solution.phase = FIBRAD_HEAT_STEPS;
 }
 
 /* The product of the search direction with its image, over a body of given temperature. */
 static double given_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
     double sum = 0;
-    if (heat->emissivity[b] == 1) return 0;
-    const double share = heat->emissivity[b] / (1 - heat->emissivity[b]);
+    if (heat->sources.emissivity[b] == 1) return 0;
+    const double share = heat->sources.emissivity[b] / (1 - heat->sources.emissivity[b]);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        const double p = heat->direction[a];
-        sum += p * (heat->area[a] * p * share - product[a]);
+        const double p = heat->solution.direction[a];
+        sum += p * (heat->solution.area[a] * p * share - product[a]);
     }
     return sum;
 }
 
 /* The same of unknown temperature: what differs from the mean counts as above, the mean for what holds it. */
 static double free_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
-    const double eps = heat->emissivity[b], mean = mean_over(heat, b, heat->direction);
+    const double eps = heat->sources.emissivity[b], mean = mean_over(heat, b, heat->solution.direction);
     const double share = eps < 1 ? eps / (1 - eps) : 0;
     const free_body body = free_body_of(heat, b);
     if (!(body.area > 0)) return 0;
     double sum = body.area * mean * mean * (stiffness(heat, b, &body) - 1);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        const double p = heat->direction[a], rest = p - mean;
-        sum += share * heat->area[a] * rest * rest - p * product[a];
+        const double p = heat->solution.direction[a], rest = p - mean;
+        sum += share * heat->solution.area[a] * rest * rest - p * product[a];
     }
     return sum;
 }
@@ -339,31 +350,31 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
     for (uint32_t b = 0; b < heat->bodies; b++)
         curvature += is_free(heat, b) ? free_curvature(heat, b, product) : given_curvature(heat, b, product);
     if (!(curvature > 0)) return;
-    const double length = heat->slope / curvature;
+    const double length = heat->solution.slope / curvature;
     for (uint32_t a = 0; a < heat->patches; a++) {
-        heat->radiosity[a] += length * heat->direction[a];
-        heat->net[a] += length * product[a];
+        heat->solution.radiosity[a] += length * heat->solution.direction[a];
+        heat->solution.net[a] += length * product[a];
     }
 }
 
 /* What the sweep in hand was for; FIBRAD_E_UNSOLVABLE. */
 static int end_sweep(fibrad_heat *heat) {
     const double *sum = fibrad_heat_gathered(heat);
-    if (heat->phase == FIBRAD_HEAT_CHECK) {
-        for (uint32_t b = 0; b < heat->bodies; b++) heat->halves[b] = sum_over(heat, b, sum);
-        heat->phase = FIBRAD_HEAT_DONE;
-        heat->warm = true;
+    if (heat->solution.phase == FIBRAD_HEAT_CHECK) {
+        for (uint32_t b = 0; b < heat->bodies; b++) heat->samples.halves[b] = sum_over(heat, b, sum);
+        heat->solution.phase = FIBRAD_HEAT_DONE;
+        heat->solution.warm = true;
         return FIBRAD_OK;
     }
-    heat->sweeps++;
-    switch (heat->phase) {
+    heat->solution.sweeps++;
+    switch (heat->solution.phase) {
     case FIBRAD_HEAT_AREA:
-        fibrad_copy(heat->area, sum, heat->patches * sizeof *sum);
-        heat->areas = true;
+        fibrad_copy(heat->solution.area, sum, heat->patches * sizeof *sum);
+        heat->solution.areas = true;
         send_radiosities(heat, FIBRAD_HEAT_FIRST);
         return FIBRAD_OK;
     case FIBRAD_HEAT_FIRST:
-        fibrad_copy(heat->net, sum, heat->patches * sizeof *sum);
+        fibrad_copy(heat->solution.net, sum, heat->patches * sizeof *sum);
         if (!solvable(heat)) return FIBRAD_E_UNSOLVABLE;
         find_scale(heat);
         search_on(heat, true);
@@ -377,16 +388,16 @@ static int end_sweep(fibrad_heat *heat) {
 
 int fibrad_heat_step(fibrad_heat *heat, int *solved) {
     if (heat == NULL || solved == NULL) return FIBRAD_E_ARGUMENT;
-    if (heat->phase == FIBRAD_HEAT_IDLE || heat->phase == FIBRAD_HEAT_DONE) return FIBRAD_E_STATE;
+    if (heat->solution.phase == FIBRAD_HEAT_IDLE || heat->solution.phase == FIBRAD_HEAT_DONE) return FIBRAD_E_STATE;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     for (uint32_t part = 0; part < heat->config.parts; part++)
         if (!heat->swept[part]) return FIBRAD_E_STATE;
     const int status = end_sweep(heat);
     if (status != FIBRAD_OK) {
-        heat->phase = FIBRAD_HEAT_IDLE;
+        heat->solution.phase = FIBRAD_HEAT_IDLE;
         return status;
     }
     fibrad_zero(heat->swept, heat->config.parts);
-    *solved = heat->phase == FIBRAD_HEAT_DONE;
+    *solved = heat->solution.phase == FIBRAD_HEAT_DONE;
     return FIBRAD_OK;
 }

@@ -145,7 +145,7 @@ static double mean_temperature(const fibrad_heat *heat, const fibrad_heat_source
 static void lift_patches(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t m, double of_body, double mean) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     const uint32_t *first = heat->first + fibrad_heat_body(heat, FIBRAD_MESHES + m);
-    double *lift = heat->lift + (first[0] - fibrad_heat_first_meshed(heat)), *area = heat->source;
+    double *lift = heat->sources.lift + (first[0] - fibrad_heat_first_meshed(heat)), *area = heat->solution.source;
     fibrad_zero(lift, (first[1] - first[0]) * sizeof *lift);
     fibrad_zero(area, (first[1] - first[0]) * sizeof *area);
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
@@ -197,44 +197,44 @@ static double first_emission(const fibrad_heat *heat, const fibrad_heat_sources 
     if (source->emissivity == 0) return middle;
     if (is_given(source->temperature)) return emission_of(s, source->temperature);
     if (is_given(source->reference)) return emission_of(s, source->reference);
-    return heat->warm ? heat->emission[b] + emission_of(s, heat->surroundings) : middle;
+    return heat->solution.warm ? heat->sources.emission[b] + emission_of(s, heat->sources.surroundings) : middle;
 }
 
 /* Sets emissivity and emission, and moves the radiosities of an earlier solution up or down with the latter; the
  * coarser level begins with what it had of it. */
 static void set_emission(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b, double eps, double emission) {
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        if (heat->warm && !s->uniform && eps < 1)
-            heat->radiosity[a] += emission - heat->emission[b] - heat->detail[a];
+        if (heat->solution.warm && !s->uniform && eps < 1)
+            heat->solution.radiosity[a] += emission - heat->sources.emission[b] - heat->solution.detail[a];
         else
-            heat->radiosity[a] = emission, heat->detail[a] = 0;
+            heat->solution.radiosity[a] = emission, heat->solution.detail[a] = 0;
     }
-    heat->emissivity[b] = eps, heat->emission[b] = emission;
-    heat->drive[b] = 0, heat->hold[b] = -1;
+    heat->sources.emissivity[b] = eps, heat->sources.emission[b] = emission;
+    heat->sources.drive[b] = 0, heat->sources.hold[b] = -1;
 }
 
 static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b,
                      const radiator *source) {
     set_emission(heat, s, b, source->emissivity, first_emission(heat, s, middle, b, source));
-    heat->temperature[b] = source->emissivity > 0 ? source->temperature : __builtin_nan("");
+    heat->sources.temperature[b] = source->emissivity > 0 ? source->temperature : __builtin_nan("");
     if (source->emissivity == 0 || is_given(source->temperature)) return;
-    heat->hold[b] = source->hold;
-    heat->drive[b] = source->power + (source->hold > 0 ? source->hold * emission_of(s, source->reference) : 0);
+    heat->sources.hold[b] = source->hold;
+    heat->sources.drive[b] = source->power + (source->hold > 0 ? source->hold * emission_of(s, source->reference) : 0);
 }
 
 /* Adds to the radiosities of a mesh, or takes off, what its patches emit more than it does. */
 static void shift_radiosities(fibrad_heat *heat, uint32_t b, double times) {
     const double *lift = fibrad_heat_lift(heat, b);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && lift != NULL; a++)
-        heat->radiosity[a] += times * heat->emissivity[b] * lift[a - heat->first[b]];
+        heat->solution.radiosity[a] += times * heat->sources.emissivity[b] * lift[a - heat->first[b]];
 }
 
 static void set_mesh(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t m, radiator source) {
     const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
     const double own = source.temperature;
-    if (heat->warm) shift_radiosities(heat, b, -1);
-    heat->lifted[m] = s->side_temperature != NULL && is_given(own) && source.emissivity > 0;
-    if (heat->lifted[m]) {
+    if (heat->solution.warm) shift_radiosities(heat, b, -1);
+    heat->sources.lifted[m] = s->side_temperature != NULL && is_given(own) && source.emissivity > 0;
+    if (heat->sources.lifted[m]) {
         source.temperature = mean_temperature(heat, s, m, own);
         lift_patches(heat, s, m, own, source.temperature);
     }
@@ -247,8 +247,8 @@ static void set_mesh(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
 static double radiosity_beyond(const fibrad_heat *heat, uint32_t k) {
     const uint32_t facing = fibrad_heat_facing(heat, k);
     const double taken = fibrad_heat_taken_beyond(heat, k),
-                 other = facing < FIBRAD_WALLS ? heat->wall_emission[facing] : 0;
-    return taken * heat->wall_emission[k] + (1 - taken) * other;
+                 other = facing < FIBRAD_WALLS ? heat->sources.wall_emission[facing] : 0;
+    return taken * heat->sources.wall_emission[k] + (1 - taken) * other;
 }
 
 static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double middle) {
@@ -256,16 +256,16 @@ static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double mi
     radiator source[FIBRAD_SLOTS];
     for (uint32_t k = 0; k < FIBRAD_SLOTS; k++)
         source[k] = fibrad_is_opening(&heat->scene->container, k) ? of_opening(s) : absent;
-    fibrad_zero(heat->insulated, sizeof heat->insulated);
+    fibrad_zero(heat->sources.insulated, sizeof heat->sources.insulated);
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         source[heat->slot[b]] = of_body(s, b);
-        heat->insulated[fibrad_heat_body(heat, heat->slot[b]) - heat->spheres] =
+        heat->sources.insulated[fibrad_heat_body(heat, heat->slot[b]) - heat->spheres] =
             s->insulated != NULL && s->insulated[b] != 0;
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         const bool emits = source[k].emissivity > 0 && is_given(source[k].temperature);
-        heat->wall_emissivity[k] = source[k].emissivity;
-        heat->wall_emission[k] = emits ? emission_of(s, source[k].temperature) : 0;
+        heat->sources.wall_emissivity[k] = source[k].emissivity;
+        heat->sources.wall_emission[k] = emits ? emission_of(s, source[k].temperature) : 0;
         set_body(heat, s, middle, fibrad_heat_body(heat, k), &source[k]);
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
@@ -287,13 +287,13 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
         set_body(heat, sources, middle, b, &source);
     }
     set_walls(heat, sources, middle);
-    for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->hold[b] == 0;
-    heat->sigma = sources->sigma, heat->surroundings = sources->surroundings;
-    heat->group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
-    heat->tolerance = sources->tolerance > 0 ? sources->tolerance : unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;
-    heat->limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
-    heat->sweeps = 0;
-    heat->warm = false;
+    for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.hold[b] == 0;
+    heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;
+    heat->solution.group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
+    heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;
+    heat->sources.limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
+    heat->solution.sweeps = 0;
+    heat->solution.warm = false;
     fibrad_zero(heat->swept, heat->config.parts);
     fibrad_heat_start(heat);
     return FIBRAD_OK;

@@ -17,7 +17,7 @@
 static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil) {
     const double other = pencil->body < heat->rows ? heat->density[pencil->body] : 0;
     const double check = pencil->tilt / 32767. * (owner < heat->spheres ? 1 : RAYS_WEIGHT);
-    const double share = heat->phase == FIBRAD_HEAT_CHECK ? pencil->share * check : pencil->share;
+    const double share = heat->solution.phase == FIBRAD_HEAT_CHECK ? pencil->share * check : pencil->share;
     return share / (heat->density[owner] + other);
 }
 
@@ -81,8 +81,8 @@ struct gathering {
 static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil, double *to_owner,
                        double *to_other, const struct gathering *g) {
     const struct pencil_ends ends = {
-        .owner = g->areas ? g->none : heat->source + fibrad_heat_first_of_row(heat, owner),
-        .other = g->areas ? g->one : heat->source + other_end(heat, pencil),
+        .owner = g->areas ? g->none : heat->solution.source + fibrad_heat_first_of_row(heat, owner),
+        .other = g->areas ? g->one : heat->solution.source + other_end(heat, pencil),
         .to_owner = to_owner,
         .to_other = to_other,
         .area = beam_area(heat, owner, pencil),
@@ -105,8 +105,8 @@ static double beams_of(const fibrad_heat_pencil *pencil) {
 
 /* What the other end of a pencil reflects. */
 static double reflectivity_of(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
-    return 1 - heat->emissivity[pencil->body < heat->rows ? fibrad_heat_body_of_row(heat, pencil->body)
-                                                          : fibrad_heat_other_body(heat, pencil->body)];
+    return 1 - heat->sources.emissivity[pencil->body < heat->rows ? fibrad_heat_body_of_row(heat, pencil->body)
+                                                                  : fibrad_heat_other_body(heat, pencil->body)];
 }
 
 /* Notes how many beams meet another sphere, and by how much even and odd ones differ. */
@@ -119,8 +119,8 @@ static void note_sphere(fibrad_heat_seen *seen, const fibrad_heat_pencil *pencil
 /* What the beams of a pencil to another body bring the surroundings, if that is theirs. */
 static double escaping_flow(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil) {
     const double outside = fibrad_heat_outside(heat, fibrad_heat_other_body(heat, pencil->body));
-    const double *mine = heat->source + fibrad_heat_first_of_row(heat, owner);
-    const double *other = heat->source + fibrad_heat_other_block(heat, pencil->body);
+    const double *mine = heat->solution.source + fibrad_heat_first_of_row(heat, owner);
+    const double *other = heat->solution.source + fibrad_heat_other_block(heat, pencil->body);
     const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
     const uint8_t *strand = fibrad_heat_strands(pencil), *end = strand + pencil->strands;
     double flow = 0;
@@ -137,21 +137,22 @@ static void note_pencil(const fibrad_heat *heat, uint32_t row, const fibrad_heat
     const uint32_t body = fibrad_heat_body_of_row(heat, row);
     const bool other = pencil->body >= heat->rows;
     if (body >= heat->spheres) return;
-    if (other) heat->seen[body].escaping += escaping_flow(heat, row, pencil);
+    if (other) heat->samples.seen[body].escaping += escaping_flow(heat, row, pencil);
     if (row != body) return;
     const double beams = beams_of(pencil);
-    heat->seen[body].reflected[other] += reflectivity_of(heat, pencil) * beams;
-    if (pencil->body < heat->spheres) note_sphere(&heat->seen[body], pencil, beams);
+    heat->samples.seen[body].reflected[other] += reflectivity_of(heat, pencil) * beams;
+    if (pencil->body < heat->spheres) note_sphere(&heat->samples.seen[body], pencil, beams);
 }
 
 /* Where a row gathers: one of a wall does so with what its part brings to walls. */
 static double *gathered_by(const fibrad_heat *heat, uint32_t row, const struct gathering *g) {
     const uint32_t first = fibrad_heat_first_of_row(heat, row), others = fibrad_heat_others(heat);
-    return first < others ? heat->gathered + first : g->walls + (first - others);
+    return first < others ? heat->solution.gathered + first : g->walls + (first - others);
 }
 
 static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, double *own, struct gathering *g) {
-    const unsigned char *at = heat->pool + heat->row[place].begin, *end = at + heat->row[place].bytes;
+    const unsigned char *at = heat->pencils.pool + heat->pencils.row[place].begin,
+                        *end = at + heat->pencils.row[place].bytes;
     while (at < end) {
         const fibrad_heat_pencil *pencil = fibrad_heat_pencil_at(at);
         if (pencil->body >= heat->rows) {
@@ -162,22 +163,23 @@ static void sweep_own_beams(const fibrad_heat *heat, uint32_t place, double *own
             const bool both = fibrad_heat_same_part(heat, place, pencil->body);
             bring_ends(heat, place, pencil, own, both ? gathered_by(heat, pencil->body, g) : g->waste, g);
         }
-        if (heat->phase == FIBRAD_HEAT_CHECK) note_pencil(heat, place, pencil);
+        if (heat->solution.phase == FIBRAD_HEAT_CHECK) note_pencil(heat, place, pencil);
         at += fibrad_heat_pencil_bytes(pencil);
     }
 }
 
 static void sweep_beams_of_others(const fibrad_heat *heat, uint32_t place, double *own, struct gathering *g) {
-    for (size_t l = heat->first_link[place]; l < heat->first_link[place + 1]; l++) {
-        if (l + AHEAD < heat->first_link[place + 1]) {
-            const fibrad_heat_link *next = &heat->link[l + AHEAD];
-            const unsigned char *soon = heat->pool + heat->row[next->sphere].begin + 4 * (size_t)next->at;
+    for (size_t l = heat->pencils.first_link[place]; l < heat->pencils.first_link[place + 1]; l++) {
+        if (l + AHEAD < heat->pencils.first_link[place + 1]) {
+            const fibrad_heat_link *next = &heat->pencils.link[l + AHEAD];
+            const unsigned char *soon =
+                heat->pencils.pool + heat->pencils.row[next->sphere].begin + 4 * (size_t)next->at;
             __builtin_prefetch(soon);
             __builtin_prefetch(soon + 64);
         }
-        const uint32_t owner = heat->link[l].sphere;
-        const unsigned char *row = heat->pool + heat->row[owner].begin;
-        bring_ends(heat, owner, fibrad_heat_pencil_at(row + 4 * (size_t)heat->link[l].at), g->waste, own, g);
+        const uint32_t owner = heat->pencils.link[l].sphere;
+        const unsigned char *row = heat->pencils.pool + heat->pencils.row[owner].begin;
+        bring_ends(heat, owner, fibrad_heat_pencil_at(row + 4 * (size_t)heat->pencils.link[l].at), g->waste, own, g);
     }
 }
 
@@ -192,18 +194,19 @@ static void sweep_rows(const fibrad_heat *heat, uint32_t part, struct gathering 
                    end = fibrad_heat_part_begin(heat, n, part + 1);
     for (uint32_t k = begin; k < end; k++) {
         fibrad_zero(gathered_by(heat, place[k], g), heat->config.patches * sizeof(double));
-        heat->seen[place[k]] = (fibrad_heat_seen){{0, 0}, 0, 0, 0, 0};
+        heat->samples.seen[place[k]] = (fibrad_heat_seen){{0, 0}, 0, 0, 0, 0};
     }
     for (uint32_t row = n; row < heat->rows; row++)
         if (heat->part[row] == part)
-            fibrad_zero(gathered_by(heat, row, g), FIBRAD_HEAT_FOUR * heat->fine[row - n].count * sizeof(double));
+            fibrad_zero(gathered_by(heat, row, g),
+                        FIBRAD_HEAT_FOUR * heat->division.fine[row - n].count * sizeof(double));
     for (uint32_t k = begin; k < end; k++) sweep_row(heat, place[k], g);
     for (uint32_t row = n; row < heat->rows; row++)
         if (heat->part[row] == part) sweep_row(heat, row, g);
 }
 
 static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, struct gathering *g) {
-    const double *source = heat->source;
+    const double *source = heat->solution.source;
     const uint32_t others = fibrad_heat_others(heat);
     for (uint32_t k = begin; k < end; k++) {
         const fibrad_heat_ray ray = heat->ray[k];
@@ -218,13 +221,13 @@ static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, st
 /* All of a part but the note that it is done. */
 static void sweep_part(fibrad_heat *heat, uint32_t part) {
     const uint32_t others = fibrad_heat_others(heat), of_walls = heat->patches - others;
-    const bool areas = heat->phase == FIBRAD_HEAT_AREA;
-    const bool coarse = heat->phase == FIBRAD_HEAT_CHECK || (heat->group > 1 && !areas);
-    struct gathering g = {areas, coarse, heat->brought + (size_t)part * of_walls, {0}, {0}, {0}, {0}};
+    const bool areas = heat->solution.phase == FIBRAD_HEAT_AREA;
+    const bool coarse = heat->solution.phase == FIBRAD_HEAT_CHECK || (heat->solution.group > 1 && !areas);
+    struct gathering g = {areas, coarse, heat->solution.brought + (size_t)part * of_walls, {0}, {0}, {0}, {0}};
     for (uint32_t a = 0; a < FIBRAD_HEAT_PATCHES_MAX; a++) g.one[a] = 1;
     fibrad_zero(g.walls, of_walls * sizeof *g.walls);
     sweep_rows(heat, part, &g);
-    if (heat->phase != FIBRAD_HEAT_CHECK) /* their errors are found by those who send them: result.c */
+    if (heat->solution.phase != FIBRAD_HEAT_CHECK) /* their errors are found by those who send them: result.c */
         sweep_rays(heat, fibrad_heat_part_begin(heat, heat->rays, part),
                    fibrad_heat_part_begin(heat, heat->rays, part + 1), &g);
     set_aside(heat, g.walls, g.away);
@@ -234,7 +237,8 @@ static void sweep_part(fibrad_heat *heat, uint32_t part) {
 
 int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
     if (heat == NULL || part >= heat->config.parts) return FIBRAD_E_ARGUMENT;
-    if (heat->phase == FIBRAD_HEAT_IDLE || heat->phase == FIBRAD_HEAT_DONE || heat->swept[part]) return FIBRAD_E_STATE;
+    if (heat->solution.phase == FIBRAD_HEAT_IDLE || heat->solution.phase == FIBRAD_HEAT_DONE || heat->swept[part])
+        return FIBRAD_E_STATE;
     sweep_part(heat, part);
     heat->swept[part] = 1;
     return FIBRAD_OK;
@@ -242,11 +246,11 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part) {
 
 const double *fibrad_heat_gathered(fibrad_heat *heat) {
     const uint32_t others = fibrad_heat_others(heat), of_walls = heat->patches - others;
-    double *sum = heat->gathered + others;
+    double *sum = heat->solution.gathered + others;
     fibrad_zero(sum, of_walls * sizeof *sum);
     for (uint32_t part = 0; part < heat->config.parts; part++) {
-        const double *from = heat->brought + (size_t)part * of_walls;
+        const double *from = heat->solution.brought + (size_t)part * of_walls;
         for (uint32_t a = 0; a < of_walls; a++) sum[a] += from[a];
     }
-    return heat->gathered;
+    return heat->solution.gathered;
 }

@@ -187,7 +187,7 @@ static uint32_t patch_at(const fibrad_heat *heat, uint32_t wall, const double at
     const uint32_t fine =
         fibrad_heat_fine_patch(heat, body, own, place[0] / 2 - (cell[0] >> 1), place[1] / 2 - (cell[1] >> 1));
     if (may_be_fine && fine != FIBRAD_NONE)
-        return fibrad_heat_first_fine(heat, body) + (fine - FIBRAD_HEAT_FOUR * heat->first_four[body]);
+        return fibrad_heat_first_fine(heat, body) + (fine - FIBRAD_HEAT_FOUR * heat->division.first_four[body]);
     return heat->first[body] + own * FIBRAD_HEAT_FOUR + (cell[0] & 1) * 2 + (cell[1] & 1);
 }
 
