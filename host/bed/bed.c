@@ -111,9 +111,9 @@ double bed_wall_end(const struct bed *bed, int axis, bool upper, bool *moved) {
 
 int64_t bed_name(const struct bed *bed, uint32_t i) { return bed->ids ? bed->id[i] : (int64_t)i; }
 
-const char *bed_place(const struct bed *bed, uint32_t i, char text[BED_PLACE]) {
+const char *bed_line_text(const struct bed *bed, uint32_t i, char text[BED_LINE_TEXT]) {
     text[0] = 0;
-    if (bed->line[i]) snprintf(text, BED_PLACE, " of line %llu", (unsigned long long)bed->line[i]);
+    if (bed->line[i]) snprintf(text, BED_LINE_TEXT, " of line %llu", (unsigned long long)bed->line[i]);
     return text;
 }
 

@@ -57,8 +57,8 @@ double bed_reach(const struct bed *bed, int axis, bool upper);
 int64_t bed_name(const struct bed *bed, uint32_t i);
 
 /* Writes " of line 7" for messages, or "" if the sphere has no line. Returns `text`. */
-enum { BED_PLACE = 32 };
-const char *bed_place(const struct bed *bed, uint32_t i, char text[BED_PLACE]);
+enum { BED_LINE_TEXT = 32 };
+const char *bed_line_text(const struct bed *bed, uint32_t i, char text[BED_LINE_TEXT]);
 
 /* Sorts the spheres by id, if they have ids. file: name of the bed in messages. Status 0, STATUS_MEMORY, or
  * STATUS_INPUT naming the line of an id that is negative or occurs twice. */

@@ -32,14 +32,15 @@ static int bed_misplaced(const struct bed *bed, const char *file, uint32_t i) {
 static int bed_overlap(const struct bed *bed, const char *file, uint32_t first, uint32_t second) {
     const uint32_t later = bed->line[first] < bed->line[second] ? second : first;
     const uint32_t other = later == first ? second : first;
-    char place[BED_PLACE];
+    char place[BED_LINE_TEXT];
     if (later == other) return bed_misplaced(bed, file, later);
     const bool equal =
         bed->x[first] == bed->x[second] && bed->y[first] == bed->y[second] && bed->z[first] == bed->z[second];
     return message_at(STATUS_INPUT, file, bed->line[later],
                       equal ? "sphere %lld has the same centre as sphere %lld%s"
                             : "sphere %lld and sphere %lld%s: the centre of one lies inside the other",
-                      (long long)bed_name(bed, later), (long long)bed_name(bed, other), bed_place(bed, other, place));
+                      (long long)bed_name(bed, later), (long long)bed_name(bed, other),
+                      bed_line_text(bed, other, place));
 }
 
 int bed_status(const struct bed *bed, const char *file, int status, const fibrad_fault *fault) {

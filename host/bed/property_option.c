@@ -90,7 +90,7 @@ void quantity_free(struct quantity *quantity) {
 const struct curve *quantity_curve(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
     int k = 0;
     if (quantity->types) {
-        const double type = bed->extra[i * bed->extras + quantity->place];
+        const double type = bed->extra[i * bed->extras + quantity->index];
         while (k < quantity->types - 1 && quantity->type[k] != type) ++k;
     }
     return quantity->curve[k].n > 0 ? &quantity->curve[k] : NULL;
@@ -106,7 +106,7 @@ bool quantity_curves(const struct quantity *quantity) {
 static double value_of_sphere(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
     if (!quantity->given) return NAN;
     if (!quantity->column) return quantity->value;
-    const double found = bed->extra[i * bed->extras + quantity->place];
+    const double found = bed->extra[i * bed->extras + quantity->index];
     if (!quantity->types) return found;
     for (int k = 0; k < quantity->types; ++k)
         if (quantity->type[k] == found) return quantity->of_type[k];
@@ -122,7 +122,7 @@ int quantity_values(const struct quantity *quantity, const struct bed *bed, cons
         if ((v[i] >= low && v[i] <= high) || (quantity->some && isnan(v[i]))) continue;
         if (quantity->types && isnan(v[i]))
             return message_at(STATUS_INPUT, file, bed->line[i], "the list of the %s has no type %g", what,
-                              bed->extra[i * bed->extras + quantity->place]);
+                              bed->extra[i * bed->extras + quantity->index]);
         return message_at(STATUS_INPUT, file, bed->line[i], "the %s is %g; it must be within %g and %g", what, v[i],
                           low, high);
     }

@@ -33,7 +33,7 @@ struct quantity {
     bool some;          /* spheres may have no value: NaN */
     double value;       /* for all spheres, if there is no column */
     const char *column; /* name of the column of values or, if types > 0, of types; NULL: none */
-    size_t place;       /* index of the column in bed->extra */
+    size_t index;       /* of the column in bed->extra */
     int types;          /* 0: values are not by type */
     double type[QUANTITY_TYPES_MAX], of_type[QUANTITY_TYPES_MAX]; /* [types] types and their values */
     bool curves;                                                  /* @TABLE is allowed in place of a number */

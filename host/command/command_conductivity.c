@@ -135,7 +135,7 @@ static int conductivity_parse(struct conductivity_request *request, int argc, ch
         return message(STATUS_USAGE, "--max-rays is for --error; leave out --rays");
     if (rule->error == 0) rule->error = 0.003;
     if (rule->max_rays == 0) rule->max_rays = 50000000;
-    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
+    bed_options_quantity(&request->bed, &request->emissivity, NULL);
     return bed_options_check(&request->bed, "conductivity", CONTENT_CONDUCTION);
 }
 

@@ -106,7 +106,7 @@ static int exchange_check(struct exchange_request *request) {
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw");
     request->options.scratch = request->bed.scratch;
-    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
+    bed_options_quantity(&request->bed, &request->emissivity, NULL);
     return bed_options_check(&request->bed, "exchange", CONTENT_MATRIX);
 }
 

@@ -203,7 +203,7 @@ static int heat_check_request(struct heat_request *request) {
     if (request->problem.error > 0 && request->problem.sources.uniform)
         return message(STATUS_USAGE,
                        "--error is for --model patches; --model spheres has an error that no directions reduce");
-    request->emissivity.place = bed_options_column(&request->bed, request->emissivity.column, NULL);
+    bed_options_quantity(&request->bed, &request->emissivity, NULL);
     status = time_check(&request->time, &request->bed);
     if (!status) status = given_check(&request->given, &request->bed);
     return status ? status : given_ambient(&request->given, &request->problem.sources.surroundings);

@@ -157,12 +157,16 @@ int bed_options_take(struct bed_options *options, const struct options *parsed, 
     }
 }
 
-size_t bed_options_column(struct bed_options *options, const char *name, const char *unit) {
-    for (size_t k = 0; name && !unit && k < options->columns; ++k)
-        if (!options->unit[k] && strcmp(options->column[k], name) == 0) return k;
-    options->column[options->columns] = name;
-    options->unit[options->columns] = unit;
-    return name ? options->columns++ : 0;
+void bed_options_quantity(struct bed_options *options, struct quantity *quantity, const char *unit) {
+    size_t k = 0;
+    if (!quantity->column) return;
+    if (quantity->types) unit = NULL;
+    while (k < options->columns && (unit || options->unit[k] || strcmp(options->column[k], quantity->column) != 0)) ++k;
+    if (k == options->columns) ++options->columns;
+    options->column[k] = quantity->column;
+    options->unit[k] = unit;
+    if (quantity->some && !quantity->types) options->some[k] = true;
+    quantity->index = k;
 }
 
 /* Whether the run may have several frames. */
@@ -172,7 +176,7 @@ int bed_options_check(struct bed_options *options, const char *command, enum con
     const char *picture = options->outputs.picture;
     options->command = command;
     if (options->files == 0) return message(STATUS_USAGE, "FILE is missing; see fibrad %s --help", command);
-    options->radius.place = bed_options_column(options, options->radius.column, NULL);
+    bed_options_quantity(options, &options->radius, NULL);
     if (picture && !plot_ending(picture))
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
     if (picture && is_series(options)) return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
@@ -204,7 +208,7 @@ static int run_file(struct bed_options *options, const char *path, struct bed *b
                                       .positions = options->positions,
                                       .periods_given = options->periodic,
                                       .no_radius = options->radius.given,
-                                      .part = options->files > 1,
+                                      .series = options->files > 1,
                                       .keep = outputs_keep(&options->outputs),
                                       .extra = options->column,
                                       .unit = options->unit,

@@ -88,9 +88,9 @@ struct bed_options {
  * which the message is out. Status 0, STATUS_HELP, STATUS_USAGE, STATUS_FILE or STATUS_MEMORY. */
 int bed_options_take(struct bed_options *options, const struct options *parsed, int key);
 
-/* Asks for a column of the file. unit: expected unit; NULL: none. Returns the index of the column in bed->extra.
- * Without a unit a column has one index however often it is options for. name NULL: does nothing. */
-size_t bed_options_column(struct bed_options *options, const char *name, const char *unit);
+/* Asks for the column of a quantity, if it has one, and sets quantity->index. unit: expected unit of the values; NULL:
+ * none. Quantities without a unit may share a column, such as that of types. */
+void bed_options_quantity(struct bed_options *options, struct quantity *quantity, const char *unit);
 
 /* Checks files and outputs when all options have been read. The command writes `content`. Status 0 or STATUS_USAGE. */
 int bed_options_check(struct bed_options *options, const char *command, enum content content);

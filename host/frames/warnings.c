@@ -115,11 +115,11 @@ void warn_unit(struct warned *warned, const struct bed *bed) {
 
 void warn_overlap(struct warned *warned, const struct bed *bed, const fibrad_scene_facts *facts) {
     const uint32_t first = facts->overlap_pair[0], second = facts->overlap_pair[1];
-    char place[2][BED_PLACE];
+    char place[2][BED_LINE_TEXT];
     if (facts->overlap_max > OVERLAP_LARGE && is_new(warned, LARGE_OVERLAP))
         message_at(STATUS_OK, warned->file, 0, "warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius",
-                   (long long)bed_name(bed, first), bed_place(bed, first, place[0]), (long long)bed_name(bed, second),
-                   bed_place(bed, second, place[1]), facts->overlap_max);
+                   (long long)bed_name(bed, first), bed_line_text(bed, first, place[0]),
+                   (long long)bed_name(bed, second), bed_line_text(bed, second, place[1]), facts->overlap_max);
 }
 
 /* ---- walls ------------------------------------------------------------------------------------------------------ */

@@ -30,10 +30,8 @@ int given_check(struct given_options *options, struct bed_options *bed) {
     if (t->value < -options->zero) return message(STATUS_USAGE, "--temperature: %g is below absolute zero", t->value);
     t->some = p->given && !options->timed;
     p->some = true;
-    t->place = bed_options_column(bed, t->column, t->types ? NULL : options->zero > 0 ? "C" : "K");
-    p->place = bed_options_column(bed, p->column, p->types ? NULL : "W");
-    if (t->column && !t->types) bed->some[t->place] = t->some;
-    if (p->column && !p->types) bed->some[p->place] = true;
+    bed_options_quantity(bed, t, options->zero > 0 ? "C" : "K");
+    bed_options_quantity(bed, p, "W");
     return STATUS_OK;
 }
 

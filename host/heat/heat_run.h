@@ -8,7 +8,7 @@
 /* The heat problem of a bed. */
 struct heat_problem {
     struct walls walls;
-    fibrad_heat_config config;   /* directions 0: heat_config chooses */
+    fibrad_heat_config config;   /* directions 0: chosen by the emissivities of the bed */
     fibrad_heat_sources sources; /* [K]; surroundings NaN: the bed is closed */
     /* in time only: tables of the temperatures of walls [walls.count] and of the surroundings; n = 0: no table */
     const struct curve *wall_curve, *ambient_curve;

@@ -53,8 +53,8 @@ int time_check(struct time_options *time, struct bed_options *bed) {
     if (time->times && time->every > 0) return message(STATUS_USAGE, "--times and --every cannot be combined");
     if (time->every > 0 && time->until / time->every > TIMES_MAX)
         return message(STATUS_USAGE, "--every: more than %d times", TIMES_MAX);
-    time->capacity.place = bed_options_column(bed, c->column, NULL);
-    time->density.place = bed_options_column(bed, rho->column, NULL);
+    bed_options_quantity(bed, &time->capacity, NULL);
+    bed_options_quantity(bed, &time->density, NULL);
     return STATUS_OK;
 }
 

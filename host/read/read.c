@@ -135,7 +135,7 @@ int reader_next(struct reader *r, struct bed *bed, bool *more) {
             r->filled = true;
             return STATUS_OK;
         }
-        if (r->done && !r->filled && !r->source.options.part)
+        if (r->done && !r->filled && !r->source.options.series)
             return message_at(STATUS_INPUT, name, 0, "there are no spheres in the file");
         if (*more) message_at(STATUS_OK, name, 0, "warning: frame %" PRId64 " is empty and is left out", bed->frame);
     }

@@ -112,7 +112,7 @@ static int find_kept(struct columns *columns, const struct fields *names, const 
     columns->kept_names = calloc(room, 1);
     if (!columns->kept || !columns->text || !columns->kept_names) return message_memory();
     for (size_t k = 0; k < names->n; ++k) {
-        const bool used = k == columns->place[0] || k == columns->place[1] || k == columns->place[2] ||
+        const bool used = k == columns->coordinate[0] || k == columns->coordinate[1] || k == columns->coordinate[2] ||
                           k == columns->id || (!options->no_radius && k == columns->radius);
         if (used || is_own(names->at[k]) || !*names->at[k]) continue;
         char *to = columns->kept_names + strlen(columns->kept_names);
@@ -142,14 +142,14 @@ int columns_find(struct columns *columns, const struct lines *lines, const struc
     int which;
     columns->width = names->n;
     for (int axis = 0; axis < 3; ++axis) {
-        const int status = find_any(&columns->place[axis], &which, lines, names, coordinate[axis]);
+        const int status = find_any(&columns->coordinate[axis], &which, lines, names, coordinate[axis]);
         if (status) return status;
-        if (columns->place[axis] == names->n) return column_missing(lines, names, coordinate[axis][0]);
+        if (columns->coordinate[axis] == names->n) return column_missing(lines, names, coordinate[axis][0]);
         columns->scaled[axis] = which == 2 || which == 3;
         if (columns->scaled[axis] && bed->low[axis] == bed->high[axis])
             return message_at(STATUS_INPUT, lines->name, lines->number,
                               "the scaled coordinate %s needs a box, and no box is given before",
-                              names->at[columns->place[axis]]);
+                              names->at[columns->coordinate[axis]]);
     }
     int status = find_radius(columns, lines, names, options);
     if (!status) status = find_any(&columns->id, &which, lines, names, id);
@@ -193,7 +193,8 @@ int columns_add(struct columns *columns, const struct lines *lines, const struct
                           row->n, columns->width);
     double centre[3];
     for (int axis = 0; axis < 3; ++axis) {
-        const int status = columns_number(columns, lines, axes[axis], row->at[columns->place[axis]], &centre[axis]);
+        const int status =
+            columns_number(columns, lines, axes[axis], row->at[columns->coordinate[axis]], &centre[axis]);
         if (status) return status;
         if (columns->scaled[axis]) centre[axis] = bed->low[axis] + centre[axis] * (bed->high[axis] - bed->low[axis]);
     }

@@ -8,9 +8,9 @@
 
 /* The wanted columns. Each field is an index in a row. */
 struct columns {
-    size_t width;    /* fields of a row */
-    size_t place[3]; /* x, y, z */
-    bool scaled[3];  /* the coordinate is a fraction of the box */
+    size_t width;         /* fields of a row */
+    size_t coordinate[3]; /* x, y, z */
+    bool scaled[3];       /* the coordinate is a fraction of the box */
     size_t radius;
     double radius_unit; /* 0.5 for diameters */
     size_t id;          /* width: there is none */

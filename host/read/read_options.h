@@ -16,7 +16,7 @@ struct read_options {
     bool positions;           /* ids are not used: spheres are in the order of the file */
     bool periods_given;       /* by --periodic: no warning if the file names no periods */
     bool no_radius;           /* radii are not read; bed->r is NaN */
-    bool part;                /* one of a series of files: a file without spheres is no error */
+    bool series;              /* one of a series of files: a file without spheres is no error */
     const char *const *extra; /* [extras] names of further columns, all of numbers */
     const char *const *unit;  /* [extras] expected units, such as "K", or NULL for none; a column whose header names
                                * another unit is refused. NULL: no column has one */

@@ -134,14 +134,14 @@ static int find_header(struct source *source, struct header *header, char *separ
 /* Finds the unit of lengths, which must be the same in all columns. */
 static int find_unit(const struct source *source, const struct header *header, struct bed *bed) {
     const struct columns *columns = &source->columns;
-    const char *unit = header->unit[columns->place[0]];
-    const size_t lengths[] = {columns->place[1], columns->place[2],
-                              source->options.no_radius ? columns->place[0] : columns->radius};
+    const char *unit = header->unit[columns->coordinate[0]];
+    const size_t lengths[] = {columns->coordinate[1], columns->coordinate[2],
+                              source->options.no_radius ? columns->coordinate[0] : columns->radius};
     for (int k = 0; k < 3; ++k)
         if (strcmp(header->unit[lengths[k]], unit) != 0)
             return message_at(STATUS_INPUT, source->lines.name, header->line,
                               "lengths of more than one unit: %.40s in [%.10s], %.40s in [%.10s]",
-                              header->names.at[columns->place[0]], unit, header->names.at[lengths[k]],
+                              header->names.at[columns->coordinate[0]], unit, header->names.at[lengths[k]],
                               header->unit[lengths[k]]);
     snprintf(bed->units, sizeof bed->units, "%s", unit);
     return STATUS_OK;
