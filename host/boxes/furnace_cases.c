@@ -1,6 +1,5 @@
-/* furnace_cases.c - the published furnace, its reference values, and values along its axis. SPDX-License-Identifier:
- * MIT
- */
+/* furnace_cases.c - the published furnace, its reference values, and values along its axis.
+ * SPDX-License-Identifier: MIT */
 #include "boxes/furnace_cases.h"
 
 #include <math.h>

@@ -1,6 +1,5 @@
-/* furnace_cases.h - the published furnace, its reference values, and values along its axis. SPDX-License-Identifier:
- * MIT
- */
+/* furnace_cases.h - the published furnace, its reference values, and values along its axis.
+ * SPDX-License-Identifier: MIT */
 #ifndef FURNACE_CASES_H
 #define FURNACE_CASES_H
 

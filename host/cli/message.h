@@ -9,7 +9,7 @@
  * error. */
 enum exit_status {
     STATUS_OK = 0,
-    STATUS_HELP = 1, /* the help is wanted, which ends the reading of options; the program never exits with it */
+    STATUS_HELP = 1, /* an option asks for the help; never an exit status */
     STATUS_USAGE = 2,
     STATUS_INPUT = 3,
     STATUS_FILE = 4,

@@ -261,8 +261,7 @@ static void heat_more_rays(fibrad_heat_config *config, double over) {
 /* The next configuration. If the powers of spheres err too much, it has more of what errs more, patches or beams. It
  * stays as it is if more patches are impossible and beams err little. If temperatures err too much, it has more beams,
  * or more patches where beams have not helped. If walls err too much, it has more rays between walls as long as those
- * help, then more beams. Errors are about inverse to the number of beams.
- */
+ * help, then more beams. Errors are about inverse to the number of beams. */
 static fibrad_heat_config heat_refine(fibrad_heat_config config, const struct heat_excess *over,
                                       const struct heat_excess *last) {
     const bool finer = config.patches < FIBRAD_HEAT_PATCHES_MAX;

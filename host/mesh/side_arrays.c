@@ -1,6 +1,5 @@
-/* side_arrays.c - values of the sides of triangles, and arrays over triangles made of them. SPDX-License-Identifier:
- * MIT
- */
+/* side_arrays.c - values of the sides of triangles, and arrays over triangles made of them.
+ * SPDX-License-Identifier: MIT */
 #include "mesh/side_arrays.h"
 
 #include <math.h>

@@ -1,6 +1,5 @@
-/* side_arrays.h - values of the sides of triangles, and arrays over triangles made of them. SPDX-License-Identifier:
- * MIT
- */
+/* side_arrays.h - values of the sides of triangles, and arrays over triangles made of them.
+ * SPDX-License-Identifier: MIT */
 #ifndef SIDE_ARRAYS_H
 #define SIDE_ARRAYS_H
 

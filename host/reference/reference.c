@@ -272,8 +272,7 @@ static uint32_t collect_discs(struct integral *in, const double w[3], const uint
 }
 
 /* Adds weight times the visible areas along w to value[]. The first few discs cover most windows, so few are tried
- * first.
- */
+ * first. */
 static void add_direction(struct integral *in, const double w[3], double weight, const uint32_t *near, uint32_t count,
                           double *value) {
     struct slicer *s = &in->slicer;

@@ -8,8 +8,7 @@
 #include "simple/fibrad_host.h"
 
 /* Makes a scene in *block. The caller frees *block, which is NULL after an error. Errors: as fibrad_scene_init;
- * _MEMORY.
- */
+ * _MEMORY. */
 int fibrad_heap_scene(fibrad_scene **scene, void **block, const fibrad_scene_config *config,
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 

@@ -49,8 +49,7 @@ struct fibrad_transient {
 };
 
 /* Computes factors for these sources unless the method needs none or they are there. Errors: as
- * fibrad_exchange_factors.
- */
+ * fibrad_exchange_factors. */
 int fibrad_transient_prepare(fibrad_transient *transient, const fibrad_heat_sources *sources);
 
 /* Corrects factors by patches at the temperatures of the sources, all of which are known. Does nothing if powers have

@@ -22,7 +22,7 @@ struct lines {
     char *buffer;
     size_t capacity, kept, next, end;
     bool keeps;           /* lines are kept */
-    bool finished;        /* the whole file is in the buffer or behind it */
+    bool finished;        /* the end of the file has been read */
     char behind;          /* the character that the 0 behind the current line has replaced */
     uint64_t kept_number; /* number of the line before the kept ones */
 };

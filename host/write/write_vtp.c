@@ -1,8 +1,7 @@
 /* write_vtp.c - VTK XML polydata for ParaView, with one point and vertex per sphere. SPDX-License-Identifier: MIT
  *
  * Missing values are NaN, as those of rows that were not computed. Text arrays could not hold NaN, so arrays are
- * binary.
- */
+ * binary. */
 #include <math.h>
 #include <stdlib.h>
 
