@@ -30,7 +30,7 @@ LINE
     case $file in # what is most likely to notice comes first
     kernel/exchange/flow.c | kernel/scene/surroundings.c) tests="part $tests" ;;
     kernel/exchange/*) tests="exchange body_rows protocol part $tests" ;;
-    kernel/heat/*) tests="protocol heat $tests" ;;
+    kernel/heat/*) tests="protocol heat heat_arguments heat_paths heat_patches heat_invariants $tests" ;;
     */points_*) tests="beam cast $tests" ;;
     kernel/window/*) tests="silhouettes areas beam $tests" ;;
     */surface_row*) tests="surface_row $tests" ;;
