@@ -1,4 +1,5 @@
 /* conduction.h - effective radiative conductivity of a bed of grey spheres. SPDX-License-Identifier: MIT
+ *
  * The temperature is linear with gradient g, and each sphere has the temperature at its centre. Then the spheres of a
  * volume V carry along the gradient the flux k g = g/(2 V) sum over i, j of 4 sigma T^3 A_i e_i D_ij dz_ij^2. */
 #ifndef CONDUCTION_H

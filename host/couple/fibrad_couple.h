@@ -22,8 +22,9 @@
  *             fibrad_insitu_facts_get. Every rank calls them, and all ranks get the same status.
  * Errors      After an error, fibrad_insitu_message has a sentence, the same on all ranks, which names particles by id.
  *             The object is as it was before the call.
- * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2. Words and the layout of
- * comments are as in fibrad.h. Source      docs/coupling.md
+ * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2.
+ * Words       Words and the layout of comments are as in fibrad.h.
+ * Source      docs/coupling.md
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_H

@@ -1,5 +1,5 @@
-/* halo.h - particles of other ranks and periodic images near the particles of this rank. SPDX-License-Identifier: MIT
- */
+/* halo.h - particles of other ranks and periodic images near the particles of this rank.
+ * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_HALO_H
 #define FIBRAD_COUPLE_HALO_H
 

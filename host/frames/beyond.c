@@ -1,4 +1,5 @@
 /* beyond.c - spheres that lie beyond a closed mesh. SPDX-License-Identifier: MIT
+ *
  * Follow a ray from a sphere in its right place. The ray leaves each mesh that encloses the bed through the inner side,
  * once more often than it enters. It enters each other mesh as often as it leaves. */
 #include "frames/beyond.h"

@@ -1,6 +1,7 @@
 /* fibrad_liggghts.cpp - LIGGGHTS with radiation beside conduction. SPDX-License-Identifier: MIT
  *
  * LIGGGHTS is under the GNU GPL, version 2 or later, and a binary of this program, linked with it, is, too.
+ *
  * A fix external calls radiate() every --every steps, before temperatures are integrated. radiate() adds to each
  * particle's heatSource the change of its radiative power. So heat sources of the script stay. The property fibradPower
  * of a particle is the radiative power that its heatSource has now. It goes with the particle from rank to rank. */

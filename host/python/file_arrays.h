@@ -1,4 +1,5 @@
 /* file_arrays.h - beds and meshes of files as arrays, for Python: libfibrad_files.so. SPDX-License-Identifier: MIT
+ *
  * Only one thread may call these functions at a time. `report` is called with each line of warnings and errors. */
 #ifndef FILE_ARRAYS_H
 #define FILE_ARRAYS_H

@@ -1,4 +1,5 @@
 /* read_data.c - beds from data files of LAMMPS and LIGGGHTS. SPDX-License-Identifier: MIT
+ *
  * A file has a comment, a header of lines such as `100 atoms` and `0 2 xlo xhi`, and sections. The section
  * `Atoms # sphere` has the spheres. Positions are those within the box; image flags are not used. */
 #include <ctype.h>

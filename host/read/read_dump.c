@@ -1,4 +1,5 @@
 /* read_dump.c - beds from LAMMPS and LIGGGHTS text dumps. SPDX-License-Identifier: MIT
+ *
  * A dump is a sequence of frames, and a frame is a sequence of sections. Each section begins with a line `ITEM: NAME
  * ...`. TIMESTEP stands near the beginning of a frame. ATOMS, with the names of the columns, is the last section of a
  * frame. UNITS stands before the first frame only. */

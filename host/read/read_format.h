@@ -1,5 +1,5 @@
-/* read_format.h - the interface of a format, and functions for the readers of all formats. SPDX-License-Identifier: MIT
- */
+/* read_format.h - the interface of a format, and functions for the readers of all formats.
+ * SPDX-License-Identifier: MIT */
 #ifndef READ_FORMAT_H
 #define READ_FORMAT_H
 

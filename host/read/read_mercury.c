@@ -1,4 +1,5 @@
 /* read_mercury.c - beds from the .data files of MercuryDPM. SPDX-License-Identifier: MIT
+ *
  * A frame is a line `N time xmin ymin zmin xmax ymax zmax` and N lines of 14 numbers. In two dimensions these lines
  * have 6 and 8 numbers. There are no ids. The file does not say which axes are periodic. */
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* reference.c - view factors of blocked scenes by adaptive quadrature, slow and accurate. SPDX-License-Identifier: MIT
- */
+/* reference.c - view factors of blocked scenes by adaptive quadrature, slow and accurate.
+ * SPDX-License-Identifier: MIT */
 #include "reference/reference.h"
 
 #include <math.h>

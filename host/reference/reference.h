@@ -1,11 +1,14 @@
 /* reference.h - view factors of blocked scenes by adaptive quadrature, slow and accurate. SPDX-License-Identifier: MIT
+ *
  * The view factor is (1/pi) times the integral over all directions of the visible area of j in the window of i. Visible
  * areas come from exact slicing, the integral from adaptive cubature. Neither shares anything with the kernel's beams.
  * Tests and benches compare the kernel with this reference. `fibrad pair` uses it for pairs with obstacles.
  *
  * Space is open; a periodic image is a sphere of its own. Spheres are ordered front to back by the depth of their
- * centres. Spheres may overlap. The integrand then jumps, and below tolerances of 1e-5 each further digit takes ten
- * times as many directions. An overlap of the two spheres of a pair does no harm. Units     all lengths in one unit
+ * centres. Spheres may overlap. The integrand then jumps, and each digit below a tolerance of 1e-5 takes ten times as
+ * many directions. An overlap of the two spheres of a pair does no harm.
+ *
+ * Units     all lengths in one unit
  * Errors    a reference_status
  * Threads   any number of calls at once
  * Memory    about 8 n^2 bytes: of more than some thousand spheres leave out those that i cannot see */

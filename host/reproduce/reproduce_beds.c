@@ -1,5 +1,5 @@
-/* reproduce_beds.c - figure 10 and table 1 of the surface paper: lattices and random beds. SPDX-License-Identifier: MIT
- */
+/* reproduce_beds.c - figure 10 and table 1 of the surface paper: lattices and random beds.
+ * SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* reproduce_rays.c - the table of the pebble-bed paper by its own method, which is rays. SPDX-License-Identifier: MIT
- */
+/* reproduce_rays.c - the table of the pebble-bed paper by its own method, which is rays.
+ * SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdlib.h>
 

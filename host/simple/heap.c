@@ -1,5 +1,5 @@
-/* heap.c - memory of the kernel on the heap or in files, and sizes of public structures. SPDX-License-Identifier: MIT
- */
+/* heap.c - memory of the kernel on the heap or in files, and sizes of public structures.
+ * SPDX-License-Identifier: MIT */
 #include "simple/heap.h"
 
 #include "fibrad_mesh.h"

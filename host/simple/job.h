@@ -1,5 +1,5 @@
-/* job.h - the computation of a bed: its scene, its threads and the rows that they collect. SPDX-License-Identifier: MIT
- */
+/* job.h - the computation of a bed: its scene, its threads and the rows that they collect.
+ * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_SIMPLE_JOB_H
 #define FIBRAD_SIMPLE_JOB_H
 

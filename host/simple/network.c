@@ -1,4 +1,5 @@
 /* network.c - radiation by exchange factors, as a network of conductances. SPDX-License-Identifier: MIT
+ *
  * A_i e_i D_ij is a conductance between spheres i and j, or sphere i and a wall, for E = sigma T^4. L is the matrix of
  * conductances, H the diagonal matrix of the holds, and E* the reference emission. The system (H + L) (E - E*) = r,
  * with r the power that is missing at E*, is symmetric and positive definite. Conjugate gradients with the diagonal as

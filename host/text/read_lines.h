@@ -1,5 +1,5 @@
-/* read_lines.h - text files line by line, which may be packed by gzip, and their numbers. SPDX-License-Identifier: MIT
- */
+/* read_lines.h - text files line by line, which may be packed by gzip, and their numbers.
+ * SPDX-License-Identifier: MIT */
 #ifndef READ_LINES_H
 #define READ_LINES_H
 

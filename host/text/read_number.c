@@ -1,4 +1,5 @@
 /* read_number.c - numbers from text, with the bits of strtod. SPDX-License-Identifier: MIT
+ *
  * A mantissa of at most 53 bits and a power of ten up to 10^22 are both exact as doubles. So their product or quotient
  * is rounded once, and correctly (Clinger, How to read floating point numbers accurately, 1990). strtod reads all other
  * numbers. */

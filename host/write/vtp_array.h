@@ -1,4 +1,5 @@
 /* vtp_array.h - arrays of VTK's XML files, inline and binary. SPDX-License-Identifier: MIT
+ *
  * An array is the base64 of its length in bytes (UInt64), followed by the values. */
 #ifndef VTP_ARRAY_H
 #define VTP_ARRAY_H

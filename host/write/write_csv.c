@@ -1,5 +1,6 @@
 /* write_csv.c - comma-separated values: i,j,F or i,j,D of a matrix, i,T_K,q_W,... of heat, F_E and k of conduction.
  * SPDX-License-Identifier: MIT
+ *
  * Numbers below 0 are not spheres, and the column body has their names: -1 is the surroundings, -2, -3 ... are walls,
  * and the next number is `beyond`. */
 #include <gsl/gsl_math.h>

@@ -1,4 +1,5 @@
 /* write_mesh_vtp.c - VTK XML polydata for ParaView: the triangles of all meshes. SPDX-License-Identifier: MIT
+ *
  * Arrays on triangles: `body`, k of wall -2 - k; `front` and `back`, 1 if this side is a wall; `place`, the line or
  * number in the mesh's file; `area`; arrays of the contents. */
 #include <math.h>

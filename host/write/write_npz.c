@@ -1,4 +1,5 @@
 /* write_npz.c - a matrix as a NumPy archive that scipy.sparse.load_npz opens. SPDX-License-Identifier: MIT
+ *
  * The file is a ZIP archive without compression. It has a member for each array of the matrix in compressed rows. A
  * member is a header of 128 bytes, which names type and shape, and the array as it is in memory. All members have
  * 64-bit sizes (ZIP64), so that small and large files are written alike. The checksum stands before the data, so it is

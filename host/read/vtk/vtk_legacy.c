@@ -1,4 +1,5 @@
 /* vtk_legacy.c - points and arrays of legacy VTK files, text or binary. SPDX-License-Identifier: MIT
+ *
  * Four lines name version, title, ASCII or BINARY, and kind of the data set. Keywords follow, most of them with an
  * array. Binary arrays are big-endian. Arrays that are not wanted are skipped. */
 #include <ctype.h>

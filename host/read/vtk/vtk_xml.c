@@ -1,4 +1,5 @@
 /* vtk_xml.c - points and arrays of VTK's XML files, .vtp and .vtu. SPDX-License-Identifier: MIT
+ *
  * An array is text or base64 in the tag that declares the array, or it is appended: at an offset in the last tag of the
  * file, as base64 or bytes. Binary data begin with the number of bytes, or with a list of blocks that zlib has packed.
  */
