@@ -28,9 +28,9 @@ LINE
     file=${file% } tree=$BUILD/mutate/$1 by=UNNOTICED why="" ran=""
     rm -rf "$tree" && cp -Rp "$whole" "$tree" || exit 1
     case $file in # what is most likely to notice comes first
-    kernel/exchange/flow.c | kernel/scene/surroundings.c) tests="part $tests" ;;
+    kernel/exchange/flow.c | kernel/scene/surroundings.c) tests="beyond flow part $tests" ;;
     kernel/exchange/*) tests="exchange body_rows protocol part $tests" ;;
-    kernel/heat/*) tests="protocol heat heat_arguments heat_paths heat_patches heat_invariants $tests" ;;
+    kernel/heat/*) tests="protocol_heat heat heat_arguments heat_paths heat_patches heat_invariants $tests" ;;
     */points_*) tests="beam cast $tests" ;;
     kernel/window/*) tests="silhouettes areas beam $tests" ;;
     */surface_row*) tests="surface_row $tests" ;;
@@ -42,8 +42,8 @@ LINE
     kernel/ray/*) tests="trace $tests" ;;
     */drift*) tests="drift $tests" ;;
     kernel/scene/*) tests="scene beam $tests" ;;
-    kernel/matrix/* | kernel/work/*) tests="matrix protocol $tests" ;;
-    kernel/furnace/*) tests="furnace $tests" ;;
+    kernel/matrix/* | kernel/work/*) tests="matrix matrix_calls protocol $tests" ;;
+    kernel/furnace/*) tests="furnace furnace_calls $tests" ;;
     esac
     if awk -v old="$old" -v new="$new" 'BEGIN {sub(/^ /, "", old); sub(/ $/, "", old); sub(/^ /, "", new)}
         {at = index($0, old); if (at) {found++; $0 = substr($0, 1, at - 1) new substr($0, at + length(old))} print}

@@ -1,0 +1,204 @@
+/* heat_calls.h - a heat problem in blocks of its own, for tests of calls. SPDX-License-Identifier: MIT */
+#ifndef TESTS_HEAT_CALLS_H
+#define TESTS_HEAT_CALLS_H
+
+#include "fibrad_heat.h"
+#include "scenes.h"
+#include "suite.h"
+
+enum { N = 14, PARTS = 8, BODIES = 3 };
+
+struct problem {
+    unsigned char *scene_block, *heat_block;
+    size_t scene_size, heat_size;
+    fibrad_scene *scene;
+    fibrad_heat *heat;
+    fibrad_work work;
+    double temperature[N], emissivity[N], body_temperature[BODIES], body_emissivity[BODIES];
+    fibrad_heat_sources sources;
+    double power[N], body_power[BODIES];
+    fibrad_heat_result result;
+};
+
+/* What a problem is made of. */
+struct contents {
+    double x[N], y[N], z[N], r[N];
+    fibrad_body body[BODIES];
+    double period_x;
+    uint32_t n;
+};
+
+static const fibrad_heat_config heat_config = {.directions = 24, .patches = 24, .parts = PARTS};
+
+/* Spheres in two layers between a floor, a ceiling and one side wall; open on the other sides. */
+static inline struct contents contents_of(uint64_t seed) {
+    struct contents c = {.body = {plane_at(2, 0, -1.2), plane_at(2, 1, 3.4), plane_at(1, 0, -1.3)}, .n = N};
+    for (uint32_t i = 0; i < N; i++) {
+        c.x[i] = 2.1 * (i % 4) + .1 * bed_make_random(seed, 4 * i);
+        c.y[i] = 2.1 * (i / 4 % 2) + .1 * bed_make_random(seed, 4 * i + 1);
+        c.z[i] = 2.1 * (i / 8) + .1 * bed_make_random(seed, 4 * i + 2);
+        c.r[i] = .8 + .2 * bed_make_random(seed, 4 * i + 3);
+    }
+    return c;
+}
+
+static inline int build_at(void *block, size_t size, const struct contents *c, fibrad_scene **scene) {
+    fibrad_plane opening[6];
+    uint32_t openings = 0;
+    for (int side = c->period_x > 0 ? 2 : 0; side < 6; side++) {
+        bool walled = false;
+        for (int b = 0; b < BODIES; b++) walled = walled || 2 * c->body[b].plane.axis + c->body[b].plane.upper == side;
+        if (!walled) opening[openings++] = (fibrad_plane){side / 2, side % 2, side % 2 ? 9 : -9};
+    }
+    const fibrad_scene_config config = {
+        .period = {c->period_x}, .body = c->body, .bodies = BODIES, .opening = opening, .openings = openings};
+    const fibrad_spheres spheres = {.x = c->x, .y = c->y, .z = c->z, .r = c->r, .n = c->n};
+    return fibrad_scene_init(scene, block, size, &config, &spheres, NULL);
+}
+
+/* Makes the scene in its place, where another one may be. */
+static inline void build(struct problem *p, const struct contents *c) {
+    ck_assert_int_eq(build_at(p->scene_block, p->scene_size, c, &p->scene), FIBRAD_OK);
+}
+
+static inline void set_sources(struct problem *p) {
+    for (uint32_t i = 0; i < N; i++)
+        p->temperature[i] = 1 + bed_make_random(7, i), p->emissivity[i] = .2 + .7 * bed_make_random(8, i);
+    for (uint32_t b = 0; b < BODIES; b++) p->body_temperature[b] = 1 + .3 * b, p->body_emissivity[b] = .4 + .2 * b;
+    fibrad_heat_sources_init(&p->sources);
+    p->sources.temperature = p->temperature, p->sources.emissivity = p->emissivity;
+    p->sources.body_temperature = p->body_temperature, p->sources.body_emissivity = p->body_emissivity;
+    p->sources.surroundings = .7, p->sources.tolerance = 1e-9;
+    p->result.power = p->power, p->result.body_power = p->body_power;
+}
+
+/* A problem as far as fibrad_heat_init; what was in the block before is `fill`. */
+static inline struct problem *begin_problem(const struct contents *c, int fill) {
+    struct problem *p = calloc(1, sizeof *p);
+    p->scene_size = fibrad_scene_size(N, 0);
+    p->scene_block = block_of(p->scene_size);
+    p->work = work_growing();
+    build(p, c);
+    p->heat_size = fibrad_heat_size(&heat_config, p->scene);
+    ck_assert_uint_gt(p->heat_size, 0);
+    p->heat_block = block_of(p->heat_size);
+    memset(p->heat_block, fill, p->heat_size);
+    ck_assert_int_eq(fibrad_heat_init(&p->heat, p->heat_block, p->heat_size, &heat_config, p->scene), FIBRAD_OK);
+    set_sources(p);
+    return p;
+}
+
+static inline void end_problem(struct problem *p) {
+    work_free(&p->work);
+    free(p->scene_block);
+    free(p->heat_block);
+    free(p);
+}
+
+static inline uint32_t tasks_of(const struct problem *p) { return fibrad_heat_tasks(p->heat); }
+
+static inline void trace_all(struct problem *p) {
+    for (uint32_t k = 0; k < tasks_of(p); k++) ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, k), FIBRAD_OK);
+}
+
+static inline void sweep_all(struct problem *p) {
+    for (uint32_t k = 0; k < PARTS; k++) ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_OK);
+}
+
+/* From fibrad_heat_begin on. */
+static inline void solve(struct problem *p) {
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    for (int solved = 0; !solved;) {
+        sweep_all(p);
+        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+    }
+    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+}
+
+/* Powers by the book. */
+static inline struct problem *by_the_book(const struct contents *c) {
+    struct problem *p = begin_problem(c, 0xa5);
+    trace_all(p);
+    solve(p);
+    return p;
+}
+
+static inline void assert_same_powers(const struct problem *p, const struct problem *book) {
+    ck_assert_mem_eq(p->power, book->power, sizeof p->power);
+    ck_assert_mem_eq(p->body_power, book->body_power, sizeof p->body_power);
+    ck_assert_mem_eq(&p->result.surroundings_power, &book->result.surroundings_power, sizeof(double));
+}
+
+/* What may not be called before `begin` is not called. */
+static inline void assert_nothing_to_solve(struct problem *p) {
+    int solved = 77;
+    memset(p->power, 0x11, sizeof p->power);
+    double power[N];
+    memcpy(power, p->power, sizeof power);
+    for (uint32_t k = 0; k < PARTS; k++) ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_E_STATE);
+    ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_E_STATE);
+    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_E_STATE);
+    ck_assert_int_eq(solved, 77);
+    ck_assert_mem_eq(power, p->power, sizeof power);
+}
+
+/* Contents a little other than those. */
+static inline struct contents changed(const struct contents *from, int what) {
+    struct contents c = *from;
+    double swap;
+    switch (what) {
+    case 0:
+        c.r[5] = nextafter(c.r[5], 0);
+        break;
+    case 1:
+        c.x[0] = nextafter(c.x[0], 1);
+        break;
+    case 2:
+        c.z[N - 1] += 1e-3;
+        break;
+    case 3: /* two of them change places */
+        swap = c.x[2], c.x[2] = c.x[3], c.x[3] = swap;
+        swap = c.y[2], c.y[2] = c.y[3], c.y[3] = swap;
+        swap = c.z[2], c.z[2] = c.z[3], c.z[3] = swap;
+        swap = c.r[2], c.r[2] = c.r[3], c.r[3] = swap;
+        break;
+    case 4:
+        c.body[1].plane.at += 1e-9;
+        break;
+    case 5: /* walls in another order */
+        c.body[0] = from->body[1], c.body[1] = from->body[0];
+        break;
+    case 6:
+        c.period_x = 40;
+        break;
+    case 7:
+        c.n = N - 1;
+        break;
+    default:
+        c.n = 0;
+    }
+    return c;
+}
+
+/* A problem of which so many stages are done: nothing, traced, begun and swept, solved. */
+enum { MADE, TRACED, SWEPT, SOLVED, STAGES };
+
+static inline void advance_to(struct problem *p, int from, int to) {
+    for (int stage = from + 1; stage <= to; stage++) {
+        if (stage == TRACED) trace_all(p);
+        if (stage == SWEPT) {
+            ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+            for (int k = 0, solved; k < 3; k++) {
+                sweep_all(p);
+                ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+            }
+            sweep_all(p);
+        }
+        for (int solved = 0; stage == SOLVED && !solved;) {
+            ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+            if (!solved) sweep_all(p);
+        }
+    }
+}
+
+#endif

@@ -1,0 +1,32 @@
+/* matrices.h - rows and matrices, for tests. SPDX-License-Identifier: MIT */
+#ifndef TESTS_MATRICES_H
+#define TESTS_MATRICES_H
+
+#include "scenes.h"
+#include "suite.h"
+
+/* Spheres of these radii, too far apart to see each other: rows are made by hand. */
+static inline fibrad_scene *apart(uint32_t n, const double *r) {
+    struct bed bed;
+    bed_init(&bed);
+    for (uint32_t i = 0; i < n; i++) add_sphere(&bed, 1000. * (i + 1), 0, 0, r[i]);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    bed_free(&bed);
+    return scene;
+}
+
+/* Rows by hand, in the arrays of a compressed matrix. */
+static inline void add_rows(fibrad_rows *rows, uint32_t n, const uint64_t *start, const uint32_t *col,
+                            const double *f) {
+    const fibrad_factors all = {.n = n, .start = start, .col = col, .f = f};
+    for (uint32_t i = 0; i < n; i++) {
+        const uint64_t begin = all.start[i];
+        const fibrad_row row = {.sphere = i,
+                                .col = (uint32_t *)(uintptr_t)(all.col + begin),
+                                .f = (double *)(uintptr_t)(all.f + begin),
+                                .length = (uint32_t)(all.start[i + 1] - begin)};
+        ck_assert_int_eq(fibrad_rows_add(rows, &row, 0), FIBRAD_OK);
+    }
+}
+
+#endif

@@ -1,0 +1,296 @@
+/* test_beyond.c - what rows say of radiation whose end they do not know. SPDX-License-Identifier: MIT */
+#include "part_beds.h"
+
+/* A cutoff, or a known region, that holds the whole bed and its walls changes no bit. */
+START_TEST(nothing_is_beyond_what_holds_all) {
+    struct made m;
+    make_kind(&m, &kinds[_i]);
+    for (int occupied = 0; occupied < 2; occupied++) {
+        m.part.config.occupancy = occupied ? &m.occupancy : NULL;
+        fibrad_scene *plain = part_scene(&m.part);
+        for (int axis = 0; axis < 3; axis++) m.part.config.known_low[axis] = -99, m.part.config.known_high[axis] = 99;
+        fibrad_scene *known = part_scene(&m.part);
+        memset(m.part.config.known_low, 0, sizeof m.part.config.known_low);
+        memset(m.part.config.known_high, 0, sizeof m.part.config.known_high);
+        for (uint32_t i = 3; i < m.part.n; i += 150)
+            for (int method = 0; method < METHODS; method++) {
+                struct named_row expected = row_by(&m.part, plain, i, method, 0);
+                struct named_row cut = row_by(&m.part, plain, i, method, 99);
+                ck_assert_double_eq(cut.row.beyond, 0);
+                expect_same_named(&expected, &cut, m.part.ids, kinds[_i].name);
+                if (m.part.config.bodies > 0 || occupied) { /* all lines end before the region does, or are clear */
+                    struct named_row region = row_by(&m.part, known, i, method, 0);
+                    ck_assert_double_eq(region.row.beyond, 0);
+                    expect_same_named(&expected, &region, m.part.ids, kinds[_i].name);
+                    named_free(&region);
+                }
+                named_free(&expected), named_free(&cut);
+            }
+        free(plain), free(known);
+    }
+    free_made(&m);
+}
+END_TEST
+
+/* Whether the way along w from some length on is clear of marked cells: in steps so small that they miss corners
+ * alone. */
+static bool clear_by_steps(const fibrad_occupancy *o, const double from[3], const double w[3], double begin,
+                           double step) {
+    for (double t = begin; t < begin + 700; t += step) {
+        uint64_t cell = 0;
+        bool inside = true;
+        for (int axis = 3; axis-- > 0;) {
+            const double size = (o->high[axis] - o->low[axis]) / o->cells[axis];
+            const int64_t cells = o->cells[axis];
+            const int64_t at = (int64_t)floor((from[axis] + t * w[axis] - o->low[axis]) / size);
+            inside = inside && (o->periodic[axis] || (at >= 0 && at < cells));
+            if (!o->periodic[axis] && (w[axis] > 0 ? at >= cells : at < 0)) return true; /* gone */
+            cell = cell * (uint64_t)cells + (uint64_t)((at % cells + cells) % cells);
+        }
+        if (inside && (o->mark[cell / 64] >> cell % 64 & 1) != 0) return false;
+    }
+    return true;
+}
+
+/* A random direction. */
+static void draw_even(fibrad_random *random, double w[3]) {
+    double square;
+    do {
+        square = 0;
+        for (int axis = 0; axis < 3; axis++) w[axis] = 2 * fibrad_random_next(random) - 1, square += w[axis] * w[axis];
+    } while (!(square <= 1 && square > .01));
+    for (int axis = 0; axis < 3; axis++) w[axis] /= sqrt(square);
+}
+
+/* Rays of our own: all spheres tried, cells looked up by small steps. */
+START_TEST(beyond_is_what_rays_say) {
+    struct made m;
+    make_kind(&m, &kinds[_i]); /* open or periodic, without walls */
+    struct part *p = &m.part;
+    fibrad_scene *scene = part_scene(p);
+    const double cutoff = 4;
+    double largest = 0;
+    for (uint32_t i = 0; i < p->n; i += p->n / 7) {
+        enum { RAYS = 4000 };
+        const double centre[3] = {p->x[i], p->y[i], p->z[i]};
+        uint32_t beyond = 0, escaped = 0;
+        fibrad_random random = fibrad_random_start(8, i);
+        for (int k = 0; k < RAYS; k++) {
+            double n[3], w[3], square = 0;
+            draw_even(&random, n);
+            draw_even(&random, w);
+            for (int axis = 0; axis < 3; axis++) w[axis] += n[axis], square += w[axis] * w[axis];
+            double from[3], along = 0;
+            for (int axis = 0; axis < 3; axis++) {
+                w[axis] /= sqrt(square), from[axis] = centre[axis] + p->r[i] * n[axis];
+                along += p->r[i] * n[axis] * w[axis];
+            }
+            bool hit = false;
+            for (uint32_t j = 0; j < p->n && !hit; j++) {
+                const double at[3] = {p->x[j], p->y[j], p->z[j]};
+                double c[3], depth = 0, far = 0, off = 0;
+                for (int axis = 0; axis < 3; axis++) {
+                    c[axis] = way_along(p, axis, centre[axis], at[axis]);
+                    far += c[axis] * c[axis], depth += c[axis] * w[axis];
+                }
+                if (j == i || far > cutoff * cutoff || depth <= 0) continue;
+                double d = 0;
+                for (int axis = 0; axis < 3; axis++) d += (c[axis] - p->r[i] * n[axis]) * w[axis];
+                for (int axis = 0; axis < 3; axis++) off += pow(c[axis] - p->r[i] * n[axis] - d * w[axis], 2);
+                hit = off < p->r[j] * p->r[j];
+            }
+            if (hit) continue;
+            const double ball = -along + sqrt(along * along + cutoff * cutoff - p->r[i] * p->r[i]);
+            const bool clear = clear_by_steps(&m.occupancy, from, w, ball, .02);
+            beyond += !clear, escaped += clear;
+        }
+        const double expected = beyond / (double)RAYS, sky = escaped / (double)RAYS;
+        for (int method = 0; method < 4; method++) {
+            const struct named_row found = row_by(p, scene, i, method, cutoff);
+            /* windows go one way each, and 600 rays are few */
+            const double tolerance = .015 + 3.5 * sqrt(fmax(expected, .01) / (method == 3 ? 600 : 1000));
+            ck_assert_double_eq_tol(found.row.beyond, expected, tolerance);
+            ck_assert_double_eq_tol(found.row.escaped, sky, tolerance);
+            named_free((struct named_row *)&found);
+        }
+        largest = fmax(largest, fmin(expected, sky));
+    }
+    if (_i == 0) ck_assert_double_gt(largest, .02); /* some rows have both */
+    free(scene);
+    free_made(&m);
+}
+END_TEST
+
+/* The walk through the cells against small steps, which miss nothing but corners: boxes with few marks, periodic or
+ * not, rays from anywhere. */
+START_TEST(cells_are_walked_one_by_one) {
+    struct bed bed = bed_of(1, (const double[][4]){{0, 0, 0, .1}});
+    struct part p = part_of(&bed, (fibrad_scene_config){0});
+    fibrad_random random = fibrad_random_start(6, 1);
+    int missed = 0, clear = 0, rays = 0;
+    for (int round = 0; round < 150; round++) {
+        const uint64_t mark[2] = {UINT64_C(1) << round % 64 | UINT64_C(1) << (round * 37 + 11) % 64,
+                                  UINT64_C(1) << round * 5 % 56};
+        const fibrad_occupancy o = {.low = {-1, 2, -3},
+                                    .high = {3, 4.5, 3},
+                                    .cells = {4, 5, 6},
+                                    .periodic = {round & 1, round >> 1 & 1, round >> 2 & 1},
+                                    .mark = mark};
+        p.config.occupancy = &o;
+        fibrad_scene *scene = part_scene(&p);
+        for (int k = 0; k < 20; k++) {
+            double from[3], w[3], distance;
+            draw_even(&random, w);
+            for (int axis = 0; axis < 3; axis++) {
+                from[axis] = 30 * (fibrad_random_next(&random) - .5);
+                if (o.periodic[axis] && k % 4 == 0) from[axis] += 1024 * (o.high[axis] - o.low[axis]);
+            }
+            const double begin = 10 * fibrad_random_next(&random);
+            /* it is cut at the ball */
+            const uint32_t met = fibrad_surroundings_met(scene, from, w, begin, &distance);
+            const bool expected = clear_by_steps(&o, from, w, begin, .003);
+            ck_assert(met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND);
+            if (!expected) ck_assert_uint_eq(met, FIBRAD_BEYOND);
+            missed += expected && met == FIBRAD_BEYOND; /* corners */
+            clear += expected, rays++;
+        }
+        free(scene);
+    }
+    ck_assert_int_lt(missed, rays / 50);
+    ck_assert_int_gt(clear, rays / 4);
+    ck_assert_int_lt(clear, 9 * rays / 10);
+    /* without any mark: clear where the box ends, not looked at all along where it never does */
+    for (int which = 0; which < 8; which++) {
+        const fibrad_occupancy none = {.high = {1, 1, 1},
+                                       .cells = {2, 2, 2},
+                                       .periodic = {which & 1, which >> 1 & 1, which >> 2 & 1},
+                                       .mark = (const uint64_t[]){0}};
+        p.config.occupancy = &none;
+        fibrad_scene *scene = part_scene(&p);
+        double distance;
+        for (int axis = 0; axis < 3; axis++) {
+            const double w[3] = {axis == 0, axis == 1 ? -1 : 0, axis == 2}, from[3] = {.3, .3, .3};
+            const uint32_t met = fibrad_surroundings_met(scene, from, w, 0, &distance);
+            ck_assert_uint_eq(met, none.periodic[axis] ? FIBRAD_BEYOND : FIBRAD_ESCAPED);
+        }
+        free(scene);
+    }
+    part_free(&p);
+    bed_free(&bed);
+}
+END_TEST
+
+/* What is reflected towards a sphere outside the known region is beyond. Beams see it. */
+START_TEST(reflections_end_at_the_known_region) {
+    struct bed bed = bed_of(3, (const double[][4]){{0, 0, 0, 1}, {0, 0, 2.5, 1}, {2.2, 0, 1.25, 1}});
+    struct part p = part_of(&bed, (fibrad_scene_config){.known_low = {-2, 0, 0}, .known_high = {1.1, 0, 0}});
+    fibrad_scene *scene = part_scene(&p);
+    const fibrad_occupancy none = {.high = {1, 1, 1}, .cells = {1, 1, 1}, .mark = (const uint64_t[]){0}};
+    p.config.occupancy = &none;
+    fibrad_scene *told = part_scene(&p);
+    const double e[] = {.5, 1e-3, .9}; /* the third absorbs what it receives, and receives from the second */
+    fibrad_work work = work_growing();
+    fibrad_row beam = row_of(3), row = row_of(3), clear = row_of(3);
+    const fibrad_exchange_rule rule = {.emissivity = e, .paths = 4000};
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.directions = 50, .points = 256}, &beam),
+                     FIBRAD_OK);
+    ck_assert_int_eq(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_exchange_row(told, &work, 0, &rule, &clear, NULL), FIBRAD_OK);
+    ck_assert_double_gt(row_factor(&beam, 2), .04);
+    ck_assert_double_eq(row_factor(&row, 2), .9 * row_factor(&beam, 2)); /* the first leg alone */
+    ck_assert_double_eq(row_factor(&clear, 2), row_factor(&row, 2));
+    ck_assert_double_gt(row.beyond, .3);
+    ck_assert_double_eq(clear.beyond, 0);
+    row_free(&beam), row_free(&row), row_free(&clear);
+    work_free(&work);
+    free(scene), free(told);
+    part_free(&p);
+    bed_free(&bed);
+}
+END_TEST
+
+/* One sphere that flies far above a bed must not hide the sky of those at its top. */
+START_TEST(a_flying_sphere_leaves_the_sky) {
+    struct bed bed = packing(700, .6, 1, .5, 11, true);
+    const double side = bed.period[0];
+    bed.period[2] = 0;
+    add_sphere(&bed, side / 2, side / 2, 100, 1);
+    struct part p = part_of(&bed, (fibrad_scene_config){0});
+    const fibrad_occupancy o = occupancy_of(&p, (double[3]){0, 0, -1}, (double[3]){side, side, 101.5}, 128);
+    fibrad_scene *told;
+    fibrad_scene *untold = part_scene(&p);
+    p.config.occupancy = &o;
+    told = part_scene(&p);
+    uint32_t top = 0;
+    for (uint32_t i = 0; i < p.n - 1; i++)
+        if (p.z[i] > p.z[top]) top = i;
+    for (int method = 0; method < METHODS; method++) {
+        struct named_row all = row_by(&p, told, top, method, 0), cut = row_by(&p, told, top, method, 5);
+        struct named_row lost = row_by(&p, untold, top, method, 5);
+        ck_assert_double_gt(all.row.escaped, .3);
+        ck_assert_double_lt(cut.row.escaped, all.row.escaped + .02);
+        ck_assert_double_gt(cut.row.escaped, .7 * all.row.escaped); /* not what leaves through cells of the bed */
+        ck_assert_double_lt(lost.row.escaped, .05);
+        ck_assert_double_gt(lost.row.beyond, .8 * all.row.escaped);
+        named_free(&all), named_free(&cut), named_free(&lost);
+    }
+    free(told), free(untold);
+    free((void *)(uintptr_t)o.mark);
+    part_free(&p);
+    bed_free(&bed);
+}
+END_TEST
+
+/* The known region ends half way up a can: a lone sphere sends a fraction there that is a solid angle over 4 pi. */
+START_TEST(a_known_region_ends_in_a_can) {
+    const fibrad_body body[] = {plane_at(2, 0, -40), plane_at(2, 1, 40), cylinder_at(0, 0, 10)};
+    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 35, 1}});
+    struct part p = part_of(
+        &bed, (fibrad_scene_config){.body = body, .bodies = 3, .known_low = {0, 0, -1000}, .known_high = {0, 0, 20}});
+    fibrad_scene *scene = part_scene(&p);
+    const double share = .5 * (1 - 20 / sqrt(500)), below = .5 * (1 - 40 / sqrt(1700));
+    for (int method = 0; method < METHODS; method++) {
+        struct named_row row = row_by(&p, scene, 0, method, 0);
+        const double tolerance = method < 3 ? 6e-3 : method == 3 ? .02 : 1; /* of exchange: sums alone */
+        ck_assert_double_eq_tol(row.row.beyond, share, tolerance);
+        ck_assert_double_eq_tol(row.row.body[0], below, tolerance);
+        ck_assert_double_eq(row.row.body[1],
+                            0); /* the wall and the sphere above cannot be told from what may be there */
+        ck_assert_double_gt(row.row.beyond, share / 2);
+        ck_assert_double_eq(row.row.escaped, 0);
+        named_free(&row);
+    }
+    /* an occupancy that says that nothing is there gives the wall back */
+    const fibrad_occupancy none = {
+        .low = {-20, -20, -60}, .high = {20, 20, 60}, .cells = {1, 1, 1}, .mark = (const uint64_t[]){0}};
+    fibrad_scene_config config = p.config;
+    p.config.occupancy = &none;
+    fibrad_scene *told = part_scene(&p);
+    for (int method = 0; method < METHODS; method++) {
+        struct named_row row = row_by(&p, told, 0, method, 0);
+        ck_assert_double_eq(row.row.beyond, 0);
+        ck_assert_double_gt(row.row.body[1], 0);
+        named_free(&row);
+    }
+    /* of a sphere beyond the region, all is beyond that meets no wall on the way out */
+    p.config = config;
+    struct named_row row = row_by(&p, scene, 1, 0, 0);
+    ck_assert_double_gt(row.row.beyond, .9);
+    named_free(&row);
+    free(scene), free(told);
+    part_free(&p);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("beyond");
+    TCase *tests = suite_case(suite, "beyond");
+    tcase_add_loop_test(tests, nothing_is_beyond_what_holds_all, 0, 2);
+    tcase_add_test(tests, cells_are_walked_one_by_one);
+    tcase_add_test(tests, reflections_end_at_the_known_region);
+    tcase_add_test(tests, a_flying_sphere_leaves_the_sky);
+    tcase_add_loop_test(tests, beyond_is_what_rays_say, 0, 1);
+    tcase_add_test(tests, a_known_region_ends_in_a_can);
+    return suite_run(suite);
+}

@@ -1,0 +1,590 @@
+/* test_cli_usage.c - usage of the program, pairs, trouble, rows of ranks. SPDX-License-Identifier: MIT */
+#include <time.h>
+
+#include "program.h"
+
+#define FRAME(number, marks, rows)                                                                                     \
+    "ITEM: TIMESTEP\n" number "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS " marks                                    \
+    "\n0 8\n0 8\n0 8\nITEM: ATOMS radius x y z id\n" rows
+
+#define W(n)                                                                                                           \
+    { .whole = (n) }
+
+START_TEST(help_and_version) {
+    SUCCEED("--help");
+    ck_assert(strstr(printed, "bed") && strstr(printed, "pair"));
+    SUCCEED("--version");
+    ck_assert_int_eq(strncmp(printed, "fibrad ", 7), 0);
+    SUCCEED("bed", "--help");
+    static const char *const options[] = {"--method",  "--directions", "--areas",    "--points", "--cutoff",
+                                          "--targets", "--threads",    "--periodic", "--frame",  "--positions",
+                                          "--raw",     "--plot",       "-o",         "[233]",    "Example"};
+    for (size_t k = 0; k < sizeof options / sizeof *options; ++k) ck_assert(strstr(printed, options[k]) != NULL);
+    ck_assert(strstr(printed, "--nf") && strstr(printed, "--rays"));
+    SUCCEED("pair", "1", "--help");
+    ck_assert(strstr(printed, "--obstacle") && strstr(printed, "--check") && strstr(printed, "--rays"));
+    ck_assert_str_eq(said, "");
+}
+END_TEST
+
+static const struct {
+    const char *arguments[9], *reason;
+} misuse[] = {
+    {{NULL}, "the command is missing"},
+    {{"bad"}, "unknown command bad; see fibrad --help"},
+    {{"--bad"}, "unknown option --bad; see fibrad --help"},
+    {{"bed"}, "FILE is missing"},
+    {{"bed", MONO, "--bad=3"}, "unknown option --bad; see fibrad bed --help"},
+    {{"bed", MONO, "-x"}, "unknown option -x; see fibrad bed --help"},
+    {{"pair", "1", "1", "0", "--raw"}, "unknown option --raw; see fibrad pair --help"},
+    {{"bed", MONO, "-o"}, "--output needs an argument"},
+    {{"bed", MONO, "--wall", "zmin,top"},
+     "--wall: 'top' is none of auto, box, xmin ... zmax, cylinder:X,Y,R, mesh:FILE and NAME=mesh:FILE"},
+    {{"bed", MONO, "--wall", "zmin,zmin=3"}, "--wall: zmin is named twice"},
+    {{"bed", MONO, "--wall", "xmin,xmax,ymin,ymax,zmin"}, "add zmax=open (zmax=H:open"},
+    {{"bed", MONO, "--wall", "cylinder:6,6,9"}, "add zmin=open,zmax=open"},
+    {{"bed", PERIODIC, "--wall", "zmin=0,zmin=open"}, "--wall: zmin is named twice"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=box:open=zmax",
+      "--wall-temperature=zmax=600"},
+     "--wall-temperature: zmax is an opening"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall=box:open=zmax", "--wall-emissivity=zmax=.5"},
+     "--wall-emissivity: zmax is an opening"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall=box:open=zmax", "--wall-temperature=600"},
+     "--ambient is missing: the bed is open"},
+    {{"bed", MONO, "--wall", "zmax=open", "--method", "surface"}, "--wall is for the methods beam, cast and mc"},
+    {{"bed", MONO, "--wall", "auto", "--method", "surface"}, "--wall is for the methods beam, cast and mc"},
+    {{"bed", PERIODIC, "--wall", "box"}, "lies across a periodic axis"},
+    {{"bed", MONO, "--raw=yes"}, "--raw takes no argument"},
+    {{"bed", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz, .vtp and .json"},
+    {{"bed", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
+    {{"bed", MONO, "--frame", "2:1"}, "--frame: '2:1' is none of K, all, A:B, A:B:STEP, -1"},
+    {{"bed", MONO, "--frame", "-2"}, "--frame: '-2' is none of"},
+    {{"bed", MONO, "--frame", "0:9:0"}, "--frame: '0:9:0' is none of"},
+    {{"bed", MONO, "--frame=all", "--plot", "bed.svg"}, "--plot shows one frame"},
+    {{"bed", MONO, "--length-unit", "furlong"}, "--length-unit: 'furlong' is none of m, cm, mm"},
+    {{"bed", MONO, "--length-unit", "lj"}, "--length-unit: 'lj' is none of"},
+    {{"bed", MONO, "--radius", "0"}, "--radius: 0 is not within"},
+    {{"bed", MONO, "--radius", "1:2,1:3"}, "--radius: type 1 is named twice"},
+    {{"bed", MONO, "--radius", "1:2,x"}, "is not a list like 1:0.5,2:0.8"},
+    {{"bed", MONO, "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
+    {{"bed", MONO, "--method", "surface", "--nf", "56"}, "--nf: 56 is not built in; 8, 13, 21"},
+    {{"bed", MONO, "--nf", "55"}, "are for --method surface"},
+    {{"bed", MONO, "--method", "magic"}, "'magic' is not a method"},
+    {{"bed", MONO, "--method", "exact"}, "--method exact is for pairs only"},
+    {{"bed", MONO, "--rays", "100"}, "--rays and --seed are for --method cast and mc"},
+    {{"bed", MONO, "--method=cast", "--rays", "0"}, "--rays: '0' is not a whole number from 1 to 4294967295"},
+    {{"bed", MONO, "--method=mc", "--seed", "-1"}, "--seed: '-1'"},
+    {{"bed", MONO, "--method=cast", "--directions", "100"}, "are for --method beam"},
+    {{"exchange", MONO}, "--emissivity is missing"},
+    {{"exchange", MONO, "--emissivity", "-1"}, "--emissivity: -1 is not within"},
+    {{"exchange", MONO, "--emissivity", "1:2"}, "--emissivity: 2 is not within"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=.5,.6"},
+     "--wall-emissivity: two numbers have no name"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmax=.5"},
+     "there is no wall zmax; there are zmin"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmin=1.5"}, "1.5 is not within"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall=zmin", "--wall-emissivity=zmin"},
+     "neither NAME=NUMBER nor a number"},
+    {{"exchange", MONO, "--emissivity=.5", "--wall-emissivity=.5"}, "--wall-emissivity: there are no walls"},
+    {{"exchange", MONO, "--emissivity", "1.5"}, "--emissivity: 1.5 is not within 0 and 1"},
+    {{"exchange", MONO, "--emissivity=.5", "--error=.1", "--rays=9"}, "leave out --rays"},
+    {{"exchange", MONO, "--emissivity=.5", "--raw", "--drop=.1"}, "--drop needs rows that are averaged"},
+    {{"exchange", MONO, "--emissivity=.5", "-o", "D.dump"}, "unknown ending; there are .csv, .mtx, .npz"},
+    {{"heat", "--emissivity=.5"}, "FILE is missing"},
+    {{"heat", MONO, "--temperature", "v_T"}, "--emissivity is missing"},
+    {{"heat", MONO, "--emissivity", ".5"}, "--temperature or --power is missing"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature", "-3"}, "--temperature: -3 is below absolute zero"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--patches=100"}, "--patches: 100 is not built in"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--model=fine"},
+     "'fine' is none of patches, spheres and factors"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--error=.1", "--points=64"}, "leave out --directions"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--wall-temperature=3,4"}, "there are no walls"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--temperature-unit=F"}, "'F' is neither K nor C"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=-1"}, "--ambient: -1 is not within"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9"}, "--ambient is missing: the bed is open"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=auto", "--wall-temperature=300,400"},
+     "two numbers have no name; name the walls, xmin=400 for example"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=3", "--wall=zmin"},
+     "--wall-temperature: zmin has no value; give zmin=NUMBER"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--power=4"}, "a sphere has one of them only"},
+    {{"heat", MONO, "--emissivity=.5", "--power=1e40"}, "--power: 1e40 is not within"},
+    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-power=zmin=1",
+      "--wall-temperature=zmin=3"},
+     "zmin has both a temperature and a power"},
+    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-power=zmin=1"},
+     "zmin is endless and needs a --wall-temperature"},
+    {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin", "--wall-temperature=isolated"},
+     "'isolated' is neither NAME=NUMBER nor a number"},
+    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "-o", "q.mtx"},
+     "unknown ending; there are .csv, .vtp, .json, .dump"},
+    {{"conductivity", MONO}, "--emissivity is missing"},
+    {{"conductivity", "--emissivity", ".5"}, "FILE is missing"},
+    {{"join"}, "FILE is missing"},
+    {{"join", MONO, "-o", "D.dump"}, "unknown ending; there are .csv, .mtx, .npz"},
+    {{"bed", MONO, "--directions", "7"}, "'7' is not a whole number from 8 to 65536"},
+    {{"bed", MONO, "--error", "0"}, "--error: 0 is not within 1e-07 and 1"},
+    {{"bed", MONO, "--error", "1e-8"}, "--error: 1e-8 is not within 1e-07 and 1"},
+    {{"bed", MONO, "--error", "small"}, "--error: 'small' is not a number"},
+    {{"bed", MONO, "--error", "nan"}, "--error: 'nan' is not a number"},
+    {{"bed", MONO, "--error", ".01", "--directions", "100"}, "leave out --directions"},
+    {{"bed", MONO, "--error", ".01", "--method", "mc"}, "--error is for --method beam"},
+    {{"bed", MONO, "--directions", "65537"}, "--directions: '65537'"},
+    {{"bed", MONO, "--directions", "1e3"}, "--directions: '1e3'"},
+    {{"bed", MONO, "--directions", "-8"}, "--directions: '-8'"},
+    {{"bed", MONO, "--directions", ""}, "--directions: ''"},
+    {{"bed", MONO, "--points", "100"}, "64, 128 and 256 are"},
+    {{"bed", MONO, "--areas", "some"}, "'some' is neither exact nor points"},
+    {{"bed", MONO, "--areas", "exact", "--points", "64"}, "--points contradicts --areas exact"},
+    {{"bed", MONO, "--cutoff", "far"}, "--cutoff: 'far' is not a number"},
+    {{"bed", MONO, "--cutoff", "0"}, "--cutoff: 0 is not within"},
+    {{"bed", MONO, "--cutoff", "nan"}, "--cutoff: 'nan' is not a number"},
+    {{"bed", MONO, "--threads", "0"}, "--threads: '0'"},
+    {{"bed", MONO, "--periodic", "1,2"}, "three lengths LX,LY,LZ"},
+    {{"bed", MONO, "--periodic", "1,2,-3"}, "three lengths LX,LY,LZ"},
+    {{"bed", MONO, "--periodic", "1,2,3,4"}, "more than 3 numbers"},
+    {{"bed", MONO, "--periodic", "1,,3"}, "does not begin with a number"},
+    {{"bed", MONO, "--targets", ""}, "is not a list like 3,7,10-19"},
+    {{"bed", MONO, "--targets", "1,,2"}, "is not a list like"},
+    {{"bed", MONO, "--targets", "5-3"}, "is not a list like"},
+    {{"bed", MONO, "--targets", "3-"}, "is not a list like"},
+    {{"bed", MONO, "--targets", "99999999999999999999"}, "is not a list like"},
+    {{"bed", MONO, "--targets", "0"},
+     "there is no sphere 0 in frame 0 of tests/data/mono2000.dump; its spheres are 1 to 2000"},
+    {{"bed", MONO, "--targets", "1-2000", "--targets=7,5000000000"}, "there is no sphere 5000000000"},
+    {{"bed", MONO, "--targets", "1990-2001"}, "there is no sphere 2001 in frame 0 of"},
+    {{"bed", MONO, "--targets", "0-9"}, "there is no sphere 0 in frame 0 of"},
+    {{"bed", MONO, "--positions", "--targets", "0-2000"}, "its spheres are 0 to 1999"},
+    {{"pair", "1", "1"}, "R1, R2 and GAP are needed"},
+    {{"pair", "1", "1", "0", "0"}, "three lengths are allowed, not also '0'"},
+    {{"pair", "1", "-1", "0"}, "R2: -1 is not within"},
+    {{"pair", "1", "1", "x"}, "GAP: 'x' is not a number"},
+    {{"pair", "1", "1", "-2"}, "one sphere lies inside the other"},
+    {{"pair", "1", "1", "0", "--no-correction"}, "are for --method surface"},
+    {{"pair", "1", "1", "0", "--obstacle", "1,2,3"}, "is not X,Y,Z,R"},
+    {{"pair", "1", "1", "0", "--obstacle", "1,2,3,0"}, "is not X,Y,Z,R"},
+    {{"pair", "1", "1", "0", "--directions", "100"}, "are for --method beam"},
+    {{"pair", "1", "1", "0", "--seed", "3"}, "--rays and --seed are for --method cast and mc"},
+    {{"pair", "1", "1", "0", "--method", "beam", "--check"}, "--check is for the exact factor"},
+    {{"pair", "1", "1", "1", "--method", "beam", "--obstacle", "0,0,0.5,1"}, "sphere 1 and obstacle 1"},
+    {{"pair", "1", "1", "1", "--obstacle", "0,0,3,1"}, "sphere 2 and obstacle 1"},
+};
+
+START_TEST(bad_usage) {
+    ck_assert_int_eq(finish(start(misuse[_i].arguments)), 2);
+    expect_message("", misuse[_i].reason);
+    ck_assert_str_eq(printed, "");
+}
+END_TEST
+
+static double pair(const char *r1, const char *r2, const char *gap) {
+    SUCCEED("pair", r1, r2, gap, "--method=exact");
+    return value_of("F12");
+}
+
+START_TEST(exact_pair) {
+    const double pi = 3.14159265358979323846;
+    ck_assert_double_eq_tol(pair("1", "1", "0"), 0.5 - 4 / (3 * pi), 1e-15);
+    ck_assert_double_eq_tol(pair("1", "1", "1"), 0.0295903122505504314, 1e-16);
+    ck_assert_double_eq_tol(pair("1", "1", "30"), 2.442599800579042e-4, 1e-18);
+    ck_assert_double_eq_tol(pair("1", "0.3", ".05"), 0.09 * pair("0.3", "1", ".05"), 1e-16);
+    ck_assert_double_gt(pair("1", "1", "-.01"), pair("1", "1", "0"));
+}
+END_TEST
+
+START_TEST(exact_pair_checked) {
+    SUCCEED("pair", "1", "0.3", "0.05", "--check");
+    const double f12 = value_of("F12");
+    ck_assert_double_eq(value_of("kernel"), f12);
+    ck_assert_double_eq_tol(value_of("gsl_polar") / f12, 1, 1e-12);
+    ck_assert_double_eq_tol(value_of("gsl_lens") / f12, 1, 1e-12);
+    ck_assert_ptr_nonnull(strstr(printed, "difference"));
+    char last[60];
+    snprintf(last, sizeof last, "\nF12 %.17g\n", f12);
+    ck_assert_str_eq(printed + strlen(printed) - strlen(last), last);
+    SUCCEED("pair", "1", "0.3", "-0.05", "--check");
+    ck_assert_double_eq_tol(value_of("gsl_lens") / value_of("F12"), 1, 1e-12);
+}
+END_TEST
+
+START_TEST(beam_pair) {
+    SUCCEED("pair", "1", "1", "0", "--method", "beam", "--directions", "10000");
+    ck_assert_double_eq_tol(value_of("F12"), 0.0755868184216124, 1e-6);
+    SUCCEED("pair", "1", "1", "0", "--method", "beam", "--directions", "10000", "--points", "256");
+    ck_assert_double_eq_tol(value_of("F12"), 0.0755868184216124, 1e-3);
+}
+END_TEST
+
+START_TEST(cast_pair) {
+    SUCCEED("pair", "1", "1", "0", "--method", "cast", "--rays", "200000");
+    ck_assert_double_eq_tol(value_of("F12"), 0.0755868184216124, 5e-4);
+    ck_assert_double_eq_tol(value_of("mean_ray_length"), 0.359, 0.005);
+    ck_assert_double_eq_tol(value_of("mean_angle") * 57.29578, 30.84, 0.2);
+    ck_assert_double_eq(value_of("rays"), 200000);
+    SUCCEED("pair", "1", "1", "0", "--method", "mc", "--rays", "200000", "--seed", "3");
+    const double one = value_of("F12");
+    ck_assert_double_eq_tol(one, 0.0755868184216124, 2.5e-3);
+    SUCCEED("pair", "1", "1", "0", "--method", "mc", "--rays", "200000", "--seed", "4");
+    ck_assert_double_ne(value_of("F12"), one);
+    SUCCEED("pair", "1", "1", "2000", "--method", "cast", "--rays", "10");
+    ck_assert_double_eq(value_of("F12"), 0);
+}
+END_TEST
+
+START_TEST(blocked_pair) {
+    SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4");
+    const double exact = value_of("F12");
+    ck_assert_double_lt(exact, 0.9 * pair("1", "1", "2"));
+    SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4", "--method", "beam", "--directions", "20000");
+    ck_assert_double_eq_tol(value_of("F12"), exact, 1e-6);
+    SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4", "--method", "cast", "--rays", "200000");
+    ck_assert_double_eq_tol(value_of("F12"), exact, 4e-4);
+    SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4", "--method", "surface", "--nf", "610");
+    ck_assert_double_eq_tol(value_of("F12") / exact, 1, 1e-3);
+    SUCCEED("pair", "1", "1", "0", "--method", "surface", "--no-correction");
+    ck_assert_double_eq_tol(value_of("F12") / 0.0755868184216124, 1 - .0475649, 1e-6); /* docs/reproduction.md */
+    SUCCEED("pair", "1", "1", "2", "--obstacle", "50,0,2,0.4");
+    const double beside = value_of("F12");
+    ck_assert_double_eq_tol(beside, pair("1", "1", "2"), 1e-9);
+}
+END_TEST
+
+static const struct {
+    const char *text, *place, *reason;
+} bad_beds[] = {
+    {"", ": ", "no spheres"},
+    {"x,y,z,r\n0,0,0,1\n3,nan,0,1\n", ":3: ", "y is not finite"},
+    {"x,y,z,r\n0,0,foo,1\n", ":2: ", "z is not a number: 'foo'"},
+    {"x,y,r\n0,0,1\n", ":1: ", "no column z"},
+    {"x,y,z,r\n0,0,0,-1\n", ":2: ", "the radius is -1"},
+    {"x,y,z,r\n0,0,0,1\n5,0,0,1\n\n0,0,0,1\n", ":5: ", "sphere 2 has the same centre as sphere 0 of line 2"},
+    {"x,y,z,r\n0,0,0,1\n5,0,0,1\n4.5,0,0,2\n", ":4: ", "the centre of one lies inside the other"},
+    {"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n9\nITEM: ATOMS x y z radius\n0 0 0 1\n", ":6: ", "9 were declared"},
+    {"# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n1 2 3 1 2 3\nPOINT_DATA 2\nSCALARS r "
+     "float\n"
+     "LOOKUP_TABLE default\n1 1\n",
+     ": sphere", "sphere 0 has the same centre as sphere 1\n"}, /* on no line */
+    {FRAME("0", "xy xz yz ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n"), ":6: ", "bounds"},
+    {FRAME("0", "ff pp ff", "1 4 0 4 70\n1 4 8 4 5\n"), ":11: ", "line 10"}, /* the same place in the box */
+};
+
+START_TEST(bad_input) {
+    char place[300];
+    const char *bed = write_file("bad.bed", bad_beds[_i].text);
+    ck_assert_int_eq(RUN("bed", bed, "-o", in_folder("out.csv"), "--plot", in_folder("out.svg")), 3);
+    snprintf(place, sizeof place, "%s%s", bed, bad_beds[_i].place);
+    expect_message(place, bad_beds[_i].reason);
+    ck_assert_str_eq(printed, "");
+    ck_assert_int_eq(remove_files(0), 1); /* bad.bed alone */
+}
+END_TEST
+
+union word {
+    uint64_t whole;
+    double real;
+};
+
+#define R(x)                                                                                                           \
+    { .real = (x) }
+
+#define FAR 1099511627781u /* an id of more than 32 bits */
+
+/* The rows of three grey spheres with a wall, 10 and FAR of rank 0, 30 of rank 1. */
+enum { RANKS = 2, WORDS = 42 };
+
+static const union word rank_rows[RANKS][WORDS] = {{W(0x3153574f52424946),
+                                                    W(0),
+                                                    W(2),
+                                                    W(700),
+                                                    W(2),
+                                                    W(3),
+                                                    W(1),
+                                                    W(1),
+                                                    R(10), /* head; "FIBROWS1" */
+                                                    W(10),
+                                                    W(FAR),
+                                                    W(0),
+                                                    W(2),
+                                                    W(3),
+                                                    W(30),
+                                                    W(FAR),
+                                                    W(10), /* id, start, col */
+                                                    R(.25),
+                                                    R(.125),
+                                                    R(.0625),
+                                                    R(.5),
+                                                    R(.75),
+                                                    R(.125),
+                                                    R(.125), /* f, body, escaped */
+                                                    R(0),
+                                                    R(.0625),
+                                                    R(.01),
+                                                    R(.02),
+                                                    R(1),
+                                                    R(.5),
+                                                    R(.5),
+                                                    R(.5), /* beyond, error, radius, emissivity */
+                                                    R(0),
+                                                    R(0),
+                                                    R(0),
+                                                    R(3),
+                                                    R(0),
+                                                    R(0)},
+                                                   {W(0x3153574f52424946),
+                                                    W(1),
+                                                    W(2),
+                                                    W(700),
+                                                    W(1),
+                                                    W(1),
+                                                    W(1),
+                                                    W(1),
+                                                    R(10),
+                                                    W(30),
+                                                    W(0),
+                                                    W(1),
+                                                    W(10),
+                                                    R(.375),
+                                                    R(.5),
+                                                    R(.125),
+                                                    R(0),
+                                                    R(.01),
+                                                    R(1),
+                                                    R(.75),
+                                                    R(0),
+                                                    R(2.5),
+                                                    R(0)}};
+
+static const size_t rank_words[RANKS] = {38, 23};
+
+static const char *const rank_names[RANKS] = {"a.0.rows", "a.1.rows"};
+
+static const char *write_words(const char *name, const union word *words, size_t bytes) {
+    const char *path = in_folder(name);
+    FILE *file = fopen(path, "wb");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_uint_eq(fwrite(words, 1, bytes, file), bytes);
+    ck_assert_int_eq(fclose(file), 0);
+    return path;
+}
+
+/* As many walls as a scene may have. */
+START_TEST(joined_with_many_walls) {
+    enum { WALLS = 32 };
+    union word words[9 + 1 + 2 + WALLS + 8];
+    const union word head[] = {
+        W(0x3153574f52424946), W(0), W(1), W(700), W(1), W(0), W(WALLS), W(0), R(0), W(3), W(0), W(0)};
+    memset(words, 0, sizeof words);
+    memcpy(words, head, sizeof head);
+    for (int k = 0; k < WALLS; k++) words[12 + k].real = 1. / WALLS;
+    words[12 + WALLS + 3].real = words[12 + WALLS + 4].real = 1; /* radius, emissivity */
+    const char *path = write_words("many.0.rows", words, sizeof words);
+    SUCCEED("join", path, "--raw", "-o", in_folder("D.csv"));
+}
+END_TEST
+
+START_TEST(joined) {
+    const char *zero = write_words(rank_names[0], rank_rows[0], 8 * rank_words[0]);
+    const char *one = write_words(rank_names[1], rank_rows[1], 8 * rank_words[1]);
+    const char *csv = in_folder("D.csv"), *mtx = in_folder("D.mtx");
+    const char *json = in_folder("D.json");
+    SUCCEED("join", one, zero, "--raw", "--positions", "-o", csv, "--json", json);
+    ck_assert_double_eq(value_of("spheres"), 3);
+    ck_assert_double_eq(value_of("nonzeros"), 4);
+    ck_assert_double_eq_tol(json_of(json, "beyond_mean"), .0625 / 3, 1e-16);
+    ck_assert_double_eq_tol(json_of(json, "wall_1_F"), 1.75 / 3, 1e-15);
+    ck_assert_double_eq(value_of("closure_max"), 0);
+    ck_assert_double_eq_tol(json_of(json, "reciprocity_max"), (.75 * .375 - .5 * .25) / .75, 1e-15);
+    char *text = read_file(csv);
+    ck_assert_str_eq(text, "i,j,D,body\n0,1,0.25,\n0,2,0.125,\n0,-1,0.125,surroundings\n0,-2,0.5,wall_1\n1,0,0.375,\n"
+                           "1,-1,0.125,surroundings\n1,-2,0.5,wall_1\n2,0,0.0625,\n2,-1,0.125,surroundings\n"
+                           "2,-2,0.75,wall_1\n2,-3,0.0625,beyond\n");
+    free(text);
+    SUCCEED("join", zero, one, "--raw", "-o", csv);
+    text = read_file(csv);
+    ck_assert_ptr_nonnull(strstr(text, "\n10,1099511627781,0.125,\n10,-1,0.125,surroundings\n"));
+    free(text);
+    SUCCEED("join", zero, one, "-o", mtx);
+    ck_assert_double_lt(value_of("closure_max"), 1e-14);
+    ck_assert_double_lt(value_of("reciprocity_max"), 1e-14);
+    text = read_file(mtx);
+    ck_assert_ptr_nonnull(strstr(text, "\n% ids: 10 30 1099511627781\n3 3 4\n1 2 "));
+    free(text);
+    SUCCEED("join", zero, one, "--raw", "-o", in_folder("D.vtp"), "-o", "-", "--format", "csv");
+    text = read_file(csv);
+    ck_assert_str_eq(printed, text);
+    ck_assert_ptr_nonnull(strstr(said, "spheres 3\n"));
+    free(text);
+    text = read_file(in_folder("D.vtp"));
+    ck_assert(strstr(text, "Name=\"wall_1\"") && strstr(text, "Name=\"id\""));
+    free(text);
+    SUCCEED("join", zero, one, "--quiet");
+    ck_assert_str_eq(printed, "");
+    ck_assert_int_eq(RUN("join", one, "-o", one), 2);
+    expect_message(one, "unknown ending");
+    ck_assert_int_eq(RUN("join", zero, csv, "-o", csv), 2);
+    expect_message(csv, "is read in this run");
+    const char *both = in_folder("both.json");
+    ck_assert_int_eq(RUN("join", zero, one, "-o", both, "--json", both), 2); /* the one would replace the other */
+    expect_message(both, "is given twice");
+    ck_assert_int_eq(RUN("join", zero, one, "--json", one), 2);
+    expect_message(one, "is read in this run");
+    SUCCEED("join", zero, one, "--json", "-");
+    ck_assert_int_eq(strncmp(printed, "{\"fibrad\"", 9), 0);
+    ck_assert_ptr_nonnull(strstr(said, "\nspheres 3\n"));
+    remove_files(0);
+}
+END_TEST
+
+/* One word of one rank's file changed. */
+static const struct {
+    int rank, word;
+    union word value;
+    const char *reason;
+} damaged_rows[] = {
+    {0, 0, W(7), "is no file of rows"},
+    {1, 1, W(0), "has the rows of rank 0, as"},
+    {1, 2, W(3), "has another number of ranks than"},
+    {1, 3, W(701), "has another step than"},
+    {1, 4, W(2), "ends too early, after 184 of 272 bytes"},
+    {0, 4, W(1), "has 88 bytes too many"},
+    {0, 4, W(UINT64_MAX / 2), "ends too early"},
+    {0, 5, W(UINT64_MAX / 2), "ends too early"},
+    {0, 6, W(UINT64_MAX / 2), "its head is damaged"},
+    {1, 7, W(0), "has another kind of factors than"},
+    {1, 8, R(9), "has another cutoff than"},
+    {1, 8, R(NAN), "its head is damaged"},
+    {1, 9, W(10), "id 10 is there twice, also in"},
+    {0, 12, W(1), "id 1099511627781: a factor of its row is not within"}, /* FAR, then 10 */
+    {0, 12, W(4), "the starts of its rows are damaged"},
+    {0, 11, W(1), "the starts of its rows are damaged"},
+    {0, 15, W(99), "id 10 has an entry for id 99, which has no row"},
+    {0, 17, R(NAN), "id 10: a factor"},
+    {0, 20, R(-1), "id 10: a factor"},
+    {1, 15, R(INFINITY), "id 30: a factor"},
+    {0, 26, R(INFINITY), "id 10: its error is not finite"},
+    {0, 28, R(0), "id 10: its radius"},
+    {0, 31, R(1.5), "id 1099511627781: its emissivity"},
+    {0, 35, R(NAN), "id 1099511627781: its centre"},
+};
+
+START_TEST(bad_rows) {
+    const char *files[RANKS];
+    for (int k = 0; k < RANKS; ++k) {
+        union word words[WORDS];
+        memcpy(words, rank_rows[k], sizeof words);
+        if (k == damaged_rows[_i].rank) words[damaged_rows[_i].word] = damaged_rows[_i].value;
+        files[k] = write_words(rank_names[k], words, 8 * rank_words[k]);
+    }
+    ck_assert_int_eq(RUN("join", files[0], files[1], "-o", in_folder("D.csv")), 3);
+    expect_message(files[damaged_rows[_i].rank], damaged_rows[_i].reason);
+    ck_assert_str_eq(printed, "");
+    ck_assert_int_eq(remove_files(0), RANKS); /* no D.csv */
+}
+END_TEST
+
+START_TEST(missing_rows) {
+    const char *zero = write_words(rank_names[0], rank_rows[0], 8 * rank_words[0]);
+    const char *one = write_words(rank_names[1], rank_rows[1], 8 * rank_words[1]);
+    ck_assert_int_eq(RUN("join", zero), 3);
+    expect_message(zero, "is one of 2 files; the file of rank 1 is missing");
+    ck_assert_int_eq(RUN("join", one), 3);
+    expect_message(one, "the file of rank 0 is missing");
+    ck_assert_int_eq(RUN("join", zero, one, zero), 3);
+    expect_message(zero, "has the rows of rank 0, as");
+    ck_assert_int_eq(RUN("join", zero, "no/such.rows"), 4);
+    expect_message("no/such.rows: ", "No such file");
+    union word near[WORDS];
+    memcpy(near, rank_rows[1], sizeof near);
+    near[21].real = .5; /* 30 inside 10 */
+    ck_assert_int_eq(RUN("join", zero, write_words(rank_names[1], near, 8 * rank_words[1])), 3);
+    expect_message("", "ids 10 and 30: ");
+    remove_files(0);
+}
+END_TEST
+
+START_TEST(file_trouble) {
+    const char *bed = write_file("a.csv", "x,y,z,r\n0,0,0,1\n3,0,0,1\n");
+    ck_assert_int_eq(RUN("bed", "no/such.dump"), 4);
+    expect_message("no/such.dump: ", "No such file");
+    ck_assert_int_eq(RUN("bed", folder), 4);
+    expect_message(folder, "directory");
+    ck_assert_int_eq(RUN("bed", bed, "-o", "no/such/F.csv"), 4);
+    expect_message("no/such/F.csv: ", "No such file");
+    output = "/dev/full";
+    ck_assert_int_eq(RUN("bed", bed), 4);
+    output = NULL;
+    expect_message("standard output", "No space left");
+    ck_assert_int_eq(remove_files(0), 1);
+}
+END_TEST
+
+/* A disc that fills up, as far as a limit on the size of files can play it. */
+START_TEST(full_disc) {
+    struct rlimit before;
+    ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const struct rlimit limit = {100000, before.rlim_max};
+    ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "21", "-o", in_folder("F.csv")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.csv: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.svg")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.svg: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(RUN("bed", MONO, "--directions", "8", "--plot", in_folder("F.png")), 4);
+    ck_assert_ptr_nonnull(strstr(said, "F.png: cannot be written: File too large"));
+    ck_assert_int_eq(remove_files(0), 0);
+    ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &before), 0);
+}
+END_TEST
+
+/* Whether a process has a file of the test's folder open besides standard output and error. It may have no name. */
+static int has_output_open(pid_t process) {
+    char files[64], place[400];
+    int found = 0;
+    snprintf(files, sizeof files, "/proc/%d/fd", (int)process);
+    DIR *list = opendir(files);
+    for (struct dirent *entry; list && (entry = readdir(list));) {
+        char path[400];
+        snprintf(path, sizeof path, "%s/%.50s", files, entry->d_name);
+        const ssize_t length = readlink(path, place, sizeof place - 1);
+        place[length > 0 ? length : 0] = 0;
+        const char *in = strstr(place, strrchr(folder, '/'));
+        found |= in != NULL && strstr(in, "/std") == NULL;
+    }
+    if (list) closedir(list);
+    return found;
+}
+
+/* Far more work than a test has time for, stopped when the program has its output open. */
+START_TEST(interrupted) {
+    static const int signals[] = {SIGINT, SIGTERM};
+    const char *out = in_folder("F.csv");
+    const pid_t process = start(LIST("bed", MONO, "--directions", "65536", "-o", out));
+    while (!has_output_open(process)) nanosleep(&(struct timespec){0, 10000000}, NULL);
+    ck_assert_int_eq(kill(process, signals[_i]), 0);
+    ck_assert_int_eq(finish(process), 128 + signals[_i]);
+    expect_message("", "interrupted");
+    ck_assert_int_eq(remove_files(0), 0);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("cli usage");
+    TCase *tests = suite_case(suite, "cli usage");
+    tcase_add_checked_fixture(tests, make_folder, remove_folder);
+    tcase_add_test(tests, help_and_version);
+    tcase_add_loop_test(tests, bad_usage, 0, (int)(sizeof misuse / sizeof *misuse));
+    tcase_add_test(tests, exact_pair);
+    tcase_add_test(tests, exact_pair_checked);
+    tcase_add_test(tests, beam_pair);
+    tcase_add_test(tests, cast_pair);
+    tcase_add_test(tests, blocked_pair);
+    tcase_add_loop_test(tests, bad_input, 0, (int)(sizeof bad_beds / sizeof *bad_beds));
+    tcase_add_test(tests, joined);
+    tcase_add_test(tests, joined_with_many_walls);
+    tcase_add_loop_test(tests, bad_rows, 0, (int)(sizeof damaged_rows / sizeof *damaged_rows));
+    tcase_add_test(tests, missing_rows);
+    tcase_add_test(tests, file_trouble);
+    tcase_add_test(tests, full_disc);
+    tcase_add_loop_test(tests, interrupted, 0, 2);
+    return suite_run(suite);
+}

@@ -1,0 +1,259 @@
+/* test_flow.c - powers from rows, and the errors of these functions. SPDX-License-Identifier: MIT */
+#include "part_beds.h"
+
+struct powers {
+    fibrad_flow flow;
+    double *weight, *emission, *power, body_emission[BODIES_MOST], body_power[BODIES_MOST];
+};
+
+static struct powers powers_of(const struct bed *bed, const double *emissivity) {
+    struct powers p = {.weight = calloc(bed->n, sizeof(double)),
+                       .emission = calloc(bed->n, sizeof(double)),
+                       .power = calloc(bed->n, sizeof(double))};
+    fibrad_random random = fibrad_random_start(2, 3);
+    for (uint32_t i = 0; i < bed->n; i++) {
+        p.weight[i] = 4 * 3.14159265358979323846 * bed->r[i] * bed->r[i] * emissivity[i];
+        p.emission[i] = 100 + 900 * fibrad_random_next(&random);
+    }
+    for (int b = 0; b < BODIES_MOST; b++) p.body_emission[b] = 300 + 100 * b;
+    p.flow.surroundings_emission = 77;
+    return p;
+}
+
+static void powers_point(struct powers *p) {
+    p->flow.weight = p->weight, p->flow.emission = p->emission, p->flow.power = p->power;
+    p->flow.body_emission = p->body_emission, p->flow.body_power = p->body_power;
+}
+
+static void powers_free(struct powers *p) { free(p->weight), free(p->emission), free(p->power); }
+
+static fibrad_rows exchange_rows(const fibrad_scene *scene, uint32_t n, const fibrad_exchange_rule *rule) {
+    fibrad_work work = work_growing();
+    fibrad_rows rows = {.memory = memory_growing()};
+    for (uint32_t i = 0; i < n; i++)
+        ck_assert_int_eq(fibrad_exchange_row(scene, &work, i, rule, &(fibrad_row){.rows = &rows}, NULL), FIBRAD_OK);
+    work_free(&work);
+    return rows;
+}
+
+/* Powers add up to zero; nothing flows between equals; a part of the rows gives a part of the powers. */
+START_TEST(what_one_gains_others_lose) {
+    struct bed bed = packing(60, .6, 1, .5, 9, false);
+    const fibrad_body body[] = {plane_at(2, 0, -1), plane_at(0, 0, -1)};
+    const fibrad_plane open[] = {{0, 1, 9}, {1, 0, -2}, {1, 1, 9}, {2, 1, 9}};
+    fibrad_scene *scene =
+        scene_with(&bed, &(fibrad_scene_config){.body = body, .bodies = 2, .opening = open, .openings = 4});
+    double e[60];
+    for (int i = 0; i < 60; i++) e[i] = .4 + .01 * i;
+    fibrad_rows rows = exchange_rows(
+        scene, bed.n,
+        &(fibrad_exchange_rule){.emissivity = e, .body_emissivity = wall_emissivity, .seed = 5, .cutoff = 3});
+    struct powers p = powers_of(&bed, e);
+    powers_point(&p);
+    ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 2, &p.flow), FIBRAD_OK);
+    double sum = p.flow.surroundings_power + p.body_power[0] + p.body_power[1], size = fabs(sum);
+    for (uint32_t i = 0; i < bed.n; i++) sum += p.power[i], size += fabs(p.power[i]);
+    ck_assert_double_eq_tol(sum / size, 0, 1e-14);
+    ck_assert(p.power[0] != 0 && p.body_power[0] != 0 && p.body_power[1] != 0 && p.flow.surroundings_power != 0);
+    /* twice the same: added to */
+    struct powers twice = powers_of(&bed, e);
+    powers_point(&twice);
+    for (int k = 0; k < 2; k++) ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 2, &twice.flow), FIBRAD_OK);
+    for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(twice.power[i], 2 * p.power[i], 1e-12 * size);
+    /* row by row, by hand */
+    double *expected = calloc(bed.n, sizeof *expected);
+    const struct matrix raw = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
+    for (uint32_t i = 0; i < bed.n; i++) {
+        const fibrad_row row = matrix_row(&raw.factors, i);
+        ck_assert_double_gt(row.beyond, 0);
+        const double weight = p.weight[i] / (1 - row.beyond);
+        for (uint32_t k = 0; k < row.length; k++) {
+            const double gained = .5 * weight * row.f[k] * (p.emission[row.col[k]] - p.emission[i]);
+            expected[i] += gained, expected[row.col[k]] -= gained;
+        }
+        for (int b = 0; b < 2; b++) expected[i] += weight * row.body[b] * (p.body_emission[b] - p.emission[i]);
+        expected[i] += weight * row.escaped * (77 - p.emission[i]);
+    }
+    for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(p.power[i], expected[i], 1e-13 * size);
+    /* equals */
+    struct powers same = powers_of(&bed, e);
+    powers_point(&same);
+    for (uint32_t i = 0; i < bed.n; i++) same.emission[i] = 77;
+    for (int b = 0; b < 2; b++) same.body_emission[b] = 77;
+    ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 2, &same.flow), FIBRAD_OK);
+    for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq(same.power[i], 0);
+    ck_assert(same.body_power[0] == 0 && same.body_power[1] == 0 && same.flow.surroundings_power == 0);
+    free(expected), free((void *)(uintptr_t)raw.matrix);
+    powers_free(&p), powers_free(&twice), powers_free(&same);
+    rows_free(&rows);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* In a closed box of spheres alone the powers are those of the averaged matrix. */
+START_TEST(powers_are_those_of_the_averaged_matrix) {
+    struct bed bed = packing(80, .7, 1, .5, 3, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    double e[80];
+    for (int i = 0; i < 80; i++) e[i] = .5 + .005 * i;
+    fibrad_rows rows = exchange_rows(scene, bed.n, &(fibrad_exchange_rule){.emissivity = e});
+    struct powers p = powers_of(&bed, e);
+    powers_point(&p);
+    ck_assert_int_eq(fibrad_rows_flow(&rows, bed.n, 0, &p.flow), FIBRAD_OK);
+    const struct matrix m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.emissivity = e});
+    double largest = 0;
+    for (uint32_t i = 0; i < bed.n; i++) largest = fmax(largest, fabs(p.power[i]));
+    for (uint32_t i = 0; i < bed.n; i++) {
+        const fibrad_row row = matrix_row(&m.factors, i);
+        double power = 0;
+        for (uint32_t k = 0; k < row.length; k++)
+            power += p.weight[i] * row.f[k] * (p.emission[row.col[k]] - p.emission[i]);
+        ck_assert_double_eq_tol(p.power[i], power,
+                                .02 * largest); /* the matrix brings sums to those of raw rows, too */
+    }
+    free((void *)(uintptr_t)m.matrix);
+    powers_free(&p);
+    rows_free(&rows);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(bad_regions_and_occupancies_are_refused) {
+    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
+    struct part p = part_of(&bed, (fibrad_scene_config){0});
+    const uint64_t mark[1] = {1};
+    const fibrad_occupancy good = {.high = {1, 1, 1}, .cells = {4, 4, 4}, .mark = mark};
+    fibrad_occupancy o[9];
+    for (int k = 0; k < 9; k++) o[k] = good;
+    o[1].high[1] = 0, o[2].low[2] = NAN, o[3].high[0] = INFINITY, o[4].cells[0] = 0, o[5].cells[2] = (1 << 20) + 1;
+    o[6].periodic[1] = 2, o[7].low[0] = 2, o[8].low[1] = -2e150;
+    fibrad_scene *scene;
+    for (int k = 0; k < 9; k++) {
+        p.config.occupancy = &o[k];
+        ck_assert_int_eq(part_scene_try(&p, &scene), k == 0 ? FIBRAD_OK : FIBRAD_E_ARGUMENT);
+        if (k == 0) free(scene);
+    }
+    p.config.occupancy = NULL;
+    static const double bad[][2] = {{1, 0}, {NAN, NAN}, {0, NAN}, {NAN, 1}, {-INFINITY, 0}, {0, INFINITY}, {0, 2e150}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        p.config.known_low[1] = bad[k][0], p.config.known_high[1] = bad[k][1];
+        ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_E_ARGUMENT);
+    }
+    p.config.known_low[1] = -5, p.config.known_high[1] = 5;
+    ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_OK);
+    fibrad_work work = work_growing();
+    fibrad_row row = row_of(2);
+    ck_assert_int_eq(fibrad_surface_row(scene, &work, 0, NULL, &row), FIBRAD_E_UNSUPPORTED);
+    ck_assert_uint_eq(fibrad_heat_size(NULL, scene), 0);
+    static unsigned char block[1 << 20];
+    fibrad_heat *heat;
+    ck_assert_int_eq(fibrad_heat_init(&heat, block, sizeof block, NULL, scene), FIBRAD_E_UNSUPPORTED);
+    fibrad_scene *plain = scene_of(&bed, FIBRAD_ISA_BEST);
+    ck_assert_int_eq(fibrad_heat_init(&heat, block, sizeof block, NULL, plain), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_heat_move(heat, scene), FIBRAD_E_UNSUPPORTED);
+    free(plain);
+    free(scene);
+    p.config.period[1] = 50;
+    ck_assert_int_eq(part_scene_try(&p, &scene), FIBRAD_E_ARGUMENT);
+    row_free(&row);
+    work_free(&work);
+    part_free(&p);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Whatever a scene is made from tells it from others: rows of the one do not go into a matrix of the other. */
+START_TEST(surroundings_tell_scenes_apart) {
+    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
+    struct part p = part_of(&bed, (fibrad_scene_config){0});
+    uint64_t mark[2] = {1, 0};
+    fibrad_occupancy o = {.high = {1, 1, 1}, .cells = {4, 4, 8}};
+    fibrad_scene *scene[7];
+    for (int k = 0; k < 7; k++) {
+        if (k == 1) p.config.known_high[0] = 50;
+        if (k == 2) p.config.known_high[0] = 60;
+        if (k == 3) p.config.occupancy = &o;
+        if (k == 4) o.mark = mark;
+        if (k == 5) mark[1] = 1;
+        if (k == 6) o.periodic[2] = 1;
+        scene[k] = part_scene(&p);
+    }
+    for (int k = 0; k < 7; k++) {
+        fibrad_rows rows = rows_by_beams(scene[k], &(fibrad_beam_rule){.directions = 8});
+        static unsigned char block[1 << 12];
+        for (int other = 0; other < 7; other++) {
+            fibrad_matrix *matrix;
+            ck_assert_int_eq(fibrad_matrix_init(&matrix, block, sizeof block, scene[other], &rows, 1, NULL, NULL),
+                             other == k ? FIBRAD_OK : FIBRAD_E_STATE);
+        }
+        rows_free(&rows);
+    }
+    for (int k = 0; k < 7; k++) free(scene[k]);
+    part_free(&p);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(bad_flows_are_refused) {
+    struct bed bed = bed_of(2, (const double[][4]){{0, 0, 0, 1}, {0, 0, 3, 1}});
+    uint32_t col[] = {0, 1};
+    double f[] = {.1, .2}, body[] = {.3}, e[] = {1, 1};
+    fibrad_rows rows = {.memory = memory_growing()};
+    fibrad_row row = {.col = col, .f = f, .body = body, .length = 2, .sphere = 1, .escaped = .1, .beyond = .3};
+    ck_assert_int_eq(fibrad_rows_add(&rows, &row, 1), FIBRAD_OK);
+    struct powers p = powers_of(&bed, e);
+    powers_point(&p);
+    fibrad_flow flow = p.flow;
+    ck_assert_int_eq(fibrad_rows_flow(NULL, 2, 1, &flow), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_rows_flow(&rows, 1, 1, &flow), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 2, &flow), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 0, &flow), FIBRAD_E_ARGUMENT);
+    double *const nan_of[] = {&p.weight[1], &p.emission[0], &p.body_emission[0], &flow.surroundings_emission};
+    for (int k = 0; k < 4; k++)
+        for (int infinite = 0; infinite < 2; infinite++) {
+            const double before = *nan_of[k];
+            *nan_of[k] = infinite ? INFINITY : NAN;
+            ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &flow), FIBRAD_E_ARGUMENT);
+            *nan_of[k] = before;
+        }
+    p.weight[0] = NAN; /* of a row that there is none of */
+    for (int k = 0; k < 5; k++) {
+        fibrad_flow bad = flow;
+        if (k == 0) bad.weight = NULL;
+        if (k == 1) bad.emission = NULL;
+        if (k == 2) bad.power = NULL;
+        if (k == 3) bad.body_emission = NULL;
+        if (k == 4) bad.body_power = NULL;
+        ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &bad), FIBRAD_E_ARGUMENT);
+    }
+    ck_assert(p.power[0] == 0 && p.power[1] == 0 && flow.surroundings_power == 0 && p.body_power[0] == 0);
+    ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &flow), FIBRAD_OK);
+    ck_assert(p.power[0] != 0 && isfinite(p.power[0] + p.power[1]));
+    /* a row that knows nothing takes part in nothing */
+    fibrad_rows_clear(&rows);
+    row = (fibrad_row){.sphere = 0, .beyond = 1, .body = (double[]){0}};
+    ck_assert_int_eq(fibrad_rows_add(&rows, &row, 1), FIBRAD_OK);
+    p.weight[0] = 1, p.power[0] = p.power[1] = 5;
+    ck_assert_int_eq(fibrad_rows_flow(&rows, 2, 1, &flow), FIBRAD_OK);
+    ck_assert(p.power[0] == 5 && p.power[1] == 5);
+    /* no rows, no spheres */
+    ck_assert_int_eq(fibrad_rows_flow(&(fibrad_rows){0}, 0, 0, &(fibrad_flow){0}), FIBRAD_OK);
+    powers_free(&p);
+    rows_free(&rows);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("flow");
+    TCase *tests = suite_case(suite, "flow");
+    tcase_add_test(tests, what_one_gains_others_lose);
+    tcase_add_test(tests, powers_are_those_of_the_averaged_matrix);
+    tcase_add_test(tests, bad_regions_and_occupancies_are_refused);
+    tcase_add_test(tests, surroundings_tell_scenes_apart);
+    tcase_add_test(tests, bad_flows_are_refused);
+    return suite_run(suite);
+}

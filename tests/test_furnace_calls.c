@@ -1,0 +1,464 @@
+/* test_furnace_calls.c - arguments, memory and the order of calls of a furnace. SPDX-License-Identifier: MIT */
+#include "furnaces.h"
+
+START_TEST(elementary_functions) {
+    for (int k = 0; k < 200000; k++) {
+        double x = -690 + 700.0 * k / 200000, u = (k + 0.5) / 200000, sine, cosine;
+        ck_assert_double_le(fabs(fibrad_exp(x) - exp(x)), 4e-16 * exp(x));
+        ck_assert_double_le(fabs(fibrad_log(u) - log(u)), 6e-16 * fabs(log(u)));
+        fibrad_sincos_turn(u, &sine, &cosine);
+        ck_assert_double_le(fabs(sine - sin(6.283185307179586 * u)), 2e-15);
+        ck_assert_double_le(fabs(cosine - cos(6.283185307179586 * u)), 2e-15);
+    }
+    ck_assert_double_eq(fibrad_exp(-1000), 0);
+    ck_assert_double_eq(fibrad_log(1), 0);
+}
+END_TEST
+
+START_TEST(bad_configurations) {
+    const fibrad_furnace_config good = furnace_case(1);
+    ck_assert_uint_gt(fibrad_furnace_size(&good), 0);
+    ck_assert_uint_eq(fibrad_furnace_size(NULL), 0);
+    for (int k = 0; k < 12; k++) {
+        fibrad_furnace_config bad = good;
+        switch (k) {
+        case 0:
+            bad.size[1] = 0;
+            break;
+        case 1:
+            bad.size[2] = NAN;
+            break;
+        case 2:
+            bad.cells[0] = 0;
+            break;
+        case 3:
+            bad.cells[0] = bad.cells[1] = bad.cells[2] = 1000000;
+            break;
+        case 4:
+            bad.absorption = 0;
+            break;
+        case 5:
+            bad.absorption = -1;
+            break;
+        case 6:
+            bad.scattering = -0.1;
+            break;
+        case 7:
+            bad.source = INFINITY;
+            break;
+        case 8:
+            bad.wall_temperature[3] = 0;
+            break;
+        case 9:
+            bad.wall_emissivity[5] = 1.01;
+            break;
+        case 10:
+            bad.wall_emissivity[0] = NAN;
+            break;
+        default:
+            memset(bad.wall_emissivity, 0, sizeof bad.wall_emissivity);
+            break;
+        }
+        ck_assert_msg(fibrad_furnace_size(&bad) == 0, "configuration %d", k);
+    }
+}
+END_TEST
+
+START_TEST(memory) {
+    fibrad_furnace_config config = coarse_case(1, 2);
+    size_t size = fibrad_furnace_size(&config);
+    unsigned char *block = allocate(size + 128);
+    fibrad_furnace *furnace = NULL;
+    memset(block, 0xa5, size + 128);
+    ck_assert_int_eq(fibrad_furnace_init(&furnace, block, size - 1, &config), FIBRAD_E_SIZE);
+    ck_assert_int_eq(fibrad_furnace_init(&furnace, NULL, size, &config), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_init(NULL, block, size, &config), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_init(&furnace, block, size, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_ptr_null(furnace);
+    ck_assert_int_eq(fibrad_furnace_init(&furnace, block, size, &config), FIBRAD_OK);
+
+    size_t tally_size = fibrad_furnace_tally_size(furnace);
+    unsigned char *tally_block = allocate(tally_size + 128);
+    memset(tally_block, 0xa5, tally_size + 128);
+    fibrad_furnace_tally *tally = NULL;
+    ck_assert_uint_eq(fibrad_furnace_tally_size(NULL), 0);
+    ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, tally_size - 1, furnace), FIBRAD_E_SIZE);
+    ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, tally_size, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_ptr_null(tally);
+
+    fibrad_furnace_report report;
+    uint64_t planned;
+    for (int physics = 0; physics < 2; physics++) {
+        ck_assert_int_eq(fibrad_furnace_tally_init(&tally, tally_block, tally_size, furnace), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_furnace_emit(furnace, (fibrad_furnace_physics)physics, 3000, 1, &planned), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_furnace_trace(furnace, tally, 0, planned), FIBRAD_OK);
+    }
+    ck_assert_int_eq(fibrad_furnace_equilibrium(furnace, tally), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_solve(furnace, FIBRAD_SCATTER_EXACT, 1e-6, 1000, &report), FIBRAD_OK);
+    for (size_t k = 0; k < 128; k++) {
+        ck_assert_uint_eq(block[size + k], 0xa5);
+        ck_assert_uint_eq(tally_block[tally_size + k], 0xa5);
+    }
+    free(tally_block);
+    free(block);
+}
+END_TEST
+
+static void emit(struct box *box, fibrad_furnace_physics physics, int restart) {
+    ck_assert_int_eq(fibrad_furnace_emit(box->furnace, physics, 2000, restart, &box->planned), FIBRAD_OK);
+}
+
+static int estimate(struct box *box, int tally) {
+    return fibrad_furnace_estimate(box->furnace, box->tally[tally], FIBRAD_THETA_DEFINITION, 1, FIBRAD_SCATTER_EXACT);
+}
+
+/* The tally is refused by the evaluation of its physics, and all fields remain as they are. */
+static void assert_refused(struct box *box, int tally, fibrad_furnace_physics physics) {
+    double e[BOX_CELLS], flux[BOX_CELLS], theta[BOX_CELLS], power[6];
+    memcpy(e, box->at.e, sizeof e);
+    memcpy(flux, box->at.flux[2][0], sizeof flux);
+    memcpy(theta, box->at.theta[2][0], sizeof theta);
+    memcpy(power, box->at.power, sizeof power);
+    int status = physics == FIBRAD_FURNACE_ATTENUATED ? estimate(box, tally) : equilibrium(box, tally);
+    ck_assert_int_eq(status, FIBRAD_E_STATE);
+    ck_assert_mem_eq(e, box->at.e, sizeof e);
+    ck_assert_mem_eq(flux, box->at.flux[2][0], sizeof flux);
+    ck_assert_mem_eq(theta, box->at.theta[2][0], sizeof theta);
+    ck_assert_mem_eq(power, box->at.power, sizeof power);
+}
+
+START_TEST(bad_arguments) {
+    const fibrad_furnace_config config = coarse_case(1, 4);
+    struct box box = make_box(&config);
+    fibrad_furnace *furnace = box.furnace;
+    fibrad_furnace_tally *tally = box.tally[0];
+    fibrad_furnace_report report = {77, 7};
+    uint64_t planned = 42;
+    const fibrad_furnace_physics physics = FIBRAD_FURNACE_ATTENUATED, no_physics = (fibrad_furnace_physics)2;
+    const fibrad_furnace_scatter exact = FIBRAD_SCATTER_EXACT, no_scatter = (fibrad_furnace_scatter)2;
+    const fibrad_furnace_estimator no_estimator = (fibrad_furnace_estimator)2;
+    ck_assert_int_eq(fibrad_furnace_theta(furnace, 0), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_theta(furnace, 1.01), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_theta(furnace, NAN), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_theta(NULL, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_balance(NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_solve(furnace, exact, 0, 10, &report), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_solve(furnace, exact, NAN, 10, &report), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_solve(furnace, no_scatter, 1, 10, &report), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_solve(furnace, exact, 1, 10, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_solve(NULL, exact, 1, 10, &report), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(report.sweeps, 77);
+
+    ck_assert_int_eq(fibrad_furnace_emit(NULL, physics, 10, 0, &planned), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, physics, 10, 0, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, physics, 0, 0, &planned), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, physics, ((uint64_t)1 << 32) + 1, 0, &planned), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_emit(furnace, no_physics, 10, 0, &planned), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(planned, 42);
+
+    emit(&box, physics, 1);
+    ck_assert_int_eq(fibrad_furnace_trace(NULL, tally, 0, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_trace(furnace, NULL, 0, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned + 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, box.planned, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, box.planned + 1, 0), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, 1, UINT64_MAX), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, UINT64_MAX, 2), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_tally_add(NULL, tally), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_tally_add(tally, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_tally_add(tally, tally), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK); /* all of this has changed nothing */
+    ck_assert_int_eq(fibrad_furnace_estimate(NULL, tally, FIBRAD_THETA_PAPER, 0, exact), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_estimate(furnace, NULL, FIBRAD_THETA_PAPER, 0, exact), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_PAPER, 1, exact), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, no_estimator, 0, exact), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_estimate(furnace, tally, FIBRAD_THETA_PAPER, 0, no_scatter), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_equilibrium(NULL, tally), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_furnace_equilibrium(furnace, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+    fibrad_furnace_fields(furnace, NULL);
+    free_box(&box);
+}
+END_TEST
+
+START_TEST(no_plan) {
+    const fibrad_furnace_config config = coarse_case(1, 4);
+    const double wrong[] = {NAN, INFINITY, -INFINITY, 1e300, 1e25};
+    struct box box = make_box(&config);
+    ck_assert_int_eq(trace(&box, 0, 0, 0), FIBRAD_E_STATE);
+    ck_assert_int_eq(trace(&box, 0, 0, 1), FIBRAD_E_STATE);
+    assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+    assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
+        clear_tally(&box, 0);
+        ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+        const double before = box.at.e[3];
+        const uint64_t plan = box.planned;
+        box.at.e[3] = wrong[k];
+        ck_assert_int_eq(fibrad_furnace_emit(box.furnace, FIBRAD_FURNACE_ATTENUATED, 2000, 0, &box.planned),
+                         FIBRAD_E_ARGUMENT);
+        ck_assert_uint_eq(box.planned, plan);
+        box.at.e[3] = before;
+        ck_assert_int_eq(trace(&box, 0, 0, 1), FIBRAD_E_STATE);
+        assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+        emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* a first plan, whether it is asked for or not */
+        ck_assert_uint_eq(box.planned, plan);
+        assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+    }
+    free_box(&box);
+}
+END_TEST
+
+/* Every bundle once, in any order and any tallies, is accepted; anything else is refused. */
+START_TEST(every_bundle_once) {
+    /* parts of a hundredth of the plan, traced that often: 1 but for these */
+    static const struct {
+        int missing[3], repeated[3];
+    } wrong[] = {
+        {{0, -1, -1}, {-1, -1, -1}},  {{99, -1, -1}, {-1, -1, -1}}, {{50, -1, -1}, {-1, -1, -1}},
+        {{-1, -1, -1}, {0, -1, -1}},  {{-1, -1, -1}, {99, -1, -1}}, {{-1, -1, -1}, {7, 8, -1}},
+        {{20, -1, -1}, {21, -1, -1}}, {{0, -1, -1}, {99, -1, -1}},  {{-1, -1, -1}, {5, 5, -1}},
+        {{10, 14, 15}, {11, 12, 16}}, /* equal in number, sum and sum of squares */
+    };
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    for (int physics = 0; physics < 2; physics++) {
+        struct box box = make_box(&config);
+        emit(&box, (fibrad_furnace_physics)physics, 1);
+        assert_refused(&box, 0, (fibrad_furnace_physics)physics);
+        for (size_t w = 0; w < 1 + sizeof wrong / sizeof *wrong; w++) {
+            for (int k = 0; k < TALLIES; k++) clear_tally(&box, k);
+            for (int part = 99; part >= 0; part--) {
+                uint64_t first = box.planned * (uint64_t)part / 100, end = box.planned * (uint64_t)(part + 1) / 100;
+                int times = 1;
+                for (int k = 0; k < 3 && w > 0; k++)
+                    times += (wrong[w - 1].repeated[k] == part) - (wrong[w - 1].missing[k] == part);
+                for (int time = 0; time < times; time++)
+                    ck_assert_int_eq(trace(&box, (part + time) % TALLIES, first, end - first), FIBRAD_OK);
+            }
+            for (int k = 1; k < TALLIES; k++)
+                ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[k]), FIBRAD_OK);
+            if (w > 0)
+                assert_refused(&box, 0, (fibrad_furnace_physics)physics);
+            else
+                ck_assert_int_eq(physics ? equilibrium(&box, 0) : estimate(&box, 0), FIBRAD_OK);
+        }
+        free_box(&box);
+    }
+}
+END_TEST
+
+/* A tally and an equal one, added: all bundles twice. */
+START_TEST(tallies_added_twice) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    struct box box = make_box(&config);
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
+    ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[2]), FIBRAD_OK); /* an empty one */
+    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&box, 1), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
+    assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+    for (int k = 0; k < 300; k++) /* sums beyond 64 bits: refused, not undefined */
+        ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[k % 2], box.tally[1 - k % 2]), FIBRAD_OK);
+    assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+    free_box(&box);
+}
+END_TEST
+
+START_TEST(further_plans) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    struct box box = make_box(&config);
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+    for (size_t c = 0; c < BOX_CELLS; c++) box.at.e[c] *= 1 + 0.01 * (double)(c % 3);
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0);
+    ck_assert_uint_gt(box.planned, 1);
+    assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED); /* of the first plan only */
+    ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+    assert_refused(&box, 1, FIBRAD_FURNACE_ATTENUATED); /* of the second only */
+    ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* E has not changed: nothing to trace */
+    ck_assert_uint_eq(box.planned, 0);
+    ck_assert_int_eq(trace(&box, 0, 0, 0), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+
+    for (size_t c = 0; c < BOX_CELLS; c++) box.at.e[c] *= 1.01;
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0); /* a plan that is not traced is missing in all that follow */
+    emit(&box, FIBRAD_FURNACE_ATTENUATED, 0);
+    ck_assert_uint_eq(box.planned, 0);
+    assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+    free_box(&box);
+}
+END_TEST
+
+/* In equilibrium a further plan has no bundles, and changes no result. */
+START_TEST(further_plan_of_equilibrium) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    struct box box = make_box(&config);
+    double e[BOX_CELLS], power[6];
+    emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 1);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+    ck_assert_int_eq(equilibrium(&box, 0), FIBRAD_OK);
+    memcpy(e, box.at.e, sizeof e);
+    memcpy(power, box.at.power, sizeof power);
+    emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 0);
+    ck_assert_uint_eq(box.planned, 0);
+    ck_assert_int_eq(equilibrium(&box, 0), FIBRAD_OK);
+    ck_assert_mem_eq(e, box.at.e, sizeof e);
+    ck_assert_mem_eq(power, box.at.power, sizeof power);
+    free_box(&box);
+}
+END_TEST
+
+/* Tallies from before a restart, whether it is asked for or follows from another physics. */
+START_TEST(restarts) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    for (int physics = 0; physics < 2; physics++) {
+        struct box box = make_box(&config);
+        emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
+        ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+        ck_assert_int_eq(equilibrium(&box, 0), FIBRAD_E_STATE);
+        ck_assert_int_eq(estimate(&box, 0), FIBRAD_OK);
+        emit(&box, (fibrad_furnace_physics)physics, physics == FIBRAD_FURNACE_ATTENUATED);
+        assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+        assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
+        ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_E_STATE);
+        ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[0], box.tally[1]), FIBRAD_E_STATE);
+        ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[1], box.tally[0]), FIBRAD_E_STATE);
+        ck_assert_int_eq(physics ? equilibrium(&box, 1) : estimate(&box, 1), FIBRAD_OK);
+        assert_refused(&box, 1, (fibrad_furnace_physics)!physics);
+        free_box(&box);
+    }
+}
+END_TEST
+
+/* Tallies of a furnace of other cells, and of the same cells but another seed, medium, wall or E. */
+START_TEST(other_furnaces) {
+    for (int difference = 0; difference < 6; difference++) {
+        fibrad_furnace_config config = coarse_case(2, 4), changed = config;
+        if (difference == 0) changed.cells[2] = 7;
+        if (difference == 1) changed.seed++;
+        if (difference == 2) changed.absorption *= 1 + 1e-15;
+        if (difference == 3) changed.wall_emissivity[0] -= 1e-15;
+        if (difference == 4) changed.wall_temperature[5] += 1e-12;
+        struct box box = make_box(&config), other = make_box(&changed);
+        if (difference == 5) other.at.e[7] *= 1 + 1e-15;
+        emit(&box, FIBRAD_FURNACE_ATTENUATED, 1);
+        emit(&other, FIBRAD_FURNACE_ATTENUATED, 1);
+        ck_assert_int_eq(trace(&other, 0, 0, other.planned), FIBRAD_OK);
+        fibrad_furnace_tally *own = box.tally[0];
+        box.tally[0] = other.tally[0];
+        assert_refused(&box, 0, FIBRAD_FURNACE_ATTENUATED);
+        ck_assert_int_eq(trace(&box, 0, 0, 1), FIBRAD_E_STATE);
+        ck_assert_int_eq(trace(&box, 1, 0, box.planned), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_furnace_tally_add(box.tally[1], box.tally[0]), FIBRAD_E_STATE);
+        ck_assert_int_eq(estimate(&box, 1), FIBRAD_OK); /* unchanged by what was refused */
+        ck_assert_int_eq(estimate(&other, 0), FIBRAD_OK);
+        box.tally[0] = own;
+        free_box(&box);
+        free_box(&other);
+    }
+}
+END_TEST
+
+/* A furnace made anew in the same memory does not know the tallies of the former one. */
+START_TEST(furnace_made_anew) {
+    fibrad_furnace_config config = coarse_case(2, 4);
+    struct box box = make_box(&config);
+    emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 1);
+    ck_assert_int_eq(trace(&box, 0, 0, box.planned), FIBRAD_OK);
+    config.scattering *= 2;
+    ck_assert_int_eq(fibrad_furnace_init(&box.furnace, box.block + 1, fibrad_furnace_size(&config), &config), 0);
+    assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
+    emit(&box, FIBRAD_FURNACE_EQUILIBRIUM, 1);
+    assert_refused(&box, 0, FIBRAD_FURNACE_EQUILIBRIUM);
+    free_box(&box);
+}
+END_TEST
+
+/* Furnaces that are equal in all have equal plans: two processes may share the work. */
+START_TEST(equal_furnaces) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    struct box one = make_box(&config), two = make_box(&config);
+    emit(&one, FIBRAD_FURNACE_ATTENUATED, 1);
+    emit(&two, FIBRAD_FURNACE_ATTENUATED, 1);
+    ck_assert_int_eq(trace(&one, 0, 0, 500), FIBRAD_OK);
+    ck_assert_int_eq(trace(&two, 0, 500, two.planned - 500), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_furnace_tally_add(one.tally[0], two.tally[0]), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&one, 0), FIBRAD_OK);
+    ck_assert_int_eq(trace(&two, 0, 0, 500), FIBRAD_OK);
+    ck_assert_int_eq(estimate(&two, 0), FIBRAD_OK);
+    ck_assert_mem_eq(one.at.theta[0][0], two.at.theta[0][0], BOX_CELLS * sizeof(double));
+    free_box(&one);
+    free_box(&two);
+}
+END_TEST
+
+/* Walls of one temperature, no source, E theirs: no bundles, and an empty tally is complete. */
+START_TEST(nothing_to_trace) {
+    fibrad_furnace_config config = coarse_case(2, 4);
+    config.source = 0;
+    for (int w = 0; w < 6; w++) config.wall_temperature[w] = 900;
+    struct box box = make_box(&config);
+    for (size_t c = 0; c < BOX_CELLS; c++) box.at.e[c] = SIGMA * 900 * 900 * (900.0 * 900);
+    for (int physics = 0; physics < 2; physics++) {
+        emit(&box, (fibrad_furnace_physics)physics, 1);
+        ck_assert_int_eq(physics ? equilibrium(&box, 0) : estimate(&box, 0), FIBRAD_OK);
+        ck_assert_double_eq_tol(fibrad_furnace_temperature(box.at.e[5]), 900, 1e-9);
+    }
+    free_box(&box);
+}
+END_TEST
+
+/* What the caller may write is refused if it is NaN or infinite, wherever it stands, also in a solved field, where all
+ * other cells have converged. */
+START_TEST(solve_refuses_nan) {
+    const fibrad_furnace_config config = coarse_case(2, 4);
+    const double wrong[] = {NAN, INFINITY, -INFINITY};
+    fibrad_furnace_report report;
+    for (size_t k = 0; k < BOX_CELLS; k++) {
+        for (int field = 0; field < 4; field++) {
+            struct box box = make_box(&config);
+            ck_assert_int_eq(fibrad_furnace_solve(box.furnace, FIBRAD_SCATTER_SIX_FLUX, 1e-5, 1000, &report),
+                             FIBRAD_OK);
+            const fibrad_furnace_report before = report;
+            const size_t layers = k + BOX_CELLS / 8; /* the upper face of the cell */
+            if (field == 0) box.at.e[k] = wrong[k % 3];
+            if (field == 1) box.at.theta[2][0][layers] = NAN;
+            if (field == 2) box.at.theta[2][1][k] = NAN;
+            if (field == 3) box.at.transverse[2][k % 2][k] = NAN;
+            ck_assert_int_eq(fibrad_furnace_solve(box.furnace, FIBRAD_SCATTER_SIX_FLUX, 1, 1000, &report),
+                             FIBRAD_E_ARGUMENT);
+            ck_assert_mem_eq(&before, &report, sizeof report);
+            free_box(&box);
+        }
+    }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("furnace calls");
+    TCase *tests = suite_case(suite, "furnace calls");
+    tcase_add_test(tests, elementary_functions);
+    tcase_add_test(tests, bad_configurations);
+    tcase_add_test(tests, bad_arguments);
+    tcase_add_test(tests, memory);
+    tcase_add_test(tests, solve_refuses_nan);
+    tcase_add_test(tests, no_plan);
+    tcase_add_test(tests, every_bundle_once);
+    tcase_add_test(tests, tallies_added_twice);
+    tcase_add_test(tests, further_plans);
+    tcase_add_test(tests, further_plan_of_equilibrium);
+    tcase_add_test(tests, restarts);
+    tcase_add_test(tests, other_furnaces);
+    tcase_add_test(tests, furnace_made_anew);
+    tcase_add_test(tests, equal_furnaces);
+    tcase_add_test(tests, nothing_to_trace);
+    return suite_run(suite);
+}

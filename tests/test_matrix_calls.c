@@ -1,0 +1,502 @@
+/* test_matrix_calls.c - collections of rows, and tasks, states and memory of matrices. SPDX-License-Identifier: MIT */
+#include "matrices.h"
+
+static void at_once(void *calls, uint32_t pieces, fibrad_piece *piece, void *job) {
+    ++*(int *)calls;
+#pragma omp parallel for num_threads(4) schedule(dynamic, 1)
+    for (uint32_t k = 0; k < pieces; k++) piece(job, pieces - 1 - k);
+}
+
+/* The matrix of `tasks` tasks, every one but each `left`-th averaged here, backwards or by several threads, which then
+ * do all the rest, too. */
+static struct matrix by_tasks(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
+                              fibrad_matrix_rule rule, uint32_t tasks, uint32_t left, bool threads) {
+    struct matrix m = {NULL, {0}};
+    int calls = 0;
+    rule.tasks = tasks;
+    if (threads) rule.parallel = at_once, rule.context = &calls;
+    const size_t size = fibrad_matrix_size(scene, rows, count, &rule);
+    void *block = block_of(size);
+    memset(block, 0xa5, size);
+    ck_assert_int_eq(fibrad_matrix_init(&m.matrix, block, size, scene, rows, count, &rule, NULL), FIBRAD_OK);
+    int failed = 0;
+#pragma omp parallel for num_threads(threads ? 4 : 1) schedule(dynamic, 1) reduction(+ : failed)
+    for (uint32_t k = 0; k < tasks; k++)
+        if (left == 0 || k % left != 0) failed += fibrad_matrix_average(m.matrix, tasks - 1 - k) != FIBRAD_OK;
+    ck_assert_int_eq(failed, 0);
+    ck_assert_int_eq(fibrad_matrix_close(m.matrix), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_matrix_read(m.matrix, &m.factors), FIBRAD_OK);
+    double largest, same;
+    ck_assert_int_eq(fibrad_matrix_reciprocity(m.matrix, &largest), FIBRAD_OK);
+    ck_assert(!threads || tasks == 1 || calls > 4);
+    struct matrix alone =
+        matrix_of(scene, rows, count, &(fibrad_matrix_rule){.emissivity = rule.emissivity, .drop = rule.drop});
+    ck_assert_int_eq(fibrad_matrix_reciprocity(alone.matrix, &same), FIBRAD_OK);
+    ck_assert_double_eq(largest, same);
+    matrix_free(&alone);
+    return m;
+}
+
+/* No bit depends on the number of tasks, on who averages them, nor on how rows are spread over collections. */
+START_TEST(tasks_change_no_bit) {
+    struct bed bed = packing(150, .3, 1.5, .5, 3, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    double *emissivity = calloc(bed.n, sizeof *emissivity);
+    for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = (1 + i % 7) / 7.;
+    const fibrad_matrix_rule rules[] = {{0}, {.emissivity = emissivity}, {.drop = 5e-3}};
+    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34}), spread[4];
+    for (int c = 0; c < 4; c++) spread[c] = (fibrad_rows){.memory = memory_growing()};
+    fibrad_work work = work_growing();
+    for (uint32_t i = bed.n; i-- > 0;) { /* none in the third */
+        fibrad_row to = {.rows = &spread[i % 3 == 2 ? 3 : i % 3]};
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &(fibrad_beam_rule){.directions = 34}, &to), FIBRAD_OK);
+    }
+    for (int k = 0; k < 3; k++) {
+        struct matrix whole = matrix_of(scene, &rows, 1, &rules[k]), other = matrix_of(scene, spread, 4, &rules[k]);
+        ck_assert(matrix_same_bits(&whole.factors, &other.factors));
+        matrix_free(&other);
+        for (uint32_t tasks = 1; tasks <= 1024; tasks += tasks < 16 ? 1 : 1008) {
+            for (uint32_t left = 0; left <= 3; left++) {
+                struct matrix m =
+                    by_tasks(scene, left % 2 ? spread : &rows, left % 2 ? 4 : 1, rules[k], tasks, left, left == 0);
+                ck_assert(matrix_same_bits(&whole.factors, &m.factors));
+                matrix_free(&m);
+            }
+        }
+        matrix_free(&whole);
+    }
+    for (int c = 0; c < 4; c++) rows_free(&spread[c]);
+    rows_free(&rows), work_free(&work);
+    free(emissivity), free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(calls_out_of_order) {
+    const double r[] = {1, 2, 1};
+    fibrad_scene *scene = apart(3, r);
+    fibrad_rows rows = {.memory = memory_growing()};
+    add_rows(&rows, 3, (uint64_t[]){0, 1, 1, 3}, (uint32_t[]){1, 0, 2}, (double[]){.5, .25, .125});
+    for (int raw = 0; raw < 2; raw++) {
+        const fibrad_matrix_rule rule = {.tasks = 2, .raw = raw};
+        const size_t size = fibrad_matrix_size(scene, &rows, 1, &rule);
+        void *block = block_of(size);
+        fibrad_matrix *m = NULL;
+        fibrad_factors factors = {.n = 77};
+        double largest = -7;
+        ck_assert_int_eq(fibrad_matrix_init(&m, block, size, scene, &rows, 1, &rule, NULL), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_E_STATE);
+        ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_E_STATE);
+        ck_assert(factors.n == 77 && factors.start == NULL && largest == -7);
+        ck_assert_int_eq(fibrad_matrix_average(m, 2), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_matrix_average(m, UINT32_MAX), FIBRAD_E_ARGUMENT);
+        if (!raw) {
+            ck_assert_int_eq(fibrad_matrix_average(m, 1), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_matrix_average(m, 1), FIBRAD_E_STATE);
+            ck_assert_int_eq(fibrad_matrix_average(m, 0), FIBRAD_OK);
+        }
+        ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK);
+        const double first = factors.f[0];
+        ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_E_STATE);
+        if (!raw) ck_assert_int_eq(fibrad_matrix_average(m, 0), FIBRAD_E_STATE);
+        ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK); /* as often as one likes */
+        ck_assert_double_eq(factors.f[0], first);
+        ck_assert_int_eq(fibrad_matrix_reciprocity(m, &largest), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_matrix_read(m, NULL), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_matrix_reciprocity(m, NULL), FIBRAD_E_ARGUMENT);
+        free(block);
+    }
+    fibrad_factors factors;
+    double largest;
+    ck_assert_int_eq(fibrad_matrix_average(NULL, 0), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_close(NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_read(NULL, &factors), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_reciprocity(NULL, &largest), FIBRAD_E_ARGUMENT);
+    rows_free(&rows);
+    free(scene);
+}
+END_TEST
+
+/* A row that is missing or there twice, in one collection or in two, is named, and there is no matrix. */
+START_TEST(rows_missing_or_double) {
+    const double r[] = {1, 2, 1, 1, 3}, f = .5;
+    fibrad_scene *scene = apart(5, r);
+    const uint32_t col = 2;
+    unsigned char block[8192];
+    for (int raw = 0; raw < 2; raw++)
+        for (uint32_t missing = 0; missing < 6; missing++)
+            for (uint32_t twice = 0; twice < 6; twice++) {
+                fibrad_rows rows[2] = {{.memory = memory_growing()}, {.memory = memory_growing()}};
+                for (uint32_t i = 0; i < 5; i++) {
+                    fibrad_row row = {.sphere = i, .col = (uint32_t *)(uintptr_t)&col, .f = (double *)(uintptr_t)&f};
+                    row.length = i % 2;
+                    if (i != missing) ck_assert_int_eq(fibrad_rows_add(&rows[0], &row, 0), FIBRAD_OK);
+                    if (i == twice) ck_assert_int_eq(fibrad_rows_add(&rows[i % 2], &row, 0), FIBRAD_OK);
+                }
+                const fibrad_matrix_rule rule = {.raw = raw};
+                const bool doubled = twice < 5 && (twice != missing);
+                const bool lacks = missing < 5 && twice != missing;
+                fibrad_matrix *m = NULL;
+                uint32_t sphere = 99;
+                const size_t size = fibrad_matrix_size(scene, rows, 2, &rule);
+                ck_assert(size > 0 && size <= sizeof block);
+                const int status = fibrad_matrix_init(&m, block, size, scene, rows, 2, &rule, &sphere);
+                if (doubled || (lacks && !raw)) {
+                    ck_assert_int_eq(status, FIBRAD_E_STATE);
+                    ck_assert(doubled && lacks && !raw ? sphere == twice || sphere == missing
+                                                       : sphere == (doubled ? twice : missing));
+                    ck_assert_ptr_null(m);
+                    ck_assert_int_eq(fibrad_matrix_init(&m, block, size, scene, rows, 2, &rule, NULL), FIBRAD_E_STATE);
+                } else {
+                    ck_assert_int_eq(status, FIBRAD_OK);
+                    ck_assert_uint_eq(sphere, 99);
+                }
+                rows_free(&rows[0]), rows_free(&rows[1]);
+            }
+    fibrad_matrix *m = NULL; /* no collections at all */
+    uint32_t sphere = 99;
+    ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, NULL, 0, NULL, &sphere), FIBRAD_E_STATE);
+    ck_assert_uint_eq(sphere, 0);
+    struct matrix empty = matrix_of(scene, NULL, 0, &(fibrad_matrix_rule){.raw = 1});
+    ck_assert_uint_eq(empty.factors.start[5], 0);
+    matrix_free(&empty);
+    free(scene);
+}
+END_TEST
+
+/* At every offset the same bits, nothing written beside the block, and a byte less is too little. */
+START_TEST(matrix_blocks_of_any_alignment) {
+    struct bed bed = packing(60, .5, 1.5, .5, 3, true);
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = 34});
+    double emissivity[60];
+    for (uint32_t i = 0; i < bed.n; i++) emissivity[i] = (1 + i % 5) / 5.;
+    const fibrad_matrix_rule rules[] = {
+        {.tasks = 3}, {.raw = 1}, {.emissivity = emissivity, .tasks = 7}, {.drop = .02}};
+    for (int k = 0; k < 4; k++) {
+        struct matrix expected = matrix_of(scene, &rows, 1, &rules[k]);
+        const size_t size = fibrad_matrix_size(scene, &rows, 1, &rules[k]);
+        /* what the header says of it */
+        ck_assert_uint_le(size, (k == 1 ? 12 : 36) * rows.entries + (k == 1 ? 60 : 120) * bed.n + 2048);
+        unsigned char *block = block_of(size + 128);
+        for (size_t offset = 0; offset < 64; offset++) {
+            fibrad_matrix *m = NULL;
+            fibrad_factors factors;
+            memset(block, 0xa5, size + 128);
+            ck_assert_int_eq(fibrad_matrix_init(&m, block + offset, size - 1, scene, &rows, 1, &rules[k], NULL),
+                             FIBRAD_E_SIZE);
+            ck_assert_int_eq(fibrad_matrix_init(&m, block + offset, 0, scene, &rows, 1, &rules[k], NULL),
+                             FIBRAD_E_SIZE);
+            ck_assert_ptr_null(m);
+            ck_assert_int_eq(fibrad_matrix_init(&m, block + offset, size, scene, &rows, 1, &rules[k], NULL), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_matrix_close(m), FIBRAD_OK);
+            ck_assert_int_eq(fibrad_matrix_read(m, &factors), FIBRAD_OK);
+            ck_assert(matrix_same_bits(&factors, &expected.factors));
+            ck_assert(bytes_are(block, 0, offset, 0xa5));
+            ck_assert(bytes_are(block, offset + size, size + 128, 0xa5));
+        }
+        free(block);
+        matrix_free(&expected);
+    }
+    rows_free(&rows);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(bad_matrices_are_refused) {
+    const double r[] = {1, 2}, f = .5;
+    fibrad_scene *scene = apart(2, r);
+    uint32_t col = 1;
+    fibrad_rows rows = {.memory = memory_growing()}, stranger = rows, seen = rows, walled = rows;
+    const double body = .1;
+    fibrad_row row = {.col = &col, .f = (double *)(uintptr_t)&f, .length = 1};
+    for (row.sphere = 0; row.sphere < 2; row.sphere++) {
+        col = 1;
+        ck_assert_int_eq(fibrad_rows_add(&rows, &row, 0), FIBRAD_OK);
+        row.body = (double *)(uintptr_t)&body;
+        ck_assert_int_eq(fibrad_rows_add(&walled, &row, 1), FIBRAD_OK);
+        row.body = NULL;
+        col = 1 + row.sphere; /* 2: no such sphere */
+        ck_assert_int_eq(fibrad_rows_add(&seen, &row, 0), FIBRAD_OK);
+    }
+    col = 1;
+    row.sphere = 2; /* no such sphere */
+    ck_assert_int_eq(fibrad_rows_add(&stranger, &row, 0), FIBRAD_OK);
+    static unsigned char block[8192];
+    fibrad_matrix *m = NULL;
+    ck_assert_int_eq(fibrad_matrix_init(NULL, block, sizeof block, scene, &rows, 1, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_init(&m, NULL, sizeof block, scene, &rows, 1, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, NULL, &rows, 1, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, NULL, 1, NULL, NULL), FIBRAD_E_ARGUMENT);
+    ck_assert_uint_eq(fibrad_matrix_size(NULL, &rows, 1, NULL), 0);
+    ck_assert_uint_eq(fibrad_matrix_size(scene, NULL, 1, NULL), 0);
+    const fibrad_rows *const bad_rows[] = {&stranger, &seen, &walled};
+    for (int k = 0; k < 3; k++) {
+        ck_assert_uint_eq(fibrad_matrix_size(scene, bad_rows[k], 1, NULL), 0);
+        ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, bad_rows[k], 1, NULL, NULL),
+                         FIBRAD_E_ARGUMENT);
+    }
+    static const double emissivity[][2] = {{1, 0}, {1, -1}, {NAN, 1}, {1, INFINITY}, {1.5, 1}};
+    fibrad_matrix_rule bad[10] = {{.tasks = 1025}, {.tasks = UINT32_MAX}, {.drop = -1}, {.drop = NAN}};
+    for (int k = 0; k < 5; k++) bad[4 + k].emissivity = emissivity[k];
+    for (int k = 0; k < 9; k++) {
+        ck_assert_uint_eq(fibrad_matrix_size(scene, &rows, 1, &bad[k]), 0);
+        ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, &bad[k], NULL),
+                         FIBRAD_E_ARGUMENT);
+    }
+    ck_assert_ptr_null(m);
+    ck_assert_int_eq(fibrad_matrix_init(&m, block, sizeof block, scene, &rows, 1, NULL, NULL), FIBRAD_OK);
+    rows_free(&rows), rows_free(&stranger), rows_free(&seen), rows_free(&walled);
+    free(scene);
+}
+END_TEST
+
+static bool same_collection(const fibrad_rows *a, const fibrad_rows *b) {
+    return a->count == b->count && a->entries == b->entries;
+}
+
+START_TEST(bad_rows_are_refused) {
+    fibrad_rows rows = {.memory = memory_growing()};
+    uint32_t col[] = {1, 3}, descending[] = {3, 1}, equal[] = {1, 1};
+    double f[] = {.1, .2}, body[] = {.5};
+    const fibrad_row good = {.sphere = 7, .col = col, .f = f, .body = body, .length = 2, .escaped = .7, .error = .01};
+    ck_assert_int_eq(fibrad_rows_add(&rows, &good, 1), FIBRAD_OK);
+    ck_assert(rows.count == 1 && rows.entries == 2 && rows.used > 0);
+    const fibrad_rows before = rows;
+    fibrad_row bad = good;
+    bad.col = descending;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    bad.col = equal;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    bad.col = NULL;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    bad = good, bad.f = NULL;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    bad = good, bad.body = NULL;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    const double wrong[] = {-.1, 1.1, NAN, INFINITY, -INFINITY};
+    for (size_t k = 0; k < 2 * sizeof wrong / sizeof *wrong; k++) {
+        double g[] = {.1, .2};
+        g[k % 2] = wrong[k / 2];
+        bad = good, bad.f = g;
+        ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    }
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        double g = wrong[k];
+        bad = good, bad.body = &g;
+        ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    }
+    bad = good, bad.escaped = NAN;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    bad = good, bad.error = NAN;
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_rows_add(NULL, &good, 1), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_rows_add(&rows, NULL, 1), FIBRAD_E_ARGUMENT);
+    ck_assert(same_collection(&rows, &before) && rows.used == before.used);
+    bad = good, bad.body = NULL; /* no bodies, no array */
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
+    bad = (fibrad_row){.sphere = 3, .escaped = 1}; /* nothing seen */
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
+    double whole[] = {1 + 1e-15, 0};
+    bad = (fibrad_row){.sphere = 4, .col = col, .f = whole, .length = 2}; /* above 1 by rounding, and nothing */
+    ck_assert_int_eq(fibrad_rows_add(&rows, &bad, 0), FIBRAD_OK);
+    ck_assert(rows.count == 4 && rows.entries == 6);
+    rows_free(&rows);
+    fibrad_rows_clear(NULL);
+}
+END_TEST
+
+/* Rows by the kernel and rows added come out alike, with one and the other in one collection, which is then emptied and
+ * used again without more memory. */
+START_TEST(rows_added_are_rows_computed) {
+    struct bed bed = packing(50, .5, 1.5, .4, 3, false);
+    const fibrad_body walls[] = {plane_at(2, 0, -100), plane_at(2, 1, 500)};
+    fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.body = walls, .bodies = 2});
+    fibrad_work work = work_growing();
+    const fibrad_beam_rule rule = {.directions = 34};
+    fibrad_rows computed = rows_by_beams(scene, &rule), mixed = {.memory = memory_growing()};
+    fibrad_row row = row_of(bed.n);
+    struct matrix expected = matrix_of(scene, &computed, 1, NULL);
+    size_t size = 0;
+    for (int round = 0; round < 3; round++) {
+        for (uint32_t i = 0; i < bed.n; i++) {
+            fibrad_row append = {.rows = &mixed, .sphere = 1000, .length = 1000};
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, i % 2 ? &row : &append), FIBRAD_OK);
+            if (i % 2) ck_assert_int_eq(fibrad_rows_add(&mixed, &row, 2), FIBRAD_OK);
+            if (i % 2) continue;
+            ck_assert_uint_eq(append.sphere, i); /* said of a row that is appended, too */
+            ck_assert(append.length > 0 && append.length < bed.n);
+            ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+            ck_assert(same_bits_with(&append, &row, 2)); /* where it stands now */
+            ck_assert_uint_eq(append.directions, 34);
+            ck_assert_double_gt(append.error, 0);
+        }
+        ck_assert(same_collection(&mixed, &computed));
+        ck_assert_uint_eq(mixed.used, computed.used);
+        struct matrix m = matrix_of(scene, &mixed, 1, NULL);
+        ck_assert(matrix_same_bits(&m.factors, &expected.factors));
+        matrix_free(&m);
+        if (round > 0) ck_assert_uint_eq(mixed.memory.size, size);
+        size = mixed.memory.size;
+        const void *block = mixed.memory.block;
+        fibrad_rows_clear(&mixed);
+        ck_assert(mixed.count == 0 && mixed.used == 0 && mixed.entries == 0);
+        ck_assert(mixed.memory.block == block && mixed.memory.size == size);
+    }
+    matrix_free(&expected);
+    row_free(&row), rows_free(&computed), rows_free(&mixed), work_free(&work);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Fixed memory: what a row lacks is said, nothing is lost or written beside the block, and with as much memory the row
+ * goes in. At every offset of the block. */
+START_TEST(collections_in_fixed_memory) {
+    struct bed bed = packing(40, .5, 1.5, .4, 3, false);
+    fibrad_scene *scene = scene_of(&bed, 0);
+    fibrad_work work = work_growing();
+    const fibrad_beam_rule rule = {.directions = 13};
+    fibrad_rows plenty = rows_by_beams(scene, &rule);
+    struct matrix expected = matrix_of(scene, &plenty, 1, NULL);
+    const size_t room = plenty.used + 256;
+    unsigned char *block = block_of(room + 128);
+    fibrad_row row = row_of(bed.n);
+    for (size_t offset = 0; offset < 64; offset++) {
+        memset(block, 0xa5, room + 128);
+        fibrad_rows rows = {.memory = {.block = block + offset, .size = offset % 8}};
+        uint32_t refused = 0;
+        for (uint32_t i = 0; i < bed.n; i++) {
+            const bool added = (i + offset) % 2;
+            if (added) ck_assert_int_eq(fibrad_beam_row(scene, &work, i, &rule, &row), FIBRAD_OK);
+            fibrad_row append = {.rows = &rows};
+            for (;;) {
+                const uint64_t entries = rows.entries;
+                const size_t used = rows.used;
+                const int status =
+                    added ? fibrad_rows_add(&rows, &row, 0) : fibrad_beam_row(scene, &work, i, &rule, &append);
+                if (status == FIBRAD_OK) break;
+                ck_assert_int_eq(status, FIBRAD_E_CAPACITY);
+                ck_assert_uint_gt(rows.memory.needed, rows.memory.size);
+                ck_assert(rows.count == i && rows.entries == entries && rows.used == used);
+                ck_assert_uint_le(rows.memory.needed, room);
+                ck_assert(rows.memory.block == block + offset);
+                ck_assert(bytes_are(block, offset + rows.memory.size, room + 128, 0xa5));
+                rows.memory.size = rows.memory.needed;
+                ck_assert_uint_le(++refused, 3 * bed.n);
+            }
+        }
+        ck_assert_uint_ge(refused, bed.n / 2);
+        ck_assert(same_collection(&rows, &plenty));
+        ck_assert(bytes_are(block, 0, offset, 0xa5));
+        ck_assert(bytes_are(block, offset + rows.memory.size, room + 128, 0xa5));
+        struct matrix m = matrix_of(scene, &rows, 1, NULL);
+        ck_assert(matrix_same_bits(&m.factors, &expected.factors));
+        matrix_free(&m);
+    }
+    fibrad_rows nothing = {0}; /* no block at all */
+    ck_assert_int_eq(fibrad_rows_add(&nothing, &row, 0), FIBRAD_E_CAPACITY);
+    ck_assert_uint_gt(nothing.memory.needed, 0);
+    fibrad_row append = {.rows = &nothing};
+    ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &append), FIBRAD_E_CAPACITY);
+    ck_assert_uint_gt(nothing.memory.needed, 0);
+    free(block), free(scene);
+    matrix_free(&expected);
+    row_free(&row), rows_free(&plenty), work_free(&work);
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(collections_that_grow) {
+    struct bed bed = packing(60, .5, 1.5, .4, 3, false);
+    fibrad_scene *scene = scene_of(&bed, 0);
+    const fibrad_beam_rule rule = {.directions = 13};
+    fibrad_rows plenty = rows_by_beams(scene, &rule);
+    struct matrix expected = matrix_of(scene, &plenty, 1, NULL);
+    for (uint32_t refuse = 0; refuse < 5; refuse++) {
+        struct source source = {.refuse_at = refuse};
+        fibrad_rows rows = {.memory = {.resize = source_resize, .context = &source}};
+        fibrad_work work = work_growing();
+        uint32_t refused = 0;
+        for (uint32_t i = 0; i < bed.n; i++) {
+            int status = fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows});
+            if (status == FIBRAD_E_MEMORY) {
+                refused++;
+                ck_assert_uint_eq(rows.count, i);
+                status = fibrad_beam_row(scene, &work, i, &rule, &(fibrad_row){.rows = &rows});
+            }
+            ck_assert_int_eq(status, FIBRAD_OK);
+        }
+        ck_assert_uint_eq(refused, refuse > 0 && source.calls >= refuse);
+        ck_assert(same_collection(&rows, &plenty));
+        struct matrix m = matrix_of(scene, &rows, 1, NULL);
+        ck_assert(matrix_same_bits(&m.factors, &expected.factors));
+        matrix_free(&m);
+        free(source.whole);
+        work_free(&work);
+    }
+    matrix_free(&expected);
+    rows_free(&plenty);
+    free(scene);
+    bed_free(&bed);
+}
+END_TEST
+
+/* Rows come back as they went in, also empty ones, with columns that may be written. */
+START_TEST(rows_read_one_by_one) {
+    uint32_t col[] = {3, 5, 9};
+    double f[] = {.25, .125, .0625}, body[] = {.5};
+    const fibrad_row in = {.col = col,
+                           .f = f,
+                           .body = body,
+                           .length = 3,
+                           .escaped = .03125,
+                           .beyond = .03125,
+                           .error = .01,
+                           .symmetric = 1};
+    fibrad_rows rows = {.memory = memory_growing()};
+    fibrad_row out;
+    size_t at = 0;
+    ck_assert_int_eq(fibrad_rows_read(&rows, &at, &out), 0);
+    for (uint32_t i = 0; i < 40; i++) {
+        fibrad_row row = in;
+        row.sphere = i, row.length = i % 4;
+        ck_assert_int_eq(fibrad_rows_add(&rows, &row, 1), FIBRAD_OK);
+    }
+    for (uint32_t again = 0; again < 2; again++) {
+        at = 0;
+        for (uint32_t i = 0; i < 40; i++) {
+            ck_assert_int_eq(fibrad_rows_read(&rows, &at, &out), 1);
+            ck_assert(out.sphere == i && out.length == i % 4 && out.body[0] == .5 && out.symmetric == 1);
+            ck_assert(out.escaped == .03125 && out.beyond == .03125 && out.error == .01 && out.rows == NULL);
+            for (uint32_t k = 0; k < out.length; k++) {
+                ck_assert(out.col[k] == col[k] + again * 100 && out.f[k] == f[k]);
+                out.col[k] += 100;
+            }
+        }
+        ck_assert_int_eq(fibrad_rows_read(&rows, &at, &out), 0);
+    }
+    ck_assert_int_eq(fibrad_rows_read(NULL, &at, &out), 0);
+    ck_assert_int_eq(fibrad_rows_read(&rows, NULL, &out), 0);
+    ck_assert_int_eq(fibrad_rows_read(&rows, &at, NULL), 0);
+    rows_free(&rows);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("matrix calls");
+    TCase *tests = suite_case(suite, "matrix calls");
+    tcase_add_test(tests, tasks_change_no_bit);
+    tcase_add_test(tests, calls_out_of_order);
+    tcase_add_test(tests, rows_missing_or_double);
+    tcase_add_test(tests, matrix_blocks_of_any_alignment);
+    tcase_add_test(tests, bad_matrices_are_refused);
+    tcase_add_test(tests, bad_rows_are_refused);
+    tcase_add_test(tests, rows_added_are_rows_computed);
+    tcase_add_test(tests, collections_in_fixed_memory);
+    tcase_add_test(tests, collections_that_grow);
+    tcase_add_test(tests, rows_read_one_by_one);
+    return suite_run(suite);
+}

@@ -1,0 +1,390 @@
+/* test_protocol_heat.c - calls of a heat problem at the wrong time, in the wrong order, or twice.
+ * SPDX-License-Identifier: MIT */
+#include "heat_calls.h"
+
+/* To what the tolerance of the sources leaves, when the one of them began with a solution. */
+static void assert_like_powers(const struct problem *p, const struct problem *book) {
+    double largest = 0, difference = 0;
+    for (uint32_t i = 0; i < N; i++) {
+        worst_of(&largest, fabs(book->power[i]));
+        worst_of(&difference, fabs(p->power[i] - book->power[i]));
+    }
+    for (uint32_t b = 0; b < BODIES; b++) worst_of(&difference, fabs(p->body_power[b] - book->body_power[b]));
+    worst_of(&difference, fabs(p->result.surroundings_power - book->result.surroundings_power));
+    ck_assert_double_gt(largest, 0);
+    ck_assert_double_lt(difference, 1e-6 * largest);
+}
+
+static void assert_no_begin(struct problem *p) {
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_E_STATE);
+    assert_nothing_to_solve(p);
+}
+
+/* Every fibrad_heat_trace has returned an error, and the caller did not look. */
+START_TEST(traces_that_failed) {
+    const struct contents c = contents_of(1);
+    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0xa5);
+    unsigned char small[64];
+    fibrad_work none = {0}, tiny = work_fixed(small, sizeof small);
+    for (uint32_t k = 0; k < tasks_of(p); k++) {
+        ck_assert_int_eq(fibrad_heat_trace(p->heat, &none, k), FIBRAD_E_WORK);
+        ck_assert_uint_gt(none.memory.needed, 0);
+        ck_assert_int_eq(fibrad_heat_trace(p->heat, &tiny, k), FIBRAD_E_WORK);
+        ck_assert_uint_gt(tiny.memory.needed, sizeof small);
+        ck_assert_int_eq(fibrad_heat_trace(p->heat, NULL, k), FIBRAD_E_ARGUMENT);
+    }
+    assert_no_begin(p);
+    trace_all(p); /* each may be called again */
+    solve(p);
+    assert_same_powers(p, book);
+    end_problem(p);
+    end_problem(book);
+}
+END_TEST
+
+static void *no_more(void *context, void *block, size_t size) {
+    (void)context, (void)block, (void)size;
+    return NULL;
+}
+
+START_TEST(traces_without_memory) {
+    const struct contents c = contents_of(2);
+    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    fibrad_work work = {.memory = {.resize = no_more}};
+    for (uint32_t k = 0; k < tasks_of(p); k++) ck_assert_int_eq(fibrad_heat_trace(p->heat, &work, k), FIBRAD_E_MEMORY);
+    assert_no_begin(p);
+    work.memory.resize = test_resize; /* now there is some */
+    for (uint32_t k = 0; k < tasks_of(p); k++) ck_assert_int_eq(fibrad_heat_trace(p->heat, &work, k), FIBRAD_OK);
+    solve(p);
+    assert_same_powers(p, book);
+    work_free(&work);
+    end_problem(p);
+    end_problem(book);
+}
+END_TEST
+
+/* Nothing is traced, whatever was in the block before. */
+START_TEST(nothing_traced) {
+    static const int fills[] = {0, 1, 0x5a, 0xff};
+    const struct contents c = contents_of(3);
+    struct problem *book = by_the_book(&c);
+    for (size_t k = 0; k < sizeof fills / sizeof *fills; k++) {
+        struct problem *p = begin_problem(&c, fills[k]);
+        assert_nothing_to_solve(p);
+        assert_no_begin(p);
+        trace_all(p);
+        assert_nothing_to_solve(p);
+        solve(p);
+        assert_same_powers(p, book);
+        end_problem(p);
+    }
+    end_problem(book);
+}
+END_TEST
+
+/* One task is left out, the first, the last, one of spheres and one of walls among them. */
+START_TEST(one_task_not_traced) {
+    const struct contents c = contents_of(4);
+    struct problem *book = by_the_book(&c);
+    ck_assert_uint_gt(tasks_of(book), N + 1);
+    const uint32_t last = tasks_of(book) - 1, left_out[] = {0, N / 2, N - 1, N, (N + last) / 2, last};
+    for (size_t t = 0; t < sizeof left_out / sizeof *left_out; t++) {
+        const uint32_t out = left_out[t];
+        struct problem *p = begin_problem(&c, 0);
+        for (uint32_t k = 0; k < tasks_of(p); k++)
+            if (k != out) ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, k), FIBRAD_OK);
+        assert_no_begin(p);
+        ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, out), FIBRAD_OK);
+        solve(p);
+        assert_same_powers(p, book);
+        end_problem(p);
+    }
+    end_problem(book);
+}
+END_TEST
+
+START_TEST(tasks_and_parts_out_of_range) {
+    const struct contents c = contents_of(5);
+    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    const uint32_t tasks = tasks_of(p), beyond[] = {0, 1, 1000, UINT32_MAX - tasks};
+    for (size_t k = 0; k < 4; k++)
+        ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, tasks + beyond[k]), FIBRAD_E_ARGUMENT);
+    assert_no_begin(p);
+    trace_all(p);
+    for (size_t k = 0; k < 4; k++)
+        ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, tasks + beyond[k]), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    for (int solved = 0; !solved;) {
+        ck_assert_int_eq(fibrad_heat_sweep(p->heat, PARTS), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_heat_sweep(p->heat, UINT32_MAX), FIBRAD_E_ARGUMENT);
+        sweep_all(p);
+        ck_assert_int_eq(fibrad_heat_sweep(p->heat, PARTS), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_heat_sweep(NULL, 0), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_heat_step(NULL, &solved), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_heat_step(p->heat, NULL), FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+    }
+    ck_assert_int_eq(fibrad_heat_sweep(p->heat, PARTS), FIBRAD_E_ARGUMENT);
+    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+    assert_same_powers(p, book);
+    end_problem(p);
+    end_problem(book);
+}
+END_TEST
+
+START_TEST(tasks_traced_twice) {
+    const struct contents c = contents_of(6);
+    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0xff);
+    for (uint32_t k = 0; k < tasks_of(p); k++)
+        for (int again = 0; again < 3; again++)
+            ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, k), again ? FIBRAD_E_STATE : FIBRAD_OK);
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    sweep_all(p);
+    ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 3), FIBRAD_E_STATE);
+    solve(p); /* begins anew */
+    ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 3), FIBRAD_E_STATE);
+    assert_same_powers(p, book);
+    end_problem(p);
+    end_problem(book);
+}
+END_TEST
+
+/* One of the parts is left out of every sweep at first, and made up for. */
+START_TEST(one_part_not_swept) {
+    const struct contents c = contents_of(7);
+    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    trace_all(p);
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    uint32_t out = 0;
+    for (int solved = 0; !solved; out = (out + 1) % PARTS) {
+        solved = 77;
+        for (uint32_t k = 0; k < PARTS; k++)
+            if (k != out) ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_OK);
+        for (int again = 0; again < 2; again++) ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_E_STATE);
+        ck_assert_int_eq(solved, 77);
+        ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_E_STATE);
+        ck_assert_int_eq(fibrad_heat_sweep(p->heat, out), FIBRAD_OK);
+        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+        ck_assert(solved == 0 || solved == 1);
+    }
+    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+    assert_same_powers(p, book);
+    ck_assert_uint_eq(p->result.sweeps, book->result.sweeps);
+    end_problem(p);
+    end_problem(book);
+}
+END_TEST
+
+START_TEST(parts_swept_twice) {
+    const struct contents c = contents_of(8);
+    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    trace_all(p);
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    for (int solved = 0; !solved;) {
+        for (uint32_t k = 0; k < PARTS; k++) {
+            ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_OK);
+            for (uint32_t earlier = 0; earlier <= k; earlier++)
+                ck_assert_int_eq(fibrad_heat_sweep(p->heat, earlier), FIBRAD_E_STATE);
+        }
+        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+    }
+    ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+    assert_same_powers(p, book);
+    end_problem(p);
+    end_problem(book);
+}
+END_TEST
+
+START_TEST(steps_and_reads_too_early) {
+    const struct contents c = contents_of(9);
+    struct problem *book = by_the_book(&c), *p = begin_problem(&c, 0);
+    trace_all(p);
+    assert_nothing_to_solve(p);
+    ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+    for (int solved = 0; !solved;) {
+        int other = 77;
+        ck_assert_int_eq(fibrad_heat_step(p->heat, &other), FIBRAD_E_STATE);
+        ck_assert_int_eq(other, 77);
+        ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_E_STATE);
+        sweep_all(p);
+        ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_E_STATE);
+        ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+    }
+    int solved = 77; /* the solution is there: no further step, and no sweep */
+    ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_E_STATE);
+    ck_assert_int_eq(solved, 77);
+    for (uint32_t k = 0; k < PARTS; k++) ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_E_STATE);
+    for (int again = 0; again < 2; again++) {
+        memset(p->power, 0, sizeof p->power);
+        ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+        assert_same_powers(p, book);
+    }
+    end_problem(p);
+    end_problem(book);
+}
+END_TEST
+
+/* A solution given up half-way, in any of its sweeps, leaves nothing behind. */
+START_TEST(begun_anew_in_between) {
+    const struct contents c = contents_of(10);
+    struct problem *book = by_the_book(&c);
+    for (uint32_t until = 0; until < book->result.sweeps; until++) {
+        struct problem *p = begin_problem(&c, 0);
+        trace_all(p);
+        p->sources.surroundings = 3;
+        ck_assert_int_eq(fibrad_heat_begin(p->heat, &p->sources), FIBRAD_OK);
+        int solved = 0;
+        for (uint32_t k = 0; k < until && !solved; k++) {
+            sweep_all(p);
+            ck_assert_int_eq(fibrad_heat_step(p->heat, &solved), FIBRAD_OK);
+        }
+        for (uint32_t k = 0; k < until % PARTS && !solved; k++)
+            ck_assert_int_eq(fibrad_heat_sweep(p->heat, k), FIBRAD_OK);
+        p->sources.surroundings = .7;
+        solve(p);
+        assert_like_powers(p, book);
+        end_problem(p);
+    }
+    end_problem(book);
+}
+END_TEST
+
+START_TEST(moved_before_the_first_solution) {
+    const struct contents c = contents_of(15), d = contents_of(16);
+    struct problem *book = by_the_book(&d);
+    for (int stage = MADE; stage <= SWEPT; stage++) {
+        struct problem *p = begin_problem(&c, 0);
+        advance_to(p, MADE, stage);
+        build(p, &d); /* in place */
+        ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
+        assert_no_begin(p);
+        trace_all(p);
+        assert_nothing_to_solve(p);
+        solve(p);
+        assert_same_powers(p, book);
+        end_problem(p);
+    }
+    end_problem(book);
+}
+END_TEST
+
+/* A warm start takes fewer sweeps to the same powers; in place and to a scene elsewhere; with spheres in other cells
+ * (mirrored), too. */
+START_TEST(moved_after_a_solution) {
+    const struct contents c = contents_of(17);
+    for (int far = 0; far < 2; far++) {
+        struct contents d = c;
+        for (uint32_t i = 0; i < N; i++) d.x[i] = far ? 6.4 - c.x[i] : c.x[i] + 1e-4 * bed_make_random(3, i);
+        struct problem *book = by_the_book(&d);
+        for (int elsewhere = 0; elsewhere < 2; elsewhere++) {
+            struct problem *p = begin_problem(&c, 0);
+            trace_all(p);
+            solve(p);
+            const uint32_t cold = p->result.sweeps;
+            unsigned char *old = p->scene_block;
+            if (elsewhere) p->scene_block = block_of(p->scene_size);
+            build(p, &d);
+            ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
+            if (elsewhere) { /* the old one may go */
+                memset(old, 0xee, p->scene_size);
+                free(old);
+            }
+            assert_no_begin(p);
+            trace_all(p);
+            assert_nothing_to_solve(p);
+            solve(p);
+            assert_like_powers(p, book);
+            if (!far) {
+                ck_assert_uint_lt(p->result.sweeps, book->result.sweeps);
+                ck_assert_uint_lt(p->result.sweeps, cold);
+            }
+            end_problem(p);
+        }
+        end_problem(book);
+    }
+}
+END_TEST
+
+/* What was moved there and back again has the bits of a second solution where nothing was moved. */
+START_TEST(moved_there_and_back) {
+    const struct contents c = contents_of(18), d = changed(&c, 3);
+    struct problem *p = begin_problem(&c, 0), *still = begin_problem(&c, 0);
+    trace_all(p), trace_all(still);
+    solve(p), solve(still);
+    build(p, &d);
+    ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
+    build(p, &c);
+    ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 0), FIBRAD_E_STATE);
+    ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
+    trace_all(p);
+    p->temperature[0] = still->temperature[0] = 3;
+    solve(p), solve(still);
+    assert_like_powers(p, still);
+    end_problem(p);
+    end_problem(still);
+}
+END_TEST
+
+/* Refused, a move leaves everything as it was: the solution can be read, and another one begun. */
+START_TEST(moves_refused) {
+    const struct contents c = contents_of(19);
+    struct problem *book = by_the_book(&c), *p = by_the_book(&c);
+    unsigned char *block = block_of(p->scene_size);
+    for (int what = 0; what < 8; what++) {
+        struct contents d = c;
+        fibrad_scene *scene = NULL;
+        int expected = FIBRAD_E_ARGUMENT;
+        if (what == 1) d.n = N - 1;
+        if (what == 2) d.n = 0;
+        if (what == 3) d.body[2] = plane_at(1, 1, 5);                        /* the other side */
+        if (what == 4) d.body[0] = c.body[1], d.body[1] = c.body[0];         /* another order */
+        if (what == 5) d.body[2].plane.at = -2000, expected = FIBRAD_E_SIZE; /* or it fits */
+        const fibrad_scene_config fewer = {.body = d.body, .bodies = 2}, open = {0};
+        const fibrad_spheres spheres = {.x = d.x, .y = d.y, .z = d.z, .r = d.r, .n = N};
+        if (what == 6 || what == 7)
+            ck_assert_int_eq(
+                fibrad_scene_init(&scene, block, p->scene_size, what == 6 ? &fewer : &open, &spheres, NULL), FIBRAD_OK);
+        else if (what > 0)
+            ck_assert_int_eq(build_at(block, p->scene_size, &d, &scene), FIBRAD_OK);
+        const int status = fibrad_heat_move(p->heat, scene);
+        if (what == 5 && status == FIBRAD_OK) { /* its patches found room: back */
+            ck_assert_int_eq(fibrad_heat_move(p->heat, p->scene), FIBRAD_OK);
+            trace_all(p);
+            solve(p);
+            assert_like_powers(p, book);
+            continue;
+        }
+        ck_assert_msg(status == expected, "move %d: %d", what, status);
+        memset(p->power, 0, sizeof p->power);
+        ck_assert_int_eq(fibrad_heat_read(p->heat, &p->result), FIBRAD_OK);
+        assert_like_powers(p, book);
+        ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 0), FIBRAD_E_STATE); /* all are */
+        solve(p);
+        assert_like_powers(p, book);
+    }
+    ck_assert_int_eq(fibrad_heat_move(NULL, p->scene), FIBRAD_E_ARGUMENT);
+    free(block);
+    end_problem(p);
+    end_problem(book);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("protocol heat");
+    TCase *tests = suite_case(suite, "protocol heat");
+    tcase_add_test(tests, traces_that_failed);
+    tcase_add_test(tests, traces_without_memory);
+    tcase_add_test(tests, nothing_traced);
+    tcase_add_test(tests, one_task_not_traced);
+    tcase_add_test(tests, tasks_and_parts_out_of_range);
+    tcase_add_test(tests, tasks_traced_twice);
+    tcase_add_test(tests, one_part_not_swept);
+    tcase_add_test(tests, parts_swept_twice);
+    tcase_add_test(tests, steps_and_reads_too_early);
+    tcase_add_test(tests, begun_anew_in_between);
+    tcase_add_test(tests, moved_before_the_first_solution);
+    tcase_add_test(tests, moved_after_a_solution);
+    tcase_add_test(tests, moved_there_and_back);
+    tcase_add_test(tests, moves_refused);
+    return suite_run(suite);
+}
