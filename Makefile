@@ -253,7 +253,7 @@ house:
 symbols: lib lib-host
 	BUILD=$(BUILD) tests/check_symbols.sh
 
-FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/couple/*/*.[ch] host/*/*.cpp tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
+FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/*/*/*.[ch] host/*/*.cpp tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch])
 
 ## format: every source is formatted by .clang-format (to repair: clang-format -i FILE)
 format:

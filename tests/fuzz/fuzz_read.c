@@ -66,11 +66,11 @@ static void read_mesh(const char *path, uint8_t asked) {
         uint32_t listed = 0;
         for (uint32_t t = 0; t < s->n; t++) {
             const uint32_t *c = s->corner[t];
-            if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0] || s->part_of[t] >= s->parts) abort();
+            if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0] || s->component_of[t] >= s->components) abort();
             for (int k = 0; k < 9; k++)
                 if (c[k / 3] >= s->vertices || !isfinite(s->vertex[c[k / 3]][k % 3])) abort();
         }
-        for (uint32_t p = 0; p < s->parts; p++) listed += s->part[p].n;
+        for (uint32_t p = 0; p < s->components; p++) listed += s->component[p].n;
         if (s->n == 0 || listed != s->n || meshes_face(&meshes, &spheres, period) != 0) abort();
         for (uint32_t t = 0; t < s->n; t++)
             if (meshes.front[t] == FIBRAD_NO_BODY && meshes.back[t] == FIBRAD_NO_BODY) abort();
