@@ -96,7 +96,7 @@ COUNTING       = $(filter-out %/libfibrad.a,$(LIBRARIES)) $(BUILD)/counted/libfi
 COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
-.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols format house bench bench-quick \
+.PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house bench bench-quick \
     bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads lint cppcheck nightly deps deps-ci man install install-lib clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
@@ -241,13 +241,17 @@ run-programs: programs
 ## programs: build the test programs
 programs: $(TEST_PROGRAMS) $(BUILD)/fibrad
 
-## check: the symbols of libfibrad.a, the format of the sources, and the house
-check: symbols format house
+## check: the symbols of libfibrad.a, calls among files, the format of the sources, and the house
+check: symbols calls format house
 
 ## house: folders, includes, names and words, and the map of docs/design.md
 house:
 	tests/check_house.sh
 	tests/check_map.sh
+
+## calls: no circle of calls among files of the libraries and the program
+calls: lib lib-host $(BUILD)/libhost.a
+	BUILD=$(BUILD) tests/check_calls.sh
 
 ## symbols: libfibrad.a defines only fibrad_*, asks for nothing but memory copying, holds no variables; what others export
 symbols: lib lib-host

@@ -1,6 +1,5 @@
 /* command_reproduce.c - `fibrad reproduce`: our numbers beside those of the papers. SPDX-License-Identifier: MIT */
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -10,7 +9,6 @@
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "command/commands.h"
-#include "plot/gnuplot.h"
 #include "reproduce/reproduce.h"
 
 enum { KEY_ONLY = KEY_OWN, KEY_NO_PLOTS };
@@ -52,70 +50,6 @@ static int reproduce_help(void) {
     return STATUS_OK;
 }
 
-void reproduce_compare(struct reproduce *reproduce, const char *what, const char *source, const char *unit,
-                       double theirs, double ours) {
-    const bool points = strcmp(unit, "%") == 0;
-    const double difference = points ? ours - theirs : 100 * (ours / theirs - 1);
-    if (isnan(theirs))
-        printf("%-12s %-70s %-5s %12s %12.6g %-3s\n", reproduce->experiment, what, "", "", ours, unit);
-    else
-        printf("%-12s %-70s %-5s %12.6g %12.6g %-3s %+8.2f %s\n", reproduce->experiment, what, source, theirs, ours,
-               unit, difference, points ? "points" : "%");
-    if (!reproduce->comparison.file) return;
-    fprintf(reproduce->comparison.file, "%s,\"%s\",%s,%s,", reproduce->experiment, what, isnan(theirs) ? "" : source,
-            unit);
-    if (isnan(theirs))
-        fprintf(reproduce->comparison.file, ",%.6g,\n", ours);
-    else
-        fprintf(reproduce->comparison.file, "%.6g,%.6g,%.3f\n", theirs, ours, difference);
-}
-
-static char *path_of(const struct reproduce *reproduce, const char *name, const char *ending) {
-    const size_t size = strlen(reproduce->directory) + strlen(name) + strlen(ending) + 2;
-    char *path = malloc(size);
-    if (path) snprintf(path, size, "%s/%s%s", reproduce->directory, name, ending);
-    return path;
-}
-
-static int write_figure(const struct reproduce *reproduce, const char *name) {
-    char *path = path_of(reproduce, name, ".csv");
-    if (!path) return message_memory();
-    struct output output = {0};
-    int status = output_open(&output, path);
-    if (!status) fwrite(reproduce->text, 1, reproduce->length, output.file);
-    status = output_close(&output, status);
-    free(path);
-    return status;
-}
-
-static int draw_figure(const struct reproduce *reproduce, const char *name, const char *script) {
-    char *path = path_of(reproduce, name, ".svg");
-    if (!path) return message_memory();
-    struct output output = {0};
-    struct gnuplot gnuplot;
-    int status = output_open(&output, path);
-    if (!status) status = gnuplot_start(&gnuplot, &output);
-    if (!status) {
-        const char *body = strchr(reproduce->text, '\n');
-        fprintf(gnuplot.script,
-                "set terminal svg size 900,600 font 'Helvetica,13' background 'white'\n"
-                "set datafile separator ','\nset grid\nset style data linespoints\nset key font ',11'\n"
-                "$data << END%s\nEND\n%s\n",
-                body ? body : "\n", script);
-        status = gnuplot_end(&gnuplot);
-    }
-    status = output_close(&output, status);
-    free(path);
-    return status;
-}
-
-int reproduce_figure(struct reproduce *reproduce, const char *name, const char *script) {
-    if (fflush(reproduce->data) != 0) return message_memory();
-    if (!reproduce->directory) return STATUS_OK;
-    const int status = write_figure(reproduce, name);
-    return status || !reproduce->plots || !script ? status : draw_figure(reproduce, name, script);
-}
-
 static int run_experiment(struct reproduce *reproduce, int which) {
     reproduce->experiment = experiments[which].name;
     reproduce->data = open_memstream(&reproduce->text, &reproduce->length);
@@ -133,7 +67,7 @@ static int open_directory(struct reproduce *reproduce, char **path) {
     if (!reproduce->directory) return STATUS_OK;
     if (mkdir(reproduce->directory, 0777) != 0 && errno != EEXIST)
         return message_at(STATUS_FILE, reproduce->directory, 0, "%s", strerror(errno));
-    *path = path_of(reproduce, "comparison", ".csv");
+    *path = reproduce_path(reproduce, "comparison", ".csv");
     if (!*path) return message_memory();
     const int status = output_open(&reproduce->comparison, *path);
     if (!status)

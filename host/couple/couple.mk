@@ -16,9 +16,9 @@ COUPLE_MESH = $(COUPLE_WALLS) \
     host/cli/message.c \
     host/cli/output.c \
     host/mesh/edges.c \
-    host/mesh/enclosing.c \
     host/mesh/facing.c \
     host/mesh/meshes.c \
+    host/mesh/sides.c \
     host/mesh/stl.c \
     host/mesh/weld.c \
     host/text/read_lines.c \

@@ -37,7 +37,7 @@ struct meshes {
     struct mesh *mesh;
     char name[FIBRAD_BODIES_MAX][MESH_NAME]; /* names of the walls that are meshes */
     struct fibrad_triangles triangles;       /* of all meshes, with the sides of the last meshes_face */
-    uint32_t enclosing;                      /* meshes_enclosing of the last meshes_face */
+    uint32_t enclosing;                      /* closed components whose inner side alone is a wall, by meshes_face */
     /* arrays of `triangles` */
     double *vertex;
     uint32_t *corner, *front, *back;
@@ -53,13 +53,9 @@ int meshes_add(struct meshes *meshes, const struct mesh_file *file, uint32_t bod
 /* Adds a mesh of triangles in memory, as if the file had them. The caller keeps `stl`. */
 int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t body);
 
-/* Finds which sides of triangles are walls, for these spheres. Status 0 or STATUS_MEMORY. */
+/* Finds which sides of triangles are walls, for these spheres; sets `inner` of all components. Status 0 or
+ * STATUS_MEMORY. */
 int meshes_face(struct meshes *meshes, const fibrad_spheres *spheres, const double period[3]);
-
-/* Counts closed components whose inner side alone is a wall. Sets `inner` of all components. 1: the component is
- * closed, and its wall is the fronts of triangles that are not turned and the backs of the others. -1: the wall is the
- * other side. 0: the component is not closed, or both sides are walls. */
-uint32_t meshes_enclosing(struct meshes *meshes);
 
 /* 1: this side of a triangle is a wall, and the triangle is of a closed component with a wall on one side only. -1: the
  * other side is that wall. 0: any other triangle. */

@@ -9,7 +9,8 @@ struct component {
     uint32_t first, n; /* its triangles in surface.in_components */
     bool closed;       /* each edge belongs to two triangles */
     bool twisted;      /* no winding of the triangles makes one side, as on a Moebius strip */
-    int inner;         /* meshes_enclosing */
+    int inner;         /* of meshes_face. 1: closed, and its wall is the fronts of triangles that are not turned and
+                        * the backs of the others; -1: the other side is; 0: not closed, or both sides are walls */
 };
 
 struct surface {

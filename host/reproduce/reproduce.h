@@ -32,6 +32,9 @@ struct reproduce {
 void reproduce_compare(struct reproduce *reproduce, const char *what, const char *source, const char *unit,
                        double theirs, double ours);
 
+/* The path DIRECTORY/NAME and the ending, to be freed. NULL: no memory. */
+char *reproduce_path(const struct reproduce *reproduce, const char *name, const char *ending);
+
 /* Writes the data of the experiment as NAME.csv, and NAME.svg by a gnuplot script that reads them from $data. script
  * NULL: no picture. Returns a status. */
 int reproduce_figure(struct reproduce *reproduce, const char *name, const char *script);

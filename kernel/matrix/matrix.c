@@ -88,14 +88,6 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     return place;
 }
 
-void fibrad_matrix_share(const fibrad_matrix *m, uint32_t pieces, fibrad_piece *piece, void *job) {
-    if (m->parallel != NULL && pieces > 1) {
-        m->parallel(m->context, pieces, piece, job);
-        return;
-    }
-    for (uint32_t k = 0; k < pieces; k++) piece(job, k);
-}
-
 /* The numbers that follow from the arguments; false if these are not valid. */
 static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                              const fibrad_matrix_rule *rule) {

@@ -57,7 +57,13 @@ struct fibrad_matrix {
 };
 
 /* Does pieces 0 to pieces - 1 of a job, by the caller's threads if `parallel` is set. */
-void fibrad_matrix_share(const fibrad_matrix *matrix, uint32_t pieces, fibrad_piece *piece, void *job);
+static inline void fibrad_matrix_share(const fibrad_matrix *m, uint32_t pieces, fibrad_piece *piece, void *job) {
+    if (m->parallel != NULL && pieces > 1) {
+        m->parallel(m->context, pieces, piece, job);
+        return;
+    }
+    for (uint32_t k = 0; k < pieces; k++) piece(job, k);
+}
 
 /* Counts the entries of the rows of the transpose in a part, into matrix->place. Returns their sum. */
 uint64_t fibrad_matrix_count_part(fibrad_matrix *matrix, const fibrad_matrix_part *part);

@@ -1,4 +1,8 @@
-/* enclosing.c - closed components of meshes with a wall on one side only. SPDX-License-Identifier: MIT */
+/* sides.c - which sides of triangles are walls, and closed components with a wall on one side only.
+ * SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+
+#include "cli/message.h"
 #include "mesh/facing.h"
 #include "mesh/meshes.h"
 
@@ -16,7 +20,8 @@ static int inner_of(const struct meshes *meshes, const struct mesh *mesh, const 
     return inner;
 }
 
-uint32_t meshes_enclosing(struct meshes *meshes) {
+/* Counts closed components whose inner side alone is a wall. Sets `inner` of all components. */
+static uint32_t count_enclosing(struct meshes *meshes) {
     uint32_t count = 0;
     for (uint32_t m = 0; m < meshes->count; ++m) {
         const struct surface *surface = &meshes->mesh[m].surface;
@@ -27,6 +32,43 @@ uint32_t meshes_enclosing(struct meshes *meshes) {
         }
     }
     return count;
+}
+
+/* Gives the front, the back or both sides of a triangle to its wall. */
+static void give_sides(struct meshes *meshes, const struct mesh *mesh, uint32_t own, bool front, bool back) {
+    const uint32_t body = mesh_body(mesh, own);
+    meshes->front[mesh->first + own] = front ? body : FIBRAD_NO_BODY;
+    meshes->back[mesh->first + own] = back ? body : FIBRAD_NO_BODY;
+}
+
+static int face_spheres(struct meshes *meshes, const struct mesh *mesh, const fibrad_spheres *spheres,
+                        const double period[3]) {
+    const struct surface *surface = &mesh->surface;
+    double *votes = malloc(surface->components * sizeof *votes);
+    const int status = votes ? facing_votes(surface, spheres, period, votes) : message_memory();
+    for (uint32_t p = 0; p < surface->components && !status; ++p) {
+        const struct component *component = &surface->component[p];
+        const bool behind = votes[p] < 0;
+        for (uint32_t k = component->first; k < component->first + component->n; ++k) {
+            const uint32_t t = surface->in_components[k];
+            const bool back = surface->turned[t] != behind;
+            give_sides(meshes, mesh, t, !back || component->twisted, back || component->twisted);
+        }
+    }
+    free(votes);
+    return status;
+}
+
+int meshes_face(struct meshes *meshes, const fibrad_spheres *spheres, const double period[3]) {
+    int status = STATUS_OK;
+    for (uint32_t m = 0; m < meshes->count && !status; ++m) {
+        const struct mesh *mesh = &meshes->mesh[m];
+        if (mesh->sides == SIDES_AUTO) status = face_spheres(meshes, mesh, spheres, period);
+        for (uint32_t t = 0; t < mesh->surface.n && mesh->sides != SIDES_AUTO; ++t)
+            give_sides(meshes, mesh, t, true, mesh->sides == SIDES_BOTH);
+    }
+    meshes->enclosing = status ? 0 : count_enclosing(meshes);
+    return status;
 }
 
 int meshes_side(const struct meshes *meshes, uint32_t triangle, bool back) {
