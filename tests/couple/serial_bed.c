@@ -10,6 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "fibrad.h"
+
 enum { MOST = 4096 };
 static double x[MOST], y[MOST], z[MOST], r[MOST], t[MOST], emissivity[MOST], weight[MOST], emission[MOST], power[MOST];
 static uint64_t id[MOST];
