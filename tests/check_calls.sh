@@ -2,7 +2,8 @@
 # check_calls.sh - no circle of calls among the files of kernel and host, by the symbols of their objects.
 # SPDX-License-Identifier: MIT
 set -u
-symbols=$(nm -A -g "${BUILD:=build}"/libfibrad.a "$BUILD"/libfibrad_host.a "$BUILD"/libhost.a) || exit 1
+: "${BUILD:=build}"
+symbols=$(nm -A -g "$BUILD"/libfibrad.a "$BUILD"/libfibrad_host.a "$BUILD"/libhost.a) || exit 1
 
 # lines "CALLER CALLED"
 calls=$(echo "$symbols" | awk '
