@@ -66,7 +66,7 @@ FUNCTIONS = '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1;/p'
 sources = $(sort $(wildcard $(1)))
 
 LANED   := $(call sources,kernel/*/*_lanes.c) # compiled once per instruction set
-KERNEL  := $(filter-out %_lanes.c kernel/sample/generate_tables.c,$(call sources,kernel/*/*.c))
+KERNEL  := $(filter-out %_lanes.c kernel/sample/generate_%.c,$(call sources,kernel/*/*.c))
 SIMPLE  := $(call sources,host/simple/*.c) # libfibrad_host.a
 HOST    := $(filter-out $(addprefix host/,simple/% couple/% python/%),$(call sources,host/*/*.c host/read/*/*.c)) # the program, besides main.c
 TESTS   := $(call sources,tests/test_*.c)
@@ -125,6 +125,10 @@ $(BUILD)/tables.c: $(BUILD)/generate_tables
 $(BUILD)/generate_tables: kernel/sample/generate_tables.c
 	@mkdir -p $(@D)
 	$(HOSTCC) -O2 $(COMMON) $< -lm -o $@
+
+# writes kernel/sample/line_table.c anew, which takes minutes: build/generate_lines > kernel/sample/line_table.c
+$(BUILD)/generate_lines: kernel/sample/generate_lines.c kernel/sample/line.c kernel/sample/direction.c $(BUILD)/tables.c
+	$(HOSTCC) -O2 $(COMMON) -DFIBRAD_TABLE_LINES=0 $^ -lm -o $@
 
 # $(1): instruction set. In the source, FIBRAD_LANES_HEADER is the header of its lane type and FIBRAD_ISA_SUFFIX ends
 # the names of its external functions.
@@ -376,7 +380,7 @@ LINT_SCALAR  = -DFIBRAD_LANES_HEADER='"base/lanes/vec_scalar.h"' -DFIBRAD_ISA_SU
 ## lint: cppcheck and clang-tidy, with the exceptions that .cppcheck and .clang-tidy give reasons for
 lint: cppcheck
 	printf '%s\n' $(KERNEL) $(LANED) | xargs -I{} -P 2 clang-tidy --quiet {} -- -std=c11 $(LINT_FLAGS) $(LINT_SCALAR)
-	printf '%s\n' $(SIMPLE) $(HOST) host/main.c kernel/sample/generate_tables.c | xargs -I{} -P 2 \
+	printf '%s\n' $(SIMPLE) $(HOST) host/main.c $(wildcard kernel/sample/generate_*.c) | xargs -I{} -P 2 \
 	    clang-tidy --quiet --checks=-clang-analyzer-core.* {} -- -std=c11 -fopenmp $(LINT_FLAGS)
 	@if command -v $(MPICC) >/dev/null; then printf '%s\n' $(COUPLE) $(COUPLE_WALLS) $(COUPLE_PROGRAMS) | xargs -I{} -P 2 \
 	    clang-tidy --quiet --checks=-clang-analyzer-core.*,-clang-analyzer-optin.mpi.* {} -- -std=c11 -fopenmp \

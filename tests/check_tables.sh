@@ -1,5 +1,5 @@
 #!/bin/sh
-# check_tables.sh - the tables have their pinned bits, and smaller tables give the same directions.
+# check_tables.sh - the tables have their pinned bits, smaller tables give the same directions, and lines do without.
 # SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}" "${CC:=cc}"
@@ -17,4 +17,12 @@ for limit in 0 256; do
     "$CC" -O2 -std=c11 -D_POSIX_C_SOURCE=200809L -ffp-contract=off -Ikernel -DFIBRAD_TABLE_AZIMUTHS=$limit \
         "$BUILD/tables.c" kernel/sample/direction.c tests/test_direction.c $(pkg-config --cflags --libs check) -lm \
         -o "$program" && "$program" || exit 1
+done
+
+program=$BUILD/tests/test_lines_small
+for limit in 0 100; do
+    # shellcheck disable=SC2046,SC2086  # lists of flags
+    "$CC" -O2 -std=c11 -D_POSIX_C_SOURCE=200809L -ffp-contract=off -Ikernel -DFIBRAD_TABLE_LINES=$limit "$BUILD/tables.c" \
+        kernel/sample/direction.c kernel/sample/line.c kernel/sample/line_table.c tests/test_lines.c \
+        $(pkg-config --cflags --libs check) -lm -o "$program" && "$program" || exit 1
 done

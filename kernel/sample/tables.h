@@ -5,6 +5,8 @@
  *   -DFIBRAD_TABLE_AZIMUTHS=N  azimuths kept at hand: 0, 256, 1024, 4096 or 10946 (default), 16 N bytes. The others, up
  *                              to FIBRAD_DIRECTIONS_MAX, are summed from 16 KB of angles; the bits are the same.
  *   -DFIBRAD_TABLE_SURFACE=N   largest surface rule: 0 (none), 8, 13, ... 987 (default), about 104 N bytes.
+ *   -DFIBRAD_TABLE_LINES=N     largest set of lines: 0 (none), 8, 11, ... 2048 (default), about 29 N bytes. The others
+ *                              are computed, kernel/sample/line.h; they are nearly as even, but other lines.
  */
 #ifndef FIBRAD_SAMPLE_TABLES_H
 #define FIBRAD_SAMPLE_TABLES_H
@@ -17,6 +19,9 @@
 #endif
 #ifndef FIBRAD_TABLE_SURFACE
 #define FIBRAD_TABLE_SURFACE 987
+#endif
+#ifndef FIBRAD_TABLE_LINES
+#define FIBRAD_TABLE_LINES 2048
 #endif
 
 /* Cosine and sine of k golden angles, the golden angle being pi (3 - sqrt 5). */
@@ -57,6 +62,12 @@ static inline int fibrad_disc_points_get(uint32_t m, fibrad_disc_points *points)
 #if FIBRAD_TABLE_SURFACE > 0
 extern const double fibrad_table_surface_z[], fibrad_table_surface_ring[], fibrad_table_surface_cos[],
     fibrad_table_surface_sin[], fibrad_table_surface_weight[];
+#endif
+
+/* Sets of lines, the sets of 8, 11, ... one after the other: x/(1 + z) and y/(1 + z) in units of 2^-31, z >= 0. Unlike
+ * the other tables they stand in a source, line_table.c, which generate_lines.c wrote. */
+#if FIBRAD_TABLE_LINES >= 8
+extern const int32_t fibrad_table_lines[][2];
 #endif
 
 /* A Fibonacci lattice of N_F nodes about the z axis, on 64-byte boundaries; entry k - 1 is node k = 1 ... N_F. */

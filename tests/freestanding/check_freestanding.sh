@@ -69,7 +69,7 @@ fi
 
 m7="-mcpu=cortex-m7 -mthumb -mfpu=fpv5-d16 -mfloat-abi=hard"
 rv64="-march=rv64imac -mabi=lp64 -mcmodel=medany"
-small="-DFIBRAD_TABLE_AZIMUTHS=0 -DFIBRAD_TABLE_SURFACE=0"
+small="-DFIBRAD_TABLE_AZIMUTHS=0 -DFIBRAD_TABLE_SURFACE=0 -DFIBRAD_TABLE_LINES=0"
 {
     echo "| target, \`-Os\` | code | tables | deepest stack |"
     echo "|---|---|---|---|"

@@ -1,0 +1,174 @@
+/* line.c - lines spread evenly. SPDX-License-Identifier: MIT */
+#include "sample/line.h"
+#include "sample/direction.h"
+
+/* ---- tables ---------------------------------------------------------------------------------------------------- */
+
+/* Sizes of the sets in fibrad_table_lines, which follow each other. */
+static const uint16_t SIZES[] = {8,   11,  16,  23,  32,  45,  55,  64,   91,   100,
+                                 128, 181, 233, 256, 362, 512, 724, 1024, 1448, 2048};
+enum { SIZE_COUNT = sizeof SIZES / sizeof SIZES[0] };
+
+/* Index of the first line of the set of n; UINT32_MAX if there is none. */
+static uint32_t first_of_set(uint32_t n) {
+    uint32_t first = 0;
+    for (int i = 0; i < SIZE_COUNT && SIZES[i] <= FIBRAD_TABLE_LINES; i++) {
+        if (SIZES[i] == n) return first;
+        first += SIZES[i];
+    }
+    return UINT32_MAX;
+}
+
+bool fibrad_lines_tabled(uint32_t n) { return first_of_set(n) != UINT32_MAX; }
+
+/* The entry is the projection from the south pole, x/(1 + z) and y/(1 + z), in units of 2^-31. */
+static void unfold_line(const int32_t entry[2], double line[3]) {
+    const double u = 0x1p-31 * entry[0], v = 0x1p-31 * entry[1], square = u * u + v * v, scale = 1 + square;
+    line[0] = 2 * u / scale;
+    line[1] = 2 * v / scale;
+    line[2] = (1 - square) / scale;
+}
+
+static void unfold_set(uint32_t n, double (*line)[3]) {
+#if FIBRAD_TABLE_LINES >= 8
+    const uint32_t first = first_of_set(n);
+    for (uint32_t k = 0; k < n; k++) unfold_line(fibrad_table_lines[first + k], line[k]);
+#else
+    (void)n, (void)line, (void)unfold_line;
+#endif
+}
+
+/* ---- steps uphill ---------------------------------------------------------------------------------------------- */
+
+static double scalar_product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* |p - q| + |p + q| = 2 sqrt(1 + s), s the sine of the angle between p and q. */
+static double distances(const double p[3], const double q[3]) {
+    const double t = scalar_product(p, q);
+    return 2 * fibrad_sqrt(1 + fibrad_sqrt(fibrad_max(0, 1 - t * t)));
+}
+
+/* Derivative of that to the cosine of the angle. */
+static double slope(const double p[3], const double q[3]) {
+    const double t = scalar_product(p, q), square = fibrad_max(0x1p-40, 1 - t * t);
+    return -t / fibrad_sqrt(square * (1 + fibrad_sqrt(square)));
+}
+
+/* Adds the forces between line i and those after it; weight: of pairs within a half, and across. */
+static void add_forces(uint32_t n, const double (*line)[3], uint32_t i, const double weight[2], double (*velocity)[3]) {
+    const double *p = line[i];
+    double sum[3] = {0, 0, 0};
+    for (uint32_t j = i + 1; j < n; j++) {
+        const double force = weight[(i ^ j) & 1] * slope(p, line[j]);
+        for (int axis = 0; axis < 3; axis++) {
+            sum[axis] += force * line[j][axis];
+            velocity[j][axis] += force * p[axis];
+        }
+    }
+    for (int axis = 0; axis < 3; axis++) velocity[i][axis] += sum[axis];
+}
+
+/* Moves p by what of its velocity is tangent to the sphere, and back onto the sphere. */
+static void move_line(double p[3], double velocity[3]) {
+    const double along = scalar_product(p, velocity);
+    for (int axis = 0; axis < 3; axis++) {
+        velocity[axis] -= along * p[axis];
+        p[axis] += velocity[axis];
+    }
+    const double length = fibrad_sqrt(scalar_product(p, p));
+    for (int axis = 0; axis < 3; axis++) p[axis] /= length;
+}
+
+void fibrad_lines_relax(uint32_t n, double (*line)[3], double (*velocity)[3], const fibrad_line_steps *steps) {
+    const double across = steps->length / n, weight[2] = {across * (1 + steps->halves), across};
+    fibrad_zero(velocity, n * sizeof *velocity);
+    for (uint32_t step = 0; step < steps->count; step++) {
+        for (uint32_t i = 0; i < n; i++)
+            for (int axis = 0; axis < 3; axis++) velocity[i][axis] *= steps->momentum;
+        for (uint32_t i = 0; i < n; i++) add_forces(n, (const double(*)[3])line, i, weight, velocity);
+        for (uint32_t i = 0; i < n; i++) move_line(line[i], velocity[i]);
+    }
+}
+
+/* ---- halves ---------------------------------------------------------------------------------------------------- */
+
+/* field[i]: sum over the other lines of their distances from line i, those of the other half with a minus. */
+static void make_field(uint32_t n, const double (*line)[3], double *field) {
+    fibrad_zero(field, n * sizeof *field);
+    for (uint32_t i = 0; i < n; i++)
+        for (uint32_t j = i + 1; j < n; j++) {
+            const double distance = distances(line[i], line[j]), add = (i ^ j) & 1 ? -distance : distance;
+            field[i] += add;
+            field[j] += add;
+        }
+}
+
+/* The odd-numbered line whose exchange with the even-numbered line i gains most; i if none gains. */
+static uint32_t best_exchange(uint32_t n, const double (*line)[3], const double *field, uint32_t i) {
+    uint32_t best = i;
+    double most = 0x1p-30;
+    for (uint32_t j = 1; j < n; j += 2) {
+        const double gain = -(field[i] + field[j]) - 2 * distances(line[i], line[j]);
+        if (gain > most) most = gain, best = j;
+    }
+    return best;
+}
+
+/* Exchanges line i, even-numbered, and line j, odd-numbered. */
+static void exchange_lines(uint32_t n, double (*line)[3], double *field, uint32_t i, uint32_t j) {
+    for (uint32_t k = 0; k < n; k++) {
+        if (k == i || k == j) continue;
+        const double change = 2 * (distances(line[k], line[j]) - distances(line[k], line[i]));
+        field[k] += k & 1 ? -change : change;
+    }
+    const double between = 2 * distances(line[i], line[j]), field_i = field[i];
+    field[i] = -field[j] - between;
+    field[j] = -field_i - between;
+    for (int axis = 0; axis < 3; axis++) {
+        const double x = line[i][axis];
+        line[i][axis] = line[j][axis];
+        line[j][axis] = x;
+    }
+}
+
+void fibrad_lines_halve(uint32_t n, double (*line)[3], double *field) {
+    make_field(n, (const double(*)[3])line, field);
+    bool more = true;
+    for (int sweep = 0; sweep < 16 && more; sweep++) {
+        more = false;
+        for (uint32_t i = 0; i < n; i += 2) {
+            const uint32_t j = best_exchange(n, (const double(*)[3])line, field, i);
+            if (j == i) continue;
+            exchange_lines(n, line, field, i, j);
+            more = true;
+        }
+    }
+}
+
+/* ---- sets ------------------------------------------------------------------------------------------------------ */
+
+/* Direction k of the Fibonacci set of `of` directions for k < n. */
+static void take_directions(uint32_t n, uint32_t of, double (*line)[3]) {
+    for (uint32_t k = 0; k < n; k++) {
+        const fibrad_polar p = fibrad_direction_polar(k, of);
+        line[k][0] = p.ring * p.cos;
+        line[k][1] = p.ring * p.sin;
+        line[k][2] = p.z;
+    }
+}
+
+/* Half a Fibonacci set of 2 n has one direction of each line, and a seam at the equator. Some steps close the seam,
+ * then lines are dealt to the halves, and further steps spread both halves and the whole. */
+void fibrad_lines_make(uint32_t n, double (*line)[3], double *scratch) {
+    static const fibrad_line_steps close = {16, 1.5, 0.8, 0}, spread = {32, 1.5, 0.8, 0.3};
+    if (fibrad_lines_tabled(n)) {
+        unfold_set(n, line);
+    } else if (n > FIBRAD_LINES_EVEN_MAX) {
+        take_directions(n, n, line);
+    } else {
+        take_directions(n, 2 * n, line);
+        fibrad_lines_relax(n, line, (double(*)[3])scratch, &close);
+        fibrad_lines_halve(n, line, scratch);
+        fibrad_lines_relax(n, line, (double(*)[3])scratch, &spread);
+    }
+}

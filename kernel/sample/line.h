@@ -1,0 +1,39 @@
+/* line.h - lines spread evenly, for methods that serve a direction and its opposite at once. SPDX-License-Identifier:
+ * MIT
+ *
+ * A line is a unit vector p that stands for p and -p. A set is even if its vectors and their opposites together are:
+ * the sum over pairs of |p - q| + |p + q| is to be large, which makes the mean square error over spherical caps small
+ * (Stolarsky). Even-numbered and odd-numbered lines are each spread evenly, too, so that their difference tells an
+ * error. The bits of a set depend on n and on whether n is tabled, on nothing else. */
+#ifndef FIBRAD_SAMPLE_LINE_H
+#define FIBRAD_SAMPLE_LINE_H
+
+#include "sample/tables.h"
+
+/* Sets of up to this many lines are spread evenly; larger ones are Fibonacci sets of directions. */
+#define FIBRAD_LINES_EVEN_MAX 2048
+
+/* Whether the set of n lines is a table of this build (FIBRAD_TABLE_LINES). A tabled set costs ten operations a line.
+ * Any other set of up to FIBRAD_LINES_EVEN_MAX lines costs about 60 times n^2/2 pairs, two square roots each. */
+bool fibrad_lines_tabled(uint32_t n);
+
+/* Fills n unit vectors, FIBRAD_DIRECTIONS_MIN <= n <= FIBRAD_DIRECTIONS_MAX (unchecked). scratch: 3 n doubles, not used
+ * (and possibly NULL) if n is tabled or above FIBRAD_LINES_EVEN_MAX. */
+void fibrad_lines_make(uint32_t n, double (*line)[3], double *scratch);
+
+/* Steps uphill in the sum over pairs of |p - q| + |p + q|, pairs within a half counting 1 + halves times. */
+typedef struct fibrad_line_steps {
+    uint32_t count;
+    double length;   /* of a step, in units of the force over n: at most 2 (1 + momentum)/(1 + halves/2) are stable */
+    double momentum; /* what of a step is left in the next, 0 to 0.9 */
+    double halves;   /* >= 0 */
+} fibrad_line_steps;
+
+/* Takes the steps; velocity: n vectors, overwritten. Cost: n^2/2 pairs a step. */
+void fibrad_lines_relax(uint32_t n, double (*line)[3], double (*velocity)[3], const fibrad_line_steps *steps);
+
+/* Exchanges even-numbered and odd-numbered lines as long as that spreads the halves more evenly. field: n doubles,
+ * overwritten. Cost: about ten times n^2/2 pairs. */
+void fibrad_lines_halve(uint32_t n, double (*line)[3], double *field);
+
+#endif
