@@ -75,10 +75,9 @@ static void write_set(uint32_t n) {
 }
 
 int main(void) {
-    printf(
-        "/* line_table.c - lines spread evenly, written by kernel/sample/generate_lines.c; see kernel/sample/tables.h. "
-        "SPDX-License-Identifier: MIT */\n#include \"sample/tables.h\"\n\n/* clang-format off */\n"
-        "#if FIBRAD_TABLE_LINES >= 8\n_Alignas(64) const int32_t fibrad_table_lines[][2] = {\n");
+    printf("/* line_table.c - lines spread evenly, written by kernel/sample/generate_lines.c. "
+           "SPDX-License-Identifier: MIT */\n#include \"sample/tables.h\"\n\n/* clang-format off */\n"
+           "#if FIBRAD_TABLE_LINES >= 8\n_Alignas(64) const int32_t fibrad_table_lines[][2] = {\n");
     for (int i = 0; i < WRITTEN; i++) write_set(SIZES_WRITTEN[i]);
     printf("};\n#endif\n");
     return fflush(stdout) != 0 || ferror(stdout) != 0;
