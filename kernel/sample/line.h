@@ -1,10 +1,11 @@
 /* line.h - lines spread evenly, for methods that serve a direction and its opposite at once. SPDX-License-Identifier:
  * MIT
  *
- * A line is a unit vector p that stands for p and -p. A set is even if its vectors and their opposites together are:
- * the sum over pairs of |p - q| + |p + q| is to be large, which makes the mean square error over spherical caps small
- * (Stolarsky). Even-numbered and odd-numbered lines are each spread evenly, too, so that their difference tells an
- * error. The bits of a set depend on n and on whether n is tabled, on nothing else. */
+ * A line is a unit vector p that stands for p and -p. A set is even if its vectors and their opposites together are: the
+ * sum over pairs of |p - q| + |p + q| is to be large, which makes the mean square error over spherical caps small
+ * (Stolarsky). The even-numbered and the odd-numbered lines are each spread evenly, too, so that their difference tells
+ * an error: a half errs 1.4 to 2 times as much as a set of n/2. The bits of a set depend on n and on whether n is
+ * tabled, on nothing else. */
 #ifndef FIBRAD_SAMPLE_LINE_H
 #define FIBRAD_SAMPLE_LINE_H
 
@@ -13,8 +14,9 @@
 /* Sets of up to this many lines are spread evenly; larger ones are Fibonacci sets of directions. */
 #define FIBRAD_LINES_EVEN_MAX 2048
 
-/* Whether the set of n lines is a table of this build (FIBRAD_TABLE_LINES). A tabled set costs ten operations a line.
- * Any other set of up to FIBRAD_LINES_EVEN_MAX lines costs about 60 times n^2/2 pairs, two square roots each. */
+/* Whether the set of n lines is a table of this build (FIBRAD_TABLE_LINES). A tabled set costs some ten operations a
+ * line. Any other set of up to FIBRAD_LINES_EVEN_MAX lines costs about 60 times n^2/2 pairs, two square roots each:
+ * 2.4 ms for 100 lines, 0.24 s for 1,000. */
 bool fibrad_lines_tabled(uint32_t n);
 
 /* Fills n unit vectors, FIBRAD_DIRECTIONS_MIN <= n <= FIBRAD_DIRECTIONS_MAX (unchecked). scratch: 3 n doubles, not used

@@ -53,8 +53,8 @@ run() {
 
 # sizes NAME PREFIX: a line of the table; bytes of code, tables, and the deepest stack
 sizes() {
-    code=$("$2size" "$folder/$1/libfibrad.a" | awk '$6 != "tables.o" && NR > 1 {sum += $1} END {print sum}')
-    tables=$("$2size" "$folder/$1/libfibrad.a" | awk '$6 == "tables.o" {print $1}')
+    code=$("$2size" "$folder/$1/libfibrad.a" | awk '$6 !~ /^(line_table|tables)\.o$/ && NR > 1 {sum += $1} END {print sum}')
+    tables=$("$2size" "$folder/$1/libfibrad.a" | awk '$6 ~ /^(line_table|tables)\.o$/ {sum += $1} END {print sum}')
     stack=$($here/stack.sh "$2objdump" "$folder/$1") || {
         fault "$1: $stack"
         stack=0
