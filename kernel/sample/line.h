@@ -3,7 +3,7 @@
  * A line is a unit vector p that stands for p and -p. A set is even if its vectors and their opposites together are:
  * the sum over pairs of |p - q| + |p + q| is to be large, which makes the mean square error over spherical caps small
  * (Stolarsky). The even-numbered and the odd-numbered lines are each spread evenly, too, so that their difference tells
- * an error. A half errs 1.4 to 2 times as much as a tabled set of n/2, and a half of a set that is not tabled 1.9 to 3
+ * an error. A half errs 1.4 to 2 times as much as a tabled set of n/2, and a half of a set that is not tabled 1.7 to 3
  * times. The bits of a set depend on n and on whether n is tabled, on nothing else. */
 #ifndef FIBRAD_SAMPLE_LINE_H
 #define FIBRAD_SAMPLE_LINE_H
