@@ -547,6 +547,81 @@ void fibrad_rows_clear(fibrad_rows *rows);
  *   Errors   none. Returns 1, or 0 after the last row. */
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
+/* ---- silhouettes --------------------------------------------------------------------------------------------- */
+/* All rows of a scene at once. The circle in which a sphere appears along a line tells what its neighbours exchange
+ * with it and with each other, in both directions of the line. The rows are reciprocal and closed to rounding, without
+ * averaging. At equal numbers of lines and directions they err about half as much as averaged beam rows.
+ *
+ *   1. fibrad_silhouettes_init makes the set of lines.
+ *   2. fibrad_silhouettes_task does a task. Several threads may do different tasks at the same time. Each thread has a
+ *      fibrad_pairs of its own.
+ *   3. fibrad_silhouettes_join puts all pairs together, once all tasks are done.
+ *   4. fibrad_silhouettes_row delivers a row. Several threads may ask for rows at the same time.
+ *   5. fibrad_matrix_init with rule.reciprocal = 1 makes a matrix of the rows.
+ *
+ * Scenes with walls, openings, triangles or a known region are FIBRAD_E_UNSUPPORTED. Use fibrad_beam_row for these. */
+typedef struct fibrad_silhouette_rule {
+    uint32_t lines; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: FIBRAD_DIRECTIONS_DEFAULT */
+    uint64_t turn;  /* seed of a random rotation of all lines together; 0: no rotation */
+} fibrad_silhouette_rule;
+
+/* What pairs of spheres exchange, as one thread has found it. Set `memory`, and zero the rest. */
+typedef struct fibrad_pairs {
+    fibrad_memory memory; /* 32 bytes for each pair */
+    size_t count;         /* of the library: number of pairs so far */
+    uint32_t serial;      /* of the library: number of changes so far */
+} fibrad_pairs;
+
+typedef struct fibrad_silhouettes fibrad_silhouettes; /* the lines of a scene, and where the pairs of each sphere are */
+
+/* Bytes that fibrad_silhouettes_init needs: 72 per line and 4 per sphere.
+ *   Input    as fibrad_silhouettes_init
+ *   Errors   0 */
+size_t fibrad_silhouettes_size(const fibrad_scene *scene, const fibrad_silhouette_rule *rule);
+
+/* Begins.
+ *   Input    memory[size]
+ *            scene: must stay as it is while the object is used
+ *            rule: NULL for all defaults
+ *   Output   silhouettes: a pointer into memory
+ *   Errors   _ARGUMENT, _SIZE, _STATE
+ *            _UNSUPPORTED: there are walls, openings, triangles or a known region
+ *   Cost     microseconds; up to 1 s if there is no table of as many lines, kernel/sample/line.h */
+int fibrad_silhouettes_init(fibrad_silhouettes **silhouettes, void *memory, size_t size, const fibrad_scene *scene,
+                            const fibrad_silhouette_rule *rule);
+
+/* The number of tasks.
+ *   Errors   0 */
+uint32_t fibrad_silhouettes_tasks(const fibrad_silhouettes *silhouettes);
+
+/* Does one task, and appends its pairs to a collection. Each task must be done once. After an error the collection has
+ * the pairs that it had before.
+ *   Input    task: 0 to fibrad_silhouettes_tasks - 1
+ *            work, pairs: of the calling thread
+ *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY
+ *            _CAPACITY: fixed pairs->memory is too small; pairs->memory.needed is a size that helps
+ *            _UNSUPPORTED: a circle touches more than 200 discs on one side
+ *   Cost     about a microsecond a line and sphere in a packed bed
+ *   Source   docs/methods.md */
+int fibrad_silhouettes_task(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t task,
+                            fibrad_pairs *pairs);
+
+/* Puts the pairs of all tasks together.
+ *   Input    pairs[count]: all collections; they must not change while rows are read
+ *   Errors   _ARGUMENT, _STATE
+ *            _UNSUPPORTED: 2^32 pairs or more
+ *   Cost     some ns per pair */
+int fibrad_silhouettes_join(fibrad_silhouettes *silhouettes, fibrad_pairs *pairs, uint32_t count);
+
+/* Row i of the view factors. row->symmetric is 1.
+ *   Input    i: 0 to spheres - 1
+ *   Output   row
+ *   Errors   as fibrad_beam_row
+ *            _STATE: the pairs are not joined, or have changed since
+ *            _SUM: a task was not done, or done twice
+ *   Cost     20 ns per entry */
+int fibrad_silhouettes_row(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t i, fibrad_row *row);
+
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
 /* The row of a wall, as fibrad_exchange_body makes it. All its factors together are 1. They are 0 if the wall's
  * emissivity is 0. */

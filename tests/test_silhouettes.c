@@ -176,6 +176,80 @@ static void compare_methods(struct bed bed, uint32_t directions, int images, con
     bed_free(&bed);
 }
 
+/* All rows by the silhouettes of the kernel. */
+static fibrad_rows rows_by_silhouettes(const fibrad_scene *scene, uint32_t lines) {
+    const fibrad_silhouette_rule rule = {.lines = lines};
+    const size_t size = fibrad_silhouettes_size(scene, &rule);
+    void *block = malloc(size);
+    fibrad_silhouettes *s;
+    fibrad_work work = {.memory = memory_growing()};
+    fibrad_pairs pairs = {.memory = memory_growing()};
+    fibrad_rows rows = {.memory = memory_growing()};
+    fibrad_scene_facts facts;
+    fibrad_scene_describe(scene, &facts);
+    ck_assert_int_eq(fibrad_silhouettes_init(&s, block, size, scene, &rule), FIBRAD_OK);
+    for (uint32_t task = 0; task < fibrad_silhouettes_tasks(s); task++)
+        ck_assert_int_eq(fibrad_silhouettes_task(s, &work, task, &pairs), FIBRAD_OK);
+    ck_assert_int_eq(fibrad_silhouettes_join(s, &pairs, 1), FIBRAD_OK);
+    for (uint32_t i = 0; i < facts.spheres; i++) {
+        fibrad_row row = {.rows = &rows};
+        ck_assert_int_eq(fibrad_silhouettes_row(s, &work, i, &row), FIBRAD_OK);
+    }
+    free(work.memory.block);
+    free(pairs.memory.block);
+    free(block);
+    return rows;
+}
+
+static void dense_of(const fibrad_scene *scene, fibrad_rows *rows, double f[N_MOST][N_MOST + 1]) {
+    struct matrix m = matrix_of(scene, rows, 1, &(fibrad_matrix_rule){.raw = true});
+    memset(f, 0, N_MOST * sizeof *f);
+    for (uint32_t i = 0; i < m.factors.n; i++) {
+        for (uint64_t e = m.factors.start[i]; e < m.factors.start[i + 1]; e++) f[i][m.factors.col[e]] = m.factors.f[e];
+        f[i][NOTHING] = m.factors.escaped[i];
+    }
+    matrix_free(&m);
+    rows_free(rows);
+}
+
+/* Sets of more than 2,048 lines are those of directions: the kernel's silhouettes against its averaged windows. */
+static void compare_kernel(struct bed bed, const char *what) {
+    enum { LINES = 2053 };
+    static double windows[N_MOST][N_MOST + 1], silhouettes[N_MOST][N_MOST + 1];
+    fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    fibrad_rows rows = rows_by_beams(scene, &(fibrad_beam_rule){.directions = LINES});
+    dense_of(scene, &rows, windows);
+    rows = rows_by_silhouettes(scene, LINES);
+    dense_of(scene, &rows, silhouettes);
+    double worst = 0, closure = 0;
+    for (uint32_t i = 0; i < bed.n; i++) {
+        double sum = silhouettes[i][NOTHING];
+        for (uint32_t j = 0; j < bed.n; j++) {
+            const double ratio = bed.r[j] * bed.r[j] / (bed.r[i] * bed.r[i]), smaller = fmin(1, ratio);
+            const double mean = (windows[i][j] + windows[j][i] * ratio) / 2;
+            sum += silhouettes[i][j];
+            worst = fmax(worst, fabs(mean - silhouettes[i][j]) / smaller);
+        }
+        closure = fmax(closure, fabs(sum - 1));
+    }
+    ck_assert_msg(worst <= 1e-12, "%s: windows and silhouettes differ by %.3g", what, worst);
+    ck_assert_msg(closure <= 1e-13, "%s: a row adds up to 1 + %.3g", what, closure);
+    free(scene);
+    bed_free(&bed);
+}
+
+START_TEST(kernel_agrees_with_windows) {
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        compare_kernel(packing(40, .3, 1, .1 * (double)seed, seed, false), "an open bed");
+        compare_kernel(strewn(60, seed), "small among large ones");
+        compare_kernel(packing(40, .6, 1, .55, seed, true), "a periodic bed");
+        struct bed bed = packing(50, .4, 1, .4, seed, false);
+        for (uint32_t i = 0; i < bed.n; i++) bed.r[i] *= 1.02 + .05 * (double)seed * bed_make_random(seed, i);
+        compare_kernel(bed, "an overlap");
+    }
+}
+END_TEST
+
 START_TEST(open_beds) {
     for (uint64_t seed = 1; seed <= 6; seed++)
         compare_methods(packing(40, .3, 1, .1 * (double)seed, seed, false), 30, 0, "an open bed");
@@ -219,6 +293,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("silhouettes");
     TCase *tcase = suite_case(suite, "silhouettes");
+    tcase_add_test(tcase, kernel_agrees_with_windows);
     tcase_add_test(tcase, open_beds);
     tcase_add_test(tcase, sizes_far_apart);
     tcase_add_test(tcase, periodic_beds);

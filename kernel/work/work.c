@@ -9,7 +9,6 @@
 #include "base/random.h"
 
 /* What a packed bed takes. */
-#define USUAL_NEAR     1024u
 #define USUAL_DISCS    256u
 #define USUAL_ENTRIES  1024u
 #define ENOUGH_DISCS   64u
@@ -172,7 +171,7 @@ int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_
     const uint32_t walls = scene->container.walls, met = scene->mesh.triangles > 0;
     if (!fibrad_memory_valid(&work->memory)) return FIBRAD_E_ARGUMENT;
     fibrad_workspace *inside = inside_of(work);
-    fibrad_work_plan plan = {walls, met, USUAL_NEAR, USUAL_DISCS, USUAL_ENTRIES, extra_best};
+    fibrad_work_plan plan = {walls, met, FIBRAD_NEAR_MOST, USUAL_DISCS, USUAL_ENTRIES, extra_best};
     const fibrad_work_plan least = {walls, met, LEAST_NEAR, LEAST_COUNT, LEAST_COUNT, extra_min};
     if (inside != NULL && inside->plan.extra >= extra_min && inside->plan.walls >= walls && inside->plan.met >= met) {
         inside->least = least;

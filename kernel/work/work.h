@@ -99,7 +99,8 @@ typedef struct fibrad_met {
     fibrad_lines lines;
 } fibrad_met;
 
-#define FIBRAD_WORK_MAX (1u << 28)
+#define FIBRAD_NEAR_MOST 1024u /* near spheres of one row, as a packed bed has them, with room to spare */
+#define FIBRAD_WORK_MAX  (1u << 28)
 
 /* Work memory of a beam row among walls: the walls, sums over all windows, and sums over the present window. */
 typedef struct fibrad_wall_room {

@@ -1,0 +1,92 @@
+/* circle.h - the circle in which a sphere appears along a line, and the discs that lie behind and before it.
+ * SPDX-License-Identifier: MIT
+ *
+ * All lines of one direction meet the spheres in the order of the depths of their centres. On the circle of sphere k,
+ * let a be the last sphere before the depth of k that covers a point, and b the first one after it. docs/methods.md
+ * section 5 has the method.
+ *
+ * Lengths are in units of a power of two of L, the same for all spheres. Across a line, each sphere has one projected
+ * centre, to the bit, on whichever circle it is seen. Hence circles that nearly coincide agree on who covers whom. */
+#ifndef FIBRAD_SILHOUETTE_CIRCLE_H
+#define FIBRAD_SILHOUETTE_CIRCLE_H
+
+#include "silhouette/pairs.h"
+#include "work/work.h"
+
+/* Discs of one side that a circle, or a sector of a circle, may have. */
+#define FIBRAD_CIRCLE_DISCS 240u
+#define FIBRAD_CIRCLE_ROOM  (FIBRAD_CIRCLE_DISCS + FIBRAD_LANES_MAX)
+#define FIBRAD_CIRCLE_ENDS  (4 * FIBRAD_CIRCLE_ROOM + FIBRAD_LANES_MAX)
+
+/* Where on a circle: tan(t/2) of the angle t for t within a quarter turn of 0, and 2 + tan((t - pi)/2) on the other
+ * half. A turn is from -1 to 3. Places are multiples of 2^-50, so that their differences are exact. */
+#define FIBRAD_CIRCLE_BEGIN (-1.0)
+#define FIBRAD_CIRCLE_END   3.0
+
+/* A line: two unit vectors across it, and its direction. */
+typedef struct fibrad_line {
+    double frame[9];
+} fibrad_line;
+
+/* Discs behind or before a sphere. Element `count` stands for the surroundings. */
+typedef struct fibrad_circle_discs {
+    _Alignas(64) double u[FIBRAD_CIRCLE_ROOM]; /* centre relative to that of the sphere */
+    double v[FIBRAD_CIRCLE_ROOM];
+    double depth[FIBRAD_CIRCLE_ROOM]; /* away from the sphere */
+    double r[FIBRAD_CIRCLE_ROOM];
+    double from[FIBRAD_CIRCLE_ROOM]; /* the arc [from, to) of the circle that the disc covers, to <= from + 4, ... */
+    double to[FIBRAD_CIRCLE_ROOM];
+    double again[FIBRAD_CIRCLE_ROOM];    /* ... and the arc up to here, to - 4 */
+    double weight[FIBRAD_CIRCLE_ROOM];   /* units per area */
+    uint32_t slot[FIBRAD_CIRCLE_ROOM];   /* where what the sphere exchanges with the disc is summed */
+    uint32_t sphere[FIBRAD_CIRCLE_ROOM]; /* position in scene order; FIBRAD_NONE: the surroundings */
+    uint32_t count;
+} fibrad_circle_discs;
+
+typedef struct fibrad_circle_side {
+    fibrad_circle_discs found, sorted; /* in any order; nearest first */
+    double known;                      /* all discs down to this depth are found */
+    double horizon;                    /* no disc is deeper */
+    double sense;                      /* 1: before the sphere; -1: behind it */
+} fibrad_circle_side;
+
+/* A place where what is met changes, and what is met from there on: numbers of discs, nearest first. */
+typedef struct fibrad_circle_ends {
+    _Alignas(64) double at[FIBRAD_CIRCLE_ENDS];
+    double own[FIBRAD_CIRCLE_ENDS]; /* whose end it is, while ends are looked for */
+    double met[2][FIBRAD_CIRCLE_ENDS];
+    uint32_t count;
+} fibrad_circle_ends;
+
+/* What scratch memory holds while circles of one task are followed. */
+typedef struct fibrad_circles {
+    fibrad_circle_side side[2]; /* 0: behind, 1: before */
+    fibrad_circle_ends ends, sorted;
+    _Alignas(64) uint32_t rank[FIBRAD_CIRCLE_ENDS];
+    _Alignas(64) uint32_t index[2][FIBRAD_CIRCLE_ENDS];
+    double angle[FIBRAD_CIRCLE_ENDS], cosine[FIBRAD_CIRCLE_ENDS], sine[FIBRAD_CIRCLE_ENDS];
+    double behind[FIBRAD_CIRCLE_ENDS], ahead[FIBRAD_CIRCLE_ENDS], past[FIBRAD_CIRCLE_ENDS]; /* areas, in units */
+    /* Near spheres, as work->near has them, and from element near.capacity on those that a march has found: position,
+     * radius, how many periods away the image is, and what is exchanged with them, in units, over even and odd lines.
+     * The last element, `surroundings`, stands for the surroundings. */
+    double *home[3], *radius, *away[3];
+    uint32_t *sphere;
+    int64_t *sum[2];
+    uint32_t homes, marched, surroundings; /* ends of both lists, and that element */
+    const fibrad_scene *scene;
+    double origin[3]; /* L */
+    double scale;     /* 1/L, a power of two */
+    double period[3]; /* of the scene, scaled */
+    double grid;      /* a number whose ulp projected centres are multiples of; 0: of none */
+    bool periodic;
+    /* the sphere in hand */
+    double at[3], r;
+    /* the line in hand */
+    const double *frame;
+    double across[9];   /* the frame, ... */
+    double shift[3][3]; /* ... and one period of each axis along it */
+    double centre[3];   /* projected */
+    uint32_t half;      /* 0: an even line, 1: an odd one */
+} fibrad_circles;
+
+#endif

@@ -1,0 +1,61 @@
+/* pairs.h - what pairs of spheres exchange, in whole numbers. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_SILHOUETTE_PAIRS_H
+#define FIBRAD_SILHOUETTE_PAIRS_H
+
+#include "base/random.h"
+#include "scene/scene.h"
+
+/* The area that two spheres exchange is counted in units of 2^-44 of the square of the smaller radius. Sums of 65,536
+ * lines stay below 2^63. Whole numbers add up to the same bits in any order. */
+#define FIBRAD_PAIR_UNITS 0x1p44
+
+/* A pair, in a collection. first < second, positions in scene order; second FIBRAD_NONE: the surroundings. */
+typedef struct fibrad_pair {
+    uint32_t first, second;
+    uint32_t next[2]; /* the next pair of `first`, and of `second`; after fibrad_silhouettes_join */
+    int64_t sum[2];   /* over even and over odd lines */
+} fibrad_pair;
+
+/* The pairs of a collection. */
+static inline fibrad_pair *fibrad_pairs_of(const fibrad_pairs *pairs) {
+    unsigned char *block = pairs->memory.block;
+    return (fibrad_pair *)(void *)(block + ((size_t) - (uintptr_t)block & 7));
+}
+
+/* Sums of pairs that a task meets often: open addressing. */
+typedef struct fibrad_pair_sum {
+    uint64_t key; /* first << 32 | second; UINT64_MAX: free */
+    int64_t sum[2];
+} fibrad_pair_sum;
+
+typedef struct fibrad_pair_table {
+    fibrad_pair_sum *slot; /* [slots], a power of two */
+    uint32_t slots, used;
+    int shift; /* 64 less the bits of `slots` */
+} fibrad_pair_table;
+
+/* Whether a table has room for some more pairs, and half as many free slots left. */
+static inline bool fibrad_pair_room(const fibrad_pair_table *table, uint32_t pairs) {
+    return table->used + pairs <= table->slots / 4 * 3;
+}
+
+/* The slot of two spheres. */
+static inline fibrad_pair_sum *fibrad_pair_slot(fibrad_pair_table *table, uint32_t i, uint32_t j) {
+    const uint64_t key = i < j ? (uint64_t)i << 32 | j : (uint64_t)j << 32 | i;
+    uint32_t at = (uint32_t)(key * 0x9e3779b97f4a7c15u >> table->shift);
+    while (table->slot[at].key != key) {
+        if (table->slot[at].key == UINT64_MAX) {
+            table->slot[at].key = key;
+            table->used++;
+            break;
+        }
+        at = (at + 1) & (table->slots - 1);
+    }
+    return &table->slot[at];
+}
+
+static inline void fibrad_pair_add(fibrad_pair_table *table, uint32_t i, uint32_t j, uint32_t half, int64_t units) {
+    fibrad_pair_slot(table, i, j)->sum[half] += units;
+}
+
+#endif
