@@ -16,6 +16,7 @@
  *   rows       a collection of rows                     fibrad_rows_add, _clear, _read
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _average, _close, _read,
  *                                                       _reciprocity
+ *   silhouettes  all rows at once, without averaging    fibrad_silhouettes_size, _init, _tasks, _task, _join, _row
  *   drift      which rows may stay when spheres move    fibrad_drift_row, _partners
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _body, _body_mean, _displacement
  *              powers from rows                         fibrad_rows_flow, fibrad_flow
@@ -567,14 +568,14 @@ typedef struct fibrad_silhouette_rule {
 
 /* What pairs of spheres exchange, as one thread has found it. Set `memory`, and zero the rest. */
 typedef struct fibrad_pairs {
-    fibrad_memory memory; /* 32 bytes for each pair */
+    fibrad_memory memory; /* 24 bytes for each pair */
     size_t count;         /* of the library: number of pairs so far */
     uint32_t serial;      /* of the library: number of changes so far */
 } fibrad_pairs;
 
 typedef struct fibrad_silhouettes fibrad_silhouettes; /* the lines of a scene, and where the pairs of each sphere are */
 
-/* Bytes that fibrad_silhouettes_init needs: 72 per line and 4 per sphere.
+/* Bytes that fibrad_silhouettes_init needs: 72 per line and 8 per sphere.
  *   Input    as fibrad_silhouettes_init
  *   Errors   0 */
 size_t fibrad_silhouettes_size(const fibrad_scene *scene, const fibrad_silhouette_rule *rule);
@@ -608,10 +609,13 @@ int fibrad_silhouettes_task(const fibrad_silhouettes *silhouettes, fibrad_work *
 
 /* Puts the pairs of all tasks together.
  *   Input    pairs[count]: all collections; they must not change while rows are read
- *   Errors   _ARGUMENT, _STATE
+ *            memory: takes 8 bytes for each pair; must stay as it is while rows are read
+ *   Errors   _ARGUMENT, _STATE, _MEMORY
+ *            _CAPACITY: fixed memory is too small; memory->needed is the size that suffices
  *            _UNSUPPORTED: 2^32 pairs or more
  *   Cost     some ns per pair */
-int fibrad_silhouettes_join(fibrad_silhouettes *silhouettes, fibrad_pairs *pairs, uint32_t count);
+int fibrad_silhouettes_join(fibrad_silhouettes *silhouettes, const fibrad_pairs *pairs, uint32_t count,
+                            fibrad_memory *memory);
 
 /* Row i of the view factors. row->symmetric is 1.
  *   Input    i: 0 to spheres - 1

@@ -190,13 +190,15 @@ static fibrad_rows rows_by_silhouettes(const fibrad_scene *scene, uint32_t lines
     ck_assert_int_eq(fibrad_silhouettes_init(&s, block, size, scene, &rule), FIBRAD_OK);
     for (uint32_t task = 0; task < fibrad_silhouettes_tasks(s); task++)
         ck_assert_int_eq(fibrad_silhouettes_task(s, &work, task, &pairs), FIBRAD_OK);
-    ck_assert_int_eq(fibrad_silhouettes_join(s, &pairs, 1), FIBRAD_OK);
+    fibrad_memory index = memory_growing();
+    ck_assert_int_eq(fibrad_silhouettes_join(s, &pairs, 1, &index), FIBRAD_OK);
     for (uint32_t i = 0; i < facts.spheres; i++) {
         fibrad_row row = {.rows = &rows};
         ck_assert_int_eq(fibrad_silhouettes_row(s, &work, i, &row), FIBRAD_OK);
     }
     free(work.memory.block);
     free(pairs.memory.block);
+    free(index.block);
     free(block);
     return rows;
 }

@@ -58,6 +58,15 @@ typedef struct fibrad_circle_ends {
     uint32_t count;
 } fibrad_circle_ends;
 
+/* Near spheres, as work->near has them, and from element near.capacity on those that a march has found. The element
+ * `surroundings`, the last one, stands for the surroundings. */
+typedef struct fibrad_circle_near {
+    double *home[3], *radius, *away[3]; /* position, radius, and how many periods away the image is */
+    uint32_t *sphere;
+    int64_t *sum[2]; /* what is exchanged with the sphere in hand, in units, over even and odd lines */
+    uint32_t surroundings;
+} fibrad_circle_near;
+
 /* What scratch memory holds while circles of one task are followed. */
 typedef struct fibrad_circles {
     fibrad_circle_side side[2]; /* 0: behind, 1: before */
@@ -66,13 +75,9 @@ typedef struct fibrad_circles {
     _Alignas(64) uint32_t index[2][FIBRAD_CIRCLE_ENDS];
     double angle[FIBRAD_CIRCLE_ENDS], cosine[FIBRAD_CIRCLE_ENDS], sine[FIBRAD_CIRCLE_ENDS];
     double behind[FIBRAD_CIRCLE_ENDS], ahead[FIBRAD_CIRCLE_ENDS], past[FIBRAD_CIRCLE_ENDS]; /* areas, in units */
-    /* Near spheres, as work->near has them, and from element near.capacity on those that a march has found: position,
-     * radius, how many periods away the image is, and what is exchanged with them, in units, over even and odd lines.
-     * The last element, `surroundings`, stands for the surroundings. */
-    double *home[3], *radius, *away[3];
-    uint32_t *sphere;
-    int64_t *sum[2];
-    uint32_t homes, marched, surroundings; /* ends of both lists, and that element */
+    uint64_t key[FIBRAD_CIRCLE_ENDS]; /* pairs of what is met behind and before */
+    fibrad_circle_near near;
+    uint32_t homes, marched; /* ends of the lists of near spheres: those of shells, those that marches have found */
     const fibrad_scene *scene;
     double origin[3]; /* L */
     double scale;     /* 1/L, a power of two */

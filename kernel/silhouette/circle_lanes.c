@@ -15,22 +15,22 @@
 static inline vd on_grid(const fibrad_circles *c, vd x) { return (x + c->grid) - c->grid; }
 
 /* The component of near spheres along an axis of the line's frame, relative to the sphere in hand. */
-static inline vd component(const fibrad_circles *c, int axis, vd x, vd y, vd z, const uint32_t *place) {
+static inline vd component_across(const fibrad_circles *c, int axis, vd x, vd y, vd z, const uint32_t *place) {
     const double *across = c->across + 3 * axis, *shift = c->shift[axis];
     vd at = on_grid(c, across[0] * x + across[1] * y + across[2] * z);
     if (c->periodic)
-        at += shift[0] * vd_gather(c->away[0], place) + shift[1] * vd_gather(c->away[1], place) +
-              shift[2] * vd_gather(c->away[2], place);
+        at += shift[0] * vd_gather(c->near.away[0], place) + shift[1] * vd_gather(c->near.away[1], place) +
+              shift[2] * vd_gather(c->near.away[2], place);
     return at - c->centre[axis];
 }
 
 /* Of spheres at the same depth, the lower id is in front; of images of one sphere, the one less shifted. */
 static bool tie_lies_ahead(const fibrad_workspace *work, const fibrad_circles *c, uint32_t place) {
-    const uint64_t rank = fibrad_scene_rank(work->scene, c->sphere[place]);
+    const uint64_t rank = fibrad_scene_rank(work->scene, c->near.sphere[place]);
     const uint64_t own = fibrad_scene_rank(work->scene, work->place);
     if (rank != own) return rank > own;
     for (int axis = 0; axis < 3; axis++)
-        if (c->away[axis][place] != 0) return c->away[axis][place] > 0;
+        if (c->near.away[axis][place] != 0) return c->near.away[axis][place] > 0;
     return false;
 }
 
@@ -53,9 +53,9 @@ static bool find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_c
     for (uint32_t k = 0; k < VD_LANES; k++) place[count + k] = 0;
     for (uint32_t k = 0; k < count; k += VD_LANES) {
         const uint32_t *at = place + k;
-        vd x = vd_gather(c->home[0], at), y = vd_gather(c->home[1], at), z = vd_gather(c->home[2], at);
-        vd u = component(c, 0, x, y, z, at), v = component(c, 1, x, y, z, at);
-        vd depth = side->sense * component(c, 2, x, y, z, at), r = vd_gather(c->radius, at);
+        vd x = vd_gather(c->near.home[0], at), y = vd_gather(c->near.home[1], at), z = vd_gather(c->near.home[2], at);
+        vd u = component_across(c, 0, x, y, z, at), v = component_across(c, 1, x, y, z, at);
+        vd depth = side->sense * component_across(c, 2, x, y, z, at), r = vd_gather(c->near.radius, at);
         vd square = u * u + v * v, sum = r + own, larger = r - own, least = vd_max(zero, 0 - larger);
         vm touches = vd_lt(square, sum * sum) & vd_lt(least * least, square);
         if (side->sense > 0)
@@ -75,14 +75,14 @@ static bool find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_c
     }
     for (uint32_t k = to->count; k < n; k++) {
         const uint32_t at = place[to->slot[k]];
-        to->slot[k] = at, to->sphere[k] = c->sphere[at];
+        to->slot[k] = at, to->sphere[k] = c->near.sphere[at];
     }
     to->count = n;
     return true;
 }
 
 /* Lists the near spheres of a shell that overlap the beam of the sphere in hand, by a cull in floats. */
-static uint32_t cull(fibrad_workspace *work, const double w[3], uint32_t shell, uint32_t *place) {
+static uint32_t cull_shell(fibrad_workspace *work, const double w[3], uint32_t shell, uint32_t *place) {
     fibrad_sight sight = work->near.all;
     size_t begin = shell > 0 ? work->near.end[shell - 1] : 0, end = work->near.end[shell];
     if (shell == 0) sight = *LANED(fibrad_near_sight)(&work->near, w), end = sight.count;
@@ -106,15 +106,15 @@ static bool disc_nearer(const fibrad_workspace *work, const fibrad_circles *c, c
     const uint64_t second = fibrad_scene_rank(work->scene, disc->sphere[other]);
     if (rank != second) return (rank < second) == (side->sense > 0);
     for (int axis = 0; axis < 3; axis++) {
-        const double away = c->away[axis][disc->slot[k]], there = c->away[axis][disc->slot[other]];
+        const double away = c->near.away[axis][disc->slot[k]], there = c->near.away[axis][disc->slot[other]];
         if (away != there) return (away < there) == (side->sense > 0);
     }
     return false;
 }
 
 /* Sorts discs [from, to) of an order that is nearly right. */
-static void sort_discs_by_insertion(const fibrad_workspace *work, const fibrad_circles *c,
-                                    const fibrad_circle_side *side, uint32_t *order, uint32_t count) {
+static void order_discs_by_insertion(const fibrad_workspace *work, const fibrad_circles *c,
+                                     const fibrad_circle_side *side, uint32_t *order, uint32_t count) {
     for (uint64_t gap = fibrad_sort_first_gap(count); gap > 0; gap = fibrad_sort_next_gap(gap))
         for (uint64_t k = gap; k < count; k++) {
             uint32_t moving = order[k];
@@ -146,14 +146,14 @@ static bool rank_depths(const fibrad_circle_discs *disc, uint32_t *rank) {
 }
 
 /* Lists the discs of a side nearest first. */
-static void sort_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_circle_side *side) {
+static void order_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_circle_side *side) {
     const fibrad_circle_discs *from = &side->found;
     fibrad_circle_discs *to = &side->sorted;
     const uint32_t count = from->count;
     uint32_t order[FIBRAD_CIRCLE_ROOM];
     if (!rank_depths(from, c->rank)) {
         for (uint32_t k = 0; k < count; k++) order[k] = k;
-        sort_discs_by_insertion(work, c, side, order, count);
+        order_discs_by_insertion(work, c, side, order, count);
         for (uint32_t k = 0; k < count; k++) c->rank[order[k]] = k;
     }
     for (uint32_t k = 0; k < count; k++) {
@@ -167,7 +167,7 @@ static void sort_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_c
 /* ---- arcs ------------------------------------------------------------------------------------------------------- */
 
 /* The place of a point of the unit circle, on its grid. */
-static inline vd place_of(vd cosine, vd sine) {
+static inline vd circle_place(vd cosine, vd sine) {
     vd tangent = sine / (1 + vd_abs(cosine));
     vd at = vd_select(vd_lt(cosine, vd_set1(0)), 2 - tangent, tangent);
     at = (at + 5) - 5;
@@ -187,8 +187,8 @@ static void find_arcs(const fibrad_circles *c, fibrad_circle_discs *disc) {
         vd inverse = 0.5 / (square * own);
         vd along = (square - larger * sum) * inverse;
         root *= inverse;
-        vd from = place_of(u * along + v * root, v * along - u * root);
-        vd to = place_of(u * along - v * root, v * along + u * root);
+        vd from = circle_place(u * along + v * root, v * along - u * root);
+        vd to = circle_place(u * along - v * root, v * along + u * root);
         vd length = to - from;
         length = vd_select(vd_lt(length, zero), length + 4, length);
         /* the ends of an arc that is nearly empty, or nearly all, may have changed places */
@@ -206,20 +206,26 @@ static void find_arcs(const fibrad_circles *c, fibrad_circle_discs *disc) {
     disc->u[end] = disc->v[end] = disc->weight[end] = 0;
     disc->r[end] = disc->depth[end] = __builtin_inf();
     disc->from[end] = disc->to[end] = NOWHERE, disc->again[end] = -NOWHERE;
-    disc->slot[end] = c->surroundings, disc->sphere[end] = FIBRAD_NONE;
+    disc->slot[end] = c->near.surroundings, disc->sphere[end] = FIBRAD_NONE;
 }
 
 /* ---- ends ------------------------------------------------------------------------------------------------------- */
 
-/* The nearest disc that covers each of some places. */
-static inline vd nearest(const fibrad_circle_discs *disc, vd at) {
-    vd met = vd_set1(disc->count);
+/* Where the nearest disc that covers a place takes the place of one farther away. */
+static inline vd nearer_of(const fibrad_circle_discs *disc, uint32_t m, vd at, vd met) {
+    vm covers =
+        (vd_le(vd_set1(disc->from[m]), at) & vd_lt(at, vd_set1(disc->to[m]))) | vd_lt(at, vd_set1(disc->again[m]));
+    return vd_select(covers, vd_set1(m), met);
+}
+
+/* The nearest discs that cover the places of two vectors. */
+static inline void find_nearest(const fibrad_circle_discs *disc, const vd at[2], vd met[2]) {
+    vd first = vd_set1(disc->count), second = first;
     for (uint32_t m = disc->count; m-- > 0;) {
-        vm covers =
-            (vd_le(vd_set1(disc->from[m]), at) & vd_lt(at, vd_set1(disc->to[m]))) | vd_lt(at, vd_set1(disc->again[m]));
-        met = vd_select(covers, vd_set1(m), met);
+        first = nearer_of(disc, m, at[0], first);
+        second = nearer_of(disc, m, at[1], second);
     }
-    return met;
+    met[0] = first, met[1] = second;
 }
 
 /* Appends the ends of arcs of a side that no nearer disc of this side hides. */
@@ -229,12 +235,14 @@ static void list_ends(const fibrad_circle_discs *disc, int side, double begin, d
     for (uint32_t k = 0; k < disc->count; k += VD_LANES) {
         vd own = vd_load(number) + k, from = vd_load(disc->from + k), to = vd_load(disc->to + k);
         to = vd_select(vd_le(vd_set1(FIBRAD_CIRCLE_END), to), to - 4, to);
+        const vd at[2] = {from, to};
+        vd met[2];
+        find_nearest(disc, at, met);
         for (int which = 0; which < 2; which++) {
-            vd at = which == 0 ? from : to, met = nearest(disc, at);
-            vm seen = vd_le(own, met) & vd_lt(vd_set1(begin), at) & vd_lt(at, vd_set1(end));
+            vm seen = vd_le(own, met[which]) & vd_lt(vd_set1(begin), at[which]) & vd_lt(at[which], vd_set1(end));
             const uint32_t bits = vm_bits(seen) & vd_lanes_below(disc->count - k);
-            vd_compress(ends->at + n, bits, at);
-            vd_compress(ends->met[side] + n, bits, met);
+            vd_compress(ends->at + n, bits, at[which]);
+            vd_compress(ends->met[side] + n, bits, met[which]);
             n += fibrad_count_bits(bits);
         }
     }
@@ -243,8 +251,13 @@ static void list_ends(const fibrad_circle_discs *disc, int side, double begin, d
 
 /* Finds what ends [from, to) meet on a side. */
 static void meet(const fibrad_circle_discs *disc, int side, fibrad_circle_ends *ends, uint32_t from, uint32_t to) {
-    for (uint32_t k = from; k < to; k += VD_LANES)
-        vd_storeu(ends->met[side] + k, nearest(disc, vd_loadu(ends->at + k)));
+    for (uint32_t k = from; k < to; k += 2 * VD_LANES) {
+        const vd at[2] = {vd_loadu(ends->at + k), vd_loadu(ends->at + k + VD_LANES)};
+        vd met[2];
+        find_nearest(disc, at, met);
+        vd_storeu(ends->met[side] + k, met[0]);
+        vd_storeu(ends->met[side] + k + VD_LANES, met[1]);
+    }
 }
 
 /* Finds the ends on [begin, end) of the circle, the first at `begin`, and what is met from each of them on. Lanes
@@ -396,16 +409,24 @@ static void find_areas(fibrad_circles *c) {
     }
 }
 
+/* Adds the areas of all pieces. The table is asked for its slots ahead, since they are seldom in the nearest cache. */
 static void add_pieces(fibrad_circles *c, fibrad_pair_table *table) {
     const fibrad_circle_discs *behind = &c->side[0].sorted, *ahead = &c->side[1].sorted;
-    int64_t *sum = c->sum[c->half];
-    for (uint32_t k = 0; k < c->sorted.count; k++) {
-        const uint32_t a = c->index[0][k], b = c->index[1][k];
-        const uint32_t i = behind->sphere[a], j = ahead->sphere[b];
-        sum[behind->slot[a]] += units_of(c->behind[k]);
-        sum[ahead->slot[b]] += units_of(c->ahead[k]);
-        if (i != j || i != FIBRAD_NONE) fibrad_pair_add(table, i, j, c->half, -units_of(c->past[k]));
+    const uint32_t count = c->sorted.count;
+    int64_t *sum = c->near.sum[c->half];
+    for (uint32_t k = 0; k < count; k++) {
+        const uint64_t key = fibrad_pair_key(behind->sphere[c->index[0][k]], ahead->sphere[c->index[1][k]]);
+        c->key[k] = key;
+        c->rank[k] = fibrad_pair_place(table, key);
+        __builtin_prefetch(&table->slot[c->rank[k]], 1);
     }
+    for (uint32_t k = 0; k < count; k++) {
+        sum[behind->slot[c->index[0][k]]] += units_of(c->behind[k]);
+        sum[ahead->slot[c->index[1][k]]] += units_of(c->ahead[k]);
+    }
+    for (uint32_t k = 0; k < count; k++) /* the surroundings exchange nothing with themselves */
+        if (c->key[k] != UINT64_MAX)
+            fibrad_pair_slot(table, c->key[k], c->rank[k])->sum[c->half] -= units_of(c->past[k]);
 }
 
 /* ---- the circle ------------------------------------------------------------------------------------------------- */
@@ -416,16 +437,16 @@ static void take_shell(const fibrad_workspace *work, fibrad_circles *c) {
     const double *coordinate[3] = {scene->x, scene->y, scene->z};
     const uint32_t end = work->near.end[work->near.shells - 1];
     for (uint32_t k = c->homes; k < end; k++) {
-        const uint32_t j = c->sphere[k] = work->near.sphere[k];
+        const uint32_t j = c->near.sphere[k] = work->near.sphere[k];
         const double place[3] = {work->near.x[k], work->near.y[k], work->near.z[k]};
-        c->radius[k] = scene->r[j] * c->scale;
-        c->sum[0][k] = c->sum[1][k] = 0;
+        c->near.radius[k] = scene->r[j] * c->scale;
+        c->near.sum[0][k] = c->near.sum[1][k] = 0;
         for (int axis = 0; axis < 3; axis++) {
             const double at = coordinate[axis][j];
-            c->home[axis][k] = (at - c->origin[axis]) * c->scale;
-            c->away[axis][k] = 0;
+            c->near.home[axis][k] = (at - c->origin[axis]) * c->scale;
+            c->near.away[axis][k] = 0;
             if (scene->period[axis] > 0)
-                c->away[axis][k] =
+                c->near.away[axis][k] =
                     fibrad_floor((place[axis] * work->unit + (work->centre[axis] - at)) / scene->period[axis] + .5);
         }
     }
@@ -439,17 +460,17 @@ static uint32_t take_marched(const fibrad_workspace *work, fibrad_circles *c, co
     const double *coordinate[3] = {scene->x, scene->y, scene->z};
     const uint32_t first = c->marched;
     for (uint32_t k = 0; k < disc->count; k++) {
-        const uint32_t at = c->marched++, j = c->sphere[at] = fibrad_work_sphere(work, k);
-        c->radius[at] = scene->r[j] * c->scale;
-        c->sum[0][at] = c->sum[1][at] = 0;
+        const uint32_t at = c->marched++, j = c->near.sphere[at] = fibrad_work_sphere(work, k);
+        c->near.radius[at] = scene->r[j] * c->scale;
+        c->near.sum[0][at] = c->near.sum[1][at] = 0;
         for (int axis = 0; axis < 3; axis++) {
             const double home = coordinate[axis][j];
             const double place =
                 disc->u[k] * frame[axis] + disc->v[k] * frame[3 + axis] + disc->depth[k] * frame[6 + axis];
-            c->home[axis][at] = (home - c->origin[axis]) * c->scale;
-            c->away[axis][at] = 0;
+            c->near.home[axis][at] = (home - c->origin[axis]) * c->scale;
+            c->near.away[axis][at] = 0;
             if (scene->period[axis] > 0)
-                c->away[axis][at] =
+                c->near.away[axis][at] =
                     fibrad_floor((place * work->unit + (work->centre[axis] - home)) / scene->period[axis] + .5);
         }
     }
@@ -459,9 +480,10 @@ static uint32_t take_marched(const fibrad_workspace *work, fibrad_circles *c, co
 /* Adds what the sphere exchanges with a near one, over all lines or since the last time. */
 static void add_sums(fibrad_circles *c, uint32_t own, uint32_t from, uint32_t to, fibrad_pair_table *table) {
     for (uint32_t k = from; k < to; k++) {
-        if (c->sum[0][k] == 0 && c->sum[1][k] == 0) continue;
-        for (uint32_t half = 0; half < 2; half++) fibrad_pair_add(table, own, c->sphere[k], half, c->sum[half][k]);
-        c->sum[0][k] = c->sum[1][k] = 0;
+        if (c->near.sum[0][k] == 0 && c->near.sum[1][k] == 0) continue;
+        for (uint32_t half = 0; half < 2; half++)
+            fibrad_pair_add(table, own, c->near.sphere[k], half, c->near.sum[half][k]);
+        c->near.sum[0][k] = c->near.sum[1][k] = 0;
     }
 }
 
@@ -479,7 +501,7 @@ static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, 
         for (int k = 0; k < 9; k++) w[k] = k < 3 ? c->frame[k] : sense * c->frame[k];
         uint32_t count;
         if (shell < work->near.shells) {
-            count = cull(work, w + 6, shell, place);
+            count = cull_shell(work, w + 6, shell, place);
             side->known = work->near.limit[shell];
         } else {
             if (done[s]) continue;
@@ -489,7 +511,7 @@ static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, 
             if (work->disc.count > work->disc.capacity) return fibrad_work_discs_missed(work);
             side->known = to;
             count = work->disc.count;
-            if (c->marched + count > c->surroundings) return FIBRAD_E_UNSUPPORTED;
+            if (c->marched + count > c->near.surroundings) return FIBRAD_E_UNSUPPORTED;
             const uint32_t first = take_marched(work, c, w);
             for (uint32_t k = 0; k < count; k++) place[k] = first + k;
         }
@@ -528,7 +550,7 @@ static int follow(fibrad_workspace *work, fibrad_circles *c, const fibrad_line *
         const int status = find_more(work, c, shell, done);
         if (status != FIBRAD_OK) return status;
         for (int s = 0; s < 2; s++) {
-            sort_discs(work, c, &c->side[s]);
+            order_discs(work, c, &c->side[s]);
             find_arcs(c, &c->side[s].sorted);
         }
         find_ends(c, FIBRAD_CIRCLE_BEGIN, FIBRAD_CIRCLE_END);
@@ -554,12 +576,12 @@ int LANED(fibrad_circle_lines)(fibrad_workspace *work, fibrad_circles *c, uint32
     for (int axis = 0; axis < 3; axis++) c->at[axis] = (at[axis] - c->origin[axis]) * c->scale;
     c->r = scene->r[place] * c->scale;
     c->homes = 0, c->marched = work->near.capacity;
-    c->sum[0][c->surroundings] = c->sum[1][c->surroundings] = 0;
+    c->near.sum[0][c->near.surroundings] = c->near.sum[1][c->near.surroundings] = 0;
     for (; *from < to && fibrad_pair_room(table, FIBRAD_CIRCLE_ENDS); ++*from) {
         const int status = follow(work, c, &line[*from], *from % 2, table);
         if (status != FIBRAD_OK) return status;
     }
     add_sums(c, work->place, 0, c->homes, table);
-    add_sums(c, work->place, c->surroundings, c->surroundings + 1, table);
+    add_sums(c, work->place, c->near.surroundings, c->near.surroundings + 1, table);
     return FIBRAD_OK;
 }

@@ -7,7 +7,7 @@
 #include "silhouette/circle.h"
 
 /* Shells shorter than those of windows: a circle needs what covers its border alone. */
-#define FIBRAD_CIRCLE_STRIDE ((fibrad_stride){3.9, 1.4})
+#define FIBRAD_CIRCLE_STRIDE ((fibrad_stride){4.4, 1.4})
 
 /* Adds to a table what the circles of the sphere at a position in scene order say along lines [*from, to). *from
  * becomes the line at which the table was full, or `to`. After an error the table is of no use.

@@ -12,8 +12,7 @@
 /* A pair, in a collection. first < second, positions in scene order; second FIBRAD_NONE: the surroundings. */
 typedef struct fibrad_pair {
     uint32_t first, second;
-    uint32_t next[2]; /* the next pair of `first`, and of `second`; after fibrad_silhouettes_join */
-    int64_t sum[2];   /* over even and over odd lines */
+    int64_t sum[2]; /* over even and over odd lines */
 } fibrad_pair;
 
 /* The pairs of a collection. */
@@ -39,10 +38,19 @@ static inline bool fibrad_pair_room(const fibrad_pair_table *table, uint32_t pai
     return table->used + pairs <= table->slots / 4 * 3;
 }
 
-/* The slot of two spheres. */
-static inline fibrad_pair_sum *fibrad_pair_slot(fibrad_pair_table *table, uint32_t i, uint32_t j) {
-    const uint64_t key = i < j ? (uint64_t)i << 32 | j : (uint64_t)j << 32 | i;
-    uint32_t at = (uint32_t)(key * 0x9e3779b97f4a7c15u >> table->shift);
+static inline uint64_t fibrad_pair_key(uint32_t i, uint32_t j) {
+    return i < j ? (uint64_t)i << 32 | j : (uint64_t)j << 32 | i;
+}
+
+/* Where a table looks for a key first. */
+static inline uint32_t fibrad_pair_place(const fibrad_pair_table *table, uint64_t key) {
+    key *= 0x9e3779b97f4a7c15u;
+    key = (key ^ key >> 32) * 0x9e3779b97f4a7c15u; /* once would place pairs of neighbours side by side */
+    return (uint32_t)(key >> table->shift);
+}
+
+/* The slot of a key, looked for from a place on. */
+static inline fibrad_pair_sum *fibrad_pair_slot(fibrad_pair_table *table, uint64_t key, uint32_t at) {
     while (table->slot[at].key != key) {
         if (table->slot[at].key == UINT64_MAX) {
             table->slot[at].key = key;
@@ -55,7 +63,8 @@ static inline fibrad_pair_sum *fibrad_pair_slot(fibrad_pair_table *table, uint32
 }
 
 static inline void fibrad_pair_add(fibrad_pair_table *table, uint32_t i, uint32_t j, uint32_t half, int64_t units) {
-    fibrad_pair_slot(table, i, j)->sum[half] += units;
+    const uint64_t key = fibrad_pair_key(i, j);
+    fibrad_pair_slot(table, key, fibrad_pair_place(table, key))->sum[half] += units;
 }
 
 #endif

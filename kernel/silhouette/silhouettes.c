@@ -2,12 +2,14 @@
  * SPDX-License-Identifier: MIT */
 #include "base/arena.h"
 #include "base/constants.h"
+#include "base/reserve.h"
 #include "base/sort.h"
 #include "row/row.h"
 #include "sample/direction.h"
 #include "sample/line.h"
 #include "silhouette/circle_lanes.h"
 
+#define AHEAD        16u      /* how many pairs ahead memory is asked for */
 #define TASK_SPHERES 256u     /* spheres of a task: those near each other share pairs in the cache */
 #define TABLE_BEST   0x10000u /* slots of a task's table, ... */
 #define TABLE_LEAST  0x2000u  /* ... and the least */
@@ -16,11 +18,12 @@ struct fibrad_silhouettes {
     const fibrad_scene *scene;
     uint64_t hash;
     uint32_t lines, spheres;
-    fibrad_line *line; /* [lines] */
-    uint32_t *first;   /* [spheres], by position in scene order: its first pair, numbered through all collections */
-    const fibrad_pairs *pairs; /* [count], collections that were joined; NULL: not yet */
+    fibrad_line *line;         /* [lines] */
+    uint64_t *start;           /* [spheres + 1], by position in scene order: where its pairs are in `index` */
+    const uint32_t *index;     /* [start[spheres]], pairs, numbered through all collections; NULL: not joined */
+    const fibrad_pairs *pairs; /* [count], collections that were joined */
     uint32_t count;
-    uint64_t serial;
+    uint64_t serial, all; /* changes of these collections, and entries of `index` */
 };
 
 /* ---- the object ------------------------------------------------------------------------------------------------- */
@@ -28,7 +31,7 @@ struct fibrad_silhouettes {
 static fibrad_silhouettes *silhouettes_layout(fibrad_arena *arena, fibrad_silhouettes *s) {
     fibrad_silhouettes *place = fibrad_arena_take(arena, 1, sizeof *place);
     s->line = fibrad_arena_take(arena, s->lines, sizeof *s->line);
-    s->first = fibrad_arena_take(arena, s->spheres, sizeof *s->first);
+    s->start = fibrad_arena_take(arena, (size_t)s->spheres + 1, sizeof *s->start);
     return place;
 }
 
@@ -100,33 +103,32 @@ uint32_t fibrad_silhouettes_tasks(const fibrad_silhouettes *s) {
     return s == NULL ? 0 : s->spheres / TASK_SPHERES + (s->spheres % TASK_SPHERES != 0);
 }
 
-/* Takes the arrays of `c` from the arena; the object itself is to be copied to the address returned. */
-static fibrad_circles *circles_layout(fibrad_arena *arena, fibrad_circles *c, uint32_t near, uint32_t slots,
+static fibrad_circles *circles_layout(fibrad_arena *arena, uint32_t slots, fibrad_circle_near *near,
                                       fibrad_pair_table *table) {
     fibrad_circles *place = fibrad_arena_take(arena, 1, sizeof *place);
-    const size_t room = (size_t)near + 8 * FIBRAD_CIRCLE_ROOM;
+    const size_t room = FIBRAD_NEAR_MOST + 8 * FIBRAD_CIRCLE_ROOM;
     for (int axis = 0; axis < 3; axis++) {
-        c->home[axis] = fibrad_arena_take(arena, room, sizeof(double));
-        c->away[axis] = fibrad_arena_take(arena, room, sizeof(double));
+        near->home[axis] = fibrad_arena_take(arena, room, sizeof(double));
+        near->away[axis] = fibrad_arena_take(arena, room, sizeof(double));
     }
-    c->radius = fibrad_arena_take(arena, room, sizeof(double));
-    c->sphere = fibrad_arena_take(arena, room, sizeof(uint32_t));
-    for (int half = 0; half < 2; half++) c->sum[half] = fibrad_arena_take(arena, room, sizeof(int64_t));
-    c->surroundings = (uint32_t)room - 1;
+    near->radius = fibrad_arena_take(arena, room, sizeof(double));
+    near->sphere = fibrad_arena_take(arena, room, sizeof(uint32_t));
+    for (int half = 0; half < 2; half++) near->sum[half] = fibrad_arena_take(arena, room, sizeof(int64_t));
+    near->surroundings = (uint32_t)room - 1;
     table->slot = fibrad_arena_take(arena, slots, sizeof *table->slot);
     return place;
 }
 
 static size_t circles_bytes(uint32_t slots) {
     fibrad_arena arena = {0};
-    fibrad_circles fields;
+    fibrad_circle_near near;
     fibrad_pair_table table;
-    circles_layout(&arena, &fields, FIBRAD_NEAR_MOST, slots, &table);
+    circles_layout(&arena, slots, &near, &table);
     return fibrad_arena_total(&arena);
 }
 
 /* A power of two whose ulp is the grid of projected centres: with periods sums of centres and shifts are exact. */
-static double grid_of(const fibrad_scene *scene, double scale) {
+static double centre_grid(const fibrad_scene *scene, double scale) {
     double extent = 0, grid = 1;
     for (int axis = 0; axis < 3; axis++) extent += (scene->box_high[axis] - scene->box_low[axis]) * scale;
     while (grid < extent) grid *= 2;
@@ -144,47 +146,38 @@ static void begin_circles(const fibrad_scene *scene, fibrad_circles *c) {
         c->period[axis] = scene->period[axis] * c->scale;
         c->periodic = c->periodic || scene->period[axis] > 0;
     }
-    c->grid = c->periodic ? grid_of(scene, c->scale) : 0;
-    c->sphere[c->surroundings] = FIBRAD_NONE;
+    c->grid = c->periodic ? centre_grid(scene, c->scale) : 0;
+    c->near.sphere[c->near.surroundings] = FIBRAD_NONE;
 }
 
 /* Lays scratch memory out for circles, with as large a table as there is room for. */
 static fibrad_circles *open_circles(fibrad_workspace *space, const fibrad_scene *scene, fibrad_pair_table *table) {
-    fibrad_circles fields = {0};
+    fibrad_circle_near near;
     uint32_t slots = TABLE_BEST;
     while (circles_bytes(slots) > space->plan.extra) slots /= 2;
     space->extra_owner = 0;
     fibrad_arena arena = {0};
     const size_t lead = fibrad_arena_lead(space->extra);
     arena.base = (unsigned char *)space->extra + lead, arena.size = space->plan.extra - lead;
-    fibrad_circles *c = circles_layout(&arena, &fields, FIBRAD_NEAR_MOST, slots, table);
+    fibrad_circles *c = circles_layout(&arena, slots, &near, table);
     fibrad_zero(c, sizeof *c);
-    begin_circles(scene, &fields);
-    *c = fields;
+    c->near = near;
+    begin_circles(scene, c);
     table->slots = slots, table->used = 0, table->shift = 64;
     for (uint32_t size = slots; size > 1; size /= 2) table->shift--;
     for (uint32_t k = 0; k < slots; k++) table->slot[k] = (fibrad_pair_sum){.key = UINT64_MAX};
     return c;
 }
 
-/* Makes room for some more pairs. */
-static int reserve_pairs(fibrad_pairs *pairs, size_t more) {
-    fibrad_memory *memory = &pairs->memory;
-    const size_t needed = (pairs->count + more) * sizeof(fibrad_pair) + FIBRAD_ALIGNMENT;
-    if (memory->block != NULL && needed <= memory->size) return FIBRAD_OK;
-    memory->needed = needed;
-    if (memory->resize == NULL) return FIBRAD_E_CAPACITY;
-    const size_t size = needed < SIZE_MAX / 2 ? needed + needed / 2 : needed;
-    void *block = memory->resize(memory->context, memory->block, size);
-    if (block == NULL) return FIBRAD_E_MEMORY;
-    memory->block = block, memory->size = size;
-    return FIBRAD_OK;
-}
-
 /* Moves the pairs of a table into a collection. */
 static int empty_table(fibrad_pair_table *table, fibrad_pairs *pairs) {
-    const int status = reserve_pairs(pairs, table->used);
+    const size_t lead =
+        pairs->count > 0 ? (size_t)((unsigned char *)fibrad_pairs_of(pairs) - (unsigned char *)pairs->memory.block) : 0;
+    const int status = fibrad_memory_reserve(&pairs->memory, (pairs->count + table->used) * sizeof(fibrad_pair) + 8);
     if (status != FIBRAD_OK) return status;
+    if (pairs->count > 0) /* a new block may have another alignment */
+        __builtin_memmove(fibrad_pairs_of(pairs), (unsigned char *)pairs->memory.block + lead,
+                          pairs->count * sizeof(fibrad_pair));
     fibrad_pair *to = fibrad_pairs_of(pairs) + pairs->count;
     for (uint32_t k = 0; k < table->slots; k++) {
         fibrad_pair_sum *slot = &table->slot[k];
@@ -237,67 +230,93 @@ int fibrad_silhouettes_task(const fibrad_silhouettes *s, fibrad_work *work, uint
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
 
-/* Links the pairs of each sphere. */
-static void link_pairs(fibrad_silhouettes *s, fibrad_pairs *pairs, uint32_t number) {
-    fibrad_pair *pair = fibrad_pairs_of(pairs);
-    for (size_t k = 0; k < pairs->count; k++, number++) {
-        pair[k].next[0] = s->first[pair[k].first], s->first[pair[k].first] = number;
-        if (pair[k].second == FIBRAD_NONE || pair[k].second == pair[k].first) continue;
-        pair[k].next[1] = s->first[pair[k].second], s->first[pair[k].second] = number;
+/* Whether a pair is of two spheres. */
+static bool is_mutual(const fibrad_pair *pair) { return pair->second != FIBRAD_NONE && pair->second != pair->first; }
+
+/* Counts the pairs of each sphere. start[k + 1] becomes where those of sphere k begin. */
+static void count_by_sphere(fibrad_silhouettes *s) {
+    uint64_t *count = s->start + 1, before = 0;
+    fibrad_zero(s->start, ((size_t)s->spheres + 1) * sizeof *s->start);
+    for (uint32_t c = 0; c < s->count; c++) {
+        const fibrad_pair *pair = fibrad_pairs_of(&s->pairs[c]);
+        for (size_t k = 0; k < s->pairs[c].count; k++) {
+            count[pair[k].first]++;
+            if (is_mutual(&pair[k])) count[pair[k].second]++;
+        }
+    }
+    for (uint32_t k = 0; k < s->spheres; k++) {
+        const uint64_t own = count[k];
+        count[k] = before, before += own;
+    }
+    s->all = before;
+}
+
+/* Lists the pairs of each sphere. start[k + 1] becomes where those of sphere k end. */
+static void list_by_sphere(fibrad_silhouettes *s, uint32_t *index) {
+    uint64_t *at = s->start + 1;
+    uint32_t number = 0;
+    for (uint32_t c = 0; c < s->count; c++) {
+        const fibrad_pair *pair = fibrad_pairs_of(&s->pairs[c]);
+        for (size_t k = 0; k < s->pairs[c].count; k++, number++) {
+            index[at[pair[k].first]++] = number;
+            if (is_mutual(&pair[k])) index[at[pair[k].second]++] = number;
+        }
     }
 }
 
-int fibrad_silhouettes_join(fibrad_silhouettes *s, fibrad_pairs *pairs, uint32_t count) {
-    if (s == NULL || (pairs == NULL && count > 0)) return FIBRAD_E_ARGUMENT;
+int fibrad_silhouettes_join(fibrad_silhouettes *s, const fibrad_pairs *pairs, uint32_t count, fibrad_memory *memory) {
+    if (s == NULL || memory == NULL || (pairs == NULL && count > 0)) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_memory_valid(memory)) return FIBRAD_E_ARGUMENT;
     if (s->scene->hash != s->hash) return FIBRAD_E_STATE;
     uint64_t all = 0;
     for (uint32_t c = 0; c < count; c++) all += pairs[c].count;
     if (all >= FIBRAD_NONE) return FIBRAD_E_UNSUPPORTED;
-    for (uint32_t k = 0; k < s->spheres; k++) s->first[k] = FIBRAD_NONE;
+    s->index = NULL;
     s->pairs = pairs, s->count = count, s->serial = 0;
-    uint32_t number = 0;
-    for (uint32_t c = 0; c < count; number += (uint32_t)pairs[c++].count) {
-        link_pairs(s, &pairs[c], number);
-        s->serial += pairs[c].serial;
-    }
+    for (uint32_t c = 0; c < count; c++) s->serial += pairs[c].serial;
+    count_by_sphere(s);
+    const int status = fibrad_memory_reserve(memory, (size_t)s->all * sizeof *s->index + sizeof *s->index);
+    if (status != FIBRAD_OK) return status;
+    uint32_t *index = (uint32_t *)(void *)((unsigned char *)memory->block + ((size_t) - (uintptr_t)memory->block & 3));
+    list_by_sphere(s, index);
+    s->index = index;
     return FIBRAD_OK;
 }
 
-static uint64_t serial_of(const fibrad_silhouettes *s) {
+static uint64_t pairs_serial(const fibrad_silhouettes *s) {
     uint64_t serial = 0;
     for (uint32_t c = 0; c < s->count; c++) serial += s->pairs[c].serial;
     return serial;
 }
 
-static const fibrad_pair *pair_of(const fibrad_silhouettes *s, uint32_t number) {
+static const fibrad_pair *numbered_pair(const fibrad_silhouettes *s, uint32_t number) {
     uint32_t c = 0;
     for (; number >= s->pairs[c].count; c++) number -= (uint32_t)s->pairs[c].count;
     return fibrad_pairs_of(&s->pairs[c]) + number;
 }
 
 /* Sums of one entry, kept where rows by beams have their parts. */
-typedef struct entry_sum {
+typedef struct pair_entry {
     int64_t sum[2];
     uint32_t place, unused[3];
-} entry_sum;
+} pair_entry;
 
 /* Lists all pairs of the sphere at a position, and what it exchanges with the surroundings. _WORK */
 static int gather_pairs(const fibrad_silhouettes *s, fibrad_workspace *space, uint32_t place, int64_t open[2],
                         uint32_t *count) {
     fibrad_entries *entries = &space->entries;
-    entry_sum *to = (entry_sum *)(void *)entries->part;
+    pair_entry *to = (pair_entry *)(void *)entries->part;
     uint32_t n = 0;
-    for (uint32_t number = s->first[place]; number != FIBRAD_NONE;) {
-        const fibrad_pair *pair = pair_of(s, number);
-        const bool second = pair->first != place;
-        const uint32_t other = second ? pair->first : pair->second;
-        number = pair->next[second];
+    for (uint64_t k = s->start[place]; k < s->start[place + 1]; k++) {
+        if (k + AHEAD < s->all) __builtin_prefetch(numbered_pair(s, s->index[k + AHEAD]));
+        const fibrad_pair *pair = numbered_pair(s, s->index[k]);
+        const uint32_t other = pair->first != place ? pair->first : pair->second;
         if (other == FIBRAD_NONE) {
             open[0] += pair->sum[0], open[1] += pair->sum[1];
             continue;
         }
         if (n < entries->capacity) {
-            to[n] = (entry_sum){{pair->sum[0], pair->sum[1]}, other, {0}};
+            to[n] = (pair_entry){{pair->sum[0], pair->sum[1]}, other, {0}};
             entries->key[0][n] = (uint64_t)s->scene->order[other] << 32 | n;
         }
         n++;
@@ -310,7 +329,7 @@ static int gather_pairs(const fibrad_silhouettes *s, fibrad_workspace *space, ui
 }
 
 /* What of a row follows from sums over even and over odd lines, and what their means differ by. */
-static double factor_of(const fibrad_silhouettes *s, const int64_t sum[2], double scale, double *square) {
+static double entry_factor(const fibrad_silhouettes *s, const int64_t sum[2], double scale, double *square) {
     const uint32_t odd = s->lines / 2, even = s->lines - odd;
     const double difference = ((double)sum[0] / even - (double)sum[1] / odd) * (s->lines * scale / 2);
     *square += difference * difference;
@@ -323,7 +342,7 @@ static double factor_of(const fibrad_silhouettes *s, const int64_t sum[2], doubl
 static int row_of_pairs(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *silhouettes,
                         fibrad_row *row) {
     const fibrad_silhouettes *s = silhouettes;
-    const entry_sum *entry = (const entry_sum *)(const void *)space->entries.part;
+    const pair_entry *entry = (const pair_entry *)(const void *)space->entries.part;
     const uint32_t place = scene->place[i];
     const double r = scene->r[place], unit = 1 / (FIBRAD_PAIR_UNITS * 2 * FIBRAD_PI * s->lines);
     int64_t open[2] = {0, 0};
@@ -334,19 +353,19 @@ static int row_of_pairs(const fibrad_scene *scene, fibrad_workspace *space, uint
     const uint64_t *key =
         fibrad_sort_keys(space->entries.key[0], space->entries.key[1], count, 32, scene->facts.spheres - 1);
     for (uint32_t k = 0, end; k < count; k = end) {
-        const entry_sum *first = &entry[(uint32_t)key[k]];
+        const pair_entry *first = &entry[(uint32_t)key[k]];
         int64_t sum[2] = {0, 0};
         for (end = k; end < count && key[end] >> 32 == key[k] >> 32; end++)
             for (int half = 0; half < 2; half++) sum[half] += entry[(uint32_t)key[end]].sum[half];
         const double ratio = fibrad_min(1, scene->r[first->place] / r), area = unit * (ratio * ratio);
-        const double f = factor_of(s, sum, first->place == place ? 2 * area : area, &square);
+        const double f = entry_factor(s, sum, first->place == place ? 2 * area : area, &square);
         if (f <= 0) continue; /* what has cancelled, to rounding */
         if (n < row->capacity) row->col[n] = scene->order[first->place], row->f[n] = f;
         n++;
     }
     row->length = n;
     if (n > row->capacity) return FIBRAD_E_CAPACITY;
-    row->escaped = fibrad_max(0, factor_of(s, open, unit, &square));
+    row->escaped = fibrad_max(0, entry_factor(s, open, unit, &square));
     row->beyond = 0;
     row->error = HALVES_ERROR * fibrad_sqrt(square);
     row->directions = s->lines;
@@ -357,6 +376,6 @@ static int row_of_pairs(const fibrad_scene *scene, fibrad_workspace *space, uint
 
 int fibrad_silhouettes_row(const fibrad_silhouettes *s, fibrad_work *work, uint32_t i, fibrad_row *row) {
     if (s == NULL) return FIBRAD_E_ARGUMENT;
-    if (s->pairs == NULL || s->scene->hash != s->hash || s->serial != serial_of(s)) return FIBRAD_E_STATE;
+    if (s->index == NULL || s->scene->hash != s->hash || s->serial != pairs_serial(s)) return FIBRAD_E_STATE;
     return fibrad_row_run(s->scene, work, i, &(fibrad_row_method){row_of_pairs, s, 0, 0}, row);
 }

@@ -1,5 +1,6 @@
 /* rows.c - a collection of rows in one block, fixed or growing. SPDX-License-Identifier: MIT */
 #include "base/arena.h"
+#include "base/reserve.h"
 #include "work/record.h"
 
 /* Bytes before the first record. */
@@ -39,19 +40,11 @@ bool fibrad_rows_open(const fibrad_rows *rows, uint32_t bodies, fibrad_row *row)
 }
 
 int fibrad_rows_reserve(fibrad_rows *rows, uint32_t length, uint32_t bodies) {
-    fibrad_memory *memory = &rows->memory;
     /* 8 for another alignment of the block, 16 for a capacity that is rounded down */
     const size_t needed = rows->used + fibrad_record_size(length, bodies) + 24;
-    if (needed <= memory->size && memory->block != NULL) return settle_rows(rows), FIBRAD_OK;
-    memory->needed = needed;
-    if (memory->resize == NULL) return FIBRAD_E_CAPACITY;
-    const size_t size = needed < SIZE_MAX / 2 ? 2 * needed : needed;
-    void *block = memory->resize(memory->context, memory->block, size);
-    if (block == NULL) return FIBRAD_E_MEMORY;
-    memory->block = block;
-    memory->size = size;
-    settle_rows(rows);
-    return FIBRAD_OK;
+    const int status = fibrad_memory_reserve(&rows->memory, needed);
+    if (status == FIBRAD_OK) settle_rows(rows);
+    return status;
 }
 
 void fibrad_rows_commit(fibrad_rows *rows, uint64_t scene, uint32_t bodies, const fibrad_row *row) {

@@ -13,7 +13,7 @@ find "$2" -name '*.su' -exec cat {} + | awk -F'[:\t]' '{print "frame", $4, $5, $
         /R_ARM_(THM_)?(CALL|JUMP24)|R_RISCV_(CALL|JAL)/ {
             to = $NF; sub(/[-+].*/, "", to); sub(/^\.text\./, "", to); sub(/\.(part|constprop|isra)\..*/, "", to)
             if (to != from && to !~ /^\./) print "call", from, to}
-        /\tblx\tr/ && from !~ /^(fibrad_surface_factor|fibrad_row_run|attempt|fibrad_rows_reserve|fit|fibrad_matrix_share|fibrad_entries_list|fibrad_addends_put)$/ {
+        /\tblx\tr/ && from !~ /^(fibrad_surface_factor|fibrad_row_run|attempt|fibrad_memory_reserve|fit|fibrad_matrix_share|fibrad_entries_list|fibrad_addends_put)$/ {
             print "pointer", from}'
     for version in filter sum; do echo "call fibrad_surface_factor fibrad_surface_${version}_scalar"; done
     for method in beam_to_tolerance cast_compute exchange_compute surface_compute; do
