@@ -33,6 +33,9 @@
 #define FIBRAD_BODY_PATHS_DEFAULT          8192
 #define FIBRAD_PATHS_MAX                   (1u << 28)
 
+/* Spheres that conduct: relative conductivities k* = k_s/(4 d sigma T^3) */
+#define FIBRAD_RELATIVE_CONDUCTIVITY_MIN 1e-6
+
 /* Heat */
 #define FIBRAD_TEMPERATURE_MAX         1e20 /* K; its fourth power is far from overflow */
 #define FIBRAD_POWER_MAX               1e100

@@ -79,15 +79,16 @@ int quantity_option(const char *what, const char *text, double low, double high,
     return take_quantity(what, text, low, high, false, quantity);
 }
 
-int emissivity_option(const char *text, struct quantity *quantity) {
-    return take_quantity("--emissivity", text, 0, 1, true, quantity);
+int table_option(const char *what, const char *text, double low, double high, struct quantity *quantity) {
+    return take_quantity(what, text, low, high, true, quantity);
 }
 
 void quantity_free(struct quantity *quantity) {
     for (int k = 0; k < QUANTITY_TYPES_MAX; ++k) curve_free(&quantity->curve[k]);
 }
 
-const struct curve *quantity_curve(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
+/* The table for sphere i. NULL: its value is a number. */
+static const struct curve *curve_of_sphere(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
     int k = 0;
     if (quantity->types) {
         const double type = bed->extra[i * bed->extras + quantity->index];
@@ -100,6 +101,14 @@ bool quantity_curves(const struct quantity *quantity) {
     for (int k = 0; k < QUANTITY_TYPES_MAX; ++k)
         if (quantity->curve[k].n > 0) return true;
     return false;
+}
+
+void quantity_follow(const struct quantity *quantity, const struct bed *bed, const double *temperature,
+                     double *values) {
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const struct curve *curve = curve_of_sphere(quantity, bed, i);
+        if (curve && !isnan(temperature[i])) values[i] = curve_at(curve, temperature[i]);
+    }
 }
 
 /* The value of sphere i. NaN: the option was not given, or the list does not have the type of the sphere. */

@@ -40,19 +40,20 @@ struct quantity {
     struct curve curve[QUANTITY_TYPES_MAX]; /* [types] tables, or [0] for all spheres; n = 0: a number */
 };
 
-/* Reads the argument of an option `what`, whose values are from low to high. emissivity_option reads that of
- * --emissivity and allows tables. Status 0, STATUS_USAGE, or as curve_read. */
+/* Reads the argument of an option `what`, whose values are from low to high. table_option allows @TABLE of temperatures
+ * [K] and values. Status 0, STATUS_USAGE, or as curve_read. */
 int quantity_option(const char *what, const char *text, double low, double high, struct quantity *quantity);
-int emissivity_option(const char *text, struct quantity *quantity);
+int table_option(const char *what, const char *text, double low, double high, struct quantity *quantity);
 
 /* Frees the tables of a quantity. */
 void quantity_free(struct quantity *quantity);
 
-/* The table for sphere i. NULL: its value is a number. */
-const struct curve *quantity_curve(const struct quantity *quantity, const struct bed *bed, uint32_t i);
-
 /* Whether a quantity has tables. */
 bool quantity_curves(const struct quantity *quantity);
+
+/* Sets values[i] to that of the table of sphere i at temperature[i]. Spheres without a table or a temperature (NaN)
+ * keep their value. */
+void quantity_follow(const struct quantity *quantity, const struct bed *bed, const double *temperature, double *values);
 
 /* Finds the values of all spheres, *values [n]. Free *values also after an error. `offset` is added to each value. A
  * value is NaN if the option was not given or, with quantity->some, if it is missing. A table gives one of its values.

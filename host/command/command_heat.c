@@ -142,7 +142,7 @@ static int heat_take(struct heat_request *request, const struct options *options
     const char *value = options->value;
     switch (key) {
     case KEY_EMISSIVITY:
-        return emissivity_option(value, &request->emissivity);
+        return table_option("--emissivity", value, 0, 1, &request->emissivity);
     case KEY_TEMPERATURE:
         return given_temperature_option(value, &request->given);
     case KEY_POWER:

@@ -302,15 +302,14 @@ int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_o
     return status;
 }
 
-/* The unit of a bed: that of the file, or else that of --length-unit. NULL: neither names one. */
-static const char *unit_of(const struct bed_options *options, const struct bed *bed) {
+const char *bed_options_unit(const struct bed_options *options, const struct bed *bed) {
     double metres = 0;
     const bool by_file = bed->units[0] && (!unit_of_length(bed->units, &metres) || metres > 0);
     return by_file ? bed->units : options->length_unit;
 }
 
 int bed_options_metres(struct bed_options *options, const struct bed *bed, double *metres) {
-    const char *unit = unit_of(options, bed);
+    const char *unit = bed_options_unit(options, bed);
     double other;
     *metres = 1;
     if (!unit && bed->units[0])
@@ -375,7 +374,7 @@ static void report_wall(struct report *report, const struct walls *walls, uint32
 void bed_options_report(struct bed_options *options, const struct bed *bed, const struct walls *walls,
                         const fibrad_scene_facts *facts) {
     struct report *report = &options->report;
-    const char *unit = unit_of(options, bed);
+    const char *unit = bed_options_unit(options, bed);
     report_begin(report);
     report_text(report, "file", options->name);
     report_whole(report, "frame", bed->frame);

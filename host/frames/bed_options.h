@@ -119,6 +119,9 @@ typedef int bed_options_compute(void *request, const struct bed *bed, fibrad_bed
  * STATUS_FILE if the disk is too small, or that of compute. */
 int bed_options_memory(const struct bed *bed, fibrad_bed_options *options, bed_options_compute *compute, void *request);
 
+/* The unit of length of a bed: that of the file, or else that of --length-unit. NULL: neither names one. */
+const char *bed_options_unit(const struct bed_options *options, const struct bed *bed);
+
 /* Finds the bed's unit of length [m]. Without a known unit assumes metres, and warns if radii look too large for
  * metres. Status 0, or STATUS_USAGE if the unit has no length in metres (as units lj) or if earlier frames had another
  * unit. */

@@ -149,14 +149,6 @@ static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) 
                         "fewer --directions, --points or --patches take less");
 }
 
-void heat_emissivities(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
-                       double *emissivity) {
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const struct curve *curve = quantity_curve(problem->of_emissivity, bed, i);
-        if (curve && !isnan(temperature[i])) emissivity[i] = curve_at(curve, temperature[i]);
-    }
-}
-
 /* Context of heat_follow. */
 struct heat_law {
     const struct heat_problem *problem;
@@ -168,7 +160,7 @@ static void heat_follow(void *law, const double *temperature, const double *wall
     const struct heat_law *how = law;
     (void)wall_temperature;
     (void)wall_emissivity;
-    heat_emissivities(how->problem, how->bed, temperature, emissivity);
+    quantity_follow(how->problem->of_emissivity, how->bed, temperature, emissivity);
 }
 
 /* Tolerance of the radiosities over problem->error: so small that it adds nothing to the error. */

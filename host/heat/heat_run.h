@@ -46,11 +46,6 @@ struct heat_report {
     double emission_error;                     /* root mean square error of sigma T^4 over its root mean square */
 };
 
-/* Sets the emissivity of each sphere that has a table, at its temperature [K]. Where the temperature is NaN, the
- * emissivity stays. */
-void heat_emissivities(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
-                       double *emissivity);
-
 /* Solves the problem of a bed. With problem->error, solves again with more beams and patches until the estimated error
  * is small enough. The caller sets report->metres and all arrays of report->result. Status 0, STATUS_INPUT if no
  * temperatures above 0 K have the given powers, STATUS_MEMORY, or as bed_options_status. */

@@ -193,7 +193,7 @@ static void follow_temperatures(void *time_run, const double *temperature, const
     const struct time_run *m = time_run;
     (void)wall_temperature;
     (void)wall_emissivity;
-    heat_emissivities(m->problem, &m->bed, temperature, emissivity);
+    quantity_follow(m->problem->of_emissivity, &m->bed, temperature, emissivity);
 }
 
 /* Chooses the method of the library. Patches are needed if the temperature of a wall is to be found, or if emissivities
@@ -233,7 +233,7 @@ static int write_state(struct time_run *m) {
     const uint32_t walls = m->problem->walls.count;
     fibrad_heat_sources shown = m->sources;
     shown.temperature = m->span.temperature;
-    heat_emissivities(m->problem, &m->bed, shown.temperature, m->problem->emissivity);
+    quantity_follow(m->problem->of_emissivity, &m->bed, shown.temperature, m->problem->emissivity);
     int status = fibrad_transient_powers(m->transient, &shown, m->result);
     if (!status && m->triangles->count && !m->problem->by_factors) {
         status = fibrad_transient_sides(m->transient, m->triangles->quantity[TRIANGLE_FLUX].side,

@@ -1,0 +1,46 @@
+/* solid_option.c - the conductivity of the solid that spheres are made of. SPDX-License-Identifier: MIT */
+#include "frames/solid_option.h"
+
+#include <math.h>
+
+#include "cli/message.h"
+
+int solid_option(const char *text, struct quantity *solid) {
+    return table_option("--solid-conductivity", text, SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, solid);
+}
+
+int solid_values(struct bed_options *options, const struct bed *bed, const struct quantity *solid,
+                 double **conductivity, double *metres) {
+    if (!bed_options_unit(options, bed))
+        return message_at(STATUS_USAGE, options->name, 0,
+                          "the file names no unit of length, which --solid-conductivity needs; --length-unit gives it");
+    const int status = bed_options_metres(options, bed, metres);
+    if (status) return status;
+    return quantity_values(solid, bed, options->name, "conductivity of the solid", 0, SOLID_CONDUCTIVITY_MIN,
+                           SOLID_CONDUCTIVITY_MAX, conductivity);
+}
+
+int solid_relative(const struct bed_options *options, const struct bed *bed, const struct quantity *solid,
+                   const double *temperature, double metres, double *conductivity, double *relative) {
+    quantity_follow(solid, bed, temperature, conductivity);
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double d = 2 * bed->r[i] * metres;
+        relative[i] = conductivity[i] / (4 * d * FIBRAD_STEFAN_BOLTZMANN * pow(temperature[i], 3));
+        if (relative[i] < FIBRAD_RELATIVE_CONDUCTIVITY_MIN)
+            return message_at(STATUS_INPUT, options->name, bed->line[i],
+                              "sphere %lld: k_s/(4 d sigma T^3) is %g; it must be at least %g",
+                              (long long)bed_name(bed, i), relative[i], FIBRAD_RELATIVE_CONDUCTIVITY_MIN);
+    }
+    return STATUS_OK;
+}
+
+void solid_report(const struct quantity *solid, const double *relative, uint32_t n, struct report *report) {
+    double low = INFINITY, high = 0, sum = 0;
+    for (uint32_t i = 0; i < n; ++i)
+        low = fmin(low, relative[i]), high = fmax(high, relative[i]), sum += relative[i] / n;
+    quantity_report(solid, "solid_conductivity", report);
+    report_value(report, "k_star", sum, 4);
+    if (low == high) return;
+    report_value(report, "k_star_min", low, 4);
+    report_value(report, "k_star_max", high, 4);
+}

@@ -1,0 +1,38 @@
+/* solid_option.h - the conductivity of the solid that spheres are made of. SPDX-License-Identifier: MIT
+ *
+ * What counts for radiation is the relative conductivity k* = k_s/(4 d sigma T^3). k_s is the conductivity of the solid
+ * [W/(m K)], d the diameter of the sphere, T its mean temperature. A sphere of infinite k* has one temperature. */
+#ifndef SOLID_OPTION_H
+#define SOLID_OPTION_H
+
+#include "frames/bed_options.h"
+
+/* Bounds of k_s [W/(m K)]. */
+#define SOLID_CONDUCTIVITY_MIN 1e-6
+#define SOLID_CONDUCTIVITY_MAX 1e12
+
+/* A row of a table of options, without braces. */
+#define OPTION_SOLID_CONDUCTIVITY                                                                                      \
+    KEY_SOLID_CONDUCTIVITY, "solid-conductivity", "K",                                                                 \
+        "thermal conductivity of the solid of the spheres [W/(m K)], or @TABLE of temperatures [K] and "               \
+        "conductivities, or TYPE:K,TYPE:@TABLE,..., or a column of the file [infinite: one temperature a sphere]"
+
+/* Reads the argument of --solid-conductivity. Status as table_option. */
+int solid_option(const char *text, struct quantity *solid);
+
+/* Finds k_s of all spheres, *conductivity [n], and the unit of length [m], which must be known. A table gives one of
+ * its values. Free *conductivity also after an error. Status as quantity_values and bed_options_metres, or STATUS_USAGE
+ * if neither the file nor --length-unit names a unit. */
+int solid_values(struct bed_options *options, const struct bed *bed, const struct quantity *solid,
+                 double **conductivity, double *metres);
+
+/* Finds k* of all spheres, relative [n], at their temperatures [n] [K]: infinite at 0 K, NaN where the temperature is
+ * NaN. Tables first give conductivity [n] at these temperatures. Status 0, or STATUS_INPUT naming the line of a sphere
+ * whose k* is below FIBRAD_RELATIVE_CONDUCTIVITY_MIN. */
+int solid_relative(const struct bed_options *options, const struct bed *bed, const struct quantity *solid,
+                   const double *temperature, double metres, double *conductivity, double *relative);
+
+/* Reports --solid-conductivity and the mean k* of spheres, and the least and the largest one if they differ. */
+void solid_report(const struct quantity *solid, const double *relative, uint32_t n, struct report *report);
+
+#endif
