@@ -575,7 +575,7 @@ typedef struct fibrad_pairs {
 
 typedef struct fibrad_silhouettes fibrad_silhouettes; /* the lines of a scene, and where the pairs of each sphere are */
 
-/* Bytes that fibrad_silhouettes_init needs: 72 per line and 8 per sphere.
+/* Bytes that fibrad_silhouettes_init needs: 72 per line and 16 per sphere.
  *   Input    as fibrad_silhouettes_init
  *   Errors   0 */
 size_t fibrad_silhouettes_size(const fibrad_scene *scene, const fibrad_silhouette_rule *rule);
@@ -595,13 +595,14 @@ int fibrad_silhouettes_init(fibrad_silhouettes **silhouettes, void *memory, size
  *   Errors   0 */
 uint32_t fibrad_silhouettes_tasks(const fibrad_silhouettes *silhouettes);
 
-/* Does one task, and appends its pairs to a collection. Each task must be done once. After an error the collection has
+/* Does one task, and appends its pairs to a collection. All tasks take about as long: a sphere far larger than its
+ * neighbours is divided over many. Each task must be done once. After an error the collection has
  * the pairs that it had before.
  *   Input    task: 0 to fibrad_silhouettes_tasks - 1
  *            work, pairs: of the calling thread
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY
  *            _CAPACITY: fixed pairs->memory is too small; pairs->memory.needed is a size that helps
- *            _UNSUPPORTED: a circle touches more than 200 discs on one side
+ *            _UNSUPPORTED: about 200 spheres overlap at one point of a circle
  *   Cost     about a microsecond a line and sphere in a packed bed
  *   Source   docs/methods.md */
 int fibrad_silhouettes_task(const fibrad_silhouettes *silhouettes, fibrad_work *work, uint32_t task,

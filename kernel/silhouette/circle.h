@@ -28,7 +28,7 @@ typedef struct fibrad_line {
     double frame[9];
 } fibrad_line;
 
-/* Discs behind or before a sphere. Element `count` stands for the surroundings. */
+/* Discs behind or before a sphere. Element `count` stands for what lies beyond all spheres. */
 typedef struct fibrad_circle_discs {
     _Alignas(64) double u[FIBRAD_CIRCLE_ROOM]; /* centre relative to that of the sphere */
     double v[FIBRAD_CIRCLE_ROOM];
@@ -39,7 +39,7 @@ typedef struct fibrad_circle_discs {
     double again[FIBRAD_CIRCLE_ROOM];    /* ... and the arc up to here, to - 4 */
     double weight[FIBRAD_CIRCLE_ROOM];   /* units per area */
     uint32_t slot[FIBRAD_CIRCLE_ROOM];   /* where what the sphere exchanges with the disc is summed */
-    uint32_t sphere[FIBRAD_CIRCLE_ROOM]; /* position in scene order; FIBRAD_NONE: the surroundings */
+    uint32_t sphere[FIBRAD_CIRCLE_ROOM]; /* position in scene order, or a name of what lies beyond all spheres */
     uint32_t count;
 } fibrad_circle_discs;
 
@@ -48,6 +48,7 @@ typedef struct fibrad_circle_side {
     double known;                      /* all discs down to this depth are found */
     double horizon;                    /* no disc is deeper */
     double sense;                      /* 1: before the sphere; -1: behind it */
+    uint32_t nothing;                  /* the name of what lies beyond all spheres */
 } fibrad_circle_side;
 
 /* A place where what is met changes, and what is met from there on: numbers of discs, nearest first. */
@@ -58,14 +59,21 @@ typedef struct fibrad_circle_ends {
     uint32_t count;
 } fibrad_circle_ends;
 
-/* Near spheres, as work->near has them, and from element near.capacity on those that a march has found. The element
- * `surroundings`, the last one, stands for the surroundings. */
+/* Near spheres, as work->near has them, and from element near.capacity on those that a march has found. The elements
+ * `nothing` and nothing + 1, the last ones, stand for what lies beyond all spheres, behind and before. */
 typedef struct fibrad_circle_near {
     double *home[3], *radius, *away[3]; /* position, radius, and how many periods away the image is */
     uint32_t *sphere;
     int64_t *sum[2]; /* what is exchanged with the sphere in hand, in units, over even and odd lines */
-    uint32_t surroundings;
+    uint32_t nothing;
 } fibrad_circle_near;
+
+/* A stretch of a circle. The circle of a sphere far larger than its neighbours touches so many discs that it is
+ * followed stretch by stretch. */
+typedef struct fibrad_circle_stretch {
+    double begin, end;   /* places */
+    double u, v, radius; /* a disc that contains it, about a point of it */
+} fibrad_circle_stretch;
 
 /* What scratch memory holds while circles of one task are followed. */
 typedef struct fibrad_circles {
@@ -84,14 +92,18 @@ typedef struct fibrad_circles {
     double period[3]; /* of the scene, scaled */
     double grid;      /* a number whose ulp projected centres are multiples of; 0: of none */
     bool periodic;
-    /* the sphere in hand */
+    bool apart; /* what lies beyond all spheres has a name of its own for each line and sense */
+    /* the sphere in hand, and what is to be followed of its circles */
     double at[3], r;
+    double begin, end, step; /* places, and the usual length of a stretch */
+    double next;             /* where the line in hand goes on */
     /* the line in hand */
     const double *frame;
     double across[9];   /* the frame, ... */
     double shift[3][3]; /* ... and one period of each axis along it */
     double centre[3];   /* projected */
     uint32_t half;      /* 0: an even line, 1: an odd one */
+    fibrad_circle_stretch stretch;
 } fibrad_circles;
 
 #endif

@@ -43,13 +43,23 @@ static uint32_t ties_on_side(const fibrad_workspace *work, const fibrad_circles 
     return kept;
 }
 
+/* Whether discs may touch a stretch of the circle. */
+static inline vm near_stretch(const fibrad_circle_stretch *stretch, vd u, vd v, vd r) {
+    vd reach = r + stretch->radius;
+    u -= stretch->u, v -= stretch->v;
+    return vd_lt(u * u + v * v, reach * reach);
+}
+
 /* Appends the near spheres at `place` whose discs touch the circle from one side. Of two circles that coincide the one
- * farther along the line counts as the larger one. False: no room. */
-static bool find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_circle_side *side, uint32_t *place,
+ * farther along the line counts as the larger one. There must be room for `count` discs and a vector. */
+static void find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_circle_side *side, uint32_t *place,
                        uint32_t count) {
     fibrad_circle_discs *to = &side->found;
     const vd own = vd_set1(c->r), zero = vd_set1(0);
+    const bool part = c->stretch.radius < __builtin_inf();
     uint32_t n = to->count;
+    uint32_t after[VD_LANES]; /* read, too, in the last vector */
+    fibrad_copy(after, place + count, sizeof after);
     for (uint32_t k = 0; k < VD_LANES; k++) place[count + k] = 0;
     for (uint32_t k = 0; k < count; k += VD_LANES) {
         const uint32_t *at = place + k;
@@ -58,6 +68,7 @@ static bool find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_c
         vd depth = side->sense * component_across(c, 2, x, y, z, at), r = vd_gather(c->near.radius, at);
         vd square = u * u + v * v, sum = r + own, larger = r - own, least = vd_max(zero, 0 - larger);
         vm touches = vd_lt(square, sum * sum) & vd_lt(least * least, square);
+        if (part) touches = touches & near_stretch(&c->stretch, u, v, r);
         if (side->sense > 0)
             touches = touches | (vd_le(square, zero) & vd_le(zero, larger));
         else
@@ -66,7 +77,6 @@ static bool find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_c
         uint32_t bits = vm_bits(touches & vd_lt(zero, depth)) & vd_lanes_below(count - k);
         if (tied != 0) bits |= ties_on_side(work, c, at, tied, side->sense);
         if (bits == 0) continue;
-        if (n + VD_LANES > FIBRAD_CIRCLE_DISCS) return false;
         vd_compress(to->u + n, bits, u);
         vd_compress(to->v + n, bits, v);
         vd_compress(to->depth + n, bits, depth);
@@ -78,7 +88,7 @@ static bool find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_c
         to->slot[k] = at, to->sphere[k] = c->near.sphere[at];
     }
     to->count = n;
-    return true;
+    fibrad_copy(place + count, after, sizeof after);
 }
 
 /* Lists the near spheres of a shell that overlap the beam of the sphere in hand, by a cull in floats. */
@@ -177,7 +187,7 @@ static inline vd circle_place(vd cosine, vd sine) {
 /* The arcs that the discs cover. Of two circles at distance x the half angle h of the arc has
  *   cos h = (x^2 + r^2 - R^2)/(2 x r),   sin h = sqrt((R - x + r)(R + x - r)(x + r - R)(x + R + r))/(2 x r).
  * The factors are differences of the same numbers on both circles, so that circles that nearly touch agree. */
-static void find_arcs(const fibrad_circles *c, fibrad_circle_discs *disc) {
+static void find_arcs(const fibrad_circles *c, int side, fibrad_circle_discs *disc) {
     const vd own = vd_set1(c->r), zero = vd_set1(0);
     for (uint32_t k = 0; k < disc->count; k += VD_LANES) {
         vd u = vd_load(disc->u + k), v = vd_load(disc->v + k), r = vd_load(disc->r + k);
@@ -206,7 +216,7 @@ static void find_arcs(const fibrad_circles *c, fibrad_circle_discs *disc) {
     disc->u[end] = disc->v[end] = disc->weight[end] = 0;
     disc->r[end] = disc->depth[end] = __builtin_inf();
     disc->from[end] = disc->to[end] = NOWHERE, disc->again[end] = -NOWHERE;
-    disc->slot[end] = c->near.surroundings, disc->sphere[end] = FIBRAD_NONE;
+    disc->slot[end] = c->near.nothing + (uint32_t)side, disc->sphere[end] = c->side[side].nothing;
 }
 
 /* ---- ends ------------------------------------------------------------------------------------------------------- */
@@ -275,7 +285,7 @@ static void find_ends(fibrad_circles *c, double begin, double end) {
     meet(behind, 0, ends, count, ends->count);
 }
 
-/* The greatest depth that is met on a side; infinity: the surroundings are. */
+/* The greatest depth that is met on a side; infinity: something beyond all spheres is. */
 static double deepest_met(const fibrad_circles *c, int side) {
     vd deepest = vd_set1(0);
     double most = 0;
@@ -377,7 +387,7 @@ static inline int64_t units_of(double whole) {
     return bits - zero;
 }
 
-/* A property of discs, the surroundings included. */
+/* A property of discs, and of what lies beyond all spheres. */
 static inline vd look_up(const double *table, uint32_t count, vd number) { return vd_lookup(table, count + 1, number); }
 
 /* The areas that arcs add, in units of the pairs. About a point o, that of an arc is
@@ -424,8 +434,8 @@ static void add_pieces(fibrad_circles *c, fibrad_pair_table *table) {
         sum[behind->slot[c->index[0][k]]] += units_of(c->behind[k]);
         sum[ahead->slot[c->index[1][k]]] += units_of(c->ahead[k]);
     }
-    for (uint32_t k = 0; k < count; k++) /* the surroundings exchange nothing with themselves */
-        if (c->key[k] != UINT64_MAX)
+    for (uint32_t k = 0; k < count; k++) /* what lies beyond all spheres exchanges nothing with itself */
+        if (!fibrad_pair_opens((uint32_t)(c->key[k] >> 32)))
             fibrad_pair_slot(table, c->key[k], c->rank[k])->sum[c->half] -= units_of(c->past[k]);
 }
 
@@ -487,7 +497,55 @@ static void add_sums(fibrad_circles *c, uint32_t own, uint32_t from, uint32_t to
     }
 }
 
-/* Finds the discs of one more shell, or of a march on sides that are not done. */
+/* What a march must look at. Seen from behind, the second axis of the frame is turned round. */
+static fibrad_tube tube_of(const fibrad_circles *c, double sense) {
+    const fibrad_circle_stretch *stretch = &c->stretch;
+    const double inverse = 1 / c->r;
+    if (!(stretch->radius < __builtin_inf())) return (fibrad_tube){.radius = 1};
+    return (fibrad_tube){stretch->u * inverse, sense * stretch->v * inverse, stretch->radius * inverse};
+}
+
+/* Leaves of the discs found on a side those that are seen somewhere on the stretch. */
+static void prune(const fibrad_workspace *work, fibrad_circles *c, int side) {
+    const fibrad_circle_discs *from = &c->side[side].sorted;
+    fibrad_circle_discs *to = &c->side[side].found;
+    bool seen[FIBRAD_CIRCLE_ROOM] = {false};
+    uint32_t n = 0;
+    order_discs(work, c, &c->side[side]);
+    find_arcs(c, side, &c->side[side].sorted);
+    c->ends.at[0] = c->stretch.begin;
+    meet(from, side, &c->ends, 0, 1);
+    c->ends.count = 1;
+    list_ends(from, side, c->stretch.begin, c->stretch.end, &c->ends);
+    for (uint32_t k = 0; k < c->ends.count; k++) seen[(uint32_t)c->ends.met[side][k]] = true;
+    for (uint32_t k = 0; k < from->count; k++) {
+        if (!seen[k]) continue;
+        to->u[n] = from->u[k], to->v[n] = from->v[k], to->depth[n] = from->depth[k], to->r[n] = from->r[k];
+        to->slot[n] = from->slot[k], to->sphere[n++] = from->sphere[k];
+    }
+    to->count = n;
+}
+
+/* Finds discs among near spheres, as many at a time as there is room for. False: too many touch the stretch. */
+static bool find_among(const fibrad_workspace *work, fibrad_circles *c, int side, uint32_t *place, uint32_t count) {
+    const fibrad_circle_discs *found = &c->side[side].found;
+    for (uint32_t k = 0, some; k < count; k += some) {
+        uint32_t room = FIBRAD_CIRCLE_DISCS - VD_LANES - found->count;
+        if (room < count - k && room < FIBRAD_CIRCLE_DISCS / 2) {
+            prune(work, c, side);
+            room = FIBRAD_CIRCLE_DISCS - VD_LANES - found->count;
+            if (room < FIBRAD_CIRCLE_DISCS / 4) return false;
+        }
+        some = room < count - k ? room : count - k;
+        find_discs(work, c, &c->side[side], place + k, some);
+    }
+    return true;
+}
+
+#define SHORTEST 1e-6 /* stretch of a circle */
+#define TOO_MANY (-1) /* discs touch the stretch of the circle, which must be shorter */
+
+/* Finds the discs of one more shell, or of a march on sides that are not done. TOO_MANY */
 static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, const bool done[2]) {
     uint32_t *place = work->disc.near;
     double w[9];
@@ -507,24 +565,29 @@ static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, 
             if (done[s]) continue;
             const double to = fibrad_near_further(work, side->known);
             work->disc.count = 0;
-            LANED(fibrad_near_march)(work, w, &(fibrad_tube){.radius = 1}, side->known, to);
-            if (work->disc.count > work->disc.capacity) return fibrad_work_discs_missed(work);
+            const fibrad_tube tube = tube_of(c, sense);
+            LANED(fibrad_near_march)(work, w, &tube, side->known, to);
             side->known = to;
             count = work->disc.count;
-            if (c->marched + count > c->near.surroundings) return FIBRAD_E_UNSUPPORTED;
+            if (c->marched + count > c->near.nothing) return TOO_MANY;
+            if (count > work->disc.capacity) return fibrad_work_discs_missed(work);
             const uint32_t first = take_marched(work, c, w);
             for (uint32_t k = 0; k < count; k++) place[k] = first + k;
         }
         if (side->known >= work->clear && side->horizon == __builtin_inf())
             side->horizon = fibrad_near_horizon(work, w + 6);
-        if (!find_discs(work, c, side, place, count)) return FIBRAD_E_UNSUPPORTED;
+        if (!find_among(work, c, s, place, count)) return TOO_MANY;
     }
     return FIBRAD_OK;
 }
 
-static void begin_line(fibrad_circles *c, const fibrad_line *line, uint32_t half) {
+static void begin_line(fibrad_circles *c, const fibrad_line *line, uint32_t number) {
     c->frame = line->frame;
-    c->half = half;
+    c->half = number % 2;
+    for (uint32_t s = 0; s < 2; s++) {
+        c->side[s].nothing = c->apart ? FIBRAD_PAIR_OPEN + 2 * number + 1 - s : FIBRAD_NONE;
+        c->near.sphere[c->near.nothing + s] = c->side[s].nothing;
+    }
     for (int axis = 0; axis < 3; axis++) {
         const double *a = line->frame + 3 * axis;
         for (int k = 0; k < 3; k++) {
@@ -533,6 +596,30 @@ static void begin_line(fibrad_circles *c, const fibrad_line *line, uint32_t half
         }
         c->centre[axis] = ((a[0] * c->at[0] + a[1] * c->at[1] + a[2] * c->at[2]) + c->grid) - c->grid;
     }
+}
+
+/* A point of the circle. */
+static void point_at(double place, double r, double point[2]) {
+    const bool far = place > 1;
+    const double tangent = far ? place - 2 : place, scale = (far ? -r : r) / (1 + tangent * tangent);
+    point[0] = scale * (1 - tangent * tangent), point[1] = scale * 2 * tangent;
+}
+
+static double chord_between(const double a[2], const double b[2]) {
+    return fibrad_sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]));
+}
+
+/* Begins a stretch of the circle, at most to a place. */
+static void begin_stretch(fibrad_circles *c, double begin, double end) {
+    c->stretch = (fibrad_circle_stretch){.begin = begin, .end = end, .radius = __builtin_inf()};
+    if (end - begin < FIBRAD_CIRCLE_END - FIBRAD_CIRCLE_BEGIN) {
+        double first[2], middle[2], last[2];
+        point_at(begin, c->r, first);
+        point_at((begin + end) / 2, c->r, middle);
+        point_at(end, c->r, last);
+        c->stretch.u = middle[0], c->stretch.v = middle[1];
+        c->stretch.radius = fibrad_max(chord_between(first, middle), chord_between(middle, last)) + 1e-12 * c->r;
+    }
     for (int s = 0; s < 2; s++) {
         c->side[s].found.count = 0;
         c->side[s].known = -1, c->side[s].horizon = __builtin_inf();
@@ -540,31 +627,51 @@ static void begin_line(fibrad_circles *c, const fibrad_line *line, uint32_t half
     }
 }
 
-/* Adds what the circle of the sphere in hand says along a line. */
-static int follow(fibrad_workspace *work, fibrad_circles *c, const fibrad_line *line, uint32_t half,
-                  fibrad_pair_table *table) {
+/* Adds what a stretch of the circle of the sphere in hand says along the line in hand. TOO_MANY */
+static int follow(fibrad_workspace *work, fibrad_circles *c, double begin, double end, fibrad_pair_table *table) {
     bool done[2] = {false, false};
     const uint32_t first_marched = c->marched;
-    begin_line(c, line, half);
+    begin_stretch(c, begin, end);
     for (uint32_t shell = 0; !(done[0] && done[1]); shell++) {
         const int status = find_more(work, c, shell, done);
-        if (status != FIBRAD_OK) return status;
+        if (status != FIBRAD_OK) {
+            c->marched = first_marched;
+            return status;
+        }
         for (int s = 0; s < 2; s++) {
             order_discs(work, c, &c->side[s]);
-            find_arcs(c, &c->side[s].sorted);
+            find_arcs(c, s, &c->side[s].sorted);
         }
-        find_ends(c, FIBRAD_CIRCLE_BEGIN, FIBRAD_CIRCLE_END);
+        find_ends(c, begin, end);
         for (int s = 0; s < 2; s++) {
             const fibrad_circle_side *side = &c->side[s];
             done[s] = side->known >= side->horizon || deepest_met(c, s) <= side->known * (1 - 1e-12) * c->r;
         }
     }
-    sort_ends(c, FIBRAD_CIRCLE_END);
+    sort_ends(c, end);
     find_angles(c);
     find_areas(c);
     add_pieces(c, table);
     if (c->marched > first_marched) add_sums(c, work->place, first_marched, c->marched, table);
     c->marched = first_marched;
+    return FIBRAD_OK;
+}
+
+/* Follows the line in hand as far as the table has room. Stretches become shorter where too many discs touch them. */
+static int follow_line(fibrad_workspace *work, fibrad_circles *c, fibrad_pair_table *table) {
+    double step = c->step;
+    while (c->next < c->end && fibrad_pair_room(table, FIBRAD_CIRCLE_ENDS)) {
+        const double end = fibrad_min(c->end, ((c->next + step) + 5) - 5); /* on the grid of places */
+        const int status = follow(work, c, c->next, end, table);
+        if (status == TOO_MANY) {
+            step = (end - c->next) / 2;
+            if (step < SHORTEST) return FIBRAD_E_UNSUPPORTED;
+            continue;
+        }
+        if (status != FIBRAD_OK) return status;
+        c->next = end;
+        step = fibrad_min(c->step, 2 * step);
+    }
     return FIBRAD_OK;
 }
 
@@ -576,12 +683,15 @@ int LANED(fibrad_circle_lines)(fibrad_workspace *work, fibrad_circles *c, uint32
     for (int axis = 0; axis < 3; axis++) c->at[axis] = (at[axis] - c->origin[axis]) * c->scale;
     c->r = scene->r[place] * c->scale;
     c->homes = 0, c->marched = work->near.capacity;
-    c->near.sum[0][c->near.surroundings] = c->near.sum[1][c->near.surroundings] = 0;
-    for (; *from < to && fibrad_pair_room(table, FIBRAD_CIRCLE_ENDS); ++*from) {
-        const int status = follow(work, c, &line[*from], *from % 2, table);
+    for (uint32_t k = c->near.nothing; k < c->near.nothing + 2; k++) c->near.sum[0][k] = c->near.sum[1][k] = 0;
+    for (; *from < to && fibrad_pair_room(table, FIBRAD_CIRCLE_ENDS); ++*from, c->next = c->begin) {
+        begin_line(c, &line[*from], *from);
+        const int status = follow_line(work, c, table);
         if (status != FIBRAD_OK) return status;
+        if (c->apart) add_sums(c, work->place, c->near.nothing, c->near.nothing + 2, table);
+        if (c->next < c->end) break;
     }
     add_sums(c, work->place, 0, c->homes, table);
-    add_sums(c, work->place, c->near.surroundings, c->near.surroundings + 1, table);
+    add_sums(c, work->place, c->near.nothing, c->near.nothing + 2, table);
     return FIBRAD_OK;
 }

@@ -9,7 +9,12 @@
  * lines stay below 2^63. Whole numbers add up to the same bits in any order. */
 #define FIBRAD_PAIR_UNITS 0x1p44
 
-/* A pair, in a collection. first < second, positions in scene order; second FIBRAD_NONE: the surroundings. */
+/* What lies beyond all spheres has the name FIBRAD_NONE. Where it matters along which line and in which sense it is
+ * seen, 0 along the line and 1 against it, it has the name FIBRAD_PAIR_OPEN + 2 line + sense. */
+#define FIBRAD_PAIR_OPEN 0x80000000u
+static inline bool fibrad_pair_opens(uint32_t name) { return name >= FIBRAD_PAIR_OPEN; }
+
+/* A pair, in a collection. first < second, positions in scene order or names. */
 typedef struct fibrad_pair {
     uint32_t first, second;
     int64_t sum[2]; /* over even and over odd lines */

@@ -7,10 +7,11 @@
 #include "row/row.h"
 #include "sample/direction.h"
 #include "sample/line.h"
+#include "scene/grid_walk.h"
 #include "silhouette/circle_lanes.h"
 
 #define AHEAD        16u      /* how many pairs ahead memory is asked for */
-#define TASK_SPHERES 256u     /* spheres of a task: those near each other share pairs in the cache */
+#define TASK_CIRCLES 256u     /* circles of each line in a task: those near each other share pairs in the cache */
 #define TABLE_BEST   0x10000u /* slots of a task's table, ... */
 #define TABLE_LEAST  0x2000u  /* ... and the least */
 
@@ -19,6 +20,7 @@ struct fibrad_silhouettes {
     uint64_t hash;
     uint32_t lines, spheres;
     fibrad_line *line;         /* [lines] */
+    uint64_t *stretch;         /* [spheres + 1], by position in scene order: how many those before it take */
     uint64_t *start;           /* [spheres + 1], by position in scene order: where its pairs are in `index` */
     const uint32_t *index;     /* [start[spheres]], pairs, numbered through all collections; NULL: not joined */
     const fibrad_pairs *pairs; /* [count], collections that were joined */
@@ -31,6 +33,7 @@ struct fibrad_silhouettes {
 static fibrad_silhouettes *silhouettes_layout(fibrad_arena *arena, fibrad_silhouettes *s) {
     fibrad_silhouettes *place = fibrad_arena_take(arena, 1, sizeof *place);
     s->line = fibrad_arena_take(arena, s->lines, sizeof *s->line);
+    s->stretch = fibrad_arena_take(arena, (size_t)s->spheres + 1, sizeof *s->stretch);
     s->start = fibrad_arena_take(arena, (size_t)s->spheres + 1, sizeof *s->start);
     return place;
 }
@@ -81,6 +84,56 @@ static void make_lines(fibrad_silhouettes *s, uint64_t seed) {
     }
 }
 
+/* Spheres that may touch circles of a sphere, and their radii. */
+typedef struct nearby {
+    double count, radii;
+} nearby;
+
+/* Counts the spheres of a level down to a depth from the surface of the sphere at `place`. */
+static nearby count_nearby(const fibrad_scene *scene, const fibrad_level *level, uint32_t place, double depth) {
+    const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]}, reach = scene->r[place] + depth;
+    double low[3], high[3];
+    fibrad_walk walk;
+    nearby found = {0, 0};
+    for (int axis = 0; axis < 3; axis++) low[axis] = centre[axis] - reach, high[axis] = centre[axis] + reach;
+    fibrad_walk_begin(&walk, scene, level, low, high);
+    while (fibrad_walk_next(&walk))
+        for (uint32_t j = walk.begin; j < walk.end; j++) {
+            const double x = scene->x[j] + walk.shift[0] - centre[0], y = scene->y[j] + walk.shift[1] - centre[1];
+            const double z = scene->z[j] + walk.shift[2] - centre[2];
+            if (x * x + y * y + z * z > reach * reach) continue;
+            found.count += 1, found.radii += scene->r[j];
+        }
+    return found;
+}
+
+#define STRETCH_LENGTH 8.0  /* mean radii of the neighbours, half of it: an ordinary circle has about this length */
+#define STRETCH_DISCS  32.0 /* on both sides, at the least */
+
+/* In how many stretches the circles of a sphere are followed. Discs that touch a circle are the part sqrt(r/R) of all
+ * that are near, or less. */
+static uint64_t sphere_stretches(const fibrad_scene *scene, uint32_t place, double mean) {
+    nearby all = {0, 0};
+    const double r = scene->r[place];
+    if (r <= STRETCH_LENGTH / 2 * mean) return 1;
+    for (uint32_t l = 0; l < scene->levels; l++) {
+        const nearby some = count_nearby(scene, &scene->level[l], place, FIBRAD_CIRCLE_STRIDE.first * scene->spacing);
+        all.count += some.count, all.radii += some.radii;
+    }
+    const double ratio = fibrad_min(1, all.radii / (all.count * r));
+    const double some =
+        fibrad_min(FIBRAD_PI / (STRETCH_LENGTH * ratio), all.count * fibrad_sqrt(ratio) / STRETCH_DISCS);
+    return some > 1 ? (uint64_t)some : 1;
+}
+
+static void count_stretches(fibrad_silhouettes *s) {
+    const fibrad_scene *scene = s->scene;
+    double mean = 0;
+    for (uint32_t k = 0; k < s->spheres; k++) mean += scene->r[k] / s->spheres;
+    s->stretch[0] = 0;
+    for (uint32_t k = 0; k < s->spheres; k++) s->stretch[k + 1] = s->stretch[k] + sphere_stretches(scene, k, mean);
+}
+
 int fibrad_silhouettes_init(fibrad_silhouettes **out, void *memory, size_t size, const fibrad_scene *scene,
                             const fibrad_silhouette_rule *rule) {
     fibrad_silhouettes fields;
@@ -93,6 +146,7 @@ int fibrad_silhouettes_init(fibrad_silhouettes **out, void *memory, size_t size,
     fibrad_silhouettes *s = silhouettes_layout(&arena, &fields);
     *s = fields;
     make_lines(s, rule != NULL ? rule->turn : 0);
+    count_stretches(s);
     *out = s;
     return FIBRAD_OK;
 }
@@ -100,7 +154,7 @@ int fibrad_silhouettes_init(fibrad_silhouettes **out, void *memory, size_t size,
 /* ---- tasks ------------------------------------------------------------------------------------------------------ */
 
 uint32_t fibrad_silhouettes_tasks(const fibrad_silhouettes *s) {
-    return s == NULL ? 0 : s->spheres / TASK_SPHERES + (s->spheres % TASK_SPHERES != 0);
+    return s == NULL ? 0 : (uint32_t)((s->stretch[s->spheres] + TASK_CIRCLES - 1) / TASK_CIRCLES);
 }
 
 static fibrad_circles *circles_layout(fibrad_arena *arena, uint32_t slots, fibrad_circle_near *near,
@@ -114,7 +168,7 @@ static fibrad_circles *circles_layout(fibrad_arena *arena, uint32_t slots, fibra
     near->radius = fibrad_arena_take(arena, room, sizeof(double));
     near->sphere = fibrad_arena_take(arena, room, sizeof(uint32_t));
     for (int half = 0; half < 2; half++) near->sum[half] = fibrad_arena_take(arena, room, sizeof(int64_t));
-    near->surroundings = (uint32_t)room - 1;
+    near->nothing = (uint32_t)room - 2;
     table->slot = fibrad_arena_take(arena, slots, sizeof *table->slot);
     return place;
 }
@@ -147,7 +201,6 @@ static void begin_circles(const fibrad_scene *scene, fibrad_circles *c) {
         c->periodic = c->periodic || scene->period[axis] > 0;
     }
     c->grid = c->periodic ? centre_grid(scene, c->scale) : 0;
-    c->near.sphere[c->near.surroundings] = FIBRAD_NONE;
 }
 
 /* Lays scratch memory out for circles, with as large a table as there is room for. */
@@ -193,19 +246,52 @@ static int empty_table(fibrad_pair_table *table, fibrad_pairs *pairs) {
     return FIBRAD_OK;
 }
 
-/* Follows the circles of spheres [from, to) in scene order. */
-static int follow_spheres(const fibrad_silhouettes *s, fibrad_workspace *space, uint32_t from, uint32_t to,
-                          fibrad_pairs *pairs) {
+/* The sphere to which a stretch belongs. */
+static uint32_t sphere_of_stretch(const fibrad_silhouettes *s, uint64_t stretch) {
+    uint32_t low = 0, high = s->spheres - 1;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (s->stretch[middle + 1] > stretch)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+/* Where stretch k of `count` begins. */
+static double place_of_stretch(uint64_t k, uint64_t count) {
+    const double place = FIBRAD_CIRCLE_BEGIN + (FIBRAD_CIRCLE_END - FIBRAD_CIRCLE_BEGIN) * (double)k / (double)count;
+    return (place + 5) - 5; /* on the grid of places */
+}
+
+/* Follows stretches [from, to) of the circles of a sphere. */
+static int follow_sphere(const fibrad_silhouettes *s, fibrad_workspace *space, fibrad_circles *c, uint32_t place,
+                         uint64_t from, uint64_t to, fibrad_pair_table *table, fibrad_pairs *pairs) {
+    const uint64_t count = s->stretch[place + 1] - s->stretch[place];
+    int status = FIBRAD_OK;
+    c->begin = c->next = place_of_stretch(from, count), c->end = place_of_stretch(to, count);
+    c->step = (FIBRAD_CIRCLE_END - FIBRAD_CIRCLE_BEGIN) / (double)count;
+    for (uint32_t line = 0; line < s->lines && status == FIBRAD_OK;) {
+        status = FIBRAD_VERSION_OF(fibrad_circle_lines, s->scene->facts.isa)(space, c, place, s->line, &line, s->lines,
+                                                                             table);
+        const bool full = !fibrad_pair_room(table, FIBRAD_CIRCLE_ENDS + FIBRAD_NEAR_MOST);
+        if (status == FIBRAD_OK && full) status = empty_table(table, pairs);
+    }
+    return status;
+}
+
+/* Follows stretches [from, to) of all circles. */
+static int follow_stretches(const fibrad_silhouettes *s, fibrad_workspace *space, uint64_t from, uint64_t to,
+                            fibrad_pairs *pairs) {
     fibrad_pair_table table;
     fibrad_circles *c = open_circles(space, s->scene, &table);
     int status = FIBRAD_OK;
-    for (uint32_t place = from; place < to; place++)
-        for (uint32_t line = 0; line < s->lines && status == FIBRAD_OK;) {
-            status = FIBRAD_VERSION_OF(fibrad_circle_lines, s->scene->facts.isa)(space, c, place, s->line, &line,
-                                                                                 s->lines, &table);
-            const bool full = !fibrad_pair_room(&table, FIBRAD_CIRCLE_ENDS + FIBRAD_NEAR_MOST);
-            if (status == FIBRAD_OK && full) status = empty_table(&table, pairs);
-        }
+    for (uint32_t place = sphere_of_stretch(s, from); from < to && status == FIBRAD_OK; place++) {
+        const uint64_t first = s->stretch[place], last = s->stretch[place + 1], end = last < to ? last : to;
+        status = follow_sphere(s, space, c, place, from - first, end - first, &table, pairs);
+        from = end;
+    }
     return status != FIBRAD_OK ? status : empty_table(&table, pairs);
 }
 
@@ -213,13 +299,13 @@ int fibrad_silhouettes_task(const fibrad_silhouettes *s, fibrad_work *work, uint
     if (s == NULL || work == NULL || pairs == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_memory_valid(&pairs->memory) || task >= fibrad_silhouettes_tasks(s)) return FIBRAD_E_ARGUMENT;
     if (s->scene->hash != s->hash) return FIBRAD_E_STATE;
-    const uint32_t from = task * TASK_SPHERES, left = s->spheres - from;
+    const uint64_t from = (uint64_t)task * TASK_CIRCLES, left = s->stretch[s->spheres] - from;
     const size_t before = pairs->count;
     fibrad_workspace *space;
     pairs->serial++;
     int status = fibrad_work_open(work, s->scene, circles_bytes(TABLE_LEAST), circles_bytes(TABLE_BEST), &space);
     while (status == FIBRAD_OK) {
-        status = follow_spheres(s, space, from, from + (left < TASK_SPHERES ? left : TASK_SPHERES), pairs);
+        status = follow_stretches(s, space, from, from + (left < TASK_CIRCLES ? left : TASK_CIRCLES), pairs);
         if (status != FIBRAD_E_WORK) break;
         pairs->count = before;
         status = fibrad_work_grow(work, &space);

@@ -350,7 +350,9 @@ static void begin_march(march *m, double from, double to, double *near, double *
     m->layers_across = fibrad_abs(w[1]) > fibrad_abs(w[2]) ? 1 : 2, m->rows_across = 3 - m->layers_across;
     m->slack = 0;
     *near = fibrad_max(from, 0);
-    *far = fibrad_min(fibrad_sqrt(to * to + (1 + r) * (1 + r)), fibrad_near_horizon(work, w));
+    const double aside = fibrad_sqrt(m->tube->u * m->tube->u + m->tube->v * m->tube->v);
+    const double inner = fibrad_max(0, aside - m->tube->radius - r - 1e-6); /* centres are not nearer to the axis */
+    *far = fibrad_min(fibrad_sqrt(to * to + (1 + r) * (1 + r) - inner * inner), fibrad_near_horizon(work, w));
     for (int axis = 0; axis < 3; axis++) {
         const double middle = m->tube->u * m->frame[axis] + m->tube->v * m->frame[3 + axis];
         const double radius = m->tube->radius + r, scale = work->unit * level->inverse[axis];
