@@ -101,8 +101,9 @@ typedef enum fibrad_status {
     FIBRAD_E_CANCELLED = -12,   /* A progress function has asked to stop. */
     FIBRAD_E_UNSOLVABLE = -13,  /* No temperatures give the powers that were asked for. */
     FIBRAD_E_BACK = -14,        /* A side of a triangle that belongs to no wall was seen. Its number is written. */
-    FIBRAD_E_SUM = -15,    /* A row does not add up to 1 within 1e-9: a fault of the library, or a changed row part */
-    FIBRAD_E_ENDLESS = -16 /* The walls form a tube or a corner without end. Add a wall or an opening. */
+    FIBRAD_E_SUM = -15,     /* A row does not add up to 1 within 1e-9: a fault of the library, or a changed row part */
+    FIBRAD_E_ENDLESS = -16, /* The walls form a tube or a corner without end. Add a wall or an opening. */
+    FIBRAD_E_FILE = -17     /* A file cannot be made, written or renamed. Only functions of the host return this. */
 } fibrad_status;
 
 /* The meaning of a status as one English phrase.

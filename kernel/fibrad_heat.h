@@ -119,7 +119,7 @@ typedef struct fibrad_heat_sources {
     const double *body_power;       /* sigma K^4 L^2, [bodies], as power; NULL: all NaN */
     const unsigned char *insulated; /* [bodies], not 0: insulated; NULL: no wall is insulated */
     double surroundings;            /* K, 0 to FIBRAD_TEMPERATURE_MAX, of the black surroundings */
-    double sigma;                   /* of E = sigma T^4, 1e-30 to 1e30 */
+    double sigma;                   /* of E = sigma T^4, FIBRAD_SIGMA_MIN to _MAX */
     double tolerance;               /* residual at which to stop, 0 to below 1; 0: see above */
     uint32_t sweeps_max;            /* sweeps after which to stop; 0: 1000 */
     int uniform;                    /* 1: one radiosity per surface, no extrapolation; for emissivities near 1 only */

@@ -39,6 +39,10 @@
 /* Heat */
 #define FIBRAD_TEMPERATURE_MAX         1e20 /* K; its fourth power is far from overflow */
 #define FIBRAD_POWER_MAX               1e100
+#define FIBRAD_SIGMA_MIN               1e-30 /* of E = sigma T^4 */
+#define FIBRAD_SIGMA_MAX               1e30
+#define FIBRAD_CAPACITY_MAX            1e300 /* heat capacity of a sphere */
+#define FIBRAD_DURATION_MAX            1e300
 #define FIBRAD_HEAT_RADIUS_MIN         1e-30 /* L; the largest radius is 1 over it */
 #define FIBRAD_HEAT_DIRECTIONS_DEFAULT 168
 #define FIBRAD_HEAT_POINTS_DEFAULT     64

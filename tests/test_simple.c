@@ -266,7 +266,7 @@ START_TEST(factors_in_files) {
     fibrad_bed_factors *none;
     ck_assert_int_eq(
         fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_options){.scratch = folder}, NULL, &none),
-        FIBRAD_E_ARGUMENT);
+        FIBRAD_E_FILE);
     ck_assert_ptr_null(none);
     bed_free(&bed);
 }

@@ -25,16 +25,17 @@ START_TEST(numbers_never_change) {
     ck_assert_int_eq(FIBRAD_E_BACK, -14);
     ck_assert_int_eq(FIBRAD_E_SUM, -15);
     ck_assert_int_eq(FIBRAD_E_ENDLESS, -16);
+    ck_assert_int_eq(FIBRAD_E_FILE, -17);
 }
 END_TEST
 
 START_TEST(each_status_has_its_own_text) {
-    for (int a = FIBRAD_E_ENDLESS; a <= FIBRAD_OK; a++) {
+    for (int a = FIBRAD_E_FILE; a <= FIBRAD_OK; a++) {
         const char *text = fibrad_status_text(a);
         ck_assert_uint_gt(strlen(text), 0);
         ck_assert_int_ne(text[strlen(text) - 1], '.');
         ck_assert_str_ne(text, fibrad_status_text(1));
-        for (int b = FIBRAD_E_ENDLESS; b < a; b++) ck_assert_str_ne(text, fibrad_status_text(b));
+        for (int b = FIBRAD_E_FILE; b < a; b++) ck_assert_str_ne(text, fibrad_status_text(b));
     }
 }
 END_TEST

@@ -185,19 +185,18 @@ int options_cast(int key, const char *text, fibrad_cast_rule *rule) {
 }
 
 int options_surface(int key, const char *text, fibrad_surface_rule *rule) {
-    static const uint32_t sizes[] = {8, 13, 21, 34, 55, 89, 144, 233, 377, 610, 987};
     if (key == KEY_NO_CORRECTION) {
         rule->flags |= FIBRAD_SURFACE_NO_CORRECTION;
         return STATUS_OK;
     }
-    uint32_t nodes;
-    const int status = options_count("--nf", text, 1, UINT32_MAX, &nodes);
-    if (status) return status;
-    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k)
-        if (nodes == sizes[k]) {
-            rule->nodes = sizes[k];
-            return STATUS_OK;
-        }
-    return message(STATUS_USAGE, "--nf: %.40s is not built in; 8, 13, 21, 34, 55, 89, 144, 233, 377, 610 and 987 are",
-                   text);
+    const int status = options_count("--nf", text, 1, UINT32_MAX, &rule->nodes);
+    char sizes[64] = "";
+    int length = 0;
+    for (uint32_t size = FIBRAD_NODES_MIN, next = 13, sum; size <= FIBRAD_NODES_MAX && !status;
+         size = next, next = sum) {
+        if (rule->nodes == size) return STATUS_OK;
+        length += snprintf(sizes + length, sizeof sizes - (size_t)length, "%s%" PRIu32, length ? ", " : "", size);
+        sum = size + next;
+    }
+    return status ? status : message(STATUS_USAGE, "--nf: %.40s is not built in; %s are", text, sizes);
 }

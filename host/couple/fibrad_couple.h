@@ -107,7 +107,7 @@ typedef struct fibrad_insitu_bed {
 
 /* Temperatures for which powers are computed. All ranks together have the particles of the rows. */
 typedef struct fibrad_insitu_state {
-    double sigma;                   /* of E = sigma T^4, at most 1e30; 0: FIBRAD_STEFAN_BOLTZMANN */
+    double sigma;                   /* of E = sigma T^4, at most FIBRAD_SIGMA_MAX; 0: FIBRAD_STEFAN_BOLTZMANN */
     double surroundings;            /* K, 0 to FIBRAD_TEMPERATURE_MAX */
     const double *body_temperature; /* K, [bodies of the rows], 0 to FIBRAD_TEMPERATURE_MAX */
     size_t n;                       /* number of particles that this rank owns now */
@@ -167,7 +167,7 @@ int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state
 /* Writes the rows of each rank to the file PATH.RANK.rows, for `fibrad join`.
  *   Input    path: PATH
  *   Errors   _STATE: there are no rows
- *            _ARGUMENT: a file cannot be written. The message names the file. No rank leaves a file behind. */
+ *            _FILE: a file cannot be written. The message names the file. No rank leaves a file behind. */
 int fibrad_insitu_write(fibrad_insitu *insitu, const char *path);
 
 /* The sentence of the last error. Not collective.

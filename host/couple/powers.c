@@ -18,7 +18,7 @@ static int check_state(fibrad_insitu *s, const fibrad_insitu_state *state, const
     if (!state || (state->n && !(state->id && state->temperature && power)) || (bodies && !state->body_temperature) ||
         state->n > FIBRAD_SPHERES_MAX)
         return FIBRAD_E_ARGUMENT;
-    if (!(sigma_of(state) > 0 && sigma_of(state) <= 1e30))
+    if (!(sigma_of(state) > 0 && sigma_of(state) <= FIBRAD_SIGMA_MAX))
         return fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "sigma is not above 0");
     if (!temperature_valid(state->surroundings, 1))
         return fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "the temperature of the surroundings is not valid");

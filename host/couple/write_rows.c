@@ -154,8 +154,7 @@ static int write_draft(fibrad_insitu *s, const char *name) {
                                  .emissive = (uint64_t)set->emissive,
                                  .cutoff = set->facts.cutoff};
         memcpy(head.magic, FIBRAD_ROWS_MAGIC, sizeof head.magic);
-        if (!write_file(name, &head, &a))
-            status = fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "cannot write %s", name);
+        if (!write_file(name, &head, &a)) status = fibrad_refuse(s->message, FIBRAD_E_FILE, "cannot write %s", name);
     }
     free(a.id);
     free(a.f);
@@ -175,7 +174,7 @@ int fibrad_insitu_write(fibrad_insitu *s, const char *path) {
     snprintf(draft, sizeof draft, "%.4000s.%d.rows.tmp", path, s->rank);
     status = fibrad_agree(s->comm, write_draft(s, draft), s->message);
     const bool renamed = !status && rename(draft, name) == 0;
-    if (!status && !renamed) status = fibrad_refuse(s->message, FIBRAD_E_ARGUMENT, "cannot rename to %.200s", name);
+    if (!status && !renamed) status = fibrad_refuse(s->message, FIBRAD_E_FILE, "cannot rename to %.200s", name);
     status = fibrad_agree(s->comm, status, s->message);
     if (status) {
         remove(draft);

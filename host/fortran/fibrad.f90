@@ -32,7 +32,7 @@ module fibrad
 
     integer, parameter, public :: fibrad_ok = 0, fibrad_e_argument = -1, fibrad_e_geometry = -6, fibrad_e_state = -8, &
                                   fibrad_e_unsupported = -10, fibrad_e_memory = -11, fibrad_e_unsolvable = -13, &
-                                  fibrad_e_back = -14, fibrad_e_sum = -15, fibrad_e_endless = -16
+                                  fibrad_e_back = -14, fibrad_e_sum = -15, fibrad_e_endless = -16, fibrad_e_file = -17
     integer(c_int), parameter :: kind_open = -1 ! of fibrad_wall; C has a list of its own for openings
     real(c_double), parameter, public :: fibrad_stefan_boltzmann = 5.670374419e-8_c_double
 

@@ -7,7 +7,7 @@
 
 #include "cli/message.h"
 
-#define POWER_MAX 1e30 /* [W] largest absolute value */
+#define POWER_MAX 1e30 /* [W] largest absolute value of an option; far below FIBRAD_POWER_MAX */
 
 int given_temperature_option(const char *text, struct given_options *options) { /* --temperature-unit may follow */
     return quantity_option("--temperature", text, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, &options->temperature);

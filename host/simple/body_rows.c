@@ -1,6 +1,8 @@
 /* body_rows.c - rows of walls by paths, and what the triangles of walls see. SPDX-License-Identifier: MIT */
 #include "simple/job.h"
 
+#include <math.h>
+
 /* Most paths from each wall. All numbers of paths are powers of two: so many points are spread most evenly and err half
  * as much as a similar number of points. */
 #define PATHS_MOST (1u << 24)
@@ -51,7 +53,7 @@ int fibrad_job_bodies(fibrad_job *job, const fibrad_exchange_rule *rule, fibrad_
     int status = FIBRAD_OK;
     for (uint32_t b = 0; b < bodies; ++b) {
         row[b] = (fibrad_body_row){0};
-        tasks.paths[b] = fibrad_scene_body_area(job->scene, b) < 1e300 ? rule->paths : 0;
+        tasks.paths[b] = isfinite(fibrad_scene_body_area(job->scene, b)) ? rule->paths : 0;
     }
     for (bool again = true; again && !status;) {
         status = fibrad_team_run(&job->team, "walls", bodies * FIBRAD_BODY_PARTS, 1, run_part, &tasks, NULL);

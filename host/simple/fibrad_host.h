@@ -15,8 +15,9 @@
  * Words     Units, words, defaults and the layout of comments are as in fibrad.h.
  * Bits      Every result and every error is the same for any number of threads.
  * Threads   An object belongs to one thread at a time. Different objects are independent.
- * Errors    as the kernel functions that a call uses, and FIBRAD_E_MEMORY, FIBRAD_E_CANCELLED. After an error the
- *           out-pointer is NULL, and there is nothing to free.
+ * Errors    as the kernel functions that a call uses, and FIBRAD_E_MEMORY, FIBRAD_E_CANCELLED. With `scratch` also
+ *           FIBRAD_E_FILE: no file can be made in this folder. After an error the out-pointer is NULL, and there is
+ *           nothing to free.
  * Fork      OpenMP's threads do not survive fork(). A process may have called a function of this header with more than
  *           one thread. Then a forked child must not call one: the child would hang.
  *
@@ -267,8 +268,8 @@ typedef void fibrad_observe(void *context, double time, const double *temperatur
  * duration. The other fields may be zeroed. */
 typedef struct fibrad_span {
     double *temperature;    /* K, [spheres], above 0 to FIBRAD_TEMPERATURE_MAX; in: at the beginning; out: at the end */
-    const double *capacity; /* J/K, [spheres], above 0 to 1e300 */
-    double duration;        /* s, above 0 to 1e300 */
+    const double *capacity; /* J/K, [spheres], above 0 to FIBRAD_CAPACITY_MAX */
+    double duration;        /* s, above 0 to FIBRAD_DURATION_MAX */
     const double *body_temperature; /* K, [bodies], at the end, linear in between; NULL: constant */
     const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
     double step;                    /* s; all steps are equal and at most this long; 0: automatic steps */

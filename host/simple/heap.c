@@ -52,7 +52,7 @@ int fibrad_scratch_open(fibrad_scratch *scratch, const char *folder) {
         fcntl(scratch->file, F_SETFD, FD_CLOEXEC);
     }
     free(path);
-    return scratch->filed ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
+    return scratch->filed ? FIBRAD_OK : FIBRAD_E_FILE;
 }
 
 void fibrad_scratch_close(fibrad_scratch *scratch) {

@@ -30,7 +30,7 @@ typedef struct fibrad_scratch {
 } fibrad_scratch;
 
 /* Makes an empty block in a file of a folder. folder NULL: on the heap. Close the block also after an error. Errors:
- * _MEMORY; _ARGUMENT: no file can be made in the folder. */
+ * _MEMORY; _FILE: no file can be made in the folder. */
 int fibrad_scratch_open(fibrad_scratch *scratch, const char *folder);
 void fibrad_scratch_close(fibrad_scratch *scratch);
 

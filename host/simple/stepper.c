@@ -235,16 +235,16 @@ static int take_steps(struct stepper *m) {
 static int check_span(fibrad_transient *t, const fibrad_heat_sources *s, const fibrad_span *span) {
     t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX, 0, 0};
     if (t->n > 0 && (!span->temperature || !span->capacity)) return FIBRAD_E_ARGUMENT;
-    if (!(span->duration > 0 && span->duration <= 1e300 && span->step >= 0 && span->tolerance >= 0 &&
+    if (!(span->duration > 0 && span->duration <= FIBRAD_DURATION_MAX && span->step >= 0 && span->tolerance >= 0 &&
           span->tolerance < 1))
         return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < t->n; ++i) {
         t->fault = (fibrad_fault){i, i, UINT32_MAX, 0, FIBRAD_WHY_TEMPERATURE};
         if (!(span->temperature[i] > 0 && span->temperature[i] <= FIBRAD_TEMPERATURE_MAX)) return FIBRAD_E_ARGUMENT;
         t->fault.why = FIBRAD_WHY_CAPACITY;
-        if (!(span->capacity[i] > 0 && span->capacity[i] <= 1e300)) return FIBRAD_E_ARGUMENT;
+        if (!(span->capacity[i] > 0 && span->capacity[i] <= FIBRAD_CAPACITY_MAX)) return FIBRAD_E_ARGUMENT;
         t->fault.why = FIBRAD_WHY_POWER;
-        if (s->power && !(fabs(s->power[i]) <= 1e300)) return FIBRAD_E_ARGUMENT;
+        if (s->power && !(fabs(s->power[i]) <= FIBRAD_POWER_MAX)) return FIBRAD_E_ARGUMENT;
     }
     t->fault = (fibrad_fault){t->n, t->n, UINT32_MAX, 0, 0};
     return FIBRAD_OK;

@@ -38,6 +38,8 @@ const char *fibrad_status_text(int status) {
         return "a row does not add up to 1: a fault of fibrad, please report it";
     case FIBRAD_E_ENDLESS:
         return "the walls form a tube or a corner without end: make the missing side a wall or an opening";
+    case FIBRAD_E_FILE:
+        return "a file cannot be made or written";
     default:
         return "no known status";
     }

@@ -7,23 +7,16 @@
 
 #define PLANNED_MAX 0x1p33
 
-static uint64_t plan_hash_number(uint64_t hash, double number) {
-    uint64_t bits;
-    fibrad_copy(&bits, &number, sizeof bits);
-    return fibrad_mix(hash + bits);
-}
-
-/* Of a furnace and one restart, before its first plan. */
+/* The hash of a furnace after a number of restarts, before its first plan. */
 static uint64_t plan_hash_start(const fibrad_furnace *f) {
     const fibrad_furnace_config *c = &f->config;
-    uint64_t hash = fibrad_mix(c->seed ^ 0x9e3779b97f4a7c15u);
-    hash = fibrad_mix(hash + f->restarts);
-    hash = fibrad_mix(hash + (uint64_t)f->physics);
-    for (int a = 0; a < 3; a++) hash = plan_hash_number(fibrad_mix(hash + c->cells[a]), c->size[a]);
+    const double medium[] = {c->absorption, c->scattering, c->source, f->bundle_power};
+    uint64_t hash = fibrad_hash_word(fibrad_mix(c->seed), f->restarts);
+    hash = fibrad_hash_word(hash, (uint64_t)f->physics);
+    for (int a = 0; a < 3; a++) hash = fibrad_hash_number(fibrad_hash_word(hash, c->cells[a]), c->size[a]);
     for (int w = 0; w < 6; w++)
-        hash = plan_hash_number(plan_hash_number(hash, c->wall_temperature[w]), c->wall_emissivity[w]);
-    hash = plan_hash_number(plan_hash_number(hash, c->absorption), c->scattering);
-    hash = plan_hash_number(plan_hash_number(hash, c->source), f->bundle_power);
+        hash = fibrad_hash_number(fibrad_hash_number(hash, c->wall_temperature[w]), c->wall_emissivity[w]);
+    for (int k = 0; k < 4; k++) hash = fibrad_hash_number(hash, medium[k]);
     return hash;
 }
 
@@ -53,7 +46,7 @@ static uint64_t plan_counts(fibrad_furnace *f) {
     for (size_t s = 0; s < f->sources; s++) {
         f->first[s] = sum;
         if (f->power[s] != 0) sum += (uint64_t)fibrad_max(fibrad_abs(f->power[s]) / f->bundle_power + 0.5, 1);
-        f->plan = plan_hash_number(f->plan, f->power[s]);
+        f->plan = fibrad_hash_number(f->plan, f->power[s]);
     }
     f->first[f->sources] = sum;
     return sum;

@@ -59,7 +59,7 @@ static size_t bundle_patch(const fibrad_furnace *f, int a, const furnace_bundle 
 /* The start of bundle k of the plan, of source s. Returns the wall it leaves, -1 if none. */
 static int bundle_start(const fibrad_furnace *f, uint64_t k, size_t s, furnace_bundle *r) {
     double u[5];
-    for (int d = 0; d < 5; d++) u[d] = fibrad_quasirandom(f->config.seed, f->origin + k, d);
+    for (int d = 0; d < 5; d++) u[d] = fibrad_quasirandom(5, d, f->origin + k, f->config.seed);
     r->weight = f->power[s] / ((double)(f->first[s + 1] - f->first[s]) * f->bundle_power) * FIBRAD_TALLY_UNIT;
     if (s < f->cells) {
         for (int a = 0; a < 3; a++) r->at[a] = (double)(s / f->cell_stride[a] % f->config.cells[a]) + u[2 + a];

@@ -445,7 +445,7 @@ bool fibrad_heat_fine_ray(const fibrad_heat *heat, uint32_t row, fibrad_heat_fin
     do { /* places where the image is stretched less are left out more often */
         fibrad_heat_ray_coordinates(seed, rays->k, x);
         area = fibrad_heat_fine_point(heat, own, x[0], x[1], rays->at, rays->normal);
-        chance = fibrad_fraction(fibrad_mix(seed + UINT64_C(0x9e3779b97f4a7c15) * ++rays->k));
+        chance = fibrad_fraction(fibrad_mix(seed + FIBRAD_GOLDEN * ++rays->k));
     } while (!(chance * rays->most <= area));
     rays->left--;
     rays->patch = FIBRAD_HEAT_FOUR * (rays->fours - 1) + (2 * x[0] >= 1 ? 2 : 0) + (2 * x[1] >= 1 ? 1 : 0);

@@ -16,7 +16,7 @@ static bool is_share(double x) { return x >= 0 && x <= 1; }
 
 /* Within these bounds no square of an emission, nor its product with areas, leaves the range of doubles. */
 static bool is_temperature(double t) { return t >= 0 && t <= FIBRAD_TEMPERATURE_MAX; }
-static bool is_sigma(double sigma) { return sigma >= 1e-30 && sigma <= 1e30; }
+static bool is_sigma(double sigma) { return sigma >= FIBRAD_SIGMA_MIN && sigma <= FIBRAD_SIGMA_MAX; }
 
 /* What the sources say of one body. */
 typedef struct radiator {

@@ -59,14 +59,9 @@ static uint32_t squares(double length, double square) {
     return 2 * (uint32_t)fibrad_max(1, fibrad_floor(fibrad_min(length / square, 1e5) / 2 + .5));
 }
 
-/* Rays start where, and as, the points of a four-dimensional sequence lie: multiples of g^-1 ... g^-4 modulo 1, g^5 = g
- * + 1 (source: base/random.h), from another point on for each wall. */
-static const uint64_t ray_step[4] = {0xdb4f0b9175ae2165u, 0xbbe0563303a4615fu, 0xa0f2ec75a1fe1575u,
-                                     0x89e182857d9ed689u};
-
+/* Rays with even and odd numbers have a sequence each, moved by another seed for each wall. */
 void fibrad_heat_ray_coordinates(uint64_t seed, uint32_t k, double x[4]) {
-    for (int d = 0; d < 4; d++)
-        x[d] = fibrad_fraction(k / 2 * ray_step[d] + fibrad_mix((2 * seed + k % 2) ^ ray_step[d]));
+    for (int d = 0; d < 4; d++) x[d] = fibrad_quasirandom(4, d, k / 2, 2 * seed + k % 2);
 }
 
 /* Has a wall or a mesh of some area send out rays, after those of all before it. */
@@ -243,7 +238,7 @@ void fibrad_heat_direction(const double x[2], const double n[3], double w[3]) {
 
 /* Coordinate d of point k of Sobol's sequence moved at random, even and odd points apart. */
 static double even_coordinate(const uint32_t point[8], uint64_t seed, int d) {
-    return fibrad_fraction(fibrad_mix(seed ^ ray_step[d]) ^ (uint64_t)point[d] << 32);
+    return fibrad_fraction(fibrad_mix(seed ^ fibrad_quasirandom_step(4, d)) ^ (uint64_t)point[d] << 32);
 }
 
 /* The side that ray k of a mesh leaves, and its coordinates there. Sides send out rays one after another, each as many

@@ -25,17 +25,15 @@ struct cast_batch {
     _Alignas(64) double cosine[CAST_BATCH];
 };
 
-/* The quasi-random set is the additive recurrence with the steps g^-1 ... g^-4, g^5 = g + 1, in units of 2^-64: the
- * golden angle's recurrence in four dimensions, good for any number of rays. A random shift of the row moves it as a
- * whole. Every number is a function of (seed, i, ray), so rows depend on no other row. */
+/* Fills the coordinates of rays from ray `first` on. The points are those of a quasirandom sequence, which a random
+ * shift of the row moves together, or random points. Each number is a function of (seed, i, ray), so a row depends on
+ * no other row. */
 static void fill_batch(struct cast_batch *rays, const fibrad_cast_rule *rule, fibrad_random stream, uint32_t first) {
-    static const uint64_t step[4] = {UINT64_C(0xdb4f0b9175ae2165), UINT64_C(0xbbe0563303a4615f),
-                                     UINT64_C(0xa0f2ec75a1fe1576), UINT64_C(0x89e182857d9ed689)};
-    for (uint64_t d = 0; d < 4; d++) {
-        uint64_t shift = fibrad_random_ahead(stream, d);
+    for (int d = 0; d < 4; d++) {
+        const uint64_t shift = fibrad_random_ahead(stream, (uint64_t)d), step = fibrad_quasirandom_step(4, d);
         for (uint32_t b = 0; b < CAST_BATCH; b++) {
-            uint64_t k = (uint64_t)first + b;
-            uint64_t x = rule->random ? fibrad_random_ahead(stream, 4 * k + d) : shift + k * step[d];
+            const uint64_t k = (uint64_t)first + b;
+            const uint64_t x = rule->random ? fibrad_random_ahead(stream, 4 * k + (uint64_t)d) : shift + k * step;
             rays->at[d][b] = fibrad_fraction(x);
         }
     }

@@ -108,48 +108,36 @@ static void trim(const fibrad_spheres *s, int axis, double *low, double *high) {
     }
 }
 
-/* A hash of all that a scene is made from: two scenes that differ have the same one in one case of 2^64. Never 0. */
+/* A hash of all that a scene is made from. Two scenes that differ have the same hash in one case of 2^64. Never 0. */
 static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
     const fibrad_container *c = &scene->container;
     const fibrad_occupancy *o = &scene->occupancy;
-    uint64_t hash = fibrad_mix(s->n), word, cells = 1;
+    uint64_t hash = fibrad_mix(s->n), cells = 1;
     for (int axis = 0; axis < 3; axis++) {
-        const double fixed[] = {
-            scene->period[axis],     c->low[axis], c->high[axis], scene->known_low[axis],
-            scene->known_high[axis], o->low[axis], o->high[axis], axis < 2 ? c->axis[axis] : c->radius};
-        for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) {
-            fibrad_copy(&word, &fixed[k], sizeof word);
-            hash = fibrad_mix(hash ^ word);
-        }
-        hash = fibrad_mix(hash ^ (2 * (uint64_t)o->cells[axis] + (uint64_t)o->periodic[axis]));
+        const double fixed[] = {scene->period[axis],
+                                c->low[axis],
+                                c->high[axis],
+                                scene->known_low[axis],
+                                scene->known_high[axis],
+                                o->low[axis],
+                                o->high[axis],
+                                scene->mesh.period[axis],
+                                axis < 2 ? c->axis[axis] : c->radius};
+        for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) hash = fibrad_hash_number(hash, fixed[k]);
+        hash = fibrad_hash_word(hash, 2 * (uint64_t)o->cells[axis] + (uint64_t)o->periodic[axis]);
         cells *= o->cells[axis];
     }
-    for (uint64_t k = 0; o->mark != NULL && k < (cells + 63) / 64; k++)
-        hash = (hash ^ o->mark[k]) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
-    hash = fibrad_mix(hash ^ (o->mark != NULL));
-    for (uint32_t b = 0; b < scene->facts.bodies; b++) hash = fibrad_mix(hash ^ scene->slot[b]);
-    if (c->openings != 0) hash = fibrad_mix(hash ^ c->openings);
+    for (uint64_t k = 0; o->mark != NULL && k < (cells + 63) / 64; k++) hash = fibrad_hash_word(hash, o->mark[k]);
+    hash = fibrad_hash_word(hash, (uint64_t)c->openings << 1 | (o->mark != NULL));
+    for (uint32_t b = 0; b < scene->facts.bodies; b++) hash = fibrad_hash_word(hash, scene->slot[b]);
     for (uint32_t i = 0; i < s->n; i++) {
-        const double sphere[] = {coordinate_of(s, 0, i), coordinate_of(s, 1, i), coordinate_of(s, 2, i),
-                                 radius_of(s, i)};
-        for (int k = 0; k < 4; k++) {
-            fibrad_copy(&word, &sphere[k], sizeof word);
-            hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-            hash ^= hash >> 32;
-        }
-        if (s->id != NULL) hash = (hash ^ s->id[i]) * 0x9e3779b97f4a7c15u;
-    }
-    for (int axis = 0; axis < 3 && scene->mesh.triangles > 0; axis++) {
-        fibrad_copy(&word, &scene->mesh.period[axis], sizeof word);
-        hash = fibrad_mix(hash ^ word);
+        for (int axis = 0; axis < 3; axis++) hash = fibrad_hash_number(hash, coordinate_of(s, axis, i));
+        hash = fibrad_hash_number(hash, radius_of(s, i));
+        if (s->id != NULL) hash = fibrad_hash_word(hash, s->id[i]);
     }
     for (uint32_t t = 0; t < scene->mesh.triangles; t++) {
-        for (int k = 0; k < 9; k++) {
-            fibrad_copy(&word, &scene->mesh.corner[k / 3][k % 3][t], sizeof word);
-            hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-            hash ^= hash >> 32;
-        }
-        hash = (hash ^ (scene->mesh.mesh[t][0] + 256u * scene->mesh.mesh[t][1])) * 0x9e3779b97f4a7c15u;
+        for (int k = 0; k < 9; k++) hash = fibrad_hash_number(hash, scene->mesh.corner[k / 3][k % 3][t]);
+        hash = fibrad_hash_word(hash, scene->mesh.mesh[t][0] + 256u * scene->mesh.mesh[t][1]);
     }
     return fibrad_mix(hash) | 1;
 }

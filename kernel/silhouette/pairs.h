@@ -49,8 +49,8 @@ static inline uint64_t fibrad_pair_key(uint32_t i, uint32_t j) {
 
 /* Where a table looks for a key first. */
 static inline uint32_t fibrad_pair_place(const fibrad_pair_table *table, uint64_t key) {
-    key *= 0x9e3779b97f4a7c15u;
-    key = (key ^ key >> 32) * 0x9e3779b97f4a7c15u; /* once would place pairs of neighbours side by side */
+    key *= FIBRAD_GOLDEN;
+    key = (key ^ key >> 32) * FIBRAD_GOLDEN; /* once would place pairs of neighbours side by side */
     return (uint32_t)(key >> table->shift);
 }
 

@@ -717,7 +717,7 @@ static void files_are_refused(fibrad_insitu *s) {
     snprintf(name, sizeof name, "%s.%d.rows.tmp", path_of("refused"), ranks - 1);
     if (rank == 0) CHECK(mkdir(name, 0700) == 0);
     MPI_Barrier(MPI_COMM_WORLD);
-    check_refused(s, fibrad_insitu_write(s, path_of("refused")), FIBRAD_E_ARGUMENT, name);
+    check_refused(s, fibrad_insitu_write(s, path_of("refused")), FIBRAD_E_FILE, name);
     MPI_Barrier(MPI_COMM_WORLD);
     remove(name);
     snprintf(name, sizeof name, "%s.%d.rows", path_of("refused"), rank);

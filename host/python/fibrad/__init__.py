@@ -17,7 +17,7 @@ after reflections. The error of a row of factors is the root of the sum of the s
 The GIL is released while the library computes. Ctrl-C stops the library. Errors are subclasses of `Error`.
 """
 from . import _library
-from ._errors import Cancelled, Error, InputError, OutOfMemory, StateError
+from ._errors import Cancelled, Error, FileError, InputError, OutOfMemory, StateError
 from ._factors import Displacements, Factors, displacements, exchange_factors, view_factors
 from ._files import FileFrame, read
 from ._heat import STEFAN_BOLTZMANN, Heat, Powers
@@ -25,6 +25,6 @@ from ._scene import Mesh
 from ._transient import Advance, Transient
 
 __version__: str = _library.library.fibrad_version().decode()
-__all__ = ["Advance", "Cancelled", "Displacements", "Error", "Factors", "FileFrame", "Heat", "InputError", "Mesh", "OutOfMemory",
-           "Powers", "STEFAN_BOLTZMANN", "StateError", "Transient", "displacements", "exchange_factors", "read",
+__all__ = ["Advance", "Cancelled", "Displacements", "Error", "Factors", "FileError", "FileFrame", "Heat", "InputError",
+           "Mesh", "OutOfMemory", "Powers", "STEFAN_BOLTZMANN", "StateError", "Transient", "displacements", "exchange_factors", "read",
            "view_factors"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 from ._library import library
 
 ARGUMENT, TABLE, GEOMETRY, UNSUPPORTED, MEMORY, CANCELLED, UNSOLVABLE, BACK = -1, -5, -6, -10, -11, -12, -13, -14
-SUM, ENDLESS = -15, -16
+SUM, ENDLESS, FILE = -15, -16, -17
 
 
 class Error(Exception):
@@ -31,6 +31,10 @@ class InputError(Error, ValueError):
     """A value is out of its range, or the bed cannot be computed."""
 
 
+class FileError(Error, OSError):
+    """A file cannot be made or written."""
+
+
 class StateError(Error, RuntimeError):
     """A call comes too late or too early."""
 
@@ -45,7 +49,7 @@ class OutOfMemory(Error, MemoryError):
 
 _KINDS = {MEMORY: OutOfMemory, CANCELLED: Cancelled, ARGUMENT: InputError, TABLE: InputError, GEOMETRY: InputError,
           UNSUPPORTED: InputError, UNSOLVABLE: InputError, BACK: InputError, SUM: Error,
-          ENDLESS: InputError}
+          ENDLESS: InputError, FILE: FileError}
 
 
 def status_text(status: int) -> str:

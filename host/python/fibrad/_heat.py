@@ -14,7 +14,7 @@ from ._bed import Bed, heat_config
 from ._call import Call, Progress
 from ._library import HeatResult, HeatSources, library
 from ._scene import Walls, pointer, pointers
-from ._limits import POWER_MAX, TEMPERATURE_MAX
+from ._limits import POWER_MAX, SIGMA, TEMPERATURE_MAX
 from ._values import per_sphere, real, refuse
 
 STEFAN_BOLTZMANN = 5.670374419e-8
@@ -194,7 +194,7 @@ class Heat(Bed):
         law = _law(emissivity)
         shares = per_sphere("emissivity", law(np.where(np.isnan(kelvins), surroundings or 300., kelvins)), n, 0, 1, names)
         sources = HeatSources(surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX),
-                              sigma=real("sigma", sigma, 1e-30, 1e30), tolerance=real("tolerance", tolerance, 0, 1),
+                              sigma=real("sigma", sigma, *SIGMA), tolerance=real("tolerance", tolerance, 0, 1),
                               uniform=bool(uniform), temperature=pointer(kelvins), power=pointer(powers),
                               **pointers(of_bodies))
         of_spheres = {name: np.zeros(n) for name in ("power", "temperature", "power_error", "temperature_error")}

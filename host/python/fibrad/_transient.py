@@ -14,7 +14,7 @@ from ._call import Call, Progress
 from ._heat import STEFAN_BOLTZMANN
 from ._library import ExchangeRule, HeatSources, Span, TransientConfig, library
 from ._scene import Walls, pointer, pointers
-from ._limits import POWER_MAX, TEMPERATURE_MAX
+from ._limits import CAPACITY_MAX, DURATION_MAX, POWER_MAX, SIGMA, TEMPERATURE_MAX
 from ._values import per_sphere, real, refuse
 
 _METHODS = {"corrected": 0, "patches": 1, "factors": 2}
@@ -134,7 +134,7 @@ class Transient(Bed):
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
         now = per_sphere("temperature", temperature, n, 0, TEMPERATURE_MAX, names).copy()
-        heat = per_sphere("capacity", capacity, n, 0, POWER_MAX, names)
+        heat = per_sphere("capacity", capacity, n, 0, CAPACITY_MAX, names)
         walls = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         found = frozenset([*(wall_power or {}), *insulated])
         if found and self._method != "patches":
@@ -152,12 +152,12 @@ class Transient(Bed):
         given = None if power is None else per_sphere("power", power, n, -POWER_MAX, POWER_MAX, names)
         around = ctypes.c_double(real("surroundings_end", surroundings if surroundings_end is None else surroundings_end,
                                       0, TEMPERATURE_MAX))
-        sources = HeatSources(emissivity=pointer(shares), power=pointer(given), sigma=real("sigma", sigma, 1e-30, 1e30),
+        sources = HeatSources(emissivity=pointer(shares), power=pointer(given), sigma=real("sigma", sigma, *SIGMA),
                               surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX), **pointers(walls))
         flow, energy = np.zeros(n), np.zeros(len(container.names))
-        span = Span(temperature=pointer(now), capacity=pointer(heat), duration=real("duration", duration, 0, 1e300),
+        span = Span(temperature=pointer(now), capacity=pointer(heat), duration=real("duration", duration, 0, DURATION_MAX),
                     body_temperature=pointer(end), surroundings=ctypes.pointer(around),
-                    step=real("step", step, 0, 1e300), tolerance=real("tolerance", tolerance, 0, 1),
+                    step=real("step", step, 0, DURATION_MAX), tolerance=real("tolerance", tolerance, 0, 1),
                     power=pointer(flow), body_energy=pointer(energy))
         self._use(library.fibrad_transient_advance, self._packing, sources, span)
         return Advance(temperatures=now, spheres=flow, walls=dict(zip(container.names, energy.tolist())),
