@@ -6,7 +6,7 @@ MPICC  = mpicc
 MPICXX = mpicxx
 MPIRUN = mpirun
 
-COUPLE := $(filter-out host/couple/example.c,$(call sources,host/couple/*.c))
+COUPLE := $(filter-out host/couple/example.c,$(call sources,host/couple/*.c host/couple/ranks/*.c))
 
 COUPLE_WALLS = host/couple/walls/mesh_walls.c
 

@@ -2,8 +2,8 @@
  *
  * Index
  *   link    values of particles that other ranks own  fibrad_link_new, _forward, _reverse, _free
- *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _powers, _write, _message, _facts_get,
- *                                                     _free
+ *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _powers, _write, _message, _remark,
+ *                                                     _facts_get, _free
  *
  * Use         1. fibrad_insitu_new once.
  *             2. fibrad_insitu_rows every so many steps, with the particles that each rank owns at that time.
@@ -18,13 +18,18 @@
  *             partner's row. So no heat is lost, whatever the error of the rows. Nothing flows between particles of
  *             equal temperature.
  * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
- * Collective  All functions are collective over the communicator, except fibrad_link_free, fibrad_insitu_message and
- *             fibrad_insitu_facts_get. Every rank calls them, and all ranks get the same status.
- * Errors      After an error, fibrad_insitu_message has a sentence, the same on all ranks, which names particles by id.
- *             The object is as it was before the call.
- * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2.
- * Words       Words and the layout of comments are as in fibrad.h.
- * Source      docs/coupling.md
+ * Collective  All functions are collective over the communicator, except fibrad_link_free, fibrad_insitu_message,
+ *             fibrad_insitu_remark and fibrad_insitu_facts_get. Every rank calls them, and all ranks get the same
+ * status. Errors      After an error, fibrad_insitu_message has a sentence, the same on all ranks, which names
+ * particles by id. The object is as it was before the call. Strays      Simulations go on with particles of which no
+ * scene can be made. So do rows, unless config.strict is set. A particle is left out whose centre lies beyond a plane
+ * or the cylinder, or that reaches beyond an opening. It exchanges nothing and is in nobody's way until rows are made
+ * when it is back. If a centre lies inside another particle, both have smaller radii in the rows: d/max(r_i, r_j) of
+ * theirs, which puts the centre on the surface. If less than a thousandth of a radius would remain, the particle is
+ * left out. A particle that sees a side of a triangle that belongs to no wall has no row. If more than a tenth of all
+ * particles do, that is an error: then the sides are wrong. fibrad_insitu_remark tells what was done. Units       One
+ * length unit L, which the caller chooses. Powers are in sigma K^4 L^2. Words       Words and the layout of comments
+ * are as in fibrad.h. Source      docs/coupling.md
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_H
@@ -86,6 +91,7 @@ typedef struct fibrad_insitu_config {
     double tolerance;    /* as in fibrad_exchange_rule; 0: none */
     uint64_t seed;       /* of random numbers, together with the step and the id of the particle */
     int threads;         /* of each rank, 1 to 1024; 0: 1 */
+    int strict;          /* 1: strays are errors; 0: they are left out, or smaller, see above */
 } fibrad_insitu_config;
 
 /* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks. */
@@ -125,7 +131,10 @@ typedef struct fibrad_insitu_totals {
 
 /* Facts of the last rows, of all ranks together except halo and bytes. */
 typedef struct fibrad_insitu_facts {
-    uint64_t particles, entries; /* numbers of particles and of entries of rows */
+    uint64_t particles, entries; /* numbers of particles that take part and of entries of rows */
+    uint64_t outside;            /* number of particles that are left out */
+    uint64_t overlapping;        /* number of particles that are smaller, since a centre lies inside another particle */
+    uint64_t behind;             /* number of particles without a row, since they see what belongs to no wall */
     double cutoff;               /* L, in use */
     double beyond;               /* mean fraction of the emission whose target is not known; the known targets get it */
     double error;                /* root mean square of the rows' estimated errors */
@@ -145,13 +154,13 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
 /* Makes all rows again.
  *   Input    bed: not needed after the call
  *            step: any number, seeds the random numbers
- *   Errors   _ARGUMENT: a value is out of its range, an id occurs twice, a centre lies beyond a wall, or the cutoff
- *            is less than the largest diameter or more than 100 periods
- *            _GEOMETRY: a centre lies inside another particle, or a particle reaches beyond an opening
+ *   Errors   _ARGUMENT: a value is out of its range, an id occurs twice, or the cutoff is less than the largest
+ *            diameter or more than 100 periods; strict: also a centre lies beyond a wall
+ *            _GEOMETRY: a centre lies inside an image of its own particle; strict: also inside another particle, or a
+ *            particle reaches beyond an opening
  *            _ENDLESS: walls, as for fibrad_scene_init
- *            _BACK: a side of a triangle is seen that belongs to no wall
- *            _MEMORY
- *   Cost     that of fibrad_exchange_row for each particle */
+ *            _BACK: a side of a triangle is seen that belongs to no wall, by more than a tenth of all particles;
+ * strict: by one _MEMORY Cost     that of fibrad_exchange_row for each particle */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Net radiative power of each particle that this rank owns now.
@@ -174,6 +183,21 @@ int fibrad_insitu_write(fibrad_insitu *insitu, const char *path);
  *   Output   never NULL; "" if there was no error or insitu is NULL
  *   Errors   none */
 const char *fibrad_insitu_message(const fibrad_insitu *insitu);
+
+/* What fibrad_insitu_rows has done with strays. */
+typedef enum fibrad_remark_kind {
+    FIBRAD_REMARK_OUTSIDE = 0, /* particles are left out */
+    FIBRAD_REMARK_OVERLAP = 1, /* particles are smaller, since a centre lies inside another particle */
+    FIBRAD_REMARK_BACK = 2,    /* particles have no row, since they see what belongs to no wall */
+    FIBRAD_REMARKS = 3
+} fibrad_remark_kind;
+
+/* A sentence on the strays of one kind in the last rows. It has their number, and of one of them the id, the place and
+ * the wall. Not collective, the same on all ranks.
+ *   Input    kind: a fibrad_remark_kind
+ *   Output   never NULL; "" if there are none
+ *   Errors   none */
+const char *fibrad_insitu_remark(const fibrad_insitu *insitu, int kind);
 
 /* Reads the facts of the last rows. Not collective. NULL is ignored.
  *   Errors   none */

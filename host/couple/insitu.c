@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "couple/coarse_map.h"
+#include "couple/ranks/coarse_map.h"
 #include "fibrad_mesh.h"
 
 #define THREADS_MAX 1024
@@ -16,10 +16,12 @@
        */
 #define CUTOFF_DARK    10 /* the same for emissivities below DARK_BELOW, since reflections carry radiation farther */
 #define DARK_BELOW     0.4
-#define CELLS_A_CUTOFF 8   /* cells of the coarse map per cutoff */
-#define REACH_RADII    1.5 /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad.h */
-#define PERIODS_MAX    100 /* as far as the kernel's beams go */
-#define OPENINGS_MAX   6   /* one a side */
+#define CELLS_A_CUTOFF 8    /* cells of the coarse map per cutoff */
+#define REACH_RADII    1.5  /* beyond the cutoff: largest radii within which spheres matter to a row, fibrad.h */
+#define PERIODS_MAX    100  /* as far as the kernel's beams go */
+#define OPENINGS_MAX   6    /* one a side */
+#define PART_LEAST     1e-3 /* a particle whose radius would be reduced to less is left out */
+#define BACKS_MOST     0.1  /* part of all particles that may see what belongs to no wall */
 
 /* ---- begin and end ---- */
 
@@ -32,7 +34,7 @@ static bool config_valid(const fibrad_insitu_config *c) {
     const bool directions =
         !c->directions || (c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX);
     return c->cutoff >= 0 && isfinite(c->cutoff) && directions && c->paths <= FIBRAD_PATHS_MAX && c->tolerance >= 0 &&
-           isfinite(c->tolerance) && c->threads >= 0 && c->threads <= THREADS_MAX;
+           isfinite(c->tolerance) && c->threads >= 0 && c->threads <= THREADS_MAX && (c->strict == 0 || c->strict == 1);
 }
 
 static int open_set(fibrad_insitu_set *set, int threads) {
@@ -98,6 +100,10 @@ void fibrad_insitu_free(fibrad_insitu *s) {
 
 const char *fibrad_insitu_message(const fibrad_insitu *s) { return s ? s->message : ""; }
 
+const char *fibrad_insitu_remark(const fibrad_insitu *s, int kind) {
+    return s && s->ready && kind >= 0 && kind < FIBRAD_REMARKS ? s->set.remark[kind].message : "";
+}
+
 static size_t set_bytes(const fibrad_insitu_set *set, int threads) {
     size_t sum = set->particle.size + set->id.size + set->weight.size + set->emission.size + set->power.size;
     for (int t = 0; t < threads; ++t) sum += set->rows[t].memory.size;
@@ -127,6 +133,7 @@ struct insitu_build {
     fibrad_plane opening[OPENINGS_MAX];
     fibrad_occupancy map;
     fibrad_scene *scene;
+    fibrad_remark remark[FIBRAD_REMARKS];
 };
 
 /* Checks the bed without its particles, which is the same on all ranks. */
@@ -174,10 +181,25 @@ static int refuse_particle(char *message, uint64_t id, const char *fault) {
     return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "particle %" PRIu64 ": %s", id, fault);
 }
 
-/* Checks the particles and copies them, moved into the periodic box. */
+/* Whether a particle takes part. If not, counts it; with `strict` sets *status instead. */
+static bool takes_part(struct insitu_build *b, const fibrad_particle *p, int *status) {
+    const fibrad_bounds bounds = {b->bed->body, b->opening, b->bed->bodies, b->bed->openings};
+    char why[FIBRAD_MESSAGE];
+    bool opening;
+    if (fibrad_bounds_hold(&bounds, p, &opening, why)) return true;
+    if (b->s->config.strict)
+        *status = fibrad_refuse(b->s->message, opening ? FIBRAD_E_GEOMETRY : FIBRAD_E_ARGUMENT, "%s", why);
+    else
+        fibrad_remark_add(&b->remark[FIBRAD_REMARK_OUTSIDE], p->id, why);
+    return false;
+}
+
+/* Checks the particles and copies those that take part, moved into the periodic box. */
 static int take_particles(struct insitu_build *b) {
     const fibrad_insitu_bed *bed = b->bed;
     char *message = b->s->message;
+    int status = FIBRAD_OK;
+    size_t own = 0;
     if (fibrad_block_fit(&b->to->particle, bed->n, sizeof(fibrad_particle))) return FIBRAD_E_MEMORY;
     fibrad_particle *particle = b->to->particle.at;
     for (size_t i = 0; i < bed->n; ++i) {
@@ -191,9 +213,10 @@ static int take_particles(struct insitu_build *b) {
             return refuse_particle(message, p.id, "its radius is not above 0");
         if (!(p.emissivity >= 0 && p.emissivity <= 1))
             return refuse_particle(message, p.id, "its emissivity is not between 0 and 1");
-        particle[i] = p;
+        if (takes_part(b, &p, &status)) particle[own++] = p;
+        if (status) return status;
     }
-    b->to->own = bed->n;
+    b->to->own = own;
     return FIBRAD_OK;
 }
 
@@ -260,17 +283,60 @@ static int measure_bed(struct insitu_build *b) {
 static int link_present(struct insitu_build *b) {
     fibrad_insitu_set *to = b->to;
     const fibrad_particle *particle = to->particle.at;
-    uint64_t culprit;
-    int status = fibrad_block_fit(&to->now, 2 * to->own, sizeof(uint64_t));
+    const size_t n = b->bed->n, all = n + to->own;
+    uint64_t culprit, sum[3] = {n, fibrad_hash_ids(b->bed->id, n), to->own};
+    int status = fibrad_block_fit(&to->now, all, sizeof(uint64_t));
     status = fibrad_agree(b->s->comm, status, b->s->message);
     if (status) return status;
+    MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPI_UINT64_T, MPI_SUM, b->s->comm);
+    to->all = sum[0], to->hash = sum[1], to->facts.particles = sum[2];
     uint64_t *id = to->now.at;
-    for (size_t i = 0; i < to->own; ++i) id[i] = id[to->own + i] = particle[i].id;
-    to->now_n = to->own;
+    if (n) memcpy(id, b->bed->id, n * sizeof *id);
+    for (size_t i = 0; i < to->own; ++i) id[n + i] = particle[i].id;
+    to->now_n = n;
     fibrad_link_free(to->present);
-    status = fibrad_link_new(&to->present, b->s->comm, id, to->own, 2 * to->own, &culprit);
+    status = fibrad_link_new(&to->present, b->s->comm, id, n, all, &culprit);
     if (status == FIBRAD_E_ARGUMENT) refuse_particle(b->s->message, culprit, "this id occurs twice");
     return status;
+}
+
+static int find_halo(struct insitu_build *b) {
+    fibrad_insitu_set *to = b->to;
+    return fibrad_halo(b->s->comm, b->period, b->reach, &to->particle, to->own, &b->s->sent, &b->halo);
+}
+
+/* Reduces the radii of own particles, and leaves out those of which next to nothing would remain. */
+static void reduce_radii(struct insitu_build *b, const double *part) {
+    fibrad_particle *p = b->to->particle.at;
+    size_t own = 0;
+    for (size_t i = 0; i < b->to->own; ++i) {
+        char why[FIBRAD_MESSAGE];
+        if (part[i] < PART_LEAST) {
+            fibrad_refuse(why, 0, "particle %" PRIu64 " at (%.6g, %.6g, %.6g): another has the same centre", p[i].id,
+                          p[i].x[0], p[i].x[1], p[i].x[2]);
+            fibrad_remark_add(&b->remark[FIBRAD_REMARK_OUTSIDE], p[i].id, why);
+            continue;
+        }
+        p[own] = p[i];
+        p[own++].radius *= part[i];
+    }
+    b->to->own = own;
+}
+
+/* Makes particles smaller whose centre lies inside another, and tells the other ranks. */
+static int part_overlaps(struct insitu_build *b) {
+    fibrad_insitu *s = b->s;
+    fibrad_remark *remark = &b->remark[FIBRAD_REMARK_OVERLAP];
+    int status = fibrad_block_fit(&s->emissivity, b->to->own, sizeof(double));
+    double *part = s->emissivity.at;
+    if (!status) status = fibrad_overlaps(b->to->particle.at, b->to->own, b->to->own + b->halo, part, remark);
+    status = fibrad_agree(s->comm, status, s->message);
+    if (status) return status;
+    fibrad_remark_agree(s->comm, remark);
+    if (!remark->count) return FIBRAD_OK;
+    if (s->config.strict) return fibrad_refuse(s->message, FIBRAD_E_GEOMETRY, "%s", remark->message);
+    reduce_radii(b, part);
+    return find_halo(b);
 }
 
 /* ---- rows ---- */
@@ -282,11 +348,8 @@ static int name_scene_fault(const struct insitu_build *b, int status, const uint
         return fibrad_refuse(message, status, "triangle %" PRIu32 " of the walls is not valid", fault.triangle);
     if (fault.first >= n || fault.second >= n) return status;
     const uint64_t first = id[fault.first], second = id[fault.second];
-    if (fault.first == fault.second && status == FIBRAD_E_GEOMETRY)
-        return fibrad_refuse(message, status, "particle %" PRIu64 ": it reaches beyond an opening", first);
     if (fault.first == fault.second)
-        return refuse_particle(message, first,
-                               "its centre lies beyond a wall, or too far from the origin for its size");
+        return refuse_particle(message, first, "it lies too far from the origin for its size");
     if (first == second)
         return fibrad_refuse(message, status, "particle %" PRIu64 ": the centre of its periodic image lies inside it",
                              first);
@@ -327,20 +390,34 @@ static int make_scene(struct insitu_build *b) {
 }
 
 /* Says why the row of a particle could not be computed. */
-static int name_row_fault(const struct insitu_build *b, int status, uint64_t id, const fibrad_work *work) {
+static int name_row_fault(const struct insitu_build *b, int status, uint64_t id, const fibrad_work *work,
+                          char *message) {
     const fibrad_triangles *t = b->bed->triangles;
     if (status != FIBRAD_E_BACK || !t || work->triangle >= t->n)
-        return fibrad_refuse(b->s->message, status, "particle %" PRIu64 ": %s", id, fibrad_status_text(status));
+        return fibrad_refuse(message, status, "particle %" PRIu64 ": %s", id, fibrad_status_text(status));
     const uint32_t front = t->front[work->triangle], back = t->back ? t->back[work->triangle] : FIBRAD_NO_BODY;
     const uint32_t body = front == FIBRAD_NO_BODY ? back : front;
     if (body == FIBRAD_NO_BODY)
-        return fibrad_refuse(b->s->message, status,
+        return fibrad_refuse(message, status,
                              "particle %" PRIu64 " sees triangle %" PRIu32 ", and no side of it belongs to a wall", id,
                              work->triangle);
-    return fibrad_refuse(b->s->message, status,
+    return fibrad_refuse(message, status,
                          "particle %" PRIu64 " sees the back of wall %" PRIu32 ", at triangle %" PRIu32 "; this side "
                          "belongs to no wall",
                          id, body + 1, work->triangle);
+}
+
+/* Deals with a row that could not be computed. If its particle sees what belongs to no wall, the row becomes an empty
+ * one, all of it beyond. */
+static int skip_row(struct insitu_build *b, int status, uint32_t i, int thread) {
+    static const double none[FIBRAD_BODIES_MAX];
+    const uint64_t id = ((uint64_t *)b->to->id.at)[i];
+    char message[FIBRAD_MESSAGE];
+    if (name_row_fault(b, status, id, &b->s->work[thread], message) != FIBRAD_E_BACK || b->s->config.strict)
+        return b->s->message[0] ? status : fibrad_refuse(b->s->message, status, "%s", message);
+    fibrad_remark_add(&b->remark[FIBRAD_REMARK_BACK], id, message);
+    const fibrad_row row = {.sphere = i, .body = (double *)none, .beyond = 1};
+    return fibrad_rows_add(&b->to->rows[thread], &row, b->bed->bodies);
 }
 
 /* Lists the particles of this rank in the order of the cells. */
@@ -381,16 +458,26 @@ static int compute_rows(struct insitu_build *b) {
         fibrad_exchange_rule turned =
             rule; /* each row has its own directions, so that their errors average out in powers of walls */
         turned.seed += ((uint64_t *)b->to->id.at)[order[k]] * 0xd1342543de82ef95u;
-        const int result = fibrad_exchange_row(b->scene, &s->work[thread], order[k], &turned, &row, NULL);
+        int result = fibrad_exchange_row(b->scene, &s->work[thread], order[k], &turned, &row, NULL);
         if (!result) continue;
 #pragma omp critical
-        if (!status) {
+        {
+            result = skip_row(b, result, order[k], thread);
+            if (result && !status) {
 #pragma omp atomic write
-            status = result;
-            name_row_fault(b, result, ((uint64_t *)b->to->id.at)[order[k]], &s->work[thread]);
+                status = result;
+            }
         }
     }
     return status;
+}
+
+/* Agrees on the particles without rows, and refuses too many of them. */
+static int check_backs(struct insitu_build *b) {
+    fibrad_remark *remark = &b->remark[FIBRAD_REMARK_BACK];
+    fibrad_remark_agree(b->s->comm, remark);
+    if ((double)remark->count <= BACKS_MOST * (double)b->to->facts.particles) return FIBRAD_OK;
+    return fibrad_refuse(b->s->message, FIBRAD_E_BACK, "%s", remark->message);
 }
 
 /* Leaves out particles of other ranks that no row sees, and numbers the columns anew. */
@@ -419,7 +506,7 @@ static int number_columns(struct insitu_build *b) {
     if (fibrad_block_fit(&to->weight, columns, sizeof(double)) ||
         fibrad_block_fit(&to->emission, columns, sizeof(double)) ||
         fibrad_block_fit(&to->power, columns, sizeof(double)) ||
-        fibrad_block_fit(&b->s->value, 2 * to->own, sizeof(double)))
+        fibrad_block_fit(&b->s->value, b->bed->n + to->own, sizeof(double)))
         return FIBRAD_E_MEMORY;
     const fibrad_particle *p = to->particle.at;
     double *weight = to->weight.at;
@@ -434,6 +521,16 @@ static int make_rows(struct insitu_build *b) {
     if (!status) status = compute_rows(b);
     if (!status) status = number_columns(b);
     return fibrad_agree(b->s->comm, status, b->s->message);
+}
+
+/* Writes the sentence on strays of one kind; "" if there are none. */
+static void tell_remark(const fibrad_remark *remark, int kind, char *message) {
+    static const char *const done[FIBRAD_REMARKS] = {"left out until back",
+                                                     "smaller, so that no centre is inside another", "without a row"};
+    message[0] = 0;
+    if (remark->count)
+        fibrad_refuse(message, 0, "%" PRIu64 " particle%s %s %s; %s", remark->count, remark->count > 1 ? "s" : "",
+                      remark->count > 1 ? "are" : "is", done[kind], remark->message);
 }
 
 /* Sums the facts of the rows over all ranks. */
@@ -456,6 +553,11 @@ static void sum_facts(struct insitu_build *b) {
     to->facts.error = sum[4] > 0 ? sqrt(sum[2] / sum[4]) : 0;
     to->facts.entries = (uint64_t)sum[3];
     to->facts.halo = b->halo;
+    fibrad_remark_agree(b->s->comm, &b->remark[FIBRAD_REMARK_OUTSIDE]);
+    to->facts.outside = b->remark[FIBRAD_REMARK_OUTSIDE].count;
+    to->facts.overlapping = b->remark[FIBRAD_REMARK_OVERLAP].count;
+    to->facts.behind = b->remark[FIBRAD_REMARK_BACK].count;
+    for (int kind = 0; kind < FIBRAD_REMARKS; ++kind) tell_remark(&b->remark[kind], kind, to->remark[kind].message);
 }
 
 int fibrad_insitu_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t step) {
@@ -465,14 +567,17 @@ int fibrad_insitu_rows(fibrad_insitu *s, const fibrad_insitu_bed *bed, uint64_t 
     int status = begin_bed(&b);
     const double begun = MPI_Wtime();
     if (!status) status = measure_bed(&b);
-    if (!status) status = link_present(&b);
     if (!status && b.to->facts.particles) {
         fibrad_insitu_set *to = b.to;
-        status = fibrad_coarse_map(s->comm, b.cutoff / CELLS_A_CUTOFF, b.radius_max, to->particle.at, to->own, &s->mark,
-                                   &b.map);
-        if (!status) status = fibrad_halo(s->comm, b.period, b.reach, &to->particle, to->own, &s->sent, &b.halo);
+        status = find_halo(&b);
+        if (!status) status = part_overlaps(&b);
+        if (!status)
+            status = fibrad_coarse_map(s->comm, b.cutoff / CELLS_A_CUTOFF, b.radius_max, to->particle.at, to->own,
+                                       &s->mark, &b.map);
     }
+    if (!status) status = link_present(&b);
     if (!status) status = make_rows(&b);
+    if (!status) status = check_backs(&b);
     if (!status) {
         fibrad_link_free(b.to->seen);
         status = fibrad_link_new(&b.to->seen, s->comm, b.to->id.at, b.to->own, b.to->columns, NULL);

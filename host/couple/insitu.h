@@ -2,10 +2,10 @@
 #ifndef FIBRAD_COUPLE_INSITU_H
 #define FIBRAD_COUPLE_INSITU_H
 
-#include "couple/block.h"
-#include "couple/collective.h"
+#include "couple/ranks/block.h"
+#include "couple/ranks/collective.h"
 #include "couple/fibrad_couple.h"
-#include "couple/halo.h"
+#include "couple/ranks/strays.h"
 
 /* The rows of one step. The home of a particle is the rank that owned it when its row was made. The row stays there.
  * The columns of the rows on a rank are numbered 0 to columns - 1: first the particles of which the rank is the home,
@@ -24,7 +24,10 @@ typedef struct fibrad_insitu_set {
     fibrad_link *present;  /* connects particles of present owners with home particles */
     fibrad_block now;      /* uint64_t [now_n + own], ids of the present owner, then those at home */
     size_t now_n;          /* number of particles of the present owner */
+    uint64_t all,
+        hash; /* number of particles of all ranks, and the sum of the hashes of their ids; with those left out */
     fibrad_insitu_facts facts;
+    fibrad_remark remark[FIBRAD_REMARKS];
 } fibrad_insitu_set;
 
 struct fibrad_insitu {

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "couple/collective.h"
+#include "couple/ranks/collective.h"
 #include "couple/fibrad_couple.h"
 
 #define LINK_TAG 12012
@@ -34,12 +34,6 @@ struct id_table {
     size_t mask;
 };
 
-static uint64_t hash_id(uint64_t id) {
-    id = (id ^ id >> 30) * 0xbf58476d1ce4e5b9u;
-    id = (id ^ id >> 27) * 0x94d049bb133111ebu;
-    return id ^ id >> 31;
-}
-
 static int open_table(struct id_table *table, size_t count) {
     size_t size = 2;
     while (size < 2 * count) size *= 2;
@@ -57,7 +51,7 @@ static void close_table(struct id_table *table) {
 /* The place of the number of an id in the table. The high bits of the hash choose the place, since the low bits choose
  * the rank of the directory. */
 static uint32_t *find_id(const struct id_table *table, uint64_t id) {
-    size_t k = hash_id(id) >> 20 & table->mask;
+    size_t k = fibrad_hash_id(id) >> 20 & table->mask;
     while (table->number[k] != UINT32_MAX && table->id[k] != id) k = (k + 1) & table->mask;
     table->id[k] = id;
     return &table->number[k];
@@ -95,7 +89,7 @@ static void blame(struct making *m, uint64_t id) {
     m->fault = true;
 }
 
-static int directory_of(const struct making *m, uint64_t id) { return (int)(hash_id(id) % (uint64_t)m->ranks); }
+static int directory_of(const struct making *m, uint64_t id) { return (int)(fibrad_hash_id(id) % (uint64_t)m->ranks); }
 
 /* Enters the own ids into the directory. */
 static int enter_owned(struct making *m, size_t own) {

@@ -37,15 +37,17 @@ static int check_state(fibrad_insitu *s, const fibrad_insitu_state *state, const
 static int follow_particles(fibrad_insitu *s, const fibrad_insitu_state *state) {
     fibrad_insitu_set *set = &s->set;
     const size_t n = state->n, all = n + set->own;
-    uint64_t culprit,
-        sum[2] = {n, n != set->now_n}; /* number of particles; number of ranks with other particles than before */
+    /* number of particles; of ranks with other particles than before; sum of the hashes of ids */
+    uint64_t culprit, sum[3] = {n, n != set->now_n, fibrad_hash_ids(state->id, n)};
     if (n && !sum[1]) sum[1] = memcmp(set->now.at, state->id, n * sizeof *state->id) != 0;
-    MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_UINT64_T, MPI_SUM, s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPI_UINT64_T, MPI_SUM, s->comm);
     if (!sum[1]) return FIBRAD_OK;
-    if (sum[0] != set->facts.particles)
+    if (sum[0] != set->all)
         return fibrad_refuse(s->message, FIBRAD_E_STATE,
                              "there are %" PRIu64 " particles, but rows of %" PRIu64 "; make new rows", sum[0],
-                             set->facts.particles);
+                             set->all);
+    if (sum[2] != set->hash)
+        return fibrad_refuse(s->message, FIBRAD_E_STATE, "particles have come and others gone; make new rows");
     fibrad_link *link;
     uint64_t *id = malloc((all + 1) * sizeof *id);
     int status = id ? fibrad_block_fit(&s->value, all, sizeof(double)) : FIBRAD_E_MEMORY;

@@ -57,6 +57,12 @@ class FixFibrad::Words {
         return value;
     }
 
+    bool yes_or_no() {
+        const std::string word = next();
+        if (word != "yes" && word != "no") lmp->error->all(FLERR, "fix fibrad: say yes or no, not `" + word + "`");
+        return word == "yes";
+    }
+
   private:
     LAMMPS *lmp;
     std::vector<std::string> words;
@@ -65,7 +71,8 @@ class FixFibrad::Words {
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), temperature(), surroundings(-1), sigma(0), initial(0), config(), meshes(),
-      insitu(nullptr), totals(), warned(false), cut_warned(false), begun(0), before(), rows_made(0), powers_found(0) {
+      insitu(nullptr), totals(), warned(false), cut_warned(false), told(), set_up(-1), begun(0), before(), rows_made(0),
+      powers_found(0) {
     const double huge = 1e300;
     Words words(lmp, narg, arg);
     config.seed = 1; // the default of docs/lammps.md
@@ -104,6 +111,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             sigma = words.number("sigma", 0, huge);
         else if (key == "rows")
             rows_file = words.next();
+        else if (key == "strict")
+            config.strict = words.yes_or_no();
         else
             error->all(FLERR, "fix fibrad: there is no keyword `" + key + "`");
     }
@@ -131,7 +140,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     nevery = heat_every ? heat_every : rows_every;
     scalar_flag = vector_flag = peratom_flag = 1;
     size_peratom_cols = 0;
-    size_vector = 5 + (int)walls.size();
+    size_vector = 5 + (int)walls.size() + 3;
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
     maxexchange = 1;
@@ -316,7 +325,9 @@ void FixFibrad::init() {
 // Rows depend on positions and on the last multiple of NROWS. So a restarted run has the same rows.
 void FixFibrad::setup(int) {
     begun = MPI_Wtime();
+    set_up = update->ntimestep;
     fibrad_insitu_facts_get(insitu, &before);
+    refuse_second();
     make_rows();
     if (heat_every) find_powers();
 
@@ -354,7 +365,9 @@ void FixFibrad::post_force(int) {
         if (atom->mask[i] & groupbit) heatflow[i] += q[i];
 }
 
+// In a rerun, each frame is set up and then ends its step at once: powers are there, and no time passes.
 void FixFibrad::end_of_step() {
+    if (update->ntimestep == set_up) return;
     if (update->ntimestep % rows_every == 0) make_rows();
     if (!heat_every) return;
     find_powers();
@@ -420,8 +433,40 @@ void FixFibrad::make_rows() {
             FLERR, text("fix fibrad: the cutoff leaves out %.2g %% of what particles emit: `cutoff` should be larger",
                         100 * facts.beyond));
     cut_warned = cut_warned || facts.beyond > 0.01;
+    tell_strays();
     if (!rows_file.empty())
         check(fibrad_insitu_write(insitu, (rows_file + "." + std::to_string(update->ntimestep)).c_str()));
+}
+
+void FixFibrad::tell_strays() {
+    for (int kind = 0; kind < FIBRAD_REMARKS; kind++) {
+        const char *remark = fibrad_insitu_remark(insitu, kind);
+        if (*remark && !told[kind] && comm->me == 0)
+            error->warning(FLERR, text("fix fibrad: %s, at step %s; `strict yes` would end the run", remark,
+                                       std::to_string(update->ntimestep).c_str()));
+        told[kind] = told[kind] || *remark;
+    }
+}
+
+// Two fixes that radiate from one particle would bring it twice the radiation. Particles outside the group are not
+// seen.
+void FixFibrad::refuse_second() {
+    bigint outside = 0;
+    for (int i = 0; i < atom->nlocal; i++) outside += !(atom->mask[i] & groupbit);
+    MPI_Allreduce(MPI_IN_PLACE, &outside, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (outside)
+        say(text("fix fibrad: %.0f particles outside the group neither radiate nor are in the way", (double)outside));
+    for (int k = 0; k < modify->nfix && heat_every; k++) {
+        const FixFibrad *other = dynamic_cast<FixFibrad *>(modify->fix[k]);
+        if (!other || other == this || !other->heat_every) continue;
+        tagint shared = 0;
+        for (int i = 0; i < atom->nlocal; i++)
+            if (atom->mask[i] & groupbit && atom->mask[i] & other->groupbit) shared = std::max(shared, atom->tag[i]);
+        MPI_Allreduce(MPI_IN_PLACE, &shared, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+        if (shared)
+            error->all(FLERR, std::string("fix fibrad: the fixes ") + id + " and " + other->id +
+                                  " both radiate from atom " + std::to_string(shared));
+    }
 }
 
 void FixFibrad::find_powers() {
@@ -533,7 +578,9 @@ double FixFibrad::compute_vector(int n) {
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(insitu, &facts);
     const double first[] = {totals.surroundings, facts.beyond, facts.error, facts.seconds_rows, facts.seconds_powers};
-    return n < 5 ? first[n] : totals.body[n - 5];
+    const double strays[] = {(double)facts.outside, (double)facts.overlapping, (double)facts.behind};
+    const int last = 5 + (int)walls.size();
+    return n < 5 ? first[n] : n < last ? totals.body[n - 5] : strays[n - last];
 }
 
 double FixFibrad::memory_usage() {

@@ -71,6 +71,8 @@ class FixFibrad : public Fix {
     void check_step(const std::vector<double> &temperature); // refuses steps of heat that are not stable
     void check(int status);                                  // stops with the message of an error
     void say(const std::string &);                           // a line in the log
+    void tell_strays();                                      // says once of each kind what was done with strays
+    void refuse_second(); // stops if another fix radiates from a particle of this one
 
     // Arguments of the fix.
     int heat_every, rows_every; // steps from powers to powers, and from rows to rows; heat_every 0: no powers
@@ -94,6 +96,8 @@ class FixFibrad : public Fix {
     std::vector<int> member;     // atoms of the group that this rank owns
     std::vector<uint64_t> tags;  // [member], their ids
     bool warned, cut_warned;     // whether the warnings about steps and about the cutoff were given
+    bool told[FIBRAD_REMARKS];   // whether strays of each kind were told of
+    bigint set_up;               // step of the last setup
 
     // Since the beginning of the run.
     double begun;               // s, time when the run began

@@ -58,6 +58,7 @@ struct Driver {
     std::vector<double> emissivity, gain;                         /* [own] */
     fibrad_insitu_totals totals;                                  /* of the current powers */
     bool radiates;                                                /* there are powers */
+    bool told[FIBRAD_REMARKS];                                    /* strays of each kind were told of */
     LAMMPS_NS::bigint since;                                      /* first step in which the current powers heat */
     double heat, heat_surroundings, heat_body[FIBRAD_BODIES_MAX]; /* heat by radiation before that step */
 };
@@ -283,6 +284,17 @@ void follow_meshes(Driver *driver) {
         take_mesh(driver, driver->options.meshes[m], driver->mesh[m].triangle, (uint32_t)(first + m));
 }
 
+/* Says once of each kind of strays what was done with them. */
+void tell_strays(Driver *driver) {
+    for (int kind = 0; kind < FIBRAD_REMARKS; ++kind) {
+        const char *remark = fibrad_insitu_remark(driver->radiation, kind);
+        if (*remark != 0 && !driver->told[kind] && rank() == 0)
+            std::fprintf(stderr, "fibrad_liggghts: warning: step %s: %s; --strict would end the run\n",
+                         std::to_string(driver->lmp->update->ntimestep).c_str(), remark);
+        driver->told[kind] = driver->told[kind] || *remark != 0;
+    }
+}
+
 void make_rows(Driver *driver) {
     const LAMMPS_NS::Atom *atom = driver->lmp->atom;
     const LAMMPS_NS::Domain *domain = driver->lmp->domain;
@@ -306,6 +318,7 @@ void make_rows(Driver *driver) {
     follow_meshes(driver);
     if (mesh_walls_face(&driver->triangles, MPI_COMM_WORLD, &bed) != 0) stop(WRONG_INPUT, "out of memory");
     check(driver, fibrad_insitu_rows(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
+    tell_strays(driver);
 }
 
 /* Computes powers. If particles have come or gone since the last rows, makes new rows before. */
@@ -381,6 +394,8 @@ void print_summary(const Driver *driver, double before, double after, double sec
     for (size_t k = 0; k < driver->body.size(); ++k)
         std::printf("radiation_%s %.17g\n", driver->body_name[k].c_str(), driver->heat_body[k]);
     std::printf("conduction_and_sources %.17g\n", after - before - driver->heat);
+    std::printf("outside %" PRIu64 "\noverlapping %" PRIu64 "\nbehind %" PRIu64 "\n", facts.outside, facts.overlapping,
+                facts.behind);
     std::printf("beyond_mean %.17g\nerror_rms %.17g\n", facts.beyond, facts.error);
     std::printf("seconds_rows %.17g\nseconds_powers %.17g\nseconds %.17g\n", facts.seconds_rows, facts.seconds_powers,
                 seconds);

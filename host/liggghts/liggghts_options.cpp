@@ -24,6 +24,7 @@ const struct option names[] = {{"in", required_argument, nullptr, 'i'},
                                {"tolerance", required_argument, nullptr, 't'},
                                {"seed", required_argument, nullptr, 'S'},
                                {"write", required_argument, nullptr, 'W'},
+                               {"strict", no_argument, nullptr, 'x'},
                                {"help", no_argument, nullptr, 'h'},
                                {nullptr, 0, nullptr, 0}};
 
@@ -128,6 +129,9 @@ const char *take(int key, const char *text, liggghts_options *options) {
     fibrad_plane open;
     radiant_mesh triangles;
     switch (key) {
+    case 'x':
+        options->config.strict = 1;
+        return nullptr;
     case 'i':
         options->script = text;
         return nullptr;
@@ -233,5 +237,6 @@ void liggghts_options_help() {
         "diameter plus 8 mean radii, plus 10 below emissivity 0.4]\n"
         "  --tolerance E            estimated error of each row, 1e-5 to 1 [none]\n"
         "  --seed S                 seed of paths and directions [0]\n"
+        "  --strict                 end the run when a centre lies inside another particle or beyond a wall\n"
         "  --write NAME             write the last rows to NAME.RANK.rows, for fibrad join\n");
 }

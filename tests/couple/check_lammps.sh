@@ -193,6 +193,20 @@ run 4 equal moving.lmp hot 300 steps 2000
 awk 'NF == 2 && /^[0-9]+ / { n++; if ($2 != 300) bad++ } END { exit !(n && !bad) }' "$work/equal.out"
 verdict "equal temperatures stay equal to the bit" $?
 
+# ---- strays -----------------------------------------------------------------------------------------------------------
+# LAMMPS goes on with centres inside others and beyond walls. So does radiation.
+run 2 soft soft.lmp
+balance soft 10e-3 0 1e-3 90 "energy of particles inside one another and beyond a wall"
+awk '/^[0-9]/ { if ($4 > 0) left++; if ($5 > 0) smaller++ } END { exit !(left && smaller) }' "$work/soft.out.balance" &&
+    test "$(grep -c 'left out until back; particle [0-9]* at .* beyond wall 1, zlo' "$work/soft.log")" -eq 1 &&
+    test "$(grep -c 'the centre of one lies inside the other' "$work/soft.log")" -eq 1
+verdict "strays are counted and told of once" $?
+run 1 rerun rerun.lmp data "$work/quarter.data"
+near "$work/rerun.out" "$work/rerun.out.after" 1e-300 "rerun steps no temperatures"
+awk '$1 == "Step" { n = 0 } n++ && NF == 2 && ($1 == 0 || $1 == 10) { power[$1] = $2 }
+    END { exit !(power[10] != 0 && power[0] == power[10]) }' "$work/rerun.log"
+verdict "rerun has powers" $?
+
 # ---- temperatures that LAMMPS steps -------------------------------------------------------------------------------------
 if "$LMP" -h | grep -q 'heat/flow'; then
     "$BUILD/tests/couple/serial_bed" 50 1000 40 100 <"$work/quarter" >"$work/serial.out"
@@ -219,7 +233,10 @@ fails() {
 }
 fails "atom 10 .*not set" "unset temperature" also "set atom 10 d_T 0"
 fails "NEVERY must be at most" "steps of heat too long" also "timestep 400" heat 20
-fails "particle.* 10 " "a centre inside another particle" also "set atom 10 diameter 2.5"
+fails "particle.* 10 .*inside" "a centre inside another particle" also "set atom 10 diameter 2.5" strict yes
+fails "beyond wall 1, zlo" "a centre beyond a wall" floor "zlo 1000 0.9 at 1" strict yes
+fails "rad and bad both radiate from atom" "two fixes on one particle" \
+    also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1"
 fails "emissivity" "emissivity out of range" also "fix bad all fibrad 1 1 emissivity 1.5 surroundings 300 cp 1"
 fails "$work/none.stl: No such file" "a mesh that is not there" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/none.stl 300 1"
@@ -227,7 +244,7 @@ fails "$work/none.stl: No such file" "a mesh that is not there" \
 fails "empty.stl: the file is empty" "an empty mesh" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/empty.stl 300 1"
 fails "sees the back of wall 1.*both" "the back of a mesh" \
-    also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/box.stl 300 1 normals"
+    also "fix bad all fibrad 0 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/box.stl 300 1 normals"
 fails "property/atom d_none" "temperatures that are not there" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 temperature d_none"
 

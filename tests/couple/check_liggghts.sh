@@ -172,7 +172,7 @@ refuse 2 3 "2 emissivities for 1 types" -in bed --emissivity .5,.6 --surrounding
 # shellcheck disable=SC2086
 refuse 2 3 "cools down in" -in bed $radiation --steps 1 --every 1000000 --rows 1000000
 # shellcheck disable=SC2086
-refuse 2 3 "step 0: .*wall" -in bed $radiation --wall zhi=300,1,0.02 --steps 1
+refuse 2 3 "step 0: .*wall" -in bed $radiation --strict --wall zhi=300,1,0.02 --steps 1
 # shellcheck disable=SC2086
 # shellcheck disable=SC2086  # options
 refuse 2 3 "step 0: .*--wall zhi=open" -in bed $sides --steps 1

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "couple/coarse_map.h"
+#include "couple/ranks/coarse_map.h"
 #include "couple/fibrad_couple.h"
 #include "couple/rows_file.h"
 
@@ -321,8 +321,11 @@ static const struct kind kinds[] = {
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
+static int strict; /* of the next objects */
+
 static fibrad_insitu *insitu_of(MPI_Comm comm, const struct kind *kind, int threads) {
-    const fibrad_insitu_config config = {.cutoff = kind->cutoff, .paths = 100, .seed = 3, .threads = threads};
+    const fibrad_insitu_config config = {
+        .cutoff = kind->cutoff, .paths = 100, .seed = 3, .threads = threads, .strict = strict};
     fibrad_insitu *s;
     CHECK(fibrad_insitu_new(&s, comm, &config) == FIBRAD_OK);
     return s;
@@ -607,6 +610,81 @@ static void temperatures_are_those_of_the_kernel(enum walls walls, double cutoff
     close_pile(&part);
 }
 
+/* ---- strays ----------------------------------------------------------------------------------------------------- */
+
+enum { FLOWN = 5, SUNK = 11, DEEP = 20, SWALLOWED = 30 };
+
+/* Puts one particle above the ceiling, one below the floor, one inside another, and two at the same place. */
+static void go_astray(struct pile *p) {
+    p->x[3 * FLOWN + 2] = 1e3;
+    p->x[3 * SUNK + 2] = -1.25;
+    memcpy(p->x + 3 * DEEP, p->x + 3 * DEEP + 3, 3 * sizeof *p->x), p->x[3 * DEEP + 1] += .5;
+    memcpy(p->x + 3 * SWALLOWED, p->x + 3 * SWALLOWED + 3, 3 * sizeof *p->x);
+}
+
+/* The same bed without the particles that are left out, with the radii that the others have in the rows. */
+static struct pile without_strays(const struct pile *astray) {
+    struct pile p = *astray;
+    const double largest = fmax(p.radius[DEEP], p.radius[DEEP + 1]);
+    open_pile(&p, astray->bed.n);
+    memcpy(p.body, astray->body, 2 * sizeof *p.body);
+    memcpy(p.body_emissivity, astray->body_emissivity, 2 * sizeof *p.body_emissivity);
+    p.bed.n = 0;
+    for (size_t i = 0; i < astray->bed.n; ++i) {
+        const size_t n = p.bed.n;
+        if (i == FLOWN || i == SUNK || i == SWALLOWED || i == SWALLOWED + 1) continue;
+        p.id[n] = astray->id[i];
+        memcpy(p.x + 3 * n, astray->x + 3 * i, 3 * sizeof *p.x);
+        p.radius[n] = astray->radius[i] * (i == DEEP || i == DEEP + 1 ? .5 / largest * (1 - 1e-9) : 1);
+        p.emissivity[n] = astray->emissivity[i];
+        p.temperature[n] = astray->temperature[i];
+        p.bed.n++;
+    }
+    return p;
+}
+
+/* Rows go on with strays: powers are those of the bed without them, and strays have none. */
+static void strays_do_not_end_a_run(void) {
+    static const struct kind kind = {"strays", 4, {1, 1, 0}, FLOORS, {.8, .5}, 4, 1, 0};
+    struct pile all = pile_of(&kind);
+    go_astray(&all);
+    struct pile rest = without_strays(&all), part = part_of(&all, 0), known = part_of(&rest, 0);
+    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &kind, 1), *t = insitu_of(MPI_COMM_WORLD, &kind, 1);
+    fibrad_insitu_totals totals[2];
+    make_rows(s, &part, 2);
+    make_rows(t, &known, 2);
+    const fibrad_insitu_state state[2] = {state_of(&part), state_of(&known)};
+    CHECK(fibrad_insitu_powers(s, &state[0], part.power, &totals[0]) == FIBRAD_OK);
+    CHECK(fibrad_insitu_powers(t, &state[1], known.power, &totals[1]) == FIBRAD_OK);
+    double most = 0, sum = 0;
+    for (size_t i = 0; i < part.bed.n; ++i) {
+        size_t k = 0;
+        while (k < known.bed.n && known.id[k] != part.id[i]) ++k;
+        const double power = k < known.bed.n ? known.power[k] : 0;
+        CHECK(fabs(part.power[i] - power) <= 1e-7 * fabs(power)); /* the reduced radii are rounded otherwise */
+        most = fmax(most, fabs(power)), sum += part.power[i];
+    }
+    CHECK(most > 0 || part.bed.n == 0);
+    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    CHECK(fabs(sum - totals[0].particles) < 1e-12 * fabs(sum));
+    fibrad_insitu_facts facts;
+    fibrad_insitu_facts_get(s, &facts);
+    CHECK(facts.outside == 4 && facts.overlapping == 4 && facts.behind == 0 && facts.particles == rest.bed.n);
+    CHECK(strstr(fibrad_insitu_remark(s, FIBRAD_REMARK_OUTSIDE), "4 particles are left out"));
+    CHECK(strstr(fibrad_insitu_remark(s, FIBRAD_REMARK_OVERLAP), "the centre of one lies inside the other"));
+    CHECK(strcmp(fibrad_insitu_remark(s, FIBRAD_REMARK_BACK), "") == 0);
+    CHECK(strcmp(fibrad_insitu_remark(t, FIBRAD_REMARK_OUTSIDE), "") == 0);
+    for (size_t i = 0; i < part.bed.n; ++i) /* another particle in place of one that is left out: new rows */
+        if (part.id[i] == all.id[FLOWN]) part.id[i] = 12345;
+    CHECK(fibrad_insitu_powers(s, &state[0], part.power, NULL) == FIBRAD_E_STATE);
+    fibrad_insitu_free(s);
+    fibrad_insitu_free(t);
+    close_pile(&all);
+    close_pile(&rest);
+    close_pile(&part);
+    close_pile(&known);
+}
+
 /* ---- refusals -------------------------------------------------------------------------------------------------- */
 
 /* The same status and the same message on all ranks, which has the words. */
@@ -672,9 +750,16 @@ static void rows_are_refused(fibrad_insitu *s) {
     static const int status[FAULTS] = {FIBRAD_E_ARGUMENT, FIBRAD_E_GEOMETRY, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT,
                                        FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT,
                                        FIBRAD_E_ENDLESS,  FIBRAD_E_GEOMETRY};
-    static const char *const words[FAULTS] = {"twice",          "inside",           "coordinate",        "radius",
-                                              "its emissivity", "a wall",           "no extent along x", "wall 2",
-                                              "an opening",     "beyond an opening"};
+    static const char *const words[FAULTS] = {"twice",
+                                              "inside",
+                                              "coordinate",
+                                              "radius",
+                                              "its emissivity",
+                                              "beyond wall 1, zlo",
+                                              "no extent along x",
+                                              "wall 2",
+                                              "an opening",
+                                              "beyond the opening"};
     for (int fault = 0; fault < FAULTS; ++fault) {
         struct pile all = pile_of(&small);
         char named[64];
@@ -733,6 +818,7 @@ static void refusals(void) {
               FIBRAD_E_ARGUMENT &&
           !s);
     CHECK(strcmp(fibrad_insitu_message(NULL), "") == 0);
+    strict = 1;
     s = insitu_of(MPI_COMM_WORLD, &small, 2);
     struct pile all = pile_of(&small), part = part_of(&all, 0);
     const fibrad_insitu_state state = state_of(&part);
@@ -776,6 +862,7 @@ int main(int argc, char **argv) {
     large_particles_are_seen();
     temperatures_are_those_of_the_kernel(OPEN, 0); /* no cutoff: larger than the bed */
     temperatures_are_those_of_the_kernel(FLOORS, 1000);
+    strays_do_not_end_a_run();
     refusals();
     int sum[2] = {checks, failures};
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_INT, MPI_SUM, MPI_COMM_WORLD);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "couple/collective.h"
+#include "couple/ranks/collective.h"
 
 enum { VOTERS = 1000 };
 

@@ -1,5 +1,5 @@
 /* collective.c - errors that all ranks agree on, and an exchange between all ranks. SPDX-License-Identifier: MIT */
-#include "couple/collective.h"
+#include "couple/ranks/collective.h"
 
 #include <limits.h>
 #include <stdarg.h>

@@ -3,7 +3,7 @@
 #ifndef FIBRAD_COUPLE_HALO_H
 #define FIBRAD_COUPLE_HALO_H
 
-#include "couple/collective.h"
+#include "couple/ranks/collective.h"
 
 /* A particle in a message. It has 6 words, so that coordinates are doubles with a stride. */
 typedef struct fibrad_particle {

@@ -4,9 +4,23 @@
 
 #include <mpi.h>
 
-#include "couple/block.h"
+#include "couple/ranks/block.h"
 
 #define FIBRAD_MESSAGE 256 /* bytes of a message */
+
+/* A hash of an id: the same id has the same hash on all ranks. */
+static inline uint64_t fibrad_hash_id(uint64_t id) {
+    id = (id ^ id >> 30) * 0xbf58476d1ce4e5b9u;
+    id = (id ^ id >> 27) * 0x94d049bb133111ebu;
+    return id ^ id >> 31;
+}
+
+/* The sum of the hashes of ids, whatever their order. */
+static inline uint64_t fibrad_hash_ids(const uint64_t *id, size_t n) {
+    uint64_t sum = 0;
+    for (size_t i = 0; i < n; ++i) sum += fibrad_hash_id(id[i]);
+    return sum;
+}
 
 /* Prints a sentence into message[FIBRAD_MESSAGE] and returns status. */
 int fibrad_refuse(char *message, int status, const char *format, ...);

@@ -2,7 +2,7 @@
 #ifndef FIBRAD_COUPLE_COARSE_MAP_H
 #define FIBRAD_COUPLE_COARSE_MAP_H
 
-#include "couple/halo.h"
+#include "couple/ranks/halo.h"
 
 /* Collective. Makes the occupancy of the bed: marks the cells that particles of any rank may touch. The caller sets
  * low, high and periodic of `map`, the same on all ranks. Cells are about `width` wide. radius: the largest radius.
