@@ -24,6 +24,7 @@
  * Other headers
  *   fibrad_limits.h   bounds and defaults of arguments
  *   fibrad_heat.h     net powers and temperatures
+ *   fibrad_light.h    light from outside, sun or lasers
  *   fibrad_mesh.h     walls made of triangles
  *   fibrad_surface.h  the method of Bao, Gao and Tan
  *   fibrad_furnace.h  a box filled with a participating medium
@@ -299,7 +300,10 @@ typedef enum fibrad_why {
     FIBRAD_WHY_SIGMA = 15,        /* sigma is out of range. */
     FIBRAD_WHY_TOLERANCE = 16,    /* A tolerance is out of range. */
     FIBRAD_WHY_MISSING = 17,      /* An array is missing. */
-    FIBRAD_WHY_CAPACITY = 18      /* A heat capacity is not above 0, or is out of range. */
+    FIBRAD_WHY_CAPACITY = 18,     /* A heat capacity is not above 0, or is out of range. */
+    FIBRAD_WHY_LIGHT = 19,        /* A number of a light is out of range, or its direction is zero. */
+    FIBRAD_WHY_DARK = 20,         /* No open face lets a light in. */
+    FIBRAD_WHY_FOOTPRINT = 21     /* A sphere lies before the disc of a light. */
 } fibrad_why;
 
 /* The cause of a fault as English words. The words continue a sentence that begins with the name of a sphere or a wall.

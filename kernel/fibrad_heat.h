@@ -124,6 +124,7 @@ typedef struct fibrad_heat_sources {
     uint32_t sweeps_max;            /* sweeps after which to stop; 0: 1000 */
     int uniform;                    /* 1: one radiosity per surface, no extrapolation; for emissivities near 1 only */
     const double *side_temperature; /* K, [2 triangles], fronts and backs in turn; NaN: the wall's; NULL: all NaN */
+    const double *light; /* sigma K^4 L^2, [fibrad_heat_patches], arrives from outside; NULL: none; fibrad_light.h */
 } fibrad_heat_sources;
 
 /* Zeroes the sources, sets sigma = FIBRAD_STEFAN_BOLTZMANN, and sets surroundings = NaN. NaN is refused, so that no
@@ -138,7 +139,7 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
 /* Begins a solution. The solution begins with the radiosities of the last one, if there is one. The sources are not
- * needed after the call.
+ * needed after the call, but for `light`, which must stay until the solution is read.
  *   Errors   as fibrad_heat_check
  *            _STATE: a task is not traced, or the scene has changed
  *   Cost     O(patches) */

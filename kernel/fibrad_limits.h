@@ -53,4 +53,10 @@
 #define FIBRAD_WALL_RAYS_DEFAULT       262144 /* at the least */
 #define FIBRAD_WALL_RAYS_MAX           (1u << 30)
 
+/* Light from outside */
+#define FIBRAD_SUN_HALF_ANGLE           4.65e-3 /* rad */
+#define FIBRAD_HALF_ANGLE_MAX           0.5     /* rad */
+#define FIBRAD_LIGHT_DIRECTIONS_DEFAULT 16
+#define FIBRAD_LIGHT_DIRECTIONS_MAX     4096
+
 #endif

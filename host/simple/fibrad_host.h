@@ -3,7 +3,7 @@
  * Index
  *   run      fibrad_run: threads, progress, cancelling
  *   factors  fibrad_view_factors, fibrad_exchange_factors, fibrad_bed_free, fibrad_side_views, fibrad_displacements
- *   heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _describe, _free
+ *   heat     fibrad_radiation_new, _move, _solve, _sides, _settle, _shine, _describe, _free
  *   time     fibrad_transient_new, _move, _powers, _sides, _advance, _describe, _free
  *   kernel   fibrad_heap_resize, fibrad_host_sizeof
  *
@@ -26,6 +26,7 @@
 #define FIBRAD_HOST_H
 
 #include "fibrad_heat.h"
+#include "fibrad_light.h"
 #include "fibrad_mesh.h"
 #include "fibrad_surface.h"
 
@@ -189,6 +190,47 @@ typedef void fibrad_emissivity_law(void *context, const double *temperature, con
  *            _UNSOLVABLE: also if 100 solutions do not suffice */
 int fibrad_radiation_settle(fibrad_radiation *radiation, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
                             void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result);
+
+/* Light from outside, and what absorbs it. Zeroed but for lights and absorptivities: no wall is insulated. */
+typedef struct fibrad_light_sources {
+    const fibrad_light *light; /* [lights] */
+    uint32_t lights;
+    const double *absorptivity;      /* [spheres], 0 to 1, of the light */
+    const double *body_absorptivity; /* [bodies], 0 to 1; NULL without walls */
+    const unsigned char *insulated;  /* [bodies], as in fibrad_heat_sources; NULL: no wall is insulated */
+    double tolerance;                /* as in fibrad_heat_sources; 0: 1e-5 */
+    int uniform;                     /* as in fibrad_heat_sources */
+} fibrad_light_sources;
+
+/* What is absorbed of light from outside. The arrays belong to the caller; those of errors may be NULL. */
+typedef struct fibrad_light_result {
+    double *absorbed;            /* sigma K^4 L^2, [spheres], out: directly and after reflections */
+    double *absorbed_first;      /* sigma K^4 L^2, [spheres], out: of the light that the sphere meets first */
+    double *absorbed_error;      /* sigma K^4 L^2, [spheres], out: estimated error of absorbed; may be NULL */
+    double *body_absorbed;       /* sigma K^4 L^2, [bodies], out; NULL without walls */
+    double *body_absorbed_first; /* sigma K^4 L^2, [bodies], out; NULL without walls */
+    double *body_absorbed_error; /* sigma K^4 L^2, [bodies], out; may be NULL */
+    double incident;             /* sigma K^4 L^2, out: what all lights bring */
+    double transmitted;          /* sigma K^4 L^2, out: leaves without having met anything */
+    double reflected;            /* sigma K^4 L^2, out: leaves after reflections, on whichever side */
+    double error;                /* sigma K^4 L^2, out: estimated error of reflected */
+    uint32_t sweeps;             /* out */
+    const double *insulated;     /* [patches], out: light of fibrad_heat_sources for the thermal radiation; NULL: none */
+} fibrad_light_result;
+
+/* What a bed absorbs of light from outside. The sum of `absorbed` and `body_absorbed`, with `reflected` and
+ * `transmitted`, is `incident`, to rounding.
+ *
+ * What is absorbed heats. Add it to the power of a surface whose temperature is to be found, and to the net power of a
+ * surface whose temperature is given. What insulated walls absorb they give off as thermal radiation: hand
+ * result->insulated to fibrad_radiation_solve as sources.light. It lasts until the next move or shine.
+ *   Output   result
+ *   Errors   as fibrad_light_empty and fibrad_radiation_solve
+ *            _UNSOLVABLE: nothing absorbs the light, and it cannot leave
+ *   Cost     that of a solution
+ *   Source   docs/methods_heat.md section 13 */
+int fibrad_radiation_shine(fibrad_radiation *radiation, const fibrad_light_sources *sources,
+                           fibrad_light_result *result);
 
 /* Facts of the scene in use, and where the last error was. Either output may be NULL. NULL for radiation is allowed.
  *   Errors   none */

@@ -3,22 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "simple/heap.h"
-#include "simple/team.h"
+#include "simple/radiation.h"
 
 enum { PARTS = 16, TASKS_AT_ONCE = 16 };
 
-struct fibrad_radiation {
-    fibrad_team team;
-    fibrad_heat_config config;
-    fibrad_heat *heat; /* NULL: none yet */
-    void *heat_block;
-    size_t heat_size; /* bytes of heat_block; 0: none */
-    fibrad_scene *scene;
-    void *scene_block;
-    uint32_t n;
-    fibrad_fault fault;
-};
 
 static int trace_beams(void *radiation, int thread, uint32_t task) {
     fibrad_radiation *r = radiation;
@@ -188,5 +176,6 @@ void fibrad_radiation_free(fibrad_radiation *r) {
     fibrad_team_close(&r->team);
     free(r->heat_block);
     free(r->scene_block);
+    free(r->light);
     free(r);
 }

@@ -83,6 +83,12 @@ const char *fibrad_why_text(int why) {
         return "an array is missing";
     case FIBRAD_WHY_CAPACITY:
         return "the heat capacity is not above 0 or is out of range";
+    case FIBRAD_WHY_LIGHT:
+        return "a number of the light is out of range, or its direction is zero";
+    case FIBRAD_WHY_DARK:
+        return "no open face lets the light in";
+    case FIBRAD_WHY_FOOTPRINT:
+        return "lies before the disc of the light";
     default:
         return "the value is not valid";
     }

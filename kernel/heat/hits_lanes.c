@@ -53,13 +53,6 @@ static void number_patches_of(struct hit_window *p, const double frame[9], uint3
         patch[k] = (uint16_t)fibrad_patch_number((uint32_t)p->face[k], (uint32_t)p->x[k], (uint32_t)p->y[k], side);
 }
 
-/* The fine patch of a sphere at a place on a face of its cube, whose patch is known; FIBRAD_NONE. */
-static uint32_t fine_patch(const fibrad_heat *heat, uint32_t sphere, uint32_t patch, double x, double y) {
-    const double u = x / 2 - fibrad_min(fibrad_floor(x / 2), heat->side / 2 - 1),
-                 v = y / 2 - fibrad_min(fibrad_floor(y / 2), heat->side / 2 - 1);
-    return fibrad_heat_fine_patch(heat, sphere, patch / FIBRAD_HEAT_FOUR, u, v);
-}
-
 /* Counts a beam of window k to a fine patch; returns it. */
 static fibrad_heat_beam fine_beam(const fibrad_heat *heat, fibrad_workspace *work, uint32_t k, uint16_t from,
                                   uint32_t fine) {
@@ -214,7 +207,7 @@ static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, fibrad_workspace *wo
         const uint32_t entry = work->near.entry[work->disc.near[window.disc[p]]];
         const bool left_out = fibrad_heat_is_divided(heat, work->place, from / FIBRAD_HEAT_FOUR);
         const uint32_t fine = heat->division.root[sphere] != FIBRAD_NONE
-                                  ? fine_patch(heat, sphere, patch[p], window.x[p], window.y[p])
+                                  ? fibrad_heat_fine_on_face(heat, sphere, patch[p], window.x[p], window.y[p])
                                   : FIBRAD_NONE;
         if (left_out || fine != FIBRAD_NONE) fibrad_entries_add(&work->entries, entry, k, -1);
         if (left_out) continue;
@@ -353,7 +346,7 @@ static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint3
         double place[2];
         const uint32_t face = fibrad_patch_place(hit.normal, heat->side, place);
         const uint32_t patch = fibrad_patch_number(face, (uint32_t)place[0], (uint32_t)place[1], heat->side);
-        const uint32_t fine = fine_patch(heat, hit.sphere, patch, place[0], place[1]);
+        const uint32_t fine = fibrad_heat_fine_on_face(heat, hit.sphere, patch, place[0], place[1]);
         if (fine != FIBRAD_NONE) {
             *beam = fine_beam(heat, work, ray->k, beam->from, fine);
             return true;

@@ -133,6 +133,7 @@ typedef struct fibrad_heat_given {
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
     double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
     bool lifted[FIBRAD_BODIES_MAX]; /* [meshes], whether sides of the mesh have temperatures */
+    const double *light;            /* [patches] power that arrives from outside, the caller's; NULL: none */
     bool afloat;                    /* the sources fix differences of emission, but not their level */
     double sigma, surroundings;
     double tolerance;
@@ -319,6 +320,14 @@ static inline uint32_t fibrad_heat_fine_patch(const fibrad_heat *heat, uint32_t 
         node = heat->division.node[node + 2 * right + up];
     }
     return FIBRAD_HEAT_FOUR * (node - FIBRAD_HEAT_FINE) + (2 * u >= 1 ? 2u : 0u) + (2 * v >= 1 ? 1u : 0u);
+}
+
+/* The fine patch of a sphere at a place on a face of its cube [squares], whose patch is known; FIBRAD_NONE. */
+static inline uint32_t fibrad_heat_fine_on_face(const fibrad_heat *heat, uint32_t sphere, uint32_t patch, double x,
+                                                double y) {
+    const double u = x / 2 - fibrad_min(fibrad_floor(x / 2), heat->side / 2 - 1),
+                 v = y / 2 - fibrad_min(fibrad_floor(y / 2), heat->side / 2 - 1);
+    return fibrad_heat_fine_patch(heat, sphere, patch / FIBRAD_HEAT_FOUR, u, v);
 }
 
 /* Whether an own four of a sphere is divided. */

@@ -13,6 +13,9 @@
  * Patches of a mesh may each have an emission of their own. On the coarser level it is eps times what the patch emits
  * more than its body that J differs by within a group: within such J the system is the same.
  *
+ * Light from outside that arrives at a patch is part of its net flow: it arrives like what the other patches send, and
+ * never changes.
+ *
  * A body of unknown temperature gives off S - h E. From q = A eps/rho (<J> - E) = h E - S, <J> the mean over it,
  *
  *     E = (rho S + A eps <J>)/D,    D = rho h + A eps,
@@ -168,8 +171,18 @@ static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
     return sum;
 }
 
-/* What residuals are compared with: how much emission differs from its mean, what is given off, and, for rounding,
- * emission itself. */
+/* Likewise of the light that patches reflect first. */
+static double light_squares(const fibrad_heat *heat, uint32_t b) {
+    double sum = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && heat->sources.light != NULL; a++)
+        if (heat->solution.area[a] > 0)
+            sum += (1 - heat->sources.emissivity[b]) * heat->sources.light[a] * heat->sources.light[a] /
+                   heat->solution.area[a];
+    return sum;
+}
+
+/* What residuals are compared with: how much emission differs from its mean, what is given off, what arrives from
+ * outside, and, for rounding, emission itself. */
 static void find_scale(fibrad_heat *heat) {
     double weights = 0, sum = 0, largest = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -180,6 +193,7 @@ static void find_scale(fibrad_heat *heat) {
     const double mean = weights > 0 ? sum / weights : 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const double difference = heat->sources.emission[b] - mean;
+        heat->solution.scale += light_squares(heat, b);
         const free_body body = is_free(heat, b) ? free_body_of(heat, b) : (free_body){0};
         if (body.area > 0) {
             const double drive = drive_at(heat, b, &body, mean);
@@ -191,14 +205,17 @@ static void find_scale(fibrad_heat *heat) {
     heat->solution.smallest = ROUNDING * fibrad_max(largest, heat->solution.scale);
 }
 
-/* Whether there are temperatures that give the powers: something is given, or the powers add up to zero. */
+/* Whether there are temperatures that give the powers: something is given, or the powers add up to zero, those of light
+ * included. */
 #define BALANCED 1e-9
 static bool solvable(fibrad_heat *heat) {
     double sum = 0, sizes = 0;
     bool held = false;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         held = held || emitting(heat, b) > 0;
+        const double light = heat->sources.light != NULL ? sum_over(heat, b, heat->sources.light) : 0;
         if (heat->sources.hold[b] == 0) sum += heat->sources.drive[b], sizes += fibrad_abs(heat->sources.drive[b]);
+        sum += light, sizes += light;
     }
     heat->sources.afloat = !held;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
@@ -374,7 +391,8 @@ static int end_sweep(fibrad_heat *heat) {
         send_radiosities(heat, FIBRAD_HEAT_FIRST);
         return FIBRAD_OK;
     case FIBRAD_HEAT_FIRST:
-        fibrad_copy(heat->solution.net, sum, heat->patches * sizeof *sum);
+        for (uint32_t a = 0; a < heat->patches; a++)
+            heat->solution.net[a] = heat->sources.light != NULL ? sum[a] + heat->sources.light[a] : sum[a];
         if (!solvable(heat)) return FIBRAD_E_UNSOLVABLE;
         find_scale(heat);
         search_on(heat, true);

@@ -96,6 +96,13 @@ static int wall_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint3
     return is_endless_unknown(heat, s, b) ? FIBRAD_WHY_ENDLESS : FIBRAD_WHY_UNSAID;
 }
 
+static bool light_valid(const fibrad_heat *heat, const double *light) {
+    bool valid = true;
+    for (uint32_t a = 0; a < heat->patches && light != NULL && valid; a++)
+        valid = light[a] >= 0 && light[a] <= FIBRAD_POWER_MAX;
+    return valid;
+}
+
 /* What is wrong with all sources at once. */
 static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     if (heat->spheres > 0 && (s->temperature == NULL || s->emissivity == NULL)) return FIBRAD_WHY_MISSING;
@@ -103,6 +110,7 @@ static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
         return FIBRAD_WHY_MISSING;
     if (!is_temperature(s->surroundings)) return FIBRAD_WHY_SURROUNDINGS;
     if (!is_sigma(s->sigma)) return FIBRAD_WHY_SIGMA;
+    if (!light_valid(heat, s->light)) return FIBRAD_WHY_LIGHT;
     return s->tolerance >= 0 && s->tolerance < 1 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_TOLERANCE;
 }
 
@@ -288,6 +296,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     }
     set_walls(heat, sources, middle);
     for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.hold[b] == 0;
+    heat->sources.light = sources->light;
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;
     heat->solution.group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
     heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;

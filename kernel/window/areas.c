@@ -82,36 +82,69 @@ void fibrad_areas_clear_arcs(fibrad_areas *areas) {
     areas->dense.written = false;
 }
 
-/* Adds what an arc from p to q of a disc's circle contributes: the integral of the normal along it, times the depth. */
-static void add_slope(const fibrad_areas *areas, const double *depth, double circle, double dx, double dy,
-                      double slope[2]) {
-    const uint32_t k = (uint32_t)circle;
-    if (k == 0) return; /* the window's own circle stays */
-    const double t = depth[areas->whose[k]];
-    slope[0] += t * dy, slope[1] -= t * dx;
-}
-
-static void add_dense_slope(const fibrad_areas *areas, const double *depth, double slope[2]) {
-    const fibrad_dense *grid = &areas->dense;
+static void visit_dense(const fibrad_dense *grid, fibrad_arc_visit *visit, void *context) {
     for (uint32_t n = 0; n < grid->blocks; n++)
         for (uint32_t bits = grid->alive[n]; bits != 0; bits &= bits - 1) {
             const uint32_t k = n * FIBRAD_DENSE_BLOCK + (uint32_t)__builtin_ctz(bits);
-            add_slope(areas, depth, grid->circle[k], grid->qx[k] - grid->px[k], grid->qy[k] - grid->py[k], slope);
+            visit(context, &(fibrad_open_arc){(uint32_t)grid->circle[k],
+                                              {grid->px[k], grid->py[k]},
+                                              {grid->qx[k], grid->qy[k]},
+                                              {grid->cx[k], grid->cy[k]},
+                                              grid->r[k],
+                                              {grid->qx[k] - grid->px[k], grid->qy[k] - grid->py[k]}});
         }
 }
 
-void fibrad_areas_slope(const fibrad_areas *areas, const double *depth, double slope[2]) {
-    const fibrad_boundary *b = areas->boundary;
+static void visit_arrangement(const fibrad_areas *areas, fibrad_arc_visit *visit, void *context) {
     const fibrad_arcs *open = &areas->arrangement.open;
+    for (uint32_t k = 0; k < open->count; k++) {
+        const uint32_t m = (uint32_t)open->circle[k];
+        const double x = areas->x[m], y = areas->y[m];
+        visit(context, &(fibrad_open_arc){m,
+                                          {open->px[k] - x, open->py[k] - y},
+                                          {open->qx[k] - x, open->qy[k] - y},
+                                          {x, y},
+                                          areas->r[m],
+                                          {open->qx[k] - open->px[k], open->qy[k] - open->py[k]}});
+    }
+}
+
+void fibrad_areas_visit(const fibrad_areas *areas, fibrad_arc_visit *visit, void *context) {
+    const fibrad_boundary *b = areas->boundary;
+    if (areas->degenerate) {
+        visit_arrangement(areas, visit, context);
+    } else if (areas->dense.on) {
+        visit_dense(&areas->dense, visit, context);
+    } else {
+        for (uint64_t bits = b->alive; bits != 0; bits &= bits - 1) {
+            const uint32_t k = (uint32_t)__builtin_ctzll(bits);
+            visit(context, &(fibrad_open_arc){(uint32_t)b->circle[k],
+                                              {b->px[k], b->py[k]},
+                                              {b->qx[k], b->qy[k]},
+                                              {b->cx[k], b->cy[k]},
+                                              b->r[k],
+                                              {b->qx[k] - b->px[k], b->qy[k] - b->py[k]}});
+        }
+    }
+}
+
+typedef struct slope_sum {
+    const fibrad_areas *areas;
+    const double *depth;
+    double *slope;
+} slope_sum;
+
+/* Adds what an arc of a disc's circle contributes: the integral of the normal along it, times the depth. The window's
+ * own circle stays. */
+static void add_slope(void *context, const fibrad_open_arc *arc) {
+    const slope_sum *sum = context;
+    if (arc->circle == 0) return;
+    const double t = sum->depth[sum->areas->whose[arc->circle]];
+    sum->slope[0] += t * arc->chord[1], sum->slope[1] -= t * arc->chord[0];
+}
+
+void fibrad_areas_slope(const fibrad_areas *areas, const double *depth, double slope[2]) {
+    slope_sum sum = {areas, depth, slope};
     slope[0] = slope[1] = 0;
-    if (areas->dense.on && !areas->degenerate) {
-        add_dense_slope(areas, depth, slope);
-        return;
-    }
-    for (uint32_t k = 0; k < open->count && areas->degenerate; k++)
-        add_slope(areas, depth, open->circle[k], open->qx[k] - open->px[k], open->qy[k] - open->py[k], slope);
-    for (uint64_t bits = areas->degenerate ? 0 : b->alive; bits != 0; bits &= bits - 1) {
-        const uint32_t k = (uint32_t)__builtin_ctzll(bits);
-        add_slope(areas, depth, b->circle[k], b->qx[k] - b->px[k], b->qy[k] - b->py[k], slope);
-    }
+    fibrad_areas_visit(areas, add_slope, &sum);
 }

@@ -1,0 +1,112 @@
+/* light.c - what spheres and walls meet first of light from outside. SPDX-License-Identifier: MIT */
+#include "light/light.h"
+#include "base/constants.h"
+
+int fibrad_light_check(const fibrad_scene *scene, const fibrad_light *light, fibrad_fault *fault) {
+    if (scene == NULL || light == NULL) return FIBRAD_E_ARGUMENT;
+    if (!fibrad_scene_ready(scene)) return FIBRAD_E_STATE;
+    const uint32_t n = scene->facts.spheres;
+    fibrad_fault found = {n, n, UINT32_MAX, 0, fibrad_light_why(scene, light)};
+    if (found.why == FIBRAD_WHY_UNSAID && light->shape == FIBRAD_LIGHT_DISC) {
+        const uint32_t before = fibrad_light_obstacle(scene, light);
+        if (before != FIBRAD_NONE) found.first = found.second = before, found.why = FIBRAD_WHY_FOOTPRINT;
+    }
+    if (fault != NULL) *fault = found;
+    if (found.why != FIBRAD_WHY_UNSAID) return FIBRAD_E_ARGUMENT;
+    return scene->region || scene->mesh.triangles > 0 ? FIBRAD_E_UNSUPPORTED : FIBRAD_OK;
+}
+
+int fibrad_light_open(const fibrad_scene *scene, fibrad_work *work, size_t extra, fibrad_workspace **space) {
+    const size_t bytes = sizeof(fibrad_footprint) + FIBRAD_ALIGNMENT + extra;
+    const int status = fibrad_work_open(work, scene, bytes, bytes, space);
+    if (status == FIBRAD_OK) (*space)->extra_owner = 0; /* whoever had it loses it */
+    return status;
+}
+
+fibrad_footprint *fibrad_light_footprint(const fibrad_workspace *space) {
+    unsigned char *at = space->extra;
+    return (void *)(at + fibrad_arena_lead(at));
+}
+
+double *fibrad_light_scratch(const fibrad_workspace *space) {
+    return (void *)((unsigned char *)fibrad_light_footprint(space) + sizeof(fibrad_footprint));
+}
+
+void fibrad_light_add_ends(const fibrad_scene *scene, const double area[FIBRAD_SLOTS], double flux,
+                           fibrad_light_ends *ends) {
+    ends->through += flux * area[FIBRAD_ESCAPED];
+    for (uint32_t b = 0; b < scene->facts.bodies; b++) ends->body[b] += flux * area[scene->slot[b]];
+}
+
+int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, fibrad_light_ends *ends,
+                       fibrad_fault *fault) {
+    fibrad_workspace *space;
+    if (work == NULL || ends == NULL) return FIBRAD_E_ARGUMENT;
+    int status = fibrad_light_check(scene, light, fault);
+    if (status == FIBRAD_OK) status = fibrad_light_open(scene, work, 0, &space);
+    if (status != FIBRAD_OK) return status;
+    fibrad_footprint *f = fibrad_light_footprint(space);
+    const uint32_t count = fibrad_light_count(light);
+    fibrad_light_ends sum = {0};
+    double all = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        double area[FIBRAD_SLOTS] = {0};
+        fibrad_footprint_make(f, scene, light, k);
+        for (uint32_t p = 0; p < f->pieces; p++) area[f->piece[p].slot] += f->piece[p].sign * f->piece[p].area;
+        for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) all += area[slot];
+        fibrad_light_add_ends(scene, area, light->flux / count, &sum);
+    }
+    if (!(all > 0)) {
+        if (fault != NULL) fault->why = FIBRAD_WHY_DARK;
+        return FIBRAD_E_ARGUMENT;
+    }
+    *ends = sum;
+    return FIBRAD_OK;
+}
+
+/* Adds what one sphere takes in one direction. */
+static int add_sphere(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place, double flux, double *power,
+                      fibrad_light_ends *kept) {
+    fibrad_footprint *f = fibrad_light_footprint(space);
+    const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
+    double area[FIBRAD_SLOTS] = {0}, open, uv[2];
+    const int status =
+        FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, NULL, &open);
+    if (status != FIBRAD_OK) return status;
+    fibrad_footprint_place(f, centre, uv);
+    if (open > 0) fibrad_footprint_share(f, &space->areas, open, uv, scene->r[place], area);
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) *power += flux * area[slot];
+    fibrad_light_add_ends(scene, area, flux, kept);
+    return FIBRAD_OK;
+}
+
+/* All directions of a light, once. */
+static int add_spheres(const fibrad_scene *scene, fibrad_workspace *space, const fibrad_light *light, uint32_t from,
+                       uint32_t to, double *power, fibrad_light_ends *kept) {
+    const uint32_t count = fibrad_light_count(light);
+    int status = FIBRAD_OK;
+    *kept = (fibrad_light_ends){0};
+    fibrad_zero(power, (to - from) * sizeof *power);
+    for (uint32_t k = 0; k < count && status == FIBRAD_OK; k++) {
+        fibrad_footprint_make(fibrad_light_footprint(space), scene, light, k);
+        for (uint32_t i = from; i < to && status == FIBRAD_OK; i++)
+            status = add_sphere(scene, space, scene->place[i], light->flux / count, &power[i - from], kept);
+    }
+    for (uint32_t i = from; i < to; i++) kept->spheres += power[i - from];
+    return status;
+}
+
+int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, uint32_t from,
+                         uint32_t to, double *power, fibrad_light_ends *kept) {
+    fibrad_workspace *space;
+    if (work == NULL || kept == NULL || (to > from && power == NULL)) return FIBRAD_E_ARGUMENT;
+    int status = fibrad_light_check(scene, light, NULL);
+    if (status == FIBRAD_OK && (from > to || to > scene->facts.spheres)) status = FIBRAD_E_ARGUMENT;
+    if (status == FIBRAD_OK) status = fibrad_light_open(scene, work, 0, &space);
+    while (status == FIBRAD_OK) {
+        status = add_spheres(scene, space, light, from, to, power, kept);
+        if (status != FIBRAD_E_WORK) break;
+        status = fibrad_work_grow(work, &space);
+    }
+    return status;
+}

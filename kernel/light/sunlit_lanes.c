@@ -1,0 +1,32 @@
+/* sunlit_lanes.c - the window of a sphere towards a light. Compiled once per instruction set. SPDX-License-Identifier:
+ * MIT
+ *
+ * One window is too few for near spheres to be listed: it marches through the grid. */
+#include FIBRAD_LANES_HEADER
+#include "light/sunlit_lanes.h"
+#include "row/window_lanes.h"
+#include "window/points_lanes.h"
+
+static int find_open_points(const fibrad_workspace *space, fibrad_points *points) {
+    const fibrad_discs *disc = &space->disc;
+    points->count = points->open = FIBRAD_SUNLIT_POINTS;
+    for (uint32_t word = 0; word < FIBRAD_SUNLIT_POINTS / 64; word++) points->seen[word] = UINT64_MAX;
+    const int status = fibrad_disc_points_get(FIBRAD_SUNLIT_POINTS, &points->set);
+    for (uint32_t k = 0; k < disc->count && points->open > 0 && status == FIBRAD_OK; k++)
+        LANED(fibrad_points_disc)(points, disc->u[k], disc->v[k], disc->r[k]);
+    return status;
+}
+
+int LANED(fibrad_sunlit)(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place, const double frame[9],
+                         fibrad_points *points, double *open) {
+    fibrad_points none = {.count = 0};
+    space->areas.overflow = false;
+    space->areas.fallbacks = 0;
+    space->windows = 1;
+    fibrad_work_begin(space, scene, place, 0, FIBRAD_BEAM_STRIDE);
+    space->near.full = true;
+    *open = fibrad_max(0, LANED(fibrad_beam_window)(space, frame, &none, 0));
+    if (space->disc.count > space->disc.capacity || space->areas.overflow) return fibrad_work_discs_missed(space);
+    if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
+    return points != NULL && *open > 0 ? find_open_points(space, points) : FIBRAD_OK;
+}

@@ -1,0 +1,277 @@
+/* test_light.c - light from outside: what spheres and walls meet first. SPDX-License-Identifier: MIT */
+#include "fibrad_light.h"
+#include "plain_light.h"
+#include "scenes.h"
+#include "suite.h"
+
+/* What a light does in a bed, all of it on one thread, in ranges of seven spheres. */
+struct lit {
+    double *power;
+    fibrad_light_ends ends, empty;
+    int status;
+    fibrad_fault fault;
+};
+
+enum { RANGE = 7 };
+
+static void *grow(void *context, void *block, size_t size) {
+    (void)context;
+    return realloc(block, size);
+}
+
+static struct lit light_up(const struct bed *bed, const fibrad_scene_config *config, const fibrad_light *light) {
+    struct lit lit = {.power = calloc(bed->n + 1, sizeof(double))};
+    const size_t size = fibrad_scene_size(bed->n, 0);
+    void *block = block_of(size);
+    fibrad_scene *scene;
+    fibrad_work work = {.memory = {.resize = grow}};
+    const fibrad_spheres spheres = {.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
+    ck_assert_int_eq(fibrad_scene_init(&scene, block, size, config, &spheres, NULL), 0);
+    lit.status = fibrad_light_empty(scene, &work, light, &lit.empty, &lit.fault);
+    lit.ends = lit.empty;
+    for (uint32_t from = 0; from < bed->n && lit.status == 0; from += RANGE) {
+        const uint32_t to = from + RANGE < bed->n ? from + RANGE : bed->n;
+        fibrad_light_ends kept;
+        ck_assert_int_eq(fibrad_light_spheres(scene, &work, light, from, to, lit.power + from, &kept), 0);
+        lit.ends.spheres += kept.spheres, lit.ends.through -= kept.through;
+        for (int b = 0; b < FIBRAD_BODIES_MAX; b++) lit.ends.body[b] -= kept.body[b];
+    }
+    free(block), free(work.memory.block);
+    return lit;
+}
+
+static double sum_of(const fibrad_light_ends *ends) {
+    double sum = ends->spheres + ends->through;
+    for (int b = 0; b < FIBRAD_BODIES_MAX; b++) sum += ends->body[b];
+    return sum;
+}
+
+static fibrad_light along(double x, double y, double z) {
+    return (fibrad_light){.direction = {x, y, z}, .flux = 1};
+}
+
+START_TEST(a_lone_sphere_takes_its_shadow) {
+    const double one[][4] = {{.3, -.2, .7, 1.7}};
+    struct bed bed = bed_of(1, one);
+    for (uint64_t k = 0; k < 40; k++) {
+        double d[3];
+        for (uint64_t a = 0; a < 3; a++) d[a] = k < 3 ? (double)(a == k) : bed_make_random(5, 3 * k + a) - .5;
+        const fibrad_light light = along(d[0], d[1], d[2]);
+        struct lit lit = light_up(&bed, &(fibrad_scene_config){0}, &light);
+        const double size = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        const double box = 4 * 1.7 * 1.7 * (fabs(d[0]) + fabs(d[1]) + fabs(d[2])) / size;
+        ck_assert_int_eq(lit.status, 0);
+        ck_assert_double_eq_tol(lit.power[0], M_PI * 1.7 * 1.7, 1e-12);
+        ck_assert_double_eq_tol(sum_of(&lit.ends), box, 1e-12);
+        free(lit.power);
+    }
+    bed_free(&bed);
+}
+END_TEST
+
+/* Three layers of touching unit spheres. */
+static struct bed layers(double x, double y, bool hexagonal) {
+    struct bed bed = bed_of(0, NULL);
+    for (int k = 0; k < (hexagonal ? 1 : 3); k++)
+        for (int i = 0; i < 4; i++)
+            for (int j = 0; j < 4; j++)
+                add_sphere(&bed, 2 * i + (hexagonal ? j % 2 : 0), (hexagonal ? sqrt(3) : 2) * j, 2 * k, 1);
+    bed.period[0] = x, bed.period[1] = y, bed.period[2] = 0;
+    return bed;
+}
+
+START_TEST(a_simple_cubic_bed_is_lit_in_its_first_layer) {
+    struct bed bed = layers(8, 8, false);
+    const fibrad_body floor_body = plane_at(2, 0, -1);
+    for (int walled = 0; walled < 2; walled++) {
+        const fibrad_scene_config config = {.period = {8, 8, 0}, .body = &floor_body, .bodies = (uint32_t)walled};
+        const fibrad_light light = along(0, 0, -1);
+        struct lit lit = light_up(&bed, &config, &light);
+        for (uint32_t i = 0; i < bed.n; i++)
+            ck_assert_double_eq_tol(lit.power[i], bed.z[i] > 3 ? M_PI : 0, 1e-9);
+        ck_assert_double_eq_tol(lit.ends.spheres / 64, M_PI / 4, 1e-9);
+        ck_assert_double_eq_tol((walled ? lit.ends.body[0] : lit.ends.through) / 64, 1 - M_PI / 4, 1e-9);
+        ck_assert_double_eq_tol(sum_of(&lit.ends), 64, 1e-12);
+        free(lit.power);
+    }
+    bed_free(&bed);
+}
+END_TEST
+
+START_TEST(a_hexagonal_layer_takes_nine_tenths) {
+    struct bed bed = layers(8, 4 * sqrt(3), true);
+    const fibrad_scene_config config = {.period = {8, 4 * sqrt(3), 0}};
+    const fibrad_light light = along(0, 0, -1);
+    struct lit lit = light_up(&bed, &config, &light);
+    ck_assert_double_eq_tol(lit.ends.spheres / sum_of(&lit.empty), M_PI / sqrt(12), 1e-9);
+    free(lit.power);
+    bed_free(&bed);
+}
+END_TEST
+
+/* A bed, its walls for both, and a light. */
+struct course {
+    struct bed bed;
+    fibrad_scene_config config;
+    fibrad_body body[6];
+    fibrad_plane opening[6];
+    struct plain_bed plain;
+    double d[3];
+};
+
+static void add_wall(struct course *c, int axis, int upper, double at) {
+    c->body[c->config.bodies++] = plane_at(axis, upper, at);
+    *(upper ? &c->plain.high[axis] : &c->plain.low[axis]) = at;
+}
+
+static void add_opening(struct course *c, int axis, int upper, double at) {
+    c->opening[c->config.openings++] = (fibrad_plane){axis, upper, at};
+    *(upper ? &c->plain.high[axis] : &c->plain.low[axis]) = at;
+    c->plain.open[2 * axis + upper] = true;
+}
+
+static void begin_course(struct course *c, struct bed bed, double x, double y, double z) {
+    const double size = sqrt(x * x + y * y + z * z);
+    *c = (struct course){.bed = bed, .d = {x / size, y / size, z / size}};
+    c->plain = plain_bed_of(&c->bed);
+    for (int a = 0; a < 3; a++) c->config.period[a] = bed.period[a];
+    c->config.body = c->body, c->config.opening = c->opening;
+}
+
+/* Compares with `rays` plain rays that are strewn over a rectangle across the light about the place `middle`: those
+ * that begin where light enters. */
+static void compare(struct course *c, const fibrad_light *light, const double middle[3], double reach, int rays) {
+    struct lit lit = light_up(&c->bed, &c->config, light);
+    double *count = calloc(c->bed.n, sizeof *count), ends[PLAIN_ENDS] = {0}, all = 0;
+    double u[3], v[3];
+    const int least = fabs(c->d[2]) < .8 ? 2 : 0;
+    double size = 0, worst = 0;
+    uint64_t state = 7;
+    ck_assert_int_eq(lit.status, 0);
+    for (int a = 0; a < 3; a++) u[a] = (a == least) - c->d[least] * c->d[a], size += u[a] * u[a];
+    for (int a = 0; a < 3; a++) u[a] /= sqrt(size);
+    for (int a = 0; a < 3; a++) v[a] = c->d[(a + 1) % 3] * u[(a + 2) % 3] - c->d[(a + 2) % 3] * u[(a + 1) % 3];
+    const double each = 4 * reach * reach / rays / rays;
+    for (int k = 0; k < rays; k++)
+        for (int m = 0; m < rays; m++) {
+            const double s = reach * (2 * (k + plain_random(&state)) / rays - 1),
+                         t = reach * (2 * (m + plain_random(&state)) / rays - 1);
+            double at[3];
+            for (int a = 0; a < 3; a++) at[a] = middle[a] + s * u[a] + t * v[a];
+            if (light->shape == FIBRAD_LIGHT_DISC && s * s + t * t > light->radius * light->radius) continue;
+            if (!plain_enter(&c->plain, at, c->d)) continue;
+            const struct plain_end end = plain_trace(&c->plain, at, c->d);
+            all += each;
+            if (end.sphere >= 0)
+                count[end.sphere] += each;
+            else
+                ends[end.side] += each;
+        }
+    for (uint32_t i = 0; i < c->bed.n; i++) worst = fmax(worst, fabs(count[i] - lit.power[i]));
+    ck_assert_double_le(worst, 60 * each);
+    ck_assert_double_eq_tol(sum_of(&lit.empty), all, 200 * each);
+    ck_assert_double_eq_tol(lit.ends.through, ends[PLAIN_OUTSIDE], 200 * each);
+    for (uint32_t b = 0; b < c->config.bodies; b++) {
+        const fibrad_plane *plane = &c->body[b].plane;
+        const int side = c->body[b].kind == FIBRAD_BODY_CYLINDER ? PLAIN_CYLINDER : 2 * plane->axis + plane->upper;
+        ck_assert_double_eq_tol(lit.ends.body[b], ends[side], 200 * each);
+    }
+    ck_assert_double_eq_tol(sum_of(&lit.ends), sum_of(&lit.empty), 1e-12 * sum_of(&lit.empty));
+    free(count), free(lit.power);
+    plain_free(&c->plain);
+    bed_free(&c->bed);
+}
+
+/* The extent of a bed. */
+static void extent_of(const struct bed *bed, double low[3], double high[3], double middle[3]) {
+    for (int a = 0; a < 3; a++) {
+        const double *x = a == 0 ? bed->x : a == 1 ? bed->y : bed->z;
+        low[a] = INFINITY, high[a] = -INFINITY;
+        for (uint32_t i = 0; i < bed->n; i++)
+            low[a] = fmin(low[a], x[i] - bed->r[i]), high[a] = fmax(high[a], x[i] + bed->r[i]);
+        middle[a] = .5 * (low[a] + high[a]);
+    }
+}
+
+enum { RAYS = 400 };
+
+START_TEST(a_box_with_an_open_top_as_by_rays) {
+    static const double d[][3] = {{.5, .3, -.8}, {-.2, .1, -1}, {0, 0, -1}, {0, -.4, -1}};
+    for (int k = 0; k < 4; k++) {
+        struct course c;
+        struct bed bed = packing(20, .4, .8, .3, 3, false);
+        double low[3], high[3], middle[3];
+        extent_of(&bed, low, high, middle);
+        begin_course(&c, bed, d[k][0], d[k][1], d[k][2]);
+        for (int side = 0; side < 5; side++)
+            add_wall(&c, side / 2, side % 2, side % 2 ? high[side / 2] + .3 : low[side / 2] - .2);
+        add_opening(&c, 2, 1, high[2] + .5);
+        const fibrad_light light = along(d[k][0], d[k][1], d[k][2]);
+        compare(&c, &light, middle, 6, RAYS);
+    }
+}
+END_TEST
+
+START_TEST(a_corner_that_is_open_on_three_sides_as_by_rays) {
+    struct course c;
+    struct bed bed = packing(20, .4, .8, .3, 4, false);
+    double low[3], high[3], middle[3];
+    extent_of(&bed, low, high, middle);
+    begin_course(&c, bed, .6, -.5, -.7);
+    add_wall(&c, 0, 1, high[0]), add_wall(&c, 1, 0, low[1]), add_wall(&c, 2, 0, low[2]);
+    add_opening(&c, 0, 0, low[0]), add_opening(&c, 1, 1, high[1]), add_opening(&c, 2, 1, high[2]);
+    const fibrad_light light = along(.6, -.5, -.7);
+    compare(&c, &light, middle, 6, RAYS);
+}
+END_TEST
+
+START_TEST(a_cup_as_by_rays) {
+    static const double d[][3] = {{.5, .3, -.8}, {0, .1, -1}, {0, 0, -1}};
+    for (int k = 0; k < 3; k++) {
+        struct course c;
+        struct bed bed = packing(20, .4, .8, .3, 5, false);
+        double low[3], high[3], middle[3], round = 0;
+        extent_of(&bed, low, high, middle);
+        for (uint32_t i = 0; i < bed.n; i++)
+            round = fmax(round, hypot(bed.x[i] - middle[0], bed.y[i] - middle[1]) + bed.r[i]);
+        begin_course(&c, bed, d[k][0], d[k][1], d[k][2]);
+        add_wall(&c, 2, 0, low[2]);
+        add_opening(&c, 2, 1, high[2] + .5);
+        c.body[c.config.bodies++] = (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {middle[0], middle[1], round}};
+        c.plain.axis[0] = middle[0], c.plain.axis[1] = middle[1], c.plain.round = round;
+        const fibrad_light light = along(d[k][0], d[k][1], d[k][2]);
+        compare(&c, &light, middle, 6, RAYS);
+    }
+}
+END_TEST
+
+START_TEST(a_disc_of_light_as_by_rays) {
+    for (int k = 0; k < 4; k++) {
+        struct course c;
+        struct bed bed = packing(20, .4, .8, .3, 6, k >= 2);
+        double low[3], high[3], middle[3];
+        extent_of(&bed, low, high, middle);
+        if (k >= 2) bed.period[2] = 0;
+        if (k == 3) bed.period[1] = 0;
+        begin_course(&c, bed, .7, -.6, -.5);
+        add_wall(&c, 2, 0, low[2]);
+        fibrad_light light = along(.7, -.6, -.5);
+        light.shape = FIBRAD_LIGHT_DISC, light.radius = k == 0 ? .2 : 1.1;
+        for (int a = 0; a < 3; a++) light.centre[a] = middle[a] - 8 * c.d[a] + .1;
+        compare(&c, &light, light.centre, light.radius, RAYS);
+    }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("light");
+    TCase *tcase = suite_case(suite, "first hits");
+    tcase_add_test(tcase, a_lone_sphere_takes_its_shadow);
+    tcase_add_test(tcase, a_simple_cubic_bed_is_lit_in_its_first_layer);
+    tcase_add_test(tcase, a_hexagonal_layer_takes_nine_tenths);
+    tcase_add_test(tcase, a_box_with_an_open_top_as_by_rays);
+    tcase_add_test(tcase, a_corner_that_is_open_on_three_sides_as_by_rays);
+    tcase_add_test(tcase, a_cup_as_by_rays);
+    tcase_add_test(tcase, a_disc_of_light_as_by_rays);
+    return suite_run(suite);
+}

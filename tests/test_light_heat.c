@@ -1,0 +1,120 @@
+/* test_light_heat.c - light that is reflected and absorbed in a bed. SPDX-License-Identifier: MIT */
+#include "plain_light.h"
+#include "scenes.h"
+#include "simple/fibrad_host.h"
+#include "suite.h"
+
+/* The bed of a dump with the columns id type x y z radius, periodic along x and y. */
+static struct bed read_settled(const char *file) {
+    struct bed bed = bed_of(0, NULL);
+    char line[200];
+    FILE *from = fopen(file, "r");
+    ck_assert_ptr_nonnull(from);
+    while (fgets(line, sizeof line, from)) {
+        double x, y, z, r;
+        if (sscanf(line, "%*d %*d %lf %lf %lf %lf", &x, &y, &z, &r) == 4) add_sphere(&bed, x, y, z, r);
+    }
+    fclose(from);
+    ck_assert_uint_eq(bed.n, 2000);
+    bed.period[0] = bed.period[1] = 12, bed.period[2] = 0;
+    return bed;
+}
+
+/* What is absorbed, by all arrays that there are. */
+struct absorbed {
+    double *sphere, *first, *error, wall[6], wall_first[6], wall_error[6];
+    fibrad_light_result result;
+};
+
+static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_config *config, const fibrad_light *light,
+                                    double absorptivity, double of_walls) {
+    struct absorbed a = {calloc(bed->n, sizeof(double)), calloc(bed->n, sizeof(double)), calloc(bed->n, sizeof(double)),
+                         {0}, {0}, {0}, {0}};
+    double *eps = malloc(bed->n * sizeof *eps), wall_eps[6];
+    fibrad_radiation *radiation;
+    const fibrad_spheres spheres = {.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
+    const fibrad_light_sources sources = {
+        .light = light, .lights = 1, .absorptivity = eps, .body_absorptivity = wall_eps};
+    for (uint32_t i = 0; i < bed->n; i++) eps[i] = absorptivity;
+    for (int b = 0; b < 6; b++) wall_eps[b] = of_walls;
+    a.result = (fibrad_light_result){.absorbed = a.sphere, .absorbed_first = a.first, .absorbed_error = a.error};
+    a.result.body_absorbed = a.wall, a.result.body_absorbed_first = a.wall_first, a.result.body_absorbed_error = a.wall_error;
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, config, &spheres, NULL, NULL), 0);
+    ck_assert_int_eq(fibrad_radiation_shine(radiation, &sources, &a.result), 0);
+    fibrad_radiation_free(radiation);
+    free(eps);
+    double sum = a.result.transmitted + a.result.reflected;
+    for (uint32_t i = 0; i < bed->n; i++) sum += a.sphere[i];
+    for (int b = 0; b < 6; b++) sum += a.wall[b];
+    ck_assert_double_eq_tol(sum, a.result.incident, 1e-12 * a.result.incident);
+    return a;
+}
+
+static void free_absorbed(struct absorbed *a) { free(a->sphere), free(a->first), free(a->error); }
+
+enum { LAYERS = 24 };
+
+/* The same by plain rays, by layers of one diameter from the top; returns what is absorbed of 1. */
+static double absorb_plain(const struct plain_bed *p, const double d[3], double absorptivity, int rays,
+                           double layer[LAYERS]) {
+    double top = -INFINITY, all = 0;
+    for (uint32_t i = 0; i < p->bed->n; i++) top = fmax(top, p->bed->z[i] + p->bed->r[i]);
+    for (int k = 0; k < LAYERS; k++) layer[k] = 0;
+#pragma omp parallel for schedule(static) reduction(+ : all, layer[:LAYERS])
+    for (int k = 0; k < rays; k++)
+        for (int m = 0; m < rays; m++) {
+            uint64_t state = (uint64_t)k * 1000003u + (uint64_t)m;
+            double at[3] = {12 * (k + plain_random(&state)) / rays, 12 * (m + plain_random(&state)) / rays, top + 1};
+            double w[3] = {d[0], d[1], d[2]}, weight = 1. / rays / rays;
+            for (;;) {
+                const struct plain_end end = plain_trace(p, at, w);
+                if (end.sphere < 0) break;
+                const int depth = (int)(top - p->bed->z[end.sphere]);
+                all += weight * absorptivity;
+                layer[depth < LAYERS ? depth : LAYERS - 1] += weight * absorptivity;
+                weight *= 1 - absorptivity;
+                if (weight * rays * rays < .1) {
+                    if (plain_random(&state) > .3) break;
+                    weight /= .3;
+                }
+                for (int a = 0; a < 3; a++) at[a] = end.at[a];
+                plain_scatter(end.normal, &state, w);
+            }
+        }
+    return all;
+}
+
+START_TEST(a_settled_bed_absorbs_as_plain_rays_say) {
+    struct bed bed = read_settled("tests/data/monoper2000.dump");
+    struct plain_bed plain = plain_bed_of(&bed);
+    const fibrad_scene_config config = {.period = {12, 12, 0}};
+    double top = -INFINITY;
+    for (uint32_t i = 0; i < bed.n; i++) top = fmax(top, bed.z[i] + bed.r[i]);
+    for (int k = 0; k < 4; k++) {
+        const double absorptivity = k % 2 ? .8 : .4, slant = k < 2 ? 0 : M_PI / 6;
+        const double d[3] = {sin(slant), 0, -cos(slant)};
+        const fibrad_light light = {.direction = {d[0], d[1], d[2]}, .flux = 1 / (144 * cos(slant))};
+        struct absorbed a = absorb_light(&bed, &config, &light, absorptivity, 0);
+        double rays[LAYERS], ours[LAYERS] = {0}, sum = 0;
+        const double all = absorb_plain(&plain, d, absorptivity, 700, rays);
+        ck_assert_double_eq_tol(a.result.incident, 1, 1e-12);
+        for (uint32_t i = 0; i < bed.n; i++) {
+            const int depth = (int)(top - bed.z[i]);
+            sum += a.sphere[i], ours[depth < LAYERS ? depth : LAYERS - 1] += a.sphere[i];
+        }
+        printf("absorptivity %g slant %g: %.5f rays %.5f (%.2f %%)\n", absorptivity, slant, sum, all, 100 * (sum / all - 1));
+        for (int l = 0; l < 8; l++) printf("  %.5f %.5f (%.2f %%)", ours[l], rays[l], 100 * (ours[l] / rays[l] - 1));
+        printf("\n");
+        free_absorbed(&a);
+    }
+    plain_free(&plain);
+    bed_free(&bed);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("light in heat");
+    TCase *tcase = suite_case(suite, "reflections");
+    tcase_add_test(tcase, a_settled_bed_absorbs_as_plain_rays_say);
+    return suite_run(suite);
+}
