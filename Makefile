@@ -59,7 +59,7 @@ CHECK_CFLAGS = $(shell $(PKG_CONFIG) --cflags check)
 CHECK_LIBS   = $(shell $(PKG_CONFIG) --libs check)
 
 # the public headers, and sed that finds their functions
-HEADERS   = kernel/fibrad.h kernel/fibrad_limits.h kernel/fibrad_heat.h kernel/fibrad_mesh.h kernel/fibrad_surface.h kernel/fibrad_furnace.h host/simple/fibrad_host.h
+HEADERS   = kernel/fibrad.h kernel/fibrad_limits.h kernel/fibrad_heat.h kernel/fibrad_light.h kernel/fibrad_mesh.h kernel/fibrad_surface.h kernel/fibrad_furnace.h host/simple/fibrad_host.h
 FUNCTIONS = '/^typedef/d; s/^[a-z].*[ *]\(fibrad_[a-z0-9_]*\)(.*/\1;/p'
 
 # ---- sources: what a folder holds belongs to it ---------------------------------------------------------------------

@@ -7,6 +7,7 @@ folder=$BUILD/dist
 faults=0
 mkdir -p "$folder/joined" # the headers that are part of fibrad.h now
 : >"$folder/joined/fibrad_heat.h"
+: >"$folder/joined/fibrad_light.h"
 : >"$folder/joined/fibrad_limits.h"
 : >"$folder/joined/fibrad_mesh.h"
 : >"$folder/joined/fibrad_surface.h"

@@ -4,7 +4,7 @@ set -u
 status=0
 check() { # COMPILER LANGUAGE STANDARD
     if command -v "$1" >/dev/null; then
-        for header in fibrad.h fibrad_heat.h fibrad_mesh.h fibrad_surface.h fibrad_furnace.h fibrad_host.h; do
+        for header in fibrad.h fibrad_heat.h fibrad_light.h fibrad_mesh.h fibrad_surface.h fibrad_furnace.h fibrad_host.h; do
             printf '#include "%s"\nint main(void) { return fibrad_status_text(FIBRAD_OK) == 0; }\n' $header |
                 "$1" -x "$2" -std="$3" -pedantic-errors -Wall -Wextra -Werror -Ikernel -Ihost/simple -fsyntax-only - ||
                 status=1

@@ -13,8 +13,8 @@
 
 enum { PLAIN_SIDES = 6, PLAIN_CYLINDER = 6, PLAIN_OUTSIDE = 7, PLAIN_ENDS = 8 };
 
-/* A bed within planes, low and high, infinite where there is none, and a cylinder along z of the radius `round`, infinite
- * if there is none. */
+/* A bed within planes, low and high, infinite where there is none, and a cylinder along z of the radius `round`,
+ * infinite if there is none. */
 struct plain_bed {
     const struct bed *bed;
     double low[3], high[3], axis[2], round;
@@ -51,8 +51,9 @@ static inline void plain_fill(struct plain_bed *p, bool list) {
         for (int u = low[0]; u <= high[0]; u++)
             for (int v = low[1]; v <= high[1]; v++)
                 for (int w = low[2]; w <= high[2]; w++) {
-                    const int cell = plain_wrap(u, p->cells[0]) +
-                                     p->cells[0] * (plain_wrap(v, p->cells[1]) + p->cells[1] * plain_wrap(w, p->cells[2]));
+                    const int cell =
+                        plain_wrap(u, p->cells[0]) +
+                        p->cells[0] * (plain_wrap(v, p->cells[1]) + p->cells[1] * plain_wrap(w, p->cells[2]));
                     if (list)
                         p->sphere[p->first[cell]++] = i;
                     else
@@ -62,7 +63,9 @@ static inline void plain_fill(struct plain_bed *p, bool list) {
 }
 
 static inline struct plain_bed plain_bed_of(const struct bed *bed) {
-    struct plain_bed p = {.bed = bed, .low = {-INFINITY, -INFINITY, -INFINITY}, .high = {INFINITY, INFINITY, INFINITY},
+    struct plain_bed p = {.bed = bed,
+                          .low = {-INFINITY, -INFINITY, -INFINITY},
+                          .high = {INFINITY, INFINITY, INFINITY},
                           .round = INFINITY};
     const double *place[3] = {bed->x, bed->y, bed->z};
     double cell = 0;
@@ -125,8 +128,8 @@ static inline double plain_leave(const struct plain_bed *p, const double at[3], 
     return nearest;
 }
 
-/* Moves a place on a line along w to where the line enters by an opening, or to 100 before the place if nothing is there.
- * False: the line enters by a wall, or not at all. */
+/* Moves a place on a line along w to where the line enters by an opening, or to 100 before the place if nothing is
+ * there. False: the line enters by a wall, or not at all. */
 static inline bool plain_enter(const struct plain_bed *p, double at[3], const double w[3]) {
     double last = -INFINITY, first = INFINITY;
     bool open = true;

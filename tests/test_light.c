@@ -46,9 +46,7 @@ static double sum_of(const fibrad_light_ends *ends) {
     return sum;
 }
 
-static fibrad_light along(double x, double y, double z) {
-    return (fibrad_light){.direction = {x, y, z}, .flux = 1};
-}
+static fibrad_light along(double x, double y, double z) { return (fibrad_light){.direction = {x, y, z}, .flux = 1}; }
 
 START_TEST(a_lone_sphere_takes_its_shadow) {
     const double one[][4] = {{.3, -.2, .7, 1.7}};
@@ -87,8 +85,7 @@ START_TEST(a_simple_cubic_bed_is_lit_in_its_first_layer) {
         const fibrad_scene_config config = {.period = {8, 8, 0}, .body = &floor_body, .bodies = (uint32_t)walled};
         const fibrad_light light = along(0, 0, -1);
         struct lit lit = light_up(&bed, &config, &light);
-        for (uint32_t i = 0; i < bed.n; i++)
-            ck_assert_double_eq_tol(lit.power[i], bed.z[i] > 3 ? M_PI : 0, 1e-9);
+        for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq_tol(lit.power[i], bed.z[i] > 3 ? M_PI : 0, 1e-9);
         ck_assert_double_eq_tol(lit.ends.spheres / 64, M_PI / 4, 1e-9);
         ck_assert_double_eq_tol((walled ? lit.ends.body[0] : lit.ends.through) / 64, 1 - M_PI / 4, 1e-9);
         ck_assert_double_eq_tol(sum_of(&lit.ends), 64, 1e-12);
@@ -237,7 +234,8 @@ START_TEST(a_cup_as_by_rays) {
         begin_course(&c, bed, d[k][0], d[k][1], d[k][2]);
         add_wall(&c, 2, 0, low[2]);
         add_opening(&c, 2, 1, high[2] + .5);
-        c.body[c.config.bodies++] = (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {middle[0], middle[1], round}};
+        c.body[c.config.bodies++] =
+            (fibrad_body){.kind = FIBRAD_BODY_CYLINDER, .cylinder = {middle[0], middle[1], round}};
         c.plain.axis[0] = middle[0], c.plain.axis[1] = middle[1], c.plain.round = round;
         const fibrad_light light = along(d[k][0], d[k][1], d[k][2]);
         compare(&c, &light, middle, 6, RAYS);

@@ -28,8 +28,13 @@ struct absorbed {
 
 static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_config *config, const fibrad_light *light,
                                     double absorptivity, double of_walls) {
-    struct absorbed a = {calloc(bed->n, sizeof(double)), calloc(bed->n, sizeof(double)), calloc(bed->n, sizeof(double)),
-                         {0}, {0}, {0}, {0}};
+    struct absorbed a = {calloc(bed->n, sizeof(double)),
+                         calloc(bed->n, sizeof(double)),
+                         calloc(bed->n, sizeof(double)),
+                         {0},
+                         {0},
+                         {0},
+                         {0}};
     double *eps = malloc(bed->n * sizeof *eps), wall_eps[6];
     fibrad_radiation *radiation;
     const fibrad_spheres spheres = {.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
@@ -38,7 +43,8 @@ static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_co
     for (uint32_t i = 0; i < bed->n; i++) eps[i] = absorptivity;
     for (int b = 0; b < 6; b++) wall_eps[b] = of_walls;
     a.result = (fibrad_light_result){.absorbed = a.sphere, .absorbed_first = a.first, .absorbed_error = a.error};
-    a.result.body_absorbed = a.wall, a.result.body_absorbed_first = a.wall_first, a.result.body_absorbed_error = a.wall_error;
+    a.result.body_absorbed = a.wall, a.result.body_absorbed_first = a.wall_first,
+    a.result.body_absorbed_error = a.wall_error;
     ck_assert_int_eq(fibrad_radiation_new(&radiation, config, &spheres, NULL, NULL), 0);
     ck_assert_int_eq(fibrad_radiation_shine(radiation, &sources, &a.result), 0);
     fibrad_radiation_free(radiation);
@@ -96,15 +102,14 @@ START_TEST(a_settled_bed_absorbs_as_plain_rays_say) {
         const fibrad_light light = {.direction = {d[0], d[1], d[2]}, .flux = 1 / (144 * cos(slant))};
         struct absorbed a = absorb_light(&bed, &config, &light, absorptivity, 0);
         double rays[LAYERS], ours[LAYERS] = {0}, sum = 0;
-        const double all = absorb_plain(&plain, d, absorptivity, 700, rays);
+        const double all = absorb_plain(&plain, d, absorptivity, k % 2 ? 400 : 700, rays);
         ck_assert_double_eq_tol(a.result.incident, 1, 1e-12);
         for (uint32_t i = 0; i < bed.n; i++) {
             const int depth = (int)(top - bed.z[i]);
             sum += a.sphere[i], ours[depth < LAYERS ? depth : LAYERS - 1] += a.sphere[i];
         }
-        printf("absorptivity %g slant %g: %.5f rays %.5f (%.2f %%)\n", absorptivity, slant, sum, all, 100 * (sum / all - 1));
-        for (int l = 0; l < 8; l++) printf("  %.5f %.5f (%.2f %%)", ours[l], rays[l], 100 * (ours[l] / rays[l] - 1));
-        printf("\n");
+        ck_assert_double_eq_tol(sum, all, .003 * all);
+        for (int l = 0; l < LAYERS; l++) ck_assert_double_eq_tol(ours[l], rays[l], .01 * fmax(rays[l], .05 * all));
         free_absorbed(&a);
     }
     plain_free(&plain);
@@ -112,9 +117,52 @@ START_TEST(a_settled_bed_absorbs_as_plain_rays_say) {
 }
 END_TEST
 
+/* A floor that light reaches between few spheres, by what it absorbs itself and what it sends back. */
+START_TEST(a_floor_alone_absorbs_what_it_absorbs) {
+    const double far_away[][4] = {{0, 0, 1, .5}};
+    struct bed bed = bed_of(1, far_away);
+    const fibrad_body body = plane_at(2, 0, 0);
+    const fibrad_plane top = {2, 1, 2};
+    const fibrad_scene_config config = {
+        .period = {4, 4, 0}, .body = &body, .bodies = 1, .opening = &top, .openings = 1};
+    const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
+    for (int k = 0; k <= 4; k++) {
+        const double share = k / 4.;
+        struct absorbed a = absorb_light(&bed, &config, &light, 1, share);
+        const double sphere = M_PI / 4, wall = 16 - sphere; /* what they meet first */
+        ck_assert_double_eq_tol(a.first[0], sphere, 1e-12);
+        ck_assert_double_eq_tol(a.wall_first[0], share * wall, 1e-12);
+        ck_assert_double_eq_tol(a.wall[0], share * wall, 1e-9); /* nothing comes back to it */
+        ck_assert_double_eq_tol(a.sphere[0] + a.result.reflected, sphere + (1 - share) * wall, 1e-9);
+        ck_assert_double_eq_tol(a.result.transmitted, 0, 1e-12);
+        free_absorbed(&a);
+    }
+    bed_free(&bed);
+}
+END_TEST
+
+/* Light in a closed cup that reflects all ends on the sphere or outside, whatever its walls do. */
+START_TEST(white_walls_absorb_nothing) {
+    const double one[][4] = {{0, 0, .6, .5}};
+    struct bed bed = bed_of(1, one);
+    fibrad_body body[5];
+    for (int side = 0; side < 5; side++) body[side] = plane_at(side / 2, side % 2, side == 4 ? 0 : side % 2 ? 1 : -1);
+    const fibrad_plane top = {2, 1, 1.5};
+    const fibrad_scene_config config = {.body = body, .bodies = 5, .opening = &top, .openings = 1};
+    const fibrad_light light = {.direction = {.4, .1, -1}, .flux = 3, .half_angle = .1};
+    struct absorbed a = absorb_light(&bed, &config, &light, .3, 0);
+    for (int b = 0; b < 5; b++) ck_assert_double_eq_tol(a.wall[b], 0, 1e-12);
+    ck_assert_double_gt(a.sphere[0], 1.5 * a.first[0]);
+    free_absorbed(&a);
+    bed_free(&bed);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("light in heat");
     TCase *tcase = suite_case(suite, "reflections");
+    tcase_add_test(tcase, a_floor_alone_absorbs_what_it_absorbs);
+    tcase_add_test(tcase, white_walls_absorb_nothing);
     tcase_add_test(tcase, a_settled_bed_absorbs_as_plain_rays_say);
     return suite_run(suite);
 }

@@ -215,7 +215,7 @@ typedef struct fibrad_light_result {
     double reflected;            /* sigma K^4 L^2, out: leaves after reflections, on whichever side */
     double error;                /* sigma K^4 L^2, out: estimated error of reflected */
     uint32_t sweeps;             /* out */
-    const double *insulated;     /* [patches], out: light of fibrad_heat_sources for the thermal radiation; NULL: none */
+    const double *insulated; /* [patches], out: light of fibrad_heat_sources for the thermal radiation; NULL: none */
 } fibrad_light_result;
 
 /* What a bed absorbs of light from outside. The sum of `absorbed` and `body_absorbed`, with `reflected` and

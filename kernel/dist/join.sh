@@ -67,7 +67,7 @@ expand() {
 # ---- fibrad.h
 {
     echo "/* fibrad $version: the public headers of the kernel in one, made by 'make dist'. SPDX-License-Identifier: MIT */"
-    for header in fibrad_limits.h fibrad.h fibrad_heat.h fibrad_mesh.h fibrad_surface.h fibrad_furnace.h; do
+    for header in fibrad_limits.h fibrad.h fibrad_heat.h fibrad_light.h fibrad_mesh.h fibrad_surface.h fibrad_furnace.h; do
         grep -v '^#include "fibrad' $header
     done
 } >"$to/fibrad.h"

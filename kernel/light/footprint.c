@@ -16,7 +16,7 @@ typedef struct ways_out {
     double at[3];
 } ways_out;
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double product_of(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /* Two unit vectors across a third one, with which they make up a right-handed frame. */
 static void complete_frame(double frame[9]) {
@@ -28,7 +28,7 @@ static void complete_frame(double frame[9]) {
     for (int a = 0; a < 3; a++) v[a] = w[(a + 1) % 3] * u[(a + 2) % 3] - w[(a + 2) % 3] * u[(a + 1) % 3];
 }
 
-static double squared_length(const double d[3]) { return dot(d, d); }
+static double squared_length(const double d[3]) { return product_of(d, d); }
 
 /* The axes across a light, and the direction towards it. */
 static void middle_frame(const fibrad_light *light, double frame[9]) {
@@ -56,8 +56,7 @@ static void light_frame(const fibrad_light *light, uint32_t k, double frame[9]) 
     fibrad_sincos_turn(light->half_angle / (2 * FIBRAD_PI), &s, &c);
     const double ring = s * fibrad_sqrt((k + .5) / n), up = fibrad_sqrt(1 - ring * ring);
     fibrad_azimuth(k, &cosine, &sine);
-    for (int a = 0; a < 3; a++)
-        frame[6 + a] = up * middle[6 + a] + ring * (cosine * middle[a] + sine * middle[3 + a]);
+    for (int a = 0; a < 3; a++) frame[6 + a] = up * middle[6 + a] + ring * (cosine * middle[a] + sine * middle[3 + a]);
     complete_frame(frame);
 }
 
@@ -70,7 +69,7 @@ uint32_t fibrad_light_obstacle(const fibrad_scene *scene, const fibrad_light *li
     for (uint32_t place = 0; place < scene->facts.spheres; place++) {
         const double to[3] = {scene->x[place] - light->centre[0], scene->y[place] - light->centre[1],
                               scene->z[place] - light->centre[2]};
-        const double depth = dot(to, frame + 6), reach = light->radius + scene->r[place];
+        const double depth = product_of(to, frame + 6), reach = light->radius + scene->r[place];
         const double aside = squared_length(to) - depth * depth;
         if (depth + scene->r[place] * (1 - 1e-9) > 0 && aside < reach * reach && scene->order[place] < first)
             first = scene->order[place];
@@ -82,9 +81,9 @@ uint32_t fibrad_light_obstacle(const fibrad_scene *scene, const fibrad_light *li
 static bool fits_periods(const fibrad_scene *scene, const fibrad_light *light) {
     bool fits = true;
     for (int a = 0; a < 3; a++) {
-        const double wide = light->shape == FIBRAD_LIGHT_DISC ? 2 * light->radius
+        const double wide = light->shape == FIBRAD_LIGHT_DISC           ? 2 * light->radius
                             : light->shape == FIBRAD_LIGHT_BOX && a < 2 ? light->high[a] - light->low[a]
-                                                                         : 0;
+                                                                        : 0;
         fits = fits && (scene->period[a] == 0 || wide <= scene->period[a]);
     }
     return fits;
@@ -92,7 +91,8 @@ static bool fits_periods(const fibrad_scene *scene, const fibrad_light *light) {
 
 int fibrad_light_why(const fibrad_scene *scene, const fibrad_light *light) {
     double size = 0;
-    bool valid = is_within(light->flux, 0, FIBRAD_POWER_MAX) && is_within(light->half_angle, 0, FIBRAD_HALF_ANGLE_MAX) &&
+    bool valid = is_within(light->flux, 0, FIBRAD_POWER_MAX) &&
+                 is_within(light->half_angle, 0, FIBRAD_HALF_ANGLE_MAX) &&
                  light->directions <= FIBRAD_LIGHT_DIRECTIONS_MAX && is_within(light->shape, 0, FIBRAD_LIGHT_BOX);
     for (int a = 0; a < 3; a++) {
         valid = valid && fibrad_finite(light->direction[a]);
@@ -117,7 +117,7 @@ static void find_box(fibrad_footprint *f, const fibrad_scene *scene) {
     const double r = scene->facts.radius_max;
     for (int a = 0; a < 3; a++) {
         f->low[a] = scene->period[a] > 0 ? scene->low[a] : fibrad_finite(c->low[a]) ? c->low[a] : scene->low[a] - r;
-        f->high[a] = scene->period[a] > 0     ? scene->low[a] + scene->period[a]
+        f->high[a] = scene->period[a] > 0        ? scene->low[a] + scene->period[a]
                      : fibrad_finite(c->high[a]) ? c->high[a]
                                                  : scene->high[a] + r;
         if (fibrad_finite(c->radius) && a < 2) f->low[a] = c->axis[a] - c->radius, f->high[a] = c->axis[a] + c->radius;
@@ -127,7 +127,7 @@ static void find_box(fibrad_footprint *f, const fibrad_scene *scene) {
 
 void fibrad_footprint_place(const fibrad_footprint *f, const double at[3], double uv[2]) {
     const double to[3] = {at[0] - f->origin[0], at[1] - f->origin[1], at[2] - f->origin[2]};
-    uv[0] = dot(to, f->frame), uv[1] = dot(to, f->frame + 3);
+    uv[0] = product_of(to, f->frame), uv[1] = product_of(to, f->frame + 3);
 }
 
 static void add_corner(fibrad_light_polygon *p, double u, double v) {
@@ -214,8 +214,7 @@ static void add_strip(const fibrad_footprint *f, int axis, fibrad_light_polygon 
     double half = 0; /* of the width */
     for (int a = 0; a < 3; a++)
         if (a != axis)
-            half += .5 * (f->high[a] - f->low[a]) *
-                    fibrad_abs(unit[0] * f->frame[3 + a] - unit[1] * f->frame[a]);
+            half += .5 * (f->high[a] - f->low[a]) * fibrad_abs(unit[0] * f->frame[3 + a] - unit[1] * f->frame[a]);
     for (int k = 0; k < 4; k++) {
         const double t = k == 0 || k == 3 ? -.5 : .5, s = k < 2 ? -half : half;
         add_corner(p, t * along[0] - s * unit[1], t * along[1] + s * unit[0]);
@@ -226,8 +225,7 @@ static void add_strip(const fibrad_footprint *f, int axis, fibrad_light_polygon 
 static void add_cell(const fibrad_footprint *f, const int axis[2], fibrad_light_polygon *p) {
     double edge[2][2];
     for (int k = 0; k < 2; k++)
-        for (int c = 0; c < 2; c++)
-            edge[k][c] = (f->high[axis[k]] - f->low[axis[k]]) * f->frame[3 * c + axis[k]];
+        for (int c = 0; c < 2; c++) edge[k][c] = (f->high[axis[k]] - f->low[axis[k]]) * f->frame[3 * c + axis[k]];
     for (int k = 0; k < 4; k++) {
         const double s = k == 1 || k == 2 ? .5 : -.5, t = k < 2 ? -.5 : .5;
         add_corner(p, s * edge[0][0] + t * edge[1][0], s * edge[0][1] + t * edge[1][1]);
@@ -257,12 +255,12 @@ static ways_out planes_met(const fibrad_footprint *f, const fibrad_scene *scene,
     return out;
 }
 
-static uint32_t slot_of_plane(const fibrad_footprint *f, uint32_t axis, double sense) {
+static uint32_t slot_facing(const fibrad_footprint *f, uint32_t axis, double sense) {
     return 2 * axis + (sense * f->frame[6 + axis] > 0);
 }
 
 /* Depth towards the light at which the line u, v meets a plane: constant + its product with the other two numbers. */
-static void depth_of_plane(const fibrad_footprint *f, uint32_t axis, double at, double depth[3]) {
+static void depth_at_plane(const fibrad_footprint *f, uint32_t axis, double at, double depth[3]) {
     const double w = f->frame[6 + axis];
     depth[0] = 0 - f->frame[axis] / w, depth[1] = 0 - f->frame[3 + axis] / w, depth[2] = (at - f->origin[axis]) / w;
 }
@@ -272,14 +270,13 @@ static uint32_t add_first(const fibrad_footprint *f, const ways_out *out, uint32
                           fibrad_light_line *line) {
     double own[3], other[3];
     uint32_t count = 0;
-    depth_of_plane(f, out->axis[k], out->at[k], own);
+    depth_at_plane(f, out->axis[k], out->at[k], own);
     for (uint32_t m = 0; m < out->count; m++) {
         if (m == k) continue;
-        depth_of_plane(f, out->axis[m], out->at[m], other);
+        depth_at_plane(f, out->axis[m], out->at[m], other);
         const double n[2] = {sense * (own[0] - other[0]), sense * (own[1] - other[1])};
         const double size = fibrad_sqrt(n[0] * n[0] + n[1] * n[1]);
-        line[count++] =
-            (fibrad_light_line){{n[0] / size, n[1] / size}, sense * (other[2] - own[2]) / size};
+        line[count++] = (fibrad_light_line){{n[0] / size, n[1] / size}, sense * (other[2] - own[2]) / size};
     }
     return count;
 }
@@ -313,7 +310,7 @@ static void cut_polygon(fibrad_light_polygon *p, const fibrad_light_line *line, 
 }
 
 /* The polygon of all light, whose sides become common lines where light ends there, but for those between periods. */
-static void find_start(fibrad_footprint *f, const fibrad_scene *scene, const fibrad_light *light) {
+static void find_outline(fibrad_footprint *f, const fibrad_scene *scene, const fibrad_light *light) {
     const fibrad_container *c = &scene->container;
     const bool round = fibrad_finite(c->radius), level = f->frame[6] == 0 && f->frame[7] == 0;
     int periodic[3], periods = 0;
@@ -353,8 +350,8 @@ static void bound_beam(fibrad_footprint *f, const fibrad_scene *scene) {
         for (int high = 0; high < 2 && f->frame[6 + a] == 0; high++) {
             const double at = high ? c->high[a] : c->low[a], sign = high ? 1 : -1;
             if (!fibrad_finite(at)) continue;
-            f->line[f->common++] = (fibrad_light_line){{sign * f->frame[a], sign * f->frame[3 + a]},
-                                                       sign * (at - f->origin[a])};
+            f->line[f->common++] =
+                (fibrad_light_line){{sign * f->frame[a], sign * f->frame[3 + a]}, sign * (at - f->origin[a])};
         }
     if (!fibrad_finite(c->radius)) return;
     add_circle(f, c, f->frame[8] > 0 ? f->high[2] : f->low[2], &f->polygon);
@@ -385,7 +382,7 @@ static void add_ends(fibrad_footprint *f, const fibrad_scene *scene, const fibra
     for (uint32_t k = 0; k < out.count; k++) {
         piece = *entry;
         piece.lines += add_first(f, &out, k, -1, piece.line + piece.lines);
-        piece.slot = slot_of_plane(f, out.axis[k], -1);
+        piece.slot = slot_facing(f, out.axis[k], -1);
         if (fibrad_is_opening(c, piece.slot)) piece.slot = FIBRAD_ESCAPED;
         piece.far = round;
         add_piece(f, &piece);
@@ -413,7 +410,7 @@ void fibrad_footprint_make(fibrad_footprint *f, const fibrad_scene *scene, const
     fibrad_zero(f->image, sizeof f->image);
     if (scene->period[0] > 0 && scene->period[1] > 0 && scene->period[2] > 0) return;
     find_box(f, scene);
-    find_start(f, scene, light);
+    find_outline(f, scene, light);
     find_bounds(f);
     if (light->shape != FIBRAD_LIGHT_ALL) bound_beam(f, scene);
     const bool slanted = fibrad_finite(c->radius) && !(f->frame[6] == 0 && f->frame[7] == 0);
@@ -426,14 +423,14 @@ void fibrad_footprint_make(fibrad_footprint *f, const fibrad_scene *scene, const
     if (in.count == 0 && !slanted) add_ends(f, scene, &anywhere);
     for (uint32_t m = 0; m < in.count; m++) {
         fibrad_light_piece entry = {.sign = 1, .face = in.axis[m], .from = in.at[m]};
-        if (!fibrad_is_opening(c, slot_of_plane(f, in.axis[m], 1))) continue;
+        if (!fibrad_is_opening(c, slot_facing(f, in.axis[m], 1))) continue;
         entry.lines = add_first(f, &in, m, 1, entry.line);
         add_ends(f, scene, &entry);
     }
 }
 
 /* How many whole periods a place is from the middle of the beam. */
-static void periods_away(const fibrad_footprint *f, const double uv[2], double periods[2]) {
+static void periods_from_beam(const fibrad_footprint *f, const double uv[2], double periods[2]) {
     const double *a = f->image[0], *b = f->image[1];
     const double x = uv[0] - .5 * (f->bound_low[0] + f->bound_high[0]),
                  y = uv[1] - .5 * (f->bound_low[1] + f->bound_high[1]);
@@ -450,7 +447,7 @@ static void periods_away(const fibrad_footprint *f, const double uv[2], double p
 bool fibrad_footprint_image(const fibrad_footprint *f, const double uv[2], uint32_t image, double at[2]) {
     double periods[2];
     if (image >= (f->images == 2 ? 9u : f->images == 1 ? 3u : 1u)) return false;
-    periods_away(f, uv, periods);
+    periods_from_beam(f, uv, periods);
     if (f->images > 0) periods[0] += (double)(image % 3) - 1;
     if (f->images > 1) periods[1] += (double)(image / 3) - 1;
     for (int n = 0; n < 2; n++) at[n] = uv[n] - (periods[0] * f->image[0][n] + periods[1] * f->image[1][n]);
@@ -483,7 +480,7 @@ void fibrad_footprint_enters(const fibrad_footprint *f, uint32_t piece, const do
     if (f->piece[piece].face == NO_FACE) {
         for (int a = 0; a < 3; a++) depth += (f->high[a] - f->low[a]) * fibrad_abs(f->frame[6 + a]);
     } else {
-        depth_of_plane(f, f->piece[piece].face, f->piece[piece].from, plane);
+        depth_at_plane(f, f->piece[piece].face, f->piece[piece].from, plane);
         depth = plane[0] * uv[0] + plane[1] * uv[1] + plane[2];
     }
     for (int a = 0; a < 3; a++)

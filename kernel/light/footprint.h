@@ -52,15 +52,15 @@ typedef struct fibrad_light_arc {
 } fibrad_light_arc;
 
 typedef struct fibrad_footprint {
-    double frame[9];                /* axes u and v, and the direction towards the light */
-    double origin[3];               /* L, where u = v = 0 and the depth is 0 */
-    double low[3], high[3];         /* L, box about the bed: walls, periods or spheres */
+    double frame[9];                    /* axes u and v, and the direction towards the light */
+    double origin[3];                   /* L, where u = v = 0 and the depth is 0 */
+    double low[3], high[3];             /* L, box about the bed: walls, periods or spheres */
     double bound_low[2], bound_high[2]; /* L, u and v of the whole cross-section */
-    double image[2][2];             /* L, u and v of the periods of a beam that is repeated */
-    uint32_t images, common, far;   /* how many of them; number of lines of all pieces, and of the cylinder's far end */
+    double image[2][2];                 /* L, u and v of the periods of a beam that is repeated */
+    uint32_t images, common, far; /* how many of them; number of lines of all pieces, and of the cylinder's far end */
     uint32_t pieces;
     fibrad_light_piece piece[FIBRAD_LIGHT_PIECES];
-    fibrad_light_line line[FIBRAD_LIGHT_LINES]; /* common ones, then those of the far end */
+    fibrad_light_line line[FIBRAD_LIGHT_LINES];   /* common ones, then those of the far end */
     fibrad_light_polygon start, polygon, clipped; /* of all, and scratch */
     fibrad_light_edge edge[FIBRAD_LIGHT_LINES];   /* scratch */
     fibrad_light_arc arc[FIBRAD_LIGHT_LINES + 1]; /* scratch */
@@ -69,7 +69,8 @@ typedef struct fibrad_footprint {
 /* What is wrong with a light, a fibrad_why. */
 int fibrad_light_why(const fibrad_scene *scene, const fibrad_light *light);
 
-/* The first sphere, by the caller's index, that lies before the disc of a light as seen along the light; FIBRAD_NONE. */
+/* The first sphere, by the caller's index, that lies before the disc of a light as seen along the light; FIBRAD_NONE.
+ */
 uint32_t fibrad_light_obstacle(const fibrad_scene *scene, const fibrad_light *light);
 
 /* How many directions a light has. */

@@ -11,7 +11,7 @@
 
 /* Where an arc crosses a line: at most once each way, as places from the arc's centre. */
 typedef struct arc_crossings {
-    bool leaves, enters;     /* it goes outwards, inwards */
+    bool leaves, enters; /* it goes outwards, inwards */
     bool begins_inside;
     double out[2], back[2];
 } arc_crossings;
@@ -47,8 +47,8 @@ static arc_crossings crossings_of(const fibrad_open_arc *arc, const double p[2],
 /* What Green's theorem says of the arc from p to q. */
 static double arc_integral(const fibrad_open_arc *arc, const double p[2], const double q[2]) {
     const double sine = fibrad_max(0, cross(p, q)), cosine = p[0] * q[0] + p[1] * q[1];
-    const double angle = cosine >= 0 ? fibrad_quarter_angle(cosine, sine)
-                                     : FIBRAD_PI - fibrad_quarter_angle(0 - cosine, sine);
+    const double angle =
+        cosine >= 0 ? fibrad_quarter_angle(cosine, sine) : FIBRAD_PI - fibrad_quarter_angle(0 - cosine, sine);
     const double chord[2] = {q[0] - p[0], q[1] - p[1]};
     return .5 * (arc->r * arc->r * angle + cross(arc->c, chord));
 }
@@ -92,8 +92,7 @@ static double inside_of_arc(fibrad_footprint *f, const fibrad_open_arc *arc, uin
     return arc_integral(arc, part.p, part.q);
 }
 
-static void add_arc(void *context, const fibrad_open_arc *arc) {
-    region_sum *sum = context;
+static void add_open_arc(region_sum *sum, const fibrad_open_arc *arc) {
     const int sense = arc->circle == 0 ? 1 : -1;
     uint32_t parts = 1;
     cross_edges(sum, arc, sense);
@@ -136,11 +135,12 @@ static void bound_edges(fibrad_footprint *f, uint32_t edges) {
 #define SHIFT    1e-12
 static double area_within(fibrad_footprint *f, const fibrad_areas *areas, uint32_t edges) {
     region_sum sum = {f, edges, 0};
+    fibrad_open_arc arc;
     for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
         bool paired = true;
         sum.area = 0;
         bound_edges(f, edges);
-        fibrad_areas_visit(areas, add_arc, &sum);
+        for (uint32_t at = 0; fibrad_areas_next(areas, &at, &arc);) add_open_arc(&sum, &arc);
         for (uint32_t e = 0; e < edges; e++) {
             sum.area += f->edge[e].sum, paired = paired && f->edge[e].balance == 0;
             f->edge[e].line.c += SHIFT;

@@ -65,13 +65,12 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
 }
 
 /* Adds what one sphere takes in one direction. */
-static int add_sphere(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place, double flux, double *power,
-                      fibrad_light_ends *kept) {
+static int take_one(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place, double flux, double *power,
+                    fibrad_light_ends *kept) {
     fibrad_footprint *f = fibrad_light_footprint(space);
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
     double area[FIBRAD_SLOTS] = {0}, open, uv[2];
-    const int status =
-        FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, NULL, &open);
+    const int status = FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, NULL, &open);
     if (status != FIBRAD_OK) return status;
     fibrad_footprint_place(f, centre, uv);
     if (open > 0) fibrad_footprint_share(f, &space->areas, open, uv, scene->r[place], area);
@@ -81,8 +80,8 @@ static int add_sphere(const fibrad_scene *scene, fibrad_workspace *space, uint32
 }
 
 /* All directions of a light, once. */
-static int add_spheres(const fibrad_scene *scene, fibrad_workspace *space, const fibrad_light *light, uint32_t from,
-                       uint32_t to, double *power, fibrad_light_ends *kept) {
+static int take_all(const fibrad_scene *scene, fibrad_workspace *space, const fibrad_light *light, uint32_t from,
+                    uint32_t to, double *power, fibrad_light_ends *kept) {
     const uint32_t count = fibrad_light_count(light);
     int status = FIBRAD_OK;
     *kept = (fibrad_light_ends){0};
@@ -90,7 +89,7 @@ static int add_spheres(const fibrad_scene *scene, fibrad_workspace *space, const
     for (uint32_t k = 0; k < count && status == FIBRAD_OK; k++) {
         fibrad_footprint_make(fibrad_light_footprint(space), scene, light, k);
         for (uint32_t i = from; i < to && status == FIBRAD_OK; i++)
-            status = add_sphere(scene, space, scene->place[i], light->flux / count, &power[i - from], kept);
+            status = take_one(scene, space, scene->place[i], light->flux / count, &power[i - from], kept);
     }
     for (uint32_t i = from; i < to; i++) kept->spheres += power[i - from];
     return status;
@@ -104,7 +103,7 @@ int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fib
     if (status == FIBRAD_OK && (from > to || to > scene->facts.spheres)) status = FIBRAD_E_ARGUMENT;
     if (status == FIBRAD_OK) status = fibrad_light_open(scene, work, 0, &space);
     while (status == FIBRAD_OK) {
-        status = add_spheres(scene, space, light, from, to, power, kept);
+        status = take_all(scene, space, light, from, to, power, kept);
         if (status != FIBRAD_E_WORK) break;
         status = fibrad_work_grow(work, &space);
     }

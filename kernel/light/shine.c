@@ -48,13 +48,12 @@ static bool is_lit(const shining *s, const fibrad_points *points, uint32_t p) {
 }
 
 /* The middle of the corners of an open region, for regions so small that they hold no point. */
-typedef struct corner_mean {
-    double x, y, corners;
-} corner_mean;
-
-static void add_to_mean(void *context, const fibrad_open_arc *arc) {
-    corner_mean *mean = context;
-    mean->x += arc->c[0] + arc->p[0], mean->y += arc->c[1] + arc->p[1], mean->corners++;
+static void middle_of_corners(const fibrad_areas *areas, double middle[2]) {
+    fibrad_open_arc arc;
+    double corners = 0, sum[2] = {0, 0};
+    for (uint32_t at = 0; fibrad_areas_next(areas, &at, &arc); corners++)
+        for (int a = 0; a < 2; a++) sum[a] += arc.c[a] + arc.p[a];
+    for (int a = 0; a < 2; a++) middle[a] = corners > 0 ? sum[a] / corners : 0;
 }
 
 /* Spreads a power over the patches that the lit points of a window are on. */
@@ -65,10 +64,9 @@ static void spread_on_sphere(const shining *s, const fibrad_points *points, cons
     for (uint32_t p = 0; p < points->count && count > 0; p++)
         if (is_lit(s, points, p)) hits[patch_in_window(s, points->set.x[p], points->set.y[p])] += power / count;
     if (count > 0) return;
-    corner_mean mean = {0, 0, 0};
-    fibrad_areas_visit(areas, add_to_mean, &mean);
-    if (mean.corners > 0) mean.x /= mean.corners, mean.y /= mean.corners;
-    hits[patch_in_window(s, mean.x, mean.y)] += power;
+    double middle[2];
+    middle_of_corners(areas, middle);
+    hits[patch_in_window(s, middle[0], middle[1])] += power;
 }
 
 /* Adds what the sphere at a place takes in one direction. */
@@ -212,8 +210,7 @@ int fibrad_heat_keep_light(const fibrad_heat *heat, const unsigned char *insulat
     for (uint32_t b = 0; b < heat->given_bodies; b++) {
         const uint32_t own = fibrad_heat_body(heat, heat->slot[b]);
         double sum = 0;
-        for (uint32_t a = heat->first[own]; a < heat->first[own + 1]; a++)
-            sum += fibrad_max(0, heat->solution.net[a]);
+        for (uint32_t a = heat->first[own]; a < heat->first[own + 1]; a++) sum += fibrad_max(0, heat->solution.net[a]);
         for (uint32_t a = heat->first[own]; a < heat->first[own + 1] && sum > 0 && insulated[b]; a++)
             hits[a] = fibrad_max(0, heat->solution.net[a]) / sum * fibrad_max(0, heat->solution.power[own]);
     }

@@ -82,69 +82,58 @@ void fibrad_areas_clear_arcs(fibrad_areas *areas) {
     areas->dense.written = false;
 }
 
-static void visit_dense(const fibrad_dense *grid, fibrad_arc_visit *visit, void *context) {
-    for (uint32_t n = 0; n < grid->blocks; n++)
-        for (uint32_t bits = grid->alive[n]; bits != 0; bits &= bits - 1) {
-            const uint32_t k = n * FIBRAD_DENSE_BLOCK + (uint32_t)__builtin_ctz(bits);
-            visit(context, &(fibrad_open_arc){(uint32_t)grid->circle[k],
-                                              {grid->px[k], grid->py[k]},
-                                              {grid->qx[k], grid->qy[k]},
-                                              {grid->cx[k], grid->cy[k]},
-                                              grid->r[k],
-                                              {grid->qx[k] - grid->px[k], grid->qy[k] - grid->py[k]}});
-        }
+static fibrad_open_arc arc_of(double circle, const double *p[2], const double *q[2], const double c[2], double r,
+                              uint32_t k) {
+    const double px = p[0][k], py = p[1][k], qx = q[0][k], qy = q[1][k];
+    return (fibrad_open_arc){(uint32_t)circle, {px, py}, {qx, qy}, {c[0], c[1]}, r, {qx - px, qy - py}};
 }
 
-static void visit_arrangement(const fibrad_areas *areas, fibrad_arc_visit *visit, void *context) {
+static bool next_dense(const fibrad_dense *grid, uint32_t *at, fibrad_open_arc *arc) {
+    while (*at < grid->blocks * FIBRAD_DENSE_BLOCK) {
+        const uint32_t k = (*at)++;
+        if ((grid->alive[k / FIBRAD_DENSE_BLOCK] >> k % FIBRAD_DENSE_BLOCK & 1) == 0) continue;
+        const double *p[2] = {grid->px, grid->py}, *q[2] = {grid->qx, grid->qy}, c[2] = {grid->cx[k], grid->cy[k]};
+        *arc = arc_of(grid->circle[k], p, q, c, grid->r[k], k);
+        return true;
+    }
+    return false;
+}
+
+static bool next_clipped(const fibrad_boundary *b, uint32_t *at, fibrad_open_arc *arc) {
+    while (*at < FIBRAD_BOUNDARY) {
+        const uint32_t k = (*at)++;
+        if ((b->alive >> k & 1) == 0) continue;
+        const double *p[2] = {b->px, b->py}, *q[2] = {b->qx, b->qy}, c[2] = {b->cx[k], b->cy[k]};
+        *arc = arc_of(b->circle[k], p, q, c, b->r[k], k);
+        return true;
+    }
+    return false;
+}
+
+/* The arrangement has points of the window in the place of those about the centre. */
+static bool next_arranged(const fibrad_areas *areas, uint32_t *at, fibrad_open_arc *arc) {
     const fibrad_arcs *open = &areas->arrangement.open;
-    for (uint32_t k = 0; k < open->count; k++) {
-        const uint32_t m = (uint32_t)open->circle[k];
-        const double x = areas->x[m], y = areas->y[m];
-        visit(context, &(fibrad_open_arc){m,
-                                          {open->px[k] - x, open->py[k] - y},
-                                          {open->qx[k] - x, open->qy[k] - y},
-                                          {x, y},
-                                          areas->r[m],
-                                          {open->qx[k] - open->px[k], open->qy[k] - open->py[k]}});
-    }
+    if (*at >= open->count) return false;
+    const uint32_t k = (*at)++, m = (uint32_t)open->circle[k];
+    const double *p[2] = {open->px, open->py}, *q[2] = {open->qx, open->qy}, c[2] = {areas->x[m], areas->y[m]};
+    *arc = arc_of(open->circle[k], p, q, c, areas->r[m], k);
+    for (int axis = 0; axis < 2; axis++) arc->p[axis] -= c[axis], arc->q[axis] -= c[axis];
+    return true;
 }
 
-void fibrad_areas_visit(const fibrad_areas *areas, fibrad_arc_visit *visit, void *context) {
-    const fibrad_boundary *b = areas->boundary;
-    if (areas->degenerate) {
-        visit_arrangement(areas, visit, context);
-    } else if (areas->dense.on) {
-        visit_dense(&areas->dense, visit, context);
-    } else {
-        for (uint64_t bits = b->alive; bits != 0; bits &= bits - 1) {
-            const uint32_t k = (uint32_t)__builtin_ctzll(bits);
-            visit(context, &(fibrad_open_arc){(uint32_t)b->circle[k],
-                                              {b->px[k], b->py[k]},
-                                              {b->qx[k], b->qy[k]},
-                                              {b->cx[k], b->cy[k]},
-                                              b->r[k],
-                                              {b->qx[k] - b->px[k], b->qy[k] - b->py[k]}});
-        }
-    }
+bool fibrad_areas_next(const fibrad_areas *areas, uint32_t *at, fibrad_open_arc *arc) {
+    if (areas->degenerate) return next_arranged(areas, at, arc);
+    return areas->dense.on ? next_dense(&areas->dense, at, arc) : next_clipped(areas->boundary, at, arc);
 }
 
-typedef struct slope_sum {
-    const fibrad_areas *areas;
-    const double *depth;
-    double *slope;
-} slope_sum;
-
-/* Adds what an arc of a disc's circle contributes: the integral of the normal along it, times the depth. The window's
- * own circle stays. */
-static void add_slope(void *context, const fibrad_open_arc *arc) {
-    const slope_sum *sum = context;
-    if (arc->circle == 0) return;
-    const double t = sum->depth[sum->areas->whose[arc->circle]];
-    sum->slope[0] += t * arc->chord[1], sum->slope[1] -= t * arc->chord[0];
-}
-
+/* An arc of a disc's circle contributes the integral of the normal along it, times the depth. The window's own circle
+ * stays. */
 void fibrad_areas_slope(const fibrad_areas *areas, const double *depth, double slope[2]) {
-    slope_sum sum = {areas, depth, slope};
+    fibrad_open_arc arc;
     slope[0] = slope[1] = 0;
-    fibrad_areas_visit(areas, add_slope, &sum);
+    for (uint32_t at = 0; fibrad_areas_next(areas, &at, &arc);) {
+        if (arc.circle == 0) continue;
+        const double t = depth[areas->whose[arc.circle]];
+        slope[0] += t * arc.chord[1], slope[1] -= t * arc.chord[0];
+    }
 }

@@ -85,17 +85,17 @@ void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t disc
  * too: there must be one of that number. */
 void fibrad_areas_clear_arcs(fibrad_areas *areas);
 
-/* An arc that bounds the open region of a completed window: counter-clockwise from c + p to c + q about c, at most half a
- * circle. The open region is on its left if the circle is the window, else on its right. */
+/* An arc that bounds the open region of a completed window: counter-clockwise from c + p to c + q about c, at most half
+ * a circle. The open region is on its left if the circle is the window, else on its right. */
 typedef struct fibrad_open_arc {
     uint32_t circle; /* its number; 0: the window */
     double p[2], q[2], c[2], r;
     double chord[2]; /* q - p */
 } fibrad_open_arc;
 
-/* Calls a function for each arc that bounds the open region of a completed window, in a fixed order. */
-typedef void fibrad_arc_visit(void *context, const fibrad_open_arc *arc);
-void fibrad_areas_visit(const fibrad_areas *areas, fibrad_arc_visit *visit, void *context);
+/* The arcs that bound the open region of a completed window, one after the other in a fixed order. *at begins with 0.
+ * False: there are no more. */
+bool fibrad_areas_next(const fibrad_areas *areas, uint32_t *at, fibrad_open_arc *arc);
 
 /* How fast the open area of a completed window grows as the window's direction turns: slope[0] towards u, slope[1]
  * towards v, per radian. A disc at depth t then moves by -t; what its open rim passes over is covered. depth: of the

@@ -37,10 +37,10 @@ else
 fi
 
 # every structure that the headers define
-enums=$(sed -n 's/^typedef enum \(fibrad_[a-z_]*\) {.*/\1/p' "$tree/usr/include/fibrad.h" "$tree/usr/include/fibrad_surface.h" \
+enums=$(sed -n 's/^typedef enum \(fibrad_[a-z_]*\) {.*/\1/p' "$tree/usr/include/fibrad.h" "$tree/usr/include/fibrad_light.h" "$tree/usr/include/fibrad_surface.h" \
     "$tree/usr/include/fibrad_host.h")
 sed -n 's/^} \(fibrad_[a-z_]*\);.*/\1/p; s/^struct \(fibrad_[a-z_]*\) {.*/typedef struct \1 \1/p' "$tree/usr/include/fibrad.h" \
-    "$tree/usr/include/fibrad_heat.h" "$tree/usr/include/fibrad_surface.h" \
+    "$tree/usr/include/fibrad_heat.h" "$tree/usr/include/fibrad_light.h" "$tree/usr/include/fibrad_surface.h" \
     "$tree/usr/include/fibrad_host.h" | sed 's/.* //' |
     grep -vx "$enums" | sed 's/.*/CHECK(&);/' >"$tree/structures.inc"
 test "$(wc -l <"$tree/structures.inc")" -gt 20
