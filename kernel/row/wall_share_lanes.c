@@ -14,8 +14,7 @@
 #include "window/points_lanes.h"
 
 #define WALL_POINTS   128u
-#define HIDDEN_POINTS 64u  /* of windows of which nothing is open */
-#define FAR_AWAY      1e30 /* [radii] where walls are that there are not */
+#define HIDDEN_POINTS 64u /* of windows of which nothing is open */
 
 /* Rotates the axes u, v of a frame; coordinates in it rotate the other way. */
 static void rotate_frame(double frame[9], double cos, double sin) {
@@ -69,14 +68,14 @@ static void share_round(const fibrad_wall_window *window, const fibrad_wall_view
     vd along = x * rate + lines->w[0] * away, across = y * rate + lines->w[1] * away;
     vd end = share_at_edge(view->radius * rate - vd_sqrt(along * along + across * across), window->sharpness[2]);
     lines->share[0] = lines->share[1] = zero;
-    lines->share[2] = vd_select(vd_lt(away, vd_set1(FAR_AWAY)), end, zero);
+    lines->share[2] = vd_select(vd_lt(away, vd_set1(FIBRAD_FAR_AWAY)), end, zero);
     lines->share[3] = 1 - lines->share[2];
 }
 
 /* Between three planes: what comes before both others; near a corner something is left, for all of them. Where a wall
  * is not there the others come first. */
 FIBRAD_INLINE void share_planes(const fibrad_wall_window *window, wall_lines *lines) {
-    const vd zero = vd_set1(0), half = vd_set1(0.5), one = vd_set1(1), far = vd_set1(FAR_AWAY);
+    const vd zero = vd_set1(0), half = vd_set1(0.5), one = vd_set1(1), far = vd_set1(FIBRAD_FAR_AWAY);
     const vd *away = lines->away, *rate = lines->rate;
     vd first[3], left = one; /* of axis a before axis a + 1 */
     for (int a = 0; a < 3; a++) {
@@ -110,7 +109,7 @@ FIBRAD_INLINE void meet_walls(const fibrad_wall_window *window, const fibrad_wal
     for (int axis = 0; axis < 3; axis++) {
         vd w = lines->w[axis], o = lines->origin[axis];
         vd away = vd_select(vd_lt(w, vd_set1(0)), o - view->low[axis], view->high[axis] - o);
-        lines->rate[axis] = vd_abs(w), lines->away[axis] = vd_min(vd_set1(FAR_AWAY), away);
+        lines->rate[axis] = vd_abs(w), lines->away[axis] = vd_min(vd_set1(FIBRAD_FAR_AWAY), away);
     }
     if (round)
         share_round(window, view, lines);
@@ -217,7 +216,7 @@ static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint
             const bool up = n < 3 && line.w[n] >= 0;
             const bool there = n == 3 || (up ? view->high[n] : -view->low[n]) < __builtin_inf();
             most = share[lane];
-            wall = n == 3 ? FIBRAD_CYLINDER : there ? 2 * n + up : FIBRAD_WALLS;
+            wall = n == 3 ? FIBRAD_CYLINDER : there ? fibrad_slot_of_plane(n, up) : FIBRAD_WALLS;
         }
         if (sums->cuts[wall]++ == 0) sums->first_cut[wall] = line;
     }

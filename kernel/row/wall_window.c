@@ -18,8 +18,6 @@
  * to second order; a little more is better, since the part is bounded. */
 #define WALL_SLOPE 0.6
 
-#define FAR_AWAY 1e30 /* [radii] where walls are that there are not */
-
 /* The walls that the direction of a window approaches, and those behind it. */
 typedef struct wall_course {
     double ahead[3], behind[3], rate[3];
@@ -28,7 +26,8 @@ typedef struct wall_course {
 static wall_course course_of(const fibrad_wall_view *view, const double w[3]) {
     wall_course course;
     for (int axis = 0; axis < 3; axis++) {
-        const double low = fibrad_min(FAR_AWAY, -view->low[axis]), high = fibrad_min(FAR_AWAY, view->high[axis]);
+        const double low = fibrad_min(FIBRAD_FAR_AWAY, -view->low[axis]),
+                     high = fibrad_min(FIBRAD_FAR_AWAY, view->high[axis]);
         course.rate[axis] = fibrad_abs(w[axis]);
         course.ahead[axis] = w[axis] < 0 ? low : high, course.behind[axis] = w[axis] < 0 ? high : low;
     }
@@ -158,7 +157,7 @@ static uint32_t sole_wall(const fibrad_wall_window *window, const fibrad_wall_vi
     const wall_course course = course_of(view, window->frame + 6);
     const double *ahead = course.ahead, *rate = course.rate;
     if (view->round) {
-        const bool open = ahead[2] >= FAR_AWAY, open_too = course.behind[2] >= FAR_AWAY;
+        const bool open = ahead[2] >= FIBRAD_FAR_AWAY, open_too = course.behind[2] >= FIBRAD_FAR_AWAY;
         if (rate[2] < window->wide) return open && open_too ? 3 : 4;
         if (open) return 3;
         wall_edge edge = edge_of_end(view, &course, window->frame + 6);
@@ -168,13 +167,13 @@ static uint32_t sole_wall(const fibrad_wall_window *window, const fibrad_wall_vi
     }
     uint32_t a = ahead[1] * rate[0] < ahead[0] * rate[1] ? 1 : 0;
     if (ahead[2] * rate[a] < ahead[a] * rate[2]) a = 2;
-    if (rate[a] < window->wide || ahead[a] >= FAR_AWAY) return 4;
+    if (rate[a] < window->wide || ahead[a] >= FIBRAD_FAR_AWAY) return 4;
     for (uint32_t b = 0; b < 3; b++) {
         const wall_edge to = edge_of_planes(ahead[a], rate[a], ahead[b], rate[b]);
         const wall_edge back = edge_of_planes(ahead[a], rate[a], course.behind[b], 0);
         if (b == a) continue;
-        if (ahead[b] < FAR_AWAY && sole_at(window, &to) < 1) return 4;
-        if (rate[b] < window->wide && course.behind[b] < FAR_AWAY && sole_at(window, &back) < 1) return 4;
+        if (ahead[b] < FIBRAD_FAR_AWAY && sole_at(window, &to) < 1) return 4;
+        if (rate[b] < window->wide && course.behind[b] < FIBRAD_FAR_AWAY && sole_at(window, &back) < 1) return 4;
     }
     return a;
 }

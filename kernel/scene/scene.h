@@ -4,24 +4,9 @@
 
 #include "base/port.h"
 #include "mesh/mesh.h"
+#include "scene/slots.h"
 
 #define FIBRAD_NONE UINT32_MAX
-
-/* The end of a ray that meets no sphere has a slot:
- *   0 to 5     planes: x low, x high, y low, y high, z low, z high
- *   6          the cylinder
- *   7          the surroundings
- *   8          not known: `beyond` of a row
- *   9 and up   meshes, in the order of the walls of the configuration */
-#define FIBRAD_WALLS    7
-#define FIBRAD_CYLINDER 6u
-#define FIBRAD_ESCAPED  7
-#define FIBRAD_BEYOND   8
-#define FIBRAD_MESHES   9u
-#define FIBRAD_SLOTS    (FIBRAD_MESHES + FIBRAD_BODIES_MAX)
-
-/* Whether a slot belongs to a wall: a plane, the cylinder or a mesh. */
-static inline bool fibrad_slot_of_body(uint32_t slot) { return slot < FIBRAD_WALLS || slot >= FIBRAD_MESHES; }
 
 /* Spheres whose radii differ by less than a factor of two have a level in common. Each level has a grid with cells to
  * the size of its spheres. Hence a search among small spheres does not visit cells as wide as large spheres need. */
@@ -54,6 +39,11 @@ typedef struct fibrad_container {
     double low[3], high[3]; /* L, of the planes; infinite where there is none */
     double axis[2], radius; /* L, of the cylinder; radius infinite: none */
 } fibrad_container;
+
+/* Where the plane of a slot stands along its axis [L]. Infinite: there is no such plane. */
+static inline double fibrad_plane_at(const fibrad_container *container, uint32_t slot) {
+    return (fibrad_slot_is_upper(slot) ? container->high : container->low)[fibrad_slot_axis(slot)];
+}
 
 /* Whether a slot is an opening, so that its radiation goes to the surroundings. */
 static inline bool fibrad_is_opening(const fibrad_container *container, uint32_t slot) {
@@ -88,7 +78,7 @@ struct fibrad_scene {
 /* The slot of a side of a triangle. FIBRAD_NONE: the side belongs to no wall. */
 static inline uint32_t fibrad_scene_slot(const fibrad_scene *scene, uint32_t side) {
     const uint8_t mesh = scene->mesh.mesh[side / 2][side % 2];
-    return mesh != FIBRAD_NO_MESH ? FIBRAD_MESHES + mesh : FIBRAD_NONE;
+    return mesh != FIBRAD_NO_MESH ? fibrad_slot_of_mesh(mesh) : FIBRAD_NONE;
 }
 
 /* Whether a scene is there and complete. */

@@ -397,7 +397,7 @@ static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fi
     const uint32_t n = scene->facts.spheres;
     uint32_t triangle;
     for (uint32_t b = 0; b < config->bodies; b++)
-        mesh_of[b] = scene->slot[b] < FIBRAD_MESHES ? FIBRAD_NO_MESH : (uint8_t)(scene->slot[b] - FIBRAD_MESHES);
+        mesh_of[b] = fibrad_slot_is_mesh(scene->slot[b]) ? (uint8_t)fibrad_slot_mesh(scene->slot[b]) : FIBRAD_NO_MESH;
     int status = fibrad_mesh_build(&scene->mesh, config->triangles, scene->period, mesh_of, config->bodies,
                                    longest_among(scene), &triangle);
     if (status == FIBRAD_OK) status = check_mesh(scene, &triangle);

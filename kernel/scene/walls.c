@@ -13,7 +13,7 @@ static bool wall_length_valid(double length) { return fibrad_abs(length) <= FIBR
 static uint32_t slot_of_plane(const fibrad_plane *plane) {
     const int axis = plane->axis, upper = plane->upper;
     const bool valid = axis >= 0 && axis < 3 && (upper == 0 || upper == 1) && wall_length_valid(plane->at);
-    return valid ? (uint32_t)(2 * axis + upper) : FIBRAD_WALLS;
+    return valid ? fibrad_slot_of_plane((uint32_t)axis, upper) : FIBRAD_WALLS;
 }
 
 static uint32_t slot_of_body(const fibrad_body *body) {
@@ -33,7 +33,8 @@ typedef struct found_walls {
 /* Notes a plane. FIBRAD_E_ARGUMENT: it is not valid, its side has one already, or its axis is periodic. */
 static int find_plane(const fibrad_scene_config *config, const fibrad_plane *plane, found_walls *found) {
     const uint32_t slot = slot_of_plane(plane);
-    if (slot == FIBRAD_WALLS || found->plane[slot] != NULL || config->period[slot / 2] > 0) return FIBRAD_E_ARGUMENT;
+    if (slot == FIBRAD_WALLS || found->plane[slot] != NULL || config->period[fibrad_slot_axis(slot)] > 0)
+        return FIBRAD_E_ARGUMENT;
     found->plane[slot] = plane;
     return FIBRAD_OK;
 }
@@ -48,9 +49,11 @@ static int find_body(const fibrad_scene_config *config, const fibrad_body *body,
 }
 
 /* Whether an axis has an end, or none that matters, on both sides. */
-static bool axis_is_closed(const fibrad_scene_config *config, const found_walls *found, int axis) {
+static bool axis_is_closed(const fibrad_scene_config *config, const found_walls *found, uint32_t axis) {
     const bool periodic = config->period[axis] > 0 || (config->occupancy != NULL && config->occupancy->periodic[axis]);
-    return periodic || (found->plane[2 * axis] != NULL && found->plane[2 * axis + 1] != NULL) ||
+    return periodic ||
+           (found->plane[fibrad_slot_of_plane(axis, false)] != NULL &&
+            found->plane[fibrad_slot_of_plane(axis, true)] != NULL) ||
            (found->cylinder && axis < 2);
 }
 
@@ -67,8 +70,9 @@ int fibrad_walls_check(const fibrad_scene_config *config) {
     if (status != FIBRAD_OK) return status;
     bool closed = true, across = false;
     uint32_t walled = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        const fibrad_plane *low = found.plane[2 * axis], *high = found.plane[2 * axis + 1];
+    for (uint32_t axis = 0; axis < 3; axis++) {
+        const fibrad_plane *low = found.plane[fibrad_slot_of_plane(axis, false)];
+        const fibrad_plane *high = found.plane[fibrad_slot_of_plane(axis, true)];
         if (low != NULL && high != NULL && !(low->at < high->at)) return FIBRAD_E_ARGUMENT;
         walled += low != NULL || high != NULL;
         across = across || (axis < 2 && (low != NULL || high != NULL || config->period[axis] > 0));
@@ -89,7 +93,8 @@ static double wall_area_of(const fibrad_scene *scene, uint32_t slot) {
     const double radius = scene->container.radius;
     if (slot == FIBRAD_CYLINDER) return 2 * FIBRAD_PI * radius * container_extent(scene, 2);
     if (radius < INFINITE) return FIBRAD_PI * radius * radius;
-    return container_extent(scene, (slot / 2 + 1) % 3) * container_extent(scene, (slot / 2 + 2) % 3);
+    const uint32_t axis = fibrad_slot_axis(slot);
+    return container_extent(scene, (axis + 1) % 3) * container_extent(scene, (axis + 2) % 3);
 }
 
 static void set_plane(fibrad_container *c, const fibrad_plane *plane) {
@@ -105,7 +110,7 @@ void fibrad_walls_build(fibrad_scene *scene, const fibrad_scene_config *config) 
     uint32_t meshes = 0, walls = 0;
     for (uint32_t b = 0; b < config->bodies; b++) {
         const bool mesh = body[b].kind == FIBRAD_BODY_MESH;
-        const uint32_t slot = scene->slot[b] = mesh ? FIBRAD_MESHES + meshes++ : slot_of_body(&body[b]);
+        const uint32_t slot = scene->slot[b] = mesh ? fibrad_slot_of_mesh(meshes++) : slot_of_body(&body[b]);
         if (mesh) continue;
         walls |= 1u << slot;
         if (slot == FIBRAD_CYLINDER)
@@ -132,15 +137,18 @@ bool fibrad_walls_hold(const fibrad_container *c, const double at[3]) {
 }
 
 double fibrad_walls_away(const fibrad_container *c, uint32_t slot, const double at[3]) {
-    if (slot < FIBRAD_CYLINDER) return slot % 2 ? c->high[slot / 2] - at[slot / 2] : at[slot / 2] - c->low[slot / 2];
+    if (fibrad_slot_is_plane(slot)) {
+        const double along = at[fibrad_slot_axis(slot)], plane = fibrad_plane_at(c, slot);
+        return fibrad_slot_is_upper(slot) ? plane - along : along - plane;
+    }
     const double x = at[0] - c->axis[0], y = at[1] - c->axis[1];
     return c->radius - fibrad_sqrt(x * x + y * y);
 }
 
 bool fibrad_walls_hold_ball(const fibrad_container *c, const double centre[3], double radius) {
     for (uint32_t slot = 0; slot < FIBRAD_CYLINDER; slot++)
-        if (fibrad_is_opening(c, slot) &&
-            !(radius - fibrad_walls_away(c, slot, centre) <= BALL_SLACK * (radius + fibrad_abs(centre[slot / 2]))))
+        if (fibrad_is_opening(c, slot) && !(radius - fibrad_walls_away(c, slot, centre) <=
+                                            BALL_SLACK * (radius + fibrad_abs(centre[fibrad_slot_axis(slot)]))))
             return false;
     return true;
 }
@@ -183,9 +191,9 @@ uint32_t fibrad_walls_exit(const fibrad_scene *scene, const double origin[3], co
     uint32_t wall = FIBRAD_NONE;
     for (uint32_t axis = 0; axis < 3; axis++) {
         if (w[axis] == 0) continue;
-        const uint32_t high = w[axis] > 0;
+        const bool high = w[axis] > 0;
         const double t = ((high ? c->high[axis] : c->low[axis]) - origin[axis]) / w[axis];
-        if (t < least) least = t, wall = 2 * axis + high;
+        if (t < least) least = t, wall = fibrad_slot_of_plane(axis, high);
     }
     const double across = w[0] * w[0] + w[1] * w[1];
     if (c->radius < INFINITE && across > 0) {
@@ -201,8 +209,8 @@ uint32_t fibrad_walls_exit(const fibrad_scene *scene, const double origin[3], co
 
 void fibrad_wall_normal(const fibrad_scene *scene, uint32_t wall, const double at[3], double normal[3]) {
     normal[0] = normal[1] = normal[2] = 0;
-    if (wall < FIBRAD_CYLINDER) {
-        normal[wall / 2] = wall % 2 == 0 ? 1 : -1;
+    if (fibrad_slot_is_plane(wall)) {
+        normal[fibrad_slot_axis(wall)] = fibrad_slot_is_upper(wall) ? -1 : 1;
         return;
     }
     const double x = scene->container.axis[0] - at[0], y = scene->container.axis[1] - at[1];

@@ -3,8 +3,7 @@
 #include "base/constants.h"
 #include "base/elementary.h"
 
-#define FAR_AWAY 1e30 /* [radii] where walls are that there are not */
-#define HARDLY   1e-4 /* of a window, in a region that lines have hardly met */
+#define HARDLY 1e-4 /* of a window, in a region that lines have hardly met */
 
 /* The only axis with walls, or 3. */
 static int only_axis(const fibrad_container *c) {
@@ -49,7 +48,7 @@ fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, 
 /* How far a wall is. The centre may lie on it, or beyond by rounding. */
 static double distance_to(const fibrad_wall_view *view, int axis, bool up) {
     const double away = up ? view->high[axis] : -view->low[axis];
-    return fibrad_max(fibrad_min(away, FAR_AWAY), 1 / FAR_AWAY);
+    return fibrad_max(fibrad_min(away, FIBRAD_FAR_AWAY), 1 / FIBRAD_FAR_AWAY);
 }
 
 static double off_axis(const fibrad_wall_view *view) {
@@ -93,7 +92,7 @@ static void sky_of_regions(const fibrad_wall_view *view, double sky[FIBRAD_REGIO
         } else if (!view->round) {
             for (int n = 0; n < 3; n++) of[n] = corner_angle(d[n], d[(n + 1) % 3], d[(n + 2) % 3]) / (4 * FIBRAD_PI);
         } else if (octant == 0 || octant == 4) {
-            of[2] = d[2] < FAR_AWAY ? disc_sky(d[2], off_axis(view), view->radius) : 0;
+            of[2] = d[2] < FIBRAD_FAR_AWAY ? disc_sky(d[2], off_axis(view), view->radius) : 0;
             of[3] = 0.5 - of[2];
         }
     }
@@ -113,7 +112,7 @@ static uint32_t slot_of_region(const fibrad_wall_view *view, uint32_t region) {
     const uint32_t axis = region % 4, up = region / 4 >> axis & 1;
     if (axis == 3) return FIBRAD_CYLINDER;
     const double away = up ? view->high[axis] : -view->low[axis];
-    return away < __builtin_inf() ? 2 * axis + up : FIBRAD_ESCAPED;
+    return away < __builtin_inf() ? fibrad_slot_of_plane(axis, up) : FIBRAD_ESCAPED;
 }
 
 static double all_parts(const double part[4]) { return (part[0] + part[2]) + (part[1] + part[3]); }

@@ -15,6 +15,9 @@ typedef struct fibrad_wall_view {
     double known_low[3], known_high[3], ball; /* ... where they leave this box, or a ball of this radius */
 } fibrad_wall_view;
 
+/* The distance of a wall that does not exist, where a finite number is needed. In units of the radius. */
+#define FIBRAD_FAR_AWAY 1e30
+
 /* cut: whether there is a known region, or a cutoff, at `ball` radii. */
 fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, bool cut, double ball);
 
