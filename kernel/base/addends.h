@@ -1,20 +1,20 @@
-/* addends.h - what the windows of a row add to its sums, listed instead of added. SPDX-License-Identifier: MIT
+/* addends.h - a list of what the windows of a row add to its sums. SPDX-License-Identifier: MIT
  *
- * Sums in floating point depend on the order of their terms. Windows may be resolved in any order if their terms are
- * listed, and added later in that of the windows. */
+ * A sum in floating point depends on the order of its terms. With such a list, windows may be computed in any order.
+ * The terms are added later, in the order of the windows. */
 #ifndef FIBRAD_BASE_ADDENDS_H
 #define FIBRAD_BASE_ADDENDS_H
 
 #include "fibrad.h"
 #include "base/port.h"
 
-/* What is added to: the entry of a sphere, by its place, or of a slot, number of spheres + slot; or one of these. */
-#define FIBRAD_ADD_OPEN   0xffffff00u /* what meets nothing */
-#define FIBRAD_ADD_HIDDEN 0xffffff01u /* that a window is hidden */
+/* The sum that a term is added to: a sphere by its place, a slot as FIBRAD_ADD_SLOT + slot, or one of these. */
+#define FIBRAD_ADD_OPEN   0xffffff00u /* part of a window that meets nothing */
+#define FIBRAD_ADD_HIDDEN 0xffffff01u /* the window is hidden */
 #define FIBRAD_ADD_SLOT   0xffffff20u /* + slot */
-#define FIBRAD_ADD_REGION 0xffffff80u /* + region of the sky: open, ... */
-#define FIBRAD_ADD_SHARE  0xffffffa0u /* ... in windows, ... */
-#define FIBRAD_ADD_MIXED  0xffffffc0u /* ... and open times hidden part */
+#define FIBRAD_ADD_REGION 0xffffff80u /* + region of the sky: the open part */
+#define FIBRAD_ADD_SHARE  0xffffffa0u /* + region: the share that the region has if nothing is hidden, in windows */
+#define FIBRAD_ADD_MIXED  0xffffffc0u /* + region: the open part times the hidden part */
 
 typedef struct fibrad_addend {
     double value;
@@ -23,8 +23,8 @@ typedef struct fibrad_addend {
 
 typedef struct fibrad_addends {
     fibrad_memory *memory;
-    size_t count; /* of all terms; those from the first that has found no room on are not listed */
-    bool missed;  /* there is one */
+    size_t count; /* number of all terms, also of those that had no room */
+    bool missed;  /* some terms had no room and are not listed */
 } fibrad_addends;
 
 static inline void fibrad_addends_put(fibrad_addends *list, uint32_t target, uint32_t window, double value) {

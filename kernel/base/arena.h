@@ -1,14 +1,15 @@
 /* arena.h - lays objects out in the caller's memory. SPDX-License-Identifier: MIT
  *
- * One layout function per object takes its arrays from an arena. With base NULL the arena only counts, which is the
- * object's _size; with the caller's block it hands out addresses, which is its _init: the two cannot drift apart. */
+ * Each object has one layout function, which takes its arrays from an arena. If the base of the arena is NULL, the
+ * arena only counts bytes: this is the object's `_size`. If the base is the caller's block, the arena returns
+ * addresses: this is its `_init`. So the two always agree. */
 #ifndef FIBRAD_BASE_ARENA_H
 #define FIBRAD_BASE_ARENA_H
 
 #include "fibrad.h"
 #include "base/port.h"
 
-/* Every array begins on this boundary and is padded to a multiple of it, so that it holds whole lanes. */
+/* Each array begins at a multiple of this number and is padded to a multiple of it. So an array holds whole vectors. */
 #define FIBRAD_ALIGNMENT 64
 
 typedef struct fibrad_arena {
@@ -16,8 +17,8 @@ typedef struct fibrad_arena {
     size_t used, size;   /* bytes; used is SIZE_MAX once a sum has overflowed */
 } fibrad_arena;
 
-/* Room for `count` items of `bytes` each. NULL when counting or when the block is too small; `used` goes on either way.
- */
+/* Room for `count` items of `bytes` each. NULL: the arena only counts, or the block is too small. `used` grows in
+ * both cases. */
 static inline void *fibrad_arena_take(fibrad_arena *arena, size_t count, size_t bytes) {
     size_t start = arena->used;
     if (start > SIZE_MAX - FIBRAD_ALIGNMENT || (bytes != 0 && count > (SIZE_MAX - FIBRAD_ALIGNMENT - start) / bytes)) {
@@ -29,7 +30,8 @@ static inline void *fibrad_arena_take(fibrad_arena *arena, size_t count, size_t 
     return arena->base != NULL && arena->used <= arena->size ? arena->base + start : NULL;
 }
 
-/* What _size returns after counting: the bytes, wherever the block begins, or 0 if no size_t can hold them. */
+/* The number of bytes that suffices wherever the block begins: the result of a `_size` function. 0: the number does
+ * not fit into a size_t. */
 static inline size_t fibrad_arena_total(const fibrad_arena *arena) {
     return arena->used > SIZE_MAX - FIBRAD_ALIGNMENT ? 0 : arena->used + FIBRAD_ALIGNMENT - 1;
 }
@@ -42,8 +44,9 @@ static inline bool fibrad_memory_valid(const fibrad_memory *memory) {
     return memory->block != NULL || memory->size == 0;
 }
 
-/* Checks the caller's block before an _init lays out what fibrad_arena_total has counted.
- * Errors: FIBRAD_E_ARGUMENT (NULL, or needed 0: a configuration that is not valid), _SIZE. */
+/* Checks the caller's block before `_init` lays an object out. needed: the bytes that fibrad_arena_total has
+ * counted. Errors: FIBRAD_E_ARGUMENT: the block is NULL, or needed is 0 because the configuration is not valid.
+ * _SIZE. */
 static inline int fibrad_arena_open(fibrad_arena *arena, void *memory, size_t size, size_t needed) {
     if (memory == NULL || needed == 0) return FIBRAD_E_ARGUMENT;
     if (size < needed) return FIBRAD_E_SIZE;

@@ -1,7 +1,7 @@
 /* cpu.c - which instruction sets this build and this machine offer. SPDX-License-Identifier: MIT
  *
- * CPUID tells what the processor can do, XGETBV which registers the operating system saves; both must agree. Asked
- * directly: __builtin_cpu_supports would bring in a constructor and a global of libgcc. */
+ * CPUID tells what the processor can do. XGETBV tells which registers the operating system saves. Both must agree.
+ * __builtin_cpu_supports is not used: it needs a constructor and a global variable of libgcc. */
 #include "base/dispatch.h"
 
 #include <stdbool.h>
@@ -19,7 +19,7 @@ enum {
     LEAF7_EBX_AVX512DQ = 1 << 17,
     LEAF7_EBX_AVX512BW = 1 << 30,
     XCR0_YMM = 0x06, /* SSE and AVX state */
-    XCR0_ZMM = 0xe6  /* these and the three parts of AVX-512 state */
+    XCR0_ZMM = 0xe6  /* the same and the three states of AVX-512 */
 };
 #define LEAF7_EBX_AVX512VL 0x80000000u
 
@@ -38,7 +38,7 @@ static fibrad_isa isa_of_machine(void) {
         return FIBRAD_ISA_AVX2;
     return FIBRAD_ISA_AVX512;
 }
-#elif defined(__aarch64__) /* every such processor has it */
+#elif defined(__aarch64__) /* every such processor has NEON */
 static fibrad_isa isa_of_machine(void) { return FIBRAD_ISA_NEON; }
 #else
 static fibrad_isa isa_of_machine(void) { return FIBRAD_ISA_SCALAR; }

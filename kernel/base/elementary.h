@@ -1,7 +1,7 @@
 /* elementary.h - exponential, logarithm, sine and cosine by polynomials. SPDX-License-Identifier: MIT
  *
- * Sums and products only, hence the same bits everywhere; errors of a few units in the last place, which is far more
- * than samples of random numbers ask for. */
+ * The functions use only sums and products, so their bits are the same everywhere. Their errors are some units in
+ * the last place. That is far below what random samples need. */
 #ifndef FIBRAD_BASE_ELEMENTARY_H
 #define FIBRAD_BASE_ELEMENTARY_H
 
@@ -48,7 +48,8 @@ static inline double fibrad_log(double x) {
     return k * 0x1.62e42fefa39efp-1 + sum * s;
 }
 
-/* Sine and cosine of u turns, u in [0, 1]: the nearest quarter turn, and Taylor's series for the |r| <= pi/4 left. */
+/* Sine and cosine of u turns, u in [0, 1]. Subtracts the nearest quarter turn. The rest is at most pi/4, where
+ * Taylor's series serves. */
 static inline void fibrad_sincos_turn(double u, double *sine, double *cosine) {
     int quarter = (int)(4 * u + 0.5);
     double r = (u - 0.25 * quarter) * 0x1.921fb54442d18p2, r2 = r * r;
@@ -64,8 +65,8 @@ static inline void fibrad_sincos_turn(double u, double *sine, double *cosine) {
     if ((quarter + 1) & 2) *cosine = -*cosine;
 }
 
-/* The angle in [0, pi/2] of the point (x, y), x, y >= 0, not both 0 and neither above 1e150. Two halvings bring the
- * smaller of the angles to the axes to pi/16, where the series of atan ends at u^25. */
+/* The angle in [0, pi/2] of the point (x, y). x and y are 0 to 1e150, and not both are 0. The angle to the nearer
+ * axis is halved twice, to at most pi/16. There the series of atan ends at u^25. */
 static inline double fibrad_quarter_angle(double x, double y) {
     double u = y < x ? y / x : x / y;
     u = u / (1 + fibrad_sqrt(1 + u * u));

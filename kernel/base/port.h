@@ -1,7 +1,7 @@
 /* port.h - all that the kernel takes from the C library and the compiler. SPDX-License-Identifier: MIT
  *
- * A target with its own ideas names a header of its own: -DFIBRAD_PORT_HEADER='"my_port.h"'; it then defines
- * fibrad_sqrt, fibrad_copy and fibrad_zero as below. The square root must round correctly (IEEE 754). */
+ * For another target, -DFIBRAD_PORT_HEADER='"my_port.h"' names a header that defines fibrad_sqrt, fibrad_copy and
+ * fibrad_zero as below. The square root must round correctly (IEEE 754). */
 #ifndef FIBRAD_BASE_PORT_H
 #define FIBRAD_BASE_PORT_H
 
@@ -10,16 +10,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* 16: half precision has its own arithmetic, and all other types theirs */
+/* 16: only half precision is computed in another precision */
 #if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
 #error "fibrad needs arithmetic in the precision of its types (on 32-bit x86: -msse2 -mfpmath=sse)"
 #endif
 
 #if defined(FIBRAD_PORT_HEADER)
 #include FIBRAD_PORT_HEADER
-#elif !defined(FIBRAD_PORT_GIVEN) /* by whoever includes this */
+#elif !defined(FIBRAD_PORT_GIVEN) /* a file that includes this one may define the functions */
 
-/* With -fno-math-errno this is a single instruction where the machine has one, else a call of sqrt. */
+/* One instruction if the machine has one and -fno-math-errno is set. Otherwise a call of sqrt. */
 static inline double fibrad_sqrt(double x) { return __builtin_sqrt(x); }
 
 /* Copies bytes between blocks that do not overlap. */
@@ -29,10 +29,10 @@ static inline void fibrad_zero(void *to, size_t bytes) { __builtin_memset(to, 0,
 
 #endif
 
-/* For the few functions whose calls would cost more than they do, and which the compiler takes for too long. */
+/* For few functions: a call would take longer than the function itself, but the compiler would make a call. */
 #define FIBRAD_INLINE static inline __attribute__((always_inline))
 
-/* From here on never a call: plain C, and a builtin that clears the sign bit. */
+/* The functions below never need a library. */
 
 static inline double fibrad_abs(double x) { return __builtin_fabs(x); }
 static inline double fibrad_min(double a, double b) { return a < b ? a : b; }
@@ -46,8 +46,7 @@ static inline size_t fibrad_add_at_once(size_t *sum, size_t more) {
 /* False for NaN and the infinities. */
 static inline bool fibrad_finite(double x) { return x - x == 0; }
 
-/* How many bits are set. gcc makes this one instruction where there is one; the builtin would be a call of
- * libgcc where there is none. */
+/* The number of set bits. gcc makes one instruction of this where there is one. The builtin may call libgcc instead. */
 static inline uint32_t fibrad_count_bits(uint64_t x) {
     x -= x >> 1 & 0x5555555555555555;
     x = (x & 0x3333333333333333) + (x >> 2 & 0x3333333333333333);
@@ -55,7 +54,7 @@ static inline uint32_t fibrad_count_bits(uint64_t x) {
     return (uint32_t)(x * 0x0101010101010101 >> 56);
 }
 
-/* The largest whole number not above x; from 2^52 on every number is whole. NaN gives NaN. */
+/* The largest whole number not above x. From 2^52 on every double is a whole number. NaN gives NaN. */
 static inline double fibrad_floor(double x) {
     if (!(fibrad_abs(x) < 0x1p52)) return x;
     double whole = (double)(int64_t)x;

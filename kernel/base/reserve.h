@@ -4,8 +4,9 @@
 
 #include "fibrad.h"
 
-/* Makes a block of at least `needed` bytes; what it holds stays. A new block is twice as large, for what comes next.
- * Errors: FIBRAD_E_CAPACITY (a fixed block is too small; memory->needed is set), _MEMORY (the caller has none). */
+/* Makes a block of at least `needed` bytes. Its contents stay. A block that grows has twice the size afterwards.
+ * Errors: FIBRAD_E_CAPACITY: a fixed block is too small, and memory->needed is set. _MEMORY: the caller has no more
+ * memory. */
 int fibrad_memory_reserve(fibrad_memory *memory, size_t needed);
 
 #endif

@@ -4,8 +4,9 @@
 
 #include <stdint.h>
 
-/* Shell's method sorts in place in about count^1.3 steps, fewer when nearly sorted: by insertion with falling gaps,
- * here Tokuda's (1992), h = 2.25 h + 1 rounded. The first one, and the one after `gap`, 0 after 1: */
+/* Shell's method: insertion with falling gaps. It sorts in place in about count^1.3 steps, and in fewer steps if the
+ * keys are nearly sorted. The gaps are Tokuda's (1992): h = 2.25 h + 1, rounded. These functions return the first
+ * gap, and the gap after `gap`. After 1 follows 0. */
 static inline uint64_t fibrad_sort_first_gap(uint64_t count) {
     uint64_t gap = 1;
     while (gap < count / 3) gap = 9 * gap / 4 + 1;
@@ -13,9 +14,9 @@ static inline uint64_t fibrad_sort_first_gap(uint64_t count) {
 }
 static inline uint64_t fibrad_sort_next_gap(uint64_t gap) { return gap == 1 ? 0 : 4 * gap / 9 + (gap == 2); }
 
-/* Sorts keys by the number above their lowest `low` bits, which is at most `largest`, digit by digit of 8 bits; stable.
- * Returns where they are in the end, `key` or `other`. 135 columns of 20,000: a third of the time of Shell's method,
- * whose branches cannot be predicted. */
+/* Sorts keys by the number above their lowest `low` bits, 8 bits at a time. Equal keys keep their order. largest:
+ * bound of this number. Returns the array that holds the result, `key` or `other`. For 135 columns below 20,000 this
+ * takes a third of the time of Shell's method, whose branches cannot be predicted. */
 static inline uint64_t *fibrad_sort_keys(uint64_t *key, uint64_t *other, uint32_t count, int low, uint64_t largest) {
     for (int shift = low; shift < 64 && largest >> (shift - low) != 0; shift += 8) {
         uint32_t end[257] = {0};

@@ -8,6 +8,7 @@
 #define FIBRAD_MESH_MESH_H
 
 #include "base/arena.h"
+#include "base/constants.h"
 #include "base/port.h"
 #include "fibrad_mesh.h"
 
@@ -25,7 +26,8 @@
  * mesh->extent. A box that does not exist has negative edges. */
 typedef struct fibrad_mesh_node {
     float middle[3][FIBRAD_MESH_WIDE], half[3][FIBRAD_MESH_WIDE];
-    uint32_t child[FIBRAD_MESH_WIDE]; /* 16 times a node; or of a leaf 16 times its first triangle + their number */
+    uint32_t child[FIBRAD_MESH_WIDE]; /* a node: 16 times its index. A leaf: 16 times its first triangle, plus the
+                                         number of its triangles */
 } fibrad_mesh_node;
 
 static inline uint32_t fibrad_mesh_leaf(uint32_t child) { return child % 16; } /* number of triangles; 0: a node */
@@ -33,17 +35,17 @@ static inline uint32_t fibrad_mesh_leaf(uint32_t child) { return child % 16; } /
 /* The triangles of all meshes. Meshes are numbered in the order of their walls. */
 typedef struct fibrad_mesh {
     uint32_t triangles, nodes;
-    double period[3];                      /* L; 0: the axis is open */
-    double low[3], high[3];                /* L, box of all triangles */
-    double middle[3];                      /* L, of this box */
-    double extent;                         /* L, half the longest edge of this box */
-    double grain;                          /* L, lengths below this may be rounding errors */
-    fibrad_mesh_node *node;                /* [nodes] */
-    double *corner[3][3];                  /* L, [triangles], of each corner x, y, z; padded to eights */
-    uint32_t *number;                      /* [triangles], the caller's number */
-    uint8_t (*mesh)[2];                    /* [triangles], mesh of front and back; FIBRAD_NO_MESH: no wall */
-    uint32_t *side;                        /* [2 triangles], sides, mesh after mesh */
-    double *area;                          /* L^2, [2 triangles], sum over the sides of the mesh up to this one */
+    double period[3];       /* L; 0: the axis is open */
+    double low[3], high[3]; /* L, box of all triangles */
+    double middle[3];       /* L, of this box */
+    double extent;          /* L, half the longest edge of this box */
+    double grain;           /* L, lengths below this may be rounding errors */
+    fibrad_mesh_node *node; /* [nodes] */
+    double *corner[3][3];   /* L, [triangles], x, y and z of each corner; padded to a multiple of eight */
+    uint32_t *number;       /* [triangles], the caller's number */
+    uint8_t (*mesh)[2];     /* [triangles], mesh of front and back; FIBRAD_NO_MESH: no wall */
+    uint32_t *side;         /* [2 triangles], the sides of all meshes, mesh by mesh */
+    double *area;           /* L^2, [2 triangles], sum of the areas from the first side of the mesh to this side */
     uint32_t first[FIBRAD_BODIES_MAX + 1]; /* first element of side and area of each mesh */
 } fibrad_mesh;
 
@@ -52,13 +54,13 @@ static inline void fibrad_mesh_corners(const fibrad_mesh *mesh, uint32_t triangl
         for (int axis = 0; axis < 3; axis++) corner[k][axis] = mesh->corner[k][axis][triangle];
 }
 
-/* A walk through the tree. Each level has a node and the boxes that are left to visit, the next one last. */
+/* A walk through the tree. Each level has a node and its boxes that are left to visit. The last of them comes next. */
 typedef struct fibrad_mesh_walk {
     uint32_t node[FIBRAD_MESH_DEPTH], level;
     uint8_t box[FIBRAD_MESH_DEPTH][FIBRAD_MESH_WIDE], left[FIBRAD_MESH_DEPTH];
 } fibrad_mesh_walk;
 
-/* Enters a node, to visit the boxes given by bits, in ascending order of their keys. */
+/* Enters a node whose boxes given by bits are to be visited, in ascending order of their keys. */
 static inline void fibrad_mesh_enter(fibrad_mesh_walk *walk, uint32_t node, uint32_t boxes,
                                      const float key[FIBRAD_MESH_WIDE]) {
     uint8_t *box = walk->box[walk->level], count = 0;
@@ -71,7 +73,8 @@ static inline void fibrad_mesh_enter(fibrad_mesh_walk *walk, uint32_t node, uint
     walk->node[walk->level] = node, walk->left[walk->level++] = count;
 }
 
-/* The next child to visit. False: there is none. A box that does not exist has child 0, the root, which is skipped. */
+/* The next child to visit. False: no child is left. A box that does not exist has child 0, which is the root. Such a
+ * child is passed over. */
 static inline bool fibrad_mesh_next(fibrad_mesh_walk *walk, const fibrad_mesh *mesh, uint32_t *child) {
     while (walk->level > 0) {
         const uint32_t top = walk->level - 1;
@@ -108,7 +111,8 @@ double fibrad_mesh_area(const fibrad_mesh *mesh, uint32_t number);
 /* Lower bound of the distance [L] from a point to the nearest triangle or image, at most `most`. */
 double fibrad_mesh_distance(const fibrad_mesh *mesh, const double point[3], double most);
 
-/* The images of all triangles whose boxes meet a box [L], as shifts by first[axis] to last[axis] periods. */
+/* Which images of triangles may lie in a box [L]: those shifted by first[axis] to last[axis] periods along each
+ * axis. */
 typedef struct fibrad_mesh_images {
     int64_t first[3], last[3];
 } fibrad_mesh_images;
@@ -129,13 +133,15 @@ fibrad_mesh_hit fibrad_mesh_first(const fibrad_mesh *mesh, const double origin[3
 /* The outward unit normal of a side. */
 void fibrad_mesh_normal(const fibrad_mesh *mesh, uint32_t side, double normal[3]);
 
-/* The point [L] of a triangle for two numbers, 0 to 1. Even numbers give even points. */
+/* The point [L] of a triangle for two numbers from 0 to 1. Evenly spread numbers give evenly spread points. */
 void fibrad_mesh_triangle_point(const fibrad_mesh *mesh, uint32_t triangle, const double share[2], double point[3]);
 
-/* The point [L] of a mesh for two numbers, 0 to below 1. Even numbers give even points. Returns the side. */
+/* The point [L] of a mesh for two numbers from 0 to below 1. Evenly spread numbers give evenly spread points.
+ * Returns the side. */
 uint32_t fibrad_mesh_point(const fibrad_mesh *mesh, uint32_t number, const double share[2], double point[3]);
 
-/* Where in mesh->side is the side of a mesh that has a place in the sum of all their areas, and the sum before it. */
+/* The sides of a mesh lie one after another, each as long as its area. Returns the index in mesh->side of the side
+ * at `at` [L^2], and the sum of the areas before this side. */
 uint32_t fibrad_mesh_side_at(const fibrad_mesh *mesh, uint32_t number, double at, double *before);
 
 #endif

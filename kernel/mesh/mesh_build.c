@@ -1,12 +1,13 @@
 /* mesh_build.c - puts triangles into a tree of boxes, in fixed memory. SPDX-License-Identifier: MIT
  *
- * From the top down, the largest box of a node is cut until there are eight: where the sum over both parts of surface
- * times number is least among sixteen places along the longest axis, so that large triangles come apart from small
- * ones. Source: I. Wald, IEEE Symposium on Interactive Ray Tracing (2007) 33. */
+ * The tree is built from the top. In each node the largest box is cut in two until there are eight. A cut is across
+ * the longest axis, at one of sixteen places: where the sum over both parts of surface times number of triangles is
+ * least. This separates large triangles from small ones. Source: I. Wald, IEEE Symposium on Interactive Ray Tracing
+ * (2007) 33. */
 #include "mesh/mesh.h"
 
 #define BINS       16
-#define BY_SURFACE (FIBRAD_MESH_DEPTH / 2) /* how often; after so many cuts boxes are halved */
+#define BY_SURFACE (FIBRAD_MESH_DEPTH / 2) /* number of cuts that compare surfaces; further cuts halve a box */
 #define NO_BOX     (-1e30f)
 
 void fibrad_mesh_layout(fibrad_arena *arena, fibrad_mesh *mesh, uint32_t triangles) {
@@ -54,7 +55,7 @@ static mesh_box triangle_box(const fibrad_mesh *mesh, uint32_t t) {
     return box;
 }
 
-/* Half the surface of a box over a length squared, so that it is finite. */
+/* Half the surface of a box over the square of a length. This keeps the number finite. */
 static double surface_of(const mesh_box *box, double length) {
     double edge[3];
     for (int axis = 0; axis < 3; axis++) {
@@ -79,7 +80,7 @@ static void swap_triangles(fibrad_mesh *mesh, uint32_t a, uint32_t b) {
     mesh->number[a] = mesh->number[b], mesh->number[b] = number;
 }
 
-/* Triangles [begin, end), and their box after so many cuts. */
+/* Triangles [begin, end), their box, and the number of cuts above them. */
 typedef struct mesh_part {
     uint32_t begin, end, depth;
     mesh_box box;
@@ -100,7 +101,7 @@ static int place_of_bin(double at, double low, double high) {
     return share >= BINS - 1 ? BINS - 1 : (int)fibrad_max(0, share);
 }
 
-/* Brings those whose bin is not above `cut` to the front; returns where the others begin. */
+/* Moves the triangles whose bin is at most `cut` to the front. Returns where the others begin. */
 static uint32_t move_below(fibrad_mesh *mesh, const mesh_part *part, int axis, double low, double high, int cut) {
     uint32_t to = part->begin;
     for (uint32_t t = part->begin; t < part->end; t++)
@@ -108,7 +109,7 @@ static uint32_t move_below(fibrad_mesh *mesh, const mesh_part *part, int axis, d
     return to;
 }
 
-/* Where a part is cut in two. */
+/* The place where a part is cut in two. */
 static uint32_t cut_part(fibrad_mesh *mesh, const mesh_part *part) {
     const uint32_t count = part->end - part->begin;
     mesh_box middles = no_box, bin[BINS], right[BINS];
@@ -157,7 +158,7 @@ static void set_box(const fibrad_mesh *mesh, fibrad_mesh_node *node, uint32_t pl
     }
 }
 
-/* Cuts the largest box of those that are more than a leaf; false: there is none. */
+/* Cuts the largest box among those with more triangles than a leaf holds. False: there is no such box. */
 static bool cut_largest(fibrad_mesh *mesh, mesh_part *part, uint32_t *parts) {
     double most = -1;
     uint32_t largest = 0;
@@ -173,8 +174,9 @@ static bool cut_largest(fibrad_mesh *mesh, mesh_part *part, uint32_t *parts) {
     return true;
 }
 
-/* Builds the tree level by level; a node that waits holds its triangles as child[0] to child[1], and child[2] cuts. A
- * node has eight boxes, or only leaves, so that there is no more than one for seven triangles. */
+/* Builds the tree level by level. A node that is still to be divided has its triangles in child[0] to child[1] and
+ * its cuts in child[2]. A node has either eight boxes or only leaves. Hence there is at most one node for seven
+ * triangles. */
 static void build_tree(fibrad_mesh *mesh) {
     mesh_part part[FIBRAD_MESH_WIDE];
     mesh->nodes = mesh->triangles > 0;
@@ -213,7 +215,7 @@ uint32_t fibrad_mesh_highest(const fibrad_mesh *mesh, int axis) {
     return mesh->number[t];
 }
 
-/* Lists the sides of each mesh, with their areas added up. */
+/* Lists the sides of each mesh with the running sum of their areas. */
 static void list_sides(fibrad_mesh *mesh) {
     uint32_t end[FIBRAD_BODIES_MAX + 1] = {0};
     for (uint32_t s = 0; s < 2 * mesh->triangles; s++)
@@ -234,7 +236,7 @@ double fibrad_mesh_area(const fibrad_mesh *mesh, uint32_t number) {
     return end > mesh->first[number] ? mesh->area[end - 1] : 0;
 }
 
-/* Copies a triangle, whose coordinates may be `longest`; false: it is not valid. */
+/* Copies a triangle. longest: bound of its coordinates [L]. False: the triangle is not valid. */
 static bool take_triangle(fibrad_mesh *mesh, const struct fibrad_triangles *given, uint32_t t, double longest) {
     const size_t stride = given->stride > 0 ? given->stride : 1;
     for (int k = 0; k < 3; k++) {
@@ -252,7 +254,7 @@ static bool take_triangle(fibrad_mesh *mesh, const struct fibrad_triangles *give
     return true;
 }
 
-/* The mesh of a side; false: its body is none. */
+/* The mesh of a side whose wall is `body`. False: there is no such wall. */
 static bool mesh_of_side(uint32_t body, const uint8_t *mesh_of, uint32_t bodies, uint8_t *number) {
     *number = FIBRAD_NO_MESH;
     if (body == FIBRAD_NO_BODY) return true;
@@ -289,7 +291,7 @@ int fibrad_mesh_build(fibrad_mesh *mesh, const struct fibrad_triangles *given, c
     if (!(mesh->extent > 0)) mesh->extent = 1;
     mesh->grain = 1e-11 * scale;
     build_tree(mesh);
-    for (uint32_t t = 0; t < mesh->triangles; t++) { /* in the order of the tree */
+    for (uint32_t t = 0; t < mesh->triangles; t++) { /* from here on in the order of the tree */
         mesh_of_side(given->front[mesh->number[t]], mesh_of, bodies, &mesh->mesh[t][0]);
         mesh_of_side(given->back != NULL ? given->back[mesh->number[t]] : FIBRAD_NO_BODY, mesh_of, bodies,
                      &mesh->mesh[t][1]);

@@ -2,17 +2,17 @@
 #include "mesh/mesh_patch.h"
 
 #define HALVINGS_MAX 30u
-#define FACING       0.7  /* cosine between the normals of sides that share a patch, at the least */
-#define FAR          2.0  /* distance between their middles at the most, in edges of a patch */
-#define BEGUN        0.25 /* of its area; a patch that has less takes any side */
-#define LONGER       1e-6 /* edges that differ by less are alike, however the triangle is turned */
+#define FACING       0.7  /* least cosine between the normals of sides that share a patch */
+#define FAR          2.0  /* greatest distance between the middles of such sides, in edges of a patch */
+#define BEGUN        0.25 /* a patch with less than this part of its area takes any side */
+#define LONGER       1e-6 /* edges whose squares differ by less count as equal, so that rotations change no choice */
 
-/* The area of the side that is k-th in the list of all. */
+/* The area of side k in the list of all sides. */
 static double area_of_side(const fibrad_mesh *mesh, uint32_t number, uint32_t k) {
     return mesh->area[k] - (k > mesh->first[number] ? mesh->area[k - 1] : 0);
 }
 
-/* How often a side is halved: to about the area of a patch, not once only. */
+/* How often a side is halved so that its patches have about a given area. Never just once. */
 static uint32_t halvings_for(double own, double area) {
     uint32_t halvings = 0;
     if (own < 2 * area) return 0;
@@ -28,7 +28,7 @@ static void middle_of_side(const fibrad_mesh *mesh, uint32_t side, double middle
 
 /* A patch of several sides while it grows. */
 typedef struct joint_patch {
-    double area, middle[3], normal[3]; /* the latter two of its first side */
+    double area, middle[3], normal[3]; /* middle and normal are those of the first side */
 } joint_patch;
 
 static void begin_joint(const fibrad_mesh *mesh, uint32_t side, joint_patch *patch) {
@@ -37,7 +37,7 @@ static void begin_joint(const fibrad_mesh *mesh, uint32_t side, joint_patch *pat
     fibrad_mesh_normal(mesh, side, patch->normal);
 }
 
-/* Whether a side of some area goes to a patch. */
+/* Whether a side with area `own` joins a patch. */
 static bool joins(const fibrad_mesh *mesh, uint32_t side, double own, double area, const joint_patch *patch) {
     double middle[3], normal[3], square = 0, facing = 0;
     if (patch->area < BEGUN * area) return true;
@@ -51,7 +51,7 @@ static bool joins(const fibrad_mesh *mesh, uint32_t side, double own, double are
     return facing > FACING && square < FAR * FAR * area;
 }
 
-/* Cuts the large sides. */
+/* Cuts the sides that are larger than two patches. */
 static uint32_t cut_large(const fibrad_mesh *mesh, uint32_t number, double area, uint32_t next, fibrad_mesh_cut *cut) {
     for (uint32_t k = mesh->first[number]; k < mesh->first[number + 1]; k++) {
         const uint32_t halvings = halvings_for(area_of_side(mesh, number, k), area);
@@ -62,7 +62,7 @@ static uint32_t cut_large(const fibrad_mesh *mesh, uint32_t number, double area,
     return next;
 }
 
-/* Joins the small fronts, or backs. */
+/* Joins the small fronts or the small backs. */
 static uint32_t join_small(const fibrad_mesh *mesh, uint32_t number, uint32_t back, double area, uint32_t next,
                            fibrad_mesh_cut *cut) {
     joint_patch patch = {0};
@@ -87,8 +87,8 @@ uint32_t fibrad_mesh_cut_sides(const fibrad_mesh *mesh, uint32_t number, double 
     return next - first;
 }
 
-/* The shares that the corners of a triangle have of a place on it, none below 0. Images along periodic axes are taken
- * to the box about the triangle. */
+/* The barycentric coordinates of a place on a triangle, none below 0. On periodic axes the image of the place next
+ * to the triangle counts. */
 static void find_shares(const fibrad_mesh *mesh, uint32_t triangle, const double at[3], double share[3]) {
     double c[3][3], aa = 0, ab = 0, bb = 0, ad = 0, bd = 0;
     fibrad_mesh_corners(mesh, triangle, c);
@@ -108,7 +108,7 @@ static void find_shares(const fibrad_mesh *mesh, uint32_t triangle, const double
 
 uint32_t fibrad_mesh_patch_at(const fibrad_mesh *mesh, const fibrad_mesh_cut *cut, uint32_t side, const double at[3]) {
     const fibrad_mesh_cut own = cut[2 * (size_t)mesh->number[side / 2] + side % 2];
-    double c[3][3], share[3], square[3] = {0, 0, 0}; /* the latter of the edge across from each corner */
+    double c[3][3], share[3], square[3] = {0, 0, 0}; /* square: squared length of the edge opposite each corner */
     uint32_t number = 0;
     if (own.halvings == 0) return own.patch;
     find_shares(mesh, side / 2, at, share);
@@ -119,13 +119,15 @@ uint32_t fibrad_mesh_patch_at(const fibrad_mesh *mesh, const fibrad_mesh_cut *cu
             square[k] += edge * edge;
         }
     for (uint32_t h = 0; h < own.halvings; h++) {
-        uint32_t top = square[1] > square[0] * (1 + LONGER) ? 1 : 0; /* the longest edge is across from it */
+        uint32_t top = square[1] > square[0] * (1 + LONGER) ? 1 : 0; /* the corner opposite the longest edge */
         if (square[2] > square[top] * (1 + LONGER)) top = 2;
         const uint32_t a = (top + 1) % 3, b = (top + 2) % 3, second = share[b] > share[a];
-        const uint32_t kept = second ? b : a, left = second ? a : b; /* the corner that is left is now the middle */
+        const uint32_t kept = second ? b : a,
+                       left = second ? a : b; /* the middle of the longest edge takes the index `left` */
         const double median = 0.5 * (square[a] + square[b]) - 0.25 * square[top];
         share[kept] -= share[left], share[left] *= 2;
-        /* edges: kept to middle, across from top; middle to top, across from kept; top to kept is as it was */
+        /* new edges: from kept to middle is opposite top; from middle to top is opposite kept; from top to kept is
+         * unchanged */
         square[top] *= 0.25, square[kept] = median;
         number = 2 * number + second;
     }

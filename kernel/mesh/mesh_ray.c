@@ -1,4 +1,5 @@
-/* mesh_ray.c - what of a mesh a ray meets first, and what is near a point. SPDX-License-Identifier: MIT */
+/* mesh_ray.c - the first side that a ray meets, and the distance from a point to the nearest triangle.
+ * SPDX-License-Identifier: MIT */
 #include "mesh/mesh.h"
 
 static int64_t whole_below(double x) { return (int64_t)fibrad_max(-0x1p62, fibrad_min(0x1p62, fibrad_floor(x))); }
@@ -14,13 +15,15 @@ fibrad_mesh_images fibrad_mesh_images_in(const fibrad_mesh *mesh, const double l
     return images;
 }
 
-/* A ray in the frame of one image: coordinates are exchanged so that w is longest along the last, and sheared so that
- * the ray is that axis. Source: S. Woop, C. Benthin, I. Wald, J. Comput. Graph. Tech. 2 (2013) 65. */
+/* A ray in the frame of one image. The coordinates are exchanged so that w is longest along the last one. Then they
+ * are sheared so that the ray is the last axis. Source: S. Woop, C. Benthin, I. Wald, J. Comput. Graph. Tech. 2
+ * (2013) 65. */
 typedef struct sheared_ray {
     int axis[3];
-    double origin[3], shear[2], inverse; /* of w along the last axis */
-    float middle[3], over[3], pad;       /* for boxes, in their units: origin; 1/w; what is rounded */
-    double begin;                        /* minus a grain */
+    double origin[3], shear[2], inverse; /* inverse: 1 over w along the last axis */
+    float middle[3], over[3],
+        pad;      /* for comparisons with boxes, in units of boxes: origin, 1/w, bound of the rounding errors */
+    double begin; /* minus one grain */
     uint32_t except;
 } sheared_ray;
 
@@ -28,11 +31,11 @@ static sheared_ray shear_ray(const fibrad_mesh *mesh, const double w[3], uint32_
     sheared_ray ray = {.begin = -mesh->grain, .except = except};
     int last = fibrad_abs(w[1]) > fibrad_abs(w[0]) ? 1 : 0;
     if (fibrad_abs(w[2]) > fibrad_abs(w[last])) last = 2;
-    const int turned = w[last] < 0; /* then two are exchanged, which keeps the sense of rotation */
+    const int turned = w[last] < 0; /* then two coordinates are exchanged, which keeps the sense of rotation */
     ray.axis[0] = (last + 1 + turned) % 3, ray.axis[1] = (last + 2 - turned) % 3, ray.axis[2] = last;
     ray.inverse = 1 / w[last];
     for (int k = 0; k < 2; k++) ray.shear[k] = w[ray.axis[k]] * ray.inverse;
-    for (int axis = 0; axis < 3; axis++) /* finite, and still so times any length in sight */
+    for (int axis = 0; axis < 3; axis++) /* finite, also times any length of the scene */
         ray.over[axis] = (float)(fibrad_abs(w[axis]) > 1e-30 ? 1 / w[axis] : 1e30);
     return ray;
 }
@@ -48,13 +51,14 @@ static void place_ray(const fibrad_mesh *mesh, const double origin[3], const dou
     ray->pad = (float)(1e-6 * far);
 }
 
-/* The best so far; a back is as far as a grain behind it, so that fronts come first at edges. */
+/* The first side so far. A back counts as one grain farther away, so that fronts come first at edges. */
 typedef struct first_side {
-    double distance, key; /* key: the distance, of backs and a grain more */
+    double distance, key; /* key: the distance; for backs the distance plus one grain */
     uint32_t side, number;
 } first_side;
 
-/* Whether a ray begins in the plane of a triangle, the one it leaves: not so of images of that beside it. */
+/* Whether a ray begins in the plane of a triangle. This holds for the triangle that the ray leaves, but not for its
+ * images to the side. */
 static bool begins_in_plane(const fibrad_mesh *mesh, const sheared_ray *ray, uint32_t t) {
     double normal[3], height = 0;
     fibrad_mesh_normal(mesh, 2 * t, normal);
@@ -82,7 +86,8 @@ static void meet_triangle(const fibrad_mesh *mesh, const sheared_ray *ray, uint3
     *first = (first_side){fibrad_max(0, distance), key, 2 * t + back, mesh->number[t]};
 }
 
-/* Goes into a node, to the boxes that a ray may meet within a length, in their units, the nearest first. */
+/* Enters a node. Visits the boxes that the ray may meet within the length `to`, which is in units of boxes, the
+ * nearest first. */
 static void enter_on_ray(const fibrad_mesh *mesh, fibrad_mesh_walk *walk, uint32_t number, const sheared_ray *ray,
                          float to) {
     const fibrad_mesh_node *node = &mesh->node[number];
@@ -102,7 +107,7 @@ static void enter_on_ray(const fibrad_mesh *mesh, fibrad_mesh_walk *walk, uint32
     fibrad_mesh_enter(walk, number, boxes, from);
 }
 
-/* A length in units of boxes, rounded up. */
+/* A length [L] in units of boxes, rounded up. */
 static float length_for_boxes(const fibrad_mesh *mesh, const sheared_ray *ray, double length) {
     return (float)(fibrad_min(length / mesh->extent * 1.000001, 1e20) + (double)ray->pad);
 }
@@ -117,10 +122,8 @@ static void meet_image(const fibrad_mesh *mesh, const sheared_ray *ray, first_si
     }
 }
 
-/* Nothing is looked for farther than this many periods along any periodic axis. */
-#define MESH_PERIODS 100.0
-
-/* How far to look at once: all the way without periodic axes, else a period at a time, so that images are few. */
+/* The length of one search: the whole length without periodic axes, otherwise about a period, so that there are few
+ * images. */
 static double stretch_along(const fibrad_mesh *mesh, const double origin[3], const double w[3], double *to) {
     double stretch = *to;
     for (int axis = 0; axis < 3; axis++) {
@@ -130,7 +133,7 @@ static double stretch_along(const fibrad_mesh *mesh, const double origin[3], con
             continue;
         }
         stretch = fibrad_min(stretch, mesh->period[axis]);
-        if (w[axis] != 0) *to = fibrad_min(*to, MESH_PERIODS * mesh->period[axis] / fibrad_abs(w[axis]));
+        if (w[axis] != 0) *to = fibrad_min(*to, FIBRAD_PERIODS * mesh->period[axis] / fibrad_abs(w[axis]));
     }
     return fibrad_max(stretch, *to / FIBRAD_MESH_STRETCHES);
 }
@@ -226,7 +229,8 @@ static double square_to_segment(const double a[3], const double b[3]) {
     return inner(at, at);
 }
 
-/* Square of the distance from the origin to a triangle: to its plane, if the foot lies inside, or to its edges. */
+/* Square of the distance from the origin to a triangle. If the foot of the perpendicular lies inside, this is the
+ * distance to the plane. Otherwise it is the distance to the nearest edge. */
 static double square_to_triangle(double c[3][3]) {
     double e[3][3], n[3];
     for (int k = 0; k < 3; k++)
@@ -247,7 +251,8 @@ static double square_to_triangle(double c[3][3]) {
                       fibrad_min(square_to_segment(c[1], c[2]), square_to_segment(c[2], c[0])));
 }
 
-/* Goes into a node, to the boxes that are nearer to a place, in their units, than a length, the nearest first. */
+/* Enters a node. Visits the boxes that are nearer than a length to a place, both in units of boxes, the nearest
+ * first. */
 static void enter_near(const fibrad_mesh *mesh, fibrad_mesh_walk *walk, uint32_t number, const double place[3],
                        double length) {
     const fibrad_mesh_node *node = &mesh->node[number];
@@ -266,7 +271,7 @@ static void enter_near(const fibrad_mesh *mesh, fibrad_mesh_walk *walk, uint32_t
     fibrad_mesh_enter(walk, number, boxes, square);
 }
 
-/* Lessens the distance `least` from a point in the frame of an image. */
+/* The least of the distance `least` and the distance from a point to the triangles of one image. */
 static double nearest_in_image(const fibrad_mesh *mesh, const double at[3], double least) {
     fibrad_mesh_walk walk = {.level = 0};
     double place[3];
@@ -289,7 +294,7 @@ static double nearest_in_image(const fibrad_mesh *mesh, const double at[3], doub
 
 double fibrad_mesh_distance(const fibrad_mesh *mesh, const double point[3], double most) {
     double low[3], high[3], least = most;
-    for (int axis = 0; axis < 3; axis++) { /* the nearest of images is half a period away, or less */
+    for (int axis = 0; axis < 3; axis++) { /* the nearest image of a point is at most half a period away */
         const double half = 0.5001 * mesh->period[axis] + mesh->grain,
                      away = half > mesh->grain ? fibrad_min(most, half) : most;
         low[axis] = point[axis] - away, high[axis] = point[axis] + away;

@@ -28,7 +28,7 @@ static sum two_product(double a, double b) {
     return p;
 }
 
-/* a b + c d for numbers of two parts, rounded once but for about one case in 2^40. */
+/* a b + c d for numbers of two parts. The result is the true value rounded, but for about one case in 2^40. */
 static double product_sum(sum a, sum b, sum c, sum d) {
     sum ab = two_product(a.value, b.value), cd = two_product(c.value, d.value);
     sum total = two_sum(ab.value, cd.value);
@@ -55,8 +55,9 @@ int fibrad_direction(uint32_t k, uint32_t n, double direction[3]) {
     return FIBRAD_OK;
 }
 
-/* Windows of points are turned by five golden angles each, so that the points of one do not lie as those of its
- * neighbours: of what was tried the error is least, half of that without, at 2000 directions of 256 points. */
+/* Each window of points is turned by five golden angles more than the last one, so that its points lie differently
+ * from those of its neighbours. Among the angles tried this one has the least error. For 2,000 directions of 256
+ * points the error is half of that without turning. */
 void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]) {
     fibrad_polar d = fibrad_direction_polar(k, directions);
     double across[2][3] = {{-d.sin, d.cos, 0}, {-d.z * d.cos, -d.z * d.sin, d.ring}}, cos = 1, sin = 0;
@@ -68,8 +69,9 @@ void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double 
     frame[6] = d.ring * d.cos, frame[7] = d.ring * d.sin, frame[8] = d.z;
 }
 
-/* By a unit quaternion, uniform on its sphere: a point of the unit ball in four dimensions, found by rejection in three
- * draws on average, over its distance. Points near the centre would have few digits. */
+/* A unit quaternion gives a rotation. For a uniform quaternion take a uniform point of the unit ball in four
+ * dimensions and divide it by its distance from the centre. Rejection finds such a point in three draws on average.
+ * Points near the centre are rejected too, since they have few digits. */
 void fibrad_rotation(uint64_t seed, double rotation[9]) {
     fibrad_random random = fibrad_random_start(seed, 0);
     double q[4], square;

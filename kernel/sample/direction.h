@@ -4,11 +4,11 @@
 
 #include "sample/tables.h"
 
-/* Cosine and sine of k golden angles by angle addition, k < FIBRAD_DIRECTIONS_MAX; the very bits of the table.
- * Cost: about 60 operations. */
+/* Cosine and sine of k golden angles by addition of angles, k < FIBRAD_DIRECTIONS_MAX. The bits are those of the
+ * table. Cost: about 60 operations. */
 void fibrad_azimuth_sum(uint32_t k, double *cos, double *sin);
 
-/* Cosine and sine of k golden angles, k < FIBRAD_DIRECTIONS_MAX, each the true value rounded once. */
+/* Cosine and sine of k golden angles, k < FIBRAD_DIRECTIONS_MAX. Each is the true value rounded once. */
 static inline void fibrad_azimuth(uint32_t k, double *cos, double *sin) {
 #if FIBRAD_TABLE_AZIMUTHS > 0
     if (k < FIBRAD_TABLE_AZIMUTHS) {
@@ -20,14 +20,14 @@ static inline void fibrad_azimuth(uint32_t k, double *cos, double *sin) {
     fibrad_azimuth_sum(k, cos, sin);
 }
 
-/* A direction in cylindrical coordinates: (ring cos, ring sin, z). Then (-sin, cos, 0) and
- * (-z cos, -z sin, ring) complete a right-handed frame. */
+/* A direction in cylindrical coordinates: (ring cos, ring sin, z). The vectors (-sin, cos, 0) and (-z cos, -z sin,
+ * ring) complete a right-handed frame. */
 typedef struct fibrad_polar {
     double z, ring, cos, sin;
 } fibrad_polar;
 
-/* Direction k of n as fibrad_direction has it, arguments unchecked. z is rounded once; ring,
- * sqrt(1 - z^2), free of cancellation: (2k + 1)(2n - 2k - 1) and n^2 are exact. */
+/* Direction k of n as in fibrad_direction, without checks. z is rounded once. The ring is sqrt(1 - z^2) without
+ * cancellation, since (2k + 1)(2n - 2k - 1) and n^2 are exact. */
 static inline fibrad_polar fibrad_direction_polar(uint32_t k, uint32_t n) {
     uint64_t down = 2 * (uint64_t)k + 1, up = 2 * (uint64_t)n - down;
     fibrad_polar p;
@@ -37,11 +37,12 @@ static inline fibrad_polar fibrad_direction_polar(uint32_t k, uint32_t n) {
     return p;
 }
 
-/* The axes of window k of a rule: two unit vectors across its direction, and the direction. points: 0 for exact areas.
- */
+/* The axes of window k of a rule: two unit vectors across the direction, then the direction. points: 0 for exact
+ * areas. */
 void fibrad_beam_frame(uint32_t k, uint32_t directions, uint32_t points, double frame[9]);
 
-/* A rotation that depends on a seed, uniform over all; applied to the three axes of a frame. */
+/* A random rotation, uniform over all rotations. It depends on the seed alone. The result is the rotation matrix,
+ * which turns the axes of a frame. */
 void fibrad_rotation(uint64_t seed, double rotation[9]);
 void fibrad_rotate_axes(const double rotation[9], double frame[9]);
 

@@ -1,9 +1,8 @@
-/* generate_lines.c - writes kernel/sample/line_table.c to standard output, in some minutes. SPDX-License-Identifier:
- * MIT
+/* generate_lines.c - writes kernel/sample/line_table.c to standard output, in some minutes.
  *
- * Each set is the best of several that begin with about half a Fibonacci set and take many steps of
- * kernel/sample/line.c: the same as the sets that are made at run time, but for patience. Compile it with line.c,
- * direction.c and tables.c and with -ffp-contract=off: all machines then write the same file. */
+ * Each set is the best of several candidates. A candidate begins with about half a Fibonacci set and takes many
+ * steps of kernel/sample/line.c. Sets that are made at run time are made in the same way with fewer steps. Compile
+ * this file with line.c, direction.c, tables.c and -ffp-contract=off. Then all machines write the same file. */
 #include "sample/direction.h"
 #include "sample/line.h"
 
@@ -16,7 +15,7 @@ static const uint32_t SIZES_WRITTEN[] = {8,   11,  16,  23,  32,  45,  55,  64, 
                                          128, 181, 233, 256, 362, 512, 724, 1024, 1448, 2048};
 enum { WRITTEN = sizeof SIZES_WRITTEN / sizeof SIZES_WRITTEN[0], LARGEST = 2048 };
 
-/* weight of pairs within a half, as in fibrad_lines_make */
+/* the weight of pairs within a half, as in fibrad_lines_make */
 static const double HALVES = 0.3;
 
 typedef double vector[3];
@@ -32,7 +31,7 @@ static double height(uint32_t n, const vector *line) {
     return sum;
 }
 
-/* Candidate c of the sets of n lines: the first n of 2 n + c directions, at first. */
+/* Candidate c of the sets of n lines. It begins with the first n of 2 n + c directions. */
 static void make_candidate(uint32_t n, uint32_t c, vector *line) {
     static vector scratch[LARGEST];
     const fibrad_line_steps whole = {c % 2 == 0 ? 200 : 50, 1.5, 0.9, 0}, halves = {2000, 1.5, 0.9, HALVES},

@@ -1,9 +1,11 @@
-/* generate_tables.c - writes the kernel's tables of Fibonacci samples to standard output. SPDX-License-Identifier: MIT
+/* generate_tables.c - writes the kernel's tables of Fibonacci samples to standard output. SPDX-License-Identifier:
+ * MIT
  *
- * Everything is computed in fixed point with 224 binary places, from the integers alone (pi by Machin's formula, the
- * golden angle from sqrt 5), and rounded once at the end. No floating-point operation is inexact and no libm is asked,
- * so every machine and compiler writes the same file, and every entry is the true value correctly rounded (a double
- * from the long double of some machines would be rounded twice, wrongly once in 2000 entries). */
+ * All numbers are computed in fixed point with 224 binary places, from whole numbers alone: pi by Machin's formula,
+ * the golden angle from sqrt 5. Each entry is rounded once at the end. The program uses no inexact floating-point
+ * operation and no libm. So all machines and compilers write the same file, and each entry is the true value
+ * correctly rounded. With long double, one entry in 2000 would be wrong on some machines, because it would be
+ * rounded twice. */
 #include "sample/tables.h"
 
 #include <inttypes.h>
@@ -87,7 +89,7 @@ static int is_zero(fixed a) { return !less(ZERO, a); }
 /* Square root of x < 2^31, bit by bit. */
 static fixed root(fixed x) {
     fixed result = ZERO;
-    if (is_zero(x)) return result; /* the squares of the last 112 places vanish too */
+    if (is_zero(x)) return result; /* the squares of the last 112 places are 0 */
     for (int place = 16; place < 32 * WORDS; place++) {
         fixed trial = result;
         trial.word[place / 32] |= 0x80000000u >> place % 32;
@@ -127,7 +129,7 @@ typedef struct angle {
     real cos, sin;
 } angle;
 
-/* Cosine and sine of a fraction of a turn; whole turns do not matter. */
+/* Cosine and sine of a fraction of a turn. Whole turns make no difference. */
 static angle angle_of(fixed turn) {
     fixed quarters = times_small(turn, 4);
     uint32_t quadrant = quarters.word[0] % 4;
@@ -141,12 +143,12 @@ static angle angle_of(fixed turn) {
                    .sin = {sum[1 - quadrant % 2], quadrant >= 2}};
 }
 
-/* Of k golden angles. */
+/* The cosine and sine of k golden angles. */
 static angle azimuth(uint32_t k) { return angle_of(times_small(golden, k)); }
 
 /* ---- rounding and writing -------------------------------------------------------------------------------------- */
 
-/* x rounded to nearest even with the given number of bits (at most 53); *rest, unless NULL, takes what that leaves. */
+/* x rounded to nearest even with the given number of bits, at most 53. *rest: out: the rest; NULL: not wanted. */
 static double rounded(real x, int bits, double *rest) {
     if (rest != NULL) *rest = 0;
     if (is_zero(x.size)) return 0;
@@ -213,10 +215,10 @@ typedef struct node {
     double z, ring, cos, sin, weight;
 } node;
 
-/* Node k = 1 ... n of the surface rule of n nodes, `before` being the Fibonacci number before n. */
+/* Node k = 1 ... n of the surface rule of n nodes. before: the Fibonacci number before n. */
 static node surface_node(uint32_t k, uint32_t n, uint32_t before) {
     int south = 2 * k < n;
-    fixed z = over_small(times_small(ONE, south ? n - 2 * k : 2 * k - n), n); /* of its size; tau is odd */
+    fixed z = over_small(times_small(ONE, south ? n - 2 * k : 2 * k - n), n); /* the absolute value; tau is odd */
     angle polar = angle_of(over_small(z, 2));
     real tau = {plus(z, times(polar.sin.size, over_pi)), south};
     real ring = {root(minus(ONE, times(tau.size, tau.size))), 0};

@@ -4,12 +4,12 @@
 
 /* ---- tables ---------------------------------------------------------------------------------------------------- */
 
-/* Sizes of the sets in fibrad_table_lines, which follow each other. */
+/* The sizes of the sets in fibrad_table_lines. The sets follow each other in this order. */
 static const uint16_t SIZES[] = {8,   11,  16,  23,  32,  45,  55,  64,   91,   100,
                                  128, 181, 233, 256, 362, 512, 724, 1024, 1448, 2048};
 enum { SIZE_COUNT = sizeof SIZES / sizeof SIZES[0] };
 
-/* Index of the first line of the set of n; UINT32_MAX if there is none. */
+/* Index of the first line of the set of n. UINT32_MAX: there is no such set. */
 static uint32_t first_of_set(uint32_t n) {
     uint32_t first = 0;
     for (int i = 0; i < SIZE_COUNT && SIZES[i] <= FIBRAD_TABLE_LINES; i++) {
@@ -21,7 +21,7 @@ static uint32_t first_of_set(uint32_t n) {
 
 bool fibrad_lines_tabled(uint32_t n) { return first_of_set(n) != UINT32_MAX; }
 
-/* The entry is the projection from the south pole, x/(1 + z) and y/(1 + z), in units of 2^-31. */
+/* Makes a unit vector of an entry: the projection from the south pole, x/(1 + z) and y/(1 + z), in units of 2^-31. */
 static void unfold_line(const int32_t entry[2], double line[3]) {
     const double u = 0x1p-31 * entry[0], v = 0x1p-31 * entry[1], square = u * u + v * v, scale = 1 + square;
     line[0] = 2 * u / scale;
@@ -42,19 +42,22 @@ static void unfold_set(uint32_t n, double (*line)[3]) {
 
 static double scalar_product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* |p - q| + |p + q| = 2 sqrt(1 + s), s the sine of the angle between p and q. */
+/* p - q
+ * +
+ * p + q
+ * = 2 sqrt(1 + s) with s the sine of the angle between p and q. */
 static double distances(const double p[3], const double q[3]) {
     const double t = scalar_product(p, q);
     return 2 * fibrad_sqrt(1 + fibrad_sqrt(fibrad_max(0, 1 - t * t)));
 }
 
-/* Derivative of that to the cosine of the angle. */
+/* The derivative of this sum with respect to the cosine of the angle. */
 static double slope(const double p[3], const double q[3]) {
     const double t = scalar_product(p, q), square = fibrad_max(0x1p-40, 1 - t * t);
     return -t / fibrad_sqrt(square * (1 + fibrad_sqrt(square)));
 }
 
-/* Adds the forces between line i and those after it; weight: of pairs within a half, and across. */
+/* Adds the forces between line i and all lines after it. weight: of pairs within a half, and of pairs across. */
 static void add_forces(uint32_t n, const double (*line)[3], uint32_t i, const double weight[2], double (*velocity)[3]) {
     const double *p = line[i];
     double sum[3] = {0, 0, 0};
@@ -68,7 +71,7 @@ static void add_forces(uint32_t n, const double (*line)[3], uint32_t i, const do
     for (int axis = 0; axis < 3; axis++) velocity[i][axis] += sum[axis];
 }
 
-/* Moves p by what of its velocity is tangent to the sphere, and back onto the sphere. */
+/* Moves p by the tangential component of its velocity, and brings it back onto the sphere. */
 static void move_line(double p[3], double velocity[3]) {
     const double along = scalar_product(p, velocity);
     for (int axis = 0; axis < 3; axis++) {
@@ -92,7 +95,7 @@ void fibrad_lines_relax(uint32_t n, double (*line)[3], double (*velocity)[3], co
 
 /* ---- halves ---------------------------------------------------------------------------------------------------- */
 
-/* field[i]: sum over the other lines of their distances from line i, those of the other half with a minus. */
+/* field[i]: the sum of the distances of line i from the other lines of its half, minus those from the other half. */
 static void make_field(uint32_t n, const double (*line)[3], double *field) {
     fibrad_zero(field, n * sizeof *field);
     for (uint32_t i = 0; i < n; i++)
@@ -103,7 +106,7 @@ static void make_field(uint32_t n, const double (*line)[3], double *field) {
         }
 }
 
-/* The odd-numbered line whose exchange with the even-numbered line i gains most; i if none gains. */
+/* The odd-numbered line whose exchange with the even-numbered line i gains most. i: no exchange gains. */
 static uint32_t best_exchange(uint32_t n, const double (*line)[3], const double *field, uint32_t i) {
     uint32_t best = i;
     double most = 0x1p-30;
@@ -114,7 +117,7 @@ static uint32_t best_exchange(uint32_t n, const double (*line)[3], const double 
     return best;
 }
 
-/* Exchanges line i, even-numbered, and line j, odd-numbered. */
+/* Exchanges the even-numbered line i and the odd-numbered line j. */
 static void exchange_lines(uint32_t n, double (*line)[3], double *field, uint32_t i, uint32_t j) {
     for (uint32_t k = 0; k < n; k++) {
         if (k == i || k == j) continue;
@@ -157,8 +160,8 @@ static void take_directions(uint32_t n, uint32_t of, double (*line)[3]) {
     }
 }
 
-/* Half a Fibonacci set of 2 n has one direction of each line, and a seam at the equator. Some steps close the seam,
- * then lines are dealt to the halves, and further steps spread both halves and the whole. */
+/* Half a Fibonacci set of 2 n has one direction of each line, but a seam at the equator. Some steps close the seam.
+ * Then the lines are divided into halves. Further steps spread both halves and the whole set. */
 void fibrad_lines_make(uint32_t n, double (*line)[3], double *scratch) {
     static const fibrad_line_steps close = {16, 1.5, 0.8, 0}, spread = {32, 1.5, 0.8, 0.3};
     if (fibrad_lines_tabled(n)) {

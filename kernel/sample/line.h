@@ -1,10 +1,14 @@
-/* line.h - lines spread evenly: each serves a direction and its opposite at once. SPDX-License-Identifier: MIT
+/* line.h - lines spread evenly. Each line serves a direction and its opposite. SPDX-License-Identifier: MIT
  *
- * A line is a unit vector p that stands for p and -p. A set is even if its vectors and their opposites together are:
- * the sum over pairs of |p - q| + |p + q| is to be large, which makes the mean square error over spherical caps small
- * (Stolarsky). The even-numbered and the odd-numbered lines are each spread evenly, too, so that their difference tells
- * an error. A half errs 1.4 to 2 times as much as a tabled set of n/2, and a half of a set that is not tabled 1.7 to 3
- * times. The bits of a set depend on n and on whether n is tabled, on nothing else. */
+ * A line is a unit vector p that stands for p and -p. A set is even if its vectors and their opposites together are
+ * spread evenly. The measure is the sum over pairs of
+ * p - q
+ * +
+ * p + q
+ * . If this sum is large, the mean square error over spherical caps is small (Stolarsky). The even-numbered lines
+ * and the odd-numbered lines are two halves, which are each spread evenly too. The difference between the halves
+ * gives an error estimate. A half of a tabled set errs 1.4 to 2 times as much as a tabled set of n/2, and a half of
+ * another set 1.7 to 3 times. The bits of a set depend only on n and on whether n is tabled. */
 #ifndef FIBRAD_SAMPLE_LINE_H
 #define FIBRAD_SAMPLE_LINE_H
 
@@ -13,27 +17,31 @@
 /* Sets of up to this many lines are spread evenly; larger ones are Fibonacci sets of directions. */
 #define FIBRAD_LINES_EVEN_MAX 2048
 
-/* Whether the set of n lines is a table of this build (FIBRAD_TABLE_LINES). A tabled set costs some ten operations a
- * line. Any other set of up to FIBRAD_LINES_EVEN_MAX lines costs about 60 times n^2/2 pairs, two square roots each:
- * 2.4 ms for 100 lines, 0.24 s for 1,000. */
+/* Whether the set of n lines is in a table of this build (FIBRAD_TABLE_LINES). A tabled set costs about ten
+ * operations a line. Any other set of up to FIBRAD_LINES_EVEN_MAX lines costs about 60 times n^2/2 pairs with two
+ * square roots each: 2.4 ms for 100 lines, 0.24 s for 1,000. */
 bool fibrad_lines_tabled(uint32_t n);
 
-/* Fills n unit vectors, FIBRAD_DIRECTIONS_MIN <= n <= FIBRAD_DIRECTIONS_MAX (unchecked). scratch: 3 n doubles, not used
- * (and possibly NULL) if n is tabled or above FIBRAD_LINES_EVEN_MAX. */
+/* Fills n unit vectors, FIBRAD_DIRECTIONS_MIN <= n <= FIBRAD_DIRECTIONS_MAX (unchecked). scratch: 3 n doubles. It
+ * may be NULL if n is tabled or above FIBRAD_LINES_EVEN_MAX. */
 void fibrad_lines_make(uint32_t n, double (*line)[3], double *scratch);
 
-/* Steps uphill in the sum over pairs of |p - q| + |p + q|, pairs within a half counting 1 + halves times. */
+/* Steps that increase the sum over pairs of
+ * p - q
+ * +
+ * p + q
+ * . Pairs within a half count 1 + halves times. */
 typedef struct fibrad_line_steps {
     uint32_t count;
-    double length;   /* of a step, in units of the force over n: at most 2 (1 + momentum)/(1 + halves/2) are stable */
-    double momentum; /* what of a step is left in the next, 0 to 0.9 */
+    double length; /* of a step, in units of the force over n; steps are stable up to 2 (1 + momentum)/(1 + halves/2) */
+    double momentum; /* the part of a step that is added to the next one, 0 to 0.9 */
     double halves;   /* >= 0 */
 } fibrad_line_steps;
 
-/* Takes the steps; velocity: n vectors, overwritten. Cost: n^2/2 pairs a step. */
+/* Takes the steps. velocity: n vectors, overwritten. Cost: n^2/2 pairs a step. */
 void fibrad_lines_relax(uint32_t n, double (*line)[3], double (*velocity)[3], const fibrad_line_steps *steps);
 
-/* Exchanges even-numbered and odd-numbered lines as long as that spreads the halves more evenly. field: n doubles,
+/* Exchanges even-numbered and odd-numbered lines while this spreads the halves more evenly. field: n doubles,
  * overwritten. Cost: about ten times n^2/2 pairs. */
 void fibrad_lines_halve(uint32_t n, double (*line)[3], double *field);
 

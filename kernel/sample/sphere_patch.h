@@ -1,14 +1,14 @@
 /* sphere_patch.h - the patches of a sphere. SPDX-License-Identifier: MIT
  *
- * The sphere is projected from its centre onto a cube, each face of which is cut into equal squares after a map that
- * makes their images on the sphere about equal. The cube is turned so that neither the axes nor the contacts of common
- * lattices lie on its edges. */
+ * The sphere is projected from its centre onto a cube. Each face of the cube is mapped so that equal squares have
+ * images of about equal area on the sphere, and is then cut into squares. The cube is turned so that neither the
+ * axes nor the contacts of common lattices lie on its edges. */
 #ifndef FIBRAD_SAMPLE_SPHERE_PATCH_H
 #define FIBRAD_SAMPLE_SPHERE_PATCH_H
 
 #include "base/port.h"
 
-/* The axes of a frame seen from the cube. */
+/* The axes of a frame in the coordinates of the cube. */
 static inline void fibrad_patch_turn(const double frame[9], double turned[9]) {
     static const double cube[9] = {4. / 9, -1. / 9, 8. / 9, 4. / 9, 8. / 9, -1. / 9, -7. / 9, 4. / 9, 4. / 9};
     for (int axis = 0; axis < 3; axis++)
@@ -17,14 +17,14 @@ static inline void fibrad_patch_turn(const double frame[9], double turned[9]) {
                                      cube[3 * row + 2] * frame[3 * axis + 2];
 }
 
-/* Number of the patch from the face of the cube, 0 to 5, and the place on it in squares; squares of one face in fours,
- * two by two. side: squares along an edge. */
+/* The number of a patch. face: of the cube, 0 to 5. x, y: the place on the face in squares. side: squares along an
+ * edge. Four squares, two by two, have successive numbers. */
 static inline uint32_t fibrad_patch_number(uint32_t face, uint32_t x, uint32_t y, uint32_t side) {
     x = x < side ? x : side - 1, y = y < side ? y : side - 1;
     return face * side * side + ((x >> 1) * (side >> 1) + (y >> 1)) * 4 + (x & 1) * 2 + (y & 1);
 }
 
-/* Where a normal is: the face, and the place on it in squares. */
+/* The face and the place on it, in squares, of a normal. */
 static inline uint32_t fibrad_patch_place(const double normal[3], uint32_t side, double at[2]) {
     static const double frame[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     double axes[9], n[3];

@@ -24,12 +24,12 @@
 #define FIBRAD_TABLE_LINES 2048
 #endif
 
-/* Cosine and sine of k golden angles, the golden angle being pi (3 - sqrt 5). */
+/* Cosine and sine of k golden angles. The golden angle is pi (3 - sqrt 5). */
 #if FIBRAD_TABLE_AZIMUTHS > 0
 extern const double fibrad_table_azimuth[FIBRAD_TABLE_AZIMUTHS][2];
 #endif
 
-/* A cosine and a sine to twice the precision of a double: each is the sum of its two parts. */
+/* A cosine and a sine with twice the precision of a double. Each is the sum of two doubles. */
 typedef struct fibrad_long_angle {
     double cos, cos_rest, sin, sin_rest;
 } fibrad_long_angle;
@@ -39,8 +39,8 @@ typedef struct fibrad_long_angle {
 extern const fibrad_long_angle fibrad_table_near[FIBRAD_TABLE_STRIDE];
 extern const fibrad_long_angle fibrad_table_far[FIBRAD_DIRECTIONS_MAX / FIBRAD_TABLE_STRIDE];
 
-/* Points in the unit disc: number k of M at radius sqrt((k + 1/2)/M), azimuth k golden angles. The sets of 64, 128 and
- * 256 points follow each other, so that the set of M begins at M - 64. */
+/* Points in the unit disc. Point k of M has the radius sqrt((k + 1/2)/M) and an azimuth of k golden angles. The sets
+ * of 64, 128 and 256 points follow each other, so the set of M begins at M - 64. */
 extern const float fibrad_table_disc_x[64 + 128 + 256];
 extern const float fibrad_table_disc_y[64 + 128 + 256];
 
@@ -49,7 +49,7 @@ typedef struct fibrad_disc_points {
     const float *x, *y; /* [M] */
 } fibrad_disc_points;
 
-/* The set of M points; FIBRAD_E_TABLE unless M is 64, 128 or 256. */
+/* The set of M points. FIBRAD_E_TABLE: M is not 64, 128 or 256. */
 static inline int fibrad_disc_points_get(uint32_t m, fibrad_disc_points *points) {
     if (m != 64 && m != 128 && m != 256) return FIBRAD_E_TABLE;
     points->x = fibrad_table_disc_x + (m - 64);
@@ -57,15 +57,16 @@ static inline int fibrad_disc_points_get(uint32_t m, fibrad_disc_points *points)
     return FIBRAD_OK;
 }
 
-/* Nodes of the surface rules on the unit sphere, the rules of 8, 13, ... one after the other, each padded to a
- * multiple of 8 by nodes of weight 0 at the pole. */
+/* Nodes of the surface rules on the unit sphere. The rules of 8, 13, ... nodes follow each other. Each is padded to
+ * a multiple of 8 by nodes at the pole with weight 0. */
 #if FIBRAD_TABLE_SURFACE > 0
 extern const double fibrad_table_surface_z[], fibrad_table_surface_ring[], fibrad_table_surface_cos[],
     fibrad_table_surface_sin[], fibrad_table_surface_weight[];
 #endif
 
-/* Sets of lines, the sets of 8, 11, ... one after the other: x/(1 + z) and y/(1 + z) in units of 2^-31, z >= 0. Unlike
- * the other tables they stand in a source, line_table.c, which generate_lines.c wrote. */
+/* Sets of 8, 11, ... lines, one after another. An entry is x/(1 + z) and y/(1 + z) in units of 2^-31, z >= 0. The
+ * other tables are made when fibrad is built, but this one is the source line_table.c, which generate_lines.c has
+ * written. */
 #if FIBRAD_TABLE_LINES >= 8
 extern const int32_t fibrad_table_lines[][2];
 #endif
@@ -74,13 +75,13 @@ extern const int32_t fibrad_table_lines[][2];
 typedef struct fibrad_surface_nodes {
     const double *z;      /* tau(z_k), tau(z) = z + sin(pi z)/pi, z_k = -1 + 2 k/N_F */
     const double *ring;   /* sqrt(1 - tau^2), the distance from the axis */
-    const double *cos;    /* of the azimuth 2 pi (k N'_F mod N_F)/N_F, N'_F the Fibonacci number before N_F */
-    const double *sin;    /* of it */
-    const double *weight; /* tau'(z_k) = 1 + cos(pi z_k); the weights of a rule add up to N_F */
+    const double *cos;    /* of the azimuth 2 pi (k N'_F mod N_F)/N_F, where N'_F is the Fibonacci number before N_F */
+    const double *sin;    /* of the same azimuth */
+    const double *weight; /* tau'(z_k) = 1 + cos(pi z_k); the weights of a rule have the sum N_F */
     uint32_t n;           /* N_F */
 } fibrad_surface_nodes;
 
-/* The rule of n nodes; FIBRAD_E_TABLE unless n is a Fibonacci number from 8 to FIBRAD_TABLE_SURFACE. */
+/* The rule of n nodes. FIBRAD_E_TABLE: n is not a Fibonacci number from 8 to FIBRAD_TABLE_SURFACE. */
 static inline int fibrad_surface_nodes_get(uint32_t n, fibrad_surface_nodes *nodes) {
     uint32_t offset = 0, size = 8, next = 13;
     while (size < n && next <= FIBRAD_TABLE_SURFACE) {

@@ -1,8 +1,8 @@
 /* drift.c - which rows of a bed may be kept when its spheres move. SPDX-License-Identifier: MIT */
 #include "scene/grid_walk.h"
 
-/* Seen from sphere i, the edge of sphere j sweeps over DRIFT_FACTOR F delta/width of the row when j moves by delta. The
- * factor bounds what was measured, docs/methods.md section 10. */
+/* If sphere j moves by delta, its edge as seen from sphere i sweeps over DRIFT_FACTOR F delta/width of the row. The
+ * factor is an upper bound of what was measured, docs/methods.md section 10. */
 #define DRIFT_FACTOR 2.0
 
 static bool alike(const fibrad_scene *a, const fibrad_scene *b) {
@@ -19,12 +19,12 @@ static void inverse_periods(const fibrad_scene *scene, double inverse[3]) {
     for (int axis = 0; axis < 3; axis++) inverse[axis] = scene->period[axis] > 0 ? 1 / scene->period[axis] : 0;
 }
 
-/* c less the whole periods that leave it shortest. */
+/* c minus the whole periods that leave the shortest vector. */
 static void shorten(const fibrad_scene *scene, const double inverse[3], double c[3]) {
     for (int axis = 0; axis < 3; axis++) c[axis] -= scene->period[axis] * fibrad_floor(c[axis] * inverse[axis] + 0.5);
 }
 
-/* The way between two places of a scene, to the nearest image. */
+/* The vector from one place of a scene to the nearest image of another. */
 static void way(const fibrad_scene *scene, const double inverse[3], uint32_t from, uint32_t to, double c[3]) {
     c[0] = scene->x[to] - scene->x[from], c[1] = scene->y[to] - scene->y[from], c[2] = scene->z[to] - scene->z[from];
     shorten(scene, inverse, c);
@@ -46,7 +46,7 @@ int fibrad_drift_row(const fibrad_scene *before, const fibrad_scene *now, uint32
         way(before, inverse, then_i, then_j, from);
         way(now, inverse, now_i, now_j, to);
         double nearest = fibrad_min(square_of(from), square_of(to));
-        if (nearest == 0) continue; /* images of i move as it does */
+        if (nearest == 0) continue; /* images of i move as i does */
         for (int axis = 0; axis < 3; axis++) to[axis] -= from[axis];
         shorten(now, inverse, to);
         double width = fibrad_min(r, fibrad_max(fibrad_sqrt(nearest) - r, r_i)), rate = r * r / (4 * nearest * width);
@@ -73,7 +73,7 @@ int fibrad_drift_partners(const fibrad_scene *now, uint32_t i, const fibrad_row 
         uint32_t own = p < before->length ? before->col[p] : UINT32_MAX;
         uint32_t other = q < row->length ? row->col[q] : UINT32_MAX, j = own < other ? own : other;
         double was = own == j ? before->f[p++] : 0, is = other == j ? row->f[q++] : 0;
-        if (is <= 2 * was) continue; /* row j had it, and knows */
+        if (is <= 2 * was) continue; /* row j saw this sphere before, and counts it */
         double ratio = r_i / now->r[now->place[j]], change = DRIFT_FACTOR * (is - was) * ratio * ratio;
         error[j] = fibrad_sqrt(error[j] * error[j] + change * change);
     }

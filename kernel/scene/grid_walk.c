@@ -19,7 +19,7 @@ void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibra
     }
 }
 
-/* Cell `at` of an axis as a cell of the box, and the shift of that periodic image. */
+/* The cell of the box for cell `at` of an axis, and the shift of that periodic image. */
 static inline int32_t image(const fibrad_walk *walk, int axis, double *shift) {
     int32_t cells = walk->level->cells[axis], at = walk->at[axis];
     *shift = 0;
@@ -34,7 +34,7 @@ bool fibrad_walk_next(fibrad_walk *walk) {
     while (walk->at[2] <= walk->high[2]) {
         int32_t x = image(walk, 0, &walk->shift[0]), y = image(walk, 1, &walk->shift[1]);
         int32_t z = image(walk, 2, &walk->shift[2]);
-        int32_t run = level->cells[0] - x; /* to the end of the box, or of the walk */
+        int32_t run = level->cells[0] - x; /* to the end of the box, or to the end of the walk */
         if (run > walk->high[0] - walk->at[0] + 1) run = walk->high[0] - walk->at[0] + 1;
         uint32_t row =
             level->first_cell + (uint32_t)level->cells[0] * ((uint32_t)level->cells[1] * (uint32_t)z + (uint32_t)y);

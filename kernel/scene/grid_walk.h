@@ -4,15 +4,17 @@
 
 #include "scene/scene.h"
 
-/* The cell of a coordinate [L] along an axis; on a periodic axis it may be one of an image, beyond [0, cells). */
+/* The cell of a coordinate [L] along an axis. On a periodic axis the cell may be one of an image, outside [0,
+ * cells). */
 int32_t fibrad_grid_cell(const fibrad_scene *scene, const fibrad_level *level, int axis, double c);
 
-/* A walk through the cells of one level that meet a box, as runs of spheres side by side in memory. */
+/* A walk through the cells of one level that meet a box. The walk visits runs of spheres that lie one after another
+ * in memory. */
 typedef struct fibrad_walk {
     const fibrad_scene *scene;
     const fibrad_level *level;
-    int32_t low[3], high[3], at[3]; /* cells; beyond [0, cells) they are periodic images */
-    /* the run: spheres [begin, end), seen shifted by whole periods */
+    int32_t low[3], high[3], at[3]; /* cells; those outside [0, cells) are periodic images */
+    /* the run: spheres [begin, end), shifted by whole periods */
     uint32_t begin, end;
     double shift[3];
 } fibrad_walk;
@@ -21,7 +23,7 @@ typedef struct fibrad_walk {
 void fibrad_walk_begin(fibrad_walk *walk, const fibrad_scene *scene, const fibrad_level *level, const double low[3],
                        const double high[3]);
 
-/* The next run with spheres in it; false when there is none. */
+/* Goes to the next run that has spheres. False: no run is left. */
 bool fibrad_walk_next(fibrad_walk *walk);
 
 #endif

@@ -12,9 +12,6 @@
  * the size of its spheres. Hence a search among small spheres does not visit cells as wide as large spheres need. */
 #define FIBRAD_LEVELS 32
 
-/* No search goes farther than this many periods along a periodic axis. */
-#define FIBRAD_PERIODS 100.0
-
 typedef struct fibrad_level {
     double radius_max;
     double cell[3], inverse[3]; /* L and 1/L: size of a cell and its inverse */
@@ -23,7 +20,7 @@ typedef struct fibrad_level {
     uint32_t first_sphere; /* position of the first sphere in scene order */
 } fibrad_level;
 
-/* Eight spheres as whole numbers, in one line of the cache. A first comparison with these leaves most spheres out. A
+/* Eight spheres as whole numbers, in one cache line. A first comparison with these numbers excludes most spheres. A
  * coordinate is 0 to 65535 over the box of the grid. A radius is rounded up. */
 #define FIBRAD_COARSE       8
 #define FIBRAD_COARSE_STRAY 65535 /* as a radius: the sphere lies outside the box */
@@ -34,10 +31,10 @@ typedef struct fibrad_coarse {
 /* The convex region inside the planes and the cylinder. */
 typedef struct fibrad_container {
     bool walls;             /* whether there is a plane, an opening or a cylinder */
-    bool cuts;              /* whether one cuts a sphere */
+    bool cuts;              /* whether a wall cuts a sphere */
     uint32_t openings;      /* bit k: the plane of slot k is an opening */
     double low[3], high[3]; /* L, of the planes; infinite where there is none */
-    double axis[2], radius; /* L, of the cylinder; radius infinite: none */
+    double axis[2], radius; /* L, of the cylinder; an infinite radius: there is none */
 } fibrad_container;
 
 /* Where the plane of a slot stands along its axis [L]. Infinite: there is no such plane. */
@@ -57,7 +54,7 @@ struct fibrad_scene {
     fibrad_container container;
     bool region;                        /* whether a known region was given */
     double known_low[3], known_high[3]; /* L, infinite where it is unlimited */
-    fibrad_occupancy occupancy;         /* of the caller, or one cell */
+    fibrad_occupancy occupancy;         /* the caller's, or one cell */
     uint32_t slot[FIBRAD_BODIES_MAX];   /* [facts.bodies], slot of each wall */
     double wall_area[FIBRAD_SLOTS];     /* L^2, by slot, as fibrad_scene_body_area; 0: no such wall */
     uint64_t hash;                      /* of all input; 0: the scene is not complete */
@@ -65,7 +62,7 @@ struct fibrad_scene {
     uint32_t levels;
     fibrad_level level[FIBRAD_LEVELS]; /* by ascending radius, without empty levels */
     double *x, *y, *z, *r;             /* L, [n], in scene order, which is that of the cells */
-    fibrad_coarse *coarse;             /* [n / FIBRAD_COARSE, rounded up], the same as whole numbers */
+    fibrad_coarse *coarse;             /* [n / FIBRAD_COARSE, rounded up], the same spheres as whole numbers */
     double coarse_unit[3], coarse_low[3], coarse_radius; /* L, of a coordinate: coarse_low + coarse_unit * number */
     uint32_t *order;                                     /* [n], the caller's index of each sphere in scene order */
     uint32_t *place;                                     /* [n], position of the caller's sphere i in scene order */
@@ -81,7 +78,7 @@ static inline uint32_t fibrad_scene_slot(const fibrad_scene *scene, uint32_t sid
     return mesh != FIBRAD_NO_MESH ? fibrad_slot_of_mesh(mesh) : FIBRAD_NONE;
 }
 
-/* Whether a scene is there and complete. */
+/* Whether a scene exists and is complete. */
 static inline bool fibrad_scene_ready(const fibrad_scene *scene) { return scene != NULL && scene->hash != 0; }
 
 /* The id of the caller's sphere i. It seeds random paths. */
@@ -89,7 +86,7 @@ static inline uint64_t fibrad_scene_id(const fibrad_scene *scene, uint32_t i) {
     return scene->id != NULL ? scene->id[i] : i;
 }
 
-/* The id of the sphere at a position in scene order. Ties are decided by ids, so that the order of spheres does not
+/* The id of the sphere at a position in scene order. Ids decide ties, so that the order of the spheres does not
  * matter. */
 static inline uint64_t fibrad_scene_rank(const fibrad_scene *scene, uint32_t place) {
     return fibrad_scene_id(scene, scene->order[place]);

@@ -8,9 +8,9 @@
 #include "scene/surroundings.h"
 #include "scene/walls.h"
 
-/* Cells on average hold this many spheres of their level. */
+/* Average number of spheres in a cell, of the level of the cell. */
 #define SPHERES_PER_CELL 2.0
-/* Cells a level may have beyond one per sphere. */
+/* The number of cells of a level is at most the number of its spheres and this number. */
 #define SPARE_CELLS 8u
 
 static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uint32_t triangles) {
@@ -33,7 +33,7 @@ static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uin
     return scene;
 }
 
-/* Whether a scene can be made for a configuration; FIBRAD_E_ARGUMENT, _UNSUPPORTED, _ENDLESS, _ISA. */
+/* Whether a scene can be made for a configuration. Errors: FIBRAD_E_ARGUMENT, _UNSUPPORTED, _ENDLESS, _ISA. */
 static int check_config(const fibrad_scene_config *config) {
     for (int axis = 0; axis < 3; axis++)
         if (!(config->period[axis] >= 0 && fibrad_finite(config->period[axis]))) return FIBRAD_E_ARGUMENT;
@@ -61,7 +61,7 @@ static int sphere_fault(fibrad_fault *fault, uint32_t sphere, int why) {
     return FIBRAD_E_ARGUMENT;
 }
 
-/* The first wall that does not go with the box and the walls before it, if that is what is wrong. */
+/* If walls are the reason for the status: the first wall that contradicts the box or the walls before it. */
 static int wall_fault(int status, fibrad_fault *fault, uint32_t n, const fibrad_scene_config *config) {
     fibrad_scene_config some = *config;
     uint32_t wall = 0;
@@ -72,7 +72,7 @@ static int wall_fault(int status, fibrad_fault *fault, uint32_t n, const fibrad_
     return status;
 }
 
-/* Arrays of the caller's without strides left open. */
+/* The caller's arrays, with strides of 0 replaced by 1. */
 static fibrad_spheres with_strides(const fibrad_spheres *spheres) {
     fibrad_spheres s = *spheres;
     if (s.stride == 0) s.stride = 1;
@@ -86,8 +86,9 @@ static double coordinate_of(const fibrad_spheres *s, int axis, uint32_t i) {
 
 static double radius_of(const fibrad_spheres *s, uint32_t i) { return s->r[(size_t)i * s->stride_r]; }
 
-/* Narrows [low, high] to where the bulk of the coordinates lies: mean and four standard deviations, again and again
- * while that leaves some out. A particle lost far away must not spread the cells; it goes into the outermost one. */
+/* Narrows [low, high] to the place of most coordinates: their mean and four standard deviations on both sides. This
+ * is repeated as long as it excludes coordinates. A particle that was lost far away must not make cells larger. Such
+ * a particle goes into the outermost cell. */
 static void trim(const fibrad_spheres *s, int axis, double *low, double *high) {
     const uint32_t n = s->n;
     for (int round = 0; round < 16; round++) {
@@ -100,7 +101,7 @@ static void trim(const fibrad_spheres *s, int axis, double *low, double *high) {
             sum += d, square += d * d;
             within++;
         }
-        if (within == 0) return; /* two heaps at the ends, and rounding has left both out */
+        if (within == 0) return; /* all coordinates lie at the ends, and rounding has excluded both */
         double mean = sum / within, spread = 4 * fibrad_sqrt(fibrad_max(0, square / within - mean * mean));
         double from = fibrad_max(-1, mean - spread), to = fibrad_min(1, mean + spread);
         if (from == -1 && to == 1) return;
@@ -142,14 +143,14 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
     return fibrad_mix(hash) | 1;
 }
 
-/* The largest that coordinates and periods may be among spheres. */
+/* The greatest coordinate or period that is allowed. */
 static double longest_among(const fibrad_scene *scene) {
     if (scene->facts.spheres == 0) return FIBRAD_LENGTH_MAX;
     return fibrad_min(FIBRAD_LENGTH_MAX, FIBRAD_COORDINATE_MAX * scene->facts.radius_min);
 }
 
-/* Box of the centres and range of the radii. A centre on a periodic axis belongs into [low, low + period), low being
- * the least coordinate: a bed that fits its box keeps its coordinates to the bit. */
+/* Finds the box of the centres and the range of the radii. A centre on a periodic axis is moved into [low, low +
+ * period), where low is the least coordinate. So a bed that fits its box keeps its coordinates to the bit. */
 static int measure_spheres(fibrad_scene *scene, const fibrad_spheres *s, fibrad_fault *fault) {
     scene->facts.radius_min = scene->facts.radius_max = s->n > 0 ? radius_of(s, 0) : 0;
     for (uint32_t i = 0; i < s->n; i++) {
@@ -190,7 +191,7 @@ static int measure_spheres(fibrad_scene *scene, const fibrad_spheres *s, fibrad_
 static double wrapped(double c, double low, double period) {
     if (period == 0 || (c - low >= 0 && c - low < period)) return c;
     double inside = c - period * fibrad_floor((c - low) / period);
-    return inside >= low && inside - low < period ? inside : low; /* the quotient may have been rounded up */
+    return inside >= low && inside - low < period ? inside : low; /* the quotient may be rounded up */
 }
 
 static uint32_t level_of(double r, double radius_min) {
@@ -199,7 +200,7 @@ static uint32_t level_of(double r, double radius_min) {
     return level;
 }
 
-/* Newton's iteration from above; enough digits for a length scale. */
+/* The cube root of v by Newton's iteration, which begins at `above`. Accurate enough for a length scale. */
 static double cube_root(double v, double above) {
     double root = above;
     for (int i = 0; i < 200 && root * root * root > 1.01 * v; i++) root -= (root - v / (root * root)) / 3;
@@ -211,8 +212,8 @@ static double side(const fibrad_scene *scene, int axis) {
     return scene->period[axis] > 0 ? scene->period[axis] : scene->box_high[axis] - scene->box_low[axis];
 }
 
-/* Chooses the cells of a level of `count` spheres: as near to cubes as the box allows, SPHERES_PER_CELL on average, and
- * never more cells than spheres and a few. */
+/* Chooses the cells of a level of `count` spheres. The cells are as near to cubes as the box allows and hold
+ * SPHERES_PER_CELL spheres on average. Their number is bounded, see SPARE_CELLS. */
 static uint32_t choose_cells(const fibrad_scene *scene, fibrad_level *level, uint32_t count) {
     double extent[3], longest = 0, volume = 1;
     for (int axis = 0; axis < 3; axis++) {
@@ -236,19 +237,19 @@ static uint32_t choose_cells(const fibrad_scene *scene, fibrad_level *level, uin
     return (uint32_t)total;
 }
 
-/* The cell a sphere belongs to, as an index into scene->start. */
+/* The cell of a sphere, as an index into scene->start. */
 static uint32_t home(const fibrad_scene *scene, const fibrad_level *level, const double centre[3]) {
     uint32_t cell = 0;
     for (int axis = 2; axis >= 0; axis--) {
         int32_t c = fibrad_grid_cell(scene, level, axis, centre[axis]);
-        if (c < 0) c = 0; /* a periodic axis, rounded */
+        if (c < 0) c = 0; /* by rounding, on a periodic axis */
         if (c >= level->cells[axis]) c = level->cells[axis] - 1;
         cell = cell * (uint32_t)level->cells[axis] + (uint32_t)c;
     }
     return level->first_cell + cell;
 }
 
-/* Counting sort of the spheres by level and cell, stable, in O(n). */
+/* Sorts the spheres by level and cell: a counting sort, stable, in O(n). */
 static void sort_into_cells(fibrad_scene *scene, const fibrad_spheres *s) {
     uint32_t count[FIBRAD_LEVELS] = {0}, index[FIBRAD_LEVELS] = {0};
     double largest[FIBRAD_LEVELS] = {0};
@@ -289,15 +290,15 @@ static void sort_into_cells(fibrad_scene *scene, const fibrad_spheres *s) {
         }
         if (pass == 0) {
             for (uint32_t c = 0; c < cells; c++) start[c + 1] += start[c];
-        } else { /* placing moved each start to its cell's end: move them back */
+        } else { /* the sort has moved each start to the end of its cell: move the starts back */
             for (uint32_t c = cells; c > 0; c--) start[c] = start[c - 1];
             start[0] = 0;
         }
     }
 }
 
-/* Writes the spheres once more, in whole numbers: centres to half a unit, radii rounded up by as much as centres may be
- * off. */
+/* Writes the spheres once more as whole numbers. Centres are rounded to half a unit. Radii are rounded up by as much
+ * as centres may be off. */
 static void write_coarse(fibrad_scene *scene) {
     double per_length[3], off = 0;
     for (int axis = 0; axis < 3; axis++) {
@@ -339,7 +340,7 @@ static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
                         bool image = walk.shift[0] != 0 || walk.shift[1] != 0 || walk.shift[2] != 0;
                         if (fibrad_abs(dx) >= sum || fibrad_abs(dy) >= sum || fibrad_abs(dz) >= sum) continue;
                         if (j == i && !image) continue;
-                        /* in units of the sum of radii, so that no square can leave the range of a double */
+                        /* in units of the sum of the radii, so that no square overflows or vanishes */
                         dx /= sum, dy /= sum, dz /= sum;
                         double distance = sum * fibrad_sqrt(dx * dx + dy * dy + dz * dz);
                         double smaller = fibrad_min(scene->r[i], scene->r[j]);
@@ -360,9 +361,9 @@ static int check_overlaps(fibrad_scene *scene, fibrad_fault *fault) {
     return FIBRAD_OK;
 }
 
-#define MESH_IMAGES 4096 /* of all meshes at one place, at the most */
+#define MESH_IMAGES 4096 /* most images of all meshes at one place */
 
-/* Cube root of the volume per sphere. */
+/* The cube root of the volume per sphere. */
 static double spacing_of(const fibrad_scene *scene) {
     double longest = 2 * scene->facts.radius_max, volume = 1;
     for (int axis = 0; axis < 3; axis++) longest = fibrad_max(longest, side(scene, axis));
@@ -370,8 +371,8 @@ static double spacing_of(const fibrad_scene *scene) {
     return longest * cube_root(volume / scene->facts.spheres, 1);
 }
 
-/* Whether a mesh is not too small for where it, spheres and walls lie, nor its images too many at one place. Else
- * FIBRAD_E_ARGUMENT; *triangle: one that is at fault. */
+/* Checks that a mesh is not too small in comparison with its place, the spheres and the walls, and that not too many
+ * of its images meet at one place. Error: FIBRAD_E_ARGUMENT. *triangle: out: a triangle at fault. */
 static int check_mesh(const fibrad_scene *scene, uint32_t *triangle) {
     const fibrad_mesh *mesh = &scene->mesh;
     double farthest = fibrad_walls_reach(&scene->container), images = 1, most = 0;
@@ -391,7 +392,8 @@ static int check_mesh(const fibrad_scene *scene, uint32_t *triangle) {
     return FIBRAD_E_ARGUMENT;
 }
 
-/* Builds the mesh, and how far each sphere is from it, which cannot change by more than the way to the next sphere. */
+/* Builds the mesh, and finds the distance of each sphere from it. From one sphere to the next this distance changes
+ * by at most the distance of the two. */
 static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fibrad_fault *fault) {
     uint8_t mesh_of[FIBRAD_BODIES_MAX] = {0};
     const uint32_t n = scene->facts.spheres;
@@ -412,7 +414,9 @@ static int build_mesh(fibrad_scene *scene, const fibrad_scene_config *config, fi
         if (!(area > 0 && fibrad_finite(area))) return scene_fault(FIBRAD_E_ARGUMENT, fault, n, n);
     }
     double before[3], distance = 0;
-    fibrad_copy(before, mesh->high, sizeof before); /* a corner of the box: the box is as far as its diagonal */
+    fibrad_copy(
+        before, mesh->high,
+        sizeof before); /* the first point is a corner of the box, so no triangle is farther than the diagonal */
     for (int axis = 0; axis < 3; axis++) distance += mesh->high[axis] - mesh->low[axis];
     for (uint32_t i = 0; i < n; i++) {
         const double at[3] = {scene->x[i], scene->y[i], scene->z[i]};
@@ -446,7 +450,8 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
 
     const fibrad_spheres s = with_strides(spheres);
     fibrad_scene *scene =
-        scene_layout(&arena, n, s.id != NULL, triangles); /* hash 0: whoever kept the scene that was here sees it */
+        scene_layout(&arena, n, s.id != NULL, triangles); /* the hash is 0 until the scene is complete, so objects of
+                                                             the last scene in this block return FIBRAD_E_STATE */
     scene->facts.spheres = n;
     scene->facts.bodies = config.bodies;
     scene->facts.isa = fibrad_isa_choose(config.isa);

@@ -1,6 +1,6 @@
 /* slots.h - the slots of what a line can meet besides spheres. SPDX-License-Identifier: MIT
  *
- * Each plane, the cylinder, the surroundings, what is unknown, and each mesh has a slot. Results by slot are arrays of
+ * Each plane, the cylinder, the surroundings, the unknown, and each mesh have a slot. Results by slot are arrays of
  * FIBRAD_SLOTS elements. This header alone knows how slots are numbered. */
 #ifndef FIBRAD_SCENE_SLOTS_H
 #define FIBRAD_SCENE_SLOTS_H

@@ -1,4 +1,4 @@
-/* surroundings.c - what lies around the part of a bed that a row knows. SPDX-License-Identifier: MIT */
+/* surroundings.c - what lies beyond the spheres that a row knows. SPDX-License-Identifier: MIT */
 #include "base/constants.h"
 #include "scene/surroundings.h"
 #include "scene/walls.h"
@@ -44,7 +44,7 @@ void fibrad_surroundings_build(fibrad_scene *scene, const fibrad_scene_config *c
         scene->occupancy = *config->occupancy;
         return;
     }
-    /* one cell: all space around a known region, else the box of the spheres */
+    /* one cell: all space around a known region, otherwise the box of the spheres */
     fibrad_occupancy *all = &scene->occupancy;
     for (int axis = 0; axis < 3; axis++) {
         const double wide = scene->period[axis] > 0 ? 0 : scene->facts.radius_max;
@@ -80,7 +80,7 @@ double fibrad_region_exit(const fibrad_scene *scene, const double o[3], const do
 typedef struct cell_walk {
     double origin[3], w[3]; /* on periodic axes the origin lies in the box */
     double begin, end;      /* lengths */
-    int64_t at[3];          /* the cell; beyond the box on periodic axes */
+    int64_t at[3];          /* the cell; on periodic axes it may lie outside the box */
 } cell_walk;
 
 /* The length at which the ray leaves its cell along an axis. */
@@ -89,7 +89,7 @@ static double cell_exit(const cell_walk *walk, int axis) {
     return ((double)walk->at[axis] + (walk->w[axis] > 0) - walk->origin[axis]) / walk->w[axis];
 }
 
-/* Begins with the part of the ray between two lengths that lies in the box. False: there is none. */
+/* Begins with the part of the ray between two lengths that lies in the box. False: no part of the ray lies there. */
 static bool cell_walk_begin(cell_walk *walk, const fibrad_occupancy *o, const double origin[3], const double w[3],
                             double begin, double end) {
     for (int axis = 0; axis < 3; axis++) {
@@ -109,8 +109,8 @@ static bool cell_walk_begin(cell_walk *walk, const fibrad_occupancy *o, const do
     return begin < end;
 }
 
-/* Whether all cells between two lengths of a ray are free. Not so beyond FIBRAD_PERIODS periods of the box: what lies
- * there has not been looked at. */
+/* Whether all cells between two lengths of a ray are free. False beyond FIBRAD_PERIODS periods of the box, since
+ * nobody has looked there. */
 static bool way_is_clear(const fibrad_occupancy *o, const double origin[3], const double w[3], double begin,
                          double end) {
     cell_walk walk;

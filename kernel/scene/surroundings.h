@@ -1,4 +1,4 @@
-/* surroundings.h - where rays end that meet no sphere of a scene: at a wall, in the surroundings, or beyond.
+/* surroundings.h - where rays end that meet no sphere of a scene: at a wall, in the surroundings, or in the unknown.
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_SCENE_SURROUNDINGS_H
 #define FIBRAD_SCENE_SURROUNDINGS_H

@@ -1,15 +1,15 @@
-/* walls.c - the walls of a scene: which of them a ray meets. SPDX-License-Identifier: MIT */
+/* walls.c - the planes and the cylinder of a scene: checks, hits, normals and areas. SPDX-License-Identifier: MIT */
 #include "scene/walls.h"
 
 #include "base/constants.h"
 
 #define INFINITE   __builtin_inf()
-#define BALL_SLACK 1e-12 /* of a length that has been rounded */
-#define CAP_LEAST  1e-9  /* [radii] the depth from which on a sphere counts as cut */
+#define BALL_SLACK 1e-12 /* rounding error of a length, relative */
+#define CAP_LEAST  1e-9  /* [radii] least depth at which a wall cuts a sphere */
 
 static bool wall_length_valid(double length) { return fibrad_abs(length) <= FIBRAD_LENGTH_MAX; }
 
-/* The slot of a plane or a cylinder; FIBRAD_WALLS: it is not valid. */
+/* The slot of a plane. FIBRAD_WALLS: the plane is not valid. */
 static uint32_t slot_of_plane(const fibrad_plane *plane) {
     const int axis = plane->axis, upper = plane->upper;
     const bool valid = axis >= 0 && axis < 3 && (upper == 0 || upper == 1) && wall_length_valid(plane->at);
@@ -24,13 +24,13 @@ static uint32_t slot_of_body(const fibrad_body *body) {
     return valid ? FIBRAD_CYLINDER : FIBRAD_WALLS;
 }
 
-/* The planes that were found, openings too, by slot, and the cylinder. */
+/* The planes found so far by slot, openings too, and whether there is a cylinder. */
 typedef struct found_walls {
     const fibrad_plane *plane[FIBRAD_CYLINDER];
     bool cylinder;
 } found_walls;
 
-/* Notes a plane. FIBRAD_E_ARGUMENT: it is not valid, its side has one already, or its axis is periodic. */
+/* Notes a plane. FIBRAD_E_ARGUMENT: the plane is not valid, its side has a plane already, or its axis is periodic. */
 static int find_plane(const fibrad_scene_config *config, const fibrad_plane *plane, found_walls *found) {
     const uint32_t slot = slot_of_plane(plane);
     if (slot == FIBRAD_WALLS || found->plane[slot] != NULL || config->period[fibrad_slot_axis(slot)] > 0)
@@ -48,7 +48,7 @@ static int find_body(const fibrad_scene_config *config, const fibrad_body *body,
     return FIBRAD_OK;
 }
 
-/* Whether an axis has an end, or none that matters, on both sides. */
+/* Whether an axis is bounded on both sides or periodic. */
 static bool axis_is_closed(const fibrad_scene_config *config, const found_walls *found, uint32_t axis) {
     const bool periodic = config->period[axis] > 0 || (config->occupancy != NULL && config->occupancy->periodic[axis]);
     return periodic ||
@@ -82,7 +82,7 @@ int fibrad_walls_check(const fibrad_scene_config *config) {
     return (found.cylinder || walled > 1) && !closed ? FIBRAD_E_ENDLESS : FIBRAD_OK;
 }
 
-/* How far the container extends along an axis, per period. */
+/* The length of the container along an axis. On a periodic axis this is the period. */
 static double container_extent(const fibrad_scene *scene, uint32_t axis) {
     const fibrad_container *c = &scene->container;
     return scene->period[axis] > 0 ? scene->period[axis] : c->high[axis] - c->low[axis];

@@ -1,52 +1,59 @@
-/* walls.h - the walls of a scene: planes and a cylinder that bound a convex container. SPDX-License-Identifier: MIT */
+/* walls.h - the planes and the cylinder of a scene. They bound a convex container. SPDX-License-Identifier: MIT
+ *
+ * A new kind of wall needs: a check (fibrad_walls_check), its data in fibrad_container (fibrad_walls_build), the
+ * point where a line meets it (fibrad_walls_exit), its normal, its area and its distance from a point. Meshes are in
+ * mesh/mesh.h. surroundings.h has the slot in which a ray ends, whatever it meets. */
 #ifndef FIBRAD_SCENE_WALLS_H
 #define FIBRAD_SCENE_WALLS_H
 
 #include "scene/scene.h"
 
-/* Whether bodies, openings and periods of a configuration fit together; FIBRAD_E_ARGUMENT, _UNSUPPORTED, _ENDLESS. */
+/* Whether bodies, openings and periods of a configuration fit together. Errors: FIBRAD_E_ARGUMENT, _UNSUPPORTED,
+ * _ENDLESS. */
 int fibrad_walls_check(const fibrad_scene_config *config);
 
-/* Sets scene->container, slot and wall_area from bodies and openings found valid; scene->period is set already. */
+/* Sets scene->container, slot and wall_area from bodies and openings that are valid. scene->period is set before. */
 void fibrad_walls_build(fibrad_scene *scene, const fibrad_scene_config *config);
 
-/* Whether a place [L] lies within the walls, or on one. */
+/* Whether a point [L] lies within the walls or on one of them. */
 bool fibrad_walls_hold(const fibrad_container *container, const double at[3]);
 
-/* How far a place is from the wall of a slot [L], inwards; infinity: there is no such wall. */
+/* The distance [L] of a point from the wall of a slot, positive inside. Infinity: there is no such wall. */
 double fibrad_walls_away(const fibrad_container *container, uint32_t slot, const double at[3]);
 
-/* Whether a sphere reaches beyond no opening, but for rounding. */
+/* Whether a sphere reaches beyond no opening. Rounding errors do not count. */
 bool fibrad_walls_hold_ball(const fibrad_container *container, const double centre[3], double radius);
 
-/* The fraction of a sphere's surface that lies behind the wall of a slot; 0: no more than rounding does. Of a cylinder
- * with `radius` R it is that behind the plane that touches it there. */
+/* The fraction of a sphere's surface that lies behind the wall of a slot. For the cylinder, the plane that touches
+ * it next to the sphere takes its place. 0: the sphere lies before the wall, but for rounding. */
 double fibrad_walls_cap(const fibrad_container *container, uint32_t slot, const double centre[3], double radius);
 
-/* Whether a wall cuts a sphere: a cap of it lies behind. */
+/* Whether a wall cuts a sphere, so that a cap of the sphere lies behind the wall. */
 bool fibrad_walls_cut(const fibrad_container *container, const double centre[3], double radius);
 
-/* The same of the sphere at `place`. */
+/* Whether a wall cuts the sphere at `place`. */
 static inline bool fibrad_walls_cut_place(const fibrad_scene *scene, uint32_t place) {
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
     return scene->container.cuts && fibrad_walls_cut(&scene->container, centre, scene->r[place]);
 }
 
-/* The wall behind which the point of the sphere at `place` with outward normal n lies, the first that the radius
- * crosses, at `at`; FIBRAD_NONE: none. What such a point sends out goes to that wall, whatever the direction, and no
- * line from elsewhere ends there. */
+/* The wall behind which a point of a sphere lies, or FIBRAD_NONE. The sphere is at `place`, and n is the outward
+ * normal of the point. If several walls cut off the point, the first on the way from the centre counts. at: out:
+ * where the radius meets this wall [L]. All radiation of such a point goes to this wall. No line from elsewhere ends
+ * at such a point. */
 uint32_t fibrad_walls_behind(const fibrad_scene *scene, uint32_t place, const double n[3], double at[3]);
 
 /* The largest coordinate of a wall [L], the cylinder's radius included. */
 double fibrad_walls_reach(const fibrad_container *container);
 
-/* The wall through which the ray from `origin` [L] along w (of any length but 0) leaves the container;
- * FIBRAD_NONE: through none. *distance >= 0 in lengths of w; infinity if none. Which wall it is depends on the
- * line alone, not on where on it the origin lies, but for origins beyond a cylinder that the line misses: an origin
- * beyond a wall leaves at once if w points outwards there, else the ray enters first. */
+/* The wall through which a ray leaves the container. FIBRAD_NONE: the ray meets no wall. The ray goes from `origin`
+ * [L] along w, which is not 0. distance: out: to the wall, in lengths of w; infinity if there is none. The wall
+ * depends on the line alone, not on the place of the origin. Only if the origin lies outside a cylinder that the
+ * line misses, this is not so. An origin beyond a wall leaves at once if w points outwards there. Otherwise the ray
+ * first enters the container. */
 uint32_t fibrad_walls_exit(const fibrad_scene *scene, const double origin[3], const double w[3], double *distance);
 
-/* The unit normal of a wall at a place on it [L], inwards. */
+/* The unit normal of a wall at a point on it [L]. It points inwards. */
 void fibrad_wall_normal(const fibrad_scene *scene, uint32_t wall, const double at[3], double normal[3]);
 
 #endif

@@ -9,7 +9,7 @@ void LANED(fibrad_areas_integrate)(fibrad_areas *areas) {
         fibrad_arc_lanes a = {vd_load(p->px + k), vd_load(p->py + k), vd_load(p->qx + k), vd_load(p->qy + k),
                               vd_load(p->cx + k), vd_load(p->cy + k), vd_load(p->r + k),  vd_load(p->circle + k)};
         vd area = fibrad_arc_area(&a);
-        /* the open region is on the left of the window's arcs, on the right of discs' */
+        /* the open region lies to the left of arcs of the window and to the right of arcs of discs */
         vd_store_numbers(p->from + k, a.circle);
         vd_store_numbers(p->to + k, vd_load(p->occluder + k));
         vd_store(p->r + k, vd_select(vd_lt(a.circle, vd_set1(1)), area, 0 - area));

@@ -1,17 +1,19 @@
-/* arc_lanes.h - what arcs contribute to areas, in lanes. SPDX-License-Identifier: MIT */
+/* arc_lanes.h - contributions of arcs to areas, in lanes. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_WINDOW_ARC_LANES_H
 #define FIBRAD_WINDOW_ARC_LANES_H
 
 #include "base/lanes/laned.h"
 #include "window/areas.h"
 
-/* Arcs counter-clockwise from c + p to c + q about c, at most half a circle, on the circles of these numbers. */
+/* Arcs counter-clockwise about c from c + p to c + q, at most half a circle. circle: the number of the circle. */
 typedef struct fibrad_arc_lanes {
     vd px, py, qx, qy, cx, cy, r, circle;
 } fibrad_arc_lanes;
 
-/* atan(t), |t| <= tan(pi/8), by a polynomial fitted at Chebyshev nodes: relative error 7e-17. Even and odd powers of
- * t^2 are summed apart. */
+/* atan(t),
+ * t
+ * <= tan(pi/8), by a polynomial through Chebyshev nodes. The relative error is 7e-17. Even and odd powers of t^2
+ * have a sum each. */
 static inline vd fibrad_atan_lanes(vd t) {
     static const double ATAN[] = {0x1.0000000000000p+0,  -0x1.55555555551d9p-2, 0x1.9999999933cacp-3,
                                   -0x1.249249003cd48p-3, 0x1.c71c646ead620p-4,  -0x1.745ba79b91c34p-4,
@@ -27,12 +29,14 @@ static inline vd fibrad_atan_lanes(vd t) {
     return t * (even + odd * x);
 }
 
-/* Green's theorem: half the integral of x dy - y dx along an arc of angle v is (r^2 v + c x (q - p))/2. v is the
- * nearest multiple of a right angle plus 2 atan(t), |t| <= tan(pi/8). */
+/* Green's theorem: half the integral of x dy - y dx along an arc of angle v is (r^2 v + c x (q - p))/2. The angle v
+ * is the nearest multiple of a right angle plus 2 atan(t),
+ * t
+ * <= tan(pi/8). */
 static inline vd fibrad_arc_area(const fibrad_arc_lanes *a) {
     vd zero = vd_set1(0), eighth = vd_set1(0x1.921fb54442d18p-1), quarter = vd_set1(0x1.921fb54442d18p+0);
     vd dx = a->qx - a->px, dy = a->qy - a->py, square = a->r * a->r;
-    vd sine = a->px * dy - a->py * dx; /* r^2 sin v, r^2 cos v */
+    vd sine = a->px * dy - a->py * dx; /* r^2 sin v and r^2 cos v */
     vd cosine = a->px * a->qx + a->py * a->qy;
     vd minus_sine = zero - sine, minus_cosine = zero - cosine;
     vm acute = vd_lt(sine, cosine), straight = vd_lt(cosine, minus_sine);
@@ -44,11 +48,11 @@ static inline vd fibrad_arc_area(const fibrad_arc_lanes *a) {
     return square * half_angle + 0.5 * shift;
 }
 
-/* Adds what the pieces so far contribute to the areas of their discs. */
+/* Adds the contributions of all pieces to the areas of their discs. */
 void LANED(fibrad_areas_integrate)(fibrad_areas *areas);
 
-/* Appends the arcs of the lanes given by bits to the pieces, with disc k as their occluder. Inline for the one caller
- * whose time counts; fibrad_arcs_add is the same as a function. */
+/* Appends the arcs of the lanes given by bits to the pieces that disc k hides. This is inline for the one caller
+ * whose time counts. fibrad_arcs_add does the same as a function. */
 static inline void fibrad_arcs_append(fibrad_areas *areas, uint32_t bits, const fibrad_arc_lanes *a, uint32_t k) {
     fibrad_pieces *pieces = areas->pieces;
     uint32_t n = pieces->count;

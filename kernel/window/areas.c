@@ -1,10 +1,10 @@
 /* areas.c - lays out the memory for visible areas. SPDX-License-Identifier: MIT */
 #include "window/areas.h"
 
-#define AREA_LANES 8 /* of the widest vectors: whole vectors are written at the end of a list */
+#define AREA_LANES 8 /* of the widest vectors; at the end of a list whole vectors are written */
 
-/* K circles bound a plane region by at most 6 K arcs, each of which may be cut twice. That is the worst case; windows
- * of beds have about one arc per disc. */
+/* K circles bound a plane region by at most 6 K arcs, each of which may be cut twice. That is the worst case.
+ * Windows of beds have about one arc per disc. */
 #define ARCS_PER_DISC 4u
 
 static double *doubles(fibrad_arena *arena, size_t count) { return fibrad_arena_take(arena, count, sizeof(double)); }
@@ -68,7 +68,7 @@ void fibrad_areas_layout(fibrad_areas *areas, fibrad_arena *arena, uint32_t disc
     const size_t used = arena->used;
     lay_out_arrangement(&areas->arrangement, arena, discs, circles);
     const size_t end = arena->used;
-    arena->used = used; /* a window is resolved by the one or the other */
+    arena->used = used; /* a window uses the arrangement or `dense`, never both */
     dense_layout(&areas->dense, arena, discs);
     if (arena->used < end) arena->used = end;
     areas->dense.written = false;
@@ -126,8 +126,8 @@ bool fibrad_areas_next(const fibrad_areas *areas, uint32_t *at, fibrad_open_arc 
     return areas->dense.on ? next_dense(&areas->dense, at, arc) : next_clipped(areas->boundary, at, arc);
 }
 
-/* An arc of a disc's circle contributes the integral of the normal along it, times the depth. The window's own circle
- * stays. */
+/* An arc on the circle of a disc contributes the integral of the normal along the arc, times the depth of the disc. The
+ * circle of the window does not move. */
 void fibrad_areas_slope(const fibrad_areas *areas, const double *depth, double slope[2]) {
     fibrad_open_arc arc;
     slope[0] = slope[1] = 0;

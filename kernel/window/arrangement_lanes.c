@@ -1,23 +1,24 @@
-/* arrangement_lanes.c - exact visible areas of discs in a window by the arrangement of their circles. Compiled once per
- * instruction set. SPDX-License-Identifier: MIT
+/* arrangement_lanes.c - exact visible areas of discs in a window by the arrangement of their circles. Compiled once
+ * per instruction set. SPDX-License-Identifier: MIT
  *
- * The open region - what no disc covers so far - is represented by its boundary: arcs of the window's circle and of the
- * circles of discs. A new disc k, compared with circle m (in lanes over all m), covers of that circle nothing, all, or
- * the arc between the two points where the circles meet; and disc m covers of circle k the corresponding remainder,
- * between the same two points. From this follow
- *   - the visible part of circle k: all of it less what the older discs and the outside of the window hide;
- *   - the part of each arc on the boundary of the open region that disc k hides.
- * The former join the boundary of the open region, the latter leave it. An arc that leaves has bounded the visible part
- * of its own disc and bounds that of disc k from then on, so it is integrated then, once for both.
+ * The open region is the part that no disc covers so far. Its boundary represents it: arcs on the circle of the
+ * window and on the circles of discs. A new disc k is compared with each circle m, in lanes over all m. Disc k
+ * covers nothing of circle m, all of it, or the arc between the two points where the circles meet. Disc m covers the
+ * corresponding part of circle k, between the same two points. Two results follow:
+ *   - The visible part of circle k is the circle without what the older discs and the outside of the window hide.
+ *   - Of each arc on the boundary of the open region, disc k hides a part.
+ * The former arcs join the boundary of the open region. The latter leave it. Until then they bounded the visible
+ * part of their own disc, from then on they bound the visible part of disc k. So they are integrated then, once for
+ * both discs.
  *
- * Each circle has its own list of intervals, and two circles share nothing but the two points where they meet. A wrong
- * decision about an arc as short as rounding costs an area as small as rounding, and nothing further: there is no chain
- * of arcs that could break, and multiple points, tangent and identical circles need no special treatment.
+ * Each circle has its own list of intervals. Two circles share only the two points where they meet. A wrong decision
+ * about an arc as short as a rounding error costs an area as small as a rounding error, and has no other effect. No
+ * chain of arcs can break. Multiple points, tangent circles and identical circles need no special treatment.
  *
- * The position of a direction (x, y) of unit length on its circle is given by a pseudo-angle: y on the right quarter,
- * and -x, -y, x on the top, left and bottom quarters with the constants that make it continuous. It rises
- * counter-clockwise by about the angle, and jumps back at the lower right diagonal, from ANGLE_END to ANGLE_BEGIN. Arcs
- * are cut there and opposite, at ANGLE_MIDDLE, so that none is longer than half a circle and none passes the jump. */
+ * A pseudo-angle gives the position of a unit vector (x, y) on its circle. It is y on the right quarter, and -x, -y
+ * and x plus constants on the top, left and bottom quarters, so that it is continuous. It rises counter-clockwise by
+ * about the angle. At the lower right diagonal it jumps from ANGLE_END to ANGLE_BEGIN. Arcs are cut there and at the
+ * opposite point, ANGLE_MIDDLE. So no arc is longer than half a circle, and no arc passes the jump. */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
 #include "window/arc_lanes.h"
@@ -29,11 +30,11 @@
 #define ANGLE_END    (7 * DIAGONAL)
 #define ANGLE_TURN   (8 * DIAGONAL)
 
-/* As `from` of an interval, and minus it as `to`: the whole circle, or nothing of it. */
+/* Marks of intervals: `from` is this number and `to` is minus this number. The whole circle, or nothing of it. */
 #define INTERVAL_ALL  -16.0
 #define INTERVAL_NONE 16.0
 
-/* Arcs this short are dropped: they stem from rounding, and would keep windows open for nothing. */
+/* Shorter arcs are left out. They come from rounding and would keep windows open. */
 #define ARC_SHORTEST 1e-15
 
 static _Alignas(FIBRAD_ALIGNMENT) const double lane_number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -45,14 +46,14 @@ static inline vd pseudo_angle(vd x, vd y) {
     return vd_select(vd_lt(vd_abs(x), vd_abs(y)), ends, sides);
 }
 
-/* Pseudo-angles between which disc and circle overlap. */
+/* Pseudo-angles between which the disc and the circle overlap. */
 typedef struct interval_lanes {
     vd from, to;
 } interval_lanes;
 
-/* The interval from (px, py) to (qx, qy). Its length shows whether rounding has reversed it: it is less than half a
- * circle (and not a little more than none) where the cosine of its half-width is positive, more than half where that is
- * negative. A reversed interval is INTERVAL_ALL or INTERVAL_NONE. */
+/* The interval from (px, py) to (qx, qy). cosine: of half its width. If the cosine is positive, the interval is less
+ * than half a circle, otherwise more. If the interval found contradicts this, rounding has reversed it. A reversed
+ * interval is INTERVAL_NONE or INTERVAL_ALL. */
 static inline interval_lanes interval_of(vd cosine, vd px, vd py, vd qx, vd qy) {
     vd from = pseudo_angle(px, py), to = pseudo_angle(qx, qy), zero = vd_set1(0), length = to - from;
     length = vd_select(vd_lt(length, zero), length + ANGLE_TURN, length);
@@ -63,13 +64,13 @@ static inline interval_lanes interval_of(vd cosine, vd px, vd py, vd qx, vd qy) 
     return (interval_lanes){from, to};
 }
 
-/* Circle k against circles m, in lanes over m. Two circles at distance d meet at c_m + f d -+ h d', d' being d turned
- * left; f = (d^2 + r_m^2 - r^2)/(2 d^2), g = 1 - f, and h from the product of sum and difference, without cancellation
- * where they are nearly tangent. */
+/* Circle k in comparison with circles m, in lanes over m. Two circles at distance d meet at c_m + f d -+ h d', where
+ * d' is d turned left, f = (d^2 + r_m^2 - r^2)/(2 d^2) and g = 1 - f. h comes from the product of a sum and a
+ * difference, so that nothing cancels for nearly tangent circles. */
 typedef struct circle_pairs {
     vd x, y, difference; /* circles m; r_m - r */
     vd f, g, fx, fy, gx, gy, hx, hy;
-    vm nested, whole; /* one within the other; that or apart */
+    vm nested, whole; /* nested: one circle lies within the other; whole: nested or apart */
 } circle_pairs;
 
 FIBRAD_INLINE circle_pairs pairs_of(const fibrad_areas *areas, uint32_t m, vd x, vd y, vd r) {
@@ -88,7 +89,7 @@ FIBRAD_INLINE circle_pairs pairs_of(const fibrad_areas *areas, uint32_t m, vd x,
     return p;
 }
 
-/* Writes what disc k covers of circles m, and the points where that begins and ends. */
+/* Writes the interval of each circle m that disc k covers, and its end points. */
 FIBRAD_INLINE void write_covered(fibrad_arrangement *a, uint32_t m, const circle_pairs *p) {
     vd sx = p->fx + p->hy, sy = p->fy - p->hx, ex = p->fx - p->hy, ey = p->fy + p->hx;
     vd_store(a->sx + m, p->x + sx);
@@ -104,7 +105,7 @@ FIBRAD_INLINE void write_covered(fibrad_arrangement *a, uint32_t m, const circle
     vd_store(a->to + m, vd_select(m_inside, vd_set1(-INTERVAL_ALL), to));
 }
 
-/* Appends the intervals of circle k that discs m hide. Of the window, it is the outside that hides. */
+/* Appends the intervals of circle k that discs m hide. For the window, its outside hides. */
 FIBRAD_INLINE void append_hidden(fibrad_intervals *hidden, uint32_t m, uint32_t lanes, const circle_pairs *p,
                                  vd inverse) {
     vd zero = vd_set1(0), number = vd_load(lane_number);
@@ -126,8 +127,8 @@ FIBRAD_INLINE void append_hidden(fibrad_intervals *hidden, uint32_t m, uint32_t 
     hidden->count = count + fibrad_count_bits(some);
 }
 
-/* What disc k, about (x, y) with radius r, covers of all circles so far and their discs of its circle. Returns false if
- * an older disc contains disc k. */
+/* Finds what disc k, about (x, y) with radius r, covers of all circles so far, and what their discs cover of its
+ * circle. False: an older disc contains disc k. */
 static bool intersect_circles(fibrad_areas *areas, double x, double y, double r, double inverse) {
     fibrad_intervals *hidden = &areas->arrangement.hidden;
     hidden->count = 0;
@@ -143,7 +144,7 @@ static bool intersect_circles(fibrad_areas *areas, double x, double y, double r,
     return true;
 }
 
-/* Appends an arc, in two pieces if it passes ANGLE_MIDDLE, the point (mx, my). */
+/* Appends an arc. If it passes ANGLE_MIDDLE, the point (mx, my), it is appended in two pieces. */
 static void append_open(fibrad_arcs *arcs, double a, double b, double px, double py, double qx, double qy,
                         double circle, double mx, double my) {
     if (b - a <= ARC_SHORTEST) return;
@@ -156,8 +157,8 @@ static void append_open(fibrad_arcs *arcs, double a, double b, double px, double
     arcs->count = n + cut;
 }
 
-/* Which of the intervals i, i + 1 ... in lanes end inside another one. An interval holds its own end for later ones
- * only, so that the first of equal ends remains. */
+/* Which of the intervals i, i + 1 ..., in lanes, end inside another interval. Of equal ends the first one remains,
+ * since an interval contains its own end only for later intervals. */
 static inline uint32_t ends_hidden(const fibrad_intervals *h, uint32_t i) {
     vd to = vd_load(h->to + i);
     uint32_t hidden = 0;
@@ -172,7 +173,7 @@ static inline uint32_t ends_hidden(const fibrad_intervals *h, uint32_t i) {
     return hidden;
 }
 
-/* The interval that begins next, counter-clockwise from pseudo-angle a. */
+/* The interval that begins next, counter-clockwise from the pseudo-angle a. */
 static inline uint32_t next_interval(const fibrad_intervals *h, double a) {
     uint32_t next = 0;
     double nearest = 2 * ANGLE_TURN;
@@ -185,9 +186,10 @@ static inline uint32_t next_interval(const fibrad_intervals *h, double a) {
     return next;
 }
 
-/* Adds the visible part of the new circle to the boundary of the open region. Each visible arc begins where one hidden
- * interval ends inside no other, and ends where the next one begins. These are exact statements about the numbers at
- * hand; rounding cannot make them contradict each other. Returns false if nothing is visible. */
+/* Adds the visible part of the new circle to the boundary of the open region. A visible arc begins at the end of a
+ * hidden interval that lies inside no other interval. It ends where the next hidden interval begins. These
+ * statements are exact for the numbers as they are, so rounding cannot make them contradict each other. False:
+ * nothing is visible. */
 static bool add_visible(fibrad_areas *areas, double x, double y, double r) {
     const fibrad_arrangement *a = &areas->arrangement;
     const fibrad_intervals *h = &a->hidden;
@@ -201,7 +203,8 @@ static bool add_visible(fibrad_areas *areas, double x, double y, double r) {
             uint32_t begin = i + (uint32_t)__builtin_ctz(bits);
             double from = h->to[begin];
             uint32_t end = next_interval(h, from);
-            /* disc m hides from the end of what is covered of its circle to the beginning; the window the reverse */
+            /* disc m hides from the end of the covered interval of its circle to the beginning; the window does the
+             * reverse */
             uint32_t m = (uint32_t)h->circle[begin], n = (uint32_t)h->circle[end];
             double to = h->from[end];
             double px = m == 0 ? a->ex[m] : a->sx[m], py = m == 0 ? a->ey[m] : a->sy[m];
@@ -254,7 +257,7 @@ static inline uint32_t nonempty_arcs(const arc_vector *s) { return vm_bits(vd_lt
 
 /* Appends the lanes given by bits to the pieces of circle k. */
 static void hide_arcs(fibrad_areas *areas, uint32_t bits, const arc_vector *s, uint32_t k) {
-    uint32_t size = areas->circles + 1; /* the new one, or the rest */
+    uint32_t size = areas->circles + 1; /* the new circle, or the circle of the rest */
     vd x = vd_lookup(areas->x, size, s->circle), y = vd_lookup(areas->y, size, s->circle);
     fibrad_arc_lanes piece = {.px = s->px - x,
                               .py = s->py - y,
@@ -276,8 +279,9 @@ static void hide_list(fibrad_areas *areas, fibrad_arcs *list, uint32_t k) {
     list->count = 0;
 }
 
-/* The parts of arcs: below the bounds of the interval covered of their circle, between them and above. Covered is
- * `between`, or, in the lanes of `round`, where the interval passes the jump, are the two others. */
+/* The parts of arcs: `below`, `between` and `above` the bounds of the interval that is covered of their circle.
+ * Usually `between` is covered. In the lanes of `round` the interval passes the jump, and the two others are
+ * covered. */
 typedef struct arc_parts {
     arc_vector below, between, above;
     vm round;
@@ -293,7 +297,8 @@ FIBRAD_INLINE arc_parts cut_at_interval(const fibrad_areas *areas, const arc_vec
     vd low = vd_min(from, to), high = vd_max(from, to), tiny = vd_set1(ARC_SHORTEST);
     vd lx = vd_select(round, ex, sx), ly = vd_select(round, ey, sy);
     vd hx = vd_select(round, sx, ex), hy = vd_select(round, sy, ey);
-    /* a bound that does not cut moves to the end of the arc; if nothing is between them, all of the arc is below */
+    /* a bound that does not cut moves to the end of the arc; if nothing lies between the bounds, the whole arc is
+     * below */
     vm low_below = vd_le(low - s->a, tiny), high_above = vd_le(s->b - high, tiny);
     vm none = vd_le(high - s->a, tiny) | vd_le(high - low, tiny) | vd_le(s->b - low, tiny);
     high_above |= none;
@@ -309,9 +314,8 @@ FIBRAD_INLINE arc_parts cut_at_interval(const fibrad_areas *areas, const arc_vec
                        round};
 }
 
-/* Removes from the boundary what lies in disc k. Any of the parts of an arc may be missing. First parts and second ones
- * are listed in turn, in the order of the arcs, whatever the number of lanes. Returns whether there was anything to
- * remove. */
+/* Removes from the boundary what lies in disc k. Each part of an arc may be missing. First and second parts are
+ * listed in the order of the arcs, whatever the number of lanes. Returns whether something was removed. */
 static bool remove_covered(fibrad_areas *areas, uint32_t k) {
     const fibrad_arcs open = areas->arrangement.open;
     fibrad_arcs *left = &areas->arrangement.left, *second = areas->arrangement.second;

@@ -1,5 +1,5 @@
-/* arrangement_lanes.h - visible areas by the arrangement of circles, in lanes: no configuration of discs disturbs it.
- * SPDX-License-Identifier: MIT
+/* arrangement_lanes.h - visible areas by the arrangement of circles, in lanes. This method works for all
+ * configurations of discs. SPDX-License-Identifier: MIT
  *
  * The three functions are those of clip_lanes.h. */
 #ifndef FIBRAD_WINDOW_ARRANGEMENT_LANES_H

@@ -1,17 +1,18 @@
 /* clip_lanes.c - exact visible areas of discs in a window by clipping its open region. Compiled once per instruction
  * set. SPDX-License-Identifier: MIT
  *
- * The open region - what no disc covers so far - is represented by its boundary: arcs of the window's circle and of the
- * circles of discs. A new disc cuts them, in lanes over the arcs. The parts inside it leave the boundary; they also
- * bound what is visible of the disc. Walk along the boundary, the open region on the left: where the walk enters the
- * disc, the new boundary follows the disc's circle, clockwise, to the next point where the old one leaves the disc.
+ * The open region is the part that no disc covers so far. Its boundary represents it: arcs on the circle of the
+ * window and on the circles of discs. A new disc cuts these arcs, in lanes over the arcs. The parts inside the disc
+ * leave the boundary. They also bound the visible part of the disc. Think of a walk along the boundary with the open
+ * region on the left. Where the walk enters the disc, the new boundary follows the circle of the disc, clockwise, to
+ * the next point where the old boundary leaves the disc.
  *
- * An arc is cut once if one of its ends is inside the disc. If both are outside it may be cut twice, about the
- * direction in which the disc lies; if both are inside, about the opposite one. So divisions and roots decide where an
- * arc is cut, but never whether.
+ * An arc is cut once if one of its ends is inside the disc. If both ends are outside, it may be cut twice, near the
+ * direction of the disc. If both are inside, it may be cut twice, near the opposite direction. So divisions and
+ * roots decide where an arc is cut, but never whether it is cut.
  *
- * This breaks down where rounding decides. All decisions therefore have a margin, far above rounding. A window in which
- * one of them falls within its margin is degenerate and is resolved again by the arrangement of circles. */
+ * Clipping fails where rounding decides. So all decisions have a margin far above rounding errors. A window with a
+ * decision within its margin is degenerate. The arrangement of circles computes it again. */
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "base/lanes/below.h"
@@ -21,13 +22,13 @@
 #include "window/dense_lanes.h"
 
 #define SQRT_3_4     0.86602540378443865
-#define CLIP_CLOSURE 1e-12 /* errors of areas above this show that they are wrong */
+#define CLIP_CLOSURE 1e-12 /* errors of areas above this bound show that the areas are wrong */
 
-/* Decisions closer than this are degenerate: distances of points and circles, relative to the radii for tangent ones.
- * CLIP_ROUNDING: the same for what rounds with the square of a large radius. */
+/* Decisions that are closer than this are degenerate. They compare distances of points and circles, relative to the
+ * radii for tangent circles. CLIP_ROUNDING is the bound for errors that grow with the square of a large radius. */
 #define CLIP_MARGIN   1e-10
 #define CLIP_ROUNDING 1e-14
-/* The rounding errors of discs of larger radius are too large. */
+/* For discs with larger radii the rounding errors are too large. */
 #define CLIP_RADIUS_MAX 1000.0
 
 static inline void put_lane(double *array, uint32_t slot, double value) {
@@ -35,7 +36,7 @@ static inline void put_lane(double *array, uint32_t slot, double value) {
     vd_store(vector, vd_replace(vd_load(vector), slot % VD_LANES, value));
 }
 
-/* Puts an arc into a free slot. False if there is none. */
+/* Puts an arc into a free slot. False: there is no free slot. */
 static inline bool add_arc(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy,
                            double r, double circle) {
     uint32_t slot = (uint32_t)__builtin_ctzll(~b->alive);
@@ -48,7 +49,7 @@ static inline bool add_arc(fibrad_boundary *b, double px, double py, double qx, 
     return true;
 }
 
-/* Moves arcs to lower slots if they fit into eight slots fewer. */
+/* Moves arcs to lower slots if they then need eight slots fewer. */
 static inline void close_up_slots(fibrad_boundary *b) {
     uint32_t last = (63 - (uint32_t)__builtin_clzll(b->alive)) / 8 * 8;
     if (fibrad_count_bits(b->alive) > last) return;
@@ -59,7 +60,7 @@ static inline void close_up_slots(fibrad_boundary *b) {
     }
 }
 
-/* Adds an arc of half a circle or more in four parts. */
+/* Adds an arc of half a circle or more as four arcs. */
 static bool add_large_arc(fibrad_boundary *b, double px, double py, double qx, double qy, double cx, double cy,
                           double r, double circle) {
     double point[5][2] = {{px, py}, {0, 0}, {0, 0}, {0, 0}, {qx, qy}};
@@ -75,8 +76,8 @@ static bool add_large_arc(fibrad_boundary *b, double px, double py, double qx, d
     return done;
 }
 
-/* Which of the slots `enters` has the next point counter-clockwise from (px, py) on the circle of disc k, which is as
- * far from its centre; NO_SLOT if one is degenerate. */
+/* The slot among `enters` whose point is next, counter-clockwise from (px, py), on the circle of disc k. (px, py)
+ * lies on this circle and is relative to its centre. NO_SLOT: a decision is degenerate. */
 #define NO_SLOT FIBRAD_BOUNDARY
 static uint32_t next_entry(const fibrad_boundary *b, uint64_t enters, uint64_t window, double px, double py, double r) {
     double least = 4, margin = CLIP_MARGIN + CLIP_MARGIN / r;
@@ -92,11 +93,12 @@ static uint32_t next_entry(const fibrad_boundary *b, uint64_t enters, uint64_t w
     return nearest;
 }
 
-/* Adds to the boundary the arc of disc k from where slot p leaves the disc counter-clockwise to where slot q enters it.
- * False if the points are too close to distinguish a short arc from a whole circle, or there are no slots. */
+/* Adds to the boundary an arc of disc k. The arc goes counter-clockwise from the point where slot p leaves the disc
+ * to the point where slot q enters it. False: the points are too close to tell a short arc from a whole circle, or
+ * no slot is free. */
 static inline bool join_slots(fibrad_boundary *b, uint64_t window, uint32_t p, uint32_t q, double x, double y, double r,
                               double k) {
-    uint32_t at_p = window >> p & 1, at_q = ~window >> q & 1; /* cut[1]: where the arc itself leaves the disc */
+    uint32_t at_p = window >> p & 1, at_q = ~window >> q & 1; /* cut[1]: where the arc of the slot leaves the disc */
     double px = b->cut[at_p][0][p], py = b->cut[at_p][1][p], qx = b->cut[at_q][0][q], qy = b->cut[at_q][1][q];
     double cross = px * qy - py * qx, dot = px * qx + py * qy, near = CLIP_MARGIN * r;
     if (cross > near) return add_arc(b, px, py, qx, qy, x, y, r, k);
@@ -104,8 +106,8 @@ static inline bool join_slots(fibrad_boundary *b, uint64_t window, uint32_t p, u
     return add_large_arc(b, px, py, qx, qy, x, y, r, k);
 }
 
-/* Joins several points where the boundary leaves the disc each with the next one where it enters it. False if they do
- * not alternate. */
+/* Joins each of several points where the boundary leaves the disc with the next point where it enters. False: the
+ * points do not alternate. */
 static bool join_several(fibrad_boundary *b, uint64_t leaves, uint64_t enters, double x, double y, double r, double k) {
     const uint64_t window = b->window;
     uint64_t left = enters;
@@ -118,7 +120,7 @@ static bool join_several(fibrad_boundary *b, uint64_t leaves, uint64_t enters, d
     return left == 0;
 }
 
-/* Whether a point within the window is open: in none of the discs before k. */
+/* Whether a point within the window is open: it lies in no disc before k. */
 static bool is_open(const fibrad_areas *areas, uint32_t k, double x, double y) {
     uint32_t inside = 0;
     for (uint32_t m = 0; m < k; m += VD_LANES) {
@@ -140,16 +142,16 @@ static inline clip_disc disc_in_lanes(double x, double y, double r, double wides
                        vd_set1(CLIP_MARGIN * square)};
 }
 
-/* A vector of arcs against the new disc. */
+/* A vector of arcs in comparison with the new disc. */
 typedef struct clip_case {
     vd px, py, qx, qy, cx, cy, r;       /* the arcs */
-    vd dx, dy, square, sum, difference; /* from centre to centre, and its square; of the radii */
+    vd dx, dy, square, sum, difference; /* vector between the centres and its square; sum and difference of the radii */
     vd middle;                          /* p.d of the two points where the circles meet */
-    vm p_in, q_in, any_in, cut_twice;   /* ends inside the disc; both cuts are on the arc */
-    vm degenerate;                      /* within a margin; of the ends p only, as each q is the p of another arc */
+    vm p_in, q_in, any_in, cut_twice;   /* ends inside the disc; whether both cuts are on the arc */
+    vm degenerate; /* within a margin; only the end p is checked, since each q is the p of another arc */
 } clip_case;
 
-/* An end p is inside if p.d > middle; the circles meet if the distance middle/d is less than the radius. */
+/* An end p is inside if p.d > middle. The circles meet if the distance middle/d is less than the radius. */
 FIBRAD_INLINE clip_case classify_arcs(const fibrad_boundary *b, uint32_t o, const clip_disc *disc) {
     clip_case c;
     c.px = vd_load(b->px + o), c.py = vd_load(b->py + o), c.qx = vd_load(b->qx + o), c.qy = vd_load(b->qy + o);
@@ -169,11 +171,11 @@ FIBRAD_INLINE clip_case classify_arcs(const fibrad_boundary *b, uint32_t o, cons
     return c;
 }
 
-/* Cuts a vector of arcs. What remains stays in the slots, but for the second parts of arcs cut twice; what is inside
- * the disc, or the first part of it, goes to the pieces of disc k. */
+/* Cuts a vector of arcs. The parts that remain stay in their slots, except the second parts of arcs that are cut
+ * twice. The parts inside the disc, or their first parts, go to the pieces that disc k hides. */
 FIBRAD_INLINE void cut_arcs(fibrad_areas *areas, uint32_t o, const clip_case *c, uint32_t touching, uint32_t k) {
     fibrad_boundary *b = areas->boundary;
-    /* the points s, where the circle enters the disc counter-clockwise, and e, where it leaves */
+    /* s: where the circle enters the disc counter-clockwise; e: where it leaves the disc */
     vd outer = c->sum * c->sum - c->square, inner = c->square - c->difference * c->difference;
     vd scale = 0.5 / c->square, f = (c->middle + c->middle) * scale;
     vd h = vd_sqrt(vd_max(outer * inner, vd_set1(0))) * scale;
@@ -201,8 +203,8 @@ FIBRAD_INLINE void cut_arcs(fibrad_areas *areas, uint32_t o, const clip_case *c,
     fibrad_arcs_append(areas, touching, &piece, k);
 }
 
-/* Adds the second part of arc a, beyond the cut in the middle: to the pieces of disc k if the arc begins inside the
- * disc, about (x, y), else to the boundary. False if there is no slot. */
+/* Adds the second part of arc a, which follows the cut in the middle. If the arc begins inside the disc, about (x,
+ * y), the part goes to the pieces that disc k hides. Otherwise it goes to the boundary. False: no slot is free. */
 FIBRAD_INLINE bool add_second_part(fibrad_areas *areas, uint32_t a, bool p_inside, double x, double y, uint32_t k) {
     fibrad_boundary *b = areas->boundary;
     double dx = x - b->cx[a], dy = y - b->cy[a];
@@ -221,8 +223,8 @@ FIBRAD_INLINE bool add_second_part(fibrad_areas *areas, uint32_t a, bool p_insid
     return true;
 }
 
-/* Ends the step of a disc that cuts no arc: its circle is all hidden or all open. Then it is an island, and its circle
- * joins the boundary in three arcs. False if there is no slot. */
+/* Ends the step of a disc that cuts no arc. The circle of the disc is then wholly hidden or wholly open. If it is
+ * open, the disc is an island, and its circle joins the boundary as three arcs. False: no slot is free. */
 FIBRAD_INLINE bool add_island(fibrad_areas *areas, bool changed, uint32_t k, double x, double y, double r) {
     static const double corner[4][2] = {{1, 0}, {-0.5, SQRT_3_4}, {-0.5, -SQRT_3_4}, {1, 0}};
     bool island = r < 1 && x * x + y * y < (1 - r) * (1 - r) && is_open(areas, k, x + r, y);
@@ -237,7 +239,7 @@ FIBRAD_INLINE bool add_island(fibrad_areas *areas, bool changed, uint32_t k, dou
 
 static inline bool is_single(uint64_t bits) { return bits != 0 && (bits & (bits - 1)) == 0; }
 
-/* Removes from the open region its part inside disc k, whose circle has been added. False: degenerate. */
+/* Removes from the open region the part inside disc k, whose circle has been added. False: a decision is degenerate. */
 FIBRAD_INLINE bool clip_disc_out(fibrad_areas *areas, uint32_t k, double x, double y, double r) {
     fibrad_boundary *b = areas->boundary;
     const uint64_t alive = b->alive;
@@ -272,21 +274,21 @@ FIBRAD_INLINE bool clip_disc_out(fibrad_areas *areas, uint32_t k, double x, doub
     return join_slots(b, b->window, (uint32_t)__builtin_ctzll(leaves), (uint32_t)__builtin_ctzll(enters), x, y, r, k);
 }
 
-/* Whether dense clipping has resolved its discs. */
+/* Whether dense clipping has left a part open. */
 static bool is_open_dense(const fibrad_areas *areas) { return areas->dense.live > 0 && !areas->overflow; }
 
-/* Resolves the window again, up to its first `circles` circles, by the arrangement. */
+/* Computes the window again with the arrangement, up to its first `circles` circles. */
 static bool arrange_again(fibrad_areas *areas, uint32_t circles) {
     bool open = true;
     areas->degenerate = true;
     areas->fallbacks++;
     LANED(fibrad_arrangement_begin)(areas);
-    for (uint32_t k = 1; k < circles && open; k++) /* which keeps no more circles than have been read */
+    for (uint32_t k = 1; k < circles && open; k++) /* the arrangement stores no more circles than it has read */
         open = LANED(fibrad_arrangement_disc)(areas, areas->whose[k], areas->x[k], areas->y[k], areas->r[k]);
     return open;
 }
 
-/* The same by dense clipping if it was the slots that were too few. */
+/* Computes the window again. If only the slots were too few, dense clipping does it. */
 static bool resolve_again(fibrad_areas *areas, uint32_t circles) {
     if (!areas->dense.on && areas->boundary->alive == (UINT64_C(1) << FIBRAD_BOUNDARY) - 1 &&
         areas->r[circles - 1] <= CLIP_RADIUS_MAX && LANED(fibrad_dense_resolve)(areas, circles))
@@ -295,7 +297,7 @@ static bool resolve_again(fibrad_areas *areas, uint32_t circles) {
 }
 
 void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
-    /* three arcs, whose ends are not on any symmetry of a bed */
+    /* three arcs whose ends lie on no symmetry of a bed */
     static _Alignas(FIBRAD_ALIGNMENT)
         const double start_x[8] = {0x1.e921dd42f09bap-1, -0x1.7799ed83d9d3ap-1, -0x1.c61fbefc5b202p-3};
     static _Alignas(FIBRAD_ALIGNMENT)
@@ -326,7 +328,7 @@ void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
     areas->circles = 1;
 }
 
-/* Hides what one disc covers in a window that is resolved densely or by the arrangement. False once nothing is open. */
+/* Hides what one disc covers in a window that dense clipping or the arrangement computes. False: nothing is open. */
 static bool hide_slowly(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
     if (areas->degenerate) return LANED(fibrad_arrangement_disc)(areas, whose, x, y, r);
     const uint32_t k = areas->circles;
@@ -335,7 +337,7 @@ static bool hide_slowly(fibrad_areas *areas, uint32_t whose, double x, double y,
     return resolve_again(areas, k + 1);
 }
 
-/* The same in any window. */
+/* Hides what one disc covers, in any window. False: nothing is open. */
 FIBRAD_INLINE bool hide_disc(fibrad_areas *areas, uint32_t whose, double x, double y, double r) {
     if (areas->degenerate || areas->dense.on) return hide_slowly(areas, whose, x, y, r);
     uint32_t k = areas->circles;
@@ -346,7 +348,7 @@ FIBRAD_INLINE bool hide_disc(fibrad_areas *areas, uint32_t whose, double x, doub
     return true;
 }
 
-/* The loop is in here because a call for each disc takes a twentieth of the instructions. */
+/* The loop is inside the function, since a call for each disc takes a twentieth of the instructions. */
 uint32_t LANED(fibrad_areas_discs)(fibrad_areas *areas, uint32_t first, const uint32_t *which, uint32_t count,
                                    const double *x, const double *y, const double *r) {
     uint32_t n = 0;
@@ -357,7 +359,7 @@ uint32_t LANED(fibrad_areas_discs)(fibrad_areas *areas, uint32_t first, const ui
     return n;
 }
 
-/* Adds what is still open, as the area of a last circle. False if the areas cannot be right. */
+/* Adds the open area, as the area of a last circle. False: the areas cannot be right. */
 static bool complete_areas(fibrad_areas *areas) {
     fibrad_boundary *b = areas->boundary;
     uint32_t rest = areas->circles;

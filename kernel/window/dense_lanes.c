@@ -1,13 +1,14 @@
-/* dense_lanes.c - exact visible areas of discs in a window by clipping, where many arcs bound the open region. Compiled
+/* dense_lanes.c - exact visible areas of discs in a window by clipping, if many arcs bound the open region. Compiled
  * once per instruction set. SPDX-License-Identifier: MIT
  *
- * As in clip_lanes.c a new disc cuts the boundary of the open region. But a cull in floats first finds the arcs near
- * it, sixteen at a time, and a grid over the window knows where arcs are, if they are very many, so that time goes with
- * the number of discs. Arcs stand in the cell of the middle of their chord, in blocks. A disc that cuts nothing is open
- * or hidden as one of its points is: discs are known by cell, too, of a finer grid.
+ * As in clip_lanes.c, a new disc cuts the boundary of the open region. Here the arcs near the disc are found first,
+ * by a comparison in floats of sixteen arcs at a time. If there are very many arcs, a grid over the window tells
+ * where they are. So the time grows with the number of discs. An arc belongs to the cell with the middle of its
+ * chord. The arcs of a cell form blocks. A disc that cuts no arc is either open or hidden as a whole, which one of
+ * its points tells. For this test a finer grid knows the discs by cell.
  *
- * Decisions have margins as there, but in units of the circles at hand, since thousands of small discs make many
- * decisions. */
+ * Decisions have margins as in clip_lanes.c, but in units of the circles compared, since thousands of small discs
+ * make many decisions. */
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "base/lanes/below.h"
@@ -15,32 +16,32 @@
 #include "window/arc_lanes.h"
 #include "window/dense_lanes.h"
 
-/* Decisions closer than this are degenerate: DENSE_MARGIN relative to the smaller circle, and DENSE_ROUNDING to the
- * larger one, whose rounding it is. */
+/* Decisions that are closer than this are degenerate. DENSE_MARGIN is relative to the smaller circle. DENSE_ROUNDING
+ * is relative to the larger circle, which causes the rounding errors. */
 #define DENSE_MARGIN   1e-10
 #define DENSE_ROUNDING 1e-14
 #define DENSE_ANGLE    1e-9 /* between two points of a circle */
 
-/* Cells for discs over the width of the window: as many as the mean radius of discs goes into half of it, times this;
- * and not many more than there are discs. Those for arcs are twice as wide. */
+/* The number of cells for discs over the width of the window is this number times half the width over the mean
+ * radius of the discs. It is bounded by about the number of discs. Cells for arcs are twice as wide. */
 #define DENSE_FINENESS    1.0
 #define DENSE_CELLS       4u
 #define DENSE_CELLS_MOST  1024u
-#define DENSE_CELLS_LEAST 6u /* fewer of them are not worth while: one has all */
-#define DENSE_MORE        4u /* as many discs in all as are known when a window begins, at most, mostly */
+#define DENSE_CELLS_LEAST 6u /* with fewer cells than this one cell has all arcs */
+#define DENSE_MORE        4u /* number of discs in all over the discs known when a window begins, usually at most */
 
-/* The cell of a coordinate, of `cells` over the width of the window. */
+/* The cell of a coordinate. cells: number of cells over the width of the window. */
 static uint32_t cell_along(uint32_t cells, double x) {
     const double at = (x + 1) * 0.5 * cells, last = cells - 1;
     return (uint32_t)fibrad_min(fibrad_max(at, 0), last);
 }
 
-/* The cell of a place. */
+/* The cell of a point. */
 static uint32_t cell_of(uint32_t cells, double x, double y) {
     return cells == 1 ? 0 : cell_along(cells, y) * cells + cell_along(cells, x);
 }
 
-/* A block of a cell with a free slot, a new one if there is none; FIBRAD_DENSE_NONE if there is no room. */
+/* A block of a cell with a free slot, if necessary a new block. FIBRAD_DENSE_NONE: there is no room. */
 static uint32_t block_with_room(fibrad_dense *grid, uint32_t cell) {
     uint32_t block = grid->first_block[cell];
     while (block != FIBRAD_DENSE_NONE && grid->alive[block] == (1u << FIBRAD_DENSE_BLOCK) - 1)
@@ -57,15 +58,15 @@ typedef struct dense_circle {
     double x, y, r, number;
 } dense_circle;
 
-/* The middle of the chord of an arc, and half of its length, in floats, whose errors are less than DENSE_SLACK: what is
- * within half a chord of there contains the arc, and what will be left of it. */
+/* Writes the middle of the chord of an arc and half its length as floats. Their errors are below DENSE_SLACK. The
+ * arc, and each part of it that may remain, lies within half a chord of this middle. */
 #define DENSE_SLACK 1e-6
 static void put_middle(fibrad_dense *grid, uint32_t slot, double x, double y, double half) {
     grid->mx[slot] = (float)x, grid->my[slot] = (float)y;
     grid->half[slot] = (float)(half + DENSE_SLACK);
 }
 
-/* Puts an arc into the cell of the middle of its chord. */
+/* Puts an arc into the cell with the middle of its chord. */
 static void put_arc(fibrad_areas *areas, const dense_circle *c, double px, double py, double qx, double qy) {
     fibrad_dense *grid = &areas->dense;
     const double x = c->x + 0.5 * (px + qx), y = c->y + 0.5 * (py + qy), dx = qx - px, dy = qy - py;
@@ -84,14 +85,14 @@ static void put_arc(fibrad_areas *areas, const dense_circle *c, double px, doubl
     if (half > grid->reach) grid->reach = half;
 }
 
-/* Adds an arc in parts that are shorter than a third of the circle, and than a cell. */
+/* Adds an arc as parts that are shorter than a third of the circle and shorter than a cell. */
 static void add_parts(fibrad_areas *areas, const dense_circle *c, double px, double py, double qx, double qy) {
     double end[64][2];
     end[0][0] = qx, end[0][1] = qy;
     const double square = c->r * c->r, least = fibrad_max(-0.5 * square, square - 0.5 * areas->dense.longest);
     for (int left = 0; left >= 0;) {
         const double ex = end[left][0], ey = end[left][1];
-        if (left < 63 && (px * ey - py * ex <= 0 || px * ex + py * ey < least)) { /* halve it */
+        if (left < 63 && (px * ey - py * ex <= 0 || px * ex + py * ey < least)) { /* halve the arc */
             const double ux = ey - py, uy = px - ex, scale = c->r / fibrad_sqrt(ux * ux + uy * uy);
             left++;
             end[left][0] = ux * scale, end[left][1] = uy * scale;
@@ -102,7 +103,7 @@ static void add_parts(fibrad_areas *areas, const dense_circle *c, double px, dou
     }
 }
 
-/* Adds the arc from p to q. False if they are too close to distinguish a short arc from a whole circle. */
+/* Adds the arc from p to q. False: the points are too close to tell a short arc from a whole circle. */
 static bool add_joint(fibrad_areas *areas, const dense_circle *c, const fibrad_dense_cut *p,
                       const fibrad_dense_cut *q) {
     const double cross = p->x * q->y - p->y * q->x, dot = p->x * q->x + p->y * q->y;
@@ -111,7 +112,7 @@ static bool add_joint(fibrad_areas *areas, const dense_circle *c, const fibrad_d
     return true;
 }
 
-/* Adds a whole circle. Its parts begin in directions that are not on any symmetry of a bed. */
+/* Adds a whole circle. Its parts begin in directions that lie on no symmetry of a bed. */
 static void add_whole(fibrad_areas *areas, const dense_circle *c) {
     static const double corner[4][2] = {{0x1.e921dd42f09bap-1, 0x1.2e9cd95baba34p-2},
                                         {-0x1.7799ed83d9d3ap-1, 0x1.5bf2a3a493975p-1},
@@ -121,7 +122,7 @@ static void add_whole(fibrad_areas *areas, const dense_circle *c) {
         add_parts(areas, c, c->r * corner[n][0], c->r * corner[n][1], c->r * corner[n + 1][0], c->r * corner[n + 1][1]);
 }
 
-/* Gives a part of an arc to the pieces of the new disc. */
+/* Appends a part of an arc to the pieces that the new disc hides. */
 static void hide_part(fibrad_areas *areas, uint32_t slot, double px, double py, double qx, double qy) {
     const fibrad_dense *grid = &areas->dense;
     fibrad_pieces *pieces = areas->pieces;
@@ -132,7 +133,7 @@ static void hide_part(fibrad_areas *areas, uint32_t slot, double px, double py, 
     if (pieces->count == FIBRAD_PIECES) LANED(fibrad_areas_integrate)(areas);
 }
 
-/* The cells that a square of half width `half` about a disc overlaps. */
+/* The cells that meet a square about a disc. half: half the width of the square. */
 typedef struct dense_range {
     uint32_t column[2], line[2];
 } dense_range;
@@ -143,7 +144,7 @@ static dense_range range_of(uint32_t cells, const dense_circle *disc, double hal
                          {cell_along(cells, disc->y - half), cell_along(cells, disc->y + half)}};
 }
 
-/* Lists the arcs of a block that may meet the new disc: if their middles are near enough. */
+/* Lists the arcs of a block that may meet the new disc, since their middles are near enough. */
 FIBRAD_INLINE uint32_t list_block(const fibrad_dense *grid, uint32_t block, const dense_circle *disc, uint32_t count) {
     const vf x = vf_set1((float)disc->x), y = vf_set1((float)disc->y);
     const vf r = vf_set1((float)(disc->r * (1 + DENSE_SLACK) + DENSE_SLACK));
@@ -169,15 +170,16 @@ static uint32_t list_near(const fibrad_dense *grid, const dense_circle *disc) {
     return count;
 }
 
-/* A vector of arcs against the new disc. */
+/* A vector of arcs in comparison with the new disc. */
 typedef struct dense_case {
-    vd dx, dy, square, sum, difference; /* from centre to centre, and its square; of the radii */
-    vm p_in, q_in, twice, degenerate;   /* ends inside the disc; both cuts are on the arc; within a margin */
+    vd dx, dy, square, sum, difference; /* vector between the centres and its square; sum and difference of the radii */
+    vm p_in, q_in, twice, degenerate;   /* ends inside the disc; whether both cuts are on the arc; within a margin */
 } dense_case;
 
-/* Which arcs have ends inside the disc or are cut twice: as in clip_lanes.c, but whether an end is inside is decided by
- * its distance from the disc's centre, which is exact to rounding of the disc's radius for circles of any size. Of the
- * ends, those within a margin are looked for at p only, as each q is the p of another arc. */
+/* Finds the arcs that have ends inside the disc or that are cut twice, as in clip_lanes.c. But here the distance of
+ * an end from the centre of the disc tells whether the end is inside. For circles of all sizes the error of this
+ * distance is a rounding error of the disc's radius. Only the ends p are checked for margins, since each q is the p
+ * of another arc. */
 FIBRAD_INLINE dense_case classify_lanes(const fibrad_arc_lanes *a, const dense_circle *disc) {
     const vd zero = vd_set1(0), radius = vd_set1(disc->r), own = a->r;
     dense_case c = {.dx = disc->x - a->cx, .dy = disc->y - a->cy, .sum = own + radius, .difference = own - radius};
@@ -196,14 +198,14 @@ FIBRAD_INLINE dense_case classify_lanes(const fibrad_arc_lanes *a, const dense_c
     return c;
 }
 
-/* Where a vector of arcs is cut: where each enters the new disc counter-clockwise and leaves it, about its own centre
- * and the disc's. */
+/* The points where each of a vector of arcs enters the new disc counter-clockwise, and where it leaves it. Relative
+ * to the centre of the arc and to that of the disc. */
 typedef struct dense_points {
     _Alignas(FIBRAD_ALIGNMENT) double sx[VD_LANES], sy[VD_LANES], ex[VD_LANES], ey[VD_LANES];
     double from_sx[VD_LANES], from_sy[VD_LANES], from_ex[VD_LANES], from_ey[VD_LANES];
 } dense_points;
 
-/* What is inside the disc, or the first part of it, goes to the disc's pieces. */
+/* Appends the parts inside the disc, or their first parts, to the pieces that the disc hides. */
 FIBRAD_INLINE void cut_lanes(fibrad_areas *areas, const fibrad_arc_lanes *a, const dense_case *c, uint32_t touching,
                              dense_points *at) {
     const vd scale = 0.5 / c->square, f = (c->square + c->sum * c->difference) * scale;
@@ -226,15 +228,16 @@ static fibrad_dense_cut *add_cut(fibrad_areas *areas, uint32_t slot, double x, d
     fibrad_dense *grid = &areas->dense;
     if (grid->cuts == grid->cuts_most) {
         areas->overflow = true;
-        grid->cuts = 0; /* the row begins anew, with more room */
+        grid->cuts = 0; /* the row will begin again with more room */
     }
     fibrad_dense_cut *cut = &grid->cut[grid->cuts++];
     cut->x = x, cut->y = y, cut->slot = slot, cut->leaves = leaves, cut->rest = FIBRAD_DENSE_STAYS;
     return cut;
 }
 
-/* Ends the step of an arc in lane l: what is outside the disc stays in the slot, but for the second part of two. A walk
- * with the open region on its left goes counter-clockwise along the window's circle, and the other way along discs'. */
+/* Ends the step of an arc in lane l. The part outside the disc stays in the slot. If there are two such parts, the
+ * first one stays. A walk with the open region on its left goes counter-clockwise along the circle of the window,
+ * and clockwise along circles of discs. */
 static void cut_slot(fibrad_areas *areas, uint32_t slot, uint32_t l, bool p_in, bool q_in, bool twice,
                      const dense_points *at) {
     fibrad_dense *grid = &areas->dense;
@@ -262,11 +265,11 @@ FIBRAD_INLINE fibrad_arc_lanes gather_slots(const fibrad_dense *grid, const uint
                               vd_gather(grid->r, slot),  vd_gather(grid->circle, slot)};
 }
 
-/* Cuts the arcs that the new disc touches. False: degenerate. *changed: there are such. */
+/* Cuts the arcs that the new disc touches. False: a decision is degenerate. *changed: whether there are such arcs. */
 static bool cut_boundary(fibrad_areas *areas, const dense_circle *disc, bool *changed) {
     const fibrad_dense *grid = &areas->dense;
     const uint32_t count = list_near(grid, disc);
-    fibrad_zero(grid->near + count, VD_LANES * sizeof *grid->near); /* read, too, in the last vector */
+    fibrad_zero(grid->near + count, VD_LANES * sizeof *grid->near); /* the last vector also reads these */
     for (uint32_t n = 0; n < count; n += VD_LANES) {
         const uint32_t *slot = grid->near + n, lanes = vd_lanes_below(count - n);
         const fibrad_arc_lanes a = gather_slots(grid, slot);
@@ -301,8 +304,8 @@ static void sort_cuts(fibrad_dense *grid) {
         }
 }
 
-/* Joins each point where the boundary leaves the disc with the next one, counter-clockwise, where it enters it. False
- * if they do not alternate, or are too close. */
+/* Joins each point where the boundary leaves the disc with the next point, counter-clockwise, where it enters the
+ * disc. False: the points do not alternate or are too close. */
 static bool join_cuts(fibrad_areas *areas, const dense_circle *disc) {
     fibrad_dense *grid = &areas->dense;
     const fibrad_dense_cut *cut = grid->cut;
@@ -317,7 +320,7 @@ static bool join_cuts(fibrad_areas *areas, const dense_circle *disc) {
     return true;
 }
 
-/* Whether a point within the window is open: in no disc so far. */
+/* Whether a point within the window is open: it lies in no disc so far. */
 static bool place_is_open(const fibrad_areas *areas, double x, double y) {
     const fibrad_dense *grid = &areas->dense;
     uint32_t at = grid->first_disc[cell_of(grid->fine, x, y)];
@@ -329,7 +332,7 @@ static bool place_is_open(const fibrad_areas *areas, double x, double y) {
     return at == FIBRAD_DENSE_NONE;
 }
 
-/* Enters a disc into the cells it overlaps. */
+/* Enters a disc into the cells that it overlaps. */
 static void enter_disc(fibrad_areas *areas, const dense_circle *disc) {
     fibrad_dense *grid = &areas->dense;
     const dense_range range = range_of(grid->fine, disc, disc->r);
@@ -353,7 +356,7 @@ static void enter_disc(fibrad_areas *areas, const dense_circle *disc) {
         }
 }
 
-/* Ends the part of an arc beyond its two cuts, the first of which is given. */
+/* Ends the part of an arc that follows its two cuts. cut: the first of them. */
 static void end_rest(fibrad_areas *areas, const dense_circle *disc, const fibrad_dense_cut *cut) {
     const fibrad_dense *grid = &areas->dense;
     const uint32_t k = cut->slot;
@@ -365,8 +368,8 @@ static void end_rest(fibrad_areas *areas, const dense_circle *disc, const fibrad
         hide_part(areas, k, px, py, cut->qx, cut->qy);
 }
 
-/* Removes from the open region its part inside the disc of the circle that has been written, and keeps the circle if
- * there is any. False: degenerate. */
+/* Removes from the open region its part inside the disc of the last circle. Keeps the circle if a part of it is
+ * visible. False: a decision is degenerate. */
 static bool hide_dense_disc(fibrad_areas *areas) {
     fibrad_dense *grid = &areas->dense;
     const uint32_t k = areas->circles;
@@ -389,7 +392,8 @@ static bool hide_dense_disc(fibrad_areas *areas) {
     return true;
 }
 
-/* Chooses the grid for discs of which there are so many, with this sum of radii, up to 1 of each; and empties it. */
+/* Chooses the grid and empties it. discs: number of discs. sum: sum of their radii, where each radius counts as 1 at
+ * most. */
 static void begin_dense(fibrad_areas *areas, uint32_t discs, double sum) {
     fibrad_dense *grid = &areas->dense;
     uint32_t cells = DENSE_CELLS, enough = 16 * cells * cells;

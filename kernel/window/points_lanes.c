@@ -4,8 +4,8 @@
 #include "base/lanes/below.h"
 #include "window/points_lanes.h"
 
-/* Which of the 64 points from (x, y) on lie within a disc of radius^2 `square`. The sum goes into a register for
- * numbers, where an `or` would go into those for masks and back. */
+/* Which of the 64 points from (x, y) on lie within a disc. square: the square of its radius. The sum keeps the bits
+ * in an ordinary register, where `or` would move them to mask registers and back. */
 static inline uint64_t points_within(const float *x, const float *y, float at_x, float at_y, float square) {
     vf u = vf_set1(at_x), v = vf_set1(at_y), square_r = vf_set1(square);
     uint64_t bits = 0;
@@ -30,9 +30,9 @@ void LANED(fibrad_points_disc)(fibrad_points *points, double x, double y, double
     }
 }
 
-/* Writes the discs in floats. Returns how many are not deeper than `depth`. */
+/* Writes the discs as floats. Returns the number of discs that are not deeper than `depth`. */
 static inline uint32_t round_discs(const fibrad_discs *disc, double depth) {
-    const fibrad_discs discs = *disc; /* a copy: what is stored cannot change its pointers */
+    const fibrad_discs discs = *disc; /* a copy, so that the compiler sees that stores do not change its pointers */
     uint32_t count = 0;
     for (uint32_t k = 0; k < discs.count; k += VD_LANES) {
         vd r = vd_load(discs.r + k);
@@ -45,9 +45,9 @@ static inline uint32_t round_discs(const fibrad_discs *disc, double depth) {
     return count;
 }
 
-/* In words of 64 points, which stay in registers and are done with once all of them are hidden. */
+/* Takes 64 points at a time. They stay in registers. When all of them are hidden, the next 64 follow. */
 uint32_t LANED(fibrad_points_discs)(fibrad_points *points, const fibrad_discs *disc, uint32_t from, double depth) {
-    const fibrad_discs discs = *disc; /* a copy: what is stored cannot change its pointers */
+    const fibrad_discs discs = *disc; /* a copy, so that the compiler sees that stores do not change its pointers */
     const uint32_t to = round_discs(&discs, depth);
     for (uint32_t d = from; d < to; d += 16) fibrad_zero(discs.hidden_points + d, 16 * sizeof *discs.hidden_points);
     points->open = 0;

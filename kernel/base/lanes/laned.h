@@ -1,8 +1,8 @@
-/* laned.h - LANED(name): the name a function has in the instruction set its file is compiled for, name_avx2 say.
+/* laned.h - LANED(name): the name of a function in the instruction set of this compilation, for example name_avx2.
  * SPDX-License-Identifier: MIT
  *
- * A laned source begins with `#include FIBRAD_LANES_HEADER` and this header, and is compiled once per instruction set
- * with that macro naming one vec_*.h and FIBRAD_ISA_SUFFIX the ending. */
+ * A laned source begins with `#include FIBRAD_LANES_HEADER` and this header. It is compiled once for each
+ * instruction set. FIBRAD_LANES_HEADER then names one vec_*.h, and FIBRAD_ISA_SUFFIX is the ending of names. */
 #ifndef FIBRAD_LANED_H
 #define FIBRAD_LANED_H
 

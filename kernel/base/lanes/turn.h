@@ -13,7 +13,7 @@ static inline vd vd_sine_quarter(vd t) {
     return x * sum;
 }
 
-/* A turn of t in [0, 1): its cosine and sine up to the same half turn for all t. */
+/* Cosine and sine of t turns, t in [0, 1). */
 static inline void vd_turn(vd t, vd *cosine, vd *sine) {
     vd y = t - .5, size = vd_abs(y);
     *cosine = vd_sine_quarter(.25 - size);

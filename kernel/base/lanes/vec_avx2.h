@@ -23,7 +23,7 @@ static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
                          table[_mm_extract_epi32(i, 0)]);
 }
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
-    static const uint32_t half[16][8] = {/* which halves of doubles move to the front */
+    static const uint32_t half[16][8] = {/* the halves of doubles that move to the front */
                                          {0},
                                          {0, 1},
                                          {2, 3},

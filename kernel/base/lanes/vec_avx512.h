@@ -15,7 +15,7 @@ typedef __m512i vn;
 
 static inline vd vd_set1(double a) { return _mm512_set1_pd(a); }
 static inline vd vd_load(const double *p) { return _mm512_load_pd(p); }
-/* Tables of up to two vectors stay in registers: a gather would wait until stores to them have left the core. */
+/* Tables of one or two vectors stay in registers. A gather would wait until all stores to the table have ended. */
 static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
     __m512i index = _mm512_cvttpd_epi64(k);
     if (size > 16) return _mm512_i64gather_pd(index, table, 8);
@@ -25,7 +25,7 @@ static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
     _mm512_storeu_pd(p, _mm512_maskz_compress_pd((__mmask8)bits, a));
 }
-/* Without the empty statement a load, this and a store become a masked store, which delays the next load. */
+/* The empty statement keeps the compiler from a masked store, which would delay the next load. */
 static inline vd vd_replace(vd a, uint32_t lane, double x) {
     a = _mm512_mask_mov_pd(a, (__mmask8)(1u << lane), _mm512_set1_pd(x));
     __asm__("" : "+v"(a));

@@ -52,11 +52,11 @@ static inline vm vd_lt(vd a, vd b) { return vcltq_f64(a, b); }
 static inline vm vd_le(vd a, vd b) { return vcleq_f64(a, b); }
 static inline vd vd_select(vm m, vd a, vd b) { return vbslq_f64(m, a, b); }
 static inline vm vm_not(vm a) { return ~a; }
-static inline uint32_t vm_bits(vm a) { /* of two halves of a word */
+static inline uint32_t vm_bits(vm a) { /* a lane is two halves of a word */
     return (uint32_t)(vget_lane_u64(vreinterpret_u64_u32(vmovn_u64(a)), 0) >> 31) & 3;
 }
 
-/* Bit l of lane l, of a mask. */
+/* Bit l is set if lane l of the mask is set. */
 static inline uint32_t vn_mask_bits(uint32x4_t mask) {
     const uint32x4_t bit = {1, 2, 4, 8};
     return vaddvq_u32(mask & bit);
