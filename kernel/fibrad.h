@@ -303,7 +303,9 @@ typedef enum fibrad_why {
     FIBRAD_WHY_CAPACITY = 18,     /* A heat capacity is not above 0, or is out of range. */
     FIBRAD_WHY_LIGHT = 19,        /* A number of a light is out of range, or its direction is zero. */
     FIBRAD_WHY_DARK = 20,         /* No open face lets a light in. */
-    FIBRAD_WHY_FOOTPRINT = 21     /* A sphere lies before the disc of a light. */
+    FIBRAD_WHY_FOOTPRINT = 21,    /* A sphere lies before the disc of a light. */
+    FIBRAD_WHY_CONDUCTIVITY = 22, /* A conductivity is not above 0. */
+    FIBRAD_WHY_UNIFORM = 23       /* Spheres that conduct have no uniform radiosity. */
 } fibrad_why;
 
 /* The cause of a fault as English words. The words continue a sentence that begins with the name of a sphere or a wall.

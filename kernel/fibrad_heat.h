@@ -105,6 +105,11 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * may have temperatures of their own if the wall has a given temperature. An endless wall (fibrad.h) must have a given
  * temperature, unless it reflects everything.
  *
+ * A sphere with a conductivity conducts heat and has no one temperature. Its temperature is the mean of its surface.
+ * Inside, a steady state is assumed, and sources or stores of heat that are spread evenly. Emission is linear in
+ * temperature about the mean (docs/methods_heat.md section 13). A conductivity k_s [W/(m K)] is k_s/metres where L is
+ * `metres` long. Emissivities of 0 and 1 are allowed. `uniform` is not.
+ *
  * The residual is relative to the differences of emission. tolerance = 0 stands for 1e-3, or for 1e-5 if a temperature
  * is unknown and its hold is 0. side_temperature goes by the caller's numbers of triangles. If sides share a patch,
  * each of them emits the mean of all of them. */
@@ -125,6 +130,7 @@ typedef struct fibrad_heat_sources {
     int uniform;                    /* 1: one radiosity per surface, no extrapolation; for emissivities near 1 only */
     const double *side_temperature; /* K, [2 triangles], fronts and backs in turn; NaN: the wall's; NULL: all NaN */
     const double *light; /* sigma K^4 L^2, [fibrad_heat_patches], arrives from outside; NULL: none; fibrad_light.h */
+    const double *conductivity; /* sigma K^3 L, [spheres], above 0; infinity: one temperature; NULL: all infinity */
 } fibrad_heat_sources;
 
 /* Zeroes the sources, sets sigma = FIBRAD_STEFAN_BOLTZMANN, and sets surroundings = NaN. NaN is refused, so that no
@@ -166,10 +172,11 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
  *
  * A net power is above 0 where a surface gains heat. In a steady state a
  * surface gives off the negative of its net power from inside.
- * Temperatures are those found and those given. A temperature is NaN if the emissivity is 0, or if only a temperature
- * below zero would give the power. body_temperature of an insulated wall is the fourth root of its mean T^4. The same
- * holds for a mesh whose sides have temperatures of their own. The root mean square error of the powers of all spheres
- * is sqrt(error_patches^2 + error_beams^2). */
+ * least_temperature, largest_temperature and centre_temperature are those of spheres that conduct. Of other spheres
+ * they are the temperature. Temperatures are those found and those given. A temperature is NaN if the emissivity is 0,
+ * or if only a temperature below zero would give the power. body_temperature of an insulated wall is the fourth root of
+ * its mean T^4. The same holds for a mesh whose sides have temperatures of their own. The root mean square error of the
+ * powers of all spheres is sqrt(error_patches^2 + error_beams^2). */
 typedef struct fibrad_heat_result {
     double *power;                  /* sigma K^4 L^2, [spheres], out: net power */
     double *body_power;             /* sigma K^4 L^2, [bodies], out: net power; NULL without walls */
@@ -187,6 +194,11 @@ typedef struct fibrad_heat_result {
     double *body_absorbed;          /* sigma K^4 L^2, [bodies], out: absorbed; if endless, near the bed; or NULL */
     double surroundings_error;      /* sigma K^4 L^2, out: estimated error of surroundings_power */
     double *body_area;              /* L^2, [bodies], out: the area of body_power; if endless, near the bed; or NULL */
+    double *least_temperature;      /* K, [spheres], out: least of the surface; may be NULL */
+    double *largest_temperature;    /* K, [spheres], out: largest of the surface; may be NULL */
+    double *centre_temperature;     /* K, [spheres], out; may be NULL */
+    double *surface_error;          /* K, [spheres], out: estimated error of least and largest; may be NULL */
+    double *centre_error;           /* K, [spheres], out: estimated error of centre_temperature; may be NULL */
 } fibrad_heat_result;
 
 /* Reads the solution.

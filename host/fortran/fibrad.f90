@@ -169,7 +169,7 @@ module fibrad
         real(c_double) :: surroundings = 0, sigma = fibrad_stefan_boltzmann, tolerance = 0
         integer(c_int32_t) :: sweeps_max = 0
         integer(c_int) :: uniform = 0
-        type(c_ptr) :: side_temperature = c_null_ptr, light = c_null_ptr
+        type(c_ptr) :: side_temperature = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr
     end type c_heat_sources
 
     type, bind(C) :: c_heat_result
@@ -183,6 +183,8 @@ module fibrad
         type(c_ptr) :: body_absorbed = c_null_ptr
         real(c_double) :: surroundings_error = 0
         type(c_ptr) :: body_area = c_null_ptr
+        type(c_ptr) :: least_temperature = c_null_ptr, largest_temperature = c_null_ptr
+        type(c_ptr) :: centre_temperature = c_null_ptr, surface_error = c_null_ptr, centre_error = c_null_ptr
     end type c_heat_result
 
     type, bind(C) :: c_transient_config

@@ -81,6 +81,10 @@ const char *fibrad_why_text(int why) {
         return "the tolerance is out of range";
     case FIBRAD_WHY_MISSING:
         return "an array is missing";
+    case FIBRAD_WHY_CONDUCTIVITY:
+        return "a conductivity is not above 0";
+    case FIBRAD_WHY_UNIFORM:
+        return "spheres that conduct have no uniform radiosity";
     case FIBRAD_WHY_CAPACITY:
         return "the heat capacity is not above 0 or is out of range";
     case FIBRAD_WHY_LIGHT:

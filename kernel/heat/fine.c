@@ -53,17 +53,11 @@ static double four_area(const fibrad_heat *heat, uint32_t body) {
     return area / fours_of(heat, body);
 }
 
-/* The t, [-1, 1], whose image t (5 - t^2)/4 is at a. */
-static double unmapped(double a) {
-    double t = a;
-    for (int k = 0; k < 6; k++) t -= (t * (5 - t * t) - 4 * a) / (5 - 3 * t * t);
-    return t;
-}
-
 /* A place a, b, [-1, 1], on a face of a sphere's cube. Returns the solid angle per area there. */
 static double point_on_sphere(uint32_t face, double a, double b, double normal[3]) {
     static const double frame[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    const double s = unmapped(a), t = unmapped(b), inverse = 1 / fibrad_sqrt(1 + s * s + t * t);
+    const double s = fibrad_patch_unmapped(a), t = fibrad_patch_unmapped(b),
+                 inverse = 1 / fibrad_sqrt(1 + s * s + t * t);
     const uint32_t axis = face / 2;
     double axes[9], n[3];
     n[axis] = face % 2 ? -inverse : inverse, n[axis == 0 ? 1 : 0] = s * inverse, n[axis == 2 ? 1 : 2] = t * inverse;
@@ -145,7 +139,8 @@ static double area_of(const fibrad_heat *heat, const fibrad_heat_four *four) {
         if (wall != FIBRAD_CYLINDER) return area * size[0];
         return area * ((angle_around(low[0] + size[0]) - angle_around(low[0])) / (2 * FIBRAD_PI));
     }
-    for (int k = 0; k < 2; k++) from[k] = unmapped(2 * low[k] - 1), to[k] = unmapped(2 * (low[k] + size[k]) - 1);
+    for (int k = 0; k < 2; k++)
+        from[k] = fibrad_patch_unmapped(2 * low[k] - 1), to[k] = fibrad_patch_unmapped(2 * (low[k] + size[k]) - 1);
     const double r = heat->scene->r[four->body];
     return r * r *
            (solid_angle(to[0], to[1]) - solid_angle(from[0], to[1]) - solid_angle(to[0], from[1]) +
@@ -355,6 +350,8 @@ static void put_in_rows(fibrad_heat *heat) {
             most = (uint32_t)fibrad_min(FIBRAD_HEAT_PATCHES_MAX / FIBRAD_HEAT_FOUR, heat->beams / (2 * rays));
         }
         four->row = heat->rows - 1, row->count++;
+        heat->division.on_patch[k] = (uint16_t)(FIBRAD_HEAT_FOUR * four->own + 2 * (four->x >> (four->level - 1)) +
+                                                (four->y >> (four->level - 1)));
     }
 }
 

@@ -63,6 +63,7 @@ static void dimension(fibrad_heat *heat, const fibrad_heat_config *config, const
     heat->beams = config->directions * config->points;
     heat->thin = heat->beams / HEAT_THIN_MAX < HEAT_KEPT * config->patches ? 1 : HEAT_THIN_MAX;
     heat->side = side_of(config->patches);
+    for (uint32_t level = 0; level < 2; level++) fibrad_harmonics_size(&heat->harmonics[level], heat->side, level == 1);
     heat->meshes = meshes_of(scene), heat->triangles = scene->mesh.triangles;
     heat->bodies = spheres + 2 * FIBRAD_WALLS + heat->meshes + 1;
     heat->patches = spheres * config->patches + 1;
@@ -106,6 +107,15 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
                                   &heat->sources.temperature, &heat->solution.power,   &heat->samples.halves};
     for (size_t k = 0; k < sizeof of_bodies / sizeof *of_bodies; k++)
         *of_bodies[k] = fibrad_arena_take(arena, heat->bodies, sizeof(double));
+    for (uint32_t level = 0; level < 2; level++) {
+        fibrad_harmonics *h = &heat->harmonics[level];
+        h->patch = fibrad_arena_take(arena, FIBRAD_HARMONICS_KINDS * h->orbits, sizeof *h->patch);
+        h->root = fibrad_arena_take(arena, h->orbits, sizeof *h->root);
+        h->value = fibrad_arena_take(arena, FIBRAD_HARMONICS_KINDS * h->orbits * h->many, sizeof *h->value);
+    }
+    heat->sources.conductivity = fibrad_arena_take(arena, spheres, sizeof(double));
+    heat->sources.unevenness = fibrad_arena_take(arena, spheres, sizeof(double));
+    heat->solution.span = fibrad_arena_take(arena, spheres, sizeof *heat->solution.span);
     heat->density = fibrad_arena_take(arena, rows, sizeof(double));
     heat->samples.seen = fibrad_arena_take(arena, spheres, sizeof *heat->samples.seen);
     heat->pencils.row = fibrad_arena_take(arena, rows, sizeof *heat->pencils.row);
@@ -117,6 +127,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->division.node = fibrad_arena_take(arena, nodes, sizeof *heat->division.node);
     heat->division.first_four = fibrad_arena_take(arena, spheres + FIBRAD_WALLS + 1, sizeof *heat->division.first_four);
     heat->division.four = fibrad_arena_take(arena, nodes, sizeof *heat->division.four);
+    heat->division.on_patch = fibrad_arena_take(arena, nodes, sizeof *heat->division.on_patch);
     heat->division.fine = fibrad_arena_take(arena, nodes, sizeof *heat->division.fine);
     heat->cut = fibrad_arena_take(arena, 2 * (size_t)heat->triangles, sizeof *heat->cut);
     heat->sources.lift = fibrad_arena_take(arena, heat->triangles > 0 ? others : 0, sizeof *heat->sources.lift);
@@ -219,6 +230,8 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     *heat = fields;
     fibrad_heat_cut_meshes(heat);
     find_origins(heat);
+    for (int level = 0; level < 2; level++) fibrad_harmonics_make(&heat->harmonics[level]);
+    fibrad_zero(heat->sources.unevenness, heat->spheres * sizeof(double));
     fibrad_heat_balance(heat);
     fibrad_sobol_make(&heat->sobol);
     forget_beams(heat);

@@ -13,16 +13,19 @@
 
 #include "fibrad_heat.h"
 #include "base/sobol.h"
+#include "harmonics/harmonics.h"
 #include "mesh/mesh_patch.h"
 #include "scene/scene.h"
 #include "work/work.h"
 
 #define FIBRAD_HEAT_TASK 1024u /* rays of walls in one task */
 
-#define FIBRAD_HEAT_FOUR   4u                  /* patches of a four */
-#define FIBRAD_HEAT_BLOCK  256u                /* patches of a wall that may be in one pencil */
-#define FIBRAD_HEAT_OTHERS 64u                 /* bodies that are not spheres, rounded up */
-#define FIBRAD_HEAT_FINE   (UINT32_C(1) << 31) /* plus the number of a fine four: a node without children */
+#define FIBRAD_HEAT_FOUR          4u   /* patches of a four */
+#define FIBRAD_HEAT_BLOCK         256u /* patches of a wall that may be in one pencil */
+#define FIBRAD_HEAT_OTHERS        64u  /* bodies that are not spheres, rounded up */
+#define FIBRAD_HEAT_EXTRAPOLATION 0.4  /* share of the difference of both levels that patches without size change */
+
+#define FIBRAD_HEAT_FINE (UINT32_C(1) << 31) /* plus the number of a fine four: a node without children */
 
 /* A pencil has the beams from one row to another row, or to a block of patches of a body that is not a sphere. Some of
  * the beams that were followed are kept. In memory a pencil is followed by
@@ -109,6 +112,7 @@ typedef struct fibrad_heat_division {
     uint32_t *node;         /* [nodes], first of four children, or FIBRAD_HEAT_FINE + a fine four; 0: not divided */
     uint32_t *first_four;   /* [spheres + FIBRAD_WALLS + 1], first fine four of each body */
     fibrad_heat_four *four; /* [fours] */
+    uint16_t *on_patch;     /* [fours], of spheres: own patch on which the four lies */
     fibrad_heat_fine *fine; /* [rows - spheres] */
     /* share of a sphere's beams that leaves each of its own fours, over the share of its area */
     double balance[FIBRAD_HEAT_PATCHES_MAX / FIBRAD_HEAT_FOUR];
@@ -124,11 +128,20 @@ typedef struct fibrad_heat_pencils {
     size_t *first_link; /* [rows + 2] */
 } fibrad_heat_pencils;
 
+/* The least and the largest of what the emission of a sphere's surface is above its mean, at both levels. */
+typedef struct fibrad_heat_span {
+    double low, high, coarse_low, coarse_high;
+} fibrad_heat_span;
+
 /* What is given of a solution. E is counted from that of the surroundings. */
 typedef struct fibrad_heat_given {
     double *emissivity, *emission; /* [bodies], eps and E */
     double *drive, *hold;          /* [bodies], unknown temperature: gives off drive - hold E; hold < 0: given */
     double *temperature;           /* K, [bodies], given or found; NaN: none */
+    double *conductivity;          /* sigma K^3 L, [spheres] */
+    double *unevenness;            /* [spheres], 4 r sigma T^3/conductivity; 0: at one temperature (conduct.c) */
+    bool conducts;                 /* some sphere has an unevenness above 0 */
+    bool roughly;                  /* unevennesses are of temperatures that are hardly known yet */
     double wall_emissivity[FIBRAD_WALLS], wall_emission[FIBRAD_WALLS]; /* by slot */
     bool insulated[FIBRAD_HEAT_OTHERS];                                /* by body, from the first wall on */
     double *lift; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
@@ -159,6 +172,7 @@ typedef struct fibrad_heat_solution {
     double *brought;         /* [parts][patches that are not of spheres], received from each part */
     double *coarse, *power;  /* [bodies], net power at the coarser level, and extrapolated */
     double *coarse_emission; /* [bodies], E at the coarser level */
+    fibrad_heat_span *span;  /* [spheres] */
 } fibrad_heat_solution;
 
 /* What tells errors. */
@@ -186,6 +200,7 @@ struct fibrad_heat {
     uint32_t of_mesh[FIBRAD_BODIES_MAX];            /* patches of each mesh */
     fibrad_mesh_cut *cut; /* [2 triangles], by the caller's numbers; patches from first_meshed on */
     fibrad_heat_division division;
+    fibrad_harmonics harmonics[2]; /* on patches, and on fours for the coarser level */
 
     /* beams of spheres and rays of walls */
     uint32_t rows;                       /* number of rows: spheres, then rows of fine fours */
@@ -342,6 +357,29 @@ static inline uint32_t fibrad_heat_part_begin(const fibrad_heat *heat, uint32_t 
 
 /* Whether the scene is still the one in which the beams were followed. */
 static inline bool fibrad_heat_scene_kept(const fibrad_heat *heat) { return heat->scene->hash == heat->hash; }
+
+/* Whether the surface of a body is not at one temperature. */
+static inline bool fibrad_heat_conducts(const fibrad_heat *heat, uint32_t body) {
+    return body < heat->spheres && heat->sources.unevenness[body] > 0;
+}
+
+/* conduct.c: the fraction of the light on a body that leaves where it arrived: what is reflected, and what is emitted
+ * as the surface is hotter there. For patterns as fine as patches. */
+double fibrad_heat_sent_back(const fibrad_heat *heat, uint32_t body);
+
+/* Finds the unevenness of all spheres from their emissions. Returns the largest relative change. */
+double fibrad_heat_find_unevenness(fibrad_heat *heat);
+
+/* What one preconditioned iteration would change of the pattern of J on a sphere, to be sent, and `shift` everywhere.
+ * Returns the residual times that, without `shift`. Needs the patches of the sphere in heat->solution.gathered. */
+double fibrad_heat_pattern_residual(fibrad_heat *heat, uint32_t sphere, double shift);
+
+/* The sum of A times direction times g times direction, without the mean. */
+double fibrad_heat_pattern_curvature(const fibrad_heat *heat, uint32_t sphere);
+
+/* Finds how far emission on the surfaces of spheres is from its mean: heat->solution.span. Changes
+ * heat->solution.gathered. */
+void fibrad_heat_find_spans(fibrad_heat *heat);
 
 /* solve.c: prepares the first sweep of a solution. */
 void fibrad_heat_start(fibrad_heat *heat);

@@ -4,9 +4,8 @@
  * the error of its power, and may be small by chance. Errors of bodies of one kind turn out to be as what they
  * exchange, times a normal number. So the estimate is, in squares, one half what the body's own sample says, one half
  * what all samples together say. What patches change of the power of a wall is smooth, and stands for itself. */
-#include "base/port.h"
+#include "base/constants.h"
 #include "heat/fine.h"
-#include "heat/problem.h"
 #include "heat/wall_patch.h"
 #include "scene/walls.h"
 
@@ -23,7 +22,8 @@
 #define FEW_SEEN     1.3 /* likewise of walls that a sphere sees, whose beams are less even */
 #define FEW_WALLS    .65 /* and of walls themselves */
 #define SPOT_ERROR   .7
-#define SAMPLES      3 /* with fewer of a kind, those of the other kind make up for them */
+#define SPAN_ERROR   .03 /* of the extremes of a surface, over by how much they differ from its mean */
+#define SAMPLES      3   /* with fewer of a kind, those of the other kind make up for them */
 
 static double squared(double x) { return x * x; }
 
@@ -205,7 +205,7 @@ static heat_errors errors_of(const fibrad_heat *heat) {
     for (uint32_t b = 0; b < end; b++) {
         const int kind = b >= heat->spheres;
         const double area = spread_of(heat, b).area;
-        areas[kind] += area, errors.dim[kind] += area * (1 - heat->sources.emissivity[b]);
+        areas[kind] += area, errors.dim[kind] += area * fibrad_heat_sent_back(heat, b);
     }
     for (int kind = 0; kind < 2; kind++)
         if (areas[kind] > 0) errors.dim[kind] /= areas[kind];
@@ -386,10 +386,48 @@ static double temperature_error_of(const fibrad_heat *heat, const heat_errors *e
     const double missed =
         (missed_emission(heat, errors, b, own.area) + level->missed[b >= heat->spheres] * distance_of(errors, &own)) /
         2;
-    const double together =
-        (squared(level->error) + (1 - eps) * squared(errors->few)) * squared(emission - level->given);
+    const double together = (squared(level->error) + fibrad_heat_sent_back(heat, b) * squared(errors->few)) *
+                            squared(emission - level->given);
     const double walls = squared(errors->walls / errors->all.area);
     return fibrad_sqrt(changed + squared(share) * (missed + together + walls)) / slope;
+}
+
+/* A temperature and its error. */
+typedef struct measured {
+    double value, error;
+} measured;
+
+/* The temperature in the centre of a sphere: q r^2/(6 k) above the mean of its surface, for a source q that is even
+ * inside. */
+static measured centre_of(const fibrad_heat *heat, uint32_t b, measured surface, double power_error) {
+    const double slope = 1 / (8 * FIBRAD_PI * heat->scene->r[b] * heat->sources.conductivity[b]);
+    return (measured){surface.value - slope * heat->solution.power[b],
+                      fibrad_sqrt(squared(surface.error) + squared(slope * power_error))};
+}
+
+/* By how much the surface of a sphere is hotter at the hottest patch than on the mean, or at the coldest one. What
+ * extrapolation changes of it is its error, and a part of it all, as light comes from few directions. */
+static measured surface_extreme(const fibrad_heat *heat, uint32_t b, double fine, double coarse) {
+    const double t = heat->sources.temperature[b], slope = 4 * heat->sources.sigma * t * t * t;
+    const double change = FIBRAD_HEAT_EXTRAPOLATION * (fine - coarse);
+    if (!fibrad_heat_conducts(heat, b)) return (measured){0, 0};
+    return (measured){(fine + change) / slope, fibrad_sqrt(squared(change) + squared(SPAN_ERROR * fine)) / slope};
+}
+
+/* The temperatures on the surface and in the centre of a sphere that conducts. */
+static void read_inside(const fibrad_heat *heat, uint32_t b, measured mean, double power_error,
+                        const fibrad_heat_result *result) {
+    const fibrad_heat_span *span = &heat->solution.span[b];
+    const uint32_t i = heat->order[b];
+    const measured low = surface_extreme(heat, b, span->low, span->coarse_low),
+                   high = surface_extreme(heat, b, span->high, span->coarse_high),
+                   centre = centre_of(heat, b, mean, power_error);
+    const double worst = fibrad_max(low.error, high.error);
+    if (result->least_temperature != NULL) result->least_temperature[i] = mean.value + low.value;
+    if (result->largest_temperature != NULL) result->largest_temperature[i] = mean.value + high.value;
+    if (result->surface_error != NULL) result->surface_error[i] = fibrad_sqrt(squared(mean.error) + squared(worst));
+    if (result->centre_temperature != NULL) result->centre_temperature[i] = centre.value;
+    if (result->centre_error != NULL) result->centre_error[i] = centre.error;
 }
 
 /* The temperature at which an insulated wall would emit what it sends back. */
@@ -408,9 +446,11 @@ static bool read_temperatures(const fibrad_heat *heat, const fibrad_heat_result 
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const uint32_t i = heat->order[b];
         if (heat->sources.hold[b] >= 0) found = found && heat->sources.temperature[b] >= 0;
-        if (result->temperature != NULL) result->temperature[i] = heat->sources.temperature[b];
-        if (result->temperature_error != NULL)
-            result->temperature_error[i] = temperature_error_of(heat, &errors, &level, b, heat->sources.temperature[b]);
+        const double t = heat->sources.temperature[b];
+        const measured mean = {t, temperature_error_of(heat, &errors, &level, b, t)};
+        if (result->temperature != NULL) result->temperature[i] = t;
+        if (result->temperature_error != NULL) result->temperature_error[i] = mean.error;
+        read_inside(heat, b, mean, fibrad_sqrt(power_error_of(heat, &errors, b)), result);
     }
     for (uint32_t k = 0; k < heat->given_bodies; k++) {
         const uint32_t b = fibrad_heat_body(heat, heat->slot[k]);

@@ -22,7 +22,9 @@
  *
  * which leaves a system of J alone that is symmetric as before. Its residuals are dealt with in two parts, none of
  * which divides by eps or rho: their mean r = eps (S - h <J>)/D + q/A, changed by r/(1 + eps h/D), and the rest,
- * changed as that of other bodies about the mean. A black body sends J = E all over. */
+ * changed as that of other bodies about the mean. A black body sends J = E all over.
+ *
+ * On a sphere that conducts the mean of J is dealt with as above, and the rest as conduct.c says. */
 #include "heat/problem.h"
 #include "heat/pencils.h"
 #include "heat/sweep.h"
@@ -119,11 +121,37 @@ static double free_residual(fibrad_heat *heat, uint32_t b) {
     return slope;
 }
 
+/* Whether the mean of J over a sphere that conducts is what it emits, as it reflects next to nothing. If such a mean
+ * were searched for, rounding errors of J would count 1/rho times. */
+#define NEXT_TO_NOTHING 1e-9
+static bool has_black_mean(const fibrad_heat *heat, uint32_t b) {
+    return !is_free(heat, b) && 1 - heat->sources.emissivity[b] < NEXT_TO_NOTHING;
+}
+
+/* The same of a sphere that conducts. */
+static double conducting_residual(fibrad_heat *heat, uint32_t b) {
+    const double eps = heat->sources.emissivity[b];
+    const free_body body = free_body_of(heat, b);
+    double shift = 0, slope = 0;
+    if (!(body.area > 0)) return 0;
+    if (is_free(heat, b)) {
+        const double mean = drive_at(heat, b, &body, body.radiosity) + body.net;
+        shift = mean / stiffness(heat, b, &body);
+        slope = body.area * mean * shift;
+    } else if (!has_black_mean(heat, b)) {
+        shift = eps * (heat->sources.emission[b] - body.radiosity) + (1 - eps) * body.net;
+        slope = body.area * shift * shift / (1 - eps);
+    }
+    return slope + fibrad_heat_pattern_residual(heat, b, shift);
+}
+
 /* The changes of all patches, to be sent. */
 static double find_residual(fibrad_heat *heat) {
     double slope = 0;
     for (uint32_t b = 0; b < heat->bodies; b++)
-        slope += is_free(heat, b) ? free_residual(heat, b) : given_residual(heat, b);
+        slope += fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
+                 : is_free(heat, b)            ? free_residual(heat, b)
+                                               : given_residual(heat, b);
     return slope;
 }
 
@@ -160,6 +188,11 @@ static void find_powers(const fibrad_heat *heat, double *power) {
 
 /* What is nothing but rounding in a sum of squares. */
 #define ROUNDING 1e-28
+
+/* Where temperatures are found of spheres that conduct: the tolerance with which these are found for the first time,
+ * and the relative change of unevenness that no longer matters. */
+#define ROUGH   1e-2
+#define SETTLED 1e-3
 
 /* Emissivity times area times the square of how far the emission of each patch is from that of its body. */
 static double lifted_squares(const fibrad_heat *heat, uint32_t b) {
@@ -221,8 +254,18 @@ static bool solvable(fibrad_heat *heat) {
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
+/* Lifts the radiosities of black spheres that conduct so that their means are what they emit. */
+static void lift_black(fibrad_heat *heat) {
+    for (uint32_t b = 0; b < heat->spheres && heat->sources.conducts; b++) {
+        if (!fibrad_heat_conducts(heat, b) || !has_black_mean(heat, b)) continue;
+        const double more = heat->sources.emission[b] - mean_over(heat, b, heat->solution.radiosity);
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) heat->solution.radiosity[a] += more;
+    }
+}
+
 /* Makes the next sweep one of the radiosities. */
 static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
+    lift_black(heat);
     for (uint32_t a = 0; a < heat->patches; a++) fibrad_heat_send(heat, a, heat->solution.radiosity[a]);
     heat->solution.phase = phase;
 }
@@ -268,20 +311,20 @@ static void sink(fibrad_heat *heat) {
 /* Takes the finer powers and adds what patches without size would change. Where radiosities are smooth the error falls
  * with the area of patches, and a third of the difference from the coarser powers would be right; near contacts they
  * are not quite, and this is what settled beds ask for: docs/methods_heat.md section 6. */
-#define EXTRAPOLATION 0.4
 static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->solution.power);
     find_emissions(heat);
     if (heat->sources.afloat) sink(heat);
+    if (heat->sources.conducts) fibrad_heat_find_spans(heat);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (heat->solution.group > 1)
             heat->solution.coarse[b] = heat->solution.power[b],
             heat->solution.coarse_emission[b] = heat->sources.emission[b];
-        heat->solution.power[b] += EXTRAPOLATION * (heat->solution.power[b] - heat->solution.coarse[b]);
+        heat->solution.power[b] += FIBRAD_HEAT_EXTRAPOLATION * (heat->solution.power[b] - heat->solution.coarse[b]);
         if (is_free(heat, b))
             heat->sources.temperature[b] = fibrad_heat_temperature(
                 heat, heat->sources.emission[b] +
-                          EXTRAPOLATION * (heat->sources.emission[b] - heat->solution.coarse_emission[b]));
+                          FIBRAD_HEAT_EXTRAPOLATION * (heat->sources.emission[b] - heat->solution.coarse_emission[b]));
     }
     if (heat->solution.group == 1)
         for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
@@ -290,9 +333,20 @@ static void finish_powers(fibrad_heat *heat) {
 
 /* Whether the radiosities of the level in hand are good enough. */
 static bool level_solved(const fibrad_heat *heat) {
-    return heat->solution.slope <= fibrad_max(heat->sources.tolerance * heat->sources.tolerance * heat->solution.scale,
-                                              heat->solution.smallest) ||
+    const double tolerance =
+        heat->sources.roughly ? fibrad_max(ROUGH, heat->sources.tolerance) : heat->sources.tolerance;
+    return heat->solution.slope <= fibrad_max(tolerance * tolerance * heat->solution.scale, heat->solution.smallest) ||
            heat->solution.sweeps >= heat->sources.limit;
+}
+
+/* Finds what temperatures make of the unevenness of spheres. Whether the coarser level is to be solved again as they
+ * have changed. */
+static bool unsettled(fibrad_heat *heat) {
+    if (!heat->sources.conducts || heat->solution.sweeps >= heat->sources.limit) return false;
+    find_emissions(heat);
+    const bool rough = heat->sources.roughly;
+    heat->sources.roughly = false;
+    return fibrad_heat_find_unevenness(heat) > SETTLED || rough;
 }
 
 /* The direction to search next: the residual, and `keep` of the last direction. */
@@ -309,6 +363,7 @@ static void refine_patches(fibrad_heat *heat) {
     find_powers(heat, heat->solution.coarse);
     find_emissions(heat);
     if (heat->sources.afloat) sink(heat);
+    if (heat->sources.conducts) fibrad_heat_find_spans(heat);
     fibrad_copy(heat->solution.coarse_emission, heat->sources.emission, heat->bodies * sizeof *heat->sources.emission);
     heat->solution.group = 1;
     for (uint32_t a = 0; a < heat->patches; a++) {
@@ -325,7 +380,9 @@ static void search_on(fibrad_heat *heat, bool restart) {
     heat->solution.slope = find_residual(heat);
     if (restart) heat->solution.smallest = fibrad_max(heat->solution.smallest, ROUNDING * heat->solution.slope);
     if (level_solved(heat)) {
-        if (heat->solution.group == FIBRAD_HEAT_FOUR)
+        if (heat->solution.group == FIBRAD_HEAT_FOUR && unsettled(heat))
+            send_radiosities(heat, FIBRAD_HEAT_FIRST);
+        else if (heat->solution.group == FIBRAD_HEAT_FOUR)
             refine_patches(heat);
         else
             finish_powers(heat);
@@ -361,11 +418,26 @@ static double free_curvature(const fibrad_heat *heat, uint32_t b, const double *
     return sum;
 }
 
+/* The same of a sphere that conducts. */
+static double conducting_curvature(const fibrad_heat *heat, uint32_t b, const double *product) {
+    const double eps = heat->sources.emissivity[b], mean = mean_over(heat, b, heat->solution.direction);
+    const free_body body = free_body_of(heat, b);
+    if (!(body.area > 0)) return 0;
+    const double share = is_free(heat, b)          ? stiffness(heat, b, &body) - 1
+                         : has_black_mean(heat, b) ? 0
+                                                   : eps / (1 - eps);
+    double sum = share * body.area * mean * mean + fibrad_heat_pattern_curvature(heat, b);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) sum -= heat->solution.direction[a] * product[a];
+    return sum;
+}
+
 /* Goes along the direction whose product with N is `product`, as far as the error falls. */
 static void advance_radiosities(fibrad_heat *heat, const double *product) {
     double curvature = 0;
     for (uint32_t b = 0; b < heat->bodies; b++)
-        curvature += is_free(heat, b) ? free_curvature(heat, b, product) : given_curvature(heat, b, product);
+        curvature += fibrad_heat_conducts(heat, b) ? conducting_curvature(heat, b, product)
+                     : is_free(heat, b)            ? free_curvature(heat, b, product)
+                                                   : given_curvature(heat, b, product);
     if (!(curvature > 0)) return;
     const double length = heat->solution.slope / curvature;
     for (uint32_t a = 0; a < heat->patches; a++) {

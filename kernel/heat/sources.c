@@ -111,6 +111,7 @@ static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     if (!is_temperature(s->surroundings)) return FIBRAD_WHY_SURROUNDINGS;
     if (!is_sigma(s->sigma)) return FIBRAD_WHY_SIGMA;
     if (!light_valid(heat, s->light)) return FIBRAD_WHY_LIGHT;
+    if (s->uniform && s->conductivity != NULL) return FIBRAD_WHY_UNIFORM;
     return s->tolerance >= 0 && s->tolerance < 1 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_TOLERANCE;
 }
 
@@ -120,6 +121,8 @@ int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *s, fib
     for (uint32_t i = 0; i < heat->spheres && found.why == FIBRAD_WHY_UNSAID; i++) {
         const radiator source = of_sphere(s, i);
         found.why = source_why(&source);
+        if (found.why == FIBRAD_WHY_UNSAID && s->conductivity != NULL && !(s->conductivity[i] > 0))
+            found.why = FIBRAD_WHY_CONDUCTIVITY;
         if (found.why != FIBRAD_WHY_UNSAID) found.first = found.second = i;
     }
     for (uint32_t b = 0; b < heat->given_bodies && found.why == FIBRAD_WHY_UNSAID; b++) {
@@ -212,7 +215,7 @@ static double first_emission(const fibrad_heat *heat, const fibrad_heat_sources 
  * coarser level begins with what it had of it. */
 static void set_emission(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b, double eps, double emission) {
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        if (heat->solution.warm && !s->uniform && eps < 1)
+        if (heat->solution.warm && !s->uniform && (eps < 1 || fibrad_heat_conducts(heat, b)))
             heat->solution.radiosity[a] += emission - heat->sources.emission[b] - heat->solution.detail[a];
         else
             heat->solution.radiosity[a] = emission, heat->solution.detail[a] = 0;
@@ -282,6 +285,17 @@ static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double mi
     set_emission(heat, s, heat->bodies - 1, 1, 0);
 }
 
+/* What spheres conduct, and how uneven they are with the emissions that the solution begins with. */
+static void set_conduction(fibrad_heat *heat, const fibrad_heat_sources *s) {
+    bool found = false;
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        heat->sources.conductivity[b] = or_else(s->conductivity, heat->order[b], __builtin_inf());
+        found = found || heat->sources.hold[b] >= 0;
+    }
+    fibrad_heat_find_unevenness(heat);
+    heat->sources.roughly = heat->sources.conducts && found && !heat->solution.warm;
+}
+
 int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     const int status = fibrad_heat_check(heat, sources, NULL);
     if (status != FIBRAD_OK) return status;
@@ -301,6 +315,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     heat->solution.group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
     heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;
     heat->sources.limit = sources->sweeps_max > 0 ? sources->sweeps_max : HEAT_SWEEPS_MAX;
+    set_conduction(heat, sources);
     heat->solution.sweeps = 0;
     heat->solution.warm = false;
     fibrad_zero(heat->swept, heat->config.parts);

@@ -4,7 +4,7 @@
 
 #include "heat/problem.h"
 
-/* Puts the spheres into the sequence of sweeps, and each into a part: parts.c. */
+/* Puts the spheres into the sequence of sweeps, and each into a part. */
 void fibrad_heat_divide(fibrad_heat *heat);
 
 /* What patch a sends out in the next sweep, and what it was told to send. */

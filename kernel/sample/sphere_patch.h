@@ -40,6 +40,13 @@ static inline uint32_t fibrad_patch_place(const double normal[3], uint32_t side,
     return 2 * axis + (n[axis] < 0);
 }
 
+/* The t, [-1, 1], whose image t (5 - t^2)/4 is at a, [-1, 1]. */
+static inline double fibrad_patch_unmapped(double a) {
+    double t = a;
+    for (int k = 0; k < 6; k++) t -= (t * (5 - t * t) - 4 * a) / (5 - 3 * t * t);
+    return t;
+}
+
 /* The patch of a normal. */
 static inline uint32_t fibrad_patch_of(const double normal[3], uint32_t side) {
     double at[2];

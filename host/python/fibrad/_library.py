@@ -67,12 +67,14 @@ HeatConfig = _structure("heat_config", ("directions points patches parts", c_uin
 HeatSources = _structure("heat_sources", ("temperature emissivity power hold reference", DOUBLES),
                          ("body_temperature body_emissivity body_power", DOUBLES), ("insulated", POINTER(c_ubyte)),
                          ("surroundings sigma tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
-                         ("side_temperature light", DOUBLES))
+                         ("side_temperature light conductivity", DOUBLES))
 HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surroundings_power", c_double),
                         ("temperature body_temperature power_error body_error", DOUBLES),
                         ("temperature_error body_temperature_error", DOUBLES),
                         ("error_patches error_beams residual", c_double), ("sweeps", c_uint32),
-                        ("body_absorbed", DOUBLES), ("surroundings_error", c_double), ("body_area", DOUBLES))
+                        ("body_absorbed", DOUBLES), ("surroundings_error", c_double), ("body_area", DOUBLES),
+                        ("least_temperature largest_temperature centre_temperature", DOUBLES),
+                        ("surface_error centre_error", DOUBLES))
 
 TransientConfig = _structure("transient_config", ("method", c_int), ("exchange", ExchangeRule), ("heat", HeatConfig))
 Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_double),

@@ -1,0 +1,144 @@
+/* conduct.c - spheres that conduct, so that their surfaces are not at one temperature. SPDX-License-Identifier: MIT
+ *
+ * In a steady state, with sources even inside, a surface temperature whose pattern is a harmonic of degree l conducts
+ * the flux k l T/r inwards. Emission is linear in T about the mean T0 of the surface. So what is absorbed, w = N J/A,
+ * and emission E have w = 2 K l E there, K = k/(4 d sigma T0^3), d the diameter. With J = E - (1 - eps) w/eps,
+ *
+ *     w = g J,   1/g = 1/eps_l - 1,   1/eps_l = 1/eps + 1/(2 K l).
+ *
+ * The mean of a surface has eps itself. 1/(2 K), called unevenness here, is 0 for a sphere at one temperature. */
+#include "heat/problem.h"
+
+#define NUMBERS (FIBRAD_HARMONICS_WITHIN + 1)
+
+/* Below this, the unevenness of a sphere changes no result. */
+#define EVEN 1e-9
+
+/* Harmonics of the level in hand. */
+static const fibrad_harmonics *harmonics_of(const fibrad_heat *heat) {
+    return &heat->harmonics[heat->solution.group > 1];
+}
+
+/* The degree of number k of a filter. */
+static double degree_of(const fibrad_heat *heat, uint32_t k) {
+    return k < FIBRAD_HARMONICS_DEGREES ? k : fibrad_harmonics_within(harmonics_of(heat));
+}
+
+/* Filters values on the patches of sphere b. */
+static double filter_sphere(const fibrad_heat *heat, uint32_t b, const double by[NUMBERS], const double *pattern,
+                            double *to) {
+    const uint32_t first = heat->first[b], fine = heat->division.first_four[b];
+    const fibrad_harmonics_patches on = {heat->solution.area + first, heat->config.patches, heat->first[b + 1] - first,
+                                         heat->division.on_patch + fine};
+    return fibrad_harmonics_filter(harmonics_of(heat), &on, by, pattern + first, to != NULL ? to + first : NULL);
+}
+
+/* g by degree. 0 for the mean, which is dealt with apart. */
+static void find_gains(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
+    const double eps = heat->sources.emissivity[b];
+    by[0] = 0;
+    for (uint32_t k = 1; k < NUMBERS; k++) {
+        const double uneven = heat->sources.unevenness[b] / degree_of(heat, k);
+        by[k] = eps / (1 - eps + eps * uneven);
+    }
+}
+
+/* 1/(1 + g), likewise. */
+static void find_dampings(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
+    find_gains(heat, b, by);
+    for (uint32_t k = 1; k < NUMBERS; k++) by[k] = 1 / (1 + by[k]);
+}
+
+double fibrad_heat_sent_back(const fibrad_heat *heat, uint32_t body) {
+    const double eps = heat->sources.emissivity[body];
+    const double uneven = fibrad_heat_conducts(heat, body) ? heat->sources.unevenness[body] / (2 * heat->side) : 0;
+    return 1 - eps / (1 + eps * uneven);
+}
+
+double fibrad_heat_find_unevenness(fibrad_heat *heat) {
+    double change = 0;
+    heat->sources.conducts = false;
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        const double t = fibrad_heat_temperature(heat, heat->sources.emission[b]), last = heat->sources.unevenness[b];
+        const double slope = t > 0 && heat->sources.emissivity[b] > 0 ? 4 * heat->sources.sigma * t * t * t : 0;
+        const double uneven = heat->scene->r[b] * slope / heat->sources.conductivity[b];
+        heat->sources.unevenness[b] = uneven > EVEN ? uneven : 0;
+        heat->sources.conducts = heat->sources.conducts || uneven > EVEN;
+        change = fibrad_max(change, fibrad_abs(heat->sources.unevenness[b] - last) / fibrad_max(last, EVEN));
+    }
+    return change;
+}
+
+/* Replaces values on patches of a sphere by the means of groups that share one J. */
+static void average_groups(const fibrad_heat *heat, uint32_t b, double *value) {
+    const uint32_t end = heat->first[b + 1], group = heat->solution.group;
+    for (uint32_t a = heat->first[b]; a < end && group > 1; a += group) {
+        double sum = 0, area = 0;
+        for (uint32_t k = a; k < a + group; k++)
+            sum += heat->solution.area[k] * value[k], area += heat->solution.area[k];
+        for (uint32_t k = a; k < a + group; k++) value[k] = area > 0 ? sum / area : 0;
+    }
+}
+
+/* What is absorbed per area. */
+static void find_fluxes(const fibrad_heat *heat, uint32_t b, double *flux) {
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        flux[a] = heat->solution.area[a] > 0 ? heat->solution.net[a] / heat->solution.area[a] : 0;
+}
+
+/* Takes the mean of a sphere off, which would leave rounding errors in products. */
+static void take_mean_off(const fibrad_heat *heat, uint32_t b, double *value) {
+    double sum = 0, area = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        sum += heat->solution.area[a] * value[a], area += heat->solution.area[a];
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) value[a] -= sum / area;
+}
+
+double fibrad_heat_pattern_residual(fibrad_heat *heat, uint32_t b, double shift) {
+    double by[NUMBERS], *change = heat->solution.source, *residual = heat->solution.gathered, slope = 0;
+    find_fluxes(heat, b, residual);
+    find_gains(heat, b, by);
+    filter_sphere(heat, b, by, heat->solution.radiosity, change);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) residual[a] -= change[a];
+    take_mean_off(heat, b, residual);
+    average_groups(heat, b, residual);
+    find_dampings(heat, b, by);
+    filter_sphere(heat, b, by, residual, change);
+    average_groups(heat, b, change);
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+        slope += heat->solution.area[a] * residual[a] * change[a];
+        change[a] += shift;
+    }
+    return slope;
+}
+
+double fibrad_heat_pattern_curvature(const fibrad_heat *heat, uint32_t b) {
+    double by[NUMBERS];
+    find_gains(heat, b, by);
+    return filter_sphere(heat, b, by, heat->solution.direction, NULL);
+}
+
+/* What the pattern of emission is of that of J, by degree: g/(2 K l). */
+static void find_emitted(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
+    find_gains(heat, b, by);
+    for (uint32_t k = 1; k < NUMBERS; k++) by[k] *= heat->sources.unevenness[b] / degree_of(heat, k);
+}
+
+void fibrad_heat_find_spans(fibrad_heat *heat) {
+    double *emission = heat->solution.gathered;
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        fibrad_heat_span *span = &heat->solution.span[b];
+        double by[NUMBERS], low = 0, high = 0;
+        if (fibrad_heat_conducts(heat, b)) {
+            find_emitted(heat, b, by);
+            filter_sphere(heat, b, by, heat->solution.radiosity, emission);
+            average_groups(heat, b, emission);
+            for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+                low = fibrad_min(low, emission[a]), high = fibrad_max(high, emission[a]);
+        }
+        if (heat->solution.group > 1)
+            *span = (fibrad_heat_span){low, high, low, high};
+        else
+            span->low = low, span->high = high;
+    }
+}
