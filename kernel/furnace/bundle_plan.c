@@ -1,8 +1,8 @@
 /* bundle_plan.c - how many bundles each source emits. SPDX-License-Identifier: MIT
  *
- * Sources are the cells and the patches of the walls. Each emits a whole number of bundles which together carry exactly
- * its power. The hash of a plan covers all that its tally depends on, so that a tally is valid for any furnace with the
- * same hash, and for no other. */
+ * Sources are the cells and the patches of the walls. Each emits a whole number of bundles, which together carry
+ * exactly its power. The hash of a plan covers all that its tally depends on. So a tally is valid for furnaces with
+ * the same hash and for no others. */
 #include "furnace/furnace.h"
 
 #define PLANNED_MAX 0x1p33

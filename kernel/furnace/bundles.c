@@ -1,25 +1,25 @@
 /* bundles.c - bundles of rays through the cells of a box. SPDX-License-Identifier: MIT
  *
- * A bundle carries signed power: only what sources emit above (or below) a reference E, which is in equilibrium with
- * itself and needs no tracing. Start and first direction are a point of a five-dimensional quasi-random sequence; later
- * events use a random stream of the bundle's own.
+ * A bundle carries power with a sign. Sources emit bundles only for what they emit above or below a reference E. The
+ * reference is in equilibrium with itself and needs no bundles. Start and first direction are a point of a
+ * five-dimensional quasirandom sequence. Later events use a random stream of the bundle.
  *
- * Attenuated bundles lose energy along their path as exp(-absorption length) and contribute moments of the intensity to
- * the faces between cells that they cross. Planes of one axis are crossed at equal distances, so the three axes are
- * processed one after the other, without sorting the crossings, and the weight decreases by the same factor from plane
+ * Attenuated bundles lose energy along their path as exp(-absorption length). They add moments of the intensity to the
+ * faces between cells that they cross. A bundle crosses the planes of one axis at equal distances. So the three axes
+ * are taken one after the other, the crossings need not be sorted, and the weight falls by the same factor from plane
  * to plane.
  *
- * Equilibrium bundles keep their power. The medium emits what it absorbs, isotropically, so that absorption and
- * scattering are both a new direction; walls absorb a bundle whole or reflect it. The incident radiation of a cell
- * follows from the lengths of the paths in it, for which the crossings are taken in order. */
+ * Equilibrium bundles keep their power. The medium emits what it absorbs, in all directions alike. So absorption and
+ * scattering both are a new direction. Walls absorb a bundle as a whole or reflect it. The incident radiation of a cell
+ * follows from the lengths of the paths in it. For these the crossings are taken in order. */
 #include "furnace/furnace.h"
 
 #include "base/elementary.h"
 #include "base/random.h"
 
-#define PLANE_NONE 1e300 /* m: distance of a plane that is not met */
+#define PLANE_NONE 1e300 /* m: distance of a plane that the bundle never meets */
 
-/* Position, in cells, so that planes are at whole numbers; direction; weight, in units of the tally. */
+/* place in units of cells, so that planes are at whole numbers; direction; weight in units of the tally */
 typedef struct furnace_bundle {
     double at[3], direction[3];
     double weight;
@@ -44,7 +44,7 @@ static void bundle_leave_wall(furnace_bundle *r, int w, double u, double v) {
     r->direction[(a + 2) % 3] = rho * sine;
 }
 
-/* The cell, along axis a, at `place` [cells]. */
+/* The cell along axis a at `place` [cells]. */
 static size_t bundle_cell(const fibrad_furnace *f, int a, double place) {
     size_t k = place > 0 ? (size_t)(int64_t)place : 0;
     return k < f->config.cells[a] ? k : f->config.cells[a] - 1;
@@ -56,7 +56,7 @@ static size_t bundle_patch(const fibrad_furnace *f, int a, const furnace_bundle 
     return bundle_cell(f, b, r->at[b]) + f->config.cells[b] * bundle_cell(f, c, r->at[c]);
 }
 
-/* The start of bundle k of the plan, of source s. Returns the wall it leaves, -1 if none. */
+/* The start of bundle k of the plan, which source s emits. Returns the wall that the bundle leaves. -1: none. */
 static int bundle_start(const fibrad_furnace *f, uint64_t k, size_t s, furnace_bundle *r) {
     double u[5];
     for (int d = 0; d < 5; d++) u[d] = fibrad_quasirandom(5, d, f->origin + k, f->config.seed);
@@ -77,7 +77,7 @@ static int bundle_start(const fibrad_furnace *f, uint64_t k, size_t s, furnace_b
     return w;
 }
 
-/* Cells per metre along the direction, and the distance [m] to the next wall, which is returned. */
+/* Finds the cells per metre along the direction, and the distance [m] to the next wall. Returns this wall. */
 static int bundle_find_wall(const fibrad_furnace *f, const furnace_bundle *r, double speed[3], double *distance) {
     int wall = 0;
     *distance = PLANE_NONE;
@@ -93,7 +93,7 @@ static int bundle_find_wall(const fibrad_furnace *f, const furnace_bundle *r, do
     return wall;
 }
 
-/* Advances the bundle by `distance`, onto wall w unless that is -1. */
+/* Advances the bundle by `distance`. If w is not -1, the bundle is then on wall w. */
 static void bundle_advance(const fibrad_furnace *f, furnace_bundle *r, const double speed[3], double distance, int w) {
     for (int a = 0; a < 3; a++) {
         double place = r->at[a] + speed[a] * distance;
@@ -122,7 +122,7 @@ static void bundle_cross_faces(const fibrad_furnace *f, fibrad_furnace_tally *ta
         bool up = speed[a] > 0;
         double from = up ? fibrad_floor(r->at[a]) + 1 : -fibrad_floor(-r->at[a]) - 1; /* first plane ahead */
         double to = up ? fibrad_min(-fibrad_floor(-end[a]), f->config.cells[a]) - 1
-                       : fibrad_max(fibrad_floor(end[a]), 0) + 1; /* last one before the end */
+                       : fibrad_max(fibrad_floor(end[a]), 0) + 1; /* last plane before the end */
         int64_t crossings = (int64_t)(up ? to - from : from - to) + 1;
         if (crossings <= 0) continue;
 
@@ -153,7 +153,8 @@ static size_t bundle_wall_face(const fibrad_furnace *f, int w, const furnace_bun
            bundle_cell(f, c, r->at[c]) * f->face_stride[a][c];
 }
 
-/* Adds diffuse radiation that leaves wall w by its mean moments, not by those of the one direction sampled. */
+/* Adds diffuse radiation that leaves wall w by its mean moments. The moments of the one direction sampled would be
+ * noisier. */
 static void bundle_add_departure(const fibrad_furnace *f, fibrad_furnace_tally *tally, int w, const furnace_bundle *r) {
     bundle_add_moments(&tally->moment[w / 2][w % 2][bundle_wall_face(f, w, r)], r->weight, r->weight * (2.0 / 3),
                        r->weight / 2);
@@ -182,7 +183,7 @@ static void bundle_trace_attenuated(const fibrad_furnace *f, fibrad_furnace_tall
             r->weight *= 1 - f->config.wall_emissivity[wall];
             bundle_add_departure(f, tally, wall, r);
         }
-        /* Russian roulette: of weak bundles one in five continues, with five times the weight. */
+        /* Russian roulette: of weak bundles one in five continues with five times the weight. */
         if (fibrad_abs(r->weight) < least) {
             if (r->weight == 0 || fibrad_random_next(random) >= 0.2) return;
             r->weight *= 5;
@@ -197,7 +198,7 @@ static void bundle_trace_attenuated(const fibrad_furnace *f, fibrad_furnace_tall
 
 /* ---- equilibrium ----------------------------------------------------------------------------------------------- */
 
-/* Adds the lengths of the path in the cells it passes over `distance`. */
+/* Adds the lengths of the path in the cells that it passes over `distance`. */
 static void bundle_measure_path(const fibrad_furnace *f, fibrad_furnace_tally *tally, const furnace_bundle *r,
                                 const double speed[3], double distance) {
     double next[3], interval[3], weight = r->weight / fibrad_cell_diagonal(f), t = 0;
@@ -248,7 +249,7 @@ static void bundle_trace_equilibrium(const fibrad_furnace *f, fibrad_furnace_tal
     }
 }
 
-/* The last source whose first bundle is not after bundle k. */
+/* The last source whose first bundle is at most bundle k. */
 static size_t bundle_source(const fibrad_furnace *f, uint64_t k) {
     size_t low = 0, high = f->sources;
     while (high - low > 1) {

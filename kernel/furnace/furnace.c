@@ -5,7 +5,8 @@
 
 static bool furnace_in_range(double x, double low, double high) { return x >= low && x <= high; }
 
-/* Within these ranges products of a few of the numbers are finite, and extinction in a cell is above rounding. */
+/* Whether the numbers lie within ranges in which products of a few of them are finite and extinction in a cell is
+ * above rounding errors. */
 static bool furnace_config_valid(const fibrad_furnace_config *c) {
     if (c == NULL || !furnace_in_range(c->source, -1e30, 1e30)) return false;
     uint64_t cells = 1;
@@ -26,7 +27,7 @@ static bool furnace_config_valid(const fibrad_furnace_config *c) {
     return widest > 0;
 }
 
-/* The one layout of fibrad_furnace_size and _init. */
+/* The layout of fibrad_furnace_size and _init. */
 static fibrad_furnace *furnace_lay_out(fibrad_arena *arena, const fibrad_furnace_config *c) {
     fibrad_furnace *furnace = fibrad_arena_take(arena, 1, sizeof *furnace);
     fibrad_furnace count = {0}, *f = furnace != NULL ? furnace : &count;
@@ -74,7 +75,7 @@ size_t fibrad_furnace_size(const fibrad_furnace_config *config) {
     return fibrad_arena_total(&arena);
 }
 
-/* The E for which the walls emit least above and below it: their median, weighted by emissivity and area. */
+/* The E above and below which the walls emit least: their median, weighted by emissivity and area. */
 static double furnace_median_wall(const fibrad_furnace *f) {
     double best = 0, least = DBL_MAX;
     for (int m = 0; m < 6; m++) {
@@ -95,7 +96,7 @@ static bool furnace_walls_alike(const fibrad_furnace_config *c, int v, int w) {
     return c->wall_temperature[v] == c->wall_temperature[w] && c->wall_emissivity[v] == c->wall_emissivity[w];
 }
 
-/* Of the 48 mappings of axes onto axes, those that change neither the box nor its cells nor its walls. */
+/* Finds those of the 48 mappings of axes onto axes that change neither the box nor its cells nor its walls. */
 static void furnace_find_symmetries(fibrad_furnace *f) {
     const fibrad_furnace_config *c = &f->config;
     f->symmetries = 0;

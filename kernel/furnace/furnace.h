@@ -1,7 +1,8 @@
 /* furnace.h - what the files of the furnace share. SPDX-License-Identifier: MIT
  *
- * Cells are numbered x fastest; so are the faces of axis a, of which there is one layer more along a, and the patches
- * of each wall. Walls and their patches come in the order x = 0, x = X, y = 0, y = Y, z = 0, z = Z. */
+ * Cells are numbered with x fastest. The faces of axis a are numbered likewise; there is one layer more of them
+ * along a. The patches of each wall are numbered likewise too. The order of walls is x = 0, x = X, y = 0, y = Y, z =
+ * 0, z = Z. */
 #ifndef FIBRAD_FURNACE_FURNACE_H
 #define FIBRAD_FURNACE_FURNACE_H
 
@@ -34,39 +35,40 @@ struct fibrad_furnace {
     double reference;    /* uniform part of E, which needs no bundles [W/m2] */
     double bundle_power; /* W; 0: there is no plan */
     fibrad_furnace_physics physics;
-    uint64_t origin, planned; /* bundles before this plan, and in it */
+    uint64_t origin, planned; /* bundles before this plan, and bundles of this plan */
     double *traced;           /* cell: E carried by all plans up to this one [W/m2] */
     double *power;            /* source: what this plan carries [W] */
     uint64_t *first;          /* [sources + 1]: first bundle of each source */
     uint64_t restarts;
     uint64_t series; /* hash of the first plan since the restart, not 0 */
     uint64_t plan;   /* hash of all plans since the restart */
-    uint64_t mark;   /* of a tally that holds all bundles since the restart once */
+    uint64_t mark;   /* mark of a tally that contains each bundle since the restart once */
 };
 
-/* The mark of a range of bundles of a plan: the hash of its end less that of its beginning. Marks are added modulo
- * 2^64, in any order. Ranges that cover a plan exactly once then have the sum mark(plan, 0, planned), since the hashes
- * of all other ends cancel; a range that is missing or repeated leaves hashes over, whose sum is as good as random. */
+/* The mark of a range of bundles of a plan: the hash of its end minus that of its beginning. Marks are added modulo
+ * 2^64 in any order. If ranges cover a plan exactly once, the hashes of all inner ends cancel, and the sum is
+ * mark(plan, 0, planned). If a range is missing or repeated, hashes are left over. Their sum is as good as a random
+ * number. */
 static inline uint64_t fibrad_bundles_mark(uint64_t plan, uint64_t first, uint64_t count) {
     return fibrad_mix(plan + first + count) - fibrad_mix(plan + first);
 }
 
-/* Weights are whole multiples of bundle_power / FIBRAD_TALLY_UNIT: 2^32 crossings of one face fit into 63 bits. */
+/* Weights are whole multiples of bundle_power / FIBRAD_TALLY_UNIT. So 2^32 crossings of one face fit into 63 bits. */
 #define FIBRAD_TALLY_UNIT 0x1p30
 
-/* F0, F1 and F2 of a face are adjacent, since a bundle adds to all of them: one cache line instead of three. */
+/* F0, F1 and F2 of a face are adjacent because a bundle adds to all of them: one cache line instead of three. */
 typedef struct fibrad_moments {
     int64_t f[3];
 } fibrad_moments;
 
 struct fibrad_furnace_tally {
-    uint32_t cells[3];            /* of the furnace it is for */
-    uint64_t series, mark;        /* of the bundles in it; 0: none */
+    uint32_t cells[3];            /* of the furnace that the tally belongs to */
+    uint64_t series, mark;        /* of the bundles in the tally; 0: none */
     fibrad_moments *moment[3][2]; /* faces of axis, hemisphere */
-    int64_t *path;                /* cell: weight times length in diagonals of a cell */
-    int64_t *absorbed;            /* patch */
-    int64_t *counts;              /* all of the above, which are contiguous */
-    size_t length;                /* of counts */
+    int64_t *path;                /* by cell: weight times length, in diagonals of a cell */
+    int64_t *absorbed;            /* by patch */
+    int64_t *counts;              /* all arrays above, which are contiguous */
+    size_t length;                /* number of counts */
 };
 
 static inline bool fibrad_tally_fits(const fibrad_furnace *f, const fibrad_furnace_tally *t) {
@@ -97,8 +99,8 @@ static inline double fibrad_line_source(const fibrad_furnace *f, double e, doubl
     return ka * e + ks * (scatter == FIBRAD_SCATTER_EXACT ? e - f->config.source / (4 * ka) : six_flux / 6);
 }
 
-/* The weight of the flux that enters a cell in the rule for its extinction: half of the optical thickness by the
- * trapezoidal rule, limited so that the flux that leaves cannot be negative. */
+/* The weight, in the rule for extinction, of the flux that enters a cell: half of the optical thickness by the
+ * trapezoidal rule. It is limited so that the flux that leaves cannot be negative. */
 static inline double fibrad_line_entry(double thickness, double theta_in) {
     return fibrad_min(thickness / 2, theta_in);
 }

@@ -1,13 +1,14 @@
 /* lines.c - the heat-flux equations, solved along lines of cells. SPDX-License-Identifier: MIT
  *
- * Across a cell of thickness d the equation of one hemisphere, d(Theta q)/dx + C = J - beta q with C = chi q, is
- * discretised by the trapezoidal rule, so that q_out is affine in q_in. So is the flux at one end of a line in the flux
- * at the other, and with the two walls, where q leaving = eps E + (1 - eps) q arriving, there are two equations for the
- * two fluxes that start. E of all cells is then corrected at once: by the excess or deficit of heat of each cell,
- * divided by the derivative of that heat with respect to its own E, the fluxes that enter being held. */
+ * The equation of one hemisphere across a cell of thickness d is d(Theta q)/dx + C = J - beta q with C = chi q. The
+ * trapezoidal rule makes q_out an affine function of q_in. So the flux at one end of a line is an affine function of
+ * the flux at the other end. With the conditions at the two walls, q leaving = eps E + (1 - eps) q arriving, there
+ * are two equations for the two fluxes that start. Then E of all cells is corrected at once: by the excess or
+ * deficit of heat of each cell over the derivative of this heat with respect to the cell's own E. The fluxes that
+ * enter the cell are held constant for that. */
 #include "furnace/furnace.h"
 
-/* The coefficients of one solution, the same in all sweeps. */
+/* The coefficients of a solution. They are the same in all sweeps. */
 static void line_set_coefficients(fibrad_furnace *f, fibrad_furnace_scatter scatter) {
     const fibrad_furnace_config *c = &f->config;
     double beta = c->absorption + c->scattering;
@@ -23,7 +24,7 @@ static void line_set_coefficients(fibrad_furnace *f, fibrad_furnace_scatter scat
                 double in = theta[g ? low + stride : low], out = theta[g ? low : low + stride];
                 double entry = fibrad_line_entry(beta * d, in), side = f->at.transverse[a][g][k] * d / 2;
                 double sum = out + beta * d - entry + side;
-                if (sum < 0.01) sum = 0.01; /* less only by noise; NaN stays */
+                if (sum < 0.01) sum = 0.01; /* smaller values are noise; NaN stays NaN */
                 f->gain[a][g][k] = (in - entry - side) / sum;
                 f->feed[a][g][k] = d / sum;
                 f->response[k] += own / sum;
@@ -33,7 +34,7 @@ static void line_set_coefficients(fibrad_furnace *f, fibrad_furnace_scatter scat
     for (size_t k = 0; k < f->cells; k++) f->response[k] = 1 / f->response[k];
 }
 
-/* Fluxes of the line along axis a that begins at `cell` and `face`, from the sources J of the cells. */
+/* The fluxes of the line along axis a that begins at `cell` and `face`. source: J of the cells. */
 static void line_solve(fibrad_furnace *f, int a, size_t cell, size_t face, const double *source) {
     size_t n = f->config.cells[a], stride = f->cell_stride[a];
     const double *gain_up = f->gain[a][0] + cell, *feed_up = f->feed[a][0] + cell;
@@ -45,7 +46,8 @@ static void line_solve(fibrad_furnace *f, int a, size_t cell, size_t face, const
     for (size_t i = 0, k = 0; i < n; i++, k += stride) {
         up_rest = gain_up[k] * up_rest + feed_up[k] * source[k];
         up_gain *= gain_up[k];
-        down_rest += down_gain * feed_down[k] * source[k]; /* the last cell first: sum of feeds times gains below */
+        down_rest +=
+            down_gain * feed_down[k] * source[k]; /* from the last cell: sum of the feeds times the gains below */
         down_gain *= gain_down[k];
     }
     double eps0 = f->config.wall_emissivity[2 * a], eps1 = f->config.wall_emissivity[2 * a + 1];
@@ -97,7 +99,8 @@ int fibrad_furnace_balance(fibrad_furnace *furnace) {
     return FIBRAD_OK;
 }
 
-/* All lines of all axes, for E as it is; the source J of the cells is in `divergence` until the sums replace it. */
+/* Solves all lines of all axes for the present E. `divergence` has the source J of the cells before, and the sums
+ * after. */
 static void line_sweep(fibrad_furnace *f, fibrad_furnace_scatter scatter) {
     double *source = f->at.divergence;
     for (size_t k = 0; k < f->cells; k++) source[k] = fibrad_line_source(f, f->at.e[k], f->at.six_flux[k], scatter);
@@ -111,14 +114,14 @@ static void line_sweep(fibrad_furnace *f, fibrad_furnace_scatter scatter) {
     line_set_sums(f);
 }
 
-/* Corrects E of all cells. Returns whether all changes are finite; *largest of them [W/m2]. */
+/* Corrects E of all cells. Returns whether all changes are finite. *largest: out: the largest change [W/m2]. */
 static bool line_correct(fibrad_furnace *f, double *largest) {
     bool finite = true;
     *largest = 0;
     for (size_t k = 0; k < f->cells; k++) {
         double change = (f->config.source - f->at.divergence[k]) * f->response[k];
         f->at.e[k] += change;
-        finite = finite && fibrad_finite(change); /* the maximum drops NaN */
+        finite = finite && fibrad_finite(change); /* the maximum ignores NaN */
         *largest = fibrad_max(*largest, fibrad_abs(change));
     }
     return finite;

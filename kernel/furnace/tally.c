@@ -3,7 +3,7 @@
 
 #include "base/arena.h"
 
-/* The one layout of fibrad_furnace_tally_size and _init. */
+/* The layout of fibrad_furnace_tally_size and _init. */
 static fibrad_furnace_tally *tally_lay_out(fibrad_arena *arena, const fibrad_furnace *f) {
     fibrad_furnace_tally *tally = fibrad_arena_take(arena, 1, sizeof *tally);
     fibrad_furnace_tally count = {0}, *t = tally != NULL ? tally : &count;
@@ -47,20 +47,21 @@ int fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tall
     if (to->series != 0 && to->series != from->series) return FIBRAD_E_STATE;
     to->series = from->series;
     to->mark += from->mark;
-    for (size_t k = 0; k < to->length; k++) /* unsigned: sums of too many tallies are refused later, not undefined */
+    for (size_t k = 0; k < to->length;
+         k++) /* unsigned, so that an overflow is defined; sums of too many tallies are refused later */
         to->counts[k] = (int64_t)((uint64_t)to->counts[k] + (uint64_t)from->counts[k]);
     return FIBRAD_OK;
 }
 
-/* Does the tally hold every bundle of all plans since the restart once, and were they of this physics? */
+/* Whether the tally contains each bundle of all plans since the restart once, and the bundles have this physics. */
 static bool tally_is_complete(const fibrad_furnace *f, const fibrad_furnace_tally *t, fibrad_furnace_physics physics) {
     return f->bundle_power != 0 && f->physics == physics && fibrad_tally_fits(f, t) && t->mark == f->mark;
 }
 
-/* The image under a symmetry of index i of n along axis a, of cells or of faces. */
+/* The image of index i of n along axis a under a symmetry, for cells or faces. */
 static size_t tally_image(const fibrad_symmetry *s, int a, size_t i, size_t n) { return s->flip[a] ? n - 1 - i : i; }
 
-/* Mean of moment m over the images of face i[] of axis a, hemisphere g, as power per area [W/m2]. */
+/* The mean of moment m over the images of face i[] of axis a, hemisphere g, as power per area [W/m2]. */
 static double tally_mean_moment(const fibrad_furnace *f, const fibrad_furnace_tally *t, int a, int g, int m,
                                 const size_t i[3]) {
     int64_t sum = 0;
@@ -96,8 +97,8 @@ static void tally_set_theta(fibrad_furnace *f, const fibrad_furnace_tally *t, in
     }
 }
 
-/* The transverse term of axis a, hemisphere g: the residual of the equation of the hemisphere in each cell when the
- * fluxes are those of the bundles and E is what they carried. With it the heat-flux equations return these fluxes. */
+/* The transverse term of axis a, hemisphere g. It is the residual of the hemisphere's equation in each cell for the
+ * fluxes of the bundles and the E that they carried. With this term the heat-flux equations return these fluxes. */
 static void tally_set_transverse(fibrad_furnace *f, int a, int g, fibrad_furnace_scatter scatter) {
     size_t stride = f->face_stride[a][a], block = stride * f->config.cells[a];
     const double *theta = f->at.theta[a][g], *flux = f->at.flux[a][g];
@@ -135,7 +136,7 @@ int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally 
     return FIBRAD_OK;
 }
 
-/* E of all cells, from the incident radiation in the tally and the source. */
+/* Sets E of all cells from the incident radiation in the tally and the source. */
 static void tally_set_e(fibrad_furnace *f, const fibrad_furnace_tally *tally, double unit) {
     const uint32_t *n = f->config.cells;
     double own = f->config.source / (4 * f->config.absorption);

@@ -1,17 +1,17 @@
-/* mesh_faces_lanes.c - finds the triangles that may come before a window, boxes and triangles in lanes. Compiled once
- * per instruction set. SPDX-License-Identifier: MIT */
+/* mesh_faces_lanes.c - finds the triangles that may come before a window, with boxes and triangles in lanes.
+ * Compiled once per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
 #include "lines/mesh_faces_lanes.h"
 
-#define IMAGES_MOST 4096 /* of a stretch, as long as nobody asks for less */
+#define IMAGES_MOST 4096 /* images of a stretch, unless the caller wants fewer */
 
-/* How far from the axis of the window its lines are down to a depth. */
+/* The greatest distance between the axis of the window and its lines down to a depth. */
 FIBRAD_INLINE vd reach_at(const fibrad_face_search *search, vd depth) {
     return 1 + search->slack + search->wide * vd_max(vd_set1(0), depth);
 }
 
-/* Goes into a node, to the boxes that may come before the window, the nearest first. */
+/* Enters a node. Visits the boxes that may come before the window, the nearest first. */
 static void enter_before(const fibrad_mesh *mesh, fibrad_face_search *search, uint32_t number) {
     const fibrad_mesh_node *node = &mesh->node[number];
     _Alignas(64) float key[FIBRAD_MESH_WIDE];
@@ -39,7 +39,7 @@ static void enter_before(const fibrad_mesh *mesh, fibrad_face_search *search, ui
 /* Triangles in lanes, in the frame of the window. */
 typedef struct face_lanes {
     vd c[3][3], low, high;
-    vd n[3]; /* across them, as long as twice their areas */
+    vd n[3]; /* normal of each triangle, with a length of twice its area */
 } face_lanes;
 
 FIBRAD_INLINE face_lanes load_faces(const fibrad_workspace *work, const fibrad_face_search *search, uint32_t first) {
@@ -66,8 +66,8 @@ FIBRAD_INLINE face_lanes load_faces(const fibrad_workspace *work, const fibrad_f
     return of;
 }
 
-/* How deep the middle of the window meets the plane of a triangle, as far as it goes. Windows that look a little away
- * from a plane are treated as those that look as little towards it. */
+/* The depth at which the axis of the window meets the plane of a triangle, limited to the depths of the triangle. A
+ * window that looks away from the plane by a small angle counts as one that looks towards it by the same angle. */
 FIBRAD_INLINE vd depth_of_plane(const face_lanes *of) {
     const vd size = vd_abs(of->n[2]), zero = vd_set1(0);
     const vd height = vd_abs(of->n[0] * of->c[0][0] + of->n[1] * of->c[0][1] + of->n[2] * of->c[0][2]);
@@ -80,7 +80,7 @@ FIBRAD_INLINE void list_faces(fibrad_workspace *work, fibrad_face_search *search
                               uint32_t bits, uint32_t first) {
     fibrad_faces *faces = &work->met->faces;
     const uint32_t at = faces->count;
-    const vm front = vd_lt(of->n[2], vd_set1(0)); /* is seen: to be turned round */
+    const vm front = vd_lt(of->n[2], vd_set1(0)); /* the front is seen, so the corners are turned round */
     const vd inverse = 1 / of->n[2], slope[2] = {0 - of->n[0] * inverse, 0 - of->n[1] * inverse};
     vd most = vd_set1(0);
 #pragma GCC unroll 3
@@ -92,7 +92,7 @@ FIBRAD_INLINE void list_faces(fibrad_workspace *work, fibrad_face_search *search
             vd_compress(faces->corner[k][axis] + at, bits, turned);
         }
     }
-    const vm known = vd_lt(1e-9 * most, vd_abs(of->n[2])); /* else they are seen edge-on, or nearly so */
+    const vm known = vd_lt(1e-9 * most, vd_abs(of->n[2])); /* otherwise the triangle is seen edge-on or nearly so */
 #pragma GCC unroll 3
     for (int k = 0; k < 3; k++) {
         const vd rounding = search->slack * (vd_abs(edge[k][0]) + vd_abs(edge[k][1]));
@@ -116,8 +116,8 @@ FIBRAD_INLINE void list_faces(fibrad_workspace *work, fibrad_face_search *search
     if (search->nearest < search->near) search->wide = 0;
 }
 
-/* Lists those of up to VD_LANES triangles that may come before the window: that it does not pass outside one of their
- * edges. */
+/* Lists those of up to VD_LANES triangles that may come before the window: the window does not lie outside one of
+ * their edges. */
 static void add_faces(fibrad_workspace *work, fibrad_face_search *search, uint32_t first, uint32_t count) {
     const face_lanes of = load_faces(work, search, first);
     const vd reach = reach_at(search, vd_min(of.high, vd_set1(search->deepest)));
@@ -137,7 +137,7 @@ static void add_faces(fibrad_workspace *work, fibrad_face_search *search, uint32
     if (bits != 0) list_faces(work, search, &of, edge, bits, first);
 }
 
-/* Turns to an image: the tree from its root. */
+/* Goes to an image and begins at the root of the tree. */
 static void enter_image(const fibrad_workspace *work, fibrad_face_search *search) {
     const fibrad_mesh *mesh = &work->scene->mesh;
     double from[3];
@@ -153,7 +153,7 @@ static void enter_image(const fibrad_workspace *work, fibrad_face_search *search
     if (mesh->nodes > 0) enter_before(mesh, search, 0);
 }
 
-/* Turns to the next image of the stretch; false: there is none. */
+/* Goes to the next image of the stretch. False: no image is left. */
 static bool next_image(const fibrad_workspace *work, fibrad_face_search *search) {
     for (int axis = 0; axis < 3; axis++) {
         if (search->at[axis]++ < search->images.last[axis]) {
@@ -165,7 +165,7 @@ static bool next_image(const fibrad_workspace *work, fibrad_face_search *search)
     return false;
 }
 
-/* How much of a length across the window lies along an axis at most. */
+/* The greatest component along an axis of a unit vector across the window. */
 static double share_along(const fibrad_face_search *search, int axis) {
     const double w = search->frame[6 + axis];
     return fibrad_sqrt(fibrad_max(0, 1 - w * w));
@@ -180,7 +180,7 @@ static double count_images(const fibrad_mesh_images *images) {
     return count;
 }
 
-/* Turns to the next stretch. False: there is none. */
+/* Goes to the next stretch. False: no stretch is left. */
 static bool enter_stretch(const fibrad_workspace *work, fibrad_face_search *search) {
     const double from = search->to, to = fibrad_min(from + search->stretch, search->deepest);
     const double aside = 1 + search->wide * (fibrad_max(0, to) + 2);
@@ -221,8 +221,8 @@ void LANED(fibrad_faces_begin)(const fibrad_workspace *work, const double frame[
         const double period = mesh->period[axis] * work->inverse, w = fibrad_abs(frame[6 + axis]);
         const double ahead =
             frame[6 + axis] > 0 ? mesh->high[axis] - work->centre[axis] : work->centre[axis] - mesh->low[axis];
-        const double least = w - wide * share_along(search, axis); /* of a line, per depth */
-        if (!(period > 0)) {                                       /* the window leaves the box about all triangles */
+        const double least = w - wide * share_along(search, axis); /* component of a line along the axis, per depth */
+        if (!(period > 0)) { /* the window ends where it leaves the box about all triangles */
             if (least > 0) deepest = fibrad_min(deepest, 1.0001 * (fibrad_max(0, ahead) * work->inverse + 1) / least);
             continue;
         }

@@ -5,26 +5,26 @@
 #include "base/lanes/laned.h"
 #include "work/work.h"
 
-/* A search for them, image by image and stretch by stretch. Lengths are in radii of sphere i but for `centre`. */
+/* A search for triangles, stretch by stretch and image by image. Lengths are in radii of sphere i, except `centre`. */
 typedef struct fibrad_face_search {
     const double *frame;
-    double deepest; /* depth beyond which nothing matters; may be lessened on the way */
-    double wide;    /* how far lines lead aside at most, per depth; may be lessened, too */
-    double near;    /* if some are nearer than this, lines do not lead aside */
-    double slack;   /* lengths that may be rounding */
+    double deepest; /* greatest depth that matters; the caller may lessen it during the search */
+    double wide;    /* greatest distance aside of lines, per depth; it may become less during the search */
+    double near;    /* if a triangle is nearer than this, lines do not spread */
+    double slack;   /* lengths below this may be rounding errors */
     bool cut;       /* whether triangles may cut sphere i */
-    double nearest; /* about the least depth of those found, ... */
-    double shallow; /* ... and none of them is less deep */
-    double most;    /* if a stretch has more images than this, it and those behind it are left out, ... */
-    double rest;    /* ... and here they begin */
-    double stretch; /* depths that are looked at together; the one in hand: */
+    double nearest; /* about the least depth of the triangles found */
+    double shallow; /* no triangle found is less deep */
+    double most;    /* most images of a stretch; a stretch with more ends the search */
+    double rest;    /* the depth at which the search has ended */
+    double stretch; /* length of a stretch of depths */
     double from, to;
-    bool inside;               /* whether some of it is left */
-    fibrad_mesh_images images; /* that it meets */
-    int64_t at[3];             /* the image in hand */
-    double centre[3];          /* [L] of sphere i, from there */
-    double box[3][3];          /* the frame, for boxes in their units; row by row, ... */
-    double shift[3];           /* ... and what is added */
+    bool inside;               /* whether a part of the present stretch is left */
+    fibrad_mesh_images images; /* images that meet the present stretch */
+    int64_t at[3];             /* the present image */
+    double centre[3];          /* [L] centre of sphere i in the frame of this image */
+    double box[3][3];          /* the frame in units of boxes, row by row */
+    double shift[3];           /* what is added to coordinates in this frame */
     fibrad_mesh_walk walk;
 } fibrad_face_search;
 
@@ -32,7 +32,7 @@ typedef struct fibrad_face_search {
 void LANED(fibrad_faces_begin)(const fibrad_workspace *work, const double frame[9], double deepest, double wide,
                                double near, fibrad_face_search *search);
 
-/* Lists the next triangles, roughly from front to back, in work->met->faces. False: there are no more. */
+/* Lists the next triangles in work->met->faces, roughly from front to back. False: no triangle is left. */
 bool LANED(fibrad_faces_next)(fibrad_workspace *work, fibrad_face_search *search);
 
 #endif

@@ -19,7 +19,8 @@ static point_line line_through(const fibrad_points *points, uint32_t p, uint32_t
     return line;
 }
 
-/* In which of four by four cells of a square about the window a line is, to and fro. */
+/* The cell of a line among four by four cells of a square about the window. The cells are numbered row by row, each
+ * row in the opposite sense of the last one. */
 static uint8_t cell_of_line(const point_line *line, double depth, double over) {
     uint32_t cell[2];
     for (int axis = 0; axis < 2; axis++) {
@@ -29,7 +30,7 @@ static uint8_t cell_of_line(const point_line *line, double depth, double over) {
     return (uint8_t)(4 * cell[1] + (cell[1] % 2 == 0 ? cell[0] : 3 - cell[0]));
 }
 
-/* Bounds of each eight lines. */
+/* Bounds of each block of eight lines. */
 static void bound_lines(fibrad_lines *lines) {
     for (int axis = 0; axis < 2; axis++)
         for (uint32_t b = 0; b < lines->count / FIBRAD_LINE_BLOCK; b++) {
@@ -131,8 +132,8 @@ uint32_t LANED(fibrad_lines_deepest)(const fibrad_lines *lines) {
 }
 
 /* ---- and triangles ----------------------------------------------------------------------------------------------- */
-/* Notes a side in those of VD_LANES lines from p on that meet it by `key` less deep than what they met before; of
- * equals, the triangle of the lower number. */
+/* Notes a side in those of the VD_LANES lines from p on that meet it at a smaller `key` than what they have met
+ * before. Of equal keys the triangle with the lower number counts. */
 FIBRAD_INLINE void note_side(fibrad_workspace *work, uint32_t p, vm meet, vd side, vd key) {
     fibrad_lines *lines = &work->met->lines;
     const vd depth = vd_load(lines->depth + p), before = vd_load(lines->side + p);
@@ -150,7 +151,8 @@ FIBRAD_INLINE void note_side(fibrad_workspace *work, uint32_t p, vm meet, vd sid
     }
 }
 
-/* Eight parallel lines and face number k. Of the depth, a grain more at backs, so that fronts come first at edges. */
+/* Eight parallel lines in comparison with face number k. For backs the key is the depth plus one grain, so that
+ * fronts come first at edges. */
 FIBRAD_INLINE void meet_parallel(fibrad_workspace *work, uint32_t k, uint32_t first, double grain) {
     const fibrad_lines *lines = &work->met->lines;
     const fibrad_faces *faces = &work->met->faces;
@@ -169,7 +171,8 @@ FIBRAD_INLINE void meet_parallel(fibrad_workspace *work, uint32_t k, uint32_t fi
     }
 }
 
-/* The same for lines that spread, which may see the other side than the axis of the window does. */
+/* The same for lines that spread. Such lines may see the other side of the triangle than the axis of the window
+ * does. */
 FIBRAD_INLINE void meet_spread(fibrad_workspace *work, uint32_t k, uint32_t first, double grain) {
     const fibrad_lines *lines = &work->met->lines;
     const fibrad_faces *faces = &work->met->faces;
@@ -187,7 +190,8 @@ FIBRAD_INLINE void meet_spread(fibrad_workspace *work, uint32_t k, uint32_t firs
         }
         const vd a = x[1] * y[2] - y[1] * x[2], b = x[2] * y[0] - y[2] * x[0], c = x[0] * y[1] - y[0] * x[1];
         const vm none = vd_lt(vd_min(a, vd_min(b, c)), zero), some = vd_lt(zero, vd_max(a, vd_max(b, c)));
-        const vm inside = (some & vm_not(none)) | (none & vm_not(some)); /* all >= 0, or all <= 0, but not all 0 */
+        const vm inside =
+            (some & vm_not(none)) | (none & vm_not(some)); /* all are >= 0 or all are <= 0, but not all are 0 */
         if (vm_bits(inside) == 0) continue;
         const vd sum = a + b + c,
                  z = (a * faces->corner[0][2][k] + b * faces->corner[1][2][k] + c * faces->corner[2][2][k]) / sum;
@@ -212,8 +216,8 @@ static void meet_pairs(fibrad_workspace *work, double grain) {
     lines->pairs = 0;
 }
 
-/* Those eights of parallel lines from b on that may meet face number k: that it neither lies behind nor has all of them
- * on the outer side of one of its edges. */
+/* Which blocks of parallel lines from b on may meet face number k. Left out are blocks that end before the face, and
+ * blocks whose lines all lie outside one of its edges. */
 FIBRAD_INLINE vm parallel_before(const fibrad_lines *lines, const fibrad_faces *faces, uint32_t k, uint32_t b) {
     const vd low[2] = {vd_load(lines->low[0] + b), vd_load(lines->low[1] + b)};
     const vd high[2] = {vd_load(lines->high[0] + b), vd_load(lines->high[1] + b)};
@@ -227,7 +231,7 @@ FIBRAD_INLINE vm parallel_before(const fibrad_lines *lines, const fibrad_faces *
            vd_le(vd_set1(faces->low[k]), vd_load(lines->last + b));
 }
 
-/* The same of lines that spread, by the box about the face. */
+/* The same for lines that spread, by the box about the face. */
 static vm spread_before(const fibrad_lines *lines, const fibrad_faces *faces, uint32_t k, uint32_t b, double slack) {
     const double from = fibrad_max(-1, faces->low[k]) - lines->at, to = fibrad_max(-1, faces->high[k]) - lines->at;
     vm apart = vd_lt(vd_load(lines->last + b), vd_set1(faces->low[k]));
@@ -244,15 +248,15 @@ static vm spread_before(const fibrad_lines *lines, const fibrad_faces *faces, ui
     return vm_not(apart);
 }
 
-/* Where the surface of sphere i lies beyond face number k, as seen from its centre: there lines end at once, before all
- * that others meet, nearest first. */
+/* Where face number k cuts the surface of sphere i off from its centre, lines end at once. They end before all that
+ * other lines meet, the nearest face first. */
 static void cut_surface(fibrad_workspace *work, uint32_t k) {
     const fibrad_lines *lines = &work->met->lines;
     const fibrad_faces *faces = &work->met->faces;
     const vd zero = vd_set1(0), one = vd_set1(1);
     const vd side = vd_set1(faces->side[k]), other = vd_set1(4. * faces->triangle[k] + 1 - faces->side[k]);
     double x[3][3], n[3][3],
-        sum_n[3]; /* corners; of the planes through the centre and each edge; of that of the face */
+        sum_n[3]; /* corners; normals of the planes through the centre and each edge; normal of the face */
     for (int c = 0; c < 3; c++)
         for (int axis = 0; axis < 3; axis++) x[c][axis] = faces->corner[c][axis][k];
     for (int c = 0; c < 3; c++)
@@ -261,16 +265,16 @@ static void cut_surface(fibrad_workspace *work, uint32_t k) {
             n[c][axis] = a[(axis + 1) % 3] * b[(axis + 2) % 3] - a[(axis + 2) % 3] * b[(axis + 1) % 3];
         }
     for (int axis = 0; axis < 3; axis++) sum_n[axis] = n[0][axis] + n[1][axis] + n[2][axis];
-    const double volume = x[0][0] * n[0][0] + x[0][1] * n[0][1] + x[0][2] * n[0][2]; /* of six tetrahedra */
+    const double volume = x[0][0] * n[0][0] + x[0][1] * n[0][1] + x[0][2] * n[0][2]; /* volume of six tetrahedra */
     const double square = sum_n[0] * sum_n[0] + sum_n[1] * sum_n[1] + sum_n[2] * sum_n[2];
-    if (volume * volume > square * (1 + 1e-9)) return; /* its plane passes the sphere */
+    if (volume * volume > square * (1 + 1e-9)) return; /* the plane of the face does not meet the sphere */
     for (uint32_t p = 0; p < lines->count; p += VD_LANES) {
         const vd u = vd_load(lines->place[0] + p), v = vd_load(lines->place[1] + p), s = vd_load(lines->exit + p);
         vd e[3];
         for (int c = 0; c < 3; c++) e[c] = n[c][0] * u + n[c][1] * v + n[c][2] * s;
         const vd least = vd_min(e[0], vd_min(e[1], e[2])), most = vd_max(e[0], vd_max(e[1], e[2]));
         const vm inside = (vd_lt(zero, most) & vd_le(zero, least)) | (vd_lt(least, zero) & vd_le(most, zero));
-        const vd sum = e[0] + e[1] + e[2], share = volume / sum; /* of the way from the centre to the surface */
+        const vd sum = e[0] + e[1] + e[2], share = volume / sum; /* share of the way from the centre to the surface */
         note_side(work, p, inside & vd_lt(zero, share) & vd_lt(share, one), vd_select(vd_lt(zero, sum), side, other),
                   share - 2);
     }

@@ -1,9 +1,9 @@
 /* average.c - the mean of a matrix and its transpose, some rows at a time. SPDX-License-Identifier: MIT
  *
- * A row of the result is the merged row of the matrix and of its transpose, both ascending: memory is only read in
- * order, which a search for each entry's partner is not. The rows of the transpose wait at the end of the part's
- * stretch; the result grows from its beginning and never reaches them, since what is still to come has at least as many
- * entries as what is left of the transpose. */
+ * A row of the result is merged from the rows of the matrix and of its transpose. Both have ascending columns. So
+ * memory is read in order, which a search for the partner of each entry would not do. The rows of the transpose are
+ * at the end of the range of a part. The result grows from the beginning of the range. It never reaches them, since
+ * the entries still to come are at least as many as the entries left in the transpose. */
 #include "matrix/matrix.h"
 
 uint64_t fibrad_matrix_count_part(fibrad_matrix *m, const fibrad_matrix_part *part) {
@@ -19,7 +19,7 @@ uint64_t fibrad_matrix_count_part(fibrad_matrix *m, const fibrad_matrix_part *pa
     return count;
 }
 
-/* Writes the rows of the transpose; matrix->place[j], the length of row j, becomes where it ends. */
+/* Writes the rows of the transpose. Before: matrix->place[j] is the length of row j. After: its end. */
 static void transpose_part(fibrad_matrix *m, const fibrad_matrix_part *part) {
     const fibrad_sparse *to = &m->result;
     uint64_t place = part->transposed;
@@ -55,7 +55,7 @@ void fibrad_matrix_average_part(fibrad_matrix *m, fibrad_matrix_part *part) {
             const uint32_t theirs = there < there_end ? to->col[there] : UINT32_MAX, j = mine < theirs ? mine : theirs;
             const double own = mine == j ? f[here++] : 0, back = theirs == j ? to->f[there++] : 0;
             const double own_part = fibrad_matrix_own(m, i, j), back_part = fibrad_matrix_own(m, j, i);
-            /* areas relative to the larger one; the sum is the same from both sides */
+            /* areas relative to the larger one, so that the sum is the same from both sides */
             double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
             a_i *= a_i, a_j *= a_j;
             to->col[at] = j;

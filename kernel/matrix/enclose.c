@@ -1,18 +1,19 @@
-/* enclose.c - rows of bodies: made reciprocal among themselves and closed together with those of spheres.
+/* enclose.c - rows of walls: made reciprocal among themselves, and closed together with the rows of spheres.
  * SPDX-License-Identifier: MIT
  *
- * What bodies and spheres exchange is known from the rows of spheres, what bodies exchange from paths, which know their
- * total besides. First the shares among bodies are brought to a total between both, by their errors; then all rows are
- * brought to 1 together, X_pq u_p u_q, bodies being rows as spheres are. docs/methods_heat.md section 4. */
+ * The rows of spheres tell what walls and spheres exchange. Paths tell what walls exchange with each other, and also
+ * the total of each wall. First the shares among walls are brought to a total between both, weighted by their
+ * errors. Then all rows are brought to 1 together, X_pq u_p u_q, where walls are rows as spheres are.
+ * docs/methods_heat.md section 4. */
 #include "base/constants.h"
 #include "matrix/matrix.h"
 
 #define CLOSED_TO     1e-14
-#define CLOSED_ENOUGH 1e-9 /* else sums contradict reciprocity: no factors u bring them to 1 */
-#define OWN_STEPS     60   /* of Newton's method; some five do, but where sums contradict each other */
+#define CLOSED_ENOUGH 1e-9 /* otherwise the sums contradict reciprocity, and no factors u bring them to 1 */
+#define OWN_STEPS     60   /* most steps of Newton's method; about five suffice unless sums contradict each other */
 #define JOINT_STEPS   200
 
-/* The factor from one body to another. */
+/* The factor from one wall to another. */
 static double *between(const fibrad_matrix *m, uint32_t b, uint32_t c) { return &m->between[b * m->bodies + c]; }
 
 /* A_i e_i over A_b e_b. */
@@ -21,8 +22,8 @@ static double over_body(const fibrad_matrix *m, uint32_t i, uint32_t b) {
     return ratio * ratio;
 }
 
-/* The mean of both ways between bodies, weighted by the paths per area. The square of a row's error is that of its
- * entries by share; those to spheres come from elsewhere. */
+/* The mean of both directions between walls, weighted by the paths per area. The square of a row's error is divided
+ * among its entries by their share. Entries to spheres come from elsewhere. */
 static void join_ways(fibrad_matrix *m) {
     double square[FIBRAD_BODIES_MAX];
     for (uint32_t b = 0; b < m->bodies; b++)
@@ -44,15 +45,15 @@ static void join_ways(fibrad_matrix *m) {
         if (m->length[b] > 0) m->body_error[b] = fibrad_sqrt(square[b]);
 }
 
-/* What a body sends to other bodies and the surroundings. */
+/* What a wall sends to other walls and the surroundings. */
 static double rest_of(const fibrad_matrix *m, uint32_t b) {
     double rest = m->body_escaped[b];
     for (uint32_t c = 0; c < m->bodies; c++) rest += *between(m, b, c);
     return rest;
 }
 
-/* What a body should send to others than spheres: between what the paths say and what the rows of spheres leave over,
- * whose variance is about that of their entries by share. */
+/* What a wall should send to all but spheres. This is a mean of what the paths tell and of what the rows of spheres
+ * leave. The variance of the latter is about that of their entries, by share. */
 static double rest_wanted(fibrad_matrix *m, uint32_t b) {
     const double rest = rest_of(m, b), error = m->body_error[b];
     double spheres = 0, variance = 0;
@@ -67,7 +68,7 @@ static double rest_wanted(fibrad_matrix *m, uint32_t b) {
     return fibrad_max(wanted, 0.5 * rest);
 }
 
-/* Solves equations of n unknowns, a [n][n], in place; rows that depend on those before are left out. */
+/* Solves n linear equations in place. a: [n][n]. Rows that depend linearly on those before are left out. */
 static void solve_linear(uint32_t n, double *a, double *x) {
     for (uint32_t k = 0; k < n; k++) {
         for (uint32_t i = k + 1; i < n && a[k * n + k] > 1e-12; i++) {
@@ -82,9 +83,9 @@ static void solve_linear(uint32_t n, double *a, double *x) {
     }
 }
 
-/* Finds v with v_b (fixed_b + sum over c of D_bc v_c) = wanted_b, by Newton's method for the logarithms of v, of which
- * that is the minimum of a convex function. Plain iterations take for ever where two bodies see little but each other.
- * Returns by how much the worst was off in the last step. */
+/* Finds v with v_b (fixed_b + sum over c of D_bc v_c) = wanted_b. In the logarithms of v this is the minimum of a
+ * convex function. Newton's method finds it. Simple iterations would never end if two walls see little but each
+ * other. Returns the largest error of the last step. */
 static double balance_bodies(const fibrad_matrix *m, const double fixed[], const double wanted[], double v[]) {
     double worst = 0;
     for (int step = 0; step < OWN_STEPS; step++) {
@@ -118,7 +119,7 @@ static void scale_bodies(fibrad_matrix *m, const double v[]) {
     }
 }
 
-/* What bodies send to spheres that are scaled by u, and to the surroundings. */
+/* What walls send to spheres that are scaled by u, and to the surroundings. */
 static void sum_outside(const fibrad_matrix *m, const double *u, double outside[]) {
     for (uint32_t b = 0; b < m->bodies; b++) outside[b] = m->body_escaped[b];
     for (uint32_t i = 0; i < m->result.n; i++)
@@ -126,7 +127,7 @@ static void sum_outside(const fibrad_matrix *m, const double *u, double outside[
             if (m->length[b] > 0) outside[b] += m->body[(size_t)i * m->bodies + b] * over_body(m, i, b) * u[i];
 }
 
-/* One step of the spheres towards sums of 1, bodies being scaled by v; returns by how much the worst is off. */
+/* One step of the spheres towards sums of 1. v: scales of the walls. Returns the largest error. */
 static double closing_step(fibrad_matrix *m, const double v[]) {
     for (uint32_t i = 0; i < m->result.n; i++) {
         m->scratch[i] = m->escaped[i] + m->beyond[i];
@@ -135,7 +136,7 @@ static double closing_step(fibrad_matrix *m, const double v[]) {
     return fibrad_matrix_step(m, true);
 }
 
-/* Brings all sums to 1; returns by how much the worst was off in the end. Above CLOSED_ENOUGH nothing has changed. */
+/* Brings all sums to 1. Returns the largest error in the end. If it is above CLOSED_ENOUGH, nothing has changed. */
 static double close_all(fibrad_matrix *m) {
     const fibrad_sparse *rows = &m->result;
     double *u = m->scratch + rows->n, *next = u + rows->n, v[FIBRAD_BODIES_MAX] = {0}, one[FIBRAD_BODIES_MAX] = {0},
@@ -173,7 +174,7 @@ void fibrad_matrix_take_bodies(fibrad_matrix *m, const fibrad_scene *scene, cons
     }
 }
 
-/* Leaves the shares among bodies, and to the surroundings, as the paths have them. */
+/* Keeps the shares among walls and to the surroundings as the paths tell them. */
 static void leave_bodies_open(fibrad_matrix *m) {
     for (uint32_t b = 0; b < m->bodies; b++) {
         const double *before = m->before + b * (m->bodies + 1);
@@ -200,7 +201,7 @@ void fibrad_matrix_enclose(fibrad_matrix *m) {
     scale_bodies(m, v);
     m->body_closure = close_all(m);
     if (!(m->body_closure <= CLOSED_ENOUGH)) leave_bodies_open(m);
-    for (uint32_t b = 0; b < m->bodies; b++) { /* by how much that has changed a row is an error, too */
+    for (uint32_t b = 0; b < m->bodies; b++) { /* the change of a row by this is an error, too */
         double square = 0, difference = before[b * wide + m->bodies] - m->body_escaped[b];
         square += difference * difference;
         for (uint32_t c = 0; c < m->bodies; c++) {

@@ -1,7 +1,7 @@
-/* matrix.c - puts rows together into one matrix, reciprocal and closed. SPDX-License-Identifier: MIT
+/* matrix.c - puts rows together into one matrix, which is reciprocal and closed. SPDX-License-Identifier: MIT
  *
- * The rows stay in their collections; the matrix knows where each is. Tasks average stretches of rows, which are then
- * moved together, and the sums are set right. docs/methods.md section 5. */
+ * The rows stay in their collections. The matrix knows where each row is. Tasks average ranges of rows. Then these
+ * are moved together, and the row sums are corrected. docs/methods.md section 5. */
 #include "base/arena.h"
 #include "matrix/matrix.h"
 #include "scene/scene.h"
@@ -9,11 +9,11 @@
 #define TASKS_MAX          1024u
 #define RECIPROCITY_PIECES 256u
 
-/* The estimates of S_ij from both its rows differ by about twice the error of their mean. The factors take in the worst
- * rows of hundred: docs/accuracy.md. */
+/* The two estimates of S_ij, from rows i and j, differ by about twice the error of their mean. The factors cover all
+ * but one row of a hundred: docs/accuracy.md. */
 #define VIEW_ERROR     1.6
 #define EXCHANGE_ERROR 1.2
-#define LEAST_ERROR    1e-12 /* of a row, for what closing changes over it: rounding is no change */
+#define LEAST_ERROR    1e-12 /* least change of a row that is compared with its error; smaller changes are rounding */
 
 static uint32_t tasks_of(const fibrad_matrix_rule *rule) {
     if (rule == NULL || rule->raw || rule->tasks == 0) return 1;
@@ -30,7 +30,7 @@ static bool matrix_rule_valid(const fibrad_scene *scene, const fibrad_matrix_rul
             return false;
         bool valid = row->escaped >= 0 && fibrad_finite(row->escaped) && row->error >= 0 && fibrad_finite(row->error);
         for (uint32_t c = 0; c < scene->facts.bodies; c++)
-            valid = valid && fibrad_finite(row->body[c]); /* what a deep bed hides may err to below 0 */
+            valid = valid && fibrad_finite(row->body[c]); /* values of what a deep bed hides may be slightly negative */
         if (!valid) return false;
     }
     for (uint32_t i = 0; i < scene->facts.spheres && rule->emissivity != NULL; i++)
@@ -46,8 +46,8 @@ static bool entries_emit(const fibrad_record *row, const double *emissivity) {
     return emit;
 }
 
-/* All entries of the collections; UINT64_MAX if their rows are of other bodies than the scene's, or have entries that
- * the emissivities (NULL: none) rule out. */
+/* The number of all entries of the collections. UINT64_MAX: their rows belong to walls other than those of the
+ * scene, or they have entries that the emissivities exclude. emissivity NULL: none. */
 static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                            const double *emissivity) {
     uint64_t entries = 0;
@@ -63,7 +63,7 @@ static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, u
     return entries;
 }
 
-/* Takes the arrays from the arena; the object itself is to be copied to the address returned. */
+/* Takes the arrays from the arena. The caller copies the object itself to the address returned. */
 static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     fibrad_matrix *place = fibrad_arena_take(arena, 1, sizeof *place);
     const size_t n = m->result.n;
@@ -88,7 +88,7 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
     return place;
 }
 
-/* The numbers that follow from the arguments; false if these are not valid. */
+/* Sets the numbers that follow from the arguments. False: an argument is not valid. */
 static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                              const fibrad_matrix_rule *rule) {
     if ((rows == NULL && count > 0) || !matrix_rule_valid(scene, rule)) return false;
@@ -106,7 +106,7 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     return entries < UINT64_MAX / 4 && m->result.capacity <= SIZE_MAX;
 }
 
-/* The bytes that a matrix of these numbers takes. */
+/* The number of bytes of a matrix with these numbers. */
 static size_t matrix_bytes(fibrad_matrix fields) {
     fibrad_arena arena = {0};
     matrix_layout(&arena, &fields);
@@ -120,19 +120,19 @@ size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, ui
     return valid ? matrix_bytes(fields) : 0;
 }
 
-/* All changes of the collections so far. */
+/* The sum of the numbers of changes of the collections. */
 static uint64_t serial_of(const fibrad_rows *rows, uint32_t count) {
     uint64_t serial = 0;
     for (uint32_t c = 0; c < count; c++) serial += rows[c].serial;
     return serial;
 }
 
-/* Whether a matrix is there, and its rows are as they were. */
+/* Whether the matrix exists and its rows have not changed. */
 static bool matrix_open(const fibrad_matrix *m) {
     return m->open && !m->closed && serial_of(m->given, m->given_count) == m->given_serial;
 }
 
-/* Finds the row of each sphere. FIBRAD_E_STATE: one is missing, there twice, or of another scene. */
+/* Finds the row of each sphere. FIBRAD_E_STATE: a row is missing, exists twice, or belongs to another scene. */
 static int find_rows(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                      uint32_t *sphere) {
     const uint32_t n = m->result.n;
@@ -153,7 +153,7 @@ static int find_rows(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_r
     return FIBRAD_OK;
 }
 
-/* What a row has besides its entries; zeros for one that is missing. */
+/* Copies what a row has besides its entries. If the row is missing: zeros. */
 static void copy_rest(fibrad_matrix *m, uint32_t i) {
     const fibrad_record *row = m->row[i];
     m->escaped[i] = row != NULL ? row->escaped : 0;
@@ -185,8 +185,8 @@ static void measure_part(void *matrix, uint32_t p) {
     part->last = part->transposed + fibrad_matrix_count_part(m, part);
 }
 
-/* Divides the rows into parts of about as many entries. Each has a stretch of the result that holds its rows of the
- * matrix and of its transpose. */
+/* Divides the rows into parts with about as many entries each. A part has a range of the result for its rows of the
+ * matrix and of the transpose. */
 static void divide(fibrad_matrix *m, uint64_t entries) {
     const uint32_t n = m->result.n;
     uint64_t own = 0, at = 0;
@@ -198,7 +198,7 @@ static void divide(fibrad_matrix *m, uint64_t entries) {
         m->part[p].end = i;
     }
     fibrad_matrix_share(m, m->tasks, measure_part, m);
-    for (uint32_t p = 0; p < m->tasks; p++) { /* each begins where the one before ends */
+    for (uint32_t p = 0; p < m->tasks; p++) { /* each range begins where the last one ends */
         fibrad_matrix_part *part = &m->part[p];
         part->first = at, part->transposed += at;
         part->last = at += part->last;
@@ -248,7 +248,7 @@ static void average_rest(void *matrix, uint32_t p) {
     if (!m->part[p].done) fibrad_matrix_average_part(m, &m->part[p]);
 }
 
-/* Parts from one on that are moved at once. */
+/* Parts that are moved at the same time. */
 struct moved_parts {
     const fibrad_sparse *rows;
     const fibrad_matrix_part *part;
@@ -264,7 +264,7 @@ static void move_part(void *moved, uint32_t p) {
     for (uint32_t i = part->begin; i < part->end; i++) rows->start[i] -= part->first - part->to;
 }
 
-/* Moves the averaged parts together, as many at once as come to lie before where the first of them is. */
+/* Moves the averaged parts together. Parts are moved at the same time if they end before the first of them begins. */
 static void gather_parts(fibrad_matrix *m) {
     fibrad_sparse *rows = &m->result;
     uint64_t to = 0;
@@ -280,8 +280,8 @@ static void gather_parts(fibrad_matrix *m) {
     rows->start[rows->n] = to;
 }
 
-/* Shares `rest` out among what row i meets besides spheres, in the proportions of its own, or of all spheres together
- * where it met none of that. */
+/* Divides `rest` among all that row i meets besides spheres, in proportion to what the row has of each. If it has
+ * nothing of that, in the proportions of all spheres together. */
 static void share_out(fibrad_matrix *m, uint32_t i, double rest) {
     const double *all = m->all;
     double *body = m->body + (size_t)i * m->bodies, sum = 0, total = 0;
@@ -301,8 +301,8 @@ static void close_part(void *matrix, uint32_t p) {
         if (m->r[i] > 0) share_out(m, i, fibrad_max(0, 1 - fibrad_sparse_sum(&m->result, i)));
 }
 
-/* Brings what rows meet besides spheres up to what the row sums leave of 1. What a row is short of 1 is as good a
- * measure of it, from the opposite directions, as the raw row's. Rows of spheres that reflect all stay empty. */
+/* Increases what rows meet besides spheres to 1 minus the row sum. This difference comes from the opposite
+ * directions and is as good a measure as the raw row's. Rows of spheres that reflect all stay empty. */
 static void close_rows(fibrad_matrix *m) {
     double *all = m->all, largest = 0;
     const uint32_t n = m->result.n, bodies = m->bodies;
@@ -315,7 +315,7 @@ static void close_rows(fibrad_matrix *m) {
     fibrad_matrix_share(m, m->tasks, close_part, m);
 }
 
-/* How much of a row that does not go to spheres is not what the raw row says. */
+/* How much of a row, besides its factors to spheres, differs from the raw row. */
 static double change_of(const fibrad_matrix *m, uint32_t i) {
     const fibrad_record *raw = m->row[i];
     const double *body = m->body + (size_t)i * m->bodies, *before = fibrad_record_body(raw);
@@ -325,12 +325,11 @@ static double change_of(const fibrad_matrix *m, uint32_t i) {
     return fibrad_sqrt(square);
 }
 
-/* The error of each row, from how far its mean is off the raw row, whose columns are among those of the mean; at least
- * that of the raw row as far as the mean is the row's own, since the errors of both rows may be equal by symmetry. What
- * a row says little about, as a large sphere about a small one, counts by what the mean takes from it over what it
- * takes from the other. How walls share what they get is that of the raw row: the more they get, the more of its error
- * counts.
- */
+/* Estimates the error of each row from the distance between its mean and the raw row. The columns of the raw row are
+ * among those of the mean. The error is at least that of the raw row, as far as the mean comes from the row itself:
+ * by symmetry the errors of two rows may be equal. If a row says little about another sphere, as that of a large
+ * sphere about a small one, its difference counts by the ratio of both weights in the mean. For the shares of walls
+ * the error is that of the raw row, in proportion to what the walls get. */
 static void estimate_errors(void *matrix, uint32_t part) {
     fibrad_matrix *m = matrix;
     m->part[part].worst = 0;
@@ -357,7 +356,7 @@ static void estimate_errors(void *matrix, uint32_t part) {
     }
 }
 
-/* The row that closing has changed most, over its error. */
+/* Finds the row that closing has changed most in comparison with its error. */
 static void find_changed(fibrad_matrix *m) {
     for (uint32_t p = 0; p < m->tasks; p++)
         if (m->part[p].worst > m->changed) m->changed = m->part[p].worst, m->changed_row = m->part[p].worst_row;
@@ -405,13 +404,13 @@ int fibrad_matrix_read(const fibrad_matrix *m, fibrad_factors *factors) {
     return FIBRAD_OK;
 }
 
-/* By how much A_i F_ij and A_j F_ji differ, over the larger area; the same from both sides. */
+/* The difference between A_i F_ij and A_j F_ji over the larger area. It is the same from both sides. */
 static double difference_of(const double *r, uint32_t i, uint32_t j, double f, double back) {
     double larger = fibrad_max(r[i], r[j]), a_i = r[i] / larger, a_j = r[j] / larger;
     return fibrad_abs(a_i * a_i * f - a_j * a_j * back);
 }
 
-/* Of all rows, in pieces. */
+/* Largest difference over all rows, in pieces. */
 struct reciprocity {
     const fibrad_matrix *matrix;
     double worst[RECIPROCITY_PIECES];
@@ -426,7 +425,7 @@ static void compare_rows(void *job, uint32_t piece) {
     for (uint32_t i = (uint32_t)(n * piece / RECIPROCITY_PIECES); i < end; i++)
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) {
             const uint32_t j = rows->col[k];
-            if (j < i && !m->raw) continue; /* its partner, which there is, compares them */
+            if (j < i && !m->raw) continue; /* the partner of the entry exists and makes the comparison */
             const uint64_t partner = fibrad_sparse_find(rows, j, i);
             if (j < i && partner != UINT64_MAX) continue;
             worst =

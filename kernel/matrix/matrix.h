@@ -8,11 +8,11 @@
 /* Rows begin to end - 1 of the result. One task averages them into a range of col and f of its own. */
 typedef struct fibrad_matrix_part {
     uint32_t begin, end;
-    uint64_t first, transposed, last; /* the range, and where the rows of the transpose begin in it */
-    uint64_t filled;                  /* where the averaged rows end */
-    uint64_t to;                      /* where the rows go when all parts are moved together */
-    double worst;                     /* largest value of one of its rows, as the step in hand needs it, ... */
-    uint32_t worst_row;               /* ... and this row */
+    uint64_t first, transposed, last; /* the range, and the place in it where the rows of the transpose begin */
+    uint64_t filled;                  /* end of the averaged rows */
+    uint64_t to;                      /* place of the rows after all parts have been moved together */
+    double worst;                     /* largest value of a row, for the present step */
+    uint32_t worst_row;               /* the row with this value */
     unsigned char done;
 } fibrad_matrix_part;
 

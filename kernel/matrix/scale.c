@@ -1,5 +1,4 @@
-/* scale.c - row sums of sparse reciprocal rows brought to what they should be, and small entries dropped.
- * SPDX-License-Identifier: MIT */
+/* scale.c - corrects the row sums of sparse reciprocal rows, and drops small entries. SPDX-License-Identifier: MIT */
 #include "matrix/matrix.h"
 
 uint64_t fibrad_sparse_find(const fibrad_sparse *rows, uint32_t i, uint32_t j) {
@@ -37,13 +36,13 @@ void fibrad_matrix_limit(fibrad_matrix *m) {
 
 #define GONE -1.0
 
-/* Takes out the pairs of which both factors are below the threshold. The lower row decides, for both. */
+/* Removes the pairs whose factors are both below the threshold. The lower row decides for both. */
 static void take_out(fibrad_sparse *rows, const double *r, double threshold) {
     for (uint32_t i = 0; i < rows->n; i++)
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) {
             uint32_t j = rows->col[k];
             uint64_t partner = fibrad_sparse_find(rows, j, i);
-            if (j == i || rows->f[k] < 0 || (j < i && partner != UINT64_MAX)) continue; /* not its turn */
+            if (j == i || rows->f[k] < 0 || (j < i && partner != UINT64_MAX)) continue; /* the other row decides */
             double f = rows->f[k], back = r[i] / r[j] * (r[i] / r[j]) * f;              /* F_ji */
             if (f >= threshold || back >= threshold) continue;
             rows->f[k] = GONE;
@@ -63,7 +62,7 @@ static void take_out(fibrad_sparse *rows, const double *r, double threshold) {
     rows->start[rows->n] = to;
 }
 
-/* Rows that are scaled. */
+/* The rows that are scaled, and how. */
 struct scaling {
     const fibrad_matrix *matrix;
     bool closing;
@@ -93,8 +92,8 @@ double fibrad_matrix_step(fibrad_matrix *m, bool closing) {
     return worst;
 }
 
-/* Finds u by u_i <- sqrt(u_i target_i/sum_i), which stays near 1 and more than halves the error each time where such
- * factors exist. Ends when all sums are right to `tolerance`. */
+/* Finds u by u_i <- sqrt(u_i target_i/sum_i). The values stay near 1. Each step more than halves the error if such
+ * factors exist. Ends when the errors of all sums are at most `tolerance`. */
 static void find_scaling(fibrad_matrix *m, bool closing, double tolerance) {
     const uint32_t n = m->result.n;
     double *u = m->scratch + n, *next = u + n;
@@ -108,7 +107,7 @@ static void scale_rows(fibrad_sparse *rows, const double *u) {
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= u[i] * u[rows->col[k]];
 }
 
-/* Brings rows above their targets (NULL: 1) down to them and leaves reciprocity as it is. */
+/* Reduces rows with sums above their targets to these targets. Reciprocity stays. target NULL: 1. */
 static void bring_down(fibrad_sparse *rows, const double *target, double *u) {
     for (uint32_t i = 0; i < rows->n; i++) {
         const double sum = fibrad_sparse_sum(rows, i), most = target != NULL ? target[i] : 1;
@@ -118,7 +117,7 @@ static void bring_down(fibrad_sparse *rows, const double *target, double *u) {
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) rows->f[k] *= fibrad_min(u[i], u[rows->col[k]]);
 }
 
-/* What raw rows leave for others than spheres. */
+/* Finds what raw rows leave for all but spheres. */
 static void find_rest(void *matrix, uint32_t p) {
     const fibrad_matrix *m = matrix;
     for (uint32_t i = m->part[p].begin; i < m->part[p].end; i++) {
@@ -137,7 +136,7 @@ void fibrad_matrix_balance(fibrad_matrix *m) {
     bring_down(&m->result, NULL, u);
 }
 
-/* Puts into F_ii what a row is short of its target, by more than rounding; rows move up to make room. */
+/* Adds to F_ii what a row lacks of its target, if it is more than a rounding error. Rows move up to make room. */
 static void fill_up(fibrad_sparse *rows, const double *target) {
     double rounding = 4e-15;
     uint64_t wanted = 0;
@@ -171,6 +170,6 @@ void fibrad_matrix_drop(fibrad_matrix *m) {
     take_out(rows, m->r, m->drop);
     find_scaling(m, false, 0);
     scale_rows(rows, u);
-    bring_down(rows, target, u); /* where no scaling exists, rows are above or below their targets */
+    bring_down(rows, target, u); /* where no scaling exists, rows may be above or below their targets */
     fill_up(rows, target);
 }

@@ -1,8 +1,9 @@
 /* cast_lanes.c - a row of view factors by rays. Compiled once per instruction set. SPDX-License-Identifier: MIT
  *
- * Rays are made in batches, lanes over rays, from points of the unit 4-cube: two coordinates for the origin on the
- * sphere, two for the direction in the frame of its normal. Each is then traced on its own, lanes over the near spheres
- * of work.h, shell by shell: a cull in floats, then the distances in doubles of the few that pass. */
+ * Rays are made in batches, lanes over rays, from points of the unit 4-cube. Two coordinates give the origin on the
+ * sphere. Two give the direction in the frame of the normal there. Then rays are traced one by one, lanes over the
+ * near spheres of work.h, shell by shell. A cull in floats leaves few spheres. Their distances are computed in
+ * doubles. */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/laned.h"
 #include "base/lanes/turn.h"
@@ -11,11 +12,11 @@
 #include "scene/walls.h"
 #include "work/neighbours_lanes.h"
 
-#define CAST_BATCH  (8 * VD_LANES) /* rays: 64 in AVX-512; fewer take less stack where there are no lanes */
-#define CAST_STRIDE ((fibrad_stride){3.0, 1.4}) /* shorter than that of windows: a ray ends sooner */
+#define CAST_BATCH  (8 * VD_LANES)              /* rays: 64 in AVX-512; fewer in narrower sets, to save stack */
+#define CAST_STRIDE ((fibrad_stride){3.0, 1.4}) /* less than for windows, since a ray ends sooner */
 
-/* Points of the 4-cube, then rays: the direction w, two unit vectors u and v across it such that the origin is
- * cosine w - sine v, and the angle to the normal. */
+/* First points of the 4-cube, then rays. A ray has a direction w, two unit vectors u and v across it, and the angle
+ * between w and the normal. The origin is cosine w - sine v. */
 struct cast_batch {
     _Alignas(64) double at[4][CAST_BATCH];
     _Alignas(64) double u[3][CAST_BATCH];
@@ -39,8 +40,9 @@ static void fill_batch(struct cast_batch *rays, const fibrad_cast_rule *rule, fi
     }
 }
 
-/* Origin n: z uniform over [-1, 1], azimuth uniform. Direction: squared sine of the angle to n uniform over [0, 1],
- * which is the cosine law, and the azimuth uniform about n, in the frame of the parallel a, the meridian b and n. */
+/* The origin n: z uniform over [-1, 1], azimuth uniform. The direction: by the cosine law the squared sine of the
+ * angle to n is uniform over [0, 1]. The azimuth about n is uniform. Its frame is the parallel a, the meridian b and
+ * n. */
 static void aim_batch(struct cast_batch *rays) {
     const vd one = vd_set1(1);
     for (uint32_t b = 0; b < CAST_BATCH; b += VD_LANES) {
@@ -64,20 +66,20 @@ static void aim_batch(struct cast_batch *rays) {
     }
 }
 
-/* One ray: at (0, -sine) of the window of direction w, it starts at depth `cosine`. */
+/* A ray. In the window of direction w its place is (0, -sine). It starts at depth `cosine`. */
 struct cast_ray {
     double frame[9], sine, cosine;
 };
 
 /* The first sphere so far. */
 struct cast_hit {
-    double distance;       /* infinity: none */
-    double depth, u, v, r; /* its disc */
+    double distance;       /* infinity: there is none */
+    double depth, u, v, r; /* of its disc */
     uint32_t sphere;
 };
 
-/* Appends the discs of one shell that lie before the window and may be met by the ray from o along w: with
- * q = c^2 + 1 - r^2, those with (w.c - w.o)^2 > q - 2 o.c. */
+/* Appends the discs of one shell that lie before the window and that the ray from o along w may meet. With q = c^2 +
+ * 1 - r^2 these are the discs with (w.c - w.o)^2 > q - 2 o.c. */
 static void cull_for_ray(fibrad_workspace *work, const struct cast_ray *ray, uint32_t shell) {
     const fibrad_near *near = &work->near;
     uint32_t *to = work->disc.near;
@@ -99,8 +101,8 @@ static void cull_for_ray(fibrad_workspace *work, const struct cast_ray *ray, uin
     LANED(fibrad_near_discs)(work, ray->frame, (uint32_t)(to - work->disc.near));
 }
 
-/* Of equal distances, as inside two spheres at once, the lesser depth counts, then the lower id; of images of one
- * sphere, where they are. */
+/* Whether hit a comes before hit b. Two distances are equal if the ray begins inside both spheres, for example. Then
+ * the smaller depth counts, then the lower id. For images of one sphere their places decide. */
 static bool cast_hit_before(const fibrad_scene *scene, const struct cast_hit *a, const struct cast_hit *b) {
     if (a->distance != b->distance) return a->distance < b->distance;
     if (a->depth != b->depth) return a->depth < b->depth;
@@ -122,10 +124,11 @@ static void intersect_discs(const fibrad_workspace *work, const struct cast_ray 
     }
 }
 
-/* Traces one ray. Spheres not listed so far are deeper than `known`. For spheres that do not overlap, that means
- * behind all that are less deep. If k is deeper than j and yet met first, the ray's whole stretch in j lies in the cap
- * of j that is inside k, whose height is at most the overlap h r_j; such a chord is inclined to the line of centres so
- * much that k is deeper by no more than (r_j + r_k) sqrt(2 h). False: too many discs for the memory. */
+/* Traces one ray. Spheres that have not been listed are deeper than `known`. If spheres do not overlap, this means
+ * that they come after all spheres that are less deep. If sphere k is deeper than sphere j but is met first, the
+ * part of the ray in j lies in a cap of j inside k. The height of this cap is at most the overlap h r_j. Such a
+ * chord is so inclined to the line of centres that k is deeper by at most (r_j + r_k) sqrt(2 h). False: there are
+ * too many discs for the memory. */
 static bool follow_cast_ray(fibrad_workspace *work, const struct cast_ray *ray, struct cast_hit *first) {
     const fibrad_scene_facts *facts = &work->scene->facts;
     double lead = fibrad_sqrt(2 * facts->overlap_max + 1e-12), largest = facts->radius_max * work->inverse;
@@ -149,7 +152,8 @@ static bool follow_cast_ray(fibrad_workspace *work, const struct cast_ray *ray, 
     return true;
 }
 
-/* Angle whose tangent is y/x, both >= 0: an eighth of it has a tangent below 0.2, for which a short series does. */
+/* The angle whose tangent is y/x, both >= 0. The tangent of an eighth of the angle is below 0.2, where a short
+ * series suffices. */
 static double angle_of_tangent(double y, double x) {
     double t = y / (x + fibrad_sqrt(x * x + y * y));
     t = t / (1 + fibrad_sqrt(1 + t * t));
@@ -159,7 +163,7 @@ static double angle_of_tangent(double y, double x) {
     return 8 * t * sum;
 }
 
-/* Whether a ray meets its first sphere behind a wall, which it meets before then. */
+/* Whether the first sphere that a ray meets lies behind a wall that the ray meets before. */
 static bool is_behind(const fibrad_scene *scene, const struct cast_ray *ray, const double from[3],
                       const struct cast_hit *hit) {
     double n[3], at[3];
@@ -173,19 +177,20 @@ static bool is_behind(const fibrad_scene *scene, const struct cast_ray *ray, con
     return fibrad_walls_behind(scene, hit->sphere, n, at) != FIBRAD_NONE;
 }
 
-/* Counts a ray that meets no sphere: by where it leaves. from: in radii from the centre. */
+/* Counts a ray that meets no sphere, by the place where it leaves. from: origin in radii from the centre. */
 static void count_exit(fibrad_workspace *work, const struct cast_ray *ray, const double from[3]) {
     work->wall[fibrad_work_met(work, from, ray->frame + 6)]++;
 }
 
-/* Counts a ray that meets a triangle before a sphere at some distance [radii]; false: it does not. */
+/* Counts a ray that meets a triangle before a sphere at some distance [radii]. False: the ray meets no triangle
+ * before. */
 static bool count_side(fibrad_workspace *work, const struct cast_ray *ray, const double from[3], double sphere,
                        uint32_t k) {
     const fibrad_scene *scene = work->scene;
     double origin[3], length;
     if (!(sphere + 1 >= work->clear_mesh)) return false;
     fibrad_mesh_hit met = {FIBRAD_NO_SIDE, 0};
-    if (work->clear_mesh < 1) /* its surface may lie beyond a triangle */
+    if (work->clear_mesh < 1) /* the origin may lie beyond a triangle */
         met = fibrad_mesh_first(&scene->mesh, work->centre, from, work->unit, FIBRAD_NO_SIDE);
     if (met.side != FIBRAD_NO_SIDE) met.distance = 0;
     for (int axis = 0; axis < 3; axis++) origin[axis] = work->centre[axis] + work->unit * from[axis];
@@ -271,8 +276,8 @@ int LANED(fibrad_cast_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     fibrad_row_bodies(scene, work->wall, row);
     row->directions = row->fallbacks = 0;
     row->symmetric = 0;
-    /* row->error stays: each half is a sample of half as many rays, its error sqrt 2 times as large, and they differ by
-     * twice that of their mean; 0.65 to 1.9 times that was measured with quasi-random rays */
+    /* row->error is right as it is: each half has half as many rays, so its error is sqrt 2 times as large, and the
+     * halves differ by twice the error of their mean. For quasirandom rays 0.65 to 1.9 times this was measured. */
     if (means != NULL) write_cast_means(work, row, means);
     return fibrad_row_checked(scene, row);
 }

@@ -5,7 +5,7 @@
 #include "base/dispatch.h"
 #include "row/row.h"
 
-/* A completed rule, and where the means go; NULL: nowhere. */
+/* A completed rule, and the place for the means. NULL: no means are wanted. */
 typedef struct fibrad_cast_task {
     fibrad_cast_rule rule;
     const fibrad_cast_means *means;

@@ -1,6 +1,7 @@
-/* trace_lanes.c - a ray to the first sphere. Compiled once per instruction set. SPDX-License-Identifier: MIT
+/* trace_lanes.c - finds the first sphere that a ray meets. Compiled once per instruction set.
+ * SPDX-License-Identifier: MIT
  *
- * The list of near spheres is culled in floats, in lanes; distances to the few spheres that pass are computed in
+ * Near spheres are compared with the ray in floats first, in lanes. For the few that pass, distances are computed in
  * doubles. */
 #include FIBRAD_LANES_HEADER
 #include "ray/tracer.h"
@@ -13,19 +14,20 @@ struct trace_ray {
     const fibrad_scene *scene;
     const double *o, *w;
     double base[3], unit, inverse; /* [L] */
-    uint32_t place;                /* of the sphere it leaves; FIBRAD_NONE: it starts at a point */
+    uint32_t place;                /* of the sphere that the ray leaves; FIBRAD_NONE: the ray starts at a point */
 };
 
 /* The first sphere so far. */
 struct trace_first {
-    double distance, depth; /* distance infinity: none */
-    double c[3], across[3]; /* its centre, and that across the ray */
+    double distance, depth; /* infinity: there is none */
+    double c[3], across[3]; /* its centre, and the component of the centre across the ray */
     double root;            /* half the chord */
     uint32_t sphere;
 };
 
-/* Whether the sphere at place j, centre c, is met before the first so far. Of equal distances, as inside two spheres at
- * once, the lesser depth counts, then the lower id; of images of one sphere, where they are. */
+/* Whether the ray meets the sphere at place j with centre c before the first sphere so far. Two distances are equal
+ * if the ray begins inside both spheres, for example. Then the smaller depth counts, then the lower id. For images
+ * of one sphere their places decide. */
 static bool trace_before(const fibrad_scene *scene, double distance, double depth, uint32_t j, const double c[3],
                          const struct trace_first *first) {
     if (distance != first->distance) return distance < first->distance;
@@ -36,7 +38,7 @@ static bool trace_before(const fibrad_scene *scene, double distance, double dept
     return c[1] != first->c[1] ? c[1] < first->c[1] : c[2] < first->c[2];
 }
 
-/* Compares sphere j, at c, with the first so far. */
+/* Compares sphere j with centre c with the first sphere so far. */
 static void intersect_sphere(const struct trace_ray *ray, uint32_t j, const double c[3], struct trace_first *first) {
     const double *w = ray->w;
     double r = ray->scene->r[j] * ray->inverse, e[3] = {c[0] - ray->o[0], c[1] - ray->o[1], c[2] - ray->o[2]};
@@ -50,7 +52,7 @@ static void intersect_sphere(const struct trace_ray *ray, uint32_t j, const doub
     *first = (struct trace_first){distance, depth, {c[0], c[1], c[2]}, {across[0], across[1], across[2]}, root, j};
 }
 
-/* Compares one group of the list. cull: the ray in floats, as below. */
+/* Compares one group of the list. cull: the ray as floats. */
 static void intersect_group(const struct trace_ray *ray, const fibrad_nearby *list, uint32_t group, const vf cull[8],
                             struct trace_first *first) {
     const fibrad_scene *scene = ray->scene;
@@ -72,8 +74,9 @@ static void intersect_group(const struct trace_ray *ray, const fibrad_nearby *li
     }
 }
 
-/* Where the ray enters and leaves, from length `from` on, the box of the grid (0: that of all centres), widened by the
- * largest radius; along periodic axes it ends after FIBRAD_PERIODS. */
+/* The lengths at which the ray enters and leaves a box, from length `from` on. grid: the box of the grid; otherwise
+ * the box of all centres. The box is enlarged by the largest radius. Along periodic axes the ray ends after
+ * FIBRAD_PERIODS periods. */
 static void cross_box(const struct trace_ray *ray, bool grid, double *enter, double *leave) {
     const fibrad_scene *scene = ray->scene;
     double wide = scene->facts.radius_max * (1 + 1e-9);
@@ -97,7 +100,7 @@ static void cross_box(const struct trace_ray *ray, bool grid, double *enter, dou
     }
 }
 
-/* Compares all spheres that the ray meets between the lengths `from` and `to`; it may meet others. */
+/* Compares all spheres that the ray meets between the lengths `from` and `to`, and perhaps others. */
 static void intersect_stretch(const struct trace_ray *ray, double from, double to, struct trace_first *first) {
     const fibrad_scene *scene = ray->scene;
     for (uint32_t l = 0; l < scene->levels; l++) {
@@ -122,8 +125,8 @@ static void intersect_stretch(const struct trace_ray *ray, double from, double t
     }
 }
 
-/* Continues through the grid from length `from`, spacing by spacing; outside the box of the grid, where only stray
- * spheres can be, in strides that grow. */
+/* Continues through the grid from length `from` in steps of the mean spacing. Outside the box of the grid there are
+ * only stray spheres, and the steps become longer. */
 static void march_ray(const struct trace_ray *ray, double from, struct trace_first *first) {
     double step = ray->scene->spacing * ray->inverse, enter = fibrad_min(from, 0), leave, begin = enter, end;
     cross_box(ray, true, &enter, &leave);
@@ -137,7 +140,7 @@ static void march_ray(const struct trace_ray *ray, double from, struct trace_fir
             bound = fibrad_min(leave, end);
         stride = from >= enter && from < leave ? step : 1.5 * stride;
         to = fibrad_min(to, bound);
-        if (!(to > from)) to = end; /* rounding */
+        if (!(to > from)) to = end; /* by rounding */
         intersect_stretch(ray, from, to, first);
         from = to;
     }
@@ -153,12 +156,12 @@ static void write_hit(const struct trace_ray *ray, const struct trace_first *fir
         hit->centre[axis] = first->c[axis] * ray->unit;
         hit->normal[axis] = -(first->across[axis] + first->root * ray->w[axis]) * scale;
     }
-    double at[3]; /* what lies behind a wall is not met, but from within */
+    double at[3]; /* spheres behind a wall are met only from within */
     if (hit->distance > 0 && fibrad_walls_behind(ray->scene, hit->sphere, hit->normal, at) != FIBRAD_NONE)
         hit->sphere = FIBRAD_NONE;
 }
 
-/* The triangle that a ray from a point meets before its sphere. */
+/* The triangle that a ray from a point meets before its first sphere. */
 static void meet_mesh_before(const fibrad_scene *scene, const double origin[3], const double w[3], uint32_t except,
                              fibrad_hit *hit) {
     const double length = hit->sphere != FIBRAD_NONE ? hit->distance : __builtin_inf();
@@ -167,7 +170,7 @@ static void meet_mesh_before(const fibrad_scene *scene, const double origin[3], 
     hit->side = met.side, hit->distance = met.distance, hit->sphere = FIBRAD_NONE;
 }
 
-/* The same for a ray from a sphere, which ends at once where the surface lies beyond a triangle. */
+/* The same for a ray from a sphere. The ray ends at once if its origin lies beyond a triangle. */
 static void meet_mesh_from(const fibrad_scene *scene, uint32_t place, const double n[3], const double w[3],
                            fibrad_hit *hit) {
     const double r = scene->r[place], centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
@@ -201,7 +204,7 @@ void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3
     for (uint32_t group = 0; group < list->groups && !(first.distance < list->clear[group]); group++)
         intersect_group(&ray, list, group, cull, &first);
     double known = list->clear[list->groups];
-    /* spheres that overlap this one count even behind the start, if their centres are ahead */
+    /* spheres that overlap this one count also behind the origin, if their centres are ahead */
     double from = known >= 0 ? known : -(n[0] * w[0] + n[1] * w[1] + n[2] * w[2]);
     if (!(first.distance < known)) march_ray(&ray, from, &first);
     write_hit(&ray, &first, hit);
@@ -218,7 +221,7 @@ void LANED(fibrad_trace_once)(const fibrad_scene *scene, uint32_t place, const d
     if (scene->clear != NULL) meet_mesh_from(scene, place, n, w, hit);
 }
 
-/* The largest power of two not above x, which is normal. */
+/* The largest power of two not above x. x is a normal number. */
 static double power_of_two_below(double x) {
     uint64_t bits;
     fibrad_copy(&bits, &x, sizeof bits);
@@ -230,7 +233,7 @@ static double power_of_two_below(double x) {
 /* The sphere that a ray from a point meets. */
 static void trace_spheres(const fibrad_scene *scene, const double point[3], const double w[3], fibrad_hit *hit) {
     static const double origin[3] = {0, 0, 0};
-    /* a power of two, which rounds nothing: the same bits whatever other spheres there are */
+    /* a power of two causes no rounding, so that other spheres change no bit */
     const double unit = power_of_two_below(scene->spacing);
     struct trace_ray ray = {scene, origin, w, {point[0], point[1], point[2]}, unit, 1 / unit, FIBRAD_NONE};
     struct trace_first first = {.distance = __builtin_inf()};

@@ -4,7 +4,7 @@
 #include "base/sort.h"
 #include "scene/grid_walk.h"
 
-/* A list looks REACH mean spacings beyond the surface of its sphere, or as far as its room goes. */
+/* A list has the spheres up to REACH mean spacings beyond the surface of its sphere, or as many as it has room for. */
 #define REACH      1.8
 #define CANDIDATES 512
 #define LISTS_MIN  16u
@@ -23,7 +23,7 @@ static void tracer_layout(fibrad_arena *arena, uint32_t lists, fibrad_tracer *tr
     tracer->candidate = fibrad_arena_take(arena, CANDIDATES, sizeof *tracer->candidate);
 }
 
-/* Bytes of a tracer with so many lists, a power of two. */
+/* Bytes of a tracer with a number of lists, which is a power of two. */
 static size_t tracer_bytes(uint32_t lists) {
     fibrad_arena arena = {0};
     fibrad_tracer fields = {0};
@@ -55,7 +55,7 @@ fibrad_tracer *fibrad_tracer_of(fibrad_workspace *space, const fibrad_scene *sce
     return tracer;
 }
 
-/* Gathers the spheres with a clearance of at most `limit` from the sphere at `place`. False: there is no room. */
+/* Lists the spheres with a clearance of at most `limit` from the sphere at `place`. False: there is no room. */
 static bool gather_candidates(fibrad_tracer *tracer, uint32_t place, double limit, uint32_t *count) {
     const fibrad_scene *scene = tracer->scene;
     double centre[3] = {scene->x[place], scene->y[place], scene->z[place]}, inverse = 1 / scene->r[place];
@@ -86,8 +86,8 @@ static bool gather_candidates(fibrad_tracer *tracer, uint32_t place, double limi
     return true;
 }
 
-/* Fills one place of a list. Floats err so that a sphere may be looked at in vain, but never the other way round, as in
- * work/neighbours_lanes.c; beyond the range of floats all are looked at. */
+/* Fills one element of a list. Floats are rounded so that a sphere may be compared in vain, but never missed, as in
+ * work/neighbours_lanes.c. Beyond the range of floats all spheres are compared. */
 static void enter_nearby(fibrad_nearby *list, uint32_t k, const fibrad_candidate *s) {
     double square = s->c[0] * s->c[0] + s->c[1] * s->c[1] + s->c[2] * s->c[2];
     double about = 1 + fibrad_abs(s->c[0]) + fibrad_abs(s->c[1]) + fibrad_abs(s->c[2]);
@@ -100,13 +100,13 @@ static void enter_nearby(fibrad_nearby *list, uint32_t k, const fibrad_candidate
     for (int axis = 0; axis < 3; axis++) list->periods[k][axis] = s->periods[axis];
 }
 
-/* Rays start at distance 1 from the centre; the rest is for rounding. */
+/* Rays start at distance 1 from the centre. The other terms allow for rounding. */
 static double length_for(double clearance) { return clearance * (1 - 1e-9) - 1 - 1e-9; }
 
 static void make_nearby(fibrad_tracer *tracer, fibrad_nearby *list, uint32_t place) {
     const fibrad_scene *scene = tracer->scene;
     double reach = REACH * scene->spacing / scene->r[place];
-    /* so few periods that they fit into their bytes */
+    /* the numbers of periods must fit into bytes */
     for (int axis = 0; axis < 3; axis++)
         if (scene->period[axis] > 0) reach = fibrad_min(reach, 60 * scene->period[axis] / scene->r[place]);
     double limit = 1 + reach;
@@ -114,7 +114,7 @@ static void make_nearby(fibrad_tracer *tracer, fibrad_nearby *list, uint32_t pla
     while (!gather_candidates(tracer, place, limit, &count)) {
         if (limit > 1.001) {
             limit = 1 + (limit - 1) / 2;
-        } else { /* hundreds of small ones touch this sphere: the grid alone */
+        } else { /* hundreds of small spheres touch this sphere: the grid serves its rays */
             count = 0, limit = 0;
             break;
         }

@@ -1,4 +1,4 @@
-/* triangle_views.c - how much of what triangles see is spheres, walls and surroundings. SPDX-License-Identifier: MIT */
+/* triangle_views.c - view factors from triangles to spheres, walls and surroundings. SPDX-License-Identifier: MIT */
 #include "base/elementary.h"
 #include "base/random.h"
 #include "base/sobol.h"
@@ -7,7 +7,7 @@
 
 #define RAYS_MOST (1u << 30)
 
-/* A direction by the cosine law: the normal and an even point of the unit sphere, added and made 1 long. */
+/* A direction by the cosine law: the sum of the normal and an even point of the unit sphere, normalised. */
 static bool direction_from(const double normal[3], const double x[2], double w[3]) {
     const double z = 1 - 2 * x[0], across = fibrad_sqrt(fibrad_max(0, 1 - z * z));
     double sine, cosine, square = 0;
@@ -24,7 +24,7 @@ typedef struct view_counts {
     uint32_t rays, spheres, bodies;
 } view_counts;
 
-/* Counts what a ray meets; FIBRAD_E_BACK: *seen is the place of the triangle. */
+/* Counts what a ray meets. FIBRAD_E_BACK: *seen is the index of the triangle. */
 static int count_ray(const fibrad_scene *scene, uint32_t side, const double point[3], const double w[3],
                      view_counts *counts, uint32_t *seen) {
     double distance;

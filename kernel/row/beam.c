@@ -3,8 +3,8 @@
 #include "row/beam.h"
 #include "row/beam_lanes.h"
 
-/* In steps of an eighth, each of which takes a sixth off the error, to a little less than is wanted; a fifth more in
- * any case, for rows whose error falls more slowly. */
+/* The number of directions rises in steps of an eighth. Each step takes a sixth off the error. The steps aim a
+ * little below the tolerance. The number rises by a fifth at least, for rows whose error falls more slowly. */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance) {
     double n = directions < FIBRAD_DIRECTIONS_MIN ? FIBRAD_DIRECTIONS_MIN : directions;
     for (; n < FIBRAD_DIRECTIONS_MAX && (error > 0.9 * tolerance || n < 1.2 * directions); n *= 1.125) error *= 0.838;
@@ -26,7 +26,7 @@ int fibrad_beam_compute(const fibrad_scene *scene, fibrad_workspace *space, uint
     return FIBRAD_VERSION_OF(fibrad_beam_lanes, scene->facts.isa)(scene, space, i, rule, &all, row);
 }
 
-/* Repeats the row with more directions until its error is small enough: only then it is known how long it is. */
+/* Repeats the row with more directions until its error is small enough. Only then its length is known. */
 static int beam_to_tolerance(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *given,
                              fibrad_row *row) {
     fibrad_beam_rule rule = *(const fibrad_beam_rule *)given;

@@ -4,10 +4,10 @@
 
 #include "row/row.h"
 
-/* Completes and checks a rule; NULL is all defaults. Errors: _ARGUMENT. */
+/* Completes and checks a rule. given NULL: all defaults. Errors: _ARGUMENT. */
 int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule);
 
-/* Row i by a completed rule, without regard to its tolerance: what the method of fibrad_beam_row computes. */
+/* Row i by a completed rule, without regard to the tolerance. This is the method of fibrad_beam_row. */
 int fibrad_beam_compute(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_beam_rule *rule,
                         fibrad_row *row);
 

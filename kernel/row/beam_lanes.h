@@ -5,20 +5,20 @@
 #include "base/dispatch.h"
 #include "row/row.h"
 
-/* Windows [from, to) of a row: into the row; or what they add to its sums into a list; or a row of all windows from the
- * lists of its parts. */
+/* Which windows to compute, [from, to), and where results go: into the row, or as terms into a list. With parts, the
+ * row is made from the lists of all parts and no window is computed. */
 typedef struct fibrad_beam_range {
     uint32_t from, to;
-    fibrad_addends *addends;     /* NULL: the row */
-    const fibrad_row_part *part; /* [parts] NULL: windows are resolved */
+    fibrad_addends *addends;     /* NULL: results go into the row */
+    const fibrad_row_part *part; /* [parts]; NULL: windows are computed */
     uint32_t parts;
 } fibrad_beam_range;
 
-/* Adds to the row in hand what its parts have listed. */
+/* Adds the terms that the parts have listed to the sums of the present row. */
 void fibrad_beam_replay(fibrad_workspace *work, const fibrad_beam_range *range, uint32_t windows, double open[2]);
 
-/* Row i by a beam rule whose numbers have been completed and checked, into a row with bodies. The factors to walls are
- * left in space->wall by slot, too. Errors: _TABLE, _CAPACITY, _WORK. */
+/* Row i by a beam rule that has been completed and checked, into a row with walls. The factors to walls are also
+ * left in space->wall by slot. Errors: _TABLE, _CAPACITY, _WORK. */
 typedef int fibrad_beam_function(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
                                  const fibrad_beam_rule *rule, const fibrad_beam_range *range, fibrad_row *row);
 FIBRAD_DECLARE_VERSIONS(fibrad_beam_function, fibrad_beam_lanes);

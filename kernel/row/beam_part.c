@@ -1,13 +1,14 @@
-/* beam_part.c - rows in parts, each a range of windows, and the row that parts make. SPDX-License-Identifier: MIT
+/* beam_part.c - rows in parts. A part is a range of windows. All parts together make the row.
+ * SPDX-License-Identifier: MIT
  *
- * A part lists what its windows add to the sums of the row, and the row adds it up in their order: so its bits are
- * those of the row in one. */
+ * A part lists the terms that its windows add to the sums of the row. The row adds the terms of all parts in the
+ * order of the windows. So its bits are those of a row computed at once. */
 #include "base/arena.h"
 #include "base/random.h"
 #include "row/beam.h"
 #include "row/beam_lanes.h"
 
-/* What a part is a part of. */
+/* A key of the row and the rule that a part belongs to. */
 static uint64_t key_of(const fibrad_scene *scene, uint32_t i, const fibrad_beam_rule *rule) {
     uint64_t cutoff;
     fibrad_copy(&cutoff, &rule->cutoff, sizeof cutoff);

@@ -1,4 +1,4 @@
-/* beam_replay.c - what the windows of parts have listed, added to the sums of a row. SPDX-License-Identifier: MIT */
+/* beam_replay.c - adds the terms that parts have listed to the sums of a row. SPDX-License-Identifier: MIT */
 #include "row/beam_lanes.h"
 
 static void add_again(fibrad_workspace *work, const fibrad_addend *a, uint32_t windows, double open[2]) {
@@ -9,7 +9,7 @@ static void add_again(fibrad_workspace *work, const fibrad_addend *a, uint32_t w
         open[a->window % 2] += a->value;
     else if (a->target >= FIBRAD_ADD_SLOT && a->target < FIBRAD_ADD_SLOT + FIBRAD_SLOTS)
         work->wall[a->target - FIBRAD_ADD_SLOT] += a->value;
-    else if (sums == NULL) /* nor does anything else come without walls */
+    else if (sums == NULL) /* without walls there are no other terms */
         return;
     else if (a->target == FIBRAD_ADD_HIDDEN)
         sums->hidden[a->window / 64] |= UINT64_C(1) << a->window % 64;

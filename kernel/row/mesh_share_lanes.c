@@ -1,10 +1,10 @@
-/* mesh_share_lanes.c - what of a window triangles take from spheres and from the open. Compiled once per instruction
- * set. SPDX-License-Identifier: MIT
+/* mesh_share_lanes.c - what triangles take of a window from spheres and from the open part. Compiled once per
+ * instruction set. SPDX-License-Identifier: MIT
  *
- * Points of the window are resolved by depth: lines along its direction, each from where it leaves sphere i. What a
- * sphere loses is its visible area times the share of its points that triangles hide, so that areas stay exact where
- * nothing hides them. Lines that meet no sphere get directions of their own, as those among walls do, if what they meet
- * is far: docs/methods.md section 9. */
+ * Each point of the window has a line along the direction of the window. The line begins where it leaves sphere i
+ * and ends at what it meets first. A sphere loses its visible area times the share of its points that triangles
+ * hide. So areas stay exact where no triangle hides them. Lines that meet no sphere get directions of their own if
+ * what they meet is far, as lines among walls do: docs/methods.md section 9. */
 #include FIBRAD_LANES_HEADER
 #include "lines/mesh_faces_lanes.h"
 #include "lines/mesh_lines_lanes.h"
@@ -12,8 +12,10 @@
 #include "scene/walls.h"
 #include "window/points_lanes.h"
 
-#define MESH_SPREAD 1.8 /* radius of the disc of directions times root n, and how near edges need none: as of walls */
-#define MESH_NEAR   1.3
+#define MESH_SPREAD                                                                                                    \
+    1.8 /* as for walls: radius of the disc of directions times sqrt n, and how near an edge must be to need no disc   \
+         */
+#define MESH_NEAR 1.3
 
 /* The line of a point [L]. */
 static void line_of_point(const fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t p,
@@ -27,7 +29,7 @@ static void line_of_point(const fibrad_workspace *work, const double frame[9], c
     }
 }
 
-/* Whether a point that meets no sphere meets its triangle before any wall. */
+/* Whether a line that meets no sphere meets its triangle before any wall. */
 static bool before_walls(const fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t p) {
     const fibrad_met *met = work->met;
     double origin[3], w[3], distance;
@@ -42,7 +44,8 @@ static double depth_of_disc(const fibrad_workspace *work, uint32_t disc) {
     return d->depth[disc] < 0 ? d->resolved[disc] : d->depth[disc];
 }
 
-/* Of the points given by bits, in word `word`, those that meet a triangle before sphere `disc`; others forget it. */
+/* Those of the points given by bits, in word `word`, that meet a triangle before sphere `disc`. The others lose
+ * their triangle. */
 static uint64_t before_disc(fibrad_workspace *work, const fibrad_points *points, uint32_t word, uint64_t bits,
                             uint32_t disc) {
     fibrad_met *met = work->met;
@@ -67,7 +70,7 @@ static void add_weights(fibrad_met *met, const uint64_t taken[4], double weight)
             met->weight[64 * word + (uint32_t)__builtin_ctzll(rest)] += weight;
 }
 
-/* The point nearest to the centre of a disc. */
+/* The point that is nearest to the centre of a disc. */
 static uint32_t nearest_point(const fibrad_points *points, double u, double v) {
     double least = __builtin_inf();
     uint32_t nearest = 0;
@@ -78,7 +81,8 @@ static uint32_t nearest_point(const fibrad_points *points, double u, double v) {
     return nearest;
 }
 
-/* A disc that is seen between points goes with the point that is nearest to it, to the disc or the triangle there. */
+/* Adds a disc that is seen only between points. The point nearest to it decides whether the disc or a triangle is
+ * seen. */
 static void share_gap(fibrad_workspace *work, const fibrad_points *points, uint32_t disc, uint32_t k, double area) {
     const fibrad_met *met = work->met;
     const uint32_t p = nearest_point(points, work->disc.u[disc], work->disc.v[disc]);
@@ -88,8 +92,8 @@ static void share_gap(fibrad_workspace *work, const fibrad_points *points, uint3
         fibrad_work_accumulate(work, disc, k, area);
 }
 
-/* What triangles take from one disc, of visible area `area`; 0: by points. Points of it are no longer seen. Returns how
- * many there are; with none, nothing is done. */
+/* What triangles take from one disc. area: its visible area; 0: points count. The points of the disc are no longer
+ * seen afterwards. Returns the number of its points. If it has no points, nothing is done. */
 static uint32_t share_disc(fibrad_workspace *work, fibrad_points *points, uint32_t disc, uint32_t k, double area) {
     uint64_t taken[4] = {0};
     uint32_t own = 0, lost = 0;
@@ -110,7 +114,7 @@ static uint32_t share_disc(fibrad_workspace *work, fibrad_points *points, uint32
     return own;
 }
 
-/* How wide the directions of open lines spread, if the nearest of what they meet is at some depth. */
+/* How wide the directions of open lines spread if the nearest thing that they meet is at some depth. */
 static double spread_at(double depth, uint32_t n) {
     const double wide = MESH_SPREAD / fibrad_sqrt(n), ratio = MESH_NEAR / fibrad_max(depth * wide, 1e-300);
     return ratio < 1 && depth < __builtin_inf() ? wide * fibrad_sqrt(1 - ratio * ratio) : 0;
@@ -120,7 +124,7 @@ static void see_all(fibrad_points *points) {
     for (uint32_t word = 0; word < points->count / 64; word++) points->seen[word] = UINT64_MAX;
 }
 
-/* What triangles take of the open, `open` of it. */
+/* What triangles take from the open part. open: the size of this part. */
 static double share_open(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k,
                          double open) {
     fibrad_met *met = work->met;
@@ -135,10 +139,10 @@ static double share_open(fibrad_workspace *work, const double frame[9], fibrad_p
         else
             met->side[p] = FIBRAD_NO_SIDE;
     }
-    if (own == 0) { /* too little for points: where the deepest line ends */
+    if (own == 0) { /* the part is too small for points: it ends where the deepest line ends */
         const uint32_t slot =
             met->deepest != FIBRAD_NO_SIDE ? fibrad_scene_slot(work->scene, met->deepest) : FIBRAD_NONE;
-        if (slot == FIBRAD_NONE) { /* walls share it by all points alike */
+        if (slot == FIBRAD_NONE) { /* all points share it with the walls alike */
             see_all(points);
             points->open = points->count;
             return open;
@@ -153,7 +157,8 @@ static double share_open(fibrad_workspace *work, const double frame[9], fibrad_p
     return lost < own ? open / own * (own - lost) : 0;
 }
 
-/* Disc number c of those that may be seen in a window, by points or (count 0) by areas; FIBRAD_NONE: it is not seen. */
+/* Disc number c of those that may be seen in a window. By areas if points->count is 0, otherwise by points.
+ * FIBRAD_NONE: the disc is not seen. */
 static uint32_t seen_disc(const fibrad_workspace *work, const fibrad_points *points, uint32_t c) {
     if (points->count > 0) return points->occluder[c];
     return c > 0 && work->areas.area[c] > 0 ? work->areas.whose[c] : FIBRAD_NONE;
@@ -163,7 +168,7 @@ static uint32_t seen_discs(const fibrad_workspace *work, const fibrad_points *po
     return points->count > 0 ? points->occluders : work->areas.circles;
 }
 
-/* The deepest disc that is seen; FIBRAD_NONE: there is none. */
+/* The deepest disc that is seen. FIBRAD_NONE: no disc is seen. */
 static uint32_t deepest_disc(const fibrad_workspace *work, const fibrad_points *points) {
     const uint32_t discs = seen_discs(work, points);
     uint32_t deepest = FIBRAD_NONE;
@@ -175,8 +180,8 @@ static uint32_t deepest_disc(const fibrad_workspace *work, const fibrad_points *
     return deepest;
 }
 
-/* Whether no triangle comes before a window that sees nothing deeper than a disc: those parts of it that sphere i is
- * not certainly nearer to than any triangle, the sphere of the disc is. */
+/* Whether no triangle comes before a window that sees nothing deeper than a disc. Each part of this window is
+ * certainly nearer to sphere i, or to the sphere of the disc, than any triangle is. */
 static bool clear_to_disc(const fibrad_workspace *work, uint32_t disc) {
     const fibrad_discs *d = &work->disc;
     const double own = work->clear_mesh * work->clear_mesh - 1, depth = depth_of_disc(work, disc);
@@ -187,7 +192,8 @@ static bool clear_to_disc(const fibrad_workspace *work, uint32_t disc) {
     return left * left + aside * aside < clear * clear * (1 - 1e-9);
 }
 
-/* Gives the points of a disc that are still seen its depth; they are no longer seen. */
+/* Limits the lines of the points of a disc that are still seen to the depth of the disc. The points are no longer
+ * seen afterwards. */
 static void limit_points(fibrad_workspace *work, fibrad_points *points, uint32_t disc) {
     const double depth = depth_of_disc(work, disc);
     for (uint32_t word = 0; word < points->count / 64; word++) {
@@ -199,16 +205,16 @@ static void limit_points(fibrad_workspace *work, fibrad_points *points, uint32_t
     }
 }
 
-/* What a search has found before the window. */
+/* What a search has found before a window. */
 typedef struct mesh_found {
     fibrad_face_search search;
-    bool listed;   /* whether the list has the first of them, and ... */
-    bool more;     /* ... there may be more */
-    double spread; /* how wide the directions of open lines spread, ... */
-    double at;     /* ... and how deep what they meet is */
+    bool listed;   /* whether the list has the first triangles */
+    bool more;     /* whether there may be more triangles */
+    double spread; /* how wide the directions of open lines spread */
+    double at;     /* how deep the things are that open lines meet */
 } mesh_found;
 
-/* All triangles down to a depth meet the lines that are laid out. */
+/* Lets the lines that are laid out meet all triangles down to a depth. */
 static void meet_found(fibrad_workspace *work, mesh_found *found, double deepest) {
     fibrad_lines *lines = &work->met->lines;
     fibrad_face_search *search = &found->search;
@@ -227,8 +233,8 @@ static void meet_found(fibrad_workspace *work, mesh_found *found, double deepest
     if (search->rest < search->deepest) LANED(fibrad_lines_follow)(work, search->frame, search->rest, search->deepest);
 }
 
-/* Looks what all points of a window meet, whose discs are those of `given`, the last at depth `last`. Returns whether
- * any meets a triangle. */
+/* Finds what the lines of all points of a window meet. given: which points the discs hide; the last disc is at depth
+ * `last`. Returns whether a line meets a triangle. */
 static bool meet_window(fibrad_workspace *work, mesh_found *found, const fibrad_points *given, fibrad_points *points,
                         uint32_t k, double last, bool open) {
     fibrad_met *met = work->met;
@@ -254,7 +260,7 @@ static bool meet_window(fibrad_workspace *work, mesh_found *found, const fibrad_
         meet_found(work, found, __builtin_inf());
         meet += LANED(fibrad_lines_tell)(met);
     }
-    if (open && own == 0) { /* too little for points: where the deepest line ends */
+    if (open && own == 0) { /* the part is too small for points: it ends where the deepest line ends */
         LANED(fibrad_lines_parallel)(met, points, NULL);
         meet_found(work, found, __builtin_inf());
         met->deepest = LANED(fibrad_lines_deepest)(&met->lines);
@@ -262,7 +268,7 @@ static bool meet_window(fibrad_workspace *work, mesh_found *found, const fibrad_
     return meet > 0 || met->deepest != FIBRAD_NO_SIDE;
 }
 
-/* Looks for triangles before a window down to a depth; false: there are none. */
+/* Searches for triangles before a window down to a depth. False: there are none. */
 static bool find_faces(fibrad_workspace *work, const double frame[9], double deepest, bool open, mesh_found *found) {
     fibrad_face_search *search = &found->search;
     const double wide = open ? 1.0001 * MESH_SPREAD / fibrad_sqrt(work->windows) : 0;
@@ -275,13 +281,13 @@ static bool find_faces(fibrad_workspace *work, const double frame[9], double dee
         found->more = LANED(fibrad_faces_next)(work, search);
         found->listed = false;
     }
-    found->at = fibrad_min(search->nearest, search->rest); /* beyond there nobody has looked */
+    found->at = fibrad_min(search->nearest, search->rest); /* beyond this depth nothing has been searched */
     found->spread = open ? spread_at(found->at, work->windows) : 0;
     if (found->more || !found->listed || search->rest < __builtin_inf()) search->shallow = -__builtin_inf();
     return found->at < __builtin_inf();
 }
 
-/* How many points serve a window by areas, if there are n windows. */
+/* The number of points that a window by areas uses if there are n windows. */
 static uint32_t points_of(uint32_t n) { return n <= 600 ? 64 : n <= 1400 ? 128 : 256; }
 
 double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k,
@@ -302,7 +308,7 @@ double LANED(fibrad_mesh_share)(fibrad_workspace *work, const double frame[9], f
     met->any = meet_window(work, &found, points, used, k, last, open > 0) || found.spread > 0;
     if (!met->any) return open;
     const uint32_t discs = seen_discs(work, points);
-    uint32_t *own = work->disc.hidden_points; /* of windows by points alone, else */
+    uint32_t *own = work->disc.hidden_points; /* for windows by points only */
     see_all(used);
     for (uint32_t c = 0; c < discs; c++)
         if (seen_disc(work, points, c) != FIBRAD_NONE)
@@ -321,7 +327,7 @@ void LANED(fibrad_mesh_line)(const fibrad_workspace *work, const double frame[9]
 
 void LANED(fibrad_mesh_place)(const fibrad_workspace *work, const double frame[9], uint32_t p, double at[3]) {
     const fibrad_met *met = work->met;
-    const bool cut = met->depth[p] < -1; /* on the way from the centre to the surface */
+    const bool cut = met->depth[p] < -1; /* the triangle lies on the way from the centre to the surface */
     double origin[3], w[3];
     line_of_point(work, frame, &met->points, p, origin, w);
     for (int axis = 0; axis < 3; axis++) {
@@ -331,7 +337,7 @@ void LANED(fibrad_mesh_place)(const fibrad_workspace *work, const double frame[9
     }
 }
 
-/* The slot of what a line meets, which may be beyond cutoff or known region. */
+/* The slot of what a line meets. This may be beyond the cutoff or the known region. */
 static uint32_t slot_met(const fibrad_workspace *work, const double frame[9], uint32_t p) {
     const fibrad_met *met = work->met;
     double origin[3], w[3], from[3], distance;
@@ -352,7 +358,9 @@ void LANED(fibrad_mesh_count)(fibrad_workspace *work, const double frame[9], uin
         if (side == FIBRAD_NO_SIDE) continue;
         const uint32_t slot = slot_met(work, frame, p);
         if (slot == FIBRAD_NONE) {
-            if (work->back == UINT32_MAX) work->back = scene->mesh.number[side / 2]; /* of a part: as of the row */
+            if (work->back == UINT32_MAX)
+                work->back =
+                    scene->mesh.number[side / 2]; /* a part of a row has the same triangle at fault as the row */
             continue;
         }
         const uint32_t entry = fibrad_entries_of(&work->entries, scene->facts.spheres + slot);

@@ -4,13 +4,14 @@
 #include "scene/walls.h"
 #include "work/record.h"
 
-/* Entries for which an empty collection asks for room at first. */
+/* Number of entries for which an empty collection first asks for room. */
 #define FIRST_ENTRIES 256u
 
-#define SUM_ERROR 1e-9 /* how far the sum of a row may be off: rounding is 1e-13 at the most */
+#define SUM_ERROR 1e-9 /* greatest error allowed in the sum of a row; rounding errors are below 1e-13 */
 
-/* What each wall gets of the lines of a sphere, among those that do not go there anyway, since its cap is behind it: on
- * the mean f^2 for a cap of the fraction f. Returns the part of these lines that is left; 1: no wall gets any. */
+/* The share that each wall has of the lines that leave other surfaces for a sphere, because a cap of the sphere lies
+ * behind the wall: f^2 on average for a cap of the fraction f. Returns the rest of these lines. 1: no wall cuts the
+ * sphere. */
 static double share_of_caps(const fibrad_scene *scene, uint32_t place, double share[FIBRAD_WALLS]) {
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
     double sum = 0;
@@ -23,8 +24,8 @@ static double share_of_caps(const fibrad_scene *scene, uint32_t place, double sh
     return fibrad_max(0, 1 - sum);
 }
 
-/* docs/methods.md, section 9. What the spheres of the row lose is summed in whole numbers, so that the order of
- * columns, the caller's, plays no part. */
+/* docs/methods.md, section 9. What the spheres of the row lose is summed in whole numbers. So the order of columns,
+ * which the caller chooses, changes no bit. */
 void fibrad_row_cut(const fibrad_scene *scene, uint32_t place, double wall[FIBRAD_SLOTS], fibrad_row *row) {
     double share[FIBRAD_WALLS] = {0};
     int64_t units[FIBRAD_WALLS] = {0};
@@ -82,7 +83,7 @@ static bool arrays_valid(const fibrad_row *row, uint32_t bodies) {
     return (row->capacity == 0 || (row->col != NULL && row->f != NULL)) && (bodies == 0 || row->body != NULL);
 }
 
-/* Computes a row without room for it, for its length alone: FIBRAD_E_CAPACITY. */
+/* Computes a row without room for it, to find its length. Status: FIBRAD_E_CAPACITY. */
 static int measure_row(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_row_method *method,
                        fibrad_row *own) {
     double body[FIBRAD_BODIES_MAX];
@@ -92,7 +93,7 @@ static int measure_row(const fibrad_scene *scene, fibrad_workspace *space, uint3
     return status == FIBRAD_OK ? FIBRAD_E_CAPACITY : status;
 }
 
-/* Tries once, into the arrays of `row` or into the free space of a collection. */
+/* Makes one attempt, into the arrays of `row` or into the free space of a collection. */
 static int attempt(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_row_method *method,
                    fibrad_rows *rows, fibrad_row *own) {
     const uint32_t bodies = scene->facts.bodies;
@@ -123,7 +124,7 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
             status = fibrad_work_grow(work, &space);
         else if (status == FIBRAD_E_CAPACITY && rows != NULL && own.length >= least) {
             status = fibrad_rows_reserve(rows, own.length, scene->facts.bodies);
-            least = own.length + 1; /* it would come back for ever */
+            least = own.length + 1; /* without this the call would be repeated for ever */
         }
     }
     if (status == FIBRAD_E_CAPACITY && rows == NULL) row->length = own.length;
@@ -132,7 +133,8 @@ int fibrad_row_run(const fibrad_scene *scene, fibrad_work *work, uint32_t i, con
     own.sphere = i;
     if (rows != NULL) fibrad_rows_commit(rows, scene->hash, scene->facts.bodies, &own);
     own.rows = rows;
-    if (rows != NULL) own.col = (uint32_t *)(void *)(own.f + own.length), own.capacity = 0; /* not the caller's */
+    if (rows != NULL)
+        own.col = (uint32_t *)(void *)(own.f + own.length), own.capacity = 0; /* these arrays are not the caller's */
     *row = own;
     return FIBRAD_OK;
 }

@@ -1,5 +1,5 @@
-/* row.h - the common part of all methods for rows: memory that grows, and where rows go. SPDX-License-Identifier: MIT
- * */
+/* row.h - the common part of all methods for rows: memory that grows, and the place where a row is written.
+ * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_ROW_ROW_H
 #define FIBRAD_ROW_ROW_H
 
@@ -32,11 +32,11 @@ fibrad_row fibrad_row_scratch(fibrad_workspace *space, double *body);
 /* Copies a row into the row of the caller. After FIBRAD_E_CAPACITY only the length is copied. */
 int fibrad_row_give(const fibrad_scene *scene, const fibrad_row *row, fibrad_row *to);
 
-/* What walls get of the caps behind them, and no one else: those of sphere i at `place`, and of the spheres of its row.
- * To be called before fibrad_row_bodies. */
+/* Gives walls what belongs to the caps of spheres behind them: the caps of sphere i at `place`, and those of the
+ * spheres of its row. To be called before fibrad_row_bodies. */
 void fibrad_row_cut(const fibrad_scene *scene, uint32_t place, double wall[FIBRAD_SLOTS], fibrad_row *row);
 
-/* Sets the factors to walls from those by slot. Factors of openings are moved to row->escaped. */
+/* Sets the factors to walls from the factors by slot. Factors of openings are moved to row->escaped. */
 void fibrad_row_bodies(const fibrad_scene *scene, double wall[FIBRAD_SLOTS], fibrad_row *row);
 
 #endif

@@ -1,11 +1,12 @@
 /* wall_share_lanes.c - which walls the open part of a window meets. Compiled once per instruction set.
  * SPDX-License-Identifier: MIT
  *
- * A window has one direction, but stands for all that are nearer to its own than to others. Far walls differ by
- * direction alone: with one direction their factors would jump, and err as n^-0.75. Therefore each open point of the
- * window is traced in a direction of its own, from a disc about that of the window; such discs cover the sphere about
- * once. What is open of a window changes with the direction, to first order as its slope says: a wall gets the open
- * part times its share of the lines, and the slope times what their mean is off. docs/methods.md section 9. */
+ * A window has one direction, but it stands for all directions that are nearest to its own. For far walls only the
+ * direction counts: with one direction per window their factors would jump, and the error would fall as n^-0.75. So
+ * each open point of the window has a direction of its own, from a disc of directions about that of the window.
+ * These discs together cover the sphere about once. The open part of a window changes with the direction, to first
+ * order by its slope. So a wall gets two terms: the open part times its share of the lines, and the slope times the
+ * difference between the mean direction of its lines and that of all lines. docs/methods.md section 9. */
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "row/wall_share_lanes.h"
@@ -14,9 +15,9 @@
 #include "window/points_lanes.h"
 
 #define WALL_POINTS   128u
-#define HIDDEN_POINTS 64u /* of windows of which nothing is open */
+#define HIDDEN_POINTS 64u /* of windows without an open part */
 
-/* Rotates the axes u, v of a frame; coordinates in it rotate the other way. */
+/* Rotates the axes u and v of a frame. Coordinates in the frame rotate the other way. */
 static void rotate_frame(double frame[9], double cos, double sin) {
     for (int axis = 0; axis < 3; axis++) {
         double u = frame[axis], v = frame[3 + axis];
@@ -24,14 +25,14 @@ static void rotate_frame(double frame[9], double cos, double sin) {
     }
 }
 
-/* The points of a window, all of them open. */
+/* All points of a window, all open. */
 static void all_points(uint32_t count, fibrad_points *points) {
     points->count = points->open = count;
     for (uint32_t word = 0; word < count / 64; word++) points->seen[word] = UINT64_MAX;
     (void)fibrad_disc_points_get(count, &points->set);
 }
 
-/* The points of the window that no disc of `work` covers; all of them if there is none. */
+/* The points of the window that no disc of `work` covers. If there is no such point, all points. */
 static void open_points(const fibrad_workspace *work, double cos, double sin, fibrad_points *points) {
     const fibrad_discs *disc = &work->disc;
     all_points(WALL_POINTS, points);
@@ -45,10 +46,10 @@ static void open_points(const fibrad_workspace *work, double cos, double sin, fi
 /* Lines in the frame of sphere i. */
 typedef struct wall_lines {
     vd origin[3], w[3];
-    vd wide[3];           /* directions that fill the whole disc, for octants */
-    vd u, v;              /* how far w is from the direction of the window */
-    vd away[3], rate[3];  /* how far the walls ahead are, and how fast lines approach them */
-    vd share[4], nearest; /* of the planes across the axes and the cylinder; the length to the nearest */
+    vd wide[3];           /* directions that fill the whole disc; they decide the octant */
+    vd u, v;              /* difference of w from the direction of the window */
+    vd away[3], rate[3];  /* distances of the walls ahead, and how fast lines approach them */
+    vd share[4], nearest; /* share of the planes across each axis and of the cylinder; length to the nearest wall */
 } wall_lines;
 
 static vd quotient(vd a, vd b) {
@@ -56,12 +57,12 @@ static vd quotient(vd a, vd b) {
     return vd_select(none, vd_set1(__builtin_inf()), a / vd_select(none, vd_set1(1), b));
 }
 
-/* The share of the first of two walls, between 0 and 1 where lines pass close to the edge between them. */
+/* The share of the first of two walls. It is between 0 and 1 for lines that pass near the edge between the walls. */
 static vd share_at_edge(vd passing, double sharpness) {
     return 0.5 + 0.5 * vd_max(vd_set1(-1), vd_min(vd_set1(1), passing * sharpness));
 }
 
-/* Between the end of a cylinder and the cylinder. */
+/* The shares of the end of a cylinder and of the cylinder. */
 static void share_round(const fibrad_wall_window *window, const fibrad_wall_view *view, wall_lines *lines) {
     const vd zero = vd_set1(0), away = lines->away[2], rate = lines->rate[2];
     vd x = lines->origin[0] - view->axis[0], y = lines->origin[1] - view->axis[1];
@@ -72,12 +73,12 @@ static void share_round(const fibrad_wall_window *window, const fibrad_wall_view
     lines->share[3] = 1 - lines->share[2];
 }
 
-/* Between three planes: what comes before both others; near a corner something is left, for all of them. Where a wall
- * is not there the others come first. */
+/* The shares of three planes. A plane gets what it comes before both others. Near a corner a part is left, which all
+ * three share. A plane that does not exist comes last. */
 FIBRAD_INLINE void share_planes(const fibrad_wall_window *window, wall_lines *lines) {
     const vd zero = vd_set1(0), half = vd_set1(0.5), one = vd_set1(1), far = vd_set1(FIBRAD_FAR_AWAY);
     const vd *away = lines->away, *rate = lines->rate;
-    vd first[3], left = one; /* of axis a before axis a + 1 */
+    vd first[3], left = one; /* share of axis a before axis a + 1 */
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3;
         vm a_far = vd_le(far, away[a]), b_far = vd_le(far, away[b]);
@@ -124,7 +125,7 @@ FIBRAD_INLINE void meet_walls(const fibrad_wall_window *window, const fibrad_wal
     }
 }
 
-/* How far it is to where lines leave the ball and the known region. */
+/* The length at which lines leave the ball or the known region. */
 static vd exit_known(const fibrad_wall_view *view, const vd origin[3], const vd w[3]) {
     const vd zero = vd_set1(0);
     vd least = vd_set1(__builtin_inf());
@@ -142,7 +143,7 @@ static vd exit_known(const fibrad_wall_view *view, const vd origin[3], const vd 
     return vd_max(least, zero);
 }
 
-/* One of the lines in lanes. */
+/* One of the lines in a vector. */
 static fibrad_wall_line line_of_lane(const wall_lines *lines, int lane) {
     _Alignas(64) double at[VD_LANES], along[VD_LANES];
     fibrad_wall_line line;
@@ -173,8 +174,9 @@ static vd on_side(vd x, uint32_t octant, uint32_t axis) {
     return vd_select(vd_lt(x, vd_set1(0)), vd_set1(1 - up), vd_set1(up));
 }
 
-/* Adds the lines of an octant, one of several: which wall they meet depends on w, but along other axes than the wall's
- * it is wide that decides the octant, so that walls close by have both. hidden: `all` alone. */
+/* Adds the lines of an octant. Which wall they meet depends on w. If there are several octants, `wide` decides the
+ * octant along axes other than that of the wall. So a wall nearby gets lines of both octants. hidden: adds to `all`
+ * only. */
 FIBRAD_INLINE void add_octant(const wall_lines *lines, bool round, bool several, bool hidden, vd weight, uint32_t place,
                               fibrad_octant_sums *part) {
     const uint32_t begin = round ? 2 : 0, end = round ? 4 : 3;
@@ -202,7 +204,7 @@ FIBRAD_INLINE void add_octant(const wall_lines *lines, bool round, bool several,
     }
 }
 
-/* Counts the lines given by bits, which are cut. */
+/* Counts the lines given by bits. These lines are cut. */
 static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint32_t bits, fibrad_point_sums *sums) {
     for (; bits != 0; bits &= bits - 1) {
         const int lane = __builtin_ctz(bits);
@@ -222,7 +224,7 @@ static void add_cuts(const fibrad_wall_view *view, const wall_lines *lines, uint
     }
 }
 
-/* Takes open lines that are cut out of the weight, and counts them. */
+/* Sets the weight of open lines that are cut to 0, and counts them. */
 static vd weight_uncut(const fibrad_wall_view *view, const wall_lines *lines, vd weight, fibrad_point_sums *sums) {
     vm cut = vd_lt(exit_known(view, lines->origin, lines->w), lines->nearest);
     add_cuts(view, lines, vm_bits(cut & vd_lt(vd_set1(0), weight)), sums);
@@ -263,8 +265,9 @@ FIBRAD_INLINE void follow_points(const fibrad_points *points, const fibrad_wall_
 
 static double of_eight(const double *s) { return ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7])); }
 
-/* Adds to the regions what the points of a window say: the open part in proportion to open points, and the slope times
- * what the mean direction of a wall's points is off that of all, as far as no point gets less than nothing. */
+/* Adds to the regions what the points of a window tell. The open part is divided in proportion to open points. To
+ * this is added the slope times the difference between the mean direction of a wall's points and that of all points,
+ * limited so that no region gets less than nothing. */
 static void add_points(fibrad_wall_room *walls, const fibrad_points *points, const fibrad_wall_window *window,
                        const double slope[2]) {
     const fibrad_point_sums *sums = &walls->window;
@@ -287,7 +290,7 @@ static void add_points(fibrad_wall_room *walls, const fibrad_points *points, con
         }
 }
 
-/* Shares a window by lines. */
+/* Divides a window between walls by lines. */
 static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, const fibrad_wall_window *window) {
     fibrad_wall_room *walls = work->walls;
     fibrad_point_sums *sums = &walls->window;
@@ -308,7 +311,8 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
         follow_points(points, &walls->view, false, axes, window, sums);
     add_points(walls, points, window, slope);
     for (uint32_t wall = 0; wall <= FIBRAD_WALLS; wall++) {
-        if (sums->cuts[wall] == 0) continue; /* the way of one decides for all that would meet the same wall */
+        if (sums->cuts[wall] == 0)
+            continue; /* the way of one line decides for all lines that would meet the same wall */
         const fibrad_wall_line *first = &sums->first_cut[wall];
         fibrad_work_slot(work, fibrad_work_met(work, first->origin, first->w), window->k,
                          window->open * sums->cuts[wall] / points->open);
@@ -326,14 +330,15 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
     fibrad_wall_window window = {.frame = frame, .k = k, .n = rule->directions, .open = rest, .part = 1};
     window.hidden = fibrad_max(0, whole - rest);
     if (points->count > 0) window.part = 0.4 + 0.6 * rest / whole;
-    if (work->walls->view.cut) window.part *= 1.25; /* no solid angle mends what the discs cover unevenly */
+    if (work->walls->view.cut)
+        window.part *= 1.25; /* there is no solid angle here that corrects the unevenness of the discs */
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     fibrad_wall_window_begin(&window, &work->walls->view);
     if (!fibrad_wall_window_simple(&window, &work->walls->view, rule->turn != 0, &work->walls->sums))
         share_by_lines(work, points, &window);
 }
 
-/* Adds to the regions what there would be to see in windows that are hidden. */
+/* Adds to `all` of the regions what hidden windows would see. */
 static void add_hidden(fibrad_workspace *work, const fibrad_beam_rule *rule) {
     fibrad_points *all = &work->walls->points;
     double turn[9];

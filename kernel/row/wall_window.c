@@ -1,24 +1,25 @@
-/* wall_window.c - a window as walls see it: the disc of directions it stands for. SPDX-License-Identifier: MIT */
+/* wall_window.c - the disc of directions that a window stands for, which walls need. SPDX-License-Identifier: MIT */
 #include "row/wall_window.h"
 
-/* Radius of the disc of directions times sqrt n; it would be 2 for discs as large as the share of a direction. */
+/* Radius of the disc of directions times sqrt n. For discs as large as the share of one direction it would be 2. */
 #define WALL_SPREAD 1.8
 
-/* Lines from all of the window pass by an edge at distance D over an angle 1/D; where that is enough, directions need
- * no disc. */
+/* All lines of a window pass an edge at distance D over an angle of 1/D. If this angle is large enough, the
+ * directions need no disc. */
 #define WALL_NEAR 1.3
 
 /* Half width of the band of directions for walls across one axis, times sqrt n. */
 #define WALL_BAND 4.0
 
-/* Lines near an edge are shared by both walls, over a tenth of the disc and of the window: 128 points are not many. */
+/* Both walls at an edge share the lines near it, over a tenth of the disc and of the window. This makes up for the
+ * small number of points, 128. */
 #define WALL_SOFT 0.1
 
-/* The part of the slope that counts. With half of it the means over all places of an edge among the directions agree
- * to second order; a little more is better, since the part is bounded. */
+/* The part of the slope that counts. With a half, the means over all places of an edge among the directions are
+ * right to second order. A little more is better, because the correction is limited. */
 #define WALL_SLOPE 0.6
 
-/* The walls that the direction of a window approaches, and those behind it. */
+/* Distances of the walls ahead of a direction and behind it, and how fast the direction approaches them. */
 typedef struct wall_course {
     double ahead[3], behind[3], rate[3];
 } wall_course;
@@ -34,17 +35,17 @@ static wall_course course_of(const fibrad_wall_view *view, const double w[3]) {
     return course;
 }
 
-/* How the line from the centre passes by the edge between two planes: beyond 0 it meets the first of them. passing/
- * distance is the sine of the angle to the edge. */
+/* How the line from the centre passes the edge between two planes. passing > 0: the line meets the first plane.
+ * passing/distance is the sine of the angle to the edge. */
 typedef struct wall_edge {
-    double passing, square; /* square of the distance of the edge */
+    double passing, square; /* squared distance of the edge */
 } wall_edge;
 
 static wall_edge edge_of_planes(double first, double first_rate, double second, double second_rate) {
     return (wall_edge){second * first_rate - first * second_rate, first * first + second * second};
 }
 
-/* The same for the end of a cylinder ahead, and the cylinder. */
+/* The same for the edge between the end of a cylinder and the cylinder. */
 static wall_edge edge_of_end(const fibrad_wall_view *view, const wall_course *course, const double w[3]) {
     const double x = -view->axis[0], y = -view->axis[1], away = course->ahead[2], rate = course->rate[2];
     const double along = x * rate + w[0] * away, across = y * rate + w[1] * away;
@@ -53,13 +54,13 @@ static wall_edge edge_of_end(const fibrad_wall_view *view, const wall_course *co
     return (wall_edge){view->radius * rate - size, away * away + clear * clear};
 }
 
-/* How much of the disc of directions is needed at an edge: the angle over which lines from the window pass it and the
- * disc add up to the whole disc, as squares. */
+/* How much of the disc of directions is needed at an edge. The angle over which the lines of the window pass the
+ * edge and the radius of the needed disc add up, as squares, to that of the whole disc. */
 static double needed_at(const wall_edge *edge, double wide) {
     return fibrad_max(0, 1 - WALL_NEAR * WALL_NEAR / (edge->square * wide * wide));
 }
 
-/* The same for a window: mostly that of the nearest edge. */
+/* The same for a window. Mostly the nearest edge decides. */
 static double needed_of(const fibrad_wall_view *view, const double w[3], double wide) {
     const wall_course course = course_of(view, w);
     double sum = 0, weights = 0;
@@ -76,8 +77,8 @@ static double needed_of(const fibrad_wall_view *view, const double w[3], double 
     return sum / weights;
 }
 
-/* What passing by an edge, distance times sine of the angle, is to be multiplied by to change by one over half the
- * width in which lines change from wall to wall. */
+/* The factor by which `passing` is multiplied so that it changes by one over half the width in which lines change
+ * from one wall to the other. */
 static double sharpness_of(const fibrad_wall_window *window, double first, double second) {
     const double soft = WALL_SOFT * window->spread, length = WALL_SOFT * fibrad_min(1, 15 / fibrad_sqrt(window->n));
     return 1 / fibrad_sqrt(soft * soft * (first * first + second * second) + length * length);
@@ -89,7 +90,7 @@ void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view
     window->spread = window->wide * fibrad_sqrt(needed_of(view, w, window->wide));
     for (int axis = 0; axis < 2; axis++) window->slope[axis] *= WALL_SLOPE;
     wall_course course = course_of(view, w);
-    for (int axis = 0; axis < 3; axis++) /* lines on both sides: not too soft for the nearer */
+    for (int axis = 0; axis < 3; axis++) /* lines on both sides: not too soft for the nearer one */
         if (course.rate[axis] < window->wide) course.ahead[axis] = fibrad_min(course.ahead[axis], course.behind[axis]);
     for (int axis = 0; axis < 3; axis++)
         window->sharpness[axis] = sharpness_of(window, course.ahead[axis], course.ahead[(axis + 1) % 3]);
@@ -119,8 +120,8 @@ void fibrad_wall_window_add(const fibrad_wall_window *window, uint32_t region, d
     sums->mixed[region] += mixed;
 }
 
-/* The share of a band of directions that rises along an axis, with weights (1 - x^2)^2 over its half width; `slope`:
- * of the middle. */
+/* The part of a band of directions that rises along an axis. The weights are (1 - x^2)^2 over the half width of the
+ * band. slope: of the middle of the band. */
 static double rising_share(double slope, double width) {
     if (!(fibrad_abs(slope) < width)) return slope > 0 ? 1 : slope < 0 ? 0 : 0.5;
     double x = slope / width, square = x * x;
@@ -128,14 +129,14 @@ static double rising_share(double slope, double width) {
     return fibrad_max(0, fibrad_min(1, share));
 }
 
-/* Planes across one axis: a band tells. Across z none is needed: directions pair off, but for the one that lies level,
- * if they are not turned. */
+/* All walls are planes across one axis: a band of directions tells the shares. Across z no band is needed if the
+ * directions are not turned: they form pairs, except one that is level. */
 static void add_band(const fibrad_wall_window *window, int axis, bool turned, fibrad_wall_sums *sums) {
     const double *frame = window->frame, level = frame[6 + axis];
     const double band = axis == 2 && !turned ? 0 : WALL_BAND / fibrad_sqrt(window->n);
     const double up = rising_share(level, band);
     double more = 0;
-    if (fibrad_abs(level) < band) { /* the mean of what rises lies above the direction */
+    if (fibrad_abs(level) < band) { /* the mean of the rising part lies above the direction */
         const double x = level / band, part = 1 - x * x, rise = 5.0 / 32 * band * part * part * part;
         more = rise * (window->slope[0] * frame[axis] + window->slope[1] * frame[3 + axis]);
         more = fibrad_max(-window->open * up, fibrad_min(window->open * (1 - up), more));
@@ -145,14 +146,15 @@ static void add_band(const fibrad_wall_window *window, int axis, bool turned, fi
     fibrad_wall_window_add(window, low, window->open * (1 - up) - more, 1 - up, sums);
 }
 
-/* Whether all lines of the window meet the first wall of an edge, 1, or the second, -1; 0: neither, or not surely. */
+/* Whether all lines of the window meet the first wall of an edge (1) or the second (-1). 0: neither, or it is not
+ * sure. */
 static int sole_at(const fibrad_wall_window *window, const wall_edge *edge) {
     const double reach = (1 + WALL_SOFT) * window->spread, far = fibrad_sqrt(edge->square) + 1;
     const double margin = reach * far + 1 + WALL_SOFT;
     return edge->passing > margin ? 1 : edge->passing < -margin ? -1 : 0;
 }
 
-/* The axis of the plane that all lines of the window meet, 3 for the cylinder; 4: not only one. */
+/* The axis of the plane that all lines of the window meet, or 3 for the cylinder. 4: lines meet several walls. */
 static uint32_t sole_wall(const fibrad_wall_window *window, const fibrad_wall_view *view) {
     const wall_course course = course_of(view, window->frame + 6);
     const double *ahead = course.ahead, *rate = course.rate;

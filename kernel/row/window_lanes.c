@@ -1,8 +1,8 @@
-/* window_lanes.c - resolves one window of a beam. Compiled once per instruction set. SPDX-License-Identifier: MIT
+/* window_lanes.c - computes one window of a beam. Compiled once per instruction set. SPDX-License-Identifier: MIT
  *
- * Per direction, the window is the shadow disc of sphere i; the spheres ahead throw discs on it, nearest first. They
- * are found shell by shell: after a shell all discs down to some depth are known, and these are resolved in the order
- * of their depth. Most windows are covered before a second shell is needed. */
+ * The window is the projection of sphere i along the direction. The spheres ahead project discs on it. Spheres are
+ * found shell by shell. After a shell all discs down to some depth are known. These discs are taken from front to
+ * back. Most windows are covered before a second shell is needed. */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
 #include "base/sort.h"
@@ -13,8 +13,8 @@
 #include "window/dense_lanes.h"
 #include "window/points_lanes.h"
 
-/* Appends the discs of one shell that come before the window, after a cull in floats. That their places are listed
- * before they are used saves one mispredicted branch for most vectors. */
+/* Appends the discs of one shell that come before the window. A cull in floats comes first. Its result is a list of
+ * places, used afterwards. For most vectors this avoids a branch that would be mispredicted. */
 static void cull_for_window(fibrad_workspace *work, const double frame[9], uint32_t shell) {
     fibrad_sight sight = work->near.all;
     size_t begin = shell > 0 ? work->near.end[shell - 1] : 0, end = work->near.end[shell];
@@ -29,8 +29,8 @@ static void cull_for_window(fibrad_workspace *work, const double frame[9], uint3
     LANED(fibrad_near_discs)(work, frame, (uint32_t)(to - from));
 }
 
-/* Front to back. At equal depths discs of spheres that do not interpenetrate do not overlap, but they may touch; so
- * their order is fixed, too. Resolved ones stay in front. */
+/* Whether a disc lies in front of another. At equal depths discs of spheres that do not interpenetrate do not
+ * overlap but may touch, so their order is fixed too. Discs that have been used stay in front. */
 static bool disc_before(const fibrad_workspace *work, uint32_t k, uint32_t other) {
     const fibrad_discs *disc = &work->disc;
     if (disc->depth[k] != disc->depth[other]) return disc->depth[k] < disc->depth[other];
@@ -40,7 +40,7 @@ static bool disc_before(const fibrad_workspace *work, uint32_t k, uint32_t other
     return disc->u[k] != disc->u[other] ? disc->u[k] < disc->u[other] : disc->v[k] < disc->v[other];
 }
 
-/* Sorts places [from, to) of the order. */
+/* Sorts positions [from, to) of the order. */
 static void sort_discs_by_insertion(fibrad_workspace *work, uint32_t from, uint32_t to) {
     uint32_t *order = work->disc.order + from;
     const uint32_t count = to - from;
@@ -53,8 +53,8 @@ static void sort_discs_by_insertion(fibrad_workspace *work, uint32_t from, uint3
         }
 }
 
-/* Sorts many discs digit by digit of their depths in floats, whose bits ascend as they do, and those that are equal
- * then by insertion. */
+/* Sorts many discs by their depths as floats, digit by digit: the bits of floats >= 0 ascend as the floats do. Then
+ * insertion sorts depths that are equal as floats. */
 static void sort_discs_by_digits(fibrad_workspace *work) {
     const fibrad_discs *disc = &work->disc;
     uint32_t resolved = 0, count = 0, largest = 0;
@@ -62,7 +62,7 @@ static void sort_discs_by_digits(fibrad_workspace *work) {
         union {
             float depth;
             uint32_t bits;
-        } key = {(float)disc->depth[k] + 0.0f}; /* no negative zero */
+        } key = {(float)disc->depth[k] + 0.0f}; /* so that there is no negative zero */
         if (disc->depth[k] < 0) {
             disc->order[resolved++] = k;
             continue;
@@ -78,10 +78,10 @@ static void sort_discs_by_digits(fibrad_workspace *work) {
     }
 }
 
-/* Lists all but the resolved discs in order. Up to DISCS_RANKED of them are sorted by counting, in lanes, how many lie
- * before each, which no branch depends on; insertion mispredicted 38 branches a window. Depths that are equal in floats
- * share a rank, and the ranks then add up to less than they should. The list is padded to whole eights, so that the
- * number of rounds can be predicted, with depths beyond all others. */
+/* Lists in order all discs that have not been used. Up to DISCS_RANKED discs are sorted by counting how many lie
+ * before each, in lanes and without branches. Insertion mispredicted 38 branches a window. Depths that are equal as
+ * floats have the same rank. Then the sum of all ranks is too small, which shows it. The list is padded to a
+ * multiple of eight with depths beyond all others, so that the number of rounds is easy to predict. */
 #define DISCS_RANKED 256
 static void sort_discs(fibrad_workspace *work, uint32_t resolved) {
     _Alignas(64) float key[DISCS_RANKED + FIBRAD_LANES_MAX];
@@ -112,7 +112,7 @@ static void sort_discs(fibrad_workspace *work, uint32_t resolved) {
     sort_discs_by_digits(work);
 }
 
-/* How many discs are not deeper than `depth`. */
+/* The number of discs that are not deeper than `depth`. */
 static uint32_t discs_down_to(const fibrad_discs *disc, double depth) {
     uint32_t count = 0;
     for (uint32_t k = 0; k < disc->count; k += VD_LANES)
@@ -121,8 +121,7 @@ static uint32_t discs_down_to(const fibrad_discs *disc, double depth) {
     return count;
 }
 
-/* Resolves discs [from, return) of the window, the ones down to `depth`: hides from the window what they cover. *open
- * is false once the window is covered. */
+/* Hides what discs [from, return) cover, those down to `depth`. *open: out: false if the window is covered. */
 static uint32_t resolve_discs(fibrad_workspace *work, fibrad_points *points, uint32_t window, uint32_t from,
                               double depth, bool *open) {
     const fibrad_discs disc = work->disc;
@@ -134,7 +133,7 @@ static uint32_t resolve_discs(fibrad_workspace *work, fibrad_points *points, uin
     } else {
         to = LANED(fibrad_points_discs)(points, &work->disc, from, depth);
         *open = points->open > 0;
-        uint32_t *end = disc.occluder; /* beyond `to` no disc hides any */
+        uint32_t *end = disc.occluder; /* discs beyond `to` hide no point */
         for (uint32_t d = from; d < to; d += VF_LANES)
             end += vf_compress_places(end, vn_some_bits(disc.hidden_points + d), d);
         for (const uint32_t *rank = disc.occluder; rank < end; rank++) {
@@ -151,7 +150,7 @@ static uint32_t resolve_discs(fibrad_workspace *work, fibrad_points *points, uin
     return to;
 }
 
-/* Windows of more discs in the first shell than this have many arcs, most of them. */
+/* Windows with more discs than this in the first shell mostly have many arcs. */
 #define DISCS_DENSE 44
 
 double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], fibrad_points *points, uint32_t k) {
@@ -163,7 +162,7 @@ double LANED(fibrad_beam_window)(fibrad_workspace *work, const double frame[9], 
 
     bool open = true;
     uint32_t resolved = 0;
-    double known = -1, horizon = __builtin_inf(); /* all spheres of minimum depth <= known are listed */
+    double known = -1, horizon = __builtin_inf(); /* all spheres with a minimum depth of at most `known` are listed */
     for (uint32_t shell = 0; open && known < horizon; shell++) {
         if (shell == work->near.shells && fibrad_near_pays(&work->near)) LANED(fibrad_near_extend)(work);
         if (shell < work->near.shells) {

@@ -1,14 +1,15 @@
 /* exact.c - the view factor of two spheres with nothing in between. SPDX-License-Identifier: MIT
  *
- * With d the centre distance, lengths in units of d, R >= r the radii and g the gap, the directional form is the mean
+ * Lengths are in units of the distance d of the centres. R >= r are the radii and g is the gap. The directional form is
+ * the mean
  *
  *     F12 = (r2^2 / 2) < 1 / (1 + sqrt(p + q y)) >,    p = g (2 (R + r) + g) = 1 - (R + r)^2,    q = 4 R r,
  *
- * over y = sin^2 t with density (16/pi) sin^2 t cos^2 t on [0, pi/2]: every term is positive, p comes from the gap
- * itself, and the far field, < > = 1/2, is no special case. What is hard is p << q, where sqrt(p + q y) bends at
- * y = -p/q, near the end of the range. The density takes the weight off that end, and nodes that thin out
- * exponentially towards it, t = (pi/2)(e^5u - 1)/(e^5 - 1) at the 28 Gauss-Legendre nodes u of [0, 1], resolve the bend
- * wherever it may lie: one rule errs by less than 2e-16 for all 0 <= p, q with p + q <= 1.
+ * over y = sin^2 t with density (16/pi) sin^2 t cos^2 t on [0, pi/2]. All terms are positive, p is computed from the
+ * gap itself, and the far field, where < > = 1/2, needs no special case. The difficult case is p << q. There
+ * sqrt(p + q y) has a bend at y = -p/q, near the end of the range. The density gives this end little weight. The nodes
+ * are dense there: t = (pi/2)(e^5u - 1)/(e^5 - 1) at the 28 Gauss-Legendre nodes u of [0, 1]. So they resolve the bend
+ * wherever it is. The error of the rule is below 2e-16 for all 0 <= p, q with p + q <= 1.
  * tests/data/generate_pair_exact.c makes the table. */
 #include "base/port.h"
 #include "fibrad.h"
@@ -35,7 +36,7 @@ static const double weight[NODES] = {
 
 static const double pi = 3.14159265358979323846;
 
-/* The sum of LANES interleaved partial sums: one order of additions for every compiler and vector length. */
+/* The sum of LANES interleaved partial sums. All compilers and vector lengths add in the same order. */
 static double fold(const double sum[LANES]) { return (sum[0] + sum[2]) + (sum[1] + sum[3]); }
 
 /* < 1 / (1 + sqrt(p + q y)) > */
@@ -55,9 +56,9 @@ static double mean_overlapping(double e, double q) {
     return fold(sum);
 }
 
-/* Area a - sin a cos a of the segment of the unit circle with half angle a, from t = tan(a/2) > 0. Below t = 1 it is
- * 2 (atan t - t) + 2 t^3 (3 + t^2)/(1 + t^2)^2, and atan t = 4 atan u with u = tan(a/8) <= 0.2, so that no digits
- * cancel in a thin segment. */
+/* Area a - sin a cos a of the segment of the unit circle with half angle a. t = tan(a/2) > 0. For t < 1 it is
+ * 2 (atan t - t) + 2 t^3 (3 + t^2)/(1 + t^2)^2 with atan t = 4 atan u, u = tan(a/8) <= 0.2. So no digits cancel in a
+ * thin segment. */
 static double lens_segment(double t) {
     if (t > 1) return pi - lens_segment(1 / t);
     double half = t / (1 + fibrad_sqrt(1 + t * t));
@@ -69,14 +70,15 @@ static double lens_segment(double t) {
     return 2 * (excess + t * t * t * (2 + s) / (s * s));
 }
 
-/* r1^2 F12 / r^2 for spheres that overlap, R >= r, gap in (-2 r, 0): with L the lens area at distance d and c the
- * chord,
+/* r1^2 F12 / r^2 for spheres that overlap, R >= r, gap in (-2 r, 0). With the area L of the lens at distance d and the
+ * chord c,
  *
  *     2 pi r1^2 F12 = L(d) + integral of c(s) (1 - sqrt(1 - s^2/d^2)) ds,    s from R - r to d.
  *
- * In y = (1 - s^2/d^2)/w^2, w^2 = 1 - (R - r)^2/d^2, the integrand is sqrt((1 - y)(y + e))/(1 + w sqrt(y)), e = -p/w^2.
- * Its part odd in sqrt(y) goes by the rule above; the even part, sqrt((1 - y)(y + e)), is the segment of a circle, as
- * are the two parts of the lens. The arguments of `segment` are the half-angle formulas of the triangle R, r, d. */
+ * In y = (1 - s^2/d^2)/w^2, w^2 = 1 - (R - r)^2/d^2, the integrand is sqrt((1 - y)(y + e))/(1 + w sqrt(y)) with
+ * e = -p/w^2. The rule above integrates the part that is odd in sqrt(y). The even part, sqrt((1 - y)(y + e)), is the
+ * segment of a circle, as are the two parts of the lens. The arguments of `lens_segment` come from the half-angle
+ * formulas of the triangle R, r, d. */
 static double exchange_overlapping(double R, double r, double gap) {
     double a = 2 * R + gap, b = 2 * r + gap, c = a + 2 * r, g = -gap; /* all > 0 */
     double d = R - r + b;
@@ -85,12 +87,12 @@ static double exchange_overlapping(double R, double r, double gap) {
         R / r * (R / r * lens_segment(fibrad_sqrt(g / a * (b / c)))) + lens_segment(fibrad_sqrt(g / b * (a / c)));
     double even = R / d * (R / d) * lens_segment(fibrad_sqrt(a / g * (b / c)));
     double chord = d / r * w2;
-    double e = g / a * fibrad_min(c / b, 1e300); /* where c / b is more, the chord is nothing */
+    double e = g / a * fibrad_min(c / b, 1e300); /* for larger ratios the chord is 0 */
     double odd = pi / 16 * chord * chord * w * mean_overlapping(e, w2);
     return (lens + (even - odd)) / (2 * pi);
 }
 
-/* Lengths must leave room for sums and ratios. */
+/* Radii within these bounds leave room for sums and ratios. */
 static bool valid_radius(double r) { return r >= FIBRAD_LENGTH_MIN && r <= FIBRAD_LENGTH_MAX; }
 
 int fibrad_pair_exact(double r1, double r2, double gap, double *f12) {

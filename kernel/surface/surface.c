@@ -50,14 +50,15 @@ int fibrad_surface_factor(fibrad_surface_task *task, fibrad_surface_lanes lanes,
     } else if (sums.open[0] > 0 && sums.open[1] > 0) {
         *f12 = seen == open ? exact : exact * (seen / open);
         facts->error = 0.5 * exact * fibrad_abs(sums.seen[0] / sums.open[0] - sums.seen[1] / sums.open[1]);
-    } else { /* no nodes that face each other: radii too different for so few */
+    } else { /* no nodes face each other: the radii are too different for so few nodes */
         *f12 = exact;
         facts->error = exact;
     }
     return FIBRAD_OK;
 }
 
-/* Three lists of n obstacles in `scratch`: those of the caller, those of the pair, those of a node. */
+/* List `which` of three lists in `scratch`, with room for n obstacles each: those of the caller, those of the pair,
+ * those of a node. */
 static fibrad_obstacles list_of(double *scratch, uint32_t n, uint32_t which) {
     const size_t padded = ((size_t)n + 7) / 8 * 8;
     double *x = n == 0 ? NULL : scratch + 4 * padded * which;

@@ -1,14 +1,14 @@
 /* surface_lanes.c - the two loops of the surface method that run in lanes. SPDX-License-Identifier: MIT
  *
- * Eight partial sums whatever the width of a vector, so that no bit depends on it. What is left out to save time is
- * left out with a margin above rounding: it could not have changed a bit of the sums either. */
+ * There are eight partial sums for all vector widths, so that no bit depends on the width. Terms are left out only
+ * if a margin above rounding shows that they are 0. So this changes no bit either. */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
 #include "base/lanes/laned.h"
 #include "surface/surface_lanes.h"
 
 #define PARTIAL_SUMS   8
-#define SURFACE_STEPS  (PARTIAL_SUMS / VD_LANES) /* vectors of partial sums */
+#define SURFACE_STEPS  (PARTIAL_SUMS / VD_LANES) /* number of vectors for the partial sums */
 #define SURFACE_MARGIN 1e-12
 
 static vd dot(vd ax, vd ay, vd az, vd bx, vd by, vd bz) { return ax * bx + ay * by + az * bz; }
@@ -31,10 +31,10 @@ static void append_obstacles(fibrad_obstacles *list, uint32_t lanes, vd x, vd y,
     }
 }
 
-/* The two spheres touch a common cone, whose normals are inclined by asin(slope) to the planes z = const. Rays between
- * points that face each other are inside the cone, between its two circles of contact: an obstacle that overlaps this
- * body is kept. An obstacle that covers the cross-section of the cone in the plane of its own centre, with the
- * spheres on either side of that plane, hides the pair. */
+/* A cone touches both spheres. Its normals are inclined by asin(slope) to the planes z = const. Rays between points
+ * that face each other lie inside the cone, between its two circles of contact. Obstacles that overlap this body are
+ * kept. An obstacle hides the pair if it covers the cross-section of the cone in the plane of its own centre and if
+ * the spheres lie on different sides of this plane. */
 bool LANED(fibrad_surface_filter)(fibrad_surface_task *task, const fibrad_surface_frame *frame,
                                   const fibrad_obstacles *all, uint32_t self) {
     const double slope = (1 - task->r2) / task->d;
@@ -50,7 +50,7 @@ bool LANED(fibrad_surface_filter)(fibrad_surface_task *task, const fibrad_surfac
         const vd z = dot_row(frame->z, cx, cy, cz), r = vd_load(all->r + k) * frame->scale;
         const vd aside = vd_sqrt(x * x + y * y);
         const vd slack = SURFACE_MARGIN * (aside + vd_abs(z) + (high + r));
-        const vd wide = r + slack, depth = one - z * sine; /* from axis to cone */
+        const vd wide = r + slack, depth = one - z * sine; /* from the axis to the cone */
         const vm in_cone = vd_lt(aside * cosine - depth, wide);
         const vm between = vd_lt(low, z + wide) & vd_lt(z - wide, high);
         const vm covers =
@@ -64,11 +64,14 @@ bool LANED(fibrad_surface_filter)(fibrad_surface_task *task, const fibrad_surfac
     return hidden;
 }
 
-/* Fills `list` with the obstacles that can hide some of sphere 2 from the node (x, y, z) of sphere 1, relative to the
- * node and with their power |c|^2 - r^2 in place of the radius; true if all of sphere 2 is hidden. From the node,
- * sphere 2 and an obstacle are two cones; the scalar product of their axes decides whether they are apart, or one
- * within the other. Obstacles below the horizon of the node do not count either, nor those beyond the farthest visible
- * points of sphere 2, which are a tangent's length away. From a node inside an obstacle nothing is visible. */
+/* Fills `list` with the obstacles that can hide a part of sphere 2 from the node (x, y, z) of sphere 1. Their
+ * positions are relative to the node. Their power
+ * c
+ * ^2 - r^2 takes the place of the radius. Returns true if all of sphere 2 is hidden. As seen from the node, sphere 2
+ * and an obstacle are two cones. The scalar product of their axes tells whether they are apart and whether one lies
+ * within the other. Obstacles below the horizon of the node do not count. Obstacles beyond the farthest visible
+ * points of sphere 2 do not count either; these are as far as a tangent is long. From a node inside an obstacle
+ * nothing is visible. */
 static bool obstacles_of_node(const fibrad_surface_task *task, double x, double y, double z, fibrad_obstacles *list) {
     const fibrad_obstacles *all = &task->obstacles;
     const double axis_z = task->d - z, far2 = x * x + y * y + axis_z * axis_z;
@@ -100,9 +103,10 @@ static bool obstacles_of_node(const fibrad_surface_task *task, double x, double 
     return false;
 }
 
-/* The lanes whose ray e meets obstacle o before it ends. With p > 0 the power of its beginning, c the centre and
- * b = c.e, the line meets the sphere if b^2 > p e^2; ahead of the beginning if b > 0; and before the end of e if either
- * e^2 > p or the end is inside the sphere, p + e^2 < 2 b: in one, 2 max(b, e^2) > p + e^2. */
+/* The lanes whose ray e meets obstacle o before the ray ends. p > 0 is the power of the beginning of the ray, c the
+ * centre, and b = c.e. The line meets the sphere if b^2 > p e^2, and ahead of the beginning if b > 0. It does so
+ * before the end of e if e^2 > p, or if the end is inside the sphere: p + e^2 < 2 b. The last two conditions
+ * together are 2 max(b, e^2) > p + e^2. */
 static vm meets_obstacle(const fibrad_obstacles *list, uint32_t o, vd ex, vd ey, vd ez, vd ee, vd half_ee) {
     const vd p = vd_set1(list->r[o]), half_p = vd_set1(0.5 * list->r[o]);
     const vd b = dot_row((double[3]){list->x[o], list->y[o], list->z[o]}, ex, ey, ez);
@@ -115,15 +119,16 @@ static double sum_of_parts(const vd part[SURFACE_STEPS]) {
     return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
 }
 
-/* A node of sphere 1 in all lanes: its position, its normal times its weight, and what hides parts of sphere 2. */
+/* A node of sphere 1 in all lanes: its position, its normal times its weight, and the obstacles that hide parts of
+ * sphere 2. */
 typedef struct surface_origin {
     vd px, py, nx, ny, nz;
-    bool hidden; /* all of sphere 2 is */
+    bool hidden; /* whether all of sphere 2 is hidden */
     const fibrad_obstacles *near;
 } surface_origin;
 
-/* Adds to the partial sums *open and *seen the rays from a node to the nodes u of sphere 2, relative to its centre. ez:
- * their height above the node. */
+/* Adds to the partial sums *open and *seen the rays from a node to the nodes u of sphere 2, which are relative to
+ * its centre. ez: height of these nodes above the node. */
 FIBRAD_INLINE void add_rays(const surface_origin *from, vd ux, vd uy, vd uz, vd ez, vd weight, vd *open, vd *seen,
                             fibrad_surface_sums *sums) {
     const vd zero = vd_set1(0), ex = ux - from->px, ey = uy - from->py;
@@ -143,9 +148,9 @@ FIBRAD_INLINE void add_rays(const surface_origin *from, vd ux, vd uy, vd uz, vd 
     *seen += vd_select(clear, g, zero);
 }
 
-/* Node by node of sphere 1, over the nodes of sphere 2 and these turned by pi about the line of centres. The nodes of
- * both lie in order of z, so the horizons, which are the circles where the common cone touches, cut off a head or a
- * tail of the list. */
+/* Takes the nodes of sphere 1 one by one. For each it takes the nodes of sphere 2, and these nodes turned by pi
+ * about the line of centres. The nodes of both spheres are in order of z. The horizons are the circles where the
+ * common cone touches the spheres. So they exclude the first or the last nodes of a list. */
 void LANED(fibrad_surface_sum)(const fibrad_surface_task *task, fibrad_surface_sums *sums) {
     const fibrad_surface_nodes *nodes = &task->nodes;
     const double horizon = (1 - task->r2) / task->d;
@@ -181,8 +186,8 @@ void LANED(fibrad_surface_sum)(const fibrad_surface_task *task, fibrad_surface_s
         sums->seen[turn] = sum_of_parts(seen[turn]);
     }
 #if VD_LANES >= 4
-    /* gcc 12 does not do this after calls of static functions, and then SSE code of the caller runs at a third of its
-     * speed */
+    /* gcc 12 does not do this after calls of static functions. SSE code of the caller would then take three times as
+     * long. */
     _mm256_zeroupper();
 #endif
 }

@@ -10,13 +10,13 @@
 #include "fibrad_surface.h"
 #include "sample/tables.h"
 
-/* Further flags of a rule. They switch off what saves time. They change no bit of the factor; tests prove this, and
- * benches measure what each saves. */
+/* Further flags of a rule. Each switches off something that saves time. They change no bit of the factor. Tests
+ * prove this, and benches measure what each saves. */
 enum {
-    FIBRAD_SURFACE_NO_HORIZON = 2, /* visit also nodes that cannot see the other sphere */
-    FIBRAD_SURFACE_NO_REGION = 4,  /* test rays also against obstacles that they cannot meet */
-    FIBRAD_SURFACE_NO_EXACT = 8,   /* sum also if no obstacle is in between */
-    FIBRAD_SURFACE_NO_HIDDEN = 16  /* test every ray also if one obstacle hides the whole sphere */
+    FIBRAD_SURFACE_NO_HORIZON = 2, /* visit nodes that cannot see the other sphere too */
+    FIBRAD_SURFACE_NO_REGION = 4,  /* test rays against obstacles that they cannot meet too */
+    FIBRAD_SURFACE_NO_EXACT = 8,   /* integrate also if no obstacle is in between */
+    FIBRAD_SURFACE_NO_HIDDEN = 16  /* test each ray also if one obstacle hides the whole sphere */
 };
 
 /* Spheres in arrays on 64-byte boundaries, which can be read up to a multiple of 8. */
@@ -25,7 +25,7 @@ typedef struct fibrad_obstacles {
     uint32_t n;
 } fibrad_obstacles;
 
-/* The way into the pair frame: the centre of sphere 1, the rows of the rotation times 1/r1, and 1/r1. */
+/* The transformation into the pair frame: the centre of sphere 1, the rows of the rotation times 1/r1, and 1/r1. */
 typedef struct fibrad_surface_frame {
     double origin[3], x[3], y[3], z[3], scale;
 } fibrad_surface_frame;
@@ -36,17 +36,17 @@ typedef struct fibrad_surface_task {
     double r2, d;
     uint32_t flags;             /* fibrad_surface_flags */
     fibrad_obstacles obstacles; /* in the pair frame, from the filter */
-    fibrad_obstacles of_node;   /* room for as many */
+    fibrad_obstacles of_node;   /* room for the same number of obstacles */
 } fibrad_surface_task;
 
-/* The sum of tau' tau' cos cos/e^2 over the pairs of nodes, first with sphere 2 as it is, then turned by pi. */
+/* Sums of tau' tau' cos cos/e^2 over the pairs of nodes. Index 0: sphere 2 as it is. Index 1: sphere 2 turned by pi. */
 typedef struct fibrad_surface_sums {
-    double open[2], seen[2]; /* without and with the obstacles */
+    double open[2], seen[2]; /* without the obstacles, and with them */
     uint64_t rays, tests;    /* rays between nodes that face each other; ray-sphere tests */
 } fibrad_surface_sums;
 
-/* Fills task->obstacles with what of `all` (except number `self`, which is one of the two spheres) reaches into
- * the space between the two spheres; true if one of them hides all of sphere 2. */
+/* Fills task->obstacles with the spheres of `all` that reach into the space between the two spheres. Number `self`
+ * is one of the two and is left out. True: one of the obstacles hides all of sphere 2. */
 typedef bool fibrad_surface_filter_function(fibrad_surface_task *task, const fibrad_surface_frame *frame,
                                             const fibrad_obstacles *all, uint32_t self);
 

@@ -10,9 +10,9 @@ static bool periods_exceeded(const fibrad_scene *scene, double cutoff) {
     return false;
 }
 
-/* Lists all spheres within the cutoff of sphere i (images included, itself not), at their places in the scene [L], in
- * work->near, and counts them beyond its capacity. Gives up, with a count above FIBRAD_WORK_MAX, if there are more than
- * that in the cube about the cutoff. */
+/* Lists all spheres within the cutoff of sphere i in work->near, at their places in the scene [L]. Images are
+ * included, sphere i itself is not. Spheres beyond the capacity are only counted. If the cube about the cutoff has
+ * more than FIBRAD_WORK_MAX spheres, the search ends with a count above this number. */
 static uint64_t list_blockers(fibrad_workspace *work) {
     const fibrad_scene *scene = work->scene;
     fibrad_near *near = &work->near;
@@ -44,8 +44,8 @@ static uint64_t list_blockers(fibrad_workspace *work) {
     return count;
 }
 
-/* The frame whose z axis goes from sphere 1 to sphere 2, and the gap between them. The x axis is across the coordinate
- * axis that w has least of. */
+/* The frame whose z axis goes from sphere 1 to sphere 2, and the gap between the spheres. The x axis is across the
+ * coordinate axis along which w is shortest. */
 static double pair_frame(fibrad_surface_frame *frame, const double c1[3], double r1, const double c2[3], double r2) {
     double w[3], u[3], v[3], square = 0;
     const double scale = 1 / (r1 + r2);
@@ -74,7 +74,7 @@ static double pair_frame(fibrad_surface_frame *frame, const double c1[3], double
 /* Bytes of the two lists of obstacles of a pair. */
 static size_t lists_bytes(uint64_t count) { return (size_t)(count + 7) / 8 * 8 * 8 * sizeof(double); }
 
-/* List 0 or 1 of room for `count` obstacles in the extra bytes of work memory. */
+/* List 0 or 1 in the extra bytes of work memory, with room for `count` obstacles. */
 static fibrad_obstacles blocker_list(const fibrad_workspace *work, uint64_t count, size_t which) {
     const size_t padded = (size_t)(count + 7) / 8 * 8;
     double *x = (double *)work->extra + 4 * padded * which;
@@ -87,7 +87,7 @@ typedef struct surface_row_task {
     fibrad_surface_nodes nodes;
 } surface_row_task;
 
-/* F from sphere i to near sphere k, and its error. */
+/* The view factor from sphere i to near sphere k, and its error. */
 static int factor_to(fibrad_surface_task *task, const fibrad_workspace *work, fibrad_surface_lanes lanes, uint32_t i,
                      const fibrad_obstacles *all, uint32_t k, double *f, double *error) {
     const fibrad_near *near = &work->near;

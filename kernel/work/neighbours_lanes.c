@@ -1,19 +1,20 @@
-/* neighbours_lanes.c - shells of spheres near that of the row, and marches along one direction. Compiled once per
- * instruction set. SPDX-License-Identifier: MIT */
+/* neighbours_lanes.c - shells of spheres near the sphere of the row, and marches along one direction. Compiled once
+ * per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
 #include "work/neighbours_lanes.h"
 #include "scene/grid_walk.h"
 
-/* The floats of the culls, for spheres [from, to) of the list. A cull may pass a sphere that the exact test then
- * rejects, but not the other way round: the errors of three products and two sums are less than 4 ulp of the distance,
- * those of their squares less than 40 ulp of its square. Beyond the range of floats a cull passes all. */
+/* Computes the floats for comparisons (culls) of spheres [from, to) of the list. A cull may pass a sphere that the
+ * exact test rejects later. It never rejects a sphere that the exact test would pass. The errors of three products
+ * and two sums are less than 4 ulp of the distance. Those of their squares are less than 40 ulp of its square.
+ * Beyond the range of floats a cull passes all spheres. */
 static void prepare_culls(fibrad_near *near, uint32_t from, uint32_t to) {
     const vd one = vd_set1(1), zero = vd_set1(0);
     for (uint32_t k = from; k < to; k += VD_LANES) {
         vd x = vd_load(near->x + k), y = vd_load(near->y + k), z = vd_load(near->z + k), r = vd_load(near->r + k);
         vd square = x * x + y * y + z * z, wide = one + r;
-        vd size = vd_abs(x) + vd_abs(y) + vd_abs(z); /* at least the distance */
+        vd size = vd_abs(x) + vd_abs(y) + vd_abs(z); /* an upper bound of the distance */
         vd e = vd_sqrt(vd_max(square - wide * wide, zero)), about = one + size;
         vd q = square + one - r * r;
         vm small = vd_lt(size, vd_set1(1e18));
@@ -26,16 +27,17 @@ static void prepare_culls(fibrad_near *near, uint32_t from, uint32_t to) {
     }
 }
 
-/* Coordinates of spheres of the current run, relative to the centre and in units of the radius. */
+/* Coordinates of the spheres of the current run, relative to the centre and in units of the radius. */
 static inline vd relative_to_centre(const fibrad_workspace *work, const fibrad_walk *walk, int axis,
                                     const double *coordinate) {
     vd c = vd_loadu(coordinate) - work->centre[axis];
     return (c + walk->shift[axis]) * work->inverse;
 }
 
-/* Appends those of the spheres on a walk whose squared minimum depth lies in (from, to]. False: no room. */
+/* Appends those spheres of a walk whose squared minimum depth lies in (from, to]. False: there is no room. */
 static bool collect_near(fibrad_workspace *work, fibrad_walk *walk, double from, double to, uint32_t *count) {
-    const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
+    const fibrad_near near =
+        work->near; /* copies, so that the compiler sees that stores do not change their pointers */
     const fibrad_scene scene = *work->scene;
     const vd inverse = vd_set1(work->inverse), cutoff2 = vd_set1(work->reach * work->reach), zero = vd_set1(0);
     uint32_t n = *count;
@@ -46,7 +48,7 @@ static bool collect_near(fibrad_workspace *work, fibrad_walk *walk, double from,
             vd r = vd_loadu(scene.r + j) * inverse, wide = 1 + r;
             vd square = x * x + y * y + z * z;
             vd e = square - wide * wide;
-            vm other = vd_lt(zero, square) & vd_le(square, cutoff2); /* than the sphere itself */
+            vm other = vd_lt(zero, square) & vd_le(square, cutoff2); /* the sphere of the row itself is left out */
             vm in_range = vd_lt(vd_set1(from), e) & vd_le(e, vd_set1(to));
             uint32_t bits = vm_bits(in_range & other) & vd_lanes_below(walk->end - j);
             if (n + VD_LANES > near.capacity) return false;
@@ -66,7 +68,8 @@ void LANED(fibrad_near_extend)(fibrad_workspace *work) {
     uint32_t shell = near->shells, begin = shell > 0 ? near->end[shell - 1] : 0, count = begin;
     double from = shell > 0 ? near->limit[shell - 1] : 0;
     double to = shell > 0 ? work->growth * from : work->step;
-    near->full = shell == FIBRAD_SHELLS || (shell > 0 && to < work->free_path); /* few windows meet any in it */
+    near->full = shell == FIBRAD_SHELLS ||
+                 (shell > 0 && to < work->free_path); /* few windows would meet a sphere of another shell */
     for (uint32_t l = 0; l < scene->levels && !near->full; l++) {
         double wide = 1 + scene->level[l].radius_max * work->inverse;
         double ball = fibrad_min(fibrad_sqrt(to * to + wide * wide), work->reach) * work->unit, low[3], high[3];
@@ -89,11 +92,12 @@ void LANED(fibrad_near_extend)(fibrad_workspace *work) {
     near->shells++;
 }
 
-/* Lists the first shell for an octant of directions; false: no room. Sphere c comes before none of its windows if the
- * most that w.c can be, the length of what c has along the octant's axes, is not more than e. e is lowered by more than
- * rounding; below 0 it may be anything. What fills the shell up is at 0 with e = 0. */
+/* Lists the spheres of the first shell for an octant of directions. False: there is no room. A sphere with centre c
+ * comes before no window of the octant if the greatest w.c of these directions is at most e. The greatest w.c is the
+ * length of the components of c that point into the octant. e is lowered by more than the rounding errors. Where e
+ * is below 0, nothing is known. The points that fill the shell up lie at 0 and have e = 0. */
 static bool list_octant(const fibrad_near *of, uint32_t octant, fibrad_sight *sight) {
-    const fibrad_near near = *of; /* copies: what is stored cannot change their pointers */
+    const fibrad_near near = *of; /* copies, so that the compiler sees that stores do not change their pointers */
     const fibrad_sight to = *sight;
     const vf sx = vf_set1(octant & 1 ? -1 : 1), sy = vf_set1(octant & 2 ? -1 : 1), sz = vf_set1(octant & 4 ? -1 : 1);
     const vf zero = vf_set1(0);
@@ -124,7 +128,7 @@ const fibrad_sight *LANED(fibrad_near_sight)(fibrad_near *near, const double w[3
     return near->seen[octant];
 }
 
-/* Removes the discs from number `from` on that do not overlap the window or do not lie ahead. */
+/* Removes those discs from number `from` on that do not overlap the window or do not lie ahead. */
 static void remove_not_ahead(fibrad_workspace *work, uint32_t from) {
     const fibrad_discs disc = work->disc;
     uint32_t to = from, own = work->near.capacity;
@@ -141,15 +145,16 @@ static void remove_not_ahead(fibrad_workspace *work, uint32_t from) {
 static inline vd component(const double a[3], vd x, vd y, vd z) { return a[0] * x + a[1] * y + a[2] * z; }
 
 void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uint32_t found) {
-    const fibrad_near near = work->near; /* copies: what is stored cannot change their pointers */
+    const fibrad_near near =
+        work->near; /* copies, so that the compiler sees that stores do not change their pointers */
     const fibrad_discs disc = work->disc;
     uint32_t from = disc.count, end = from + found;
     if (end > disc.capacity) {
         work->disc.count = end;
         return;
     }
-    fibrad_zero(disc.near + end, VD_LANES * sizeof *disc.near); /* read, too, in the last vector */
-    uint32_t outside = 0;                                       /* the window, or not certainly ahead */
+    fibrad_zero(disc.near + end, VD_LANES * sizeof *disc.near); /* the last vector also reads these */
+    uint32_t outside = 0;                                       /* outside the window, or not certainly ahead */
     for (uint32_t k = from; k < end; k += VD_LANES) {
         const uint32_t *place = disc.near + k;
         vd x = vd_gather(near.x, place), y = vd_gather(near.y, place), z = vd_gather(near.z, place);
@@ -167,43 +172,48 @@ void LANED(fibrad_near_discs)(fibrad_workspace *work, const double frame[9], uin
     if (outside != 0) remove_not_ahead(work, from);
 }
 
-/* Rows are cells that a beam meets side by side along x; runs the same within the box. They and the spheres found are
- * gathered before they are looked at, so that lanes are full and waits for memory overlap. */
+/* A march collects rows, runs and spheres in lists before it looks at them. So lanes are full, and waits for memory
+ * overlap. A row is the cells side by side along x that a beam meets. A run is the part of a row within one image of
+ * the box. */
 #define MARCH_ROWS  (6 * VD_LANES)
 #define MARCH_RUNS  (6 * VD_LANES)
 #define MARCH_FOUND (8 * VD_LANES)
 
-/* A march along a beam, or a ray of one, through the cells of one level. Coordinates are in cells. */
+/* A march along a beam, or along a ray, through the cells of one level. Coordinates are in units of cells. */
 typedef struct march {
-    _Alignas(64) double layer[MARCH_ROWS];                           /* cells */
-    double row[MARCH_ROWS], near[MARCH_ROWS], far[MARCH_ROWS];       /* cells, and depths in which they are met */
-    double begin[MARCH_RUNS], end[MARCH_RUNS], shift[3][MARCH_RUNS]; /* cells of the scene; by whole periods */
+    _Alignas(64) double layer[MARCH_ROWS]; /* cells */
+    double row[MARCH_ROWS], near[MARCH_ROWS],
+        far[MARCH_ROWS]; /* cells, and the depths between which the beam meets them */
+    double begin[MARCH_RUNS], end[MARCH_RUNS], shift[3][MARCH_RUNS]; /* cells of the scene; shift by whole periods */
     uint32_t first_sphere[MARCH_RUNS], end_sphere[MARCH_RUNS];
-    uint32_t sphere[MARCH_FOUND], run[MARCH_FOUND]; /* found, and where */
+    uint32_t sphere[MARCH_FOUND], run[MARCH_FOUND]; /* the spheres found, and the run of each */
     fibrad_workspace *work;
     const fibrad_level *level;
     const double *frame;
     const fibrad_tube *tube;
-    double from, to;                      /* squared minimum depths of spheres looked for: (from, to] */
-    double slack;                         /* for rounding, in radii */
-    double at[3], slope[3], per_slope[3]; /* the beam at depth 0, what it advances per depth, and 1/that */
-    double side[3], depth[3];             /* half its width, with that of the largest sphere; the depth that takes */
-    double first[3], last[3];             /* the outermost cells, in which are strays, too */
-    double cells[3], per_cells[3];        /* of the box */
-    int layers_across, rows_across;       /* axes */
+    double from, to; /* squared minimum depths: spheres in (from, to] are wanted */
+    double slack;    /* allowance for rounding errors, in radii */
+    double at[3], slope[3],
+        per_slope[3];         /* place of the beam at depth 0, its advance per depth, and 1 over this advance */
+    double side[3], depth[3]; /* half the width of the tube, the largest sphere included; the depth in which the beam
+                                 advances by it */
+    double first[3], last[3]; /* the outermost cells, which also contain stray spheres */
+    double cells[3], per_cells[3];  /* number of cells of the box, and 1 over it */
+    int layers_across, rows_across; /* axes */
     uint32_t rows, runs, found;
 } march;
 
-/* Coordinates of found spheres, relative to the centre and in units of the radius. */
+/* Coordinates of the spheres found, relative to the centre and in units of the radius. */
 static inline vd found_coordinate(const march *m, uint32_t k, int axis, const double *coordinate) {
     vd c = vd_gather(coordinate, m->sphere + k) - m->work->centre[axis];
     return (c + vd_gather(m->shift[axis], m->run + k)) * m->work->inverse;
 }
 
-/* Appends the discs of the found spheres. Those at depth 0 may turn out not to lie ahead. */
+/* Appends the discs of the spheres found. Those at depth 0 may turn out not to lie ahead. */
 static void append_found(march *m) {
     fibrad_workspace *work = m->work;
-    const fibrad_scene scene = *work->scene; /* copies: what is stored cannot change their pointers */
+    const fibrad_scene scene =
+        *work->scene; /* copies, so that the compiler sees that stores do not change their pointers */
     const fibrad_discs disc = work->disc;
     const double *frame = m->frame;
     const vd inverse = vd_set1(work->inverse), cutoff2 = vd_set1(work->reach * work->reach), zero = vd_set1(0);
@@ -217,7 +227,7 @@ static void append_found(march *m) {
         wide *= wide;
         vd e = square - wide;
         vm in_range = vd_lt(vd_set1(m->from), e) & vd_le(e, vd_set1(m->to));
-        vm other = vd_lt(zero, square) & vd_le(square, cutoff2); /* than the sphere itself */
+        vm other = vd_lt(zero, square) & vd_le(square, cutoff2); /* the sphere of the row itself is left out */
         vm ahead = vd_le(zero, depth) & vd_le(e, depth * depth * (1 + 1e-12));
         uint32_t bits = vm_bits(in_range & other & ahead & vd_lt(u * u + v * v, wide)) & vd_lanes_below(m->found - k);
         if (n <= disc.capacity) {
@@ -233,7 +243,7 @@ static void append_found(march *m) {
     m->found = 0;
 }
 
-/* Finds the spheres of the runs that may come before the beam: all that do, and few others. */
+/* Finds the spheres of the runs that may come before the beam: all spheres that do, and few others. */
 static void look_at_runs(march *m) {
     const fibrad_workspace *work = m->work;
     const fibrad_scene *scene = work->scene;
@@ -249,10 +259,10 @@ static void look_at_runs(march *m) {
         origin[axis] = (scene->coarse_low[axis] - work->centre[axis]) * work->inverse;
         x[axis] = frame[axis] * unit, y[axis] = frame[3 + axis] * unit;
     }
-    /* where coarse coordinates are 0, from the middle of the tube */
+    /* the place where coarse coordinates are 0, relative to the middle of the tube */
     const double u_at = frame[0] * origin[0] + frame[1] * origin[1] + frame[2] * origin[2] - m->tube->u;
     const double v_at = frame[3] * origin[0] + frame[4] * origin[1] + frame[5] * origin[2] - m->tube->v;
-    _Alignas(64) double u0[MARCH_RUNS], v0[MARCH_RUNS]; /* the same of images */
+    _Alignas(64) double u0[MARCH_RUNS], v0[MARCH_RUNS]; /* the same for images */
     for (uint32_t k = 0; k < m->runs; k += VD_LANES) {
         vd sx = vd_loadu(m->shift[0] + k), sy = vd_loadu(m->shift[1] + k), sz = vd_loadu(m->shift[2] + k);
         vd_store(u0 + k, u_at + component(frame, sx, sy, sz) * work->inverse);
@@ -288,10 +298,10 @@ static inline vd whole(vd x) {
     return nearest - vd_select(vd_lt(x, nearest), vd_set1(1), vd_set1(0));
 }
 
-/* How many periods away the image is in which a cell is. */
+/* The number of periods between the box and the image that contains a cell. */
 static inline vd periods_away(const march *m, int axis, vd cell) { return whole((cell + 0.5) * m->per_cells[axis]); }
 
-/* Narrows depths to those in which the beam meets a cell of an axis. */
+/* Narrows a range of depths to the depths in which the beam meets a cell of an axis. */
 static inline void narrow_to_cell(const march *m, int axis, vd cell, vd *near, vd *far) {
     const vd inf = vd_set1(__builtin_inf());
     vd low = vd_select(vd_lt(vd_set1(m->first[axis]), cell), cell, 0 - inf);
@@ -309,7 +319,7 @@ static inline void cells_met(const march *m, int axis, vd near, vd far, vd *low,
     *high = whole(vd_max(first, vd_min(last, m->at[axis] + m->side[axis] + vd_max(near, far))));
 }
 
-/* Divides the rows into runs. */
+/* Divides rows into runs. */
 static void look_at_rows(march *m) {
     const int a = m->layers_across, b = m->rows_across;
     const double *period = m->work->scene->period, stride[3] = {1, m->cells[0], m->cells[0] * m->cells[1]};
@@ -340,8 +350,9 @@ static void look_at_rows(march *m) {
     m->rows = 0;
 }
 
-/* Spheres of one level, of minimum depth in (from, to], lie in a stretch of the tube of radius 1 + r about the beam, or
- * of radius r about a ray of it. Its axes in cells; returns the depths of the stretch. */
+/* Prepares a march for spheres of one level with minimum depths in (from, to]. Such spheres lie in a stretch of a
+ * tube. The radius of the tube is 1 + r about the axis of a beam, and r about a ray. near, far: out: the depths of
+ * the stretch. */
 static void begin_march(march *m, double from, double to, double *near, double *far) {
     const fibrad_workspace *work = m->work;
     const fibrad_scene *scene = work->scene;
@@ -351,7 +362,7 @@ static void begin_march(march *m, double from, double to, double *near, double *
     m->slack = 0;
     *near = fibrad_max(from, 0);
     const double aside = fibrad_sqrt(m->tube->u * m->tube->u + m->tube->v * m->tube->v);
-    const double inner = fibrad_max(0, aside - m->tube->radius - r - 1e-6); /* centres are not nearer to the axis */
+    const double inner = fibrad_max(0, aside - m->tube->radius - r - 1e-6); /* no centre is nearer to the axis */
     *far = fibrad_min(fibrad_sqrt(to * to + (1 + r) * (1 + r) - inner * inner), fibrad_near_horizon(work, w));
     for (int axis = 0; axis < 3; axis++) {
         const double middle = m->tube->u * m->frame[axis] + m->tube->v * m->frame[3 + axis];
@@ -374,8 +385,8 @@ static void begin_march(march *m, double from, double to, double *near, double *
     }
 }
 
-/* Cells are met layer by layer along y or z, whichever the beam is more nearly along; in each row by row; in each all
- * at once along x, in which they lie side by side in memory. */
+/* Goes through the cells layer by layer along y or z, whichever axis is nearer to the beam's direction. In each
+ * layer it goes row by row. The cells of a row lie side by side in memory, along x, and are taken together. */
 static void march_level(march *m, double from, double to) {
     _Alignas(64) double near[VD_LANES], far[VD_LANES], low[VD_LANES], high[VD_LANES], number[VD_LANES];
     double begin, end;
@@ -411,7 +422,7 @@ void LANED(fibrad_near_march)(fibrad_workspace *work, const double frame[9], con
                               double to) {
     uint32_t first = work->disc.count, own = work->near.capacity;
     march m;
-    fibrad_zero(&m, sizeof m); /* lanes beyond a count are looked at, too */
+    fibrad_zero(&m, sizeof m); /* lanes beyond the end of a list are read too */
     m.work = work, m.frame = frame, m.tube = tube;
     m.from = from < 0 ? -__builtin_inf() : from * from, m.to = to * to;
     for (uint32_t l = 0; l < work->scene->levels; l++) {

@@ -1,7 +1,7 @@
-/* record.h - rows as a collection keeps them. SPDX-License-Identifier: MIT
+/* record.h - the records of a collection of rows. SPDX-License-Identifier: MIT
  *
- * A record is this head, the factors to bodies, the factors, and the columns, padded to 8 bytes. Records follow each
- * other from the first 8-byte boundary of the block on. */
+ * A record is this head, the factors to walls, the factors to spheres, and the columns, padded to 8 bytes. Records
+ * follow each other from the first 8-byte boundary of the block on. */
 #ifndef FIBRAD_WORK_RECORD_H
 #define FIBRAD_WORK_RECORD_H
 
@@ -11,7 +11,7 @@
 typedef struct fibrad_record {
     uint32_t sphere, length, bodies;
     uint32_t symmetric;
-    uint64_t scene; /* hash of the scene it was computed for; 0: none */
+    uint64_t scene; /* hash of the scene of the row; 0: none */
     double escaped, beyond, error;
 } fibrad_record;
 
@@ -28,21 +28,22 @@ static inline size_t fibrad_record_size(uint32_t length, uint32_t bodies) {
     return sizeof(fibrad_record) + ((size_t)bodies + length) * sizeof(double) + ((size_t)length + 1) / 2 * 8;
 }
 
-/* The first record at or after byte `at` of a collection; NULL: there is none. *at becomes where the next one begins.
- */
+/* The first record at or after byte `at` of a collection. NULL: there is none. *at: out: where the next record
+ * begins. */
 const fibrad_record *fibrad_rows_next(const fibrad_rows *rows, size_t *at);
 
-/* The free space of a collection as the arrays of a row, with as much capacity as there is; false: not even that of an
- * empty row. */
+/* Makes the free space of a collection into the arrays of a row, with the largest capacity possible. False: not even
+ * an empty row fits. */
 bool fibrad_rows_open(const fibrad_rows *rows, uint32_t bodies, fibrad_row *row);
 
-/* Makes room for one more row of `length` entries: FIBRAD_E_CAPACITY and memory.needed, or _E_MEMORY, if it cannot. */
+/* Makes room for one more row of `length` entries. Errors: FIBRAD_E_CAPACITY: memory.needed is written. _MEMORY. */
 int fibrad_rows_reserve(fibrad_rows *rows, uint32_t length, uint32_t bodies);
 
 /* Appends the row that has been written into the arrays of fibrad_rows_open. */
 void fibrad_rows_commit(fibrad_rows *rows, uint64_t scene, uint32_t bodies, const fibrad_row *row);
 
-/* Whether the records are where they were written: not so in a block of another alignment, until a row is appended. */
+/* Whether the records are where they were written. If the caller has moved the block to another alignment, this is
+ * false until a row is appended. */
 bool fibrad_rows_settled(const fibrad_rows *rows);
 
 #endif

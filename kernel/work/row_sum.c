@@ -58,9 +58,10 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     return FIBRAD_OK;
 }
 
-/* Where the error falls by the same ratio from fourths to halves as from halves to the whole, it is halves^2/fourths.
- * The bounds are measured, docs/accuracy.md: the factor where many windows see each sphere, and that of independent
- * windows. Halves of a row of few entries may agree by chance: then fourths, if errors fall as directions^-1.5. */
+/* If the error falls by the same ratio from fourths to halves as from halves to the whole, it is halves^2/fourths.
+ * The bounds are measured, docs/accuracy.md: the factor for rules where many windows see each sphere, and the factor
+ * for independent windows. Halves of a row with few entries may agree by chance. Then the fourths tell the error, as
+ * if errors fall as directions^-1.5. */
 double fibrad_entries_error(const fibrad_entries *entries, const double parts[2], double distance, double scale) {
     const double least = 0.5, most = 1.1, of_fourths = 0.125;
     double halves = parts[0], fourths = parts[1], gain = most;

@@ -1,32 +1,32 @@
-/* row_sum.h - the entries of a row while they are summed. SPDX-License-Identifier: MIT */
+/* row_sum.h - the sums of a row by sphere, while the row is computed. SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_WORK_ROW_SUM_H
 #define FIBRAD_WORK_ROW_SUM_H
 
 #include "base/addends.h"
 #include "scene/scene.h"
 
-/* What has been seen of each sphere so far, in the order of first sight; the sum over each fourth direction or ray
- * apart, for the estimate of the error. */
+/* What the windows have seen of each sphere so far, in the order of first sight. Each fourth direction or ray has a
+ * sum of its own, from which the error is estimated. */
 typedef struct fibrad_entries {
-    uint32_t *at;      /* [slots] open addressing by sphere: which entry is its; FIBRAD_NONE: free */
-    uint32_t *slot;    /* [capacity] where `at` tells of each entry */
+    uint32_t *at;      /* [slots] hash table with open addressing: the entry of a sphere; FIBRAD_NONE: free */
+    uint32_t *slot;    /* [capacity] the slot in `at` of each entry */
     uint32_t *sphere;  /* [capacity] */
-    double (*part)[4]; /* [capacity] visible area over all windows k = 0, 1, 2, 3 mod 4, or number of rays */
-    double *lengths;   /* [capacity] of the rays, summed [L] */
-    double *angles;    /* [capacity] between the rays and the line of centres, summed */
+    double (*part)[4]; /* [capacity] visible area, or number of rays, over all windows k = 0, 1, 2, 3 mod 4 */
+    double *lengths;   /* [capacity] sum of the lengths of the rays [L] */
+    double *angles;    /* [capacity] sum of the angles between the rays and the line of centres */
     uint64_t *key[2];  /* [capacity] scratch of the sort by columns */
     uint32_t slots, capacity, length, missed;
-    fibrad_addends *addends; /* NULL, or where what is added is listed instead */
-    bool end; /* the window in hand is the first or the last: it counts half in differences of even and odd windows */
+    fibrad_addends *addends; /* NULL, or a list of terms that are to be added later */
+    bool end; /* the present window is the first or the last: it counts half in differences of even and odd windows */
 } fibrad_entries;
 
-/* The entry of a sphere, a new one if it has none so far; FIBRAD_NONE if that finds no room. */
+/* The entry of a sphere. A sphere without an entry gets a new one. FIBRAD_NONE: there is no room. */
 uint32_t fibrad_entries_of(fibrad_entries *entries, uint32_t sphere);
 
-/* Lists what is added to an entry instead of adding it. */
+/* Puts a term for an entry on the list of terms. */
 void fibrad_entries_list(fibrad_entries *entries, uint32_t entry, uint32_t k, double area);
 
-/* Adds visible area to part k mod 4 of an entry. Counts in entries.missed what has none. */
+/* Adds visible area to part k mod 4 of an entry. If the entry is FIBRAD_NONE, it is counted in entries.missed. */
 static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, uint32_t k, double area) {
     if (entry == FIBRAD_NONE) {
         entries->missed++;
@@ -37,25 +37,25 @@ static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, u
         return;
     }
     double *part = entries->part[entry];
-    if (entries->end) { /* so even - odd holds half of it */
+    if (entries->end) { /* so half of it is in the difference of even and odd */
         part[k % 4 ^ 1] += area / 4;
         area -= area / 4;
     }
     part[k % 4] += area;
 }
 
-/* The entry of a sphere; FIBRAD_NONE if it has found no room. */
+/* The entry of a sphere. FIBRAD_NONE: the sphere has found no room. */
 uint32_t fibrad_entries_find(const fibrad_entries *entries, uint32_t sphere);
 
-/* Adds the entries that follow those of spheres, spheres + slot, to what slots have. */
+/* Entries with numbers of spheres + slot belong to slots. Adds them to the sums of the slots. */
 void fibrad_entries_slots(const fibrad_entries *entries, const fibrad_scene *scene, double wall[FIBRAD_SLOTS]);
 
-/* Writes the row: entries times `scale`, columns ascending, and as its error the distance of the sums over even and odd
- * windows. Those of slots are errors alone; those of spheres that triangles have hidden again are left out. */
+/* Writes the row: entries times `scale`, columns ascending. row->error: the distance of the sums over even and odd
+ * windows. Entries of slots count in the error only. Entries that triangles have hidden again are left out. */
 int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene, double scale, fibrad_row *row);
 
-/* The error of the whole rule, estimated: `distance` is that of the halves, entries times scale, and what the caller
- * has put into it besides: parts are the squared distances of those halves and fourths, unscaled. */
+/* An estimate of the error of the whole rule. distance: between the halves, from entries times scale. parts: squared
+ * distances of halves and of fourths that the caller has found besides, unscaled. */
 double fibrad_entries_error(const fibrad_entries *entries, const double parts[2], double distance, double scale);
 
 #endif

@@ -6,7 +6,7 @@
 /* Bytes before the first record. */
 static size_t lead_of(const fibrad_rows *rows) { return (size_t) - (uintptr_t)rows->memory.block & 7; }
 
-/* Where the next record begins; NULL: there is no block. */
+/* The end of the last record. NULL: there is no block. */
 static unsigned char *end_of(const fibrad_rows *rows) {
     unsigned char *block = rows->memory.block;
     return block == NULL ? NULL : block + lead_of(rows) + rows->used;
@@ -19,7 +19,7 @@ static size_t free_bytes(const fibrad_rows *rows) {
 
 bool fibrad_rows_settled(const fibrad_rows *rows) { return rows->used == 0 || rows->lead == lead_of(rows); }
 
-/* Moves the records to the first boundary of a block of another alignment. */
+/* Moves the records to the first boundary of a block whose alignment has changed. */
 static void settle_rows(fibrad_rows *rows) {
     unsigned char *block = rows->memory.block;
     if (!fibrad_rows_settled(rows)) __builtin_memmove(block + lead_of(rows), block + rows->lead, rows->used);
@@ -40,7 +40,7 @@ bool fibrad_rows_open(const fibrad_rows *rows, uint32_t bodies, fibrad_row *row)
 }
 
 int fibrad_rows_reserve(fibrad_rows *rows, uint32_t length, uint32_t bodies) {
-    /* 8 for another alignment of the block, 16 for a capacity that is rounded down */
+    /* 8 bytes for another alignment of the block, 16 for rounding of the capacity */
     const size_t needed = rows->used + fibrad_record_size(length, bodies) + 24;
     const int status = fibrad_memory_reserve(&rows->memory, needed);
     if (status == FIBRAD_OK) settle_rows(rows);
@@ -78,7 +78,7 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row) {
     const size_t begin = *at;
     const fibrad_record *record = fibrad_rows_next(rows, at);
     if (record == NULL) return 0;
-    unsigned char *own = (unsigned char *)rows->memory.block + lead_of(rows) + begin; /* the record, to be written */
+    unsigned char *own = (unsigned char *)rows->memory.block + lead_of(rows) + begin; /* the record to be written */
     double *body = (double *)(void *)(own + sizeof *record), *f = body + record->bodies;
     *row = (fibrad_row){.body = body,
                         .f = f,

@@ -1,9 +1,9 @@
-/* wall_sum.c - solid angles of walls, seen from within, and factors to them. SPDX-License-Identifier: MIT */
+/* wall_sum.c - solid angles of walls, seen from within, and view factors to walls. SPDX-License-Identifier: MIT */
 #include "work/wall_sum.h"
 #include "base/constants.h"
 #include "base/elementary.h"
 
-#define HARDLY 1e-4 /* of a window, in a region that lines have hardly met */
+#define HARDLY 1e-4 /* of a window: weight of the prior where hardly any line has met a region */
 
 /* The only axis with walls, or 3. */
 static int only_axis(const fibrad_container *c) {
@@ -13,7 +13,7 @@ static int only_axis(const fibrad_container *c) {
     return axes == 1 ? only : 3;
 }
 
-/* Whether no line is cut before it meets a wall: the sphere and all within the walls lie in the ball and the box. */
+/* Whether no line is cut before it meets a wall: the ball and the known box contain the sphere and the container. */
 static bool all_known(const fibrad_wall_view *view) {
     double farthest = 0;
     bool within = true;
@@ -37,7 +37,8 @@ fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, 
         view.high[axis] = (c->high[axis] - centre[axis]) * inverse;
         view.known_low[axis] = (scene->known_low[axis] - centre[axis]) * inverse;
         view.known_high[axis] = (scene->known_high[axis] - centre[axis]) * inverse;
-        if (!(view.known_low[axis] <= 0 && view.known_high[axis] >= 0)) view.ball = 0; /* i lies outside itself */
+        if (!(view.known_low[axis] <= 0 && view.known_high[axis] >= 0))
+            view.ball = 0; /* the sphere lies outside the known box */
     }
     for (int axis = 0; axis < 2; axis++) view.axis[axis] = (c->axis[axis] - centre[axis]) * inverse;
     view.cut = cut && !all_known(&view);
@@ -45,7 +46,7 @@ fibrad_wall_view fibrad_wall_view_of(const fibrad_scene *scene, uint32_t place, 
     return view;
 }
 
-/* How far a wall is. The centre may lie on it, or beyond by rounding. */
+/* The distance of a plane. The centre may lie on the plane, or beyond it by rounding. */
 static double distance_to(const fibrad_wall_view *view, int axis, bool up) {
     const double away = up ? view->high[axis] : -view->low[axis];
     return fibrad_max(fibrad_min(away, FIBRAD_FAR_AWAY), 1 / FIBRAD_FAR_AWAY);
@@ -55,14 +56,16 @@ static double off_axis(const fibrad_wall_view *view) {
     return fibrad_sqrt(view->axis[0] * view->axis[0] + view->axis[1] * view->axis[1]);
 }
 
-/* The rectangle across an axis at distance a, from the foot of the distance to b and c. */
+/* The solid angle of a rectangle across an axis at distance a. It extends from the foot of the perpendicular to b
+ * and c. */
 static double corner_angle(double a, double b, double c) {
     return fibrad_quarter_angle(a * fibrad_sqrt(a * a + b * b + c * c), b * c);
 }
 
-/* A disc at distance d, its axis at distance s, over 4 pi: 1 - d/sqrt(d^2 + rho^2) over the azimuths about the foot of
- * the distance, rho away being the rim, half of them for symmetry. Seen from near the rim rho bends where it begins to
- * run along the rim, at pi/2; the nodes are clustered there, as at 0 and pi. */
+/* The solid angle over 4 pi of a disc at distance d whose axis is at distance s. This is the mean of 1 - d/sqrt(d^2
+ * + rho^2) over the azimuths about the foot of the perpendicular, where rho is the distance to the rim. By symmetry
+ * half of the azimuths suffice. For a point near the rim, rho has a bend at pi/2. So the nodes are close together
+ * there, and at 0 and pi. */
 static double disc_sky(double d, double s, double radius) {
     enum { NODES = 32 };
     const double inside = radius * radius - s * s;
@@ -81,7 +84,8 @@ static double disc_sky(double d, double s, double radius) {
     return sum / (4 * NODES);
 }
 
-/* How much of `all` a region should have, as a part of all windows: solid angles over 4 pi, from the centre. */
+/* The solid angles of the regions from the centre, over 4 pi. This is the share of `all` that each region should
+ * have. */
 static void sky_of_regions(const fibrad_wall_view *view, double sky[FIBRAD_REGIONS]) {
     fibrad_zero(sky, FIBRAD_REGIONS * sizeof *sky);
     for (int octant = 0; octant < 8; octant++) {
@@ -117,7 +121,8 @@ static uint32_t slot_of_region(const fibrad_wall_view *view, uint32_t region) {
 
 static double all_parts(const double part[4]) { return (part[0] + part[2]) + (part[1] + part[3]); }
 
-/* The open part of each region over what there would be: where hardly a line has met it, that of its octant. */
+/* The open part of each region over what it would be if nothing were hidden. A region that hardly any line has met
+ * gets the value of its octant. */
 static void open_means(const fibrad_wall_sums *sums, double mean[FIBRAD_REGIONS]) {
     for (uint32_t octant = 0; octant < FIBRAD_REGIONS; octant += 4) {
         double open = 0, there = 0;

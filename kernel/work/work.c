@@ -1,25 +1,26 @@
-/* work.c - lays out the work memory of one thread, and makes it grow. SPDX-License-Identifier: MIT
+/* work.c - lays out the work memory of one thread, and makes it larger. SPDX-License-Identifier: MIT
  *
- * The inside of work memory is a matter of the kernel's: it begins with what a packed bed takes, or as much of that as
- * the block has room for, and is laid out anew when a row asks for more: in the same block at the expense of what is
- * only a matter of speed, or in a larger one. Nothing is lost thereby, since rows begin with empty memory. */
+ * Callers do not see the inside of work memory. At first it is laid out for a packed bed, or for as much of that as
+ * the block has room for. When a row asks for more, it is laid out again. The new layout is in a larger block, or in
+ * the same block: then lists that only save time become shorter. No result is lost, since each row begins with empty
+ * memory. */
 #include "work/work.h"
 #include "base/arena.h"
 #include "base/constants.h"
 #include "base/random.h"
 
-/* What a packed bed takes. */
+/* The sizes that a packed bed needs. */
 #define USUAL_DISCS    256u
 #define USUAL_ENTRIES  1024u
 #define ENOUGH_DISCS   64u
 #define ENOUGH_ENTRIES 256u
-#define MOST_SEEN      8192u /* near spheres that octants of directions are listed of */
-/* The least there may be of each. */
+#define MOST_SEEN      8192u /* octants of directions have lists of their own for up to so many near spheres */
+/* The smallest sizes that work. */
 #define LEAST_NEAR  16u
 #define LEAST_COUNT 4u
 
-/* Takes the arrays of `work` from the arena; the object itself is to be copied to the address returned.
- * FIBRAD_WORK_BYTES and _WALLS in fibrad.h must be kept above what this takes. */
+/* Takes the arrays of `work` from the arena. The caller copies the object itself to the address returned.
+ * FIBRAD_WORK_BYTES and _WALLS in fibrad.h must be larger than this layout. */
 static fibrad_workspace *work_layout(fibrad_arena *arena, const fibrad_work_plan *plan, fibrad_workspace *work) {
     fibrad_workspace *place = fibrad_arena_take(arena, 1, sizeof *work);
     work->plan = work->needed = *plan;
@@ -93,12 +94,12 @@ static size_t bytes_of(const fibrad_work_plan *plan) {
     return fibrad_arena_total(&arena);
 }
 
-/* A word that only laid out memory has, in this block. */
+/* A word that only work memory laid out in this block has. */
 static uint64_t seal_of(const fibrad_work *work) {
     return fibrad_mix((uintptr_t)work->memory.block ^ fibrad_mix(work->memory.size));
 }
 
-/* The inside, if the block is the one that was laid out. */
+/* The inside of work memory. NULL: the block has not been laid out. */
 static fibrad_workspace *inside_of(const fibrad_work *work) {
     unsigned char *block = work->memory.block;
     if (block == NULL || work->memory.size < sizeof(fibrad_workspace) + FIBRAD_ALIGNMENT) return NULL;
@@ -110,7 +111,7 @@ static fibrad_workspace *lay_out_work(fibrad_work *work, const fibrad_work_plan 
     fibrad_arena arena = {0};
     fibrad_workspace fields = {0};
     if (fibrad_arena_open(&arena, work->memory.block, work->memory.size, bytes_of(plan)) != FIBRAD_OK) return NULL;
-    /* lanes beyond a count are computed too, and must be harmless */
+    /* lanes beyond the end of a list are computed too, and must do no harm */
     fibrad_zero(arena.base, bytes_of(plan) - plan->extra - (FIBRAD_ALIGNMENT - 1));
     fibrad_workspace *space = work_layout(&arena, plan, &fields);
     for (uint32_t slot = 0; slot < fields.entries.slots; slot++) fields.entries.at[slot] = FIBRAD_NONE;
@@ -126,8 +127,8 @@ static uint32_t less_of(uint32_t count, uint32_t least) {
     return less > least && less < count ? less : least;
 }
 
-/* Takes from a plan until it fits into `size` bytes: first what is only a matter of speed, then from the larger one of
- * discs and entries, down to `least`. False: it does not fit. */
+/* Makes a plan smaller until it fits into `size` bytes. First the lists that only save time become shorter. Then the
+ * larger one of discs and entries, down to `least`. False: the plan does not fit. */
 static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t size) {
     while (bytes_of(plan) > size) {
         const bool entries_first = (size_t)plan->entries * 96 > (size_t)plan->discs * 768;
@@ -145,7 +146,8 @@ static bool shrink(fibrad_work_plan *plan, const fibrad_work_plan *least, size_t
     return true;
 }
 
-/* Lays out a plan in the block, in a larger one, or as much of it as there is room for, but no less than `least`. */
+/* Lays out a plan in the block or in a larger block. If there is no larger block, it lays out as much as fits, but
+ * no less than `least`. */
 static int fit(fibrad_work *work, fibrad_work_plan plan, const fibrad_work_plan *least, fibrad_workspace **space) {
     fibrad_memory *memory = &work->memory;
     const fibrad_work_plan wanted = {plan.walls, plan.met, least->near, plan.discs, plan.entries, least->extra};
@@ -185,7 +187,7 @@ int fibrad_work_open(fibrad_work *work, const fibrad_scene *scene, size_t extra_
     }
     const int status = fit(work, plan, &least, space);
     if (status == FIBRAD_OK) (*space)->least = least;
-    if (status == FIBRAD_E_WORK) { /* what most rows of a packed bed take, not what is fastest */
+    if (status == FIBRAD_E_WORK) { /* the size that most rows of a packed bed need, which is not the fastest size */
         const fibrad_work_plan enough = {walls, met, LEAST_NEAR, ENOUGH_DISCS, ENOUGH_ENTRIES, extra_min};
         work->memory.needed = bytes_of(&enough);
     }
@@ -199,8 +201,8 @@ int fibrad_work_grow(fibrad_work *work, fibrad_workspace **space) {
     const fibrad_work_plan needed = now->needed;
     const bool more = needed.near > plan.near || needed.discs > plan.discs || needed.entries > plan.entries ||
                       needed.extra > plan.extra;
-    if (!more) return FIBRAD_E_UNSUPPORTED; /* the call would come back for ever */
-    /* what has been too small once in this call must not shrink again */
+    if (!more) return FIBRAD_E_UNSUPPORTED; /* without this the call would be repeated for ever */
+    /* a size that was once too small in this call must not become smaller again */
     if (needed.near > plan.near) plan.near = least.near = needed.near;
     if (needed.discs > plan.discs) least.discs = plan.discs + 1, plan.discs = needed.discs;
     if (needed.entries > plan.entries) least.entries = plan.entries + 1, plan.entries = needed.entries;
@@ -225,7 +227,7 @@ int fibrad_work_discs_missed(fibrad_workspace *space) {
     return FIBRAD_E_WORK;
 }
 
-/* How far along an axis, forwards or backwards, there may be spheres that come before a window. */
+/* How far along an axis, in one sense, there may be spheres that come before a window. */
 static double extent_along(const fibrad_workspace *work, int axis, double sense) {
     const fibrad_scene *scene = work->scene;
     double far = sense > 0 ? scene->high[axis] - work->centre[axis] : work->centre[axis] - scene->low[axis];
