@@ -228,8 +228,8 @@ demo: deps
 ## dist: build/dist/fibrad.c and fibrad.h, the whole kernel in two files for other build systems
 dist: $(BUILD)/dist/fibrad.c
 
-$(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*.h kernel/*/*.h kernel/*/*/*.h) kernel/dist/join.sh
-	kernel/dist/join.sh $(abspath $<) $(abspath $(@D)) $(KERNEL) $(LANED)
+$(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*.h kernel/*/*.h kernel/*/*/*.h) kernel/join.sh
+	kernel/join.sh $(abspath $<) $(abspath $(@D)) $(KERNEL) $(LANED)
 
 ## test: install what is missing, build and run all tests
 test: deps

@@ -1,5 +1,7 @@
-/* What flags do in the Makefile of the library, pragmas do here: products and sums round one by one, and square roots
- * are instructions, not calls that may set errno. */
+/* preamble.h - the beginning of fibrad.c, the kernel in two files. SPDX-License-Identifier: MIT
+ *
+ * Pragmas do here what flags do in the Makefile. Products and sums are rounded one by one. Square roots are
+ * instructions, not calls that may set errno. */
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
 #elif defined(__GNUC__)

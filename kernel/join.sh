@@ -8,7 +8,7 @@
 set -eu
 tables=$1 to=$2
 shift 2
-cd "$(dirname "$0")/.." # the kernel
+cd "$(dirname "$0")"
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 mkdir -p "$to"
 
@@ -17,9 +17,9 @@ laned=$(printf '%s\n' "$@" | sed 's|^kernel/||' | grep '_lanes\.c$')
 version=$(sed -n 's/^#define FIBRAD_VERSION "\(.*\)"/\1/p' fibrad.h)
 
 # Headers that use lanes, for laned sources alone, and all others.
-lanes_headers=$(grep -lE '\<(LANED\(|v[dfmn]_[a-z]+\(|vd |vf )' ./*/*.h ./*/*/*.h | sed 's|^\./||' |
-    grep -vE '^base/lanes/(laned|places|vec_[a-z0-9]*)\.h$|^dist/')
-headers=$(find . -name '*.h' | sed 's|^\./||' | sort | grep / | grep -vE '^base/lanes/(vec_|places)|^dist/' | grep -vxF "$lanes_headers")
+lanes_headers=$(grep -lE '\<(LANED\(|v[dfmn]_[a-z_0-9]+\(|vd |vf )' ./*/*.h ./*/*/*.h | sed 's|^\./||' |
+    grep -vE '^base/lanes/(laned|places|vec_[a-z0-9]*)\.h$|^base/preamble')
+headers=$(find . -name '*.h' | sed 's|^\./||' | sort | grep / | grep -vE '^base/lanes/(vec_|places)|^base/preamble' | grep -vxF "$lanes_headers")
 
 # expand FILE...: the files with their headers, each of which goes in once; what stays an #include is printed. A header
 # in the list $skip is left for later; macros of a source end with it.
@@ -78,7 +78,7 @@ cp "$tables" "$work/tables.c"
     echo "/* fibrad $version: the whole kernel in one file, made by 'make dist' from the sources, which are what to read."
     echo " * cc -O2 -c fibrad.c; no other flags. The file includes itself: keep its name. SPDX-License-Identifier: MIT */"
     echo '#ifndef FIBRAD_PASS'
-    cat dist/preamble.h
+    cat base/preamble.h
     echo '#include "fibrad.h"'
     skip=$lanes_headers
     # shellcheck disable=SC2086  # a list of files
