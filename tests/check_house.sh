@@ -3,7 +3,8 @@
 #
 # No circle of includes among files; at most sixteen sources in a folder; no two sources, and no two static functions of
 # kernel and host, share a name; the field's words and not our own; prose of README.md and docs within 120 columns, links
-# there to files and headings that exist. Which folder may include which: tests/check_map.sh.
+# there to files and headings that exist; the lines of tests/mutants.txt stand once. Which folder may include which:
+# tests/check_map.sh.
 set -u
 
 # what the field has other words for, or what says less than a plain verb; the changelog has names of before
@@ -28,6 +29,10 @@ faults=$(
     grep -rnwiE --include='*.[ch]' --include='*.md' "$words" kernel host tests bench docs README.md
     awk '/^```/ { code = !code } FNR == 1 { code = 0 }
         !code && !/^\|/ && length($0) > 120 { print FILENAME ":" FNR ": " length($0) " columns" }' README.md docs/*.md
+    grep -v '^#' tests/mutants.txt | while IFS='|' read -r file old new; do
+        old=${old# } old=${old% }
+        test -n "$new" && test "$(grep -cF -- "$old" "${file% }")" = 1 || echo "tests/mutants.txt: $file does not have once: $old"
+    done
     for page in README.md docs/*.md; do
         grep -oE '\]\([^)#:]+' "$page" | sed 's|^](||' | while read -r link; do
             test -e "$(dirname "$page")/$link" || echo "$page: no $link"
