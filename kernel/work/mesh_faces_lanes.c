@@ -2,7 +2,7 @@
  * Compiled once per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
-#include "lines/mesh_faces_lanes.h"
+#include "work/mesh_faces_lanes.h"
 
 #define IMAGES_MOST 4096 /* images of a stretch, unless the caller wants fewer */
 

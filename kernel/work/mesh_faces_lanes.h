@@ -1,6 +1,6 @@
 /* mesh_faces_lanes.h - the triangles that may come before a window. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_LINES_MESH_FACES_LANES_H
-#define FIBRAD_LINES_MESH_FACES_LANES_H
+#ifndef FIBRAD_WORK_MESH_FACES_LANES_H
+#define FIBRAD_WORK_MESH_FACES_LANES_H
 
 #include "base/lanes/laned.h"
 #include "work/work.h"

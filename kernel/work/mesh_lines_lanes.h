@@ -1,6 +1,6 @@
 /* mesh_lines_lanes.h - lines of a window and the triangles that they meet first. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_LINES_MESH_LINES_LANES_H
-#define FIBRAD_LINES_MESH_LINES_LANES_H
+#ifndef FIBRAD_WORK_MESH_LINES_LANES_H
+#define FIBRAD_WORK_MESH_LINES_LANES_H
 
 #include "base/lanes/laned.h"
 #include "work/work.h"

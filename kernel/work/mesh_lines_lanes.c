@@ -2,7 +2,7 @@
  * instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/below.h"
-#include "lines/mesh_lines_lanes.h"
+#include "work/mesh_lines_lanes.h"
 
 /* ---- lines ------------------------------------------------------------------------------------------------------- */
 /* The line of a point. */
