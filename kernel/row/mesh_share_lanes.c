@@ -9,13 +9,9 @@
 #include "work/mesh_faces_lanes.h"
 #include "work/mesh_lines_lanes.h"
 #include "row/mesh_share_lanes.h"
+#include "row/wall_window.h"
 #include "scene/walls.h"
 #include "window/points_lanes.h"
-
-#define MESH_SPREAD                                                                                                    \
-    1.8 /* as for walls: radius of the disc of directions times sqrt n, and how near an edge must be to need no disc   \
-         */
-#define MESH_NEAR 1.3
 
 /* The line of a point [L]. */
 static void line_of_point(const fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t p,
@@ -116,7 +112,8 @@ static uint32_t share_disc(fibrad_workspace *work, fibrad_points *points, uint32
 
 /* How wide the directions of open lines spread if the nearest thing that they meet is at some depth. */
 static double spread_at(double depth, uint32_t n) {
-    const double wide = MESH_SPREAD / fibrad_sqrt(n), ratio = MESH_NEAR / fibrad_max(depth * wide, 1e-300);
+    const double wide = FIBRAD_WINDOW_SPREAD / fibrad_sqrt(n),
+                 ratio = FIBRAD_WINDOW_NEAR / fibrad_max(depth * wide, 1e-300);
     return ratio < 1 && depth < __builtin_inf() ? wide * fibrad_sqrt(1 - ratio * ratio) : 0;
 }
 
@@ -271,8 +268,8 @@ static bool meet_window(fibrad_workspace *work, mesh_found *found, const fibrad_
 /* Searches for triangles before a window down to a depth. False: there are none. */
 static bool find_faces(fibrad_workspace *work, const double frame[9], double deepest, bool open, mesh_found *found) {
     fibrad_face_search *search = &found->search;
-    const double wide = open ? 1.0001 * MESH_SPREAD / fibrad_sqrt(work->windows) : 0;
-    const double near = open ? MESH_NEAR / wide : __builtin_inf();
+    const double wide = open ? 1.0001 * FIBRAD_WINDOW_SPREAD / fibrad_sqrt(work->windows) : 0;
+    const double near = open ? FIBRAD_WINDOW_NEAR / wide : __builtin_inf();
     LANED(fibrad_faces_begin)(work, frame, deepest, wide, near, search);
     found->more = LANED(fibrad_faces_next)(work, search);
     found->listed = true;

@@ -1,13 +1,6 @@
 /* wall_window.c - the disc of directions that a window stands for, which walls need. SPDX-License-Identifier: MIT */
 #include "row/wall_window.h"
 
-/* Radius of the disc of directions times sqrt n. For discs as large as the share of one direction it would be 2. */
-#define WALL_SPREAD 1.8
-
-/* All lines of a window pass an edge at distance D over an angle of 1/D. If this angle is large enough, the
- * directions need no disc. */
-#define WALL_NEAR 1.3
-
 /* Half width of the band of directions for walls across one axis, times sqrt n. */
 #define WALL_BAND 4.0
 
@@ -57,7 +50,7 @@ static wall_edge edge_of_end(const fibrad_wall_view *view, const wall_course *co
 /* How much of the disc of directions is needed at an edge. The angle over which the lines of the window pass the
  * edge and the radius of the needed disc add up, as squares, to that of the whole disc. */
 static double needed_at(const wall_edge *edge, double wide) {
-    return fibrad_max(0, 1 - WALL_NEAR * WALL_NEAR / (edge->square * wide * wide));
+    return fibrad_max(0, 1 - FIBRAD_WINDOW_NEAR * FIBRAD_WINDOW_NEAR / (edge->square * wide * wide));
 }
 
 /* The same for a window. Mostly the nearest edge decides. */
@@ -86,7 +79,7 @@ static double sharpness_of(const fibrad_wall_window *window, double first, doubl
 
 void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view) {
     const double *w = window->frame + 6;
-    window->wide = window->part * WALL_SPREAD / fibrad_sqrt(window->n);
+    window->wide = window->part * FIBRAD_WINDOW_SPREAD / fibrad_sqrt(window->n);
     window->spread = window->wide * fibrad_sqrt(needed_of(view, w, window->wide));
     for (int axis = 0; axis < 2; axis++) window->slope[axis] *= WALL_SLOPE;
     wall_course course = course_of(view, w);

@@ -4,6 +4,14 @@
 
 #include "work/wall_sum.h"
 
+/* Windows stand for a disc of directions where they look at walls or triangles. Its radius times sqrt n. For discs as
+ * large as the share of one direction it would be 2. */
+#define FIBRAD_WINDOW_SPREAD 1.8
+
+/* All lines of a window pass an edge at distance D over an angle of 1/D. If this angle is large enough, the directions
+ * need no disc. */
+#define FIBRAD_WINDOW_NEAR 1.3
+
 typedef struct fibrad_wall_window {
     const double *frame; /* axes of the window */
     uint32_t k, n;       /* window k of n */
