@@ -10,7 +10,7 @@
  *            fibrad_heat_shine does the same, and puts the light on the patches of a heat problem.
  * Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an area.
  * Words      Memory, errors and the layout of comments are as in fibrad.h.
- * Source     docs/methods_heat.md section 13. docs/heat.md says what is assumed.
+ * Source     docs/methods_heat.md, Light from outside. docs/heat.md says what is assumed.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_LIGHT_H

@@ -158,11 +158,49 @@ START_TEST(white_walls_absorb_nothing) {
 }
 END_TEST
 
+/* Kirchhoff: what a bed of one temperature sends out through its open face, over what a black face would, is the mean
+ * of what it absorbs of light from all sides, by the cosine law. */
+START_TEST(emissivity_of_a_face_is_its_mean_absorptance) {
+    struct bed bed = packing(40, .5, .5, .5, 9, true);
+    const double side = bed.period[0], floor_at = -.5;
+    bed.period[2] = 0;
+    const fibrad_body body = plane_at(2, 0, floor_at);
+    const fibrad_scene_config config = {.period = {side, side, 0}, .body = &body, .bodies = 1};
+    enum { RINGS = 4, TURNS = 3 };
+    double mean = 0, hot[40], power[40], eps[40], wall_hot = 1000, wall_power, wall_eps = .4;
+    for (int k = 0; k < RINGS * TURNS; k++) {
+        const double square = (k / TURNS + .5) / RINGS, turn = 2 * M_PI * (k % TURNS + .3 * (k / TURNS)) / TURNS;
+        const double ring = sqrt(square), cosine = sqrt(1 - square);
+        const fibrad_light light = {.direction = {ring * cos(turn), ring * sin(turn), -cosine},
+                                    .flux = 1 / (side * side * cosine)};
+        struct absorbed a = absorb_light(&bed, &config, &light, .4, .4);
+        mean += (1 - a.result.reflected) / (RINGS * TURNS);
+        free_absorbed(&a);
+    }
+    fibrad_radiation *radiation;
+    const fibrad_spheres spheres = {.x = bed.x, .y = bed.y, .z = bed.z, .r = bed.r, .n = bed.n};
+    fibrad_heat_sources sources;
+    fibrad_heat_result result = {.power = power, .body_power = &wall_power};
+    fibrad_heat_sources_init(&sources);
+    for (int i = 0; i < 40; i++) hot[i] = 1000, eps[i] = .4;
+    sources.temperature = hot, sources.emissivity = eps, sources.surroundings = 0;
+    sources.body_temperature = &wall_hot, sources.body_emissivity = &wall_eps;
+    ck_assert_int_eq(fibrad_radiation_new(&radiation, &config, &spheres, NULL, NULL), 0);
+    ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), 0);
+    fibrad_radiation_free(radiation);
+    const double emissivity = result.surroundings_power / (FIBRAD_STEFAN_BOLTZMANN * 1e12 * side * side);
+    printf("face: emissivity %.4f, mean absorptance %.4f\n", emissivity, mean);
+    ck_assert_double_eq_tol(emissivity, mean, .01);
+    bed_free(&bed);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("light in heat");
     TCase *tcase = suite_case(suite, "reflections");
     tcase_add_test(tcase, a_floor_alone_absorbs_what_it_absorbs);
     tcase_add_test(tcase, white_walls_absorb_nothing);
+    tcase_add_test(tcase, emissivity_of_a_face_is_its_mean_absorptance);
     tcase_add_test(tcase, a_settled_bed_absorbs_as_plain_rays_say);
     return suite_run(suite);
 }

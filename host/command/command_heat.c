@@ -35,6 +35,7 @@ static const struct option heat_table[] = {
     {KEY_WALL_POWER, OPTION_WALL_POWER},
     {OPTION_WALL_EMISSIVITY},
     {OPTION_TEMPERATURE_UNIT},
+    OPTIONS_LIGHT,
     {KEY_MODEL, "model", "NAME",
      "patches (reflections from point to point), spheres (one radiosity for each sphere, for emissivities near 1) or, "
      "with --until, factors (exchange factors, powers 2 to 5 % off) [patches; with --until factors that patches "
@@ -64,6 +65,8 @@ struct heat_request {
     struct bed_options bed;
     struct given_options given;
     struct time_options time;
+    struct light_options light;
+    struct face face;
     const char *wall_emissivity;
     struct quantity emissivity;
     bool counted; /* --directions, --points, --patches or --wall-rays was given */
@@ -85,7 +88,7 @@ static int heat_help(void) {
          "--error E holds for the powers of the spheres together, for each wall, and for T^4 where temperatures\n"
          "are found. Each error is relative to a root mean square. Errors below 1e-3 E of what is emitted count as\n"
          "met.\n"
-         "\n"
+         "\n" LIGHT_MORE "\n"
          "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
          "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
          "the temperature of a wall (zmin=@TABLE) or of the surroundings. The .csv then has the time in its first\n"
@@ -174,6 +177,14 @@ static int heat_take(struct heat_request *request, const struct options *options
         return options_count("--wall-rays", value, 1, FIBRAD_WALL_RAYS_MAX, &request->problem.config.wall_rays);
     case KEY_ERROR:
         return options_number("--error", value, 1e-5, 1, &request->problem.error);
+    case KEY_IRRADIATE:
+    case KEY_ABSORPTIVITY:
+    case KEY_WALL_ABSORPTIVITY:
+    case KEY_PROFILE:
+        return light_option(key, value, &request->light);
+    case KEY_FACE:
+        request->face.wanted = true;
+        return STATUS_OK;
     case KEY_UNTIL:
     case KEY_CAPACITY:
     case KEY_DENSITY:
@@ -193,6 +204,8 @@ static int heat_check_request(struct heat_request *request) {
     if (status) return status;
     if (request->given.timed && request->problem.error > 0)
         return message(STATUS_USAGE, "--error is for powers at one time, not for --until");
+    if (request->given.timed && request->face.wanted)
+        return message(STATUS_USAGE, "--face is for powers at one time, not for --until");
     if (!request->given.timed && request->problem.by_factors)
         return message(STATUS_USAGE, "--model factors is for --until");
     if (!request->emissivity.given) return message(STATUS_USAGE, "--emissivity is missing; see fibrad heat --help");
@@ -205,6 +218,7 @@ static int heat_check_request(struct heat_request *request) {
                        "--error is for --model patches; --model spheres has an error that no directions reduce");
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
     status = time_check(&request->time, &request->bed);
+    if (!status) status = light_check(&request->light, &request->bed, &request->emissivity);
     if (!status) status = given_check(&request->given, &request->bed);
     return status ? status : given_ambient(&request->given, &request->problem.sources.surroundings);
 }
@@ -257,6 +271,8 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
         report_measured(report, "temperature_max_K", heat->hottest, heat->temperature_error);
         report_value(report, "error_temperature_rms_K", heat->temperature_error, 2);
     }
+    face_report(&request->face, heat->metres, report);
+    light_report(request->problem.light, &request->problem.walls, bed->n, report);
     report_value(report, "balance_of_emission", heat->balance_of_emission, 2);
     report_value(report, "error_of_emission", heat->throughput > 0 ? heat->error / heat->throughput : 0, 2);
     report_value(report, "error_rms_W", heat->error, 2);
@@ -287,9 +303,11 @@ static int heat_solve(struct heat_request *request, struct bed *bed, struct heat
     struct contents what = {.walls = &request->problem.walls,
                             .sources = &request->problem.sources,
                             .result = &report->result,
+                            .light = request->problem.light->options ? &request->problem.light->result : NULL,
                             .of_sides = &report->triangles};
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->bed.outputs.picture) status = heat_picture(request, bed, report);
+    if (!status) status = light_profile(request->problem.light, bed, request->bed.name);
     if (!status) heat_print(request, bed, report);
     return status;
 }
@@ -312,6 +330,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     struct walls *walls = &request->problem.walls;
     fibrad_heat_sources *sources = &request->problem.sources;
     struct given given = {0};
+    struct light_state light = {0};
     double *emissivity = NULL, of_walls[7][WALLS_MAX] = {{0}};
     const char *file = request->bed.name;
     int status = bed_options_walls(&request->bed, bed, walls);
@@ -321,6 +340,8 @@ static int heat_frame(void *heat_request, struct bed *bed) {
             message(STATUS_USAGE, "--ambient is missing: the bed is open, and the surroundings need a temperature");
     if (!status) status = wall_emissivities(request->wall_emissivity, walls, of_walls[0]);
     if (!status) status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
+    if (!status) status = face_begin(&request->face, bed, walls);
+    if (!status) status = light_begin(&light, &request->light, bed, file, walls, emissivity, of_walls[0]);
     if (!status && !request->given.timed) status = given_reflectors(&given, emissivity, walls, of_walls[0], bed, file);
     if (!status) status = bed_options_metres(&request->bed, bed, &report.metres);
     if (!status)
@@ -333,6 +354,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
         sources->emissivity = emissivity, sources->body_emissivity = of_walls[0];
         request->problem.wall_curve = given.tables.curve,
         request->problem.ambient_curve = &request->given.ambient_curve;
+        request->problem.light = &light, request->problem.face = &request->face;
         request->problem.emissivity = emissivity, request->problem.of_emissivity = &request->emissivity;
         report.result.body_power = of_walls[1], report.result.body_temperature = of_walls[2];
         report.result.body_absorbed = of_walls[5], report.result.body_area = of_walls[6];
@@ -342,6 +364,7 @@ static int heat_frame(void *heat_request, struct bed *bed) {
                                       : heat_solve(request, bed, &report);
     }
     free(emissivity);
+    light_free(&light);
     given_free(&given);
     free(report.result.power);
     free(report.result.temperature);

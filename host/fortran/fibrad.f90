@@ -3,7 +3,7 @@
 ! Index
 !   walls      fibrad_plane, fibrad_cylinder, fibrad_mesh; fibrad_triangles
 !   factors    fibrad_view_factors, fibrad_exchange_factors; fibrad_factors
-!   heat       fibrad_heat: new, move, solve, settle, free
+!   heat       fibrad_heat: new, move, solve, settle, shine, free
 !   time       fibrad_transient: new, move, advance, free
 !   status     fibrad_status_text, fibrad_version, fibrad_layouts_agree
 !
@@ -172,6 +172,30 @@ module fibrad
         type(c_ptr) :: side_temperature = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr
     end type c_heat_sources
 
+    ! Light from outside: fibrad_light in fibrad_light.h. Set direction and flux.
+    type, bind(C), public :: fibrad_light
+        real(c_double) :: direction(3) = 0, flux = 0, half_angle = 0
+        integer(c_int32_t) :: directions = 0
+        integer(c_int) :: shape = 0
+        real(c_double) :: centre(3) = 0, radius = 0, low(2) = 0, high(2) = 0
+    end type fibrad_light
+
+    type, bind(C) :: c_light_sources
+        type(c_ptr) :: light = c_null_ptr
+        integer(c_int32_t) :: lights = 0
+        type(c_ptr) :: absorptivity = c_null_ptr, body_absorptivity = c_null_ptr, insulated = c_null_ptr
+        real(c_double) :: tolerance = 0
+        integer(c_int) :: uniform = 0
+    end type c_light_sources
+
+    type, bind(C) :: c_light_result
+        type(c_ptr) :: absorbed = c_null_ptr, absorbed_first = c_null_ptr, absorbed_error = c_null_ptr
+        type(c_ptr) :: body_absorbed = c_null_ptr, body_absorbed_first = c_null_ptr, body_absorbed_error = c_null_ptr
+        real(c_double) :: incident = 0, transmitted = 0, reflected = 0, error = 0
+        integer(c_int32_t) :: sweeps = 0, lights = 0
+        type(c_ptr) :: insulated = c_null_ptr
+    end type c_light_result
+
     type, bind(C) :: c_heat_result
         type(c_ptr) :: power = c_null_ptr, body_power = c_null_ptr
         real(c_double) :: surroundings_power = 0
@@ -306,6 +330,14 @@ module fibrad
             integer(c_int) :: c_radiation_settle
         end function c_radiation_settle
 
+        function c_radiation_shine(radiation, sources, result) bind(C, name="fibrad_radiation_shine")
+            import :: c_int, c_ptr, c_light_sources, c_light_result
+            type(c_ptr), value :: radiation
+            type(c_light_sources), intent(in) :: sources
+            type(c_light_result), intent(inout) :: result
+            integer(c_int) :: c_radiation_shine
+        end function c_radiation_shine
+
         function c_transient_new(transient, config, spheres, transient_config, run) bind(C, name="fibrad_transient_new")
             import :: c_int, c_ptr, c_scene_config, c_spheres, c_transient_config, c_run
             type(c_ptr), intent(out) :: transient
@@ -387,6 +419,7 @@ module fibrad
         procedure, public :: move => heat_move
         procedure, public :: solve => heat_solve
         procedure, public :: settle => heat_settle
+        procedure, public :: shine => heat_shine
         procedure, public :: free => heat_free
     end type fibrad_heat
 
@@ -684,6 +717,48 @@ contains
         if (present(surroundings_power)) surroundings_power = result%surroundings_power
     end subroutine heat_settle
 
+    ! What is absorbed of light from outside. Add it to powers.
+    !   lights              what shines on the bed
+    !   absorptivity        (n) 0 to 1
+    !   absorbed            (n) [W] out: with all reflections
+    !   absorbed_first      (n) [W] out: of the light that each sphere meets first
+    !   wall_absorptivity   (walls) 0 to 1, needed with walls
+    !   wall_absorbed       (walls) [W] out
+    !   incident            [W] out: what all lights bring
+    !   transmitted         [W] out: leaves without having met anything
+    !   reflected           [W] out: leaves after reflections
+    subroutine heat_shine(heat, lights, absorptivity, absorbed, absorbed_first, status, wall_absorptivity, wall_absorbed, &
+                          incident, transmitted, reflected)
+        class(fibrad_heat), intent(inout) :: heat
+        type(fibrad_light), intent(in), contiguous, target :: lights(:)
+        real(c_double), intent(in), contiguous, target :: absorptivity(:)
+        real(c_double), intent(inout), contiguous, target :: absorbed(:), absorbed_first(:)
+        integer, intent(out) :: status
+        real(c_double), intent(in), optional, contiguous, target :: wall_absorptivity(:)
+        real(c_double), intent(inout), optional :: wall_absorbed(:), incident, transmitted, reflected
+        type(c_light_sources) :: sources
+        type(c_light_result) :: result
+        real(c_double), dimension(max(1, heat%walls)), target :: walls, walls_first
+        status = check_sizes(heat%spheres, size(absorptivity), size(absorbed), size(absorbed_first))
+        if (status == fibrad_ok) status = check_sizes(heat%walls, count_values(wall_absorptivity))
+        if (status == fibrad_ok .and. present(wall_absorbed)) status = check_sizes(heat%walls, size(wall_absorbed))
+        if (status /= fibrad_ok) return
+        sources%light = c_loc(lights)
+        sources%lights = size(lights)
+        sources%absorptivity = c_loc(absorptivity)
+        if (present(wall_absorptivity)) sources%body_absorptivity = c_loc(wall_absorptivity)
+        result%absorbed = c_loc(absorbed)
+        result%absorbed_first = c_loc(absorbed_first)
+        result%body_absorbed = c_loc(walls)
+        result%body_absorbed_first = c_loc(walls_first)
+        status = c_radiation_shine(heat%radiation, sources, result)
+        if (status /= fibrad_ok) return
+        if (present(wall_absorbed)) wall_absorbed = walls(1:heat%walls)
+        if (present(incident)) incident = result%incident
+        if (present(transmitted)) transmitted = result%transmitted
+        if (present(reflected)) reflected = result%reflected
+    end subroutine heat_shine
+
     ! Asks the law for emissivities of spheres. Emissivities of walls stay as they are.
     subroutine follow_law(context, temperature, body_temperature, emissivity, body_emissivity) bind(C)
         type(c_ptr), value :: context, temperature, body_temperature, emissivity, body_emissivity
@@ -865,6 +940,9 @@ contains
         type(c_heat_config) :: heat_config
         type(c_heat_sources) :: heat_sources
         type(c_heat_result) :: heat_result
+        type(fibrad_light) :: light
+        type(c_light_sources) :: light_sources
+        type(c_light_result) :: light_result
         type(c_transient_config) :: transient_config
         type(c_span) :: span
         type(c_triangles) :: triangles
@@ -876,6 +954,8 @@ contains
             agrees('factors', c_sizeof(factors)), agrees('bed_factors', c_sizeof(bed_factors)), &
             agrees('exchange_rule', c_sizeof(exchange_rule)), agrees('heat_config', c_sizeof(heat_config)), &
             agrees('heat_sources', c_sizeof(heat_sources)), agrees('heat_result', c_sizeof(heat_result)), &
+            agrees('light', c_sizeof(light)), agrees('light_sources', c_sizeof(light_sources)), &
+            agrees('light_result', c_sizeof(light_result)), &
             agrees('transient_config', c_sizeof(transient_config)), agrees('span', c_sizeof(span)), &
             agrees('triangles', c_sizeof(triangles))])
     end function fibrad_layouts_agree

@@ -181,6 +181,7 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
     int status = heat_memory(bed, &report->config);
     if (status) return status;
     status = fibrad_radiation_new(&radiation, &scene, &spheres, &report->config, &run);
+    if (!status) status = light_absorb(problem->light, bed, &problem->walls, radiation, &sources);
     if (!status)
         status = fibrad_radiation_settle(radiation, &sources, heat_follow, &(struct heat_law){problem, bed},
                                          problem->emissivity, wall_emissivity, &report->result);
@@ -189,8 +190,12 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
                                         report->triangles.quantity[TRIANGLE_TEMPERATURE].side);
         triangle_heat_show(&report->triangles, 1);
     }
+    sources.emissivity = problem->emissivity, sources.body_emissivity = wall_emissivity;
+    if (!status) status = face_solve(problem->face, &sources, bed->n, problem->walls.count, radiation);
     fibrad_radiation_describe(radiation, &report->facts, &run.fault);
     fibrad_radiation_free(radiation);
+    if (status) progress_stop(&options->progress);
+    if (light_refuse(problem->light, bed, status, &run.fault)) return STATUS_USAGE;
     if (status == FIBRAD_E_UNSOLVABLE) {
         progress_stop(&options->progress);
         return heat_unsolvable(options, problem, bed, report);
@@ -198,7 +203,9 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
     status = bed_options_status(options, bed, status, &run.fault);
     if (status) return status;
     heat_temperatures(bed, &sources, report);
+    light_add(problem->light, &sources, bed->n, problem->walls.count, &report->result);
     heat_scale(bed, problem->walls.count, report->metres * report->metres, &report->result);
+    light_scale(problem->light, bed->n, problem->walls.count, report->metres * report->metres);
     heat_summarise(bed, &sources, problem->walls.count, report);
     report->seconds = progress_clock() - begun;
     return STATUS_OK;

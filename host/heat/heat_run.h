@@ -3,6 +3,8 @@
 #define HEAT_RUN_H
 
 #include "frames/bed_options.h"
+#include "heat/face.h"
+#include "heat/light_option.h"
 #include "heat/triangle_heat.h"
 
 /* The heat problem of a bed. */
@@ -15,6 +17,8 @@ struct heat_problem {
     double zero;                          /* [K] 0 of the unit of the tables */
     double *emissivity;                   /* [spheres] sources.emissivity; changes where a table over T is given */
     const struct quantity *of_emissivity; /* the option, which has the tables */
+    struct face *face;                    /* what is found of the open face */
+    struct light_state *light;            /* light from outside; its options NULL: there is none */
     bool by_patches, by_factors;          /* --model; in time only: neither means corrected factors */
     /* --error: error allowed in powers, and in sigma T^4 of temperatures that are found, over their root mean squares;
      * 0: not given */

@@ -228,6 +228,37 @@ static int library_status(struct time_run *m, int status) {
                       m->now, m->time->step > 0 ? "; --step auto takes shorter steps" : "");
 }
 
+/* What is absorbed of light from outside heats all the time. An insulated wall would have to give off as thermal
+ * radiation what it absorbs. */
+static int absorb_light(struct time_run *m) {
+    struct light_state *light = m->problem->light;
+    const struct walls *walls = &m->problem->walls;
+    if (!light->options) return STATUS_OK;
+    for (uint32_t k = 0; k < walls->count; ++k)
+        if (m->sources.insulated[k] && light->of_walls[k] > 0)
+            return message(STATUS_USAGE, "--irradiate with --until: %s is insulated and needs --wall-absorptivity %s=0",
+                           wall_name(walls, k), wall_name(walls, k));
+    const fibrad_scene_config scene = bed_scene(&m->bed, walls);
+    const fibrad_spheres spheres = bed_spheres(&m->bed);
+    fibrad_run run = bed_options_run(m->options);
+    fibrad_heat_sources sources = m->sources;
+    fibrad_radiation *radiation;
+    int status = fibrad_radiation_new(&radiation, &scene, &spheres, &m->problem->config, &run);
+    if (!status) status = light_absorb(light, &m->bed, walls, radiation, &sources);
+    fibrad_radiation_describe(radiation, NULL, &run.fault);
+    fibrad_radiation_free(radiation);
+    if (status) progress_stop(&m->options->progress);
+    if (light_refuse(light, &m->bed, status, &run.fault)) return STATUS_USAGE;
+    status = bed_options_status(m->options, &m->bed, status, &run.fault);
+    if (status) return status;
+    light_scale(light, m->bed.n, walls->count, m->square_metres);
+    for (uint32_t i = 0; i < m->bed.n; ++i) light->power[i] = m->problem->sources.power[i] + light->absorbed[i];
+    for (uint32_t k = 0; k < walls->count; ++k)
+        light->wall_power[k] = m->problem->sources.body_power[k] + light->wall[k];
+    m->sources.power = light->power, m->sources.body_power = light->wall_power;
+    return STATUS_OK;
+}
+
 /* Computes the powers at m->now and writes all outputs. */
 static int write_state(struct time_run *m) {
     const uint32_t walls = m->problem->walls.count;
@@ -244,6 +275,7 @@ static int write_state(struct time_run *m) {
     if (status) return status;
     for (uint32_t k = 0; k < walls; ++k)
         if (!isnan(m->wall[k])) m->result->body_temperature[k] = m->wall[k];
+    light_add(m->problem->light, &shown, m->bed.n, walls, m->result);
     memcpy(m->result->temperature, m->span.temperature, m->bed.n * sizeof *m->span.temperature);
     if (isnan(m->problem->sources.surroundings)) shown.surroundings = NAN;
     const struct contents what = {.bed = &m->bed,
@@ -251,6 +283,7 @@ static int write_state(struct time_run *m) {
                                   .time = &m->now,
                                   .sources = &shown,
                                   .result = m->result,
+                                  .light = m->problem->light->options ? &m->problem->light->result : NULL,
                                   .of_sides = m->problem->by_factors ? NULL : m->triangles};
     status = outputs_write(&m->options->outputs, &what);
     ++m->bed.frame;
@@ -330,6 +363,7 @@ static void print_summary(struct time_run *m, const double *before, double secon
     report_value(report, "stored_J", stored, 6);
     if (!isnan(m->problem->sources.surroundings)) report_value(report, "surroundings_J", m->surroundings_energy, 6);
     wall_values_report(walls, m->energy, "_J", 6, report);
+    light_report(m->problem->light, walls, m->bed.n, report);
     report_value(report, "balance_of_stored", exchanged > 0 ? balance / exchanged : 0, 2);
     report_end(report);
 }
@@ -385,6 +419,8 @@ int heat_in_time(struct bed_options *options, const struct time_options *time, c
     if (!status) status = choose_model(&m);
     if (!status) status = find_capacities(&m, metres, &capacity);
     m.span.capacity = capacity;
+    if (!status) status = absorb_light(&m);
+    if (!status) status = light_profile(problem->light, bed, options->name);
     if (!status) status = run_bed(&m, now + bed->n, picture);
     free(now);
     free(capacity);

@@ -215,6 +215,7 @@ typedef struct fibrad_light_result {
     double reflected;            /* sigma K^4 L^2, out: leaves after reflections, on whichever side */
     double error;                /* sigma K^4 L^2, out: estimated error of reflected */
     uint32_t sweeps;             /* out */
+    uint32_t lights;             /* out: lights that were taken; after an error of a light, those before it */
     const double *insulated; /* [patches], out: light of fibrad_heat_sources for the thermal radiation; NULL: none */
 } fibrad_light_result;
 
@@ -228,7 +229,7 @@ typedef struct fibrad_light_result {
  *   Errors   as fibrad_light_empty and fibrad_radiation_solve
  *            _UNSOLVABLE: nothing absorbs the light, and it cannot leave
  *   Cost     that of a solution
- *   Source   docs/methods_heat.md section 13 */
+ *   Source   docs/methods_heat.md, Light from outside */
 int fibrad_radiation_shine(fibrad_radiation *radiation, const fibrad_light_sources *sources,
                            fibrad_light_result *result);
 

@@ -179,6 +179,7 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
 }
 
 #define LIGHT_TOLERANCE 1e-5
+#define ROUNDING        1e-14 /* of areas that add up to what comes in */
 
 /* One light that falls on a bed. */
 struct shine_tasks {
@@ -213,7 +214,7 @@ static int shine_one(struct shine_tasks *t, uint32_t bodies, fibrad_light_result
     status = fibrad_team_run(&r->team, "light", tasks, 1, shine_task, t, NULL);
     for (uint32_t k = 0; k < tasks && !status; ++k) take_kept(&t->kept[k], bodies, &ends);
     if (!status) status = fibrad_heat_shine_walls(r->heat, &r->team.work[0], t->light, &ends, t->hits);
-    if (ends.through > 0) result->transmitted += ends.through;
+    if (ends.through > ROUNDING * (ends.spheres + ends.through)) result->transmitted += ends.through;
     return status;
 }
 
@@ -223,9 +224,10 @@ static int shine_all(fibrad_radiation *r, const fibrad_light_sources *s, uint32_
                                 calloc(fibrad_heat_shine_tasks(r->heat) + (size_t)1, sizeof(fibrad_light_ends))};
     int status = tasks.kept ? FIBRAD_OK : FIBRAD_E_MEMORY;
     for (uint32_t k = 0; k < s->lights && !status; ++k) {
-        tasks.light = &s->light[k];
+        tasks.light = &s->light[k], result->lights = k;
         status = shine_one(&tasks, bodies, result);
     }
+    if (!status) result->lights = s->lights;
     free(tasks.kept);
     return status;
 }

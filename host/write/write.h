@@ -39,6 +39,7 @@ struct contents {
 
     const fibrad_heat_sources *sources; /* [K]; surroundings NaN: the bed is closed */
     const fibrad_heat_result *result;   /* [W], [K]; all arrays are set */
+    const fibrad_light_result *light;   /* [W], what is absorbed of light from outside; NULL: there is none */
 
     const struct conduction *conduction;
 };

@@ -138,13 +138,16 @@ int write_csv(FILE *file, const struct contents *what, bool first) {
 /* Puts a number. NaN: puts nothing. */
 static char *put_error(char *to, double error) { return isnan(error) ? to : text_real(to, error); }
 
+/* light[2]: what is absorbed of light from outside, first and in all. */
 static void write_power(struct csv *csv, int64_t name, const char *body, double temperature, double power,
-                        double power_error, double temperature_error) {
+                        double power_error, double temperature_error, const double light[2]) {
     char *at = put_comma(text_whole(csv->line + csv->columns, name));
     at = put_comma(text_real(at, temperature));
     at = put_comma(text_real(at, power));
     at = put_comma(put_error(at, power_error));
-    end_line(csv, put_error(at, temperature_error), body);
+    at = put_error(at, temperature_error);
+    for (int k = 0; k < 2 && csv->what->light; ++k) at = text_real(put_comma(at), light[k]);
+    end_line(csv, at, body);
 }
 
 int write_heat_csv(FILE *file, const struct contents *what, bool first) {
@@ -152,19 +155,27 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
     const fibrad_heat_result *result = what->result;
     struct csv csv = {.named = true};
     char name[BODY_NAME];
-    begin_csv(&csv, file, what, "i,T_K,q_W,q_error_W,T_error_K", first);
+    const fibrad_light_result *light = what->light;
+    double of_light[2] = {0, 0};
+    begin_csv(&csv, file, what,
+              light ? "i,T_K,q_W,q_error_W,T_error_K,absorbed_first_W,absorbed_W" : "i,T_K,q_W,q_error_W,T_error_K",
+              first);
     for (uint32_t i = 0; i < what->bed->n; ++i) {
         if (interrupt_status()) return interrupt_status();
+        if (light) of_light[0] = light->absorbed_first[i], of_light[1] = light->absorbed[i];
         write_power(&csv, bed_name(what->bed, i), "", result->temperature[i], result->power[i], result->power_error[i],
-                    result->temperature_error[i]);
+                    result->temperature_error[i], of_light);
     }
     if (!what->walls) return STATUS_OK;
+    if (light) of_light[0] = light->transmitted, of_light[1] = light->transmitted + light->reflected;
     if (!isnan(surroundings))
         write_power(&csv, SURROUNDINGS, "surroundings", surroundings, result->surroundings_power,
-                    result->surroundings_error, 0);
-    for (uint32_t k = 0; k < what->walls->count; ++k)
+                    result->surroundings_error, 0, of_light);
+    for (uint32_t k = 0; k < what->walls->count; ++k) {
+        if (light) of_light[0] = light->body_absorbed_first[k], of_light[1] = light->body_absorbed[k];
         write_power(&csv, FIRST_WALL - (int64_t)k, contents_body(what, k, name), result->body_temperature[k],
-                    result->body_power[k], result->body_error[k], result->body_temperature_error[k]);
+                    result->body_power[k], result->body_error[k], result->body_temperature_error[k], of_light);
+    }
     return STATUS_OK;
 }
 

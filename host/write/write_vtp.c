@@ -92,6 +92,7 @@ int write_heat_vtp(FILE *file, const struct contents *what, bool first) {
     vtp_doubles(file, "temperature_K", what->result->temperature, bed->n, NULL);
     vtp_doubles(file, "emissivity", what->sources->emissivity, bed->n, NULL);
     vtp_doubles(file, "power_W", what->result->power, bed->n, NULL);
+    if (what->light) vtp_doubles(file, "absorbed_W", what->light->absorbed, bed->n, NULL);
     vtp_end(file, bed);
     return interrupt_status();
 }

@@ -12,6 +12,7 @@ program test_fortran
     call meshes()
     call exchange_of_pairs()
     call powers()
+    call light_from_outside()
     call found_temperatures()
     call temperatures_in_time()
     call errors()
@@ -176,6 +177,27 @@ contains
                                      walls=[fibrad_plane('zmin', 0.0_dp)], wall_emissivity=[1.0_dp])
         call expect(near(found%wall(1, 1), 0.5_dp, 1e-12_dp), 'a black floor absorbs what it gets')
     end subroutine exchange_of_pairs
+
+    ! A lone sphere above a floor takes its shadow, and its light falls on no one else.
+    subroutine light_from_outside()
+        type(fibrad_heat) :: heat
+        type(fibrad_light) :: sun(1)
+        real(dp) :: absorbed(1), first(1), floor(1), incident, through, back
+        integer :: status
+        sun(1) = fibrad_light(direction=[0.0_dp, 0.0_dp, -2.0_dp], flux=3.0_dp)
+        call heat%new([0.0_dp], [0.0_dp], [1.0_dp], [0.5_dp], status, walls=[fibrad_plane('zmin', 0.0_dp)])
+        call heat%shine(sun, [0.4_dp], absorbed, first, status, wall_absorptivity=[1.0_dp], wall_absorbed=floor, &
+                        incident=incident, transmitted=through, reflected=back)
+        call expect(status == fibrad_ok, 'light')
+        call expect(near(first(1), 0.4_dp * 3 * pi / 4, 1e-12_dp), 'first hit of a sphere')
+        call expect(near(absorbed(1), first(1), 1e-9_dp), 'a black floor sends nothing back')
+        call expect(near(incident, 3.0_dp, 1e-12_dp) .and. abs(through) < 1e-12_dp, 'light on the box of the sphere')
+        call expect(near(absorbed(1) + floor(1) + back, incident, 1e-12_dp), 'balance of light')
+        sun(1)%direction = 0
+        call heat%shine(sun, [0.4_dp], absorbed, first, status, wall_absorptivity=[1.0_dp])
+        call expect(status == fibrad_e_argument, 'no direction')
+        call heat%free()
+    end subroutine light_from_outside
 
     subroutine powers()
         type(fibrad_heat) :: heat

@@ -315,3 +315,47 @@ def test_one_power_is_for_those_without_temperature():
 def test_walls_are_named(walls, box, text):
     with pytest.raises(fibrad.InputError, match=text):
         fibrad.view_factors([[0, 0, 0]], 0.5, walls=walls, box=box)
+
+
+def test_light_on_a_lone_sphere():
+    """It takes its shadow, pi r^2, and what it absorbs it sends out again."""
+    light = fibrad.Light((0, 0, -1), 1000.0)
+    with fibrad.Heat([[0, 0, 0]], 0.5) as heat:
+        absorbed = heat.shine(light, 0.4)
+        powers = heat.solve(None, 0.8, power=0.0, surroundings=0.0, light=absorbed)
+        given = heat.solve(300.0, 0.8, surroundings=300.0, light=absorbed)
+    shadow = 1000 * np.pi * 0.25
+    assert absorbed.first == pytest.approx(0.4 * shadow, rel=1e-12)
+    assert absorbed.spheres == pytest.approx(0.4 * shadow, rel=1e-9)
+    assert absorbed.incident == pytest.approx(1000) and absorbed.transmitted == pytest.approx(1000 - shadow)
+    assert absorbed.spheres.sum() + absorbed.transmitted + absorbed.reflected == pytest.approx(absorbed.incident, rel=1e-12)
+    assert powers.temperatures == pytest.approx((0.4 * shadow / (0.8 * np.pi * SIGMA)) ** 0.25, rel=1e-6)
+    assert given.spheres == pytest.approx(0.4 * shadow, rel=1e-9)
+    assert abs(powers.balance) < 1e-9 and abs(given.balance) < 1e-9
+
+
+def test_light_between_walls():
+    """Insulated walls give off what they absorb; what comes in goes out."""
+    with fibrad.Heat([[0, 0, 0]], 0.5, box=[2, 2, 0], walls={"zmin": -1}) as heat:
+        absorbed = heat.shine([fibrad.Light((0.2, 0, -1), 1000.0, half_angle=fibrad.Light.SUN)], 0.5, wall_absorptivity=0.5,
+                              insulated=["zmin"])
+        powers = heat.solve(None, 0.8, power=0.0, surroundings=0.0, insulated=["zmin"], light=absorbed)
+        with pytest.raises(fibrad.InputError, match="insulated walls"):
+            heat.solve(300, 0.8, surroundings=0.0, wall_temperature=300, wall_emissivity=1, light=absorbed)
+    assert absorbed.walls["zmin"] > 0
+    assert powers.surroundings == pytest.approx(0, abs=1e-6 * absorbed.incident)
+    assert powers.walls["zmin"] == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("light, why", [
+    (dict(direction=(0, 0, 0), flux=1), "leads nowhere"),
+    (dict(direction=(0, 0), flux=1), "3 finite numbers"),
+    (dict(direction=(0, 0, 1), flux=1), "no open face"),
+    (dict(direction=(0, 0, -1), flux=-1), "flux"),
+    (dict(direction=(0, 0, -1), flux=1, disc=(0, 0, 0, 1)), "before the disc"),
+    (dict(direction=(0, 0, -1), flux=1, disc=(0, 0, 9, 1), box=(0, 1, 0, 1)), "one disc or one box"),
+])
+def test_lights_that_are_refused(light, why):
+    with fibrad.Heat([[0, 0, 0]], 0.5, box=[2, 2, 0], walls={"zmin": -1}) as heat:
+        with pytest.raises(fibrad.InputError, match=why):
+            heat.shine(fibrad.Light(**light), 0.5, wall_absorptivity=1.0)

@@ -14,7 +14,8 @@ def test_bounds_are_those_of_the_header():
     assert _limits.NODES == (c["NODES_MIN"], c["NODES_MAX"])
     assert _limits.PATCHES[-1] == c["HEAT_PATCHES_MAX"] and c["HEAT_PATCHES_DEFAULT"] in _limits.PATCHES
     assert _limits.SIGMA == (c["SIGMA_MIN"], c["SIGMA_MAX"])
-    for name in ("LENGTH_MAX", "TEMPERATURE_MAX", "POWER_MAX", "CAPACITY_MAX", "DURATION_MAX"):
+    for name in ("LENGTH_MAX", "TEMPERATURE_MAX", "POWER_MAX", "CAPACITY_MAX", "DURATION_MAX", "SUN_HALF_ANGLE",
+                 "HALF_ANGLE_MAX", "LIGHT_DIRECTIONS_MAX"):
         assert getattr(_limits, name) == c[name]
 
 

@@ -7,6 +7,7 @@
 0.03
 
 `view_factors`, `exchange_factors` and `displacements` compute whole beds. `Heat` gives net powers and temperatures.
+`Heat.shine` has what is absorbed of `Light` from outside.
 `Transient` follows temperatures in time. `read` and `Mesh.from_stl` read files.
 
 Positions are arrays (n, 3), radii are arrays (n,). The surroundings lie outside the bed and are black. A wall is a
@@ -21,10 +22,11 @@ from ._errors import Cancelled, Error, FileError, InputError, OutOfMemory, State
 from ._factors import Displacements, Factors, displacements, exchange_factors, view_factors
 from ._files import FileFrame, read
 from ._heat import STEFAN_BOLTZMANN, Heat, Powers
+from ._light import Absorbed, Light
 from ._scene import Mesh
 from ._transient import Advance, Transient
 
 __version__: str = _library.library.fibrad_version().decode()
-__all__ = ["Advance", "Cancelled", "Displacements", "Error", "Factors", "FileError", "FileFrame", "Heat", "InputError",
+__all__ = ["Absorbed", "Advance", "Cancelled", "Displacements", "Error", "Factors", "FileError", "FileFrame", "Heat", "InputError", "Light",
            "Mesh", "OutOfMemory", "Powers", "STEFAN_BOLTZMANN", "StateError", "Transient", "displacements", "exchange_factors", "read",
            "view_factors"]

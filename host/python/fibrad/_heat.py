@@ -4,7 +4,7 @@ from __future__ import annotations
 import ctypes
 import dataclasses
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._bed import Bed, heat_config
 from ._call import Call, Progress
-from ._library import HeatResult, HeatSources, library
+from ._library import HeatResult, HeatSources, LightResult, LightSources, library
+from ._light import Absorbed, Light, add, lights_of, patches_pointer
 from ._scene import Walls, pointer, pointers
 from ._limits import POWER_MAX, SIGMA, TEMPERATURE_MAX
 from ._values import per_sphere, real, refuse
@@ -130,11 +131,54 @@ class Heat(Bed):
                  ids: Optional[ArrayLike] = None, threads: Optional[int] = None, progress: Optional[Progress] = None):
         super().__init__(x, r, box, walls, ids, heat_config(directions, points, patches), Call(threads, progress))
 
+    def shine(self, lights: Union[Light, Iterable[Light]], absorptivity: ArrayLike, *, wall_absorptivity: Any = None,
+              insulated: Collection[str] = ()) -> Absorbed:
+        """What spheres and walls absorb of light from outside.
+
+        Parameters
+        ----------
+        lights : Light or several
+            What shines on the bed.
+        absorptivity : (n,) array or float
+            Absorptivities of the spheres for the light, 0 to 1. The rest is reflected.
+        wall_absorptivity : mapping or float
+            Absorptivities of the walls by name, or one for all, 0 to 1. Needed with walls.
+        insulated : names, optional
+            Walls that are insulated in `solve`. They give off as thermal radiation what they absorb.
+
+        Returns
+        -------
+        Absorbed
+            For `solve`, until the next `shine` or `move`.
+
+        Raises
+        ------
+        InputError
+            A value is out of its range, or no open face lets a light in.
+        """
+        container, names, n = self._container, self._packing.names, self.n
+        shares = per_sphere("absorptivity", absorptivity, n, 0, 1, names)
+        of_walls = container.per_wall("wall_absorptivity", wall_absorptivity, 0, 1, frozenset())
+        container.known("insulated", frozenset(insulated))
+        closed = np.array([wall in insulated for wall in container.names], np.uint8)
+        array = lights_of(lights)
+        arrays = {name: np.zeros(n) for name in ("absorbed", "absorbed_first", "absorbed_error")}
+        arrays |= {name: np.zeros(len(container.names)) for name in ("body_absorbed", "body_absorbed_first")}
+        sources = LightSources(light=array, lights=len(array), absorptivity=pointer(shares),
+                               body_absorptivity=pointer(of_walls), insulated=pointers({"insulated": closed})["insulated"])
+        result = LightResult(**{name: pointer(values) for name, values in arrays.items()})
+        self._use(library.fibrad_radiation_shine, self._packing, sources, result)
+        walls = {name: dict(zip(container.names, arrays[name].tolist())) for name in ("body_absorbed", "body_absorbed_first")}
+        return Absorbed(spheres=arrays["absorbed"], first=arrays["absorbed_first"], errors=arrays["absorbed_error"],
+                        walls=walls["body_absorbed"], walls_first=walls["body_absorbed_first"], incident=result.incident,
+                        transmitted=result.transmitted, reflected=result.reflected, error=result.error,
+                        insulated=frozenset(insulated), _patches=result.insulated, _of=self)
+
     def solve(self, temperature: Optional[ArrayLike], emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]], *,
               power: Optional[ArrayLike] = None, surroundings: Optional[float] = None, wall_temperature: Any = None,
               wall_emissivity: Any = None, wall_power: Optional[Mapping[str, float]] = None,
               insulated: Collection[str] = (), tolerance: Optional[float] = None, uniform: bool = False,
-              sigma: float = STEFAN_BOLTZMANN) -> Powers:
+              sigma: float = STEFAN_BOLTZMANN, light: Optional[Absorbed] = None) -> Powers:
         """Net powers and temperatures.
 
         Parameters
@@ -166,6 +210,9 @@ class Heat(Bed):
             True: one radiosity for each sphere and wall. This is good only for emissivities near 1.
         sigma : float
             [W/(m2 K4)] Emission is ``sigma T**4``.
+        light : Absorbed, optional
+            The last `shine` of this bed. What is absorbed heats. Net powers are those of light and thermal radiation
+            together.
 
         Returns
         -------
@@ -189,6 +236,12 @@ class Heat(Bed):
         if powers is not None and np.ndim(power) == 0:
             powers = np.where(np.isnan(kelvins), powers, math.nan)
         of_bodies = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
+        if light is not None:
+            if light._of is not self or light.insulated != frozenset(insulated):
+                raise refuse("light is of another bed, or was absorbed with other insulated walls")
+            powers = add(powers, light.spheres)
+            walls_absorb = np.array([0.0 if wall in light.insulated else light.walls[wall] for wall in container.names])
+            of_bodies["body_power"] = add(of_bodies.get("body_power"), walls_absorb)
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
         law = _law(emissivity)
@@ -197,6 +250,8 @@ class Heat(Bed):
                               sigma=real("sigma", sigma, *SIGMA), tolerance=real("tolerance", tolerance, 0, 1),
                               uniform=bool(uniform), temperature=pointer(kelvins), power=pointer(powers),
                               **pointers(of_bodies))
+        if light is not None:
+            sources.light = patches_pointer(light)
         of_spheres = {name: np.zeros(n) for name in ("power", "temperature", "power_error", "temperature_error")}
         of_walls = {name: np.zeros(len(container.names)) for name in ("body_power", "body_temperature", "body_error")}
         result = HeatResult(**{name: pointer(array) for name, array in (of_spheres | of_walls).items()})
@@ -209,6 +264,10 @@ class Heat(Bed):
                 break
         else:
             raise refuse("the emissivities do not settle")
+        if light is not None:
+            of_spheres["power"] += light.spheres
+            of_walls["body_power"] += walls_absorb
+            result.surroundings_power += light.reflected + light.transmitted - light.incident
         if surroundings is None and result.surroundings_power != 0:
             raise refuse(f"{result.surroundings_power} W leave the bed after 100 periods: surroundings is needed")
         sides = np.full((2, container.sides_count), math.nan)

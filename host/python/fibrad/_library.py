@@ -76,6 +76,16 @@ HeatResult = _structure("heat_result", ("power body_power", DOUBLES), ("surround
                         ("least_temperature largest_temperature centre_temperature", DOUBLES),
                         ("surface_error centre_error", DOUBLES))
 
+LightStructure = _structure("light", ("direction", c_double * 3), ("flux half_angle", c_double), ("directions", c_uint32),
+                            ("shape", c_int), ("centre", c_double * 3), ("radius", c_double),
+                            ("low high", c_double * 2))
+LightSources = _structure("light_sources", ("light", POINTER(LightStructure)), ("lights", c_uint32),
+                          ("absorptivity body_absorptivity", DOUBLES), ("insulated", POINTER(c_ubyte)),
+                          ("tolerance", c_double), ("uniform", c_int))
+LightResult = _structure("light_result", ("absorbed absorbed_first absorbed_error", DOUBLES),
+                         ("body_absorbed body_absorbed_first body_absorbed_error", DOUBLES),
+                         ("incident transmitted reflected error", c_double), ("sweeps lights", c_uint32),
+                         ("insulated", c_void_p))
 TransientConfig = _structure("transient_config", ("method", c_int), ("exchange", ExchangeRule), ("heat", HeatConfig))
 Span = _structure("span", ("temperature capacity", DOUBLES), ("duration", c_double),
                   ("body_temperature surroundings", DOUBLES), ("step tolerance", c_double),
@@ -97,6 +107,7 @@ def _declare(library: ctypes.CDLL) -> None:
     library.fibrad_radiation_new.argtypes = [POINTER(c_void_p), *bed, POINTER(HeatConfig), POINTER(Run)]
     library.fibrad_radiation_move.argtypes = [c_void_p, *bed]
     library.fibrad_radiation_solve.argtypes = [c_void_p, POINTER(HeatSources), POINTER(HeatResult)]
+    library.fibrad_radiation_shine.argtypes = [c_void_p, POINTER(LightSources), POINTER(LightResult)]
     library.fibrad_radiation_sides.argtypes = [c_void_p, DOUBLES, DOUBLES]
     library.fibrad_radiation_describe.argtypes = [c_void_p, c_void_p, POINTER(Fault)]
     library.fibrad_radiation_free.argtypes = [c_void_p]

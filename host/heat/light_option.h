@@ -1,0 +1,93 @@
+/* light_option.h - light from outside that falls on a bed: options, what is absorbed, and the summary.
+ * SPDX-License-Identifier: MIT */
+#ifndef LIGHT_OPTION_H
+#define LIGHT_OPTION_H
+
+#include "frames/bed_options.h"
+
+enum { LIGHTS_MAX = 32 };
+enum { KEY_IRRADIATE = KEY_OWN + 200, KEY_ABSORPTIVITY, KEY_WALL_ABSORPTIVITY, KEY_PROFILE, KEY_FACE };
+
+/* Rows of the table of options. */
+#define OPTIONS_LIGHT                                                                                                  \
+    {KEY_IRRADIATE, "irradiate", "LIGHT",                                                                              \
+     "light from outside, DX,DY,DZ:FLUX, the way it goes and its W/m2 across that way; see below [none]"},             \
+        {KEY_ABSORPTIVITY, "absorptivity", "A",                                                                        \
+         "absorptivity of all spheres for that light, 0 to 1, or TYPE:A,..., or a column of the file [emissivity]"},   \
+        {KEY_WALL_ABSORPTIVITY, "wall-absorptivity", "LIST",                                                           \
+         "absorptivities of walls for that light, as --wall-emissivity [--wall-emissivity]"},                          \
+        {KEY_PROFILE, "profile", "AXIS[:BINS]:OUT",                                                                    \
+         "what is absorbed of the light along x, y or z, .csv, .svg or .png; a bin is one mean diameter [none]"},      \
+    {                                                                                                                  \
+        KEY_FACE, "face", NULL, "find the emissivity of the open face of the bed, all at one temperature, see below"   \
+    }
+
+/* A paragraph of --help. */
+#define LIGHT_MORE                                                                                                     \
+    "--irradiate: several are allowed. LIGHT is DX,DY,DZ:FLUX and may go on with\n"                                    \
+    "  :half-angle=MRAD       directions fill a cone; :half-angle=sun is 4.65\n"                                       \
+    "  :disc=X,Y,Z,R          a beam through a disc across the way, before the bed\n"                                  \
+    "  :box=X1,X2,Y1,Y2       a beam through a rectangle at the end of the bed in z\n"                                 \
+    "Lengths are in the unit of the file. Without disc or box the light falls on all that is open. Between\n"          \
+    "side walls the light needs an opening (zmax=H:open), whose place is the rim. Light is absorbed with the\n"        \
+    "absorptivity and reflected with the rest. What is absorbed heats: powers are those of both bands. The\n"          \
+    ".csv then has the columns absorbed_first_W and absorbed_W. Those of the surroundings are what goes\n"             \
+    "through without having met anything, and all that leaves.\n"
+
+/* Arguments of the options. Begin with zeroes. */
+struct light_options {
+    fibrad_light light[LIGHTS_MAX]; /* [lights] lengths in the bed's unit, flux in W/m2 */
+    uint32_t lights;
+    struct quantity absorptivity;
+    const char *wall_absorptivity; /* NULL: as emissivity */
+    char axis;                     /* of the profile; 0: none */
+    uint32_t bins;                 /* 0: one mean diameter each */
+    const char *profile;           /* path */
+};
+
+/* What light does to a bed. */
+struct light_state {
+    const struct light_options *options;       /* NULL: there is no light */
+    double *absorptivity, of_walls[WALLS_MAX]; /* [spheres] */
+    double *absorbed, *first, *error;          /* [spheres] */
+    double *power, wall_power[WALLS_MAX];      /* given powers and what is absorbed, for thermal radiation */
+    double wall[WALLS_MAX], wall_first[WALLS_MAX], wall_error[WALLS_MAX];
+    bool failed;                /* the library has refused the light, or its solution */
+    fibrad_light_result result; /* with these arrays; [W] when the bed is solved */
+};
+
+/* Takes the argument of an option KEY_IRRADIATE to KEY_PROFILE. Status 0 or STATUS_USAGE. */
+int light_option(int key, const char *text, struct light_options *options);
+
+/* Checks the options when all have been read. of_emissivity: that of --emissivity. Status 0 or STATUS_USAGE. */
+int light_check(struct light_options *options, struct bed_options *bed, const struct quantity *of_emissivity);
+
+/* Begins with a bed. Without --irradiate state->options is NULL. Free it also after an error. Status 0, STATUS_INPUT,
+ * STATUS_USAGE or STATUS_MEMORY. */
+int light_begin(struct light_state *state, const struct light_options *options, const struct bed *bed, const char *file,
+                const struct walls *walls, const double *emissivity, const double *wall_emissivity);
+void light_free(struct light_state *state);
+
+/* Computes what is absorbed, in units of the bed's length squared, and adds it to the powers of the sources, which then
+ * are those of thermal radiation. Without light does nothing. Returns a status of the library. */
+int light_absorb(struct light_state *state, const struct bed *bed, const struct walls *walls,
+                 fibrad_radiation *radiation, fibrad_heat_sources *sources);
+
+/* Says why light_absorb has failed. Returns STATUS_USAGE; 0: nothing is wrong with the light. */
+int light_refuse(const struct light_state *state, const struct bed *bed, int status, const fibrad_fault *fault);
+
+/* Multiplies all powers by a number. */
+void light_scale(struct light_state *state, uint32_t spheres, uint32_t walls, double factor);
+
+/* What of the light heats an insulated wall, or any other: adds to the net powers of a result what is absorbed, and to
+ * its errors. */
+void light_add(const struct light_state *state, const fibrad_heat_sources *sources, uint32_t spheres, uint32_t walls,
+               fibrad_heat_result *result);
+
+/* Reports what is absorbed, reflected and transmitted. */
+void light_report(const struct light_state *state, const struct walls *walls, uint32_t spheres, struct report *report);
+
+/* Writes the profile, if one was asked for. Status 0, STATUS_FILE or STATUS_MEMORY. */
+int light_profile(const struct light_state *state, const struct bed *bed, const char *name);
+
+#endif

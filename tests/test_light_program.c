@@ -1,0 +1,127 @@
+/* test_light_program.c - fibrad heat --irradiate: what it says, writes and refuses. SPDX-License-Identifier: MIT */
+#include "program.h"
+
+static const char *bed; /* four spheres of radius 0.5 in a cup of side 2, the lid of which is at 2.5 */
+
+#define CUP "xmin=0,xmax=2,ymin=0,ymax=2,zmin=0,zmax=2.5:open"
+#define HEAT(...)                                                                                                      \
+    RUN("heat", bed, "--length-unit", "m", "--emissivity", "0.8", "--ambient", "300", "--wall-temperature", "300",     \
+        __VA_ARGS__)
+
+static void begin(void) {
+    make_folder();
+    bed = write_file("bed.csv", "x,y,z,radius\n.5,.5,.5,.5\n1.5,.5,.5,.5\n.5,1.5,.5,.5\n1.5,1.5,1.2,.5\n");
+}
+
+static double fractions(void) { return value_of("absorbed") + value_of("reflected") + value_of("transmitted"); }
+
+START_TEST(what_is_absorbed_is_said_and_written) {
+    const char *csv = in_folder("q.csv"), *profile = in_folder("p.csv");
+    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
+                          "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", "z:2:.csv" + 0, "--quiet"),
+                     2); /* a profile needs a name */
+    char option[400];
+    snprintf(option, sizeof option, "z:2:%s", profile);
+    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:1000", "--absorptivity", ".5",
+                          "--wall-absorptivity", "zmin=.25,0", "-o", csv, "--profile", option),
+                     0);
+    ck_assert_double_eq_tol(value_of("irradiated_W"), 4000, 1e-9);
+    ck_assert_double_eq_tol(value_of("absorbed_first_W"), 1000 * (.5 * M_PI + .25 * (4 - M_PI)), .01);
+    ck_assert_double_eq_tol(fractions(), 1, .01);
+    char *text = read_file(csv);
+    ck_assert_ptr_eq(strstr(text, "i,T_K,q_W,q_error_W,T_error_K,absorbed_first_W,absorbed_W,body\n"), text);
+    double sum = 0, all = 0;
+    for (const char *line = strchr(text, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
+        double q, first, absorbed;
+        ck_assert_int_eq(sscanf(line, "%*d,%*f,%lf,%*f,%*f,%lf,%lf", &q, &first, &absorbed), 3);
+        sum += q, all += absorbed;
+    }
+    ck_assert_double_eq_tol(sum, 0, 1e-8);
+    ck_assert_double_eq_tol(all, 4000, 1e-8);
+    free(text);
+    text = read_file(profile);
+    ck_assert_ptr_eq(strstr(text, "z_low,z_high,spheres,absorbed_first_W,absorbed_W\n0,0.85,3,"), text);
+    free(text);
+}
+END_TEST
+
+START_TEST(light_heats) {
+    const char *wall = "zmin=insulated,insulated";
+    SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--wall", CUP,
+            "--wall-temperature", wall, "--power", "0", "--irradiate", "0,0,-1:1000");
+    /* all of it is absorbed, and leaves through the lid */
+    ck_assert_double_eq_tol(value_of("absorbed"), 1, 1e-6);
+    ck_assert_double_eq_tol(value_of("surroundings_W"), 0, 1e-4); /* what comes in goes out */
+    ck_assert_double_gt(value_of("temperature_min_K"), 300);
+    SUCCEED("heat", bed, "--length-unit", "m", "--emissivity", "1", "--ambient", "0", "--wall", CUP,
+            "--wall-temperature", "0", "--temperature", "300", "--irradiate", "0,0,-1:1000", "--until", "10",
+            "--heat-capacity", "800", "--density", "2500");
+    ck_assert_double_eq_tol(value_of("supplied_J"), 10 * 1000 * M_PI, 1);
+}
+END_TEST
+
+/* An endless floor of equal spheres has an emissivity; a black cavity with a lid that is open has 1. */
+START_TEST(faces_have_an_emissivity) {
+    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--face"), 0);
+    ck_assert_double_eq_tol(value_of("face_area_m2"), 4, 1e-9);
+    ck_assert_double_gt(value_of("face_emissivity"), .9);
+    ck_assert_double_lt(value_of("face_emissivity"), 1);
+    ck_assert_int_eq(RUN("heat", bed, "--emissivity", ".5", "--temperature", "300", "--ambient", "300", "--face"), 2);
+    expect_message("--face: an open face has no end", "walls or periods");
+    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", "box", "--face"), 2);
+    expect_message("--face: the bed has no open face", "");
+}
+END_TEST
+
+START_TEST(refused_lights_are_named) {
+    static const struct {
+        const char *light, *wall, *place, *reason;
+    } refused[] = {
+        {"0,0,0:1000", CUP, "--irradiate: the direction 0,0,0", "leads nowhere"},
+        {"0,0,-1", CUP, "--irradiate: '0,0,-1'", "DX,DY,DZ:FLUX"},
+        {"0,-1:5", CUP, "--irradiate: '0,-1'", "DX,DY,DZ"},
+        {"0,0,-1:-5", CUP, "--irradiate: flux", ""},
+        {"0,0,-1:5:width=3", CUP, "--irradiate: 'width=3'", "none of half-angle=, disc= and box="},
+        {"0,0,-1:5:half-angle=moon", CUP, "--irradiate: half-angle", ""},
+        {"0,0,-1:5:disc=1,1,3", CUP, "--irradiate: '1,1,3'", "disc=X,Y,Z,R"},
+        {"0,0,-1:5:disc=1,1,3,0", CUP, "--irradiate: the radius", "not above 0"},
+        {"0,0,-1:5:box=1,0,0,1", CUP, "--irradiate: box=1,0,0,1", "X1 must be below X2"},
+        {"1,0,0:5:box=0,1,0,1", CUP, "--irradiate: a box lies across z", ""},
+        {"0,0,-1:5:disc=1,1,3,1:box=0,1,0,1", CUP, "--irradiate: a light has one disc or one box", ""},
+        {"0,0,1:1000", CUP, "--irradiate: no open face lets light 1 in", "zmax=H:open"},
+        {"1,0,-1:1000", "xmin=0,xmax=2,ymin=0,ymax=2,zmin=0,zmax=2.5", "--irradiate: no open face lets light 1 in", ""},
+        {"0,0,-1:5:disc=1,1,0.6,1", CUP, "--irradiate: the disc of light 1 lies inside the bed", "sphere"},
+    };
+    for (size_t k = 0; k < sizeof refused / sizeof *refused; ++k) {
+        const int status = HEAT("--temperature", "300", "--wall", refused[k].wall, "--irradiate", refused[k].light);
+        ck_assert_msg(status == 2, "%s: exit status %d, '%s'", refused[k].light, status, said);
+        expect_message(refused[k].place, refused[k].reason);
+    }
+    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--absorptivity", ".5"), 2);
+    expect_message("--absorptivity needs --irradiate", "");
+    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "1.5"),
+                     2);
+    expect_message("--absorptivity", "1.5");
+    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "colour"),
+                     3);
+    ck_assert_int_eq(
+        HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--wall-absorptivity", "lid=.5"), 2);
+    expect_message("--wall-absorptivity", "lid");
+    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--profile", "w:p.csv"), 2);
+    expect_message("--profile: 'w:p.csv'", "AXIS");
+    ck_assert_int_eq(HEAT("--temperature", "300", "--wall", CUP, "--irradiate", "0,0,-1:5", "--absorptivity", "0",
+                          "--wall-absorptivity", "0"),
+                     0);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("light by the program");
+    TCase *tcase = suite_case(suite, "heat --irradiate");
+    tcase_add_checked_fixture(tcase, begin, remove_folder);
+    tcase_add_test(tcase, what_is_absorbed_is_said_and_written);
+    tcase_add_test(tcase, light_heats);
+    tcase_add_test(tcase, faces_have_an_emissivity);
+    tcase_add_test(tcase, refused_lights_are_named);
+    return suite_run(suite);
+}
