@@ -15,11 +15,13 @@
 
 /* Discs of one side that a circle, or a sector of a circle, may have. */
 #define FIBRAD_CIRCLE_DISCS 240u
-#define FIBRAD_CIRCLE_ROOM  (FIBRAD_CIRCLE_DISCS + FIBRAD_LANES_MAX)
-#define FIBRAD_CIRCLE_ENDS  (4 * FIBRAD_CIRCLE_ROOM + FIBRAD_LANES_MAX)
+#define FIBRAD_CIRCLE_ROOM  (FIBRAD_CIRCLE_DISCS + 3 * FIBRAD_LANES_MAX)
+#define FIBRAD_CIRCLE_ENDS  (4 * FIBRAD_CIRCLE_ROOM)
+#define FIBRAD_CIRCLE_MANY  (2 * FIBRAD_LANES_MAX) /* near spheres that are first asked whether they touch the circle  \
+                                                    */
 
 /* Where on a circle: tan(t/2) of the angle t for t within a quarter turn of 0, and 2 + tan((t - pi)/2) on the other
- * half. A turn is from -1 to 3. Places are multiples of 2^-50, so that their differences are exact. */
+ * half. A turn is from -1 to 3. */
 #define FIBRAD_CIRCLE_BEGIN (-1.0)
 #define FIBRAD_CIRCLE_END   3.0
 
@@ -28,63 +30,86 @@ typedef struct fibrad_line {
     double frame[9];
 } fibrad_line;
 
-/* Discs behind or before a sphere. Element `count` stands for what lies beyond all spheres. */
-typedef struct fibrad_circle_discs {
+/* Discs behind or before a sphere that may touch its circle, in any order. */
+typedef struct fibrad_circle_side {
     _Alignas(64) double u[FIBRAD_CIRCLE_ROOM]; /* centre relative to that of the sphere */
     double v[FIBRAD_CIRCLE_ROOM];
     double depth[FIBRAD_CIRCLE_ROOM]; /* away from the sphere */
     double r[FIBRAD_CIRCLE_ROOM];
-    double from[FIBRAD_CIRCLE_ROOM]; /* the arc [from, to) of the circle that the disc covers, to <= from + 4, ... */
-    double to[FIBRAD_CIRCLE_ROOM];
-    double again[FIBRAD_CIRCLE_ROOM];    /* ... and the arc up to here, to - 4 */
-    double weight[FIBRAD_CIRCLE_ROOM];   /* units per area */
-    uint32_t slot[FIBRAD_CIRCLE_ROOM];   /* where what the sphere exchanges with the disc is summed */
-    uint32_t sphere[FIBRAD_CIRCLE_ROOM]; /* position in scene order, or a name of what lies beyond all spheres */
+    double from[FIBRAD_CIRCLE_ROOM]; /* the arc that the disc covers of the stretch; ends beyond all places are outside
+                                        it */
+    double to[FIBRAD_CIRCLE_ROOM];   /* less than `from` if the disc covers the place where the stretch begins */
+    float key[FIBRAD_CIRCLE_ROOM];   /* the depth, rounded */
+    uint32_t inner[FIBRAD_CIRCLE_ROOM]; /* sectors of the stretch that the disc covers whole, as bits, ... */
+    uint32_t outer[FIBRAD_CIRCLE_ROOM]; /* ... and those of which it covers some; 0: the disc does not count */
+    uint32_t slot[FIBRAD_CIRCLE_ROOM];  /* number among the near spheres */
+    uint32_t count;                     /* whole vectors of floats */
+    double known;                       /* all discs down to this depth are found */
+    double sense;                       /* 1: before the sphere; -1: behind it */
+    uint32_t last;                      /* end of those that are not filled up */
+    bool closed, open;                  /* nothing, or something, of the stretch is certainly open to that depth */
+    uint32_t nothing;                   /* the name of what lies beyond all spheres */
+} fibrad_circle_side;
+
+/* Those that may be seen, in any order. Element `count` stands for what lies beyond all spheres. */
+typedef struct fibrad_circle_discs {
+    _Alignas(64) double u[FIBRAD_CIRCLE_ROOM];
+    double v[FIBRAD_CIRCLE_ROOM], depth[FIBRAD_CIRCLE_ROOM], r[FIBRAD_CIRCLE_ROOM];
+    double from[FIBRAD_CIRCLE_ROOM], to[FIBRAD_CIRCLE_ROOM];
+    double weight[FIBRAD_CIRCLE_ROOM]; /* units per area */
+    float key[FIBRAD_CIRCLE_ROOM];
+    uint32_t rank[FIBRAD_CIRCLE_ROOM];   /* the nearest has rank 0 */
+    uint32_t number[FIBRAD_CIRCLE_ROOM]; /* of the disc that has a rank */
+    uint32_t slot[FIBRAD_CIRCLE_ROOM];
     uint32_t count;
 } fibrad_circle_discs;
 
-typedef struct fibrad_circle_side {
-    fibrad_circle_discs found, sorted; /* in any order; nearest first */
-    double known;                      /* all discs down to this depth are found */
-    double horizon;                    /* no disc is deeper */
-    double sense;                      /* 1: before the sphere; -1: behind it */
-    uint32_t nothing;                  /* the name of what lies beyond all spheres */
-} fibrad_circle_side;
-
-/* A place where what is met changes, and what is met from there on: numbers of discs, nearest first. */
+/* Ends of arcs: those of one side, then those of the other. */
 typedef struct fibrad_circle_ends {
     _Alignas(64) double at[FIBRAD_CIRCLE_ENDS];
-    double own[FIBRAD_CIRCLE_ENDS]; /* whose end it is, while ends are looked for */
-    double met[2][FIBRAD_CIRCLE_ENDS];
+    float key[FIBRAD_CIRCLE_ENDS];    /* the place, rounded */
+    uint32_t own[FIBRAD_CIRCLE_ENDS]; /* the bit of the disc whose end it is */
     uint32_t count;
 } fibrad_circle_ends;
 
+/* Pieces of the stretch, in order, on which nothing changes. Each ends where the next one begins. */
+typedef struct fibrad_circle_pieces {
+    _Alignas(64) double at[FIBRAD_CIRCLE_ENDS];
+    double angle[FIBRAD_CIRCLE_ENDS], cosine[FIBRAD_CIRCLE_ENDS], sine[FIBRAD_CIRCLE_ENDS];
+    double behind[FIBRAD_CIRCLE_ENDS], ahead[FIBRAD_CIRCLE_ENDS], past[FIBRAD_CIRCLE_ENDS]; /* areas, in units */
+    uint32_t first[FIBRAD_CIRCLE_ENDS], next[FIBRAD_CIRCLE_ENDS]; /* numbers of the discs that are met */
+    uint32_t count;
+} fibrad_circle_pieces;
+
 /* Near spheres, as work->near has them, and from element near.capacity on those that a march has found. The elements
- * `nothing` and nothing + 1, the last ones, stand for what lies beyond all spheres, behind and before. */
+ * `nothing` and nothing + 1, the last ones, stand for what lies beyond all spheres, behind and before. The element
+ * `nowhere` before them fills vectors up: a sphere so far away that no circle touches it. */
 typedef struct fibrad_circle_near {
     double *home[3], *radius, *away[3]; /* position, radius, and how many periods away the image is */
     uint32_t *sphere;
     int64_t *sum[2]; /* what is exchanged with the sphere in hand, in units, over even and odd lines */
-    uint32_t nothing;
+    uint32_t nowhere, nothing;
 } fibrad_circle_near;
 
 /* A stretch of a circle. The circle of a sphere far larger than its neighbours touches so many discs that it is
  * followed stretch by stretch. */
 typedef struct fibrad_circle_stretch {
     double begin, end;   /* places */
-    double u, v, radius; /* a disc that contains it, about a point of it */
+    double sectors;      /* 30 over its length */
+    double u, v, radius; /* a disc that contains it, about a point of it; infinity: the whole circle */
 } fibrad_circle_stretch;
 
 /* What scratch memory holds while circles of one task are followed. */
 typedef struct fibrad_circles {
     fibrad_circle_side side[2]; /* 0: behind, 1: before */
-    fibrad_circle_ends ends, sorted;
+    fibrad_circle_discs seen[2];
+    fibrad_circle_ends ends;
+    fibrad_circle_pieces pieces;
     _Alignas(64) uint32_t rank[FIBRAD_CIRCLE_ENDS];
-    _Alignas(64) uint32_t index[2][FIBRAD_CIRCLE_ENDS];
-    double angle[FIBRAD_CIRCLE_ENDS], cosine[FIBRAD_CIRCLE_ENDS], sine[FIBRAD_CIRCLE_ENDS];
-    double behind[FIBRAD_CIRCLE_ENDS], ahead[FIBRAD_CIRCLE_ENDS], past[FIBRAD_CIRCLE_ENDS]; /* areas, in units */
+    uint32_t order[FIBRAD_CIRCLE_ENDS];
     uint64_t key[FIBRAD_CIRCLE_ENDS]; /* pairs of what is met behind and before */
     fibrad_circle_near near;
+    bool images;             /* whether some near spheres are images of others */
     uint32_t homes, marched; /* ends of the lists of near spheres: those of shells, those that marches have found */
     const fibrad_scene *scene;
     double origin[3]; /* L */

@@ -7,20 +7,24 @@
 #include "silhouette/circle_lanes.h"
 #include "work/neighbours_lanes.h"
 
-#define NOWHERE 9.0 /* an arc from and to here covers nothing */
+#define NOWHERE 9.0    /* beyond the end of a circle, and some less */
+#define TINY    1e-200 /* squares that count as 0: between these and 0 numbers lose digits */
 
-/* ---- discs ------------------------------------------------------------------------------------------------------ */
+/* The number of the lowest bit that is set. Not 0. */
+static inline uint32_t lowest_bit(uint64_t x) { return (uint32_t)__builtin_ctzll(x); }
 
-/* Rounds to the grid of projected centres. */
-static inline vd on_grid(const fibrad_circles *c, vd x) { return (x + c->grid) - c->grid; }
+/* ---- discs and their arcs --------------------------------------------------------------------------------------- */
 
 /* The component of near spheres along an axis of the line's frame, relative to the sphere in hand. */
 static inline vd component_across(const fibrad_circles *c, int axis, vd x, vd y, vd z, const uint32_t *place) {
     const double *across = c->across + 3 * axis, *shift = c->shift[axis];
-    vd at = on_grid(c, across[0] * x + across[1] * y + across[2] * z);
-    if (c->periodic)
-        at += shift[0] * vd_gather(c->near.away[0], place) + shift[1] * vd_gather(c->near.away[1], place) +
-              shift[2] * vd_gather(c->near.away[2], place);
+    vd at = across[0] * x + across[1] * y + across[2] * z;
+    if (c->periodic) {
+        at = (at + c->grid) - c->grid;
+        if (c->images)
+            at += shift[0] * vd_gather(c->near.away[0], place) + shift[1] * vd_gather(c->near.away[1], place) +
+                  shift[2] * vd_gather(c->near.away[2], place);
+    }
     return at - c->centre[axis];
 }
 
@@ -34,61 +38,129 @@ static bool tie_lies_ahead(const fibrad_workspace *work, const fibrad_circles *c
     return false;
 }
 
-/* Which of the lanes, all at depth 0, lie on a side. */
-static uint32_t ties_on_side(const fibrad_workspace *work, const fibrad_circles *c, const uint32_t *place,
-                             uint32_t bits, double sense) {
-    uint32_t kept = 0;
-    for (uint32_t l = 0; l < VD_LANES; l++)
-        if (bits >> l & 1 && tie_lies_ahead(work, c, place[l]) == (sense > 0)) kept |= 1u << l;
-    return kept;
+/* The place of a point (cosine, sine)/size of the unit circle. */
+static inline vd circle_place(vd cosine, vd sine, vd size) {
+    vd tangent = sine / (size + vd_abs(cosine));
+    return vd_select(vd_lt(cosine, vd_set1(0)), 2 - tangent, tangent);
 }
 
-/* Whether discs may touch a stretch of the circle. */
-static inline vm near_stretch(const fibrad_circle_stretch *stretch, vd u, vd v, vd r) {
-    vd reach = r + stretch->radius;
-    u -= stretch->u, v -= stretch->v;
-    return vd_lt(u * u + v * v, reach * reach);
+/* Sectors of a stretch, as bits of a number, of which doubles have all digits. */
+#define SECTORS    30
+#define ALL_AROUND 0x3fffffff
+
+/* The sectors that an arc covers whole, and those that it touches; a few less and a few more at most. */
+static inline void find_sectors(const fibrad_circle_stretch *stretch, vd from, vd to, vm wraps, vd *inner, vd *outer) {
+    const vd zero = vd_set1(0), all = vd_set1(ALL_AROUND);
+    const double scale = stretch->sectors, shift = -stretch->begin * scale;
+    vd last = vd_power_of_two(to * scale + (shift - .5)), first = vd_power_of_two(from * scale + (shift + .5));
+    vd within = last - first, touched = 2 * last - .5 * first;
+    *inner = vd_select(wraps, all + within, vd_max(zero, within));
+    *outer = vd_select(wraps, all + vd_min(zero, touched), touched);
 }
 
-/* Appends the near spheres at `place` whose discs touch the circle from one side. Of two circles that coincide the one
- * farther along the line counts as the larger one. There must be room for `count` discs and a vector. */
-static void find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_circle_side *side, uint32_t *place,
-                       uint32_t count) {
-    fibrad_circle_discs *to = &side->found;
+/* Leaves of the arcs of discs what lies on the stretch in hand. Ends outside it are moved beyond all ends, each to a
+ * place of its own; `to` stays less than `from` where the disc covers the beginning of the stretch. */
+static inline void cut_to_stretch(const fibrad_circle_stretch *stretch, uint32_t number, vm wraps, vd *from, vd *to,
+                                  vm *covers, vm *touches) {
+    _Alignas(64) static const double lane[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const vd begin = vd_set1(stretch->begin), end = vd_set1(stretch->end);
+    vm past_from = vd_le(*from, begin), past_to = vd_le(*to, begin);
+    vm within = (past_from & vm_not(past_to)) | (wraps & (past_from | vm_not(past_to)));
+    vm from_outside = past_from | vd_le(end, *from), to_outside = past_to | vd_le(end, *to);
+    vm none = from_outside & to_outside;
+    vd far = NOWHERE + 2 * (vd_load(lane) + number);
+    *covers = *covers | (*touches & none & within);
+    *touches = *touches & (vm_not(none) | within);
+    *from = vd_select(from_outside, far + 1, *from);
+    *to = vd_select(to_outside, far, *to);
+}
+
+/* Finds the arc of the circle that each of some discs covers. Of two circles at distance x the half angle h of the
+ * arc has
+ *   cos h = (x^2 + r^2 - R^2)/(2 x r),   sin h = sqrt(((R + r)^2 - x^2)(x^2 - (R - r)^2))/(2 x r).
+ * The factors are the same numbers on both circles, so that circles that nearly touch agree. Of two circles that
+ * coincide the one farther along the line counts as the larger one. Discs that do not lie on the side, or do not cover
+ * any of the circle, get no sectors. */
+static inline void find_arcs(const fibrad_circles *c, fibrad_circle_side *side, uint32_t to, vd u, vd v, vd depth,
+                             vd r) {
+    const vd own = vd_set1(c->r), zero = vd_set1(0), tiny = vd_set1(TINY);
+    vd square = u * u + v * v, sum = r + own, larger = r - own;
+    vd apart = sum * sum - square, within = square - larger * larger;
+    vm there = vd_le(zero, depth), covers = vd_le(within, tiny) & there;
+    vm touches = vd_lt(tiny, apart) & vd_lt(tiny, within) & there;
+    covers = covers & (side->sense > 0 ? vd_le(zero, larger) : vd_lt(zero, larger));
+    vd along = square - larger * sum, root = vd_sqrt(vd_max(zero, apart * within)), size = 2 * c->r * square;
+    vd u_along = u * along, v_along = v * along, u_root = u * root, v_root = v * root;
+    vd from = circle_place(u_along + v_root, v_along - u_root, size);
+    vd end = circle_place(u_along - v_root, v_along + u_root, size);
+    vd step = end - from;
+    vm wraps = vd_lt(step, zero), narrow = vd_le(zero, along);
+    /* the ends of an arc that is nearly empty, or nearly all, may have changed places */
+    covers = covers | (touches & vd_lt(along, zero) & vd_le(zero, step) & vd_lt(step, vd_set1(1)));
+    touches = touches & vm_not(narrow & wraps & vd_lt(vd_set1(-1), step));
+    vd inner, outer;
+    if (c->stretch.radius < __builtin_inf()) {
+        const vd first = vd_set1(c->stretch.begin), last = vd_set1(c->stretch.end);
+        find_sectors(&c->stretch, vd_min(last, vd_max(first, from)), vd_min(last, vd_max(first, end)), wraps, &inner,
+                     &outer);
+        cut_to_stretch(&c->stretch, to + (side->sense > 0 ? FIBRAD_CIRCLE_ROOM : 0), wraps, &from, &end, &covers,
+                       &touches);
+    } else {
+        find_sectors(&c->stretch, from, end, wraps, &inner, &outer);
+    }
+    vm known = vd_le(depth, vd_set1(side->known * (1 - 1e-12) * c->r)); /* deeper ones may be hidden by others */
+    inner = vd_select(covers, vd_set1(ALL_AROUND), vd_select(touches, inner, zero));
+    vd_store_numbers(side->inner + to, vd_select(known, inner, zero));
+    vd_store_numbers(side->outer + to, vd_select(covers, vd_set1(ALL_AROUND), vd_select(touches, outer, zero)));
+    vd_store(side->u + to, u);
+    vd_store(side->v + to, v);
+    vd_store(side->r + to, r);
+    vd_store(side->depth + to, depth);
+    vd_store_float(side->key + to, depth);
+    vd_store(side->from + to, vd_select(covers, vd_set1(NOWHERE - 2 + side->sense), from));
+    vd_store(side->to + to, vd_select(covers, vd_set1(NOWHERE - 3 + side->sense), end));
+}
+
+/* Leaves of near spheres those whose discs touch the stretch; a few others may stay. How many. */
+static uint32_t leave_touching(const fibrad_circles *c, uint32_t *place, uint32_t count) {
+    const fibrad_circle_stretch *stretch = &c->stretch;
     const vd own = vd_set1(c->r), zero = vd_set1(0);
-    const bool part = c->stretch.radius < __builtin_inf();
-    uint32_t n = to->count;
-    uint32_t after[VD_LANES]; /* read, too, in the last vector */
-    fibrad_copy(after, place + count, sizeof after);
-    for (uint32_t k = 0; k < VD_LANES; k++) place[count + k] = 0;
+    uint32_t n = 0;
+    for (uint32_t k = count; k % VD_LANES != 0; k++) place[k] = c->near.nowhere;
     for (uint32_t k = 0; k < count; k += VD_LANES) {
         const uint32_t *at = place + k;
         vd x = vd_gather(c->near.home[0], at), y = vd_gather(c->near.home[1], at), z = vd_gather(c->near.home[2], at);
         vd u = component_across(c, 0, x, y, z, at), v = component_across(c, 1, x, y, z, at);
-        vd depth = side->sense * component_across(c, 2, x, y, z, at), r = vd_gather(c->near.radius, at);
-        vd square = u * u + v * v, sum = r + own, larger = r - own, least = vd_max(zero, 0 - larger);
-        vm touches = vd_lt(square, sum * sum) & vd_lt(least * least, square);
-        if (part) touches = touches & near_stretch(&c->stretch, u, v, r);
-        if (side->sense > 0)
-            touches = touches | (vd_le(square, zero) & vd_le(zero, larger));
-        else
-            touches = touches | (vd_le(square, zero) & vd_lt(zero, larger));
-        const uint32_t tied = vm_bits(touches & vd_le(depth, zero) & vd_le(zero, depth)) & vd_lanes_below(count - k);
-        uint32_t bits = vm_bits(touches & vd_lt(zero, depth)) & vd_lanes_below(count - k);
-        if (tied != 0) bits |= ties_on_side(work, c, at, tied, side->sense);
-        if (bits == 0) continue;
-        vd_compress(to->u + n, bits, u);
-        vd_compress(to->v + n, bits, v);
-        vd_compress(to->depth + n, bits, depth);
-        vd_compress(to->r + n, bits, r);
-        n += vd_compress_places(to->slot + n, bits, k);
+        vd r = vd_gather(c->near.radius, at), sum = r + own, least = vd_max(zero, own - r), square = u * u + v * v;
+        vd reach = r + stretch->radius;
+        vm touches = vd_lt(square, sum * sum) & vd_le(least * least, square);
+        u -= stretch->u, v -= stretch->v;
+        touches = touches & vd_lt(u * u + v * v, reach * reach);
+        n += vd_compress_numbers(place + n, vm_bits(touches), at);
     }
-    for (uint32_t k = to->count; k < n; k++) {
-        const uint32_t at = place[to->slot[k]];
-        to->slot[k] = at, to->sphere[k] = c->near.sphere[at];
+    return n;
+}
+
+/* Appends the near spheres at `place`. There must be room for `count` discs and a vector. */
+static void find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_circle_side *side, uint32_t *place,
+                       uint32_t count) {
+    uint32_t k = 0;
+    for (uint32_t l = count; l % VD_LANES != 0; l++) place[l] = c->near.nowhere;
+    for (; k < count; k += VD_LANES) {
+        const uint32_t *at = place + k, to = side->count + k;
+        vd x = vd_gather(c->near.home[0], at), y = vd_gather(c->near.home[1], at), z = vd_gather(c->near.home[2], at);
+        vd u = component_across(c, 0, x, y, z, at), v = component_across(c, 1, x, y, z, at);
+        vd depth = side->sense * component_across(c, 2, x, y, z, at);
+        find_arcs(c, side, to, u, v, depth, vd_gather(c->near.radius, at));
+        const uint32_t tied = vm_bits(vd_le(depth, vd_set1(0)) & vd_le(vd_set1(0), depth));
+        for (uint32_t l = 0; tied >> l != 0; l++)
+            if (tied >> l & 1 && tie_lies_ahead(work, c, at[l]) != (side->sense > 0))
+                side->inner[to + l] = side->outer[to + l] = 0;
+        vd_copy_numbers(side->slot + to, at);
     }
-    to->count = n;
-    fibrad_copy(place + count, after, sizeof after);
+    side->last = side->count + count;
+    for (side->count += k; side->count % VF_LANES != 0; side->count++)
+        side->inner[side->count] = side->outer[side->count] = 0;
 }
 
 /* Lists the near spheres of a shell that overlap the beam of the sphere in hand, by a cull in floats. */
@@ -105,241 +177,258 @@ static uint32_t cull_shell(fibrad_workspace *work, const double w[3], uint32_t s
     return (uint32_t)(to - place);
 }
 
-/* ---- order by depth --------------------------------------------------------------------------------------------- */
+/* ---- discs that may be seen ------------------------------------------------------------------------------------- */
 
-/* Whether found disc k is nearer than another one. At equal depths the lower id is in front, as seen along the line. */
-static bool disc_nearer(const fibrad_workspace *work, const fibrad_circles *c, const fibrad_circle_side *side,
-                        uint32_t k, uint32_t other) {
-    const fibrad_circle_discs *disc = &side->found;
+#define BLOCK (VF_LANES == 16 ? 1 : VF_LANES == 8 ? 2 : 4) /* vectors that share what is the same in all lanes */
+
+/* The sectors that the discs nearer than each disc cover together. */
+static inline void find_covered(const fibrad_circle_side *side, uint32_t *covered) {
+    const size_t count = side->last;
+    for (size_t k = 0; k < count; k += BLOCK * VF_LANES) {
+        vf at[BLOCK];
+        vn all[BLOCK];
+#pragma GCC unroll 4
+        for (int b = 0; b < BLOCK; b++) at[b] = vf_load(side->key + k + b * VF_LANES), all[b] = vn_set1(0);
+#pragma GCC unroll 4
+        for (size_t m = 0; m < count; m++) {
+            const vn inner = vn_set1(side->inner[m]);
+            const vf key = vf_set1(side->key[m]);
+#pragma GCC unroll 4
+            for (int b = 0; b < BLOCK; b++) all[b] = vn_or_lt(all[b], inner, key, at[b]);
+        }
+#pragma GCC unroll 4
+        for (int b = 0; b < BLOCK; b++) vn_store(covered + k + b * VF_LANES, all[b]);
+    }
+}
+
+/* Lists the discs of a side but those whose sectors are all covered by nearer ones. */
+static void list_seen(const fibrad_circles *c, uint32_t number, fibrad_circle_side *side, fibrad_circle_discs *seen) {
+    _Alignas(64) uint32_t covered[FIBRAD_CIRCLE_ROOM];
+    uint32_t n = 0;
+    find_covered(side, covered);
+    for (uint32_t k = 0; k < side->last; k += VF_LANES) {
+        const uint32_t bits = vn_beyond_bits(vn_load(side->outer + k), vn_load(covered + k));
+        for (uint32_t part = 0; part < VF_LANES / VD_LANES; part++) {
+            const uint32_t from = k + part * VD_LANES, some = bits >> part * VD_LANES & ((1u << VD_LANES) - 1);
+            vd_compress(seen->u + n, some, vd_load(side->u + from));
+            vd_compress(seen->v + n, some, vd_load(side->v + from));
+            vd_compress(seen->r + n, some, vd_load(side->r + from));
+            vd_compress(seen->depth + n, some, vd_load(side->depth + from));
+            vd_compress(seen->from + n, some, vd_load(side->from + from));
+            vd_compress(seen->to + n, some, vd_load(side->to + from));
+            n += vd_compress_numbers(seen->slot + n, some, side->slot + from);
+        }
+    }
+    seen->count = n;
+    for (uint32_t k = 0; k <= n; k += VD_LANES) {
+        vd r = vd_load(seen->r + k);
+        vd_store(seen->weight + k, FIBRAD_PAIR_UNITS / (r * r));
+        vd_store_float(seen->key + k, vd_load(seen->depth + k));
+    }
+    seen->u[n] = seen->v[n] = seen->weight[n] = 0;
+    seen->depth[n] = __builtin_inf();
+    seen->slot[n] = c->near.nothing + number;
+}
+
+/* Whether the discs found of a side leave certainly nothing open, or certainly something. */
+static void judge_side(fibrad_circle_side *side) {
+    const size_t count = side->last;
+    uint32_t inner = 0, outer = 0;
+#pragma GCC unroll 4
+    for (size_t m = 0; m < count; m++) inner |= side->inner[m], outer |= side->outer[m];
+    side->closed = inner == ALL_AROUND;
+    side->open = (outer & ALL_AROUND) != ALL_AROUND;
+}
+
+/* Whether disc k is nearer than another one. At equal depths the lower id is in front, as seen along the line. */
+static bool disc_nearer(const fibrad_workspace *work, const fibrad_circles *c, const fibrad_circle_discs *disc,
+                        bool ahead, uint32_t k, uint32_t other) {
     if (disc->depth[k] != disc->depth[other]) return disc->depth[k] < disc->depth[other];
-    const uint64_t rank = fibrad_scene_rank(work->scene, disc->sphere[k]);
-    const uint64_t second = fibrad_scene_rank(work->scene, disc->sphere[other]);
-    if (rank != second) return (rank < second) == (side->sense > 0);
+    const uint32_t at = disc->slot[k], there = disc->slot[other];
+    const uint64_t rank = fibrad_scene_rank(work->scene, c->near.sphere[at]);
+    const uint64_t second = fibrad_scene_rank(work->scene, c->near.sphere[there]);
+    if (rank != second) return (rank < second) == ahead;
     for (int axis = 0; axis < 3; axis++) {
-        const double away = c->near.away[axis][disc->slot[k]], there = c->near.away[axis][disc->slot[other]];
-        if (away != there) return (away < there) == (side->sense > 0);
+        const double *away = c->near.away[axis];
+        if (away[at] != away[there]) return (away[at] < away[there]) == ahead;
     }
     return false;
 }
 
-/* Sorts discs [from, to) of an order that is nearly right. */
-static void order_discs_by_insertion(const fibrad_workspace *work, const fibrad_circles *c,
-                                     const fibrad_circle_side *side, uint32_t *order, uint32_t count) {
-    for (uint64_t gap = fibrad_sort_first_gap(count); gap > 0; gap = fibrad_sort_next_gap(gap))
-        for (uint64_t k = gap; k < count; k++) {
-            uint32_t moving = order[k];
-            uint64_t at = k;
-            for (; at >= gap && disc_nearer(work, c, side, moving, order[at - gap]); at -= gap)
-                order[at] = order[at - gap];
-            order[at] = moving;
-        }
-}
-
-/* Counts, in lanes, how many numbers lie before each. Numbers that are equal share a rank, and the ranks then add up
- * to less than they should: false. */
-static bool rank_depths(const fibrad_circle_discs *disc, uint32_t *rank) {
-    _Alignas(64) float key[FIBRAD_CIRCLE_ROOM];
-    const uint32_t count = disc->count, eights = (count + 7) / 8 * 8;
-    for (uint32_t k = 0; k < count; k += VD_LANES) vd_store_float(key + k, vd_load(disc->depth + k));
-    for (uint32_t k = 0; k < 8; k++) key[count + k] = __builtin_inff();
-    for (uint32_t k = 0; k < eights; k += VF_LANES) {
-        vf at = vf_load(key + k);
-        vn before = vn_zero();
-        for (uint32_t j = 0; j < eights; j += 8)
-#pragma GCC unroll 8
-            for (uint32_t l = 0; l < 8; l++) before = vn_count_lt(before, vf_set1(key[j + l]), at);
-        vn_store(rank + k, before);
+/* Sorts numbers from 0 on by their keys: counts, in lanes, how many keys lie before each. False: some keys are equal,
+ * and the order is not written. Keys and ranks are written up to the next block, and keys four beyond it. */
+static inline bool order_keys(float *key, size_t count, uint32_t *rank, uint32_t *order) {
+    size_t sum = 0;
+    for (size_t b = 0; b < BLOCK; b++) vf_storeu(key + count + b * VF_LANES, vf_set1(__builtin_inff()));
+    for (size_t k = 0; k < count; k += BLOCK * VF_LANES) {
+        vf at[BLOCK];
+        vn before[BLOCK];
+#pragma GCC unroll 4
+        for (int b = 0; b < BLOCK; b++) at[b] = vf_load(key + k + b * VF_LANES), before[b] = vn_set1(0);
+        for (size_t j = 0; j < count; j += 4)
+#pragma GCC unroll 4
+            for (size_t l = 0; l < 4; l++) {
+                const vf other = vf_set1(key[j + l]);
+#pragma GCC unroll 4
+                for (int b = 0; b < BLOCK; b++) before[b] = vn_count_lt(before[b], other, at[b]);
+            }
+#pragma GCC unroll 4
+        for (int b = 0; b < BLOCK; b++) vn_store(rank + k + b * VF_LANES, before[b]);
     }
-    uint32_t sum = 0;
-    for (uint32_t k = 0; k < count; k++) sum += rank[k];
-    return sum == count * (count - 1) / 2;
+    for (size_t k = 0; k < count; k++) {
+        const size_t own = rank[k];
+        order[own] = (uint32_t)k, sum += own;
+    }
+    order[count] = (uint32_t)count;
+    return sum == count * (count - 1) / 2; /* equal keys share the lowest of their ranks */
 }
 
-/* Lists the discs of a side nearest first. */
-static void order_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_circle_side *side) {
-    const fibrad_circle_discs *from = &side->found;
-    fibrad_circle_discs *to = &side->sorted;
-    const uint32_t count = from->count;
-    uint32_t order[FIBRAD_CIRCLE_ROOM];
-    if (!rank_depths(from, c->rank)) {
+/* Finds which disc is the nearest, the second nearest ... of a side. */
+static void order_seen(const fibrad_workspace *work, const fibrad_circles *c, fibrad_circle_discs *disc, bool ahead) {
+    const uint32_t count = disc->count;
+    uint32_t *order = disc->number;
+    if (!order_keys(disc->key, count, disc->rank, order)) {
         for (uint32_t k = 0; k < count; k++) order[k] = k;
-        order_discs_by_insertion(work, c, side, order, count);
-        for (uint32_t k = 0; k < count; k++) c->rank[order[k]] = k;
+        for (uint64_t gap = fibrad_sort_first_gap(count); gap > 0; gap = fibrad_sort_next_gap(gap))
+            for (uint64_t k = gap; k < count; k++) {
+                uint32_t moving = order[k];
+                uint64_t at = k;
+                for (; at >= gap && disc_nearer(work, c, disc, ahead, moving, order[at - gap]); at -= gap)
+                    order[at] = order[at - gap];
+                order[at] = moving;
+            }
+        for (uint32_t k = 0; k < count; k++) disc->rank[order[k]] = k;
     }
-    for (uint32_t k = 0; k < count; k++) {
-        const uint32_t rank = c->rank[k];
-        to->u[rank] = from->u[k], to->v[rank] = from->v[k], to->depth[rank] = from->depth[k];
-        to->r[rank] = from->r[k], to->slot[rank] = from->slot[k], to->sphere[rank] = from->sphere[k];
-    }
-    to->count = count;
-}
-
-/* ---- arcs ------------------------------------------------------------------------------------------------------- */
-
-/* The place of a point of the unit circle, on its grid. */
-static inline vd circle_place(vd cosine, vd sine) {
-    vd tangent = sine / (1 + vd_abs(cosine));
-    vd at = vd_select(vd_lt(cosine, vd_set1(0)), 2 - tangent, tangent);
-    at = (at + 5) - 5;
-    return vd_select(vd_le(vd_set1(FIBRAD_CIRCLE_END), at), at - 4, at);
-}
-
-/* The arcs that the discs cover. Of two circles at distance x the half angle h of the arc has
- *   cos h = (x^2 + r^2 - R^2)/(2 x r),   sin h = sqrt((R - x + r)(R + x - r)(x + r - R)(x + R + r))/(2 x r).
- * The factors are differences of the same numbers on both circles, so that circles that nearly touch agree. */
-static void find_arcs(const fibrad_circles *c, int side, fibrad_circle_discs *disc) {
-    const vd own = vd_set1(c->r), zero = vd_set1(0);
-    for (uint32_t k = 0; k < disc->count; k += VD_LANES) {
-        vd u = vd_load(disc->u + k), v = vd_load(disc->v + k), r = vd_load(disc->r + k);
-        vd square = u * u + v * v, x = vd_sqrt(square), sum = r + own, larger = r - own;
-        vm all = vd_le(x, larger);
-        vd root = vd_sqrt(vd_max(zero, ((sum - x) * (x + larger)) * ((x - larger) * (x + sum))));
-        vd inverse = 0.5 / (square * own);
-        vd along = (square - larger * sum) * inverse;
-        root *= inverse;
-        vd from = circle_place(u * along + v * root, v * along - u * root);
-        vd to = circle_place(u * along - v * root, v * along + u * root);
-        vd length = to - from;
-        length = vd_select(vd_lt(length, zero), length + 4, length);
-        /* the ends of an arc that is nearly empty, or nearly all, may have changed places */
-        vm wide = vd_lt(along, zero);
-        length = vd_select(wide & vd_lt(length, vd_set1(1)), vd_set1(4), length);
-        length = vd_select(vm_not(wide) & vd_lt(vd_set1(3), length), zero, length);
-        from = vd_select(all, vd_set1(FIBRAD_CIRCLE_BEGIN), from);
-        to = vd_select(all, vd_set1(FIBRAD_CIRCLE_END), from + length);
-        vd_store(disc->from + k, from);
-        vd_store(disc->to + k, to);
-        vd_store(disc->again + k, to - 4);
-        vd_store(disc->weight + k, FIBRAD_PAIR_UNITS / (r * r));
-    }
-    const uint32_t end = disc->count;
-    disc->u[end] = disc->v[end] = disc->weight[end] = 0;
-    disc->r[end] = disc->depth[end] = __builtin_inf();
-    disc->from[end] = disc->to[end] = NOWHERE, disc->again[end] = -NOWHERE;
-    disc->slot[end] = c->near.nothing + (uint32_t)side, disc->sphere[end] = c->side[side].nothing;
-}
-
-/* ---- ends ------------------------------------------------------------------------------------------------------- */
-
-/* Where the nearest disc that covers a place takes the place of one farther away. */
-static inline vd nearer_of(const fibrad_circle_discs *disc, uint32_t m, vd at, vd met) {
-    vm covers =
-        (vd_le(vd_set1(disc->from[m]), at) & vd_lt(at, vd_set1(disc->to[m]))) | vd_lt(at, vd_set1(disc->again[m]));
-    return vd_select(covers, vd_set1(m), met);
-}
-
-/* The nearest discs that cover the places of two vectors. */
-static inline void find_nearest(const fibrad_circle_discs *disc, const vd at[2], vd met[2]) {
-    vd first = vd_set1(disc->count), second = first;
-    for (uint32_t m = disc->count; m-- > 0;) {
-        first = nearer_of(disc, m, at[0], first);
-        second = nearer_of(disc, m, at[1], second);
-    }
-    met[0] = first, met[1] = second;
-}
-
-/* Appends the ends of arcs of a side that no nearer disc of this side hides. */
-static void list_ends(const fibrad_circle_discs *disc, int side, double begin, double end, fibrad_circle_ends *ends) {
-    _Alignas(64) static const double number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    uint32_t n = ends->count;
-    for (uint32_t k = 0; k < disc->count; k += VD_LANES) {
-        vd own = vd_load(number) + k, from = vd_load(disc->from + k), to = vd_load(disc->to + k);
-        to = vd_select(vd_le(vd_set1(FIBRAD_CIRCLE_END), to), to - 4, to);
-        const vd at[2] = {from, to};
-        vd met[2];
-        find_nearest(disc, at, met);
-        for (int which = 0; which < 2; which++) {
-            vm seen = vd_le(own, met[which]) & vd_lt(vd_set1(begin), at[which]) & vd_lt(at[which], vd_set1(end));
-            const uint32_t bits = vm_bits(seen) & vd_lanes_below(disc->count - k);
-            vd_compress(ends->at + n, bits, at[which]);
-            vd_compress(ends->met[side] + n, bits, met[which]);
-            n += fibrad_count_bits(bits);
-        }
-    }
-    ends->count = n;
-}
-
-/* Finds what ends [from, to) meet on a side. */
-static void meet(const fibrad_circle_discs *disc, int side, fibrad_circle_ends *ends, uint32_t from, uint32_t to) {
-    for (uint32_t k = from; k < to; k += 2 * VD_LANES) {
-        const vd at[2] = {vd_loadu(ends->at + k), vd_loadu(ends->at + k + VD_LANES)};
-        vd met[2];
-        find_nearest(disc, at, met);
-        vd_storeu(ends->met[side] + k, met[0]);
-        vd_storeu(ends->met[side] + k + VD_LANES, met[1]);
-    }
-}
-
-/* Finds the ends on [begin, end) of the circle, the first at `begin`, and what is met from each of them on. Lanes
- * beyond the count are written, too, so that the order of these steps matters. */
-static void find_ends(fibrad_circles *c, double begin, double end) {
-    fibrad_circle_ends *ends = &c->ends;
-    const fibrad_circle_discs *behind = &c->side[0].sorted, *ahead = &c->side[1].sorted;
-    ends->at[0] = begin;
-    meet(behind, 0, ends, 0, 1);
-    ends->count = 1;
-    list_ends(behind, 0, begin, end, ends);
-    const uint32_t count = ends->count;
-    meet(ahead, 1, ends, 0, count);
-    list_ends(ahead, 1, begin, end, ends);
-    meet(behind, 0, ends, count, ends->count);
-}
-
-/* The greatest depth that is met on a side; infinity: something beyond all spheres is. */
-static double deepest_met(const fibrad_circles *c, int side) {
-    vd deepest = vd_set1(0);
-    double most = 0;
-    _Alignas(64) double lane[VD_LANES];
-    for (uint32_t k = 0; k < c->ends.count; k += VD_LANES) {
-        _Alignas(64) static const double number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-        vm there = vd_lt(vd_load(number) + k, vd_set1(c->ends.count));
-        deepest = vd_max(deepest, vd_select(there, vd_load(c->ends.met[side] + k), vd_set1(0)));
-    }
-    vd_store(lane, deepest);
-    for (int l = 0; l < VD_LANES; l++) most = fibrad_max(most, lane[l]);
-    return c->side[side].sorted.depth[(uint32_t)most];
 }
 
 /* ---- pieces ----------------------------------------------------------------------------------------------------- */
 
-/* Sorts the ends by place. Ends at one place meet the same, so that their order does not matter. */
-static void sort_ends_by_insertion(fibrad_circles *c) {
-    const fibrad_circle_ends *from = &c->ends;
-    uint32_t order[FIBRAD_CIRCLE_ENDS];
-    for (uint32_t k = 0; k < from->count; k++) order[k] = k;
-    for (uint64_t gap = fibrad_sort_first_gap(from->count); gap > 0; gap = fibrad_sort_next_gap(gap))
-        for (uint64_t k = gap; k < from->count; k++) {
-            uint32_t moving = order[k];
-            uint64_t at = k;
-            for (; at >= gap && from->at[moving] < from->at[order[at - gap]]; at -= gap) order[at] = order[at - gap];
-            order[at] = moving;
-        }
-    for (uint32_t k = 0; k < from->count; k++) c->rank[order[k]] = k;
+/* Discs are bits of a word, one half for each side, in the order of their depths. */
+#define HALF  32u
+#define RANKS 30u /* so many discs of a side have a bit; the next one stands for the surroundings */
+
+/* Lists the ends of all arcs, and after them a place beyond all. */
+static void list_ends(fibrad_circles *c) {
+    fibrad_circle_ends *ends = &c->ends;
+    size_t n = 0;
+    for (uint32_t side = 0; side < 2; side++) {
+        const fibrad_circle_discs *disc = &c->seen[side];
+        const size_t count = disc->count;
+        double *at = ends->at + n;
+        uint32_t *own = ends->own + n;
+        for (size_t k = 0; k < count; k += VD_LANES) vd_storeu(at + k, vd_load(disc->from + k));
+        for (size_t k = 0; k < count; k += VD_LANES) vd_storeu(at + count + k, vd_load(disc->to + k));
+        for (size_t k = 0; k < count; k++) own[k] = own[count + k] = disc->rank[k] + HALF * side;
+        n += 2 * count;
+    }
+    for (size_t k = 0; k < n; k += VD_LANES) vd_store_float(ends->key + k, vd_load(ends->at + k));
+    ends->at[n] = __builtin_inf();
+    ends->count = (uint32_t)n;
 }
 
-#define ENDS_RANKED 64
-static void sort_ends(fibrad_circles *c, double end) {
-    fibrad_circle_ends *from = &c->ends, *to = &c->sorted;
-    const uint32_t count = from->count;
-    uint32_t sum = 0;
-    if (count <= ENDS_RANKED) {
-        for (uint32_t k = 0; k < count; k += VD_LANES) {
-            vd at = vd_load(from->at + k), rank = vd_set1(0);
-            for (uint32_t j = 0; j < count; j++)
-                rank += vd_select(vd_lt(vd_set1(from->at[j]), at), vd_set1(1), vd_set1(0));
-            vd_store_numbers(c->rank + k, rank);
-        }
-        for (uint32_t k = 0; k < count; k++) sum += c->rank[k];
-    }
-    if (sum != count * (count - 1) / 2 || count > ENDS_RANKED) sort_ends_by_insertion(c);
-    for (uint32_t k = 0; k < count; k++) {
-        const uint32_t rank = c->rank[k];
-        to->at[rank] = from->at[k], to->met[0][rank] = from->met[0][k], to->met[1][rank] = from->met[1][k];
-    }
-    for (uint32_t k = count; k < count + FIBRAD_LANES_MAX; k++) /* computed, too, in whole vectors */
-        to->at[k] = end, to->met[0][k] = to->met[1][k] = 0;
-    to->count = count;
+/* The discs that cover where the stretch begins, as bits; what lies beyond all spheres covers all of it. */
+static uint64_t covered_at_begin(const fibrad_circle_discs *disc) {
+    const size_t count = disc->count;
+    uint64_t bits = 1ull << count;
+    for (size_t k = 0; k < count; k++) bits |= (uint64_t)(disc->to[k] < disc->from[k]) << (disc->rank[k] & 63);
+    return bits;
 }
+
+/* Walks along a stretch whose ends are all at different places. */
+static void find_pieces(fibrad_circles *c) {
+    const fibrad_circle_ends *ends = &c->ends;
+    const uint32_t *first = c->seen[0].number, *next = c->seen[1].number, *order = c->order;
+    fibrad_circle_pieces *to = &c->pieces;
+    uint64_t covers = covered_at_begin(&c->seen[0]) | covered_at_begin(&c->seen[1]) << HALF;
+    const double end = c->stretch.end;
+    double at = c->stretch.begin;
+    size_t n = 0, before = 64 * 64;
+    do {
+        const size_t behind = lowest_bit(covers), ahead = lowest_bit(covers >> HALF), met = 64 * behind + ahead;
+        to->at[n] = at, to->first[n] = first[behind], to->next[n] = next[ahead];
+        n += met != before;
+        before = met;
+        const size_t other = *order++;
+        covers ^= 1ull << (ends->own[other] & 63);
+        at = ends->at[other];
+    } while (at < end);
+    to->count = (uint32_t)n;
+}
+
+/* The nearest of a set of discs, the surroundings among them. */
+static uint32_t nearest_of(const uint64_t *set) {
+    uint32_t word = 0;
+    while (set[word] == 0) word++;
+    return 64 * word + lowest_bit(set[word]);
+}
+
+/* Sorts the ends exactly by place. */
+static void sort_ends(const fibrad_circle_ends *ends, uint32_t *order) {
+    for (uint32_t k = 0; k < ends->count; k++) order[k] = k;
+    for (uint64_t gap = fibrad_sort_first_gap(ends->count); gap > 0; gap = fibrad_sort_next_gap(gap))
+        for (uint64_t k = gap; k < ends->count; k++) {
+            uint32_t moving = order[k];
+            uint64_t at = k;
+            for (; at >= gap && ends->at[moving] < ends->at[order[at - gap]]; at -= gap) order[at] = order[at - gap];
+            order[at] = moving;
+        }
+    order[ends->count] = ends->count;
+}
+
+/* The same as find_pieces for any number of discs, and for ends at one place. */
+static void find_pieces_of_many(fibrad_circles *c) {
+    const fibrad_circle_ends *ends = &c->ends;
+    fibrad_circle_pieces *to = &c->pieces;
+    uint64_t covers[2][FIBRAD_CIRCLE_ROOM / 64 + 1] = {{0}};
+    uint32_t n = 0, before = UINT32_MAX;
+    double at = c->stretch.begin;
+    for (uint32_t side = 0; side < 2; side++) {
+        const fibrad_circle_discs *disc = &c->seen[side];
+        covers[side][disc->count / 64] |= 1ull << disc->count % 64;
+        for (uint32_t k = 0; k < disc->count; k++)
+            covers[side][disc->rank[k] / 64] |= (uint64_t)(disc->to[k] < disc->from[k]) << disc->rank[k] % 64;
+    }
+    sort_ends(ends, c->order);
+    for (const uint32_t *order = c->order;; order++) {
+        const uint32_t end = *order;
+        const double next = fibrad_min(ends->at[end], c->stretch.end);
+        const uint32_t behind = nearest_of(covers[0]), ahead = nearest_of(covers[1]), met = behind << 16 | ahead;
+        if (next > at && met != before) {
+            to->at[n] = at, to->first[n] = c->seen[0].number[behind], to->next[n++] = c->seen[1].number[ahead];
+            before = met;
+        }
+        if (next == c->stretch.end) break;
+        at = next;
+        const uint32_t side = end >= 2 * c->seen[0].count, rank = ends->own[end] - HALF * side;
+        covers[side][rank / 64] ^= 1ull << rank % 64;
+    }
+    to->count = n;
+}
+
+/* Divides the stretch into pieces on which nothing changes. */
+static void divide(fibrad_circles *c) {
+    const bool few = c->seen[0].count <= RANKS && c->seen[1].count <= RANKS;
+    list_ends(c);
+    if (few && order_keys(c->ends.key, c->ends.count, c->rank, c->order))
+        find_pieces(c);
+    else
+        find_pieces_of_many(c);
+    fibrad_circle_pieces *piece = &c->pieces;
+    uint32_t k = piece->count;
+    do /* computed, too, in whole vectors */
+        piece->at[k] = c->stretch.end, piece->first[k] = piece->next[k] = 0;
+    while (++k % VD_LANES != 0);
+}
+
+/* The greatest depth that is met on a side; infinity: something beyond all spheres is. */
+static double deepest_met(const fibrad_circles *c, int side) {
+    const uint32_t *met = side == 0 ? c->pieces.first : c->pieces.next;
+    double most = 0;
+    for (uint32_t k = 0; k < c->pieces.count; k++) most = fibrad_max(most, c->seen[side].depth[met[k]]);
+    return most;
+}
+
+/* ---- areas ------------------------------------------------------------------------------------------------------ */
 
 /* Chebyshev's approximation of atan(x)/x in powers of x^2 for |x| <= tan(pi/8): to 3e-18. */
 static inline vd arc_tangent(vd x) {
@@ -364,79 +453,75 @@ static inline vd arc_tangent(vd x) {
     return vd_select(vd_lt(x, vd_set1(0)), 0 - angle, angle);
 }
 
-/* The angles of the ends, with cosine and sine. */
+/* The angles where pieces begin, with cosine and sine. */
 static void find_angles(fibrad_circles *c) {
-    for (uint32_t k = 0; k <= c->sorted.count; k += VD_LANES) {
-        vd at = vd_load(c->sorted.at + k);
+    fibrad_circle_pieces *piece = &c->pieces;
+    for (uint32_t k = 0; k <= piece->count; k += VD_LANES) {
+        vd at = vd_load(piece->at + k);
         vm far = vd_lt(vd_set1(1), at);
         vd tangent = vd_select(far, at - 2, at), square = tangent * tangent, inverse = 1 / (1 + square);
         vd sign = vd_select(far, vd_set1(-1), vd_set1(1));
-        vd_store(c->angle + k, 2 * arc_tangent(tangent) + vd_select(far, vd_set1(FIBRAD_PI), vd_set1(0)));
-        vd_store(c->cosine + k, sign * ((1 - square) * inverse));
-        vd_store(c->sine + k, sign * (2 * tangent * inverse));
+        vd_store(piece->angle + k, 2 * arc_tangent(tangent) + vd_select(far, vd_set1(FIBRAD_PI), vd_set1(0)));
+        vd_store(piece->cosine + k, sign * ((1 - square) * inverse));
+        vd_store(piece->sine + k, sign * (2 * tangent * inverse));
     }
 }
 
-/* Number of `whole` as a whole number, for |whole| < 2^51. */
-static inline int64_t units_of(double whole) {
-    const double magic = 0x1.8p52;
-    int64_t bits, zero;
-    whole += magic;
-    fibrad_copy(&bits, &whole, sizeof bits);
-    fibrad_copy(&zero, &magic, sizeof zero);
-    return bits - zero;
-}
-
-/* A property of discs, and of what lies beyond all spheres. */
-static inline vd look_up(const double *table, uint32_t count, vd number) { return vd_lookup(table, count + 1, number); }
+/* A double in which the lowest digit counts whole numbers; whole numbers from -2^51 to 2^51 are added to it. */
+#define UNITS 0x1.8p52
 
 /* The areas that arcs add, in units of the pairs. About a point o, that of an arc is
  *   r^2 (t2 - t1)/2 - r (o_x (sin t2 - sin t1) - o_y (cos t2 - cos t1))/2.
  * The origin of a pair is the centre of the smaller sphere; of equal ones, of the one that is met first. */
 static void find_areas(fibrad_circles *c) {
-    const fibrad_circle_discs *behind = &c->side[0].sorted, *ahead = &c->side[1].sorted;
-    const vd own = vd_set1(c->r), weight = vd_set1(FIBRAD_PAIR_UNITS / (c->r * c->r));
+    const fibrad_circle_discs *behind = &c->seen[0], *ahead = &c->seen[1];
+    fibrad_circle_pieces *piece = &c->pieces;
+    const uint32_t behinds = behind->count + 1, aheads = ahead->count + 1;
+    const vd own = vd_set1(FIBRAD_PAIR_UNITS / (c->r * c->r));
     const double half = c->r / 2;
-    for (uint32_t k = 0; k < c->sorted.count; k += VD_LANES) {
-        vd first = vd_load(c->sorted.met[0] + k), next = vd_load(c->sorted.met[1] + k);
-        vd turn = vd_loadu(c->angle + k + 1) - vd_load(c->angle + k);
-        vd sine = vd_loadu(c->sine + k + 1) - vd_load(c->sine + k);
-        vd cosine = vd_loadu(c->cosine + k + 1) - vd_load(c->cosine + k);
-        vd area = half * c->r * turn;
-        vd r_a = look_up(behind->r, behind->count, first), r_b = look_up(ahead->r, ahead->count, next);
-        vd area_a = area - half * (look_up(behind->u, behind->count, first) * sine -
-                                   look_up(behind->v, behind->count, first) * cosine);
-        vd area_b = area - half * (look_up(ahead->u, ahead->count, next) * sine -
-                                   look_up(ahead->v, ahead->count, next) * cosine);
-        vd units = area * weight;
-        area_a *= look_up(behind->weight, behind->count, first);
-        area_b *= look_up(ahead->weight, ahead->count, next);
-        vd_store(c->behind + k, vd_select(vd_le(r_a, own), area_a, units));
-        vd_store(c->ahead + k, vd_select(vd_le(own, r_b), units, area_b));
-        vd_store(c->past + k, vd_select(vd_le(r_a, r_b), area_a, area_b));
-        vd_store_numbers(c->index[0] + k, first);
-        vd_store_numbers(c->index[1] + k, next);
+    for (uint32_t k = 0; k < piece->count; k += VD_LANES) {
+        const uint32_t *first = piece->first + k, *next = piece->next + k;
+        vd turn = vd_loadu(piece->angle + k + 1) - vd_load(piece->angle + k);
+        vd sine = half * (vd_loadu(piece->sine + k + 1) - vd_load(piece->sine + k));
+        vd cosine = half * (vd_loadu(piece->cosine + k + 1) - vd_load(piece->cosine + k));
+        vd area = half * c->r * turn, units = area * own;
+        vd u_a = vd_choose(behind->u, behinds, first), v_a = vd_choose(behind->v, behinds, first);
+        vd u_b = vd_choose(ahead->u, aheads, next), v_b = vd_choose(ahead->v, aheads, next);
+        vd per_a = vd_choose(behind->weight, behinds, first), per_b = vd_choose(ahead->weight, aheads, next);
+        vd area_a = (area - (u_a * sine - v_a * cosine)) * per_a, area_b = (area - (u_b * sine - v_b * cosine)) * per_b;
+        vd_store(piece->behind + k, vd_select(vd_le(own, per_a), area_a, units) + UNITS);
+        vd_store(piece->ahead + k, vd_select(vd_le(per_b, own), units, area_b) + UNITS);
+        vd_store(piece->past + k, vd_select(vd_le(per_b, per_a), area_a, area_b) + UNITS);
     }
+}
+
+/* The whole number added to UNITS. */
+static inline int64_t units_of(double sum) {
+    const double none = UNITS;
+    int64_t bits, zero;
+    fibrad_copy(&bits, &sum, sizeof bits);
+    fibrad_copy(&zero, &none, sizeof zero);
+    return bits - zero;
 }
 
 /* Adds the areas of all pieces. The table is asked for its slots ahead, since they are seldom in the nearest cache. */
 static void add_pieces(fibrad_circles *c, fibrad_pair_table *table) {
-    const fibrad_circle_discs *behind = &c->side[0].sorted, *ahead = &c->side[1].sorted;
-    const uint32_t count = c->sorted.count;
+    const fibrad_circle_discs *behind = &c->seen[0], *ahead = &c->seen[1];
+    const fibrad_circle_pieces *piece = &c->pieces;
+    const size_t count = piece->count;
     int64_t *sum = c->near.sum[c->half];
-    for (uint32_t k = 0; k < count; k++) {
-        const uint64_t key = fibrad_pair_key(behind->sphere[c->index[0][k]], ahead->sphere[c->index[1][k]]);
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t first = behind->slot[piece->first[k]], next = ahead->slot[piece->next[k]];
+        const uint64_t key = fibrad_pair_key(c->near.sphere[first], c->near.sphere[next]);
         c->key[k] = key;
         c->rank[k] = fibrad_pair_place(table, key);
         __builtin_prefetch(&table->slot[c->rank[k]], 1);
+        sum[first] += units_of(piece->behind[k]);
+        sum[next] += units_of(piece->ahead[k]);
     }
-    for (uint32_t k = 0; k < count; k++) {
-        sum[behind->slot[c->index[0][k]]] += units_of(c->behind[k]);
-        sum[ahead->slot[c->index[1][k]]] += units_of(c->ahead[k]);
-    }
-    for (uint32_t k = 0; k < count; k++) /* what lies beyond all spheres exchanges nothing with itself */
+    for (size_t k = 0; k < count; k++) /* what lies beyond all spheres exchanges nothing with itself */
         if (!fibrad_pair_opens((uint32_t)(c->key[k] >> 32)))
-            fibrad_pair_slot(table, c->key[k], c->rank[k])->sum[c->half] -= units_of(c->past[k]);
+            fibrad_pair_slot(table, c->key[k], c->rank[k])->sum[c->half] -= units_of(piece->past[k]);
 }
 
 /* ---- the circle ------------------------------------------------------------------------------------------------- */
@@ -458,6 +543,7 @@ static void take_shell(const fibrad_workspace *work, fibrad_circles *c) {
             if (scene->period[axis] > 0)
                 c->near.away[axis][k] =
                     fibrad_floor((place[axis] * work->unit + (work->centre[axis] - at)) / scene->period[axis] + .5);
+            c->images = c->images || c->near.away[axis][k] != 0;
         }
     }
     c->homes = end;
@@ -482,6 +568,7 @@ static uint32_t take_marched(const fibrad_workspace *work, fibrad_circles *c, co
             if (scene->period[axis] > 0)
                 c->near.away[axis][at] =
                     fibrad_floor((place * work->unit + (work->centre[axis] - home)) / scene->period[axis] + .5);
+            c->images = c->images || c->near.away[axis][at] != 0;
         }
     }
     return first;
@@ -506,38 +593,42 @@ static fibrad_tube tube_of(const fibrad_circles *c, double sense) {
 }
 
 /* Leaves of the discs found on a side those that are seen somewhere on the stretch. */
-static void prune(const fibrad_workspace *work, fibrad_circles *c, int side) {
-    const fibrad_circle_discs *from = &c->side[side].sorted;
-    fibrad_circle_discs *to = &c->side[side].found;
-    bool seen[FIBRAD_CIRCLE_ROOM] = {false};
+static void prune(const fibrad_workspace *work, fibrad_circles *c, uint32_t number) {
+    fibrad_circle_side *side = &c->side[number];
+    fibrad_circle_discs *seen = &c->seen[number];
+    bool met[FIBRAD_CIRCLE_ROOM] = {false};
     uint32_t n = 0;
-    order_discs(work, c, &c->side[side]);
-    find_arcs(c, side, &c->side[side].sorted);
-    c->ends.at[0] = c->stretch.begin;
-    meet(from, side, &c->ends, 0, 1);
-    c->ends.count = 1;
-    list_ends(from, side, c->stretch.begin, c->stretch.end, &c->ends);
-    for (uint32_t k = 0; k < c->ends.count; k++) seen[(uint32_t)c->ends.met[side][k]] = true;
-    for (uint32_t k = 0; k < from->count; k++) {
-        if (!seen[k]) continue;
-        to->u[n] = from->u[k], to->v[n] = from->v[k], to->depth[n] = from->depth[k], to->r[n] = from->r[k];
-        to->slot[n] = from->slot[k], to->sphere[n++] = from->sphere[k];
-    }
-    to->count = n;
+    list_seen(c, number, side, seen);
+    order_seen(work, c, seen, number == 1);
+    c->seen[1 - number].count = c->seen[1 - number].number[0] = 0;
+    divide(c);
+    for (uint32_t k = 0; k < c->pieces.count; k++) met[(number == 0 ? c->pieces.first : c->pieces.next)[k]] = true;
+    for (uint32_t k = 0; k < seen->count; k++)
+        if (met[k]) c->order[n++] = seen->slot[k];
+    side->count = 0;
+    find_discs(work, c, side, c->order, n);
 }
 
 /* Finds discs among near spheres, as many at a time as there is room for. False: too many touch the stretch. */
-static bool find_among(const fibrad_workspace *work, fibrad_circles *c, int side, uint32_t *place, uint32_t count) {
-    const fibrad_circle_discs *found = &c->side[side].found;
+static bool find_among(const fibrad_workspace *work, fibrad_circles *c, uint32_t number, uint32_t *place,
+                       uint32_t count) {
+    fibrad_circle_side *side = &c->side[number];
+    if (count > FIBRAD_CIRCLE_MANY) count = leave_touching(c, place, count);
+    if (side->count + count <= FIBRAD_CIRCLE_DISCS) {
+        find_discs(work, c, side, place, count);
+        return true;
+    }
     for (uint32_t k = 0, some; k < count; k += some) {
-        uint32_t room = FIBRAD_CIRCLE_DISCS - VD_LANES - found->count;
+        uint32_t room = FIBRAD_CIRCLE_DISCS - side->count, after[FIBRAD_LANES_MAX];
         if (room < count - k && room < FIBRAD_CIRCLE_DISCS / 2) {
-            prune(work, c, side);
-            room = FIBRAD_CIRCLE_DISCS - VD_LANES - found->count;
+            prune(work, c, number);
+            room = FIBRAD_CIRCLE_DISCS - side->count;
             if (room < FIBRAD_CIRCLE_DISCS / 4) return false;
         }
         some = room < count - k ? room : count - k;
-        find_discs(work, c, &c->side[side], place + k, some);
+        fibrad_copy(after, place + k + some, sizeof after); /* written, too, in the last vector */
+        find_discs(work, c, side, place + k, some);
+        fibrad_copy(place + k + some, after, sizeof after);
     }
     return true;
 }
@@ -545,40 +636,72 @@ static bool find_among(const fibrad_workspace *work, fibrad_circles *c, int side
 #define SHORTEST 1e-6 /* stretch of a circle */
 #define TOO_MANY (-1) /* discs touch the stretch of the circle, which must be shorter */
 
-/* Finds the discs of one more shell, or of a march on sides that are not done. TOO_MANY */
-static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, const bool done[2]) {
+/* Finds the discs of the next shell on a side. TOO_MANY */
+static int find_in_shell(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, uint32_t side) {
+    uint32_t *place = work->disc.near;
+    const double sense = c->side[side].sense, *d = c->frame + 6, w[3] = {sense * d[0], sense * d[1], sense * d[2]};
+    const uint32_t count = cull_shell(work, w, shell, place);
+    c->side[side].known = work->near.limit[shell];
+    return find_among(work, c, side, place, count) ? FIBRAD_OK : TOO_MANY;
+}
+
+/* Finds the discs of a march on a side. TOO_MANY */
+static int find_by_march(fibrad_workspace *work, fibrad_circles *c, uint32_t number) {
+    fibrad_circle_side *side = &c->side[number];
+    const fibrad_tube tube = tube_of(c, side->sense);
+    const double to = fibrad_near_further(work, side->known);
     uint32_t *place = work->disc.near;
     double w[9];
-    if (shell == work->near.shells && fibrad_near_pays(&work->near)) {
+    for (int k = 0; k < 9; k++) w[k] = k < 3 ? c->frame[k] : side->sense * c->frame[k];
+    work->disc.count = 0;
+    LANED(fibrad_near_march)(work, w, &tube, side->known, to);
+    side->known = to;
+    const uint32_t count = work->disc.count;
+    if (c->marched + count > c->near.nowhere) return TOO_MANY;
+    if (count > work->disc.capacity) return fibrad_work_discs_missed(work);
+    const uint32_t first = take_marched(work, c, w);
+    for (uint32_t k = 0; k < count; k++) place[k] = first + k;
+    return find_among(work, c, number, place, count) ? FIBRAD_OK : TOO_MANY;
+}
+
+/* Finds the discs of the shell, then of marches on sides that are not done. Few circles need more than the shell.
+ * TOO_MANY */
+static int find_more(fibrad_workspace *work, fibrad_circles *c, uint32_t shell, const bool done[2]) {
+    int status = FIBRAD_OK;
+    if (shell == 0 && work->near.shells == 0 && !work->near.full) {
         LANED(fibrad_near_extend)(work);
         if (!work->near.full) take_shell(work, c);
     }
+    for (uint32_t side = 0; side < 2 && status == FIBRAD_OK; side++)
+        if (shell < work->near.shells)
+            status = find_in_shell(work, c, shell, side);
+        else if (!done[side])
+            status = find_by_march(work, c, side);
+    return status;
+}
+
+/* Whether there is no disc deeper than all that are known. */
+static bool at_horizon(const fibrad_workspace *work, const fibrad_circle_side *side, const double d[3]) {
+    const double w[3] = {side->sense * d[0], side->sense * d[1], side->sense * d[2]};
+    return side->known >= work->clear && side->known >= fibrad_near_horizon(work, w);
+}
+
+/* Finds what is met on the stretch, and on which sides nothing can come before it. */
+static void meet(fibrad_workspace *work, fibrad_circles *c, bool done[2]) {
+    bool open = false, closed = true;
     for (int s = 0; s < 2; s++) {
-        fibrad_circle_side *side = &c->side[s];
-        const double sense = side->sense;
-        for (int k = 0; k < 9; k++) w[k] = k < 3 ? c->frame[k] : sense * c->frame[k];
-        uint32_t count;
-        if (shell < work->near.shells) {
-            count = cull_shell(work, w + 6, shell, place);
-            side->known = work->near.limit[shell];
-        } else {
-            if (done[s]) continue;
-            const double to = fibrad_near_further(work, side->known);
-            work->disc.count = 0;
-            const fibrad_tube tube = tube_of(c, sense);
-            LANED(fibrad_near_march)(work, w, &tube, side->known, to);
-            side->known = to;
-            count = work->disc.count;
-            if (c->marched + count > c->near.nothing) return TOO_MANY;
-            if (count > work->disc.capacity) return fibrad_work_discs_missed(work);
-            const uint32_t first = take_marched(work, c, w);
-            for (uint32_t k = 0; k < count; k++) place[k] = first + k;
-        }
-        if (side->known >= work->clear && side->horizon == __builtin_inf())
-            side->horizon = fibrad_near_horizon(work, w + 6);
-        if (!find_among(work, c, s, place, count)) return TOO_MANY;
+        judge_side(&c->side[s]);
+        done[s] = c->side[s].closed || at_horizon(work, &c->side[s], c->frame + 6);
+        open = open || (!done[s] && c->side[s].open);
+        closed = closed && (done[s] || c->side[s].open);
     }
-    return FIBRAD_OK;
+    if (open && closed) return; /* it is known already where to look further */
+    for (uint32_t s = 0; s < 2; s++) {
+        list_seen(c, s, &c->side[s], &c->seen[s]);
+        order_seen(work, c, &c->seen[s], s == 1);
+    }
+    divide(c);
+    for (int s = 0; s < 2; s++) done[s] = done[s] || deepest_met(c, s) <= c->side[s].known * (1 - 1e-12) * c->r;
 }
 
 static void begin_line(fibrad_circles *c, const fibrad_line *line, uint32_t number) {
@@ -612,6 +735,7 @@ static double chord_between(const double a[2], const double b[2]) {
 /* Begins a stretch of the circle, at most to a place. */
 static void begin_stretch(fibrad_circles *c, double begin, double end) {
     c->stretch = (fibrad_circle_stretch){.begin = begin, .end = end, .radius = __builtin_inf()};
+    c->stretch.sectors = SECTORS / (end - begin);
     if (end - begin < FIBRAD_CIRCLE_END - FIBRAD_CIRCLE_BEGIN) {
         double first[2], middle[2], last[2];
         point_at(begin, c->r, first);
@@ -621,8 +745,8 @@ static void begin_stretch(fibrad_circles *c, double begin, double end) {
         c->stretch.radius = fibrad_max(chord_between(first, middle), chord_between(middle, last)) + 1e-12 * c->r;
     }
     for (int s = 0; s < 2; s++) {
-        c->side[s].found.count = 0;
-        c->side[s].known = -1, c->side[s].horizon = __builtin_inf();
+        c->side[s].count = 0;
+        c->side[s].known = -1;
         c->side[s].sense = s == 0 ? -1 : 1;
     }
 }
@@ -638,17 +762,8 @@ static int follow(fibrad_workspace *work, fibrad_circles *c, double begin, doubl
             c->marched = first_marched;
             return status;
         }
-        for (int s = 0; s < 2; s++) {
-            order_discs(work, c, &c->side[s]);
-            find_arcs(c, s, &c->side[s].sorted);
-        }
-        find_ends(c, begin, end);
-        for (int s = 0; s < 2; s++) {
-            const fibrad_circle_side *side = &c->side[s];
-            done[s] = side->known >= side->horizon || deepest_met(c, s) <= side->known * (1 - 1e-12) * c->r;
-        }
+        meet(work, c, done);
     }
-    sort_ends(c, end);
     find_angles(c);
     find_areas(c);
     add_pieces(c, table);
@@ -661,7 +776,7 @@ static int follow(fibrad_workspace *work, fibrad_circles *c, double begin, doubl
 static int follow_line(fibrad_workspace *work, fibrad_circles *c, fibrad_pair_table *table) {
     double step = c->step;
     while (c->next < c->end && fibrad_pair_room(table, FIBRAD_CIRCLE_ENDS)) {
-        const double end = fibrad_min(c->end, ((c->next + step) + 5) - 5); /* on the grid of places */
+        const double end = c->next + step < c->end - SHORTEST ? c->next + step : c->end;
         const int status = follow(work, c, c->next, end, table);
         if (status == TOO_MANY) {
             step = (end - c->next) / 2;
@@ -682,7 +797,7 @@ int LANED(fibrad_circle_lines)(fibrad_workspace *work, fibrad_circles *c, uint32
     fibrad_work_begin(work, scene, place, 0, FIBRAD_CIRCLE_STRIDE);
     for (int axis = 0; axis < 3; axis++) c->at[axis] = (at[axis] - c->origin[axis]) * c->scale;
     c->r = scene->r[place] * c->scale;
-    c->homes = 0, c->marched = work->near.capacity;
+    c->homes = 0, c->marched = work->near.capacity, c->images = false;
     for (uint32_t k = c->near.nothing; k < c->near.nothing + 2; k++) c->near.sum[0][k] = c->near.sum[1][k] = 0;
     for (; *from < to && fibrad_pair_room(table, FIBRAD_CIRCLE_ENDS); ++*from, c->next = c->begin) {
         begin_line(c, &line[*from], *from);

@@ -44,7 +44,8 @@ static inline bool fibrad_pair_room(const fibrad_pair_table *table, uint32_t pai
 }
 
 static inline uint64_t fibrad_pair_key(uint32_t i, uint32_t j) {
-    return i < j ? (uint64_t)i << 32 | j : (uint64_t)j << 32 | i;
+    const uint32_t low = i < j ? i : j, high = i < j ? j : i; /* a branch could not be predicted */
+    return (uint64_t)low << 32 | high;
 }
 
 /* Where a table looks for a key first. */

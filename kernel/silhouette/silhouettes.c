@@ -168,7 +168,7 @@ static fibrad_circles *circles_layout(fibrad_arena *arena, uint32_t slots, fibra
     near->radius = fibrad_arena_take(arena, room, sizeof(double));
     near->sphere = fibrad_arena_take(arena, room, sizeof(uint32_t));
     for (int half = 0; half < 2; half++) near->sum[half] = fibrad_arena_take(arena, room, sizeof(int64_t));
-    near->nothing = (uint32_t)room - 2;
+    near->nothing = (uint32_t)room - 2, near->nowhere = (uint32_t)room - 3;
     table->slot = fibrad_arena_take(arena, slots, sizeof *table->slot);
     return place;
 }
@@ -201,6 +201,9 @@ static void begin_circles(const fibrad_scene *scene, fibrad_circles *c) {
         c->periodic = c->periodic || scene->period[axis] > 0;
     }
     c->grid = c->periodic ? centre_grid(scene, c->scale) : 0;
+    c->near.radius[c->near.nowhere] = 1;
+    for (int axis = 0; axis < 3; axis++)
+        c->near.home[axis][c->near.nowhere] = 0x1p100, c->near.away[axis][c->near.nowhere] = 0;
 }
 
 /* Lays scratch memory out for circles, with as large a table as there is room for. */

@@ -55,6 +55,18 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return _mm256_set_pd(table[k[3]], table[k[2]], table[k[1]], table[k[0]]);
 }
+static inline uint32_t vd_compress_numbers(uint32_t *p, uint32_t bits, const uint32_t *from) {
+    __m128 four = _mm_loadu_ps((const float *)(const void *)from);
+    _mm_storeu_ps((float *)(void *)p, _mm_permutevar_ps(four, (__m128i)fibrad_named_lanes(bits)));
+    return fibrad_count_bits(bits);
+}
+static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { fibrad_copy(p, from, VD_LANES * sizeof *p); }
+static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) {
+    return (void)size, vd_gather(table, k);
+}
+static inline vd vd_power_of_two(vd k) {
+    return _mm256_castsi256_pd(_mm256_slli_epi64(_mm256_castpd_si256(k + (0x1.8p52 + 1023)), 52));
+}
 static inline vd vd_loadu(const double *p) { return _mm256_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm256_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm256_storeu_pd(p, a); }
@@ -78,9 +90,18 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_pd(_mm25
 
 static inline vf vf_set1(float a) { return _mm256_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm256_load_ps(p); }
+static inline void vf_storeu(float *p, vf a) { _mm256_storeu_ps(p, a); }
 static inline vf vf_max(vf a, vf b) { return _mm256_max_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
 static inline vn vn_zero(void) { return _mm256_setzero_si256(); }
+static inline vn vn_set1(uint32_t n) { return _mm256_set1_epi32((int)n); }
+static inline vn vn_load(const uint32_t *p) { return _mm256_load_si256((const __m256i *)(const void *)p); }
+static inline vn vn_or_lt(vn n, vn m, vf a, vf b) {
+    return _mm256_or_si256(n, _mm256_and_si256(m, _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ))));
+}
+static inline uint32_t vn_beyond_bits(vn n, vn m) {
+    return ~(uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(n, m), n))) & 255;
+}
 static inline void vn_store(uint32_t *p, vn n) { _mm256_store_si256((__m256i *)(void *)p, n); }
 static inline uint32_t vn_some_bits(const uint32_t *p) {
     __m256i n = _mm256_loadu_si256((const __m256i *)(const void *)p);

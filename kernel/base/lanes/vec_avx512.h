@@ -39,6 +39,23 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return _mm512_i32gather_pd(_mm256_loadu_si256((const __m256i *)(const void *)k), table, 8);
 }
+static inline uint32_t vd_compress_numbers(uint32_t *p, uint32_t bits, const uint32_t *from) {
+    __m256i eight = _mm256_loadu_si256((const __m256i *)(const void *)from);
+    _mm256_storeu_si256((__m256i *)(void *)p, _mm256_maskz_compress_epi32((__mmask8)bits, eight));
+    return (uint32_t)_mm_popcnt_u32(bits);
+}
+static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) {
+    _mm256_storeu_si256((__m256i *)(void *)p, _mm256_loadu_si256((const __m256i *)(const void *)from));
+}
+static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) {
+    __m512i index = _mm512_cvtepu32_epi64(_mm256_loadu_si256((const __m256i *)(const void *)k));
+    if (size > 16) return _mm512_i64gather_pd(index, table, 8);
+    if (size > 8) return _mm512_permutex2var_pd(vd_load(table), index, vd_load(table + 8));
+    return _mm512_permutexvar_pd(index, vd_load(table));
+}
+static inline vd vd_power_of_two(vd k) {
+    return _mm512_castsi512_pd(_mm512_slli_epi64(_mm512_castpd_si512(k + (0x1.8p52 + 1023)), 52));
+}
 static inline vd vd_loadu(const double *p) { return _mm512_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm512_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm512_storeu_pd(p, a); }
@@ -62,16 +79,23 @@ static inline uint32_t vm_bits(vm a) { return a; }
 
 static inline vf vf_set1(float a) { return _mm512_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm512_load_ps(p); }
+static inline void vf_storeu(float *p, vf a) { _mm512_storeu_ps(p, a); }
 static inline vf vf_max(vf a, vf b) { return _mm512_max_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 static inline vn vn_zero(void) { return _mm512_setzero_si512(); }
+static inline vn vn_set1(uint32_t n) { return _mm512_set1_epi32((int)n); }
+static inline vn vn_load(const uint32_t *p) { return _mm512_load_si512(p); }
+static inline vn vn_or_lt(vn n, vn m, vf a, vf b) {
+    return _mm512_mask_or_epi32(n, _mm512_cmp_ps_mask(b, a, _CMP_GT_OQ), n, m);
+}
+static inline uint32_t vn_beyond_bits(vn n, vn m) { return _mm512_cmpneq_epi32_mask(_mm512_and_si512(n, m), n); }
 static inline void vn_store(uint32_t *p, vn n) { _mm512_store_si512((__m512i *)(void *)p, n); }
 static inline uint32_t vn_some_bits(const uint32_t *p) {
     __m512i n = _mm512_loadu_si512(p);
     return _mm512_test_epi32_mask(n, n);
 }
 static inline vn vn_count_lt(vn n, vf a, vf b) {
-    return _mm512_mask_add_epi32(n, _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ), n, _mm512_set1_epi32(1));
+    return _mm512_mask_add_epi32(n, _mm512_cmp_ps_mask(b, a, _CMP_GT_OQ), n, _mm512_set1_epi32(1));
 }
 static inline void vf_compress(float *p, uint32_t bits, vf a) {
     _mm512_storeu_ps(p, _mm512_maskz_compress_ps((__mmask16)bits, a));

@@ -37,6 +37,18 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return vcombine_f64(vld1_f64(table + k[0]), vld1_f64(table + k[1]));
 }
+static inline uint32_t vd_compress_numbers(uint32_t *p, uint32_t bits, const uint32_t *from) {
+    p[0] = from[bits == 2];
+    p[1] = from[1];
+    return (bits & 1) + (bits >> 1);
+}
+static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { vst1_u32(p, vld1_u32(from)); }
+static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) {
+    return (void)size, vd_gather(table, k);
+}
+static inline vd vd_power_of_two(vd k) {
+    return vreinterpretq_f64_u64(vshlq_n_u64(vreinterpretq_u64_f64(k + (0x1.8p52 + 1023)), 52));
+}
 static inline vd vd_loadu(const double *p) { return vld1q_f64(p); }
 static inline void vd_store(double *p, vd a) { vst1q_f64(p, a); }
 static inline void vd_storeu(double *p, vd a) { vst1q_f64(p, a); }
@@ -63,9 +75,17 @@ static inline uint32_t vn_mask_bits(uint32x4_t mask) {
 }
 static inline vf vf_set1(float a) { return vdupq_n_f32(a); }
 static inline vf vf_load(const float *p) { return vld1q_f32(p); }
+static inline void vf_storeu(float *p, vf a) { vst1q_f32(p, a); }
 static inline vf vf_max(vf a, vf b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return vn_mask_bits(vcltq_f32(a, b)); }
 static inline vn vn_zero(void) { return vdupq_n_u32(0); }
+static inline vn vn_set1(uint32_t n) { return vdupq_n_u32(n); }
+static inline vn vn_load(const uint32_t *p) { return vld1q_u32(p); }
+static inline vn vn_or_lt(vn n, vn m, vf a, vf b) { return n | (m & vcltq_f32(a, b)); }
+static inline uint32_t vn_beyond_bits(vn n, vn m) {
+    const uint32x4_t beyond = vbicq_u32(n, m);
+    return vn_mask_bits(vtstq_u32(beyond, beyond));
+}
 static inline void vn_store(uint32_t *p, vn n) { vst1q_u32(p, n); }
 static inline uint32_t vn_some_bits(const uint32_t *p) {
     const uint32x4_t n = vld1q_u32(p);

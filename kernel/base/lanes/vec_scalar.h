@@ -14,10 +14,17 @@
  *                            vd_compress(p, bits, a): the lanes given by bits side by side at p, which has room for all
  *                            vd_replace(a, lane, x): a with x in one lane
  *                            vd_compress_places(p, bits, first): first + l for them; returns how many
+ *                            vd_compress_numbers(p, bits, from): those of the numbers at `from`; returns how many
+ *                            vd_copy_numbers(p, from): numbers, one for each lane; any address
+ *                            vd_choose(table, size, k): as vd_gather; size as in vd_lookup
+ *                            vd_power_of_two(k): 2 to the power of k, rounded to a whole number 0 to 31
  *   vm   a mask of vd lanes  & | vm_not vm_bits (bit l = lane l)
- *   vf   VF_LANES floats     + - * vf_set1 vf_load vf_max vf_lt_bits (bit l = lane l)
+ *   vf   VF_LANES floats     + - * vf_set1 vf_load vf_storeu vf_max vf_lt_bits (bit l = lane l)
  *                            vf_compress(p, bits, a), vf_compress_places(p, bits, first): as those of vd
- *   vn   VF_LANES numbers    vn_zero vn_store vn_count_lt(n, a, b): n, and one more where a < b
+ *   vn   VF_LANES numbers    vn_zero vn_set1 vn_load vn_store
+ *                            vn_count_lt(n, a, b): n, and one more where a < b
+ *                            vn_or_lt(n, m, a, b): n, and the bits of m where a < b
+ *                            vn_beyond_bits(n, m): the lanes where n has bits that m has not
  *                            vn_compress(p, bits, from): those of the numbers at `from`; returns how many
  *                            vn_some_bits(p): which of those at p, any address, are not 0
  * Other loads and stores are aligned to the vector. min and max are (a < b ? a : b) and (a > b ? a : b), as x86 has them.
@@ -49,6 +56,20 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
     return bits;
 }
 static inline vd vd_gather(const double *table, const uint32_t *k) { return table[*k]; }
+static inline uint32_t vd_compress_numbers(uint32_t *p, uint32_t bits, const uint32_t *from) {
+    *p = *from;
+    return bits;
+}
+static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { *p = *from; }
+static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) { return (void)size, table[*k]; }
+static inline vd vd_power_of_two(vd k) {
+    uint64_t bits;
+    k += 0x1.8p52 + 1023;
+    fibrad_copy(&bits, &k, sizeof bits);
+    bits <<= 52;
+    fibrad_copy(&k, &bits, sizeof bits);
+    return k;
+}
 static inline vd vd_loadu(const double *p) { return *p; }
 static inline void vd_store(double *p, vd a) { *p = a; }
 static inline void vd_storeu(double *p, vd a) { *p = a; }
@@ -68,9 +89,14 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
 
 static inline vf vf_set1(float a) { return a; }
 static inline vf vf_load(const float *p) { return *p; }
+static inline void vf_storeu(float *p, vf a) { *p = a; }
 static inline vf vf_max(vf a, vf b) { return a > b ? a : b; }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return a < b; }
 static inline vn vn_zero(void) { return 0; }
+static inline vn vn_set1(uint32_t n) { return n; }
+static inline vn vn_load(const uint32_t *p) { return *p; }
+static inline vn vn_or_lt(vn n, vn m, vf a, vf b) { return a < b ? n | m : n; }
+static inline uint32_t vn_beyond_bits(vn n, vn m) { return (n & ~m) != 0; }
 static inline void vn_store(uint32_t *p, vn n) { *p = n; }
 static inline uint32_t vn_some_bits(const uint32_t *p) { return *p != 0; }
 static inline vn vn_count_lt(vn n, vf a, vf b) { return n + (a < b); }

@@ -37,6 +37,18 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
     return (bits & 1) + (bits >> 1);
 }
 static inline vd vd_gather(const double *table, const uint32_t *k) { return _mm_set_pd(table[k[1]], table[k[0]]); }
+static inline uint32_t vd_compress_numbers(uint32_t *p, uint32_t bits, const uint32_t *from) {
+    p[0] = from[bits == 2];
+    p[1] = from[1];
+    return (bits & 1) + (bits >> 1);
+}
+static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { fibrad_copy(p, from, VD_LANES * sizeof *p); }
+static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) {
+    return (void)size, vd_gather(table, k);
+}
+static inline vd vd_power_of_two(vd k) {
+    return _mm_castsi128_pd(_mm_slli_epi64(_mm_castpd_si128(k + (0x1.8p52 + 1023)), 52));
+}
 static inline vd vd_loadu(const double *p) { return _mm_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm_storeu_pd(p, a); }
@@ -61,9 +73,18 @@ static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm_movemask_pd(_mm_cast
 
 static inline vf vf_set1(float a) { return _mm_set1_ps(a); }
 static inline vf vf_load(const float *p) { return _mm_load_ps(p); }
+static inline void vf_storeu(float *p, vf a) { _mm_storeu_ps(p, a); }
 static inline vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)); }
 static inline vn vn_zero(void) { return _mm_setzero_si128(); }
+static inline vn vn_set1(uint32_t n) { return _mm_set1_epi32((int)n); }
+static inline vn vn_load(const uint32_t *p) { return _mm_load_si128((const __m128i *)(const void *)p); }
+static inline vn vn_or_lt(vn n, vn m, vf a, vf b) {
+    return _mm_or_si128(n, _mm_and_si128(m, _mm_castps_si128(_mm_cmplt_ps(a, b))));
+}
+static inline uint32_t vn_beyond_bits(vn n, vn m) {
+    return ~(uint32_t)_mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(n, m), n))) & 15;
+}
 static inline void vn_store(uint32_t *p, vn n) { _mm_store_si128((__m128i *)(void *)p, n); }
 static inline uint32_t vn_some_bits(const uint32_t *p) {
     __m128i n = _mm_loadu_si128((const __m128i *)(const void *)p);
