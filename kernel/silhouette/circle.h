@@ -17,8 +17,9 @@
 #define FIBRAD_CIRCLE_DISCS 240u
 #define FIBRAD_CIRCLE_ROOM  (FIBRAD_CIRCLE_DISCS + 3 * FIBRAD_LANES_MAX)
 #define FIBRAD_CIRCLE_ENDS  (4 * FIBRAD_CIRCLE_ROOM)
-#define FIBRAD_CIRCLE_MANY  (2 * FIBRAD_LANES_MAX) /* near spheres that are first asked whether they touch the circle  \
-                                                    */
+#define FIBRAD_CIRCLE_MANY                                                                                             \
+    (2 * FIBRAD_LANES_MAX) /* near spheres that are first asked whether they touch the circle                          \
+                            */
 
 /* Where on a circle: tan(t/2) of the angle t for t within a quarter turn of 0, and 2 + tan((t - pi)/2) on the other
  * half. A turn is from -1 to 3. */
@@ -67,8 +68,9 @@ typedef struct fibrad_circle_discs {
 /* Ends of arcs: those of one side, then those of the other. */
 typedef struct fibrad_circle_ends {
     _Alignas(64) double at[FIBRAD_CIRCLE_ENDS];
-    float key[FIBRAD_CIRCLE_ENDS];    /* the place, rounded */
-    uint32_t own[FIBRAD_CIRCLE_ENDS]; /* the bit of the disc whose end it is */
+    float key[FIBRAD_CIRCLE_ENDS];       /* the place, rounded */
+    uint64_t own[FIBRAD_CIRCLE_ENDS];    /* the disc whose end it is, as a bit, ... */
+    uint64_t nearer[FIBRAD_CIRCLE_ENDS]; /* ... and those of its side that are nearer */
     uint32_t count;
 } fibrad_circle_ends;
 
@@ -87,7 +89,8 @@ typedef struct fibrad_circle_pieces {
 typedef struct fibrad_circle_near {
     double *home[3], *radius, *away[3]; /* position, radius, and how many periods away the image is */
     uint32_t *sphere;
-    int64_t *sum[2]; /* what is exchanged with the sphere in hand, in units, over even and odd lines */
+    int64_t *sum[2];                 /* what is exchanged with the sphere in hand, in units, over even and odd lines */
+    uint32_t fill[FIBRAD_LANES_MAX]; /* `nowhere` */
     uint32_t nowhere, nothing;
 } fibrad_circle_near;
 
@@ -107,7 +110,7 @@ typedef struct fibrad_circles {
     fibrad_circle_pieces pieces;
     _Alignas(64) uint32_t rank[FIBRAD_CIRCLE_ENDS];
     uint32_t order[FIBRAD_CIRCLE_ENDS];
-    uint64_t key[FIBRAD_CIRCLE_ENDS]; /* pairs of what is met behind and before */
+    uint64_t key[FIBRAD_CIRCLE_ENDS]; /* discs that cover the pieces; pairs of what is met behind and before */
     fibrad_circle_near near;
     bool images;             /* whether some near spheres are images of others */
     uint32_t homes, marched; /* ends of the lists of near spheres: those of shells, those that marches have found */

@@ -126,7 +126,7 @@ static uint32_t leave_touching(const fibrad_circles *c, uint32_t *place, uint32_
     const fibrad_circle_stretch *stretch = &c->stretch;
     const vd own = vd_set1(c->r), zero = vd_set1(0);
     uint32_t n = 0;
-    for (uint32_t k = count; k % VD_LANES != 0; k++) place[k] = c->near.nowhere;
+    vd_copy_numbers(place + count, c->near.fill);
     for (uint32_t k = 0; k < count; k += VD_LANES) {
         const uint32_t *at = place + k;
         vd x = vd_gather(c->near.home[0], at), y = vd_gather(c->near.home[1], at), z = vd_gather(c->near.home[2], at);
@@ -144,10 +144,11 @@ static uint32_t leave_touching(const fibrad_circles *c, uint32_t *place, uint32_
 /* Appends the near spheres at `place`. There must be room for `count` discs and a vector. */
 static void find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_circle_side *side, uint32_t *place,
                        uint32_t count) {
-    uint32_t k = 0;
-    for (uint32_t l = count; l % VD_LANES != 0; l++) place[l] = c->near.nowhere;
+    const size_t first = side->count;
+    size_t k = 0;
+    vd_copy_numbers(place + count, c->near.fill);
     for (; k < count; k += VD_LANES) {
-        const uint32_t *at = place + k, to = side->count + k;
+        const uint32_t *at = place + k, to = (uint32_t)(first + k);
         vd x = vd_gather(c->near.home[0], at), y = vd_gather(c->near.home[1], at), z = vd_gather(c->near.home[2], at);
         vd u = component_across(c, 0, x, y, z, at), v = component_across(c, 1, x, y, z, at);
         vd depth = side->sense * component_across(c, 2, x, y, z, at);
@@ -158,9 +159,10 @@ static void find_discs(const fibrad_workspace *work, fibrad_circles *c, fibrad_c
                 side->inner[to + l] = side->outer[to + l] = 0;
         vd_copy_numbers(side->slot + to, at);
     }
-    side->last = side->count + count;
-    for (side->count += k; side->count % VF_LANES != 0; side->count++)
-        side->inner[side->count] = side->outer[side->count] = 0;
+    fibrad_zero(side->inner + first + k, FIBRAD_LANES_MAX * sizeof *side->inner);
+    fibrad_zero(side->outer + first + k, FIBRAD_LANES_MAX * sizeof *side->outer);
+    side->last = (uint32_t)first + count;
+    side->count = (uint32_t)(first + k + VF_LANES - 1) / VF_LANES * VF_LANES;
 }
 
 /* Lists the near spheres of a shell that overlap the beam of the sphere in hand, by a cull in floats. */
@@ -181,7 +183,7 @@ static uint32_t cull_shell(fibrad_workspace *work, const double w[3], uint32_t s
 
 #define BLOCK (VF_LANES == 16 ? 1 : VF_LANES == 8 ? 2 : 4) /* vectors that share what is the same in all lanes */
 
-/* The sectors that the discs nearer than each disc cover together. */
+/* The sectors that the discs nearer than each disc cover together. Those that are filled up cover none. */
 static inline void find_covered(const fibrad_circle_side *side, uint32_t *covered) {
     const size_t count = side->last;
     for (size_t k = 0; k < count; k += BLOCK * VF_LANES) {
@@ -189,13 +191,14 @@ static inline void find_covered(const fibrad_circle_side *side, uint32_t *covere
         vn all[BLOCK];
 #pragma GCC unroll 4
         for (int b = 0; b < BLOCK; b++) at[b] = vf_load(side->key + k + b * VF_LANES), all[b] = vn_set1(0);
+        for (size_t m = 0; m < count; m += 4)
 #pragma GCC unroll 4
-        for (size_t m = 0; m < count; m++) {
-            const vn inner = vn_set1(side->inner[m]);
-            const vf key = vf_set1(side->key[m]);
+            for (size_t l = 0; l < 4; l++) {
+                const vn inner = vn_set1(side->inner[m + l]);
+                const vf key = vf_set1(side->key[m + l]);
 #pragma GCC unroll 4
-            for (int b = 0; b < BLOCK; b++) all[b] = vn_or_lt(all[b], inner, key, at[b]);
-        }
+                for (int b = 0; b < BLOCK; b++) all[b] = vn_or_lt(all[b], inner, key, at[b]);
+            }
 #pragma GCC unroll 4
         for (int b = 0; b < BLOCK; b++) vn_store(covered + k + b * VF_LANES, all[b]);
     }
@@ -234,8 +237,9 @@ static void list_seen(const fibrad_circles *c, uint32_t number, fibrad_circle_si
 static void judge_side(fibrad_circle_side *side) {
     const size_t count = side->last;
     uint32_t inner = 0, outer = 0;
+    for (size_t m = 0; m < count; m += 4)
 #pragma GCC unroll 4
-    for (size_t m = 0; m < count; m++) inner |= side->inner[m], outer |= side->outer[m];
+        for (size_t l = 0; l < 4; l++) inner |= side->inner[m + l], outer |= side->outer[m + l];
     side->closed = inner == ALL_AROUND;
     side->open = (outer & ALL_AROUND) != ALL_AROUND;
 }
@@ -315,10 +319,8 @@ static void list_ends(fibrad_circles *c) {
         const fibrad_circle_discs *disc = &c->seen[side];
         const size_t count = disc->count;
         double *at = ends->at + n;
-        uint32_t *own = ends->own + n;
         for (size_t k = 0; k < count; k += VD_LANES) vd_storeu(at + k, vd_load(disc->from + k));
         for (size_t k = 0; k < count; k += VD_LANES) vd_storeu(at + count + k, vd_load(disc->to + k));
-        for (size_t k = 0; k < count; k++) own[k] = own[count + k] = disc->rank[k] + HALF * side;
         n += 2 * count;
     }
     for (size_t k = 0; k < n; k += VD_LANES) vd_store_float(ends->key + k, vd_load(ends->at + k));
@@ -326,33 +328,47 @@ static void list_ends(fibrad_circles *c) {
     ends->count = (uint32_t)n;
 }
 
-/* The discs that cover where the stretch begins, as bits; what lies beyond all spheres covers all of it. */
-static uint64_t covered_at_begin(const fibrad_circle_discs *disc) {
-    const size_t count = disc->count;
-    uint64_t bits = 1ull << count;
-    for (size_t k = 0; k < count; k++) bits |= (uint64_t)(disc->to[k] < disc->from[k]) << (disc->rank[k] & 63);
-    return bits;
+/* Finds the bits of the discs whose ends are listed. Returns those that cover where the stretch begins; what lies
+ * beyond all spheres covers all of it. */
+static uint64_t find_bits(fibrad_circles *c) {
+    uint64_t covers = 0;
+    size_t n = 0;
+    for (uint32_t side = 0; side < 2; side++) {
+        const fibrad_circle_discs *disc = &c->seen[side];
+        const uint64_t lowest = side == 0 ? 1 : 1ull << HALF;
+        const size_t count = disc->count;
+        uint64_t *own = c->ends.own + n, *nearer = c->ends.nearer + n;
+        for (size_t k = 0; k < count; k++) {
+            const uint64_t bit = lowest << disc->rank[k];
+            own[k] = own[count + k] = bit;
+            nearer[k] = nearer[count + k] = bit - lowest;
+            covers |= bit & (0 - (uint64_t)(disc->to[k] < disc->from[k]));
+        }
+        covers |= lowest << count;
+        n += 2 * count;
+    }
+    return covers;
 }
 
-/* Walks along a stretch whose ends are all at different places. */
+/* Walks along a stretch whose ends are all at different places. An end is seen if no nearer disc covers it. */
 static void find_pieces(fibrad_circles *c) {
     const fibrad_circle_ends *ends = &c->ends;
-    const uint32_t *first = c->seen[0].number, *next = c->seen[1].number, *order = c->order;
+    const uint32_t *order = c->order;
     fibrad_circle_pieces *to = &c->pieces;
-    uint64_t covers = covered_at_begin(&c->seen[0]) | covered_at_begin(&c->seen[1]) << HALF;
+    uint64_t covers = find_bits(c);
     const double end = c->stretch.end;
-    double at = c->stretch.begin;
-    size_t n = 0, before = 64 * 64;
-    do {
-        const size_t behind = lowest_bit(covers), ahead = lowest_bit(covers >> HALF), met = 64 * behind + ahead;
-        to->at[n] = at, to->first[n] = first[behind], to->next[n] = next[ahead];
-        n += met != before;
-        before = met;
-        const size_t other = *order++;
-        covers ^= 1ull << (ends->own[other] & 63);
-        at = ends->at[other];
-    } while (at < end);
+    size_t n = 1;
+    to->at[0] = c->stretch.begin, c->key[0] = covers;
+    for (size_t k = *order; ends->at[k] < end; k = *++order) {
+        covers ^= ends->own[k];
+        to->at[n] = ends->at[k], c->key[n] = covers;
+        n += (covers & ends->nearer[k]) == 0;
+    }
     to->count = (uint32_t)n;
+    for (size_t k = 0; k < n; k++) {
+        to->first[k] = c->seen[0].number[lowest_bit(c->key[k])];
+        to->next[k] = c->seen[1].number[lowest_bit(c->key[k] >> HALF)];
+    }
 }
 
 /* The nearest of a set of discs, the surroundings among them. */
@@ -399,7 +415,8 @@ static void find_pieces_of_many(fibrad_circles *c) {
         }
         if (next == c->stretch.end) break;
         at = next;
-        const uint32_t side = end >= 2 * c->seen[0].count, rank = ends->own[end] - HALF * side;
+        const uint32_t side = end >= 2 * c->seen[0].count, count = c->seen[side].count;
+        const uint32_t rank = c->seen[side].rank[(end - side * 2 * c->seen[0].count) % count];
         covers[side][rank / 64] ^= 1ull << rank % 64;
     }
     to->count = n;
@@ -526,26 +543,35 @@ static void add_pieces(fibrad_circles *c, fibrad_pair_table *table) {
 
 /* ---- the circle ------------------------------------------------------------------------------------------------- */
 
-/* Takes the spheres of a new shell over. */
+/* Finds how many periods away the images of the near spheres [from, to) lie along an axis. */
+static void count_periods(const fibrad_workspace *work, fibrad_circles *c, int axis, uint32_t from, uint32_t to) {
+    const fibrad_scene *scene = work->scene;
+    const double *home = axis == 0 ? scene->x : axis == 1 ? scene->y : scene->z;
+    const double *place = axis == 0 ? work->near.x : axis == 1 ? work->near.y : work->near.z;
+    for (uint32_t k = from; k < to; k++) {
+        const double at = place[k] * work->unit + (work->centre[axis] - home[work->near.sphere[k]]);
+        c->near.away[axis][k] = fibrad_floor(at / scene->period[axis] + .5);
+        c->images = c->images || c->near.away[axis][k] != 0;
+    }
+}
+
+/* Takes the near spheres of the shell over. */
 static void take_shell(const fibrad_workspace *work, fibrad_circles *c) {
     const fibrad_scene *scene = work->scene;
-    const double *coordinate[3] = {scene->x, scene->y, scene->z};
-    const uint32_t end = work->near.end[work->near.shells - 1];
-    for (uint32_t k = c->homes; k < end; k++) {
-        const uint32_t j = c->near.sphere[k] = work->near.sphere[k];
-        const double place[3] = {work->near.x[k], work->near.y[k], work->near.z[k]};
-        c->near.radius[k] = scene->r[j] * c->scale;
-        c->near.sum[0][k] = c->near.sum[1][k] = 0;
-        for (int axis = 0; axis < 3; axis++) {
-            const double at = coordinate[axis][j];
-            c->near.home[axis][k] = (at - c->origin[axis]) * c->scale;
-            c->near.away[axis][k] = 0;
-            if (scene->period[axis] > 0)
-                c->near.away[axis][k] =
-                    fibrad_floor((place[axis] * work->unit + (work->centre[axis] - at)) / scene->period[axis] + .5);
-            c->images = c->images || c->near.away[axis][k] != 0;
+    const double *home[3] = {scene->x, scene->y, scene->z};
+    const uint32_t *sphere = work->near.sphere, end = work->near.end[0];
+    const vd scale = vd_set1(c->scale), zero = vd_set1(0);
+    for (int axis = 0; axis < 3; axis++) {
+        const vd origin = vd_set1(c->origin[axis]);
+        for (uint32_t k = 0; k < end; k += VD_LANES) {
+            vd_store(c->near.home[axis] + k, (vd_gather(home[axis], sphere + k) - origin) * scale);
+            vd_store(c->near.away[axis] + k, zero);
         }
+        if (scene->period[axis] > 0) count_periods(work, c, axis, 0, end);
     }
+    for (uint32_t k = 0; k < end; k += VD_LANES) vd_store(c->near.radius + k, vd_gather(scene->r, sphere + k) * scale);
+    fibrad_copy(c->near.sphere, sphere, end * sizeof *sphere);
+    for (int half = 0; half < 2; half++) fibrad_zero(c->near.sum[half], end * sizeof(int64_t));
     c->homes = end;
 }
 
@@ -578,8 +604,7 @@ static uint32_t take_marched(const fibrad_workspace *work, fibrad_circles *c, co
 static void add_sums(fibrad_circles *c, uint32_t own, uint32_t from, uint32_t to, fibrad_pair_table *table) {
     for (uint32_t k = from; k < to; k++) {
         if (c->near.sum[0][k] == 0 && c->near.sum[1][k] == 0) continue;
-        for (uint32_t half = 0; half < 2; half++)
-            fibrad_pair_add(table, own, c->near.sphere[k], half, c->near.sum[half][k]);
+        fibrad_pair_add(table, own, c->near.sphere[k], c->near.sum[0][k], c->near.sum[1][k]);
         c->near.sum[0][k] = c->near.sum[1][k] = 0;
     }
 }
@@ -711,13 +736,13 @@ static void begin_line(fibrad_circles *c, const fibrad_line *line, uint32_t numb
         c->side[s].nothing = c->apart ? FIBRAD_PAIR_OPEN + 2 * number + 1 - s : FIBRAD_NONE;
         c->near.sphere[c->near.nothing + s] = c->side[s].nothing;
     }
+    fibrad_copy(c->across, line->frame, sizeof c->across);
     for (int axis = 0; axis < 3; axis++) {
-        const double *a = line->frame + 3 * axis;
-        for (int k = 0; k < 3; k++) {
-            c->across[3 * axis + k] = a[k];
-            c->shift[axis][k] = (a[k] * c->period[k] + c->grid) - c->grid;
-        }
-        c->centre[axis] = ((a[0] * c->at[0] + a[1] * c->at[1] + a[2] * c->at[2]) + c->grid) - c->grid;
+        const double *a = c->across + 3 * axis;
+        c->centre[axis] = a[0] * c->at[0] + a[1] * c->at[1] + a[2] * c->at[2];
+        if (!c->periodic) continue;
+        c->centre[axis] = (c->centre[axis] + c->grid) - c->grid;
+        for (int k = 0; k < 3; k++) c->shift[axis][k] = (a[k] * c->period[k] + c->grid) - c->grid;
     }
 }
 

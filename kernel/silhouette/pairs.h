@@ -68,9 +68,11 @@ static inline fibrad_pair_sum *fibrad_pair_slot(fibrad_pair_table *table, uint64
     return &table->slot[at];
 }
 
-static inline void fibrad_pair_add(fibrad_pair_table *table, uint32_t i, uint32_t j, uint32_t half, int64_t units) {
+/* Adds what a pair exchanges over even and over odd lines. */
+static inline void fibrad_pair_add(fibrad_pair_table *table, uint32_t i, uint32_t j, int64_t even, int64_t odd) {
     const uint64_t key = fibrad_pair_key(i, j);
-    fibrad_pair_slot(table, key, fibrad_pair_place(table, key))->sum[half] += units;
+    fibrad_pair_sum *slot = fibrad_pair_slot(table, key, fibrad_pair_place(table, key));
+    slot->sum[0] += even, slot->sum[1] += odd;
 }
 
 #endif

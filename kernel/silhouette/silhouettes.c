@@ -202,6 +202,7 @@ static void begin_circles(const fibrad_scene *scene, fibrad_circles *c) {
     }
     c->grid = c->periodic ? centre_grid(scene, c->scale) : 0;
     c->near.radius[c->near.nowhere] = 1;
+    for (int k = 0; k < FIBRAD_LANES_MAX; k++) c->near.fill[k] = c->near.nowhere;
     for (int axis = 0; axis < 3; axis++)
         c->near.home[axis][c->near.nowhere] = 0x1p100, c->near.away[axis][c->near.nowhere] = 0;
 }
