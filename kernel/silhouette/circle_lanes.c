@@ -372,7 +372,7 @@ static void find_pieces(fibrad_circles *c) {
 }
 
 /* The nearest of a set of discs, the surroundings among them. */
-static uint32_t nearest_of(const uint64_t *set) {
+static uint32_t nearest_in_set(const uint64_t *set) {
     uint32_t word = 0;
     while (set[word] == 0) word++;
     return 64 * word + lowest_bit(set[word]);
@@ -408,7 +408,8 @@ static void find_pieces_of_many(fibrad_circles *c) {
     for (const uint32_t *order = c->order;; order++) {
         const uint32_t end = *order;
         const double next = fibrad_min(ends->at[end], c->stretch.end);
-        const uint32_t behind = nearest_of(covers[0]), ahead = nearest_of(covers[1]), met = behind << 16 | ahead;
+        const uint32_t behind = nearest_in_set(covers[0]), ahead = nearest_in_set(covers[1]),
+                       met = behind << 16 | ahead;
         if (next > at && met != before) {
             to->at[n] = at, to->first[n] = c->seen[0].number[behind], to->next[n++] = c->seen[1].number[ahead];
             before = met;
@@ -423,7 +424,7 @@ static void find_pieces_of_many(fibrad_circles *c) {
 }
 
 /* Divides the stretch into pieces on which nothing changes. */
-static void divide(fibrad_circles *c) {
+static void divide_stretch(fibrad_circles *c) {
     const bool few = c->seen[0].count <= RANKS && c->seen[1].count <= RANKS;
     list_ends(c);
     if (few && order_keys(c->ends.key, c->ends.count, c->rank, c->order))
@@ -626,7 +627,7 @@ static void prune(const fibrad_workspace *work, fibrad_circles *c, uint32_t numb
     list_seen(c, number, side, seen);
     order_seen(work, c, seen, number == 1);
     c->seen[1 - number].count = c->seen[1 - number].number[0] = 0;
-    divide(c);
+    divide_stretch(c);
     for (uint32_t k = 0; k < c->pieces.count; k++) met[(number == 0 ? c->pieces.first : c->pieces.next)[k]] = true;
     for (uint32_t k = 0; k < seen->count; k++)
         if (met[k]) c->order[n++] = seen->slot[k];
@@ -725,7 +726,7 @@ static void meet(fibrad_workspace *work, fibrad_circles *c, bool done[2]) {
         list_seen(c, s, &c->side[s], &c->seen[s]);
         order_seen(work, c, &c->seen[s], s == 1);
     }
-    divide(c);
+    divide_stretch(c);
     for (int s = 0; s < 2; s++) done[s] = done[s] || deepest_met(c, s) <= c->side[s].known * (1 - 1e-12) * c->r;
 }
 
