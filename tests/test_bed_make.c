@@ -47,6 +47,38 @@ START_TEST(packing) {
 }
 END_TEST
 
+/* Spheres of a layer stay between its faces. Shaken beds do not overlap, keep their solid fraction, and have lost the
+ * order of their lattice: neighbours stand at all distances. */
+START_TEST(layers_and_shaken_beds) {
+    struct bed layer, shaken;
+    bed_init(&layer);
+    bed_init(&shaken);
+    ck_assert_int_eq(bed_make_layer(&layer, 300, .45, 2000, 3), 0);
+    ck_assert_double_ge(least_gap(&layer), 0);
+    ck_assert_double_eq(layer.period[2], 0);
+    ck_assert_double_eq_tol(300 * 4 * PI / 3 / pow(layer.high[2], 3), .45, 1e-12);
+    for (uint32_t i = 0; i < layer.n; i++) ck_assert(layer.z[i] >= 1 && layer.z[i] <= layer.high[2] - 1);
+    ck_assert_int_eq(bed_make_shaken(&shaken, 4, .4, 3), 0);
+    ck_assert_uint_eq(shaken.n, 256);
+    ck_assert_double_ge(least_gap(&shaken), 0);
+    ck_assert_double_eq_tol(256 * 4 * PI / 3 / pow(shaken.period[1], 3), .4, 1e-12);
+    int near = 0; /* pairs closer than neighbours of the lattice, 2.456 */
+    for (uint32_t i = 0; i < shaken.n; i++)
+        for (uint32_t j = 0; j < i; j++) {
+            const double *const axis[3] = {shaken.x, shaken.y, shaken.z};
+            double square = 0;
+            for (int a = 0; a < 3; a++) {
+                const double e = axis[a][i] - axis[a][j];
+                square += pow(e - shaken.period[a] * round(e / shaken.period[a]), 2);
+            }
+            near += square < 2.25 * 2.25;
+        }
+    ck_assert_int_ge(near, 256); /* of a fluid some 1.6 a sphere, of the lattice none */
+    bed_free(&layer);
+    bed_free(&shaken);
+}
+END_TEST
+
 START_TEST(copies) {
     struct bed tile, bed;
     bed_init(&tile);
@@ -98,6 +130,7 @@ int main(void) {
     Suite *suite = suite_create("bed_make");
     TCase *cases = suite_case(suite, "bed_make");
     tcase_add_test(cases, packing);
+    tcase_add_test(cases, layers_and_shaken_beds);
     tcase_add_test(cases, copies);
     tcase_add_test(cases, fcc);
     tcase_add_test(cases, random_numbers);

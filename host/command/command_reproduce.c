@@ -33,7 +33,11 @@ static const struct {
     {"pebble-rays", "two pebbles by rays: error, and rays for 1 %", reproduce_pebble_rays},
     {"pebble-bed", "random bed of pebbles: factors within 2 and 3 diameters", reproduce_pebble_bed},
     {"conductivity", "grey spheres: exchange factor F_E of a random bed and of lattices", reproduce_conductivity},
-    {"exchange", "grey spheres: exchange factor against centre distance", reproduce_exchange},
+    {"correlations", "grey spheres: F_E of random beds beside correlations that reactor codes use",
+     reproduce_correlations},
+    {"exchange", "grey spheres: exchange factor against the distance of the centres", reproduce_exchange},
+    {"exchange-wall", "grey spheres: exchange factor to a wall against distance", reproduce_exchange_wall},
+    {"faces", "grey spheres: emissivity and absorptance of the face of a bed", reproduce_faces},
 };
 enum { EXPERIMENTS = sizeof experiments / sizeof *experiments };
 
@@ -43,7 +47,7 @@ static int reproduce_help(void) {
          "beside those that were published (paper) or computed independently by the papers' methods (check).\n");
     options_print(reproduce_table);
     puts("\nExperiments:");
-    for (int k = 0; k < EXPERIMENTS; ++k) printf("  %-12s %s\n", experiments[k].name, experiments[k].what);
+    for (int k = 0; k < EXPERIMENTS; ++k) printf("  %-13s %s\n", experiments[k].name, experiments[k].what);
     puts("\nExamples:\n"
          "  fibrad reproduce\n"
          "  fibrad reproduce --only fig3 -o figures");

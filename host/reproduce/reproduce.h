@@ -43,7 +43,8 @@ int reproduce_figure(struct reproduce *reproduce, const char *name, const char *
 typedef int experiment(struct reproduce *reproduce);
 
 experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig10, reproduce_table1,
-    reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed, reproduce_conductivity, reproduce_exchange;
+    reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed, reproduce_conductivity, reproduce_correlations,
+    reproduce_exchange, reproduce_exchange_wall, reproduce_faces;
 
 /* ---- rows of a bed, one thread ---- */
 
@@ -64,5 +65,16 @@ void rows_close(struct rows *rows);
 /* Computes row i by the rule of `method`. rows->col and rows->f get the entries, *row the other results. Returns a
  * status. */
 int rows_row(struct rows *rows, const fibrad_bed_options *method, uint32_t i, fibrad_row *row);
+
+/* ---- grey spheres of one emissivity, one thread ---- */
+
+/* F_E of a periodic bed of unit spheres, as the mean of three axes, with `paths` paths from each sphere. Returns a
+ * status. */
+int grey_conduction(const struct bed *bed, double emissivity, uint32_t paths, double *factor);
+
+/* Exchange factors of a bed in a scene. The emissivities of spheres in `rule` are not used. Free the factors with
+ * fibrad_bed_free. Returns a status. */
+int grey_factors(const struct bed *bed, const fibrad_scene_config *scene, const fibrad_exchange_rule *rule,
+                 double emissivity, const fibrad_bed_options *options, fibrad_bed_factors **factors);
 
 #endif

@@ -1,210 +1,166 @@
-/* reproduce_exchange.c - grey spheres: effective conductivity, and exchange factors against distance.
- * SPDX-License-Identifier: MIT
- *
- * Sources: S. Singh, M. Kaviany, Int. J. Heat Mass Transfer 37 (1994) 2579; E. F. Johnson, I. Tari, D. Baker, Powder
- * Technology (2021). Checks: two independent programs, and rays marched through a cubic lattice cell by cell. */
+/* reproduce_exchange.c - exchange factors against distance, from sphere to sphere and from sphere to wall, beside the
+ * tables of Johnson, Tari, Baker. SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "bed/bed_scene.h"
 #include "bed/packing.h"
 #include "cli/message.h"
-#include "cli/progress.h"
+#include "reproduce/published.h"
 #include "reproduce/reproduce.h"
 
-#define PI 3.14159265358979323846
+/* Loose beds are shaken. The densest is pushed apart. A layer that is pushed apart to LAYER of solid has 0.64 in its
+ * middle. */
+enum { CELLS = 7, DENSE = 4, SPHERES = 4 * CELLS * CELLS * CELLS, STRIDE = 5, WALL_PATHS = 100 };
+#define LAYER .617
+static const fibrad_exchange_rule rule = {.directions = 144, .paths = 400};
 
-enum { EMISSIVITIES = 5, LATTICES = 3 };
-static const double emissivities[EMISSIVITIES] = {.2, .4, .6, .8, 1};
-
-static fibrad_run one_thread(struct progress *bar) {
-    return (fibrad_run){.threads = 1, .progress = progress_stage, .context = bar};
+static int make_bed(struct bed *bed, int column) {
+    bed_init(bed);
+    return column < DENSE ? bed_make_shaken(bed, CELLS, johnson_fraction[column], 1)
+                          : bed_make_jammed(bed, SPHERES, johnson_fraction[column], 1000, 1);
 }
 
-static double *constant(uint32_t n, double value) {
-    double *e = malloc(n * sizeof *e);
-    for (uint32_t i = 0; e && i < n; ++i) e[i] = value;
-    return e;
+static int make_layer(struct bed *bed, int column) {
+    bed_init(bed);
+    return bed_make_layer(bed, SPHERES, column < DENSE ? johnson_fraction[column] : LAYER, 1000, 1);
 }
 
-/* F_E of a periodic bed of unit spheres, as the mean of three axes, with `paths` paths from each sphere. */
-static int factor_of(const struct bed *bed, double emissivity, uint32_t paths, double *factor) {
-    const fibrad_scene_config box = bed_scene(bed, NULL);
-    const fibrad_spheres spheres = bed_spheres(bed);
-    struct progress bar = {0};
-    fibrad_run run = one_thread(&bar);
-    double *e = constant(bed->n, emissivity), square = 0;
-    fibrad_displacement *moved = calloc(bed->n, sizeof *moved);
-    int status = e && moved ? STATUS_OK : message_memory();
-    const fibrad_exchange_rule rule = {.emissivity = e, .paths = paths};
-    if (!status) {
-        status = fibrad_displacements(&box, &spheres, &rule, NULL, &run, moved, NULL);
-        progress_stop(&bar);
-        status = bed_status(bed, "bed", status, &run.fault);
-    }
-    for (uint32_t i = 0; i < bed->n && !status; ++i)
-        for (int axis = 0; axis < 3; ++axis) square += moved[i].square[axis] / 3;
-    *factor = 4 * PI * emissivity * square / (2 * bed->period[0] * bed->period[1] * bed->period[2] * 2);
-    free(moved);
-    free(e);
-    return status;
-}
-
-/* Makes a periodic cell of touching unit spheres. */
-static int lattice_cell(struct bed *bed, double edge, int sites, const double site[][3]) {
-    int status = STATUS_OK;
-    for (int k = 0; k < sites && !status; ++k)
-        status = bed_add(bed, &(struct bed_sphere){edge * site[k][0], edge * site[k][1], edge * site[k][2], 1, 0, 0});
-    for (int axis = 0; axis < 3; ++axis) bed->period[axis] = edge;
-    return status;
-}
-
-static int conductivities(struct bed beds[1 + LATTICES], double factor[1 + LATTICES][EMISSIVITIES]) {
-    static const double site[4][3] = {{0, 0, 0}, {.5, .5, 0}, {0, .5, .5}, {.5, 0, .5}},
-                        body[2][3] = {{0}, {.5, .5, .5}};
-    static const uint32_t paths[1 + LATTICES] = {300, 400000, 200000, 100000};
-    for (int k = 0; k <= LATTICES; ++k) bed_init(&beds[k]);
-    int status = bed_make_packing(&beds[0], 2000, 1, 1, .586, 1);
-    if (!status) status = lattice_cell(&beds[1], 2, 1, site);
-    if (!status) status = lattice_cell(&beds[2], 4 / sqrt(3), 2, body);
-    if (!status) status = lattice_cell(&beds[3], 2 * sqrt(2), 4, site);
-    for (int k = 0; k <= LATTICES; ++k)
-        for (int e = 0; e < EMISSIVITIES && !status; ++e)
-            status = factor_of(&beds[k], emissivities[e], paths[k], &factor[k][e]);
-    return status;
-}
-
-static const char conductivity_script[] =
-    "set xlabel 'emissivity'\nset ylabel 'F_E = k/(4 {/Symbol s} T^3 d)'\nset xrange [0:1]\nset yrange [0:1.3]\n"
-    "set key top left\n"
-    "plot $data using 1:2 title 'random bed, solid fraction 0.586: paths' lw 2 lc 1, \\\n"
-    "     $data using 1:6 title 'the same: one radiosity per sphere' dt 2 pt 0 lc 1, \\\n"
-    "     $data using 1:3 title 'simple cubic' lc 2, 0.9042 * x + 0.1843 with lines dt 2 lc 2 title \\\n"
-    "     'Singh, Kaviany (1994), porosity 0.476', \\\n"
-    "     $data using 1:4 title 'body-centred cubic' lc 3, $data using 1:5 title 'face-centred cubic' lc 4\n";
-
-int reproduce_conductivity(struct reproduce *reproduce) {
-    static const char *const name[1 + LATTICES] = {"random, solid fraction 0.586", "simple cubic", "body-centred cubic",
-                                                   "face-centred cubic"};
-    static const double check[1 + LATTICES][EMISSIVITIES] = {{.276, .433, .610, .815, 1.061},
-                                                             {NAN, NAN, NAN, NAN, 1.2005},
-                                                             {.196, .336, .498, .688, .916},
-                                                             {.162, .299, .458, .646, .875}};
-    struct bed beds[1 + LATTICES];
-    double factor[1 + LATTICES][EMISSIVITIES];
-    const int status = conductivities(beds, factor);
-    for (int k = 0; k <= LATTICES; ++k) bed_free(&beds[k]);
-    if (status) return status;
-    fputs("emissivity,random,simple_cubic,body_centred,face_centred,random_one_radiosity\n", reproduce->data);
-    for (int e = 0; e < EMISSIVITIES; ++e) {
-        /* one radiosity per sphere gives the F_E of black spheres, docs/heat.md */
-        fprintf(reproduce->data, "%g,%.5f,%.5f,%.5f,%.5f,%.5f\n", emissivities[e], factor[0][e], factor[1][e],
-                factor[2][e], factor[3][e], factor[0][EMISSIVITIES - 1]);
-        for (int k = 0; k <= LATTICES; ++k) {
-            char what[80];
-            snprintf(what, sizeof what, "F_E, %s, emissivity %g", name[k], emissivities[e]);
-            if (!isnan(check[k][e])) reproduce_compare(reproduce, what, SOURCE_CHECK, "", check[k][e], factor[k][e]);
-            if (k == 1)
-                reproduce_compare(reproduce, what, SOURCE_PAPER, "", .9042 * emissivities[e] + .1843, factor[k][e]);
-        }
-    }
-    return reproduce_figure(reproduce, "conductivity", conductivity_script);
-}
-
-/* Bins of the mean exchange factor of pairs by centre distance. */
-#define WIDTH  .1
-#define CENTRE 2.0
-enum { BINS = 36 };
-
-struct curve {
-    double sum[BINS];
-    uint64_t pairs[BINS];
+/* A straight line through factors near one distance, by least squares: sums of 1, u, u^2, f and u f, where u is the
+ * distance from that one. So a factor at contact, where all data lie on one side, is not a mean over a bin. */
+struct line_fit {
+    double sum[5];
 };
 
-/* The bin of a distance. Bins are centred on CENTRE plus multiples of WIDTH. The first bin has contacts only. */
-static int bin_of(double distance) {
-    if (distance < CENTRE + .03) return 0;
-    return (int)((distance - CENTRE) / WIDTH + .5);
+static void fit_add(struct line_fit *fit, double u, double f) {
+    const double term[5] = {1, u, u * u, f, u * f};
+    for (int k = 0; k < 5; ++k) fit->sum[k] += term[k];
 }
 
-static void add_curve(const struct bed *bed, const fibrad_factors *rows, uint32_t i, struct curve *curve) {
+static double fit_at(const struct line_fit *fit) {
+    const double *s = fit->sum;
+    return (s[2] * s[3] - s[1] * s[4]) / (s[0] * s[2] - s[1] * s[1]);
+}
+
+/* Adds a factor to the fits of all distances of a table that are near. The rows of a table are 0.2 apart and more. */
+static void add_factor(const struct johnson_table *table, struct line_fit fit[JOHNSON_ROWS], double distance,
+                       double f) {
+    for (int k = 0; k < JOHNSON_ROWS; ++k) {
+        const double u = distance - table->row[k][0], reach = table->row[k][0] > 5 ? .2 : .1;
+        if (fabs(u) < reach) fit_add(&fit[k], u, f);
+    }
+}
+
+/* Factors from sphere i to all other spheres of a periodic bed. */
+static void add_row_of_spheres(const struct bed *bed, const fibrad_factors *rows, uint32_t i,
+                               const struct johnson_table *table, struct line_fit fit[JOHNSON_ROWS]) {
+    const double *const place[3] = {bed->x, bed->y, bed->z};
     uint64_t at = rows->start[i];
-    const double *place[3] = {bed->x, bed->y, bed->z};
     for (uint32_t j = 0; j < bed->n; ++j) {
         const bool here = at < rows->start[i + 1] && rows->col[at] == j;
-        const double d = here ? rows->f[at++] : 0;
+        const double f = here ? rows->f[at++] : 0;
         double square = 0;
         for (int axis = 0; axis < 3; ++axis) {
             double e = place[axis][j] - place[axis][i];
             e -= bed->period[axis] * round(e / bed->period[axis]);
             square += e * e;
         }
-        const int bin = bin_of(sqrt(square));
-        if (j == i || bin >= BINS) continue;
-        curve->sum[bin] += d;
-        ++curve->pairs[bin];
+        if (j != i) add_factor(table, fit, sqrt(square), f);
     }
 }
 
-static int measure_curve(double fraction, double emissivity, struct curve *curve) {
-    struct progress bar = {0};
-    fibrad_run run = one_thread(&bar);
+static int sphere_to_sphere(const struct bed *bed, const struct johnson_table *table,
+                            struct line_fit fit[JOHNSON_ROWS]) {
     fibrad_bed_factors *factors = NULL;
-    struct bed bed;
-    bed_init(&bed);
-    int status = bed_make_jammed(&bed, 1500, fraction, 1000, 1);
-    double *e = constant(1500, emissivity);
-    if (!status && !e) status = message_memory();
-    const fibrad_exchange_rule rule = {.emissivity = e, .directions = 144, .paths = 400};
-    if (!status) {
-        const fibrad_scene_config box = bed_scene(&bed, NULL);
-        const fibrad_spheres spheres = bed_spheres(&bed);
-        status = fibrad_exchange_factors(&box, &spheres, &rule, NULL, &run, &factors);
-        progress_stop(&bar);
-        status = bed_status(&bed, "bed", status, &run.fault);
-    }
-    for (uint32_t i = 0; i < bed.n && !status; ++i) add_curve(&bed, &factors->matrix, i, curve);
+    unsigned char wanted[SPHERES] = {0};
+    for (int i = 0; i < SPHERES; i += STRIDE) wanted[i] = 1;
+    const fibrad_bed_options some = {.wanted = wanted, .raw = 1};
+    const fibrad_scene_config box = bed_scene(bed, NULL);
+    const int status = grey_factors(bed, &box, &rule, table->emissivity, &some, &factors);
+    for (uint32_t i = 0; i < SPHERES && !status; i += STRIDE) add_row_of_spheres(bed, &factors->matrix, i, table, fit);
     fibrad_bed_free(factors);
-    bed_free(&bed);
-    free(e);
     return status;
 }
 
-static const char exchange_script[] =
-    "set xlabel 'centre distance [radii]'\nset ylabel 'exchange factor D'\nset logscale y\nset format y '%g'\n"
-    "set xrange [1.9:5.6]\n"
-    "plot $data using 1:2 title 'solid fraction 0.55' with lines lc 1, $data using 1:3 title '0.64' with lines lc 2, "
-    "\\\n"
-    "     $data using 1:4 title 'Johnson, Tari, Baker (2021), 0.55' with points pt 7 lc 1, \\\n"
-    "     $data using 1:5 title 'the same, 0.64' with points pt 5 lc 2\n";
+/* Both faces of the layer are equal walls, and both count. */
+static int sphere_to_wall(const struct bed *layer, const struct johnson_table *table,
+                          struct line_fit fit[JOHNSON_ROWS]) {
+    const fibrad_body wall[2] = {{.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .at = 0}},
+                                 {.kind = FIBRAD_BODY_PLANE, .plane = {.axis = 2, .upper = 1, .at = layer->high[2]}}};
+    const double wall_emissivity[2] = {table->wall_emissivity, table->wall_emissivity};
+    const fibrad_bed_options raw = {.raw = 1};
+    fibrad_bed_factors *factors = NULL;
+    fibrad_scene_config scene = bed_scene(layer, NULL);
+    fibrad_exchange_rule walled = rule;
+    scene.body = wall;
+    scene.bodies = 2;
+    walled.body_emissivity = wall_emissivity;
+    walled.paths = WALL_PATHS;
+    const int status = grey_factors(layer, &scene, &walled, table->emissivity, &raw, &factors);
+    for (uint32_t i = 0; i < layer->n && !status; ++i) {
+        add_factor(table, fit, layer->z[i], factors->matrix.body[2 * i]);
+        add_factor(table, fit, layer->high[2] - layer->z[i], factors->matrix.body[2 * i + 1]);
+    }
+    fibrad_bed_free(factors);
+    return status;
+}
+
+/* Computes all columns of two tables and writes them beside the published ones. to_wall: from sphere to wall. */
+static int compare_tables(struct reproduce *reproduce, const struct johnson_table table[JOHNSON_TABLES], bool to_wall) {
+    static struct line_fit fit[JOHNSON_TABLES][JOHNSON_FRACTIONS][JOHNSON_ROWS];
+    memset(fit, 0, sizeof fit);
+    for (int c = 0; c < JOHNSON_FRACTIONS; ++c) {
+        struct bed bed;
+        int status = to_wall ? make_layer(&bed, c) : make_bed(&bed, c);
+        for (int t = 0; t < JOHNSON_TABLES && !status; ++t)
+            status =
+                to_wall ? sphere_to_wall(&bed, &table[t], fit[t][c]) : sphere_to_sphere(&bed, &table[t], fit[t][c]);
+        bed_free(&bed);
+        if (status) return status;
+    }
+    fputs("distance", reproduce->data);
+    for (int t = 0; t < JOHNSON_TABLES; ++t)
+        for (int c = 0; c < JOHNSON_FRACTIONS; ++c)
+            fprintf(reproduce->data, ",e%g_%g_paper,e%g_%g_ours", table[t].emissivity, johnson_fraction[c],
+                    table[t].emissivity, johnson_fraction[c]);
+    fputc('\n', reproduce->data);
+    for (int k = 0; k < JOHNSON_ROWS; ++k) {
+        fprintf(reproduce->data, "%g", table[0].row[k][0]);
+        for (int t = 0; t < JOHNSON_TABLES; ++t)
+            for (int c = 0; c < JOHNSON_FRACTIONS; ++c) {
+                const double theirs = table[t].row[k][1 + c], ours = fit_at(&fit[t][c][k]);
+                char what[80];
+                snprintf(what, sizeof what, "D to %s at %.1f r, solid fraction %g, emissivity %g",
+                         to_wall ? "a wall" : "a sphere", table[t].row[k][0], johnson_fraction[c], table[t].emissivity);
+                if (theirs > 0) reproduce_compare(reproduce, what, SOURCE_PAPER, "", theirs, ours);
+                fprintf(reproduce->data, theirs > 0 ? ",%g,%.5g" : ",,%.5g", theirs > 0 ? theirs : ours, ours);
+            }
+        fputc('\n', reproduce->data);
+    }
+    return STATUS_OK;
+}
+
+#define CURVES                                                                                                         \
+    "set logscale y\nset format y '%g'\nset key bottom left\n"                                                         \
+    "plot for [k=0:4] $data using 1:(column(13+2*k)) with lines lw 2 lc k+1 title "                                    \
+    "word('0.25 0.35 0.45 0.55 0.64', k+1).': ours', \\\n"                                                             \
+    "     for [k=0:4] $data using 1:(column(12+2*k)) with points pt 7 ps .7 lc k+1 title "                             \
+    "word('0.25 0.35 0.45 0.55 0.64', k+1).': published'\n"
 
 int reproduce_exchange(struct reproduce *reproduce) {
-    static const double fraction[2] = {.55, .64}, distance[5] = {2, 2.4, 3, 4, 5};
-    static const double paper[2][5] = {{.0712, .0458, .0214, .0035, .0009}, {.0696, .0417, .0167, .0009, .0003}};
-    struct curve curves[2] = {{{0}, {0}}, {{0}, {0}}};
-    for (int k = 0; k < 2; ++k) {
-        const int status = measure_curve(fraction[k], .86, &curves[k]);
-        if (status) return status;
-        for (int d = 0; d < 5; ++d) {
-            const int bin = bin_of(distance[d]);
-            char what[80];
-            snprintf(what, sizeof what, "D, solid fraction %g, emissivity 0.86, centre distance %.1f r", fraction[k],
-                     distance[d]);
-            reproduce_compare(reproduce, what, SOURCE_PAPER, "", paper[k][d],
-                              curves[k].sum[bin] / (double)curves[k].pairs[bin]);
-        }
-    }
-    fputs("distance,D_055,D_064,paper_055,paper_064\n", reproduce->data);
-    for (int bin = 0; bin < BINS; ++bin) {
-        fprintf(reproduce->data, "%.2f,%.6g,%.6g", CENTRE + WIDTH * bin,
-                curves[0].sum[bin] / (double)curves[0].pairs[bin], curves[1].sum[bin] / (double)curves[1].pairs[bin]);
-        int published = 4;
-        while (published >= 0 && bin_of(distance[published]) != bin) --published;
-        if (published >= 0)
-            fprintf(reproduce->data, ",%g,%g\n", paper[0][published], paper[1][published]);
-        else
-            fputs(",,\n", reproduce->data);
-    }
-    return reproduce_figure(reproduce, "exchange", exchange_script);
+    const int status = compare_tables(reproduce, johnson_spheres, false);
+    return status
+               ? status
+               : reproduce_figure(reproduce, "exchange",
+                                  "set xlabel 'distance of the centres [radii]'\n"
+                                  "set ylabel 'D from sphere to sphere, emissivity 0.86, by solid fraction'\n" CURVES);
+}
+
+int reproduce_exchange_wall(struct reproduce *reproduce) {
+    const int status = compare_tables(reproduce, johnson_walls, true);
+    return status ? status
+                  : reproduce_figure(reproduce, "exchange_wall",
+                                     "set xlabel 'distance of the centre from the wall [radii]'\n"
+                                     "set ylabel 'D to a wall of emissivity 0.8, spheres 0.86, by solid "
+                                     "fraction'\n" CURVES);
 }

@@ -1,0 +1,36 @@
+/* published.h - tables and formulas of publications. Each stands beside its source and says whether it was read there.
+ * SPDX-License-Identifier: MIT */
+#ifndef PUBLISHED_H
+#define PUBLISHED_H
+
+/* ---- tables ---- */
+
+/* Exchange factors of Johnson, Tari, Baker against distance [radii] in beds of equal spheres: from sphere to sphere by
+ * the distance of the centres, from a sphere to a plane wall by the distance of the centre from the wall. */
+enum { JOHNSON_TABLES = 2, JOHNSON_FRACTIONS = 5, JOHNSON_ROWS = 21 };
+struct johnson_table {
+    double emissivity, wall_emissivity;
+    double row[JOHNSON_ROWS][1 + JOHNSON_FRACTIONS]; /* distance, and the factor at each solid fraction; 0: none */
+};
+extern const double johnson_fraction[JOHNSON_FRACTIONS];
+extern const struct johnson_table johnson_spheres[JOHNSON_TABLES], johnson_walls[JOHNSON_TABLES];
+
+/* ---- formulas ---- */
+
+/* A correlation for the radiative exchange factor F_E = k/(4 sigma T^3 d) of a bed without gas.
+ *   emissivity    above 0, at most 1
+ *   porosity      the volume between spheres over that of the bed
+ *   conductivity  k* = k_s/(4 sigma T^3 d), k_s of the solid; INFINITY: each sphere has one temperature */
+typedef double exchange_correlation(double emissivity, double porosity, double conductivity);
+exchange_correlation correlation_zehner_bauer_schluender, correlation_breitbach_barthels, correlation_vortmeyer,
+    correlation_singh_kaviany, correlation_kunii_smith;
+
+/* The emissivity of the face of a bed, by Sih and Barlow. */
+double emissivity_sih_barlow(double emissivity, double porosity);
+
+/* The emissivity of the face of a bed into the half space, and the absorptance for light straight from above, by the
+ * two-stream theory of a bed of spheres that are far apart. */
+double emissivity_two_stream(double emissivity);
+double absorptance_two_stream(double emissivity);
+
+#endif

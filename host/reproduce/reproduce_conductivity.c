@@ -1,0 +1,135 @@
+/* reproduce_conductivity.c - the radiative exchange factor F_E of beds, beside fits and correlations.
+ * SPDX-License-Identifier: MIT
+ *
+ * Checks: two independent programs, and rays marched through a cubic lattice cell by cell. */
+#include <math.h>
+#include <string.h>
+
+#include "bed/packing.h"
+#include "cli/message.h"
+#include "reproduce/published.h"
+#include "reproduce/reproduce.h"
+
+enum { EMISSIVITIES = 5, LATTICES = 3 };
+static const double emissivities[EMISSIVITIES] = {.2, .4, .6, .8, 1};
+
+/* Makes a periodic cell of touching unit spheres. */
+static int lattice_cell(struct bed *bed, double edge, int sites, const double site[][3]) {
+    int status = STATUS_OK;
+    for (int k = 0; k < sites && !status; ++k)
+        status = bed_add(bed, &(struct bed_sphere){edge * site[k][0], edge * site[k][1], edge * site[k][2], 1, 0, 0});
+    for (int axis = 0; axis < 3; ++axis) bed->period[axis] = edge;
+    return status;
+}
+
+static int conductivities(struct bed beds[1 + LATTICES], double factor[1 + LATTICES][EMISSIVITIES]) {
+    static const double site[4][3] = {{0, 0, 0}, {.5, .5, 0}, {0, .5, .5}, {.5, 0, .5}},
+                        body[2][3] = {{0}, {.5, .5, .5}};
+    static const uint32_t paths[1 + LATTICES] = {300, 400000, 200000, 100000};
+    for (int k = 0; k <= LATTICES; ++k) bed_init(&beds[k]);
+    int status = bed_make_packing(&beds[0], 2000, 1, 1, .586, 1);
+    if (!status) status = lattice_cell(&beds[1], 2, 1, site);
+    if (!status) status = lattice_cell(&beds[2], 4 / sqrt(3), 2, body);
+    if (!status) status = lattice_cell(&beds[3], 2 * sqrt(2), 4, site);
+    for (int k = 0; k <= LATTICES; ++k)
+        for (int e = 0; e < EMISSIVITIES && !status; ++e)
+            status = grey_conduction(&beds[k], emissivities[e], paths[k], &factor[k][e]);
+    return status;
+}
+
+static const char conductivity_script[] =
+    "set xlabel 'emissivity'\nset ylabel 'F_E = k/(4 {/Symbol s} T^3 d)'\nset xrange [0:1]\nset yrange [0:1.3]\n"
+    "set key top left\n"
+    "plot $data using 1:2 title 'random bed, solid fraction 0.586: paths' lw 2 lc 1, \\\n"
+    "     $data using 1:6 title 'the same: one radiosity per sphere' dt 2 pt 0 lc 1, \\\n"
+    "     $data using 1:3 title 'simple cubic' lc 2, 0.9042 * x + 0.1843 with lines dt 2 lc 2 title \\\n"
+    "     'Singh, Kaviany (1994), porosity 0.476', \\\n"
+    "     $data using 1:4 title 'body-centred cubic' lc 3, $data using 1:5 title 'face-centred cubic' lc 4\n";
+
+int reproduce_conductivity(struct reproduce *reproduce) {
+    static const char *const name[1 + LATTICES] = {"random, solid fraction 0.586", "simple cubic", "body-centred cubic",
+                                                   "face-centred cubic"};
+    static const double check[1 + LATTICES][EMISSIVITIES] = {{.276, .433, .610, .815, 1.061},
+                                                             {NAN, NAN, NAN, NAN, 1.2005},
+                                                             {.196, .336, .498, .688, .916},
+                                                             {.162, .299, .458, .646, .875}};
+    struct bed beds[1 + LATTICES];
+    double factor[1 + LATTICES][EMISSIVITIES];
+    const int status = conductivities(beds, factor);
+    for (int k = 0; k <= LATTICES; ++k) bed_free(&beds[k]);
+    if (status) return status;
+    fputs("emissivity,random,simple_cubic,body_centred,face_centred,random_one_radiosity\n", reproduce->data);
+    for (int e = 0; e < EMISSIVITIES; ++e) {
+        /* one radiosity per sphere gives the F_E of black spheres, docs/heat.md */
+        fprintf(reproduce->data, "%g,%.5f,%.5f,%.5f,%.5f,%.5f\n", emissivities[e], factor[0][e], factor[1][e],
+                factor[2][e], factor[3][e], factor[0][EMISSIVITIES - 1]);
+        for (int k = 0; k <= LATTICES; ++k) {
+            char what[80];
+            snprintf(what, sizeof what, "F_E, %s, emissivity %g", name[k], emissivities[e]);
+            if (!isnan(check[k][e])) reproduce_compare(reproduce, what, SOURCE_CHECK, "", check[k][e], factor[k][e]);
+            if (k == 1)
+                reproduce_compare(reproduce, what, SOURCE_PAPER, "",
+                                  correlation_singh_kaviany(emissivities[e], .476, INFINITY), factor[k][e]);
+        }
+    }
+    return reproduce_figure(reproduce, "conductivity", conductivity_script);
+}
+
+/* Correlations for beds without gas, and random beds of several porosities. */
+enum { CORRELATIONS = 5, PACKINGS = 4 };
+static const struct {
+    const char *name;
+    exchange_correlation *factor;
+} correlations[CORRELATIONS] = {{"Zehner-Bauer-Schluender", correlation_zehner_bauer_schluender},
+                                {"Breitbach-Barthels", correlation_breitbach_barthels},
+                                {"Vortmeyer", correlation_vortmeyer},
+                                {"Singh-Kaviany", correlation_singh_kaviany},
+                                {"Kunii-Smith", correlation_kunii_smith}};
+
+/* F_E of random beds of equal spheres, ours in the last column. */
+static int random_beds(const double porosity[PACKINGS], double factor[PACKINGS][EMISSIVITIES]) {
+    int status = STATUS_OK;
+    for (int k = 0; k < PACKINGS && !status; ++k) {
+        struct bed bed;
+        bed_init(&bed);
+        status = bed_make_jammed(&bed, 2000, 1 - porosity[k], 1000, 1);
+        for (int e = 0; e < EMISSIVITIES && !status; ++e)
+            status = grey_conduction(&bed, emissivities[e], 100, &factor[k][e]);
+        bed_free(&bed);
+    }
+    return status;
+}
+
+static const char correlations_script[] =
+    "set xlabel 'emissivity'\nset ylabel 'F_E of a correlation over that of the bed'\nset xrange [0.15:1.05]\n"
+    "set yrange [0:2.2]\nset key top right\n"
+    "name = 'Zehner-Bauer-Schluender Breitbach-Barthels Vortmeyer Singh-Kaviany Kunii-Smith'\n"
+    "plot 1 with lines lc 'black' title 'random bed', \\\n"
+    "     for [k=1:5] $data using (abs($1-0.4)<1e-9 ? $2 : 1/0):(column(3+k)/$3) title word(name, k).', porosity 0.40' "
+    "lw 2 lc k, \\\n"
+    "     for [k=1:5] $data using (abs($1-0.5)<1e-9 ? $2 : 1/0):(column(3+k)/$3) notitle dt 2 pt 0 lc k, \\\n"
+    "     1/0 with lines dt 2 lc 'black' title 'the same, porosity 0.50'\n";
+
+int reproduce_correlations(struct reproduce *reproduce) {
+    static const double porosity[PACKINGS] = {.36, .4, .45, .5};
+    double factor[PACKINGS][EMISSIVITIES];
+    const int status = random_beds(porosity, factor);
+    if (status) return status;
+    fputs("porosity,emissivity,random_bed", reproduce->data);
+    for (int c = 0; c < CORRELATIONS; ++c) fprintf(reproduce->data, ",%s", correlations[c].name);
+    fputc('\n', reproduce->data);
+    for (int k = 0; k < PACKINGS; ++k)
+        for (int e = 0; e < EMISSIVITIES; ++e) {
+            fprintf(reproduce->data, "%g,%g,%.5f", porosity[k], emissivities[e], factor[k][e]);
+            for (int c = 0; c < CORRELATIONS; ++c) {
+                char what[80];
+                const double theirs = correlations[c].factor(emissivities[e], porosity[k], INFINITY);
+                snprintf(what, sizeof what, "F_E, %s, porosity %g, emissivity %g", correlations[c].name, porosity[k],
+                         emissivities[e]);
+                reproduce_compare(reproduce, what, SOURCE_PAPER, "", theirs, factor[k][e]);
+                fprintf(reproduce->data, ",%.5f", theirs);
+            }
+            fputc('\n', reproduce->data);
+        }
+    return reproduce_figure(reproduce, "correlations", correlations_script);
+}
