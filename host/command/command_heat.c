@@ -7,6 +7,7 @@
 
 #include "cli/message.h"
 #include "frames/bed_options.h"
+#include "frames/solid_option.h"
 #include "command/commands.h"
 #include "heat/heat_given.h"
 #include "heat/heat_time.h"
@@ -26,6 +27,7 @@ enum {
 
 static const struct option heat_table[] = {
     {OPTION_EMISSIVITY_CURVES},
+    {OPTION_SOLID_CONDUCTIVITY},
     {KEY_TEMPERATURE, OPTION_TEMPERATURE},
     {KEY_POWER, OPTION_POWER},
     {KEY_AMBIENT, OPTION_AMBIENT},
@@ -68,7 +70,7 @@ struct heat_request {
     struct light_options light;
     struct face face;
     const char *wall_emissivity;
-    struct quantity emissivity;
+    struct quantity emissivity, solid;
     bool counted; /* --directions, --points, --patches or --wall-rays was given */
     struct heat_problem problem;
 };
@@ -92,7 +94,11 @@ static int heat_help(void) {
          "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
          "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
          "the temperature of a wall (zmin=@TABLE) or of the surroundings. The .csv then has the time in its first\n"
-         "column. A series of .vtp has a .pvd for ParaView.\n"
+         "column. A series of .vtp has a .pvd for ParaView.\n");
+    puts("--solid-conductivity: Spheres conduct, and T_K is the mean of the surface. Sources are even inside.\n"
+         "Outputs have the least and the largest temperature of the surface and that of the centre, with\n"
+         "estimated errors: T_min_K, T_max_K, T_surface_error_K, T_centre_K, T_centre_error_K. The unit of\n"
+         "length must be known.\n"
          "\n"
          "The .csv has the columns i,T_K,q_W,body,q_error_W,T_error_K, with estimated errors. The surroundings are\n"
          "i = -1. Walls are i = -2, -3, ... with their names in the column `body`. All q_W add up to zero.\n"
@@ -110,6 +116,8 @@ static int heat_help(void) {
         "      --wall box --wall-temperature zmin=900,20 -o q.csv\n"
         "  fibrad heat packing.dump --emissivity 0.8 --temperature 1200 --ambient @room.csv --until 3600 \\\n"
         "      --heat-capacity 800 --density 2500 --every 60 -o 'cool.*.vtp' -o cool.csv --plot cool.png\n"
+        "  fibrad heat pebbles.csv --length-unit m --emissivity 0.8 --solid-conductivity 30 --power 500 \\\n"
+        "      --ambient 900 -o q.csv\n"
         "  fibrad heat packing.dump --emissivity 1:0.3,2:0.9 --temperature v_T --wall zmin,zmax=open,cylinder:0,0,0.48 "
         "\\\n"
         "      --wall-temperature zmin=1200,cylinder=600 --wall-emissivity cylinder=0.4 --ambient 300 --error 0.005 "
@@ -146,6 +154,8 @@ static int heat_take(struct heat_request *request, const struct options *options
     switch (key) {
     case KEY_EMISSIVITY:
         return table_option("--emissivity", value, 0, 1, &request->emissivity);
+    case KEY_SOLID_CONDUCTIVITY:
+        return solid_option(value, &request->solid);
     case KEY_TEMPERATURE:
         return given_temperature_option(value, &request->given);
     case KEY_POWER:
@@ -216,7 +226,14 @@ static int heat_check_request(struct heat_request *request) {
     if (request->problem.error > 0 && request->problem.sources.uniform)
         return message(STATUS_USAGE,
                        "--error is for --model patches; --model spheres has an error that no directions reduce");
+    if (request->solid.given && (request->problem.sources.uniform || request->problem.by_factors))
+        return message(STATUS_USAGE,
+                       "--solid-conductivity is for --model patches: other models know no sides of a sphere");
     bed_options_quantity(&request->bed, &request->emissivity, NULL);
+    if (request->solid.given && request->light.lights > 0)
+        return message(STATUS_USAGE, "--solid-conductivity and --irradiate: which side of a sphere light heats is not "
+                                     "known yet; leave one out");
+    bed_options_quantity(&request->bed, &request->solid, NULL);
     status = time_check(&request->time, &request->bed);
     if (!status) status = light_check(&request->light, &request->bed, &request->emissivity);
     if (!status) status = given_check(&request->given, &request->bed);
@@ -230,6 +247,25 @@ static int heat_parse(struct heat_request *request, int argc, char **argv) {
     int status = STATUS_OK;
     for (int key; !status && (key = options_next(&options)) != OPTIONS_END;) status = heat_take(request, &options, key);
     return status ? status : heat_check_request(request);
+}
+
+/* Reports conductivities of the solid, and what surfaces and centres are like. */
+static void heat_print_solid(struct heat_request *request, const struct bed *bed, const struct heat_report *heat) {
+    struct report *report = &request->bed.report;
+    double *relative = request->problem.conductivity; /* no longer needed */
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double t = heat->result.temperature[i];
+        if (isnan(t)) continue;
+        relative[n++] =
+            request->problem.solid[i] / (8 * bed->r[i] * heat->metres * FIBRAD_STEFAN_BOLTZMANN * t * t * t);
+    }
+    solid_report(&request->solid, relative, n, report);
+    report_measured(report, "surface_min_K", heat->surface_min, heat->surface_error);
+    report_measured(report, "surface_max_K", heat->surface_max, heat->surface_error);
+    report_measured(report, "surface_span_K", heat->surface_span, heat->surface_error);
+    report_value(report, "error_surface_rms_K", heat->surface_error, 2);
+    report_measured(report, "centre_max_K", heat->centre_max, heat->surface_error);
 }
 
 static void heat_print(struct heat_request *request, const struct bed *bed, const struct heat_report *heat) {
@@ -273,6 +309,7 @@ static void heat_print(struct heat_request *request, const struct bed *bed, cons
     }
     face_report(&request->face, heat->metres, report);
     light_report(request->problem.light, &request->problem.walls, bed->n, report);
+    if (request->problem.solid) heat_print_solid(request, bed, heat);
     report_value(report, "balance_of_emission", heat->balance_of_emission, 2);
     report_value(report, "error_of_emission", heat->throughput > 0 ? heat->error / heat->throughput : 0, 2);
     report_value(report, "error_rms_W", heat->error, 2);
@@ -312,16 +349,48 @@ static int heat_solve(struct heat_request *request, struct bed *bed, struct heat
     return status;
 }
 
+/* Arrays of a result for spheres: the last INSIDE are of spheres that conduct. */
+enum { ARRAYS = 9, INSIDE = 5 };
+static double **heat_array(fibrad_heat_result *result, size_t k) {
+    double **const of_spheres[ARRAYS] = {&result->power,
+                                         &result->temperature,
+                                         &result->power_error,
+                                         &result->temperature_error,
+                                         &result->least_temperature,
+                                         &result->largest_temperature,
+                                         &result->centre_temperature,
+                                         &result->surface_error,
+                                         &result->centre_error};
+    return of_spheres[k];
+}
+
 /* Allocates the arrays of a result for n spheres. */
-static int heat_arrays(fibrad_heat_result *result, uint32_t n) {
-    double **const of_spheres[] = {&result->power, &result->temperature, &result->power_error,
-                                   &result->temperature_error};
+static int heat_arrays(fibrad_heat_result *result, uint32_t n, bool conducts) {
     int status = STATUS_OK;
-    for (size_t k = 0; k < sizeof of_spheres / sizeof *of_spheres; ++k) {
-        *of_spheres[k] = calloc(n, sizeof(double));
-        if (!*of_spheres[k] && !status) status = message_memory();
+    for (size_t k = 0; k < (conducts ? ARRAYS : ARRAYS - INSIDE); ++k) {
+        double **array = heat_array(result, k);
+        *array = calloc(n, sizeof(double));
+        if (!*array && !status) status = message_memory();
     }
     return status;
+}
+
+/* Finds the conductivities of the solid, and room for them in the unit of the library. In time powers are in watts, and
+ * sigma has the square of the unit of length. */
+static int heat_solid(struct heat_request *request, const struct bed *bed) {
+    struct heat_problem *problem = &request->problem;
+    double metres;
+    problem->solid = problem->conductivity = NULL;
+    problem->of_solid = &request->solid;
+    problem->sources.conductivity = NULL;
+    if (!request->solid.given) return STATUS_OK;
+    const int status = solid_values(&request->bed, bed, &request->solid, &problem->solid, &metres);
+    if (status) return status;
+    problem->sources.conductivity = problem->conductivity = calloc(bed->n, sizeof *problem->conductivity);
+    problem->per_watt = request->given.timed ? metres : 1 / metres;
+    for (uint32_t i = 0; i < bed->n && problem->conductivity; ++i)
+        problem->conductivity[i] = problem->solid[i] * problem->per_watt;
+    return problem->conductivity ? STATUS_OK : message_memory();
 }
 
 static int heat_frame(void *heat_request, struct bed *bed) {
@@ -347,7 +416,8 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     if (!status)
         warn_temperatures(&request->bed.warned, bed, &request->given.temperature, request->given.zero,
                           given.temperature);
-    if (!status) status = heat_arrays(&report.result, bed->n);
+    if (!status) status = heat_arrays(&report.result, bed->n, request->solid.given);
+    if (!status) status = heat_solid(request, bed);
     if (!status && request->bed.wall_vtp) status = triangle_heat_begin(&report.triangles, walls);
     if (!status) {
         given_heat_sources(&given, bed->n, request->given.timed ? 1 : report.metres, sources);
@@ -366,10 +436,10 @@ static int heat_frame(void *heat_request, struct bed *bed) {
     free(emissivity);
     light_free(&light);
     given_free(&given);
-    free(report.result.power);
-    free(report.result.temperature);
-    free(report.result.power_error);
-    free(report.result.temperature_error);
+    free(request->problem.solid);
+    free(request->problem.conductivity);
+    request->problem.solid = request->problem.conductivity = NULL;
+    for (size_t k = 0; k < ARRAYS; ++k) free(*heat_array(&report.result, k));
     side_arrays_free(&report.triangles);
     return status;
 }
@@ -379,6 +449,7 @@ int command_heat(int argc, char **argv) {
     const int status = heat_parse(&request, argc, argv);
     const int ended = bed_options_end(&request.bed, status, heat_help, heat_frame, &request);
     quantity_free(&request.emissivity);
+    quantity_free(&request.solid);
     curve_free(&request.given.ambient_curve);
     return ended;
 }

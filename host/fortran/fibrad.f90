@@ -663,8 +663,12 @@ contains
     !   wall_power          (walls) [W] out
     !   surroundings_power  [W] out
     !   temperature_error   (n) [K] out: estimated, 0 if the temperature was given
+    !   conductivity        (n) [W/(m K)] of the solid, above 0; temperatures are then means of surfaces
+    !   least, largest      (n) [K] out: of the surface of each sphere
+    !   centre              (n) [K] out: in the centre of each sphere
     subroutine heat_settle(heat, temperature, source, law, emissivity, surroundings, power, status, wall_temperature, &
-                           wall_emissivity, wall_source, insulated, wall_power, surroundings_power, temperature_error)
+                           wall_emissivity, wall_source, insulated, wall_power, surroundings_power, temperature_error, &
+                           conductivity, least, largest, centre)
         class(fibrad_heat), intent(inout) :: heat
         real(c_double), intent(inout), contiguous, target :: temperature(:), emissivity(:), power(:)
         real(c_double), intent(in), contiguous, target :: source(:)
@@ -676,6 +680,8 @@ contains
         logical, intent(in), optional :: insulated(:)
         real(c_double), intent(inout), optional :: wall_power(:), surroundings_power
         real(c_double), intent(inout), optional, contiguous, target :: temperature_error(:)
+        real(c_double), intent(in), optional, contiguous, target :: conductivity(:)
+        real(c_double), intent(inout), optional, contiguous, target :: least(:), largest(:), centre(:)
         type(c_heat_sources) :: sources
         type(c_heat_result) :: result
         type(law_of_spheres), target :: follows
@@ -689,6 +695,10 @@ contains
         if (status == fibrad_ok .and. present(wall_source)) status = check_sizes(heat%walls, size(wall_source))
         if (status == fibrad_ok .and. present(insulated)) status = check_sizes(heat%walls, size(insulated))
         if (status == fibrad_ok .and. present(temperature_error)) status = check_sizes(heat%spheres, size(temperature_error))
+        if (status == fibrad_ok .and. present(conductivity)) status = check_sizes(heat%spheres, size(conductivity))
+        if (status == fibrad_ok .and. present(least)) status = check_sizes(heat%spheres, size(least))
+        if (status == fibrad_ok .and. present(largest)) status = check_sizes(heat%spheres, size(largest))
+        if (status == fibrad_ok .and. present(centre)) status = check_sizes(heat%spheres, size(centre))
         if (status /= fibrad_ok) return
         given = temperature
         sources%temperature = c_loc(given)
@@ -709,6 +719,10 @@ contains
         result%body_power = c_loc(walls_power)
         result%body_temperature = c_loc(walls_found)
         if (present(temperature_error)) result%temperature_error = c_loc(temperature_error)
+        if (present(conductivity)) sources%conductivity = c_loc(conductivity)
+        if (present(least)) result%least_temperature = c_loc(least)
+        if (present(largest)) result%largest_temperature = c_loc(largest)
+        if (present(centre)) result%centre_temperature = c_loc(centre)
         status = c_radiation_settle(heat%radiation, sources, c_funloc(follow_law), c_loc(follows), c_loc(emissivity), &
                                     c_loc(walls_emit), result)
         if (status /= fibrad_ok) return

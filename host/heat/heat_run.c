@@ -71,6 +71,23 @@ static void heat_temperatures(const struct bed *bed, const fibrad_heat_sources *
     report->emission_error = emissions > 0 ? sqrt(errors / emissions) : 0;
 }
 
+/* Figures of surfaces and centres of spheres that conduct. */
+static void heat_surfaces(const struct bed *bed, struct heat_report *report) {
+    const fibrad_heat_result *result = &report->result;
+    double square = 0;
+    uint32_t n = 0;
+    report->surface_min = INFINITY, report->surface_max = report->centre_max = -INFINITY, report->surface_span = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double low = result->least_temperature[i], high = result->largest_temperature[i];
+        if (isnan(low)) continue;
+        report->surface_min = fmin(report->surface_min, low), report->surface_max = fmax(report->surface_max, high);
+        report->surface_span = fmax(report->surface_span, high - low);
+        report->centre_max = fmax(report->centre_max, result->centre_temperature[i]);
+        square += gsl_pow_2(result->surface_error[i]), ++n;
+    }
+    report->surface_error = n > 0 ? sqrt(square / n) : 0;
+}
+
 /* Says why no temperatures have the given powers. */
 static int heat_unsolvable(const struct bed_options *options, const struct heat_problem *problem, const struct bed *bed,
                            const struct heat_report *report) {
@@ -149,6 +166,14 @@ static int heat_memory(const struct bed *bed, const fibrad_heat_config *config) 
                         "fewer --directions, --points or --patches take less");
 }
 
+void heat_properties(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
+                     double *emissivity) {
+    quantity_follow(problem->of_emissivity, bed, temperature, emissivity);
+    if (!problem->solid) return;
+    quantity_follow(problem->of_solid, bed, temperature, problem->solid);
+    for (uint32_t i = 0; i < bed->n; ++i) problem->conductivity[i] = problem->solid[i] * problem->per_watt;
+}
+
 /* Context of heat_follow. */
 struct heat_law {
     const struct heat_problem *problem;
@@ -160,7 +185,7 @@ static void heat_follow(void *law, const double *temperature, const double *wall
     const struct heat_law *how = law;
     (void)wall_temperature;
     (void)wall_emissivity;
-    quantity_follow(how->problem->of_emissivity, how->bed, temperature, emissivity);
+    heat_properties(how->problem, how->bed, temperature, emissivity);
 }
 
 /* Tolerance of the radiosities over problem->error: so small that it adds nothing to the error. */
@@ -204,6 +229,7 @@ static int heat_once(struct bed_options *options, const struct heat_problem *pro
     if (status) return status;
     heat_temperatures(bed, &sources, report);
     light_add(problem->light, &sources, bed->n, problem->walls.count, &report->result);
+    if (problem->solid) heat_surfaces(bed, report);
     heat_scale(bed, problem->walls.count, report->metres * report->metres, &report->result);
     light_scale(problem->light, bed->n, problem->walls.count, report->metres * report->metres);
     heat_summarise(bed, &sources, problem->walls.count, report);

@@ -19,7 +19,12 @@ struct heat_problem {
     const struct quantity *of_emissivity; /* the option, which has the tables */
     struct face *face;                    /* what is found of the open face */
     struct light_state *light;            /* light from outside; its options NULL: there is none */
-    bool by_patches, by_factors;          /* --model; in time only: neither means corrected factors */
+    /* [spheres] conductivities of the solid [W/(m K)], which change where a table over T is given, and the same in the
+     * unit of sources.conductivity; NULL: spheres have one temperature each */
+    double *solid, *conductivity;
+    double per_watt;                 /* sources.conductivity over solid */
+    const struct quantity *of_solid; /* the option, which has the tables */
+    bool by_patches, by_factors;     /* --model; in time only: neither means corrected factors */
     /* --error: error allowed in powers, and in sigma T^4 of temperatures that are found, over their root mean squares;
      * 0: not given */
     double error;
@@ -48,7 +53,16 @@ struct heat_report {
     double coldest, hottest, temperature_mean; /* [K] */
     double temperature_error;                  /* root mean square error [K] */
     double emission_error;                     /* root mean square error of sigma T^4 over its root mean square */
+    /* of spheres that conduct */
+    double surface_min, surface_max; /* [K] least and largest temperature of all surfaces */
+    double surface_span;             /* [K] largest difference on the surface of a sphere */
+    double surface_error;            /* [K] root mean square error of least and largest temperatures */
+    double centre_max;               /* [K] */
 };
+
+/* Sets emissivities and conductivities of spheres that have tables to those at their temperatures. */
+void heat_properties(const struct heat_problem *problem, const struct bed *bed, const double *temperature,
+                     double *emissivity);
 
 /* Solves the problem of a bed. With problem->error, solves again with more beams and patches until the estimated error
  * is small enough. The caller sets report->metres and all arrays of report->result. Status 0, STATUS_INPUT if no

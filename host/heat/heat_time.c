@@ -82,6 +82,7 @@ struct time_run {
     struct time_point *point;                     /* [points] of the picture */
     size_t points, room;
     bool failed; /* memory for points ran out */
+    double lag;  /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
 };
 
 static struct time_point point_of(const struct time_run *m, double time, const double *temperature) {
@@ -181,7 +182,9 @@ static int find_capacities(struct time_run *m, double metres, double **capacity)
         if (!(m->span.temperature[i] > 0))
             status = message_at(STATUS_INPUT, m->options->name, m->bed.line[i],
                                 "the temperature is %g K; to begin with it must be above 0", m->span.temperature[i]);
-        (*capacity)[i] *= density[i] * (4. / 3 * M_PI) * gsl_pow_3(m->bed.r[i] * metres);
+        const double r = m->bed.r[i] * metres, store = (*capacity)[i] * density[i];
+        if (m->problem->solid) m->lag = fmax(m->lag, r * r * store / (M_PI * M_PI * m->problem->solid[i]));
+        (*capacity)[i] = store * (4. / 3 * M_PI) * gsl_pow_3(r);
     }
     free(density);
     return status;
@@ -193,15 +196,15 @@ static void follow_temperatures(void *time_run, const double *temperature, const
     const struct time_run *m = time_run;
     (void)wall_temperature;
     (void)wall_emissivity;
-    quantity_follow(m->problem->of_emissivity, &m->bed, temperature, emissivity);
+    heat_properties(m->problem, &m->bed, temperature, emissivity);
 }
 
-/* Chooses the method of the library. Patches are needed if the temperature of a wall is to be found, or if emissivities
- * follow temperatures. Else --model decides, whose default is corrected factors. */
+/* Chooses the method of the library. Patches are needed if the temperature of a wall is to be found, if emissivities
+ * follow temperatures, or if spheres conduct. Else --model decides, whose default is corrected factors. */
 static int choose_model(struct time_run *m) {
     const struct heat_problem *problem = m->problem;
-    const bool follow = quantity_curves(problem->of_emissivity);
-    m->by_patches = problem->by_patches || follow;
+    const bool follow = quantity_curves(problem->of_emissivity) || quantity_curves(problem->of_solid);
+    m->by_patches = problem->by_patches || follow || problem->solid;
     m->span.law = follow ? follow_temperatures : NULL;
     if (follow && problem->by_factors)
         return message(STATUS_USAGE, "--model factors: emissivities cannot follow temperatures; use --model patches");
@@ -264,7 +267,7 @@ static int write_state(struct time_run *m) {
     const uint32_t walls = m->problem->walls.count;
     fibrad_heat_sources shown = m->sources;
     shown.temperature = m->span.temperature;
-    quantity_follow(m->problem->of_emissivity, &m->bed, shown.temperature, m->problem->emissivity);
+    heat_properties(m->problem, &m->bed, shown.temperature, m->problem->emissivity);
     int status = fibrad_transient_powers(m->transient, &shown, m->result);
     if (!status && m->triangles->count && !m->problem->by_factors) {
         status = fibrad_transient_sides(m->transient, m->triangles->quantity[TRIANGLE_FLUX].side,
@@ -344,6 +347,8 @@ static void print_summary(struct time_run *m, const double *before, double secon
     report_value(report, "until_s", o->until, 9);
     report_text(report, "model", m->by_patches ? "patches" : m->problem->by_factors ? "factors" : "corrected");
     quantity_report(m->problem->of_emissivity, "emissivity", report);
+    quantity_report(m->problem->of_solid, "solid_conductivity", report);
+    if (m->lag > 0) report_value(report, "inner_lag_s", m->lag, 3);
     quantity_report(&o->capacity, "heat_capacity_J_kgK", report);
     quantity_report(&o->density, "density_kg_m3", report);
     if (!isnan(m->problem->sources.surroundings)) report_value(report, "surroundings_K", m->sources.surroundings, 6);
@@ -368,6 +373,24 @@ static void print_summary(struct time_run *m, const double *before, double secon
     report_end(report);
 }
 
+/* Inside, spheres are taken to be steady. Warns where a sphere takes longer for that than a step, or than all of it. */
+static void warn_lag(const struct time_run *m) {
+    const double step = m->steps > 0 ? m->time->until / (double)m->steps : m->time->until;
+    if (!(m->lag > 0)) return;
+    if (m->lag > m->time->until)
+        message_at(
+            STATUS_OK, m->options->name, 0,
+            "warning: --solid-conductivity: insides of spheres are taken to be steady, for which they need up to "
+            "%.3g s; --until ends before, at %g s",
+            m->lag, m->time->until);
+    else if (m->lag > step)
+        message_at(
+            STATUS_OK, m->options->name, 0,
+            "warning: --solid-conductivity: insides of spheres are taken to be steady, for which they need up to "
+            "%.3g s; steps are shorter, %.3g s on the mean",
+            m->lag, step);
+}
+
 /* Runs a bed from 0 to --until. before [spheres]: room for the initial temperatures. */
 static int run_bed(struct time_run *m, double *before, const struct output *picture) {
     const fibrad_scene_config scene = bed_scene(&m->bed, &m->problem->walls);
@@ -386,6 +409,7 @@ static int run_bed(struct time_run *m, double *before, const struct output *pict
     status = run_spans(m);
     progress_stop(&m->options->progress);
     if (!status && picture) status = plot_time(picture, m->options->name, m->point, m->points);
+    if (!status) warn_lag(m);
     if (!status) print_summary(m, before, progress_clock() - begun);
     fibrad_transient_free(m->transient);
     return status;

@@ -180,7 +180,7 @@ typedef void fibrad_emissivity_law(void *context, const double *temperature, con
                                    double *emissivity, double *body_emissivity);
 
 /* Net powers and temperatures with emissivities that follow a law. The call solves again until the emissivities change
- * by at most 1e-5.
+ * by at most 1e-5. The law may also change the array of sources->conductivity, which settles to 1e-4, relative.
  *   Input    sources: emissivity and body_emissivity are not used
  *            context: handed to law
  *            emissivity[spheres], body_emissivity[bodies]: to begin with, used where temperatures are unknown

@@ -126,7 +126,8 @@ int fibrad_radiation_sides(const fibrad_radiation *r, double *flux, double *temp
     return r->heat ? fibrad_heat_read_sides(r->heat, flux, temperature) : FIBRAD_E_STATE;
 }
 
-#define EMISSIVITY_CHANGE 1e-5
+#define EMISSIVITY_CHANGE   1e-5
+#define CONDUCTIVITY_CHANGE 1e-4 /* relative */
 enum { SETTLE_MAX = 100 };
 
 /* Whether the sources have the arrays of temperatures that the law reads first. */
@@ -149,6 +150,16 @@ static double largest_change(const double *before, const double *now, uint32_t n
     return largest;
 }
 
+/* The largest relative change of conductivities above 0, some of which may be infinite. */
+static double largest_ratio(const double *before, const double *now, uint32_t n) {
+    double largest = 0;
+    for (uint32_t i = 0; i < n; ++i) {
+        const double change = now[i] == before[i] ? 0 : fabs(now[i] / before[i] - 1);
+        if (!(change <= largest)) largest = change;
+    }
+    return largest;
+}
+
 int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sources, fibrad_emissivity_law *law,
                             void *context, double *emissivity, double *body_emissivity, fibrad_heat_result *result) {
     fibrad_scene_facts facts = {0};
@@ -157,25 +168,29 @@ int fibrad_radiation_settle(fibrad_radiation *r, const fibrad_heat_sources *sour
     if ((facts.spheres && !(emissivity && result->temperature)) ||
         (facts.bodies && !(body_emissivity && result->body_temperature)) || !temperatures_given(sources, &facts))
         return FIBRAD_E_ARGUMENT;
-    const uint32_t n = facts.spheres, bodies = facts.bodies;
-    double *before = malloc((n + bodies + (size_t)1) * sizeof *before);
+    const uint32_t n = facts.spheres, bodies = facts.bodies, conducting = sources->conductivity ? n : 0;
+    double *before = malloc((n + bodies + conducting + (size_t)1) * sizeof *before);
     if (!before) return FIBRAD_E_MEMORY;
     fibrad_heat_sources now = *sources;
     now.emissivity = emissivity, now.body_emissivity = body_emissivity;
-    double change = 1;
+    double *conductivity = before + n + bodies;
+    bool settled = false;
     int status = FIBRAD_OK;
     law(context, sources->temperature, sources->body_temperature, emissivity, body_emissivity);
-    for (int k = 0; k < SETTLE_MAX && !status && change > EMISSIVITY_CHANGE; ++k) {
+    for (int k = 0; k < SETTLE_MAX && !status && !settled; ++k) {
         status = fibrad_radiation_solve(r, &now, result);
         if (status) break;
         if (n) memcpy(before, emissivity, n * sizeof *before);
         if (bodies) memcpy(before + n, body_emissivity, bodies * sizeof *before);
+        if (conducting) memcpy(conductivity, sources->conductivity, conducting * sizeof *before);
         law(context, result->temperature, result->body_temperature, emissivity, body_emissivity);
         if (!are_emissivities(emissivity, n) || !are_emissivities(body_emissivity, bodies)) status = FIBRAD_E_ARGUMENT;
-        change = largest_change(before, emissivity, n) + largest_change(before + n, body_emissivity, bodies);
+        settled = largest_change(before, emissivity, n) + largest_change(before + n, body_emissivity, bodies) <=
+                      EMISSIVITY_CHANGE &&
+                  largest_ratio(conductivity, sources->conductivity, conducting) <= CONDUCTIVITY_CHANGE;
     }
     free(before);
-    return status ? status : change > EMISSIVITY_CHANGE ? FIBRAD_E_UNSOLVABLE : FIBRAD_OK;
+    return status ? status : settled ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
 }
 
 #define LIGHT_TOLERANCE 1e-5

@@ -38,8 +38,8 @@ struct contents {
     const struct side_arrays *of_sides; /* values of the triangles of meshes; NULL: none */
 
     const fibrad_heat_sources *sources; /* [K]; surroundings NaN: the bed is closed */
-    const fibrad_heat_result *result;   /* [W], [K]; all arrays are set */
     const fibrad_light_result *light;   /* [W], what is absorbed of light from outside; NULL: there is none */
+    const fibrad_heat_result *result;   /* [W], [K]; arrays of insides: all or none, others are set */
 
     const struct conduction *conduction;
 };
@@ -56,6 +56,17 @@ write_function write_heat_csv, write_heat_vtp, write_heat_json, write_heat_dump;
 /* The name of a wall in outputs: "zmin" for example, or "wall_1" for the first one if walls are not known. */
 enum { BODY_NAME = MESH_NAME };
 const char *contents_body(const struct contents *what, uint32_t k, char name[BODY_NAME]);
+
+/* Names of columns of spheres that conduct, and the values of one of them. */
+#define INSIDE_NAMES  "T_min_K", "T_max_K", "T_surface_error_K", "T_centre_K", "T_centre_error_K"
+#define INSIDE_HEADER ",T_min_K,T_max_K,T_surface_error_K,T_centre_K,T_centre_error_K"
+enum { INSIDE_COLUMNS = 5 };
+static inline const double *contents_inside(const struct contents *what, size_t column) {
+    const fibrad_heat_result *r = what->result;
+    const double *const of[INSIDE_COLUMNS] = {r->least_temperature, r->largest_temperature, r->surface_error,
+                                              r->centre_temperature, r->centre_error};
+    return of[column];
+}
 
 /* Extremes, means and errors of the rows that were computed. */
 struct summary {

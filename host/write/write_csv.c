@@ -21,7 +21,7 @@ struct csv {
     const struct contents *what;
     bool named;     /* there is a column body */
     size_t columns; /* length of the columns file, frame, timestep and time_s, with which all lines begin */
-    char line[2 * PATH_MAX + 8 * TEXT_NUMBER];
+    char line[2 * PATH_MAX + 16 * TEXT_NUMBER];
 };
 
 /* Puts a text, in quotes if it has commas or quotes. */
@@ -138,14 +138,23 @@ int write_csv(FILE *file, const struct contents *what, bool first) {
 /* Puts a number. NaN: puts nothing. */
 static char *put_error(char *to, double error) { return isnan(error) ? to : text_real(to, error); }
 
-/* light[2]: what is absorbed of light from outside, first and in all. */
-static void write_power(struct csv *csv, int64_t name, const char *body, double temperature, double power,
+/* Puts the columns of a sphere that conducts. i = UINT32_MAX: of what is no sphere. */
+static char *put_inside(char *at, const struct contents *what, uint32_t i) {
+    for (size_t k = 0; k < INSIDE_COLUMNS && what->result->least_temperature; ++k) {
+        at = put_comma(at);
+        if (i < UINT32_MAX) at = put_error(at, contents_inside(what, k)[i]);
+    }
+    return at;
+}
+
+/* i: of a sphere, or UINT32_MAX. light[2]: what is absorbed of light from outside, first and in all. */
+static void write_power(struct csv *csv, int64_t name, uint32_t i, const char *body, double temperature, double power,
                         double power_error, double temperature_error, const double light[2]) {
     char *at = put_comma(text_whole(csv->line + csv->columns, name));
     at = put_comma(text_real(at, temperature));
     at = put_comma(text_real(at, power));
     at = put_comma(put_error(at, power_error));
-    at = put_error(at, temperature_error);
+    at = put_inside(put_error(at, temperature_error), csv->what, i);
     for (int k = 0; k < 2 && csv->what->light; ++k) at = text_real(put_comma(at), light[k]);
     end_line(csv, at, body);
 }
@@ -157,24 +166,26 @@ int write_heat_csv(FILE *file, const struct contents *what, bool first) {
     char name[BODY_NAME];
     const fibrad_light_result *light = what->light;
     double of_light[2] = {0, 0};
-    begin_csv(&csv, file, what,
-              light ? "i,T_K,q_W,q_error_W,T_error_K,absorbed_first_W,absorbed_W" : "i,T_K,q_W,q_error_W,T_error_K",
-              first);
+    char columns[200];
+    snprintf(columns, sizeof columns, "i,T_K,q_W,q_error_W,T_error_K%s%s",
+             result->least_temperature ? INSIDE_HEADER : "", light ? ",absorbed_first_W,absorbed_W" : "");
+    begin_csv(&csv, file, what, columns, first);
     for (uint32_t i = 0; i < what->bed->n; ++i) {
         if (interrupt_status()) return interrupt_status();
         if (light) of_light[0] = light->absorbed_first[i], of_light[1] = light->absorbed[i];
-        write_power(&csv, bed_name(what->bed, i), "", result->temperature[i], result->power[i], result->power_error[i],
-                    result->temperature_error[i], of_light);
+        write_power(&csv, bed_name(what->bed, i), i, "", result->temperature[i], result->power[i],
+                    result->power_error[i], result->temperature_error[i], of_light);
     }
     if (!what->walls) return STATUS_OK;
     if (light) of_light[0] = light->transmitted, of_light[1] = light->transmitted + light->reflected;
     if (!isnan(surroundings))
-        write_power(&csv, SURROUNDINGS, "surroundings", surroundings, result->surroundings_power,
+        write_power(&csv, SURROUNDINGS, UINT32_MAX, "surroundings", surroundings, result->surroundings_power,
                     result->surroundings_error, 0, of_light);
     for (uint32_t k = 0; k < what->walls->count; ++k) {
         if (light) of_light[0] = light->body_absorbed_first[k], of_light[1] = light->body_absorbed[k];
-        write_power(&csv, FIRST_WALL - (int64_t)k, contents_body(what, k, name), result->body_temperature[k],
-                    result->body_power[k], result->body_error[k], result->body_temperature_error[k], of_light);
+        write_power(&csv, FIRST_WALL - (int64_t)k, UINT32_MAX, contents_body(what, k, name),
+                    result->body_temperature[k], result->body_power[k], result->body_error[k],
+                    result->body_temperature_error[k], of_light);
     }
     return STATUS_OK;
 }

@@ -233,6 +233,7 @@ contains
     subroutine found_temperatures()
         type(fibrad_heat) :: heat
         real(dp) :: unknown, t(2), e(2), power(2), error(2), walls(1), wall_power(1), outside, expected
+        real(dp) :: least(2), largest(2), centre(2)
         integer :: status
         unknown = 0
         unknown = unknown / unknown
@@ -246,6 +247,12 @@ contains
         call expect(near(e(1), t(1) / 2000, 2e-5_dp) .and. near(e(2), 0.5_dp, 1e-14_dp), 'emissivities follow')
         call expect(near(power(1), -10.0_dp, 1e-9_dp) .and. near(outside, -sum(power), 1e-9_dp), 'powers given')
         call expect(error(1) < 1.0_dp .and. error(2) <= 0, 'errors of temperatures')
+        t(1) = unknown
+        call heat%settle(t, [10.0_dp, 0.0_dp], proportional, e, 0.0_dp, power, status, conductivity=[2.0_dp, 3.0_dp], &
+                         least=least, largest=largest, centre=centre)
+        call expect(status == fibrad_ok .and. near(t(1), expected, 1e-4_dp), 'a sphere that conducts')
+        call expect(near(centre(1) - t(1), 10 / (8 * pi * 0.01_dp * 2), 1e-6_dp), 'the centre is hotter')
+        call expect(all(least <= t) .and. all(t <= largest), 'a surface has no one temperature')
         call heat%new([0.0_dp, 1.0_dp], [0.0_dp, 0.0_dp], [0.5_dp, 0.5_dp], [0.3_dp, 0.3_dp], status, &
                       box=[2.0_dp, 2.0_dp, 0.0_dp], walls=[fibrad_plane('zmin', 0.0_dp)])
         t = unknown

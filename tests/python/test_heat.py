@@ -274,6 +274,24 @@ def test_walls_find_their_temperatures(small):
     assert abs(found.balance) < 1e-12 * abs(found.spheres[1])
 
 
+def test_spheres_that_conduct():
+    """The centre is P/(8 pi r k) above the mean of the surface; the side of a sphere that sees a hotter one is hotter."""
+    with fibrad.Heat([[0, 0, 0], [0, 0, 0.07]], 0.03) as heat:
+        plain = heat.solve([1000, np.nan], 0.8, power=50., surroundings=600)
+        same = heat.solve([1000, np.nan], 0.8, power=50., surroundings=600, conductivity=np.inf)
+        found = heat.solve([1000, np.nan], 0.8, power=50., surroundings=600, conductivity=[2., 5.])
+        with pytest.raises(fibrad.InputError, match="conductivity"):
+            heat.solve(1000, 0.8, surroundings=600, conductivity=0)
+        with pytest.raises(fibrad.InputError, match="conductivity is given, and uniform"):
+            heat.solve(1000, 0.8, surroundings=600, conductivity=1, uniform=True)
+    assert np.array_equal(plain.least_temperatures, plain.temperatures)
+    assert same.temperatures == pytest.approx(plain.temperatures, rel=1e-5)
+    rise = -found.spheres / (8 * np.pi * 0.03 * np.array([2., 5.]))
+    assert found.centre_temperatures - found.temperatures == pytest.approx(rise, rel=1e-9)
+    assert np.all(found.least_temperatures < found.temperatures) and np.all(found.surface_errors > 0)
+    assert np.all(found.temperatures < found.largest_temperatures) and abs(found.balance) < 1e-12 * 1000**4 * SIGMA
+
+
 @pytest.mark.parametrize("options, text", [
     ({"temperature": np.nan}, "temperature"),
     ({"temperature": None, "power": -1e9}, "temperatures"),

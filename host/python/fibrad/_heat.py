@@ -23,6 +23,9 @@ STEFAN_BOLTZMANN = 5.670374419e-8
 
 _SETTLE_MAX, _EMISSIVITY_CHANGE = 100, 1e-5
 
+_OF_SPHERES = ("power", "temperature", "power_error", "temperature_error", "least_temperature", "largest_temperature",
+               "centre_temperature", "surface_error", "centre_error")
+
 
 def _law(emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]]) -> Callable[[Any], ArrayLike]:
     if callable(emissivity):
@@ -62,6 +65,16 @@ class Powers:
     """[W] estimated error of `surroundings`."""
     temperature_errors: NDArray[np.float64]
     """[K] (n,) estimated error of `temperatures`, 0 if the temperature was given."""
+    least_temperatures: NDArray[np.float64]
+    """[K] (n,) least temperature of the surface of each sphere. `temperatures` if the sphere does not conduct."""
+    largest_temperatures: NDArray[np.float64]
+    """[K] (n,) largest temperature of the surface of each sphere, likewise."""
+    centre_temperatures: NDArray[np.float64]
+    """[K] (n,) temperature in the centre of each sphere, likewise."""
+    surface_errors: NDArray[np.float64]
+    """[K] (n,) estimated error of `least_temperatures` and `largest_temperatures`."""
+    centre_errors: NDArray[np.float64]
+    """[K] (n,) estimated error of `centre_temperatures`."""
     error: float
     """[W] estimated error of `spheres`, root mean square."""
     error_patches: float
@@ -178,7 +191,8 @@ class Heat(Bed):
               power: Optional[ArrayLike] = None, surroundings: Optional[float] = None, wall_temperature: Any = None,
               wall_emissivity: Any = None, wall_power: Optional[Mapping[str, float]] = None,
               insulated: Collection[str] = (), tolerance: Optional[float] = None, uniform: bool = False,
-              sigma: float = STEFAN_BOLTZMANN, light: Optional[Absorbed] = None) -> Powers:
+              sigma: float = STEFAN_BOLTZMANN, light: Optional[Absorbed] = None,
+              conductivity: Optional[ArrayLike] = None) -> Powers:
         """Net powers and temperatures.
 
         Parameters
@@ -213,6 +227,9 @@ class Heat(Bed):
         light : Absorbed, optional
             The last `shine` of this bed. What is absorbed heats. Net powers are those of light and thermal radiation
             together.
+        conductivity : (n,) array or float, optional
+            [W/(m K)] Conductivities of the solid, above 0. Temperatures of spheres are then means of their surfaces.
+            Infinite: the sphere has one temperature. Default: all do.
 
         Returns
         -------
@@ -235,6 +252,11 @@ class Heat(Bed):
             raise refuse("power is given, and all spheres have temperatures; NaN is an unknown one")
         if powers is not None and np.ndim(power) == 0:
             powers = np.where(np.isnan(kelvins), powers, math.nan)
+        conducts = None if conductivity is None else per_sphere("conductivity", conductivity, n, 5e-324, math.inf, names)
+        if conducts is not None and uniform:
+            raise refuse("conductivity is given, and uniform is True: one radiosity knows no sides of a sphere")
+        if conducts is not None and light is not None:
+            raise refuse("conductivity and light are given: which side of a sphere light heats is not known yet")
         of_bodies = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         if light is not None:
             if light._of is not self or light.insulated != frozenset(insulated):
@@ -249,10 +271,11 @@ class Heat(Bed):
         sources = HeatSources(surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX),
                               sigma=real("sigma", sigma, *SIGMA), tolerance=real("tolerance", tolerance, 0, 1),
                               uniform=bool(uniform), temperature=pointer(kelvins), power=pointer(powers),
+                              conductivity=pointer(conducts),
                               **pointers(of_bodies))
         if light is not None:
             sources.light = patches_pointer(light)
-        of_spheres = {name: np.zeros(n) for name in ("power", "temperature", "power_error", "temperature_error")}
+        of_spheres = {name: np.zeros(n) for name in _OF_SPHERES}
         of_walls = {name: np.zeros(len(container.names)) for name in ("body_power", "body_temperature", "body_error")}
         result = HeatResult(**{name: pointer(array) for name, array in (of_spheres | of_walls).items()})
         for _ in range(_SETTLE_MAX):
@@ -280,5 +303,9 @@ class Heat(Bed):
                       emissivities=before, errors=of_spheres["power_error"], wall_errors=walls["body_error"],
                       surroundings_error=result.surroundings_error,
                       temperature_errors=of_spheres["temperature_error"],
+                      least_temperatures=of_spheres["least_temperature"],
+                      largest_temperatures=of_spheres["largest_temperature"],
+                      centre_temperatures=of_spheres["centre_temperature"], surface_errors=of_spheres["surface_error"],
+                      centre_errors=of_spheres["centre_error"],
                       error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,
                       error_beams=result.error_beams, residual=result.residual, sweeps=result.sweeps)

@@ -1,0 +1,138 @@
+/* test_heat_solid.c - `heat --solid-conductivity`: the program and its files. SPDX-License-Identifier: MIT */
+#include "program.h"
+
+#define SIGMA 5.670374419e-8
+
+static const char *spheres(void) {
+    return write_file("bed.csv",
+                      "x,y,z,radius,k,T,P\n0,0,0,0.03,2,1000,\n0.07,0,0,0.03,3,,500\n0,0.07,0,0.03,4,1500,\n");
+}
+
+/* Column k of the line of sphere i in a .csv; both from 0. */
+static double entry(const char *file, int i, int k) {
+    char *text = read_file(file), *at = text;
+    for (int line = 0; line <= i; ++line) ck_assert_ptr_nonnull(at = strchr(at, '\n') + 1);
+    for (int column = 0; column < k; ++column) ck_assert_ptr_nonnull(at = strchr(at, ',') + 1);
+    const double value = strtod(at, NULL);
+    free(text);
+    return value;
+}
+
+/* A sphere with an even source in surroundings of 900 K: its surface is at one temperature, and its centre hotter. */
+START_TEST(a_pebble_with_a_source) {
+    const double power = 500, r = 30, k = 8, area = 4 * M_PI * 1e-6 * r * r;
+    const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n"), *q = in_folder("q.csv");
+    SUCCEED("heat", file, "--length-unit", "mm", "--emissivity", "0.8", "--power", "500", "--ambient", "900",
+            "--solid-conductivity", "8", "-o", q);
+    const double t = pow(pow(900, 4) + power / (.8 * SIGMA * area), .25), rise = power / (8 * M_PI * r * 1e-3 * k);
+    ck_assert_double_le(fabs(entry(q, 0, 1) / t - 1), 1e-4);
+    ck_assert_double_le(fabs(entry(q, 0, 5) / t - 1), 1e-3);
+    ck_assert_double_le(fabs(entry(q, 0, 6) / t - 1), 1e-3);
+    ck_assert_double_le(fabs((entry(q, 0, 8) - entry(q, 0, 1)) / rise - 1), 1e-6);
+    ck_assert_double_le(fabs(value_of("centre_max_K") / (t + rise) - 1), 1e-3);
+    ck_assert_double_le(fabs(value_of("k_star") / (k / (8 * r * 1e-3 * SIGMA * t * t * t)) - 1), 1e-3);
+}
+END_TEST
+
+/* All columns, in all files; walls and surroundings have none. */
+START_TEST(files_have_insides) {
+    const char *file = spheres(), *q = in_folder("q.csv"), *json = in_folder("q.json"), *vtp = in_folder("q.vtp");
+    SUCCEED("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "T", "--power", "P",
+            "--ambient", "600", "--solid-conductivity", "k", "-o", q, "-o", json, "-o", vtp);
+    char *text = read_file(q);
+    ck_assert_ptr_nonnull(strstr(
+        text, "i,T_K,q_W,q_error_W,T_error_K,T_min_K,T_max_K,T_surface_error_K,T_centre_K,T_centre_error_K,body\n"));
+    ck_assert_ptr_nonnull(strstr(text, ",,,,,,surroundings\n"));
+    free(text);
+    for (int i = 0; i < 3; ++i) {
+        ck_assert(entry(q, i, 5) < entry(q, i, 1) && entry(q, i, 1) < entry(q, i, 6));
+        ck_assert_double_gt(entry(q, i, 7), 0);
+        const double rise = -entry(q, i, 2) / (8 * M_PI * .03 * (2 + i));
+        ck_assert_double_le(fabs(entry(q, i, 8) - entry(q, i, 1) - rise), 1e-9 * fabs(rise));
+    }
+    text = read_file(json);
+    ck_assert_ptr_nonnull(strstr(text, "\"T_min_K\":["));
+    ck_assert_ptr_nonnull(strstr(text, "\"T_centre_error_K\":["));
+    free(text);
+    text = read_file(vtp);
+    ck_assert_ptr_nonnull(strstr(text, "Name=\"T_max_K\""));
+    free(text);
+    SUCCEED("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "T", "--power", "P",
+            "--ambient", "600", "-o", q);
+    text = read_file(q);
+    ck_assert_ptr_null(strstr(text, "T_min_K"));
+    free(text);
+}
+END_TEST
+
+/* A table over temperature is taken at the temperature that is found. */
+START_TEST(conductivity_follows_temperature) {
+    const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n0,0,70,30\n"), *q = in_folder("q.csv");
+    char table[300];
+    snprintf(table, sizeof table, "@%s", write_file("k.csv", "T,k\n500,10\n1500,2\n"));
+    SUCCEED("heat", file, "--length-unit", "mm", "--emissivity", "0.8", "--power", "400", "--ambient", "600",
+            "--solid-conductivity", table, "-o", q);
+    const double t = entry(q, 0, 1), k = 10 - 8 * (t - 500) / 1000;
+    ck_assert_double_le(fabs((entry(q, 0, 8) - t) / (400 / (8 * M_PI * .03 * k)) - 1), 1e-3);
+}
+END_TEST
+
+/* In time insides are steady; who takes steps shorter than that lasts is told so. */
+START_TEST(insides_lag_in_time) {
+    const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,0.03\n0.07,0,0,0.03\n"), *q = in_folder("q.csv");
+    for (int quick = 0; quick < 2; ++quick) {
+        SUCCEED("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "1000", "--ambient", "600",
+                "--solid-conductivity", "2", "--heat-capacity", "800", "--density", "2000", "--until",
+                quick ? "10" : "2000", "--step", quick ? "5" : "100", "-o", q);
+        ck_assert_double_le(fabs(value_of("inner_lag_s") / (9e-4 * 1.6e6 / (M_PI * M_PI * 2)) - 1), 1e-2);
+        ck_assert_double_le(fabs(value_of("balance_of_stored")), 1e-12);
+        if (quick)
+            expect_message(file, "insides of spheres are taken to be steady");
+        else
+            ck_assert_str_eq(said, "");
+        ck_assert_double_lt(entry(q, 0, 6), entry(q, 0, 7));
+        ck_assert_double_gt(entry(q, 0, 9), entry(q, 0, 2)); /* it cools from within */
+    }
+}
+END_TEST
+
+START_TEST(what_cannot_be) {
+    const char *file = spheres();
+    static const struct {
+        const char *value, *more, *reason;
+        int status;
+    } wrong[] = {
+        {"0", NULL, "--solid-conductivity", 2},
+        {"-3", NULL, "--solid-conductivity", 2},
+        {"nan", NULL, "no column nan", 3},
+        {"lambda", NULL, "lambda", 3},
+        {"P", NULL, "P is not a number", 3},
+        {"x", NULL, "conductivity of the solid", 3},
+        {"1:5", NULL, "type", 3},
+        {"5", "spheres", "--solid-conductivity is", 2},
+    };
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+        const int status =
+            RUN("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--temperature", "900", "--ambient", "600",
+                "--solid-conductivity", wrong[k].value, wrong[k].more ? "--model" : NULL, wrong[k].more);
+        ck_assert_msg(status == wrong[k].status && strstr(said, wrong[k].reason), "%s: %d, %s", wrong[k].value, status,
+                      said);
+    }
+    ck_assert_int_eq(RUN("heat", file, "--emissivity", "0.8", "--temperature", "900", "--ambient", "600",
+                         "--solid-conductivity", "5"),
+                     2);
+    ck_assert_ptr_nonnull(strstr(said, "--length-unit"));
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("heat of spheres that conduct");
+    TCase *tests = suite_case(suite, "heat of spheres that conduct");
+    tcase_add_checked_fixture(tests, make_folder, remove_folder);
+    tcase_add_test(tests, a_pebble_with_a_source);
+    tcase_add_test(tests, files_have_insides);
+    tcase_add_test(tests, conductivity_follows_temperature);
+    tcase_add_test(tests, insides_lag_in_time);
+    tcase_add_test(tests, what_cannot_be);
+    return suite_run(suite);
+}
