@@ -37,11 +37,6 @@ typedef struct fibrad_container {
     double axis[2], radius; /* L, of the cylinder; an infinite radius: there is none */
 } fibrad_container;
 
-/* Where the plane of a slot stands along its axis [L]. Infinite: there is no such plane. */
-static inline double fibrad_plane_at(const fibrad_container *container, uint32_t slot) {
-    return (fibrad_slot_is_upper(slot) ? container->high : container->low)[fibrad_slot_axis(slot)];
-}
-
 /* Whether a slot is an opening, so that its radiation goes to the surroundings. */
 static inline bool fibrad_is_opening(const fibrad_container *container, uint32_t slot) {
     return slot < FIBRAD_WALLS && (container->openings >> slot & 1) != 0;

@@ -137,10 +137,9 @@ bool fibrad_walls_hold(const fibrad_container *c, const double at[3]) {
 }
 
 double fibrad_walls_away(const fibrad_container *c, uint32_t slot, const double at[3]) {
-    if (fibrad_slot_is_plane(slot)) {
-        const double along = at[fibrad_slot_axis(slot)], plane = fibrad_plane_at(c, slot);
-        return fibrad_slot_is_upper(slot) ? plane - along : along - plane;
-    }
+    const uint32_t axis = fibrad_slot_axis(slot);
+    if (fibrad_slot_is_plane(slot))
+        return fibrad_slot_is_upper(slot) ? c->high[axis] - at[axis] : at[axis] - c->low[axis];
     const double x = at[0] - c->axis[0], y = at[1] - c->axis[1];
     return c->radius - fibrad_sqrt(x * x + y * y);
 }
